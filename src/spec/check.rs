@@ -1,0 +1,64 @@
+//! Violations of physical or numerical limits, with the field, its value and what would be right.
+
+use std::fmt;
+
+/// One value that cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FieldError {
+    /// Path of the field below the job, e.g. `scene.pin.poisson_ratio`.
+    pub field: String,
+    /// The value as given.
+    pub value: String,
+    /// What would be right.
+    pub expected: String,
+}
+
+impl fmt::Display for FieldError {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{} = {}: expected {}", self.field, self.value, self.expected)
+    }
+}
+
+/// All violations found in one job; never empty when returned as an error.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Violations(pub Vec<FieldError>);
+
+impl Violations {
+    /// Records that `field` has the unusable `value`.
+    pub fn add(&mut self, field: &str, value: impl fmt::Display, expected: impl Into<String>) {
+        self.0.push(FieldError {
+            field: field.to_owned(),
+            value: value.to_string(),
+            expected: expected.into(),
+        });
+    }
+
+    /// Records a violation unless `value` is finite and `holds`.
+    pub fn require(&mut self, field: &str, value: f64, holds: bool, expected: &str) {
+        if !(value.is_finite() && holds) {
+            self.add(field, value, expected);
+        }
+    }
+
+    /// `Ok` when nothing was found.
+    ///
+    /// # Errors
+    /// The violations themselves.
+    pub fn into_result(self) -> Result<(), Self> {
+        if self.0.is_empty() { Ok(()) } else { Err(self) }
+    }
+}
+
+impl fmt::Display for Violations {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, violation) in self.0.iter().enumerate() {
+            if i > 0 {
+                f.write_str("; ")?;
+            }
+            violation.fmt(f)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Violations {}

@@ -1,0 +1,45 @@
+//! When a state counts as periodic, as decayed, and which regime name it gets.
+
+use super::check::Violations;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Thresholds of the steady-state detection; see `analysis` for how they are used.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Detection {
+    /// Number of consecutive limit cycles in each of the two blocks that are compared.
+    pub cycles: usize,
+    /// Largest change, from one block to the next, of the mean T/F, mean N/F, the state shares, the
+    /// relative period and the relative peak stress.
+    pub tolerance: f64,
+    /// A contact state is named in the regime when its share of the node-time exceeds this.
+    pub regime_threshold: f64,
+    /// Shortest time [s] of steady sliding over which a decay must be measured before it is believed.
+    pub decay_observation_s: f64,
+}
+
+impl Default for Detection {
+    fn default() -> Self {
+        Self { cycles: 20, tolerance: 2.0e-3, regime_threshold: 0.03, decay_observation_s: 0.008 }
+    }
+}
+
+impl Detection {
+    pub(super) fn check(&self, found: &mut Violations) {
+        if !(2..=10_000).contains(&self.cycles) {
+            found.add("detection.cycles", self.cycles, "a number of cycles from 2 to 10000");
+        }
+        let tol = self.tolerance;
+        found.require("detection.tolerance", tol, tol > 0.0 && tol < 1.0, "0 < tolerance < 1");
+        let threshold = self.regime_threshold;
+        found.require(
+            "detection.regime_threshold",
+            threshold,
+            (0.0..1.0).contains(&threshold),
+            "a share, 0 <= regime_threshold < 1",
+        );
+        let observation = self.decay_observation_s;
+        found.require("detection.decay_observation_s", observation, observation > 0.0, "a duration > 0 s");
+    }
+}

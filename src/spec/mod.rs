@@ -1,0 +1,62 @@
+//! What a job is: everything that determines its result, as plain data.
+//!
+//! A [`JobSpec`] has four parts: the [`Scene`] (bodies, contact, boundary conditions, load), the
+//! [`Numerics`] (integrator and time step), the [`RunControl`] (how long) and the [`Detection`]
+//! (when a state counts as periodic or decayed). All of them default to the reference scene of
+//! Baillet, d'Errico and Berthier (2005). [`JobSpec::check`] says which values are not physical.
+//!
+//! # Conventions
+//! * SI units, with the unit in the name of every bare number.
+//! * The pin's base is the plane z = 0; x is the disk's radial direction (outwards), y the sliding
+//!   direction. **The disk's surface moves towards +y**, so the pin meets fresh disk surface at its
+//!   −y end: −y is the *leading* end (the pin's front), +y the *trailing* end (its rear).
+
+mod check;
+mod detection;
+mod numerics;
+mod scene;
+
+pub use check::{FieldError, Violations};
+pub use detection::Detection;
+pub use numerics::{Numerics, RunControl};
+pub use scene::{Clamp, ClampSide, Contact, Disk, DiskKind, Load, Pin, Scene, TopFace};
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// Everything that determines the result of one job.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct JobSpec {
+    /// Bodies, contact law, boundary conditions and load.
+    pub scene: Scene,
+    /// Integrator and time step.
+    pub numerics: Numerics,
+    /// How long the run lasts and what it averages over.
+    pub run: RunControl,
+    /// When a state counts as periodic or as decayed.
+    pub detection: Detection,
+}
+
+impl JobSpec {
+    /// Checks every value against its physical or numerical limits.
+    ///
+    /// # Errors
+    /// All violations found, each with the field's path below the job (`scene.contact.mu`), the
+    /// value and what would be right.
+    pub fn check(&self) -> Result<(), Violations> {
+        let mut found = Violations::default();
+        self.scene.check(&mut found);
+        self.numerics.check(&mut found);
+        self.run.check(&mut found);
+        self.detection.check(&mut found);
+        if self.scene.load.ramp_s >= self.run.limit_s {
+            found.add(
+                "scene.load.ramp_s",
+                self.scene.load.ramp_s,
+                format!("less than the run's time limit (run.limit_s = {})", self.run.limit_s),
+            );
+        }
+        found.into_result()
+    }
+}

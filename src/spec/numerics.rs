@@ -1,0 +1,87 @@
+//! Integrator settings and run length.
+
+use super::check::Violations;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// The β₂ integrator, its damping and its time step.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Numerics {
+    /// β₂ of the time scheme, ½ ≤ β₂ ≤ 1; ½ is the central difference.
+    pub beta2: f64,
+    /// Stiffness-proportional damping `β_R` [s], C = `β_R` K.
+    pub beta_r_s: f64,
+    /// Fraction of the stability limit used as the time step when `time_step_s` is not given.
+    pub safety_factor: f64,
+    /// The time step [s]; checked against the stability limit. Absent: `safety_factor` × limit.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub time_step_s: Option<f64>,
+}
+
+impl Default for Numerics {
+    fn default() -> Self {
+        Self { beta2: 0.5, beta_r_s: 5.0e-8, safety_factor: 0.7, time_step_s: None }
+    }
+}
+
+impl Numerics {
+    pub(super) fn check(&self, found: &mut Violations) {
+        let b = self.beta2;
+        found.require(
+            "numerics.beta2",
+            b,
+            (0.5..=1.0).contains(&b),
+            "0.5 <= β₂ <= 1 (0.5 is the central difference)",
+        );
+        let damping = self.beta_r_s;
+        found.require("numerics.beta_r_s", damping, damping >= 0.0, "a damping time >= 0 s");
+        let safety = self.safety_factor;
+        found.require(
+            "numerics.safety_factor",
+            safety,
+            safety > 0.0 && safety <= 1.0,
+            "a fraction of the stability limit, 0 < safety_factor <= 1",
+        );
+        if let Some(dt) = self.time_step_s {
+            found.require("numerics.time_step_s", dt, dt > 0.0, "a time step > 0 s");
+        }
+    }
+}
+
+/// How long a run lasts and what it averages over.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct RunControl {
+    /// Simulated time [s] after which a run ends whether or not it became periodic.
+    pub limit_s: f64,
+    /// Stop as soon as the state is periodic or has decayed. `false`: always run to `limit_s`.
+    pub stop_early: bool,
+    /// A run that ends at `limit_s` averages over this last fraction of it.
+    pub average_last_fraction: f64,
+}
+
+impl Default for RunControl {
+    fn default() -> Self {
+        Self { limit_s: 0.04, stop_early: true, average_last_fraction: 0.4 }
+    }
+}
+
+impl RunControl {
+    pub(super) fn check(&self, found: &mut Violations) {
+        let limit = self.limit_s;
+        found.require(
+            "run.limit_s",
+            limit,
+            limit > 0.0 && limit <= 100.0,
+            "a time limit, 0 < limit_s <= 100 s",
+        );
+        let fraction = self.average_last_fraction;
+        found.require(
+            "run.average_last_fraction",
+            fraction,
+            fraction > 0.0 && fraction < 1.0,
+            "a fraction of the run, 0 < average_last_fraction < 1",
+        );
+    }
+}

@@ -1,0 +1,230 @@
+//! The scene: pin, disk, contact law, boundary conditions and load.
+
+use super::check::Violations;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// A pin pressed on a rotating disk. Defaults to the reference scene (Baillet et al. 2005, tables 1 and 2).
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Scene {
+    /// The deformable pin.
+    pub pin: Pin,
+    /// The disk it slides on.
+    pub disk: Disk,
+    /// The contact law.
+    pub contact: Contact,
+    /// Which nodes of the pin's top face are held in x and y.
+    pub clamp: Clamp,
+    /// How the pin's top face moves in z.
+    pub top: TopFace,
+    /// The normal load on the pin's top face.
+    pub load: Load,
+}
+
+/// The pin: a linear elastic block meshed with nx × ny × nz trilinear hexahedra.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Pin {
+    /// Edge lengths [m] in x (radial), y (sliding direction) and z.
+    pub size_m: [f64; 3],
+    /// Number of elements in x, y and z.
+    pub elements: [usize; 3],
+    /// Young's modulus [Pa].
+    pub young_modulus_pa: f64,
+    /// Poisson's ratio, −1 < ν < 0.5.
+    pub poisson_ratio: f64,
+    /// Density [kg/m³].
+    pub density_kg_m3: f64,
+}
+
+impl Default for Pin {
+    fn default() -> Self {
+        Self {
+            size_m: [0.012, 0.015, 0.010],
+            elements: [12, 15, 10],
+            young_modulus_pa: 1.0e9,
+            poisson_ratio: 0.3,
+            density_kg_m3: 2500.0,
+        }
+    }
+}
+
+/// What the disk is made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum DiskKind {
+    /// A rigid plane that turns about the disk's axis.
+    #[default]
+    Rigid,
+}
+
+/// The rotating disk. Its surface moves towards +y under the pin.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Disk {
+    /// What the disk is made of.
+    pub kind: DiskKind,
+    /// Rotation speed ω [revolutions per minute], constant; 0 is a disk at rest.
+    pub omega_rpm: f64,
+    /// Distance R [m] of the pin's centre from the axis.
+    pub track_radius_m: f64,
+}
+
+impl Default for Disk {
+    fn default() -> Self {
+        Self { kind: DiskKind::Rigid, omega_rpm: 7.0, track_radius_m: 0.0914 }
+    }
+}
+
+/// Unilateral contact with Coulomb friction, the same coefficient at every node, no regularisation.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Contact {
+    /// Local (Coulomb) friction coefficient μ ≥ 0.
+    pub mu: f64,
+}
+
+impl Default for Contact {
+    fn default() -> Self {
+        Self { mu: 0.4 }
+    }
+}
+
+/// Where on the top face the clamp is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum ClampSide {
+    /// A strip along the −x side, nearest the disk's axis.
+    #[default]
+    InnerSide,
+    /// A strip along the +x side.
+    OuterSide,
+    /// A strip along the −y end, which meets the moving disk first.
+    LeadingEnd,
+    /// A strip along the +y end.
+    TrailingEnd,
+    /// Strips along the −x and +x sides.
+    BothSides,
+    /// Strips along the −y and +y ends.
+    BothEnds,
+    /// The whole top face; the width is not used.
+    WholeTop,
+}
+
+impl ClampSide {
+    /// The name used in study files, e.g. `inner_side`.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::InnerSide => "inner_side",
+            Self::OuterSide => "outer_side",
+            Self::LeadingEnd => "leading_end",
+            Self::TrailingEnd => "trailing_end",
+            Self::BothSides => "both_sides",
+            Self::BothEnds => "both_ends",
+            Self::WholeTop => "whole_top",
+        }
+    }
+}
+
+/// A clamp: the nodes of the top face within a strip are held in x and y.
+///
+/// The strip is a width in metres, so that it means the same on every mesh; a mesh without a node
+/// row near that width is refused.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Clamp {
+    /// Where the strip is.
+    pub side: ClampSide,
+    /// Width [m] of the strip, measured from the edge to the last held node row.
+    pub width_m: f64,
+}
+
+impl Default for Clamp {
+    fn default() -> Self {
+        Self { side: ClampSide::InnerSide, width_m: 0.001 }
+    }
+}
+
+/// How the pin's top face moves in z.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TopFace {
+    /// All top nodes share one z displacement; the total normal load acts on it.
+    #[default]
+    TiedInZ,
+    /// Every top node moves freely in z under its tributary share of the load.
+    FreeInZ,
+}
+
+/// The normal load, ramped linearly from zero and then constant.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Load {
+    /// Total normal load F [N], pressing the pin towards the disk.
+    pub force_n: f64,
+    /// Duration [s] of the linear ramp; 0 is a sudden load.
+    pub ramp_s: f64,
+}
+
+impl Default for Load {
+    fn default() -> Self {
+        Self { force_n: 30.0, ramp_s: 5.0e-4 }
+    }
+}
+
+/// Largest number of elements per direction: a guard against a slip of the keyboard, not a limit of the method.
+const MAX_ELEMENTS: usize = 1000;
+
+impl Scene {
+    /// Adds every violated limit to `found`.
+    pub(super) fn check(&self, found: &mut Violations) {
+        let pin = &self.pin;
+        for (axis, size) in pin.size_m.iter().enumerate() {
+            found.require(&format!("scene.pin.size_m[{axis}]"), *size, *size > 0.0, "a length > 0 m");
+        }
+        for (axis, &count) in pin.elements.iter().enumerate() {
+            if !(1..=MAX_ELEMENTS).contains(&count) {
+                found.add(
+                    &format!("scene.pin.elements[{axis}]"),
+                    count,
+                    format!("a number of elements from 1 to {MAX_ELEMENTS}"),
+                );
+            }
+        }
+        let e = pin.young_modulus_pa;
+        found.require("scene.pin.young_modulus_pa", e, e > 0.0, "a modulus > 0 Pa");
+        let nu = pin.poisson_ratio;
+        found.require(
+            "scene.pin.poisson_ratio",
+            nu,
+            nu > -1.0 && nu < 0.5,
+            "a Poisson's ratio with -1 < ν < 0.5 (0.5 is incompressible: no finite wave speed)",
+        );
+        let rho = pin.density_kg_m3;
+        found.require("scene.pin.density_kg_m3", rho, rho > 0.0, "a density > 0 kg/m³");
+
+        let omega = self.disk.omega_rpm;
+        found.require(
+            "scene.disk.omega_rpm",
+            omega,
+            omega >= 0.0,
+            "a speed >= 0 rpm (the disk always turns towards +y)",
+        );
+        let radius = self.disk.track_radius_m;
+        found.require(
+            "scene.disk.track_radius_m",
+            radius,
+            radius > pin.size_m[0] / 2.0,
+            "a radius larger than half the pin's width, so that the pin does not lie over the axis",
+        );
+        let mu = self.contact.mu;
+        found.require("scene.contact.mu", mu, mu >= 0.0, "a friction coefficient >= 0");
+        let width = self.clamp.width_m;
+        found.require("scene.clamp.width_m", width, width >= 0.0, "a width >= 0 m (0 holds one node row)");
+        let force = self.load.force_n;
+        found.require("scene.load.force_n", force, force > 0.0, "a load > 0 N, pressing the pin on the disk");
+        let ramp = self.load.ramp_s;
+        found.require("scene.load.ramp_s", ramp, ramp >= 0.0, "a duration >= 0 s (0 is a sudden load)");
+    }
+}
