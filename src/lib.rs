@@ -19,4 +19,6 @@
 //! * [`cli`] – one file a subcommand.
 
 pub mod analysis;
+pub mod solver;
 pub mod spec;
+pub mod units;

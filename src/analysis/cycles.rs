@@ -1,0 +1,103 @@
+//! Limit cycles from section crossings of the total normal force.
+
+use super::figures::Figures;
+use super::sample::{Sample, Smoother, smoothing_gain};
+use crate::solver::Model;
+use crate::solver::energy::Energies;
+
+/// One passage from an upward crossing of N = F to the next.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cycle {
+    /// Start [s], interpolated.
+    pub start_s: f64,
+    /// End [s], interpolated.
+    pub end_s: f64,
+    /// Figures of the steps in between.
+    pub figures: Figures,
+    /// Energies at the start.
+    pub energies: Energies,
+    /// Half the range [N] of the filtered N.
+    pub amplitude_n: f64,
+}
+
+impl Cycle {
+    /// Duration [s].
+    pub fn period_s(&self) -> f64 {
+        self.end_s - self.start_s
+    }
+}
+
+/// Time constant of each of the two section filters over the shear-wave transit time of the pin's
+/// height: 6.4 µs (25 kHz) in the reference scene. It keeps impact spikes and high modes from
+/// making crossings of their own; a constant delay does not change the period.
+const SECTION_SMOOTHING: f64 = 0.25;
+
+/// A crossing counts when N has been below F by this fraction of the last cycle's amplitude since
+/// the one before.
+const HYSTERESIS: f64 = 0.25;
+
+/// Cuts a run into cycles on the fly.
+#[derive(Debug, Clone)]
+pub struct CycleCutter {
+    gain: f64,
+    filters: [Smoother; 2],
+    ramp_s: f64,
+    time_step_s: f64,
+    previous: f64,
+    lowest: f64,
+    highest: f64,
+    amplitude: f64,
+    open: Option<(f64, Energies)>,
+    figures: Figures,
+}
+
+impl CycleCutter {
+    /// A cutter that starts after the load's ramp.
+    pub fn new(model: &Model, ramp_s: f64) -> Self {
+        let transit_s = model.mesh().size_m()[2] / model.material().shear_wave_speed_m_s();
+        Self {
+            gain: smoothing_gain(model.time_step_s(), SECTION_SMOOTHING * transit_s),
+            filters: [Smoother::default(); 2],
+            ramp_s,
+            time_step_s: model.time_step_s(),
+            previous: 0.0,
+            lowest: 0.0,
+            highest: 0.0,
+            amplitude: 0.0,
+            open: None,
+            figures: Figures::EMPTY,
+        }
+    }
+
+    /// Adds one step; returns the cycle that it completes, if any.
+    pub fn push(&mut self, sample: &Sample, energies: &Energies) -> Option<Cycle> {
+        let once = self.filters[0].push(sample.normal_n, self.gain);
+        let above = self.filters[1].push(once, self.gain) - sample.load_n;
+        if sample.time_s < self.ramp_s {
+            self.previous = above;
+            return None;
+        }
+        self.lowest = self.lowest.min(above);
+        self.highest = self.highest.max(above);
+        let crosses = self.previous < 0.0 && above >= 0.0 && -self.lowest > HYSTERESIS * self.amplitude;
+        let mut finished = None;
+        if crosses {
+            let fraction = self.previous / (self.previous - above);
+            let time_s = sample.time_s - (1.0 - fraction) * self.time_step_s;
+            self.amplitude = (self.highest - self.lowest) / 2.0;
+            finished = self.open.map(|(start_s, at_start)| Cycle {
+                start_s,
+                end_s: time_s,
+                figures: self.figures,
+                energies: at_start,
+                amplitude_n: self.amplitude,
+            });
+            self.open = Some((time_s, *energies));
+            self.figures = Figures::EMPTY;
+            (self.lowest, self.highest) = (0.0, 0.0);
+        }
+        self.previous = above;
+        self.figures.add(sample);
+        finished
+    }
+}

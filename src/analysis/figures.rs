@@ -1,0 +1,176 @@
+//! Sums and extremes of samples over a window, and the figures that follow from them.
+
+use super::sample::{OBSERVED, Sample};
+
+/// Sums and extremes over consecutive steps.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Figures {
+    steps: u64,
+    load: f64,
+    normal: f64,
+    contact_tangential: f64,
+    clamp_tangential: f64,
+    stick_deficit: f64,
+    slip_deficit: f64,
+    stick: f64,
+    slip: f64,
+    separated: f64,
+    /// Smallest smoothed N [N].
+    pub normal_min_n: f64,
+    /// Largest smoothed N [N].
+    pub normal_max_n: f64,
+    /// Largest smoothed nodal normal stress [Pa].
+    pub sigma_n_max_pa: f64,
+    /// Largest slip speed [m/s].
+    pub slip_speed_max_m_s: f64,
+    /// Extremes of the observed nodes.
+    pub nodes: [NodeFigures; OBSERVED],
+}
+
+/// Extremes of one observed node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeFigures {
+    y_min_m: f64,
+    y_max_m: f64,
+    /// Largest gap [m].
+    pub lift_max_m: f64,
+    /// Largest smoothed normal stress [Pa].
+    pub sigma_n_max_pa: f64,
+    /// Largest slip speed [m/s].
+    pub slip_speed_max_m_s: f64,
+}
+
+impl NodeFigures {
+    const EMPTY: Self = Self {
+        y_min_m: f64::INFINITY,
+        y_max_m: f64::NEG_INFINITY,
+        lift_max_m: 0.0,
+        sigma_n_max_pa: 0.0,
+        slip_speed_max_m_s: 0.0,
+    };
+
+    /// Peak-to-peak displacement in y [m].
+    pub fn y_peak_to_peak_m(&self) -> f64 {
+        self.y_max_m - self.y_min_m
+    }
+}
+
+impl Figures {
+    /// No step yet.
+    pub const EMPTY: Self = Self {
+        steps: 0,
+        load: 0.0,
+        normal: 0.0,
+        contact_tangential: 0.0,
+        clamp_tangential: 0.0,
+        stick_deficit: 0.0,
+        slip_deficit: 0.0,
+        stick: 0.0,
+        slip: 0.0,
+        separated: 0.0,
+        normal_min_n: f64::INFINITY,
+        normal_max_n: f64::NEG_INFINITY,
+        sigma_n_max_pa: 0.0,
+        slip_speed_max_m_s: 0.0,
+        nodes: [NodeFigures::EMPTY; OBSERVED],
+    };
+
+    /// Adds one step.
+    pub fn add(&mut self, sample: &Sample) {
+        self.steps += 1;
+        self.load += sample.load_n;
+        self.normal += sample.normal_n;
+        self.contact_tangential += sample.contact_tangential_n;
+        self.clamp_tangential += sample.clamp_tangential_n;
+        self.stick_deficit += sample.stick_deficit_n;
+        self.slip_deficit += sample.slip_deficit_n;
+        self.stick += sample.stick as f64;
+        self.slip += sample.slip as f64;
+        self.separated += sample.separated as f64;
+        self.normal_min_n = self.normal_min_n.min(sample.smooth_normal_n);
+        self.normal_max_n = self.normal_max_n.max(sample.smooth_normal_n);
+        self.sigma_n_max_pa = self.sigma_n_max_pa.max(sample.sigma_n_max_pa);
+        self.slip_speed_max_m_s = self.slip_speed_max_m_s.max(sample.slip_speed_max_m_s);
+        for (node, observed) in self.nodes.iter_mut().zip(&sample.nodes) {
+            node.y_min_m = node.y_min_m.min(observed.u_m[1]);
+            node.y_max_m = node.y_max_m.max(observed.u_m[1]);
+            node.lift_max_m = node.lift_max_m.max(observed.gap_m);
+            node.sigma_n_max_pa = node.sigma_n_max_pa.max(observed.sigma_n_pa);
+            node.slip_speed_max_m_s = node.slip_speed_max_m_s.max(observed.slip_speed_m_s);
+        }
+    }
+
+    /// Adds the steps of another window.
+    pub fn merge(&mut self, other: &Self) {
+        self.steps += other.steps;
+        self.load += other.load;
+        self.normal += other.normal;
+        self.contact_tangential += other.contact_tangential;
+        self.clamp_tangential += other.clamp_tangential;
+        self.stick_deficit += other.stick_deficit;
+        self.slip_deficit += other.slip_deficit;
+        self.stick += other.stick;
+        self.slip += other.slip;
+        self.separated += other.separated;
+        self.normal_min_n = self.normal_min_n.min(other.normal_min_n);
+        self.normal_max_n = self.normal_max_n.max(other.normal_max_n);
+        self.sigma_n_max_pa = self.sigma_n_max_pa.max(other.sigma_n_max_pa);
+        self.slip_speed_max_m_s = self.slip_speed_max_m_s.max(other.slip_speed_max_m_s);
+        for (node, more) in self.nodes.iter_mut().zip(&other.nodes) {
+            node.y_min_m = node.y_min_m.min(more.y_min_m);
+            node.y_max_m = node.y_max_m.max(more.y_max_m);
+            node.lift_max_m = node.lift_max_m.max(more.lift_max_m);
+            node.sigma_n_max_pa = node.sigma_n_max_pa.max(more.sigma_n_max_pa);
+            node.slip_speed_max_m_s = node.slip_speed_max_m_s.max(more.slip_speed_max_m_s);
+        }
+    }
+
+    /// The steps of all windows together.
+    pub fn merged<'a>(windows: impl IntoIterator<Item = &'a Self>) -> Self {
+        windows.into_iter().fold(Self::EMPTY, |mut all, window| {
+            all.merge(window);
+            all
+        })
+    }
+
+    /// Number of steps.
+    pub fn steps(&self) -> u64 {
+        self.steps
+    }
+
+    /// Mean load [N].
+    pub fn mean_load_n(&self) -> f64 {
+        self.load / self.steps as f64
+    }
+
+    /// ⟨T⟩/⟨F⟩ with T at the clamp.
+    pub fn mu_star(&self) -> f64 {
+        self.clamp_tangential / self.load
+    }
+
+    /// ⟨T⟩/⟨N⟩ of the contact forces.
+    pub fn mu_star_contact(&self) -> f64 {
+        self.contact_tangential / self.normal
+    }
+
+    /// ⟨N⟩/⟨F⟩.
+    pub fn normal_over_load(&self) -> f64 {
+        self.normal / self.load
+    }
+
+    /// (1/F)⟨Σ(μN − t_y)⟩ over sticking nodes: what sticking takes off μ*.
+    pub fn stick_reduction(&self) -> f64 {
+        self.stick_deficit / self.load
+    }
+
+    /// (1/F)⟨Σ μN(1 − cos φ)⟩ over slipping nodes: what misaligned or reversed slip takes off μ*.
+    pub fn slip_reduction(&self) -> f64 {
+        self.slip_deficit / self.load
+    }
+
+    /// Shares of the node-time in stick, slip and separation.
+    pub fn shares(&self) -> [f64; 3] {
+        let all = self.stick + self.slip + self.separated;
+        [self.stick / all, self.slip / all, self.separated / all]
+    }
+}

@@ -1,0 +1,82 @@
+//! The forward-increment solve on a rigid target, in closed form.
+//!
+//! On a rigid target c Δt² G M⁻¹ Gᵀ is diagonal (c is the scheme's factor of Δt²a in u_{n+1}), so
+//! each slave node is solved by itself and one pass is exact:
+//!
+//! ```text
+//! N = −m z*/(cΔt²)  if z* < 0       t_trial = −m δ*/(cΔt²),  δ* = u*_t − u_t − VΔt
+//! ```
+
+use super::coulomb::project;
+use super::{ContactState, Contacts};
+use crate::solver::model::Model;
+use crate::solver::state::Drive;
+
+/// The predicted step of the slave nodes, which this solve corrects in place.
+pub struct Prediction<'a> {
+    /// Displacements u* [m], node → component → lane; corrected to `u_{n+1}`.
+    pub u: &'a mut [f64],
+    /// p* [m/s], corrected to `p_{n+1}`.
+    pub p: &'a mut [f64],
+    /// Displacements [m] of the slave nodes at `t_n`, slave → component → lane.
+    pub u_old: &'a [f64],
+    /// The scheme's factor of Δt² a in `u_{n+1}`.
+    pub u_factor: f64,
+    /// The scheme's factor of Δt a in `p_{n+1}`.
+    pub p_factor: f64,
+}
+
+/// Solves contact and friction of every slave node and corrects the prediction.
+pub fn solve<const L: usize>(
+    model: &Model,
+    drives: &[Drive; L],
+    prediction: &mut Prediction<'_>,
+    contacts: &mut Contacts<L>,
+) {
+    let dt = model.time_step_s();
+    let u_scale = prediction.u_factor * dt * dt;
+    let p_scale = prediction.p_factor * dt;
+    for (slave, slave_node) in model.slaves().iter().enumerate() {
+        let mass = slave_node.mass_kg;
+        let stiffness = mass / u_scale;
+        let u_factor = u_scale / mass;
+        let p_factor = p_scale / mass;
+        let base = 3 * L * slave_node.node;
+        for l in 0..L {
+            let z = prediction.u[base + 2 * L + l];
+            let increment: [f64; 2] = std::array::from_fn(|c| {
+                let moved = prediction.u[base + c * L + l] - prediction.u_old[(3 * slave + c) * L + l];
+                moved - slave_node.surface_motion[c] * drives[l].rate * dt
+            });
+            let mut force = [0.0; 3];
+            let mut state = ContactState::Separated;
+            if z < 0.0 && slave_node.mobile[2] {
+                force[2] = -stiffness * z;
+                let trial =
+                    std::array::from_fn(
+                        |c| {
+                            if slave_node.mobile[c] { -stiffness * increment[c] } else { 0.0 }
+                        },
+                    );
+                let (friction, friction_state) = project(trial, force[2], drives[l].mu);
+                (force[0], force[1]) = (friction[0], friction[1]);
+                state = friction_state;
+                for c in 0..2 {
+                    prediction.u[base + c * L + l] += u_factor * force[c];
+                    prediction.p[base + c * L + l] += p_factor * force[c];
+                }
+                // z + u_factor·force is 0 up to rounding; the constraint is exact.
+                prediction.u[base + 2 * L + l] = 0.0;
+                prediction.p[base + 2 * L + l] += p_factor * force[2];
+            }
+            for c in 0..3 {
+                contacts.force_n[slave][c][l] = force[c];
+                let moved = prediction.u[base + c * L + l] - prediction.u_old[(3 * slave + c) * L + l];
+                let target = if c < 2 { slave_node.surface_motion[c] * drives[l].rate * dt } else { 0.0 };
+                contacts.relative_increment_m[slave][c][l] = moved - target;
+            }
+            contacts.gap_m[slave][l] = prediction.u[base + 2 * L + l];
+            contacts.state[slave][l] = state;
+        }
+    }
+}

@@ -1,0 +1,61 @@
+//! What the solver refuses and how it fails.
+
+use thiserror::Error;
+
+/// A refusal before the first step, or a run that diverged.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum SolverError {
+    /// The study's time step is above the stability limit.
+    #[error(
+        "numerics.time_step_s = {time_step_s:e} s is above the stability limit {limit_s:e} s of this mesh, \
+         damping and β₂ (ω_max ≤ {omega_max_rad_s:.6e} rad/s); give a smaller one or leave it out"
+    )]
+    TimeStepTooLarge {
+        /// The step asked for [s].
+        time_step_s: f64,
+        /// The limit [s].
+        limit_s: f64,
+        /// The bound of the largest frequency [rad/s].
+        omega_max_rad_s: f64,
+    },
+    /// The mesh has no node row near the clamp's width.
+    #[error(
+        "scene.clamp.width_m = {width_m} m has no node row near it: with {elements} elements over \
+         {length_m} m the nearest widths are {below_m} m and {above_m} m; choose one of these or a finer mesh"
+    )]
+    ClampOffMesh {
+        /// The width asked for [m].
+        width_m: f64,
+        /// Elements across.
+        elements: usize,
+        /// Length across [m].
+        length_m: f64,
+        /// Nearest width below [m].
+        below_m: f64,
+        /// Nearest width above [m].
+        above_m: f64,
+    },
+    /// The pin is not held in a direction in which it is driven.
+    #[error("inconsistent constraints: {0}")]
+    Constraints(String),
+    /// The run diverged; there is no result.
+    #[error(
+        "diverged at step {step} (t = {time_s:.6e} s), worst at node {node} \
+         (x = {x:.4} mm, y = {y:.4} mm, z = {z:.4} mm): {what}; {cause}",
+        x = position_m[0] * 1e3, y = position_m[1] * 1e3, z = position_m[2] * 1e3
+    )]
+    Diverged {
+        /// Step at which it was noticed.
+        step: u64,
+        /// Its time [s].
+        time_s: f64,
+        /// The node with the largest (or a non-finite) velocity.
+        node: usize,
+        /// That node's position [m].
+        position_m: [f64; 3],
+        /// What was seen.
+        what: String,
+        /// The likely cause.
+        cause: String,
+    },
+}

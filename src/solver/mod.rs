@@ -1,0 +1,51 @@
+//! Explicit dynamics of an elastic pin in unilateral frictional contact with a moving target.
+//!
+//! Knows nothing of files, queue or command line. What each module owns:
+//!
+//! ```text
+//! mesh ─► element ─► operator ─┐
+//! material                     ├─► model (immutable) ─┐
+//! constraints ─► stability ────┤                      ├─► step (bare) ─► energy, guard, observers
+//! boundary, disk ──────────────┘   state (per lane) ──┘
+//! contact (the law and the forward-increment solve) ──┘
+//! ```
+//!
+//! # Conventions
+//! * A node's index runs x fastest, then y, then z; components are x = 0, y = 1, z = 2.
+//! * **State arrays are indexed node → component → lane**: `u[(3·node + component)·L + lane]`. The
+//!   `L` lanes are independent jobs that share one [`Model`] (mesh, material, clamp, damping, time
+//!   step) and differ in their [`Drive`] (μ, ω, load). One lane is the plain case; every lane goes
+//!   through the same operations in the same order, so its bits do not depend on its companions.
+//! * Plain multiply and add in f64, never fused: the same bits on every machine and path.
+//! * The gap is positive when open; the normal contact force N on the pin is ≥ 0 (N = −λ_n).
+//!
+//! # Where an elastic disk will go
+//! The step predicts all bodies without contact and hands the slave nodes to [`contact`], which
+//! corrects them. For a rigid target the contact operator G M⁻¹ Gᵀ is diagonal and the correction
+//! is closed-form ([`contact::rigid`]); a deformable target is a second body with its own model and
+//! state, and a sibling of that file with its Gauss–Seidel sweeps. The law ([`contact::coulomb`]) is the same.
+
+pub mod boundary;
+pub mod constraints;
+pub mod contact;
+pub mod disk;
+pub mod element;
+pub mod energy;
+mod error;
+pub mod guard;
+pub mod material;
+pub mod mesh;
+pub mod model;
+pub mod operator;
+pub mod stability;
+pub mod state;
+pub mod step;
+
+pub use error::SolverError;
+pub use model::{Model, ModelDefinition, TimeStep};
+pub use state::{Drive, State};
+pub use step::step;
+
+/// Version of everything that can change a result's bits; part of every job's key. Raise it with
+/// any change of the scheme, the operator's rounding or the analysis.
+pub const VERSION: &str = "1";

@@ -1,0 +1,251 @@
+//! The immutable part of a run, shared by all lanes: mesh, operator, masses, constraints, target.
+
+use super::boundary::{self, LoadShare};
+use super::constraints::{Constraints, Freedom};
+use super::disk::{self, SurfaceMotion};
+use super::element;
+use super::error::SolverError;
+use super::material::Material;
+use super::mesh::BlockMesh;
+use super::operator::StencilOperator;
+use super::stability;
+use crate::spec::{DiskKind, Numerics, Scene};
+
+/// How the time step is chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TimeStep {
+    /// A fraction of the stability limit.
+    FractionOfLimit(f64),
+    /// A step [s], refused when it is above the limit.
+    Given(f64),
+    /// A step [s] that is taken without a check, to study what happens above the limit.
+    Unchecked(f64),
+}
+
+/// What a model is made of.
+#[derive(Debug, Clone)]
+pub struct ModelDefinition {
+    /// The block's mesh.
+    pub mesh: BlockMesh,
+    /// Its material.
+    pub material: Material,
+    /// What holds it.
+    pub constraints: Constraints,
+    /// Nodal forces per unit of the total load.
+    pub load: Vec<LoadShare>,
+    /// Velocity of the target under each contact-face node per unit of the drive's rate.
+    pub surface_motion: SurfaceMotion,
+    /// β₂ of the scheme.
+    pub beta2: f64,
+    /// Stiffness-proportional damping `β_R` [s].
+    pub beta_r_s: f64,
+    /// The time step.
+    pub time_step: TimeStep,
+}
+
+/// A node of the contact face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlaveNode {
+    /// Its index in the mesh.
+    pub node: usize,
+    /// Lumped mass [kg].
+    pub mass_kg: f64,
+    /// Tributary area [m²].
+    pub area_m2: f64,
+    /// Velocity of the target under it per unit of the drive's rate, x and y.
+    pub surface_motion: [f64; 2],
+    /// Which components are not fixed.
+    pub mobile: [bool; 3],
+}
+
+/// Degrees of freedom that move as one.
+#[derive(Debug, Clone)]
+pub(super) struct TiedGroup {
+    pub dofs: Vec<usize>,
+    pub inverse_mass: f64,
+}
+
+/// The immutable part of a run.
+#[derive(Debug, Clone)]
+pub struct Model {
+    mesh: BlockMesh,
+    material: Material,
+    operator: StencilOperator,
+    masses_kg: Vec<f64>,
+    /// 1/m per degree of freedom, 0 where fixed.
+    inverse_mass: Vec<f64>,
+    fixed: Vec<usize>,
+    ties: Vec<TiedGroup>,
+    load: Vec<LoadShare>,
+    slaves: Vec<SlaveNode>,
+    beta2: f64,
+    beta_r_s: f64,
+    time_step_s: f64,
+    time_step_limit_s: f64,
+    clamp_width_m: f64,
+}
+
+impl Model {
+    /// The model of a scene.
+    ///
+    /// # Errors
+    /// If the mesh has no node row near the clamp's width, or the time step is above the limit.
+    pub fn from_scene(scene: &Scene, numerics: &Numerics) -> Result<Self, SolverError> {
+        let mesh = BlockMesh::new(scene.pin.size_m, scene.pin.elements);
+        let strip = boundary::clamped_strip(&mesh, &scene.clamp)?;
+        let surface_motion = match scene.disk.kind {
+            DiskKind::Rigid => disk::rotating_disk(&mesh, scene.disk.track_radius_m),
+        };
+        let definition = ModelDefinition {
+            material: Material::of_pin(&scene.pin),
+            constraints: boundary::constraints(&mesh, &strip, scene.top),
+            load: boundary::normal_load(&mesh),
+            surface_motion,
+            beta2: numerics.beta2,
+            beta_r_s: numerics.beta_r_s,
+            time_step: numerics
+                .time_step_s
+                .map_or(TimeStep::FractionOfLimit(numerics.safety_factor), TimeStep::Given),
+            mesh,
+        };
+        Ok(Self { clamp_width_m: strip.width_m, ..Self::new(definition)? })
+    }
+
+    /// A model from its parts.
+    ///
+    /// # Errors
+    /// If the constraints are inconsistent or the time step is above the limit.
+    ///
+    /// # Panics
+    /// If there is not one surface velocity per contact-face node.
+    pub fn new(definition: ModelDefinition) -> Result<Self, SolverError> {
+        let ModelDefinition { mesh, material, constraints, load, surface_motion, beta2, beta_r_s, time_step } =
+            definition;
+        let freedoms = constraints.freedoms(&mesh)?;
+        let stiffness = element::stiffness(&material, mesh.element_size_m());
+        let omega_max = stability::omega_max_bound(&mesh, &stiffness, material.density_kg_m3, &freedoms);
+        let limit = stability::time_step_limit_s(omega_max, beta2, beta_r_s);
+        let time_step_s = match time_step {
+            TimeStep::FractionOfLimit(fraction) => fraction * limit,
+            // The limit itself is a legal step; computing it rounds.
+            TimeStep::Given(dt) if dt <= limit * (1.0 + 1e-12) => dt,
+            TimeStep::Given(dt) => {
+                return Err(SolverError::TimeStepTooLarge {
+                    time_step_s: dt,
+                    limit_s: limit,
+                    omega_max_rad_s: omega_max,
+                });
+            }
+            TimeStep::Unchecked(dt) => dt,
+        };
+
+        let masses_kg = mesh.lumped_masses_kg(material.density_kg_m3);
+        let inverse_mass = freedoms
+            .iter()
+            .enumerate()
+            .map(|(dof, freedom)| if *freedom == Freedom::Fixed { 0.0 } else { 1.0 / masses_kg[dof / 3] })
+            .collect();
+        let ties = constraints
+            .ties
+            .iter()
+            .map(|tie| TiedGroup {
+                dofs: tie.nodes.iter().map(|node| 3 * node + tie.component).collect(),
+                inverse_mass: 1.0 / tie.nodes.iter().map(|&node| masses_kg[node]).sum::<f64>(),
+            })
+            .collect();
+        assert_eq!(surface_motion.len(), mesh.bottom_nodes().len(), "one surface velocity per slave node");
+        let slaves = mesh
+            .bottom_nodes()
+            .zip(surface_motion)
+            .map(|(node, surface_motion)| SlaveNode {
+                node,
+                mass_kg: masses_kg[node],
+                area_m2: mesh.tributary_area_m2(node),
+                surface_motion,
+                mobile: std::array::from_fn(|c| freedoms[3 * node + c] != Freedom::Fixed),
+            })
+            .collect();
+        Ok(Self {
+            operator: StencilOperator::assemble(&mesh, &stiffness),
+            material,
+            masses_kg,
+            inverse_mass,
+            fixed: constraints.fixed,
+            ties,
+            load,
+            slaves,
+            beta2,
+            beta_r_s,
+            time_step_s,
+            time_step_limit_s: limit,
+            clamp_width_m: 0.0,
+            mesh,
+        })
+    }
+
+    /// The mesh.
+    pub fn mesh(&self) -> &BlockMesh {
+        &self.mesh
+    }
+
+    /// The material.
+    pub fn material(&self) -> &Material {
+        &self.material
+    }
+
+    /// The stiffness operator.
+    pub fn operator(&self) -> &StencilOperator {
+        &self.operator
+    }
+
+    /// Lumped nodal masses [kg].
+    pub fn masses_kg(&self) -> &[f64] {
+        &self.masses_kg
+    }
+
+    /// Nodes of the contact face.
+    pub fn slaves(&self) -> &[SlaveNode] {
+        &self.slaves
+    }
+
+    /// β₂ of the scheme.
+    pub fn beta2(&self) -> f64 {
+        self.beta2
+    }
+
+    /// Stiffness-proportional damping `β_R` [s].
+    pub fn beta_r_s(&self) -> f64 {
+        self.beta_r_s
+    }
+
+    /// The time step [s].
+    pub fn time_step_s(&self) -> f64 {
+        self.time_step_s
+    }
+
+    /// The stability limit [s] of the time step.
+    pub fn time_step_limit_s(&self) -> f64 {
+        self.time_step_limit_s
+    }
+
+    /// The clamp's width [m] that the mesh gives.
+    pub fn clamp_width_m(&self) -> f64 {
+        self.clamp_width_m
+    }
+
+    pub(super) fn inverse_mass(&self) -> &[f64] {
+        &self.inverse_mass
+    }
+
+    pub(super) fn fixed(&self) -> &[usize] {
+        &self.fixed
+    }
+
+    pub(super) fn ties(&self) -> &[TiedGroup] {
+        &self.ties
+    }
+
+    pub(super) fn load(&self) -> &[LoadShare] {
+        &self.load
+    }
+}

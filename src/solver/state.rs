@@ -1,0 +1,93 @@
+//! What changes during a run: per-lane fields, and the drive of each lane.
+
+use super::contact::Contacts;
+use super::model::Model;
+
+/// What one lane is driven by; everything else of a job is shared through the [`Model`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Drive {
+    /// Coulomb friction coefficient μ.
+    pub mu: f64,
+    /// Rate of the target's motion: ω [rad/s] of a disk, the speed [m/s] of a plane.
+    pub rate: f64,
+    /// Total load [N] after the ramp.
+    pub force_n: f64,
+    /// Duration [s] of the load's linear ramp; 0 is a sudden load.
+    pub ramp_s: f64,
+}
+
+impl Drive {
+    /// The load [N] at a time.
+    pub fn load_n(&self, time_s: f64) -> f64 {
+        if time_s >= self.ramp_s { self.force_n } else { self.force_n * (time_s / self.ramp_s) }
+    }
+}
+
+/// The state of `L` jobs at t_n. Fields are node → component → lane.
+#[derive(Debug, Clone)]
+pub struct State<const L: usize> {
+    /// Index n of the next step; the fields are those at t_n = nΔt.
+    pub step: u64,
+    /// Displacements `u_n` [m].
+    pub u: Vec<f64>,
+    /// `p_n = v_{n−1} + (1−β₂)Δt a_{n−1}` [m/s]; at n = 0 the initial velocity.
+    pub p: Vec<f64>,
+    /// Contact during the step that led here.
+    pub contacts: Contacts<L>,
+    /// Sum of the clamp's reactions [N] on the pin at `t_{n−1}`, x, y and z.
+    pub reaction_n: [[f64; L]; 3],
+    /// Load [N] at `t_{n−1}`.
+    pub load_n: [f64; L],
+    /// Work increments of the load over the step: the load at `t_{n−1}` times the displacement
+    /// increments after and before that time [J].
+    pub load_work_j: LoadWork<L>,
+    pub(super) workspace: Workspace<L>,
+}
+
+/// The load times the displacement increments on both sides of the time at which it acts [J].
+#[derive(Debug, Clone, Copy)]
+pub struct LoadWork<const L: usize> {
+    /// f_n · (u_{n+1} − u_n).
+    pub after_j: [f64; L],
+    /// f_n · (u_n − u_{n−1}).
+    pub before_j: [f64; L],
+}
+
+/// Scratch fields of the step; nothing in them survives it.
+#[derive(Debug, Clone)]
+pub(super) struct Workspace<const L: usize> {
+    /// u + β_R p.
+    pub strained: Vec<f64>,
+    /// K (u + β_R p) − load.
+    pub residual: Vec<f64>,
+    /// Displacements of the slave nodes at t_n.
+    pub slave_u: Vec<f64>,
+    /// New displacement and p of every tied group.
+    pub tied: Vec<[(f64, f64); L]>,
+    /// Σ share·u of the loaded degrees of freedom before and at t_n.
+    pub load_stroke_m: [[f64; L]; 2],
+}
+
+impl<const L: usize> State<L> {
+    /// At rest and undeformed.
+    pub fn at_rest(model: &Model) -> Self {
+        let n = 3 * model.mesh().node_count() * L;
+        let slaves = model.slaves().len();
+        Self {
+            step: 0,
+            u: vec![0.0; n],
+            p: vec![0.0; n],
+            contacts: Contacts::separated(slaves),
+            reaction_n: [[0.0; L]; 3],
+            load_n: [0.0; L],
+            load_work_j: LoadWork { after_j: [0.0; L], before_j: [0.0; L] },
+            workspace: Workspace {
+                strained: vec![0.0; n],
+                residual: vec![0.0; n],
+                slave_u: vec![0.0; 3 * slaves * L],
+                tied: vec![[(0.0, 0.0); L]; model.ties().len()],
+                load_stroke_m: [[0.0; L]; 2],
+            },
+        }
+    }
+}
