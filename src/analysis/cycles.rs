@@ -81,9 +81,13 @@ impl CycleCutter {
         self.highest = self.highest.max(above);
         let crosses = self.previous < 0.0 && above >= 0.0 && -self.lowest > HYSTERESIS * self.amplitude;
         let mut finished = None;
+        let mut next_weight = 1.0;
         if crosses {
+            // The step that ends at this sample is shared between the two cycles.
             let fraction = self.previous / (self.previous - above);
             let time_s = sample.time_s - (1.0 - fraction) * self.time_step_s;
+            self.figures.add(sample, fraction);
+            next_weight = 1.0 - fraction;
             self.amplitude = (self.highest - self.lowest) / 2.0;
             finished = self.open.map(|(start_s, at_start)| Cycle {
                 start_s,
@@ -97,7 +101,7 @@ impl CycleCutter {
             (self.lowest, self.highest) = (0.0, 0.0);
         }
         self.previous = above;
-        self.figures.add(sample);
+        self.figures.add(sample, next_weight);
         finished
     }
 }

@@ -1,11 +1,13 @@
 //! Sums and extremes of samples over a window, and the figures that follow from them.
 
 use super::sample::{OBSERVED, Sample};
+use std::f64::consts::PI;
 
 /// Sums and extremes over consecutive steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Figures {
-    steps: u64,
+    /// Number of steps; the first and the last of a cycle count by the part that belongs to it.
+    weight: f64,
     load: f64,
     normal: f64,
     contact_tangential: f64,
@@ -58,7 +60,7 @@ impl NodeFigures {
 impl Figures {
     /// No step yet.
     pub const EMPTY: Self = Self {
-        steps: 0,
+        weight: 0.0,
         load: 0.0,
         normal: 0.0,
         contact_tangential: 0.0,
@@ -75,18 +77,18 @@ impl Figures {
         nodes: [NodeFigures::EMPTY; OBSERVED],
     };
 
-    /// Adds one step.
-    pub fn add(&mut self, sample: &Sample) {
-        self.steps += 1;
-        self.load += sample.load_n;
-        self.normal += sample.normal_n;
-        self.contact_tangential += sample.contact_tangential_n;
-        self.clamp_tangential += sample.clamp_tangential_n;
-        self.stick_deficit += sample.stick_deficit_n;
-        self.slip_deficit += sample.slip_deficit_n;
-        self.stick += sample.stick as f64;
-        self.slip += sample.slip as f64;
-        self.separated += sample.separated as f64;
+    /// Adds one step, or the part `weight` of it that belongs to the window.
+    pub fn add(&mut self, sample: &Sample, weight: f64) {
+        self.weight += weight;
+        self.load += weight * sample.load_n;
+        self.normal += weight * sample.normal_n;
+        self.contact_tangential += weight * sample.contact_tangential_n;
+        self.clamp_tangential += weight * sample.clamp_tangential_n;
+        self.stick_deficit += weight * sample.stick_deficit_n;
+        self.slip_deficit += weight * sample.slip_deficit_n;
+        self.stick += weight * (sample.stick as f64);
+        self.slip += weight * (sample.slip as f64);
+        self.separated += weight * (sample.separated as f64);
         self.normal_min_n = self.normal_min_n.min(sample.smooth_normal_n);
         self.normal_max_n = self.normal_max_n.max(sample.smooth_normal_n);
         self.sigma_n_max_pa = self.sigma_n_max_pa.max(sample.sigma_n_max_pa);
@@ -100,18 +102,18 @@ impl Figures {
         }
     }
 
-    /// Adds the steps of another window.
-    pub fn merge(&mut self, other: &Self) {
-        self.steps += other.steps;
-        self.load += other.load;
-        self.normal += other.normal;
-        self.contact_tangential += other.contact_tangential;
-        self.clamp_tangential += other.clamp_tangential;
-        self.stick_deficit += other.stick_deficit;
-        self.slip_deficit += other.slip_deficit;
-        self.stick += other.stick;
-        self.slip += other.slip;
-        self.separated += other.separated;
+    /// Adds another window, its sums multiplied by `factor`.
+    fn merge(&mut self, other: &Self, factor: f64) {
+        self.weight += factor * other.weight;
+        self.load += factor * other.load;
+        self.normal += factor * other.normal;
+        self.contact_tangential += factor * other.contact_tangential;
+        self.clamp_tangential += factor * other.clamp_tangential;
+        self.stick_deficit += factor * other.stick_deficit;
+        self.slip_deficit += factor * other.slip_deficit;
+        self.stick += factor * other.stick;
+        self.slip += factor * other.slip;
+        self.separated += factor * other.separated;
         self.normal_min_n = self.normal_min_n.min(other.normal_min_n);
         self.normal_max_n = self.normal_max_n.max(other.normal_max_n);
         self.sigma_n_max_pa = self.sigma_n_max_pa.max(other.sigma_n_max_pa);
@@ -125,22 +127,27 @@ impl Figures {
         }
     }
 
-    /// The steps of all windows together.
+    /// All windows together.
     pub fn merged<'a>(windows: impl IntoIterator<Item = &'a Self>) -> Self {
         windows.into_iter().fold(Self::EMPTY, |mut all, window| {
-            all.merge(window);
+            all.merge(window, 1.0);
             all
         })
     }
 
-    /// Number of steps.
-    pub fn steps(&self) -> u64 {
-        self.steps
+    /// Consecutive windows together, weighted by a Hann taper: oscillations that have no whole number
+    /// of periods in the windows leave (almost) nothing in the means.
+    pub fn tapered<'a>(windows: impl ExactSizeIterator<Item = &'a Self>) -> Self {
+        let count = windows.len() as f64;
+        windows.enumerate().fold(Self::EMPTY, |mut all, (i, window)| {
+            all.merge(window, 1.0 - (2.0 * PI * (i as f64 + 0.5) / count).cos());
+            all
+        })
     }
 
-    /// Mean load [N].
-    pub fn mean_load_n(&self) -> f64 {
-        self.load / self.steps as f64
+    /// Whether there is nothing to average.
+    pub fn is_empty(&self) -> bool {
+        self.weight == 0.0
     }
 
     /// ⟨T⟩/⟨F⟩ with T at the clamp.

@@ -1,8 +1,26 @@
 //! What is found in a run: cycles, periodic state, decay, regime, μ*, identities.
+//!
+//! ```text
+//! solver state ─► sample ─► cycles ─► steady (periodic?) ─┐
+//!                     ├───► decay (stable?) ──────────────┼─► lane ─► record
+//!                     └───► figures (means, extremes) ────┘
+//! ```
+//!
+//! # Definitions
+//! * **μ*** = ⟨T⟩/⟨F⟩ over whole limit cycles, T the tangential force in y that the clamp carries.
+//! * The macroscopic identity: μ − μ* = (1/F)⟨Σ_stick(μN − t_y) + Σ_slip μN(1 − cos φ)⟩, φ the angle of
+//!   friction from +y, the direction in which T is measured.
+//! * The energy identity: work of drive and load = friction + damping + contact loss + change of stored energy.
+//! * Stresses and the extremes of N are taken behind a short low-pass ([`sample::STRESS_SMOOTHING`]).
 
 pub mod cycles;
+pub mod decay;
 pub mod figures;
+mod job;
+pub mod lane;
 pub mod record;
 pub mod sample;
+pub mod steady;
 
+pub use job::{JobError, JobObserver, Unobserved, drive, solve};
 pub use record::{EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};

@@ -139,7 +139,11 @@ pub struct JobRecord {
     pub macroscopic_identity_residual: f64,
     /// Residual of drive power = friction + damping + contact loss + change of stored energy, over the drive power.
     pub energy_identity_residual: f64,
-    /// Growth rate [1/s] of the slowest decaying line in steady sliding; negative is stable.
+    /// What sticking nodes take off μ*: (1/F)⟨Σ_stick(μN − t_y)⟩.
+    pub mu_reduction_stick: f64,
+    /// What misaligned or reversed slip takes off μ*: (1/F)⟨Σ_slip μN(1 − cos φ)⟩.
+    pub mu_reduction_slip: f64,
+    /// Growth rate [1/s] of the slowest line of the total normal force in steady sliding; negative: it decays.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub growth_rate_per_s: Option<f64>,
     /// Energies at the end of the run.

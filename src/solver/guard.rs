@@ -40,12 +40,31 @@ pub fn check<const L: usize>(
     if stored.abs() <= ENERGY_FACTOR * (input + scene_scale_j(model, drive)) {
         return Ok(());
     }
-    let node = worst_node(model, state, lane);
     let what = if stored.is_finite() && input.is_finite() {
         format!("stored energy {stored:.3e} J against {input:.3e} J put in")
     } else {
-        "displacements or velocities are no longer finite".to_owned()
+        NOT_FINITE.to_owned()
     };
+    Err(diverged(model, state, lane, what))
+}
+
+/// Checks that every displacement and velocity of a lane is finite, at the end of a run.
+///
+/// # Errors
+/// [`SolverError::Diverged`] if one is not.
+pub fn check_finite<const L: usize>(model: &Model, state: &State<L>, lane: usize) -> Result<(), SolverError> {
+    let finite = |field: &[f64]| field.iter().skip(lane).step_by(L).all(|value| value.is_finite());
+    if finite(&state.u) && finite(&state.p) {
+        Ok(())
+    } else {
+        Err(diverged(model, state, lane, NOT_FINITE.to_owned()))
+    }
+}
+
+const NOT_FINITE: &str = "displacements or velocities are no longer finite";
+
+fn diverged<const L: usize>(model: &Model, state: &State<L>, lane: usize, what: String) -> SolverError {
+    let node = worst_node(model, state, lane);
     let ratio = model.time_step_s() / model.time_step_limit_s();
     let cause = if ratio > 1.0 {
         format!("the time step is {ratio:.4} of the stability limit; reduce it")
@@ -55,14 +74,14 @@ pub fn check<const L: usize>(
              look for extreme material, load or friction values in this job"
         )
     };
-    Err(SolverError::Diverged {
+    SolverError::Diverged {
         step: state.step,
         time_s: state.step as f64 * model.time_step_s(),
         node,
         position_m: model.mesh().coordinates_m(node),
         what,
         cause,
-    })
+    }
 }
 
 /// The node with a non-finite velocity, or else the largest one.

@@ -4,24 +4,32 @@ use super::check::Violations;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Thresholds of the steady-state detection; see `analysis` for how they are used.
+/// Thresholds of the steady-state detection; see `analysis::steady` and `analysis::decay`.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Detection {
-    /// Number of consecutive limit cycles in each of the two blocks that are compared.
+    /// Number of consecutive limit cycles over which the per-cycle figures are compared.
     pub cycles: usize,
-    /// Largest change, from one block to the next, of the mean T/F, mean N/F, the state shares, the
-    /// relative period and the relative peak stress.
+    /// Largest spread of any per-cycle figure over these cycles: T/F, N/F and the state shares as they
+    /// are; the period, the peak stress and the amplitude of N relative to their means.
     pub tolerance: f64,
+    /// Largest change of the mean of any per-cycle figure from the first to the second half of these cycles.
+    pub drift_tolerance: f64,
     /// A contact state is named in the regime when its share of the node-time exceeds this.
     pub regime_threshold: f64,
-    /// Shortest time [s] of steady sliding over which a decay must be measured before it is believed.
+    /// Shortest time [s] of uninterrupted sliding over which a decay is measured before it is believed.
     pub decay_observation_s: f64,
 }
 
 impl Default for Detection {
     fn default() -> Self {
-        Self { cycles: 20, tolerance: 2.0e-3, regime_threshold: 0.03, decay_observation_s: 0.008 }
+        Self {
+            cycles: 20,
+            tolerance: 0.01,
+            drift_tolerance: 0.001,
+            regime_threshold: 0.03,
+            decay_observation_s: 0.008,
+        }
     }
 }
 
@@ -32,6 +40,13 @@ impl Detection {
         }
         let tol = self.tolerance;
         found.require("detection.tolerance", tol, tol > 0.0 && tol < 1.0, "0 < tolerance < 1");
+        let drift = self.drift_tolerance;
+        found.require(
+            "detection.drift_tolerance",
+            drift,
+            drift > 0.0 && drift < 1.0,
+            "0 < drift_tolerance < 1",
+        );
         let threshold = self.regime_threshold;
         found.require(
             "detection.regime_threshold",

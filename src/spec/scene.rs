@@ -65,7 +65,7 @@ pub enum DiskKind {
 pub struct Disk {
     /// What the disk is made of.
     pub kind: DiskKind,
-    /// Rotation speed ω [revolutions per minute], constant; 0 is a disk at rest.
+    /// Rotation speed ω [revolutions per minute], constant, > 0.
     pub omega_rpm: f64,
     /// Distance R [m] of the pin's centre from the axis.
     pub track_radius_m: f64,
@@ -208,8 +208,8 @@ impl Scene {
         found.require(
             "scene.disk.omega_rpm",
             omega,
-            omega >= 0.0,
-            "a speed >= 0 rpm (the disk always turns towards +y)",
+            omega > 0.0,
+            "a speed > 0 rpm (the disk always turns towards +y)",
         );
         let radius = self.disk.track_radius_m;
         found.require(

@@ -1,0 +1,237 @@
+//! The analysis of one lane, fed step by step.
+
+use super::cycles::{Cycle, CycleCutter};
+use super::decay::{Decay, DecayMonitor};
+use super::figures::Figures;
+use super::record::{EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
+use super::sample::{OBSERVED_NAMES, Sample, Sampler};
+use super::steady::{self, SteadyState};
+use crate::solver::Model;
+use crate::solver::energy::Energies;
+use crate::solver::state::{Drive, State};
+use crate::spec::JobSpec;
+
+/// Follows one job's run and makes its record.
+pub struct LaneAnalysis<'a> {
+    spec: &'a JobSpec,
+    sampler: Sampler,
+    cutter: CycleCutter,
+    monitor: DecayMonitor,
+    cycles: Vec<Cycle>,
+    steady: Option<SteadyState>,
+    decay: Option<Decay>,
+    late: LateWindow,
+}
+
+/// The last part of a run that ends at its time limit.
+struct LateWindow {
+    start_s: f64,
+    figures: Figures,
+    energies: Option<Energies>,
+}
+
+/// The window that the figures are taken from.
+struct Window {
+    start_s: f64,
+    figures: Figures,
+    energies: Energies,
+    mu_star_per_cycle: Vec<f64>,
+    frequency_hz: Option<f64>,
+}
+
+impl<'a> LaneAnalysis<'a> {
+    /// The analysis of the job `spec` in `lane`.
+    pub fn new(model: &Model, spec: &'a JobSpec, lane: usize) -> Self {
+        let ramp_s = spec.scene.load.ramp_s;
+        Self {
+            spec,
+            sampler: Sampler::new(model, lane),
+            cutter: CycleCutter::new(model, ramp_s),
+            monitor: DecayMonitor::new(model.time_step_s(), ramp_s, &spec.detection),
+            cycles: Vec::new(),
+            steady: None,
+            decay: None,
+            late: LateWindow {
+                start_s: (1.0 - spec.run.average_last_fraction) * spec.run.limit_s,
+                figures: Figures::EMPTY,
+                energies: None,
+            },
+        }
+    }
+
+    /// Adds the step that `state` has just done; `energies` are those of the last audit.
+    pub fn push<const L: usize>(
+        &mut self,
+        model: &Model,
+        drive: &Drive,
+        state: &State<L>,
+        energies: &Energies,
+    ) -> Sample {
+        let sample = self.sampler.sample(model, drive, state);
+        if let Some(cycle) = self.cutter.push(&sample, energies) {
+            self.cycles.push(cycle);
+            self.steady = steady::find(&self.cycles, &self.spec.detection);
+        }
+        if let Some(decay) = self.monitor.push(&sample) {
+            self.decay = Some(decay);
+        } else if sample.stick + sample.separated > 0 {
+            self.decay = None;
+        }
+        if sample.time_s >= self.late.start_s {
+            self.late.figures.add(&sample, 1.0);
+            self.late.energies.get_or_insert(*energies);
+        }
+        sample
+    }
+
+    /// Whether the run can stop: the state is periodic or has been seen to decay.
+    pub fn is_settled(&self) -> bool {
+        self.steady.is_some() || self.decay.is_some()
+    }
+
+    /// Simulated time [s] from which on a decayed run is averaged: one observation time.
+    fn decay_window_s(&self) -> f64 {
+        self.spec.detection.decay_observation_s
+    }
+
+    /// The record of the run that ended in `state` with these final `energies`.
+    pub fn record<const L: usize>(&self, model: &Model, state: &State<L>, energies: &Energies) -> JobRecord {
+        let simulated_s = state.step as f64 * model.time_step_s();
+        let outcome = match (self.decay, self.steady) {
+            (Some(_), _) => Outcome::Decayed,
+            (None, Some(_)) => Outcome::Periodic,
+            (None, None) => Outcome::NotPeriodic,
+        };
+        let window = self.window(simulated_s);
+        let figures = &window.figures;
+        let [stick, slip, separated] = figures.shares();
+        let load_n = self.spec.scene.load.force_n;
+        let crossings = self.steady.map_or(1, |s| s.crossings_per_cycle);
+        let oscillates = outcome != Outcome::Decayed;
+        JobRecord {
+            outcome,
+            regime: regime(outcome, stick, separated, self.spec.detection.regime_threshold),
+            mu_star: figures.mu_star(),
+            mu_star_se: steady::standard_error(&window.mu_star_per_cycle),
+            mu_star_contact: figures.mu_star_contact(),
+            frequency_hz: window.frequency_hz.filter(|_| oscillates),
+            stick_share: stick,
+            slip_share: slip,
+            separated_share: separated,
+            n_over_f_min: figures.normal_min_n / load_n,
+            n_over_f_max: figures.normal_max_n / load_n,
+            sigma_n_max_pa: figures.sigma_n_max_pa,
+            slip_speed_max_m_s: figures.slip_speed_max_m_s,
+            cycles: if oscillates { window.mu_star_per_cycle.len() } else { 0 },
+            crossings_per_cycle: crossings,
+            simulated_s,
+            window_start_s: window.start_s,
+            steps: state.step,
+            time_step_s: model.time_step_s(),
+            time_step_limit_s: model.time_step_limit_s(),
+            clamp_width_m: model.clamp_width_m(),
+            energy_residual: energies.relative_residual(),
+            macroscopic_identity_residual: self.spec.scene.contact.mu
+                - figures.mu_star()
+                - figures.stick_reduction()
+                - figures.slip_reduction(),
+            energy_identity_residual: energy_identity(&window.energies, energies),
+            mu_reduction_stick: figures.stick_reduction(),
+            mu_reduction_slip: figures.slip_reduction(),
+            growth_rate_per_s: self.decay.map(|d| d.growth_rate_per_s),
+            energy: totals(energies),
+            nodes: observed_nodes(figures),
+        }
+    }
+
+    /// The averaging window: the cycles in which the state was found steady, or (at the time limit)
+    /// all whole cycles in the last part of the run, or that part itself when it has too few cycles.
+    fn window(&self, simulated_s: f64) -> Window {
+        let crossings = self.steady.map_or(1, |s| s.crossings_per_cycle);
+        let cycles = match self.steady {
+            _ if self.decay.is_some() => {
+                let start_s = simulated_s - self.decay_window_s();
+                self.cycles.as_slice().split_at(self.cycles.partition_point(|c| c.start_s < start_s)).1
+            }
+            Some(steady) if self.spec.run.stop_early => {
+                &self.cycles[self.cycles.len() - steady.window_crossings..]
+            }
+            _ => {
+                let first = self.cycles.partition_point(|c| c.start_s < self.late.start_s);
+                &self.cycles[first..]
+            }
+        };
+        let whole = &cycles[cycles.len() % crossings..];
+        if whole.len() < 2 * crossings {
+            return Window {
+                start_s: self.late.start_s.min(simulated_s),
+                figures: self.late.figures,
+                energies: self.late.energies.unwrap_or_default(),
+                mu_star_per_cycle: Vec::new(),
+                frequency_hz: None,
+            };
+        }
+        let groups: Vec<_> = whole.chunks_exact(crossings).collect();
+        let duration_s = whole[whole.len() - 1].end_s - whole[0].start_s;
+        Window {
+            start_s: whole[0].start_s,
+            figures: if self.decay.is_some() {
+                Figures::tapered(whole.iter().map(|cycle| &cycle.figures))
+            } else {
+                Figures::merged(whole.iter().map(|cycle| &cycle.figures))
+            },
+            energies: whole[0].energies,
+            mu_star_per_cycle: groups
+                .iter()
+                .map(|group| Figures::merged(group.iter().map(|cycle| &cycle.figures)).mu_star())
+                .collect(),
+            frequency_hz: Some(groups.len() as f64 / duration_s),
+        }
+    }
+}
+
+/// Names the regime from the outcome and the shares of stick and separation.
+fn regime(outcome: Outcome, stick: f64, separated: f64, threshold: f64) -> Regime {
+    match (stick > threshold, separated > threshold) {
+        _ if outcome == Outcome::Decayed => Regime::Stable,
+        (true, true) => Regime::StickSlipSeparation,
+        (true, false) => Regime::StickSlip,
+        (false, true) => Regime::SlipSeparation,
+        // A limit cycle with hardly any of either is named after the larger.
+        (false, false) if outcome == Outcome::Periodic && stick >= separated => Regime::StickSlip,
+        (false, false) if outcome == Outcome::Periodic => Regime::SlipSeparation,
+        (false, false) => Regime::Undecided,
+    }
+}
+
+/// (drive power − dissipation − change of stored energy) / drive power, over the window.
+fn energy_identity(start: &Energies, end: &Energies) -> f64 {
+    let drive_j = end.drive_work_j - start.drive_work_j;
+    if drive_j == 0.0 { 0.0 } else { (end.imbalance_j() - start.imbalance_j()) / drive_j }
+}
+
+fn totals(energies: &Energies) -> EnergyTotals {
+    EnergyTotals {
+        kinetic_j: energies.kinetic_j,
+        elastic_j: energies.elastic_j,
+        load_work_j: energies.load_work_j,
+        drive_work_j: energies.drive_work_j,
+        friction_j: energies.friction_j,
+        damping_j: energies.damping_j,
+        contact_loss_j: energies.contact_loss_j,
+    }
+}
+
+fn observed_nodes(figures: &Figures) -> Vec<ObservedNode> {
+    OBSERVED_NAMES
+        .iter()
+        .zip(&figures.nodes)
+        .map(|(name, node)| ObservedNode {
+            name: (*name).to_owned(),
+            y_peak_to_peak_m: node.y_peak_to_peak_m(),
+            lift_max_m: node.lift_max_m,
+            sigma_n_max_pa: node.sigma_n_max_pa,
+            slip_speed_max_m_s: node.slip_speed_max_m_s,
+        })
+        .collect()
+}

@@ -1,0 +1,88 @@
+//! When a sequence of cycles counts as a periodic steady state.
+//!
+//! A limit cycle may take several section crossings (a subharmonic, or a normal force with two humps
+//! per cycle), so groups of m = 1, 2, 3, 4 crossings are tried and the smallest m whose groups repeat
+//! is the cycle. The groups repeat when, over the last `cycles` of them, every figure stays within
+//! `tolerance` and its mean over the two halves within `drift_tolerance`. The amplitude of N is one
+//! of the figures: a slowly growing or decaying oscillation is not periodic however small it is.
+
+use super::cycles::Cycle;
+use super::figures::Figures;
+use crate::spec::Detection;
+
+/// Largest number of section crossings in one limit cycle.
+const MAX_CROSSINGS: usize = 4;
+
+/// A periodic steady state at the end of a sequence of cycles.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct SteadyState {
+    /// Section crossings per limit cycle.
+    pub crossings_per_cycle: usize,
+    /// Section crossings in the window in which it was established.
+    pub window_crossings: usize,
+}
+
+/// Looks for a periodic steady state at the end of `cycles`.
+pub fn find(cycles: &[Cycle], detection: &Detection) -> Option<SteadyState> {
+    (1..=MAX_CROSSINGS).find_map(|m| {
+        let window_crossings = m * detection.cycles;
+        let window = &cycles[cycles.len().checked_sub(window_crossings)?..];
+        let groups: Vec<[f64; FIGURES]> = window.chunks_exact(m).map(figures_of).collect();
+        repeats(&groups, detection).then_some(SteadyState { crossings_per_cycle: m, window_crossings })
+    })
+}
+
+/// Number of figures compared.
+const FIGURES: usize = 8;
+/// Figures from this index on are compared relative to their mean.
+const FIRST_RELATIVE: usize = 5;
+
+fn figures_of(group: &[Cycle]) -> [f64; FIGURES] {
+    let figures = Figures::merged(group.iter().map(|cycle| &cycle.figures));
+    let [stick, slip, separated] = figures.shares();
+    [
+        figures.mu_star(),
+        figures.normal_over_load(),
+        stick,
+        slip,
+        separated,
+        group[group.len() - 1].end_s - group[0].start_s,
+        figures.sigma_n_max_pa,
+        group.iter().map(|cycle| cycle.amplitude_n).fold(0.0, f64::max),
+    ]
+}
+
+fn repeats(groups: &[[f64; FIGURES]], detection: &Detection) -> bool {
+    let slip = 3;
+    // All nodes slipping all the time is linear: it has no limit cycle, only growth or decay.
+    if groups.iter().all(|group| group[slip] >= 1.0) {
+        return false;
+    }
+    let half = groups.len() / 2;
+    (0..FIGURES).all(|f| {
+        let mean = |part: &[[f64; FIGURES]]| part.iter().map(|g| g[f]).sum::<f64>() / part.len() as f64;
+        let scale = if f < FIRST_RELATIVE { 1.0 } else { mean(groups) };
+        let highest = groups.iter().map(|g| g[f]).fold(f64::NEG_INFINITY, f64::max);
+        let lowest = groups.iter().map(|g| g[f]).fold(f64::INFINITY, f64::min);
+        let drift = (mean(&groups[groups.len() - half..]) - mean(&groups[..half])).abs();
+        highest - lowest <= detection.tolerance * scale && drift <= detection.drift_tolerance * scale
+    })
+}
+
+/// Standard error of the mean of consecutive, correlated `values`: from the means of ⌊√n⌋ batches.
+/// Zero for fewer than four values, where batches say nothing.
+pub fn standard_error(values: &[f64]) -> f64 {
+    let batches = values.len().isqrt();
+    if batches < 2 {
+        return 0.0;
+    }
+    let size = values.len() / batches;
+    let means: Vec<f64> = values
+        .rchunks_exact(size)
+        .take(batches)
+        .map(|batch| batch.iter().sum::<f64>() / size as f64)
+        .collect();
+    let mean = means.iter().sum::<f64>() / batches as f64;
+    let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (batches - 1) as f64;
+    (variance / batches as f64).sqrt()
+}
