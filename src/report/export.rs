@@ -54,7 +54,7 @@ pub fn csv<W: Write>(rows: &[Row], out: W) -> io::Result<()> {
     writer.flush()
 }
 
-/// Writes one JSON object per job and line, with the fields of [`csv`]; null where it has an empty cell.
+/// Writes one JSON object per job and line, with the fields of [`csv()`]; null where it has an empty cell.
 ///
 /// # Errors
 /// Those of the writer.

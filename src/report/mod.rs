@@ -6,7 +6,7 @@
 //! * [`export`] – one line a job, for other programs.
 //! * [`tables`] – speed by friction coefficient, as Markdown and CSV.
 //! * [`figure`] – μ* and frequency against speed, as SVG.
-//! * [`write`] – a folder with all of it and a page that holds it together.
+//! * [`write()`] – a folder with all of it and a page that holds it together.
 
 mod error;
 pub mod export;
