@@ -13,12 +13,13 @@
 //! * [`solver`] – explicit dynamics of the pin in unilateral frictional contact with the disk.
 //! * [`analysis`] – what is found in a run: cycles, periodic state, decay, regime, μ*, identities.
 //! * [`study`] – studies as data: parse, check, expand into jobs, key, schema.
-//! * [`queue`] – jobs in SQLite; payloads are opaque strings, nothing of mechanics.
+//! * [`queue`] – jobs in `SQLite`; payloads are opaque strings, nothing of mechanics.
 //! * [`worker`] – dispatcher (signals, database, progress) and executor (rayon).
 //! * [`report`] – tables, figures and CSV from records.
 //! * [`cli`] – one file a subcommand.
 
 pub mod analysis;
+pub mod report;
 pub mod solver;
 pub mod spec;
 pub mod units;

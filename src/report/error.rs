@@ -1,0 +1,33 @@
+//! What can go wrong while a report is written.
+
+use super::figure::FigureError;
+use std::path::PathBuf;
+
+/// A report, or a part of it, could not be written.
+#[derive(Debug, thiserror::Error)]
+pub enum ReportError {
+    /// The folder for the report could not be made.
+    #[error("cannot create the folder {}", path.display())]
+    Folder {
+        /// The folder.
+        path: PathBuf,
+        /// Why not.
+        source: std::io::Error,
+    },
+    /// A file could not be written; an earlier version of it is unchanged.
+    #[error("cannot write {}", path.display())]
+    File {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        source: std::io::Error,
+    },
+    /// A figure could not be drawn.
+    #[error("cannot draw {}", path.display())]
+    Figure {
+        /// The file it was meant for.
+        path: PathBuf,
+        /// Why not.
+        source: FigureError,
+    },
+}

@@ -1,0 +1,143 @@
+//! One line a job, for other programs: CSV and JSON lines with the same fields.
+
+use super::row::{Row, RowState};
+use super::value;
+use crate::analysis::JobRecord;
+use serde::Serializer;
+use serde::ser::SerializeMap;
+use serde_json::Value;
+use std::io::{self, Write};
+
+/// The fields every study has. Grid parameters other than ω and μ follow.
+pub const HEADER: [&str; 25] = [
+    "study",
+    "job",
+    "omega_rpm",
+    "mu",
+    "status",
+    "regime",
+    "mu_star",
+    "mu_star_se",
+    "mu_star_contact",
+    "frequency_hz",
+    "stick_share",
+    "slip_share",
+    "separated_share",
+    "n_over_f_min",
+    "n_over_f_max",
+    "sigma_n_max_pa",
+    "slip_speed_max_m_s",
+    "cycles",
+    "simulated_s",
+    "steps",
+    "time_step_s",
+    "energy_residual",
+    "identity_residual",
+    "wall_s",
+    "error",
+];
+
+/// Number of fields that come from the record, `regime` to `identity_residual`.
+const RECORD_FIELDS: usize = 18;
+
+/// Writes one CSV line per job below a header. A cell without a value is empty.
+///
+/// # Errors
+/// Those of the writer.
+pub fn csv<W: Write>(rows: &[Row], out: W) -> io::Result<()> {
+    let further = further_names(rows);
+    let mut writer = ::csv::Writer::from_writer(out);
+    writer.write_record(field_names(&further)).map_err(io_error)?;
+    for row in rows {
+        writer.write_record(fields(row, &further).iter().map(value::text)).map_err(io_error)?;
+    }
+    writer.flush()
+}
+
+/// Writes one JSON object per job and line, with the fields of [`csv()`]; null where it has an empty cell.
+///
+/// # Errors
+/// Those of the writer.
+pub fn json_lines<W: Write>(rows: &[Row], mut out: W) -> io::Result<()> {
+    let further = further_names(rows);
+    let names = field_names(&further);
+    for row in rows {
+        let mut line = serde_json::Serializer::new(&mut out);
+        let mut map = line.serialize_map(Some(names.len()))?;
+        for (name, value) in names.iter().zip(fields(row, &further)) {
+            map.serialize_entry(name, &value)?;
+        }
+        map.end()?;
+        out.write_all(b"\n")?;
+    }
+    out.flush()
+}
+
+/// A CSV error as the I/O error it comes from, so that a caller can tell a closed pipe.
+pub(super) fn io_error(error: ::csv::Error) -> io::Error {
+    match error.into_kind() {
+        ::csv::ErrorKind::Io(source) => source,
+        other => io::Error::other(format!("{other:?}")),
+    }
+}
+
+/// Names of the parameters other than ω and μ, in the order in which they first appear.
+pub(super) fn further_names(rows: &[Row]) -> Vec<&str> {
+    let mut names = Vec::new();
+    for (name, _) in rows.iter().flat_map(Row::further) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
+}
+
+fn field_names(further: &[&str]) -> Vec<String> {
+    // A parameter may share its name with a result: both keep a column of their own.
+    let unique = |name: &&str| {
+        if HEADER.contains(name) { format!("parameter_{name}") } else { (*name).to_owned() }
+    };
+    HEADER.iter().map(|&name| name.to_owned()).chain(further.iter().map(unique)).collect()
+}
+
+fn fields(row: &Row, further: &[&str]) -> Vec<Value> {
+    let error = match &row.state {
+        RowState::Failed { error } => Value::from(error.as_str()),
+        _ => Value::Null,
+    };
+    let mut fields: Vec<Value> = vec![
+        row.study.as_str().into(),
+        row.job.as_str().into(),
+        row.omega_rpm.into(),
+        row.mu.into(),
+        row.status().into(),
+    ];
+    fields.extend(row.record().map_or([const { Value::Null }; RECORD_FIELDS], record_fields));
+    fields.extend([row.wall_s.into(), error]);
+    fields.extend(further.iter().map(|name| row.parameter(name)));
+    fields
+}
+
+/// A float that is not finite becomes null: `Value` has no other way to hold it.
+fn record_fields(record: &JobRecord) -> [Value; RECORD_FIELDS] {
+    [
+        record.regime.name().into(),
+        record.mu_star.into(),
+        record.mu_star_se.into(),
+        record.mu_star_contact.into(),
+        record.frequency_hz.into(),
+        record.stick_share.into(),
+        record.slip_share.into(),
+        record.separated_share.into(),
+        record.n_over_f_min.into(),
+        record.n_over_f_max.into(),
+        record.sigma_n_max_pa.into(),
+        record.slip_speed_max_m_s.into(),
+        record.cycles.into(),
+        record.simulated_s.into(),
+        record.steps.into(),
+        record.time_step_s.into(),
+        record.energy_residual.into(),
+        record.identity_residual().into(),
+    ]
+}

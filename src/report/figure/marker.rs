@@ -1,0 +1,64 @@
+//! Markers: the shape is the contact regime, hollow is without a periodic state.
+
+use super::FigureError;
+use crate::analysis::Regime;
+use plotters::coord::Shift;
+use plotters::prelude::{Circle, DrawingArea, Polygon, RGBColor, SVGBackend, WHITE};
+
+/// Radius of a circle marker [px].
+pub(super) const RADIUS: i32 = 11;
+/// What is cut out of a hollow marker, as a share of it.
+const HOLE: f64 = 0.58;
+
+/// The regime as a reader's text.
+pub(super) fn regime_label(regime: Regime) -> &'static str {
+    match regime {
+        Regime::Stable => "stable",
+        Regime::StickSlip => "stick–slip",
+        Regime::StickSlipSeparation => "stick–slip–separation",
+        Regime::SlipSeparation => "slip–separation",
+        Regime::Undecided => "undecided",
+    }
+}
+
+/// Draws one marker: one shape in `colour`, and a white one on it if hollow.
+pub(super) fn draw(
+    area: &DrawingArea<SVGBackend, Shift>,
+    at: (i32, i32),
+    regime: Regime,
+    periodic: bool,
+    colour: RGBColor,
+) -> Result<(), FigureError> {
+    shape(area, at, regime, 1.0, colour)?;
+    if periodic && regime != Regime::Undecided {
+        return Ok(());
+    }
+    shape(area, at, regime, HOLE, WHITE)
+}
+
+/// Corners of the shapes for a radius of 1, of about the area of the circle; y points down.
+fn corners(regime: Regime) -> &'static [(f64, f64)] {
+    match regime {
+        Regime::Stable | Regime::Undecided => &[],
+        Regime::StickSlip => &[(0.0, -1.4), (1.25, 0.8), (-1.25, 0.8)],
+        Regime::StickSlipSeparation => &[(-0.95, -0.95), (0.95, -0.95), (0.95, 0.95), (-0.95, 0.95)],
+        Regime::SlipSeparation => &[(0.0, -1.35), (1.35, 0.0), (0.0, 1.35), (-1.35, 0.0)],
+    }
+}
+
+fn shape(
+    area: &DrawingArea<SVGBackend, Shift>,
+    (x, y): (i32, i32),
+    regime: Regime,
+    scale: f64,
+    colour: RGBColor,
+) -> Result<(), FigureError> {
+    let pixels = |offset: f64| (offset * scale * f64::from(RADIUS)).round() as i32;
+    let corners: Vec<(i32, i32)> =
+        corners(regime).iter().map(|&(dx, dy)| (x + pixels(dx), y + pixels(dy))).collect();
+    if corners.is_empty() {
+        area.draw(&Circle::new((x, y), pixels(1.0), plotters::style::Color::filled(&colour)))
+    } else {
+        area.draw(&Polygon::new(corners, colour))
+    }
+}

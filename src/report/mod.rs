@@ -1,0 +1,24 @@
+//! Tables, figures and CSV from the records of a study's jobs.
+//!
+//! Everything here reads [`Row`]s: one job with its grid parameters and what is known of it. A
+//! study that is still running reports like a finished one; what is missing is named.
+//!
+//! * [`export`] – one line a job, for other programs.
+//! * [`tables`] – speed by friction coefficient, as Markdown and CSV.
+//! * [`figure`] – μ* and frequency against speed, as SVG.
+//! * [`write()`] – a folder with all of it and a page that holds it together.
+
+mod error;
+pub mod export;
+pub mod figure;
+mod files;
+mod layout;
+mod markdown;
+mod page;
+mod row;
+pub mod tables;
+mod value;
+
+pub use error::ReportError;
+pub use files::write;
+pub use row::{Row, RowState};

@@ -1,0 +1,129 @@
+//! The pages: one per table, and `report.md` that holds everything together.
+
+use super::figure::Plot;
+use super::layout::parameters_in_words;
+use super::row::{Row, RowState};
+use super::tables::{self, Quantity};
+use super::{markdown, value};
+use crate::analysis::{JobRecord, Outcome};
+
+/// Jobs without a result are named up to this number: the rest are in the export.
+const MISSING_NAMED: usize = 20;
+
+/// A figure's file and what it shows.
+pub(super) struct FigureLink {
+    pub plot: Plot,
+    pub caption: String,
+    pub file: String,
+}
+
+/// The page of one table.
+pub(super) fn of_table(rows: &[Row], quantity: Quantity, title: &str) -> String {
+    format!("# {}: {}\n\n{}", markdown::escape(title), quantity.title(), tables::markdown(rows, quantity))
+}
+
+/// The page of the whole report.
+pub(super) fn of_report(rows: &[Row], figures: &[FigureLink], title: &str) -> String {
+    let mut page = format!("# {}\n\n{}\n", markdown::escape(title), summary(rows));
+    page += &section("Macroscopic friction", Some(Plot::MuStar), Quantity::MuStar, "mu_star", rows, figures);
+    page += &section("Frequency", Some(Plot::Frequency), Quantity::Frequency, "frequency", rows, figures);
+    page += &section("Contact regime", None, Quantity::Regime, "regime", rows, figures);
+    let failed: Vec<String> = rows.iter().filter_map(failed).collect();
+    page += &list("Failed jobs", failed.len(), &failed);
+    let not_periodic: Vec<String> = rows.iter().filter_map(not_periodic).collect();
+    page += &list("Not periodic", not_periodic.len(), &not_periodic);
+    page += &missing(rows);
+    page + "\n## Data\n\nOne line per job with all figures: [jobs.csv](jobs.csv).\n"
+}
+
+fn summary(rows: &[Row]) -> String {
+    let count = |status: &str| rows.iter().filter(|row| row.status() == status).count();
+    let done = rows.iter().filter(|row| row.record().is_some()).count();
+    let (failed, running, pending) = (count("failed"), count("running"), count("pending"));
+    let mut text = format!(
+        "{done} of {} jobs done ({} periodic, {} decayed, {} not periodic), {failed} failed, {} missing \
+         ({running} running, {pending} pending).\n",
+        rows.len(),
+        count(Outcome::Periodic.name()),
+        count(Outcome::Decayed.name()),
+        count(Outcome::NotPeriodic.name()),
+        running + pending,
+    );
+    if done < rows.len() {
+        text += "\n**This report is incomplete**: tables and figures hold only the jobs that are done.\n";
+    }
+    text += &worst("energy residual", rows, |record| record.energy_residual.abs());
+    text += &worst("identity residual", rows, JobRecord::identity_residual);
+    text
+}
+
+/// The job that fits worst: the first to look at if a figure is in doubt.
+fn worst(name: &str, rows: &[Row], residual: impl Fn(&JobRecord) -> f64) -> String {
+    rows.iter()
+        .filter_map(|row| Some((residual(row.record()?), row)))
+        .filter(|(residual, _)| residual.is_finite())
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+        .map(|(residual, row)| {
+            format!("\nLargest {name}: {residual:.1e} ({}).\n", markdown::escape(&parameters_in_words(row)))
+        })
+        .unwrap_or_default()
+}
+
+fn section(
+    heading: &str,
+    plot: Option<Plot>,
+    quantity: Quantity,
+    stem: &str,
+    rows: &[Row],
+    figures: &[FigureLink],
+) -> String {
+    let mut parts = vec![format!("\n## {heading}\n\n")];
+    for figure in figures.iter().filter(|figure| Some(figure.plot) == plot) {
+        if !figure.caption.is_empty() {
+            parts.push(format!("{}:\n\n", markdown::escape(&figure.caption)));
+        }
+        parts.push(format!("![{}]({})\n\n", quantity.title(), figure.file));
+    }
+    parts.push(format!("Table: [{stem}.md]({stem}.md), [{stem}.csv]({stem}.csv)\n\n"));
+    parts.push(tables::markdown(rows, quantity));
+    parts.concat()
+}
+
+fn list(heading: &str, count: usize, entries: &[String]) -> String {
+    if count == 0 { String::new() } else { format!("\n## {heading} ({count})\n\n{}", entries.concat()) }
+}
+
+fn entry(row: &Row, what: &str) -> String {
+    format!("- {} – {what} (job {})\n", markdown::escape(&parameters_in_words(row)), markdown::code(&row.job))
+}
+
+fn failed(row: &Row) -> Option<String> {
+    match &row.state {
+        RowState::Failed { error } => Some(entry(row, &markdown::code(error))),
+        _ => None,
+    }
+}
+
+fn not_periodic(row: &Row) -> Option<String> {
+    let record = row.record().filter(|record| record.outcome == Outcome::NotPeriodic)?;
+    let reason = format!(
+        "time limit reached after {} s without a periodic state; {}, μ\\* = {} ± {} over {} cycles",
+        value::number(record.simulated_s),
+        record.regime.name(),
+        value::fixed(record.mu_star, 4),
+        value::fixed(record.mu_star_se, 4),
+        record.cycles,
+    );
+    Some(entry(row, &reason))
+}
+
+fn missing(rows: &[Row]) -> String {
+    let waiting = || rows.iter().filter(|row| matches!(row.state, RowState::Pending | RowState::Running));
+    let total = waiting().count();
+    let mut entries: Vec<String> =
+        waiting().take(MISSING_NAMED).map(|row| entry(row, row.status())).collect();
+    if total > MISSING_NAMED {
+        entries.push(format!("- and {} more: see [jobs.csv](jobs.csv)\n", total - MISSING_NAMED));
+    }
+    list("Missing jobs", total, &entries)
+}

@@ -1,0 +1,81 @@
+//! One job as a report sees it.
+
+use crate::analysis::JobRecord;
+use serde_json::Value;
+
+/// The grid parameter that is the disk speed.
+pub(super) const OMEGA: &str = "omega_rpm";
+/// The grid parameter that is the local friction coefficient.
+pub(super) const MU: &str = "mu";
+
+/// One job of a study: its parameters and what is known of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Row {
+    /// Name of the study.
+    pub study: String,
+    /// Key of the job.
+    pub job: String,
+    /// The grid parameters by name, in the order of the study.
+    pub parameters: Vec<(String, Value)>,
+    /// Disk speed ω of the job in revolutions per minute, in the grid or not.
+    pub omega_rpm: f64,
+    /// Local friction coefficient μ of the job, in the grid or not.
+    pub mu: f64,
+    /// What is known of the job.
+    pub state: RowState,
+    /// Wall-clock time the job took, in seconds.
+    pub wall_s: Option<f64>,
+}
+
+/// What is known of a job.
+#[derive(Debug, Clone, PartialEq)]
+pub enum RowState {
+    /// It waits.
+    Pending,
+    /// It runs.
+    Running,
+    /// It ended without a result.
+    Failed {
+        /// The reason.
+        error: String,
+    },
+    /// It has a result.
+    Done(Box<JobRecord>),
+}
+
+impl Row {
+    /// The name of the job's state in CSV: `pending`, `running`, `failed` or the outcome of its run.
+    pub fn status(&self) -> &'static str {
+        match &self.state {
+            RowState::Pending => "pending",
+            RowState::Running => "running",
+            RowState::Failed { .. } => "failed",
+            RowState::Done(record) => record.outcome.name(),
+        }
+    }
+
+    /// The result, if there is one.
+    pub fn record(&self) -> Option<&JobRecord> {
+        match &self.state {
+            RowState::Done(record) => Some(record),
+            _ => None,
+        }
+    }
+
+    /// The parameters other than ω and μ, which have a place of their own everywhere.
+    pub(super) fn further(&self) -> impl Iterator<Item = (&str, &Value)> {
+        self.parameters
+            .iter()
+            .map(|(name, value)| (name.as_str(), value))
+            .filter(|(name, _)| *name != OMEGA && *name != MU)
+    }
+
+    /// The value of a parameter; null where this job has none of that name.
+    pub(super) fn parameter(&self, name: &str) -> Value {
+        match name {
+            OMEGA => self.omega_rpm.into(),
+            MU => self.mu.into(),
+            _ => self.further().find(|(own, _)| *own == name).map_or(Value::Null, |(_, value)| value.clone()),
+        }
+    }
+}

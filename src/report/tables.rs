@@ -1,0 +1,151 @@
+//! Tables in the manner of Figure 7: speed by friction coefficient, one cell a job.
+
+use super::export::io_error;
+use super::layout::{Group, Layout};
+use super::row::{Row, RowState};
+use super::value::MISSING;
+use super::{markdown, value};
+use crate::analysis::{JobRecord, Outcome, Regime};
+use std::collections::HashMap;
+use std::io::{self, Write};
+
+/// What a table shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Quantity {
+    /// Macroscopic friction coefficient μ*.
+    MuStar,
+    /// Frequency of the limit cycle.
+    Frequency,
+    /// Contact regime.
+    Regime,
+}
+
+impl Quantity {
+    /// The quantity with its symbol and unit.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::MuStar => "macroscopic friction coefficient μ*",
+            Self::Frequency => "frequency [Hz]",
+            Self::Regime => "contact regime",
+        }
+    }
+
+    fn legend(self) -> String {
+        let own: &[&str] = match self {
+            Self::MuStar => &["`~` not periodic: an average over the last part of the run"],
+            Self::Frequency => &[
+                "fundamental frequency of the total normal contact force",
+                "`stable` the oscillation decays",
+                "`none` no frequency found",
+                "`~` not periodic",
+            ],
+            Self::Regime => &["`~` not periodic: from the last part of the run"],
+        };
+        let common =
+            ["`failed` no result", "`–` no result yet, or no such job", "`a / b` several jobs at this point"];
+        own.iter().chain(&common).map(|entry| format!("- {entry}\n")).collect::<Vec<_>>().concat()
+    }
+
+    fn result(self, record: &JobRecord) -> String {
+        let text = match self {
+            Self::MuStar if !record.mu_star.is_finite() => return MISSING.to_owned(),
+            Self::MuStar => value::fixed(record.mu_star, 4),
+            Self::Frequency => match record.frequency_hz.filter(|f| f.is_finite()) {
+                Some(frequency) => format!("{frequency:.0}"),
+                None if record.regime == Regime::Stable => "stable".to_owned(),
+                None => "none".to_owned(),
+            },
+            Self::Regime => record.regime.name().to_owned(),
+        };
+        if record.outcome == Outcome::NotPeriodic { text + "~" } else { text }
+    }
+
+    fn cell(self, row: &Row) -> String {
+        match &row.state {
+            RowState::Pending | RowState::Running => MISSING.to_owned(),
+            RowState::Failed { .. } => "failed".to_owned(),
+            RowState::Done(record) => self.result(record),
+        }
+    }
+}
+
+/// The tables of one quantity as Markdown: one per combination of further parameters, and a legend.
+pub fn markdown(rows: &[Row], quantity: Quantity) -> String {
+    let layout = Layout::new(rows);
+    let mut parts = vec![constants(&layout)];
+    let header: Vec<String> = std::iter::once(layout.axis_label().to_owned())
+        .chain(layout.mus.iter().map(|&mu| format!("μ = {}", value::rounded(mu))))
+        .collect();
+    for group in &layout.groups {
+        if !group.key.is_empty() {
+            parts.push(format!("### {}\n\n", markdown::escape(&group.caption())));
+        }
+        let lines: Vec<Vec<String>> = lines(&layout, group, quantity)
+            .map(|(at, cells)| std::iter::once(at).chain(cells).collect())
+            .collect();
+        parts.push(markdown::table(&header, &lines, quantity != Quantity::Regime));
+        parts.push("\n".to_owned());
+    }
+    parts.push(quantity.legend());
+    parts.concat()
+}
+
+/// The tables of one quantity as one CSV: further parameters first, then the row's, then a column per μ.
+///
+/// The cells are those of [`markdown`], empty where a result is missing.
+///
+/// # Errors
+/// Those of the writer.
+pub fn csv<W: Write>(rows: &[Row], quantity: Quantity, out: W) -> io::Result<()> {
+    let layout = Layout::new(rows);
+    let mut writer = ::csv::Writer::from_writer(out);
+    let header = layout
+        .further
+        .iter()
+        .chain([&layout.axis])
+        .map(|&name| name.to_owned())
+        .chain(layout.mus.iter().map(|&mu| format!("mu={}", value::rounded(mu))));
+    writer.write_record(header).map_err(io_error)?;
+    for group in &layout.groups {
+        for (at, cells) in lines(&layout, group, quantity) {
+            let key = group.key.iter().map(|(_, value)| value::text(value));
+            let cells = cells.into_iter().map(|cell| if cell == MISSING { String::new() } else { cell });
+            writer.write_record(key.chain([at]).chain(cells)).map_err(io_error)?;
+        }
+    }
+    writer.flush()
+}
+
+/// Each value along the axis with its cells, one per μ.
+fn lines<'a>(
+    layout: &'a Layout,
+    group: &'a Group,
+    quantity: Quantity,
+) -> impl Iterator<Item = (String, Vec<String>)> + 'a {
+    let mut cells: HashMap<(String, String), Vec<String>> = HashMap::new();
+    for row in &group.rows {
+        let place = (value::text(&row.parameter(layout.axis)), value::number(row.mu));
+        cells.entry(place).or_default().push(quantity.cell(row));
+    }
+    group.axis_values.iter().map(move |at| {
+        let place = value::text(at);
+        let line = layout
+            .mus
+            .iter()
+            .map(|&mu| {
+                let here = cells.get(&(place.clone(), value::number(mu)));
+                here.map_or_else(|| MISSING.to_owned(), |here| here.join(" / "))
+            })
+            .collect();
+        (value::shown(at), line)
+    })
+}
+
+fn constants(layout: &Layout) -> String {
+    if layout.constants.is_empty() {
+        return String::new();
+    }
+    let words: Vec<String> =
+        layout.constants.iter().map(|(name, value)| value::assignment(name, value)).collect();
+    format!("In all jobs: {}.\n\n", markdown::escape(&words.join(", ")))
+}

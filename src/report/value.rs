@@ -1,0 +1,58 @@
+//! Values as text: the same in CSV, tables and legends.
+
+use serde_json::Value;
+
+/// Stands for a result that is not there.
+pub(super) const MISSING: &str = "–";
+
+/// The shortest text that reads back as the same number.
+///
+/// Exponents outside the range where digits are readable: `1e-9`, not `0.000000001`.
+pub(super) fn number(x: f64) -> String {
+    if x == 0.0 {
+        // Not `-0`.
+        return "0".to_owned();
+    }
+    if (1e-4..1e15).contains(&x.abs()) { format!("{x}") } else { format!("{x:e}") }
+}
+
+/// A number for a reader: without the rounding of a computed grid, 0.15 for 0.15000000000000002.
+pub(super) fn rounded(x: f64) -> String {
+    format!("{x:.9e}").parse().map_or_else(|_| number(x), number)
+}
+
+/// A number with fixed decimals, or the mark of a missing result where it is not finite.
+pub(super) fn fixed(x: f64, decimals: usize) -> String {
+    if x.is_finite() { format!("{x:.decimals$}") } else { MISSING.to_owned() }
+}
+
+/// A value in a cell. Empty for null; arrays as `12x15x10`.
+pub(super) fn text(value: &Value) -> String {
+    match value {
+        Value::Null => String::new(),
+        Value::String(text) => text.clone(),
+        Value::Bool(flag) => flag.to_string(),
+        Value::Number(n) if n.is_f64() => n.as_f64().map(number).unwrap_or_default(),
+        Value::Number(n) => n.to_string(),
+        Value::Array(items) => items.iter().map(text).collect::<Vec<_>>().join("x"),
+        Value::Object(_) => value.to_string(),
+    }
+}
+
+/// A value for a reader: [`text`], but numbers [`rounded`].
+pub(super) fn shown(value: &Value) -> String {
+    match value {
+        Value::Number(n) if n.is_f64() => n.as_f64().map(rounded).unwrap_or_default(),
+        _ => text(value),
+    }
+}
+
+/// `name = value`, with the symbols of the field for ω and μ.
+pub(super) fn assignment(name: &str, value: &Value) -> String {
+    match name {
+        super::row::OMEGA => format!("ω = {} rpm", shown(value)),
+        super::row::MU => format!("μ = {}", shown(value)),
+        _ if value.is_null() => format!("{name} not set"),
+        _ => format!("{name} = {}", shown(value)),
+    }
+}

@@ -1,0 +1,275 @@
+//! The figures: every result has its marker, every μ its curve and its name.
+
+use crate::svg::{self, Element};
+use crate::synthetic::{done, partial_study, periodic, record, row, with};
+use std::collections::HashSet;
+use tribosweep::analysis::{Outcome, Regime};
+use tribosweep::report::figure::{Figure, Plot, figures};
+use tribosweep::report::{Row, RowState};
+
+/// The first colours of the palette, in the order of ascending μ.
+const COLOURS: [&str; 3] = ["#0072B2", "#D55E00", "#009E73"];
+const CURVE_WIDTH: &str = "4";
+
+fn only(rows: &[Row], plot: Plot) -> Vec<Element> {
+    let mut all = figures(rows, plot).expect("a string takes everything");
+    assert_eq!(all.len(), 1);
+    svg::parse(&all.remove(0).svg)
+}
+
+fn texts(elements: &[Element]) -> Vec<&str> {
+    elements.iter().filter(|element| element.name == "text").map(|element| element.text.as_str()).collect()
+}
+
+/// Points of every line of a curve's width in this colour: the curve's stretches and its legend entry.
+fn lines(elements: &[Element], colour: &str) -> Vec<Vec<(i32, i32)>> {
+    elements
+        .iter()
+        .filter(|e| e.name == "polyline" && e.is("stroke", colour) && e.is("stroke-width", CURVE_WIDTH))
+        .map(|e| {
+            let point = |pair: &str| {
+                let (x, y) = pair.split_once(',').expect("a pair");
+                (x.parse().expect("a pixel"), y.parse().expect("a pixel"))
+            };
+            e.attribute("points").expect("points").split_whitespace().map(point).collect()
+        })
+        .collect()
+}
+
+/// Number of markers (polygons, circles) in this colour.
+fn markers(elements: &[Element], shape: &str, colour: &str) -> usize {
+    elements.iter().filter(|element| element.name == shape && element.is("fill", colour)).count()
+}
+
+fn all_markers(elements: &[Element], colour: &str) -> usize {
+    markers(elements, "circle", colour) + markers(elements, "polygon", colour)
+}
+
+/// Protects the figure's completeness: one curve, one legend entry and one guide per μ, one marker per
+/// result.
+#[test]
+fn each_mu_has_a_curve_and_each_result_a_marker() {
+    let elements = only(&partial_study(), Plot::MuStar);
+    for (colour, results) in COLOURS.into_iter().zip([6, 5, 3]) {
+        let lines = lines(&elements, colour);
+        let lengths: Vec<usize> = lines.iter().map(Vec::len).collect();
+        assert_eq!(lengths, [results, 2], "curve and legend entry of {colour}");
+        assert!(lines[1].iter().all(|entry| lines[0].iter().all(|point| point.0 < entry.0)), "legend apart");
+        assert_eq!(all_markers(&elements, colour), results, "markers of {colour}");
+        let dashes =
+            |e: &&Element| e.name == "polyline" && e.is("stroke", colour) && e.is("stroke-width", "3");
+        assert!(elements.iter().filter(dashes).count() > 10, "a dashed guide in {colour}");
+    }
+    let texts = texts(&elements);
+    for label in ["0.2", "0.3", "0.4", "μ* = μ", "stable", "stick–slip", "stick–slip–separation"] {
+        assert!(texts.contains(&label), "{label} in {texts:?}");
+    }
+    assert!(!texts.contains(&"undecided"), "a regime that does not occur is not in the legend");
+}
+
+/// Protects the labels: quantity, symbol and unit on both axes of both figures.
+#[test]
+fn axes_carry_quantity_and_unit() {
+    let mu_star = only(&partial_study(), Plot::MuStar);
+    assert!(texts(&mu_star).contains(&"disk speed ω [rpm]"));
+    assert!(texts(&mu_star).contains(&"macroscopic friction coefficient μ*"));
+    let frequency = only(&partial_study(), Plot::Frequency);
+    assert!(texts(&frequency).contains(&"disk speed ω [rpm]"));
+    assert!(texts(&frequency).contains(&"frequency [Hz]"));
+}
+
+/// Ticks of the abscissa with their pixel, from left to right.
+fn x_ticks(elements: &[Element]) -> Vec<(String, i32)> {
+    let texts: Vec<&Element> = elements.iter().filter(|element| element.name == "text").collect();
+    let height =
+        |element: &Element| element.attribute("y").and_then(|y| y.parse::<i32>().ok()).expect("a pixel");
+    // The lowest line of text is the axis label; the ticks are the line above it.
+    let label = texts.iter().map(|text| height(text)).max().expect("a label");
+    let line = texts.iter().map(|text| height(text)).filter(|y| *y < label).max().expect("ticks");
+    let place =
+        |text: &&Element| (text.text.clone(), text.attribute("x").and_then(|x| x.parse().ok()).expect("x"));
+    let mut ticks: Vec<(String, i32)> = texts.iter().filter(|text| height(text) == line).map(place).collect();
+    ticks.sort_by_key(|tick| tick.1);
+    ticks
+}
+
+/// Protects the logarithmic axis: its ticks read 0.5 1 2 5 … 100, and doublings are equally long.
+#[test]
+fn speed_is_on_a_logarithmic_axis() {
+    let rows = [0.5, 6.0, 35.0, 100.0].map(|omega| row(omega, 0.4, periodic(0.3)));
+    let ticks = x_ticks(&only(&rows, Plot::MuStar));
+    let labels: Vec<&str> = ticks.iter().map(|tick| tick.0.as_str()).collect();
+    assert_eq!(labels, ["0.5", "1", "2", "5", "10", "20", "50", "100"]);
+    let doubling = ticks[1].1 - ticks[0].1;
+    assert!(doubling > 50);
+    assert!((ticks[2].1 - ticks[1].1 - doubling).abs() <= 1, "{ticks:?}");
+    assert!((ticks[7].1 - ticks[6].1 - doubling).abs() <= 1, "{ticks:?}");
+}
+
+/// Protects a disk at rest from being left out: with ω = 0 the axis is linear.
+#[test]
+fn zero_speed_makes_the_axis_linear() {
+    let rows = [0.0, 5.0, 10.0, 20.0].map(|omega| row(omega, 0.4, periodic(0.3)));
+    let elements = only(&rows, Plot::MuStar);
+    assert_eq!(all_markers(&elements, COLOURS[0]), 4);
+    let ticks = x_ticks(&elements);
+    assert_eq!(ticks[0].0, "0");
+    let steps: Vec<i32> = ticks.windows(2).map(|pair| pair[1].1 - pair[0].1).collect();
+    assert!(steps.iter().all(|step| (step - steps[0]).abs() <= 1), "{ticks:?}");
+}
+
+/// Protects the meaning of the markers: shapes by regime, hollow without a periodic state.
+#[test]
+fn shape_is_the_regime_and_hollow_is_not_periodic() {
+    let shape = |outcome, regime| {
+        let elements = only(&[row(7.0, 0.4, done(outcome, regime, 0.3))], Plot::MuStar);
+        let own: Vec<&Element> = elements
+            .iter()
+            .filter(|e| matches!(e.name.as_str(), "circle" | "polygon") && e.is("fill", COLOURS[0]))
+            .collect();
+        assert_eq!(own.len(), 1);
+        let corners: Vec<&str> = own[0].attribute("points").unwrap_or_default().split_whitespace().collect();
+        let heights: HashSet<&str> =
+            corners.iter().filter_map(|corner| Some(corner.split_once(',')?.1)).collect();
+        let name = match (corners.len(), heights.len()) {
+            (0, 0) => own[0].name.as_str(),
+            (3, 2) => "triangle",
+            (4, 2) => "square",
+            (4, 3) => "diamond",
+            other => panic!("{other:?} corners and heights"),
+        };
+        // The background is a rectangle: white circles and polygons are holes, in the plot and in the legend.
+        (name.to_owned(), all_markers(&elements, "#FFFFFF"))
+    };
+    let expected = [
+        (Outcome::Decayed, Regime::Stable, "circle", 0),
+        (Outcome::Periodic, Regime::StickSlip, "triangle", 0),
+        (Outcome::Periodic, Regime::StickSlipSeparation, "square", 0),
+        (Outcome::Periodic, Regime::SlipSeparation, "diamond", 0),
+        (Outcome::NotPeriodic, Regime::StickSlip, "triangle", 2),
+        (Outcome::NotPeriodic, Regime::Undecided, "circle", 2),
+    ];
+    for (outcome, regime, name, holes) in expected {
+        assert_eq!(shape(outcome, regime), (name.to_owned(), holes), "{outcome:?} {regime:?}");
+    }
+}
+
+/// Protects the curve from the order of the jobs, which is that of the study and not of the speeds.
+#[test]
+fn a_curve_runs_from_left_to_right() {
+    let rows = [50.0, 1.0, 20.0, 5.0].map(|omega| row(omega, 0.4, periodic(0.3)));
+    let curve = &lines(&only(&rows, Plot::MuStar), COLOURS[0])[0];
+    assert_eq!(curve.len(), 4);
+    assert!(curve.windows(2).all(|pair| pair[0].0 < pair[1].0), "{curve:?}");
+}
+
+/// Protects two jobs at one point: both are drawn, and the curve passes once between them.
+#[test]
+fn duplicates_are_both_drawn() {
+    let rows = [
+        row(5.0, 0.4, periodic(0.30)),
+        row(7.0, 0.4, periodic(0.32)),
+        row(7.0, 0.4, periodic(0.36)),
+        row(9.0, 0.4, periodic(0.34)),
+    ];
+    let elements = only(&rows, Plot::MuStar);
+    assert_eq!(all_markers(&elements, COLOURS[0]), 4);
+    let curve = &lines(&elements, COLOURS[0])[0];
+    assert_eq!(curve.len(), 3);
+    assert!((curve[1].1 - curve[2].1).abs() <= 1, "the mean of 0.32 and 0.36 is as high as 0.34: {curve:?}");
+}
+
+/// Protects the frequency figure from a line across a speed at which nothing oscillates.
+#[test]
+fn a_stable_job_interrupts_the_frequency_curve() {
+    let state = |omega: f64| {
+        if omega == 5.0 { done(Outcome::Decayed, Regime::Stable, 0.4) } else { periodic(0.3) }
+    };
+    let rows = [1.0, 2.0, 5.0, 10.0, 20.0].map(|omega| row(omega, 0.4, state(omega)));
+    let elements = only(&rows, Plot::Frequency);
+    let lengths: Vec<usize> = lines(&elements, COLOURS[0]).iter().map(Vec::len).collect();
+    assert_eq!(lengths, [2, 2, 2], "two stretches and the legend entry");
+    assert_eq!(all_markers(&elements, COLOURS[0]), 4);
+}
+
+/// Protects error bars: drawn where they reach beyond the marker, and only there.
+#[test]
+fn error_bars_show_where_they_are_visible() {
+    let bars = |error: f64| {
+        let mut own = record(Outcome::Periodic, Regime::StickSlip, 0.35);
+        own.mu_star_se = error;
+        let rows = [row(5.0, 0.4, periodic(0.3)), row(7.0, 0.4, RowState::Done(Box::new(own)))];
+        let elements = only(&rows, Plot::MuStar);
+        let bar =
+            |e: &&Element| e.name == "polyline" && e.is("stroke", COLOURS[0]) && e.is("stroke-width", "2");
+        elements.iter().filter(bar).count()
+    };
+    assert_eq!(bars(0.02), 3, "a bar with two caps");
+    assert_eq!(bars(1e-5), 0);
+    assert_eq!(bars(f64::NAN), 0);
+}
+
+/// Protects figures from NaN: such a result has no marker and leaves no trace in the drawing.
+#[test]
+fn a_result_that_is_not_finite_is_not_drawn() {
+    let mut rows = partial_study();
+    let before = all_markers(&only(&rows, Plot::MuStar), COLOURS[1]);
+    rows[6].state = done(Outcome::NotPeriodic, Regime::Undecided, f64::NAN);
+    let all = figures(&rows, Plot::MuStar).expect("a string takes everything");
+    assert!(!all[0].svg.contains("NaN") && !all[0].svg.contains("inf"));
+    assert_eq!(all_markers(&svg::parse(&all[0].svg), COLOURS[1]), before - 1);
+}
+
+/// Protects one figure per combination, each with a file name and a caption of its own.
+#[test]
+fn each_combination_has_its_figure() {
+    let rows: Vec<Row> = ["a/b", "a b", "<&\u{1}\">"]
+        .into_iter()
+        .flat_map(|name| partial_study().into_iter().map(move |row| with(row, "note", name)))
+        .collect();
+    let all: Vec<Figure> = figures(&rows, Plot::MuStar).expect("a string takes everything");
+    let suffixes: Vec<&str> = all.iter().map(|figure| figure.suffix.as_str()).collect();
+    assert_eq!(suffixes, ["-note-a-b", "-note-a-b-2", "-note------"]);
+    for (figure, caption) in all.iter().zip(["note = a/b", "note = a b", "note = <& \">"]) {
+        assert!(texts(&svg::parse(&figure.svg)).contains(&caption), "{caption}");
+    }
+}
+
+/// Protects studies over something else than speed: names on the axis, in the order of the study.
+#[test]
+fn a_named_parameter_makes_a_named_axis() {
+    let rows = ["whole_top", "inner_side", "both_ends"]
+        .map(|side| with(row(7.0, 0.4, periodic(0.35)), "clamp_side", side));
+    let elements = only(&rows, Plot::MuStar);
+    let labels: Vec<String> = x_ticks(&elements).into_iter().map(|tick| tick.0).collect();
+    assert_eq!(labels, ["whole_top", "inner_side", "both_ends"]);
+    assert!(texts(&elements).contains(&"clamp_side"));
+}
+
+/// Protects studies with more coefficients than there are distinct colours: all curves differ.
+#[test]
+fn many_coefficients_have_many_colours() {
+    let rows: Vec<Row> = (1..=20)
+        .flat_map(|k| [5.0, 7.0].map(|omega| row(omega, f64::from(k) * 0.05, periodic(f64::from(k) * 0.04))))
+        .collect();
+    let elements = only(&rows, Plot::MuStar);
+    let curves: HashSet<&str> = elements
+        .iter()
+        .filter(|e| e.name == "polyline" && e.is("stroke-width", CURVE_WIDTH))
+        .filter_map(|e| e.attribute("stroke"))
+        .collect();
+    assert_eq!(curves.len(), 20);
+    let lowest = elements.iter().filter_map(|e| e.attribute("y")?.parse::<i32>().ok()).max();
+    assert!(lowest.is_some_and(|y| y <= 1120), "the legend stays on the page");
+}
+
+/// Protects reports from before the first result: the figure says so.
+#[test]
+fn a_study_without_results_says_so() {
+    for plot in [Plot::MuStar, Plot::Frequency] {
+        for rows in [vec![], vec![row(7.0, 0.4, RowState::Pending)]] {
+            let elements = only(&rows, plot);
+            assert!(texts(&elements).iter().any(|text| text.contains("no results yet")));
+        }
+    }
+}

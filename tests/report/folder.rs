@@ -1,0 +1,148 @@
+//! The report as a folder: all files, whole, and a page that says what is missing.
+
+use crate::synthetic::{failed, partial_study, periodic, row, with};
+use std::collections::BTreeSet;
+use std::fs;
+use std::path::Path;
+use tribosweep::report::{ReportError, Row, RowState, write};
+
+const FILES: [&str; 10] = [
+    "figure7.svg",
+    "frequency.csv",
+    "frequency.md",
+    "frequency.svg",
+    "jobs.csv",
+    "mu_star.csv",
+    "mu_star.md",
+    "regime.csv",
+    "regime.md",
+    "report.md",
+];
+
+fn names(folder: &Path) -> BTreeSet<String> {
+    let entries = fs::read_dir(folder).expect("the folder is there");
+    entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
+}
+
+fn page(rows: &[Row]) -> String {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    write(rows, folder.path(), "Reference").expect("the report is written");
+    fs::read_to_string(folder.path().join("report.md")).expect("the page is there")
+}
+
+/// Protects the set of files: all there, all named in the return value, no temporary ones left.
+#[test]
+fn writes_exactly_the_documented_files() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let inside = folder.path().join("new").join("deeper");
+    let written = write(&partial_study(), &inside, "Reference").expect("the report is written");
+    let expected: BTreeSet<String> = FILES.map(str::to_owned).into();
+    assert_eq!(names(&inside), expected);
+    let returned: BTreeSet<String> = written
+        .iter()
+        .map(|path| path.strip_prefix(&inside).expect("inside").display().to_string())
+        .collect();
+    assert_eq!(returned, expected);
+    assert_eq!(written.len(), FILES.len());
+}
+
+/// Protects a second report into the same folder: replaced files, and a stranger's file untouched.
+#[test]
+fn an_existing_folder_is_updated() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    fs::write(folder.path().join("notes.txt"), "mine").expect("a file");
+    write(&[row(7.0, 0.4, RowState::Pending)], folder.path(), "Reference").expect("the first report");
+    write(&[row(7.0, 0.4, periodic(0.35))], folder.path(), "Reference").expect("the second report");
+    let jobs = fs::read_to_string(folder.path().join("jobs.csv")).expect("the export");
+    assert!(jobs.contains(",periodic,") && !jobs.contains(",pending,"), "{jobs}");
+    assert_eq!(fs::read_to_string(folder.path().join("notes.txt")).expect("a file"), "mine");
+    assert_eq!(names(folder.path()).len(), FILES.len() + 1);
+}
+
+/// Protects the page of a running study: counts, reasons and what is missing.
+#[test]
+fn the_page_says_what_is_missing_and_why() {
+    let page = page(&partial_study());
+    assert!(page.contains("14 of 18 jobs done (7 periodic, 6 decayed, 1 not periodic), 1 failed, 3 missing"));
+    assert!(page.contains("This report is incomplete"));
+    let below = |heading: &str| {
+        let section = page.split_once(heading).unwrap_or_else(|| panic!("no {heading}")).1;
+        section.split("\n## ").next().unwrap_or_default().trim().to_owned()
+    };
+    let failed = below("## Failed jobs (1)\n");
+    assert!(
+        failed.contains("ω = 50 rpm, μ = 0.3") && failed.contains("the mesh has no node row"),
+        "{failed}"
+    );
+    let not_periodic = below("## Not periodic (1)\n");
+    assert!(not_periodic.contains("ω = 10 rpm, μ = 0.4"), "{not_periodic}");
+    assert!(not_periodic.contains("time limit reached after 0.0875 s"), "{not_periodic}");
+    let missing = below("## Missing jobs (3)\n");
+    assert!(missing.contains("ω = 1 rpm, μ = 0.4 – running"), "{missing}");
+    assert_eq!(missing.matches("pending").count(), 2, "{missing}");
+}
+
+/// Protects the links: every file of the report can be reached from its page.
+#[test]
+fn the_page_links_every_file() {
+    let rows: Vec<Row> = ["inner_side", "outer_side"]
+        .into_iter()
+        .flat_map(|side| partial_study().into_iter().map(move |row| with(row, "clamp_side", side)))
+        .collect();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let written = write(&rows, folder.path(), "Reference").expect("the report is written");
+    let page = fs::read_to_string(folder.path().join("report.md")).expect("the page is there");
+    assert_eq!(written.len(), FILES.len() + 2, "two figures twice");
+    for path in written.iter().filter(|path| !path.ends_with("report.md")) {
+        let name = path.file_name().expect("a name").to_string_lossy();
+        assert!(page.contains(&format!("]({name})")), "{name}");
+    }
+}
+
+/// Protects a complete study from a false alarm.
+#[test]
+fn a_complete_study_has_nothing_missing() {
+    let page = page(&[row(7.0, 0.4, periodic(0.35))]);
+    assert!(page.contains("1 of 1 jobs done"), "{page}");
+    for absent in ["incomplete", "## Failed", "## Not periodic", "## Missing"] {
+        assert!(!page.contains(absent), "{absent}");
+    }
+}
+
+/// Protects the page's lines from an error of several lines with Markdown in it.
+#[test]
+fn an_error_stays_on_its_line() {
+    let page = page(&[row(7.0, 0.4, failed("bad\n## not a heading `x`"))]);
+    assert!(page.contains("`bad ## not a heading 'x'`"), "{page}");
+}
+
+/// Protects a large study's page from thousands of lines about waiting jobs.
+#[test]
+fn many_missing_jobs_are_summed_up() {
+    let rows: Vec<Row> = (1..=100).map(|k| row(f64::from(k), 0.4, RowState::Pending)).collect();
+    let page = page(&rows);
+    assert!(page.contains("## Missing jobs (100)"));
+    assert_eq!(page.matches("– pending (job").count(), 20);
+    assert!(page.contains("and 80 more"));
+}
+
+/// Protects an unfinished write: the error names the file, and no temporary file stays behind.
+#[test]
+fn an_error_names_the_path() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    // A folder in the place of a file cannot be replaced by a file.
+    let blocked = folder.path().join("jobs.csv");
+    fs::create_dir(&blocked).expect("a folder");
+    let error = write(&partial_study(), folder.path(), "Reference").expect_err("jobs.csv is a folder");
+    assert!(matches!(&error, ReportError::File { path, .. } if *path == blocked), "{error:?}");
+    assert!(error.to_string().contains(&blocked.display().to_string()), "{error}");
+    assert!(
+        names(folder.path()).iter().all(|name| FILES.contains(&name.as_str())),
+        "{:?}",
+        names(folder.path())
+    );
+
+    let file = folder.path().join("mu_star.md");
+    let error = write(&[], &file, "Reference").expect_err("a file is not a folder");
+    assert!(matches!(&error, ReportError::Folder { path, .. } if *path == file), "{error:?}");
+}

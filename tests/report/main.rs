@@ -1,0 +1,8 @@
+//! Reports from made-up records: what a reader or a program finds in the files.
+
+mod export;
+mod figure;
+mod folder;
+mod svg;
+mod synthetic;
+mod tables;

@@ -1,0 +1,90 @@
+//! Made-up jobs: plausible figures without a simulation.
+
+use serde_json::Value;
+use tribosweep::analysis::{EnergyTotals, JobRecord, Outcome, Regime};
+use tribosweep::report::{Row, RowState};
+
+pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
+    JobRecord {
+        outcome,
+        regime,
+        mu_star,
+        mu_star_se: 0.0005,
+        mu_star_contact: mu_star,
+        frequency_hz: (regime != Regime::Stable).then_some(14_512.4),
+        stick_share: 0.25,
+        slip_share: 0.5,
+        separated_share: 0.25,
+        n_over_f_min: 0.5,
+        n_over_f_max: 1.5,
+        sigma_n_max_pa: 1.25e6,
+        slip_speed_max_m_s: 0.125,
+        cycles: 40,
+        crossings_per_cycle: 1,
+        simulated_s: 0.0875,
+        window_start_s: 0.08,
+        steps: 350_000,
+        time_step_s: 2.5e-7,
+        time_step_limit_s: 5e-7,
+        clamp_width_m: 0.001,
+        energy_residual: 1.5e-9,
+        macroscopic_identity_residual: -3e-4,
+        energy_identity_residual: 1e-4,
+        growth_rate_per_s: None,
+        energy: EnergyTotals::default(),
+        nodes: Vec::new(),
+    }
+}
+
+pub fn done(outcome: Outcome, regime: Regime, mu_star: f64) -> RowState {
+    RowState::Done(Box::new(record(outcome, regime, mu_star)))
+}
+
+pub fn periodic(mu_star: f64) -> RowState {
+    done(Outcome::Periodic, Regime::StickSlip, mu_star)
+}
+
+pub fn failed(error: &str) -> RowState {
+    RowState::Failed { error: error.to_owned() }
+}
+
+pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> Row {
+    Row {
+        study: "reference".to_owned(),
+        job: format!("job-{omega_rpm}-{mu}"),
+        parameters: vec![("omega_rpm".to_owned(), omega_rpm.into()), ("mu".to_owned(), mu.into())],
+        omega_rpm,
+        mu,
+        state,
+        wall_s: Some(12.5),
+    }
+}
+
+pub fn with(mut row: Row, name: &str, value: impl Into<Value>) -> Row {
+    let value = value.into();
+    row.job = format!("{}-{value}", row.job);
+    row.parameters.push((name.to_owned(), value));
+    row
+}
+
+/// Three friction coefficients over six speeds, with every outcome: 14 results, one job failed, one
+/// runs, two wait.
+pub fn partial_study() -> Vec<Row> {
+    let mut rows = Vec::new();
+    for mu in [0.2, 0.3, 0.4] {
+        for omega in [1.0, 2.0, 5.0, 10.0, 50.0, 100.0] {
+            let state = match (mu, omega) {
+                (0.3, 50.0) => failed("the mesh has no node row at the clamp's width"),
+                (0.4, 1.0) => RowState::Running,
+                (0.4, 50.0 | 100.0) => RowState::Pending,
+                (0.4, 10.0) => done(Outcome::NotPeriodic, Regime::StickSlipSeparation, 0.35),
+                (0.2, _) => done(Outcome::Decayed, Regime::Stable, 0.2),
+                (_, 10.0) => done(Outcome::Periodic, Regime::StickSlipSeparation, 0.9 * mu),
+                (_, 100.0) => done(Outcome::Periodic, Regime::SlipSeparation, 0.95 * mu),
+                _ => periodic(mu * (0.8 + omega / 50.0)),
+            };
+            rows.push(row(omega, mu, state));
+        }
+    }
+    rows
+}

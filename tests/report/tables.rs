@@ -1,0 +1,178 @@
+//! The tables: every job in its cell, every absence named.
+
+use crate::synthetic::{done, failed, partial_study, periodic, row, with};
+use serde_json::json;
+use tribosweep::analysis::{Outcome, Regime};
+use tribosweep::report::tables::{self, Quantity};
+use tribosweep::report::{Row, RowState};
+
+/// The lines of the Markdown tables as cells without padding, rules left out.
+fn cells(rows: &[Row], quantity: Quantity) -> Vec<Vec<String>> {
+    tables::markdown(rows, quantity)
+        .lines()
+        .filter(|line| line.starts_with('|') && !line.contains("---"))
+        .map(|line| line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect())
+        .collect()
+}
+
+fn csv(rows: &[Row], quantity: Quantity) -> Vec<String> {
+    let mut out = Vec::new();
+    tables::csv(rows, quantity, &mut out).expect("a vector takes everything");
+    String::from_utf8(out).expect("the table is UTF-8").lines().map(str::to_owned).collect()
+}
+
+/// Protects the place and the form of each cell in a study with every kind of job.
+#[test]
+fn mu_star_of_a_partial_study() {
+    let table = cells(&partial_study(), Quantity::MuStar);
+    let expected = [
+        ["ω [rpm]", "μ = 0.2", "μ = 0.3", "μ = 0.4"],
+        ["1", "0.2000", "0.2460", "–"],
+        ["2", "0.2000", "0.2520", "0.3360"],
+        ["5", "0.2000", "0.2700", "0.3600"],
+        ["10", "0.2000", "0.2700", "0.3500~"],
+        ["50", "0.2000", "failed", "–"],
+        ["100", "0.2000", "0.2850", "–"],
+    ];
+    assert_eq!(table, expected);
+}
+
+/// Protects the CSV twin: the same cells, nothing where nothing is known.
+#[test]
+fn csv_has_the_same_cells() {
+    let table = csv(&partial_study(), Quantity::MuStar);
+    assert_eq!(table[0], "omega_rpm,mu=0.2,mu=0.3,mu=0.4");
+    assert_eq!(table[1], "1,0.2000,0.2460,");
+    assert_eq!(table[4], "10,0.2000,0.2700,0.3500~");
+    assert_eq!(table[5], "50,0.2000,failed,");
+    assert_eq!(table.len(), 7);
+}
+
+/// Protects the other two quantities: whole hertz, `stable` where nothing oscillates, regimes by name.
+#[test]
+fn frequency_and_regime_cells() {
+    let frequency = cells(&partial_study(), Quantity::Frequency);
+    assert_eq!(frequency[4], ["10", "stable", "14512", "14512~"]);
+    assert_eq!(frequency[5], ["50", "stable", "failed", "–"]);
+    let regime = cells(&partial_study(), Quantity::Regime);
+    assert_eq!(regime[4], ["10", "stable", "stick_slip_separation", "stick_slip_separation~"]);
+    assert_eq!(regime[5], ["50", "stable", "failed", "–"]);
+}
+
+/// Protects the legend: every mark in a cell is explained below the table.
+#[test]
+fn every_mark_is_explained() {
+    for quantity in [Quantity::MuStar, Quantity::Frequency, Quantity::Regime] {
+        let text = tables::markdown(&partial_study(), quantity);
+        let legend = text.rsplit_once("|\n").expect("a table").1;
+        for mark in ["`~`", "`failed`", "`–`", "`a / b`"] {
+            assert!(legend.contains(mark), "{mark} of {quantity:?}");
+        }
+    }
+}
+
+/// Protects readability in a terminal: all lines of a table are equally wide.
+#[test]
+fn columns_are_aligned() {
+    for quantity in [Quantity::MuStar, Quantity::Regime] {
+        let text = tables::markdown(&partial_study(), quantity);
+        let widths: Vec<usize> =
+            text.lines().filter(|line| line.starts_with('|')).map(|line| line.chars().count()).collect();
+        assert_eq!(widths.len(), 8);
+        assert!(widths.iter().all(|width| *width == widths[0]), "{text}");
+    }
+}
+
+/// Protects numeric order: 10 after 2, whatever the order of the jobs.
+#[test]
+fn speeds_and_coefficients_ascend() {
+    let rows = [(10.0, 0.4), (2.0, 0.1), (0.5, 0.4)].map(|(omega, mu)| row(omega, mu, periodic(0.3)));
+    let table = cells(&rows, Quantity::MuStar);
+    assert_eq!(table[0], ["ω [rpm]", "μ = 0.1", "μ = 0.4"]);
+    let speeds: Vec<&str> = table[1..].iter().map(|line| line[0].as_str()).collect();
+    assert_eq!(speeds, ["0.5", "2", "10"]);
+}
+
+/// Protects two jobs at the same point from hiding each other.
+#[test]
+fn duplicates_share_a_cell() {
+    let rows =
+        [row(7.0, 0.4, periodic(0.35)), row(7.0, 0.4, periodic(0.36)), row(7.0, 0.4, RowState::Pending)];
+    assert_eq!(cells(&rows, Quantity::MuStar)[1], ["7", "0.3500 / 0.3600 / –"]);
+    assert_eq!(csv(&rows, Quantity::MuStar)[1], "7,0.3500 / 0.3600 / –");
+}
+
+/// Protects combinations of further parameters from being mixed in one table.
+#[test]
+fn one_table_per_combination() {
+    let mut rows = Vec::new();
+    for (side, shift) in [("inner_side", 0.0), ("outer_side", 0.1)] {
+        for beta in [0.0, 1e-7] {
+            for omega in [5.0, 7.0] {
+                let job = row(omega, 0.4, periodic(0.2 + shift + beta * 1e5));
+                rows.push(with(with(with(job, "clamp_side", side), "beta_r_s", beta), "force_n", 30.0));
+            }
+        }
+    }
+    let text = tables::markdown(&rows, Quantity::MuStar);
+    let headings: Vec<&str> = text.lines().filter(|line| line.starts_with('#')).collect();
+    assert_eq!(
+        headings,
+        [
+            "### clamp_side = inner_side, beta_r_s = 0",
+            "### clamp_side = inner_side, beta_r_s = 1e-7",
+            "### clamp_side = outer_side, beta_r_s = 0",
+            "### clamp_side = outer_side, beta_r_s = 1e-7",
+        ]
+    );
+    assert!(text.starts_with("In all jobs: force_n = 30.\n"), "{text}");
+    let table = csv(&rows, Quantity::MuStar);
+    assert_eq!(table[0], "clamp_side,beta_r_s,omega_rpm,mu=0.4");
+    assert_eq!(table[1], "inner_side,0,5,0.2000");
+    assert_eq!(table[8], "outer_side,1e-7,7,0.3100");
+}
+
+/// Protects studies at one speed: the first parameter that varies takes the rows.
+#[test]
+fn without_speeds_the_first_varying_parameter_makes_the_rows() {
+    let rows = [json!([8, 10, 6]), json!([12, 15, 10])].map(|elements| {
+        let job = with(row(7.0, 0.4, periodic(0.35)), "top", "tied_in_z");
+        with(with(job, "elements", elements.clone()), "beta_r_s", elements[0].clone())
+    });
+    let table = cells(&rows, Quantity::MuStar);
+    assert_eq!(table[0], ["elements", "μ = 0.4"]);
+    assert_eq!(table[1], ["8x10x6", "0.3500"]);
+    let text = tables::markdown(&rows, Quantity::MuStar);
+    assert!(text.starts_with("In all jobs: ω = 7 rpm, top = tied_in_z.\n"), "{text}");
+    assert!(text.contains("### beta_r_s = 12\n"), "{text}");
+}
+
+/// Protects the smallest studies: one job, and none.
+#[test]
+fn one_job_and_none() {
+    let one = cells(&[row(7.0, 0.4, failed("no"))], Quantity::MuStar);
+    assert_eq!(one, [["ω [rpm]", "μ = 0.4"], ["7", "failed"]]);
+    assert_eq!(cells(&[], Quantity::MuStar), [["ω [rpm]"]]);
+}
+
+/// Protects headings from the rounding of a computed grid, and cells from being lost by it.
+#[test]
+fn computed_coefficients_have_short_headings() {
+    let rows = [row(7.0, 0.1 + 0.2, periodic(0.25)), row(8.0, 0.1 + 0.2, periodic(0.26))];
+    assert_eq!(cells(&rows, Quantity::MuStar), [["ω [rpm]", "μ = 0.3"], ["7", "0.2500"], ["8", "0.2600"]]);
+}
+
+/// Protects tables from NaN.
+#[test]
+fn a_figure_that_is_not_finite_is_missing() {
+    let rows = [row(7.0, 0.4, done(Outcome::NotPeriodic, Regime::Undecided, f64::NAN))];
+    assert_eq!(cells(&rows, Quantity::MuStar)[1], ["7", "–"]);
+}
+
+/// Protects the table from a value that looks like its own syntax.
+#[test]
+fn a_bar_in_a_value_does_not_split_a_cell() {
+    let rows = ["a|b", "c"].map(|name| with(row(7.0, 0.4, periodic(0.35)), "note", name));
+    let text = tables::markdown(&rows, Quantity::MuStar);
+    assert!(text.contains("| a\\|b |"), "{text}");
+}

@@ -1,0 +1,196 @@
+//! The one-dimensional bar.
+//!
+//! B2 Discrete spectrum. Lumped linear elements of length h have the exact frequencies
+//!    ω_n = (2c/h) sin(nπ/2N) free–free, modes cos(nπk/N); the central difference turns ω_n into
+//!    sin(θ/2) = (cΔt/h) sin(nπ/2N) per step. Source: textbook dispersion relations, exact.
+//! B4a Bar on a rigid wall. A bar of speed v0 hits: contact stress ρ c v0 for 2L/c, kinetic energy
+//!    KE0(1−τ) and KE0(τ−1), rebound at v0 with all its energy. Source: Saint-Venant's impact solution.
+//!    At cΔt/h = 1 the scheme transports waves exactly, so everything holds to rounding; otherwise the
+//!    forward-increment impact loses the contact node's share of the energy, which is O(1/N).
+
+use crate::common::{
+    COLUMN_AREA_M2, COLUMN_HEIGHT_M, IDLE, advance, bar, level, normal_force_n, observed_orders,
+};
+use std::f64::consts::PI;
+use tribosweep::solver::{Model, ModelDefinition, State, TimeStep};
+
+const SPEED_M_S: f64 = 0.1;
+
+fn wave_speed(model: &Model) -> f64 {
+    model.material().pressure_wave_speed_m_s()
+}
+
+/// B2: cos(nπk/N) is an eigenvector of the assembled operator with exactly ω_n².
+#[test]
+fn discrete_spectrum_is_exact() {
+    let layers = 20;
+    let model = Model::new(bar(layers)).unwrap();
+    let h = model.mesh().element_size_m()[2];
+    for mode in 0..=layers {
+        let phase = mode as f64 * PI / layers as f64;
+        let omega = 2.0 * wave_speed(&model) / h * (phase / 2.0).sin();
+        let mut phi = vec![0.0; 3 * model.mesh().node_count()];
+        for node in 0..model.mesh().node_count() {
+            phi[3 * node + 2] = (phase * model.mesh().grid_position(node)[2] as f64).cos();
+        }
+        let mut force = vec![0.0; phi.len()];
+        model.operator().apply::<1>(&phi, &mut force);
+        let largest = (2.0 * wave_speed(&model) / h).powi(2);
+        for node in 0..model.mesh().node_count() {
+            let acceleration = force[3 * node + 2] / model.masses_kg()[node];
+            let error = (acceleration - omega * omega * phi[3 * node + 2]).abs();
+            assert!(error < 1e-12 * largest, "mode {mode}, node {node}: {error:e}");
+        }
+    }
+}
+
+/// B2: in time, each mode oscillates as cos(θn) with the central difference's own θ.
+#[test]
+fn central_difference_dispersion_is_exact() {
+    let layers = 20;
+    for fraction in [0.3, 0.7, 1.0] {
+        let model =
+            Model::new(ModelDefinition { time_step: TimeStep::FractionOfLimit(fraction), ..bar(layers) })
+                .unwrap();
+        let h = model.mesh().element_size_m()[2];
+        let cfl = wave_speed(&model) * model.time_step_s() / h;
+        for mode in [1, 3, 10, 19] {
+            let phase = mode as f64 * PI / layers as f64;
+            let theta = 2.0 * (cfl * (phase / 2.0).sin()).asin();
+            let mut state = State::at_rest(&model);
+            // One unit above the plane, so that contact plays no part.
+            for node in 0..model.mesh().node_count() {
+                let k = model.mesh().grid_position(node)[2] as f64;
+                state.u[3 * node + 2] = 2.0 + (phase * k).cos();
+            }
+            for n in 1..=200 {
+                advance(&model, &IDLE, &mut state, 1);
+                let exact = 2.0 + (theta * f64::from(n)).cos();
+                let error = (state.u[2] - exact).abs();
+                // Rounding enters once a step and is carried along at most linearly.
+                assert!(error < 1e-15 * 30.0 * f64::from(n), "mode {mode}, step {n}: {error:e}");
+            }
+        }
+    }
+}
+
+struct Impact {
+    contact_steps: usize,
+    impulse_ns: f64,
+    kinetic_ratio: f64,
+    mean_speed: f64,
+}
+
+fn falling(model: &Model) -> State<1> {
+    let mut state = State::at_rest(model);
+    for node in 0..model.mesh().node_count() {
+        state.p[3 * node + 2] = -SPEED_M_S;
+    }
+    state
+}
+
+fn mass_kg() -> f64 {
+    2500.0 * COLUMN_AREA_M2 * COLUMN_HEIGHT_M
+}
+
+/// Runs an impact until well after the rebound.
+fn impact(layers: usize, fraction: f64) -> Impact {
+    let model = Model::new(ModelDefinition { time_step: TimeStep::FractionOfLimit(fraction), ..bar(layers) })
+        .unwrap();
+    let mut state = falling(&model);
+    let steps = (3.0 * layers as f64 / fraction).ceil() as usize;
+    let (mut contact_steps, mut impulse_ns) = (0, 0.0);
+    for _ in 0..steps {
+        advance(&model, &IDLE, &mut state, 1);
+        let force = normal_force_n(&state);
+        contact_steps += usize::from(force > 0.0);
+        let first = if state.step == 1 { 0.5 } else { 1.0 };
+        impulse_ns += first * force * model.time_step_s();
+    }
+    let momentum: f64 =
+        (0..model.mesh().node_count()).map(|n| model.masses_kg()[n] * state.p[3 * n + 2]).sum();
+    let kinetic: f64 =
+        (0..model.mesh().node_count()).map(|n| 0.5 * model.masses_kg()[n] * state.p[3 * n + 2].powi(2)).sum();
+    let _ = level(model.mesh(), 0);
+    Impact {
+        contact_steps,
+        impulse_ns,
+        kinetic_ratio: kinetic / (0.5 * mass_kg() * SPEED_M_S * SPEED_M_S),
+        mean_speed: momentum / mass_kg(),
+    }
+}
+
+/// B4a at cΔt/h = 1: force, contact time, kinetic energy and rebound to rounding.
+#[test]
+fn wall_impact_is_exact_at_unit_cfl() {
+    let layers = 50;
+    let model = Model::new(bar(layers)).unwrap();
+    let h = model.mesh().element_size_m()[2];
+    let c = wave_speed(&model);
+    assert!((c * model.time_step_s() / h - 1.0).abs() < 1e-12, "the limit of a bar is cΔt/h = 1");
+    let force_n = 2500.0 * c * SPEED_M_S * COLUMN_AREA_M2;
+    let mut state = falling(&model);
+    for n in 0..2 * layers {
+        advance(&model, &IDLE, &mut state, 1);
+        let error = normal_force_n(&state) / force_n - 1.0;
+        assert!(error.abs() < 1e-10, "step {n}: contact force off by {error:e}");
+        // p_{n+1} is the velocity between t_n and t_{n+1}: half a step before t_{n+1}.
+        let tau = (n as f64 + 0.5) / layers as f64;
+        let kinetic: f64 = (0..model.mesh().node_count())
+            .map(|node| 0.5 * model.masses_kg()[node] * state.p[3 * node + 2].powi(2))
+            .sum();
+        let exact = 0.5 * mass_kg() * SPEED_M_S * SPEED_M_S * (1.0 - tau).abs();
+        // The element that holds the front has one moving and one resting node: exact in between.
+        assert!((kinetic - exact).abs() < 1e-10 * 0.5 * mass_kg() * SPEED_M_S.powi(2), "step {n}");
+    }
+    for _ in 0..layers {
+        advance(&model, &IDLE, &mut state, 1);
+        assert_eq!(normal_force_n(&state), 0.0, "the bar has left the wall after 2L/c");
+        for node in 0..model.mesh().node_count() {
+            assert!((state.p[3 * node + 2] / SPEED_M_S - 1.0).abs() < 1e-9, "every node rebounds at v0");
+        }
+    }
+}
+
+/// B4a below the limit: the impulse balances the momentum to rounding, and loss of energy, of rebound
+/// speed and the error of the contact time vanish with the mesh; the energy loss at first order.
+#[test]
+fn wall_impact_converges_below_the_limit() {
+    let layers = [25, 50, 100, 200];
+    let impacts: Vec<Impact> = layers.iter().map(|&n| impact(n, 0.5)).collect();
+    for (impact, &n) in impacts.iter().zip(&layers) {
+        let balance = impact.impulse_ns - mass_kg() * (impact.mean_speed + SPEED_M_S);
+        assert!(balance.abs() < 1e-11 * mass_kg() * SPEED_M_S, "N = {n}: impulse balance {balance:e}");
+        // Two passages of N elements at cΔt/h = ½ are 4N steps; the front is smeared over O(N^⅓) elements.
+        let error = (impact.contact_steps as f64 / (4.0 * n as f64) - 1.0).abs();
+        assert!(error < 2.0 * (n as f64).powf(-2.0 / 3.0), "N = {n}: contact time off by {error}");
+    }
+    let rebound: Vec<f64> = impacts.iter().map(|impact| 1.0 - impact.mean_speed / SPEED_M_S).collect();
+    assert!(rebound.windows(2).all(|pair| pair[1] < pair[0]), "the rebound speed tends to v0: {rebound:?}");
+    let loss = energy_losses(&layers);
+    for order in observed_orders(&loss, 2.0) {
+        assert!((order - 1.0).abs() < 0.15, "energy loss {loss:?} is not O(1/N): order {order}");
+    }
+}
+
+/// Contact losses over the initial energy, from the ledger.
+fn energy_losses(layers: &[usize]) -> Vec<f64> {
+    use tribosweep::solver::energy::EnergyLedger;
+    layers
+        .iter()
+        .map(|&n| {
+            let definition = ModelDefinition { time_step: TimeStep::FractionOfLimit(0.5), ..bar(n) };
+            let model = Model::new(definition).unwrap();
+            let mut state = falling(&model);
+            let mut ledger = EnergyLedger::new(&model, 1);
+            for _ in 0..6 * n {
+                ledger.before_step(&model, &state);
+                advance(&model, &IDLE, &mut state, 1);
+                ledger.after_step(&model, &[IDLE], &state);
+            }
+            let energies = ledger.energies(0);
+            assert!(energies.relative_residual() < 1e-12, "the balance closes");
+            energies.contact_loss_j / energies.initial_j
+        })
+        .collect()
+}

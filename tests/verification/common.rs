@@ -1,0 +1,83 @@
+//! One-dimensional columns and small helpers shared by the topics.
+
+use tribosweep::solver::boundary::LoadShare;
+use tribosweep::solver::constraints::{Constraints, Tie};
+use tribosweep::solver::disk;
+use tribosweep::solver::material::Material;
+use tribosweep::solver::mesh::BlockMesh;
+use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep, step};
+
+/// The reference pin's material with another Poisson's ratio.
+pub fn pin_material(poisson_ratio: f64) -> Material {
+    Material { young_modulus_pa: 1.0e9, poisson_ratio, density_kg_m3: 2500.0 }
+}
+
+/// Cross section of a column: so wide that no lateral mode is faster than the axial ones.
+pub const COLUMN_WIDTH_M: f64 = 0.1;
+
+/// Height of a column.
+pub const COLUMN_HEIGHT_M: f64 = 0.010;
+
+/// Area of a column's cross section.
+pub const COLUMN_AREA_M2: f64 = COLUMN_WIDTH_M * COLUMN_WIDTH_M;
+
+/// A column of `layers` elements over the reference pin's height, on a plane that moves towards +y.
+pub fn column_mesh(layers: usize) -> BlockMesh {
+    BlockMesh::new([COLUMN_WIDTH_M, COLUMN_WIDTH_M, COLUMN_HEIGHT_M], [1, 1, layers])
+}
+
+/// Nodes of one level of a column.
+pub fn level(mesh: &BlockMesh, k: usize) -> Vec<usize> {
+    (0..mesh.node_count()).filter(|&node| mesh.grid_position(node)[2] == k).collect()
+}
+
+/// Every level of the column moves as one in `component`.
+pub fn level_ties(mesh: &BlockMesh, component: usize) -> Vec<Tie> {
+    (0..=mesh.elements()[2]).map(|k| Tie { component, nodes: level(mesh, k) }).collect()
+}
+
+/// All degrees of freedom of `component`.
+pub fn all_of(mesh: &BlockMesh, component: usize) -> Vec<usize> {
+    (0..mesh.node_count()).map(|node| 3 * node + component).collect()
+}
+
+/// A definition with the parts that most columns share; no load, central difference, undamped.
+pub fn definition(mesh: BlockMesh, material: Material, constraints: Constraints) -> ModelDefinition {
+    ModelDefinition {
+        surface_motion: disk::straight_plane(&mesh),
+        mesh,
+        material,
+        constraints,
+        load: Vec::<LoadShare>::new(),
+        beta2: 0.5,
+        beta_r_s: 0.0,
+        time_step: TimeStep::FractionOfLimit(1.0),
+    }
+}
+
+/// A bar: a column that moves in z only, with ν = 0.
+pub fn bar(layers: usize) -> ModelDefinition {
+    let mesh = column_mesh(layers);
+    let fixed = [all_of(&mesh, 0), all_of(&mesh, 1)].concat();
+    definition(mesh, pin_material(0.0), Constraints { fixed, ties: Vec::new() })
+}
+
+/// No friction, no load, target at rest.
+pub const IDLE: Drive = Drive { mu: 0.0, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
+
+/// Advances one lane by `steps`.
+pub fn advance(model: &Model, drive: &Drive, state: &mut State<1>, steps: usize) {
+    for _ in 0..steps {
+        step(model, std::slice::from_ref(drive).try_into().expect("one lane"), state);
+    }
+}
+
+/// Total normal contact force of the last step [N].
+pub fn normal_force_n(state: &State<1>) -> f64 {
+    state.contacts.force_n.iter().map(|force| force[2][0]).sum()
+}
+
+/// Observed orders log(e_i/e_{i+1})/log(ratio) of a sequence of errors.
+pub fn observed_orders(errors: &[f64], ratio: f64) -> Vec<f64> {
+    errors.windows(2).map(|pair| (pair[0] / pair[1]).ln() / ratio.ln()).collect()
+}

@@ -1,0 +1,117 @@
+//! Agreement with an independent solver on the pin-on-disk scene.
+//!
+//! The numbers are from a separate throw-away implementation of the same model (6 × 8 × 5 fully
+//! integrated hexahedra, clamp 2 mm at the inner side, F ramped over 1 ms, β_R = 2·10⁻⁸ s, central
+//! difference, Δt = 1.75·10⁻⁶ s, statistics over the last 40 % of 20 ms), not from this program.
+
+use tribosweep::analysis::{JobRecord, Outcome, Unobserved, solve};
+use tribosweep::spec::JobSpec;
+
+/// The independent solver's scene at `omega_rpm` and μ.
+fn spec(omega_rpm: f64, mu: f64) -> JobSpec {
+    let mut spec = JobSpec::default();
+    spec.scene.pin.elements = [6, 8, 5];
+    spec.scene.clamp.width_m = 0.002;
+    spec.scene.disk.omega_rpm = omega_rpm;
+    spec.scene.contact.mu = mu;
+    spec.scene.load.ramp_s = 1.0e-3;
+    spec.numerics.beta_r_s = 2.0e-8;
+    spec.numerics.time_step_s = Some(1.75e-6);
+    spec.run.limit_s = 0.02;
+    spec.run.stop_early = false;
+    spec
+}
+
+fn run(spec: &JobSpec) -> JobRecord {
+    solve(spec, &mut Unobserved).unwrap()
+}
+
+/// ω, μ*, f, stick, slip and separated share at μ = 0.4.
+const TABLE: [(f64, f64, f64, [f64; 3]); 6] = [
+    (0.5, 0.383, 15_780.0, [0.37, 0.61, 0.02]),
+    (2.0, 0.342, 15_760.0, [0.32, 0.66, 0.02]),
+    (6.0, 0.285, 15_520.0, [0.20, 0.68, 0.12]),
+    (7.0, 0.288, 15_480.0, [0.17, 0.68, 0.15]),
+    (35.0, 0.365, 15_480.0, [0.02, 0.59, 0.39]),
+    (100.0, 0.396, 15_740.0, [0.00, 0.58, 0.42]),
+];
+
+/// Protects: μ*, frequency and shares over the whole range of speeds; and that stopping at the
+/// periodic state does not change μ*.
+#[test]
+fn table_over_the_speeds() {
+    for (omega_rpm, mu_star, frequency_hz, shares) in TABLE {
+        let full = run(&spec(omega_rpm, 0.4));
+        assert!((full.mu_star - mu_star).abs() < 0.01, "{omega_rpm} rpm: μ* {}", full.mu_star);
+        let frequency = full.frequency_hz.unwrap();
+        assert!((frequency / frequency_hz - 1.0).abs() < 0.01, "{omega_rpm} rpm: {frequency} Hz");
+        for (found, expected) in [full.stick_share, full.slip_share, full.separated_share].iter().zip(shares)
+        {
+            assert!((found - expected).abs() < 0.03, "{omega_rpm} rpm: share {found} instead of {expected}");
+        }
+        let mut early = spec(omega_rpm, 0.4);
+        early.run.stop_early = true;
+        let early = run(&early);
+        assert_eq!(early.outcome, Outcome::Periodic, "{omega_rpm} rpm");
+        assert!(early.simulated_s < 0.7 * full.simulated_s, "{omega_rpm} rpm: it stops early");
+        assert!((early.mu_star - full.mu_star).abs() < 0.003, "{omega_rpm} rpm: early {}", early.mu_star);
+    }
+}
+
+/// Protects: the threshold: at μ = 0.2 sliding decays, measurably, and μ* = μ less what the disk's
+/// curvature under the pin takes (⟨1 − cos ψ⟩ ≈ ⟨y²⟩/2R² = 0.11 %).
+#[test]
+fn low_friction_slides_stably() {
+    let mut spec = spec(7.0, 0.2);
+    spec.run.stop_early = true;
+    let record = run(&spec);
+    assert_eq!(record.outcome, Outcome::Decayed);
+    assert!(record.growth_rate_per_s.unwrap() < 0.0);
+    let curvature = 0.015_f64.powi(2) / 12.0 / (2.0 * 0.0914_f64.powi(2));
+    assert!((record.mu_star / 0.2 - (1.0 - curvature)).abs() < 0.2 * curvature, "μ* {}", record.mu_star);
+}
+
+/// Protects: first-order convergence of μ* in the time step (7 rpm), to the independent solver's limit.
+#[test]
+fn time_step_series_is_first_order() {
+    let steps_s = [1.6e-6, 8.0e-7, 4.0e-7, 5.5e-8];
+    let independent = [0.2900, 0.2854, 0.2837, 0.2829];
+    let found: Vec<f64> = steps_s
+        .iter()
+        .map(|&dt| {
+            let mut spec = spec(7.0, 0.4);
+            spec.numerics.time_step_s = Some(dt);
+            run(&spec).mu_star
+        })
+        .collect();
+    for (mu_star, expected) in found.iter().zip(independent) {
+        assert!((mu_star - expected).abs() < 0.003, "{found:?} instead of {independent:?}");
+    }
+    // Richardson at first order from the two smallest of the three halvings, against the finest run,
+    // whose own error is an eighth of that of 4·10⁻⁷ s.
+    let extrapolated = 2.0 * found[2] - found[1];
+    assert!((extrapolated - found[3]).abs() < 0.001, "{found:?} extrapolates to {extrapolated}");
+    let order = ((found[0] - extrapolated) / (found[1] - extrapolated)).log2();
+    assert!((order - 1.0).abs() < 0.5, "order {order} of {found:?}");
+}
+
+/// Protects: mesh convergence with the clamp's width held, against the independent solver
+/// (β_R = 5·10⁻⁸ s, 10 ms, 7 rpm).
+#[test]
+fn mesh_series_agrees() {
+    for (elements, dt, mu_star, frequency_hz) in [
+        ([6, 8, 5], 1.73e-6, 0.2941, 15_520.0),
+        ([12, 15, 10], 8.85e-7, 0.2956, 15_480.0),
+        ([18, 22, 15], 5.83e-7, 0.2947, 15_560.0),
+    ] {
+        let mut spec = spec(7.0, 0.4);
+        spec.scene.pin.elements = elements;
+        spec.numerics.beta_r_s = 5.0e-8;
+        spec.numerics.time_step_s = Some(dt);
+        spec.run.limit_s = 0.01;
+        let record = run(&spec);
+        assert!((record.mu_star - mu_star).abs() < 0.005, "{elements:?}: μ* {}", record.mu_star);
+        let frequency = record.frequency_hz.unwrap();
+        assert!((frequency / frequency_hz - 1.0).abs() < 0.01, "{elements:?}: {frequency} Hz");
+    }
+}
