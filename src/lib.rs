@@ -20,3 +20,4 @@
 
 pub mod analysis;
 pub mod spec;
+pub mod study;
