@@ -22,4 +22,5 @@ pub mod analysis;
 pub mod report;
 pub mod solver;
 pub mod spec;
+pub mod study;
 pub mod units;

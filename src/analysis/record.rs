@@ -63,7 +63,7 @@ pub struct EnergyTotals {
     pub elastic_j: f64,
     /// Work of the normal load.
     pub load_work_j: f64,
-    /// Work done on the pin by the disk's drive, Σ f_t·V Δt.
+    /// Work done on the pin by the disk's drive, `Σ f_t·V Δt`.
     pub drive_work_j: f64,
     /// Dissipated by friction.
     pub friction_j: f64,
@@ -135,13 +135,13 @@ pub struct JobRecord {
     pub clamp_width_m: f64,
     /// |energy balance| over the energy put in: how well the energies close.
     pub energy_residual: f64,
-    /// Residual of μ − μ* = (1/F)⟨Σ(μN − T_y)⟩, absolute.
+    /// Residual of μ − μ* = `(1/F)⟨Σ(μN − t_y)⟩`, absolute.
     pub macroscopic_identity_residual: f64,
     /// Residual of drive power = friction + damping + contact loss + change of stored energy, over the drive power.
     pub energy_identity_residual: f64,
-    /// What sticking nodes take off μ*: (1/F)⟨Σ_stick(μN − t_y)⟩.
+    /// What sticking nodes take off μ*: `(1/F)⟨Σ_stick(μN − t_y)⟩`.
     pub mu_reduction_stick: f64,
-    /// What misaligned or reversed slip takes off μ*: (1/F)⟨Σ_slip μN(1 − cos φ)⟩.
+    /// What misaligned or reversed slip takes off μ*: `(1/F)⟨Σ_slip μN(1 − cos φ)⟩`.
     pub mu_reduction_slip: f64,
     /// Growth rate [1/s] of the slowest line of the total normal force in steady sliding; negative: it decays.
     #[serde(skip_serializing_if = "Option::is_none")]

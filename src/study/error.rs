@@ -1,0 +1,116 @@
+//! What is wrong with a study, written for the person who has to correct it.
+
+use super::expand::MAX_JOBS;
+use super::locate::Position;
+use std::fmt;
+
+/// Beyond this many problems the rest is only counted: the first ones are read, the others scroll by.
+const SHOWN: usize = 20;
+
+/// Why a study or a selection of one of its jobs cannot be used.
+#[derive(Debug, thiserror::Error)]
+pub enum StudyError {
+    /// The file cannot be read.
+    #[error("{file}: cannot be read: {reason}")]
+    Read {
+        /// The file as given.
+        file: String,
+        /// What the operating system said.
+        reason: std::io::Error,
+    },
+    /// The text is not JSON.
+    #[error("{file}:{position}: not valid JSON: {message}")]
+    Syntax {
+        /// The file as given.
+        file: String,
+        /// Where reading stopped.
+        position: Position,
+        /// What was expected there.
+        message: String,
+    },
+    /// The grid has too many points to be meant.
+    #[error(
+        "{file}: grid: {points} jobs ({factors}): expected at most {MAX_JOBS}\n  help: shorten an axis, or split the study"
+    )]
+    TooManyJobs {
+        /// The file as given.
+        file: String,
+        /// Number of grid points.
+        points: u128,
+        /// The product as written: `mu 6 × omega_rpm 17`.
+        factors: String,
+    },
+    /// Fields, parameters or values that cannot be used; never empty.
+    #[error("{}", Listing(.0))]
+    Invalid(Vec<Problem>),
+}
+
+impl StudyError {
+    /// The single problems, where the error is made of such.
+    pub fn problems(&self) -> &[Problem] {
+        if let Self::Invalid(problems) = self { problems } else { &[] }
+    }
+}
+
+impl From<Problem> for StudyError {
+    fn from(problem: Problem) -> Self {
+        Self::Invalid(vec![problem])
+    }
+}
+
+/// One thing to correct. Displayed as `file:line:column: field = value: message`, one help per line below.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Problem {
+    /// The study file, or `--set` for an override.
+    pub file: String,
+    /// Where in the file, when the field is written there.
+    pub position: Option<Position>,
+    /// Path of the field in the file: `scene.pin.poisson_ratio`, `grid.mu[2]`.
+    pub field: String,
+    /// The value as written; absent when the field itself is missing or the value says nothing.
+    pub value: Option<String>,
+    /// What would be right.
+    pub message: String,
+    /// Where the value comes from and what to do.
+    pub help: Vec<String>,
+}
+
+impl Problem {
+    /// Adds a line of help.
+    pub(super) fn with_help(mut self, help: impl Into<String>) -> Self {
+        self.help.push(help.into());
+        self
+    }
+}
+
+impl fmt::Display for Problem {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "{}", self.file)?;
+        if let Some(position) = self.position {
+            write!(f, ":{position}")?;
+        }
+        write!(f, ": {}", self.field)?;
+        if let Some(value) = &self.value {
+            write!(f, " = {value}")?;
+        }
+        write!(f, ": {}", self.message)?;
+        self.help.iter().try_for_each(|help| write!(f, "\n  help: {help}"))
+    }
+}
+
+struct Listing<'a>(&'a [Problem]);
+
+impl fmt::Display for Listing<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, problem) in self.0.iter().take(SHOWN).enumerate() {
+            if i > 0 {
+                f.write_str("\n")?;
+            }
+            problem.fmt(f)?;
+        }
+        if self.0.len() > SHOWN {
+            write!(f, "\n… and {} more problems", self.0.len() - SHOWN)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,73 @@
+//! The shape of a study file.
+
+use super::schema::grid_schema;
+use crate::spec::{Detection, Numerics, RunControl, Scene};
+use schemars::JsonSchema;
+use serde::{Deserialize, Deserializer};
+use serde_json::{Map, Value};
+
+/// A study: a base job and a grid of parameters to vary. Whatever is not given has the value of the
+/// reference scene.
+#[derive(Debug, Default, Deserialize, serde::Serialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+#[schemars(title = "tribosweep study")]
+pub(super) struct StudyFile {
+    /// Name of the study; the file's stem when absent.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(regex(pattern = "^[A-Za-z0-9_-]+$"))]
+    pub name: Option<String>,
+    /// What the study is for.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub description: Option<String>,
+    /// Bodies, contact law, boundary conditions and load.
+    pub scene: Scene,
+    /// Integrator and time step.
+    pub numerics: Numerics,
+    /// How long a run lasts and what it averages over.
+    pub run: RunControl,
+    /// When a state counts as periodic or as decayed.
+    pub detection: Detection,
+    /// Parameters to vary; the jobs are all combinations. Absent: a single job.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(schema_with = "grid_schema")]
+    pub grid: Option<Map<String, Value>>,
+}
+
+impl StudyFile {
+    /// The reference scene as a study file.
+    pub(super) fn template() -> Value {
+        serde_json::to_value(Self::default()).expect("a study is plain data with string keys")
+    }
+}
+
+/// `"grid": null` is a mistake and not the absence of a grid.
+fn present<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Map<String, Value>>, D::Error> {
+    Map::deserialize(deserializer).map(Some)
+}
+
+/// Evenly spaced values of a parameter.
+#[derive(Debug, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub(super) struct Range {
+    /// First value.
+    pub from: f64,
+    /// Last value.
+    pub to: f64,
+    /// Number of values including both ends: at least 2, or 1 when `from` equals `to`.
+    #[schemars(range(min = 1))]
+    pub count: usize,
+    /// Equal steps (the default) or equal ratios.
+    #[serde(default)]
+    pub spacing: Spacing,
+}
+
+/// How the values of a range are spaced.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub(super) enum Spacing {
+    /// Equal steps.
+    #[default]
+    Linear,
+    /// Equal ratios; both ends must be > 0.
+    Log,
+}

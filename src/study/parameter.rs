@@ -1,0 +1,162 @@
+//! The registry of parameters: what a grid or an override can set, by short name.
+
+use super::suggest;
+use crate::spec::{ClampSide, DiskKind, TopFace};
+use schemars::{Schema, SchemaGenerator};
+use serde_json::Value;
+
+/// What kind of values a parameter takes. The types are checked by deserialising the job, not here:
+/// the kind says how to write values, for ranges and for the schema.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Kind {
+    /// A number.
+    Number,
+    /// A whole number.
+    Count,
+    /// `[nx, ny, nz]`.
+    Counts,
+    /// `true` or `false`.
+    Flag,
+    /// One of the names of an enumeration.
+    Name(fn(&mut SchemaGenerator) -> Schema),
+}
+
+/// One parameter of a job.
+#[derive(Debug)]
+pub struct Parameter {
+    /// Short name, unique.
+    pub name: &'static str,
+    /// JSON pointer into a [`JobSpec`](crate::spec::JobSpec).
+    pub pointer: &'static str,
+    /// What it is, with its unit.
+    pub doc: &'static str,
+    pub(super) kind: Kind,
+}
+
+const fn parameter(name: &'static str, pointer: &'static str, kind: Kind, doc: &'static str) -> Parameter {
+    Parameter { name, pointer, doc, kind }
+}
+
+const CLAMP_SIDE: Kind = Kind::Name(SchemaGenerator::subschema_for::<ClampSide>);
+const TOP_FACE: Kind = Kind::Name(SchemaGenerator::subschema_for::<TopFace>);
+const DISK_KIND: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskKind>);
+
+/// All parameters, in the order in which help and messages list them.
+#[rustfmt::skip]
+pub static PARAMETERS: &[Parameter] = &[
+    parameter("omega_rpm", "/scene/disk/omega_rpm", Kind::Number, "rotation speed of the disk [rpm]"),
+    parameter("mu", "/scene/contact/mu", Kind::Number, "local (Coulomb) friction coefficient [-]"),
+    parameter("load_n", "/scene/load/force_n", Kind::Number, "total normal load [N]"),
+    parameter("ramp_s", "/scene/load/ramp_s", Kind::Number, "duration of the load's linear ramp [s]"),
+    parameter("track_radius_m", "/scene/disk/track_radius_m", Kind::Number, "distance of the pin's centre from the axis [m]"),
+    parameter("disk_kind", "/scene/disk/kind", DISK_KIND, "what the disk is made of [name]"),
+    parameter("young_modulus_pa", "/scene/pin/young_modulus_pa", Kind::Number, "Young's modulus of the pin [Pa]"),
+    parameter("poisson_ratio", "/scene/pin/poisson_ratio", Kind::Number, "Poisson's ratio of the pin [-]"),
+    parameter("density_kg_m3", "/scene/pin/density_kg_m3", Kind::Number, "density of the pin [kg/m³]"),
+    parameter("elements", "/scene/pin/elements", Kind::Counts, "elements in x, y and z, as [nx, ny, nz] [-]"),
+    parameter("nx", "/scene/pin/elements/0", Kind::Count, "elements in x, the radial direction [-]"),
+    parameter("ny", "/scene/pin/elements/1", Kind::Count, "elements in y, the sliding direction [-]"),
+    parameter("nz", "/scene/pin/elements/2", Kind::Count, "elements in z [-]"),
+    parameter("size_x_m", "/scene/pin/size_m/0", Kind::Number, "edge of the pin in x, the radial direction [m]"),
+    parameter("size_y_m", "/scene/pin/size_m/1", Kind::Number, "edge of the pin in y, the sliding direction [m]"),
+    parameter("size_z_m", "/scene/pin/size_m/2", Kind::Number, "edge of the pin in z [m]"),
+    parameter("clamp_side", "/scene/clamp/side", CLAMP_SIDE, "where on the top face the clamp is [name]"),
+    parameter("clamp_width_m", "/scene/clamp/width_m", Kind::Number, "width of the clamp's strip [m]"),
+    parameter("top", "/scene/top", TOP_FACE, "how the top face moves in z [name]"),
+    parameter("beta2", "/numerics/beta2", Kind::Number, "β₂ of the time scheme, 0.5 to 1 [-]"),
+    parameter("beta_r_s", "/numerics/beta_r_s", Kind::Number, "stiffness-proportional damping β_R [s]"),
+    parameter("safety_factor", "/numerics/safety_factor", Kind::Number, "time step as a fraction of the stability limit [-]"),
+    parameter("time_step_s", "/numerics/time_step_s", Kind::Number, "time step, instead of safety_factor [s]"),
+    parameter("limit_s", "/run/limit_s", Kind::Number, "simulated time after which a run ends [s]"),
+    parameter("stop_early", "/run/stop_early", Kind::Flag, "stop once periodic or decayed [true or false]"),
+    parameter("average_last_fraction", "/run/average_last_fraction", Kind::Number, "last fraction of the run that is averaged [-]"),
+    parameter("cycles", "/detection/cycles", Kind::Count, "consecutive limit cycles that must repeat [-]"),
+    parameter("tolerance", "/detection/tolerance", Kind::Number, "largest spread of a per-cycle figure over them [-]"),
+    parameter("drift_tolerance", "/detection/drift_tolerance", Kind::Number, "largest drift of its mean between their halves [-]"),
+    parameter("regime_threshold", "/detection/regime_threshold", Kind::Number, "share above which a contact state names the regime [-]"),
+    parameter("decay_observation_s", "/detection/decay_observation_s", Kind::Number, "shortest steady sliding in which a decay is measured [s]"),
+];
+
+impl Parameter {
+    /// The parameter called `name`.
+    pub fn find(name: &str) -> Option<&'static Self> {
+        PARAMETERS.iter().find(|parameter| parameter.name == name)
+    }
+
+    /// The field it sets, as messages write it: `scene.pin.size_m[0]`.
+    pub fn field(&self) -> String {
+        let write = |path: String, step: &str| match step.parse::<usize>() {
+            Ok(index) => format!("{path}[{index}]"),
+            Err(_) => super::locate::join(&path, step),
+        };
+        self.pointer[1..].split('/').fold(String::new(), write)
+    }
+
+    /// What it is, as a line of help.
+    pub(super) fn help(&self) -> String {
+        format!("`{}`: {}", self.name, self.doc)
+    }
+
+    /// Whether setting it determines the field `path` or a part of it that `path` names.
+    pub(super) fn sets(&self, path: &str) -> bool {
+        path.strip_prefix(&self.field()).is_some_and(|rest| rest.is_empty() || rest.starts_with('['))
+    }
+
+    /// Whether both set a common field, so that a job cannot have both.
+    pub(super) fn overlaps(&self, other: &Self) -> bool {
+        self.sets(&other.field()) || other.sets(&self.field())
+    }
+
+    /// Puts `value` into a serialised job.
+    pub(super) fn set(&self, job: &mut Value, value: &Value) {
+        let (parent, last) = self.pointer.rsplit_once('/').unwrap_or(("", self.pointer));
+        match job.pointer_mut(parent) {
+            // Inserted rather than replaced: an optional field is absent from the serialised job.
+            Some(Value::Object(fields)) => _ = fields.insert(last.to_owned(), value.clone()),
+            Some(Value::Array(entries)) => {
+                if let Some(entry) = last.parse().ok().and_then(|i: usize| entries.get_mut(i)) {
+                    *entry = value.clone();
+                }
+            }
+            _ => {}
+        }
+    }
+
+    /// One spelling for equal numbers: 7 and 7.0, -0 and 0, a count 6.0 that a range has made.
+    pub(super) fn normalise(&self, value: Value) -> Value {
+        match (self.kind, value) {
+            (Kind::Number, Value::Number(number)) => match number.as_f64() {
+                Some(float) => Value::from(float + 0.0),
+                None => Value::Number(number),
+            },
+            (Kind::Count, value) => whole(value),
+            (Kind::Counts, Value::Array(entries)) => entries.into_iter().map(whole).collect(),
+            (_, value) => value,
+        }
+    }
+}
+
+/// A whole number without decimal point; anything else as it is, for the type check to refuse.
+fn whole(value: Value) -> Value {
+    match value.as_f64() {
+        Some(float) if float.fract() == 0.0 && (0.0..1e15).contains(&float) => Value::from(float as u64),
+        _ => value,
+    }
+}
+
+/// Help for a parameter that does not exist.
+pub(super) fn unknown_help(wrong: &str) -> Vec<String> {
+    // Also recognised by the field it sets, because that is what the rest of the file calls it.
+    let spellings = |parameter: &'static Parameter| {
+        let field = parameter.field();
+        let last = field.rsplit('.').next().unwrap_or_default().to_owned();
+        (parameter.name, vec![parameter.name.to_owned(), last, field])
+    };
+    let mut help = Vec::new();
+    if let Some(name) = suggest::nearest(wrong, PARAMETERS.iter().map(spellings)) {
+        help.push(format!("did you mean `{name}`?"));
+    }
+    let names: Vec<_> = PARAMETERS.iter().map(|parameter| parameter.name).collect();
+    help.push(format!("the parameters are {}", names.join(", ")));
+    help
+}

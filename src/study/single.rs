@@ -1,0 +1,110 @@
+//! One job of a study, picked by `name=value` overrides.
+
+use super::axis::{Axis, check_type};
+use super::error::{Problem, StudyError};
+use super::origin::shorten;
+use super::parameter::{Kind, Parameter, unknown_help};
+use super::{Study, json};
+use crate::spec::JobSpec;
+use serde_json::Value;
+
+/// What stands for the file in messages about overrides.
+const SOURCE: &str = "--set";
+
+/// So many values of a parameter are listed to choose from.
+const LISTED: usize = 40;
+
+impl Study {
+    /// The job with `overrides` (name, value) on top of the base job and the grid.
+    ///
+    /// Every parameter of the grid must be overridden or have a single value; other parameters may
+    /// be overridden too. A value is read as JSON, or else as a string; `12x15x10` is a list of counts.
+    ///
+    /// # Errors
+    /// Unknown, repeated or overlapping names, values of the wrong type, parameters of the grid that
+    /// are left open, and violations of [`JobSpec::check`].
+    pub fn single(&self, overrides: &[(String, String)]) -> Result<JobSpec, StudyError> {
+        let mut job = json::encode(&self.base);
+        let mut problems = Vec::new();
+        let mut taken: Vec<&Parameter> = Vec::new();
+        let mut settings = Vec::new();
+        for (name, text) in overrides {
+            let problem = |message| problem(name, text, message);
+            let Some(parameter) = Parameter::find(name) else {
+                problems.push(Problem { help: unknown_help(name), ..problem("no such parameter".into()) });
+                continue;
+            };
+            if let Some(other) = taken.iter().find(|other| other.overlaps(parameter)) {
+                let message = format!("{} is already set; expected only one of the two", other.name);
+                problems.push(problem(message));
+            }
+            taken.push(parameter);
+            let value = parameter.normalise(read(parameter, text));
+            match check_type(parameter, &value, &job) {
+                Ok(()) => settings.push((parameter, value)),
+                Err(message) => problems.push(problem(message).with_help(parameter.help())),
+            }
+        }
+        for axis in &self.axes {
+            match axis.values.as_slice() {
+                [only] => axis.parameter.set(&mut job, only),
+                _ if taken.iter().any(|parameter| parameter.sets(&axis.parameter.field())) => {}
+                _ => problems.push(self.left_open(axis)),
+            }
+        }
+        if !problems.is_empty() {
+            return Err(StudyError::Invalid(problems));
+        }
+        for (parameter, value) in &settings {
+            parameter.set(&mut job, value);
+        }
+        self.checked(&job, &taken)
+    }
+
+    fn left_open(&self, axis: &Axis) -> Problem {
+        let mut values: Vec<_> = axis.values.iter().take(LISTED).map(Value::to_string).collect();
+        if axis.values.len() > LISTED {
+            values.push("…".to_owned());
+        }
+        let name = axis.parameter.name;
+        let problem = self.origin.problem(&axis.path(), "expected one value for a single job");
+        Problem { value: Some(format!("[{}]", values.join(", "))), ..problem }
+            .with_help(format!("pick one with --set {name}={}", values[0].trim_matches('"')))
+    }
+
+    fn checked(&self, job: &Value, overridden: &[&Parameter]) -> Result<JobSpec, StudyError> {
+        let spec = json::checked_job(job);
+        let Err(violations) = spec.check() else { return Ok(spec) };
+        let describe = |violation: &crate::spec::FieldError| {
+            let message = format!("expected {}", violation.expected);
+            let origin = if overridden.iter().any(|parameter| parameter.sets(&violation.field)) {
+                problem(&violation.field, &violation.value, message)
+            } else {
+                self.origin.problem(&violation.field, message)
+            };
+            Problem { value: Some(violation.value.clone()), ..origin }
+        };
+        Err(StudyError::Invalid(violations.0.iter().map(describe).collect()))
+    }
+}
+
+fn problem(field: &str, value: &str, message: String) -> Problem {
+    Problem {
+        file: SOURCE.to_owned(),
+        position: None,
+        field: field.to_owned(),
+        value: Some(shorten(value)),
+        message,
+        help: Vec::new(),
+    }
+}
+
+fn read(parameter: &Parameter, text: &str) -> Value {
+    if matches!(parameter.kind, Kind::Counts) {
+        let counts: Result<Vec<u64>, _> = text.split(['x', '×']).map(|n| n.trim().parse()).collect();
+        if let Ok(counts) = counts {
+            return Value::from(counts);
+        }
+    }
+    serde_json::from_str(text).unwrap_or_else(|_| Value::from(text))
+}

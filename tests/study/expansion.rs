@@ -1,0 +1,137 @@
+//! Protects: which jobs a grid gives, in which order, with which values.
+
+use super::parse;
+use serde_json::{Value, json};
+use tribosweep::spec::{ClampSide, JobSpec};
+use tribosweep::study::{Job, Study};
+
+fn jobs(text: &str) -> Vec<Job> {
+    parse(text).expand("test").unwrap()
+}
+
+/// The values of the only axis of a grid.
+fn axis(text: &str) -> Vec<f64> {
+    let study = parse(&format!(r#"{{ "grid": {{ {text} }} }}"#));
+    let (_, values) = study.axes().next().unwrap();
+    values.iter().map(|value| value.as_f64().unwrap()).collect()
+}
+
+#[test]
+fn without_a_grid_a_study_is_its_base_job() {
+    let jobs = jobs(r#"{ "scene": { "contact": { "mu": 0.25 } } }"#);
+    let mut expected = JobSpec::default();
+    expected.scene.contact.mu = 0.25;
+    assert_eq!(jobs.len(), 1);
+    assert_eq!(jobs[0].spec, expected);
+    assert!(jobs[0].parameters.is_empty());
+}
+
+#[test]
+fn the_first_axis_of_the_file_is_slowest() {
+    // Neither alphabetical nor the order of the registry.
+    let jobs = jobs(
+        r#"{ "grid": { "omega_rpm": [7, 2], "clamp_side": ["both_ends", "inner_side"], "mu": [0.4, 0.1, 0.2] } }"#,
+    );
+    let found: Vec<_> = jobs
+        .iter()
+        .map(|j| (j.spec.scene.disk.omega_rpm, j.spec.scene.clamp.side, j.spec.scene.contact.mu))
+        .collect();
+    let mut expected = Vec::new();
+    for omega in [7.0, 2.0] {
+        for side in [ClampSide::BothEnds, ClampSide::InnerSide] {
+            for mu in [0.4, 0.1, 0.2] {
+                expected.push((omega, side, mu));
+            }
+        }
+    }
+    assert_eq!(found, expected);
+    let parameters = json!([["omega_rpm", 7.0], ["clamp_side", "both_ends"], ["mu", 0.1]]);
+    assert_eq!(serde_json::to_value(&jobs[1].parameters).unwrap(), parameters);
+}
+
+#[test]
+fn jobs_differ_from_the_base_only_in_their_parameters() {
+    let text = r#"{ "scene": { "load": { "force_n": 12 } }, "numerics": { "beta2": 0.6 },
+        "grid": { "nx": [4, 5], "time_step_s": [1e-8] } }"#;
+    let mut expected = parse(text).base().clone();
+    expected.scene.pin.elements[0] = 5;
+    expected.numerics.time_step_s = Some(1.0e-8);
+    assert_eq!(jobs(text)[1].spec, expected);
+    assert_eq!((expected.scene.load.force_n, expected.numerics.beta2), (12.0, 0.6));
+}
+
+#[test]
+fn ranges_have_exact_ends_and_the_stated_spacing() {
+    let linear = axis(r#""mu": { "from": 0.1, "to": 0.6, "count": 6 }"#);
+    assert_eq!(linear, [0.1, 0.2, 0.3, 0.4, 0.5, 0.6], "the same numbers as a list would have");
+    let log = axis(r#""omega_rpm": { "from": 0.3, "to": 70.1, "count": 7, "spacing": "log" }"#);
+    assert_eq!((log.len(), log[0], log[6]), (7, 0.3, 70.1));
+    let ratio = (70.1_f64 / 0.3).powf(1.0 / 6.0);
+    for pair in log.windows(2) {
+        assert!((pair[1] / pair[0] / ratio - 1.0).abs() < 1.0e-10, "{log:?}");
+    }
+    assert_eq!(
+        axis(r#""omega_rpm": { "from": 1, "to": 100, "count": 3, "spacing": "log" }"#),
+        [1.0, 10.0, 100.0]
+    );
+    assert_eq!(axis(r#""omega_rpm": { "from": 5, "to": 1, "count": 3 }"#), [5.0, 3.0, 1.0], "downwards");
+    assert_eq!(axis(r#""mu": { "from": 0.3, "to": 0.3, "count": 1 }"#), [0.3], "a single value");
+    // 17 digits: the ends are not rounded as the values between them are.
+    for spacing in ["linear", "log"] {
+        let range =
+            r#""mu": { "from": 0.12345678901234568, "to": 0.98765432109876546, "count": 3, "spacing": "#;
+        let values = axis(&format!("{range} \"{spacing}\" }}"));
+        // Read by the same reader: what is protected here is that the range keeps them.
+        let ends = ["0.12345678901234568", "0.98765432109876546"];
+        let ends: [f64; 2] = ends.map(|end| serde_json::from_str(end).unwrap());
+        assert_eq!([values[0], values[2]], ends);
+    }
+}
+
+#[test]
+fn ranges_of_counts_are_whole() {
+    let jobs = jobs(r#"{ "grid": { "nx": { "from": 4, "to": 8, "count": 3 } } }"#);
+    let counts: Vec<_> = jobs.iter().map(|job| job.spec.scene.pin.elements[0]).collect();
+    assert_eq!(counts, [4, 6, 8]);
+    assert_eq!(jobs[0].parameters[0].1, Value::from(4_u64));
+}
+
+/// A `whole_top` clamp has no width, so its jobs over widths are one job.
+#[test]
+fn grid_points_that_are_the_same_job_appear_once() {
+    let text =
+        r#"{ "grid": { "clamp_side": ["whole_top", "inner_side"], "clamp_width_m": [0.001, 0.002] } }"#;
+    let jobs = jobs(text);
+    assert_eq!(parse(text).grid_size(), 4);
+    let found: Vec<_> = jobs.iter().map(|j| (j.spec.scene.clamp.side, j.spec.scene.clamp.width_m)).collect();
+    let expected =
+        [(ClampSide::WholeTop, 0.001), (ClampSide::InnerSide, 0.001), (ClampSide::InnerSide, 0.002)];
+    assert_eq!(found, expected);
+}
+
+#[test]
+fn expansion_is_stable_and_keys_are_unique() {
+    let study = Study::load("studies/figure7.json".as_ref()).unwrap();
+    let first = study.expand("test").unwrap();
+    assert_eq!(first, study.expand("test").unwrap());
+    let mut keys: Vec<_> = first.iter().map(|job| &job.key).collect();
+    keys.sort();
+    keys.dedup();
+    assert_eq!(keys.len(), first.len());
+}
+
+/// Nodes × steps of the reference scene: 13·16·11 nodes; `c_p` = √(1.346154e9 / 2500) m/s, 1 mm edges.
+#[test]
+fn cost_is_nodes_times_steps() {
+    let cost = |text: &str| jobs(text)[0].cost;
+    let step = 0.7 * 1.0e-3 / (1.346_153_846e9_f64 / 2500.0).sqrt();
+    let reference = cost("{}");
+    assert!((reference / (2288.0 * 0.04 / step) - 1.0).abs() < 1.0e-4, "{reference}");
+    assert_eq!(
+        cost(r#"{ "numerics": { "time_step_s": 1e-6 }, "run": { "limit_s": 0.01 } }"#),
+        2288.0 * 1.0e4
+    );
+    // The shortest edge decides: refining z alone halves the step.
+    let refined = cost(r#"{ "scene": { "pin": { "elements": [12, 15, 20] } } }"#);
+    assert!((refined / reference / (2.0 * 21.0 / 11.0) - 1.0).abs() < 1.0e-4, "{refined}");
+}

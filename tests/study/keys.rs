@@ -1,0 +1,138 @@
+//! Protects: a key names a result. Whatever can change the result changes the key, nothing else does.
+
+use super::parse;
+use serde_json::Value;
+use tribosweep::spec::{ClampSide, JobSpec};
+use tribosweep::study::job_key;
+
+fn key(spec: &JobSpec) -> String {
+    job_key(spec, "1")
+}
+
+fn key_of(text: &str) -> String {
+    parse(text).expand("1").unwrap().remove(0).key
+}
+
+/// A job in which every optional field is given.
+fn full() -> JobSpec {
+    let mut spec = JobSpec::default();
+    spec.numerics.time_step_s = Some(1.0e-8);
+    spec
+}
+
+/// JSON pointers of all numbers, names and flags below `value`.
+fn leaves(value: &Value, pointer: &str, found: &mut Vec<String>) {
+    match value {
+        Value::Object(fields) => {
+            fields.iter().for_each(|(name, inner)| leaves(inner, &format!("{pointer}/{name}"), found));
+        }
+        Value::Array(entries) => {
+            for (i, inner) in entries.iter().enumerate() {
+                leaves(inner, &format!("{pointer}/{i}"), found);
+            }
+        }
+        _ => found.push(pointer.to_owned()),
+    }
+}
+
+/// Another valid value for a field; `None` for a name that has no alternative.
+fn another(value: &Value, pointer: &str) -> Option<Value> {
+    match value {
+        Value::Bool(flag) => Some(Value::from(!flag)),
+        Value::Number(number) if number.is_u64() => Some(Value::from(number.as_u64()? + 1)),
+        Value::Number(number) => Some(Value::from(number.as_f64()? * (1.0 + f64::EPSILON))),
+        _ => match pointer {
+            "/scene/clamp/side" => Some(Value::from("both_ends")),
+            "/scene/top" => Some(Value::from("free_in_z")),
+            "/scene/disk/kind" => None,
+            other => panic!("{other} = {value}: this test needs another value for it"),
+        },
+    }
+}
+
+/// Walks the serialised job, so that a field added later is covered without a change here.
+#[test]
+fn every_field_changes_the_key_even_by_one_ulp() {
+    let job = serde_json::to_value(full()).unwrap();
+    let mut pointers = Vec::new();
+    leaves(&job, "", &mut pointers);
+    assert!(pointers.len() >= 27, "{pointers:?}");
+    for pointer in pointers {
+        let mut changed = job.clone();
+        let field = changed.pointer_mut(&pointer).unwrap();
+        let Some(value) = another(field, &pointer) else { continue };
+        *field = value;
+        let changed: JobSpec = serde_json::from_value(changed).unwrap();
+        assert_ne!(changed, full(), "{pointer}");
+        assert_ne!(key(&changed), key(&full()), "{pointer}");
+    }
+    assert_ne!(key(&full()), key(&JobSpec::default()), "a given time step is not the automatic one");
+}
+
+#[test]
+fn the_solver_version_changes_the_key() {
+    assert_ne!(job_key(&full(), "1"), job_key(&full(), "2"));
+    let expand = |version| parse("{}").expand(version).unwrap().remove(0).key;
+    assert_eq!(expand("1"), job_key(&JobSpec::default(), "1"));
+    assert_ne!(expand("1"), expand("2"));
+}
+
+#[test]
+fn the_spelling_of_a_number_does_not_change_the_key() {
+    let mu = |text: &str| key_of(&format!(r#"{{ "scene": {{ "disk": {{ "omega_rpm": {text} }} }} }}"#));
+    assert_eq!(mu("7"), mu("7.0"));
+    assert_eq!(mu("7"), mu("0.7e1"));
+    let in_grid = |text: &str| key_of(&format!(r#"{{ "grid": {{ "omega_rpm": [{text}] }} }}"#));
+    assert_eq!(in_grid("7"), mu("7.0"));
+    let beta_r = |text: &str| key_of(&format!(r#"{{ "numerics": {{ "beta_r_s": {text} }} }}"#));
+    assert_eq!(beta_r("0.0"), beta_r("-0.0"));
+    assert_eq!(beta_r("0"), beta_r("-0.0"));
+    assert_ne!(beta_r("0.0"), beta_r("7"));
+}
+
+#[test]
+fn how_and_where_a_job_is_written_does_not_change_the_key() {
+    let plain = key_of(r#"{ "scene": { "contact": { "mu": 0.2 }, "load": { "force_n": 20 } } }"#);
+    let reordered = r#"{ "description": "d", "scene": { "load": { "force_n": 20 }, "contact": { "mu": 0.2 } }, "name": "n" }"#;
+    assert_eq!(key_of(reordered), plain);
+    assert_eq!(key_of(r#"{ "grid": { "load_n": [20], "mu": [0.2] } }"#), plain);
+    let default_written =
+        r#"{ "scene": { "contact": { "mu": 0.2 }, "load": { "force_n": 20, "ramp_s": 5e-4 } } }"#;
+    assert_eq!(key_of(default_written), plain);
+    let range = parse(r#"{ "grid": { "mu": { "from": 0.1, "to": 0.6, "count": 6 } } }"#);
+    let listed = parse(r#"{ "grid": { "mu": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6] } }"#);
+    let keys = |study: &tribosweep::study::Study| {
+        study.expand("1").unwrap().into_iter().map(|job| job.key).collect::<Vec<_>>()
+    };
+    assert_eq!(keys(&range), keys(&listed));
+}
+
+#[test]
+fn the_width_of_a_whole_top_clamp_does_not_change_the_key() {
+    let with = |side, width_m| {
+        let mut spec = JobSpec::default();
+        spec.scene.clamp.side = side;
+        spec.scene.clamp.width_m = width_m;
+        key(&spec)
+    };
+    assert_eq!(with(ClampSide::WholeTop, 0.001), with(ClampSide::WholeTop, 0.005));
+    assert_ne!(with(ClampSide::BothEnds, 0.001), with(ClampSide::BothEnds, 0.005));
+    assert_ne!(with(ClampSide::WholeTop, 0.001), with(ClampSide::InnerSide, 0.001));
+}
+
+/// Keys are stored: results must be found again by a later build. When a change of the job's fields or
+/// defaults breaks this test, the new text belongs here, and stored results are no longer found.
+#[test]
+fn the_key_of_the_reference_job_is_the_hash_of_this_text() {
+    let text = concat!(
+        r#""1"{"detection":{"cycles":20,"decay_observation_s":0.008,"drift_tolerance":0.001,"regime_threshold":0.03,"tolerance":0.01},"#,
+        r#""numerics":{"beta2":0.5,"beta_r_s":5e-8,"safety_factor":0.7},"#,
+        r#""run":{"average_last_fraction":0.4,"limit_s":0.04,"stop_early":true},"#,
+        r#""scene":{"clamp":{"side":"inner_side","width_m":0.001},"contact":{"mu":0.4},"#,
+        r#""disk":{"kind":"rigid","omega_rpm":7.0,"track_radius_m":0.0914},"load":{"force_n":30.0,"ramp_s":0.0005},"#,
+        r#""pin":{"density_kg_m3":2500.0,"elements":[12,15,10],"poisson_ratio":0.3,"#,
+        r#""size_m":[0.012,0.015,0.01],"young_modulus_pa":1000000000.0},"top":"tied_in_z"}}"#,
+    );
+    let hash = blake3::hash(text.as_bytes()).to_hex();
+    assert_eq!(key(&JobSpec::default()), hash[..32]);
+}

@@ -1,0 +1,103 @@
+//! As much of a JSON schema validator as the study schema uses; a keyword it does not know is an error.
+
+use serde_json::Value;
+
+#[rustfmt::skip]
+const KNOWN: &[&str] = &[
+    // Say nothing about a value.
+    "$schema", "$defs", "title", "description", "default", "format",
+    // Do.
+    "$ref", "type", "const", "enum", "anyOf", "oneOf", "properties", "additionalProperties", "required",
+    "minProperties", "items", "minItems", "maxItems", "uniqueItems", "minimum", "pattern",
+];
+
+/// Where and why `value` breaks `schema`, if it does.
+pub fn violation(root: &Value, schema: &Value, value: &Value, at: &str) -> Option<String> {
+    let fail = |why: String| Some(format!("{at}: {why}"));
+    let number = |limit: &Value| limit.as_f64().expect("a limit is a number");
+    let length = |limit: &Value| limit.as_u64().expect("a limit of length is a count") as usize;
+    for (keyword, rule) in schema.as_object().expect("a schema is an object") {
+        assert!(KNOWN.contains(&keyword.as_str()), "{at}: keyword {keyword} is not understood");
+        let found = match (keyword.as_str(), value) {
+            ("$ref", _) => {
+                let pointer =
+                    rule.as_str().and_then(|target| target.strip_prefix('#')).expect("a local $ref");
+                violation(root, root.pointer(pointer).expect("the $ref has a target"), value, at)
+            }
+            ("type", _) if !types(rule).any(|name| has_type(value, name)) => {
+                fail(format!("not of type {rule}"))
+            }
+            ("const", _) if value != rule => fail(format!("not {rule}")),
+            ("enum", _) if !rule.as_array().expect("enum is a list").contains(value) => {
+                fail(format!("not in {rule}"))
+            }
+            ("anyOf" | "oneOf", _) => {
+                let forms = rule.as_array().expect("forms are a list");
+                let fits = forms.iter().filter(|form| violation(root, form, value, at).is_none()).count();
+                let right = if keyword == "oneOf" { fits == 1 } else { fits > 0 };
+                if right { None } else { fail(format!("fits {fits} forms of {keyword}")) }
+            }
+            ("properties", Value::Object(fields)) => fields
+                .iter()
+                .find_map(|(name, inner)| violation(root, rule.get(name)?, inner, &format!("{at}/{name}"))),
+            ("additionalProperties", Value::Object(fields)) => {
+                assert_eq!(rule, &Value::Bool(false), "only a closed object is understood");
+                let known = |name: &String| schema["properties"].get(name).is_some();
+                fields
+                    .keys()
+                    .find(|name| !known(name))
+                    .and_then(|name| fail(format!("{name} is not allowed")))
+            }
+            ("required", Value::Object(fields)) => {
+                let names = rule.as_array().expect("required is a list").iter().filter_map(Value::as_str);
+                names
+                    .into_iter()
+                    .find(|name| !fields.contains_key(*name))
+                    .and_then(|name| fail(format!("no {name}")))
+            }
+            ("minProperties", Value::Object(fields)) if fields.len() < length(rule) => {
+                fail("too few fields".into())
+            }
+            ("items", Value::Array(entries)) => entries
+                .iter()
+                .enumerate()
+                .find_map(|(i, entry)| violation(root, rule, entry, &format!("{at}/{i}"))),
+            ("minItems", Value::Array(entries)) if entries.len() < length(rule) => fail("too short".into()),
+            ("maxItems", Value::Array(entries)) if entries.len() > length(rule) => fail("too long".into()),
+            ("uniqueItems", Value::Array(entries)) => {
+                let repeated = (1..entries.len()).any(|i| entries[..i].contains(&entries[i]));
+                if repeated { fail("repeated entry".into()) } else { None }
+            }
+            ("minimum", Value::Number(_)) if number(value) < number(rule) => fail("too small".into()),
+            ("pattern", Value::String(text)) => {
+                assert_eq!(rule, "^[A-Za-z0-9_-]+$", "only the pattern of names is understood");
+                let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+                let fits = !text.is_empty() && text.chars().all(allowed);
+                if fits { None } else { fail("not a name".into()) }
+            }
+            _ => None,
+        };
+        if found.is_some() {
+            return found;
+        }
+    }
+    None
+}
+
+fn types(rule: &Value) -> impl Iterator<Item = &str> {
+    let several = rule.as_array().map(Vec::as_slice).unwrap_or_default();
+    rule.as_str().into_iter().chain(several.iter().filter_map(Value::as_str))
+}
+
+fn has_type(value: &Value, name: &str) -> bool {
+    match name {
+        "null" => value.is_null(),
+        "boolean" => value.is_boolean(),
+        "string" => value.is_string(),
+        "number" => value.is_number(),
+        "integer" => value.as_f64().is_some_and(|float| float.fract() == 0.0),
+        "array" => value.is_array(),
+        "object" => value.is_object(),
+        other => panic!("type {other} is not understood"),
+    }
+}

@@ -1,0 +1,279 @@
+//! Protects: nothing unusable gets through, and each message names file, place, field, value and
+//! what would be right.
+
+use super::{assert_contains, parse, refusal};
+use tribosweep::study::{MAX_JOBS, Study, StudyError};
+
+#[test]
+fn a_missing_file_is_named() {
+    let error = Study::load("studies/no_such_study.json".as_ref()).unwrap_err();
+    assert!(matches!(error, StudyError::Read { .. }));
+    assert_contains(&error.to_string(), &["studies/no_such_study.json: cannot be read: "]);
+}
+
+#[test]
+fn broken_json_is_told_with_line_and_column() {
+    assert_contains(&refusal("{\n  \"scene\": {,\n"), &["studies/x.json:2:13: not valid JSON: "]);
+    assert_contains(&refusal("{ \"run\": { \"limit_s\": 1e999 } }"), &["number out of range"]);
+    // A position that an editor can go to, even where serde says column 0.
+    assert_contains(&refusal(""), &["studies/x.json:1:1: not valid JSON: "]);
+}
+
+#[test]
+fn positions_count_characters_and_lines_past_strings_that_look_like_json() {
+    let text = "{\n  \"description\": \"μ \\\" } ] , {\", \"scene\": { \"contact\": { \"mu\": -1 } } }";
+    let column = text.lines().nth(1).unwrap().chars().position(|c| c == '-').unwrap() + 1;
+    assert_contains(&refusal(text), &[&format!("studies/x.json:2:{column}: scene.contact.mu = -1: ")]);
+}
+
+#[test]
+fn repeated_keys_are_refused_at_any_depth_and_spelling() {
+    let axes = "{ \"grid\": { \"mu\": [0.1],\n \"m\\u0075\": [0.2] } }";
+    assert_contains(&refusal(axes), &["studies/x.json:2:2: grid.mu = [0.2]: ", "twice", "first at 1:13"]);
+    let scenes = r#"{ "scene": {}, "scene": { "contact": { "mu": 0.1 } } }"#;
+    assert_contains(&refusal(scenes), &["studies/x.json:1:16: scene = ", "twice"]);
+    let deep = r#"{ "scene": { "contact": { "mu": 0.1, "mu": 0.2 } } }"#;
+    assert_contains(&refusal(deep), &["scene.contact.mu = 0.2", "twice"]);
+    // The same key in two objects is no repetition.
+    parse(
+        r#"{ "grid": { "mu": { "from": 0.1, "to": 0.2, "count": 2 }, "load_n": { "from": 1, "to": 2, "count": 2 } } }"#,
+    );
+}
+
+#[test]
+fn unknown_fields_are_refused_with_a_suggestion() {
+    let typo = r#"{ "scene": { "pin": { "poison_ratio": 0.3 } } }"#;
+    let expected =
+        ["studies/x.json:1:23: scene.pin.poison_ratio = 0.3: no such field", "did you mean `poisson_ratio`?"];
+    assert_contains(&refusal(typo), &expected);
+    assert_contains(&refusal(r#"{ "mu": 3 }"#), &["studies/x.json:1:3: mu = 3: no such field", "`grid`"]);
+}
+
+#[test]
+fn wrong_types_are_refused() {
+    for (text, expected) in [
+        (
+            r#"{ "scene": { "contact": { "mu": "high" } } }"#,
+            r#"1:33: scene.contact.mu = "high": expected a number"#,
+        ),
+        (
+            r#"{ "scene": { "pin": { "elements": [1, 2.5, 3] } } }"#,
+            "scene.pin.elements[1] = 2.5: expected a whole number",
+        ),
+        (
+            r#"{ "scene": { "pin": { "elements": [1, 2] } } }"#,
+            "scene.pin.elements = [1, 2]: expected a list of 3",
+        ),
+        (
+            r#"{ "scene": { "pin": { "elements": [1, 2, 3, 4] } } }"#,
+            "scene.pin.elements = [1, 2, 3, 4]: expected fewer",
+        ),
+        (r#"{ "scene": { "pin": 4 } }"#, "scene.pin = 4: expected an object"),
+        (r#"{ "scene": { "clamp": { "side": 3 } } }"#, "scene.clamp.side = 3: expected a name"),
+        (r#"{ "scene": { "clamp": { "side": "inner" } } }"#, "did you mean `inner_side`?"),
+        (r#"{ "run": { "stop_early": 1 } }"#, "run.stop_early = 1: expected true or false"),
+        (r#"{ "description": 3 }"#, "description = 3: expected a string"),
+        (r#"{ "grid": null }"#, "grid = null: expected an object"),
+        (r#"{ "grid": [1] }"#, "grid = [1]: expected an object"),
+        ("[]", "the study = []: expected an object"),
+    ] {
+        assert_contains(&refusal(text), &["studies/x.json:1:", expected]);
+    }
+}
+
+/// serde would read a list as the fields of a structure in their order of declaration.
+#[test]
+fn lists_in_place_of_objects_are_refused() {
+    let text = r#"{ "scene": { "contact": [0.3] } }"#;
+    assert_contains(&refusal(text), &["1:25: scene.contact = [0.3]: expected an object"]);
+    let text = r#"{ "scene": { "clamp": { "side": { "both_ends": null } } } }"#;
+    assert_contains(&refusal(text), &["scene.clamp.side = ", "expected a name"]);
+}
+
+#[test]
+fn names_that_no_file_or_table_could_carry_are_refused() {
+    assert_contains(&refusal(r#"{ "name": "a b" }"#), &[r#"1:11: name = "a b": expected a name of letters"#]);
+    assert_contains(&refusal(r#"{ "name": "" }"#), &["name = \"\": expected"]);
+    let from_file = Study::parse("{}", "studies/my study.json").unwrap_err().to_string();
+    assert_contains(&from_file, &["my study", "from the file's name", "add \"name\""]);
+    assert_eq!(Study::parse("{}", "studies/my-study_2.json").unwrap().name(), "my-study_2");
+    assert_eq!(parse(r#"{ "name": "other" }"#).name(), "other");
+}
+
+#[test]
+fn empty_grids_and_axes_are_refused_with_advice() {
+    assert_contains(
+        &refusal(r#"{ "grid": {} }"#),
+        &["1:11: grid = {}: expected at least one parameter", "leave"],
+    );
+    assert_contains(
+        &refusal(r#"{ "grid": { "mu": [] } }"#),
+        &["1:19: grid.mu = []: expected at least one value", "leave"],
+    );
+}
+
+#[test]
+fn unknown_parameters_are_refused_with_a_suggestion_and_the_list() {
+    for (wrong, meant) in [
+        ("omega", "omega_rpm"),
+        ("Mu", "mu"),
+        ("clampside", "clamp_side"),
+        // By the name of the field in the rest of the file.
+        ("force_n", "load_n"),
+        ("scene.disk.track_radius_m", "track_radius_m"),
+    ] {
+        let text = refusal(&format!(r#"{{ "grid": {{ "{wrong}": [1] }} }}"#));
+        let suggestion = format!("did you mean `{meant}`?");
+        assert_contains(
+            &text,
+            &["1:13: grid.", wrong, "no such parameter", &suggestion, "decay_observation_s"],
+        );
+    }
+    let far = refusal(r#"{ "grid": { "zzz": [1] } }"#);
+    assert!(!far.contains("did you mean"), "{far}");
+}
+
+#[test]
+fn overlapping_parameters_are_refused_in_either_order() {
+    for (first, second) in [("elements", "nx"), ("ny", "elements")] {
+        let axis = |name| if name == "elements" { "[[6, 8, 5]]" } else { "[6]" };
+        let (a, b) = (axis(first), axis(second));
+        let text = refusal(&format!(r#"{{ "grid": {{ "{first}": {a}, "{second}": {b} }} }}"#));
+        assert_contains(&text, &[&format!("grid.{second} = {b}: sets the same field as grid.{first}")]);
+    }
+    parse(r#"{ "grid": { "nx": [6], "ny": [8], "size_x_m": [0.01] } }"#);
+}
+
+#[test]
+fn axis_values_of_the_wrong_type_are_refused_one_by_one() {
+    let text = refusal(
+        r#"{ "grid": { "mu": [0.1, "a", null], "clamp_side": ["inner"], "nz": [2.5], "elements": [[1, 2]],
+        "omega_rpm": 3, "top": { "from": 1, "to": 2, "count": 3 }, "load_n": [[1]] } }"#,
+    );
+    let expected = [
+        r#"1:25: grid.mu[1] = "a": expected a number"#,
+        "grid.mu[2] = null: expected a value",
+        r#"grid.clamp_side[0] = "inner": expected one of `inner_side`"#,
+        "did you mean `inner_side`?",
+        "grid.nz[0] = 2.5: expected a whole number",
+        "grid.elements[0] = [1, 2]: expected a list of 3",
+        "2:22: grid.omega_rpm = 3: expected a list of values or a range",
+        "grid.top = { \"from\": 1, \"to\": 2, \"count\": 3 }: expected a list of values",
+        "grid.load_n[0] = [1]: expected a number",
+    ];
+    assert_contains(&text, &expected);
+}
+
+#[test]
+fn equal_values_in_a_list_are_refused_however_they_are_written() {
+    for list in ["[0.1, 0.2, 1e-1]", "[7, 7.0]", "[0, -0.0]"] {
+        let text = refusal(&format!(r#"{{ "grid": {{ "mu": {list} }} }}"#));
+        assert_contains(&text, &["the same value as grid.mu[0]"]);
+    }
+    let meshes = refusal(r#"{ "grid": { "elements": [[6, 8, 5], [6.0, 8, 5]] } }"#);
+    assert_contains(&meshes, &["grid.elements[1] = [6.0, 8, 5]: the same value as grid.elements[0]"]);
+}
+
+#[test]
+fn unusable_ranges_are_refused() {
+    for (range, expected) in [
+        (
+            r#"{ "from": 0, "to": 2, "count": 3, "spacing": "log" }"#,
+            "grid.mu.from = 0: expected a number > 0",
+        ),
+        (
+            r#"{ "from": 1, "to": -2, "count": 3, "spacing": "log" }"#,
+            "grid.mu.to = -2: expected a number > 0",
+        ),
+        (r#"{ "from": 1, "to": 2, "count": 1 }"#, "grid.mu.count = 1: expected at least 2"),
+        (r#"{ "from": 1, "to": 2, "count": 0 }"#, "grid.mu.count = 0: expected at least 2"),
+        (r#"{ "from": 1, "to": 1, "count": 2 }"#, "grid.mu.count = 2: expected 1"),
+        (r#"{ "from": 1, "to": 2, "count": 1000001 }"#, "grid.mu.count = 1000001: expected at most 1000000"),
+        (r#"{ "from": 1, "to": 2, "count": 2.5 }"#, "grid.mu.count = 2.5: expected a whole number"),
+        (r#"{ "from": 1, "to": 2 }"#, "missing field `count`"),
+        (r#"{ "from": 1, "to": 2, "cuont": 3 }"#, "grid.mu.cuont = 3: no such field"),
+        (r#"{ "from": 1, "to": 2, "count": 3, "spacing": "lin" }"#, "did you mean `linear`?"),
+        (r#"{ "from": 1, "to": 1.0000000000000002, "count": 5 }"#, "the same value as grid.mu, value 1 of 5"),
+    ] {
+        assert_contains(
+            &refusal(&format!(r#"{{ "grid": {{ "mu": {range} }} }}"#)),
+            &["studies/x.json:1:", expected],
+        );
+    }
+    let counts = refusal(r#"{ "grid": { "nx": { "from": 4, "to": 5, "count": 3 } } }"#);
+    assert_contains(&counts, &["grid.nx = ", "4.5", "whole numbers only"]);
+}
+
+#[test]
+fn grids_that_explode_are_refused_with_their_size() {
+    let grid = |count| {
+        format!(
+            r#"{{ "grid": {{ "mu": {{ "from": 0, "to": 1, "count": 2000 }},
+                "omega_rpm": {{ "from": 1, "to": 5, "count": {count} }} }} }}"#
+        )
+    };
+    let error = Study::parse(&grid(501), "studies/x.json").unwrap_err();
+    assert!(matches!(error, StudyError::TooManyJobs { points: 1_002_000, .. }));
+    assert_contains(
+        &error.to_string(),
+        &["studies/x.json: grid: 1002000 jobs", "mu 2000 × omega_rpm 501", "1000000"],
+    );
+    assert_eq!(parse(&grid(500)).grid_size(), MAX_JOBS);
+}
+
+#[test]
+fn non_physical_values_of_the_base_job_are_all_told_with_their_place() {
+    let text = refusal(
+        "{ \"scene\": { \"pin\": { \"poisson_ratio\": 0.5 },\n  \"contact\": { \"mu\": -0.1 } },\n  \"numerics\": { \"beta2\": 2 } }",
+    );
+    let expected = [
+        "studies/x.json:1:40: scene.pin.poisson_ratio = 0.5: expected a Poisson's ratio with -1 < ν < 0.5",
+        "studies/x.json:2:22: scene.contact.mu = -0.1: expected a friction coefficient >= 0",
+        "studies/x.json:3:26: numerics.beta2 = 2: expected 0.5 <= β₂ <= 1",
+    ];
+    assert_contains(&text, &expected);
+    assert_eq!(text.lines().count(), 3, "{text}");
+}
+
+#[test]
+fn non_physical_grid_values_are_told_once_each_and_named() {
+    let text = refusal(
+        r#"{ "scene": { "disk": { "omega_rpm": -7 } }, "grid": { "mu": [0.2, -1, 0.4, -3],
+        "omega_rpm": { "from": -1, "to": 98, "count": 100 }, "elements": [[6, 8, 5], [6, 0, 5]] } }"#,
+    );
+    let expected = [
+        "studies/x.json:1:67: scene.contact.mu = -1: expected a friction coefficient >= 0\n  help: set by grid.mu[1]",
+        "scene.contact.mu = -3: ",
+        "studies/x.json:2:22: scene.disk.omega_rpm = -1: ",
+        "set by grid.omega_rpm, value 1 of 100",
+        "scene.pin.elements[1] = 0: expected a number of elements",
+        "set by grid.elements[1]",
+    ];
+    assert_contains(&text, &expected);
+    for once in ["scene.contact.mu = -1", "scene.disk.omega_rpm = -1", "scene.pin.elements[1] = 0"] {
+        assert_eq!(text.matches(once).count(), 1, "{text}");
+    }
+    // The base's own speed is in no job.
+    assert!(!text.contains("-7"), "{text}");
+}
+
+#[test]
+fn values_that_do_not_fit_together_are_told_with_a_job_that_has_them() {
+    let text = refusal(r#"{ "grid": { "mu": [0.2, 0.4, 0.6], "limit_s": [0.1, 0.0001] } }"#);
+    let expected = [
+        "studies/x.json: scene.load.ramp_s = 0.0005: expected less than the run's time limit (run.limit_s = 0.0001)",
+        "in 3 of 6 jobs, first in the one with mu = 0.2, limit_s = 0.0001",
+    ];
+    assert_contains(&text, &expected);
+}
+
+#[test]
+fn long_listings_are_cut_and_counted() {
+    let text = refusal(r#"{ "grid": { "mu": { "from": -50, "to": -1, "count": 50 } } }"#);
+    assert_contains(&text, &["scene.contact.mu = -31", "… and 30 more problems"]);
+    assert!(!text.contains("scene.contact.mu = -30:"), "{text}");
+    let error = Study::parse(r#"{ "grid": { "mu": [-1, -2] } }"#, "x").unwrap_err();
+    assert_eq!(error.problems().len(), 2);
+    assert_eq!(error.problems()[1].field, "scene.contact.mu");
+    assert_eq!(error.problems()[1].value.as_deref(), Some("-2"));
+}

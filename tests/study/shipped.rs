@@ -1,0 +1,104 @@
+//! Protects: the studies that come with the package are valid and hold what their names promise.
+
+use std::path::PathBuf;
+use tribosweep::spec::{ClampSide, JobSpec};
+use tribosweep::study::{Job, Study};
+
+/// Every file in `studies/`.
+pub fn files() -> Vec<PathBuf> {
+    let mut files: Vec<_> =
+        std::fs::read_dir("studies").unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.sort();
+    files
+}
+
+fn jobs(file: &str) -> Vec<Job> {
+    Study::load(file.as_ref()).unwrap_or_else(|error| panic!("{error}")).expand("test").unwrap()
+}
+
+#[test]
+fn all_are_valid_described_and_named_like_their_file() {
+    let files = files();
+    assert!(files.len() >= 3, "{files:?}");
+    for file in files {
+        let study = Study::load(&file).unwrap_or_else(|error| panic!("{error}"));
+        assert_eq!(study.name(), file.file_stem().unwrap().to_str().unwrap());
+        assert!(study.description().is_some_and(|text| text.len() > 20), "{}", file.display());
+    }
+}
+
+#[test]
+fn figure7_is_the_reference_scene_over_102_points() {
+    let jobs = jobs("studies/figure7.json");
+    let speeds =
+        [0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 10.0, 12.0, 15.0, 20.0, 35.0, 50.0, 75.0, 100.0];
+    let expected: Vec<_> = [0.1, 0.2, 0.3, 0.4, 0.5, 0.6]
+        .into_iter()
+        .flat_map(|mu| speeds.map(|omega| reference(mu, omega)))
+        .collect();
+    assert_eq!(jobs.len(), 102);
+    assert!(jobs.iter().map(|job| &job.spec).eq(&expected));
+}
+
+/// Spelled out, so that a change of the defaults does not silently change the figure.
+fn reference(mu: f64, omega_rpm: f64) -> JobSpec {
+    let mut spec = JobSpec::default();
+    spec.scene.pin.elements = [12, 15, 10];
+    spec.scene.clamp.side = ClampSide::InnerSide;
+    spec.scene.clamp.width_m = 0.001;
+    spec.scene.load.ramp_s = 5.0e-4;
+    spec.numerics.beta_r_s = 5.0e-8;
+    spec.scene.contact.mu = mu;
+    spec.scene.disk.omega_rpm = omega_rpm;
+    spec
+}
+
+#[test]
+fn mini_is_small() {
+    let jobs = jobs("studies/mini.json");
+    let points: Vec<_> =
+        jobs.iter().map(|j| (j.spec.scene.contact.mu, j.spec.scene.disk.omega_rpm)).collect();
+    let expected: Vec<_> =
+        [0.2, 0.4].into_iter().flat_map(|mu| [2.0, 7.0, 35.0, 100.0].map(|omega| (mu, omega))).collect();
+    assert_eq!(points, expected);
+    for job in jobs {
+        assert_eq!(job.spec.scene.pin.elements, [6, 8, 5]);
+        assert_eq!(job.spec.scene.clamp.width_m, 0.002);
+    }
+}
+
+#[test]
+fn clamps_has_every_clamp() {
+    let jobs = jobs("studies/clamps.json");
+    let sides = [
+        ClampSide::InnerSide,
+        ClampSide::OuterSide,
+        ClampSide::LeadingEnd,
+        ClampSide::TrailingEnd,
+        ClampSide::BothSides,
+        ClampSide::BothEnds,
+        ClampSide::WholeTop,
+    ];
+    let expected: Vec<_> =
+        sides.into_iter().flat_map(|side| [2.0, 6.0, 7.0, 12.0, 35.0].map(|omega| (side, omega))).collect();
+    let found: Vec<_> = jobs.iter().map(|j| (j.spec.scene.clamp.side, j.spec.scene.disk.omega_rpm)).collect();
+    assert_eq!(found, expected);
+    assert!(jobs.iter().all(|job| job.spec.scene.contact.mu == 0.4 && job.spec.scene.clamp.width_m == 0.001));
+}
+
+/// A clamp's width means a node row: on each mesh there is one at that distance from the edge.
+#[test]
+fn every_clamp_ends_at_a_node_row() {
+    for file in files() {
+        for job in jobs(file.to_str().unwrap()) {
+            let (pin, clamp) = (&job.spec.scene.pin, &job.spec.scene.clamp);
+            let axis = match clamp.side {
+                ClampSide::WholeTop => continue,
+                ClampSide::InnerSide | ClampSide::OuterSide | ClampSide::BothSides => 0,
+                ClampSide::LeadingEnd | ClampSide::TrailingEnd | ClampSide::BothEnds => 1,
+            };
+            let rows = clamp.width_m / (pin.size_m[axis] / pin.elements[axis] as f64);
+            assert!((rows - rows.round()).abs() < 1.0e-9, "{}: {rows} rows", file.display());
+        }
+    }
+}
