@@ -19,4 +19,5 @@
 //! * [`cli`] – one file a subcommand.
 
 pub mod analysis;
+pub mod queue;
 pub mod spec;
