@@ -19,6 +19,7 @@
 //! * [`cli`] – one file a subcommand.
 
 pub mod analysis;
+pub mod queue;
 pub mod report;
 pub mod solver;
 pub mod spec;

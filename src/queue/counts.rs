@@ -1,0 +1,63 @@
+use sqlx::SqliteConnection;
+
+use super::{JobState, Queue, QueueError, Scope};
+
+/// Jobs by state. A job that several rows of a study point to counts once: it is simulated once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Counts {
+    /// Waiting to be claimed.
+    pub pending: u64,
+    /// Claimed.
+    pub running: u64,
+    /// Ended with a record.
+    pub done: u64,
+    /// Ended with an error.
+    pub failed: u64,
+}
+
+/// The inner query comes first, so that the work follows the size of the study, not of the database.
+const OF_STUDY: &str = "
+    SELECT j.state, COUNT(*)
+    FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = ?1) AS m
+    JOIN jobs AS j ON j.id = m.job_id
+    GROUP BY j.state";
+
+impl Counts {
+    /// All jobs.
+    pub fn total(&self) -> u64 {
+        self.pending + self.running + self.done + self.failed
+    }
+
+    fn from_rows(rows: Vec<(String, i64)>) -> Self {
+        let mut counts = Self::default();
+        for (state, count) in rows {
+            let count = count.unsigned_abs();
+            match JobState::from_column(&state) {
+                JobState::Pending => counts.pending = count,
+                JobState::Running => counts.running = count,
+                JobState::Done => counts.done = count,
+                JobState::Failed => counts.failed = count,
+            }
+        }
+        counts
+    }
+}
+
+impl Queue {
+    /// Counts the jobs of `scope` by state.
+    ///
+    /// # Errors
+    /// [`QueueError::UnknownStudy`], or if the database cannot be read.
+    pub async fn counts(&mut self, scope: &Scope) -> Result<Counts, QueueError> {
+        if let Some(id) = scope.study_id(&mut self.connection).await? {
+            return of_study(&mut self.connection, id).await;
+        }
+        let rows = sqlx::query_as("SELECT state, COUNT(*) FROM jobs GROUP BY state");
+        Ok(Counts::from_rows(rows.fetch_all(&mut self.connection).await?))
+    }
+}
+
+pub(super) async fn of_study(connection: &mut SqliteConnection, study_id: i64) -> Result<Counts, QueueError> {
+    let rows = sqlx::query_as(OF_STUDY).bind(study_id).fetch_all(connection).await?;
+    Ok(Counts::from_rows(rows))
+}

@@ -1,0 +1,78 @@
+//! Is a folder on a network file system? A write-ahead log needs memory shared by all processes that use
+//! the database, which such file systems cannot give across machines, and their locks often do nothing.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Types as the kernel names them. FUSE file systems are listed one by one: most of them are local.
+const NETWORK: [&str; 15] = [
+    "nfs",
+    "nfs4",
+    "lustre",
+    "cifs",
+    "smb3",
+    "smbfs",
+    "afs",
+    "ceph",
+    "beegfs",
+    "gpfs",
+    "panfs",
+    "orangefs",
+    "fuse.sshfs",
+    "fuse.glusterfs",
+    "fuse.ceph",
+];
+
+/// The type of the network file system `folder` (absolute, without symbolic links) is on, if it is on one.
+///
+/// Where the system has no table of mounts to read, nothing is detected.
+pub(super) fn network_kind(folder: &Path) -> Option<String> {
+    let mounts = fs::read_to_string("/proc/self/mounts").ok()?;
+    kind_of(&mounts, folder).filter(|kind| NETWORK.contains(kind)).map(str::to_owned)
+}
+
+/// The type of the file system that holds `folder`: the deepest mount above it, the last one if several
+/// are stacked on the same point.
+fn kind_of<'a>(mounts: &'a str, folder: &Path) -> Option<&'a str> {
+    mounts
+        .lines()
+        .filter_map(|line| {
+            let mut fields = line.split(' ').skip(1);
+            Some((unescape(fields.next()?), fields.next()?))
+        })
+        .filter(|(point, _)| folder.starts_with(point))
+        .max_by_key(|(point, _)| point.components().count())
+        .map(|(_, kind)| kind)
+}
+
+/// The table separates fields by spaces and writes those inside a name as octal.
+fn unescape(field: &str) -> PathBuf {
+    field.replace("\\040", " ").replace("\\011", "\t").replace("\\012", "\n").replace("\\134", "\\").into()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MOUNTS: &str = "/dev/sda1 / ext4 rw 0 0\n\
+                          server:/home /home nfs4 rw 0 0\n\
+                          tmpfs /home/ada/local tmpfs rw 0 0\n\
+                          auto /data autofs rw 0 0\n\
+                          mds@tcp:/fs /data lustre rw 0 0\n\
+                          //nas/x /my\\040disk cifs rw 0 0\n";
+
+    /// Protects: the mount that counts is the deepest one, by whole path components, and the last of a stack.
+    #[test]
+    fn the_deepest_mount_decides() {
+        for (folder, kind) in [
+            ("/var/tmp", "ext4"),
+            ("/home/ada", "nfs4"),
+            ("/homework", "ext4"),
+            ("/home/ada/local/sweeps", "tmpfs"),
+            ("/data/ada", "lustre"),
+            ("/my disk/ada", "cifs"),
+        ] {
+            assert_eq!(kind_of(MOUNTS, Path::new(folder)), Some(kind), "{folder}");
+        }
+    }
+}

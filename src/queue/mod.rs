@@ -1,0 +1,85 @@
+//! Jobs in `SQLite`. Payloads, parameters and records are opaque strings; nothing here knows mechanics.
+//!
+//! ```text
+//!            submit            exchange: claim             exchange: finish
+//!  NewStudy ───────► pending ──────────────────► running ──────────────────► done | failed
+//!                       ▲      attempt += 1         │
+//!                       └───────────────────────────┘
+//!                    Released (interruption), take_back (the process died)
+//! ```
+//!
+//! * A **job** is identified by its key. Submitting a key that is there already adds nothing, so studies share
+//!   jobs and a repeated submission costs no simulation.
+//! * A **study** is identified by its name. It is a document and an ordered list of rows, each a set of
+//!   parameters that points to a job; two rows may point to the same one.
+//! * An **attempt** is one start of a job. Finishing names the attempt and counts only if the job is still
+//!   running that very attempt: whoever lost a job cannot overwrite what came after.
+//!
+//! # Rules
+//! * Every transaction that writes starts with `BEGIN IMMEDIATE`. One that begins by reading cannot be
+//!   promoted while another writes, and fails at once with "database is locked", whatever the busy timeout.
+//! * Inside a transaction nothing but the database is awaited, and no future of this module is to be dropped
+//!   half-way (no `select!`, no timeout around it): the lock it holds stops every other process.
+//! * Reads are single statements. A transaction held open by a reader keeps the write-ahead log from being
+//!   folded back into the database, and it grows without limit.
+
+mod claim;
+mod clock;
+mod counts;
+mod error;
+mod exchange;
+mod filesystem;
+mod finish;
+mod lock;
+mod open;
+mod rows;
+mod schema;
+mod scope;
+mod state;
+mod studies;
+mod submit;
+mod take_back;
+mod timings;
+
+pub use claim::{Claim, ClaimedJob};
+pub use clock::{Clock, SystemClock};
+pub use counts::Counts;
+pub use error::QueueError;
+pub use exchange::Exchanged;
+pub use finish::{Finished, FinishedOutcome};
+pub use lock::WorkerLock;
+pub use rows::StudyRow;
+pub use scope::Scope;
+pub use state::JobState;
+pub use studies::{StudyDocument, StudySummary};
+pub use submit::{NewJob, NewStudy, Submitted};
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use sqlx::{Connection, SqliteConnection};
+
+/// One connection to the database of studies and jobs.
+#[derive(Debug)]
+pub struct Queue {
+    connection: SqliteConnection,
+    clock: Arc<dyn Clock>,
+    path: PathBuf,
+}
+
+impl Queue {
+    /// The database file, as an absolute path without symbolic links.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Closes the connection and waits for it, so that the last one out folds the write-ahead log back in.
+    ///
+    /// Dropping the queue loses nothing, but may leave the log's files beside the database.
+    ///
+    /// # Errors
+    /// If the database cannot be closed, e.g. on a full disk.
+    pub async fn close(self) -> Result<(), QueueError> {
+        Ok(self.connection.close().await?)
+    }
+}

@@ -1,0 +1,126 @@
+//! What reports and progress read.
+
+use tribosweep::queue::{
+    Claim, Finished, JobState, QueueError, Scope, StudyDocument, StudyRow, StudySummary,
+};
+
+use crate::support::{Sandbox, claim, counts, done, failed, finish, of, study};
+
+/// Protects: the list of studies is in the order of submission, each with its own counts.
+#[tokio::test]
+async fn studies_are_listed_with_their_counts() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    assert!(queue.studies().await.unwrap().is_empty());
+    sandbox.clock.set(1_000);
+    queue.submit(&study("b", &["x", "y"])).await.unwrap();
+    sandbox.clock.set(2_000);
+    queue.submit(&study("a", &["y"])).await.unwrap();
+    sandbox.clock.set(3_000);
+    queue.submit(&study("empty", &[])).await.unwrap();
+    claim(&mut queue, of("a"), 1).await;
+
+    let summary = |name: &str, submitted_ms, counts| StudySummary { name: name.into(), submitted_ms, counts };
+    let expected = [
+        summary("b", 1_000, counts(1, 1, 0, 0)),
+        summary("a", 2_000, counts(0, 1, 0, 0)),
+        summary("empty", 3_000, counts(0, 0, 0, 0)),
+    ];
+    assert_eq!(queue.studies().await.unwrap(), expected);
+}
+
+/// Protects: the document of a study is kept as it was written; no such study is no error here.
+#[tokio::test]
+async fn the_document_is_kept() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    sandbox.clock.set(1_000);
+    queue.submit(&study("a", &["x"])).await.unwrap();
+    let expected = StudyDocument { name: "a".into(), document: "document of a".into(), submitted_ms: 1_000 };
+    assert_eq!(queue.study("a").await.unwrap(), Some(expected));
+    assert_eq!(queue.study("b").await.unwrap(), None);
+}
+
+/// Protects: rows come in the order of the study, each with all that is known of its job.
+#[tokio::test]
+async fn rows_are_complete_and_in_order() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    queue.submit(&study("a", &["z", "y", "x", "w"])).await.unwrap();
+    claim(&mut queue, Scope::All, 3).await;
+    assert!(finish(&mut queue, "z", 1, done("record of z")).await);
+    assert!(finish(&mut queue, "y", 1, failed("error of y")).await);
+
+    let row = |ordinal, key: &str, state, attempt| StudyRow {
+        ordinal,
+        key: key.into(),
+        parameters: format!("parameters of {key}"),
+        state,
+        record: None,
+        error: None,
+        wall_s: None,
+        attempt,
+        note: None,
+    };
+    let expected = [
+        StudyRow { record: Some("record of z".into()), wall_s: Some(2.5), ..row(0, "z", JobState::Done, 1) },
+        StudyRow { error: Some("error of y".into()), wall_s: Some(2.5), ..row(1, "y", JobState::Failed, 1) },
+        row(2, "x", JobState::Running, 1),
+        row(3, "w", JobState::Pending, 0),
+    ];
+    assert_eq!(queue.rows("a").await.unwrap(), expected);
+}
+
+/// Protects: what an estimate of the time left is made of: the cost and time of what is done, in order, and
+/// the cost of what is not. Failed jobs are in neither.
+#[tokio::test]
+async fn timings_and_remaining_cost() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let mut a = study("a", &["p", "q", "r", "s", "t"]);
+    for (job, cost) in a.jobs.iter_mut().zip([16.0, 8.0, 4.0, 2.0, 1.0]) {
+        job.cost = cost;
+    }
+    queue.submit(&a).await.unwrap();
+    queue.submit(&study("b", &["p", "u"])).await.unwrap();
+    assert_eq!(queue.remaining_cost(&Scope::All).await.unwrap(), 32.0);
+    claim(&mut queue, of("a"), 4).await;
+    for (now_ms, key, outcome, wall_s) in
+        [(3_000, "q", done("r"), 80.0), (4_000, "p", done("r"), 170.0), (5_000, "r", failed("e"), 0.1)]
+    {
+        sandbox.clock.set(now_ms);
+        let end = Finished { key: key.into(), attempt: 1, outcome, wall_s };
+        queue.exchange(&[end], &Claim::nothing()).await.unwrap();
+    }
+
+    assert_eq!(queue.finished_timings(&Scope::All).await.unwrap(), [(8.0, 80.0), (16.0, 170.0)]);
+    assert_eq!(queue.finished_timings(&of("b")).await.unwrap(), [(16.0, 170.0)]);
+    assert_eq!(queue.remaining_cost(&Scope::All).await.unwrap(), 4.0, "s is running; t and u are pending");
+    assert_eq!(queue.remaining_cost(&of("a")).await.unwrap(), 3.0);
+}
+
+/// Protects: a mistyped study name is answered with the names there are, by everything that takes one.
+#[tokio::test]
+async fn an_unknown_study_is_answered_with_those_known() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let error = queue.rows("a").await.unwrap_err();
+    assert!(error.to_string().contains("it has none yet"), "{error}");
+
+    queue.submit(&study("speed map", &["x"])).await.unwrap();
+    queue.submit(&study("friction map", &["x"])).await.unwrap();
+    let errors = [
+        queue.rows("map").await.unwrap_err(),
+        queue.counts(&of("map")).await.unwrap_err(),
+        queue.finished_timings(&of("map")).await.unwrap_err(),
+        queue.remaining_cost(&of("map")).await.unwrap_err(),
+        queue.exchange(&[], &Claim { scope: of("map"), limit: 0 }).await.unwrap_err(),
+    ];
+    for error in errors {
+        assert!(matches!(error, QueueError::UnknownStudy { .. }), "{error:?}");
+        assert_eq!(
+            error.to_string(),
+            "there is no study `map` in the database; it has: speed map, friction map"
+        );
+    }
+}

@@ -1,0 +1,108 @@
+//! A database in a folder of its own, with a clock the test moves.
+
+use std::future::Future;
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicI64, Ordering};
+
+use sqlx::sqlite::SqliteConnectOptions;
+use sqlx::{ConnectOptions, SqliteConnection};
+use tempfile::TempDir;
+use tribosweep::queue::{
+    Claim, ClaimedJob, Clock, Counts, Finished, FinishedOutcome, NewJob, NewStudy, Queue, Scope,
+};
+
+/// Runs a future on a runtime of its own, for tests that need several threads.
+pub fn block_on<F: Future>(future: F) -> F::Output {
+    tokio::runtime::Builder::new_current_thread().build().unwrap().block_on(future)
+}
+
+/// A clock that stands still until it is told otherwise.
+#[derive(Debug, Default)]
+pub struct TestClock(AtomicI64);
+
+impl TestClock {
+    pub fn set(&self, now_ms: i64) {
+        self.0.store(now_ms, Ordering::Relaxed);
+    }
+}
+
+impl Clock for TestClock {
+    fn now_ms(&self) -> i64 {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+pub struct Sandbox {
+    pub folder: TempDir,
+    pub clock: Arc<TestClock>,
+}
+
+impl Sandbox {
+    pub fn new() -> Self {
+        Self { folder: TempDir::new().unwrap(), clock: Arc::default() }
+    }
+
+    pub fn database(&self) -> PathBuf {
+        self.folder.path().join("sweep.db")
+    }
+
+    pub async fn open(&self) -> Queue {
+        Queue::open(&self.database(), self.clock.clone()).await.unwrap()
+    }
+
+    /// A connection past the queue, to look at the tables or to spoil them.
+    pub async fn raw(&self) -> SqliteConnection {
+        let options = SqliteConnectOptions::new().filename(self.database()).create_if_missing(true);
+        options.connect().await.unwrap()
+    }
+}
+
+pub fn job(key: &str, cost: f64) -> NewJob {
+    NewJob {
+        key: key.into(),
+        payload: format!("payload of {key}"),
+        parameters: format!("parameters of {key}"),
+        cost,
+    }
+}
+
+/// A study of jobs of equal cost.
+pub fn study(name: &str, keys: &[&str]) -> NewStudy {
+    NewStudy {
+        name: name.into(),
+        document: format!("document of {name}"),
+        jobs: keys.iter().map(|key| job(key, 1.0)).collect(),
+    }
+}
+
+pub fn of(name: &str) -> Scope {
+    Scope::Study(name.into())
+}
+
+pub fn counts(pending: u64, running: u64, done: u64, failed: u64) -> Counts {
+    Counts { pending, running, done, failed }
+}
+
+/// Claims without finishing anything.
+pub async fn claim(queue: &mut Queue, scope: Scope, limit: usize) -> Vec<ClaimedJob> {
+    queue.exchange(&[], &Claim { scope, limit }).await.unwrap().claimed
+}
+
+/// Finishes one job without claiming; whether that was accepted.
+pub async fn finish(queue: &mut Queue, key: &str, attempt: u32, outcome: FinishedOutcome) -> bool {
+    let finished = Finished { key: key.into(), attempt, outcome, wall_s: 2.5 };
+    queue.exchange(&[finished], &Claim::nothing()).await.unwrap().refused.is_empty()
+}
+
+pub fn done(record: &str) -> FinishedOutcome {
+    FinishedOutcome::Done { record: record.into() }
+}
+
+pub fn failed(error: &str) -> FinishedOutcome {
+    FinishedOutcome::Failed { error: error.into() }
+}
+
+pub fn keys(jobs: &[ClaimedJob]) -> Vec<&str> {
+    jobs.iter().map(|job| job.key.as_str()).collect()
+}
