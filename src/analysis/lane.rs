@@ -185,9 +185,29 @@ impl<'a> LaneAnalysis<'a> {
                 .iter()
                 .map(|group| Figures::merged(group.iter().map(|cycle| &cycle.figures)).mu_star())
                 .collect(),
-            frequency_hz: Some(groups.len() as f64 / duration_s),
+            frequency_hz: Some(fundamental_per_crossing(&groups) * whole.len() as f64 / duration_s),
         }
     }
+}
+
+/// Periods of the fundamental per section crossing, 1 or 1/m.
+///
+/// A cycle of m crossings whose passages are alike is a period-doubled one: its normal force still has
+/// its strongest low line at the crossing frequency, and that is the one reported. Passages that
+/// differ by more than a fifth in duration or amplitude are humps of one cycle.
+fn fundamental_per_crossing(groups: &[&[Cycle]]) -> f64 {
+    const ALIKE: f64 = 0.2;
+    let m = groups[0].len();
+    let mean = |position: usize, figure: fn(&Cycle) -> f64| {
+        groups.iter().map(|group| figure(&group[position])).sum::<f64>() / groups.len() as f64
+    };
+    let alike = |figure: fn(&Cycle) -> f64| {
+        let means: Vec<f64> = (0..m).map(|position| mean(position, figure)).collect();
+        let highest = means.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let lowest = means.iter().copied().fold(f64::INFINITY, f64::min);
+        highest - lowest <= ALIKE * highest
+    };
+    if alike(Cycle::period_s) && alike(|cycle| cycle.amplitude_n) { 1.0 } else { 1.0 / m as f64 }
 }
 
 /// Names the regime from the outcome and the shares of stick and separation.

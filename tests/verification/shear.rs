@@ -1,6 +1,6 @@
 //! B12 A shear column on a moving plane.
 //!
-//! A layer of height h, clamped in y at the top, pressed with p on a plane of speed V. In the k-th
+//! A layer of height h, free in y at the top, pressed with p on a plane of speed V. In the k-th
 //! interval of 2h/c_s the base slips at (2k−1)V0, V0 = μp/(ρc_s), while that is below V; then it
 //! sticks, v = V for ever, with a traction that alternates between two values of opposite sign.
 //! Source: d'Alembert's solution. With μp = 66 666.7 Pa and V = 0.25 m/s (pin material, ν = 0.3, for
@@ -33,10 +33,8 @@ fn shear_material() -> Material {
 fn column() -> (Model, State<1>) {
     let mesh = column_mesh(LAYERS);
     let above: Vec<usize> = (1..=LAYERS).flat_map(|k| level(&mesh, k)).map(|node| 3 * node + 2).collect();
-    let top_y = level(&mesh, LAYERS).into_iter().map(|node| 3 * node + 1).collect();
-    let fixed = [all_of(&mesh, 0), above, top_y].concat();
+    let fixed = [all_of(&mesh, 0), above].concat();
     let mut ties = level_ties(&mesh, 1);
-    ties.pop();
     ties.push(level_ties(&mesh, 2).swap_remove(0));
     let material = shear_material();
     let model = Model::new(definition(mesh, material, Constraints { fixed, ties })).unwrap();
@@ -65,7 +63,8 @@ fn base_velocity_climbs_in_steps_and_sticks() {
     assert!((COLUMN_HEIGHT_M / h - LAYERS as f64).abs() < 1e-9);
 
     let ratio = PLANE_SPEED_M_S / unit_speed;
-    // Stick from the third interval on: the jump in velocity is carried by the wave, τ/μp = r − 4 …
+    // In the third interval the returning wave brings the base to 5V0 under full friction; holding it at
+    // rV0 instead takes (r − 5)V0 ρc_s more, so τ/μp = 1 + (r − 5).
     let stick_traction = ratio - 4.0;
     let drive = Drive { mu: MU, rate: PLANE_SPEED_M_S, force_n: 0.0, ramp_s: 0.0 };
     let mut before = state.u[1];

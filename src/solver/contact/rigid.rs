@@ -61,11 +61,18 @@ pub fn solve<const L: usize>(
                 let (friction, friction_state) = project(trial, force[2], drives[l].mu);
                 (force[0], force[1]) = (friction[0], friction[1]);
                 state = friction_state;
+                // Constrained displacements are set, not corrected: a sticking node must not creep, nor a
+                // closed one sink, by the rounding of its correction.
                 for c in 0..2 {
-                    prediction.u[base + c * L + l] += u_factor * force[c];
-                    prediction.p[base + c * L + l] += p_factor * force[c];
+                    let at = base + c * L + l;
+                    if state == ContactState::Stick && slave_node.mobile[c] {
+                        let carried = slave_node.surface_motion[c] * drives[l].rate * dt;
+                        prediction.u[at] = prediction.u_old[(3 * slave + c) * L + l] + carried;
+                    } else {
+                        prediction.u[at] += u_factor * force[c];
+                    }
+                    prediction.p[at] += p_factor * force[c];
                 }
-                // z + u_factor·force is 0 up to rounding; the constraint is exact.
                 prediction.u[base + 2 * L + l] = 0.0;
                 prediction.p[base + 2 * L + l] += p_factor * force[2];
             }
