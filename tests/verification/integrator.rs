@@ -47,7 +47,8 @@ fn modes_follow_the_amplification_matrix() {
                 }
                 // From rest the half-force first step gives q_1 = (1 − W²/2) q_0.
                 assert!((q[1] - (1.0 - w2 / 2.0)).abs() < 1e-13, "first step of β₂ = {beta2}");
-                for n in 2..q.len() {
+                // From q_1 on all steps are alike, so the recursion holds for three successive values.
+                for n in 3..q.len() {
                     let error = (q[n] - (trace * q[n - 1] - determinant * q[n - 2])).abs();
                     // u = 2 + q: each step rounds K u, whose terms are (ω_maxΔt)²·2 ≈ 10 times q, and
                     // the rounding of all steps before is integrated twice.
