@@ -19,9 +19,12 @@
 //! * [`cli`] – one file a subcommand.
 
 pub mod analysis;
+pub mod cli;
+pub mod exit;
 pub mod queue;
 pub mod report;
 pub mod solver;
 pub mod spec;
 pub mod study;
 pub mod units;
+pub mod worker;

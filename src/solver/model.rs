@@ -111,6 +111,19 @@ impl Model {
         Ok(Self { clamp_width_m: strip.width_m, ..Self::new(definition)? })
     }
 
+    /// Whether [`Model::from_scene`] would accept the scene; cheap unless a time step is given.
+    ///
+    /// # Errors
+    /// As [`Model::from_scene`].
+    pub fn preflight(scene: &Scene, numerics: &Numerics) -> Result<(), SolverError> {
+        let mesh = BlockMesh::new(scene.pin.size_m, scene.pin.elements);
+        boundary::clamped_strip(&mesh, &scene.clamp)?;
+        if numerics.time_step_s.is_some() {
+            Self::from_scene(scene, numerics)?;
+        }
+        Ok(())
+    }
+
     /// A model from its parts.
     ///
     /// # Errors

@@ -1,0 +1,41 @@
+//! What ends a command, beyond the failure of a job.
+
+use crate::queue::QueueError;
+use crate::report::ReportError;
+use crate::study::StudyError;
+use crate::worker::WorkError;
+use thiserror::Error;
+
+/// Bad input or an environment that does not let the command do its work.
+#[derive(Debug, Error)]
+pub enum CliError {
+    /// The study file.
+    #[error(transparent)]
+    Study(#[from] StudyError),
+    /// The study cannot be simulated as it is.
+    #[error("{0}")]
+    Plan(String),
+    /// The database.
+    #[error(transparent)]
+    Queue(#[from] QueueError),
+    /// The worker.
+    #[error(transparent)]
+    Work(#[from] WorkError),
+    /// The report.
+    #[error(transparent)]
+    Report(#[from] ReportError),
+    /// A file that cannot be written or read.
+    #[error("{path}: {source}")]
+    File {
+        /// The file.
+        path: String,
+        /// What the operating system said.
+        source: std::io::Error,
+    },
+    /// Standard output.
+    #[error("cannot write to standard output: {0}")]
+    Output(#[from] std::io::Error),
+    /// Something in the database that this version cannot read.
+    #[error("{0}")]
+    Unreadable(String),
+}

@@ -1,0 +1,89 @@
+//! The command line: one file a subcommand. Results go to stdout, everything else to stderr.
+
+mod completions;
+mod display;
+mod error;
+mod export;
+mod output;
+mod planning;
+mod report;
+mod rows;
+mod run;
+mod schema;
+mod solve;
+mod status;
+mod submit;
+mod validate;
+mod work;
+
+use crate::exit;
+use clap::{Parser, Subcommand};
+use error::CliError;
+use std::path::PathBuf;
+
+/// Sweeps of explicit dynamic contact simulations of a pin-on-disk tribometer.
+///
+/// A study file describes a scene and a grid of parameters; `run` plans, solves and reports it.
+#[derive(Debug, Parser)]
+#[command(
+    version,
+    max_term_width = 100,
+    after_help = "Exit codes: 0 all jobs succeeded, 1 some failed, 2 bad input or usage, 3 work left over."
+)]
+pub struct Cli {
+    #[command(subcommand)]
+    command: Command,
+    /// The database of studies, jobs and results.
+    #[arg(long, global = true, value_name = "PATH", env = "TRIBOSWEEP_DB", default_value = "tribosweep.db")]
+    db: PathBuf,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    /// Submit a study, work through its jobs and report: the whole sweep in one command.
+    Run(run::Args),
+    /// Plan a study's jobs without running them.
+    Submit(submit::Args),
+    /// Work through all pending jobs of the database.
+    Work(work::Args),
+    /// Show how far the studies are.
+    Status(status::Args),
+    /// Write a study's tables and figures.
+    Report(report::Args),
+    /// Write one row a job as CSV or JSON lines.
+    Export(export::Args),
+    /// Solve one job in the foreground.
+    Solve(solve::Args),
+    /// Check a study file without running it.
+    Validate(validate::Args),
+    /// Print the JSON schema of study files.
+    Schema(schema::Args),
+    /// Print a completion script for a shell.
+    Completions(completions::Args),
+}
+
+/// Runs the command and gives its exit code.
+pub fn main(cli: Cli) -> u8 {
+    let db = cli.db.as_path();
+    let result = match cli.command {
+        Command::Run(args) => run::run(&args, db),
+        Command::Submit(args) => submit::run(&args, db),
+        Command::Work(args) => work::run(&args, db),
+        Command::Status(args) => status::run(&args, db),
+        Command::Report(args) => report::run(&args, db),
+        Command::Export(args) => export::run(&args, db),
+        Command::Solve(args) => solve::run(&args),
+        Command::Validate(args) => validate::run(&args),
+        Command::Schema(args) => schema::run(&args),
+        Command::Completions(args) => completions::run(&args),
+    };
+    match result {
+        Ok(code) => code,
+        // A reader that has seen enough (`tribosweep … | head`) is no failure.
+        Err(CliError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => exit::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            exit::BAD_INPUT
+        }
+    }
+}

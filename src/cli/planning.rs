@@ -1,0 +1,90 @@
+//! From a study file to jobs for the queue.
+
+use super::error::CliError;
+use crate::queue::{NewJob, NewStudy};
+use crate::solver::{self, Model};
+use crate::spec::JobSpec;
+use crate::study::{Job, Study};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// A study that has been read, expanded and checked.
+pub struct Plan {
+    /// The study.
+    pub study: Study,
+    /// Its jobs.
+    pub jobs: Vec<Job>,
+    document: String,
+}
+
+/// What a row of a study remembers of its job, so that tables need not read the payload.
+#[derive(Debug, Serialize, Deserialize)]
+pub struct RowParameters {
+    /// Disk speed ω [rpm] of the job.
+    pub omega_rpm: f64,
+    /// Local friction coefficient μ of the job.
+    pub mu: f64,
+    /// The grid parameters, in the study's order.
+    pub grid: Vec<(String, serde_json::Value)>,
+}
+
+impl Plan {
+    /// Reads and checks a study file.
+    pub fn load(path: &Path) -> Result<Self, CliError> {
+        let study = Study::load(path)?;
+        let jobs = study.expand(solver::VERSION)?;
+        preflight(path, &jobs)?;
+        let document = std::fs::read_to_string(path)
+            .map_err(|source| CliError::File { path: path.display().to_string(), source })?;
+        Ok(Self { study, jobs, document })
+    }
+
+    /// The study as the queue takes it.
+    pub fn for_queue(&self) -> Result<NewStudy, CliError> {
+        let jobs = self
+            .jobs
+            .iter()
+            .map(|job| {
+                let row = RowParameters {
+                    omega_rpm: job.spec.scene.disk.omega_rpm,
+                    mu: job.spec.scene.contact.mu,
+                    grid: job.parameters.clone(),
+                };
+                Ok(NewJob {
+                    key: job.key.clone(),
+                    payload: encode(&job.spec)?,
+                    parameters: encode(&row)?,
+                    cost: job.cost,
+                })
+            })
+            .collect::<Result<_, CliError>>()?;
+        Ok(NewStudy { name: self.study.name().to_owned(), document: self.document.clone(), jobs })
+    }
+}
+
+fn encode(what: &impl Serialize) -> Result<String, CliError> {
+    serde_json::to_string(what).map_err(|error| CliError::Unreadable(error.to_string()))
+}
+
+/// Refuses a study with a job that the solver would refuse before its first step.
+fn preflight(path: &Path, jobs: &[Job]) -> Result<(), CliError> {
+    let mut seen = BTreeSet::new();
+    for job in jobs {
+        if !seen.insert(shared_part(&job.spec)) {
+            continue;
+        }
+        if let Err(error) = Model::preflight(&job.spec.scene, &job.spec.numerics) {
+            let point: Vec<String> =
+                job.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
+            let at = if point.is_empty() { String::new() } else { format!(" (at {})", point.join(", ")) };
+            return Err(CliError::Plan(format!("{}: {error}{at}", path.display())));
+        }
+    }
+    Ok(())
+}
+
+/// What the solver's refusals depend on: the job without drive and load.
+fn shared_part(spec: &JobSpec) -> String {
+    format!("{:?}{:?}{:?}{:?}", spec.scene.pin, spec.scene.clamp, spec.scene.top, spec.numerics)
+}

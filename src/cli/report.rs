@@ -1,0 +1,51 @@
+//! `tribosweep report`: a study's tables and figures.
+
+use super::error::CliError;
+use super::output::{block_on, print};
+use super::rows;
+use crate::exit;
+use crate::queue::Queue;
+use crate::report::{self, Row};
+use std::path::{Path, PathBuf};
+
+/// Arguments of `report`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The study's name or file.
+    study: String,
+    #[command(flatten)]
+    out: OutFolder,
+}
+
+/// Where a report goes.
+#[derive(Debug, clap::Args)]
+pub struct OutFolder {
+    /// Folder for the report; default: reports/STUDY.
+    #[arg(long = "out", value_name = "DIR")]
+    folder: Option<PathBuf>,
+}
+
+/// Writes the report and prints the path of its page.
+pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+    let name = rows::study_name(&args.study)?;
+    block_on(async {
+        let mut queue = rows::open(db).await?;
+        write(&mut queue, &name, &args.out).await?;
+        queue.close().await?;
+        print(&format!("{}\n", folder(&name, &args.out).join("report.md").display()))?;
+        Ok(exit::SUCCESS)
+    })
+}
+
+/// Writes the report of a study and returns its rows.
+pub async fn write(queue: &mut Queue, name: &str, out: &OutFolder) -> Result<Vec<Row>, CliError> {
+    let rows = rows::read(queue, name).await?;
+    let folder = folder(name, out);
+    report::write(&rows, &folder, name)?;
+    eprintln!("report written to {}", folder.display());
+    Ok(rows)
+}
+
+fn folder(name: &str, out: &OutFolder) -> PathBuf {
+    out.folder.clone().unwrap_or_else(|| Path::new("reports").join(name))
+}

@@ -1,0 +1,58 @@
+//! From the queue's rows to the report's.
+
+use super::error::CliError;
+use super::planning::RowParameters;
+use crate::queue::{JobState, Queue, StudyRow, SystemClock};
+use crate::report::{Row, RowState};
+use crate::study::Study;
+use std::path::Path;
+use std::sync::Arc;
+
+/// The name of a study given as its name or as its file.
+pub fn study_name(study: &str) -> Result<String, CliError> {
+    let path = Path::new(study);
+    if path.extension().is_some_and(|extension| extension == "json") {
+        return Ok(Study::load(path)?.name().to_owned());
+    }
+    Ok(study.to_owned())
+}
+
+/// Opens an existing database to read from it.
+pub async fn open(db: &Path) -> Result<Queue, CliError> {
+    Ok(Queue::open_existing(db, Arc::new(SystemClock)).await?)
+}
+
+/// All rows of a study.
+pub async fn read(queue: &mut Queue, study: &str) -> Result<Vec<Row>, CliError> {
+    queue.rows(study).await?.into_iter().map(|row| convert(study, row)).collect()
+}
+
+fn convert(study: &str, row: StudyRow) -> Result<Row, CliError> {
+    let unreadable = |what: &str, error: serde_json::Error| {
+        CliError::Unreadable(format!(
+            "job {} of {study}: its {what} was written by another version of tribosweep ({error}); \
+             submit the study to a new database",
+            row.key
+        ))
+    };
+    let parameters: RowParameters =
+        serde_json::from_str(&row.parameters).map_err(|error| unreadable("parameters", error))?;
+    let state = match (row.state, &row.record) {
+        (JobState::Pending, _) => RowState::Pending,
+        (JobState::Running, _) => RowState::Running,
+        (JobState::Done, Some(record)) => {
+            RowState::Done(serde_json::from_str(record).map_err(|error| unreadable("record", error))?)
+        }
+        (JobState::Done, None) => RowState::Failed { error: "the record is missing".to_owned() },
+        (JobState::Failed, _) => RowState::Failed { error: row.error.clone().unwrap_or_default() },
+    };
+    Ok(Row {
+        study: study.to_owned(),
+        job: row.key.clone(),
+        parameters: parameters.grid,
+        omega_rpm: parameters.omega_rpm,
+        mu: parameters.mu,
+        state,
+        wall_s: row.wall_s,
+    })
+}

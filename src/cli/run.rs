@@ -1,0 +1,35 @@
+//! `tribosweep run`: submit, work and report.
+
+use super::error::CliError;
+use super::output::{block_on, print};
+use super::report::{self, OutFolder};
+use super::submit::submit;
+use super::work::{Threads, work};
+use crate::queue::{Queue, Scope, SystemClock};
+use crate::report::tables::{Quantity, markdown};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Arguments of `run`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The study file.
+    study: PathBuf,
+    #[command(flatten)]
+    threads: Threads,
+    #[command(flatten)]
+    out: OutFolder,
+}
+
+/// Runs the whole sweep; an interrupted one reports what it has.
+pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+    block_on(async {
+        let mut queue = Queue::open(db, Arc::new(SystemClock)).await?;
+        let name = submit(&args.study, &mut queue).await?;
+        let code = work(&mut queue, &Scope::Study(name.clone()), &args.threads).await?;
+        let rows = report::write(&mut queue, &name, &args.out).await?;
+        queue.close().await?;
+        print(&markdown(&rows, Quantity::MuStar))?;
+        Ok(code)
+    })
+}

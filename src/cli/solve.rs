@@ -1,0 +1,202 @@
+//! `tribosweep solve`: one job in the foreground, with its history.
+
+use super::error::CliError;
+use super::output::{print, write_file};
+use crate::analysis::sample::{OBSERVED_NAMES, Sample};
+use crate::analysis::{self, JobError, JobObserver, JobRecord};
+use crate::exit;
+use crate::solver::contact::ContactState;
+use crate::study::Study;
+use crate::worker::Interrupt;
+use std::fmt::Write;
+use std::ops::ControlFlow;
+use std::path::PathBuf;
+
+/// Arguments of `solve`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The study file that gives the scene.
+    study: PathBuf,
+    /// Fix a parameter of the grid, or change any other one; may be repeated.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = parse_setting)]
+    settings: Vec<(String, String)>,
+    /// Write the time history as CSV: forces and the two observed nodes.
+    #[arg(long, value_name = "FILE")]
+    history: Option<PathBuf>,
+    /// Keep every N-th step in the history.
+    #[arg(long, value_name = "N", default_value = "1", requires = "history")]
+    every: std::num::NonZeroU64,
+    /// Print the whole record as JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+fn parse_setting(text: &str) -> Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
+        _ => Err("expected NAME=VALUE, for example omega_rpm=7".to_owned()),
+    }
+}
+
+/// Solves the job and prints what was found.
+pub fn run(args: &Args) -> Result<u8, CliError> {
+    let spec = Study::load(&args.study)?.single(&args.settings)?;
+    let interrupt = Interrupt::default();
+    let raised = interrupt.clone();
+    std::thread::spawn(move || {
+        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+        if let Ok(runtime) = runtime
+            && runtime.block_on(tokio::signal::ctrl_c()).is_ok()
+        {
+            raised.raise();
+        }
+    });
+    let mut recorder =
+        Recorder { interrupt, history: args.history.as_ref().map(|_| History::new(args.every.get())) };
+    let solved = analysis::solve(&spec, &mut recorder);
+    // The history of a run that failed is what explains it, so it is written either way.
+    if let (Some(path), Some(history)) = (&args.history, &recorder.history) {
+        write_file(path, history.text.as_bytes())?;
+        eprintln!("history written to {}", path.display());
+    }
+    match solved {
+        Ok(record) => {
+            print(&if args.json { as_json(&record)? } else { as_text(&record) })?;
+            Ok(exit::SUCCESS)
+        }
+        Err(JobError::Interrupted) => {
+            eprintln!("interrupted");
+            Ok(exit::WORK_LEFT)
+        }
+        Err(JobError::Spec(violations)) => Err(CliError::Plan(violations.to_string())),
+        Err(error @ JobError::Solver(crate::solver::SolverError::Diverged { .. })) => {
+            eprintln!("error: {error}");
+            Ok(exit::SOME_FAILED)
+        }
+        Err(error) => Err(CliError::Plan(error.to_string())),
+    }
+}
+
+/// Collects the history and hears Ctrl-C.
+struct Recorder {
+    interrupt: Interrupt,
+    history: Option<History>,
+}
+
+impl JobObserver for Recorder {
+    fn sample(&mut self, sample: &Sample) {
+        if let Some(history) = &mut self.history {
+            history.add(sample);
+        }
+    }
+
+    fn progress(&mut self, _: f64) -> ControlFlow<()> {
+        if self.interrupt.is_raised() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    }
+}
+
+/// The history as CSV text.
+struct History {
+    text: String,
+    every: u64,
+    steps: u64,
+}
+
+impl History {
+    fn new(every: u64) -> Self {
+        let mut text = String::from(
+            "time_s,load_n,normal_n,tangential_n,contact_tangential_n,mu_eq,stick_nodes,slip_nodes,separated_nodes",
+        );
+        for name in OBSERVED_NAMES {
+            for column in
+                ["x_m", "y_m", "z_m", "y_velocity_m_s", "sigma_n_pa", "slip_speed_m_s", "mu_eq", "state"]
+            {
+                let _ = write!(text, ",{name}_{column}");
+            }
+        }
+        text.push('\n');
+        Self { text, every, steps: 0 }
+    }
+
+    fn add(&mut self, sample: &Sample) {
+        self.steps += 1;
+        if !(self.steps - 1).is_multiple_of(self.every) {
+            return;
+        }
+        let mu_eq = if sample.normal_n > 0.0 { sample.contact_tangential_n / sample.normal_n } else { 0.0 };
+        let _ = write!(
+            self.text,
+            "{:e},{},{},{},{},{},{},{},{}",
+            sample.time_s,
+            sample.load_n,
+            sample.normal_n,
+            sample.clamp_tangential_n,
+            sample.contact_tangential_n,
+            mu_eq,
+            sample.stick,
+            sample.slip,
+            sample.separated
+        );
+        for node in &sample.nodes {
+            let state = match node.state {
+                ContactState::Separated => "separated",
+                ContactState::Stick => "stick",
+                ContactState::Slip => "slip",
+            };
+            let [x, y, z] = node.u_m;
+            let _ = write!(
+                self.text,
+                ",{x:e},{y:e},{z:e},{},{},{},{},{state}",
+                node.y_velocity_m_s,
+                node.sigma_n_pa,
+                node.slip_speed_m_s,
+                node.equivalent_friction()
+            );
+        }
+        self.text.push('\n');
+    }
+}
+
+fn as_json(record: &JobRecord) -> Result<String, CliError> {
+    serde_json::to_string_pretty(record)
+        .map(|text| text + "\n")
+        .map_err(|error| CliError::Unreadable(error.to_string()))
+}
+
+/// The figures that people look for first.
+fn as_text(record: &JobRecord) -> String {
+    let frequency =
+        record.frequency_hz.map_or_else(|| "none".to_owned(), |frequency| format!("{frequency:.1} Hz"));
+    let growth = record
+        .growth_rate_per_s
+        .map_or_else(String::new, |rate| format!("growth rate            {rate:.0} 1/s\n"));
+    format!(
+        "outcome                {} after {:.3} ms ({} steps of {:.4e} s)\n\
+         regime                 {}\n\
+         mu*                    {:.5} ± {:.5} (at the contact {:.5})\n\
+         frequency              {frequency}\n\
+         {growth}\
+         stick, slip, separated {:.3}, {:.3}, {:.3}\n\
+         N/F                    {:.3} to {:.3}\n\
+         largest normal stress  {:.4} MPa\n\
+         largest slip speed     {:.1} mm/s\n\
+         residuals              energy {:.1e}, identities {:.1e}\n",
+        record.outcome.name(),
+        record.simulated_s * 1e3,
+        record.steps,
+        record.time_step_s,
+        record.regime.name(),
+        record.mu_star,
+        record.mu_star_se,
+        record.mu_star_contact,
+        record.stick_share,
+        record.slip_share,
+        record.separated_share,
+        record.n_over_f_min,
+        record.n_over_f_max,
+        record.sigma_n_max_pa * 1e-6,
+        record.slip_speed_max_m_s * 1e3,
+        record.energy_residual,
+        record.identity_residual(),
+    )
+}

@@ -1,0 +1,45 @@
+//! `tribosweep submit`: plan a study's jobs.
+
+use super::error::CliError;
+use super::output::block_on;
+use super::planning::Plan;
+use crate::exit;
+use crate::queue::{Queue, SystemClock};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Arguments of `submit`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    /// The study file.
+    study: PathBuf,
+}
+
+/// Plans the study.
+pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+    block_on(async {
+        let mut queue = Queue::open(db, Arc::new(SystemClock)).await?;
+        submit(&args.study, &mut queue).await?;
+        queue.close().await?;
+        Ok(exit::SUCCESS)
+    })
+}
+
+/// Reads, checks and submits a study file; returns the study's name.
+pub async fn submit(path: &Path, queue: &mut Queue) -> Result<String, CliError> {
+    let plan = Plan::load(path)?;
+    let submitted = queue.submit(&plan.for_queue()?).await?;
+    eprintln!(
+        "{}: {} jobs, {} new, {} already done{}",
+        plan.study.name(),
+        submitted.jobs,
+        submitted.added,
+        submitted.already_done,
+        if submitted.already_failed > 0 {
+            format!(", {} failed before", submitted.already_failed)
+        } else {
+            String::new()
+        }
+    );
+    Ok(plan.study.name().to_owned())
+}

@@ -1,0 +1,86 @@
+//! `tribosweep work`: run the pending jobs of the database.
+
+use super::display::Display;
+use super::error::CliError;
+use super::output::block_on;
+use super::rows;
+use crate::exit;
+use crate::queue::{Queue, Scope};
+use crate::worker::{self, Interrupt};
+use std::num::NonZeroUsize;
+use std::path::Path;
+
+/// Arguments of `work`.
+#[derive(Debug, clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    threads: Threads,
+}
+
+/// The number of worker threads.
+#[derive(Debug, clap::Args)]
+pub struct Threads {
+    /// Number of jobs solved at the same time; default: the number of cores.
+    #[arg(long, value_name = "N")]
+    threads: Option<NonZeroUsize>,
+}
+
+/// Works through all pending jobs.
+pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+    block_on(async {
+        let mut queue = rows::open(db).await?;
+        let code = work(&mut queue, &Scope::All, &args.threads).await?;
+        queue.close().await?;
+        Ok(code)
+    })
+}
+
+/// Works through the pending jobs of `scope` until they are done or Ctrl-C; returns the exit code.
+pub async fn work(queue: &mut Queue, scope: &Scope, threads: &Threads) -> Result<u8, CliError> {
+    let threads =
+        threads.threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+    let interrupt = Interrupt::default();
+    let listener = tokio::spawn(listen(interrupt.clone()));
+    let summary = worker::work(queue, scope, threads, &interrupt, &mut Display::new()).await;
+    listener.abort();
+    let summary = summary?;
+    if summary.taken_back > 0 {
+        eprintln!("{} jobs left running by an interrupted process were taken back", summary.taken_back);
+    }
+    let counts = summary.counts;
+    if counts.pending + counts.running > 0 {
+        eprintln!("interrupted; the same command continues where it stopped");
+        return Ok(exit::WORK_LEFT);
+    }
+    Ok(if counts.failed > 0 { exit::SOME_FAILED } else { exit::SUCCESS })
+}
+
+/// The first signal asks the worker to stop, the second ends the process at once.
+async fn listen(interrupt: Interrupt) {
+    stop_signal().await;
+    eprintln!("stopping; running jobs go back to the queue (once more to stop at once)");
+    interrupt.raise();
+    stop_signal().await;
+    std::process::exit(i32::from(exit::WORK_LEFT));
+}
+
+/// Waits for Ctrl-C or, on Unix, SIGTERM.
+#[cfg(unix)]
+async fn stop_signal() {
+    use tokio::signal::unix::{SignalKind, signal};
+    match signal(SignalKind::terminate()) {
+        Ok(mut terminate) => {
+            tokio::select! {
+                _ = tokio::signal::ctrl_c() => {}
+                _ = terminate.recv() => {}
+            }
+        }
+        Err(_) => drop(tokio::signal::ctrl_c().await),
+    }
+}
+
+/// Waits for Ctrl-C.
+#[cfg(not(unix))]
+async fn stop_signal() {
+    drop(tokio::signal::ctrl_c().await);
+}

@@ -1,0 +1,46 @@
+//! What the dispatcher tells while it works.
+
+use super::eta::Eta;
+use crate::queue::Counts;
+
+/// A job that is running now.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RunningJob {
+    /// Key of the job.
+    pub key: String,
+    /// Simulated time so far [s].
+    pub simulated_s: f64,
+}
+
+/// The state of the sweep at one moment.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Snapshot {
+    /// Jobs in each state.
+    pub counts: Counts,
+    /// The running jobs.
+    pub running: Vec<RunningJob>,
+    /// Remaining time, once it can be told.
+    pub eta: Option<Eta>,
+}
+
+/// Shows progress.
+pub trait Progress {
+    /// Called a few times a second and after every finished job.
+    fn update(&mut self, snapshot: &Snapshot);
+
+    /// Called when a job failed.
+    fn failed(&mut self, key: &str, error: &str);
+
+    /// Called once, when the worker stops.
+    fn stopped(&mut self, snapshot: &Snapshot);
+}
+
+/// Shows nothing.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct SilentProgress;
+
+impl Progress for SilentProgress {
+    fn update(&mut self, _: &Snapshot) {}
+    fn failed(&mut self, _: &str, _: &str) {}
+    fn stopped(&mut self, _: &Snapshot) {}
+}
