@@ -36,13 +36,8 @@ pub struct DecayMonitor {
     samples: Vec<f64>,
     spectra: VecDeque<Vec<f64>>,
     start_amplitude: f64,
-}
-
-/// What was measured over one observation time.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Decay {
-    /// Growth rate [1/s] of the slowest strong line, negative.
-    pub growth_rate_per_s: f64,
+    fastest: Option<f64>,
+    decays: bool,
 }
 
 impl DecayMonitor {
@@ -61,33 +56,46 @@ impl DecayMonitor {
             samples: Vec::with_capacity(length),
             spectra: VecDeque::with_capacity(STRETCHES),
             start_amplitude: 0.0,
+            fastest: None,
+            decays: false,
         }
     }
 
-    /// Adds one step; returns the decay when it has been measured.
-    pub fn push(&mut self, sample: &Sample) -> Option<Decay> {
+    /// Growth rate [1/s] of the fastest growing (or slowest decaying) strong line over the last
+    /// observation time; none unless all of it was sliding.
+    pub fn growth_rate_per_s(&self) -> Option<f64> {
+        self.fastest
+    }
+
+    /// Adds one step; returns whether sliding has been measured to decay and has not ended since.
+    pub fn push(&mut self, sample: &Sample) -> bool {
         if sample.time_s < self.ramp_s {
-            return None;
+            return false;
         }
         if sample.stick + sample.separated > 0 {
             self.samples.clear();
             self.spectra.clear();
-            return None;
+            self.fastest = None;
+            self.decays = false;
+            return false;
         }
         self.samples.push(sample.normal_n / sample.load_n - 1.0);
-        if self.samples.len() < 2 * self.hop {
-            return None;
+        if self.samples.len() == 2 * self.hop {
+            let spectrum = self.spectrum();
+            self.samples.drain(..self.hop);
+            if self.spectra.len() == STRETCHES {
+                self.spectra.pop_front();
+            }
+            if self.spectra.is_empty() {
+                self.start_amplitude = strongest(&spectrum);
+            }
+            self.spectra.push_back(spectrum);
+            if self.spectra.len() == STRETCHES {
+                let (fastest, decays) = self.judge();
+                (self.fastest, self.decays) = (Some(fastest), decays);
+            }
         }
-        let spectrum = self.spectrum();
-        self.samples.drain(..self.hop);
-        if self.spectra.len() == STRETCHES {
-            self.spectra.pop_front();
-        }
-        if self.spectra.is_empty() {
-            self.start_amplitude = strongest(&spectrum);
-        }
-        self.spectra.push_back(spectrum);
-        self.judge()
+        self.decays
     }
 
     /// Amplitudes of the lines of the last stretch.
@@ -102,35 +110,27 @@ impl DecayMonitor {
         output.iter().skip(FIRST_LINE).map(|c| c.norm() * 4.0 / length as f64).collect()
     }
 
-    fn judge(&self) -> Option<Decay> {
-        if self.spectra.len() < STRETCHES {
-            return None;
-        }
+    /// The largest growth rate [1/s] of a strong line, and whether all lines decay.
+    fn judge(&self) -> (f64, bool) {
         let last = &self.spectra[STRETCHES - 1];
         let highest = strongest(last);
         if highest < ROUNDING {
             // Everything has decayed to rounding since the sliding began: a measured decay, too.
             let elapsed_s = self.hop_s * (STRETCHES - 1) as f64;
-            let rate = (highest.max(f64::MIN_POSITIVE) / self.start_amplitude.max(ROUNDING)).ln() / elapsed_s;
-            return Some(Decay { growth_rate_per_s: rate.min(0.0) });
+            let rate = (ROUNDING / self.start_amplitude.max(ROUNDING)).ln() / elapsed_s;
+            return (rate, true);
         }
-        let mut slowest = f64::NEG_INFINITY;
-        for line in 0..last.len() {
-            if last[line] < ROUNDING {
-                continue;
-            }
+        let mut fastest = f64::NEG_INFINITY;
+        let mut decays = true;
+        for line in (0..last.len()).filter(|&line| last[line] >= ROUNDING) {
             let (rate, error) = self.growth_rate(line);
-            if rate - STANDARD_ERRORS * error > 0.0 {
-                return None;
-            }
+            decays &= rate - STANDARD_ERRORS * error <= 0.0;
             if last[line] >= STRONG * highest {
-                if rate + STANDARD_ERRORS * error >= 0.0 {
-                    return None;
-                }
-                slowest = slowest.max(rate);
+                decays &= rate + STANDARD_ERRORS * error < 0.0;
+                fastest = fastest.max(rate);
             }
         }
-        Some(Decay { growth_rate_per_s: slowest })
+        (fastest, decays)
     }
 
     /// Slope [1/s] of the logarithm of a line's amplitude, and its standard error.

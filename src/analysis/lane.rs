@@ -1,7 +1,7 @@
 //! The analysis of one lane, fed step by step.
 
 use super::cycles::{Cycle, CycleCutter};
-use super::decay::{Decay, DecayMonitor};
+use super::decay::DecayMonitor;
 use super::figures::Figures;
 use super::record::{EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
 use super::sample::{OBSERVED_NAMES, Sample, Sampler};
@@ -19,7 +19,7 @@ pub struct LaneAnalysis<'a> {
     monitor: DecayMonitor,
     cycles: Vec<Cycle>,
     steady: Option<SteadyState>,
-    decay: Option<Decay>,
+    decays: bool,
     late: LateWindow,
 }
 
@@ -50,7 +50,7 @@ impl<'a> LaneAnalysis<'a> {
             monitor: DecayMonitor::new(model.time_step_s(), ramp_s, &spec.detection),
             cycles: Vec::new(),
             steady: None,
-            decay: None,
+            decays: false,
             late: LateWindow {
                 start_s: (1.0 - spec.run.average_last_fraction) * spec.run.limit_s,
                 figures: Figures::EMPTY,
@@ -72,11 +72,7 @@ impl<'a> LaneAnalysis<'a> {
             self.cycles.push(cycle);
             self.steady = steady::find(&self.cycles, &self.spec.detection);
         }
-        if let Some(decay) = self.monitor.push(&sample) {
-            self.decay = Some(decay);
-        } else if sample.stick + sample.separated > 0 {
-            self.decay = None;
-        }
+        self.decays = self.monitor.push(&sample);
         if sample.time_s >= self.late.start_s {
             self.late.figures.add(&sample, 1.0);
             self.late.energies.get_or_insert(*energies);
@@ -86,7 +82,7 @@ impl<'a> LaneAnalysis<'a> {
 
     /// Whether the run can stop: the state is periodic or has been seen to decay.
     pub fn is_settled(&self) -> bool {
-        self.steady.is_some() || self.decay.is_some()
+        self.steady.is_some() || self.decays
     }
 
     /// Simulated time [s] from which on a decayed run is averaged: one observation time.
@@ -97,10 +93,10 @@ impl<'a> LaneAnalysis<'a> {
     /// The record of the run that ended in `state` with these final `energies`.
     pub fn record<const L: usize>(&self, model: &Model, state: &State<L>, energies: &Energies) -> JobRecord {
         let simulated_s = state.step as f64 * model.time_step_s();
-        let outcome = match (self.decay, self.steady) {
-            (Some(_), _) => Outcome::Decayed,
-            (None, Some(_)) => Outcome::Periodic,
-            (None, None) => Outcome::NotPeriodic,
+        let outcome = match self.steady {
+            _ if self.decays => Outcome::Decayed,
+            Some(_) => Outcome::Periodic,
+            None => Outcome::NotPeriodic,
         };
         let window = self.window(simulated_s);
         let figures = &window.figures;
@@ -138,7 +134,7 @@ impl<'a> LaneAnalysis<'a> {
             energy_identity_residual: energy_identity(&window.energies, energies),
             mu_reduction_stick: figures.stick_reduction(),
             mu_reduction_slip: figures.slip_reduction(),
-            growth_rate_per_s: self.decay.map(|d| d.growth_rate_per_s),
+            growth_rate_per_s: self.monitor.growth_rate_per_s(),
             energy: totals(energies),
             nodes: observed_nodes(figures),
         }
@@ -149,7 +145,7 @@ impl<'a> LaneAnalysis<'a> {
     fn window(&self, simulated_s: f64) -> Window {
         let crossings = self.steady.map_or(1, |s| s.crossings_per_cycle);
         let cycles = match self.steady {
-            _ if self.decay.is_some() => {
+            _ if self.decays => {
                 let start_s = simulated_s - self.decay_window_s();
                 self.cycles.as_slice().split_at(self.cycles.partition_point(|c| c.start_s < start_s)).1
             }
@@ -175,7 +171,7 @@ impl<'a> LaneAnalysis<'a> {
         let duration_s = whole[whole.len() - 1].end_s - whole[0].start_s;
         Window {
             start_s: whole[0].start_s,
-            figures: if self.decay.is_some() {
+            figures: if self.decays {
                 Figures::tapered(whole.iter().map(|cycle| &cycle.figures))
             } else {
                 Figures::merged(whole.iter().map(|cycle| &cycle.figures))

@@ -143,7 +143,8 @@ pub struct JobRecord {
     pub mu_reduction_stick: f64,
     /// What misaligned or reversed slip takes off μ*: `(1/F)⟨Σ_slip μN(1 − cos φ)⟩`.
     pub mu_reduction_slip: f64,
-    /// Growth rate [1/s] of the slowest line of the total normal force in steady sliding; negative: it decays.
+    /// Growth rate [1/s] of the fastest growing (or slowest decaying) strong line of the total normal force
+    /// at the end of the run, when the last of it was steady sliding; negative: sliding is stable.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub growth_rate_per_s: Option<f64>,
     /// Energies at the end of the run.

@@ -24,10 +24,10 @@ pub async fn open(db: &Path) -> Result<Queue, CliError> {
 
 /// All rows of a study.
 pub async fn read(queue: &mut Queue, study: &str) -> Result<Vec<Row>, CliError> {
-    queue.rows(study).await?.into_iter().map(|row| convert(study, row)).collect()
+    queue.rows(study).await?.iter().map(|row| convert(study, row)).collect()
 }
 
-fn convert(study: &str, row: StudyRow) -> Result<Row, CliError> {
+fn convert(study: &str, row: &StudyRow) -> Result<Row, CliError> {
     let unreadable = |what: &str, error: serde_json::Error| {
         CliError::Unreadable(format!(
             "job {} of {study}: its {what} was written by another version of tribosweep ({error}); \

@@ -102,11 +102,13 @@ mod tests {
         }
     }
 
+    type Held = fn([f64; 3]) -> bool;
+
     /// Protects: each named side holds the nodes that its name says.
     #[test]
     fn sides_are_where_their_names_say() {
         let mesh = BlockMesh::new(SIZE_M, [12, 15, 10]);
-        let cases: [(ClampSide, fn([f64; 3]) -> bool); 7] = [
+        let cases: [(ClampSide, Held); 7] = [
             (ClampSide::InnerSide, |x| x[0] < -0.00499),
             (ClampSide::OuterSide, |x| x[0] > 0.00499),
             (ClampSide::BothSides, |x| x[0].abs() > 0.00499),

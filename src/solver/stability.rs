@@ -47,7 +47,7 @@ fn by_elements(
         .element_positions()
         .map(|[i, j, k]| {
             let nodes = mesh.element_nodes(i, j, k);
-            pattern(std::array::from_fn(|d| freedoms[3 * nodes[d / 3] + d % 3]))
+            pattern(&std::array::from_fn(|d| freedoms[3 * nodes[d / 3] + d % 3]))
         })
         .collect();
     patterns.iter().map(|p| reduced_omega_squared(element, corner_mass, p)).fold(0.0, f64::max).sqrt()
@@ -101,7 +101,7 @@ fn free_omega_max(patch: &BlockMesh, element: &ElementStiffness, density_kg_m3: 
 const FIXED: u8 = u8::MAX;
 
 /// Numbers the independent motions of one element in order of appearance.
-fn pattern(freedoms: [Freedom; 24]) -> [u8; 24] {
+fn pattern(freedoms: &[Freedom; 24]) -> [u8; 24] {
     let mut numbers = [FIXED; 24];
     let mut next = 0;
     for d in 0..24 {

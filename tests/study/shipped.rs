@@ -59,7 +59,7 @@ fn mini_is_small() {
     let points: Vec<_> =
         jobs.iter().map(|j| (j.spec.scene.contact.mu, j.spec.scene.disk.omega_rpm)).collect();
     let expected: Vec<_> =
-        [0.2, 0.4].into_iter().flat_map(|mu| [2.0, 7.0, 35.0, 100.0].map(|omega| (mu, omega))).collect();
+        [0.2, 0.4].into_iter().flat_map(|mu| [2.0, 7.0, 35.0].map(|omega| (mu, omega))).collect();
     assert_eq!(points, expected);
     for job in jobs {
         assert_eq!(job.spec.scene.pin.elements, [6, 8, 5]);

@@ -9,9 +9,7 @@
 //!    rebound of all nodes but one hold to rounding. The forward-increment impact loses the contact
 //!    node's share of the momentum, 1/(2N); below the limit its loss of energy is O(1/N).
 
-use crate::common::{
-    COLUMN_AREA_M2, COLUMN_HEIGHT_M, IDLE, advance, bar, level, normal_force_n, observed_orders,
-};
+use crate::common::{COLUMN_AREA_M2, COLUMN_HEIGHT_M, IDLE, advance, bar, normal_force_n, observed_orders};
 use std::f64::consts::PI;
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::{Model, ModelDefinition, State, TimeStep};
@@ -121,8 +119,6 @@ fn impact(layers: usize, fraction: f64, gap_steps: f64) -> Impact {
         contact_steps += usize::from(force > 0.0);
         impulse_ns += force * model.time_step_s();
     }
-    let momentum: f64 =
-        (0..model.mesh().node_count()).map(|n| model.masses_kg()[n] * state.p[3 * n + 2]).sum();
     let energies = ledger.energies(0);
     assert!(energies.relative_residual() < 1e-12, "the energy balance closes");
     Impact {
