@@ -25,6 +25,8 @@ pub struct Figures {
     pub sigma_n_max_pa: f64,
     /// Largest slip speed [m/s].
     pub slip_speed_max_m_s: f64,
+    /// Largest gap [m] of a node.
+    pub lift_max_m: f64,
     /// Extremes of the observed nodes.
     pub nodes: [NodeFigures; OBSERVED],
 }
@@ -74,6 +76,7 @@ impl Figures {
         normal_max_n: f64::NEG_INFINITY,
         sigma_n_max_pa: 0.0,
         slip_speed_max_m_s: 0.0,
+        lift_max_m: 0.0,
         nodes: [NodeFigures::EMPTY; OBSERVED],
     };
 
@@ -93,6 +96,7 @@ impl Figures {
         self.normal_max_n = self.normal_max_n.max(sample.smooth_normal_n);
         self.sigma_n_max_pa = self.sigma_n_max_pa.max(sample.sigma_n_max_pa);
         self.slip_speed_max_m_s = self.slip_speed_max_m_s.max(sample.slip_speed_max_m_s);
+        self.lift_max_m = self.lift_max_m.max(sample.lift_max_m);
         for (node, observed) in self.nodes.iter_mut().zip(&sample.nodes) {
             node.y_min_m = node.y_min_m.min(observed.u_m[1]);
             node.y_max_m = node.y_max_m.max(observed.u_m[1]);
@@ -118,6 +122,7 @@ impl Figures {
         self.normal_max_n = self.normal_max_n.max(other.normal_max_n);
         self.sigma_n_max_pa = self.sigma_n_max_pa.max(other.sigma_n_max_pa);
         self.slip_speed_max_m_s = self.slip_speed_max_m_s.max(other.slip_speed_max_m_s);
+        self.lift_max_m = self.lift_max_m.max(other.lift_max_m);
         for (node, more) in self.nodes.iter_mut().zip(&other.nodes) {
             node.y_min_m = node.y_min_m.min(more.y_min_m);
             node.y_max_m = node.y_max_m.max(more.y_max_m);

@@ -118,6 +118,7 @@ impl<'a> LaneAnalysis<'a> {
             n_over_f_max: figures.normal_max_n / load_n,
             sigma_n_max_pa: figures.sigma_n_max_pa,
             slip_speed_max_m_s: figures.slip_speed_max_m_s,
+            lift_max_m: figures.lift_max_m,
             cycles: if oscillates { window.mu_star_per_cycle.len() } else { 0 },
             crossings_per_cycle: crossings,
             simulated_s,

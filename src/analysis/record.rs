@@ -117,6 +117,8 @@ pub struct JobRecord {
     pub sigma_n_max_pa: f64,
     /// Largest slip speed [m/s] of a node in contact in the window.
     pub slip_speed_max_m_s: f64,
+    /// Largest gap [m] of a node in the window.
+    pub lift_max_m: f64,
     /// Whole limit cycles in the averaging window; 0 when stable.
     pub cycles: usize,
     /// Section crossings that make up one limit cycle (1 for a simple cycle).

@@ -33,6 +33,8 @@ pub struct Sample {
     pub sigma_n_max_pa: f64,
     /// Largest slip speed [m/s] of a node in contact.
     pub slip_speed_max_m_s: f64,
+    /// Largest gap [m] of a node.
+    pub lift_max_m: f64,
     /// The observed nodes.
     pub nodes: [NodeSample; OBSERVED],
 }
@@ -140,6 +142,7 @@ impl Sampler {
             sample.normal_n += force[2];
             sample.contact_tangential_n += force[1];
             sample.sigma_n_max_pa = sample.sigma_n_max_pa.max(sigma_n);
+            sample.lift_max_m = sample.lift_max_m.max(contacts.gap_m[slave][l]);
             let mut slip_speed = 0.0;
             match contact_state {
                 ContactState::Separated => sample.separated += 1,

@@ -19,6 +19,7 @@ pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
         n_over_f_max: 1.5,
         sigma_n_max_pa: 1.25e6,
         slip_speed_max_m_s: 0.125,
+        lift_max_m: 3.0e-7,
         cycles: 40,
         crossings_per_cycle: 1,
         simulated_s: 0.0875,
