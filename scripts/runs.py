@@ -1,0 +1,80 @@
+"""What the documentation scripts share: build the program, run studies, read their results.
+
+Only Python's standard library. Results are kept in target/docs/docs.db, so that a script that is
+run again computes only what is new.
+"""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent.parent
+WORK = ROOT / "target" / "docs"
+PROGRAM = ROOT / "target" / "release" / "tribosweep"
+
+
+def build():
+    subprocess.run(["cargo", "build", "--release", "--quiet"], cwd=ROOT, check=True)
+    WORK.mkdir(parents=True, exist_ok=True)
+
+
+def tribosweep(*arguments, database="docs.db"):
+    """Runs the program in the work folder and returns what it prints."""
+    environment = dict(os.environ, TRIBOSWEEP_DB=str(WORK / database))
+    done = subprocess.run(
+        [PROGRAM, *arguments], cwd=WORK, env=environment, check=True, stdout=subprocess.PIPE, text=True
+    )
+    return done.stdout
+
+
+def sweep(study, database="docs.db"):
+    """Runs a study (a path below the repository, or a dictionary with a name) and returns its rows."""
+    if isinstance(study, dict):
+        path = WORK / f"{study['name']}.json"
+        path.write_text(json.dumps(study, indent=2))
+    else:
+        path = ROOT / study
+    tribosweep("run", str(path), database=database)
+    lines = tribosweep("export", str(path), "--format", "json", database=database).splitlines()
+    return [json.loads(line) for line in lines]
+
+
+def shipped(study, /, **changes):
+    """A shipped study as a dictionary, with top-level members replaced."""
+    study = json.loads((ROOT / "studies" / f"{study}.json").read_text())
+    study.update(changes)
+    return study
+
+
+def record(study, **settings):
+    """The whole record of one job."""
+    return json.loads(tribosweep("solve", str(ROOT / study), *set_arguments(settings), "--json"))
+
+
+def history(study, **settings):
+    """The time history of one job as a dictionary of columns."""
+    path = WORK / "history.csv"
+    tribosweep("solve", str(ROOT / study), *set_arguments(settings), "--history", str(path))
+    header, *lines = path.read_text().splitlines()
+    columns = {name: [] for name in header.split(",")}
+    for line in lines:
+        for name, cell in zip(columns, line.split(",")):
+            columns[name].append(cell if name.endswith("_state") else float(cell))
+    return columns
+
+
+def set_arguments(settings):
+    return [argument for name, value in settings.items() for argument in ("--set", f"{name}={value}")]
+
+
+def table(header, rows):
+    """A Markdown table."""
+    lines = [header, ["---"] * len(header), *rows]
+    return "\n".join("| " + " | ".join(str(cell) for cell in line) + " |" for line in lines) + "\n"
+
+
+def write(name, text):
+    path = ROOT / "docs" / name
+    path.write_text(text)
+    print(f"written: {path.relative_to(ROOT)}")
