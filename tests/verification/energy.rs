@@ -2,8 +2,11 @@
 //! contact loss, exactly (see `solver::energy`), and what sampling it costs.
 
 use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::{Drive, Model, State, step};
-use tribosweep::spec::{JobSpec, TopFace};
+use tribosweep::solver::{
+    Drive, Model, ModelDefinition, SolverError, State, TimeStep, boundary, disk, guard, material::Material,
+    mesh::BlockMesh, step,
+};
+use tribosweep::spec::{Clamp, JobSpec, TopFace};
 
 /// A small reference scene that sticks, slips and separates within a millisecond.
 fn spec() -> JobSpec {
@@ -60,4 +63,54 @@ fn sampling_touches_only_the_damping() {
     let damping = every.energies(0).damping_j;
     let imbalance = sampled.energies(0).imbalance_j().abs();
     assert!(imbalance < 0.1 * damping, "imbalance {imbalance:e} J, damping {damping:e} J");
+}
+
+/// The reference pin on a coarse mesh at a fraction of the stability limit, unchecked.
+fn beyond_the_limit(fraction: f64) -> Model {
+    let mesh = BlockMesh::new([0.012, 0.015, 0.010], [6, 8, 5]);
+    let strip = boundary::clamped_strip(&mesh, &Clamp { width_m: 0.002, ..Clamp::default() }).unwrap();
+    let definition = ModelDefinition {
+        material: Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 },
+        constraints: boundary::constraints(&mesh, &strip, TopFace::TiedInZ),
+        load: boundary::normal_load(&mesh),
+        surface_motion: disk::rotating_disk(&mesh, 0.0914),
+        beta2: 0.5,
+        beta_r_s: 5.0e-8,
+        time_step: TimeStep::FractionOfLimit(1.0),
+        mesh,
+    };
+    let limit_s = Model::new(definition.clone()).unwrap().time_step_limit_s();
+    let time_step = TimeStep::Unchecked(fraction * limit_s);
+    Model::new(ModelDefinition { time_step, ..definition }).unwrap()
+}
+
+/// Runs with the guard as a job does; the step at which it struck, if it did.
+fn guarded(model: &Model, steps: u64) -> Result<(), SolverError> {
+    let drive = Drive { mu: 0.4, rate: 0.733, force_n: 30.0, ramp_s: 5.0e-4 };
+    let mut state = State::<1>::at_rest(model);
+    let mut ledger = EnergyLedger::new(model, 16);
+    for n in 0..steps {
+        ledger.before_step(model, &state);
+        step(model, &[drive], &mut state);
+        ledger.after_step(model, &[drive], &state);
+        if ledger.audits(n) {
+            guard::check(model, &drive, &state, 0, ledger.energies(0))?;
+        }
+    }
+    Ok(())
+}
+
+/// Protects: a run that diverges is stopped, long before its numbers overflow, with step, time, node
+/// and the likely cause; a run at the limit is not. (The bound of ω_max is up to a few percent above the
+/// true one, so a step has to be that much too large before anything grows.)
+#[test]
+fn divergence_is_noticed_and_explained() {
+    guarded(&beyond_the_limit(1.0), 20_000).unwrap();
+    let error = guarded(&beyond_the_limit(1.15), 20_000).unwrap_err();
+    let SolverError::Diverged { step, time_s, node, what, cause, .. } = &error else { panic!("{error}") };
+    let model = beyond_the_limit(1.15);
+    assert_eq!(*time_s, *step as f64 * model.time_step_s());
+    assert!(*node < model.mesh().node_count());
+    assert!(what.contains("stored energy"), "noticed by its energy, before anything overflows: {what}");
+    assert!(cause.contains("1.1500 of the stability limit"), "{cause}");
 }
