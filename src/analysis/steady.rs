@@ -69,6 +69,42 @@ fn repeats(groups: &[[f64; FIGURES]], detection: &Detection) -> bool {
     })
 }
 
+/// Frequency [Hz] of the fundamental over consecutive `cycles`, `crossings` of which make a limit cycle.
+///
+/// # Panics
+/// Unless `cycles` are whole limit cycles, at least one.
+pub fn frequency_hz(cycles: &[Cycle], crossings: usize) -> f64 {
+    assert!(!cycles.is_empty() && cycles.len().is_multiple_of(crossings), "whole limit cycles");
+    let groups: Vec<_> = cycles.chunks_exact(crossings).collect();
+    let duration_s = cycles[cycles.len() - 1].end_s - cycles[0].start_s;
+    fundamental_per_crossing(&groups) * cycles.len() as f64 / duration_s
+}
+
+/// Periods of the fundamental per section crossing, 1/d.
+///
+/// Passages that differ by more than a fifth in duration or amplitude are humps of one cycle. A limit
+/// cycle of m crossings of which every d-th is alike is a cycle of d humps, slightly subharmonic: its
+/// normal force still has its strongest low line at 1/d of the crossing frequency, and that is the one
+/// reported. So d is the smallest divisor of m for which all passages at a distance of d are alike.
+fn fundamental_per_crossing(groups: &[&[Cycle]]) -> f64 {
+    const ALIKE: f64 = 0.2;
+    let m = groups[0].len();
+    let mean = |position: usize, figure: fn(&Cycle) -> f64| {
+        groups.iter().map(|group| figure(&group[position])).sum::<f64>() / groups.len() as f64
+    };
+    let alike = |first: usize, every: usize, figure: fn(&Cycle) -> f64| {
+        let means: Vec<f64> = (first..m).step_by(every).map(|position| mean(position, figure)).collect();
+        let highest = means.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let lowest = means.iter().copied().fold(f64::INFINITY, f64::min);
+        highest - lowest <= ALIKE * highest
+    };
+    let repeats = |d: usize| {
+        (0..d).all(|first| alike(first, d, Cycle::period_s) && alike(first, d, |cycle| cycle.amplitude_n))
+    };
+    let humps = (1..=m).find(|&d| m.is_multiple_of(d) && repeats(d)).unwrap_or(m);
+    1.0 / humps as f64
+}
+
 /// Standard error of the mean of consecutive, correlated `values`: from the means of ⌊√n⌋ batches.
 /// Zero for fewer than four values, where batches say nothing.
 pub fn standard_error(values: &[f64]) -> f64 {
