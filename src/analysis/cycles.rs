@@ -18,6 +18,8 @@ pub struct Cycle {
     pub energies: Energies,
     /// Half the range [N] of the filtered N.
     pub amplitude_n: f64,
+    /// Largest and smallest filtered N − F [N].
+    pub extremes_n: [f64; 2],
 }
 
 impl Cycle {
@@ -103,6 +105,7 @@ impl CycleCutter {
                 figures: self.figures,
                 energies: at_start,
                 amplitude_n: self.remembered,
+                extremes_n: [self.highest, self.lowest],
             });
             self.open = Some((time_s, *energies));
             self.figures = Figures::EMPTY;

@@ -82,24 +82,39 @@ pub fn frequency_hz(cycles: &[Cycle], crossings: usize) -> f64 {
 
 /// Periods of the fundamental per section crossing, 1/d.
 ///
-/// Passages that differ by more than a fifth in duration or amplitude are humps of one cycle. A limit
-/// cycle of m crossings of which every d-th is alike is a cycle of d humps, slightly subharmonic: its
-/// normal force still has its strongest low line at 1/d of the crossing frequency, and that is the one
-/// reported. So d is the smallest divisor of m for which all passages at a distance of d are alike.
+/// Passages that differ by more than a fifth, in duration or in how far N goes above or below F, are
+/// humps of one cycle. A limit cycle of m crossings of which every d-th is alike is a cycle of d humps,
+/// slightly subharmonic: its normal force still has its strongest low line at 1/d of the crossing
+/// frequency, and that is the one reported. So d is the smallest divisor of m for which all passages at
+/// a distance of d are alike.
 fn fundamental_per_crossing(groups: &[&[Cycle]]) -> f64 {
     const ALIKE: f64 = 0.2;
     let m = groups[0].len();
-    let mean = |position: usize, figure: fn(&Cycle) -> f64| {
-        groups.iter().map(|group| figure(&group[position])).sum::<f64>() / groups.len() as f64
+    // Duration, highest and lowest N of the passage at each position, as means over all groups.
+    let passages: Vec<[f64; 3]> = (0..m)
+        .map(|position| {
+            let figures = groups.iter().map(|group| {
+                let [highest, lowest] = group[position].extremes_n;
+                [group[position].period_s(), highest, lowest]
+            });
+            let sums = figures.fold([0.0; 3], |sums, f| std::array::from_fn(|i| sums[i] + f[i]));
+            sums.map(|sum| sum / groups.len() as f64)
+        })
+        .collect();
+    let extreme = |i: usize, first: usize, every: usize| {
+        let values = passages.iter().skip(first).step_by(every).map(|passage| passage[i]);
+        values.fold([f64::NEG_INFINITY, f64::INFINITY], |[high, low], v| [v.max(high), v.min(low)])
     };
-    let alike = |first: usize, every: usize, figure: fn(&Cycle) -> f64| {
-        let means: Vec<f64> = (first..m).step_by(every).map(|position| mean(position, figure)).collect();
-        let highest = means.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let lowest = means.iter().copied().fold(f64::INFINITY, f64::min);
-        highest - lowest <= ALIKE * highest
-    };
+    let longest_s = extreme(0, 0, 1)[0];
+    let amplitude_n = (extreme(1, 0, 1)[0] - extreme(2, 0, 1)[1]) / 2.0;
+    let scales = [longest_s, amplitude_n, amplitude_n];
     let repeats = |d: usize| {
-        (0..d).all(|first| alike(first, d, Cycle::period_s) && alike(first, d, |cycle| cycle.amplitude_n))
+        (0..d).all(|first| {
+            (0..3).all(|i| {
+                let [high, low] = extreme(i, first, d);
+                high - low <= ALIKE * scales[i]
+            })
+        })
     };
     let humps = (1..=m).find(|&d| m.is_multiple_of(d) && repeats(d)).unwrap_or(m);
     1.0 / humps as f64
