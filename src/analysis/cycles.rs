@@ -18,6 +18,8 @@ pub struct Cycle {
     pub energies: Energies,
     /// Half the range [N] of the filtered N.
     pub amplitude_n: f64,
+    /// Largest and smallest filtered N − F [N].
+    pub extremes_n: [f64; 2],
 }
 
 impl Cycle {
@@ -36,17 +38,23 @@ const SECTION_SMOOTHING: f64 = 0.25;
 /// the one before.
 const HYSTERESIS: f64 = 0.25;
 
+/// Time constant with which the last cycle's amplitude is forgotten, over the same transit time: about
+/// six cycles of the reference scene. Without it a violent start would hide a small cycle for good.
+const AMPLITUDE_MEMORY: f64 = 16.0;
+
 /// Cuts a run into cycles on the fly.
 #[derive(Debug, Clone)]
 pub struct CycleCutter {
     gain: f64,
+    /// Fraction of the remembered amplitude that a step leaves.
+    memory: f64,
     filters: [Smoother; 2],
     ramp_s: f64,
     time_step_s: f64,
     previous: f64,
     lowest: f64,
     highest: f64,
-    amplitude: f64,
+    remembered: f64,
     open: Option<(f64, Energies)>,
     figures: Figures,
 }
@@ -57,13 +65,14 @@ impl CycleCutter {
         let transit_s = model.mesh().size_m()[2] / model.material().shear_wave_speed_m_s();
         Self {
             gain: smoothing_gain(model.time_step_s(), SECTION_SMOOTHING * transit_s),
+            memory: 1.0 - smoothing_gain(model.time_step_s(), AMPLITUDE_MEMORY * transit_s),
             filters: [Smoother::default(); 2],
             ramp_s,
             time_step_s: model.time_step_s(),
             previous: 0.0,
             lowest: 0.0,
             highest: 0.0,
-            amplitude: 0.0,
+            remembered: 0.0,
             open: None,
             figures: Figures::EMPTY,
         }
@@ -79,7 +88,8 @@ impl CycleCutter {
         }
         self.lowest = self.lowest.min(above);
         self.highest = self.highest.max(above);
-        let crosses = self.previous < 0.0 && above >= 0.0 && -self.lowest > HYSTERESIS * self.amplitude;
+        let crosses = self.previous < 0.0 && above >= 0.0 && -self.lowest > HYSTERESIS * self.remembered;
+        self.remembered *= self.memory;
         let mut finished = None;
         let mut next_weight = 1.0;
         if crosses {
@@ -88,13 +98,14 @@ impl CycleCutter {
             let time_s = sample.time_s - (1.0 - fraction) * self.time_step_s;
             self.figures.add(sample, fraction);
             next_weight = 1.0 - fraction;
-            self.amplitude = (self.highest - self.lowest) / 2.0;
+            self.remembered = (self.highest - self.lowest) / 2.0;
             finished = self.open.map(|(start_s, at_start)| Cycle {
                 start_s,
                 end_s: time_s,
                 figures: self.figures,
                 energies: at_start,
-                amplitude_n: self.amplitude,
+                amplitude_n: self.remembered,
+                extremes_n: [self.highest, self.lowest],
             });
             self.open = Some((time_s, *energies));
             self.figures = Figures::EMPTY;

@@ -157,32 +157,37 @@ impl Figures {
 
     /// ⟨T⟩/⟨F⟩ with T at the clamp.
     pub fn mu_star(&self) -> f64 {
-        self.clamp_tangential / self.load
+        ratio(self.clamp_tangential, self.load)
     }
 
     /// ⟨T⟩/⟨N⟩ of the contact forces.
     pub fn mu_star_contact(&self) -> f64 {
-        self.contact_tangential / self.normal
+        ratio(self.contact_tangential, self.normal)
     }
 
     /// ⟨N⟩/⟨F⟩.
     pub fn normal_over_load(&self) -> f64 {
-        self.normal / self.load
+        ratio(self.normal, self.load)
     }
 
     /// (1/F)⟨Σ(μN − t_y)⟩ over sticking nodes: what sticking takes off μ*.
     pub fn stick_reduction(&self) -> f64 {
-        self.stick_deficit / self.load
+        ratio(self.stick_deficit, self.load)
     }
 
     /// (1/F)⟨Σ μN(1 − cos φ)⟩ over slipping nodes: what misaligned or reversed slip takes off μ*.
     pub fn slip_reduction(&self) -> f64 {
-        self.slip_deficit / self.load
+        ratio(self.slip_deficit, self.load)
     }
 
     /// Shares of the node-time in stick, slip and separation.
     pub fn shares(&self) -> [f64; 3] {
         let all = self.stick + self.slip + self.separated;
-        [self.stick / all, self.slip / all, self.separated / all]
+        [self.stick, self.slip, self.separated].map(|part| ratio(part, all))
     }
+}
+
+/// A mean over a mean; 0 where there is nothing to compare with (no step yet, no load, no contact).
+fn ratio(part: f64, whole: f64) -> f64 {
+    if whole == 0.0 { 0.0 } else { part / whole }
 }

@@ -10,6 +10,7 @@ use crate::solver::Model;
 use crate::solver::energy::Energies;
 use crate::solver::state::{Drive, State};
 use crate::spec::JobSpec;
+use std::collections::VecDeque;
 
 /// Follows one job's run and makes its record.
 pub struct LaneAnalysis<'a> {
@@ -21,6 +22,7 @@ pub struct LaneAnalysis<'a> {
     steady: Option<SteadyState>,
     decays: bool,
     late: LateWindow,
+    trailing: Trailing,
 }
 
 /// The last part of a run that ends at its time limit.
@@ -30,12 +32,69 @@ struct LateWindow {
     energies: Option<Energies>,
 }
 
+/// The last observation time, in equal blocks of steps.
+struct Trailing {
+    steps_per_block: u64,
+    steps: u64,
+    blocks: VecDeque<Block>,
+}
+
+/// Some consecutive steps.
+struct Block {
+    start_s: f64,
+    figures: Figures,
+    /// Energies at the start.
+    energies: Energies,
+}
+
+impl Trailing {
+    /// Blocks per observation time: so many that a Hann taper over them is smooth.
+    const BLOCKS: usize = 64;
+
+    fn new(observation_s: f64, time_step_s: f64) -> Self {
+        let steps_per_block = (observation_s / (Self::BLOCKS as f64 * time_step_s)).max(1.0) as u64;
+        Self { steps_per_block, steps: 0, blocks: VecDeque::with_capacity(Self::BLOCKS) }
+    }
+
+    /// Adds one step.
+    fn push(&mut self, sample: &Sample, energies: &Energies) {
+        if self.steps.is_multiple_of(self.steps_per_block) {
+            if self.blocks.len() == Self::BLOCKS {
+                self.blocks.pop_front();
+            }
+            let (start_s, energies) = (sample.time_s, *energies);
+            self.blocks.push_back(Block { start_s, figures: Figures::EMPTY, energies });
+        }
+        self.steps += 1;
+        if let Some(block) = self.blocks.back_mut() {
+            block.figures.add(sample, 1.0);
+        }
+    }
+
+    /// The window of all blocks.
+    fn window(&self, tapered: bool) -> Window {
+        let figures = self.blocks.iter().map(|block| &block.figures);
+        let first = self.blocks.front();
+        Window {
+            start_s: first.map_or(0.0, |block| block.start_s),
+            figures: if tapered { Figures::tapered(figures) } else { Figures::merged(figures) },
+            energies: first.map(|block| block.energies).unwrap_or_default(),
+            mu_star_parts: self.blocks.iter().map(|block| block.figures.mu_star()).collect(),
+            cycles: 0,
+            frequency_hz: None,
+        }
+    }
+}
+
 /// The window that the figures are taken from.
 struct Window {
     start_s: f64,
     figures: Figures,
     energies: Energies,
-    mu_star_per_cycle: Vec<f64>,
+    /// T/F of the parts of which the mean's standard error is taken.
+    mu_star_parts: Vec<f64>,
+    /// Limit cycles.
+    cycles: usize,
     frequency_hz: Option<f64>,
 }
 
@@ -56,6 +115,7 @@ impl<'a> LaneAnalysis<'a> {
                 figures: Figures::EMPTY,
                 energies: None,
             },
+            trailing: Trailing::new(spec.detection.decay_observation_s, model.time_step_s()),
         }
     }
 
@@ -77,17 +137,13 @@ impl<'a> LaneAnalysis<'a> {
             self.late.figures.add(&sample, 1.0);
             self.late.energies.get_or_insert(*energies);
         }
+        self.trailing.push(&sample, energies);
         sample
     }
 
     /// Whether the run can stop: the state is periodic or has been seen to decay.
     pub fn is_settled(&self) -> bool {
         self.steady.is_some() || self.decays
-    }
-
-    /// Simulated time [s] from which on a decayed run is averaged: one observation time.
-    fn decay_window_s(&self) -> f64 {
-        self.spec.detection.decay_observation_s
     }
 
     /// The record of the run that ended in `state` with these final `energies`.
@@ -103,14 +159,13 @@ impl<'a> LaneAnalysis<'a> {
         let [stick, slip, separated] = figures.shares();
         let load_n = self.spec.scene.load.force_n;
         let crossings = self.steady.map_or(1, |s| s.crossings_per_cycle);
-        let oscillates = outcome != Outcome::Decayed;
         JobRecord {
             outcome,
             regime: regime(outcome, stick, separated, self.spec.detection.regime_threshold),
             mu_star: figures.mu_star(),
-            mu_star_se: steady::standard_error(&window.mu_star_per_cycle),
+            mu_star_se: steady::standard_error(&window.mu_star_parts),
             mu_star_contact: figures.mu_star_contact(),
-            frequency_hz: window.frequency_hz.filter(|_| oscillates),
+            frequency_hz: window.frequency_hz,
             stick_share: stick,
             slip_share: slip,
             separated_share: separated,
@@ -119,7 +174,7 @@ impl<'a> LaneAnalysis<'a> {
             sigma_n_max_pa: figures.sigma_n_max_pa,
             slip_speed_max_m_s: figures.slip_speed_max_m_s,
             lift_max_m: figures.lift_max_m,
-            cycles: if oscillates { window.mu_star_per_cycle.len() } else { 0 },
+            cycles: window.cycles,
             crossings_per_cycle: crossings,
             simulated_s,
             window_start_s: window.start_s,
@@ -141,15 +196,18 @@ impl<'a> LaneAnalysis<'a> {
         }
     }
 
-    /// The averaging window: the cycles in which the state was found steady, or (at the time limit)
-    /// all whole cycles in the last part of the run, or that part itself when it has too few cycles.
+    /// The averaging window:
+    /// * decayed: the last observation time, tapered, whether or not there were cycles in it;
+    /// * periodic: the cycles in which the state was found steady, or with `stop_early` = false all whole
+    ///   cycles in the last part of the run;
+    /// * neither: these cycles, or that part itself when they are too few or cover less than half of it,
+    ///   or the last observation time when not a single step falls into it.
     fn window(&self, simulated_s: f64) -> Window {
+        if self.decays {
+            return self.trailing.window(true);
+        }
         let crossings = self.steady.map_or(1, |s| s.crossings_per_cycle);
         let cycles = match self.steady {
-            _ if self.decays => {
-                let start_s = simulated_s - self.decay_window_s();
-                self.cycles.as_slice().split_at(self.cycles.partition_point(|c| c.start_s < start_s)).1
-            }
             Some(steady) if self.spec.run.stop_early => {
                 &self.cycles[self.cycles.len() - steady.window_crossings..]
             }
@@ -159,52 +217,34 @@ impl<'a> LaneAnalysis<'a> {
             }
         };
         let whole = &cycles[cycles.len() % crossings..];
-        if whole.len() < 2 * crossings {
+        let duration_s = whole.last().map_or(0.0, |last| last.end_s - whole[0].start_s);
+        let covers = self.steady.is_some() || duration_s >= 0.5 * (simulated_s - self.late.start_s);
+        if whole.len() < 2 * crossings || !covers {
+            if self.late.figures.is_empty() {
+                return self.trailing.window(false);
+            }
             return Window {
-                start_s: self.late.start_s.min(simulated_s),
+                start_s: self.late.start_s,
                 figures: self.late.figures,
                 energies: self.late.energies.unwrap_or_default(),
-                mu_star_per_cycle: Vec::new(),
+                mu_star_parts: Vec::new(),
+                cycles: 0,
                 frequency_hz: None,
             };
         }
-        let groups: Vec<_> = whole.chunks_exact(crossings).collect();
-        let duration_s = whole[whole.len() - 1].end_s - whole[0].start_s;
+        let mu_star_parts: Vec<f64> = whole
+            .chunks_exact(crossings)
+            .map(|group| Figures::merged(group.iter().map(|cycle| &cycle.figures)).mu_star())
+            .collect();
         Window {
             start_s: whole[0].start_s,
-            figures: if self.decays {
-                Figures::tapered(whole.iter().map(|cycle| &cycle.figures))
-            } else {
-                Figures::merged(whole.iter().map(|cycle| &cycle.figures))
-            },
+            figures: Figures::merged(whole.iter().map(|cycle| &cycle.figures)),
             energies: whole[0].energies,
-            mu_star_per_cycle: groups
-                .iter()
-                .map(|group| Figures::merged(group.iter().map(|cycle| &cycle.figures)).mu_star())
-                .collect(),
-            frequency_hz: Some(fundamental_per_crossing(&groups) * whole.len() as f64 / duration_s),
+            cycles: mu_star_parts.len(),
+            mu_star_parts,
+            frequency_hz: Some(steady::frequency_hz(whole, crossings)),
         }
     }
-}
-
-/// Periods of the fundamental per section crossing, 1 or 1/m.
-///
-/// A cycle of m crossings whose passages are alike is a period-doubled one: its normal force still has
-/// its strongest low line at the crossing frequency, and that is the one reported. Passages that
-/// differ by more than a fifth in duration or amplitude are humps of one cycle.
-fn fundamental_per_crossing(groups: &[&[Cycle]]) -> f64 {
-    const ALIKE: f64 = 0.2;
-    let m = groups[0].len();
-    let mean = |position: usize, figure: fn(&Cycle) -> f64| {
-        groups.iter().map(|group| figure(&group[position])).sum::<f64>() / groups.len() as f64
-    };
-    let alike = |figure: fn(&Cycle) -> f64| {
-        let means: Vec<f64> = (0..m).map(|position| mean(position, figure)).collect();
-        let highest = means.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        let lowest = means.iter().copied().fold(f64::INFINITY, f64::min);
-        highest - lowest <= ALIKE * highest
-    };
-    if alike(Cycle::period_s) && alike(|cycle| cycle.amplitude_n) { 1.0 } else { 1.0 / m as f64 }
 }
 
 /// Names the regime from the outcome and the shares of stick and separation.

@@ -97,7 +97,7 @@ pub struct JobRecord {
     pub regime: Regime,
     /// Macroscopic friction coefficient μ* = ⟨T⟩/⟨F⟩, T from the clamp's reactions.
     pub mu_star: f64,
-    /// Standard error of `mu_star` over cycles.
+    /// Standard error of `mu_star` over cycles (over equal parts of the window when sliding is stable).
     pub mu_star_se: f64,
     /// The same ratio from the mean contact forces, a check.
     pub mu_star_contact: f64,

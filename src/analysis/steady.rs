@@ -69,6 +69,57 @@ fn repeats(groups: &[[f64; FIGURES]], detection: &Detection) -> bool {
     })
 }
 
+/// Frequency [Hz] of the fundamental over consecutive `cycles`, `crossings` of which make a limit cycle.
+///
+/// # Panics
+/// Unless `cycles` are whole limit cycles, at least one.
+pub fn frequency_hz(cycles: &[Cycle], crossings: usize) -> f64 {
+    assert!(!cycles.is_empty() && cycles.len().is_multiple_of(crossings), "whole limit cycles");
+    let groups: Vec<_> = cycles.chunks_exact(crossings).collect();
+    let duration_s = cycles[cycles.len() - 1].end_s - cycles[0].start_s;
+    fundamental_per_crossing(&groups) * cycles.len() as f64 / duration_s
+}
+
+/// Periods of the fundamental per section crossing, 1/d.
+///
+/// Passages that differ by more than a fifth, in duration or in how far N goes above or below F, are
+/// humps of one cycle. A limit cycle of m crossings of which every d-th is alike is a cycle of d humps,
+/// slightly subharmonic: its normal force still has its strongest low line at 1/d of the crossing
+/// frequency, and that is the one reported. So d is the smallest divisor of m for which all passages at
+/// a distance of d are alike.
+fn fundamental_per_crossing(groups: &[&[Cycle]]) -> f64 {
+    const ALIKE: f64 = 0.2;
+    let m = groups[0].len();
+    // Duration, highest and lowest N of the passage at each position, as means over all groups.
+    let passages: Vec<[f64; 3]> = (0..m)
+        .map(|position| {
+            let figures = groups.iter().map(|group| {
+                let [highest, lowest] = group[position].extremes_n;
+                [group[position].period_s(), highest, lowest]
+            });
+            let sums = figures.fold([0.0; 3], |sums, f| std::array::from_fn(|i| sums[i] + f[i]));
+            sums.map(|sum| sum / groups.len() as f64)
+        })
+        .collect();
+    let extreme = |i: usize, first: usize, every: usize| {
+        let values = passages.iter().skip(first).step_by(every).map(|passage| passage[i]);
+        values.fold([f64::NEG_INFINITY, f64::INFINITY], |[high, low], v| [v.max(high), v.min(low)])
+    };
+    let longest_s = extreme(0, 0, 1)[0];
+    let amplitude_n = (extreme(1, 0, 1)[0] - extreme(2, 0, 1)[1]) / 2.0;
+    let scales = [longest_s, amplitude_n, amplitude_n];
+    let repeats = |d: usize| {
+        (0..d).all(|first| {
+            (0..3).all(|i| {
+                let [high, low] = extreme(i, first, d);
+                high - low <= ALIKE * scales[i]
+            })
+        })
+    };
+    let humps = (1..=m).find(|&d| m.is_multiple_of(d) && repeats(d)).unwrap_or(m);
+    1.0 / humps as f64
+}
+
 /// Standard error of the mean of consecutive, correlated `values`: from the means of ⌊√n⌋ batches.
 /// Zero for fewer than four values, where batches say nothing.
 pub fn standard_error(values: &[f64]) -> f64 {

@@ -38,6 +38,10 @@ pub struct JobSpec {
     pub detection: Detection,
 }
 
+/// A decay is observed over at least so many transit times of shear waves over the pin's height
+/// (2.5 ms in the reference scene): the squeal's line must be well above the lowest line looked at.
+const SHORTEST_OBSERVATION: f64 = 100.0;
+
 impl JobSpec {
     /// Checks every value against its physical or numerical limits.
     ///
@@ -55,6 +59,18 @@ impl JobSpec {
                 "scene.load.ramp_s",
                 self.scene.load.ramp_s,
                 format!("less than the run's time limit (run.limit_s = {})", self.run.limit_s),
+            );
+        }
+        let observation_s = self.detection.decay_observation_s;
+        let shortest_s = SHORTEST_OBSERVATION * self.scene.pin.shear_transit_s();
+        if observation_s < shortest_s {
+            found.add(
+                "detection.decay_observation_s",
+                observation_s,
+                format!(
+                    "at least {shortest_s:e} s, {SHORTEST_OBSERVATION} transit times of shear waves over the pin's \
+                     height: slower oscillations would not be seen to grow"
+                ),
             );
         }
         found.into_result()

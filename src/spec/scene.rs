@@ -50,6 +50,14 @@ impl Default for Pin {
     }
 }
 
+impl Pin {
+    /// Time [s] in which a shear wave crosses the pin's height; NaN for an unphysical material.
+    pub(super) fn shear_transit_s(&self) -> f64 {
+        let shear_modulus_pa = self.young_modulus_pa / (2.0 * (1.0 + self.poisson_ratio));
+        self.size_m[2] / (shear_modulus_pa / self.density_kg_m3).sqrt()
+    }
+}
+
 /// What the disk is made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]

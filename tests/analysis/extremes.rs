@@ -1,0 +1,130 @@
+//! Short runs and extreme but legal inputs: a record without NaN, or a clean error.
+
+use crate::signals::coarse;
+use tribosweep::analysis::{JobError, JobRecord, Outcome, Unobserved, solve};
+use tribosweep::solver::SolverError;
+use tribosweep::spec::{ClampSide, JobSpec, TopFace};
+
+/// The record after a round trip through JSON, where NaN and ∞ would become null and be refused.
+fn finite_record(what: &str, spec: &JobSpec) -> JobRecord {
+    let record = solve(spec, &mut Unobserved).unwrap_or_else(|e| panic!("{what}: {e}"));
+    let json = serde_json::to_string(&record).unwrap();
+    let back: JobRecord = serde_json::from_str(&json).unwrap_or_else(|e| panic!("{what}: {e} in {json}"));
+    assert_eq!(back, record, "{what}");
+    assert!(record.growth_rate_per_s.is_none_or(f64::is_finite), "{what}");
+    assert!(record.frequency_hz.is_none_or(|f| f.is_finite() && f > 0.0), "{what}");
+    let shares = record.stick_share + record.slip_share + record.separated_share;
+    assert!((shares - 1.0).abs() < 1e-12, "{what}: shares sum to {shares}");
+    assert!(record.window_start_s >= 0.0 && record.window_start_s <= record.simulated_s, "{what}");
+    record
+}
+
+fn changed(change: impl FnOnce(&mut JobSpec)) -> JobSpec {
+    let mut spec = coarse();
+    spec.run.limit_s = 0.002;
+    change(&mut spec);
+    spec
+}
+
+/// Protects: a run that is too short to settle says so, with finite figures.
+#[test]
+fn runs_too_short_to_settle() {
+    let cases: [(&str, JobSpec); 9] = [
+        ("too short", changed(|_| ())),
+        ("shorter than a cycle", changed(|s| (s.run.limit_s, s.scene.load.ramp_s) = (4.0e-5, 0.0))),
+        ("one step", changed(|s| (s.run.limit_s, s.scene.load.ramp_s) = (1.0e-9, 0.0))),
+        ("one step of a ramp", changed(|s| (s.run.limit_s, s.scene.load.ramp_s) = (2.0e-9, 1.0e-9))),
+        ("just above the ramp", changed(|s| s.run.limit_s = 1.000_001 * s.scene.load.ramp_s)),
+        ("sudden load", changed(|s| s.scene.load.ramp_s = 0.0)),
+        ("tiny fraction", changed(|s| s.run.average_last_fraction = 1.0e-12)),
+        ("nearly all", changed(|s| s.run.average_last_fraction = 1.0 - 1.0e-12)),
+        ("many cycles", changed(|s| s.detection.cycles = 10_000)),
+    ];
+    for (what, spec) in &cases {
+        let record = finite_record(what, spec);
+        assert_eq!(record.outcome, Outcome::NotPeriodic, "{what}");
+    }
+}
+
+/// Protects: runs that decay before the window of the last part begins, with hardly a cycle in them
+/// (strong damping, no friction), have figures all the same: μ* = μ less the disk's curvature.
+#[test]
+fn decayed_runs_without_cycles() {
+    for mu in [0.0, 0.1] {
+        let mut spec = coarse();
+        spec.scene.contact.mu = mu;
+        spec.numerics.beta_r_s = 2.0e-6;
+        spec.scene.pin.elements = [3, 4, 2];
+        spec.scene.clamp.width_m = 0.004;
+        spec.run.limit_s = 0.1;
+        let record = finite_record("strongly damped", &spec);
+        assert_eq!(record.outcome, Outcome::Decayed, "{record:?}");
+        assert!(record.simulated_s < 0.03, "{record:?}");
+        assert!((record.mu_star - mu).abs() <= 0.002 * mu + 1.0e-12, "{record:?}");
+        assert_eq!((record.slip_share, record.cycles, record.frequency_hz), (1.0, 0, None));
+    }
+}
+
+/// Protects: extreme but legal inputs end in a finite record, or in a refusal that says why.
+#[test]
+fn extreme_inputs() {
+    let cases: [(&str, JobSpec); 20] = [
+        ("frictionless", changed(|s| s.scene.contact.mu = 0.0)),
+        ("μ = 2", changed(|s| s.scene.contact.mu = 2.0)),
+        ("μ = 50", changed(|s| s.scene.contact.mu = 50.0)),
+        ("1e-3 rpm", changed(|s| s.scene.disk.omega_rpm = 1.0e-3)),
+        ("1e4 rpm", changed(|s| s.scene.disk.omega_rpm = 1.0e4)),
+        ("1e-6 N", changed(|s| s.scene.load.force_n = 1.0e-6)),
+        ("1e6 N", changed(|s| s.scene.load.force_n = 1.0e6)),
+        ("nearly incompressible", changed(|s| s.scene.pin.poisson_ratio = 0.499)),
+        ("auxetic", changed(|s| s.scene.pin.poisson_ratio = -0.9)),
+        (
+            "one element",
+            changed(|s| {
+                s.scene.pin.elements = [1, 1, 1];
+                s.scene.clamp.side = ClampSide::WholeTop;
+            }),
+        ),
+        (
+            "one element, free top, no friction",
+            changed(|s| {
+                s.scene.pin.elements = [1, 1, 1];
+                s.scene.clamp.side = ClampSide::WholeTop;
+                s.scene.top = TopFace::FreeInZ;
+                s.scene.contact.mu = 0.0;
+                s.run.limit_s = 0.05;
+            }),
+        ),
+        ("β₂ = 1", changed(|s| s.numerics.beta2 = 1.0)),
+        ("undamped", changed(|s| s.numerics.beta_r_s = 0.0)),
+        (
+            "hugely overdamped",
+            changed(|s| {
+                s.scene.pin.elements = [3, 4, 2];
+                s.scene.clamp.width_m = 0.004;
+                s.numerics.beta_r_s = 1.0e-3;
+                s.run.limit_s = 6.0e-4;
+            }),
+        ),
+        ("free top", changed(|s| s.scene.top = TopFace::FreeInZ)),
+        ("both ends held", changed(|s| s.scene.clamp.side = ClampSide::BothEnds)),
+        ("endless observation", changed(|s| s.detection.decay_observation_s = 1.0e300)),
+        ("no observation", changed(|s| s.detection.decay_observation_s = 1.0e-300)),
+        (
+            "loosest detection",
+            changed(|s| {
+                (s.detection.cycles, s.detection.tolerance, s.detection.drift_tolerance) = (2, 0.99, 0.99);
+            }),
+        ),
+        ("everything is a regime", changed(|s| s.detection.regime_threshold = 0.0)),
+    ];
+    for (what, spec) in &cases {
+        match solve(spec, &mut Unobserved) {
+            Ok(_) => {
+                finite_record(what, spec);
+            }
+            Err(JobError::Solver(SolverError::ClampOffMesh { .. })) if *what == "both ends held" => (),
+            Err(error) => panic!("{what}: {error}"),
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! Sums, means and weights of windows.
+
+use crate::signals::{LOAD_N, Random, SQUEAL_HZ, STEP_S, cut, sample, sine};
+use tribosweep::analysis::figures::Figures;
+use tribosweep::analysis::sample::Sample;
+
+fn random_samples(count: usize) -> Vec<Sample> {
+    let mut random = Random(31);
+    (0..count)
+        .map(|n| {
+            let mut sample = sample(n as f64 * STEP_S, random.between(0.0, 3.0));
+            sample.clamp_tangential_n = random.between(-10.0, 20.0);
+            sample.stick_deficit_n = random.between(0.0, 5.0);
+            sample.slip_deficit_n = random.between(0.0, 5.0);
+            sample.stick = (random.unit() * 20.0) as usize;
+            sample.slip = (random.unit() * 20.0) as usize;
+            sample.separated = 63 - sample.stick - sample.slip;
+            for node in &mut sample.nodes {
+                node.u_m[1] = random.between(-1e-6, 1e-6);
+                node.gap_m = random.unit() * 1e-7;
+            }
+            sample
+        })
+        .collect()
+}
+
+fn sum(samples: &[Sample]) -> Figures {
+    samples.iter().fold(Figures::EMPTY, |mut all, sample| {
+        all.add(sample, 1.0);
+        all
+    })
+}
+
+fn ratios(figures: &Figures) -> [f64; 8] {
+    let [stick, slip, separated] = figures.shares();
+    [
+        figures.mu_star(),
+        figures.mu_star_contact(),
+        figures.normal_over_load(),
+        figures.stick_reduction(),
+        figures.slip_reduction(),
+        stick,
+        slip,
+        separated,
+    ]
+}
+
+/// Protects: shares sum to one, whatever the weights.
+#[test]
+fn shares_sum_to_one() {
+    let mut figures = Figures::EMPTY;
+    for (i, sample) in random_samples(1000).iter().enumerate() {
+        figures.add(sample, [1.0, 0.3, 1.0e-9][i % 3]);
+        assert!((figures.shares().iter().sum::<f64>() - 1.0).abs() < 1e-14);
+    }
+}
+
+/// Protects: merging windows is adding all their samples: sums to rounding (1000 additions of either
+/// sign), extremes exactly.
+#[test]
+fn merged_equals_adding_all() {
+    let samples = random_samples(1000);
+    let all = sum(&samples);
+    let parts: Vec<Figures> = samples.chunks(37).map(sum).collect();
+    let merged = Figures::merged(&parts);
+    for (a, b) in ratios(&all).iter().zip(ratios(&merged)) {
+        assert!((a - b).abs() < 1e-12, "{a} {b}");
+    }
+    assert_eq!((all.normal_min_n, all.normal_max_n), (merged.normal_min_n, merged.normal_max_n));
+    for (a, b) in all.nodes.iter().zip(&merged.nodes) {
+        assert_eq!(a, b);
+    }
+}
+
+/// Protects: the taper. T/F oscillates by ±0.1 with a period of 7.3 windows, 5.48 of which are in the
+/// 40 windows: the plain mean is off by up to 0.1/(π·5.48) = 6 · 10⁻³; under the taper the leakage is
+/// 1/(1 − 5.48²) = 1/29 of that, 2 · 10⁻⁴.
+#[test]
+fn tapered_mean_kills_an_unfinished_oscillation() {
+    let mut worst = [0.0_f64; 2];
+    for eighth in 0..8 {
+        let windows: Vec<Figures> = (0..40)
+            .map(|w| {
+                let samples: Vec<Sample> = (0..50)
+                    .map(|n| {
+                        let t = f64::from(50 * w + n);
+                        let mut sample = sample(t, 1.0);
+                        let phase = f64::from(eighth) * 0.785;
+                        sample.clamp_tangential_n += 0.1 * LOAD_N * sine(1.0 / (7.3 * 50.0), t, phase);
+                        sample
+                    })
+                    .collect();
+                sum(&samples)
+            })
+            .collect();
+        for (worst, figures) in
+            worst.iter_mut().zip([Figures::merged(&windows), Figures::tapered(windows.iter())])
+        {
+            *worst = worst.max((figures.mu_star() - 0.3).abs());
+        }
+    }
+    assert!(worst[0] > 2.0e-3, "the plain mean {worst:?} shows what there is to kill");
+    assert!(worst[1] < 3.0e-4, "{worst:?}");
+}
+
+/// Protects: whatever is empty is said to be, and has finite figures.
+#[test]
+fn an_empty_window_is_finite() {
+    assert!(Figures::EMPTY.is_empty());
+    assert!(!sum(&random_samples(1)).is_empty());
+    assert!(ratios(&Figures::EMPTY).iter().all(|ratio| ratio.is_finite()), "{:?}", ratios(&Figures::EMPTY));
+}
+
+/// Protects: the step in which a cycle ends is shared without loss: the mean over consecutive cycles
+/// is the integral of the samples (each standing for the step that ends at it) between the first and
+/// the last crossing. T is a straight line here, so a step counted twice or not at all would show:
+/// ⟨T⟩/F = ½(start + end) + half a step, to rounding.
+#[test]
+fn cycles_share_their_last_step() {
+    let cycles = cut(STEP_S, 0.005, |t| {
+        let mut sample = sample(t, 1.0 + 0.5 * sine(SQUEAL_HZ, t, 0.0));
+        sample.clamp_tangential_n = t * LOAD_N;
+        sample
+    });
+    assert!(cycles.len() > 60);
+    for pair in cycles.windows(2) {
+        assert_eq!(pair[0].end_s, pair[1].start_s, "no gap between cycles");
+    }
+    for window in [&cycles[..], &cycles[3..4], &cycles[7..29]] {
+        let (start_s, end_s) = (window[0].start_s, window[window.len() - 1].end_s);
+        let found = Figures::merged(window.iter().map(|cycle| &cycle.figures)).mu_star();
+        // The samples stand for staircase steps: their integral between two fractions θ of a step.
+        let stairs = |time_s: f64| {
+            let whole = (time_s / STEP_S).floor();
+            let theta = time_s / STEP_S - whole;
+            (whole * (whole + 1.0) / 2.0 + theta * (whole + 1.0)) * STEP_S * STEP_S
+        };
+        let expected = (stairs(end_s) - stairs(start_s)) / (end_s - start_s);
+        assert!((found / expected - 1.0).abs() < 1e-9, "{found} instead of {expected}");
+    }
+}

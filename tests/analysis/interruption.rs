@@ -1,0 +1,52 @@
+//! What an observer can do.
+
+use crate::signals::coarse;
+use std::ops::ControlFlow;
+use tribosweep::analysis::sample::Sample;
+use tribosweep::analysis::{JobError, JobObserver, solve};
+
+/// Asks to stop from a simulated time on; counts the steps and looks at their times.
+struct StopsAt {
+    stop_s: f64,
+    steps: u64,
+    steps_after_break: u64,
+    broken: bool,
+    last_s: f64,
+}
+
+impl JobObserver for StopsAt {
+    fn sample(&mut self, sample: &Sample) {
+        assert!(self.steps == 0 || sample.time_s > self.last_s, "time runs forwards");
+        self.last_s = sample.time_s;
+        self.steps += 1;
+        self.steps_after_break += u64::from(self.broken);
+    }
+
+    fn progress(&mut self, simulated_s: f64) -> ControlFlow<()> {
+        assert_eq!(simulated_s, self.last_s, "progress tells the time of the last sample");
+        if simulated_s >= self.stop_s {
+            self.broken = true;
+            return ControlFlow::Break(());
+        }
+        ControlFlow::Continue(())
+    }
+}
+
+fn interrupted_at(stop_s: f64) -> StopsAt {
+    let mut observer = StopsAt { stop_s, steps: 0, steps_after_break: 0, broken: false, last_s: 0.0 };
+    let found = solve(&coarse(), &mut observer);
+    assert!(matches!(found, Err(JobError::Interrupted)), "{found:?}");
+    observer
+}
+
+/// Protects: an interrupted job ends as such, with no step after the request, and the request can be
+/// made from the first step on and at least every 100 steps.
+#[test]
+fn interruption_is_prompt() {
+    let first = interrupted_at(0.0);
+    assert_eq!((first.steps, first.steps_after_break), (1, 0));
+    let later = interrupted_at(0.001);
+    assert_eq!(later.steps_after_break, 0);
+    let step_s = later.last_s / (later.steps - 1) as f64;
+    assert!(later.last_s - 0.001 < 100.0 * step_s, "noticed {} s late", later.last_s - 0.001);
+}

@@ -1,0 +1,84 @@
+//! Made-up samples, a fixed-seed generator and the coarse scene.
+
+use std::f64::consts::TAU;
+use tribosweep::analysis::cycles::{Cycle, CycleCutter};
+use tribosweep::analysis::sample::Sample;
+use tribosweep::solver::Model;
+use tribosweep::solver::energy::Energies;
+use tribosweep::spec::JobSpec;
+
+/// The load of all made-up signals [N].
+pub const LOAD_N: f64 = 30.0;
+/// The paper's squeal frequency [Hz].
+pub const SQUEAL_HZ: f64 = 14_500.0;
+/// The reference scene's time step [s].
+pub const STEP_S: f64 = 8.5e-7;
+
+/// A uniform generator (splitmix64) with a fixed seed.
+pub struct Random(pub u64);
+
+impl Random {
+    /// Uniform in [0, 1).
+    pub fn unit(&mut self) -> f64 {
+        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = self.0;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    }
+
+    /// Uniform between two bounds.
+    pub fn between(&mut self, low: f64, high: f64) -> f64 {
+        low + (high - low) * self.unit()
+    }
+
+    /// Standard normal (Box and Muller).
+    pub fn normal(&mut self) -> f64 {
+        let radius = (-2.0 * (1.0 - self.unit()).ln()).sqrt();
+        radius * (TAU * self.unit()).cos()
+    }
+}
+
+/// The coarse scene of the verification: 6 × 8 × 5 elements, 2 mm strip.
+pub fn coarse() -> JobSpec {
+    let mut spec = JobSpec::default();
+    spec.scene.pin.elements = [6, 8, 5];
+    spec.scene.clamp.width_m = 0.002;
+    spec
+}
+
+/// The coarse scene's model with the given time step.
+pub fn model(time_step_s: f64) -> Model {
+    let mut spec = coarse();
+    spec.numerics.time_step_s = Some(time_step_s);
+    Model::from_scene(&spec.scene, &spec.numerics).unwrap()
+}
+
+/// A sample with the given N/F, T/F = 0.3 and a mixture of states.
+pub fn sample(time_s: f64, n_over_f: f64) -> Sample {
+    Sample {
+        time_s,
+        load_n: LOAD_N,
+        normal_n: n_over_f * LOAD_N,
+        smooth_normal_n: n_over_f * LOAD_N,
+        contact_tangential_n: 0.3 * n_over_f * LOAD_N,
+        clamp_tangential_n: 0.3 * LOAD_N,
+        stick: 10,
+        slip: 40,
+        separated: 13,
+        sigma_n_max_pa: 5.0e5,
+        ..Sample::default()
+    }
+}
+
+/// The cycles of `signal` (a sample per time) over `duration_s`.
+pub fn cut(time_step_s: f64, duration_s: f64, mut signal: impl FnMut(f64) -> Sample) -> Vec<Cycle> {
+    let mut cutter = CycleCutter::new(&model(time_step_s), 0.0);
+    let steps = (duration_s / time_step_s) as usize;
+    (0..steps).filter_map(|n| cutter.push(&signal(n as f64 * time_step_s), &Energies::default())).collect()
+}
+
+/// sin(2π f t + phase).
+pub fn sine(frequency_hz: f64, time_s: f64, phase: f64) -> f64 {
+    (TAU * frequency_hz * time_s + phase).sin()
+}

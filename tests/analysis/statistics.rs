@@ -1,0 +1,44 @@
+//! The standard error of correlated figures.
+
+use crate::signals::Random;
+use tribosweep::analysis::steady::standard_error;
+
+/// Protects: the standard error of an AR(1) sequence's mean. With ρ = 0.5 and unit innovations the
+/// variance of a mean of n is s²(n) = [1 − 2ρ(1 − ρⁿ)/(n(1 − ρ²))]/(n(1 − ρ)²). Means of ⌊√n⌋ = 20
+/// batches of 20 see (s²(20) − s²(400))/20·20/19 of it; over 400 sequences the mean of the estimated
+/// variance has the relative standard deviation √(2/19/400) = 1.6 %, of which five are allowed.
+#[test]
+fn ar1_sequences() {
+    let (rho, n, sequences) = (0.5_f64, 400_usize, 400);
+    let variance = |n: f64| {
+        (1.0 - 2.0 * rho * (1.0 - rho.powf(n)) / (n * (1.0 - rho * rho))) / (n * (1.0 - rho).powi(2))
+    };
+    let mut random = Random(21);
+    let mut mean_square = 0.0;
+    for _ in 0..sequences {
+        let mut x = random.normal() / (1.0 - rho * rho).sqrt();
+        let values: Vec<f64> = (0..n)
+            .map(|_| {
+                x = rho * x + random.normal();
+                x
+            })
+            .collect();
+        mean_square += standard_error(&values).powi(2) / f64::from(sequences);
+    }
+    let expected = (variance(20.0) - variance(400.0)) / 19.0;
+    assert!((mean_square / expected - 1.0).abs() < 5.0 * 0.0162, "{mean_square} instead of {expected}");
+    // The naive error of independent values would be three times too small in variance.
+    let naive = 1.0 / (1.0 - rho * rho) / 400.0;
+    assert!(mean_square > 2.0 * naive);
+}
+
+/// Protects: constants have no error, and too few values claim none; never NaN.
+#[test]
+fn constant_and_short_sequences() {
+    for n in [0, 1, 2, 3, 4, 5, 17, 400] {
+        assert_eq!(standard_error(&vec![0.25; n]), 0.0, "{n} equal values");
+    }
+    assert_eq!(standard_error(&[1.0, 2.0, 3.0]), 0.0);
+    // Two batches of two: means 1.5 and 3.5, variance 2, error of the mean 1.
+    assert!((standard_error(&[1.0, 2.0, 3.0, 4.0]) - 1.0).abs() < 1e-15);
+}
