@@ -36,7 +36,7 @@ impl Violations {
     /// Records a violation unless `value` is finite and `holds`.
     pub fn require(&mut self, field: &str, value: f64, holds: bool, expected: &str) {
         if !(value.is_finite() && holds) {
-            self.add(field, value, expected);
+            self.add(field, readable(value), expected);
         }
     }
 
@@ -46,6 +46,15 @@ impl Violations {
     /// The violations themselves.
     pub fn into_result(self) -> Result<(), Self> {
         if self.0.is_empty() { Ok(()) } else { Err(self) }
+    }
+}
+
+/// A number without the zeros that plain notation spends on small and large ones.
+pub(super) fn readable(value: f64) -> String {
+    if value == 0.0 || (1.0e-4..1.0e7).contains(&value.abs()) || !value.is_finite() {
+        value.to_string()
+    } else {
+        format!("{value:e}")
     }
 }
 

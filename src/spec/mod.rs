@@ -66,7 +66,7 @@ impl JobSpec {
         if observation_s < shortest_s {
             found.add(
                 "detection.decay_observation_s",
-                observation_s,
+                check::readable(observation_s),
                 format!(
                     "at least {shortest_s:e} s, {SHORTEST_OBSERVATION} transit times of shear waves over the pin's \
                      height: slower oscillations would not be seen to grow"
