@@ -1,8 +1,9 @@
 //! Output helpers: whole files or none, and a runtime for commands that read the database.
 
 use super::error::CliError;
+use std::fmt::Display;
 use std::future::Future;
-use std::io::Write;
+use std::io::{ErrorKind, Write};
 use std::path::Path;
 
 /// Runs a future on a runtime of this thread.
@@ -10,12 +11,21 @@ pub fn block_on<T>(future: impl Future<Output = Result<T, CliError>>) -> Result<
     tokio::runtime::Builder::new_current_thread().enable_all().build()?.block_on(future)
 }
 
-/// Writes `content` to standard output.
-pub fn print(content: &str) -> Result<(), CliError> {
+/// Writes a result to standard output.
+///
+/// A reader that has seen enough (`tribosweep … | head`) is no failure, and changes no exit code.
+pub fn print<T: AsRef<[u8]> + ?Sized>(content: &T) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
-    out.write_all(content.as_bytes())?;
-    out.flush()?;
-    Ok(())
+    match out.write_all(content.as_ref()).and_then(|()| out.flush()) {
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => Err(error.into()),
+        _ => Ok(()),
+    }
+}
+
+/// Writes a line to standard error. If nobody can read it, the work goes on all the same: `eprintln!`
+/// would end the sweep with a panic.
+pub fn tell(line: impl Display) {
+    let _ = writeln!(std::io::stderr(), "{line}");
 }
 
 /// Writes a file through a temporary sibling, so that it is never half-written.

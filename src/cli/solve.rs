@@ -1,7 +1,7 @@
 //! `tribosweep solve`: one job in the foreground, with its history.
 
 use super::error::CliError;
-use super::output::{print, write_file};
+use super::output::{print, tell, write_file};
 use crate::analysis::sample::{OBSERVED_NAMES, Sample};
 use crate::analysis::{self, JobError, JobObserver, JobRecord};
 use crate::exit;
@@ -57,7 +57,7 @@ pub fn run(args: &Args) -> Result<u8, CliError> {
     // The history of a run that failed is what explains it, so it is written either way.
     if let (Some(path), Some(history)) = (&args.history, &recorder.history) {
         write_file(path, history.text.as_bytes())?;
-        eprintln!("history written to {}", path.display());
+        tell(format_args!("history written to {}", path.display()));
     }
     match solved {
         Ok(record) => {
@@ -65,12 +65,12 @@ pub fn run(args: &Args) -> Result<u8, CliError> {
             Ok(exit::SUCCESS)
         }
         Err(JobError::Interrupted) => {
-            eprintln!("interrupted");
+            tell("interrupted");
             Ok(exit::WORK_LEFT)
         }
         Err(JobError::Spec(violations)) => Err(CliError::Plan(violations.to_string())),
         Err(error @ JobError::Solver(crate::solver::SolverError::Diverged { .. })) => {
-            eprintln!("error: {error}");
+            tell(format_args!("error: {error}"));
             Ok(exit::SOME_FAILED)
         }
         Err(error) => Err(CliError::Plan(error.to_string())),

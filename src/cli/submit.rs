@@ -1,7 +1,7 @@
 //! `tribosweep submit`: plan a study's jobs.
 
 use super::error::CliError;
-use super::output::block_on;
+use super::output::{block_on, tell};
 use super::planning::Plan;
 use crate::exit;
 use crate::queue::{Queue, SystemClock};
@@ -29,7 +29,7 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
 /// Submits a study that was read before the database was opened: a bad one leaves no database behind.
 pub async fn submit(plan: &Plan, queue: &mut Queue) -> Result<(), CliError> {
     let submitted = queue.submit(&plan.for_queue()?).await?;
-    eprintln!(
+    tell(format_args!(
         "{}: {} jobs, {} new, {} already done{}",
         plan.study.name(),
         submitted.jobs,
@@ -40,6 +40,6 @@ pub async fn submit(plan: &Plan, queue: &mut Queue) -> Result<(), CliError> {
         } else {
             String::new()
         }
-    );
+    ));
     Ok(())
 }

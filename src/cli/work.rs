@@ -2,7 +2,7 @@
 
 use super::display::Display;
 use super::error::CliError;
-use super::output::block_on;
+use super::output::{block_on, tell};
 use super::rows;
 use crate::exit;
 use crate::queue::{Queue, Scope};
@@ -45,11 +45,14 @@ pub async fn work(queue: &mut Queue, scope: &Scope, threads: &Threads) -> Result
     listener.abort();
     let summary = summary?;
     if summary.taken_back > 0 {
-        eprintln!("{} jobs left running by an interrupted process were taken back", summary.taken_back);
+        tell(format_args!(
+            "{} jobs left running by an interrupted process were taken back",
+            summary.taken_back
+        ));
     }
     let counts = summary.counts;
     if counts.pending + counts.running > 0 {
-        eprintln!("interrupted; the same command continues where it stopped");
+        tell("interrupted; the same command continues where it stopped");
         return Ok(exit::WORK_LEFT);
     }
     Ok(if counts.failed > 0 { exit::SOME_FAILED } else { exit::SUCCESS })
@@ -58,7 +61,7 @@ pub async fn work(queue: &mut Queue, scope: &Scope, threads: &Threads) -> Result
 /// The first signal asks the worker to stop, the second ends the process at once.
 async fn listen(interrupt: Interrupt) {
     stop_signal().await;
-    eprintln!("stopping; running jobs go back to the queue (once more to stop at once)");
+    tell("stopping; running jobs go back to the queue (once more to stop at once)");
     interrupt.raise();
     stop_signal().await;
     std::process::exit(i32::from(exit::WORK_LEFT));
