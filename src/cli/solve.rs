@@ -7,7 +7,7 @@ use crate::analysis::{self, JobError, JobObserver, JobRecord};
 use crate::exit;
 use crate::solver::contact::ContactState;
 use crate::study::Study;
-use crate::worker::Interrupt;
+use crate::worker::{self, Interrupt};
 use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -61,6 +61,10 @@ pub fn run(args: &Args) -> Result<u8, CliError> {
     }
     match solved {
         Ok(record) => {
+            if let Err(error) = worker::encode(&record) {
+                tell(format_args!("error: {error}"));
+                return Ok(exit::SOME_FAILED);
+            }
             print(&if args.json { as_json(&record)? } else { as_text(&record) })?;
             Ok(exit::SUCCESS)
         }
