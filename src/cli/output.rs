@@ -29,10 +29,20 @@ pub fn tell(line: impl Display) {
 }
 
 /// Writes a file through a temporary sibling, so that it is never half-written.
+///
+/// What is no regular file (`/dev/null`, a pipe) is written to and stays what it is, and a link leads to
+/// the file that is replaced.
 pub fn write_file(path: &Path, content: &[u8]) -> Result<(), CliError> {
     let failed = |source| CliError::File { path: path.display().to_string(), source };
-    let mut partial = path.as_os_str().to_owned();
+    if path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
+        return std::fs::write(path, content).map_err(failed);
+    }
+    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    let mut partial = target.as_os_str().to_owned();
     partial.push(".partial");
-    std::fs::write(&partial, content).map_err(failed)?;
-    std::fs::rename(&partial, path).map_err(failed)
+    std::fs::write(&partial, content).and_then(|()| std::fs::rename(&partial, &target)).map_err(|source| {
+        // The first error is the one to report; that of the clean-up adds nothing.
+        let _ = std::fs::remove_file(&partial);
+        failed(source)
+    })
 }
