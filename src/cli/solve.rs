@@ -2,6 +2,7 @@
 
 use super::error::CliError;
 use super::output::{print, tell, write_file};
+use super::work::listen;
 use crate::analysis::sample::{OBSERVED_NAMES, Sample};
 use crate::analysis::{self, JobError, JobObserver, JobRecord};
 use crate::exit;
@@ -45,10 +46,8 @@ pub fn run(args: &Args) -> Result<u8, CliError> {
     let raised = interrupt.clone();
     std::thread::spawn(move || {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-        if let Ok(runtime) = runtime
-            && runtime.block_on(tokio::signal::ctrl_c()).is_ok()
-        {
-            raised.raise();
+        if let Ok(runtime) = runtime {
+            runtime.block_on(listen(raised, "stopping"));
         }
     });
     let mut recorder =
@@ -81,7 +80,7 @@ pub fn run(args: &Args) -> Result<u8, CliError> {
     }
 }
 
-/// Collects the history and hears Ctrl-C.
+/// Collects the history and hears the request to stop.
 struct Recorder {
     interrupt: Interrupt,
     history: Option<History>,

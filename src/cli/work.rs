@@ -40,7 +40,7 @@ pub async fn work(queue: &mut Queue, scope: &Scope, threads: &Threads) -> Result
     let threads =
         threads.threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let interrupt = Interrupt::default();
-    let listener = tokio::spawn(listen(interrupt.clone()));
+    let listener = tokio::spawn(listen(interrupt.clone(), "stopping; running jobs go back to the queue"));
     let summary = worker::work(queue, scope, threads, &interrupt, &mut Display::new()).await;
     listener.abort();
     let summary = summary?;
@@ -59,9 +59,9 @@ pub async fn work(queue: &mut Queue, scope: &Scope, threads: &Threads) -> Result
 }
 
 /// The first signal asks the worker to stop, the second ends the process at once.
-async fn listen(interrupt: Interrupt) {
+pub async fn listen(interrupt: Interrupt, message: &str) {
     stop_signal().await;
-    tell("stopping; running jobs go back to the queue (once more to stop at once)");
+    tell(format_args!("{message} (once more to stop at once)"));
     interrupt.raise();
     stop_signal().await;
     std::process::exit(i32::from(exit::WORK_LEFT));
