@@ -18,6 +18,6 @@ pub struct Args {
 pub fn run(args: &Args) -> Result<u8, CliError> {
     let mut script = Vec::new();
     clap_complete::generate(args.shell, &mut Cli::command(), "tribosweep", &mut script);
-    print(&String::from_utf8_lossy(&script))?;
+    print(&script)?;
     Ok(exit::SUCCESS)
 }

@@ -1,5 +1,6 @@
 //! Progress on stderr: bars on a terminal, plain lines elsewhere.
 
+use super::output::tell;
 use crate::worker::{Progress, Snapshot};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -38,8 +39,8 @@ impl Display {
 
     fn note(&self, line: &str) {
         match self {
-            Self::Bar(bar) => bar.suspend(|| eprintln!("{line}")),
-            Self::Lines { .. } => eprintln!("{line}"),
+            Self::Bar(bar) => bar.suspend(|| tell(line)),
+            Self::Lines { .. } => tell(line),
         }
     }
 }
@@ -82,7 +83,7 @@ impl Progress for Display {
             Self::Lines { last } => {
                 if last.elapsed() >= LINE_INTERVAL {
                     *last = Instant::now();
-                    eprintln!("{}, {}", counters(snapshot), remaining(snapshot));
+                    tell(format_args!("{}, {}", counters(snapshot), remaining(snapshot)));
                 }
             }
         }
@@ -96,6 +97,6 @@ impl Progress for Display {
         if let Self::Bar(bar) = self {
             bar.finish_and_clear();
         }
-        eprintln!("{}", counters(snapshot));
+        tell(counters(snapshot));
     }
 }

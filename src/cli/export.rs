@@ -1,11 +1,10 @@
 //! `tribosweep export`: one row a job.
 
 use super::error::CliError;
-use super::output::{block_on, write_file};
+use super::output::{block_on, print, write_file};
 use super::rows;
 use crate::exit;
 use crate::report::export;
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `export`.
@@ -47,7 +46,7 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     }
     match &args.file {
         Some(path) => write_file(path, &content)?,
-        None => std::io::stdout().lock().write_all(&content)?,
+        None => print(&content)?,
     }
     Ok(exit::SUCCESS)
 }

@@ -18,7 +18,6 @@ mod work;
 
 use crate::exit;
 use clap::{Parser, Subcommand};
-use error::CliError;
 use std::path::PathBuf;
 
 /// Sweeps of explicit dynamic contact simulations of a pin-on-disk tribometer.
@@ -79,10 +78,8 @@ pub fn main(cli: Cli) -> u8 {
     };
     match result {
         Ok(code) => code,
-        // A reader that has seen enough (`tribosweep … | head`) is no failure.
-        Err(CliError::Output(error)) if error.kind() == std::io::ErrorKind::BrokenPipe => exit::SUCCESS,
         Err(error) => {
-            eprintln!("error: {error}");
+            output::tell(format_args!("error: {error}"));
             exit::BAD_INPUT
         }
     }

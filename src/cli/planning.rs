@@ -4,7 +4,7 @@ use super::error::CliError;
 use crate::queue::{NewJob, NewStudy};
 use crate::solver::{self, Model};
 use crate::spec::JobSpec;
-use crate::study::{Job, Study};
+use crate::study::{Job, Study, StudyError};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -32,11 +32,13 @@ pub struct RowParameters {
 impl Plan {
     /// Reads and checks a study file.
     pub fn load(path: &Path) -> Result<Self, CliError> {
-        let study = Study::load(path)?;
+        // Read once: what is stored is what was checked, also from a pipe or while the file is being edited.
+        let source_name = path.display().to_string();
+        let document = std::fs::read_to_string(path)
+            .map_err(|reason| StudyError::Read { file: source_name.clone(), reason })?;
+        let study = Study::parse(&document, &source_name)?;
         let jobs = study.expand(solver::VERSION)?;
         preflight(path, &jobs)?;
-        let document = std::fs::read_to_string(path)
-            .map_err(|source| CliError::File { path: path.display().to_string(), source })?;
         Ok(Self { study, jobs, document })
     }
 

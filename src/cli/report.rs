@@ -1,7 +1,7 @@
 //! `tribosweep report`: a study's tables and figures.
 
 use super::error::CliError;
-use super::output::{block_on, print};
+use super::output::{block_on, print, tell};
 use super::rows;
 use crate::exit;
 use crate::queue::Queue;
@@ -42,7 +42,7 @@ pub async fn write(queue: &mut Queue, name: &str, out: &OutFolder) -> Result<Vec
     let rows = rows::read(queue, name).await?;
     let folder = folder(name, out);
     report::write(&rows, &folder, name)?;
-    eprintln!("report written to {}", folder.display());
+    tell(format_args!("report written to {}", folder.display()));
     Ok(rows)
 }
 

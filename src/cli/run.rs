@@ -2,6 +2,7 @@
 
 use super::error::CliError;
 use super::output::{block_on, print};
+use super::planning::Plan;
 use super::report::{self, OutFolder};
 use super::submit::submit;
 use super::work::{Threads, work};
@@ -23,11 +24,13 @@ pub struct Args {
 
 /// Runs the whole sweep; an interrupted one reports what it has.
 pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+    let plan = Plan::load(&args.study)?;
+    let name = plan.study.name();
     block_on(async {
         let mut queue = Queue::open(db, Arc::new(SystemClock)).await?;
-        let name = submit(&args.study, &mut queue).await?;
-        let code = work(&mut queue, &Scope::Study(name.clone()), &args.threads).await?;
-        let rows = report::write(&mut queue, &name, &args.out).await?;
+        submit(&plan, &mut queue).await?;
+        let code = work(&mut queue, &Scope::Study(name.to_owned()), &args.threads).await?;
+        let rows = report::write(&mut queue, name, &args.out).await?;
         queue.close().await?;
         print(&markdown(&rows, Quantity::MuStar))?;
         Ok(code)

@@ -1,13 +1,14 @@
 //! `tribosweep solve`: one job in the foreground, with its history.
 
 use super::error::CliError;
-use super::output::{print, write_file};
+use super::output::{print, tell, write_file};
+use super::work::listen;
 use crate::analysis::sample::{OBSERVED_NAMES, Sample};
 use crate::analysis::{self, JobError, JobObserver, JobRecord};
 use crate::exit;
 use crate::solver::contact::ContactState;
 use crate::study::Study;
-use crate::worker::Interrupt;
+use crate::worker::{self, Interrupt};
 use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -45,10 +46,8 @@ pub fn run(args: &Args) -> Result<u8, CliError> {
     let raised = interrupt.clone();
     std::thread::spawn(move || {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-        if let Ok(runtime) = runtime
-            && runtime.block_on(tokio::signal::ctrl_c()).is_ok()
-        {
-            raised.raise();
+        if let Ok(runtime) = runtime {
+            runtime.block_on(listen(raised, "stopping"));
         }
     });
     let mut recorder =
@@ -57,27 +56,31 @@ pub fn run(args: &Args) -> Result<u8, CliError> {
     // The history of a run that failed is what explains it, so it is written either way.
     if let (Some(path), Some(history)) = (&args.history, &recorder.history) {
         write_file(path, history.text.as_bytes())?;
-        eprintln!("history written to {}", path.display());
+        tell(format_args!("history written to {}", path.display()));
     }
     match solved {
         Ok(record) => {
+            if let Err(error) = worker::encode(&record) {
+                tell(format_args!("error: {error}"));
+                return Ok(exit::SOME_FAILED);
+            }
             print(&if args.json { as_json(&record)? } else { as_text(&record) })?;
             Ok(exit::SUCCESS)
         }
         Err(JobError::Interrupted) => {
-            eprintln!("interrupted");
+            tell("interrupted");
             Ok(exit::WORK_LEFT)
         }
         Err(JobError::Spec(violations)) => Err(CliError::Plan(violations.to_string())),
         Err(error @ JobError::Solver(crate::solver::SolverError::Diverged { .. })) => {
-            eprintln!("error: {error}");
+            tell(format_args!("error: {error}"));
             Ok(exit::SOME_FAILED)
         }
         Err(error) => Err(CliError::Plan(error.to_string())),
     }
 }
 
-/// Collects the history and hears Ctrl-C.
+/// Collects the history and hears the request to stop.
 struct Recorder {
     interrupt: Interrupt,
     history: Option<History>,

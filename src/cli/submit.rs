@@ -1,7 +1,7 @@
 //! `tribosweep submit`: plan a study's jobs.
 
 use super::error::CliError;
-use super::output::block_on;
+use super::output::{block_on, tell};
 use super::planning::Plan;
 use crate::exit;
 use crate::queue::{Queue, SystemClock};
@@ -17,19 +17,19 @@ pub struct Args {
 
 /// Plans the study.
 pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+    let plan = Plan::load(&args.study)?;
     block_on(async {
         let mut queue = Queue::open(db, Arc::new(SystemClock)).await?;
-        submit(&args.study, &mut queue).await?;
+        submit(&plan, &mut queue).await?;
         queue.close().await?;
         Ok(exit::SUCCESS)
     })
 }
 
-/// Reads, checks and submits a study file; returns the study's name.
-pub async fn submit(path: &Path, queue: &mut Queue) -> Result<String, CliError> {
-    let plan = Plan::load(path)?;
+/// Submits a study that was read before the database was opened: a bad one leaves no database behind.
+pub async fn submit(plan: &Plan, queue: &mut Queue) -> Result<(), CliError> {
     let submitted = queue.submit(&plan.for_queue()?).await?;
-    eprintln!(
+    tell(format_args!(
         "{}: {} jobs, {} new, {} already done{}",
         plan.study.name(),
         submitted.jobs,
@@ -40,6 +40,6 @@ pub async fn submit(path: &Path, queue: &mut Queue) -> Result<String, CliError> 
         } else {
             String::new()
         }
-    );
-    Ok(plan.study.name().to_owned())
+    ));
+    Ok(())
 }

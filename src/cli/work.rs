@@ -2,7 +2,7 @@
 
 use super::display::Display;
 use super::error::CliError;
-use super::output::block_on;
+use super::output::{block_on, tell};
 use super::rows;
 use crate::exit;
 use crate::queue::{Queue, Scope};
@@ -40,25 +40,28 @@ pub async fn work(queue: &mut Queue, scope: &Scope, threads: &Threads) -> Result
     let threads =
         threads.threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
     let interrupt = Interrupt::default();
-    let listener = tokio::spawn(listen(interrupt.clone()));
+    let listener = tokio::spawn(listen(interrupt.clone(), "stopping; running jobs go back to the queue"));
     let summary = worker::work(queue, scope, threads, &interrupt, &mut Display::new()).await;
     listener.abort();
     let summary = summary?;
     if summary.taken_back > 0 {
-        eprintln!("{} jobs left running by an interrupted process were taken back", summary.taken_back);
+        tell(format_args!(
+            "{} jobs left running by an interrupted process were taken back",
+            summary.taken_back
+        ));
     }
     let counts = summary.counts;
     if counts.pending + counts.running > 0 {
-        eprintln!("interrupted; the same command continues where it stopped");
+        tell("interrupted; the same command continues where it stopped");
         return Ok(exit::WORK_LEFT);
     }
     Ok(if counts.failed > 0 { exit::SOME_FAILED } else { exit::SUCCESS })
 }
 
 /// The first signal asks the worker to stop, the second ends the process at once.
-async fn listen(interrupt: Interrupt) {
+pub async fn listen(interrupt: Interrupt, message: &str) {
     stop_signal().await;
-    eprintln!("stopping; running jobs go back to the queue (once more to stop at once)");
+    tell(format_args!("{message} (once more to stop at once)"));
     interrupt.raise();
     stop_signal().await;
     std::process::exit(i32::from(exit::WORK_LEFT));

@@ -32,8 +32,9 @@ impl Axis {
         let low = numbers.iter().copied().fold(f64::INFINITY, f64::min);
         let high = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if low > 0.0 && (logarithmic || high / low >= 20.0) {
-            let margin = (high / low).powf(0.04).max(1.12);
-            Self::Log(low / margin..high * margin)
+            let margin = (high / low).powf(0.04).clamp(1.12, 10.0);
+            // An end at zero or infinity has no decade: looking for its ticks would not end.
+            Self::Log((low / margin).max(f64::MIN_POSITIVE)..(high * margin).min(f64::MAX))
         } else {
             Self::spanning(low, high, if low == 0.0 { 1.0 } else { low.abs() })
         }

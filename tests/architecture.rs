@@ -1,0 +1,205 @@
+//! The shape of the crate: which module may use which, read from the sources.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
+
+/// What each module at the top may use besides itself. `cli` and `main` join the rest together.
+const MAY_USE: [(&str, &[&str]); 11] = [
+    ("spec", &[]),
+    ("units", &[]),
+    ("exit", &[]),
+    ("queue", &[]),
+    ("solver", &["spec", "units"]),
+    ("analysis", &["solver", "spec", "units"]),
+    ("study", &["spec"]),
+    ("report", &["analysis"]),
+    ("worker", &["analysis", "queue", "spec"]),
+    ("cli", &["analysis", "exit", "queue", "report", "solver", "spec", "study", "units", "worker"]),
+    ("main", &["cli"]),
+];
+
+/// Nobody reads longer files with pleasure.
+const LONGEST: usize = 500;
+
+fn src() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
+}
+
+/// Every source file below src: its path from there and its text.
+fn sources() -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    let mut folders = vec![src()];
+    while let Some(folder) = folders.pop() {
+        for entry in std::fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() {
+                folders.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                let name = path.strip_prefix(src()).unwrap().to_str().unwrap().replace('\\', "/");
+                found.push((name, std::fs::read_to_string(&path).unwrap()));
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The module at the top that a file belongs to.
+fn top_module(file: &str) -> &str {
+    let first = file.split('/').next().unwrap();
+    first.strip_suffix(".rs").unwrap_or(first)
+}
+
+/// How many modules a file is below the crate's root: `cli/mod.rs` 1, `cli/run.rs` 2.
+fn depth(file: &str) -> usize {
+    file.strip_suffix("/mod.rs").unwrap_or(file).split('/').count()
+}
+
+/// Names at the start of a path's rest: `a::b` gives a, `{a::x, b}` gives a and b.
+fn heads(rest: &str) -> Vec<String> {
+    let head =
+        |text: &str| text.trim().chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect::<String>();
+    let Some(group) = rest.strip_prefix('{') else { return vec![head(rest)] };
+    let mut entries = vec![String::new()];
+    let mut nesting = 1;
+    for c in group.chars() {
+        match c {
+            '{' => nesting += 1,
+            '}' => nesting -= 1,
+            ',' if nesting == 1 => {
+                entries.push(String::new());
+                continue;
+            }
+            _ => {}
+        }
+        if nesting == 0 {
+            break;
+        }
+        entries.last_mut().unwrap().push(c);
+    }
+    entries.iter().map(|entry| head(entry)).filter(|name| !name.is_empty()).collect()
+}
+
+/// The modules at the top that the code of a file names, by `crate::`, by the crate's name or by enough
+/// `super::`. Comments may name all.
+fn used(file: &str, text: &str) -> BTreeSet<String> {
+    let code: Vec<_> = text.lines().map(|line| line.split("//").next().unwrap_or("")).collect();
+    let code = code.join("\n");
+    let mut names = BTreeSet::new();
+    let root = "super::".repeat(depth(file));
+    for prefix in ["crate::", "tribosweep::", &root] {
+        for (at, _) in code.match_indices(prefix) {
+            // The rest of a longer word or path, or a `super` of a module inside the file.
+            let before = code[..at].chars().next_back().unwrap_or('\n');
+            let indented = code[..at].lines().next_back().is_some_and(|line| line.starts_with(' '));
+            if before.is_alphanumeric() || before == '_' || before == ':' || (prefix == root && indented) {
+                continue;
+            }
+            names.extend(heads(&code[at + prefix.len()..]));
+        }
+    }
+    names
+}
+
+/// Protects: the scanner sees the ways in which code names a module, so that the tests below can fail.
+#[test]
+fn the_scanner_sees() {
+    let text = "use crate::queue::{Claim, Counts};\nuse crate::{exit, study::{self, Study}, units};\n\
+                // crate::comment\nfn f() { crate::solver::solve(); }\nuse super::super::report;\n\
+                use super::sibling;\nuse tribosweep::cli;\npub(crate) fn g() {}\n";
+    let names: Vec<_> = used("cli/run.rs", text).into_iter().collect();
+    assert_eq!(names, ["cli", "exit", "queue", "report", "solver", "study", "units"]);
+    assert_eq!(used("units.rs", "use super::spec;\n").into_iter().collect::<Vec<_>>(), ["spec"]);
+    let nested = "mod tests {\n    use super::*;\n}\n";
+    assert_eq!(used("units.rs", nested), BTreeSet::new());
+    assert_eq!((depth("cli/mod.rs"), depth("cli/run.rs"), depth("solver/contact/mod.rs")), (1, 2, 2));
+}
+
+/// Protects: arrows between modules point one way: mechanics knows nothing of studies, databases and
+/// terminals, the queue nothing of mechanics, and nobody but the program uses the command line.
+#[test]
+fn modules_use_only_what_they_may() {
+    let rules: BTreeMap<_, _> = MAY_USE.into_iter().collect();
+    let mut edges = BTreeSet::new();
+    let mut wrong = Vec::new();
+    for (file, text) in sources() {
+        let from = top_module(&file);
+        if from == "lib" {
+            continue;
+        }
+        let allowed = rules.get(from).unwrap_or_else(|| panic!("src/{file}: a module without a rule"));
+        for to in used(&file, &text) {
+            // Anything else at the root (a function, a test's `super::*`) is no module.
+            if to != from && rules.contains_key(to.as_str()) {
+                edges.insert((from.to_owned(), to.clone()));
+                if !allowed.contains(&to.as_str()) {
+                    wrong.push(format!("src/{file} uses {to}"));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    // The arrows of the map are there: a scanner that sees nothing would pass the above.
+    for (from, to) in [
+        ("analysis", "solver"),
+        ("cli", "report"),
+        ("cli", "study"),
+        ("cli", "worker"),
+        ("main", "cli"),
+        ("report", "analysis"),
+        ("solver", "spec"),
+        ("study", "spec"),
+        ("worker", "analysis"),
+        ("worker", "queue"),
+    ] {
+        assert!(edges.contains(&(from.to_owned(), to.to_owned())), "{from} does not use {to} any more");
+    }
+}
+
+/// Protects: the queue can be lifted out of the crate, and nothing of it speaks of mechanics.
+#[test]
+fn the_queue_stands_alone() {
+    for (file, text) in sources().iter().filter(|(file, _)| top_module(file) == "queue") {
+        assert_eq!(used(file, text).into_iter().filter(|name| name != "queue").collect::<Vec<_>>(), [""; 0]);
+        for word in ["friction", "omega", "JobSpec", "nalgebra"] {
+            assert!(!text.contains(word), "src/{file} speaks of {word}");
+        }
+    }
+}
+
+/// Protects: the map at the head of the crate shows the crate: every module that it names exists and is
+/// public, and every folder of src is in it.
+#[test]
+fn the_map_is_true() {
+    let text = std::fs::read_to_string(src().join("lib.rs")).unwrap();
+    let named: BTreeSet<_> = text
+        .lines()
+        .filter_map(|line| line.strip_prefix("//! * [`"))
+        .map(|rest| rest.split('`').next().unwrap().to_owned())
+        .collect();
+    assert!(named.len() >= 8, "{named:?}");
+    for name in &named {
+        let exists =
+            src().join(name).join("mod.rs").is_file() || src().join(name).with_extension("rs").is_file();
+        assert!(exists, "the map names {name}");
+        assert!(text.contains(&format!("\npub mod {name};\n")), "{name} is not public");
+    }
+    let folders: BTreeSet<_> = std::fs::read_dir(src())
+        .unwrap()
+        .map(|entry| entry.unwrap().path())
+        .filter(|path| path.is_dir())
+        .map(|path| path.file_name().unwrap().to_str().unwrap().to_owned())
+        .collect();
+    assert_eq!(named, folders);
+}
+
+/// Protects: files stay short enough to be read as a whole.
+#[test]
+fn no_file_is_long() {
+    let long: Vec<_> = sources()
+        .into_iter()
+        .map(|(file, text)| (text.lines().count(), file))
+        .filter(|(lines, _)| *lines > LONGEST)
+        .collect();
+    assert!(long.is_empty(), "longer than {LONGEST} lines: {long:?}");
+}

@@ -1,0 +1,165 @@
+//! Commands that show, check and write.
+
+use std::path::Path;
+
+use serde_json::{Value, json};
+
+use crate::support::{Folder, HEADER, rows, small, stdout};
+
+/// Protects: the progress of one and of all studies, as text and as JSON, before and after the work.
+#[test]
+fn status_counts_jobs() {
+    let folder = Folder::with("first", &small(&json!({ "mu": [0.2, 0.4] })));
+    folder.add("second", &small(&json!({ "omega_rpm": [20] })));
+    folder.ok("submit first.json");
+    assert_eq!(
+        folder.ok("status first"),
+        "first: 2 jobs: 0 done, 0 failed, 0 running, 2 pending\ncontinue with `tribosweep work`\n"
+    );
+    folder.ok("work");
+    folder.ok("submit second.json");
+    assert_eq!(
+        folder.ok("status"),
+        "first   2 jobs: 2 done, 0 failed, 0 running, 0 pending\n\
+         second  1 jobs: 0 done, 0 failed, 0 running, 1 pending\n"
+    );
+    let all: Value = serde_json::from_str(&folder.ok("status --json")).unwrap();
+    let jobs = |total, done, pending| json!({ "total": total, "done": done, "failed": 0, "running": 0, "pending": pending });
+    assert_eq!(
+        all,
+        json!([{ "study": "first", "jobs": jobs(2, 2, 0) }, { "study": "second", "jobs": jobs(1, 0, 1) }])
+    );
+    let one: Value = serde_json::from_str(&folder.ok("status first.json --json")).unwrap();
+    assert_eq!(one["study"], "first");
+    assert_eq!(one["jobs"], jobs(2, 2, 0));
+    assert_eq!(one["failures"], json!([]));
+}
+
+/// Protects: jobs that were stopped by their time limit are named as such, because their figures are
+/// averages of something else.
+#[test]
+fn status_tells_of_jobs_that_did_not_become_periodic() {
+    let mut study = small(&json!({ "mu": [0.4] }));
+    study["run"]["limit_s"] = json!(0.002);
+    let folder = Folder::with("short", &study);
+    folder.ok("run short.json");
+    assert_eq!(rows(&folder.ok("export short"))[0]["status"], "not_periodic");
+    assert!(folder.ok("status short").contains("1 done jobs reached their time limit"));
+    let status: Value = serde_json::from_str(&folder.ok("status short --json")).unwrap();
+    assert_eq!(status["not_periodic"], 1);
+}
+
+/// Protects: a database without studies is no error, and says what to do.
+#[test]
+fn status_of_an_empty_database() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
+    folder.ok("submit mine.json --db other.db");
+    // An empty file is a database without tables.
+    folder.write("empty.db", "");
+    assert!(folder.ok("status --db empty.db").contains("no studies yet"));
+    assert_eq!(folder.ok("status --db empty.db --json"), "[]\n");
+}
+
+/// Protects: the flag names the database, else the variable, else the default; each is a database of its
+/// own.
+#[test]
+fn the_database_is_the_users_choice() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
+    folder.command("submit mine.json").env("TRIBOSWEEP_DB", "from_variable.db").assert().code(0);
+    assert!(folder.path("from_variable.db").exists() && !folder.path("tribosweep.db").exists());
+    let mut both = folder.command("submit mine.json --db from_flag.db");
+    both.env("TRIBOSWEEP_DB", "unused.db").assert().code(0);
+    assert!(folder.path("from_flag.db").exists() && !folder.path("unused.db").exists());
+    folder.ok("submit mine.json");
+    assert!(folder.path("tribosweep.db").exists());
+    // Work in one is not work in the other.
+    folder.command("work").env("TRIBOSWEEP_DB", "from_variable.db").assert().code(0);
+    for (database, done) in [("from_variable.db", 1), ("from_flag.db", 0), ("tribosweep.db", 0)] {
+        let status: Value =
+            serde_json::from_str(&folder.ok(&format!("--db {database} status mine --json"))).unwrap();
+        assert_eq!(status["jobs"]["done"], done, "{database}");
+    }
+}
+
+/// Protects: a report goes where it is asked to go, and its page is named on standard output.
+#[test]
+fn report_writes_a_folder() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2], "omega_rpm": [2, 7] })));
+    folder.ok("run mine.json --out first");
+    assert!(folder.path("first/report.md").exists() && !folder.path("reports").exists());
+    let printed = folder.ok("report mine.json --out deep/down");
+    assert_eq!(Path::new(printed.trim_end()), Path::new("deep/down/report.md"));
+    assert_eq!(folder.read("deep/down/report.md"), folder.read("first/report.md"));
+    assert_eq!(Path::new(folder.ok("report mine").trim_end()), Path::new("reports/mine/report.md"));
+    let mut files = folder.files();
+    files.retain(|file| file.starts_with("reports"));
+    assert!(files.len() >= 9, "{files:?}");
+}
+
+/// Protects: parameters other than ω and μ are columns after the fixed ones, in the order of the study.
+#[test]
+fn further_parameters_follow_the_header() {
+    let grid = r#"{ "mu": [0.2], "load_n": [10, 30], "clamp_side": ["inner_side", "whole_top"] }"#;
+    let folder = Folder::new();
+    // As text: the order of the grid is that of the file.
+    folder.write("further.json", &small(&json!(null)).to_string().replace("null", grid));
+    folder.ok("run further.json");
+    let export = folder.ok("export further");
+    let header = export.lines().next().unwrap();
+    let further: Vec<_> = header.strip_prefix(HEADER).unwrap().split(',').skip(1).collect();
+    assert_eq!(further, ["load_n", "clamp_side"]);
+    let rows = rows(&export);
+    assert_eq!(rows.len(), 4);
+    for (clamp, load) in
+        [("inner_side", "10"), ("inner_side", "30"), ("whole_top", "10"), ("whole_top", "30")]
+    {
+        let found = rows.iter().filter(|row| row["clamp_side"] == clamp && row["load_n"] == load);
+        assert_eq!(found.count(), 1, "{clamp} {load}");
+    }
+    // The grid does not vary ω: it is the scene's.
+    assert!(rows.iter().all(|row| row["omega_rpm"] == "7" && row["mu"] == "0.2"));
+}
+
+/// Protects: a good study is called valid with the size of its grid, and checking leaves no trace.
+#[test]
+fn validate_only_looks() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.3, 0.4], "omega_rpm": [2, 7] })));
+    let said = folder.ok("validate mine.json");
+    assert!(said.starts_with("mine.json: valid, 6 jobs ("), "{said}");
+    assert!(said.contains("mu 3") && said.contains("omega_rpm 2"), "{said}");
+    assert_eq!(folder.files(), ["mine.json"]);
+}
+
+/// Protects: the shipped studies are valid for the solver, not only for the parser.
+#[test]
+fn the_shipped_studies_are_valid() {
+    let folder = Folder::new();
+    for (study, jobs) in [("mini", 6), ("figure7", 102), ("clamps", 35)] {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies").join(format!("{study}.json"));
+        let validated = folder.command("validate").arg(path).assert().code(0);
+        assert!(stdout(&validated).contains(&format!(": valid, {jobs} jobs")), "{}", stdout(&validated));
+    }
+}
+
+/// Protects: editors can load the schema, and it knows the parts of a study.
+#[test]
+fn the_schema_is_json() {
+    let schema: Value = serde_json::from_str(&Folder::new().ok("schema")).unwrap();
+    for part in ["name", "description", "scene", "numerics", "run", "detection", "grid"] {
+        assert!(schema["properties"][part].is_object(), "{part}");
+    }
+}
+
+/// Protects: the shell completes every command.
+#[test]
+fn completions_name_every_command() {
+    let folder = Folder::new();
+    let script = folder.ok("completions bash");
+    assert!(script.contains("complete -F _tribosweep"));
+    for command in
+        ["run", "submit", "work", "status", "report", "export", "solve", "validate", "schema", "completions"]
+    {
+        assert!(script.contains(&format!("tribosweep__subcmd__{command}")), "{command}");
+        assert!(folder.ok("--help").contains(&format!("\n  {command} ")), "{command}");
+    }
+}

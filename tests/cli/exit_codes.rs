@@ -1,0 +1,267 @@
+//! Exit codes: 1 when jobs failed, 2 for bad input or usage. (0 is everywhere, 3 with the interruptions.)
+
+use std::sync::Arc;
+
+use serde_json::{Value, json};
+use tribosweep::queue::{NewJob, NewStudy, Queue, SystemClock};
+
+use crate::support::{Folder, long, rows, small, stderr, stdout};
+
+/// The command must end with code 2, print no result and say each of `expected`.
+fn refuses(folder: &Folder, arguments: &str, expected: &[&str]) {
+    let end = folder.command(arguments).assert().code(2);
+    assert_eq!(stdout(&end), "", "{arguments}");
+    for text in expected {
+        assert!(stderr(&end).contains(text), "{arguments}: {text:?} is not in: {}", stderr(&end));
+    }
+}
+
+/// A study that is refused by every command that reads one, which leaves nothing behind.
+fn refuses_study(text: &str, expected: &[&str]) {
+    let folder = Folder::new();
+    folder.write("bad.json", text);
+    for command in ["validate", "submit", "run"] {
+        refuses(&folder, &format!("{command} bad.json"), expected);
+    }
+    assert_eq!(folder.files(), ["bad.json"]);
+}
+
+fn with(pointer: &str, value: Value) -> String {
+    let mut study = small(&json!({ "mu": [0.2], "omega_rpm": [7] }));
+    let (parent, name) = pointer.rsplit_once('/').unwrap();
+    study.pointer_mut(parent).unwrap()[name] = value;
+    study.to_string()
+}
+
+/// Protects: a missing study file is named.
+#[test]
+fn a_missing_file() {
+    let folder = Folder::new();
+    for command in ["validate", "submit", "run", "solve", "export", "report", "status"] {
+        refuses(&folder, &format!("{command} missing.json"), &["error: missing.json: cannot be read"]);
+    }
+    assert_eq!(folder.files(), Vec::<String>::new());
+}
+
+/// Protects: broken JSON is located.
+#[test]
+fn bad_json() {
+    refuses_study("{\n  \"grid\": {\n", &["error: bad.json:3:1: not valid JSON"]);
+}
+
+/// Protects: a misspelt field is refused, not ignored.
+#[test]
+fn an_unknown_field() {
+    refuses_study(
+        "{ \"scene\": { \"pin\": { \"young_modulus\": 1e9 } } }",
+        &["bad.json:1:", "young_modulus"],
+    );
+    refuses_study("{ \"grid\": { \"nu\": [0.3] } }", &["grid.nu", "no such parameter"]);
+}
+
+/// Protects: values that are not physical are refused with field and value, in the scene and in the grid.
+#[test]
+fn values_that_are_not_physical() {
+    let nu = with("/scene/pin/poisson_ratio", json!(0.5));
+    refuses_study(&nu, &["scene.pin.poisson_ratio = 0.5: expected", "ν < 0.5"]);
+    refuses_study(&with("/grid/poisson_ratio", json!([0.3, 0.5])), &["scene.pin.poisson_ratio = 0.5"]);
+    refuses_study(&with("/grid/mu", json!([0.2, -0.1])), &["scene.contact.mu = -0.1: expected"]);
+    refuses_study(&with("/grid/omega_rpm", json!([0])), &["scene.disk.omega_rpm = 0"]);
+}
+
+/// Protects: a grid without points is no sweep of nothing that succeeds.
+#[test]
+fn an_empty_grid() {
+    refuses_study("{ \"grid\": {} }", &["grid = {}: expected at least one parameter"]);
+    refuses_study("{ \"grid\": { \"mu\": [] } }", &["grid.mu"]);
+}
+
+/// Protects: a clamp that the mesh cannot give is refused before the first job, with the widths it can,
+/// also when only one job of the grid cannot be had.
+#[test]
+fn a_clamp_off_the_mesh() {
+    let clamp = with("/scene/clamp/width_m", json!(0.0025));
+    refuses_study(&clamp, &["scene.clamp.width_m = 0.0025 m", "0.004 m"]);
+    let grid = with("/grid/clamp_width_m", json!([0.004, 0.006]));
+    refuses_study(&grid, &["scene.clamp.width_m = 0.006 m", "(at ", "clamp_width_m = 0.006"]);
+}
+
+/// Protects: a time step above the stability limit is refused before the first job, and the message holds
+/// both numbers.
+#[test]
+fn a_time_step_above_the_limit() {
+    let study = with("/numerics", json!({ "time_step_s": 1e-5 }));
+    refuses_study(&study, &["numerics.time_step_s = 1e-5 s is above the stability limit"]);
+
+    // The limit named is the one that is used: the default step is the safety factor times it.
+    let folder = Folder::new();
+    folder.write("bad.json", &study);
+    let refused = folder.command("solve bad.json").assert().code(2);
+    let message = stderr(&refused);
+    let limit = message.split("the stability limit ").nth(1).unwrap().split(' ').next().unwrap();
+    let limit: f64 = limit.parse().unwrap();
+    folder.write("good.json", &with("/run/limit_s", json!(0.001)));
+    let record: Value = serde_json::from_str(&folder.ok("solve good.json --json")).unwrap();
+    assert!((record["time_step_s"].as_f64().unwrap() / (0.7 * limit) - 1.0).abs() < 1e-9, "{message}");
+}
+
+/// Protects: commands that read want a database, and do not create one.
+#[test]
+fn no_database() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
+    for command in ["status", "status mine", "work", "export mine", "report mine.json"] {
+        refuses(&folder, command, &["error: no database at tribosweep.db", "tribosweep submit"]);
+    }
+    assert_eq!(folder.files(), ["mine.json"]);
+    refuses(&folder, "submit mine.json --db no/such.db", &["folder", "no"]);
+    folder.write("text.db", &"this is no database ".repeat(100));
+    refuses(&folder, "run mine.json --db text.db", &["is not a SQLite database"]);
+    assert_eq!(folder.read("text.db"), "this is no database ".repeat(100));
+}
+
+/// Protects: an unknown study is answered with those there are.
+#[test]
+fn an_unknown_study() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
+    folder.add("other", &small(&json!({ "mu": [0.2] })));
+    folder.ok("submit mine.json");
+    for command in ["status other", "export other", "report other", "export other.json"] {
+        refuses(&folder, command, &["there is no study `other` in the database; it has: mine"]);
+    }
+}
+
+/// Protects: usage errors have the code of bad input, and asking for help is none.
+#[test]
+fn usage() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
+    for arguments in [
+        "",
+        "sweep",
+        "run",
+        "run mine.json --threads 0",
+        "run mine.json --threads many",
+        "solve mine.json --set mu",
+        "solve mine.json --set mu=0.2 --history h.csv --every 0",
+        "export mine --format xml",
+        "completions",
+    ] {
+        refuses(
+            &folder,
+            arguments,
+            &["Usage"].map(|usage| if arguments.contains('-') { "--" } else { usage }),
+        );
+    }
+    assert!(folder.ok("--help").contains("Exit codes: 0"));
+    assert!(folder.ok("--version").starts_with("tribosweep "));
+}
+
+/// Protects: a single job needs a value for every parameter of the grid, and settings are checked like the
+/// study.
+#[test]
+fn settings_of_a_single_job() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4], "omega_rpm": [7] })));
+    refuses(&folder, "solve mine.json", &["grid.mu = [0.2, 0.4]", "--set mu=0.2"]);
+    refuses(&folder, "solve mine.json --set mu=-1", &["--set: scene.contact.mu = -1"]);
+    refuses(
+        &folder,
+        "solve mine.json --set my=1",
+        &["no such parameter", "the parameters are omega_rpm, mu"],
+    );
+    refuses(
+        &folder,
+        "solve mine.json --set mu=0.2 --set clamp_width_m=0.006",
+        &["scene.clamp.width_m = 0.006 m"],
+    );
+}
+
+/// Protects: two workers never share a database; the second says so and takes nothing away.
+#[cfg(unix)]
+#[test]
+fn a_second_worker() {
+    let folder = Folder::with("busy", &long());
+    folder.add("mine", &small(&json!({ "mu": [0.2] })));
+    let first = folder.start("run busy.json --threads 1");
+    folder.wait_for("busy", |counts| counts["running"] > 0);
+    refuses(&folder, "work", &["another `tribosweep work` or `tribosweep run` is working on"]);
+    refuses(&folder, "run mine.json", &["another `tribosweep work`"]);
+    // Planning beside a worker is fine, and so is looking.
+    folder.ok("submit mine.json");
+    assert_eq!(folder.counts("busy")["running"], 1);
+    first.signal("INT");
+    assert_eq!(first.end().0, Some(3));
+}
+
+/// Protects: jobs that diverge fail, the others do not, and everybody is told: code 1 now and again, the
+/// status, the export, the report.
+#[test]
+fn failed_jobs() {
+    // The second load overflows; the speed of the last two gives figures that are not finite.
+    let folder = Folder::with("bad", &small(&json!({ "load_n": [30, 1e200], "omega_rpm": [7, 1e300] })));
+    let run = folder.command("run bad.json").assert().code(1);
+    assert!(stdout(&run).contains("failed"), "{}", stdout(&run));
+    assert!(stderr(&run).contains("1 done, 3 failed, 0 left"), "{}", stderr(&run));
+    let job_messages = stderr(&run).lines().filter(|line| line.starts_with("job ")).count();
+    assert_eq!(job_messages, 3, "{}", stderr(&run));
+
+    let export = rows(&folder.ok("export bad"));
+    for row in &export {
+        let good = row["load_n"] == "30" && row["omega_rpm"] == "7";
+        assert_eq!(row["status"] == "failed", !good, "{row:?}");
+        assert_eq!(row["mu_star"].is_empty(), !good, "{row:?}");
+        assert_eq!(row["error"].is_empty(), good, "{row:?}");
+        assert!(!row["wall_s"].is_empty(), "{row:?}");
+    }
+    assert!(export.iter().any(|row| row["error"].contains("diverged at step")), "{export:?}");
+    assert!(export.iter().any(|row| row["error"].contains("is not finite")), "{export:?}");
+
+    let status: Value = serde_json::from_str(&folder.ok("status bad --json")).unwrap();
+    assert_eq!(status["failures"].as_array().unwrap().len(), 3);
+    assert_eq!(folder.ok("status bad").lines().filter(|line| line.starts_with("failed: ")).count(), 3);
+    assert!(folder.read("reports/bad/report.md").contains("## Failed jobs (3)"));
+
+    let again = folder.command("run bad.json").assert().code(1);
+    assert!(stderr(&again).contains("1 already done, 3 failed before"), "{}", stderr(&again));
+    folder.command("work").assert().code(1);
+}
+
+/// Protects: a single job that diverges ends with 1 and leaves the history that explains it; one whose
+/// figures are not finite is no success either.
+#[test]
+fn a_single_job_that_fails() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
+    let diverged =
+        folder.command("solve mine.json --set load_n=1e200 --history history.csv").assert().code(1);
+    assert!(stderr(&diverged).contains("error: diverged at step"), "{}", stderr(&diverged));
+    assert_eq!(stdout(&diverged), "");
+    assert!(folder.read("history.csv").lines().count() > 10);
+    let infinite = folder.command("solve mine.json --set omega_rpm=1e300 --json").assert().code(1);
+    assert!(stderr(&infinite).contains("is not finite"), "{}", stderr(&infinite));
+    assert_eq!(stdout(&infinite), "");
+}
+
+/// Protects: a job that this version cannot read fails alone.
+#[test]
+fn an_unreadable_job() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
+    folder.ok("submit mine.json");
+    let job = NewJob {
+        key: "spoilt".into(),
+        payload: "no job".into(),
+        parameters: r#"{"omega_rpm":7.0,"mu":0.4,"grid":[]}"#.into(),
+        cost: 1.0,
+    };
+    let study = NewStudy { name: "spoilt".into(), document: String::new(), jobs: vec![job] };
+    tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap().block_on(async {
+        let clock = Arc::new(SystemClock);
+        let mut queue = Queue::open(&folder.path("tribosweep.db"), clock).await.unwrap();
+        queue.submit(&study).await.unwrap();
+        queue.close().await.unwrap();
+    });
+    let work = folder.command("work").assert().code(1);
+    assert!(stderr(&work).contains("job spoilt failed: unreadable job: "), "{}", stderr(&work));
+    assert_eq!(folder.counts("mine")["done"], 1);
+    let export = rows(&folder.ok("export spoilt"));
+    assert_eq!((export[0]["status"].as_str(), export[0]["mu"].as_str()), ("failed", "0.4"));
+    // The failure belongs to the other study.
+    folder.ok("run mine.json");
+}

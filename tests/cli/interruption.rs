@@ -1,0 +1,132 @@
+//! A sweep that is stopped in the middle, however it is stopped, continues where it was and ends with the
+//! same bytes.
+#![cfg(unix)]
+
+use std::collections::BTreeMap;
+use std::sync::OnceLock;
+
+use crate::support::{Folder, Running, long, rows, wall_times, without_wall_times};
+
+/// The export of the study when nothing interrupts it, without wall times.
+fn undisturbed() -> &'static str {
+    static EXPORT: OnceLock<String> = OnceLock::new();
+    EXPORT.get_or_init(|| {
+        let folder = Folder::with("study", &long());
+        folder.ok("run study.json --threads 2");
+        without_wall_times(&folder.ok("export study"))
+    })
+}
+
+/// Starts the sweep and returns when some of its jobs are done.
+fn in_the_middle(threads: usize) -> (Folder, Running) {
+    let folder = Folder::with("study", &long());
+    let run = folder.start(&format!("run study.json --threads {threads}"));
+    folder.wait_for("study", |counts| counts["done"] > 0);
+    (folder, run)
+}
+
+/// Checks that the sweep is half done and whole: some but not all jobs have results, no line is half
+/// written, no file is. Returns the wall times of what is done.
+fn half_done(folder: &Folder) -> BTreeMap<String, String> {
+    let export = folder.ok("export study");
+    let rows = rows(&export);
+    let (done, others): (Vec<_>, Vec<_>) = rows.iter().partition(|row| !row["mu_star"].is_empty());
+    assert!(!done.is_empty() && !others.is_empty(), "{export}");
+    for row in others {
+        assert!(["pending", "running"].contains(&row["status"].as_str()), "{row:?}");
+        assert!(row["wall_s"].is_empty() && row["error"].is_empty(), "{row:?}");
+    }
+    // What is done is what it would have been.
+    for line in without_wall_times(&export).lines().filter(|line| !line.contains("pending,,")) {
+        assert!(line.contains("running,,") || undisturbed().lines().any(|other| other == line), "{line}");
+    }
+    let temporary = |file: &String| file.contains(".partial") || file.contains(".tmp");
+    let left: Vec<_> = folder.files().into_iter().filter(temporary).collect();
+    assert!(left.is_empty(), "{left:?}");
+    wall_times(&export)
+}
+
+/// Checks that the sweep is complete, ends in the same bytes, and that `before` was not done again.
+fn complete(folder: &Folder, before: &BTreeMap<String, String>) {
+    let export = folder.ok("export study");
+    assert_eq!(without_wall_times(&export), undisturbed());
+    let after = wall_times(&export);
+    assert_eq!(after.len(), 12);
+    for (job, wall_s) in before {
+        assert_eq!(&after[job], wall_s, "{job} was done again");
+    }
+}
+
+/// A signal that asks to stop: code 3, running jobs back in the queue, a report of what there is.
+fn stops_in_order(folder: &Folder, run: Running, signal: &str) -> BTreeMap<String, String> {
+    run.signal(signal);
+    let (code, table, messages) = run.end();
+    assert_eq!(code, Some(3), "{messages}");
+    assert!(messages.contains("running jobs go back to the queue"), "{messages}");
+    assert!(messages.contains("the same command continues"), "{messages}");
+    assert!(table.starts_with("| ω [rpm] |") && table.contains('–'), "{table}");
+    assert!(folder.read("reports/study/report.md").contains("This report is incomplete"));
+    let counts = folder.counts("study");
+    assert_eq!((counts["running"], counts["failed"], counts["total"]), (0, 0, 12), "{counts:?}");
+    assert!(counts["done"] > 0 && counts["pending"] > 0, "{counts:?}");
+    let before = half_done(folder);
+    assert_eq!(before.len() as u64, counts["done"]);
+    before
+}
+
+/// Protects: Ctrl-C, then the same command.
+#[test]
+fn ctrl_c_and_run_again() {
+    let (folder, run) = in_the_middle(1);
+    let before = stops_in_order(&folder, run, "INT");
+    folder.ok("run study.json --threads 2");
+    complete(&folder, &before);
+    assert!(!folder.read("reports/study/report.md").contains("incomplete"));
+}
+
+/// Protects: the SIGTERM of a batch system, then `work`.
+#[test]
+fn sigterm_and_work() {
+    let (folder, run) = in_the_middle(2);
+    let before = stops_in_order(&folder, run, "TERM");
+    folder.ok("work --threads 1");
+    complete(&folder, &before);
+}
+
+/// Protects: Ctrl-C of `work`, twice in a row, each time with the code for work left over.
+#[test]
+fn work_is_interrupted_and_continued() {
+    let folder = Folder::with("study", &long());
+    folder.ok("submit study.json");
+    let mut before = BTreeMap::new();
+    for done in [1, 3] {
+        let work = folder.start("work --threads 1");
+        folder.wait_for("study", |counts| counts["done"] >= done);
+        work.signal("INT");
+        let (code, out, messages) = work.end();
+        assert_eq!((code, out.as_str()), (Some(3), ""), "{messages}");
+        let now = half_done(&folder);
+        assert!(before.iter().all(|(job, wall_s)| now[job] == *wall_s), "{before:?} {now:?}");
+        before = now;
+    }
+    folder.ok("work --threads 2");
+    complete(&folder, &before);
+}
+
+/// Protects: a process that is killed leaves a whole database; the next one takes its jobs back, says so,
+/// and ends in the same bytes.
+#[test]
+fn killed_in_the_middle() {
+    let (folder, run) = in_the_middle(2);
+    run.signal("KILL");
+    let (code, table, _) = run.end();
+    assert_eq!((code, table.as_str()), (None, ""));
+    let counts = folder.counts("study");
+    assert!(counts["running"] > 0 && counts["done"] > 0 && counts["done"] < 12, "{counts:?}");
+    let before = half_done(&folder);
+    let (code, _, messages) = folder.start("run study.json --threads 2").end();
+    assert_eq!(code, Some(0), "{messages}");
+    let taken = format!("{} jobs left running by an interrupted process were taken back", counts["running"]);
+    assert!(messages.contains(&taken), "{messages}");
+    complete(&folder, &before);
+}

@@ -1,0 +1,167 @@
+//! `solve`: one job in the foreground.
+
+use serde_json::{Value, json};
+
+use crate::support::{Folder, Running, rows, small, stderr, wait};
+
+const HISTORY: &str = "time_s,load_n,normal_n,tangential_n,contact_tangential_n,mu_eq,stick_nodes,slip_nodes,\
+separated_nodes,front_centre_x_m,front_centre_y_m,front_centre_z_m,front_centre_y_velocity_m_s,\
+front_centre_sigma_n_pa,front_centre_slip_speed_m_s,front_centre_mu_eq,front_centre_state,rear_centre_x_m,\
+rear_centre_y_m,rear_centre_z_m,rear_centre_y_velocity_m_s,rear_centre_sigma_n_pa,rear_centre_slip_speed_m_s,\
+rear_centre_mu_eq,rear_centre_state";
+
+fn folder() -> Folder {
+    Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4], "omega_rpm": [2, 7] })))
+}
+
+/// The history's columns, as numbers where they are.
+struct History(Vec<crate::support::ExportRow>);
+
+impl History {
+    fn read(folder: &Folder, file: &str) -> Self {
+        let text = folder.read(file);
+        assert_eq!(text.lines().next().unwrap(), HISTORY);
+        Self(rows(&text))
+    }
+
+    fn column(&self, name: &str) -> Vec<f64> {
+        self.0.iter().map(|row| row[name].parse().unwrap()).collect()
+    }
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
+/// Protects: the history has one line a step with increasing time, every contact node in one state, and
+/// its forces are those of the scene: in the steady state N averages to the load and T/F to μ*.
+#[test]
+fn the_history_is_that_of_the_run() {
+    let folder = folder();
+    let record: Value = serde_json::from_str(
+        &folder.ok("solve mine.json --set mu=0.4 --set omega_rpm=7 --json --history history.csv"),
+    )
+    .unwrap();
+    let history = History::read(&folder, "history.csv");
+    let time = history.column("time_s");
+    assert_eq!(time.len() as u64, record["steps"].as_u64().unwrap());
+    assert!(time.windows(2).all(|pair| pair[0] < pair[1]));
+    let states =
+        [history.column("stick_nodes"), history.column("slip_nodes"), history.column("separated_nodes")];
+    assert!((0..time.len()).all(|i| states.iter().map(|state| state[i]).sum::<f64>() == 20.0));
+
+    let load = history.column("load_n");
+    assert_eq!(*load.last().unwrap(), 30.0);
+    // Whole cycles: from the start of the window that the record averages over.
+    let start = time.partition_point(|&time| time < record["window_start_s"].as_f64().unwrap());
+    assert!(start > 0 && start < time.len() - 500, "{start}");
+    let normal = mean(&history.column("normal_n")[start..]);
+    assert!((normal / 30.0 - 1.0).abs() < 0.01, "mean normal force {normal} N");
+    let mu_star = mean(&history.column("tangential_n")[start..]) / 30.0;
+    assert!((mu_star - record["mu_star"].as_f64().unwrap()).abs() < 0.005, "{mu_star}");
+    for state in history.0.iter().map(|row| row["front_centre_state"].as_str()) {
+        assert!(["stick", "slip", "separated"].contains(&state), "{state}");
+    }
+}
+
+/// Protects: `--every` thins the history out and changes nothing in it.
+#[test]
+fn every_keeps_each_nth_step() {
+    let folder = folder();
+    let settings = "solve mine.json --set mu=0.2 --set omega_rpm=7 --set limit_s=0.002 --history";
+    folder.ok(&format!("{settings} all.csv"));
+    folder.ok(&format!("{settings} some.csv --every 10"));
+    let (all, some) = (folder.read("all.csv"), folder.read("some.csv"));
+    let expected: Vec<_> = all.lines().take(1).chain(all.lines().skip(1).step_by(10)).collect();
+    assert_eq!(some.lines().collect::<Vec<_>>(), expected);
+    // Without a history there is nothing to thin out.
+    folder.command("solve mine.json --set mu=0.2 --set omega_rpm=7 --every 10").assert().code(2);
+}
+
+/// Protects: one job alone and the same job in a sweep find the same figures to the last bit, and it
+/// needs no database.
+#[test]
+fn a_single_job_is_that_of_the_sweep() {
+    let folder = folder();
+    let solved = folder.ok("solve mine.json --set mu=0.4 --set omega_rpm=7 --json");
+    assert_eq!(folder.files(), ["mine.json"]);
+    let record: Value = serde_json::from_str(&solved).unwrap();
+    folder.ok("run mine.json");
+    let export = rows(&folder.ok("export mine"));
+    let row = export.iter().find(|row| row["mu"] == "0.4" && row["omega_rpm"] == "7").unwrap();
+    for name in ["mu_star", "mu_star_se", "frequency_hz", "separated_share", "simulated_s", "energy_residual"]
+    {
+        assert_eq!(record[name].as_f64().unwrap(), row[name].parse::<f64>().unwrap(), "{name}");
+    }
+    assert_eq!(record["regime"], row["regime"].as_str());
+    assert_eq!(record["outcome"], row["status"].as_str());
+}
+
+/// Protects: the text has the figures of the record, and a setting reaches the solver.
+#[test]
+fn the_text_is_the_record_in_short() {
+    let folder = folder();
+    let record: Value = serde_json::from_str(
+        &folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --json"),
+    )
+    .unwrap();
+    let text = folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10");
+    assert!(text.contains("regime                 stable\n"), "{text}");
+    assert!(text.contains("frequency              none\n"), "{text}");
+    assert!(text.contains(&format!("{:.5} ± ", record["mu_star"].as_f64().unwrap())), "{text}");
+    // A third of the load presses a third as hard.
+    let full: Value =
+        serde_json::from_str(&folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --json")).unwrap();
+    let ratio = full["sigma_n_max_pa"].as_f64().unwrap() / record["sigma_n_max_pa"].as_f64().unwrap();
+    assert!((ratio - 3.0).abs() < 0.3, "{ratio}");
+}
+
+/// Protects: a device or a link that is given as a file to write stays what it is.
+#[cfg(unix)]
+#[test]
+fn a_device_is_written_to_and_not_replaced() {
+    let folder = folder();
+    folder.write("target.csv", "old");
+    for (link, target) in [("null", "/dev/null"), ("link.csv", "target.csv")] {
+        std::os::unix::fs::symlink(target, folder.path(link)).unwrap();
+        let settings = "--set mu=0.2 --set omega_rpm=7 --set limit_s=0.001";
+        folder.ok(&format!("solve mine.json {settings} --history {link}"));
+        assert!(folder.path(link).symlink_metadata().unwrap().is_symlink(), "{link}");
+    }
+    assert!(folder.read("target.csv").starts_with(HISTORY));
+    assert_eq!(folder.files(), ["link.csv", "mine.json", "null", "target.csv"]);
+}
+
+/// Protects: a history that cannot be written is an error that names the file, and leaves nothing behind.
+#[test]
+fn an_unwritable_history_is_named() {
+    let folder = folder();
+    let settings = "--set mu=0.2 --set omega_rpm=7 --set limit_s=0.001";
+    let missing =
+        folder.command(&format!("solve mine.json {settings} --history no/such.csv")).assert().code(2);
+    assert!(stderr(&missing).starts_with("error: no/such.csv: "), "{}", stderr(&missing));
+    assert_eq!(folder.files(), ["mine.json"]);
+}
+
+/// Protects: Ctrl-C ends a long job with the code for work left over, and its history so far is kept.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_interrupted_job_keeps_its_history() {
+    let folder = folder();
+    let settings = "--set mu=0.2 --set omega_rpm=7 --set limit_s=50 --set stop_early=false";
+    let solving = folder.start(&format!("solve mine.json {settings} --history history.csv --every 50"));
+    wait("the signal handler", || handles_interrupts(&solving));
+    solving.signal("INT");
+    let (code, out, err) = solving.end();
+    assert_eq!((code, out.as_str()), (Some(3), ""), "{err}");
+    assert!(err.contains("interrupted"), "{err}");
+    assert!(!History::read(&folder, "history.csv").0.is_empty());
+}
+
+/// Whether SIGINT is one of the signals that the process catches.
+#[cfg(target_os = "linux")]
+fn handles_interrupts(process: &Running) -> bool {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", process.id())).unwrap();
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
+    u64::from_str_radix(caught.trim(), 16).unwrap() & 0b10 != 0
+}

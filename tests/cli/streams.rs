@@ -1,0 +1,81 @@
+//! Results go to standard output and nothing else does; a reader that leaves is no failure.
+
+use std::process::{Command, Stdio};
+
+use serde_json::json;
+
+use crate::support::{Folder, TRIBOSWEEP, small, stderr, stdout};
+
+fn folder() -> Folder {
+    Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })))
+}
+
+/// Protects: commands without a result print nothing, commands with a result say nothing else, so that
+/// both streams can be piped.
+#[test]
+fn results_and_messages_have_a_stream_each() {
+    let folder = folder();
+    for (command, has_result, has_messages) in [
+        ("submit mine.json", false, true),
+        ("work", false, true),
+        ("status", true, false),
+        ("status mine --json", true, false),
+        ("export mine", true, false),
+        ("report mine", true, true),
+        ("run mine.json", true, true),
+        ("solve mine.json --set mu=0.2", true, false),
+        ("validate mine.json", true, false),
+        ("schema", true, false),
+        ("completions bash", true, false),
+    ] {
+        let end = folder.command(command).assert().code(0);
+        assert_eq!(!stdout(&end).is_empty(), has_result, "{command}: {}", stdout(&end));
+        assert_eq!(!stderr(&end).is_empty(), has_messages, "{command}: {}", stderr(&end));
+    }
+    let failed = folder.command("export other").assert().code(2);
+    assert_eq!(stdout(&failed), "");
+    assert!(stderr(&failed).starts_with("error: "), "{}", stderr(&failed));
+}
+
+/// Protects: `tribosweep … | head` succeeds, also when the reader is gone before the first byte.
+#[test]
+fn a_reader_that_leaves_is_no_failure() {
+    let folder = folder();
+    for command in
+        ["run mine.json", "export mine", "export mine --format json", "status", "schema", "completions zsh"]
+    {
+        let (reader, writer) = std::io::pipe().unwrap();
+        drop(reader);
+        let mut process = Command::new(TRIBOSWEEP);
+        process.current_dir(folder.path("")).env_remove("TRIBOSWEEP_DB").args(command.split(' '));
+        let output = process.stdout(writer).stderr(Stdio::piped()).output().unwrap();
+        let messages = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(0), "{command}: {messages}");
+        assert!(!messages.contains("error") && !messages.contains("panic"), "{command}: {messages}");
+    }
+}
+
+/// Protects: a reader that leaves does not turn a failure into a success.
+#[test]
+fn a_reader_that_leaves_hides_no_failure() {
+    let folder = Folder::with("bad", &small(&json!({ "load_n": [30, 1e200] })));
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let mut process = Command::new(TRIBOSWEEP);
+    process.current_dir(folder.path("")).args(["--db", "mine.db", "run", "bad.json"]);
+    let output = process.stdout(writer).stderr(Stdio::piped()).output().unwrap();
+    assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8(output.stderr).unwrap());
+}
+
+/// Protects: a sweep whose messages nobody reads goes on to its end.
+#[test]
+fn a_sweep_needs_no_reader_of_its_messages() {
+    let folder = folder();
+    let (reader, writer) = std::io::pipe().unwrap();
+    drop(reader);
+    let mut process = Command::new(TRIBOSWEEP);
+    process.current_dir(folder.path("")).args(["--db", "mine.db", "run", "mine.json"]);
+    let output = process.stderr(writer).stdout(Stdio::piped()).output().unwrap();
+    assert_eq!(output.status.code(), Some(0));
+    assert!(String::from_utf8(output.stdout).unwrap().starts_with("| ω [rpm] |"));
+}

@@ -1,0 +1,202 @@
+//! A folder with study files, and the command run in it.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::process::{Child, Stdio};
+use std::time::{Duration, Instant};
+
+use assert_cmd::Command;
+use serde_json::{Value, json};
+use tempfile::TempDir;
+
+/// The command under test.
+pub const TRIBOSWEEP: &str = env!("CARGO_BIN_EXE_tribosweep");
+
+/// The header of the export, as other programs know it.
+pub const HEADER: &str = "study,job,omega_rpm,mu,status,regime,mu_star,mu_star_se,mu_star_contact,frequency_hz,\
+stick_share,slip_share,separated_share,n_over_f_min,n_over_f_max,sigma_n_max_pa,slip_speed_max_m_s,cycles,\
+simulated_s,steps,time_step_s,energy_residual,identity_residual,wall_s,error";
+
+/// Waiting longer than this for another process means that it hangs.
+const PATIENCE: Duration = Duration::from_mins(2);
+
+pub struct Folder(TempDir);
+
+impl Folder {
+    pub fn new() -> Self {
+        Self(TempDir::new().unwrap())
+    }
+
+    /// A folder with `NAME.json` in it.
+    pub fn with(name: &str, study: &Value) -> Self {
+        let folder = Self::new();
+        folder.add(name, study);
+        folder
+    }
+
+    pub fn add(&self, name: &str, study: &Value) {
+        self.write(&format!("{name}.json"), &study.to_string());
+    }
+
+    pub fn write(&self, file: &str, text: &str) {
+        std::fs::write(self.path(file), text).unwrap();
+    }
+
+    pub fn path(&self, file: impl AsRef<Path>) -> PathBuf {
+        self.0.path().join(file)
+    }
+
+    pub fn read(&self, file: impl AsRef<Path>) -> String {
+        let path = self.path(file);
+        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    }
+
+    /// The command in this folder, with arguments separated by spaces.
+    pub fn command(&self, arguments: &str) -> Command {
+        let mut command = Command::new(TRIBOSWEEP);
+        command.current_dir(&self.0).env_remove("TRIBOSWEEP_DB").args(arguments.split_whitespace());
+        command.timeout(PATIENCE);
+        command
+    }
+
+    /// What the command printed; it must succeed.
+    pub fn ok(&self, arguments: &str) -> String {
+        stdout(&self.command(arguments).assert().code(0))
+    }
+
+    /// Starts the command and does not wait for it.
+    pub fn start(&self, arguments: &str) -> Running {
+        let child = std::process::Command::new(TRIBOSWEEP)
+            .current_dir(&self.0)
+            .env_remove("TRIBOSWEEP_DB")
+            .args(arguments.split_whitespace())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn();
+        Running(Some(child.unwrap()))
+    }
+
+    /// The number of jobs in each state, as `status --json` tells.
+    pub fn counts(&self, study: &str) -> BTreeMap<String, u64> {
+        let status: Value = serde_json::from_str(&self.ok(&format!("status {study} --json"))).unwrap();
+        serde_json::from_value(status["jobs"].clone()).unwrap()
+    }
+
+    /// Asks for the state of a study until `enough` says yes.
+    pub fn wait_for(&self, study: &str, enough: impl Fn(&BTreeMap<String, u64>) -> bool) {
+        wait("the study to get there", || {
+            // The database, or the study in it, may not be there yet.
+            let mut command = self.command(&format!("status {study} --json"));
+            let Ok(output) = command.ok() else { return false };
+            let status: Value = serde_json::from_slice(&output.stdout).unwrap();
+            enough(&serde_json::from_value(status["jobs"].clone()).unwrap())
+        });
+    }
+
+    /// Every file below the folder, by its path from there.
+    pub fn files(&self) -> Vec<String> {
+        let mut files = Vec::new();
+        let mut folders = vec![self.0.path().to_owned()];
+        while let Some(folder) = folders.pop() {
+            for entry in std::fs::read_dir(folder).unwrap() {
+                let path = entry.unwrap().path();
+                if path.is_dir() {
+                    folders.push(path);
+                } else {
+                    files.push(path.strip_prefix(self.0.path()).unwrap().to_str().unwrap().to_owned());
+                }
+            }
+        }
+        files.sort();
+        files
+    }
+}
+
+/// A command that runs on its own; it ends with the test.
+pub struct Running(Option<Child>);
+
+impl Running {
+    pub fn id(&self) -> u32 {
+        self.0.as_ref().unwrap().id()
+    }
+
+    /// Sends a signal, by its name without SIG.
+    pub fn signal(&self, name: &str) {
+        let mut kill = std::process::Command::new("kill");
+        assert!(kill.args([format!("-{name}"), self.id().to_string()]).status().unwrap().success());
+    }
+
+    /// Waits for its end: exit code (none if a signal ended it), standard output, standard error.
+    pub fn end(mut self) -> (Option<i32>, String, String) {
+        let output = self.0.take().unwrap().wait_with_output().unwrap();
+        let text = |bytes| String::from_utf8(bytes).unwrap();
+        (output.status.code(), text(output.stdout), text(output.stderr))
+    }
+}
+
+impl Drop for Running {
+    fn drop(&mut self) {
+        if let Some(child) = &mut self.0 {
+            let _ = child.kill();
+            let _ = child.wait();
+        }
+    }
+}
+
+/// Asks until the answer is yes.
+pub fn wait(for_what: &str, mut enough: impl FnMut() -> bool) {
+    let begun = Instant::now();
+    while !enough() {
+        assert!(begun.elapsed() < PATIENCE, "waited in vain for {for_what}");
+        std::thread::sleep(Duration::from_millis(5));
+    }
+}
+
+pub fn stdout(assert: &assert_cmd::assert::Assert) -> String {
+    String::from_utf8(assert.get_output().stdout.clone()).unwrap()
+}
+
+pub fn stderr(assert: &assert_cmd::assert::Assert) -> String {
+    String::from_utf8(assert.get_output().stderr.clone()).unwrap()
+}
+
+/// A study on a mesh of 36 elements: a job takes some 10 ms.
+pub fn small(grid: &Value) -> Value {
+    json!({
+        "scene": { "pin": { "elements": [3, 4, 3] }, "clamp": { "width_m": 0.004 } },
+        "run": { "limit_s": 0.012 },
+        "grid": grid,
+    })
+}
+
+/// Twelve jobs that take some tenths of a second each and as long as one another: time to interrupt them.
+pub fn long() -> Value {
+    let mut study = small(&json!({ "mu": [0.2, 0.3, 0.4], "omega_rpm": [2, 5, 7, 20] }));
+    study["run"] = json!({ "limit_s": 0.2, "stop_early": false });
+    study
+}
+
+/// One row of an export, by column.
+pub type ExportRow = BTreeMap<String, String>;
+
+pub fn rows(export: &str) -> Vec<ExportRow> {
+    csv::Reader::from_reader(export.as_bytes()).deserialize().collect::<Result<_, _>>().unwrap()
+}
+
+/// The wall time of every job that has ended.
+pub fn wall_times(export: &str) -> BTreeMap<String, String> {
+    let ended = rows(export).into_iter().filter(|row| !row["wall_s"].is_empty());
+    ended.map(|row| (row["job"].clone(), row["wall_s"].clone())).collect()
+}
+
+/// The export without the values of `wall_s`, all other bytes as they are.
+pub fn without_wall_times(export: &str) -> String {
+    let column = HEADER.split(',').position(|name| name == "wall_s").unwrap();
+    assert!(!export.contains('"'), "a quoted cell may hold a comma: {export}");
+    let blank = |line: &str| {
+        let mut cells: Vec<_> = line.split(',').collect();
+        cells[column] = "";
+        cells.join(",")
+    };
+    export.split('\n').map(|line| if line.is_empty() { String::new() } else { blank(line) + "\n" }).collect()
+}

@@ -1,0 +1,92 @@
+//! Jobs that fail, and workers that cannot work.
+
+use tribosweep::queue::{JobState, QueueError, Scope, WorkerLock};
+use tribosweep::worker::{Interrupt, SilentProgress, WorkError, work};
+
+use super::{Recorder, job, row, several, solvable, spec, submit};
+use crate::support::{Sandbox, counts, of};
+
+/// Protects: whatever is wrong with a job (its text, its values, the run, the figures), that job fails with
+/// the reason, the observer is told, and the sweep goes on to its end.
+#[tokio::test]
+async fn a_failed_job_stops_nothing() {
+    let mut diverging = spec(0.2, 0.001);
+    diverging.scene.load.force_n = 1e200;
+    let mut infinite = spec(0.2, 0.001);
+    infinite.scene.disk.omega_rpm = 1e300;
+    let mut incompressible = spec(0.2, 0.001);
+    incompressible.scene.pin.poisson_ratio = 0.5;
+    let mut off_the_mesh = spec(0.2, 0.001);
+    off_the_mesh.scene.clamp.width_m = 0.0025;
+    let bad = [
+        (job("text", "no job"), "unreadable job: "),
+        (job("field", r#"{"scene":{"pins":{}}}"#), "unreadable job: unknown field `pins`"),
+        (solvable("values", &incompressible), "scene.pin.poisson_ratio"),
+        (solvable("mesh", &off_the_mesh), "scene.clamp.width_m"),
+        (solvable("run", &diverging), "diverged at step"),
+        (solvable("figures", &infinite), "slip_speed_max_m_s is not finite"),
+    ];
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let mut jobs: Vec<_> = bad.iter().map(|(job, _)| job.clone()).collect();
+    jobs.extend(several(2, 0.001));
+    submit(&mut queue, "study", jobs).await;
+
+    let mut recorder = Recorder::new(|_| ());
+    let summary = work(&mut queue, &Scope::All, 2, &Interrupt::default(), &mut recorder).await.unwrap();
+    assert_eq!(summary.counts, counts(0, 0, 2, 6));
+    assert!(!summary.interrupted);
+    for (job, expected) in &bad {
+        let row = row(&mut queue, "study", &job.key).await;
+        assert_eq!((row.state, row.attempt), (JobState::Failed, 1), "{row:?}");
+        let error = row.error.unwrap();
+        assert!(error.contains(expected), "{}: {error}", job.key);
+        assert!(row.record.is_none());
+        let told: Vec<_> = recorder.failures.iter().filter(|(key, _)| *key == job.key).collect();
+        assert_eq!(told, [&(job.key.clone(), error)]);
+    }
+    assert_eq!(recorder.failures.len(), bad.len());
+}
+
+/// Protects: a job that makes the solver panic fails like any other, and its thread works on.
+#[tokio::test]
+async fn a_panic_fails_its_job_only() {
+    let mut hard = spec(0.2, 0.001);
+    // Legal as a number and beyond what a computer can hold as a time step.
+    hard.scene.pin.young_modulus_pa = 1e300;
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let mut jobs = vec![solvable("hard", &hard)];
+    jobs.extend(several(2, 0.001));
+    submit(&mut queue, "study", jobs).await;
+    let summary = work(&mut queue, &Scope::All, 1, &Interrupt::default(), &mut SilentProgress).await.unwrap();
+    assert_eq!(summary.counts, counts(0, 0, 2, 1));
+    let row = row(&mut queue, "study", "hard").await;
+    assert_eq!(row.state, JobState::Failed);
+    assert!(!row.error.unwrap().is_empty());
+}
+
+/// Protects: a second worker is refused before it touches a job.
+#[tokio::test]
+async fn a_second_worker_is_refused() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    submit(&mut queue, "study", several(1, 0.001)).await;
+    let lock = WorkerLock::acquire(queue.path()).unwrap();
+    let refused = work(&mut queue, &Scope::All, 1, &Interrupt::default(), &mut SilentProgress).await;
+    assert!(matches!(refused, Err(WorkError::Queue(QueueError::AlreadyWorking { .. }))), "{refused:?}");
+    assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(1, 0, 0, 0));
+    drop(lock);
+    work(&mut queue, &Scope::All, 1, &Interrupt::default(), &mut SilentProgress).await.unwrap();
+    assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(0, 0, 1, 0));
+}
+
+/// Protects: an unknown study is an error, not a sweep of nothing, and the lock is free afterwards.
+#[tokio::test]
+async fn an_unknown_study_is_an_error() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let refused = work(&mut queue, &of("none"), 1, &Interrupt::default(), &mut SilentProgress).await;
+    assert!(matches!(refused, Err(WorkError::Queue(QueueError::UnknownStudy { .. }))), "{refused:?}");
+    WorkerLock::acquire(queue.path()).unwrap();
+}

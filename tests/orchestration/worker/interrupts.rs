@@ -1,0 +1,87 @@
+//! A worker that is asked to stop.
+
+use tribosweep::queue::{JobState, Scope};
+use tribosweep::worker::{Interrupt, SilentProgress, work};
+
+use super::{Recorder, several, submit};
+use crate::support::{Sandbox, claim, counts};
+
+/// Protects: a worker that is to stop before it starts claims nothing, and says that work is left.
+#[tokio::test]
+async fn an_early_interrupt_claims_nothing() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    submit(&mut queue, "study", several(3, 0.001)).await;
+    let interrupt = Interrupt::default();
+    interrupt.raise();
+    let mut recorder = Recorder::new(|_| ());
+    let summary = work(&mut queue, &Scope::All, 2, &interrupt, &mut recorder).await.unwrap();
+    assert!(summary.interrupted);
+    assert_eq!(summary.counts, counts(3, 0, 0, 0));
+    assert_eq!(recorder.stopped.len(), 1);
+    let rows = queue.rows("study").await.unwrap();
+    assert!(rows.iter().all(|row| row.attempt == 0 && row.note.is_none()), "{rows:?}");
+}
+
+/// Protects: an interrupt in the middle gives the running jobs back with a reason, keeps what is done, and
+/// the next worker does the rest only.
+#[tokio::test]
+async fn an_interrupt_gives_running_jobs_back() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    // Two short jobs, and four that would take minutes: the interrupt cannot come too late.
+    let mut jobs = several(6, 50.0);
+    for (job, short) in jobs.iter_mut().zip(several(2, 0.001)) {
+        // Dear jobs come first.
+        *job = tribosweep::queue::NewJob { cost: 2.0, ..short };
+    }
+    submit(&mut queue, "study", jobs).await;
+    let interrupt = Interrupt::default();
+    let raised = interrupt.clone();
+    let mut recorder = Recorder::new(move |snapshot| {
+        // Both short jobs are done and the next two have begun.
+        if snapshot.counts.done == 2
+            && snapshot.running.iter().filter(|job| job.simulated_s > 0.0).count() == 2
+        {
+            raised.raise();
+        }
+    });
+    let summary = work(&mut queue, &Scope::All, 2, &interrupt, &mut recorder).await.unwrap();
+    assert!(summary.interrupted);
+    assert_eq!(summary.counts, counts(4, 0, 2, 0));
+    assert!(recorder.failures.is_empty(), "{:?}", recorder.failures);
+    let before = queue.rows("study").await.unwrap();
+    let attempts: Vec<_> = before.iter().map(|row| row.attempt).collect();
+    assert_eq!(attempts, [1, 1, 1, 1, 0, 0]);
+    for row in &before[2..4] {
+        assert_eq!((row.state, &row.record), (JobState::Pending, &None));
+        assert!(row.note.as_ref().unwrap().starts_with("released"), "{row:?}");
+    }
+
+    // The rest in a version that ends, under the same keys.
+    let mut raw = sandbox.raw().await;
+    for job in &several(6, 0.001)[2..] {
+        let update = sqlx::query("UPDATE jobs SET payload = ?2 WHERE key = ?1");
+        update.bind(&job.key).bind(&job.payload).execute(&mut raw).await.unwrap();
+    }
+    let summary = work(&mut queue, &Scope::All, 2, &Interrupt::default(), &mut SilentProgress).await.unwrap();
+    assert_eq!((summary.counts, summary.interrupted), (counts(0, 0, 6, 0), false));
+    let after = queue.rows("study").await.unwrap();
+    assert_eq!(after.iter().map(|row| row.attempt).collect::<Vec<_>>(), [1, 1, 2, 2, 1, 1]);
+    for (before, after) in before.iter().zip(&after).take(2) {
+        assert_eq!((&before.record, before.wall_s), (&after.record, after.wall_s));
+    }
+}
+
+/// Protects: jobs that a dead process left running are done too, and counted.
+#[tokio::test]
+async fn jobs_left_running_are_taken_back() {
+    let sandbox = Sandbox::new();
+    let mut dead = sandbox.open().await;
+    submit(&mut dead, "study", several(3, 0.001)).await;
+    claim(&mut dead, Scope::All, 2).await;
+    drop(dead);
+    let mut queue = sandbox.open().await;
+    let summary = work(&mut queue, &Scope::All, 2, &Interrupt::default(), &mut SilentProgress).await.unwrap();
+    assert_eq!((summary.taken_back, summary.counts), (2, counts(0, 0, 3, 0)));
+}

@@ -1,0 +1,99 @@
+//! What a worker shows and what it stores.
+
+use tribosweep::analysis::{self, JobRecord, Unobserved};
+use tribosweep::queue::Scope;
+use tribosweep::spec::JobSpec;
+use tribosweep::worker::{Interrupt, SilentProgress, work};
+
+use super::{Recorder, several, submit};
+use crate::support::{Sandbox, counts, of};
+
+/// Protects: progress only grows, the total stays, no more jobs run than there are threads, and the end is
+/// shown once with nothing left.
+#[tokio::test]
+async fn progress_only_grows() {
+    for threads in [1, 3] {
+        let sandbox = Sandbox::new();
+        let mut queue = sandbox.open().await;
+        submit(&mut queue, "study", several(7, 0.002)).await;
+        let mut recorder = Recorder::new(|_| ());
+        work(&mut queue, &Scope::All, threads, &Interrupt::default(), &mut recorder).await.unwrap();
+        let seen: Vec<_> = recorder.counts().collect();
+        assert!(seen.windows(2).all(|pair| pair[0].done <= pair[1].done), "{seen:?}");
+        assert!(seen.iter().all(|counts| counts.total() == 7), "{seen:?}");
+        assert_eq!(recorder.stopped.len(), 1);
+        assert_eq!(recorder.stopped[0].counts, counts(0, 0, 7, 0));
+        // Before the first job is done, and after each but the last or the last few.
+        assert_eq!(seen[0], counts(7 - threads as u64, threads as u64, 0, 0));
+        assert!(recorder.snapshots.len() >= 7 / threads, "{seen:?}");
+        for snapshot in &recorder.snapshots {
+            assert!(snapshot.running.len() <= threads);
+            assert_eq!(snapshot.running.len() as u64, snapshot.counts.running);
+            assert!(snapshot.running.iter().all(|job| (0.0..=0.0021).contains(&job.simulated_s)));
+        }
+        // Time left is told once there is evidence, and not before.
+        for snapshot in &recorder.snapshots {
+            assert_eq!(snapshot.eta.is_some(), snapshot.counts.done >= 3, "{snapshot:?}");
+        }
+    }
+}
+
+/// Protects: the clock of a running job moves, so that a long job is seen to live.
+#[tokio::test]
+async fn a_running_job_tells_its_time() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    submit(&mut queue, "study", several(1, 50.0)).await;
+    let interrupt = Interrupt::default();
+    let raised = interrupt.clone();
+    let mut times = Vec::new();
+    let mut recorder = Recorder::new(|snapshot| {
+        times.extend(snapshot.running.iter().map(|job| job.simulated_s));
+        if times.last().is_some_and(|&last| last > times[0]) {
+            raised.raise();
+        }
+    });
+    work(&mut queue, &Scope::All, 1, &interrupt, &mut recorder).await.unwrap();
+    assert!(times.windows(2).all(|pair| pair[0] <= pair[1]), "{times:?}");
+    assert!(times.last() > times.first(), "{times:?}");
+}
+
+/// Protects: what is stored is what the solver finds for that job alone, to the last bit, on any number of
+/// threads.
+#[tokio::test]
+async fn records_are_those_of_the_solver() {
+    let jobs = several(4, 0.003);
+    let expected: Vec<JobRecord> = jobs
+        .iter()
+        .map(|job| {
+            let spec: JobSpec = serde_json::from_str(&job.payload).unwrap();
+            analysis::solve(&spec, &mut Unobserved).unwrap()
+        })
+        .collect();
+    let mut stored: Vec<Vec<String>> = Vec::new();
+    for threads in [1, 2, 4] {
+        let sandbox = Sandbox::new();
+        let mut queue = sandbox.open().await;
+        submit(&mut queue, "study", jobs.clone()).await;
+        work(&mut queue, &Scope::All, threads, &Interrupt::default(), &mut SilentProgress).await.unwrap();
+        let rows = queue.rows("study").await.unwrap();
+        stored.push(rows.into_iter().map(|row| row.record.unwrap()).collect());
+        let read = stored.last().unwrap().iter().map(|text| serde_json::from_str::<JobRecord>(text).unwrap());
+        assert!(read.eq(expected.iter().cloned()), "{threads} threads");
+    }
+    assert!(stored.iter().all(|records| *records == stored[0]));
+}
+
+/// Protects: a worker for one study leaves the jobs of the others alone.
+#[tokio::test]
+async fn a_worker_keeps_to_its_study() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let jobs = several(5, 0.001);
+    submit(&mut queue, "mine", jobs[..3].to_vec()).await;
+    submit(&mut queue, "other", jobs[2..].to_vec()).await;
+    let summary = work(&mut queue, &of("mine"), 2, &Interrupt::default(), &mut SilentProgress).await.unwrap();
+    assert_eq!(summary.counts, counts(0, 0, 3, 0));
+    // They share one job.
+    assert_eq!(queue.counts(&of("other")).await.unwrap(), counts(2, 0, 1, 0));
+}
