@@ -16,6 +16,9 @@ use thiserror::Error;
 /// sampled as often: about four times per period of the fastest mode that damping leaves alive.
 const AUDIT_INTERVAL: u64 = 16;
 
+/// Largest number of steps of a run: a thousand times those of the reference scene's longest jobs.
+const MAX_STEPS: f64 = 5.0e7;
+
 /// Why a job has no record.
 #[derive(Debug, Error)]
 pub enum JobError {
@@ -25,6 +28,27 @@ pub enum JobError {
     /// The solver refused the scene or the run diverged.
     #[error(transparent)]
     Solver(#[from] SolverError),
+    /// The time step is out of all proportion to the run.
+    #[error(
+        "run.limit_s = {limit_s:e} s takes {steps:.1e} steps of {time_step_s:.3e} s, more than the {MAX_STEPS:.0e} \
+         that a run may have: look for extreme material or damping values, or give a shorter limit"
+    )]
+    TooManySteps {
+        /// The run's time limit [s].
+        limit_s: f64,
+        /// The time step [s].
+        time_step_s: f64,
+        /// Their ratio.
+        steps: f64,
+    },
+    /// The run ended, but a figure overflowed.
+    #[error(
+        "the run ended, but {figure} is not finite: look for extreme material, load or friction values in this job"
+    )]
+    NotFinite {
+        /// Path of the figure in the record.
+        figure: String,
+    },
     /// The observer asked to stop.
     #[error("interrupted")]
     Interrupted,
@@ -53,16 +77,16 @@ impl JobObserver for Unobserved {}
 /// Solves one job.
 ///
 /// # Errors
-/// If the specification is not physical, the solver refuses it, the run diverges, or `observer`
-/// interrupts it.
+/// If the specification is not physical, the solver refuses it, it takes too many steps, the run
+/// diverges or a figure overflows, or `observer` interrupts it.
 pub fn solve(spec: &JobSpec, observer: &mut impl JobObserver) -> Result<JobRecord, JobError> {
     spec.check()?;
     let model = Model::from_scene(&spec.scene, &spec.numerics)?;
+    let steps = step_count(spec.run.limit_s, model.time_step_s())?;
     let drives = [drive(spec)];
     let mut state = State::<1>::at_rest(&model);
     let mut ledger = EnergyLedger::new(&model, AUDIT_INTERVAL);
     let mut analysis = LaneAnalysis::new(&model, spec, 0);
-    let steps = (spec.run.limit_s / model.time_step_s()).ceil() as u64;
     for n in 0..steps {
         ledger.before_step(&model, &state);
         step(&model, &drives, &mut state);
@@ -80,7 +104,22 @@ pub fn solve(spec: &JobSpec, observer: &mut impl JobObserver) -> Result<JobRecor
         }
     }
     guard::check_finite(&model, &state, 0)?;
-    Ok(analysis.record(&model, &state, ledger.energies(0)))
+    let record = analysis.record(&model, &state, ledger.energies(0));
+    match record.non_finite_figure() {
+        None => Ok(record),
+        Some(figure) => Err(JobError::NotFinite { figure }),
+    }
+}
+
+/// Steps of a run. Buffers are sized and loops end by this number, so it must be within reason.
+fn step_count(limit_s: f64, time_step_s: f64) -> Result<u64, JobError> {
+    let steps = (limit_s / time_step_s).ceil();
+    // `<=` is false for NaN.
+    if steps <= MAX_STEPS {
+        Ok(steps as u64)
+    } else {
+        Err(JobError::TooManySteps { limit_s, time_step_s, steps })
+    }
 }
 
 /// What the job's lane is driven by.

@@ -160,4 +160,17 @@ impl JobRecord {
     pub fn identity_residual(&self) -> f64 {
         self.macroscopic_identity_residual.abs().max(self.energy_identity_residual.abs())
     }
+
+    /// The path of a figure that is not a finite number, if there is one.
+    ///
+    /// JSON has no such number: it would be stored as null, and nobody could read the record again.
+    pub fn non_finite_figure(&self) -> Option<String> {
+        let text = serde_json::to_string(self).ok()?;
+        let mut reader = serde_json::Deserializer::from_str(&text);
+        match serde_path_to_error::deserialize::<_, Self>(&mut reader) {
+            Ok(read) if read == *self => None,
+            Ok(_) => Some("a figure".to_owned()),
+            Err(error) => Some(error.path().to_string()),
+        }
+    }
 }

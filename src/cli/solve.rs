@@ -8,7 +8,7 @@ use crate::analysis::{self, JobError, JobObserver, JobRecord};
 use crate::exit;
 use crate::solver::contact::ContactState;
 use crate::study::Study;
-use crate::worker::{self, Interrupt};
+use crate::worker::Interrupt;
 use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
@@ -60,10 +60,6 @@ pub fn run(args: &Args) -> Result<u8, CliError> {
     }
     match solved {
         Ok(record) => {
-            if let Err(error) = worker::encode(&record) {
-                tell(format_args!("error: {error}"));
-                return Ok(exit::SOME_FAILED);
-            }
             print(&if args.json { as_json(&record)? } else { as_text(&record) })?;
             Ok(exit::SUCCESS)
         }
@@ -72,7 +68,10 @@ pub fn run(args: &Args) -> Result<u8, CliError> {
             Ok(exit::WORK_LEFT)
         }
         Err(JobError::Spec(violations)) => Err(CliError::Plan(violations.to_string())),
-        Err(error @ JobError::Solver(crate::solver::SolverError::Diverged { .. })) => {
+        Err(
+            error @ (JobError::Solver(crate::solver::SolverError::Diverged { .. })
+            | JobError::NotFinite { .. }),
+        ) => {
             tell(format_args!("error: {error}"));
             Ok(exit::SOME_FAILED)
         }

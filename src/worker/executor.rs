@@ -1,7 +1,6 @@
 //! Runs claimed jobs on a rayon pool and reports each one's end.
 
 use super::interrupt::Interrupt;
-use super::record;
 use crate::analysis::{self, JobError, JobObserver};
 use crate::queue::{ClaimedJob, Finished, FinishedOutcome};
 use crate::spec::JobSpec;
@@ -86,9 +85,9 @@ fn solve(payload: &str, mut observer: Watch) -> FinishedOutcome {
         Err(error) => return FinishedOutcome::Failed { error: format!("unreadable job: {error}") },
     };
     match analysis::solve(&spec, &mut observer) {
-        Ok(record) => match record::encode(&record) {
+        Ok(record) => match serde_json::to_string(&record) {
             Ok(record) => FinishedOutcome::Done { record },
-            Err(error) => FinishedOutcome::Failed { error },
+            Err(error) => FinishedOutcome::Failed { error: format!("unwritable record: {error}") },
         },
         Err(JobError::Interrupted) => FinishedOutcome::Released,
         Err(error) => FinishedOutcome::Failed { error: error.to_string() },

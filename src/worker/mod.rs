@@ -16,10 +16,8 @@ mod eta;
 mod executor;
 mod interrupt;
 mod progress;
-mod record;
 
 pub use dispatcher::{WorkError, WorkSummary, work};
 pub use eta::Eta;
 pub use interrupt::Interrupt;
 pub use progress::{Progress, RunningJob, SilentProgress, Snapshot};
-pub use record::encode;
