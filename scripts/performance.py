@@ -74,7 +74,8 @@ def main():
             [[1, f"{wall_1:.1f}", f"{cpu_1:.1f}", f"{60 * len(rows) / wall_1:.0f}"],
              [2, f"{wall_2:.1f}", f"{cpu_2:.1f}", f"{60 * len(rows) / wall_2:.0f}"]],
         )
-        + f"\nTwo threads are {wall_1 / wall_2:.2f} times as fast as one. The {len(rows)} jobs take {steps} steps of {nodes} "
+        + "\nThe machine is shared: its speed varies by tens of percent between runs (compare the CPU seconds), and so does "
+        + f"the ratio. Two threads were {wall_1 / wall_2:.2f} times as fast as one here. The {len(rows)} jobs take {steps} steps of {nodes} "
         f"nodes: {1e9 * busy / (steps * nodes):.0f} ns per node and step, contact, damping, energies and statistics "
         "included (two threads, solver time only).\n\n"
         "The dearest jobs are those that stay aperiodic to their time limit:\n\n"
