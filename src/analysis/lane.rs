@@ -6,11 +6,11 @@ use super::figures::Figures;
 use super::record::{EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
 use super::sample::{OBSERVED_NAMES, Sample, Sampler};
 use super::steady::{self, SteadyState};
+use super::window::{LateWindow, Trailing, Window};
 use crate::solver::Model;
 use crate::solver::energy::Energies;
 use crate::solver::state::{Drive, State};
 use crate::spec::JobSpec;
-use std::collections::VecDeque;
 
 /// Follows one job's run and makes its record.
 pub struct LaneAnalysis<'a> {
@@ -25,79 +25,6 @@ pub struct LaneAnalysis<'a> {
     trailing: Trailing,
 }
 
-/// The last part of a run that ends at its time limit.
-struct LateWindow {
-    start_s: f64,
-    figures: Figures,
-    energies: Option<Energies>,
-}
-
-/// The last observation time, in equal blocks of steps.
-struct Trailing {
-    steps_per_block: u64,
-    steps: u64,
-    blocks: VecDeque<Block>,
-}
-
-/// Some consecutive steps.
-struct Block {
-    start_s: f64,
-    figures: Figures,
-    /// Energies at the start.
-    energies: Energies,
-}
-
-impl Trailing {
-    /// Blocks per observation time: so many that a Hann taper over them is smooth.
-    const BLOCKS: usize = 64;
-
-    fn new(observation_s: f64, time_step_s: f64) -> Self {
-        let steps_per_block = (observation_s / (Self::BLOCKS as f64 * time_step_s)).max(1.0) as u64;
-        Self { steps_per_block, steps: 0, blocks: VecDeque::with_capacity(Self::BLOCKS) }
-    }
-
-    /// Adds one step.
-    fn push(&mut self, sample: &Sample, energies: &Energies) {
-        if self.steps.is_multiple_of(self.steps_per_block) {
-            if self.blocks.len() == Self::BLOCKS {
-                self.blocks.pop_front();
-            }
-            let (start_s, energies) = (sample.time_s, *energies);
-            self.blocks.push_back(Block { start_s, figures: Figures::EMPTY, energies });
-        }
-        self.steps += 1;
-        if let Some(block) = self.blocks.back_mut() {
-            block.figures.add(sample, 1.0);
-        }
-    }
-
-    /// The window of all blocks.
-    fn window(&self, tapered: bool) -> Window {
-        let figures = self.blocks.iter().map(|block| &block.figures);
-        let first = self.blocks.front();
-        Window {
-            start_s: first.map_or(0.0, |block| block.start_s),
-            figures: if tapered { Figures::tapered(figures) } else { Figures::merged(figures) },
-            energies: first.map(|block| block.energies).unwrap_or_default(),
-            mu_star_parts: self.blocks.iter().map(|block| block.figures.mu_star()).collect(),
-            cycles: 0,
-            frequency_hz: None,
-        }
-    }
-}
-
-/// The window that the figures are taken from.
-struct Window {
-    start_s: f64,
-    figures: Figures,
-    energies: Energies,
-    /// T/F of the parts of which the mean's standard error is taken.
-    mu_star_parts: Vec<f64>,
-    /// Limit cycles.
-    cycles: usize,
-    frequency_hz: Option<f64>,
-}
-
 impl<'a> LaneAnalysis<'a> {
     /// The analysis of the job `spec` in `lane`.
     pub fn new(model: &Model, spec: &'a JobSpec, lane: usize) -> Self {
@@ -110,11 +37,7 @@ impl<'a> LaneAnalysis<'a> {
             cycles: Vec::new(),
             steady: None,
             decays: false,
-            late: LateWindow {
-                start_s: (1.0 - spec.run.average_last_fraction) * spec.run.limit_s,
-                figures: Figures::EMPTY,
-                energies: None,
-            },
+            late: LateWindow::from((1.0 - spec.run.average_last_fraction) * spec.run.limit_s),
             trailing: Trailing::new(spec.detection.decay_observation_s, model.time_step_s()),
         }
     }
@@ -133,10 +56,7 @@ impl<'a> LaneAnalysis<'a> {
             self.steady = steady::find(&self.cycles, &self.spec.detection);
         }
         self.decays = self.monitor.push(&sample);
-        if sample.time_s >= self.late.start_s {
-            self.late.figures.add(&sample, 1.0);
-            self.late.energies.get_or_insert(*energies);
-        }
+        self.late.push(&sample, energies);
         self.trailing.push(&sample, energies);
         sample
     }
@@ -227,7 +147,8 @@ impl<'a> LaneAnalysis<'a> {
                 start_s: self.late.start_s,
                 figures: self.late.figures,
                 energies: self.late.energies.unwrap_or_default(),
-                mu_star_parts: Vec::new(),
+                // Without cycles to tell the parts, equal pieces of the last observation time serve.
+                mu_star_parts: self.trailing.window(false).mu_star_parts,
                 cycles: 0,
                 frequency_hz: None,
             };

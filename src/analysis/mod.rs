@@ -21,6 +21,7 @@ pub mod lane;
 pub mod record;
 pub mod sample;
 pub mod steady;
+mod window;
 
 pub use job::{JobError, JobObserver, Unobserved, drive, solve};
 pub use record::{EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};

@@ -16,7 +16,7 @@
 //!   `L` lanes are independent jobs that share one [`Model`] (mesh, material, clamp, damping, time
 //!   step) and differ in their [`Drive`] (μ, ω, load). One lane is the plain case; every lane goes
 //!   through the same operations in the same order, so its bits do not depend on its companions.
-//! * Plain multiply and add in f64, never fused: the same bits on every machine and path.
+//! * Plain multiply and add in f64, never fused, summed in a fixed order: the same bits on every path.
 //! * The gap is positive when open; the normal contact force N on the pin is ≥ 0 (N = −λ_n).
 //!
 //! # Where an elastic disk will go
