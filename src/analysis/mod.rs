@@ -18,6 +18,7 @@ pub mod decay;
 pub mod figures;
 mod job;
 pub mod lane;
+mod lines;
 pub mod record;
 pub mod sample;
 pub mod steady;

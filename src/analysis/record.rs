@@ -29,7 +29,7 @@ impl Outcome {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Regime {
-    /// All contact nodes slip, and the oscillation decays.
+    /// All nodes in contact slip, and the oscillation decays.
     Stable,
     /// Stick and slip, (almost) no separation.
     StickSlip,
@@ -101,7 +101,8 @@ pub struct JobRecord {
     pub mu_star_se: f64,
     /// The same ratio from the mean contact forces, a check.
     pub mu_star_contact: f64,
-    /// Fundamental frequency [Hz] of the total normal contact force; none when sliding is stable.
+    /// Fundamental frequency [Hz] of the total normal contact force; of a run that is not periodic the mean
+    /// rate of its section crossings; none when sliding is stable or has no cycles.
     pub frequency_hz: Option<f64>,
     /// Share of the node-time in stick.
     pub stick_share: f64,

@@ -17,6 +17,12 @@ pub struct Sample {
     pub smooth_normal_n: f64,
     /// Total contact friction force on the pin in y [N].
     pub contact_tangential_n: f64,
+    /// Total contact friction force on the pin in x [N].
+    pub contact_sideways_n: f64,
+    /// Σ N x/lx [N]: the normal contact force's first moment about the pin's axis, over its width.
+    pub x_moment_n: f64,
+    /// Σ N y/ly [N].
+    pub y_moment_n: f64,
     /// Tangential force T [N] in y that the clamp carries.
     pub clamp_tangential_n: f64,
     /// Σ over sticking nodes of μN − t_y [N].
@@ -29,6 +35,8 @@ pub struct Sample {
     pub slip: usize,
     /// Number of separated nodes.
     pub separated: usize,
+    /// Number of nodes that are in another state than in the step before.
+    pub transitions: usize,
     /// Largest smoothed nodal normal stress [Pa].
     pub sigma_n_max_pa: f64,
     /// Largest slip speed [m/s] of a node in contact.
@@ -106,6 +114,9 @@ pub struct Sampler {
     sigma_n: Vec<Smoother>,
     normal: Smoother,
     observed: [usize; OBSERVED],
+    states: Vec<ContactState>,
+    /// x/lx and y/ly of every slave node.
+    places: Vec<[f64; 2]>,
 }
 
 impl Sampler {
@@ -120,6 +131,15 @@ impl Sampler {
             sigma_n: vec![Smoother::default(); model.slaves().len()],
             normal: Smoother::default(),
             observed: [mesh.node(nx / 2, 0, 0), mesh.node(nx / 2, ny, 0)],
+            states: vec![ContactState::Separated; model.slaves().len()],
+            places: model
+                .slaves()
+                .iter()
+                .map(|slave| {
+                    let [x, y, _] = mesh.coordinates_m(slave.node);
+                    [x / mesh.size_m()[0], y / mesh.size_m()[1]]
+                })
+                .collect(),
         }
     }
 
@@ -141,6 +161,11 @@ impl Sampler {
             let sigma_n = self.sigma_n[slave].push(force[2] / slave_node.area_m2, self.gain);
             sample.normal_n += force[2];
             sample.contact_tangential_n += force[1];
+            sample.contact_sideways_n += force[0];
+            sample.x_moment_n += force[2] * self.places[slave][0];
+            sample.y_moment_n += force[2] * self.places[slave][1];
+            sample.transitions += usize::from(contact_state != self.states[slave]);
+            self.states[slave] = contact_state;
             sample.sigma_n_max_pa = sample.sigma_n_max_pa.max(sigma_n);
             sample.lift_max_m = sample.lift_max_m.max(contacts.gap_m[slave][l]);
             let mut slip_speed = 0.0;

@@ -121,12 +121,12 @@ fn fundamental_per_crossing(groups: &[&[Cycle]]) -> f64 {
 }
 
 /// Standard error of the mean of consecutive, correlated `values`: from the means of ⌊√n⌋ batches.
-/// Zero for fewer than four values, where batches say nothing.
+/// At least two batches; zero for a single value, which says nothing.
 pub fn standard_error(values: &[f64]) -> f64 {
-    let batches = values.len().isqrt();
-    if batches < 2 {
+    if values.len() < 2 {
         return 0.0;
     }
+    let batches = values.len().isqrt().max(2);
     let size = values.len() / batches;
     let means: Vec<f64> = values
         .rchunks_exact(size)

@@ -184,6 +184,9 @@ impl Default for Load {
 /// Largest number of elements per direction: a guard against a slip of the keyboard, not a limit of the method.
 const MAX_ELEMENTS: usize = 1000;
 
+/// Largest number of elements in all: about a gigabyte of fields, and days of run time.
+const MAX_TOTAL_ELEMENTS: f64 = 2.0e6;
+
 impl Scene {
     /// Adds every violated limit to `found`.
     pub(super) fn check(&self, found: &mut Violations) {
@@ -199,6 +202,14 @@ impl Scene {
                     format!("a number of elements from 1 to {MAX_ELEMENTS}"),
                 );
             }
+        }
+        let total = pin.elements.iter().map(|&count| count as f64).product::<f64>();
+        if total > MAX_TOTAL_ELEMENTS {
+            found.add(
+                "scene.pin.elements",
+                format!("{:?} ({total:e} elements)", pin.elements),
+                format!("at most {MAX_TOTAL_ELEMENTS:e} elements in all"),
+            );
         }
         let e = pin.young_modulus_pa;
         found.require("scene.pin.young_modulus_pa", e, e > 0.0, "a modulus > 0 Pa");

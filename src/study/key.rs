@@ -1,7 +1,7 @@
 //! The key of a job: a hash of everything that determines its result.
 
 use super::json::encode;
-use crate::spec::{Clamp, ClampSide, JobSpec};
+use crate::spec::{Clamp, ClampSide, JobSpec, Numerics};
 use serde_json::Value;
 use std::fmt::Write;
 
@@ -10,13 +10,17 @@ const HEX_DIGITS: usize = 32;
 
 /// The key of a job under a version of the solver: BLAKE3 of its canonical JSON, 32 hex digits.
 ///
-/// Canonical means: fields sorted, no space, numbers in their shortest exact form, 0 for −0, and the
-/// clamp's width replaced where no strip uses it. A new `solver_version` changes every key, so that
+/// Canonical means: fields sorted, no space, numbers in their shortest exact form, 0 for −0, and
+/// fields that have no effect replaced: the clamp's width where no strip uses it, the safety factor where
+/// the time step is given. A new `solver_version` changes every key, so that
 /// old results are not taken for new ones.
 pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     let mut spec = spec.clone();
     if spec.scene.clamp.side == ClampSide::WholeTop {
         spec.scene.clamp.width_m = Clamp::default().width_m;
+    }
+    if spec.numerics.time_step_s.is_some() {
+        spec.numerics.safety_factor = Numerics::default().safety_factor;
     }
     let mut text = String::new();
     write_canonical(&encode(&spec), &mut text);

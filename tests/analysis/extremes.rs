@@ -1,7 +1,7 @@
 //! Short runs and extreme but legal inputs: a record without NaN, or a clean error.
 
 use crate::signals::coarse;
-use tribosweep::analysis::{JobError, JobRecord, Outcome, Unobserved, solve};
+use tribosweep::analysis::{JobError, JobRecord, Outcome, Regime, Unobserved, solve};
 use tribosweep::solver::SolverError;
 use tribosweep::spec::{ClampSide, JobSpec, TopFace};
 
@@ -140,4 +140,33 @@ fn extreme_inputs() {
             Err(error) => panic!("{what}: {error}"),
         }
     }
+}
+
+/// Protects: an instability that is odd across a symmetrically clamped pin, and so invisible in the total
+/// normal force, is not called stable: this job's sideways motion grows from 9 ms on.
+#[test]
+fn an_odd_instability_is_not_stable() {
+    let spec = changed(|s| {
+        s.scene.clamp.side = ClampSide::BothSides;
+        s.scene.contact.mu = 0.25;
+        s.scene.disk.omega_rpm = 10.0;
+        s.scene.pin.poisson_ratio = 0.0;
+        s.run.limit_s = 0.02;
+    });
+    assert_ne!(finite_record("odd mode", &spec).outcome, Outcome::Decayed);
+}
+
+/// Protects: steady sliding with a corner that stays lifted is as linear as any: its decay is measured and
+/// it is stable, not a squeal.
+#[test]
+fn a_lifted_corner_may_be_stable() {
+    let spec = changed(|s| {
+        s.scene.contact.mu = 0.5;
+        s.numerics.beta_r_s = 5.0e-6;
+        s.run.limit_s = 0.03;
+    });
+    let record = finite_record("lifted corner", &spec);
+    assert_eq!((record.outcome, record.regime), (Outcome::Decayed, Regime::Stable), "{record:?}");
+    assert!(record.separated_share > 0.01 && record.stick_share == 0.0, "{record:?}");
+    assert!(record.growth_rate_per_s.unwrap() < 0.0);
 }

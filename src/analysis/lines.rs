@@ -1,0 +1,254 @@
+//! Growth and decay of one signal of a linear system, line by line.
+//!
+//! A small amplitude says nothing: a weak instability may hide for tens of milliseconds under the
+//! decaying start-up oscillation. A signal of a linear system is a sum of lines that grow or decay
+//! exponentially. Spectra of successive, overlapping stretches give every line's growth rate with its
+//! standard error. There are two sets of them:
+//! * long stretches under a Kaiser window, whose side lobes (10⁻⁸) hide nothing weak beside something
+//!   strong. Every peak in them, down to rounding, must decay by more than three standard errors;
+//! * short stretches under a Hann window, which follow a line in time. In them every strong line (within
+//!   10⁻³ of the strongest) must decay steadily: two lines too close for the long stretches beat, and a
+//!   beat falls for a while, but not along an exponential.
+//!
+//! What this cannot tell: a line within the main lobe of one that is 10³ times stronger or more (1.4 kHz at
+//! an observation of 8 ms, in inverse proportion to it), and two lines whose beat takes longer than the
+//! observation. A longer `decay_observation_s` resolves both.
+
+use realfft::{RealFftPlanner, RealToComplex};
+use std::collections::VecDeque;
+use std::f64::consts::PI;
+use std::sync::Arc;
+
+/// Hops per observation time: a new stretch of each kind begins with every hop.
+const HOPS: usize = 16;
+/// Hops in a long and in a short stretch.
+const LONG: usize = 10;
+const SHORT: usize = 4;
+/// Parameter of the Kaiser window: side lobes of 10⁻⁸, a main lobe of ±√(1 + (β/π)²) = ±6.8 lines.
+const KAISER_BETA: f64 = 21.0;
+/// The lowest line looked at, outside the main lobe of the mean.
+const FIRST_LINE: usize = 7;
+/// A line weaker than the strongest by this factor may be a side lobe.
+const LEAKAGE: f64 = 1.0e-7;
+/// A line is strong within this factor of the strongest.
+const STRONG: f64 = 1.0e-3;
+/// Amplitudes (of signals of order one) below this are rounding.
+const ROUNDING: f64 = 1.0e-11;
+/// A rate is believed when it differs from zero by this many standard errors.
+const STANDARD_ERRORS: f64 = 3.0;
+/// The same for the short stretches, whose misfit is a beat rather than chance: a correlation of −0.875
+/// with a straight line (a whole period of a sine has 0.78).
+const STEADY_STANDARD_ERRORS: f64 = 6.0;
+/// Smallest fall of a strong line's logarithm over the observation time that counts as a decay.
+const SMALLEST_FALL: f64 = 1.0e-3;
+
+/// Watches one signal for growth and decay.
+pub struct LineMonitor {
+    hop: usize,
+    hop_s: f64,
+    since_hop: usize,
+    samples: Vec<f64>,
+    long: Stretches,
+    short: Stretches,
+    start_amplitude: f64,
+    hops: u64,
+    measured: Option<f64>,
+    verdict: Option<Verdict>,
+}
+
+/// What the last observation time says of a signal.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Verdict {
+    /// Growth rate [1/s] of the fastest growing (or slowest decaying) strong line, or, once everything has
+    /// decayed to rounding, the last one measured; none if there was never more than rounding.
+    pub growth_rate_per_s: Option<f64>,
+    /// Whether all lines decay.
+    pub decays: bool,
+}
+
+/// Successive spectra of one kind.
+struct Stretches {
+    window: fn(f64) -> f64,
+    kept: usize,
+    plan: Option<Plan>,
+    spectra: VecDeque<Vec<f64>>,
+}
+
+/// What a transform needs; made when the first stretch is complete.
+struct Plan {
+    transform: Arc<dyn RealToComplex<f64>>,
+    weights: Vec<f64>,
+    weight: f64,
+}
+
+impl Stretches {
+    fn new(hops: usize, window: fn(f64) -> f64) -> Self {
+        Self { window, kept: HOPS - hops + 1, plan: None, spectra: VecDeque::new() }
+    }
+
+    /// Adds the stretch `samples`, always equally long.
+    fn push(&mut self, samples: &[f64]) {
+        let plan = self.plan.get_or_insert_with(|| {
+            let length = samples.len();
+            let weights: Vec<f64> =
+                (0..length).map(|i| (self.window)((2.0 * i as f64 + 1.0) / length as f64 - 1.0)).collect();
+            let weight = weights.iter().sum();
+            Plan { transform: RealFftPlanner::new().plan_fft_forward(length), weights, weight }
+        });
+        // The weighted mean leaves nothing at the line 0 that could leak into others.
+        let mean = samples.iter().zip(&plan.weights).map(|(x, w)| x * w).sum::<f64>() / plan.weight;
+        let mut input: Vec<f64> = samples.iter().zip(&plan.weights).map(|(x, w)| (x - mean) * w).collect();
+        let mut output = plan.transform.make_output_vec();
+        plan.transform.process(&mut input, &mut output).expect("buffers have the planned lengths");
+        if self.spectra.len() == self.kept {
+            self.spectra.pop_front();
+        }
+        self.spectra.push_back(output.iter().map(|c| c.norm() * 2.0 / plan.weight).collect());
+    }
+
+    /// Whether there are enough stretches for an observation.
+    fn is_complete(&self) -> bool {
+        self.spectra.len() == self.kept
+    }
+
+    /// Slope per hop of the logarithm of a line's amplitude, and its standard error.
+    fn growth_per_hop(&self, line: usize) -> (f64, f64) {
+        let n = self.spectra.len() as f64;
+        let logs: Vec<f64> = self.spectra.iter().map(|s| s[line].max(f64::MIN_POSITIVE).ln()).collect();
+        let mean = logs.iter().sum::<f64>() / n;
+        let centre = (n - 1.0) / 2.0;
+        let (mut spread, mut product) = (0.0, 0.0);
+        for (i, log) in logs.iter().enumerate() {
+            let x = i as f64 - centre;
+            spread += x * x;
+            product += x * (log - mean);
+        }
+        let slope = product / spread;
+        let residual: f64 =
+            logs.iter().enumerate().map(|(i, log)| (log - mean - slope * (i as f64 - centre)).powi(2)).sum();
+        (slope, (residual / (n - 2.0) / spread).sqrt())
+    }
+}
+
+/// Hann window over −1 … 1.
+fn hann(x: f64) -> f64 {
+    0.5 + 0.5 * (PI * x).cos()
+}
+
+/// Kaiser window over −1 … 1.
+fn kaiser(x: f64) -> f64 {
+    bessel_i0(KAISER_BETA * (1.0 - x * x).sqrt()) / bessel_i0(KAISER_BETA)
+}
+
+/// Modified Bessel function of the first kind and order 0, by its series.
+fn bessel_i0(x: f64) -> f64 {
+    let mut term = 1.0;
+    let mut sum = 1.0;
+    let mut k = 0.0;
+    while term > 1.0e-17 * sum {
+        k += 1.0;
+        term *= (x / (2.0 * k)).powi(2);
+        sum += term;
+    }
+    sum
+}
+
+impl LineMonitor {
+    /// A monitor that judges over `observation_s`.
+    pub fn new(time_step_s: f64, observation_s: f64) -> Self {
+        // However long the observation, a stretch has a number of steps that can be written down.
+        let longest = (u32::MAX as usize / HOPS) as f64;
+        let hop = (observation_s / (HOPS as f64 * time_step_s)).ceil().clamp(8.0, longest);
+        Self {
+            hop: hop as usize,
+            hop_s: hop * time_step_s,
+            since_hop: 0,
+            samples: Vec::new(),
+            long: Stretches::new(LONG, kaiser),
+            short: Stretches::new(SHORT, hann),
+            start_amplitude: 0.0,
+            hops: 0,
+            measured: None,
+            verdict: None,
+        }
+    }
+
+    /// What the last complete observation says; none before there is one.
+    pub fn verdict(&self) -> Option<Verdict> {
+        self.verdict
+    }
+
+    /// Adds one step's value.
+    pub fn push(&mut self, value: f64) {
+        self.samples.push(value);
+        self.since_hop += 1;
+        if self.since_hop == self.hop {
+            self.since_hop = 0;
+            self.finish_hop();
+        }
+    }
+
+    /// Forgets everything.
+    pub fn start_anew(&mut self) {
+        self.since_hop = 0;
+        self.samples.clear();
+        self.long.spectra.clear();
+        self.short.spectra.clear();
+        self.start_amplitude = 0.0;
+        self.hops = 0;
+        self.measured = None;
+        self.verdict = None;
+    }
+
+    fn finish_hop(&mut self) {
+        self.hops += 1;
+        let count = self.samples.len();
+        if count >= SHORT * self.hop {
+            self.short.push(&self.samples[count - SHORT * self.hop..]);
+            if self.short.spectra.len() == 1 {
+                self.start_amplitude = self.short.spectra[0].iter().copied().fold(0.0, f64::max);
+            }
+        }
+        if count == LONG * self.hop {
+            self.long.push(&self.samples);
+            self.samples.drain(..self.hop);
+        }
+        if self.long.is_complete() && self.short.is_complete() {
+            self.verdict = Some(self.judge());
+        }
+    }
+
+    fn judge(&mut self) -> Verdict {
+        let last = &self.long.spectra[self.long.spectra.len() - 1];
+        let highest = last.iter().skip(FIRST_LINE).copied().fold(0.0, f64::max);
+        if highest < ROUNDING {
+            // Everything has decayed to rounding since the signal began: a measured decay, too.
+            let elapsed_s = self.hop_s * (self.hops - SHORT as u64) as f64;
+            let at_least =
+                (self.start_amplitude > ROUNDING).then(|| (ROUNDING / self.start_amplitude).ln() / elapsed_s);
+            return Verdict { growth_rate_per_s: self.measured.or(at_least), decays: true };
+        }
+        let faintest = ROUNDING.max(LEAKAGE * highest);
+        let smallest = SMALLEST_FALL / HOPS as f64;
+        let mut fastest = f64::NEG_INFINITY;
+        let mut decays = true;
+        for line in (FIRST_LINE..last.len()).filter(|&line| last[line] >= faintest && is_peak(last, line)) {
+            let (rate, error) = self.long.growth_per_hop(line);
+            decays &= rate + STANDARD_ERRORS * error < 0.0;
+            if last[line] >= STRONG * highest {
+                let short_line = (line * SHORT + LONG / 2) / LONG;
+                let (short_rate, short_error) = self.short.growth_per_hop(short_line);
+                decays &= rate < -smallest && short_rate + STEADY_STANDARD_ERRORS * short_error < 0.0;
+                fastest = fastest.max(rate / self.hop_s);
+            }
+        }
+        self.measured = Some(fastest);
+        Verdict { growth_rate_per_s: self.measured, decays }
+    }
+}
+
+/// Whether a line is not below its neighbours (those below [`FIRST_LINE`] do not count).
+fn is_peak(spectrum: &[f64], line: usize) -> bool {
+    (line == FIRST_LINE || spectrum[line - 1] < spectrum[line])
+        && spectrum.get(line + 1).is_none_or(|&next| next <= spectrum[line])
+}
