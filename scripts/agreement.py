@@ -9,14 +9,14 @@ import math
 
 import runs
 
-# omega_rpm: (mu*, f [Hz], shares), mu = 0.4; scene as in TABLE_SCENE, statistics over the last 40 % of 20 ms.
+# omega_rpm: (mu*, f [Hz], shares, range of N/F), mu = 0.4; scene as in TABLE_SCENE, statistics over the last 40 % of 20 ms.
 TABLE = {
-    0.5: (0.383, 15780, (0.37, 0.61, 0.02)),
-    2: (0.342, 15760, (0.32, 0.66, 0.02)),
-    6: (0.285, 15520, (0.20, 0.68, 0.12)),
-    7: (0.288, 15480, (0.17, 0.68, 0.15)),
-    35: (0.365, 15480, (0.02, 0.59, 0.39)),
-    100: (0.396, 15740, (0.00, 0.58, 0.42)),
+    0.5: (0.383, 15780, (0.37, 0.61, 0.02), "0.88–1.11"),
+    2: (0.342, 15760, (0.32, 0.66, 0.02), "0.60–1.40"),
+    6: (0.285, 15520, (0.20, 0.68, 0.12), "0.14–1.90"),
+    7: (0.288, 15480, (0.17, 0.68, 0.15), "0.12–1.90"),
+    35: (0.365, 15480, (0.02, 0.59, 0.39), "0.11–2.50"),
+    100: (0.396, 15740, (0.00, 0.58, 0.42), "0.04–2.65"),
 }
 STABLE_ROW = (7, 0.2, 0.200)
 TIME_STEPS = {1.6e-6: 0.2900, 8e-7: 0.2854, 4e-7: 0.2837, 5.5e-8: 0.2829}
@@ -48,7 +48,7 @@ def speeds():
     early = runs.sweep(study("agreement-early", grid, run={"limit_s": 0.02}))
     rows = []
     for row, stopped in zip(full, early):
-        mu_star, frequency, shares = TABLE[row["omega_rpm"]]
+        mu_star, frequency, shares, normal = TABLE[row["omega_rpm"]]
         found = (row["stick_share"], row["slip_share"], row["separated_share"])
         rows.append(
             [
@@ -62,6 +62,8 @@ def speeds():
                 " / ".join(f"{share:.2f}" for share in shares),
                 " / ".join(f"{share:.2f}" for share in found),
                 f"{max(abs(a - b) for a, b in zip(found, shares)):.3f}",
+                normal,
+                f"{row['n_over_f_min']:.2f}–{row['n_over_f_max']:.2f}",
                 f"{stopped['status']}, {1e3 * stopped['simulated_s']:.1f} ms, "
                 f"{stopped['mu_star'] - row['mu_star']:+.4f}",
             ]
@@ -71,10 +73,10 @@ def speeds():
     rows.append([f"μ {mu}, {omega} rpm", f"{mu_star:.3f}", f"{row['mu_star']:.4f}",
                  f"{abs(row['mu_star'] - mu_star):.4f}", "decays", row["status"], "", "0 / 1 / 0",
                  " / ".join(f"{row[name]:.2f}" for name in ("stick_share", "slip_share", "separated_share")),
-                 "", ""])
+                 "", "1.00", f"{row['n_over_f_min']:.2f}–{row['n_over_f_max']:.2f}", ""])
     return runs.table(
         ["case", "μ*, independent", "μ*", "difference", "f [Hz], independent", "f [Hz]", "difference",
-         "stick/slip/separated, independent", "shares", "largest difference", "stopped early: Δμ*"], rows)
+         "stick/slip/separated, independent", "shares", "largest difference", "N/F, independent", "N/F (smoothed over 2 µs)", "stopped early: Δμ*"], rows)
 
 
 def time_steps():

@@ -108,6 +108,7 @@ impl<'a> LaneAnalysis<'a> {
                 - figures.stick_reduction()
                 - figures.slip_reduction(),
             energy_identity_residual: energy_identity(&window.energies, energies),
+            contact_loss_share: contact_loss_share(&window.energies, energies),
             mu_reduction_stick: figures.stick_reduction(),
             mu_reduction_slip: figures.slip_reduction(),
             growth_rate_per_s: self.monitor.growth_rate_per_s(),
@@ -182,10 +183,16 @@ fn regime(outcome: Outcome, stick: f64, separated: f64, threshold: f64) -> Regim
     }
 }
 
-/// (drive power − dissipation − change of stored energy) / drive power, over the window.
+/// (work of drive and load − losses − change of stored energy) / drive work, over the window.
 fn energy_identity(start: &Energies, end: &Energies) -> f64 {
     let drive_j = end.drive_work_j - start.drive_work_j;
     if drive_j == 0.0 { 0.0 } else { (end.imbalance_j() - start.imbalance_j()) / drive_j }
+}
+
+/// Contact loss / drive work, over the window.
+fn contact_loss_share(start: &Energies, end: &Energies) -> f64 {
+    let drive_j = end.drive_work_j - start.drive_work_j;
+    if drive_j == 0.0 { 0.0 } else { (end.contact_loss_j - start.contact_loss_j) / drive_j }
 }
 
 fn totals(energies: &Energies) -> EnergyTotals {

@@ -140,8 +140,12 @@ pub struct JobRecord {
     pub energy_residual: f64,
     /// Residual of μ − μ* = `(1/F)⟨Σ(μN − t_y)⟩`, absolute.
     pub macroscopic_identity_residual: f64,
-    /// Residual of drive power = friction + damping + contact loss + change of stored energy, over the drive power.
+    /// Residual of work of drive and load = friction + damping + contact loss + change of stored energy over
+    /// the window, over the drive's work.
     pub energy_identity_residual: f64,
+    /// Contact loss over the drive's work in the window: what the identity ⟨T⟩V = friction + damping of the
+    /// continuous problem misses on this mesh and time step.
+    pub contact_loss_share: f64,
     /// What sticking nodes take off μ*: `(1/F)⟨Σ_stick(μN − t_y)⟩`.
     pub mu_reduction_stick: f64,
     /// What misaligned or reversed slip takes off μ*: `(1/F)⟨Σ_slip μN(1 − cos φ)⟩`.

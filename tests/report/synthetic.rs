@@ -31,6 +31,7 @@ pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
         energy_residual: 1.5e-9,
         macroscopic_identity_residual: -3e-4,
         energy_identity_residual: 1e-4,
+        contact_loss_share: 0.01,
         mu_reduction_stick: 0.05,
         mu_reduction_slip: 0.02,
         growth_rate_per_s: None,
