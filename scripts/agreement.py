@@ -89,8 +89,8 @@ def time_steps():
              for step, expected in TIME_STEPS.items()]
     return (
         runs.table(["Δt [s]", "μ*, independent", "μ*", "difference"], lines)
-        + f"\nThe three halvings alone give the observed order {math.log2(first / second):.2f} and (Aitken) the limit "
-        f"{limit:.4f}; the step of 5.5·10⁻⁸ s gives {finest:.4f}, first-order Richardson from the last two halvings "
+        + f"\nThe first three steps alone give the observed order {math.log2(first / second):.2f} and (Aitken) the limit "
+        f"{limit:.4f}; the step of 5.5·10⁻⁸ s gives {finest:.4f}, first-order Richardson from the second and third "
         f"{2 * fine - middle:.4f}. The order is between first and second: the contact closes and sticks within a "
         "step (first order), the integrator in between is of second order.\n"
     )
@@ -124,7 +124,8 @@ def early_stop():
     changes = [(abs(a["mu_star"] - b["mu_star"]), a) for a, b in zip(early, full)
                if a["status"] in ("periodic", "decayed")]
     changes.sort(key=lambda pair: -pair[0])
-    simulated = sum(row["simulated_s"] for row in early), sum(row["simulated_s"] for row in full)
+    stopped = [(a, b) for a, b in zip(early, full) if a["status"] in ("periodic", "decayed")]
+    simulated = sum(a["simulated_s"] for a, _ in stopped), sum(b["simulated_s"] for _, b in stopped)
     worst = [[f"{row['mu']:g}", f"{row['omega_rpm']:g}", row["status"], f"{1e3 * row['simulated_s']:.2f}",
               f"{row['mu_star']:.4f}", f"{change:.5f}"] for change, row in changes[:6]]
     median = changes[len(changes) // 2][0]

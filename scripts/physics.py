@@ -84,7 +84,7 @@ def claims():
     history = last(runs.history(STUDY, **REFERENCE, limit_s=0.012, stop_early="false"), 0.003)
     front, rear = reference["nodes"]
     frequencies = [row["frequency_hz"] for row in column]
-    nodes_hz = {name: frequency(history["time_s"], history[f"{name}_y_m"]) for name in ("front_centre", "rear_centre")}
+    nodes_hz = {name: frequency(history["time_s"], history[f"{name}_uy_m"]) for name in ("front_centre", "rear_centre")}
     total_hz = frequency(history["time_s"], history["normal_n"])
     stable = [row for mu in (0.1, 0.2) for row in by_mu[mu]]
     unstable = [row for mu in (0.3, 0.4, 0.5, 0.6) for row in by_mu[mu]]

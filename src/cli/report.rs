@@ -4,7 +4,6 @@ use super::error::CliError;
 use super::output::{block_on, print, tell};
 use super::rows;
 use crate::exit;
-use crate::queue::Queue;
 use crate::report::{self, Row};
 use std::path::{Path, PathBuf};
 
@@ -30,20 +29,27 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     let name = rows::study_name(&args.study)?;
     block_on(async {
         let mut queue = rows::open(db).await?;
-        write(&mut queue, &name, &args.out).await?;
+        let rows = rows::read(&mut queue, &name).await?;
         queue.close().await?;
+        write(&rows, &name, &args.out)?;
         print(&format!("{}\n", folder(&name, &args.out).join("report.md").display()))?;
         Ok(exit::SUCCESS)
     })
 }
 
-/// Writes the report of a study and returns its rows.
-pub async fn write(queue: &mut Queue, name: &str, out: &OutFolder) -> Result<Vec<Row>, CliError> {
-    let rows = rows::read(queue, name).await?;
+/// Writes the report of a study's rows.
+pub fn write(rows: &[Row], name: &str, out: &OutFolder) -> Result<(), CliError> {
     let folder = folder(name, out);
-    report::write(&rows, &folder, name)?;
+    report::write(rows, &folder, name)?;
     tell(format_args!("report written to {}", folder.display()));
-    Ok(rows)
+    Ok(())
+}
+
+/// Creates the folder of a report, so that one that cannot be written is noticed before the work.
+pub fn prepare(name: &str, out: &OutFolder) -> Result<(), CliError> {
+    let folder = folder(name, out);
+    std::fs::create_dir_all(&folder)
+        .map_err(|source| CliError::File { path: folder.display().to_string(), source })
 }
 
 fn folder(name: &str, out: &OutFolder) -> PathBuf {

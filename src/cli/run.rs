@@ -4,6 +4,7 @@ use super::error::CliError;
 use super::output::{block_on, print};
 use super::planning::Plan;
 use super::report::{self, OutFolder};
+use super::rows;
 use super::submit::submit;
 use super::work::{Threads, work};
 use crate::queue::{Queue, Scope, SystemClock};
@@ -26,13 +27,15 @@ pub struct Args {
 pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     let plan = Plan::load(&args.study)?;
     let name = plan.study.name();
+    report::prepare(name, &args.out)?;
     block_on(async {
         let mut queue = Queue::open(db, Arc::new(SystemClock)).await?;
         submit(&plan, &mut queue).await?;
         let code = work(&mut queue, &Scope::Study(name.to_owned()), &args.threads).await?;
-        let rows = report::write(&mut queue, name, &args.out).await?;
+        let rows = rows::read(&mut queue, name).await?;
         queue.close().await?;
         print(&markdown(&rows, Quantity::MuStar))?;
+        report::write(&rows, name, &args.out)?;
         Ok(code)
     })
 }

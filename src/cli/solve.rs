@@ -21,7 +21,9 @@ pub struct Args {
     /// Fix a parameter of the grid, or change any other one; may be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = parse_setting)]
     settings: Vec<(String, String)>,
-    /// Write the time history as CSV: forces and the two observed nodes.
+    /// Write the time history as CSV: load, total normal and tangential forces (tangential_n at the clamp,
+    /// contact_tangential_n and mu_eq at the contact), numbers of nodes in each state, and displacement,
+    /// velocity, stress and state of the centres of the leading (front) and trailing (rear) edge.
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,
     /// Keep every N-th step in the history.
@@ -39,7 +41,7 @@ fn parse_setting(text: &str) -> Result<(String, String), String> {
     }
 }
 
-/// Solves the job and prints what was found.
+/// Solves the job and prints what was found; nothing is stored.
 pub fn run(args: &Args) -> Result<u8, CliError> {
     let spec = Study::load(&args.study)?.single(&args.settings)?;
     let interrupt = Interrupt::default();
@@ -111,7 +113,7 @@ impl History {
         );
         for name in OBSERVED_NAMES {
             for column in
-                ["x_m", "y_m", "z_m", "y_velocity_m_s", "sigma_n_pa", "slip_speed_m_s", "mu_eq", "state"]
+                ["ux_m", "uy_m", "uz_m", "y_velocity_m_s", "sigma_n_pa", "slip_speed_m_s", "mu_eq", "state"]
             {
                 let _ = write!(text, ",{name}_{column}");
             }

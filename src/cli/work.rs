@@ -21,8 +21,8 @@ pub struct Args {
 #[derive(Debug, clap::Args)]
 pub struct Threads {
     /// Number of jobs solved at the same time; default: the number of cores.
-    #[arg(long, value_name = "N")]
-    threads: Option<NonZeroUsize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    threads: Option<u16>,
 }
 
 /// Works through all pending jobs.
@@ -37,8 +37,8 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
 
 /// Works through the pending jobs of `scope` until they are done or Ctrl-C; returns the exit code.
 pub async fn work(queue: &mut Queue, scope: &Scope, threads: &Threads) -> Result<u8, CliError> {
-    let threads =
-        threads.threads.or_else(|| std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get);
+    let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    let threads = threads.threads.map_or_else(cores, usize::from);
     let interrupt = Interrupt::default();
     let listener = tokio::spawn(listen(interrupt.clone(), "stopping; running jobs go back to the queue"));
     let summary = worker::work(queue, scope, threads, &interrupt, &mut Display::new()).await;

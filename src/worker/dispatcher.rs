@@ -51,6 +51,9 @@ pub async fn work(
 ) -> Result<WorkSummary, WorkError> {
     let lock = WorkerLock::acquire(queue.path())?;
     let taken_back = queue.take_back(&lock).await?;
+    // No more threads than jobs to run on them.
+    let pending = usize::try_from(queue.counts(scope).await?.pending).unwrap_or(usize::MAX);
+    let threads = threads.min(pending.max(1));
     let (results, finished) = unbounded_channel();
     let executor = Executor::new(threads, results, interrupt.clone())?;
     let mut dispatcher = Dispatcher {

@@ -5,9 +5,9 @@ use serde_json::{Value, json};
 use crate::support::{Folder, Running, rows, small, stderr, wait};
 
 const HISTORY: &str = "time_s,load_n,normal_n,tangential_n,contact_tangential_n,mu_eq,stick_nodes,slip_nodes,\
-separated_nodes,front_centre_x_m,front_centre_y_m,front_centre_z_m,front_centre_y_velocity_m_s,\
-front_centre_sigma_n_pa,front_centre_slip_speed_m_s,front_centre_mu_eq,front_centre_state,rear_centre_x_m,\
-rear_centre_y_m,rear_centre_z_m,rear_centre_y_velocity_m_s,rear_centre_sigma_n_pa,rear_centre_slip_speed_m_s,\
+separated_nodes,front_centre_ux_m,front_centre_uy_m,front_centre_uz_m,front_centre_y_velocity_m_s,\
+front_centre_sigma_n_pa,front_centre_slip_speed_m_s,front_centre_mu_eq,front_centre_state,rear_centre_ux_m,\
+rear_centre_uy_m,rear_centre_uz_m,rear_centre_y_velocity_m_s,rear_centre_sigma_n_pa,rear_centre_slip_speed_m_s,\
 rear_centre_mu_eq,rear_centre_state";
 
 fn folder() -> Folder {
