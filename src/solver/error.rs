@@ -38,6 +38,9 @@ pub enum SolverError {
     /// The pin is not held in a direction in which it is driven.
     #[error("inconsistent constraints: {0}")]
     Constraints(String),
+    /// The stiffness matrix that was given is none.
+    #[error("not a stiffness matrix: {0}")]
+    Stiffness(String),
     /// The run diverged; there is no result.
     #[error(
         "diverged at step {step} (t = {time_s:.6e} s), worst at node {node} \

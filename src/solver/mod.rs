@@ -42,7 +42,7 @@ pub mod state;
 pub mod step;
 
 pub use error::SolverError;
-pub use model::{Model, ModelDefinition, TimeStep};
+pub use model::{Model, ModelDefinition, Stiffness, TimeStep};
 pub use state::{Drive, State};
 pub use step::step;
 

@@ -7,7 +7,7 @@ use super::element;
 use super::error::SolverError;
 use super::material::Material;
 use super::mesh::BlockMesh;
-use super::operator::StencilOperator;
+use super::operator::{AssembledOperator, Operator, StencilOperator};
 use super::stability;
 use crate::spec::{DiskKind, Numerics, Scene};
 
@@ -22,6 +22,15 @@ pub enum TimeStep {
     Unchecked(f64),
 }
 
+/// What resists the deformation.
+#[derive(Debug, Clone)]
+pub enum Stiffness {
+    /// The block is elastic, of the model's material.
+    Elastic,
+    /// Its nodes are point masses joined by these springs; of the material only the density is used.
+    Springs(AssembledOperator),
+}
+
 /// What a model is made of.
 #[derive(Debug, Clone)]
 pub struct ModelDefinition {
@@ -29,6 +38,8 @@ pub struct ModelDefinition {
     pub mesh: BlockMesh,
     /// Its material.
     pub material: Material,
+    /// What resists its deformation.
+    pub stiffness: Stiffness,
     /// What holds it.
     pub constraints: Constraints,
     /// Nodal forces per unit of the total load.
@@ -70,7 +81,7 @@ pub(super) struct TiedGroup {
 pub struct Model {
     mesh: BlockMesh,
     material: Material,
-    operator: StencilOperator,
+    operator: Operator,
     masses_kg: Vec<f64>,
     /// 1/m per degree of freedom, 0 where fixed.
     inverse_mass: Vec<f64>,
@@ -98,6 +109,7 @@ impl Model {
         };
         let definition = ModelDefinition {
             material: Material::of_pin(&scene.pin),
+            stiffness: Stiffness::Elastic,
             constraints: boundary::constraints(&mesh, &strip, scene.top),
             load: boundary::normal_load(&mesh),
             surface_motion,
@@ -127,16 +139,42 @@ impl Model {
     /// A model from its parts.
     ///
     /// # Errors
-    /// If the constraints are inconsistent or the time step is above the limit.
+    /// If the constraints are inconsistent, the springs do not fit the mesh, or the time step is above the limit.
     ///
     /// # Panics
     /// If there is not one surface velocity per contact-face node.
     pub fn new(definition: ModelDefinition) -> Result<Self, SolverError> {
-        let ModelDefinition { mesh, material, constraints, load, surface_motion, beta2, beta_r_s, time_step } =
-            definition;
+        let ModelDefinition {
+            mesh,
+            material,
+            stiffness,
+            constraints,
+            load,
+            surface_motion,
+            beta2,
+            beta_r_s,
+            time_step,
+        } = definition;
         let freedoms = constraints.freedoms(&mesh)?;
-        let stiffness = element::stiffness(&material, mesh.element_size_m());
-        let omega_max = stability::omega_max_bound(&mesh, &stiffness, material.density_kg_m3, &freedoms);
+        let masses_kg = mesh.lumped_masses_kg(material.density_kg_m3);
+        let (operator, omega_max) = match stiffness {
+            Stiffness::Elastic => {
+                let element = element::stiffness(&material, mesh.element_size_m());
+                let bound = stability::omega_max_bound(&mesh, &element, material.density_kg_m3, &freedoms);
+                (Operator::Stencil(StencilOperator::assemble(&mesh, &element)), bound)
+            }
+            Stiffness::Springs(springs) => {
+                if springs.dofs() != freedoms.len() {
+                    return Err(SolverError::Stiffness(format!(
+                        "it has {} degrees of freedom, the mesh {}",
+                        springs.dofs(),
+                        freedoms.len()
+                    )));
+                }
+                let bound = stability::omega_max_bound_of_springs(&springs, &masses_kg, &freedoms);
+                (Operator::Assembled(springs), bound)
+            }
+        };
         let limit = stability::time_step_limit_s(omega_max, beta2, beta_r_s);
         let time_step_s = match time_step {
             TimeStep::FractionOfLimit(fraction) => fraction * limit,
@@ -152,7 +190,6 @@ impl Model {
             TimeStep::Unchecked(dt) => dt,
         };
 
-        let masses_kg = mesh.lumped_masses_kg(material.density_kg_m3);
         let inverse_mass = freedoms
             .iter()
             .enumerate()
@@ -179,7 +216,7 @@ impl Model {
             })
             .collect();
         Ok(Self {
-            operator: StencilOperator::assemble(&mesh, &stiffness),
+            operator,
             material,
             masses_kg,
             inverse_mass,
@@ -207,7 +244,7 @@ impl Model {
     }
 
     /// The stiffness operator.
-    pub fn operator(&self) -> &StencilOperator {
+    pub fn operator(&self) -> &Operator {
         &self.operator
     }
 

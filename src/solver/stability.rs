@@ -15,6 +15,7 @@
 use super::constraints::Freedom;
 use super::element::ElementStiffness;
 use super::mesh::BlockMesh;
+use super::operator::AssembledOperator;
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
 
@@ -33,6 +34,21 @@ pub fn omega_max_bound(
     freedoms: &[Freedom],
 ) -> f64 {
     by_elements(mesh, element, density_kg_m3, freedoms).min(by_patches(mesh, element, density_kg_m3))
+}
+
+/// Upper bound of the largest angular frequency [rad/s] of point masses joined by springs: Gershgorin's
+/// discs of M⁻¹K, ω² ≤ `max_i` Σ_j |K_ij|/m_i over what is not fixed (ties can only lower it).
+pub fn omega_max_bound_of_springs(
+    springs: &AssembledOperator,
+    masses_kg: &[f64],
+    freedoms: &[Freedom],
+) -> f64 {
+    let moves = |dof: &usize| freedoms[*dof] != Freedom::Fixed;
+    let disc = |dof: usize| {
+        let sum: f64 = springs.row(dof).filter(|(column, _)| moves(column)).map(|(_, k)| k.abs()).sum();
+        sum / masses_kg[dof / 3]
+    };
+    (0..freedoms.len()).filter(moves).map(disc).fold(0.0, f64::max).sqrt()
 }
 
 fn by_elements(

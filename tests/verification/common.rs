@@ -5,7 +5,7 @@ use tribosweep::solver::constraints::{Constraints, Tie};
 use tribosweep::solver::disk;
 use tribosweep::solver::material::Material;
 use tribosweep::solver::mesh::BlockMesh;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep, step};
+use tribosweep::solver::{Drive, Model, ModelDefinition, State, Stiffness, TimeStep, step};
 
 /// The reference pin's material with another Poisson's ratio.
 pub fn pin_material(poisson_ratio: f64) -> Material {
@@ -47,6 +47,7 @@ pub fn definition(mesh: BlockMesh, material: Material, constraints: Constraints)
         surface_motion: disk::straight_plane(&mesh),
         mesh,
         material,
+        stiffness: Stiffness::Elastic,
         constraints,
         load: Vec::<LoadShare>::new(),
         beta2: 0.5,

@@ -3,8 +3,8 @@
 
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::{
-    Drive, Model, ModelDefinition, SolverError, State, TimeStep, boundary, disk, guard, material::Material,
-    mesh::BlockMesh, step,
+    Drive, Model, ModelDefinition, SolverError, State, Stiffness, TimeStep, boundary, disk, guard,
+    material::Material, mesh::BlockMesh, step,
 };
 use tribosweep::spec::{Clamp, JobSpec, TopFace};
 
@@ -71,6 +71,7 @@ fn beyond_the_limit(fraction: f64) -> Model {
     let strip = boundary::clamped_strip(&mesh, &Clamp { width_m: 0.002, ..Clamp::default() }).unwrap();
     let definition = ModelDefinition {
         material: Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 },
+        stiffness: Stiffness::Elastic,
         constraints: boundary::constraints(&mesh, &strip, TopFace::TiedInZ),
         load: boundary::normal_load(&mesh),
         surface_motion: disk::rotating_disk(&mesh, 0.0914),

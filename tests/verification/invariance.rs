@@ -5,7 +5,7 @@ use tribosweep::solver::disk;
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::material::Material;
 use tribosweep::solver::mesh::BlockMesh;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep, step};
+use tribosweep::solver::{Drive, Model, ModelDefinition, State, Stiffness, TimeStep, step};
 use tribosweep::spec::{Clamp, ClampSide, JobSpec, TopFace};
 
 fn small_model() -> Model {
@@ -51,6 +51,7 @@ fn straight(side: ClampSide) -> Model {
     let strip = boundary::clamped_strip(&mesh, &Clamp { side, width_m: 0.002 }).unwrap();
     Model::new(ModelDefinition {
         material: Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 },
+        stiffness: Stiffness::Elastic,
         constraints: boundary::constraints(&mesh, &strip, TopFace::TiedInZ),
         load: boundary::normal_load(&mesh),
         surface_motion: disk::straight_plane(&mesh),

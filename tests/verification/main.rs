@@ -4,6 +4,7 @@ mod bar;
 mod block;
 mod common;
 mod energy;
+mod evidence;
 mod integrator;
 mod invariance;
 mod patch;

@@ -5,8 +5,8 @@
 //! 27-point stencil each (52 KiB) instead of one block row per node. The product is the assembled
 //! K u, summed over neighbours in a fixed order.
 
-use super::element::ElementStiffness;
-use super::mesh::BlockMesh;
+use crate::solver::element::ElementStiffness;
+use crate::solver::mesh::BlockMesh;
 
 /// Coefficients of three neighbours in a row (di = −1, 0, 1) for the three components of a node.
 type RowStencil = [[f64; 9]; 3];
@@ -148,9 +148,10 @@ fn node_product<const L: usize, const W: usize, const FIRST: usize>(
 
 #[cfg(test)]
 mod tests {
-    use super::super::element::stiffness;
-    use super::super::material::Material;
+    use super::super::AssembledOperator;
     use super::*;
+    use crate::solver::element::stiffness;
+    use crate::solver::material::Material;
 
     /// A deterministic, structureless field.
     fn field(n: usize, seed: u64) -> Vec<f64> {
@@ -173,15 +174,7 @@ mod tests {
             let n = 3 * mesh.node_count();
             let x = field(n, 1);
             let mut reference = vec![0.0; n];
-            for [i, j, k] in mesh.element_positions() {
-                let nodes = mesh.element_nodes(i, j, k);
-                for row in 0..24 {
-                    for col in 0..24 {
-                        reference[3 * nodes[row / 3] + row % 3] +=
-                            ke[(row, col)] * x[3 * nodes[col / 3] + col % 3];
-                    }
-                }
-            }
+            AssembledOperator::of_block(&mesh, &ke).apply::<1>(&x, &mut reference);
             let mut y = vec![0.0; n];
             StencilOperator::assemble(&mesh, &ke).apply::<1>(&x, &mut y);
             // At most 8·24 terms of size |ke|·½, each rounded once.
