@@ -5,6 +5,7 @@ mod block;
 mod common;
 mod energy;
 mod evidence;
+mod flutter;
 mod integrator;
 mod invariance;
 mod patch;
