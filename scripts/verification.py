@@ -1,0 +1,132 @@
+#!/usr/bin/env python3
+"""Writes docs/verification.md: runs the whole verification suite and tabulates the evidence that it leaves."""
+
+import json
+import os
+import re
+import shutil
+import subprocess
+
+import runs
+
+EVIDENCE = runs.WORK / "verification"
+
+# The benchmarks in order, with what they are; cases outside of the list are an error.
+BENCHMARKS = {
+    "B1": "Free block: eigenfrequencies",
+    "B2": "Bar and confined column: discrete and continuous spectrum",
+    "B3": "β₂ integrator: damping, frequency, limit",
+    "B4": "Bar on a rigid wall (Saint-Venant)",
+    "B5": "Bouncing bar, two impacts (Doyen)",
+    "B6": "Clamped–free bar, periodic impact",
+    "B7": "Rigid block and wedge under friction",
+    "B8": "Oscillator on a belt",
+    "B9": "Mode coupling with two degrees of freedom",
+    "B10": "Dynamic friction bar (stick–slip front)",
+    "B11": "Quasi-static friction bar (hysteresis loop)",
+    "B12": "Shear column on a moving plane",
+    "B13": "Constant-stress patch",
+    "B14": "Partial slip",
+    "B15": "Invariances and identities",
+    "B16": "Frequency estimators",
+    "Flutter": "Linear flutter of the pin",
+}
+
+NOT_VERIFIED = """\
+## What is not verified
+
+* **Two deformable bodies**: two bars and dissimilar bars, two stacked blocks with non-matching meshes, and
+  Cattaneo–Mindlin partial slip between identical bodies need a second deformable body, which the program does not have
+  yet. The target is a rigid plane.
+* **Curved targets**: the slave face meets a plane; no Hertzian contact.
+* **Static and kinetic friction**: the law has one coefficient, so benchmarks with two (stick–slip of an oscillator whose
+  static coefficient is higher) do not apply.
+* **The limit cycle itself** has no exact answer. Its balance laws are checked here, its agreement with an independent
+  solver in [agreement.md](agreement.md), its dependence on mesh and step in [accuracy.md](accuracy.md).
+* **The singular stress at the edges of the base**: no exact answer is asserted for a fixed mesh, and it does not
+  converge with the mesh.
+"""
+
+
+def number(value):
+    if value is None:
+        return ""
+    if value == 0 or 1e-3 <= abs(value) < 1e6:
+        return f"{value:.7g}"
+    return f"{value:.5e}"
+
+
+def observed(case):
+    convergence = case["convergence"]
+    if "orders" in convergence:
+        orders = ", ".join(f"{order:.2f}" for order in convergence["orders"])
+        return f"{orders}; limit off by {abs(convergence['limit_error']):.1e} ({convergence['limit_allowed']:.1e} allowed)"
+    if "overall_order" in convergence:
+        return f"{convergence['overall_order']:.2f} overall"
+    return ""
+
+
+def summary(cases):
+    rows = []
+    for benchmark, case in cases:
+        finest = case["rows"][-1]
+        worst = max(row["error"] for row in case["rows"])
+        rows.append([benchmark, case["quantity"], case["criterion"], len(case["rows"]),
+                     f"{finest['error']:.1e}" if case["convergence"] else f"{worst:.1e}", observed(case)])
+    return runs.table(["case", "quantity", "criterion", "rows", "error (finest, or largest)", "observed order"], rows)
+
+
+def details(case):
+    rows = [[row["resolution"], number(row["found"]), number(row["exact"]), f"{row['error']:.2e}",
+             "" if row["bound"] is None else f"{row['bound']:.1e}"] for row in case["rows"]]
+    note = observed(case)
+    return (
+        f"**{case['quantity']}**: {case['criterion']}. Source: {case['source']}.\n\n"
+        + runs.table(["resolution", "found", "exact", "error", "bound"], rows)
+        + (f"\nObserved order {note}.\n" if note else "")
+    )
+
+
+def run_suite():
+    shutil.rmtree(EVIDENCE, ignore_errors=True)
+    EVIDENCE.mkdir(parents=True)
+    done = subprocess.run(
+        ["cargo", "test", "--release", "--test", "verification", "--", "--include-ignored"],
+        cwd=runs.ROOT, env=dict(os.environ, TRIBOSWEEP_VERIFICATION=str(EVIDENCE)), stdout=subprocess.PIPE, text=True,
+    )
+    results = re.search(r"(\d+) passed; (\d+) failed", done.stdout)
+    passed, failed = (int(count) for count in results.groups())
+    if failed:
+        print(done.stdout)
+    return passed, failed
+
+
+def main():
+    runs.build()
+    passed, failed = run_suite()
+    order = list(BENCHMARKS)
+    cases = [json.loads(path.read_text()) for path in sorted(EVIDENCE.glob("*.json"))]
+    cases = sorted(((case["benchmark"], case) for case in cases), key=lambda pair: (order.index(pair[0]), pair[1]["quantity"]))
+    sections = []
+    for benchmark, title in BENCHMARKS.items():
+        own = [case for name, case in cases if name == benchmark]
+        body = "\n".join(details(case) for case in own) if own else "No case yet; see *What is not verified*.\n"
+        sections.append(f"## {benchmark} {title}\n\n{body}")
+    runs.write(
+        "verification.md",
+        "# Verification against exact answers\n\n"
+        "Written by `scripts/verification.py`; do not edit. It runs `cargo test --release --test verification --\n"
+        "--include-ignored`; every case below is asserted there, under one of the criteria that\n"
+        "`tests/verification/evidence.rs` defines: *exact* (only rounding, with a count of operations), *order* (the\n"
+        "observed order within 0.25 of that of the analysis, and the extrapolated limit as close to the exact answer as\n"
+        "two extrapolations are to each other), *order overall* (slope from the coarsest to the finest), *bounded* (a\n"
+        "bound derived for that resolution). The problem, its derivation and source are in the head comment of each file\n"
+        "under `tests/verification/`.\n\n"
+        f"{passed} tests passed, {failed} failed; {len(cases)} cases with {sum(len(c['rows']) for _, c in cases)} rows. Errors are relative.\n\n"
+        "## Summary\n\n" + summary(cases) + "\n" + NOT_VERIFIED + "\n" + "\n".join(sections),
+    )
+    raise SystemExit(1 if failed else 0)
+
+
+if __name__ == "__main__":
+    main()
