@@ -1,12 +1,15 @@
 //! Verification against exact answers and independent values; one file a topic.
 
 mod bar;
+mod belt;
 mod block;
 mod common;
 mod energy;
 mod evidence;
 mod integrator;
 mod invariance;
+mod particles;
 mod patch;
 mod reference;
 mod shear;
+mod wedge;
