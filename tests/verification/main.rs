@@ -8,6 +8,7 @@ mod energy;
 mod evidence;
 mod integrator;
 mod invariance;
+mod mode_coupling;
 mod particles;
 mod patch;
 mod reference;
