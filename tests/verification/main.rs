@@ -6,6 +6,8 @@ mod block;
 mod common;
 mod energy;
 mod evidence;
+mod friction_bar;
+mod friction_chain;
 mod integrator;
 mod invariance;
 mod mode_coupling;
