@@ -45,11 +45,7 @@ const RESOLUTIONS: [f64; 3] = [0.2, 0.1, 0.05];
 
 fn oscillator(w: f64) -> Model {
     let mut system = Particles::corners(MASS_KG);
-    system
-        .release(0, Y)
-        .release(0, Z)
-        .spring(0, 2, [0.0, 1.0, 0.0], STIFFNESS_N_M)
-        .load(0, Z, -1.0);
+    system.release(0, Y).release(0, Z).spring(0, 2, [0.0, 1.0, 0.0], STIFFNESS_N_M).load(0, Z, -1.0);
     system.model(0.0, TimeStep::Given(w / OMEGA))
 }
 
@@ -165,8 +161,13 @@ fn swing(w: f64, belt_speed_m_s: f64) -> Swing {
 #[test]
 fn started_stuck_it_touches_the_belts_speed_and_does_not_stick() {
     const TOUCH: &str = "x = μN/k + (V/ω) sin ω(t − t₁) after t₁ = μN/(kV)";
-    let mut amplitude = Evidence::new("B8", "amplitude of an oscillator on a belt, started stuck, over 40 periods [m]", TOUCH);
-    let mut share = Evidence::new("B8", "share of stick of an oscillator that touches the belt's speed", TOUCH);
+    let mut amplitude = Evidence::new(
+        "B8",
+        "amplitude of an oscillator on a belt, started stuck, over 40 periods [m]",
+        TOUCH,
+    );
+    let mut share =
+        Evidence::new("B8", "share of stick of an oscillator that touches the belt's speed", TOUCH);
     let mut period = Evidence::new("B8", "period of an oscillator that touches the belt's speed [s]", TOUCH);
     let mut energy = Evidence::new(
         "B8",

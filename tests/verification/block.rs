@@ -119,7 +119,8 @@ fn the_last_step_costs_at_most_half_a_step() {
 fn sticks_on_an_incline_up_to_the_friction_angle() {
     const STEPS: usize = 1000;
     let time_step_s = 1.0e-6;
-    let mut travel = Evidence::new("B7", "travel on an incline of tan α = r μ [m]", "a = F(tan α − μ)/m; 0 for r ≤ 1");
+    let mut travel =
+        Evidence::new("B7", "travel on an incline of tan α = r μ [m]", "a = F(tan α − μ)/m; 0 for r ≤ 1");
     // Trial force and limit are rounded a few times each: 1 ∓ 16 ε is beyond that.
     let edge = 16.0 * f64::EPSILON;
     for ratio in [0.0, 0.5, 1.0 - edge, 1.0 + edge, 1.01, 2.0] {
@@ -174,8 +175,7 @@ fn an_elastic_blocks_base_stops_like_a_rigid_block() {
     for young_modulus_pa in [1.0e8, 1.0e9, 1.0e10] {
         let stiffness = shear_stiffness_n_m(young_modulus_pa);
         let shear_omega = (4.0 * stiffness / MASS_KG).sqrt();
-        let model =
-            elastic_block(young_modulus_pa, 0.0, 1.0 / shear_omega, TimeStep::FractionOfLimit(0.5));
+        let model = elastic_block(young_modulus_pa, 0.0, 1.0 / shear_omega, TimeStep::FractionOfLimit(0.5));
         let mut state = State::at_rest(&model);
         for node in 0..model.mesh().node_count() {
             state.p[3 * node + Y] = SPEED_M_S;
@@ -207,12 +207,8 @@ fn an_elastic_block_sticks_up_to_the_friction_angle() {
     for (fraction, sticks) in [(0.5, true), (0.99, true), (1.01, false), (2.0, false)] {
         let young_modulus_pa = 1.0e9;
         let shear_omega = (2.0 * shear_stiffness_n_m(young_modulus_pa) / MASS_KG).sqrt();
-        let model = elastic_block(
-            young_modulus_pa,
-            fraction * MU,
-            2.0 / shear_omega,
-            TimeStep::FractionOfLimit(0.5),
-        );
+        let model =
+            elastic_block(young_modulus_pa, fraction * MU, 2.0 / shear_omega, TimeStep::FractionOfLimit(0.5));
         let drive = Drive { ramp_s: 200.0 / shear_omega, ..DRIVE };
         let mut state = State::at_rest(&model);
         let mut slipped = false;

@@ -108,7 +108,8 @@ fn worst(rest: &Rest, exact_m: impl Fn(usize) -> f64) -> (f64, f64) {
 #[test]
 fn the_front_at_unit_cfl_is_the_discrete_solution() {
     const DISCRETE: &str = "exact discrete solution at cΔt/h = 1: (κ/4)[(n* − i)² − r²]";
-    let mut at_rest = Evidence::new("B10", "displacement along a pushed friction bar at rest, worst node [m]", DISCRETE);
+    let mut at_rest =
+        Evidence::new("B10", "displacement along a pushed friction bar at rest, worst node [m]", DISCRETE);
     let mut moving = Evidence::new(
         "B10",
         "displacement along a pushed friction bar while it slips, nodes of the step's parity, worst [m]",
@@ -138,7 +139,8 @@ fn the_front_at_unit_cfl_is_the_discrete_solution() {
             if d > 0.0 { kappa / 4.0 * (d * d - r * r) } else { 0.0 }
         });
         at_rest.found(&resolution, found, exact, PUSHED_IN_M);
-        let slipped = (0..rest.chain.nodes()).filter(|&j| rest.chain.u_m(&rest.state, j) > 1e-9 * kappa).count();
+        let slipped =
+            (0..rest.chain.nodes()).filter(|&j| rest.chain.u_m(&rest.state, j) > 1e-9 * kappa).count();
         let slip_length = slipped as f64 * rest.chain.spacing_m;
         let bound = 1.0 / n_star + 4.0 * f64::EPSILON;
         length.bounded(&resolution, slip_length, SLIP_LENGTH_M, SLIP_LENGTH_M, bound);
@@ -156,9 +158,11 @@ fn the_front_at_unit_cfl_is_the_discrete_solution() {
 /// first order because of the sudden push.
 #[test]
 fn the_front_at_unit_cfl_converges_to_the_bar() {
-    let mut u = Evidence::new("B10", "displacement along a pushed friction bar at cΔt/h = 1, worst node [m]", SOURCE);
+    let mut u =
+        Evidence::new("B10", "displacement along a pushed friction bar at cΔt/h = 1, worst node [m]", SOURCE);
     let mut strain = Evidence::new("B10", "stored part of the work on a friction bar at cΔt/h = 1", SOURCE);
-    let mut friction = Evidence::new("B10", "dissipated part of the work on a friction bar at cΔt/h = 1", SOURCE);
+    let mut friction =
+        Evidence::new("B10", "dissipated part of the work on a friction bar at cΔt/h = 1", SOURCE);
     for n_star in [20.0, 40.0, 80.0] {
         let rest = push(n_star, 1.0, |_, _| {});
         let resolution = format!("n* = {n_star}");
@@ -179,7 +183,8 @@ fn the_front_at_unit_cfl_converges_to_the_bar() {
 /// Pushes at cΔt/h = ½ and judges displacement and energies.
 fn converges_below_unit_cfl(n_stars: &[f64], name: &str) {
     const FRONT: &str = "a dispersed front, (h²L)^⅓ wide, displaces the work of friction";
-    const RIPPLES: &str = "the ripples of a dispersed front, (w/d)^¾, w = (h²L)^⅓, pass in one direction only";
+    const RIPPLES: &str =
+        "the ripples of a dispersed front, (w/d)^¾, w = (h²L)^⅓, pass in one direction only";
     let evidence = |quantity: &str| Evidence::new("B10", format!("{quantity} at cΔt/h = ½{name}"), SOURCE);
     let mut end = evidence("displacement of the pushed end of a friction bar [m]");
     let mut u = evidence("displacement along a pushed friction bar, worst node [m]");

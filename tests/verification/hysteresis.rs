@@ -107,7 +107,8 @@ fn the_loop_is_the_bars_as_the_load_slows_down() {
     .map(|(at, exact, order)| {
         (Evidence::new("B11", format!("displacement of a friction bar's end {at} [m]"), SOURCE), exact, order)
     });
-    let mut work = Evidence::new("B11", "work of friction in a cycle of a chain on dry friction [J]", discrete);
+    let mut work =
+        Evidence::new("B11", "work of friction in a cycle of a chain on dry friction [J]", discrete);
     for rate in RATES {
         let found = cycle(J, rate);
         let resolution = format!("T = {rate} ℓ/c");
@@ -128,7 +129,8 @@ fn the_loop_is_the_bars_as_the_load_slows_down() {
 #[test]
 fn slip_and_reverse_slip_reach_as_far_as_the_bars() {
     let mut slip = Evidence::new("B11", "slip length of a friction bar at F0 [m]", SOURCE);
-    let mut reverse = Evidence::new("B11", "reverse slip length of a friction bar unloaded to F = 0 [m]", SOURCE);
+    let mut reverse =
+        Evidence::new("B11", "reverse slip length of a friction bar unloaded to F = 0 [m]", SOURCE);
     for j in [4, 8, 16] {
         let found = cycle(j, 100.0);
         let (h, spacing) = (SLIP_LENGTH_M / j as f64, 1.0 / j as f64);

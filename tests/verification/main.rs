@@ -16,4 +16,5 @@ mod particles;
 mod patch;
 mod reference;
 mod shear;
+mod sideways;
 mod wedge;

@@ -322,8 +322,16 @@ fn saturated(mu: f64, belt_speed_m_s: f64, time_step_s: f64) -> Saturated {
 fn the_saturated_oscillation_obeys_the_identities() {
     const MOMENTUM: &str = "momentum of the oscillator over the window, an identity of the scheme";
     let mu = 0.4;
-    let mut normal = Evidence::new("B9", "mean normal contact force of saturated flutter less the change of momentum over the load", MOMENTUM);
-    let mut friction = Evidence::new("B9", "mean force of the clamp on saturated flutter plus the change of momentum over the mean friction force", MOMENTUM);
+    let mut normal = Evidence::new(
+        "B9",
+        "mean normal contact force of saturated flutter less the change of momentum over the load",
+        MOMENTUM,
+    );
+    let mut friction = Evidence::new(
+        "B9",
+        "mean force of the clamp on saturated flutter plus the change of momentum over the mean friction force",
+        MOMENTUM,
+    );
     let mut deficit = Evidence::new(
         "B9",
         "μ − μ* of saturated flutter, forces of clamp and load, against the deficit of friction",
@@ -338,19 +346,31 @@ fn the_saturated_oscillation_obeys_the_identities() {
         for time_step_s in [0.05, 0.0125] {
             let found = saturated(mu, belt_speed_m_s, time_step_s);
             let at = format!("V = {belt_speed_m_s} m/s, Δt = {time_step_s} s");
-            assert!(found.shares.iter().all(|&share| share > 0.02), "{at}: stick, slip, lift-off {:?}", found.shares);
+            assert!(
+                found.shares.iter().all(|&share| share > 0.02),
+                "{at}: stick, slip, lift-off {:?}",
+                found.shares
+            );
             // Sums of that many terms, each rounded at the size of the sum; twice as many since the start.
             let rounding = 4.0 * found.steps as f64 * f64::EPSILON;
             normal.bounded(&at, found.normal - found.momentum[1], 1.0, 1.0, rounding);
             friction.bounded(&at, (found.clamp + found.momentum[0]) / found.friction, 1.0, 1.0, rounding);
             let mu_star = found.clamp;
             assert!(found.deficit > 0.05 * mu, "{at}: stick and reversed slip lower μ*");
-            deficit.bounded(&at, mu - mu_star, found.deficit, mu, 2.0 * found.largest_momentum / mu + rounding);
+            deficit.bounded(
+                &at,
+                mu - mu_star,
+                found.deficit,
+                mu,
+                2.0 * found.largest_momentum / mu + rounding,
+            );
             energy.bounded(&at, found.energy_residual, 0.0, 1.0, rounding);
         }
     }
     normal.judge_bounded("4 roundings a step");
     friction.judge_bounded("4 roundings a step");
-    deficit.judge_bounded("twice the largest momentum over load times window: the window is no whole number of cycles");
+    deficit.judge_bounded(
+        "twice the largest momentum over load times window: the window is no whole number of cycles",
+    );
     energy.judge_bounded("4 roundings a step");
 }

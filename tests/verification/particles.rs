@@ -14,6 +14,7 @@ use tribosweep::solver::operator::AssembledOperator;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State, Stiffness, TimeStep, disk, step};
 
 /// Components of a node.
+pub const X: usize = 0;
 pub const Y: usize = 1;
 pub const Z: usize = 2;
 
