@@ -8,6 +8,7 @@ mod energy;
 mod evidence;
 mod friction_bar;
 mod friction_chain;
+mod held;
 mod hysteresis;
 mod integrator;
 mod invariance;
