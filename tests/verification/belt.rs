@@ -4,28 +4,29 @@
 //!
 //! * **Started at rest** it slips all the time if μNω/k < V: friction is the constant μN, and
 //!   x = x_s (1 − cos ωt).
-//! * **Started stuck** (x = 0, velocity V) it is carried until k x = μN, at t₁ = x_s/V, and leaves with velocity
-//!   V: x = x_s + (V/ω) sin ω(t − t₁). Its velocity V cos ω(t − t₁) touches that of the belt tangentially once
-//!   a period and never again sticks for a finite time: **with a constant coefficient there is no stick–slip
-//!   limit cycle**, and the amplitude V/ω stays.
+//! * **Started stuck** (x = 0, velocity V) it is carried until k x = μN, at t₁ = x_s/V, and leaves with
+//!   velocity V: x = x_s + (V/ω) sin ω(t − t₁). Its velocity V cos ω(t − t₁) touches that of the belt
+//!   tangentially once a period and never again sticks for a finite time: **with a constant coefficient
+//!   there is no stick–slip limit cycle**, and the amplitude V/ω stays.
 //!
-//! Source: integration of m ẍ = μN − k x (den Hartog, *Mechanical Vibrations*, 4th ed. 1956, § 7.1, discusses the
-//! mechanism). A static coefficient above the kinetic one, which does give stick–slip, is no part of the
-//! program's law and is not verified.
+//! Source: integration of m ẍ = μN − k x (den Hartog, *Mechanical Vibrations*, 4th ed. 1956, § 7.1,
+//! discusses the mechanism). A static coefficient above the kinetic one, which does give stick–slip, is no
+//! part of the program's law and is not verified.
 //!
-//! **What the scheme makes of it.** With y = x − x_s the central difference gives y_{n+1} − 2y_n + y_{n−1} = −W² y_n,
-//! W = ωΔt, so motion at rest is exactly y_n = −x_s cos θn with sin(θ/2) = W/2; its phase θ/W − 1 is W²/24:
-//! second order. A slip phase that begins at y_0 = fVΔt, 0 < f ≤ 1, after a step of VΔt has the amplitude
+//! **What the scheme makes of it.** With y = x − x_s the central difference gives y_{n+1} − 2y_n + y_{n−1}
+//! = −W² y_n, W = ωΔt, so motion at rest is exactly y_n = −x_s cos θn with sin(θ/2) = W/2; its phase θ/W −
+//! 1 is W²/24: second order. A slip phase that begins at y_0 = fVΔt, 0 < f ≤ 1, after a step of VΔt has the
+//! amplitude
 //!
 //! ```text
 //! A² = (V/ω)² [1 − W² f(1 − f)] / (1 − W²/4)
 //! ```
 //!
-//! (from the invariant y_n² − 2 cos θ y_n y_{n−1} + y_{n−1}² = A² sin² θ), between V/ω and (V/ω)/√(1 − W²/4). Its
-//! fastest step, 2A sin(θ/2) = AW, may exceed VΔt while the middle of the step is within θ/2 of the phase
-//! of greatest speed: in one step per period, in which it sticks. That step ends at y ≥ 0 (it began at
-//! y ≥ −A sin θ ≥ −VΔt), so the next phase of slip begins as described: the amplitude's bounds hold
-//! for ever, and the share of stick is at most θ/(2π).
+//! (from the invariant y_n² − 2 cos θ y_n y_{n−1} + y_{n−1}² = A² sin² θ), between V/ω and (V/ω)/√(1 −
+//! W²/4). Its fastest step, 2A sin(θ/2) = AW, may exceed VΔt while the middle of the step is within θ/2 of
+//! the phase of greatest speed: in one step per period, in which it sticks. That step ends at y ≥ 0 (it
+//! began at y ≥ −A sin θ ≥ −VΔt), so the next phase of slip begins as described: the amplitude's bounds
+//! hold for ever, and the share of stick is at most θ/(2π).
 
 use crate::common::advance;
 use crate::evidence::Evidence;

@@ -13,30 +13,32 @@
 //! Source: Nikitin and Tyurekhodgaev, *Wave propagation and vibration of elastic rods with interfacial
 //! frictional slip*, Wave Motion 12 (1990) 513–526; derived anew as above.
 //!
-//! **What the scheme makes of it** at cΔt/h = 1, κ = qh²/(EA), n* = t*/Δt: a slipping node obeys
-//! u_i^{n+1} = u_{i+1}^n + u_{i−1}^n − u_i^{n−1} − κ. Its own u_i^n drops out: nodes and steps of equal parity (n − i
+//! **What the scheme makes of it** at cΔt/h = 1, κ = qh²/(EA), n* = t*/Δt: a slipping node obeys u_i^{n+1}
+//! = u_{i+1}^n + u_{i−1}^n − u_i^{n−1} − κ. Its own u_i^n drops out: nodes and steps of equal parity (n − i
 //! even) do not see the others, and for them the recursion, its start and the front are satisfied by the
-//! exact solution itself, u_i^n = (κ/4)[(n* − i)² − (n* − n)²], as long as each slips in the step that leads
-//! to n. (In the step from even to odd n − i it moves by (κ/2)(n* + 1 − 2n), or sticks once that is negative: friction
-//! takes hold of a node for the whole step in which the front arrives at its start.) A node stays where it
-//! is at its last even n whose next move (κ/4)[(n* − n)² − (n* − n − 2)²] would not be positive, |n* − n| ≤ 1:
+//! exact solution itself, u_i^n = (κ/4)[(n* − i)² − (n* − n)²], as long as each slips in the step that
+//! leads to n. (In the step from even to odd n − i it moves by (κ/2)(n* + 1 − 2n), or sticks once that is
+//! negative: friction takes hold of a node for the whole step in which the front arrives at its start.) A
+//! node stays where it is at its last even n whose next move (κ/4)[(n* − n)² − (n* − n − 2)²] would not be
+//! positive, |n* − n| ≤ 1:
 //!
 //! ```text
 //! u_i = (κ/4)[(n* − i)² − r²],   r the distance of n* to the nearest integer of i's parity
 //! ```
 //!
-//! So the scheme is exact but for κ/4 at most, which is u(0)/n*²: second order, and for whole n* an alternation
-//! of 0 and exactly −κ/4; the stored part of the work is (1/3)(1 + 2/n*²) for even n*. The sudden push itself costs
-//! energy in the scheme's own balance: E_0 = −(γ/4)Δt² aMa (see `solver::energy`) with the end node's
-//! a = (P0A − qh/2)/(ρAh/2) is −(n* − 1)²/(2n*³) of the work, which is missing in the dissipated part: first order.
+//! So the scheme is exact but for κ/4 at most, which is u(0)/n*²: second order, and for whole n* an
+//! alternation of 0 and exactly −κ/4; the stored part of the work is (1/3)(1 + 2/n*²) for even n*. The
+//! sudden push itself costs energy in the scheme's own balance: E_0 = −(γ/4)Δt² aMa (see `solver::energy`)
+//! with the end node's a = (P0A − qh/2)/(ρAh/2) is −(n* − 1)²/(2n*³) of the work, which is missing in the
+//! dissipated part: first order.
 //!
-//! Below cΔt/h = 1 the front is dispersed into an Airy integral that is w = (h²L)^⅓ wide after the length L.
-//! Friction acts from where the nodes begin to move, so its work is displaced by a part of w: the errors
-//! of u(0) and of the energies are of the order w/L = (h/L)^⅔. Behind the front the ripples fall off as (w/d)^¾ with the
-//! distance d and, once the bar itself has slowed down, friction lets them through in one direction only:
-//! near x = L they add up to as much as ∫(w/d)^¾ dd/L = (h/L)^½. The first of them, the front's overshoot by a
-//! quarter, runs on as a weak pulse and ends at about 1.2 L and 1.3 t*, on any mesh: the extent and duration of
-//! slip in this sense do not converge, and are not compared.
+//! Below cΔt/h = 1 the front is dispersed into an Airy integral that is w = (h²L)^⅓ wide after the length
+//! L. Friction acts from where the nodes begin to move, so its work is displaced by a part of w: the errors
+//! of u(0) and of the energies are of the order w/L = (h/L)^⅔. Behind the front the ripples fall off as
+//! (w/d)^¾ with the distance d and, once the bar itself has slowed down, friction lets them through in one
+//! direction only: near x = L they add up to as much as ∫(w/d)^¾ dd/L = (h/L)^½. The first of them, the
+//! front's overshoot by a quarter, runs on as a pulse, ever weaker with finer meshes, that ends at about
+//! 1.2 L and 1.3 t* on all of them: the extent and duration of slip in this sense are not compared.
 
 use crate::evidence::Evidence;
 use crate::friction_chain::{AREA_M2, CAPACITY_N_M, Chain, DENSITY_KG_M3, YOUNG_MODULUS_PA};
@@ -77,7 +79,8 @@ fn push(n_star: f64, cfl: f64, mut watch: impl FnMut(&Chain, &State<1>)) -> Rest
         audited_step(&chain.model, drive, &mut state, &mut ledger);
         watch(&chain, &state);
         steps += 1;
-        // Not "all stick": at cΔt/h = 1 half the nodes rest exactly on the edge of the cone and may slip by rounding.
+        // Not "all stick": at cΔt/h = 1 half the nodes rest exactly on the edge of the cone and may slip by
+        // rounding.
         if steps > (n_star / cfl) as u64 && chain.fastest_m_s(&state) < 1.0e-9 * FIRST_SPEED_M_S {
             break;
         }
@@ -104,7 +107,8 @@ fn worst(rest: &Rest, exact_m: impl Fn(usize) -> f64) -> (f64, f64) {
         .expect("a chain has nodes")
 }
 
-/// Protects: slip, its front, and slip → stick of many nodes at cΔt/h = 1, to rounding, for whole and broken n*.
+/// Protects: slip, its front, and slip → stick of many nodes at cΔt/h = 1, to rounding, for whole and
+/// broken n*.
 #[test]
 fn the_front_at_unit_cfl_is_the_discrete_solution() {
     const DISCRETE: &str = "exact discrete solution at cΔt/h = 1: (κ/4)[(n* − i)² − r²]";

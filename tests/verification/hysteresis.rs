@@ -1,7 +1,7 @@
 //! B11 Partial slip of an elastic bar on dry friction under a slowly alternating force.
 //!
-//! A bar (EA) held by friction of at most q per length is pushed at its end, x = 0. Slowly loaded with F it slips
-//! over F/q, where the normal force is F − qx, and
+//! A bar (EA) held by friction of at most q per length is pushed at its end, x = 0. Slowly loaded with F it
+//! slips over F/q, where the normal force is F − qx, and
 //!
 //! ```text
 //! u(0) = F²/(2EAq)                                 first loading up to F0
@@ -16,15 +16,17 @@
 //! third order in F. Their own problem (two equal curved bodies) needs a curved, deformable target and is not
 //! verified here.
 //!
-//! **The chain's own answer.** N drops by qh at every slipping node (qh/2 at the first), so after node j it is
-//! F − qh(j + ½); at F = qhJ the nodes 0 … J−1 slip and u_j = (qh²/2EA)(J − j)², the bar's displacement exactly, on
-//! every branch whose half amplitude is a whole number of nodes. Friction's work in a cycle, Σ 4 (qh²/2EA)(J − j)²
-//! times the nodes' capacity, is that of the bar times **1 + 1/(2J²)**: second order in h.
+//! **The chain's own answer.** N drops by qh at every slipping node (qh/2 at the first), so after node j it
+//! is F − qh(j + ½); at F = qhJ the nodes 0 … J−1 slip and u_j = (qh²/2EA)(J − j)², the bar's displacement
+//! exactly, on every branch whose half amplitude is a whole number of nodes. Friction's work in a cycle, Σ
+//! 4 (qh²/2EA)(J − j)² times the nodes' capacity, is that of the bar times **1 + 1/(2J²)**: second order in
+//! h.
 //!
-//! **The rate.** The force runs along cosines, F₀ → −F₀ in 2T; β_R = 0.3 transit times of the slip zone keeps the
-//! motion from ringing. Its stress is a lag: EA(u' + β_R u̇') = −N acts as the force F − β_R Ḟ, an error of the
-//! displacement of order 1/T between the turning points. At a turning point Ḟ = 0, and what remains there
-//! and in the work between turning points is inertia and the curvature of the lag, ∝ F̈: order 1/T².
+//! **The rate.** The force runs along cosines, F₀ → −F₀ in 2T; β_R = 0.3 transit times of the slip zone
+//! keeps the motion from ringing. Its stress is a lag: EA(u' + β_R u̇') = −N acts as the force F − β_R Ḟ,
+//! an error of the displacement of order 1/T between the turning points. At a turning point Ḟ = 0, and what
+//! remains there and in the work between turning points is inertia and the curvature of the lag, ∝ F̈:
+//! order 1/T².
 
 use crate::evidence::Evidence;
 use crate::friction_chain::{AREA_M2, CAPACITY_N_M, Chain, DENSITY_KG_M3, YOUNG_MODULUS_PA};

@@ -1,18 +1,19 @@
 //! B12 A shear column on a moving plane.
 //!
-//! A layer of height h, free in y at the top, pressed with p on a plane of speed V. In the k-th
-//! interval of 2h/c_s the base slips at (2k−1)V0, V0 = μp/(ρc_s), while that is below V; then it
-//! sticks, v = V for ever, with a traction that alternates between two values of opposite sign.
-//! Source: d'Alembert's solution: the base's traction τ and velocity v obey τ = ρc_s (v − v_r), v_r the velocity
-//! that the returning wave alone would give it, which a free top reflects unchanged: twice the wave sent
-//! out one interval before. So τ = μp gives V0 more than v_r, v_r = 0, 2V0, 4V0; from the third interval on V is less than
-//! 5V0: τ/μp = V/V0 − 4, and then minus and plus that. With μp = 66 666.7 Pa and V = 0.25 m/s (pin material, ν = 0.3, for
-//! which V0 = 0.067987 m/s): v/V0 = 1, 3, 3.677178, …; τ/μp = 1, 1, −0.322822, +0.322822, ….
+//! A layer of height h, free in y at the top, pressed with p on a plane of speed V. In the k-th interval of
+//! 2h/c_s the base slips at (2k−1)V0, V0 = μp/(ρc_s), while that is below V; then it sticks, v = V for
+//! ever, with a traction that alternates between two values of opposite sign. Source: d'Alembert's
+//! solution: the base's traction τ and velocity v obey τ = ρc_s (v − v_r), v_r the velocity that the
+//! returning wave alone would give it, which a free top reflects unchanged: twice the wave sent out one
+//! interval before. So τ = μp gives V0 more than v_r, v_r = 0, 2V0, 4V0; from the third interval on V is
+//! less than 5V0: τ/μp = V/V0 − 4, and then minus and plus that. With μp = 66 666.7 Pa and V = 0.25 m/s
+//! (pin material, ν = 0.3, for which V0 = 0.067987 m/s): v/V0 = 1, 3, 3.677178, …; τ/μp = 1, 1, −0.322822,
+//! +0.322822, ….
 //!
-//! At c_sΔt/h_e = 1 the scheme transports shear waves exactly, so everything holds to rounding; at the first step of an
-//! interval the front is at the base and the traction is the mean of the values on both sides.
-//! Below, fronts are dispersed over w = (h_e² s)^⅓ after the way s: the base's position is off by a velocity jump times w/c_s, and
-//! the mean traction of an interval by a jump times w/h: order ⅔.
+//! At c_sΔt/h_e = 1 the scheme transports shear waves exactly, so everything holds to rounding; at the
+//! first step of an interval the front is at the base and the traction is the mean of the values on both
+//! sides. Below, fronts are dispersed over w = (h_e² s)^⅓ after the way s: the base's position is off by a
+//! velocity jump times w/c_s, and the mean traction of an interval by a jump times w/h: order ⅔.
 //!
 //! The column's normal degrees of freedom only carry the pressure: all levels above the base are held
 //! at the compression that gives p. Poisson's ratio −0.2 keeps the base's own normal mode below its
@@ -135,8 +136,8 @@ fn base_velocity_climbs_in_steps_and_sticks() {
         speeds.found(format!("interval {}", interval + 1), worst_speed.0, worst_speed.1, ratio);
         tractions.found(format!("interval {}", interval + 1), worst_traction.0, worst_traction.1, ratio);
     }
-    // A row of K cancels some 30 products of the size of the displacement Vt: each step changes the velocity by as
-    // many roundings of Vt/Δt, n of V, and n steps add them up.
+    // A row of K cancels some 30 products of the size of the displacement Vt: each step changes the
+    // velocity by as many roundings of Vt/Δt, n of V, and n steps add them up.
     let steps = (2 * LAYERS * INTERVALS) as f64;
     speeds.judge_exact(30.0 * steps * steps);
     tractions.judge_exact(30.0 * steps * steps);
@@ -152,9 +153,7 @@ fn converges_below_unit_cfl(resolutions: &[usize], name: &str) {
     );
     let mut mean = Evidence::new(
         "B12",
-        format!(
-            "mean traction of an interval on a shear column's base over μp at c_sΔt/h = ½{name}, worst interval"
-        ),
+        format!("mean traction on a shear column's base over μp at c_sΔt/h = ½{name}, worst interval"),
         SOURCE,
     );
     for &layers in resolutions {

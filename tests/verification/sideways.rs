@@ -1,12 +1,13 @@
 //! B7 A block thrown sideways onto a moving plane: friction opposes the slip, not the velocity.
 //!
-//! A block (m, pressed with F) is put on a plane that moves with V towards +y, with the velocity v_x across. Seen
-//! from the plane it is thrown with w = (v_x, −V) and Coulomb's friction, μF against w, only makes it slower:
-//! it moves straight and stops after |w|/d and |w|²/(2d), d = μF/m, and is carried from then on. At the time T after
-//! that it is at x = v_x|w|/(2d), y = VT − V|w|/(2d): a parabola while it slips. Source: Galileo's relativity and B7.
+//! A block (m, pressed with F) is put on a plane that moves with V towards +y, with the velocity v_x
+//! across. Seen from the plane it is thrown with w = (v_x, −V) and Coulomb's friction, μF against w, only
+//! makes it slower: it moves straight and stops after |w|/d and |w|²/(2d), d = μF/m, and is carried from
+//! then on. At the time T after that it is at x = v_x|w|/(2d), y = VT − V|w|/(2d): a parabola while it
+//! slips. Source: Galileo's relativity and B7.
 //!
-//! **What the scheme makes of it**: in the plane's frame the rigid block of B7, stopping at the step nearest to the exact
-//! time; d(t_n − t)²/2 is missing along w.
+//! **What the scheme makes of it**: in the plane's frame the rigid block of B7, stopping at the step
+//! nearest to the exact time; d(t_n − t)²/2 is missing along w.
 
 use crate::common::advance;
 use crate::evidence::Evidence;

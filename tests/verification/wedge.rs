@@ -2,9 +2,9 @@
 //!
 //! A block of weight G on a rigid wedge of slope tan α = 0.1 is pushed horizontally with F. Seen along the
 //! slope the pull is F cos α − G sin α, the pressure F sin α + G cos α, and Coulomb's limit is reached at
-//! F/G = tan(α + arctan μ) = (tan α + μ)/(1 − μ tan α). For μ = 0, 0.1, 0.2, 0.3: F/G = 0.1, 0.202020, 0.306122,
-//! 0.412371, the published values of the NAFEMS contact benchmark CGS-4 (Feng and Prinja, *Benchmark Tests
-//! for Finite Element Modelling of Contact, Gliding and Sliding*, R0081, 2001).
+//! F/G = tan(α + arctan μ) = (tan α + μ)/(1 − μ tan α). For μ = 0, 0.1, 0.2, 0.3: F/G = 0.1, 0.202020,
+//! 0.306122, 0.412371, the published values of the NAFEMS contact benchmark CGS-4 (Feng and Prinja,
+//! *Benchmark Tests for Finite Element Modelling of Contact, Gliding and Sliding*, R0081, 2001).
 //!
 //! The acceleration beyond the limit is linear in F, so two runs give the limit by extrapolation to zero
 //! acceleration, without any discretisation error: what remains is rounding.
