@@ -69,10 +69,15 @@ impl Particles {
 
     /// The model, central difference.
     pub fn model(&self, beta_r_s: f64, time_step: TimeStep) -> Model {
+        Model::new(self.definition(beta_r_s, time_step)).unwrap()
+    }
+
+    /// What the model is made of, central difference.
+    pub fn definition(&self, beta_r_s: f64, time_step: TimeStep) -> ModelDefinition {
         let dofs = 3 * self.mesh.node_count();
         let springs = AssembledOperator::from_entries(dofs, self.entries.iter().copied()).unwrap();
         let fixed = (0..dofs).filter(|dof| !self.released.contains(dof)).collect();
-        Model::new(ModelDefinition {
+        ModelDefinition {
             surface_motion: disk::straight_plane(&self.mesh),
             mesh: self.mesh.clone(),
             material: Material {
@@ -86,8 +91,7 @@ impl Particles {
             beta2: 0.5,
             beta_r_s,
             time_step,
-        })
-        .unwrap()
+        }
     }
 }
 
