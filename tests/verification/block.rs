@@ -8,8 +8,8 @@
 //! **What the scheme makes of it.** Under a constant force the β₂ method is exact, whatever β₂: at t_n =
 //! nΔt, u_n = v0 t_n − d t_n²/2 and p_n = v0 − d(t_n − β₂Δt). The block sticks in the first step in which
 //! friction can stop it, p_n ≤ (½ + β₂)dΔt, that is t_n ≥ t − Δt/2: it stops at the t_n nearest to the
-//! exact t, at most Δt/2 off, and exactly at u_n = v0²/(2d) − d(t_n − t)²/2, at most dΔt²/8 short. (For β₂
-//! > ½ a part (β₂ − ½)/(β₂ + ½) of p is left after a step of stick, and less friction than before holds
+//! exact t, at most Δt/2 off, and exactly at u_n = v0²/(2d) − d(t_n − t)²/2, at most dΔt²/8 short. (With β₂
+//! above ½ the share (β₂ − ½)/(β₂ + ½) of p is left after a step of stick; less friction than before holds
 //! it.) So the stopping time is first and the distance second order. With t/Δt = N + 1/3, and N such that
 //! the next resolution is 4(N + 1/3), the offset is Δt/3 every time, and single orders are clean.
 //!
