@@ -47,6 +47,7 @@ pub fn step<const L: usize>(model: &Model, drives: &[Drive; L], state: &mut Stat
         },
         &mut state.contacts,
     );
+    collect_held_friction(model, state);
     account_load_work(model, state);
     state.step += 1;
 }
@@ -86,6 +87,17 @@ fn collect_reactions<const L: usize>(model: &Model, state: &mut State<L>) {
         }
     }
     state.reaction_n = reaction;
+}
+
+/// Where a contact node is held, the support carries its friction, too.
+fn collect_held_friction<const L: usize>(model: &Model, state: &mut State<L>) {
+    for (slave_node, force) in model.slaves().iter().zip(&state.contacts.force_n) {
+        for c in (0..2).filter(|&c| !slave_node.mobile[c]) {
+            for l in 0..L {
+                state.reaction_n[c][l] -= force[c][l];
+            }
+        }
+    }
 }
 
 /// u* and p* without contact, in place.

@@ -1,13 +1,26 @@
 //! B7 A rigid block: stopping distance, and stick on an incline.
 //!
-//! A block of mass m pressed with F slides at v0 and stops after v0² m/(2μF); on an incline (a
-//! tangential pull F tan α) it sticks iff tan α ≤ μ and otherwise accelerates by F(tan α − μ)/m.
-//! Source: rigid-body mechanics. The solver's block is elastic: two levels of mass m/2 joined by a
-//! shear spring k = GA/h. While all of it slides its centre of mass obeys the rigid law exactly; when
-//! the base sticks, the rest is still moving by at most the shear vibration, so the final position
-//! differs by no more than a few static deflections μF/k, which vanishes as the stiffness grows.
+//! A block of mass m pressed with F slides at v0 and is decelerated by d = μF/m: it stops after
+//! t = v0/d and v0²/(2d). On an incline of angle α the tangential pull is F tan α, F the normal force: it
+//! sticks iff tan α ≤ μ and otherwise accelerates by F(tan α − μ)/m. Source: Coulomb's law and Newton's;
+//! any textbook of mechanics.
+//!
+//! **What the scheme makes of it.** Under a constant force the β₂ method is exact, whatever β₂: at t_n =
+//! nΔt, u_n = v0 t_n − d t_n²/2 and p_n = v0 − d(t_n − β₂Δt). The block sticks in the first step in which
+//! friction can stop it, p_n ≤ (½ + β₂)dΔt, that is t_n ≥ t − Δt/2: it stops at the t_n nearest to the
+//! exact t, at most Δt/2 off, and exactly at u_n = v0²/(2d) − d(t_n − t)²/2, at most dΔt²/8 short. (With β₂
+//! above ½ the share (β₂ − ½)/(β₂ + ½) of p is left after a step of stick; less friction than before holds
+//! it.) So the stopping time is first and the distance second order. With t/Δt = N + 1/3, and N such that
+//! the next resolution is 4(N + 1/3), the offset is Δt/3 every time, and single orders are clean.
+//!
+//! **On an elastic block** (two levels of m/2, shear spring k) in steady deceleration the top is ahead by
+//! μF/(2k) and both levels have the rigid block's velocity. The base sticks by the same criterion, for its
+//! m/2 and the spring's μF/2 add up to the rigid block's; then at most μF/2 and the rest of the last step's
+//! momentum pull at it, and it keeps the rigid block's position.
 
 use crate::common::{COLUMN_AREA_M2, COLUMN_HEIGHT_M, advance, all_of, column_mesh, definition, level_ties};
+use crate::evidence::Evidence;
+use crate::particles::{Particles, Y, Z};
 use tribosweep::solver::boundary::LoadShare;
 use tribosweep::solver::constraints::Constraints;
 use tribosweep::solver::contact::ContactState;
@@ -16,14 +29,124 @@ use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
 
 const MU: f64 = 0.3;
 const LOAD_N: f64 = 1000.0;
-const DENSITY: f64 = 2500.0;
+const MASS_KG: f64 = 0.25;
+const SPEED_M_S: f64 = 0.2;
+const DECELERATION_M_S2: f64 = MU * LOAD_N / MASS_KG;
+const STOP_TIME_S: f64 = SPEED_M_S / DECELERATION_M_S2;
+const STOP_DISTANCE_M: f64 = 0.5 * SPEED_M_S * STOP_TIME_S;
+const DRIVE: Drive = Drive { mu: MU, rate: 0.0, force_n: LOAD_N, ramp_s: 0.0 };
+const NEWTON: &str = "uniform deceleration μF/m (Newton, Coulomb)";
 
-fn mass_kg() -> f64 {
-    DENSITY * COLUMN_AREA_M2 * COLUMN_HEIGHT_M
+/// A point mass pressed with the load and pulled in y by `pull` times it.
+fn rigid_block(pull: f64, beta2: f64, time_step_s: f64) -> Model {
+    let mut block = Particles::corners(MASS_KG);
+    block.release(0, Y).release(0, Z).load(0, Y, pull).load(0, Z, -1.0);
+    let definition = block.definition(0.0, TimeStep::Given(time_step_s));
+    Model::new(ModelDefinition { beta2, ..definition }).unwrap()
 }
 
-/// One element, its two levels tied in y and z, pressed with a load and pulled by `pull` times it in y.
-fn block(young_modulus_pa: f64, pull: f64, beta_r_s: f64) -> Model {
+fn is_stuck(state: &State<1>, slave: usize) -> bool {
+    state.contacts.state[slave][0] == ContactState::Stick
+}
+
+/// Slides until it sticks and as long again; time [s] and place [m] where it stopped.
+fn slide_to_rest(model: &Model, mut state: State<1>) -> (f64, f64) {
+    let mut stopped_at = None;
+    let steps = (2.0 * STOP_TIME_S / model.time_step_s()) as u64;
+    for n in 0..steps {
+        advance(model, &DRIVE, &mut state, 1);
+        let sticks = is_stuck(&state, 0);
+        // Step n starts at t_n, where the block is when it sticks for the first time.
+        stopped_at = stopped_at.or(sticks.then_some(n as f64 * model.time_step_s()));
+        assert_eq!(sticks, stopped_at.is_some(), "what has stopped does not move again");
+    }
+    (stopped_at.expect("it stops"), state.u[Y])
+}
+
+fn sliding(model: &Model) -> State<1> {
+    let mut state = State::at_rest(model);
+    state.p[Y] = SPEED_M_S;
+    state
+}
+
+/// Protects: sliding friction and the transition to rest within a step, for a point mass.
+#[test]
+fn stops_where_and_when_a_rigid_block_stops() {
+    let mut time = Evidence::new("B7", "stopping time of a rigid block [s]", NEWTON);
+    let mut distance = Evidence::new("B7", "stopping distance of a rigid block [m]", NEWTON);
+    let mut discrete = Evidence::new(
+        "B7",
+        "stopping distance less what the last step leaves [m]",
+        "exact discrete solution: central difference under a constant force",
+    );
+    let mut most_steps: f64 = 0.0;
+    for steps in [10.0 + 1.0 / 3.0, 41.0 + 1.0 / 3.0, 165.0 + 1.0 / 3.0] {
+        for beta2 in [0.5, 0.6, 0.8, 1.0] {
+            let model = rigid_block(0.0, beta2, STOP_TIME_S / steps);
+            let (stopped_s, place_m) = slide_to_rest(&model, sliding(&model));
+            let offset_s = stopped_s - STOP_TIME_S;
+            let exact = STOP_DISTANCE_M - 0.5 * DECELERATION_M_S2 * offset_s * offset_s;
+            discrete.found(format!("t/Δt = {steps:.2}, β₂ = {beta2}"), place_m, exact, STOP_DISTANCE_M);
+            if beta2 == 0.5 {
+                let resolution = format!("t/Δt = {steps:.2}");
+                time.found(&resolution, stopped_s, STOP_TIME_S, STOP_TIME_S);
+                distance.found(&resolution, place_m, STOP_DISTANCE_M, STOP_DISTANCE_M);
+            }
+        }
+        most_steps = most_steps.max(steps);
+    }
+    // Each step rounds p and u a few times; an error of p is carried through the rest of the way.
+    let roundings = 10.0 * most_steps;
+    time.judge_order(1.0, 4.0, roundings * f64::EPSILON);
+    distance.judge_order(2.0, 4.0, roundings * f64::EPSILON);
+    discrete.judge_exact(roundings);
+}
+
+/// Protects: the bounds of the last step hold wherever in a step the exact stop falls.
+#[test]
+fn the_last_step_costs_at_most_half_a_step() {
+    let mut time = Evidence::new("B7", "stopping time at any phase of the step [s]", NEWTON);
+    let mut distance = Evidence::new("B7", "stopping distance at any phase of the step [m]", NEWTON);
+    for tenths in 0..10 {
+        let steps = 20.0 + (f64::from(tenths) + 0.05) / 10.0;
+        let model = rigid_block(0.0, 0.5, STOP_TIME_S / steps);
+        let (stopped_s, place_m) = slide_to_rest(&model, sliding(&model));
+        let resolution = format!("t/Δt = {steps:.3}");
+        time.bounded(&resolution, stopped_s, STOP_TIME_S, STOP_TIME_S, 0.5 / steps);
+        // dΔt²/8 over v0²/(2d) = dt²/2.
+        distance.bounded(&resolution, place_m, STOP_DISTANCE_M, STOP_DISTANCE_M, 0.25 / (steps * steps));
+    }
+    time.judge_bounded("it stops at the step nearest to the exact time, Δt/2 off at most");
+    distance.judge_bounded("v0²/(2d) − u = d(t_n − t)²/2 ≤ dΔt²/8");
+}
+
+/// Protects: the friction cone's limit is exact to rounding, and so is the acceleration beyond it.
+#[test]
+fn sticks_on_an_incline_up_to_the_friction_angle() {
+    const STEPS: usize = 1000;
+    let time_step_s = 1.0e-6;
+    let mut travel =
+        Evidence::new("B7", "travel on an incline of tan α = r μ [m]", "a = F(tan α − μ)/m; 0 for r ≤ 1");
+    // Trial force and limit are rounded a few times each: 1 ∓ 16 ε is beyond that.
+    let edge = 16.0 * f64::EPSILON;
+    for ratio in [0.0, 0.5, 1.0 - edge, 1.0 + edge, 1.01, 2.0] {
+        let model = rigid_block(ratio * MU, 0.5, time_step_s);
+        let mut state = State::at_rest(&model);
+        for _ in 0..STEPS {
+            advance(&model, &DRIVE, &mut state, 1);
+            assert_eq!(is_stuck(&state, 0), ratio <= 1.0, "tan α = {ratio} μ");
+        }
+        assert!(ratio > 1.0 || state.u[Y] == 0.0, "a sticking block does not creep");
+        let elapsed_s = STEPS as f64 * time_step_s;
+        let exact = 0.5 * DECELERATION_M_S2 * (ratio - 1.0).max(0.0) * elapsed_s * elapsed_s;
+        let scale = 0.5 * DECELERATION_M_S2 * elapsed_s * elapsed_s;
+        travel.found(format!("r = {ratio}"), state.u[Y], exact, scale);
+    }
+    travel.judge_exact(10.0 * STEPS as f64);
+}
+
+/// One elastic element, its two levels tied in y and z.
+fn elastic_block(young_modulus_pa: f64, pull: f64, beta_r_s: f64, time_step: TimeStep) -> Model {
     let mesh = column_mesh(1);
     let constraints =
         Constraints { fixed: all_of(&mesh, 0), ties: [level_ties(&mesh, 1), level_ties(&mesh, 2)].concat() };
@@ -31,112 +154,75 @@ fn block(young_modulus_pa: f64, pull: f64, beta_r_s: f64) -> Model {
         .top_nodes()
         .flat_map(|node| {
             [
-                LoadShare { dof: 3 * node + 1, share: pull / 4.0 },
-                LoadShare { dof: 3 * node + 2, share: -0.25 },
+                LoadShare { dof: 3 * node + Y, share: pull / 4.0 },
+                LoadShare { dof: 3 * node + Z, share: -0.25 },
             ]
         })
         .collect();
-    let material = Material { young_modulus_pa, poisson_ratio: 0.0, density_kg_m3: DENSITY };
-    let time_step = TimeStep::FractionOfLimit(0.5);
+    let density_kg_m3 = MASS_KG / (COLUMN_AREA_M2 * COLUMN_HEIGHT_M);
+    let material = Material { young_modulus_pa, poisson_ratio: 0.0, density_kg_m3 };
     Model::new(ModelDefinition { load, beta_r_s, time_step, ..definition(mesh, material, constraints) })
         .unwrap()
 }
 
-/// In normal equilibrium under the load, moving at `speed` in y.
-fn pressed(model: &Model, speed: f64) -> State<1> {
-    let mut state = State::at_rest(model);
-    let compression = LOAD_N * COLUMN_HEIGHT_M / (model.material().young_modulus_pa * COLUMN_AREA_M2);
-    for node in 0..model.mesh().node_count() {
-        state.p[3 * node + 1] = speed;
-    }
-    for node in model.mesh().top_nodes() {
-        state.u[3 * node + 2] = -compression;
-    }
-    state
+fn shear_stiffness_n_m(young_modulus_pa: f64) -> f64 {
+    young_modulus_pa / 2.0 * COLUMN_AREA_M2 / COLUMN_HEIGHT_M
 }
 
-/// Position [m] and velocity [m/s] of the centre of mass in y.
-fn centre(model: &Model, state: &State<1>) -> (f64, f64) {
-    let mean = |field: &[f64]| {
-        let sum: f64 = (0..model.mesh().node_count()).map(|n| model.masses_kg()[n] * field[3 * n + 1]).sum();
-        sum / mass_kg()
-    };
-    (mean(&state.u), mean(&state.p))
-}
-
-const ON_A_TABLE: Drive = Drive { mu: MU, rate: 0.0, force_n: LOAD_N, ramp_s: 0.0 };
-
-/// Protects: sliding friction decelerates by exactly μF/m, and the block stops where a rigid one does.
+/// Protects: the same on elastic elements: the base of a deforming block stops where a rigid one does, and
+/// the rest coming to rest does not move it again.
 #[test]
-fn stops_where_a_rigid_block_stops() {
-    let speed = 0.2;
-    let deceleration = MU * LOAD_N / mass_kg();
-    let distance = speed * speed / (2.0 * deceleration);
-    let mut errors = Vec::new();
+fn an_elastic_blocks_base_stops_like_a_rigid_block() {
+    let mut place = Evidence::new(
+        "B7",
+        "stopping distance of an elastic block's base less what the last step leaves [m]",
+        "exact discrete solution: steady deceleration with the top ahead by μF/(2k)",
+    );
     for young_modulus_pa in [1.0e8, 1.0e9, 1.0e10] {
-        let shear_stiffness = young_modulus_pa / 2.0 * COLUMN_AREA_M2 / COLUMN_HEIGHT_M;
-        // Half of critical for the shear mode, so that the rest state is reached soon after the stop.
-        let shear_omega = (4.0 * shear_stiffness / mass_kg()).sqrt();
-        let model = block(young_modulus_pa, 0.0, 1.0 / shear_omega);
-        let mut state = pressed(&model, speed);
-        let stop_s = speed / deceleration;
-        let steps = (0.5 * stop_s / model.time_step_s()) as usize;
-        advance(&model, &ON_A_TABLE, &mut state, steps);
-        let slid_s = (state.step as f64 - 0.5) * model.time_step_s();
-        let (_, velocity) = centre(&model, &state);
-        assert!(
-            (velocity - (speed - deceleration * slid_s)).abs() < 1e-10 * speed,
-            "while it slides, friction is exactly μF"
-        );
-        // The rest of the way, and 100 radians of the shear mode, which is then damped by e^-25 or more.
-        let rest = ((stop_s + 100.0 / shear_omega) / model.time_step_s()) as usize;
-        advance(&model, &ON_A_TABLE, &mut state, rest);
-        assert!(state.contacts.state.iter().all(|s| s[0] == ContactState::Stick), "at rest it sticks");
-        let (position, velocity) = centre(&model, &state);
-        assert!(velocity.abs() < 1e-6 * speed, "it has come to rest");
-        let error = (position - distance).abs();
-        let deflection = MU * LOAD_N / shear_stiffness;
-        assert!(
-            error < 3.0 * deflection,
-            "E = {young_modulus_pa:e}: {error:e} m off, deflection {deflection:e} m"
-        );
-        errors.push(error / distance);
+        let stiffness = shear_stiffness_n_m(young_modulus_pa);
+        let shear_omega = (4.0 * stiffness / MASS_KG).sqrt();
+        let model = elastic_block(young_modulus_pa, 0.0, 1.0 / shear_omega, TimeStep::FractionOfLimit(0.5));
+        let mut state = State::at_rest(&model);
+        for node in 0..model.mesh().node_count() {
+            state.p[3 * node + Y] = SPEED_M_S;
+        }
+        for node in model.mesh().top_nodes() {
+            state.u[3 * node + Y] = MU * LOAD_N / (2.0 * stiffness);
+            state.u[3 * node + Z] = -LOAD_N * COLUMN_HEIGHT_M / (young_modulus_pa * COLUMN_AREA_M2);
+        }
+        let steps = STOP_TIME_S / model.time_step_s();
+        let (stopped_s, place_m) = slide_to_rest(&model, state);
+        let offset_s = stopped_s - STOP_TIME_S;
+        assert!(offset_s.abs() <= 0.5 * model.time_step_s() * (1.0 + 1e-9), "{offset_s:e} s off");
+        let exact = STOP_DISTANCE_M - 0.5 * DECELERATION_M_S2 * offset_s * offset_s;
+        // Rounding of the spring's force: a displacement D is rounded to εD, which the spring makes a
+        // force kεD and the time Δt < 1/ω a displacement of at most εD again, once a step.
+        let bound = 20.0 * steps * f64::EPSILON;
+        place.bounded(format!("E = {young_modulus_pa:.0e} Pa"), place_m, exact, STOP_DISTANCE_M, bound);
     }
-    assert!(errors[2] < errors[0] / 30.0, "the error vanishes with the compliance: {errors:?}");
+    place.judge_bounded("20 roundings a step");
 }
 
-/// Protects: the friction cone's limit: below it not the slightest slip, above it the rigid acceleration.
+/// Protects: a deforming block pulled up to its limit: not the slightest slip below it, slip above it.
+///
+/// Critically damped shear mode ω, pulled with a ramp over T = 200/ω: the base's traction in excess of a
+/// slow ramp's is at most 1/(eωT) = 0.2 % of the pull (response R/f = (1 + 2s)/(1 + s)², s in units of ω,
+/// to a ramp), so 0.99 of the limit stays below it.
 #[test]
-fn sticks_on_an_incline_up_to_the_friction_angle() {
+fn an_elastic_block_sticks_up_to_the_friction_angle() {
     for (fraction, sticks) in [(0.5, true), (0.99, true), (1.01, false), (2.0, false)] {
-        let pull = fraction * MU;
         let young_modulus_pa = 1.0e9;
-        let shear_omega = (2.0 * young_modulus_pa * COLUMN_AREA_M2 / COLUMN_HEIGHT_M / mass_kg()).sqrt();
-        // Critically damped, and pulled slowly over many periods, so that nothing overshoots.
-        let model = block(young_modulus_pa, pull, 2.0 / shear_omega);
-        let ramp_s = 200.0 / shear_omega;
-        let drive = Drive { ramp_s, ..ON_A_TABLE };
+        let shear_omega = (2.0 * shear_stiffness_n_m(young_modulus_pa) / MASS_KG).sqrt();
+        let model =
+            elastic_block(young_modulus_pa, fraction * MU, 2.0 / shear_omega, TimeStep::FractionOfLimit(0.5));
+        let drive = Drive { ramp_s: 200.0 / shear_omega, ..DRIVE };
         let mut state = State::at_rest(&model);
-        let ramp_steps = (1.5 * ramp_s / model.time_step_s()).ceil() as usize;
         let mut slipped = false;
-        for _ in 0..ramp_steps {
+        for _ in 0..(1.5 * drive.ramp_s / model.time_step_s()).ceil() as usize {
             advance(&model, &drive, &mut state, 1);
             slipped |= state.contacts.state.iter().any(|s| s[0] == ContactState::Slip);
         }
         assert_eq!(slipped, !sticks, "tan α = {fraction} μ");
-        let base_y = state.u[1];
-        if sticks {
-            assert_eq!(base_y, 0.0, "a sticking base does not creep");
-            continue;
-        }
-        let (_, before) = centre(&model, &state);
-        let from = state.step;
-        advance(&model, &drive, &mut state, ramp_steps);
-        let elapsed_s = (state.step - from) as f64 * model.time_step_s();
-        let (_, after) = centre(&model, &state);
-        let acceleration = (after - before) / elapsed_s;
-        let exact = (pull - MU) * LOAD_N / mass_kg();
-        // What is left of the start-up vibration, e^-100, is below rounding.
-        assert!((acceleration / exact - 1.0).abs() < 1e-6, "{acceleration} instead of {exact} m/s²");
+        assert!(slipped || state.u[Y] == 0.0, "a sticking base does not creep");
     }
 }

@@ -22,9 +22,61 @@ pub fn project(trial_n: [f64; 2], normal_n: f64, mu: f64) -> ([f64; 2], ContactS
     ([trial_n[0] * scale, trial_n[1] * scale], ContactState::Slip)
 }
 
+/// Friction [N] on a node that slips by `given_m` ≠ 0 in a direction in which it is held, and that a trial
+/// force of zero would let slip by `free_m` in the other one, where a force t changes the slip by
+/// t/`stiffness_n_m`. It opposes the whole slip, t = −μN s/|s|: components in the held and in the free
+/// direction.
+///
+/// The free slip δ is the root of g(δ) = δ + (μN/k) δ/√(given² + δ²) − free. On the side of `free_m` g
+/// increases and is concave, so Newton's method from a point between 0 and the root climbs to it without
+/// overshooting.
+pub fn oppose(given_m: f64, free_m: f64, stiffness_n_m: f64, normal_n: f64, mu: f64) -> [f64; 2] {
+    let limit = mu * normal_n;
+    let (reach, aim) = (limit / stiffness_n_m, free_m.abs());
+    // Two lower bounds of the root: δ/√(given² + δ²) is at most δ/|given| and at most 1.
+    let mut slip = (aim / (1.0 + reach / given_m.abs())).max(aim - reach);
+    loop {
+        let length = (given_m * given_m + slip * slip).sqrt();
+        let residual = slip + reach * slip / length - aim;
+        let slope = 1.0 + reach * given_m * given_m / (length * length * length);
+        let next = slip - residual / slope;
+        // Rounding ends the climb, and so does a number that is not finite.
+        if next > slip {
+            slip = next;
+        } else {
+            let scale = -limit / length;
+            return [scale * given_m, scale * slip.copysign(free_m)];
+        }
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Protects: the force on a half-held node lies on the cone, opposes the slip that it leaves, and is
+    /// found from any side and at any ratio of the slips.
+    #[test]
+    fn a_half_held_nodes_friction_opposes_its_slip() {
+        for given in [1e-9, -0.5, 1.0, 1e6_f64] {
+            for free in [0.0, 1e-7, -0.3, 2.0, -1e5_f64] {
+                for limit in [0.0, 0.4, 100.0] {
+                    let stiffness = 3.0;
+                    let force = oppose(given, free, stiffness, limit / 0.5, 0.5);
+                    let slip: f64 = free + force[1] / stiffness;
+                    let length = given.hypot(slip);
+                    // The slip cancels in free + t/k: rounded at the size of these.
+                    let rounding =
+                        8.0 * f64::EPSILON * (limit + limit * (free.abs() + limit / stiffness) / length);
+                    let exact = [-limit * given / length, -limit * slip / length];
+                    for c in 0..2 {
+                        let error = (force[c] - exact[c]).abs();
+                        assert!(error <= rounding, "{given}, {free}, {limit}: {force:?}, not {exact:?}");
+                    }
+                }
+            }
+        }
+    }
 
     /// Protects: inside the cone the force is untouched, outside it lies on the cone along the trial.
     #[test]

@@ -6,8 +6,11 @@
 //! ```text
 //! N = −m z*/(cΔt²)  if z* < 0       t_trial = −m δ*/(cΔt²),  δ* = u*_t − u_t − VΔt
 //! ```
+//!
+//! A node that is held in a tangential direction in which the target moves slips there in any case: friction
+//! opposes the whole slip, and the free direction is left with its part of the cone ([`coulomb::oppose`]).
 
-use super::coulomb::project;
+use super::coulomb::{self, project};
 use super::{ContactState, Contacts};
 use crate::solver::model::Model;
 use crate::solver::state::Drive;
@@ -52,20 +55,18 @@ pub fn solve<const L: usize>(
             let mut state = ContactState::Separated;
             if z < 0.0 && slave_node.mobile[2] {
                 force[2] = -stiffness * z;
-                let trial =
-                    std::array::from_fn(
-                        |c| {
-                            if slave_node.mobile[c] { -stiffness * increment[c] } else { 0.0 }
-                        },
-                    );
-                let (friction, friction_state) = project(trial, force[2], drives[l].mu);
+                let (friction, friction_state) =
+                    tangential(slave_node.mobile, increment, stiffness, force[2], drives[l].mu);
                 (force[0], force[1]) = (friction[0], friction[1]);
                 state = friction_state;
                 // Constrained displacements are set, not corrected: a sticking node must not creep, nor a
                 // closed one sink, by the rounding of its correction.
                 for c in 0..2 {
                     let at = base + c * L + l;
-                    if state == ContactState::Stick && slave_node.mobile[c] {
+                    if !slave_node.mobile[c] {
+                        continue;
+                    }
+                    if state == ContactState::Stick {
                         let carried = slave_node.surface_motion[c] * drives[l].rate * dt;
                         prediction.u[at] = prediction.u_old[(3 * slave + c) * L + l] + carried;
                     } else {
@@ -84,6 +85,34 @@ pub fn solve<const L: usize>(
             }
             contacts.gap_m[slave][l] = prediction.u[base + 2 * L + l];
             contacts.state[slave][l] = state;
+        }
+    }
+}
+
+/// Friction [N] and state of a closed node with the predicted slip `increment` [m].
+fn tangential(
+    mobile: [bool; 3],
+    increment: [f64; 2],
+    stiffness: f64,
+    normal_n: f64,
+    mu: f64,
+) -> ([f64; 2], ContactState) {
+    let held_slip = |c: usize| !mobile[c] && increment[c] != 0.0;
+    match (held_slip(0), held_slip(1)) {
+        (false, false) => {
+            project([0, 1].map(|c| if mobile[c] { -stiffness * increment[c] } else { 0.0 }), normal_n, mu)
+        }
+        (true, false) if mobile[1] => {
+            (coulomb::oppose(increment[0], increment[1], stiffness, normal_n, mu), ContactState::Slip)
+        }
+        (false, true) if mobile[0] => {
+            let [y, x] = coulomb::oppose(increment[1], increment[0], stiffness, normal_n, mu);
+            ([x, y], ContactState::Slip)
+        }
+        // Held in both: nothing to solve.
+        _ => {
+            let slip = (increment[0] * increment[0] + increment[1] * increment[1]).sqrt();
+            (increment.map(|s| -mu * normal_n * s / slip), ContactState::Slip)
         }
     }
 }

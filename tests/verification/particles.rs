@@ -1,0 +1,103 @@
+//! Point masses on springs above the moving plane: the discrete systems of the friction cases.
+//!
+//! A system is a block mesh of which only some degrees of freedom are released; all others are fixed. Its
+//! nodes carry lumped masses (a corner of one element ρV/8), the released ones are joined by springs, and
+//! a released node of the contact face whose z is released too is a contact node.
+
+use std::collections::BTreeSet;
+use tribosweep::solver::boundary::LoadShare;
+use tribosweep::solver::constraints::Constraints;
+use tribosweep::solver::energy::EnergyLedger;
+use tribosweep::solver::material::Material;
+use tribosweep::solver::mesh::BlockMesh;
+use tribosweep::solver::operator::AssembledOperator;
+use tribosweep::solver::{Drive, Model, ModelDefinition, State, Stiffness, TimeStep, disk, step};
+
+/// Components of a node.
+pub const X: usize = 0;
+pub const Y: usize = 1;
+pub const Z: usize = 2;
+
+/// A system under construction.
+pub struct Particles {
+    mesh: BlockMesh,
+    density_kg_m3: f64,
+    released: BTreeSet<usize>,
+    entries: Vec<(usize, usize, f64)>,
+    load: Vec<LoadShare>,
+}
+
+impl Particles {
+    /// Nothing released, no springs.
+    pub fn new(mesh: BlockMesh, density_kg_m3: f64) -> Self {
+        Self { mesh, density_kg_m3, released: BTreeSet::new(), entries: Vec::new(), load: Vec::new() }
+    }
+
+    /// Eight nodes of `mass_kg` each: the corners of one element. Node 0 is on the contact face, node 4
+    /// above it.
+    pub fn corners(mass_kg: f64) -> Self {
+        Self::new(BlockMesh::new([2.0, 2.0, 2.0], [1, 1, 1]), mass_kg)
+    }
+
+    /// Lets a component of a node move.
+    pub fn release(&mut self, node: usize, component: usize) -> &mut Self {
+        self.released.insert(3 * node + component);
+        self
+    }
+
+    /// A linear spring between two nodes that resists the difference of their displacements along
+    /// `direction` (a unit vector).
+    pub fn spring(&mut self, from: usize, to: usize, direction: [f64; 3], stiffness_n_m: f64) -> &mut Self {
+        for (a, b, sign) in [(from, from, 1.0), (from, to, -1.0), (to, from, -1.0), (to, to, 1.0)] {
+            for r in 0..3 {
+                for c in 0..3 {
+                    let value = sign * stiffness_n_m * direction[r] * direction[c];
+                    if value != 0.0 {
+                        self.entries.push((3 * a + r, 3 * b + c, value));
+                    }
+                }
+            }
+        }
+        self
+    }
+
+    /// A dead load of `share` times the drive's force on a component of a node.
+    pub fn load(&mut self, node: usize, component: usize, share: f64) -> &mut Self {
+        self.load.push(LoadShare { dof: 3 * node + component, share });
+        self
+    }
+
+    /// The model, central difference.
+    pub fn model(&self, beta_r_s: f64, time_step: TimeStep) -> Model {
+        Model::new(self.definition(beta_r_s, time_step)).unwrap()
+    }
+
+    /// What the model is made of, central difference.
+    pub fn definition(&self, beta_r_s: f64, time_step: TimeStep) -> ModelDefinition {
+        let dofs = 3 * self.mesh.node_count();
+        let springs = AssembledOperator::from_entries(dofs, self.entries.iter().copied()).unwrap();
+        let fixed = (0..dofs).filter(|dof| !self.released.contains(dof)).collect();
+        ModelDefinition {
+            surface_motion: disk::straight_plane(&self.mesh),
+            mesh: self.mesh.clone(),
+            material: Material {
+                young_modulus_pa: 1.0,
+                poisson_ratio: 0.0,
+                density_kg_m3: self.density_kg_m3,
+            },
+            stiffness: Stiffness::Springs(springs),
+            constraints: Constraints { fixed, ties: Vec::new() },
+            load: self.load.clone(),
+            beta2: 0.5,
+            beta_r_s,
+            time_step,
+        }
+    }
+}
+
+/// One step with its energies.
+pub fn audited_step(model: &Model, drive: Drive, state: &mut State<1>, ledger: &mut EnergyLedger<1>) {
+    ledger.before_step(model, state);
+    step(model, &[drive], state);
+    ledger.after_step(model, &[drive], state);
+}
