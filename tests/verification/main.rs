@@ -1,7 +1,10 @@
 //! Verification against exact answers and independent values; one file a topic.
 
 mod bar;
+mod bar_spectrum;
 mod block;
+mod bouncing_bar;
+mod clamped_bar;
 mod common;
 mod energy;
 mod evidence;
