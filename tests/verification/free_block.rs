@@ -250,7 +250,7 @@ fn relative_force(operator: &Operator, rows: &[Vec<(usize, f64)>], u: &[f64]) ->
 #[test]
 fn rigid_motions_carry_no_force() {
     let mut evidence =
-        Evidence::new("B1", "rigid motion, |K u| over Σ|K||u|", "rigid motion strains nothing");
+        Evidence::new("B15", "rigid motion, |K u| over Σ|K||u|", "rigid motion strains nothing");
     for elements in [[4, 5, 3], [12, 15, 10]] {
         let block = Block::new(PIN_M, 0.3, elements, Vec::new());
         let mesh = block.model.mesh();
