@@ -65,7 +65,9 @@ fn frequencies_hz(model: &Model, top_fixed: bool) -> Vec<f64> {
     let mass = |l: usize| level(mesh, l).iter().map(|&node| model.masses_kg()[node]).sum::<f64>();
     for column in 0..levels {
         let mut u = vec![0.0; 3 * mesh.node_count()];
-        level(mesh, column).into_iter().for_each(|node| u[3 * node + 2] = 1.0);
+        for node in level(mesh, column) {
+            u[3 * node + 2] = 1.0;
+        }
         let mut force = vec![0.0; u.len()];
         model.operator().apply::<1>(&u, &mut force);
         for row in 0..levels {

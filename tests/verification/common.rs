@@ -78,11 +78,6 @@ pub fn normal_force_n(state: &State<1>) -> f64 {
     state.contacts.force_n.iter().map(|force| force[2][0]).sum()
 }
 
-/// Observed orders log(e_i/e_{i+1})/log(ratio) of a sequence of errors.
-pub fn observed_orders(errors: &[f64], ratio: f64) -> Vec<f64> {
-    errors.windows(2).map(|pair| (pair[0] / pair[1]).ln() / ratio.ln()).collect()
-}
-
 /// Most roundings behind one component of K u, relative to Σ|K||u|: an entry of the element's stiffness is a
 /// sum over 8 Gauss points of some 10 roundings each, up to 8 elements add up, and a row has 81 products.
 pub const ROUNDINGS_PER_FORCE: f64 = 8.0 * 10.0 + 8.0 + 81.0;

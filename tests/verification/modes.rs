@@ -226,7 +226,9 @@ fn orthonormalise(block: &mut [Vec<f64>], mass: &[f64]) {
             }
         }
         let norm = dot(x, x).sqrt();
-        x.iter_mut().for_each(|x| *x /= norm);
+        for x in x.iter_mut() {
+            *x /= norm;
+        }
     }
 }
 

@@ -122,7 +122,9 @@ fn uniform_pressure_stays_uniform() {
             record(&mut evidence, &name(elements, confined), &model, &state, confined);
         }
     }
-    evidence.map(|case| case.judge_bounded("rounding, see the topic's head"));
+    for case in evidence {
+        case.judge_bounded("rounding, see the topic's head");
+    }
 }
 
 /// Protects: the equilibrium is also found from rest: a strongly damped block settles into it.
@@ -142,5 +144,7 @@ fn a_damped_block_settles_into_the_patch() {
             assert!(stated < 5e-5, "the head comment's shortening is {stated} µm off");
         }
     }
-    evidence.map(|case| case.judge_bounded("rounding, see the topic's head"));
+    for case in evidence {
+        case.judge_bounded("rounding, see the topic's head");
+    }
 }
