@@ -26,7 +26,9 @@
 //! all energy, at any step (see `bar`, φ = 0). All else has the order of that loss, 1; below the limit the returning front is
 //! dispersed, order ⅔ (see `bar`).
 
-use crate::common::{IDLE, ROUNDINGS_PER_FORCE, advance, axial_bar, normal_force_n, step_at_cfl};
+use crate::common::{
+    FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, axial_bar, normal_force_n, step_at_cfl,
+};
 use crate::evidence::Evidence;
 use tribosweep::solver::boundary::LoadShare;
 use tribosweep::solver::energy::EnergyLedger;
@@ -137,7 +139,8 @@ fn bounce(layers: usize, cfl: f64) -> Bounce {
         let stress_pa = normal_force_n(&state) / area_m2;
         let impact = usize::from(t > MID_FLIGHT_S);
         found.impulses_ns_m2[impact] += stress_pa * dt;
-        found.contact_s[impact] += if stress_pa > 0.0 { dt } else { 0.0 };
+        // A gap that closes exactly at a step may do so a step early by rounding, with a force of that size.
+        found.contact_s[impact] += if stress_pa > 1e-6 { dt } else { 0.0 };
         found.losses[impact] = ledger.energies(0).contact_loss_j / fall_energy_j;
         if t > 1.0 + 2.5 * dt && t < 1.0 + CONTACT_S - 2.5 * dt {
             let exact_pa = WAVE_SPEED_M_S * (SPEED_M_S + GRAVITY_M_S2 * (t - 1.0));
@@ -150,72 +153,68 @@ fn bounce(layers: usize, cfl: f64) -> Bounce {
     found
 }
 
-/// B5 at cΔt/h = 1: the first contact to rounding, the rest with order 1.
+/// B5 at the limit and below it: the first contact's stress and loss to rounding, the rest with its order.
 #[test]
-fn bounces_with_order_one_at_the_limit() {
-    let case = |what: &str| Evidence::new("B5", format!("cΔt/h = 1, {what}"), DOYEN);
-    let mut stress = case("worst error of the first contact's stress, 300 to 500 Pa");
-    let mut first_loss = Evidence::new("B5", "cΔt/h = 1, energy lost in the first impact", LOSS);
-    let mut height = case("worst error of the base's height over h0");
-    let mut impulses = [case("first impulse [Ns/m²]"), case("second impulse [Ns/m²]")];
-    let mut times = [case("first contact time [s]"), case("second contact time [s]")];
-    let mut energy = case("energy kept through both impacts");
-    let mut operations: f64 = 0.0;
-    for layers in [20, 40, 80, 160] {
-        let name = format!("{layers} elements");
-        let found = bounce(layers, 1.0);
-        operations = ROUNDINGS_PER_FORCE * layers as f64 * 16.0 * layers as f64;
-        stress.found(&name, found.worst_stress_pa, 0.0, 500.0);
-        first_loss.found(&name, found.losses[0], closing_loss(layers, 1.0), 1.0);
-        height.found(&name, found.worst_height_m / HEIGHT_M, 0.0, 1.0);
-        for i in 0..2 {
-            impulses[i].found(&name, found.impulses_ns_m2[i], IMPULSE_NS_M2, IMPULSE_NS_M2);
-        }
-        // Contact is counted in whole steps, one of which is cut at either end.
-        let bound = 2.0 * LENGTH_M / (WAVE_SPEED_M_S * layers as f64 * CONTACT_S);
-        times[0].bounded(&name, found.contact_s[0], CONTACT_S, CONTACT_S, bound);
-        times[1].found(&name, found.contact_s[1], CONTACT_S, CONTACT_S);
-        energy.found(&name, 1.0 - found.losses[1], 1.0, 1.0);
-    }
-    stress.judge_exact(operations);
-    first_loss.judge_exact(operations);
-    let rounding = operations * f64::EPSILON;
-    height.judge_order(1.0, 2.0, rounding);
-    for impulse in impulses {
-        impulse.judge_order(1.0, 2.0, rounding);
-    }
-    let [first_time, second_time] = times;
-    first_time.judge_bounded("a whole step at either end");
-    second_time.judge_overall_order(1.0, 2.0, FRONT);
-    energy.judge_order(1.0, 2.0, rounding);
+fn bounces_with_the_analysed_orders() {
+    series("", &[20, 40, 80, 160]);
 }
 
-/// B5 at cΔt/h = ½: order ⅔ of what the dispersed front decides, order 1 of the first impact's loss.
+/// Protects: the same orders over six doublings.
 #[test]
-fn bounces_with_the_front_s_order_below_the_limit() {
-    let case = |what: &str| Evidence::new("B5", format!("cΔt/h = 0.5, {what}"), DOYEN);
-    let mut first_loss = Evidence::new("B5", "cΔt/h = 0.5, energy lost in the first impact", LOSS);
-    let mut height = case("worst error of the base's height over h0");
-    let mut impulses = [case("first impulse [Ns/m²]"), case("second impulse [Ns/m²]")];
-    let mut times = [case("first contact time [s]"), case("second contact time [s]")];
-    let mut energy = case("energy kept through both impacts");
-    let mut operations = 0.0;
-    for layers in [20, 40, 80, 160] {
-        let name = format!("{layers} elements");
-        let found = bounce(layers, 0.5);
-        operations = ROUNDINGS_PER_FORCE * layers as f64 * 32.0 * layers as f64;
-        first_loss.found(&name, found.losses[0], closing_loss(layers, 0.5), 1.0);
-        height.found(&name, found.worst_height_m / HEIGHT_M, 0.0, 1.0);
-        for i in 0..2 {
-            impulses[i].found(&name, found.impulses_ns_m2[i], IMPULSE_NS_M2, IMPULSE_NS_M2);
-            times[i].found(&name, found.contact_s[i], CONTACT_S, CONTACT_S);
+#[ignore = "bars of up to 1280 elements"]
+fn bounces_over_six_doublings() {
+    series(" (fine)", &[20, 40, 80, 160, 320, 640, 1280]);
+}
+
+fn series(suffix: &str, layers: &[usize]) {
+    let finest = layers[layers.len() - 1] as f64;
+    for cfl in [1.0, 0.5] {
+        let name = |what: &str| format!("cΔt/h = {cfl}{suffix}, {what}");
+        let case = |what: &str| Evidence::new("B5", name(what), DOYEN);
+        let mut stress = case("worst error of the first contact's stress, 300 to 500 Pa");
+        let mut first_loss = Evidence::new("B5", name("energy lost in the first impact"), LOSS);
+        let mut height = case("worst error of the base's height over h0");
+        let [mut first_impulse, mut second_impulse] =
+            [case("first impulse [Ns/m²]"), case("second impulse [Ns/m²]")];
+        let [mut first_time, mut second_time] =
+            [case("first contact time [s]"), case("second contact time [s]")];
+        let mut energy = case("energy kept through both impacts");
+        for &layers in layers {
+            let name = format!("{layers} elements");
+            let found = bounce(layers, cfl);
+            stress.found(&name, found.worst_stress_pa, 0.0, 500.0);
+            first_loss.found(&name, found.losses[0], closing_loss(layers, cfl), 1.0);
+            height.found(&name, found.worst_height_m / HEIGHT_M, 0.0, 1.0);
+            first_impulse.found(&name, found.impulses_ns_m2[0], IMPULSE_NS_M2, IMPULSE_NS_M2);
+            second_impulse.found(&name, found.impulses_ns_m2[1], IMPULSE_NS_M2, IMPULSE_NS_M2);
+            // At the limit contact is counted in whole steps, one of which is cut at either end.
+            let bound = 2.0 * LENGTH_M / (WAVE_SPEED_M_S * layers as f64 * CONTACT_S);
+            if cfl == 1.0 {
+                first_time.bounded(&name, found.contact_s[0], CONTACT_S, CONTACT_S, bound);
+            } else {
+                first_time.found(&name, found.contact_s[0], CONTACT_S, CONTACT_S);
+            }
+            second_time.found(&name, found.contact_s[1], CONTACT_S, CONTACT_S);
+            energy.found(&name, 1.0 - found.losses[1], 1.0, 1.0);
         }
-        energy.found(&name, 1.0 - found.losses[1], 1.0, 1.0);
+        // Sixteen transits, and displacements of up to N increments.
+        let operations = ROUNDINGS_PER_FORCE * finest * 16.0 * finest / cfl;
+        let rounding = operations * f64::EPSILON;
+        first_loss.judge_exact(operations);
+        if cfl == 1.0 {
+            stress.judge_exact(operations);
+            first_time.judge_bounded("a whole step at either end");
+            second_time.judge_overall_order(1.0, 2.0, FRONT);
+            for case in [height, first_impulse, second_impulse, energy] {
+                case.judge_order(1.0, 2.0, rounding);
+            }
+        } else {
+            // The stress that dispersed waves leave behind the closing shock oscillates and decays as slowly as the
+            // front: it has no order at its worst step.
+            drop(stress);
+            for case in [first_time, second_time, height, first_impulse, second_impulse, energy] {
+                case.judge_overall_order(FRONT_ORDER, 2.0, FRONT);
+            }
+        }
     }
-    first_loss.judge_exact(operations);
-    height.judge_overall_order(2.0 / 3.0, 2.0, FRONT);
-    for case in impulses.into_iter().chain(times) {
-        case.judge_overall_order(2.0 / 3.0, 2.0, FRONT);
-    }
-    energy.judge_overall_order(2.0 / 3.0, 2.0, FRONT);
 }

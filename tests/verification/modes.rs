@@ -88,7 +88,11 @@ fn freedom(mesh: &BlockMesh, class: MirrorClass, held: &dyn Fn(usize) -> bool) -
     let mut number = vec![None; 3 * mesh.node_count()];
     let mut count = 0;
     let mut follows = vec![None; 3 * mesh.node_count()];
-    for dof in 0..follows.len() {
+    // The longest direction last keeps the band narrow.
+    let longest = (0..3).max_by_key(|&a| n[a]).expect("three directions");
+    let mut nodes: Vec<usize> = (0..mesh.node_count()).collect();
+    nodes.sort_by_key(|&node| mesh.grid_position(node)[longest]);
+    for dof in nodes.into_iter().flat_map(|node| 3 * node..3 * node + 3) {
         let c = dof % 3;
         let grid = mesh.grid_position(dof / 3);
         let image: [usize; 3] = std::array::from_fn(|a| grid[a].min(n[a] - grid[a]));
