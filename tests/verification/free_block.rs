@@ -1,9 +1,9 @@
 //! B1 Free vibrations of a traction-free block.
 //!
 //! Problem: the eigenfrequencies of K φ = ω² M φ with the program's own stiffness and lumped mass.
-//! They tend to those of the elastic block with order 2 in the element size: the trilinear field's strain
-//! energy is O(h²) too high and so are the errors of lumping, for smooth modes (Strang and Fix, *An
-//! analysis of the finite element method*, 1973, ch. 6).
+//! They tend to those of the elastic block with order 2 in the element size: the trilinear field makes ω²
+//! O(h²) too high and lumping the mass O(h²) too low, for smooth modes (G. Strang, G. J. Fix, *An analysis of
+//! the finite element method*, 1973, ch. 6).
 //!
 //! Exact answers:
 //! * Six rigid motions carry no force.
@@ -253,7 +253,7 @@ fn rayleigh_ritz_finds_the_lame_mode() {
     evidence.judge_bounded("rounding of the dense eigenvalues");
 }
 
-/// K times a displacement field, relative to the size of what cancels: ω_max² bounds K in units of mass.
+/// Largest component of K u, relative to the sum of magnitudes that cancels in it.
 fn relative_force(operator: &Operator, rows: &[Vec<(usize, f64)>], u: &[f64]) -> f64 {
     let mut force = vec![0.0; u.len()];
     operator.apply::<1>(u, &mut force);
