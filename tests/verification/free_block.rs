@@ -188,7 +188,8 @@ fn lame_frequency_hz(model: &Model, modes: &[Mode], plane: [usize; 2], side_m: f
     alike[0].frequency_hz
 }
 
-/// Protects: shear stiffness and mass in three dimensions. The block is flat, so that no other mode of its class is within a tenth of Lamé's and mixes with it on a coarse mesh; ν is above 0, where the bar modes c_0/2a of
+/// Protects: shear stiffness and mass in three dimensions. The block is flat, so that no other mode of its class
+/// is within a tenth of Lamé's and mixes with it on a coarse mesh; ν is above 0, where the bar modes c_0/2a of
 /// both directions coincide with it.
 #[test]
 fn lame_mode_of_a_block_of_square_section() {
