@@ -1,11 +1,20 @@
 //! B13 The constant-stress contact patch.
 //!
-//! A block under uniform pressure p on a frictionless rigid plane: σ_zz = −p everywhere, the top goes
-//! down by p h/E with free sides or p h/(λ+2G) confined, and every slave node carries p times its
-//! tributary area (a quarter at corners, a half at edges). Exact for trilinear elements.
-//! Pin, p = 30/180 MPa: 1.6667 µm free, 1.2381 µm confined.
+//! Problem: a block under uniform pressure p on a frictionless rigid plane. σ_zz = −p everywhere, the top goes
+//! down by p h/E with free sides or p h/(λ+2G) confined, and every slave node carries p times its tributary
+//! area: a quarter of an element's face at corners, a half at edges. Exact for trilinear elements. Source: uniform
+//! stress (Hooke); the contact patch test of R. L. Taylor, P. Papadopoulos, *On a patch test for contact
+//! problems in two dimensions* (1991). Pin, p = 30/180 MPa: 1.6667 µm free, 1.2381 µm confined.
+//!
+//! Two stacked blocks, the other half of the contact patch test, are not here: the target is rigid as yet.
+//!
+//! Rounding: a step rounds a nodal force by ROUNDINGS_PER_FORCE·ε·Σ|K||u|. Displacements carry that along and
+//! give it back as forces of (ω_maxΔt)² ≤ 2 times its size (at 0.7 of the limit) at every later step, so a force is
+//! off by 2n of it after n steps. Displacements along the plane are free to drift, by n²/2 Δt²/m times it.
 
-use crate::common::{advance, all_of, definition, pin_material};
+use crate::common::{ROUNDINGS_PER_FORCE, advance, all_of, definition, pin_material};
+use crate::evidence::Evidence;
+use crate::modes::stiffness_rows;
 use tribosweep::solver::boundary;
 use tribosweep::solver::constraints::Constraints;
 use tribosweep::solver::mesh::BlockMesh;
@@ -13,10 +22,12 @@ use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
 
 const SIZE_M: [f64; 3] = [0.012, 0.015, 0.010];
 const LOAD_N: f64 = 30.0;
+const PRESSURE_PA: f64 = LOAD_N / (SIZE_M[0] * SIZE_M[1]);
 const DRIVE: Drive = Drive { mu: 0.0, rate: 0.0, force_n: LOAD_N, ramp_s: 0.0 };
+const SOURCE: &str = "uniform stress (Hooke)";
 
-fn model(confined: bool, beta_r_s: f64) -> Model {
-    let mesh = BlockMesh::new(SIZE_M, [4, 5, 3]);
+fn model(elements: [usize; 3], confined: bool, beta_r_s: f64) -> Model {
+    let mesh = BlockMesh::new(SIZE_M, elements);
     let fixed = if confined { [all_of(&mesh, 0), all_of(&mesh, 1)].concat() } else { Vec::new() };
     let base = definition(mesh, pin_material(0.3), Constraints { fixed, ties: Vec::new() });
     let load = boundary::normal_load(&base.mesh);
@@ -24,70 +35,116 @@ fn model(confined: bool, beta_r_s: f64) -> Model {
     Model::new(ModelDefinition { load, beta_r_s, time_step, ..base }).unwrap()
 }
 
-/// Exact static displacement of a node.
-fn exact(model: &Model, node: usize, confined: bool) -> [f64; 3] {
+/// Shortening of the block [m].
+fn shortening_m(model: &Model, confined: bool) -> f64 {
     let material = model.material();
-    let pressure = LOAD_N / (SIZE_M[0] * SIZE_M[1]);
-    let [x, y, z] = model.mesh().coordinates_m(node);
-    if confined {
-        let modulus = material.lame_lambda_pa() + 2.0 * material.shear_modulus_pa();
-        [0.0, 0.0, -pressure / modulus * z]
-    } else {
-        let strain = pressure / material.young_modulus_pa;
-        [material.poisson_ratio * strain * x, material.poisson_ratio * strain * y, -strain * z]
-    }
+    let confined_modulus = material.lame_lambda_pa() + 2.0 * material.shear_modulus_pa();
+    PRESSURE_PA * SIZE_M[2] / if confined { confined_modulus } else { material.young_modulus_pa }
 }
 
-fn largest_error(model: &Model, state: &State<1>, confined: bool) -> f64 {
-    let mut worst: f64 = 0.0;
-    for node in 0..model.mesh().node_count() {
-        for (c, u) in exact(model, node, confined).into_iter().enumerate() {
-            worst = worst.max((state.u[3 * node + c] - u).abs());
-        }
-    }
-    worst / exact(model, model.mesh().node_count() - 1, confined)[2].abs()
+/// Exact static displacement of all degrees of freedom.
+fn exact_m(model: &Model, confined: bool) -> Vec<f64> {
+    let strain = shortening_m(model, confined) / SIZE_M[2];
+    let sideways = if confined { 0.0 } else { model.material().poisson_ratio * strain };
+    (0..model.mesh().node_count())
+        .flat_map(|node| {
+            let [x, y, z] = model.mesh().coordinates_m(node);
+            [sideways * x, sideways * y, -strain * z]
+        })
+        .collect()
 }
 
-fn assert_nodal_forces(model: &Model, state: &State<1>, tolerance: f64) {
-    let pressure = LOAD_N / (SIZE_M[0] * SIZE_M[1]);
-    for (slave, force) in model.slaves().iter().zip(&state.contacts.force_n) {
-        let error = force[2][0] / (pressure * slave.area_m2) - 1.0;
-        assert!(error.abs() < tolerance, "node {}: force off by {error:e}", slave.node);
+/// Bounds of the errors after `steps`: of nodal contact forces over p·area, of displacements over the shortening.
+fn rounding(model: &Model, confined: bool, steps: usize) -> [f64; 2] {
+    let u = exact_m(model, confined);
+    let rows = stiffness_rows(model.mesh(), model.operator());
+    let size = |dof: usize| rows[dof].iter().map(|(c, k)| (k * u[*c]).abs()).sum::<f64>();
+    let relative = |slave: &tribosweep::solver::model::SlaveNode| {
+        size(3 * slave.node + 2) / (PRESSURE_PA * slave.area_m2)
+    };
+    let force = model.slaves().iter().map(relative).fold(0.0, f64::max);
+    let acceleration = (0..u.len()).map(|dof| size(dof) / model.masses_kg()[dof / 3]).fold(0.0, f64::max);
+    let (n, dt, unit) = (steps as f64, model.time_step_s(), ROUNDINGS_PER_FORCE * f64::EPSILON);
+    let drift = n * n / 2.0 * dt * dt * acceleration / shortening_m(model, confined);
+    [2.0 * n * unit * force, unit * drift]
+}
+
+/// Records the worst nodal forces at corners, edges and inside, the worst displacement and the shortening.
+fn record(evidence: &mut [Evidence; 3], name: &str, model: &Model, state: &State<1>, confined: bool) {
+    let [force_bound, displacement_bound] = rounding(model, confined, state.step as usize);
+    let whole = model.slaves().iter().map(|slave| slave.area_m2).fold(0.0, f64::max);
+    let [forces, displacements, shortening] = evidence;
+    for (place, share) in [("corner", 0.25), ("edge", 0.5), ("inside", 1.0)] {
+        let exact = share * whole * PRESSURE_PA;
+        let worst = model
+            .slaves()
+            .iter()
+            .zip(&state.contacts.force_n)
+            .filter(|(slave, _)| (slave.area_m2 / whole - share).abs() < 1e-9)
+            .map(|(_, force)| force[2][0])
+            .max_by(|a, b| (a - exact).abs().total_cmp(&(b - exact).abs()))
+            .expect("nodes of every kind");
+        forces.bounded(format!("{name}, {place}"), worst, exact, exact, force_bound);
     }
+    let exact = shortening_m(model, confined);
+    let worst = exact_m(model, confined).iter().zip(&state.u).fold(0.0_f64, |w, (e, u)| w.max((u - e).abs()));
+    displacements.bounded(name, worst / exact, 0.0, 1.0, displacement_bound);
+    let top = model.mesh().top_nodes().start;
+    shortening.bounded(name, -state.u[3 * top + 2] * 1e6, exact * 1e6, exact * 1e6, displacement_bound);
+}
+
+fn cases(what: &str) -> [Evidence; 3] {
+    [
+        "worst nodal contact force [N]",
+        "worst nodal displacement error over the shortening",
+        "shortening at a top corner [µm]",
+    ]
+    .map(|quantity| Evidence::new("B13", format!("{what}, {quantity}"), SOURCE))
+}
+
+const MESHES: [[usize; 3]; 2] = [[4, 5, 3], [6, 8, 5]];
+
+fn name(elements: [usize; 3], confined: bool) -> String {
+    let [nx, ny, nz] = elements;
+    format!("{nx} × {ny} × {nz} elements, {}", if confined { "confined" } else { "free sides" })
 }
 
 /// Protects: the exact static field is an equilibrium of step and contact together.
 #[test]
 fn uniform_pressure_stays_uniform() {
-    for confined in [false, true] {
-        let model = model(confined, 0.0);
-        let mut state = State::at_rest(&model);
-        for node in 0..model.mesh().node_count() {
-            state.u[3 * node..3 * node + 3].copy_from_slice(&exact(&model, node, confined));
+    let mut evidence = cases("patch, 200 steps from equilibrium");
+    for elements in MESHES {
+        for confined in [false, true] {
+            let model = model(elements, confined, 0.0);
+            let mut state = State::at_rest(&model);
+            state.u = exact_m(&model, confined);
+            advance(&model, &DRIVE, &mut state, 200);
+            record(&mut evidence, &name(elements, confined), &model, &state, confined);
         }
-        for n in 1..=200 {
-            advance(&model, &DRIVE, &mut state, 1);
-            // Rounding of K u (stiffness over net force is about 10³ here) enters once a step.
-            let tolerance = 1e-12 * f64::from(n);
-            assert_nodal_forces(&model, &state, tolerance);
-            assert!(largest_error(&model, &state, confined) < tolerance);
-        }
+    }
+    for case in evidence {
+        case.judge_bounded("rounding, see the topic's head");
     }
 }
 
 /// Protects: the equilibrium is also found from rest: a strongly damped block settles into it.
 #[test]
 fn a_damped_block_settles_into_the_patch() {
-    let shortening_um = [(false, 1.666_666_7), (true, 1.238_095_2)];
-    for (confined, published_um) in shortening_um {
-        // A quarter of critical at 16 kHz: the slowest mode decays by e^-40 in 2 ms.
-        let model = model(confined, 5.0e-6);
-        let mut state = State::at_rest(&model);
-        let steps = (4.0e-3 / model.time_step_s()).ceil() as usize;
-        advance(&model, &DRIVE, &mut state, steps);
-        assert!(largest_error(&model, &state, confined) < 1e-9);
-        assert_nodal_forces(&model, &state, 1e-9);
-        let top = model.mesh().top_nodes().start;
-        assert!((state.u[3 * top + 2] * 1e6 + published_um).abs() < 1e-6, "published shortening");
+    let mut evidence = cases("patch, settled from rest");
+    for elements in MESHES {
+        for (confined, stated_um) in [(false, 1.666_7), (true, 1.238_1)] {
+            // The load excites modes symmetric in x and y only. The lowest is longitudinal, near c_0/4h = 15.8 kHz
+            // less a tenth for lateral inertia; it decays at β_Rω²/2 = 2·10⁴/s, by e^-80 in 4 ms.
+            let model = model(elements, confined, 5.0e-6);
+            let mut state = State::at_rest(&model);
+            let steps = (4.0e-3 / model.time_step_s()).ceil() as usize;
+            advance(&model, &DRIVE, &mut state, steps);
+            record(&mut evidence, &name(elements, confined), &model, &state, confined);
+            let stated = (shortening_m(&model, confined) * 1e6 - stated_um).abs();
+            assert!(stated < 5e-5, "the head comment's shortening is {stated} µm off");
+        }
+    }
+    for case in evidence {
+        case.judge_bounded("rounding, see the topic's head");
     }
 }
