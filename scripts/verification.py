@@ -16,7 +16,7 @@ BENCHMARKS = {
     "B1": "Free block: eigenfrequencies",
     "B2": "Bar and confined column: discrete and continuous spectrum",
     "B3": "β₂ integrator: damping, frequency, limit",
-    "B4": "Bar on a rigid wall (Saint-Venant)",
+    "B4a": "Bar on a rigid wall (Saint-Venant)",
     "B5": "Bouncing bar, two impacts (Doyen)",
     "B6": "Clamped–free bar, periodic impact",
     "B7": "Rigid block and wedge under friction",
@@ -101,12 +101,20 @@ def run_suite():
     return passed, failed
 
 
+def gather():
+    """The cases in the order of the benchmarks."""
+    order = list(BENCHMARKS)
+    cases = [json.loads(path.read_text()) for path in EVIDENCE.glob("*.json")]
+    unknown = {case["benchmark"] for case in cases} - set(order)
+    if unknown:
+        raise SystemExit(f"benchmarks without a title in this script: {sorted(unknown)}")
+    return sorted(((case["benchmark"], case) for case in cases), key=lambda pair: (order.index(pair[0]), pair[1]["quantity"]))
+
+
 def main():
     runs.build()
     passed, failed = run_suite()
-    order = list(BENCHMARKS)
-    cases = [json.loads(path.read_text()) for path in sorted(EVIDENCE.glob("*.json"))]
-    cases = sorted(((case["benchmark"], case) for case in cases), key=lambda pair: (order.index(pair[0]), pair[1]["quantity"]))
+    cases = gather()
     sections = []
     for benchmark, title in BENCHMARKS.items():
         own = [case for name, case in cases if name == benchmark]
