@@ -5,6 +5,7 @@ mod display;
 mod error;
 mod export;
 mod output;
+mod pareto;
 mod planning;
 mod report;
 mod rows;
@@ -49,6 +50,8 @@ enum Command {
     Status(status::Args),
     /// Write a study's tables and figures.
     Report(report::Args),
+    /// Compare jobs that differ in their numerics: error against run time.
+    Pareto(pareto::Args),
     /// Write one row a job as CSV or JSON lines.
     Export(export::Args),
     /// Solve one job in the foreground.
@@ -70,6 +73,7 @@ pub fn main(cli: Cli) -> u8 {
         Command::Work(args) => work::run(&args, db),
         Command::Status(args) => status::run(&args, db),
         Command::Report(args) => report::run(&args, db),
+        Command::Pareto(args) => pareto::run(&args, db),
         Command::Export(args) => export::run(&args, db),
         Command::Solve(args) => solve::run(&args),
         Command::Validate(args) => validate::run(&args),
