@@ -7,6 +7,7 @@ mod export;
 mod output;
 mod pareto;
 mod planning;
+mod presets;
 mod report;
 mod rows;
 mod run;
@@ -58,6 +59,8 @@ enum Command {
     Solve(solve::Args),
     /// Check a study file without running it.
     Validate(validate::Args),
+    /// Show the accuracy presets with their settings and measured errors.
+    Presets(presets::Args),
     /// Print the JSON schema of study files.
     Schema(schema::Args),
     /// Print a completion script for a shell.
@@ -77,6 +80,7 @@ pub fn main(cli: Cli) -> u8 {
         Command::Export(args) => export::run(&args, db),
         Command::Solve(args) => solve::run(&args),
         Command::Validate(args) => validate::run(&args),
+        Command::Presets(args) => presets::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::Completions(args) => completions::run(&args),
     };

@@ -20,6 +20,7 @@ mod locate;
 mod origin;
 mod parameter;
 mod parse;
+mod preset;
 mod schema;
 mod single;
 mod suggest;
@@ -30,6 +31,7 @@ pub use expand::{Job, MAX_JOBS};
 pub use key::job_key;
 pub use locate::Position;
 pub use parameter::{PARAMETERS, Parameter};
+pub use preset::{CaseEvidence, Evidence, Preset, PresetEvidence, ReferenceEvidence};
 pub use schema::schema;
 
 use crate::spec::JobSpec;

@@ -2,6 +2,8 @@
 
 use super::case::{Case, DoneJob};
 use super::compare::Comparison;
+use super::reference::{FIGURES, figures};
+use super::refinement::Unclean;
 use super::score::Score;
 use crate::report::export::{further_names, io_error};
 use crate::report::row::Row;
@@ -66,6 +68,52 @@ pub(super) fn write<W: Write>(comparison: &Comparison, out: W) -> io::Result<()>
     }
     writer.flush()
 }
+
+/// Writes one line per case, chain of refinement and figure: sizes and values from coarse to fine, whether the
+/// order is clean (or why not), order, limit and uncertainty.
+pub(super) fn write_refinement<W: Write>(comparison: &Comparison, out: W) -> io::Result<()> {
+    let mut writer = ::csv::Writer::from_writer(out);
+    let header = [
+        "case",
+        "physics",
+        "direction",
+        "figure",
+        "sizes",
+        "values",
+        "verdict",
+        "order",
+        "limit",
+        "uncertainty",
+    ];
+    writer.write_record(header).map_err(io_error)?;
+    for (index, case) in comparison.cases.iter().enumerate() {
+        for chain in &case.reference.chains {
+            for figure in 0..FIGURES {
+                let Some(limit) = chain.limits[figure] else { continue };
+                let values = chain.jobs.iter().filter_map(|&job| figures(&case.jobs[job])[figure]);
+                let joined = |values: Vec<f64>| values.into_iter().map(number).collect::<Vec<_>>().join(" ");
+                let line = [
+                    (index + 1).to_string(),
+                    case.caption.clone(),
+                    chain.direction.name().to_owned(),
+                    FIELD_NAMES[figure].to_owned(),
+                    joined(chain.sizes.clone()),
+                    joined(values.collect()),
+                    limit.order.map_or_else(Unclean::name, |_| "clean").to_owned(),
+                    limit.order.map_or_else(|_| String::new(), number),
+                    number(limit.value),
+                    number(limit.uncertainty),
+                ];
+                writer.write_record(line).map_err(io_error)?;
+            }
+        }
+    }
+    writer.flush()
+}
+
+/// Names of the figures, as in the export.
+const FIELD_NAMES: [&str; FIGURES] =
+    ["mu_star", "frequency_hz", "stick_share", "slip_share", "separated_share"];
 
 fn fields(case_number: usize, case: &Case, index: usize, job: &DoneJob, score: &Score) -> Vec<String> {
     let (row, numerics, record) = (job.row, job.numerics, job.record);

@@ -47,7 +47,7 @@ use super::error::ReportError;
 use super::folder::Folder;
 use std::path::{Path, PathBuf};
 
-/// Writes `pareto.md`, `pareto.csv` and one figure a case (`pareto.svg`, `pareto-2.svg`, …) into `out_dir`;
+/// Writes `pareto.md`, `pareto.csv`, `refinement.csv` and one figure a case (`pareto.svg`, `pareto-2.svg`, …) into `out_dir`;
 /// returns the files.
 ///
 /// # Errors
@@ -63,6 +63,7 @@ pub fn write(comparison: &Comparison, out_dir: &Path, title: &str) -> Result<Vec
         figures.push(name);
     }
     folder.with("pareto.csv", |out| csv::write(comparison, out))?;
+    folder.with("refinement.csv", |out| csv::write_refinement(comparison, out))?;
     folder.text("pareto.md", &page::page(comparison, &figures, title))?;
     Ok(folder.written)
 }

@@ -22,7 +22,7 @@ pub fn markdown(comparison: &Comparison) -> String {
 /// The whole page, with the figures of all cases.
 pub(super) fn page(comparison: &Comparison, figures: &[String], title: &str) -> String {
     let head = format!(
-        "# {}: error against run time\n\nAll figures: [pareto.csv](pareto.csv).\n\n",
+        "# {}: error against run time\n\nOne line a job: [pareto.csv](pareto.csv); refinements: [refinement.csv](refinement.csv).\n\n",
         markdown::escape(title)
     );
     let sections = comparison.cases.iter().zip(figures).map(|(case, figure)| {

@@ -26,12 +26,25 @@ pub enum Direction {
     Step,
 }
 
+impl Direction {
+    /// The name in CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mesh => "mesh",
+            Self::MeshAndStep => "mesh_and_step",
+            Self::Step => "step",
+        }
+    }
+}
+
 /// Refinement that ends at the reference job.
 #[derive(Debug, Clone)]
 pub struct Chain {
     /// What is refined.
     pub direction: Direction,
-    /// Element sizes or time steps [m or s], coarsest first.
+    /// Indices of its jobs among the case's jobs, coarsest first.
+    pub jobs: Vec<usize>,
+    /// Their element sizes or time steps [m or s].
     pub sizes: Vec<f64>,
     /// The limit of each figure; none where a job has no such figure.
     pub limits: [Option<Limit>; FIGURES],
@@ -133,13 +146,15 @@ fn chains(jobs: &[DoneJob], finest: usize) -> Vec<Chain> {
     let step = |job: &DoneJob| differs_in_step_only(job.numerics, end.numerics);
     let direction = if at_fraction { Direction::MeshAndStep } else { Direction::Mesh };
     let of = |direction, size: fn(&DoneJob) -> f64, belongs: &dyn Fn(&DoneJob) -> bool| {
-        let mut levels: Vec<&DoneJob> = jobs.iter().filter(|job| belongs(job)).collect();
-        levels.sort_by(|a, b| size(b).total_cmp(&size(a)));
-        levels.dedup_by(|a, b| size(a) == size(b));
+        let mut levels: Vec<usize> = (0..jobs.len()).filter(|&i| belongs(&jobs[i])).collect();
+        levels.sort_by(|&a, &b| size(&jobs[b]).total_cmp(&size(&jobs[a])));
+        levels.dedup_by(|a, b| size(&jobs[*a]) == size(&jobs[*b]));
+        let done: Vec<&DoneJob> = levels.iter().map(|&i| &jobs[i]).collect();
         (levels.len() > 1).then(|| Chain {
             direction,
-            sizes: levels.iter().map(|job| size(job)).collect(),
-            limits: std::array::from_fn(|figure| limit(&levels, size, figure)),
+            sizes: done.iter().map(|job| size(job)).collect(),
+            limits: std::array::from_fn(|figure| limit(&done, size, figure)),
+            jobs: levels,
         })
     };
     [

@@ -45,6 +45,19 @@ pub enum Unclean {
     OrderNotStable(f64, f64),
 }
 
+impl Unclean {
+    /// The name in CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TooFewLevels => "too_few_levels",
+            Self::WithinNoise => "within_noise",
+            Self::NotMonotone => "not_monotone",
+            Self::OrderOutOfRange(_) => "order_out_of_range",
+            Self::OrderNotStable(..) => "order_not_stable",
+        }
+    }
+}
+
 /// Orders that a scheme of second order with events of first order can have.
 const ORDERS: std::ops::RangeInclusive<f64> = 0.5..=3.0;
 /// Largest difference of two orders that count as one.
