@@ -1,7 +1,7 @@
 //! Studies as data: a JSON file that names a base job and a grid of parameters to vary.
 //!
 //! ```text
-//! text ──► locate (positions, repeated keys) ──► file (serde) ──► axis (values) ──► validate (every job)
+//! text ──► locate (positions, repeated keys) ──► file (serde) ──► preset ──► axis (values) ──► validate (every job)
 //!                                                                     │
 //!                                              single (one job) ◄── Study ──► expand (all jobs, keys, costs)
 //! ```

@@ -61,8 +61,8 @@ fn the_mesh_follows_pin_and_clamp() {
     assert_eq!(elements(&clamp("whole_top", 0.001)), [6, 8, 5]);
     assert_eq!(elements(&clamp("both_sides", 0.0015)), [8, 8, 5]);
     assert_eq!(elements(&clamp("leading_end", 0.001)), [6, 15, 5]);
-    // Ten times the pin under ten times the clamp is the same mesh.
-    let large = r#""pin": { "size_m": [0.12, 0.15, 0.1] }, "clamp": { "width_m": 0.02 }, "disk": { "track_radius_m": 1.0 }"#;
+    // Twice the pin under twice the clamp is the same mesh.
+    let large = r#""pin": { "size_m": [0.024, 0.03, 0.02] }, "clamp": { "width_m": 0.004 }"#;
     assert_eq!(elements(large), [6, 8, 5]);
     // No row fits: the wished mesh, for the solver to refuse with the reason.
     assert_eq!(elements(&clamp("inner_side", 0.000_123_4)), [6, 8, 5]);
