@@ -268,8 +268,8 @@ def damping_page(worst, by_damping):
         return (
             "At the reference damping the short waves are hardly damped (β_R ω/2 is 0.2 % of critical at 14.5 kHz, 1.4 % at\n"
             "90 kHz), and each finer mesh brings shorter ones, which the contact's opening and closing excites. With four times\n"
-            f"the damping the same code settles within {percent(much)} at every speed. So it is the physics of lightly damped short waves, not\n"
-            "the code, that keeps μ\\* from converging on these meshes; the damping itself, which the paper does not give,\n"
+            f"the damping the same code settles within {percent(much)} at every speed. So it is the lightly damped short waves of\n"
+            "the model, and not the code, that keep μ\\* from converging on these meshes; the damping itself, which the paper does not give,\n"
             f"moves μ\\* by up to {percent(by_damping)} on the finest mesh.\n"
         )
     return (f"The largest last change is {percent(little)} at the reference damping and {percent(much)} at four times it: "
@@ -312,7 +312,7 @@ def scans_page():
     text += runs.table(["Δt [s]", "μ\\*", "f [Hz]", "separated", "status"], [line(row, "time_step_s") for row in first])
     text += "\n" + by_step
     text += (f"Below 4·10⁻⁷ s μ\\* is converged to {percent(spread)}. A load ramp four times as long changes no μ\\* of the table by\n"
-             f"more than {apart:.5f}: the state does not depend on how it was reached.\n\n")
+             f"more than {apart:.5f}: with these ramps the state does not depend on how it was reached.\n\n")
     text += "Damping, Δt = 4·10⁻⁷ s:\n\n"
     text += runs.table(["β_R [s]", "μ\\*", "f [Hz]", "separated", "status"], [line(row, "beta_r_s") for row in damping])
     text += "\n" + by_damping
