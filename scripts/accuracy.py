@@ -129,8 +129,10 @@ def measure_presets():
         },
         "presets": presets,
     }
-    (runs.ROOT / "src/study/presets.json").write_text(json.dumps(evidence, indent=2) + "\n")
-    runs.build()
+    file, text = runs.ROOT / "src/study/presets.json", json.dumps(evidence, indent=2) + "\n"
+    if file.read_text() != text:
+        file.write_text(text)
+        runs.build()
     return evidence
 
 
