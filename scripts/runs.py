@@ -28,14 +28,14 @@ def tribosweep(*arguments, database="docs.db"):
     return done.stdout
 
 
-def sweep(study, database="docs.db"):
+def sweep(study, database="docs.db", options=()):
     """Runs a study (a path below the repository, or a dictionary with a name) and returns its rows."""
     if isinstance(study, dict):
         path = WORK / f"{study['name']}.json"
         path.write_text(json.dumps(study, indent=2))
     else:
         path = ROOT / study
-    tribosweep("run", str(path), database=database)
+    tribosweep("run", str(path), *options, database=database)
     lines = tribosweep("export", str(path), "--format", "json", database=database).splitlines()
     return [json.loads(line) for line in lines]
 

@@ -5,7 +5,9 @@ mod display;
 mod error;
 mod export;
 mod output;
+mod pareto;
 mod planning;
+mod presets;
 mod report;
 mod rows;
 mod run;
@@ -49,12 +51,16 @@ enum Command {
     Status(status::Args),
     /// Write a study's tables and figures.
     Report(report::Args),
+    /// Compare jobs that differ in their numerics: error against run time.
+    Pareto(pareto::Args),
     /// Write one row a job as CSV or JSON lines.
     Export(export::Args),
     /// Solve one job in the foreground.
     Solve(solve::Args),
     /// Check a study file without running it.
     Validate(validate::Args),
+    /// Show the accuracy presets with their settings and measured errors.
+    Presets(presets::Args),
     /// Print the JSON schema of study files.
     Schema(schema::Args),
     /// Print a completion script for a shell.
@@ -70,9 +76,11 @@ pub fn main(cli: Cli) -> u8 {
         Command::Work(args) => work::run(&args, db),
         Command::Status(args) => status::run(&args, db),
         Command::Report(args) => report::run(&args, db),
+        Command::Pareto(args) => pareto::run(&args, db),
         Command::Export(args) => export::run(&args, db),
         Command::Solve(args) => solve::run(&args),
         Command::Validate(args) => validate::run(&args),
+        Command::Presets(args) => presets::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::Completions(args) => completions::run(&args),
     };

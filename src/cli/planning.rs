@@ -2,9 +2,10 @@
 
 use super::error::CliError;
 use crate::queue::{NewJob, NewStudy};
+use crate::report::JobNumerics;
 use crate::solver::{self, Model};
-use crate::spec::JobSpec;
-use crate::study::{Job, Study, StudyError};
+use crate::spec::{Detection, JobSpec, Numerics, RunControl};
+use crate::study::{Job, Study, StudyError, job_key};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -27,6 +28,9 @@ pub struct RowParameters {
     pub mu: f64,
     /// The grid parameters, in the study's order.
     pub grid: Vec<(String, serde_json::Value)>,
+    /// What accuracy and cost depend on; absent in databases of versions that did not store it.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub numerics: Option<JobNumerics>,
 }
 
 impl Plan {
@@ -52,6 +56,7 @@ impl Plan {
                     omega_rpm: job.spec.scene.disk.omega_rpm,
                     mu: job.spec.scene.contact.mu,
                     grid: job.parameters.clone(),
+                    numerics: Some(numerics(&job.spec)),
                 };
                 Ok(NewJob {
                     key: job.key.clone(),
@@ -67,6 +72,39 @@ impl Plan {
 
 fn encode(what: &impl Serialize) -> Result<String, CliError> {
     serde_json::to_string(what).map_err(|error| CliError::Unreadable(error.to_string()))
+}
+
+fn numerics(spec: &JobSpec) -> JobNumerics {
+    let JobSpec { scene, numerics, run, detection } = spec;
+    let elements = scene.pin.elements;
+    let element_volume_m3: f64 = (0..3).map(|axis| scene.pin.size_m[axis] / elements[axis] as f64).product();
+    let case = JobSpec {
+        scene: scene.clone(),
+        numerics: Numerics::default(),
+        run: RunControl::default(),
+        detection: Detection::default(),
+    };
+    JobNumerics {
+        case: case_key(case),
+        elements,
+        element_size_m: element_volume_m3.cbrt(),
+        nodes: elements.iter().map(|&n| n as u64 + 1).product(),
+        beta2: numerics.beta2,
+        beta_r_s: numerics.beta_r_s,
+        safety_factor: numerics.time_step_s.is_none().then_some(numerics.safety_factor),
+        limit_s: run.limit_s,
+        stop_early: run.stop_early,
+        average_last_fraction: run.average_last_fraction,
+        cycles: detection.cycles,
+        tolerance: detection.tolerance,
+        drift_tolerance: detection.drift_tolerance,
+    }
+}
+
+/// The key that all jobs of a physical case share: that of the job with everything else at its default.
+fn case_key(mut case: JobSpec) -> String {
+    case.scene.pin.elements = [1, 1, 1];
+    job_key(&case, "")
 }
 
 /// Refuses a study with a job that the solver would refuse before its first step.

@@ -24,6 +24,13 @@ pub struct OutFolder {
     folder: Option<PathBuf>,
 }
 
+impl OutFolder {
+    /// The folder for the study called `name`.
+    pub fn of(&self, name: &str) -> PathBuf {
+        self.folder.clone().unwrap_or_else(|| Path::new("reports").join(name))
+    }
+}
+
 /// Writes the report and prints the path of its page.
 pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     let name = rows::study_name(&args.study)?;
@@ -32,14 +39,14 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
         let rows = rows::read(&mut queue, &name).await?;
         queue.close().await?;
         write(&rows, &name, &args.out)?;
-        print(&format!("{}\n", folder(&name, &args.out).join("report.md").display()))?;
+        print(&format!("{}\n", args.out.of(&name).join("report.md").display()))?;
         Ok(exit::SUCCESS)
     })
 }
 
 /// Writes the report of a study's rows.
 pub fn write(rows: &[Row], name: &str, out: &OutFolder) -> Result<(), CliError> {
-    let folder = folder(name, out);
+    let folder = out.of(name);
     report::write(rows, &folder, name)?;
     tell(format_args!("report written to {}", folder.display()));
     Ok(())
@@ -47,11 +54,7 @@ pub fn write(rows: &[Row], name: &str, out: &OutFolder) -> Result<(), CliError> 
 
 /// Creates the folder of a report, so that one that cannot be written is noticed before the work.
 pub fn prepare(name: &str, out: &OutFolder) -> Result<(), CliError> {
-    let folder = folder(name, out);
+    let folder = out.of(name);
     std::fs::create_dir_all(&folder)
         .map_err(|source| CliError::File { path: folder.display().to_string(), source })
-}
-
-fn folder(name: &str, out: &OutFolder) -> PathBuf {
-    out.folder.clone().unwrap_or_else(|| Path::new("reports").join(name))
 }

@@ -54,5 +54,6 @@ fn convert(study: &str, row: &StudyRow) -> Result<Row, CliError> {
         mu: parameters.mu,
         state,
         wall_s: row.wall_s,
+        numerics: parameters.numerics,
     })
 }

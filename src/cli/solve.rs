@@ -7,7 +7,7 @@ use crate::analysis::sample::{OBSERVED_NAMES, Sample};
 use crate::analysis::{self, JobError, JobObserver, JobRecord};
 use crate::exit;
 use crate::solver::contact::ContactState;
-use crate::study::Study;
+use crate::study::{Preset, Study};
 use crate::worker::Interrupt;
 use std::fmt::Write;
 use std::ops::ControlFlow;
@@ -21,6 +21,9 @@ pub struct Args {
     /// Fix a parameter of the grid, or change any other one; may be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = parse_setting)]
     settings: Vec<(String, String)>,
+    /// Take mesh, time step and detection from a preset instead of the study; `--set` goes before it.
+    #[arg(long, value_name = "NAME", value_parser = parse_preset)]
+    preset: Option<Preset>,
     /// Write the time history as CSV: load, total normal and tangential forces (tangential_n at the clamp,
     /// contact_tangential_n and mu_eq at the contact), numbers of nodes in each state, and displacement,
     /// velocity, stress and state of the centres of the leading (front) and trailing (rear) edge.
@@ -41,9 +44,14 @@ fn parse_setting(text: &str) -> Result<(String, String), String> {
     }
 }
 
+fn parse_preset(text: &str) -> Result<Preset, String> {
+    let names = || Preset::ALL.map(Preset::name).join(", ");
+    Preset::find(text).ok_or_else(|| format!("expected one of {}", names()))
+}
+
 /// Solves the job and prints what was found; nothing is stored.
 pub fn run(args: &Args) -> Result<u8, CliError> {
-    let spec = Study::load(&args.study)?.single(&args.settings)?;
+    let spec = Study::load(&args.study)?.single_with_preset(args.preset, &args.settings)?;
     let interrupt = Interrupt::default();
     let raised = interrupt.clone();
     std::thread::spawn(move || {

@@ -6,19 +6,22 @@
 //! * [`export`] – one line a job, for other programs.
 //! * [`tables`] – speed by friction coefficient, as Markdown and CSV.
 //! * [`figure`] – μ* and frequency against speed, as SVG.
+//! * [`pareto`] – error against run time of jobs that differ in their numerics only.
 //! * [`write()`] – a folder with all of it and a page that holds it together.
 
 mod error;
 pub mod export;
 pub mod figure;
 mod files;
+mod folder;
 mod layout;
 mod markdown;
 mod page;
+pub mod pareto;
 mod row;
 pub mod tables;
 mod value;
 
 pub use error::ReportError;
 pub use files::write;
-pub use row::{Row, RowState};
+pub use row::{JobNumerics, Row, RowState};

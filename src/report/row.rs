@@ -1,6 +1,7 @@
 //! One job as a report sees it.
 
 use crate::analysis::JobRecord;
+use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
 /// The grid parameter that is the disk speed.
@@ -25,6 +26,39 @@ pub struct Row {
     pub state: RowState,
     /// Wall-clock time the job took, in seconds.
     pub wall_s: Option<f64>,
+    /// The job's numerics, in the grid or not; absent in studies submitted by a version that did not keep them.
+    pub numerics: Option<JobNumerics>,
+}
+
+/// What a job's accuracy and cost depend on besides the physics.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct JobNumerics {
+    /// Names the physical case: equal for jobs that differ in nothing but the fields below.
+    pub case: String,
+    /// Number of elements in x, y and z.
+    pub elements: [usize; 3],
+    /// Element size h [m]: the cube root of an element's volume.
+    pub element_size_m: f64,
+    /// Number of nodes.
+    pub nodes: u64,
+    /// β₂ of the time scheme.
+    pub beta2: f64,
+    /// Stiffness-proportional damping β_R [s].
+    pub beta_r_s: f64,
+    /// Time step as a fraction of the stability limit; absent where the time step itself is given.
+    pub safety_factor: Option<f64>,
+    /// Simulated time [s] after which the run ends in any case.
+    pub limit_s: f64,
+    /// Whether it stops once the state is periodic or has decayed.
+    pub stop_early: bool,
+    /// Last fraction of a whole run that is averaged.
+    pub average_last_fraction: f64,
+    /// Limit cycles that must repeat.
+    pub cycles: usize,
+    /// Largest spread of a per-cycle figure over them.
+    pub tolerance: f64,
+    /// Largest drift of its mean between their halves.
+    pub drift_tolerance: f64,
 }
 
 /// What is known of a job.

@@ -1,5 +1,6 @@
 //! The shape of a study file.
 
+use super::preset::Preset;
 use super::schema::grid_schema;
 use crate::spec::{Detection, Numerics, RunControl, Scene};
 use schemars::JsonSchema;
@@ -19,6 +20,10 @@ pub(super) struct StudyFile {
     /// What the study is for.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub description: Option<String>,
+    /// Mesh, time step and detection by one word; what is given explicitly goes before it.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(with = "Preset")]
+    pub preset: Option<Preset>,
     /// Bodies, contact law, boundary conditions and load.
     pub scene: Scene,
     /// Integrator and time step.
@@ -41,8 +46,8 @@ impl StudyFile {
 }
 
 /// `"grid": null` is a mistake and not the absence of a grid.
-fn present<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Map<String, Value>>, D::Error> {
-    Map::deserialize(deserializer).map(Some)
+fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
+    T::deserialize(deserializer).map(Some)
 }
 
 /// Evenly spaced values of a parameter.

@@ -1,7 +1,7 @@
 //! Studies as data: a JSON file that names a base job and a grid of parameters to vary.
 //!
 //! ```text
-//! text ──► locate (positions, repeated keys) ──► file (serde) ──► axis (values) ──► validate (every job)
+//! text ──► locate (positions, repeated keys) ──► file (serde) ──► preset ──► axis (values) ──► validate (every job)
 //!                                                                     │
 //!                                              single (one job) ◄── Study ──► expand (all jobs, keys, costs)
 //! ```
@@ -20,6 +20,7 @@ mod locate;
 mod origin;
 mod parameter;
 mod parse;
+mod preset;
 mod schema;
 mod single;
 mod suggest;
@@ -30,6 +31,7 @@ pub use expand::{Job, MAX_JOBS};
 pub use key::job_key;
 pub use locate::Position;
 pub use parameter::{PARAMETERS, Parameter};
+pub use preset::{CaseEvidence, Evidence, Preset, PresetEvidence, ReferenceEvidence};
 pub use schema::schema;
 
 use crate::spec::JobSpec;

@@ -9,6 +9,7 @@ use super::json::{self, decode};
 use super::locate::{Position, join};
 use super::origin::Origin;
 use super::parameter::{Parameter, unknown_help};
+use super::preset::Preset;
 use super::validate::check_jobs;
 use crate::spec::JobSpec;
 use serde_json::{Map, Value};
@@ -22,13 +23,22 @@ pub(super) fn parse(text: &str, source_name: &str) -> Result<Study, StudyError> 
         decode(&value, &StudyFile::template()).map_err(|mismatch| origin.mismatch("", mismatch))?;
 
     let name = name(file.name, &origin)?;
-    let base =
+    let given =
         JobSpec { scene: file.scene, numerics: file.numerics, run: file.run, detection: file.detection };
+    let base = with_preset(given, file.preset, &origin);
     let axes = axes(file.grid, &base, &origin).map_err(StudyError::Invalid)?;
     let study = Study { name, description: file.description, base, axes, origin };
     check_size(&study)?;
     refuse(check_jobs(&study))?;
     Ok(study)
+}
+
+/// The job with the preset's settings wherever the file gives nothing itself.
+fn with_preset(given: JobSpec, preset: Option<Preset>, origin: &Origin) -> JobSpec {
+    let Some(preset) = preset else { return given };
+    let mut job = json::encode(&given);
+    preset.apply(&given.scene, &mut job, |parameter| origin.places.by_path.contains_key(&parameter.field()));
+    json::checked_job(&job)
 }
 
 fn refuse(problems: Vec<Problem>) -> Result<(), StudyError> {

@@ -4,6 +4,7 @@ use super::axis::{Axis, check_type};
 use super::error::{Problem, StudyError};
 use super::origin::shorten;
 use super::parameter::{Kind, Parameter, unknown_help};
+use super::preset::Preset;
 use super::{Study, json};
 use crate::spec::JobSpec;
 use serde_json::Value;
@@ -24,6 +25,19 @@ impl Study {
     /// Unknown, repeated or overlapping names, values of the wrong type, parameters of the grid that
     /// are left open, and violations of [`JobSpec::check`].
     pub fn single(&self, overrides: &[(String, String)]) -> Result<JobSpec, StudyError> {
+        self.single_with_preset(None, overrides)
+    }
+
+    /// [`Study::single`] with the settings of a `preset`, which goes before the file and the grid and behind the
+    /// overrides.
+    ///
+    /// # Errors
+    /// Those of [`Study::single`].
+    pub fn single_with_preset(
+        &self,
+        preset: Option<Preset>,
+        overrides: &[(String, String)],
+    ) -> Result<JobSpec, StudyError> {
         let mut job = json::encode(&self.base);
         let mut problems = Vec::new();
         let mut taken: Vec<&Parameter> = Vec::new();
@@ -49,6 +63,7 @@ impl Study {
             match axis.values.as_slice() {
                 [only] => axis.parameter.set(&mut job, only),
                 _ if taken.iter().any(|parameter| parameter.sets(&axis.parameter.field())) => {}
+                _ if preset.is_some() && Preset::covers(axis.parameter) => {}
                 _ => problems.push(self.left_open(axis)),
             }
         }
@@ -57,6 +72,9 @@ impl Study {
         }
         for (parameter, value) in &settings {
             parameter.set(&mut job, value);
+        }
+        if let Some(preset) = preset {
+            preset.override_job(&mut job, &taken);
         }
         self.checked(&job, &taken)
     }

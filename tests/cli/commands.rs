@@ -156,9 +156,20 @@ fn completions_name_every_command() {
     let folder = Folder::new();
     let script = folder.ok("completions bash");
     assert!(script.contains("complete -F _tribosweep"));
-    for command in
-        ["run", "submit", "work", "status", "report", "export", "solve", "validate", "schema", "completions"]
-    {
+    for command in [
+        "run",
+        "submit",
+        "work",
+        "status",
+        "report",
+        "pareto",
+        "export",
+        "solve",
+        "validate",
+        "presets",
+        "schema",
+        "completions",
+    ] {
         assert!(script.contains(&format!("tribosweep__subcmd__{command}")), "{command}");
         assert!(folder.ok("--help").contains(&format!("\n  {command} ")), "{command}");
     }

@@ -1,6 +1,7 @@
 //! The command as a user runs it: its output, its files, its exit codes, and what an interruption may not
 //! change.
 
+mod accuracy;
 mod commands;
 mod determinism;
 mod exit_codes;

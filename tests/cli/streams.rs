@@ -26,6 +26,7 @@ fn results_and_messages_have_a_stream_each() {
         ("solve mine.json --set mu=0.2", true, false),
         ("validate mine.json", true, false),
         ("schema", true, false),
+        ("presets", true, false),
         ("completions bash", true, false),
     ] {
         let end = folder.command(command).assert().code(0);

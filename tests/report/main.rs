@@ -3,6 +3,7 @@
 mod export;
 mod figure;
 mod folder;
+mod pareto;
 mod svg;
 mod synthetic;
 mod tables;

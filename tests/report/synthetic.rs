@@ -61,6 +61,7 @@ pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> Row {
         mu,
         state,
         wall_s: Some(12.5),
+        numerics: None,
     }
 }
 

@@ -102,3 +102,40 @@ fn every_clamp_ends_at_a_node_row() {
         }
     }
 }
+
+/// Protects: the studies of errors vary numerics only, so that all their jobs are one physical case a speed, and
+/// the two damping times of mesh_convergence are on every mesh.
+#[test]
+fn studies_of_errors_vary_numerics_only() {
+    for (file, cases, count) in [
+        ("studies/work_precision.json", 1, 24),
+        ("studies/work_precision_damping.json", 1, 8),
+        ("studies/work_precision_detection.json", 1, 16),
+        ("studies/mesh_convergence.json", 4, 32),
+    ] {
+        let mut scenes: Vec<_> = jobs(file)
+            .into_iter()
+            .map(|mut job| {
+                job.spec.scene.pin.elements = [1, 1, 1];
+                format!("{:?}", job.spec.scene)
+            })
+            .collect();
+        assert_eq!(scenes.len(), count, "{file}");
+        scenes.sort();
+        scenes.dedup();
+        assert_eq!(scenes.len(), cases, "{file}");
+    }
+}
+
+/// Protects: the three studies of work and precision are compared as one: they have the scene in common.
+#[test]
+fn the_studies_of_work_and_precision_share_their_scene() {
+    let scene = |file: &str| {
+        let mut scene = jobs(file)[0].spec.scene.clone();
+        scene.pin.elements = [1, 1, 1];
+        scene
+    };
+    let first = scene("studies/work_precision.json");
+    assert_eq!(scene("studies/work_precision_damping.json"), first);
+    assert_eq!(scene("studies/work_precision_detection.json"), first);
+}

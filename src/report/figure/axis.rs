@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// An axis of a figure.
 #[derive(Debug, Clone, PartialEq)]
-pub(super) enum Axis {
+pub(in crate::report) enum Axis {
     /// Logarithmic, for positive numbers.
     Log(Range<f64>),
     /// Linear.

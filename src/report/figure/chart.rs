@@ -24,17 +24,17 @@ const X_LABELS: u32 = 104;
 const Y_LABELS: u32 = 150;
 
 /// Room around plot and legend [px].
-pub(super) const MARGIN: i32 = 36;
+pub(in crate::report) const MARGIN: i32 = 36;
 /// Size of text [px].
-pub(super) const TEXT: i32 = 34;
+pub(in crate::report) const TEXT: i32 = 34;
 /// Fonts that have μ, ω and the dash, on every system one.
-pub(super) const FONT: &str = "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
+pub(in crate::report) const FONT: &str = "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
 /// Width of a curve [px].
-pub(super) const CURVE_WIDTH: u32 = 4;
+pub(in crate::report) const CURVE_WIDTH: u32 = 4;
 /// Width of a guide [px].
-pub(super) const GUIDE_WIDTH: u32 = 3;
+pub(in crate::report) const GUIDE_WIDTH: u32 = 3;
 /// Length of a dash and of the gap after it [px].
-pub(super) const DASH: i32 = 12;
+pub(in crate::report) const DASH: i32 = 12;
 const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;

@@ -2,12 +2,12 @@
 
 #![expect(clippy::cast_possible_wrap, reason = "pixels and legend lines: thousands, not billions")]
 
-mod axis;
-mod chart;
+pub(super) mod axis;
+pub(super) mod chart;
 mod data;
 mod legend;
 mod marker;
-mod palette;
+pub(super) mod palette;
 
 use super::layout::{Group, Layout};
 use super::row::Row;

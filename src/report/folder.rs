@@ -1,0 +1,58 @@
+//! A folder whose files appear whole.
+
+use super::error::ReportError;
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// A folder that files are written into.
+pub(super) struct Folder<'a> {
+    path: &'a Path,
+    /// The files written so far.
+    pub written: Vec<PathBuf>,
+}
+
+impl<'a> Folder<'a> {
+    /// Creates the folder unless it is there.
+    pub fn create(path: &'a Path) -> Result<Self, ReportError> {
+        fs::create_dir_all(path).map_err(|source| ReportError::Folder { path: path.to_owned(), source })?;
+        Ok(Self { path, written: Vec::new() })
+    }
+
+    /// Writes a file of text.
+    pub fn text(&mut self, name: &str, text: &str) -> Result<(), ReportError> {
+        self.with(name, |out| {
+            out.extend_from_slice(text.as_bytes());
+            Ok(())
+        })
+    }
+
+    /// Writes a file that `fill` gives the contents of.
+    pub fn with(
+        &mut self,
+        name: &str,
+        fill: impl FnOnce(&mut Vec<u8>) -> io::Result<()>,
+    ) -> Result<(), ReportError> {
+        let path = self.path.join(name);
+        let mut contents = Vec::new();
+        match fill(&mut contents).and_then(|()| replace(self.path, name, &contents)) {
+            Ok(()) => {
+                self.written.push(path);
+                Ok(())
+            }
+            Err(source) => Err(ReportError::File { path, source }),
+        }
+    }
+}
+
+/// Replaces a file as a whole: readers see the old one or the new one.
+fn replace(folder: &Path, name: &str, contents: &[u8]) -> io::Result<()> {
+    // The process id keeps two reports into one folder apart.
+    let temporary = folder.join(format!(".{name}.{}.tmp", std::process::id()));
+    let result = fs::write(&temporary, contents).and_then(|()| fs::rename(&temporary, folder.join(name)));
+    if result.is_err() {
+        // The first error is the one to report; that of the clean-up adds nothing.
+        let _ = fs::remove_file(&temporary);
+    }
+    result
+}

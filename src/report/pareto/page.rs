@@ -1,0 +1,237 @@
+//! The comparison as Markdown that reads as plain text too.
+
+use super::case::{Case, DoneJob};
+use super::compare::Comparison;
+use super::early::EarlyStop;
+use super::reference::{Chain, Direction, FIGURE_NAMES, FIGURES, FREQUENCY, MU_STAR, Reference};
+use super::refinement::{Limit, Unclean};
+use super::score::Score;
+use super::settings;
+use crate::report::markdown;
+use crate::report::value::{self, MISSING};
+
+/// The tables of all cases.
+pub fn markdown(comparison: &Comparison) -> String {
+    let sections = comparison
+        .cases
+        .iter()
+        .map(|case| format!("## {}\n\n{}", markdown::escape(&case.caption), body(case)));
+    sections.chain([left_out(comparison)]).collect()
+}
+
+/// The whole page, with the figures of all cases.
+pub(super) fn page(comparison: &Comparison, figures: &[String], title: &str) -> String {
+    let head = format!(
+        "# {}: error against run time\n\nOne line a job: [pareto.csv](pareto.csv); refinements: [refinement.csv](refinement.csv).\n\n",
+        markdown::escape(title)
+    );
+    let sections = comparison.cases.iter().zip(figures).map(|(case, figure)| {
+        let caption = markdown::escape(&case.caption);
+        format!("## {caption}\n\n![error of μ\\* against run time]({figure})\n\n{}", body(case))
+    });
+    std::iter::once(head).chain(sections).chain([left_out(comparison)]).collect()
+}
+
+fn left_out(comparison: &Comparison) -> String {
+    if comparison.left_out.is_empty() {
+        return String::new();
+    }
+    let lines: Vec<String> =
+        comparison.left_out.iter().map(|line| format!("- {}\n", markdown::escape(line))).collect();
+    format!("## Left out: fewer than two jobs done\n\n{}\n", lines.concat())
+}
+
+fn body(case: &Case) -> String {
+    let incomplete = if case.waiting + case.failed == 0 {
+        String::new()
+    } else {
+        format!(
+            "**Incomplete**: {} jobs are not done and {} failed; the reference is the finest of those that are done.\n\n",
+            case.waiting, case.failed
+        )
+    };
+    [incomplete, reference_in_words(case), jobs_table(case), LEGEND.to_owned(), early_table(case)].concat()
+}
+
+const LEGEND: &str = "\
+- error of μ\\* and f: relative to the reference; of the shares: the largest absolute difference\n\
+- `≤` not resolved: below standard error and uncertainty of the reference, which is what the number says\n\
+- front: `t` no other job is faster (solver time) and better, `n` none has fewer node-steps and is better\n\n";
+
+fn reference_in_words(case: &Case) -> String {
+    let Reference { job, chains, targets } = &case.reference;
+    let finest = &case.jobs[*job];
+    let texts = settings::texts(finest.numerics);
+    let mut text = format!(
+        "Reference: {}, Δt = {:.3e} s, job {}.\n",
+        texts[0],
+        finest.record.time_step_s,
+        markdown::code(&finest.row.job)
+    );
+    for chain in chains {
+        text += &chain_in_words(chain);
+    }
+    let in_words: Vec<String> = (0..FIGURES)
+        .filter_map(|figure| {
+            let target = targets[figure]?;
+            let digits = if figure == FREQUENCY { 1 } else { 5 };
+            let uncertainty = target
+                .uncertainty
+                .map_or_else(|| "uncertainty not known".to_owned(), |u| format!("± {u:.digits$}"));
+            let name = markdown::escape(FIGURE_NAMES[figure]);
+            Some(format!("{name} {:.digits$} ({uncertainty})", target.value))
+        })
+        .collect();
+    text + &format!("- Taken as true: {}.\n\n", in_words.join(", "))
+}
+
+fn chain_in_words(chain: &Chain) -> String {
+    let (what, unit, scale) = match chain.direction {
+        Direction::Mesh => ("mesh, step given", "mm", 1.0e3),
+        Direction::MeshAndStep => ("mesh, step in proportion", "mm", 1.0e3),
+        Direction::Step => ("step", "µs", 1.0e6),
+    };
+    let sizes: Vec<String> = chain.sizes.iter().map(|size| format!("{:.3}", size * scale)).collect();
+    let limits: Vec<String> = (0..FIGURES)
+        .filter_map(|figure| {
+            let limit = chain.limits[figure].as_ref()?;
+            Some(format!("{} {}", markdown::escape(FIGURE_NAMES[figure]), limit_in_words(limit)))
+        })
+        .collect();
+    format!("- Refinement of the {what} ({} {unit}): {}.\n", sizes.join(", "), limits.join("; "))
+}
+
+fn limit_in_words(limit: &Limit) -> String {
+    let last = || format!("last change {:.2e}", limit.uncertainty);
+    match limit.order {
+        Ok(order) => format!("order {order:.2}, corrected by {:.2e}", limit.uncertainty),
+        Err(Unclean::TooFewLevels) => format!("two levels, {}", last()),
+        Err(Unclean::WithinNoise) => format!("converged within its standard error, {}", last()),
+        Err(Unclean::NotMonotone) => format!("not monotone, {}", last()),
+        Err(Unclean::OrderOutOfRange(Some(order))) => format!("order {order:.2} is not clean, {}", last()),
+        Err(Unclean::OrderOutOfRange(None)) => format!("no order, {}", last()),
+        Err(Unclean::OrderNotStable(a, b)) => format!("orders {a:.2} and {b:.2} differ, {}", last()),
+    }
+}
+
+/// Columns of the settings that vary within the case.
+fn varying(case: &Case) -> Vec<usize> {
+    let texts: Vec<_> = case.jobs.iter().map(|job| settings::texts(job.numerics)).collect();
+    (0..settings::NAMES.len()).filter(|&i| texts.iter().any(|text| text[i] != texts[0][i])).collect()
+}
+
+fn jobs_table(case: &Case) -> String {
+    let varying = varying(case);
+    let mut header: Vec<String> = varying.iter().map(|&i| settings::NAMES[i].to_owned()).collect();
+    header.extend(
+        ["Δt [µs]", "μ*", "error of μ*", "error of f", "error of shares", "time [s]", "node-steps", "front"]
+            .map(str::to_owned),
+    );
+    let lines: Vec<Vec<String>> = case
+        .jobs
+        .iter()
+        .zip(&case.scores)
+        .enumerate()
+        .map(|(index, (job, score))| {
+            let texts = settings::texts(job.numerics);
+            let mut line: Vec<String> = varying.iter().map(|&i| texts[i].clone()).collect();
+            line.extend(results(job, score, index == case.reference.job));
+            line
+        })
+        .collect();
+    let constant: Vec<String> = {
+        let texts = settings::texts(case.jobs[0].numerics);
+        (0..settings::NAMES.len())
+            .filter(|i| !varying.contains(i))
+            .map(|i| format!("{} {}", settings::NAMES[i], texts[i]))
+            .collect()
+    };
+    let constant = if constant.is_empty() {
+        String::new()
+    } else {
+        format!("In all jobs: {}.\n\n", markdown::escape(&constant.join(", ")))
+    };
+    format!("{constant}{}\n", markdown::table(&header, &lines, true))
+}
+
+fn results(job: &DoneJob, score: &Score, is_reference: bool) -> [String; 8] {
+    let not_periodic = if job.row.status() == "not_periodic" { "~" } else { "" };
+    let frequency = score.frequency_error.zip(score.frequency_resolution);
+    let front = match (score.on_wall_front, score.on_node_step_front) {
+        (true, true) => "t n",
+        (true, false) => "t",
+        (false, true) => "n",
+        (false, false) => "",
+    };
+    [
+        format!("{:.4}", job.record.time_step_s * 1.0e6),
+        format!("{}{not_periodic}", value::fixed(job.record.mu_star, 5)),
+        percent(score.mu_star_error, score.mu_star_resolution),
+        frequency.map_or_else(|| MISSING.to_owned(), |(error, resolution)| percent(error, resolution)),
+        resolved(score.shares_error, score.shares_resolution, |x| format!("{x:.4}")),
+        score.wall_s.map_or_else(|| MISSING.to_owned(), |wall| format!("{wall:.2}")),
+        format!("{:.2e}", score.node_steps),
+        if is_reference { format!("reference {front}").trim().to_owned() } else { front.to_owned() },
+    ]
+}
+
+/// A signed relative error in percent, or the smallest one that would show.
+fn percent(error: f64, resolution: f64) -> String {
+    if error.abs() > resolution {
+        format!("{:+.3} %", 100.0 * error)
+    } else {
+        resolved(error, resolution, |x| format!("{:.3} %", 100.0 * x))
+    }
+}
+
+fn resolved(error: f64, resolution: f64, write: impl Fn(f64) -> String) -> String {
+    match (error.is_finite(), error.abs() > resolution) {
+        (false, _) => MISSING.to_owned(),
+        (true, true) => write(error),
+        (true, false) => format!("≤ {}", write(resolution)),
+    }
+}
+
+fn early_table(case: &Case) -> String {
+    if case.early.is_empty() {
+        return String::new();
+    }
+    let mut shown = varying(case);
+    shown.retain(|&i| settings::NAMES[i] != "stop early" && settings::NAMES[i] != "limit [s]");
+    let mut header: Vec<String> = shown.iter().map(|&i| settings::NAMES[i].to_owned()).collect();
+    header.extend(
+        ["stopped at [ms]", "change of μ*", "change of f", "change of shares", "steps saved", "time saved"]
+            .map(str::to_owned),
+    );
+    let lines: Vec<Vec<String>> = case
+        .early
+        .iter()
+        .map(|pair| {
+            let texts = settings::texts(case.jobs[pair.early].numerics);
+            let mut line: Vec<String> = shown.iter().map(|&i| texts[i].clone()).collect();
+            line.extend(changes(case, pair));
+            line
+        })
+        .collect();
+    format!(
+        "### What stopping early changes\n\nAgainst the same job run to its limit.\n\n{}\n",
+        markdown::table(&header, &lines, true)
+    )
+}
+
+fn changes(case: &Case, pair: &EarlyStop) -> [String; 6] {
+    let share = |x: Option<f64>| x.map_or_else(|| MISSING.to_owned(), |x| format!("{:.0} %", 100.0 * x));
+    [
+        format!("{:.2}", case.jobs[pair.early].record.simulated_s * 1.0e3),
+        percent(pair.mu_star_change, pair.mu_star_resolution),
+        pair.frequency_change.map_or_else(|| MISSING.to_owned(), |x| format!("{:+.3} %", 100.0 * x)),
+        format!("{:.4}", pair.shares_change),
+        share(Some(pair.steps_saved)),
+        share(pair.wall_saved),
+    ]
+}
+
+/// μ* is what the figure shows; its name is used where only one figure is spoken of.
+pub(super) fn figure_title() -> String {
+    format!("relative error of {}", FIGURE_NAMES[MU_STAR])
+}

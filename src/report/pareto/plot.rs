@@ -1,0 +1,212 @@
+//! Error of μ* against solver time, log–log, with the Pareto front.
+
+#![expect(clippy::cast_possible_wrap, reason = "pixels and legend lines: thousands, not billions")]
+
+use super::case::Case;
+use super::page::figure_title;
+use crate::report::figure::axis::Axis;
+use crate::report::figure::chart::{DASH, FONT, MARGIN, TEXT};
+use crate::report::figure::{FigureError, palette};
+use plotters::chart::ChartBuilder;
+use plotters::coord::Shift;
+use plotters::prelude::{
+    BLACK, Circle, DashedLineSeries, DrawingArea, IntoDrawingArea, PathElement, Polygon, RGBColor,
+    SVGBackend, Text, WHITE,
+};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{Color, IntoFont, TextStyle};
+use serde_json::Value;
+
+// As in the other figures: drawn at twice the size it is shown at, because the backend rounds to pixels.
+const SIZE: (u32, u32) = (1800, 1120);
+const SHOWN: (u32, u32) = (900, 560);
+const LEGEND_WIDTH: u32 = 440;
+const CAPTION_HEIGHT: u32 = 64;
+const X_LABELS: u32 = 104;
+const Y_LABELS: u32 = 170;
+const RADIUS: i32 = 12;
+const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
+const GREY: RGBColor = RGBColor(0x50, 0x50, 0x50);
+
+type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+
+struct Point {
+    time_s: f64,
+    error: f64,
+    colour: RGBColor,
+    early: bool,
+    resolved: bool,
+    on_front: bool,
+}
+
+/// Draws a case. Jobs without a run time, and those whose error and resolution are both zero, are not on a
+/// logarithmic scale and left out.
+pub(super) fn draw(case: &Case) -> Result<String, FigureError> {
+    let meshes = meshes(case);
+    let points = points(case, &meshes);
+    let mut svg = String::new();
+    {
+        let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
+        root.fill(&WHITE)?;
+        let (top, below) = root.split_vertically(CAPTION_HEIGHT);
+        // XML has no place for control characters.
+        let caption: String = case.caption.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+        let room = SIZE.0 as i32 - 2 * MARGIN;
+        let size = (room * 2 / caption.chars().count().max(1) as i32).clamp(8, TEXT);
+        write(&top, &caption, (SIZE.0 as i32 / 2, CAPTION_HEIGHT as i32 * 2 / 3), size, HPos::Center)?;
+        let (left, right) = below.split_horizontally(SIZE.0 - LEGEND_WIDTH);
+        draw_plot(&left, &points)?;
+        draw_legend(&right, &meshes, &points)?;
+        root.present()?;
+    }
+    let size = |(width, height): (u32, u32)| format!("width=\"{width}\" height=\"{height}\"");
+    Ok(svg.replacen(&size(SIZE), &size(SHOWN), 1))
+}
+
+/// The meshes of a case, coarsest first.
+fn meshes(case: &Case) -> Vec<[usize; 3]> {
+    let mut meshes: Vec<_> =
+        case.jobs.iter().map(|job| (job.numerics.nodes, job.numerics.elements)).collect();
+    meshes.sort_unstable();
+    meshes.dedup();
+    meshes.into_iter().map(|(_, elements)| elements).collect()
+}
+
+fn points(case: &Case, meshes: &[[usize; 3]]) -> Vec<Point> {
+    case.jobs
+        .iter()
+        .zip(&case.scores)
+        .filter_map(|(job, score)| {
+            let (time_s, error) = (score.wall_s?, score.claimed_error());
+            let mesh = meshes.iter().position(|mesh| *mesh == job.numerics.elements)?;
+            (time_s > 0.0 && error > 0.0 && time_s.is_finite() && error.is_finite()).then(|| Point {
+                time_s,
+                error,
+                colour: palette::colour(mesh, meshes.len()),
+                early: job.numerics.stop_early,
+                resolved: score.is_resolved(),
+                on_front: score.on_wall_front,
+            })
+        })
+        .collect()
+}
+
+fn axis(values: impl Iterator<Item = f64>) -> Axis {
+    let values: Vec<Value> = values.map(Value::from).collect();
+    Axis::across(&values, true)
+}
+
+fn draw_plot(area: &Area, points: &[Point]) -> Result<(), FigureError> {
+    if points.is_empty() {
+        let (width, height) = area.dim_in_pixel();
+        let note = "no job has both a run time and an error above zero";
+        return write(area, note, (width as i32 / 2, height as i32 / 3), TEXT, HPos::Center);
+    }
+    let mut chart = ChartBuilder::on(area)
+        .margin(MARGIN)
+        .x_label_area_size(X_LABELS)
+        .y_label_area_size(Y_LABELS)
+        .build_cartesian_2d(
+            axis(points.iter().map(|point| point.time_s)),
+            axis(points.iter().map(|point| point.error)),
+        )?;
+    chart
+        .configure_mesh()
+        .bold_line_style(GRID.stroke_width(2))
+        .light_line_style(plotters::style::TRANSPARENT)
+        .axis_style(BLACK.stroke_width(2))
+        .set_all_tick_mark_size(8)
+        .x_label_style((FONT, TEXT))
+        .y_label_style((FONT, TEXT))
+        .axis_desc_style((FONT, TEXT + 4))
+        .x_desc("solver time of the job [s]")
+        .y_desc(figure_title())
+        .draw()?;
+    let mut front: Vec<(f64, f64)> =
+        points.iter().filter(|point| point.on_front).map(|point| (point.time_s, point.error)).collect();
+    front.sort_by(|a, b| a.0.total_cmp(&b.0));
+    chart.draw_series(DashedLineSeries::new(front, DASH, DASH / 2, BLACK.stroke_width(3)))?;
+    let (left, top) = area.get_base_pixel();
+    for point in points {
+        let (x, y) = chart.backend_coord(&(point.time_s, point.error));
+        draw_marker(area, (x - left, y - top), point)?;
+    }
+    Ok(())
+}
+
+/// A circle for a whole run, a triangle for one that stopped early; hollow if not resolved; ringed on the front.
+fn draw_marker(area: &Area, at: (i32, i32), point: &Point) -> Result<(), FigureError> {
+    if point.on_front {
+        area.draw(&Circle::new(at, RADIUS + 9, BLACK.stroke_width(3)))?;
+    }
+    shape(area, at, point.early, f64::from(RADIUS), point.colour)?;
+    if point.resolved { Ok(()) } else { shape(area, at, point.early, 0.55 * f64::from(RADIUS), WHITE) }
+}
+
+fn shape(
+    area: &Area,
+    (x, y): (i32, i32),
+    triangle: bool,
+    radius: f64,
+    colour: RGBColor,
+) -> Result<(), FigureError> {
+    let pixels = |offset: f64| (offset * radius).round() as i32;
+    if triangle {
+        let corners = [(0.0, -1.35), (1.2, 0.8), (-1.2, 0.8)];
+        area.draw(&Polygon::new(corners.map(|(dx, dy)| (x + pixels(dx), y + pixels(dy))), colour))
+    } else {
+        area.draw(&Circle::new((x, y), pixels(1.0), colour.filled()))
+    }
+}
+
+fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(), FigureError> {
+    let sample = |early, resolved, on_front| Point {
+        time_s: 0.0,
+        error: 0.0,
+        colour: GREY,
+        early,
+        resolved,
+        on_front,
+    };
+    let mut entries: Vec<(Option<Point>, String)> = vec![(None, "mesh".to_owned())];
+    for (index, [nx, ny, nz]) in meshes.iter().enumerate() {
+        let colour = palette::colour(index, meshes.len());
+        entries.push((Some(Point { colour, ..sample(false, true, false) }), format!("{nx} × {ny} × {nz}")));
+    }
+    entries.push((None, String::new()));
+    let any = |test: fn(&Point) -> bool| points.iter().any(test);
+    let kinds = [
+        (any(|p| !p.early), sample(false, true, false), "run to its limit"),
+        (any(|p| p.early), sample(true, true, false), "stopped early"),
+        (any(|p| !p.resolved), sample(false, false, false), "hollow: at most this"),
+        (any(|p| p.on_front), sample(false, true, true), "Pareto front"),
+    ];
+    for (there, point, label) in kinds {
+        if there {
+            entries.push((Some(point), label.to_owned()));
+        }
+    }
+    let room = area.dim_in_pixel().1 as i32 - 2 * MARGIN;
+    let pitch = (room / entries.len() as i32).min(50);
+    // A long legend is set smaller rather than cut.
+    let size = TEXT.min(pitch * 5 / 6);
+    for (line, (marker, label)) in entries.iter().enumerate() {
+        let y = MARGIN + pitch / 2 + line as i32 * pitch;
+        if let Some(point) = marker {
+            draw_marker(area, (RADIUS + 12, y), point)?;
+        }
+        let x = if marker.is_some() { 3 * RADIUS + 24 } else { 0 };
+        write(area, label, (x, y), size, HPos::Left)?;
+    }
+    // The front is a line, too.
+    if any(|p| p.on_front) {
+        let y = MARGIN + pitch / 2 + entries.len() as i32 * pitch - pitch;
+        area.draw(&PathElement::new([(0, y), (2 * (RADIUS + 12), y)], BLACK.stroke_width(3)))?;
+    }
+    Ok(())
+}
+
+fn write(area: &Area, text: &str, at: (i32, i32), size: i32, anchor: HPos) -> Result<(), FigureError> {
+    let style = TextStyle::from((FONT, size).into_font()).pos(Pos::new(anchor, VPos::Center));
+    area.draw(&Text::new(text.to_owned(), at, style))
+}

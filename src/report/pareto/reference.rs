@@ -1,0 +1,197 @@
+//! What the jobs of a case are measured by: its finest job, extrapolated where the order is clean.
+
+use super::case::DoneJob;
+use super::refinement::{self, Level, Limit};
+use crate::report::row::JobNumerics;
+use std::cmp::Ordering;
+
+/// The figures compared: μ*, frequency and the shares of stick, slip and separation.
+pub(super) const FIGURES: usize = 5;
+/// Index of μ*.
+pub(super) const MU_STAR: usize = 0;
+/// Index of the frequency.
+pub(super) const FREQUENCY: usize = 1;
+
+/// Names of the figures.
+pub(super) const FIGURE_NAMES: [&str; FIGURES] = ["μ*", "frequency", "stick", "slip", "separated"];
+
+/// What is refined along a chain of jobs that differ in nothing else.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Direction {
+    /// The mesh at a given time step.
+    Mesh,
+    /// The mesh at a given fraction of the stability limit: the step shrinks with it.
+    MeshAndStep,
+    /// The time step on the finest mesh.
+    Step,
+}
+
+impl Direction {
+    /// The name in CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Mesh => "mesh",
+            Self::MeshAndStep => "mesh_and_step",
+            Self::Step => "step",
+        }
+    }
+}
+
+/// Refinement that ends at the reference job.
+#[derive(Debug, Clone)]
+pub struct Chain {
+    /// What is refined.
+    pub direction: Direction,
+    /// Indices of its jobs among the case's jobs, coarsest first.
+    pub jobs: Vec<usize>,
+    /// Their element sizes or time steps [m or s].
+    pub sizes: Vec<f64>,
+    /// The limit of each figure; none where a job has no such figure.
+    pub limits: [Option<Limit>; FIGURES],
+}
+
+/// One figure of the reference.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Target {
+    /// The value that errors are taken from.
+    pub value: f64,
+    /// Its standard error over cycles; known for μ* only.
+    pub standard_error: f64,
+    /// How far it may be from the truth by the chains; none without a chain.
+    pub uncertainty: Option<f64>,
+}
+
+/// What the jobs of a case are measured by.
+#[derive(Debug, Clone)]
+pub struct Reference {
+    /// Index of the finest job among the case's jobs.
+    pub job: usize,
+    /// The chains that end at it.
+    pub chains: Vec<Chain>,
+    /// The figures; none where the finest job has no such figure (no frequency without a limit cycle).
+    pub targets: [Option<Target>; FIGURES],
+}
+
+/// The figures of a job with their standard errors.
+pub(super) fn figures(job: &DoneJob) -> [Option<f64>; FIGURES] {
+    let record = job.record;
+    let finite = |value: f64| value.is_finite().then_some(value);
+    [
+        finite(record.mu_star),
+        record.frequency_hz.and_then(finite),
+        finite(record.stick_share),
+        finite(record.slip_share),
+        finite(record.separated_share),
+    ]
+}
+
+/// Standard error of a figure; known for μ* only.
+pub(super) fn standard_error(job: &DoneJob, figure: usize) -> f64 {
+    let known = figure == MU_STAR && job.record.mu_star_se.is_finite();
+    if known { job.record.mu_star_se } else { 0.0 }
+}
+
+/// The reference of a case.
+///
+/// # Panics
+/// Without jobs.
+pub(super) fn of(jobs: &[DoneJob]) -> Reference {
+    let finest_mesh = jobs.iter().map(|job| job.numerics.element_size_m).fold(f64::INFINITY, f64::min);
+    let damping =
+        jobs.iter().find(|job| job.numerics.element_size_m == finest_mesh).map(|job| job.numerics.beta_r_s);
+    let finest = (0..jobs.len())
+        .filter(|&i| Some(jobs[i].numerics.beta_r_s) == damping)
+        .min_by(|&a, &b| finer_first(&jobs[a], &jobs[b]))
+        .expect("a case has jobs");
+    let chains = chains(jobs, finest);
+    let targets = std::array::from_fn(|figure| target(&jobs[finest], &chains, figure));
+    Reference { job: finest, chains, targets }
+}
+
+fn finer_first(a: &DoneJob, b: &DoneJob) -> Ordering {
+    let (n, m) = (a.numerics, b.numerics);
+    n.element_size_m
+        .total_cmp(&m.element_size_m)
+        .then(n.beta2.total_cmp(&m.beta2))
+        .then(a.record.time_step_s.total_cmp(&b.record.time_step_s))
+        .then(n.stop_early.cmp(&m.stop_early))
+        .then(m.limit_s.total_cmp(&n.limit_s))
+        .then(n.tolerance.total_cmp(&m.tolerance))
+        .then(n.drift_tolerance.total_cmp(&m.drift_tolerance))
+        .then(m.cycles.cmp(&n.cycles))
+}
+
+fn target(finest: &DoneJob, chains: &[Chain], figure: usize) -> Option<Target> {
+    let value = figures(finest)[figure]?;
+    let mut target = Target { value, standard_error: standard_error(finest, figure), uncertainty: None };
+    let mut step_is_covered = false;
+    for chain in chains {
+        let Some(limit) = chain.limits[figure] else { continue };
+        // A mesh chain at a fraction of the limit has gone to Δt = 0 with the mesh; twice would be too far.
+        if !(chain.direction == Direction::Step && step_is_covered) {
+            target.value += limit.value - value;
+            *target.uncertainty.get_or_insert(0.0) += limit.uncertainty;
+        }
+        step_is_covered |= chain.direction == Direction::MeshAndStep && limit.order.is_ok();
+    }
+    Some(target)
+}
+
+fn chains(jobs: &[DoneJob], finest: usize) -> Vec<Chain> {
+    let end = &jobs[finest];
+    let same_step = |job: &DoneJob| (job.record.time_step_s / end.record.time_step_s - 1.0).abs() < 1.0e-9;
+    let at_fraction = end.numerics.safety_factor.is_some();
+    let mesh =
+        |job: &DoneJob| differs_in_mesh_only(job.numerics, end.numerics) && (at_fraction || same_step(job));
+    let step = |job: &DoneJob| differs_in_step_only(job.numerics, end.numerics);
+    let direction = if at_fraction { Direction::MeshAndStep } else { Direction::Mesh };
+    let of = |direction, size: fn(&DoneJob) -> f64, belongs: &dyn Fn(&DoneJob) -> bool| {
+        let mut levels: Vec<usize> = (0..jobs.len()).filter(|&i| belongs(&jobs[i])).collect();
+        levels.sort_by(|&a, &b| size(&jobs[b]).total_cmp(&size(&jobs[a])));
+        levels.dedup_by(|a, b| size(&jobs[*a]) == size(&jobs[*b]));
+        let done: Vec<&DoneJob> = levels.iter().map(|&i| &jobs[i]).collect();
+        (levels.len() > 1).then(|| Chain {
+            direction,
+            sizes: done.iter().map(|job| size(job)).collect(),
+            limits: std::array::from_fn(|figure| limit(&done, size, figure)),
+            jobs: levels,
+        })
+    };
+    [
+        of(direction, |job| job.numerics.element_size_m, &mesh),
+        of(Direction::Step, |job| job.record.time_step_s, &step),
+    ]
+    .into_iter()
+    .flatten()
+    .collect()
+}
+
+fn limit(levels: &[&DoneJob], size: fn(&DoneJob) -> f64, figure: usize) -> Option<Limit> {
+    let levels: Option<Vec<Level>> = levels
+        .iter()
+        .map(|job| {
+            let value = figures(job)[figure]?;
+            Some(Level { size: size(job), value, standard_error: standard_error(job, figure) })
+        })
+        .collect();
+    refinement::limit(&levels?)
+}
+
+/// Largest ratio of the refinement in one direction to that in another: counts are whole numbers, and a block
+/// of 12 × 15 × 10 mm does not divide evenly into every size.
+const ALIKE: f64 = 1.15;
+
+/// Whether both meshes are refined by about the same factor in x, y and z, all else equal.
+fn differs_in_mesh_only(a: &JobNumerics, b: &JobNumerics) -> bool {
+    let ratios: [f64; 3] = std::array::from_fn(|axis| a.elements[axis] as f64 / b.elements[axis] as f64);
+    let (low, high) =
+        (ratios.into_iter().fold(f64::INFINITY, f64::min), ratios.into_iter().fold(0.0, f64::max));
+    let same_mesh =
+        JobNumerics { elements: a.elements, element_size_m: a.element_size_m, nodes: a.nodes, ..b.clone() };
+    high <= ALIKE * low && same_mesh == *a
+}
+
+fn differs_in_step_only(a: &JobNumerics, b: &JobNumerics) -> bool {
+    let fraction = a.safety_factor.is_some() == b.safety_factor.is_some();
+    fraction && JobNumerics { safety_factor: a.safety_factor, ..b.clone() } == *a
+}

@@ -1,0 +1,109 @@
+//! The limit of a figure under refinement, where the observed order is clean (Richardson 1911; Roache 1998).
+//!
+//! Three levels with sizes s₁ > s₂ > s₃ and figures q = q₀ + a sᵖ give the order p from
+//! (q₁ − q₂)/(q₂ − q₃) = (s₁ᵖ − s₂ᵖ)/(s₂ᵖ − s₃ᵖ), and the limit q₀ = q₃ − (q₂ − q₃)/((s₂/s₃)ᵖ − 1).
+//!
+//! The order is **clean** when there are at least three levels; the differences between the finest three have
+//! one sign and exceed twice their standard error; the order is within 0.5 … 3; and, with a fourth level, the
+//! order of the three coarser of the last four differs by at most 0.5. Then the uncertainty of the limit is the
+//! size of the correction. Otherwise the finest figure stands, with the size of the last difference.
+
+/// A figure at one level of refinement.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Level {
+    /// Element size or time step, in any unit.
+    pub size: f64,
+    /// The figure.
+    pub value: f64,
+    /// Its standard error.
+    pub standard_error: f64,
+}
+
+/// What refinement says about a figure.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Limit {
+    /// The extrapolated figure, or that of the finest level.
+    pub value: f64,
+    /// How far the truth may be from it.
+    pub uncertainty: f64,
+    /// The order, or why there is none.
+    pub order: Result<f64, Unclean>,
+}
+
+/// Why a sequence is not extrapolated.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Unclean {
+    /// Fewer than three levels.
+    TooFewLevels,
+    /// The last difference is within twice its standard error: converged as far as can be seen.
+    WithinNoise,
+    /// The figure goes up and down.
+    NotMonotone,
+    /// The differences do not shrink, or shrink at an order outside of 0.5 … 3.
+    OrderOutOfRange(Option<f64>),
+    /// The orders from two sets of three levels differ by more than 0.5.
+    OrderNotStable(f64, f64),
+}
+
+impl Unclean {
+    /// The name in CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::TooFewLevels => "too_few_levels",
+            Self::WithinNoise => "within_noise",
+            Self::NotMonotone => "not_monotone",
+            Self::OrderOutOfRange(_) => "order_out_of_range",
+            Self::OrderNotStable(..) => "order_not_stable",
+        }
+    }
+}
+
+/// Orders that a scheme of second order with events of first order can have.
+const ORDERS: std::ops::RangeInclusive<f64> = 0.5..=3.0;
+/// Largest difference of two orders that count as one.
+const STABLE: f64 = 0.5;
+
+/// The limit of `levels`, coarsest first; `None` without two of them.
+pub fn limit(levels: &[Level]) -> Option<Limit> {
+    let [.., before, finest] = levels else { return None };
+    let last = before.value - finest.value;
+    let unclean = |reason| Some(Limit { value: finest.value, uncertainty: last.abs(), order: Err(reason) });
+    let [.., coarse, middle, fine] = levels else { return unclean(Unclean::TooFewLevels) };
+    if last.abs() <= 2.0 * before.standard_error.hypot(finest.standard_error) {
+        return unclean(Unclean::WithinNoise);
+    }
+    if (coarse.value - middle.value) * last <= 0.0 {
+        return unclean(Unclean::NotMonotone);
+    }
+    let order = match observed_order([coarse, middle, fine]) {
+        Some(order) if ORDERS.contains(&order) => order,
+        other => return unclean(Unclean::OrderOutOfRange(other)),
+    };
+    if let [.., first, second, third, _] = levels {
+        match observed_order([first, second, third]) {
+            Some(earlier) if (earlier - order).abs() <= STABLE => {}
+            Some(earlier) => return unclean(Unclean::OrderNotStable(earlier, order)),
+            None => return unclean(Unclean::NotMonotone),
+        }
+    }
+    let correction = last / ((middle.size / fine.size).powf(order) - 1.0);
+    Some(Limit { value: fine.value - correction, uncertainty: correction.abs(), order: Ok(order) })
+}
+
+/// The order p > 0 of three levels, coarsest first; `None` if the differences have two signs or do not shrink.
+pub fn observed_order([coarse, middle, fine]: [&Level; 3]) -> Option<f64> {
+    let ratio = (coarse.value - middle.value) / (middle.value - fine.value);
+    let (a, b) = (coarse.size / fine.size, middle.size / fine.size);
+    // Grows with p from ln(a/b)/ln b at p = 0.
+    let expected = |p: f64| (a.powf(p) - b.powf(p)) / (b.powf(p) - 1.0);
+    let (mut low, mut high) = (1.0e-3, 20.0);
+    if !(ratio > expected(low) && ratio < expected(high)) {
+        return None;
+    }
+    // 60 halvings: the interval is then a unit in the last place.
+    for _ in 0..60 {
+        let p = 0.5 * (low + high);
+        if expected(p) < ratio { low = p } else { high = p }
+    }
+    Some(0.5 * (low + high))
+}

@@ -1,0 +1,86 @@
+//! Errors and costs of the jobs of a case.
+
+use super::case::DoneJob;
+use super::front::on_front;
+use super::reference::{self, FREQUENCY, MU_STAR, Reference};
+
+/// How wrong a job is and what it costs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Score {
+    /// (μ* − reference) / reference.
+    pub mu_star_error: f64,
+    /// Smallest relative error of μ* that can be told from none: √(se² + se_ref²) + u over the reference.
+    pub mu_star_resolution: f64,
+    /// (f − reference) / reference; none where one of them has no frequency.
+    pub frequency_error: Option<f64>,
+    /// Smallest relative error of the frequency that can be told from none.
+    pub frequency_resolution: Option<f64>,
+    /// Largest absolute difference of the three shares.
+    pub shares_error: f64,
+    /// Smallest such difference that can be told from none.
+    pub shares_resolution: f64,
+    /// Nodes × steps.
+    pub node_steps: f64,
+    /// Solver time [s].
+    pub wall_s: Option<f64>,
+    /// On the Pareto front of error and solver time.
+    pub on_wall_front: bool,
+    /// On the Pareto front of error and node-steps.
+    pub on_node_step_front: bool,
+}
+
+impl Score {
+    /// Whether the error of μ* can be told from none.
+    pub fn is_resolved(&self) -> bool {
+        self.mu_star_error.abs() > self.mu_star_resolution
+    }
+
+    /// The error of μ* that can be claimed: the larger of error and resolution.
+    pub fn claimed_error(&self) -> f64 {
+        self.mu_star_error.abs().max(self.mu_star_resolution)
+    }
+}
+
+/// The scores of a case's jobs.
+pub(super) fn scores(jobs: &[DoneJob], reference: &Reference) -> Vec<Score> {
+    let mut scores: Vec<Score> = jobs.iter().map(|job| score(job, reference)).collect();
+    let costs = |cost: fn(&Score) -> f64| -> Vec<(f64, f64)> {
+        scores.iter().map(|score| (cost(score), score.claimed_error())).collect()
+    };
+    let by_wall = on_front(&costs(|score| score.wall_s.unwrap_or(f64::NAN)));
+    let by_node_steps = on_front(&costs(|score| score.node_steps));
+    for (i, score) in scores.iter_mut().enumerate() {
+        score.on_wall_front = by_wall[i];
+        score.on_node_step_front = by_node_steps[i];
+    }
+    scores
+}
+
+fn score(job: &DoneJob, reference: &Reference) -> Score {
+    let found = reference::figures(job);
+    // Signed difference and the smallest one that can be told from none.
+    let difference = |figure: usize| {
+        let target = reference.targets[figure]?;
+        let noise = reference::standard_error(job, figure).hypot(target.standard_error);
+        Some((found[figure]? - target.value, noise + target.uncertainty.unwrap_or(0.0), target.value))
+    };
+    let relative = |figure| {
+        difference(figure).map(|(error, resolution, value)| (error / value, (resolution / value).abs()))
+    };
+    let shares: Vec<_> = (FREQUENCY + 1..reference::FIGURES).filter_map(difference).collect();
+    let largest = |part: fn(&(f64, f64, f64)) -> f64| shares.iter().map(part).fold(0.0, f64::max);
+    let (mu_star_error, mu_star_resolution) = relative(MU_STAR).unwrap_or((f64::NAN, f64::NAN));
+    let frequency = relative(FREQUENCY);
+    Score {
+        mu_star_error,
+        mu_star_resolution,
+        frequency_error: frequency.map(|(error, _)| error),
+        frequency_resolution: frequency.map(|(_, resolution)| resolution),
+        shares_error: largest(|(error, ..)| error.abs()),
+        shares_resolution: largest(|(_, resolution, _)| *resolution),
+        node_steps: job.node_steps(),
+        wall_s: job.row.wall_s,
+        on_wall_front: false,
+        on_node_step_front: false,
+    }
+}

@@ -1,0 +1,69 @@
+//! The numerics of a job in words, and which of a grid's parameters they are.
+
+use crate::report::row::{JobNumerics, Row};
+use crate::report::value;
+
+/// Grid parameters that change the numerics and not the physical case.
+const NUMERICS: [&str; 16] = [
+    "elements",
+    "nx",
+    "ny",
+    "nz",
+    "beta2",
+    "beta_r_s",
+    "safety_factor",
+    "time_step_s",
+    "limit_s",
+    "stop_early",
+    "average_last_fraction",
+    "cycles",
+    "tolerance",
+    "drift_tolerance",
+    "regime_threshold",
+    "decay_observation_s",
+];
+
+/// The physical parameters of a job in words, ω and μ first.
+pub(super) fn physics_in_words(row: &Row) -> String {
+    [("omega_rpm", row.parameter("omega_rpm")), ("mu", row.parameter("mu"))]
+        .into_iter()
+        .chain(
+            row.further()
+                .filter(|(name, _)| !NUMERICS.contains(name))
+                .map(|(name, value)| (name, value.clone())),
+        )
+        .map(|(name, value)| value::assignment(name, &value))
+        .collect::<Vec<_>>()
+        .join(", ")
+}
+
+/// Names of the settings, in the order of [`texts`].
+pub(super) const NAMES: [&str; 10] = [
+    "elements",
+    "safety factor",
+    "β₂",
+    "β_R [s]",
+    "stop early",
+    "limit [s]",
+    "averaged",
+    "cycles",
+    "tolerance",
+    "drift tolerance",
+];
+
+/// The settings of a job as text.
+pub(super) fn texts(numerics: &JobNumerics) -> [String; 10] {
+    let [nx, ny, nz] = numerics.elements;
+    [
+        format!("{nx}×{ny}×{nz}"),
+        numerics.safety_factor.map_or_else(|| "step given".to_owned(), value::rounded),
+        value::rounded(numerics.beta2),
+        value::rounded(numerics.beta_r_s),
+        if numerics.stop_early { "yes" } else { "no" }.to_owned(),
+        value::rounded(numerics.limit_s),
+        value::rounded(numerics.average_last_fraction),
+        numerics.cycles.to_string(),
+        value::rounded(numerics.tolerance),
+        value::rounded(numerics.drift_tolerance),
+    ]
+}

@@ -1,0 +1,92 @@
+//! What was measured of the presets: data written by `scripts/accuracy.py`, never by hand.
+
+use serde::{Deserialize, Serialize};
+
+/// Errors of all presets, and where they were measured.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Evidence {
+    /// The program that wrote it.
+    pub written_by: String,
+    /// `solver::VERSION` of the program that was measured.
+    pub solver_version: String,
+    /// The scene in words.
+    pub scene: String,
+    /// Local friction coefficient of all cases.
+    pub mu: f64,
+    /// What the errors are taken from.
+    pub reference: ReferenceEvidence,
+    /// One entry a preset, in the order of [`Preset::ALL`](super::Preset::ALL).
+    pub presets: Vec<PresetEvidence>,
+}
+
+/// What the errors are taken from.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ReferenceEvidence {
+    /// Number of elements in x, y and z.
+    pub elements: [usize; 3],
+    /// Time step as a fraction of the stability limit.
+    pub safety_factor: f64,
+    /// The reference's own uncertainty: the largest relative change of μ* from the next coarser mesh.
+    pub mu_star_uncertainty: f64,
+    /// Its results.
+    pub cases: Vec<CaseEvidence>,
+}
+
+/// One speed.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct CaseEvidence {
+    /// Disk speed ω [rpm].
+    pub omega_rpm: f64,
+    /// Macroscopic friction coefficient μ*.
+    pub mu_star: f64,
+    /// Frequency [Hz].
+    pub frequency_hz: f64,
+    /// Shares of stick, slip and separation.
+    pub shares: [f64; 3],
+}
+
+/// What was measured of one preset.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct PresetEvidence {
+    /// Name of the preset.
+    pub name: String,
+    /// Elements in x, y and z on the measured scene.
+    pub elements: [usize; 3],
+    /// Time step as a fraction of the stability limit.
+    pub safety_factor: f64,
+    /// Tolerance of the periodic state.
+    pub tolerance: f64,
+    /// Drift of the periodic state.
+    pub drift_tolerance: f64,
+    /// Its results.
+    pub cases: Vec<CaseEvidence>,
+    /// Largest relative error of μ*.
+    pub mu_star_error: f64,
+    /// Largest relative error of the frequency.
+    pub frequency_error: f64,
+    /// Largest absolute error of a share.
+    pub shares_error: f64,
+    /// Nodes × steps of all cases over those of the standard preset.
+    pub relative_cost: f64,
+}
+
+const MEASURED: &str = include_str!("../presets.json");
+
+impl Evidence {
+    /// The evidence that this version was built with.
+    ///
+    /// # Panics
+    /// If the file is not what the script writes; a test reads it.
+    pub fn measured() -> Self {
+        serde_json::from_str(MEASURED).expect("presets.json is written by scripts/accuracy.py")
+    }
+
+    /// What was measured of a preset.
+    pub fn of(&self, preset: super::Preset) -> Option<&PresetEvidence> {
+        self.presets.iter().find(|entry| entry.name == preset.name())
+    }
+}
