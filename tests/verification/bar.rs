@@ -33,8 +33,7 @@ fn discrete_spectrum_is_exact() {
         for node in 0..model.mesh().node_count() {
             phi[3 * node + 2] = (phase * model.mesh().grid_position(node)[2] as f64).cos();
         }
-        let mut force = vec![0.0; phi.len()];
-        model.operator().apply::<1>(&phi, &mut force);
+        let force = model.stiffness_times(&phi);
         let largest = (2.0 * wave_speed(&model) / h).powi(2);
         for node in 0..model.mesh().node_count() {
             let acceleration = force[3 * node + 2] / model.masses_kg()[node];

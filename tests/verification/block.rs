@@ -11,6 +11,7 @@ use crate::common::{COLUMN_AREA_M2, COLUMN_HEIGHT_M, advance, all_of, column_mes
 use tribosweep::solver::boundary::LoadShare;
 use tribosweep::solver::constraints::Constraints;
 use tribosweep::solver::contact::ContactState;
+use tribosweep::solver::field::Field;
 use tribosweep::solver::material::Material;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
 
@@ -57,7 +58,7 @@ fn pressed(model: &Model, speed: f64) -> State<1> {
 
 /// Position [m] and velocity [m/s] of the centre of mass in y.
 fn centre(model: &Model, state: &State<1>) -> (f64, f64) {
-    let mean = |field: &[f64]| {
+    let mean = |field: &Field<1>| {
         let sum: f64 = (0..model.mesh().node_count()).map(|n| model.masses_kg()[n] * field[3 * n + 1]).sum();
         sum / mass_kg()
     };

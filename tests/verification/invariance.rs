@@ -3,6 +3,7 @@
 use tribosweep::solver::boundary;
 use tribosweep::solver::disk;
 use tribosweep::solver::energy::EnergyLedger;
+use tribosweep::solver::field::Field;
 use tribosweep::solver::material::Material;
 use tribosweep::solver::mesh::BlockMesh;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State, Stiffness, TimeStep, step};
@@ -31,7 +32,9 @@ fn scaling_load_and_speed_by_powers_of_two_scales_the_bits() {
             step(&model, &[DRIVE], &mut plain);
             step(&model, &[scaled_drive], &mut scaled);
         }
-        let same = |a: &[f64], b: &[f64]| a.iter().zip(b).all(|(a, b)| (scale * a).to_bits() == b.to_bits());
+        let same = |a: &Field<1>, b: &Field<1>| {
+            a.values().zip(b.values()).all(|(a, b)| (scale * a).to_bits() == b.to_bits())
+        };
         assert!(same(&plain.u, &scaled.u) && same(&plain.p, &scaled.p), "fields, scale {scale}");
         assert_eq!(plain.contacts.state, scaled.contacts.state, "states, scale {scale}");
         for (a, b) in plain.contacts.force_n.iter().zip(&scaled.contacts.force_n) {
@@ -77,7 +80,7 @@ fn mirrored_clamps_give_mirrored_motion() {
         step(&outer, &[drive], &mut b);
     }
     let mesh = inner.mesh();
-    let scale = a.u.iter().fold(0.0_f64, |m, u| m.max(u.abs()));
+    let scale = a.u.values().fold(0.0_f64, |m, u| m.max(u.abs()));
     let mut sideways: f64 = 0.0;
     for node in 0..mesh.node_count() {
         let [i, j, k] = mesh.grid_position(node);
@@ -121,7 +124,7 @@ fn lanes_are_independent_to_the_last_bit() {
             ledger_alone.after_step(&model, &[drives[lane]], &alone);
         }
         assert_eq!(ledger_alone.energies(0), ledger.energies(lane), "energies of lane {lane}");
-        for (i, u) in alone.u.iter().enumerate() {
+        for (i, u) in alone.u.values().enumerate() {
             assert_eq!(u.to_bits(), together.u[4 * i + lane].to_bits(), "u[{i}] of lane {lane}");
             assert_eq!(alone.p[i].to_bits(), together.p[4 * i + lane].to_bits(), "p[{i}] of lane {lane}");
         }
@@ -148,7 +151,7 @@ fn a_change_of_bits_raises_the_version() {
     for _ in 0..2000 {
         step(&model, &[DRIVE], &mut state);
     }
-    let bits: Vec<u8> = state.u.iter().chain(&state.p).flat_map(|value| value.to_le_bytes()).collect();
+    let bits: Vec<u8> = state.u.values().chain(state.p.values()).flat_map(f64::to_le_bytes).collect();
     let found = (tribosweep::solver::VERSION, blake3::hash(&bits).to_hex()[..16].to_owned());
     assert_eq!(found, ("1", "20ea3f919eb2da22".to_owned()), "raise solver::VERSION and write its bits here");
 }

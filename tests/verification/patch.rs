@@ -63,7 +63,9 @@ fn uniform_pressure_stays_uniform() {
         let model = model(confined, 0.0);
         let mut state = State::at_rest(&model);
         for node in 0..model.mesh().node_count() {
-            state.u[3 * node..3 * node + 3].copy_from_slice(&exact(&model, node, confined));
+            for (c, value) in exact(&model, node, confined).into_iter().enumerate() {
+                state.u[3 * node + c] = value;
+            }
         }
         for n in 1..=200 {
             advance(&model, &DRIVE, &mut state, 1);
