@@ -10,7 +10,7 @@
 
 use super::field::{Block, Field, WIDTH};
 use super::model::Model;
-use super::operator::{Pass, Scratch, Spot, TensorOperator};
+use super::operator::{Pass, Scratch, Spot, TensorOperator, load_all};
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
 /// What a step multiplies forces and velocities with.
@@ -153,19 +153,15 @@ struct Advance<'a, const L: usize> {
 impl<S: Simd, const L: usize> Pass<S> for Advance<'_, L> {
     #[inline(always)]
     fn input(&self, simd: S, at: usize) -> [f64x8<S>; 3] {
-        let (u, p) = (&self.u[at].0, &self.p[at].0);
-        let u = [0, 1, 2].map(
-            #[inline(always)]
-            |c| f64x8::from_slice(simd, &u[c]),
-        );
-        if self.factors.beta_r_s == 0.0 {
-            return u;
+        let mut strained = load_all(simd, &self.u[at].0);
+        if self.factors.beta_r_s != 0.0 {
+            let beta_r = f64x8::splat(simd, self.factors.beta_r_s);
+            let p = load_all(simd, &self.p[at].0);
+            for c in 0..3 {
+                strained[c] += beta_r * p[c];
+            }
         }
-        let beta_r = f64x8::splat(simd, self.factors.beta_r_s);
-        [0, 1, 2].map(
-            #[inline(always)]
-            |c| u[c] + beta_r * f64x8::from_slice(simd, &p[c]),
-        )
+        strained
     }
 
     #[inline(always)]

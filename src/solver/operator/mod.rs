@@ -8,7 +8,7 @@ mod assembled;
 mod tensor;
 
 pub use assembled::AssembledOperator;
-pub use tensor::{Pass, Scratch, Spot, TensorOperator};
+pub use tensor::{Pass, Scratch, Spot, TensorOperator, load_all};
 
 use super::field::Field;
 

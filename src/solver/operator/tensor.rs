@@ -177,7 +177,7 @@ impl TensorOperator {
         for (i, plane) in scratch.plane.iter().enumerate() {
             let line = my * (mz - 1) + i / blocks;
             let spot = Spot { plane: mz - 1, line, along: i % blocks, at: line * blocks + i % blocks };
-            pass.output(simd, spot, plane.before.map(|row| f64x8::from_slice(simd, &row)));
+            pass.output(simd, spot, load_all(simd, &plane.before));
         }
     }
 
@@ -203,22 +203,23 @@ impl TensorOperator {
         }
         let on_face = outward(j, my) != 0.0 || outward(k, mz) != 0.0;
         let sums = &mut sums[j % 3][..blocks];
-        let skew = [self.skew[0], self.skew[0], self.skew[1]].map(|v| f64x8::splat(simd, v));
-        let edge = [self.edge[0], -self.edge[0], -self.edge[1]].map(|v| f64x8::splat(simd, v));
+        let skew = [self.skew[0], self.skew[0], self.skew[1]];
+        let edge = [self.edge[0], -self.edge[0], -self.edge[1]];
         for c in 0..3 {
+            let (skew, edge) = (f64x8::splat(simd, skew[c]), f64x8::splat(simd, edge[c]));
             let low = line[c][..numbers].as_chunks::<WIDTH>().0;
             let here = line[c][L..L + numbers].as_chunks::<WIDTH>().0;
             let high = line[c][2 * L..2 * L + numbers].as_chunks::<WIDTH>().0;
             for ((((low, here), high), ends), sums) in
                 low.iter().zip(here).zip(high).zip(ends.iter()).zip(sums.iter_mut())
             {
-                let [low, here, high] = [low, here, high].map(|row| f64x8::from_slice(simd, row));
+                let (low, here, high) = (load(simd, low), load(simd, here), load(simd, high));
                 let both = low + high;
-                let centre = f64x8::from_slice(simd, &ends.centre) * here;
-                let b = f64x8::from_slice(simd, &ends.outward) * here;
+                let centre = load(simd, &ends.centre) * here;
+                let b = load(simd, &ends.outward) * here;
                 ((centre + centre) + both).store_slice(&mut sums.m[c]);
                 (centre - both).store_slice(&mut sums.s[c]);
-                (skew[c] * (low - high) + edge[c] * b).store_slice(&mut sums.a[c]);
+                (skew * (low - high) + edge * b).store_slice(&mut sums.a[c]);
                 if on_face {
                     b.store_slice(&mut sums.b[c]);
                 }
@@ -260,63 +261,76 @@ impl TensorOperator {
             |present: bool, j: usize| if present { &sums[j % 3][..blocks] } else { &sums[ZEROS][..blocks] };
         let (low, here, high) = (line_of(j > 0, j + 2), line_of(true, j), line_of(j + 1 < my, j + 1));
         let plane = &mut plane[j * blocks..(j + 1) * blocks];
-        let vector = |value: f64| f64x8::splat(simd, value);
-        let own = self.own.map(|row| row.map(vector));
-        let ratio = vector(self.skew[1] / self.skew[0]);
-        let skew_yz = vector(self.skew[2]);
-        let (centre_y, centre_z) = (vector(if Y { 1.0 } else { 2.0 }), vector(if Z { 1.0 } else { 2.0 }));
+        let zero = f64x8::splat(simd, 0.0);
+        let mut own = [[zero; 3]; 3];
+        for c in 0..3 {
+            for d in 0..3 {
+                own[c][d] = f64x8::splat(simd, self.own[c][d]);
+            }
+        }
+        let ratio = f64x8::splat(simd, self.skew[1] / self.skew[0]);
+        let skew_yz = f64x8::splat(simd, self.skew[2]);
+        let (centre_y, centre_z) =
+            (f64x8::splat(simd, if Y { 1.0 } else { 2.0 }), f64x8::splat(simd, if Z { 1.0 } else { 2.0 }));
         let double_y = centre_y + centre_y;
         let (out_y, out_z) = (outward(j, my), outward(k, mz));
         for (along, (((low, here), high), plane)) in low.iter().zip(here).zip(high).zip(plane).enumerate() {
-            let load = |row: &[f64; WIDTH]| f64x8::from_slice(simd, row);
-            let mut p = [vector(0.0); 3];
-            let mut b = [vector(0.0); 3];
+            let mut p = [zero; 3];
+            let mut b = [zero; 3];
             for c in 0..3 {
-                let centre = centre_y * load(&here.m[c]);
-                let both = load(&low.m[c]) + load(&high.m[c]);
+                let centre = centre_y * load(simd, &here.m[c]);
+                let both = load(simd, &low.m[c]) + load(simd, &high.m[c]);
                 let sy_m = centre - both;
                 let my_m = (centre + centre) + both;
-                let my_s = double_y * load(&here.s[c]) + (load(&low.s[c]) + load(&high.s[c]));
+                let my_s =
+                    double_y * load(simd, &here.s[c]) + (load(simd, &low.s[c]) + load(simd, &high.s[c]));
                 p[c] = own[c][0] * my_s + own[c][1] * sy_m;
                 b[c] = own[c][2] * my_m;
             }
-            p[0] += load(&low.a[1]) - load(&high.a[1]);
-            p[1] += load(&low.a[0]) - load(&high.a[0]);
-            let my_a = |c: usize| double_y * load(&here.a[c]) + (load(&low.a[c]) + load(&high.a[c]));
-            let from_x = ratio * my_a(0);
-            let mut from_y = skew_yz * (load(&low.m[1]) - load(&high.m[1]));
-            let mut e = [my_a(2), skew_yz * (load(&low.m[2]) - load(&high.m[2])), vector(0.0)];
+            p[0] += load(simd, &low.a[1]) - load(simd, &high.a[1]);
+            p[1] += load(simd, &low.a[0]) - load(simd, &high.a[0]);
+            let from_x = ratio * spread(simd, double_y, &low.a[0], &here.a[0], &high.a[0]);
+            let mut from_y = skew_yz * (load(simd, &low.m[1]) - load(simd, &high.m[1]));
+            let mut e = [
+                spread(simd, double_y, &low.a[2], &here.a[2], &high.a[2]),
+                skew_yz * (load(simd, &low.m[2]) - load(simd, &high.m[2])),
+                zero,
+            ];
             if Y {
-                let (share, corner) = (vector(out_y * self.share), vector(out_y * self.corner[0]));
-                p[0] += corner * load(&here.b[1]) - share * load(&here.a[1]);
-                p[1] += corner * load(&here.b[0]) + share * load(&here.a[0]);
-                let edge = vector(out_y * self.edge[2]);
-                from_y += edge * load(&here.m[1]);
-                e[1] -= edge * load(&here.m[2]);
+                let (share, corner) =
+                    (f64x8::splat(simd, out_y * self.share), f64x8::splat(simd, out_y * self.corner[0]));
+                p[0] += corner * load(simd, &here.b[1]) - share * load(simd, &here.a[1]);
+                p[1] += corner * load(simd, &here.b[0]) + share * load(simd, &here.a[0]);
+                let edge = f64x8::splat(simd, out_y * self.edge[2]);
+                from_y += edge * load(simd, &here.m[1]);
+                e[1] -= edge * load(simd, &here.m[2]);
             }
             e[2] = from_x + from_y;
-            let mut centre: [f64x8<S>; 3] = std::array::from_fn(|c| {
+            let mut centre = [zero; 3];
+            for c in 0..3 {
                 let twice = centre_z * p[c];
-                (twice + twice) + centre_z * b[c]
-            });
+                centre[c] = (twice + twice) + centre_z * b[c];
+            }
             if Z {
-                let (share, corner) = (vector(out_z * self.share), vector(out_z * self.corner[1]));
-                let my_b = |c: usize| double_y * load(&here.b[c]) + (load(&low.b[c]) + load(&high.b[c]));
-                centre[0] += corner * my_b(2) - share * e[0];
+                let (share, corner) =
+                    (f64x8::splat(simd, out_z * self.share), f64x8::splat(simd, out_z * self.corner[1]));
+                centre[0] +=
+                    corner * spread(simd, double_y, &low.b[2], &here.b[2], &high.b[2]) - share * e[0];
                 centre[1] -= share * e[1];
-                centre[2] += corner * my_b(0) + share * e[2];
+                centre[2] +=
+                    corner * spread(simd, double_y, &low.b[0], &here.b[0], &high.b[0]) + share * e[2];
                 if Y {
-                    let corner = vector(out_z * out_y * self.corner[2]);
-                    centre[1] += corner * load(&here.m[2]);
-                    centre[2] += corner * load(&here.m[1]);
+                    let corner = f64x8::splat(simd, out_z * out_y * self.corner[2]);
+                    centre[1] += corner * load(simd, &here.m[2]);
+                    centre[2] += corner * load(simd, &here.m[1]);
                 }
             }
-            let mut below = [vector(0.0); 3];
+            let mut below = [zero; 3];
             for c in 0..3 {
                 let level = p[c] - b[c];
                 if k > 0 {
-                    below[c] = load(&plane.before[c]) + (level - e[c]);
-                    centre[c] += load(&plane.ahead[c]);
+                    below[c] = load(simd, &plane.before[c]) + (level - e[c]);
+                    centre[c] += load(simd, &plane.ahead[c]);
                 }
                 centre[c].store_slice(&mut plane.before[c]);
                 (level + e[c]).store_slice(&mut plane.ahead[c]);
@@ -329,6 +343,30 @@ impl TensorOperator {
     }
 }
 
+/// A row of numbers as a vector.
+#[inline(always)]
+fn load<S: Simd>(simd: S, row: &[f64; WIDTH]) -> f64x8<S> {
+    f64x8::from_slice(simd, row)
+}
+
+/// Three rows as vectors. (`map` on arrays is a call, which vectors do not survive.)
+#[inline(always)]
+pub fn load_all<S: Simd>(simd: S, rows: &[[f64; WIDTH]; 3]) -> [f64x8<S>; 3] {
+    [load(simd, &rows[0]), load(simd, &rows[1]), load(simd, &rows[2])]
+}
+
+/// centre·here + (low + high).
+#[inline(always)]
+fn spread<S: Simd>(
+    simd: S,
+    centre: f64x8<S>,
+    low: &[f64; WIDTH],
+    here: &[f64; WIDTH],
+    high: &[f64; WIDTH],
+) -> f64x8<S> {
+    centre * load(simd, here) + (load(simd, low) + load(simd, high))
+}
+
 struct Product<'a> {
     x: &'a [Block],
     y: &'a mut [Block],
@@ -337,7 +375,7 @@ struct Product<'a> {
 impl<S: Simd> Pass<S> for Product<'_> {
     #[inline(always)]
     fn input(&self, simd: S, at: usize) -> [f64x8<S>; 3] {
-        self.x[at].0.map(|row| f64x8::from_slice(simd, &row))
+        load_all(simd, &self.x[at].0)
     }
 
     #[inline(always)]
