@@ -21,7 +21,9 @@
 //! the sample times `interval`. With `interval` = 1 the balance closes to rounding.
 
 use super::contact::ContactState;
+use super::field::{Field, WIDTH};
 use super::model::Model;
+use super::operator::Scratch;
 use super::state::{Drive, State};
 use super::step::factors;
 
@@ -108,12 +110,13 @@ pub struct EnergyLedger<const L: usize> {
     sums: [LaneSums; L],
     energies: [Energies; L],
     previous_increment_m: Vec<[[f64; L]; 3]>,
-    u: Vec<f64>,
-    p: Vec<f64>,
-    acceleration: Vec<f64>,
-    previous_acceleration: Vec<f64>,
-    ku: Vec<f64>,
-    kp: Vec<f64>,
+    u: Field<L>,
+    p: Field<L>,
+    acceleration: Field<L>,
+    previous_acceleration: Field<L>,
+    ku: Field<L>,
+    kp: Field<L>,
+    scratch: Scratch<L>,
 }
 
 impl<const L: usize> EnergyLedger<L> {
@@ -123,7 +126,7 @@ impl<const L: usize> EnergyLedger<L> {
     /// If `interval` is zero.
     pub fn new(model: &Model, interval: u64) -> Self {
         assert!(interval > 0, "an interval of at least one step");
-        let field = || vec![0.0; 3 * model.mesh().node_count() * L];
+        let field = || Field::zeros(model.mesh());
         Self {
             interval,
             sums: [LaneSums::default(); L],
@@ -135,6 +138,7 @@ impl<const L: usize> EnergyLedger<L> {
             previous_acceleration: field(),
             ku: field(),
             kp: field(),
+            scratch: Scratch::new(model.mesh()),
         }
     }
 
@@ -151,8 +155,8 @@ impl<const L: usize> EnergyLedger<L> {
     /// Keeps what the audit of the coming step needs of the state at `t_n`.
     pub fn before_step(&mut self, model: &Model, state: &State<L>) {
         if self.keeps(model, state.step) {
-            self.u.copy_from_slice(&state.u);
-            self.p.copy_from_slice(&state.p);
+            self.u.clone_from(&state.u);
+            self.p.clone_from(&state.p);
         }
     }
 
@@ -222,35 +226,47 @@ impl<const L: usize> EnergyLedger<L> {
         let dt = model.time_step_s();
         let (u_factor, _) = factors(model.beta2(), done);
         let scale = 1.0 / (u_factor * dt * dt);
-        for (i, a) in self.acceleration.iter_mut().enumerate() {
-            *a = (state.u[i] - self.u[i] - dt * self.p[i]) * scale;
+        let after = state.u.blocks().iter().zip(self.u.blocks()).zip(self.p.blocks());
+        for (a, ((after, u), p)) in self.acceleration.blocks_mut().iter_mut().zip(after) {
+            for c in 0..3 {
+                for i in 0..WIDTH {
+                    a.0[c][i] = (after.0[c][i] - u.0[c][i] - dt * p.0[c][i]) * scale;
+                }
+            }
         }
     }
 
     /// Evaluates the energies at `t_n` and returns this step's damping work over the increment after `t_n`.
     fn audit(&mut self, model: &Model, state: &State<L>, done: u64) -> [f64; L] {
         let (dt, gamma, beta_r) = (model.time_step_s(), model.beta2(), model.beta_r_s());
-        model.operator().apply::<L>(&self.u, &mut self.ku);
+        model.operator().product(&self.u, &mut self.ku, &mut self.scratch);
         if beta_r > 0.0 {
-            model.operator().apply::<L>(&self.p, &mut self.kp);
+            model.operator().product(&self.p, &mut self.kp, &mut self.scratch);
         }
         let mut kinetic = [0.0; L];
         let mut elastic = [0.0; L];
         let mut damping = [Work::default(); L];
         let mut inertial_jump = [0.0; L];
         let velocity_gain = if done == 0 { 0.0 } else { gamma * dt };
-        for i in 0..self.u.len() {
-            let (l, mass) = (i % L, model.masses_kg()[i / (3 * L)]);
-            let (a, a_before) = (self.acceleration[i], self.previous_acceleration[i]);
-            let v = self.p[i] + velocity_gain * a;
-            kinetic[l] += 0.5 * mass * (v * v - 0.5 * gamma * dt * dt * a * a);
-            elastic[l] += 0.5 * self.u[i] * self.ku[i];
-            damping[l].after_j += beta_r * self.kp[i] * (state.u[i] - self.u[i]);
-            if done > 0 {
-                let increment = dt * self.p[i] + (gamma - 0.5) * dt * dt * a_before;
-                damping[l].before_j += beta_r * self.kp[i] * increment;
-                let jump = a - a_before;
-                inertial_jump[l] += mass * jump * jump;
+        // Node by node: sums must not depend on how lanes share a block.
+        for (node, &mass) in model.masses_kg().iter().enumerate() {
+            let place = self.u.place(node);
+            for c in 0..3 {
+                let (u, ku, after) = (self.u.at(place, c), self.ku.at(place, c), state.u.at(place, c));
+                let (p, kp) = (self.p.at(place, c), self.kp.at(place, c));
+                let (a, a_before) = (self.acceleration.at(place, c), self.previous_acceleration.at(place, c));
+                for l in 0..L {
+                    let v = p[l] + velocity_gain * a[l];
+                    kinetic[l] += 0.5 * mass * (v * v - 0.5 * gamma * dt * dt * a[l] * a[l]);
+                    elastic[l] += 0.5 * u[l] * ku[l];
+                    damping[l].after_j += beta_r * kp[l] * (after[l] - u[l]);
+                    if done > 0 {
+                        let increment = dt * p[l] + (gamma - 0.5) * dt * dt * a_before[l];
+                        damping[l].before_j += beta_r * kp[l] * increment;
+                        let jump = a[l] - a_before[l];
+                        inertial_jump[l] += mass * jump * jump;
+                    }
+                }
             }
         }
         let samples = self.interval as f64;
@@ -282,13 +298,24 @@ impl<const L: usize> EnergyLedger<L> {
     /// ΔuKΔu of the step before `t_n`; overwrites the product with p, which is no longer needed.
     fn elastic_jump(&mut self, model: &Model) -> [f64; L] {
         let (dt, gamma) = (model.time_step_s(), model.beta2());
-        for i in 0..self.u.len() {
-            self.ku[i] = dt * self.p[i] + (gamma - 0.5) * dt * dt * self.previous_acceleration[i];
+        let before = self.p.blocks().iter().zip(self.previous_acceleration.blocks());
+        for (increment, (p, a)) in self.ku.blocks_mut().iter_mut().zip(before) {
+            for c in 0..3 {
+                for i in 0..WIDTH {
+                    increment.0[c][i] = dt * p.0[c][i] + (gamma - 0.5) * dt * dt * a.0[c][i];
+                }
+            }
         }
-        model.operator().apply::<L>(&self.ku, &mut self.kp);
+        model.operator().product(&self.ku, &mut self.kp, &mut self.scratch);
         let mut jump = [0.0; L];
-        for i in 0..self.u.len() {
-            jump[i % L] += self.ku[i] * self.kp[i];
+        for node in 0..model.masses_kg().len() {
+            let place = self.ku.place(node);
+            for c in 0..3 {
+                let (increment, force) = (self.ku.at(place, c), self.kp.at(place, c));
+                for l in 0..L {
+                    jump[l] += increment[l] * force[l];
+                }
+            }
         }
         jump
     }

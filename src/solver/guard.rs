@@ -2,6 +2,7 @@
 
 use super::energy::Energies;
 use super::error::SolverError;
+use super::field::Field;
 use super::model::Model;
 use super::state::{Drive, State};
 
@@ -53,7 +54,7 @@ pub fn check<const L: usize>(
 /// # Errors
 /// [`SolverError::Diverged`] if one is not.
 pub fn check_finite<const L: usize>(model: &Model, state: &State<L>, lane: usize) -> Result<(), SolverError> {
-    let finite = |field: &[f64]| field.iter().skip(lane).step_by(L).all(|value| value.is_finite());
+    let finite = |field: &Field<L>| field.values().skip(lane).step_by(L).all(f64::is_finite);
     if finite(&state.u) && finite(&state.p) {
         Ok(())
     } else {

@@ -32,11 +32,14 @@ pub mod disk;
 pub mod element;
 pub mod energy;
 mod error;
+pub mod field;
 pub mod guard;
+mod integrate;
 pub mod material;
 pub mod mesh;
 pub mod model;
 pub mod operator;
+mod places;
 pub mod stability;
 pub mod state;
 pub mod step;
@@ -48,4 +51,4 @@ pub use step::step;
 
 /// Version of everything that can change a result's bits; part of every job's key. Raise it with
 /// any change of the scheme, the operator's rounding or the analysis.
-pub const VERSION: &str = "1";
+pub const VERSION: &str = "2";

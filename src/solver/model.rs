@@ -5,9 +5,10 @@ use super::constraints::{Constraints, Freedom};
 use super::disk::{self, SurfaceMotion};
 use super::element;
 use super::error::SolverError;
+use super::field::Field;
 use super::material::Material;
 use super::mesh::BlockMesh;
-use super::operator::{AssembledOperator, Operator, StencilOperator};
+use super::operator::{AssembledOperator, Operator, Scratch, TensorOperator};
 use super::stability;
 use crate::spec::{DiskKind, Numerics, Scene};
 
@@ -89,6 +90,8 @@ pub struct Model {
     ties: Vec<TiedGroup>,
     load: Vec<LoadShare>,
     slaves: Vec<SlaveNode>,
+    /// Planes of nodes, from the contact face upwards, with more to do than to follow their forces.
+    constrained_planes: Vec<bool>,
     beta2: f64,
     beta_r_s: f64,
     time_step_s: f64,
@@ -161,7 +164,7 @@ impl Model {
             Stiffness::Elastic => {
                 let element = element::stiffness(&material, mesh.element_size_m());
                 let bound = stability::omega_max_bound(&mesh, &element, material.density_kg_m3, &freedoms);
-                (Operator::Stencil(StencilOperator::assemble(&mesh, &element)), bound)
+                (Operator::Tensor(TensorOperator::new(&mesh, &material)), bound)
             }
             Stiffness::Springs(springs) => {
                 if springs.dofs() != freedoms.len() {
@@ -195,7 +198,7 @@ impl Model {
             .enumerate()
             .map(|(dof, freedom)| if *freedom == Freedom::Fixed { 0.0 } else { 1.0 / masses_kg[dof / 3] })
             .collect();
-        let ties = constraints
+        let ties: Vec<TiedGroup> = constraints
             .ties
             .iter()
             .map(|tie| TiedGroup {
@@ -215,8 +218,21 @@ impl Model {
                 mobile: std::array::from_fn(|c| freedoms[3 * node + c] != Freedom::Fixed),
             })
             .collect();
+        let constrained_planes = {
+            let [_, _, planes] = mesh.nodes_per_axis();
+            // Springs are not advanced plane by plane.
+            let mut constrained = vec![matches!(operator, Operator::Assembled(_)); planes];
+            constrained[0] = true;
+            let loaded = load.iter().map(|share| share.dof);
+            let tied = ties.iter().flat_map(|tie| tie.dofs.iter().copied());
+            for dof in constraints.fixed.iter().copied().chain(loaded).chain(tied) {
+                constrained[mesh.grid_position(dof / 3)[2]] = true;
+            }
+            constrained
+        };
         Ok(Self {
             operator,
+            constrained_planes,
             material,
             masses_kg,
             inverse_mass,
@@ -246,6 +262,20 @@ impl Model {
     /// The stiffness operator.
     pub fn operator(&self) -> &Operator {
         &self.operator
+    }
+
+    /// K x of one lane, both in the order node → component: for looking at the operator, not for stepping.
+    ///
+    /// # Panics
+    /// If there are not three values per node.
+    pub fn stiffness_times(&self, x: &[f64]) -> Vec<f64> {
+        let mut product = Field::<1>::zeros(&self.mesh);
+        self.operator.product(
+            &Field::from_values(&self.mesh, x),
+            &mut product,
+            &mut Scratch::new(&self.mesh),
+        );
+        product.values().collect()
     }
 
     /// Lumped nodal masses [kg].
@@ -281,6 +311,10 @@ impl Model {
     /// The clamp's width [m] that the mesh gives.
     pub fn clamp_width_m(&self) -> f64 {
         self.clamp_width_m
+    }
+
+    pub(super) fn constrained_planes(&self) -> &[bool] {
+        &self.constrained_planes
     }
 
     pub(super) fn inverse_mass(&self) -> &[f64] {

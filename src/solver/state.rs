@@ -1,7 +1,11 @@
 //! What changes during a run: per-lane fields, and the drive of each lane.
 
 use super::contact::Contacts;
+use super::field::Field;
+use super::integrate::Integration;
 use super::model::Model;
+use super::operator::Scratch;
+use super::places::Places;
 
 /// What one lane is driven by; everything else of a job is shared through the [`Model`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -23,15 +27,15 @@ impl Drive {
     }
 }
 
-/// The state of `L` jobs at t_n. Fields are node → component → lane.
+/// The state of `L` jobs at t_n.
 #[derive(Debug, Clone)]
 pub struct State<const L: usize> {
     /// Index n of the next step; the fields are those at t_n = nΔt.
     pub step: u64,
     /// Displacements `u_n` [m].
-    pub u: Vec<f64>,
+    pub u: Field<L>,
     /// `p_n = v_{n−1} + (1−β₂)Δt a_{n−1}` [m/s]; at n = 0 the initial velocity.
-    pub p: Vec<f64>,
+    pub p: Field<L>,
     /// Contact during the step that led here.
     pub contacts: Contacts<L>,
     /// Sum of the clamp's reactions [N] on the pin at `t_{n−1}`, x, y and z.
@@ -53,15 +57,18 @@ pub struct LoadWork<const L: usize> {
     pub before_j: [f64; L],
 }
 
-/// Scratch fields of the step; nothing in them survives it.
+/// Scratch of the step; nothing in it survives it.
 #[derive(Debug, Clone)]
 pub(super) struct Workspace<const L: usize> {
-    /// u + β_R p.
-    pub strained: Vec<f64>,
-    /// K (u + β_R p) − load.
-    pub residual: Vec<f64>,
+    /// Scratch of the product with K.
+    pub product: Scratch<L>,
+    /// K (u + β_R p) − load on the constrained planes.
+    pub residual: Field<L>,
+    /// What moves the nodes.
+    pub integration: Integration<L>,
+    pub places: Places,
     /// Displacements of the slave nodes at t_n.
-    pub slave_u: Vec<f64>,
+    pub slave_u: Vec<[[f64; L]; 3]>,
     /// New displacement and p of every tied group.
     pub tied: Vec<[(f64, f64); L]>,
     /// Σ share·u of the loaded degrees of freedom before and at t_n.
@@ -71,20 +78,22 @@ pub(super) struct Workspace<const L: usize> {
 impl<const L: usize> State<L> {
     /// At rest and undeformed.
     pub fn at_rest(model: &Model) -> Self {
-        let n = 3 * model.mesh().node_count() * L;
         let slaves = model.slaves().len();
+        let field = || Field::zeros(model.mesh());
         Self {
             step: 0,
-            u: vec![0.0; n],
-            p: vec![0.0; n],
+            u: field(),
+            p: field(),
             contacts: Contacts::separated(slaves),
             reaction_n: [[0.0; L]; 3],
             load_n: [0.0; L],
             load_work_j: LoadWork { after_j: [0.0; L], before_j: [0.0; L] },
             workspace: Workspace {
-                strained: vec![0.0; n],
-                residual: vec![0.0; n],
-                slave_u: vec![0.0; 3 * slaves * L],
+                product: Scratch::new(model.mesh()),
+                residual: field(),
+                places: Places::new::<L>(model, &field()),
+                integration: Integration::new(model),
+                slave_u: vec![[[0.0; L]; 3]; slaves],
                 tied: vec![[(0.0, 0.0); L]; model.ties().len()],
                 load_stroke_m: [[0.0; L]; 2],
             },

@@ -12,7 +12,11 @@
 //! At n = 0, p_0 is the initial velocity v_0 and the factors are ½ and 1−β₂: the half-force first step.
 
 use super::contact::rigid::{self, Prediction};
+use super::field::Field;
+use super::integrate::Factors;
 use super::model::Model;
+use super::operator::Operator;
+use super::places::Places;
 use super::state::{Drive, State};
 
 /// Factors of Δt² a in `u_{n+1}` and of Δt a in `p_{n+1}`.
@@ -22,119 +26,139 @@ pub(super) fn factors(beta2: f64, step: u64) -> (f64, f64) {
 
 /// Advances all lanes from `t_n` to `t_{n+1}`.
 pub fn step<const L: usize>(model: &Model, drives: &[Drive; L], state: &mut State<L>) {
-    let time_s = state.step as f64 * model.time_step_s();
+    let dt = model.time_step_s();
+    let time_s = state.step as f64 * dt;
     for l in 0..L {
         state.load_n[l] = drives[l].load_n(time_s);
     }
-    internal_forces(model, state);
-    apply_load(model, state);
-    collect_reactions(model, state);
-    for (slave, slave_node) in model.slaves().iter().enumerate() {
-        let (to, from) = (3 * L * slave, 3 * L * slave_node.node);
-        state.workspace.slave_u[to..to + 3 * L].copy_from_slice(&state.u[from..from + 3 * L]);
+    let work = &mut state.workspace;
+    for (old, &place) in work.slave_u.iter_mut().zip(&work.places.slaves) {
+        for c in 0..3 {
+            old[c] = *state.u.at(place, c);
+        }
+    }
+    if state.step == 0 {
+        work.load_stroke_m = [load_stroke(&work.places, &state.u); 2];
     }
     let (u_factor, p_factor) = factors(model.beta2(), state.step);
-    predict(model, state, u_factor, p_factor);
+    let factors = Factors {
+        time_step_s: dt,
+        beta_r_s: model.beta_r_s(),
+        u_scale: u_factor * dt * dt,
+        p_scale: p_factor * dt,
+    };
+    internal_forces(model, factors, state);
+    apply_load(state);
+    collect_reactions(state);
+    advance_constrained_planes(model, factors, state);
     rigid::solve(
         model,
         drives,
         &mut Prediction {
             u: &mut state.u,
             p: &mut state.p,
+            places: &state.workspace.places.slaves,
             u_old: &state.workspace.slave_u,
             u_factor,
             p_factor,
         },
         &mut state.contacts,
     );
-    collect_held_friction(model, state);
-    account_load_work(model, state);
+    collect_held_friction(state);
+    account_load_work(state);
     state.step += 1;
 }
 
-/// residual = K (u + β_R p).
-fn internal_forces<const L: usize>(model: &Model, state: &mut State<L>) {
-    let beta_r = model.beta_r_s();
+/// residual = K (u + β_R p) on the constrained planes; the others are moved.
+fn internal_forces<const L: usize>(model: &Model, factors: Factors, state: &mut State<L>) {
     let work = &mut state.workspace;
-    if beta_r == 0.0 {
-        model.operator().apply::<L>(&state.u, &mut work.residual);
-        return;
+    match model.operator() {
+        Operator::Tensor(operator) => work.integration.advance_free_planes(
+            operator,
+            factors,
+            &mut state.u,
+            &mut state.p,
+            &mut work.residual,
+            &mut work.product,
+        ),
+        Operator::Assembled(operator) => {
+            let mut strained = state.u.clone();
+            for (s, p) in strained.blocks_mut().iter_mut().zip(state.p.blocks()) {
+                for (s, p) in s.0.as_flattened_mut().iter_mut().zip(p.0.as_flattened()) {
+                    *s += factors.beta_r_s * p;
+                }
+            }
+            operator.product(&strained, &mut work.residual);
+        }
     }
-    for ((s, u), p) in work.strained.iter_mut().zip(&state.u).zip(&state.p) {
-        *s = u + beta_r * p;
-    }
-    model.operator().apply::<L>(&work.strained, &mut work.residual);
 }
 
 /// residual −= external forces.
-fn apply_load<const L: usize>(model: &Model, state: &mut State<L>) {
-    if state.step == 0 {
-        state.workspace.load_stroke_m = [load_stroke(model, &state.u); 2];
-    }
-    for loaded in model.load() {
+fn apply_load<const L: usize>(state: &mut State<L>) {
+    let work = &mut state.workspace;
+    for (spot, share) in &work.places.loaded {
+        let lanes = work.residual.at_mut(spot.place, spot.component);
         for l in 0..L {
-            state.workspace.residual[loaded.dof * L + l] -= loaded.share * state.load_n[l];
+            lanes[l] -= share * state.load_n[l];
         }
     }
 }
 
 /// At a fixed degree of freedom the support carries the residual.
-fn collect_reactions<const L: usize>(model: &Model, state: &mut State<L>) {
+fn collect_reactions<const L: usize>(state: &mut State<L>) {
+    let work = &state.workspace;
     let mut reaction = [[0.0; L]; 3];
-    for &dof in model.fixed() {
+    for spot in &work.places.fixed {
+        let lanes = work.residual.at(spot.place, spot.component);
         for l in 0..L {
-            reaction[dof % 3][l] += state.workspace.residual[dof * L + l];
+            reaction[spot.component][l] += lanes[l];
         }
     }
     state.reaction_n = reaction;
 }
 
 /// Where a contact node is held, the support carries its friction, too.
-fn collect_held_friction<const L: usize>(model: &Model, state: &mut State<L>) {
-    for (slave_node, force) in model.slaves().iter().zip(&state.contacts.force_n) {
-        for c in (0..2).filter(|&c| !slave_node.mobile[c]) {
-            for l in 0..L {
-                state.reaction_n[c][l] -= force[c][l];
-            }
+fn collect_held_friction<const L: usize>(state: &mut State<L>) {
+    for &(slave, component) in &state.workspace.places.held {
+        let force = &state.contacts.force_n[slave][component];
+        for l in 0..L {
+            state.reaction_n[component][l] -= force[l];
         }
     }
 }
 
-/// u* and p* without contact, in place.
-fn predict<const L: usize>(model: &Model, state: &mut State<L>, u_factor: f64, p_factor: f64) {
-    let dt = model.time_step_s();
-    let (u_scale, p_scale) = (u_factor * dt * dt, p_factor * dt);
+/// u* and p* of the constrained planes without contact, in place.
+fn advance_constrained_planes<const L: usize>(model: &Model, factors: Factors, state: &mut State<L>) {
+    let work = &mut state.workspace;
     // Before the general update: it overwrites the old values that the ties need.
-    for (group, tie) in model.ties().iter().enumerate() {
-        for l in 0..L {
-            let residual: f64 = tie.dofs.iter().map(|dof| state.workspace.residual[dof * L + l]).sum();
-            let a = -residual * tie.inverse_mass;
-            let at = tie.dofs[0] * L + l;
-            state.workspace.tied[group][l] =
-                (state.u[at] + (dt * state.p[at] + u_scale * a), state.p[at] + p_scale * a);
-        }
-    }
-    let fields = state.u.chunks_exact_mut(L).zip(state.p.chunks_exact_mut(L));
-    let forces = state.workspace.residual.chunks_exact(L).zip(model.inverse_mass());
-    for ((u, p), (residual, inverse_mass)) in fields.zip(forces) {
-        for l in 0..L {
-            let a = -residual[l] * inverse_mass;
-            u[l] += dt * p[l] + u_scale * a;
-            p[l] += p_scale * a;
-        }
-    }
-    for (tie, values) in model.ties().iter().zip(&state.workspace.tied) {
-        for &dof in &tie.dofs {
+    for ((tie, spots), values) in model.ties().iter().zip(&work.places.tied).zip(&mut work.tied) {
+        let mut residual = [0.0; L];
+        for spot in spots {
+            let lanes = work.residual.at(spot.place, spot.component);
             for l in 0..L {
-                (state.u[dof * L + l], state.p[dof * L + l]) = values[l];
+                residual[l] += lanes[l];
             }
+        }
+        let first = spots[0];
+        let (u, p) = (state.u.at(first.place, first.component), state.p.at(first.place, first.component));
+        for l in 0..L {
+            let a = residual[l] * tie.inverse_mass;
+            values[l] =
+                (u[l] + (p[l] * factors.time_step_s - a * factors.u_scale), p[l] - a * factors.p_scale);
+        }
+    }
+    work.integration.advance_constrained_planes(factors, &mut state.u, &mut state.p, &work.residual);
+    for (spots, values) in work.places.tied.iter().zip(&work.tied) {
+        for spot in spots {
+            *state.u.at_mut(spot.place, spot.component) = values.map(|(u, _)| u);
+            *state.p.at_mut(spot.place, spot.component) = values.map(|(_, p)| p);
         }
     }
 }
 
 /// The load times the displacement increments on both sides of `t_n`.
-fn account_load_work<const L: usize>(model: &Model, state: &mut State<L>) {
-    let next = load_stroke(model, &state.u);
+fn account_load_work<const L: usize>(state: &mut State<L>) {
+    let next = load_stroke(&state.workspace.places, &state.u);
     let [before, now] = state.workspace.load_stroke_m;
     for l in 0..L {
         state.load_work_j.after_j[l] = state.load_n[l] * (next[l] - now[l]);
@@ -144,11 +168,12 @@ fn account_load_work<const L: usize>(model: &Model, state: &mut State<L>) {
 }
 
 /// Displacement [m] on which a unit of the total load does work.
-fn load_stroke<const L: usize>(model: &Model, u: &[f64]) -> [f64; L] {
+fn load_stroke<const L: usize>(places: &Places, u: &Field<L>) -> [f64; L] {
     let mut stroke = [0.0; L];
-    for loaded in model.load() {
+    for (spot, share) in &places.loaded {
+        let lanes = u.at(spot.place, spot.component);
         for l in 0..L {
-            stroke[l] += loaded.share * u[loaded.dof * L + l];
+            stroke[l] += share * lanes[l];
         }
     }
     stroke

@@ -73,7 +73,7 @@ fn identities_hold_in_every_window() {
     let model = model();
     let drive = Drive { mu: MU, rate: 0.733, force_n: LOAD_N, ramp_s: 5.0e-4 };
     let dt = model.time_step_s();
-    let rows = stiffness_rows(model.mesh(), model.operator());
+    let rows = stiffness_rows(&model);
     let row_sums = rows.iter().map(|row| row.iter().map(|(_, k)| k.abs()).sum::<f64>()).sum::<f64>();
 
     let mut state = State::<1>::at_rest(&model);
@@ -102,7 +102,7 @@ fn identities_hold_in_every_window() {
     let mut next_window = 0;
     for n in 0..(total_s / dt) as usize + 2 {
         let before = momentum_ns(&model, &state);
-        let strained = state.u.iter().zip(&state.p).map(|(u, p)| (u + model.beta_r_s() * p).abs());
+        let strained = state.u.values().zip(state.p.values()).map(|(u, p)| (u + model.beta_r_s() * p).abs());
         largest_u = strained.fold(largest_u, f64::max);
         ledger.before_step(&model, &state);
         step(&model, &[drive], &mut state);
@@ -181,5 +181,5 @@ fn newton_rounding_n(row_sums: f64, largest_u: f64) -> f64 {
 }
 
 fn largest_speed(state: &State<1>) -> f64 {
-    state.p.iter().fold(0.0, |m: f64, p| m.max(p.abs()))
+    state.p.values().fold(0.0, |m: f64, p| m.max(p.abs()))
 }

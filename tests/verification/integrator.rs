@@ -96,7 +96,7 @@ fn growth(beta2: f64, beta_r_s: f64, fraction: f64) -> f64 {
     let model = Model::new(ModelDefinition { beta2, beta_r_s, time_step, ..bar(LAYERS) }).unwrap();
     let mut state = in_mode(&model, LAYERS);
     advance(&model, &IDLE, &mut state, 3000);
-    state.u.iter().skip(2).step_by(3).map(|u| (u - 2.0).abs()).fold(0.0, f64::max)
+    state.u.values().skip(2).step_by(3).map(|u| (u - 2.0).abs()).fold(0.0, f64::max)
 }
 
 /// Protects: the limit that the program states is the scheme's, W²(β₂ + b) = 2, and that of its own step:

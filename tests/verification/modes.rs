@@ -8,7 +8,6 @@ use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 use tribosweep::solver::Model;
 use tribosweep::solver::mesh::BlockMesh;
-use tribosweep::solver::operator::Operator;
 
 /// Per direction +1 where the displacement field is its own mirror image and −1 where it is the
 /// reverse of it: u_c(−x_a) = class_a · (−1 if c = a, else 1) · u_c(x_a).
@@ -35,9 +34,10 @@ pub fn mirror_sign(class: MirrorClass, axis: usize, c: usize) -> f64 {
 ///
 /// A row reaches one node far in every direction, so nodes three apart share a product: 81 products with
 /// unit displacements give all columns.
-pub fn stiffness_rows(mesh: &BlockMesh, operator: &Operator) -> Vec<Vec<(usize, f64)>> {
+pub fn stiffness_rows(model: &Model) -> Vec<Vec<(usize, f64)>> {
+    let mesh = model.mesh();
     let dofs = 3 * mesh.node_count();
-    let (mut unit, mut force) = (vec![0.0; dofs], vec![0.0; dofs]);
+    let mut unit = vec![0.0; dofs];
     let mut rows = vec![Vec::with_capacity(81); dofs];
     let counts = mesh.nodes_per_axis();
     for colour in 0..27 {
@@ -49,7 +49,7 @@ pub fn stiffness_rows(mesh: &BlockMesh, operator: &Operator) -> Vec<Vec<(usize, 
         for c in 0..3 {
             unit.fill(0.0);
             (0..mesh.node_count()).filter(coloured).for_each(|node| unit[3 * node + c] = 1.0);
-            operator.apply::<1>(&unit, &mut force);
+            let force = model.stiffness_times(&unit);
             for node in 0..mesh.node_count() {
                 let grid = mesh.grid_position(node);
                 // The one node of this colour within reach, if the block has it.

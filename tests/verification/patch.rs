@@ -17,6 +17,7 @@ use crate::evidence::Evidence;
 use crate::modes::stiffness_rows;
 use tribosweep::solver::boundary;
 use tribosweep::solver::constraints::Constraints;
+use tribosweep::solver::field::Field;
 use tribosweep::solver::mesh::BlockMesh;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
 
@@ -57,7 +58,7 @@ fn exact_m(model: &Model, confined: bool) -> Vec<f64> {
 /// Bounds of the errors after `steps`: of nodal contact forces over p·area, of displacements over the shortening.
 fn rounding(model: &Model, confined: bool, steps: usize) -> [f64; 2] {
     let u = exact_m(model, confined);
-    let rows = stiffness_rows(model.mesh(), model.operator());
+    let rows = stiffness_rows(model);
     let size = |dof: usize| rows[dof].iter().map(|(c, k)| (k * u[*c]).abs()).sum::<f64>();
     let relative = |slave: &tribosweep::solver::model::SlaveNode| {
         size(3 * slave.node + 2) / (PRESSURE_PA * slave.area_m2)
@@ -87,7 +88,8 @@ fn record(evidence: &mut [Evidence; 3], name: &str, model: &Model, state: &State
         forces.bounded(format!("{name}, {place}"), worst, exact, exact, force_bound);
     }
     let exact = shortening_m(model, confined);
-    let worst = exact_m(model, confined).iter().zip(&state.u).fold(0.0_f64, |w, (e, u)| w.max((u - e).abs()));
+    let worst =
+        exact_m(model, confined).iter().zip(state.u.values()).fold(0.0_f64, |w, (e, u)| w.max((u - e).abs()));
     displacements.bounded(name, worst / exact, 0.0, 1.0, displacement_bound);
     let top = model.mesh().top_nodes().start;
     shortening.bounded(name, -state.u[3 * top + 2] * 1e6, exact * 1e6, exact * 1e6, displacement_bound);
@@ -117,7 +119,7 @@ fn uniform_pressure_stays_uniform() {
         for confined in [false, true] {
             let model = model(elements, confined, 0.0);
             let mut state = State::at_rest(&model);
-            state.u = exact_m(&model, confined);
+            state.u = Field::from_values(model.mesh(), &exact_m(&model, confined));
             advance(&model, &DRIVE, &mut state, 200);
             record(&mut evidence, &name(elements, confined), &model, &state, confined);
         }

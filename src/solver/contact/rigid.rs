@@ -12,17 +12,20 @@
 
 use super::coulomb::{self, project};
 use super::{ContactState, Contacts};
+use crate::solver::field::{Field, Place};
 use crate::solver::model::Model;
 use crate::solver::state::Drive;
 
 /// The predicted step of the slave nodes, which this solve corrects in place.
-pub struct Prediction<'a> {
-    /// Displacements u* [m], node → component → lane; corrected to `u_{n+1}`.
-    pub u: &'a mut [f64],
+pub struct Prediction<'a, const L: usize> {
+    /// Displacements u* [m]; corrected to `u_{n+1}`.
+    pub u: &'a mut Field<L>,
     /// p* [m/s], corrected to `p_{n+1}`.
-    pub p: &'a mut [f64],
+    pub p: &'a mut Field<L>,
+    /// Where the slave nodes are.
+    pub places: &'a [Place],
     /// Displacements [m] of the slave nodes at `t_n`, slave → component → lane.
-    pub u_old: &'a [f64],
+    pub u_old: &'a [[[f64; L]; 3]],
     /// The scheme's factor of Δt² a in `u_{n+1}`.
     pub u_factor: f64,
     /// The scheme's factor of Δt a in `p_{n+1}`.
@@ -33,7 +36,7 @@ pub struct Prediction<'a> {
 pub fn solve<const L: usize>(
     model: &Model,
     drives: &[Drive; L],
-    prediction: &mut Prediction<'_>,
+    prediction: &mut Prediction<'_, L>,
     contacts: &mut Contacts<L>,
 ) {
     let dt = model.time_step_s();
@@ -44,11 +47,12 @@ pub fn solve<const L: usize>(
         let stiffness = mass / u_scale;
         let u_factor = u_scale / mass;
         let p_factor = p_scale / mass;
-        let base = 3 * L * slave_node.node;
+        let place = prediction.places[slave];
+        let u_old = &prediction.u_old[slave];
         for l in 0..L {
-            let z = prediction.u[base + 2 * L + l];
+            let z = prediction.u.at(place, 2)[l];
             let increment: [f64; 2] = std::array::from_fn(|c| {
-                let moved = prediction.u[base + c * L + l] - prediction.u_old[(3 * slave + c) * L + l];
+                let moved = prediction.u.at(place, c)[l] - u_old[c][l];
                 moved - slave_node.surface_motion[c] * drives[l].rate * dt
             });
             let mut force = [0.0; 3];
@@ -62,28 +66,28 @@ pub fn solve<const L: usize>(
                 // Constrained displacements are set, not corrected: a sticking node must not creep, nor a
                 // closed one sink, by the rounding of its correction.
                 for c in 0..2 {
-                    let at = base + c * L + l;
                     if !slave_node.mobile[c] {
                         continue;
                     }
+                    let u = &mut prediction.u.at_mut(place, c)[l];
                     if state == ContactState::Stick {
                         let carried = slave_node.surface_motion[c] * drives[l].rate * dt;
-                        prediction.u[at] = prediction.u_old[(3 * slave + c) * L + l] + carried;
+                        *u = u_old[c][l] + carried;
                     } else {
-                        prediction.u[at] += u_factor * force[c];
+                        *u += u_factor * force[c];
                     }
-                    prediction.p[at] += p_factor * force[c];
+                    prediction.p.at_mut(place, c)[l] += p_factor * force[c];
                 }
-                prediction.u[base + 2 * L + l] = 0.0;
-                prediction.p[base + 2 * L + l] += p_factor * force[2];
+                prediction.u.at_mut(place, 2)[l] = 0.0;
+                prediction.p.at_mut(place, 2)[l] += p_factor * force[2];
             }
             for c in 0..3 {
                 contacts.force_n[slave][c][l] = force[c];
-                let moved = prediction.u[base + c * L + l] - prediction.u_old[(3 * slave + c) * L + l];
+                let moved = prediction.u.at(place, c)[l] - u_old[c][l];
                 let target = if c < 2 { slave_node.surface_motion[c] * drives[l].rate * dt } else { 0.0 };
                 contacts.relative_increment_m[slave][c][l] = moved - target;
             }
-            contacts.gap_m[slave][l] = prediction.u[base + 2 * L + l];
+            contacts.gap_m[slave][l] = prediction.u.at(place, 2)[l];
             contacts.state[slave][l] = state;
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::solver::element::ElementStiffness;
 use crate::solver::error::SolverError;
+use crate::solver::field::Field;
 use crate::solver::mesh::BlockMesh;
 use std::collections::BTreeMap;
 
@@ -79,21 +80,17 @@ impl AssembledOperator {
         self.columns[range.clone()].iter().copied().zip(self.values[range].iter().copied())
     }
 
-    /// Computes `y = K x` for `L` lanes; both arrays are node → component → lane.
-    ///
-    /// # Panics
-    /// If an array's length is not `dofs` · L.
-    pub fn apply<const L: usize>(&self, x: &[f64], y: &mut [f64]) {
-        assert_eq!(x.len(), L * self.dofs(), "x must hold {L} lanes per degree of freedom");
-        assert_eq!(y.len(), x.len(), "y must be as long as x");
-        for (row, y) in y.chunks_exact_mut(L).enumerate() {
+    /// Computes `y = K x` for `L` lanes.
+    pub fn product<const L: usize>(&self, x: &Field<L>, y: &mut Field<L>) {
+        for row in 0..self.dofs() {
             let mut sum = [0.0; L];
             for (column, value) in self.row(row) {
+                let x = x.at(x.place(column / 3), column % 3);
                 for l in 0..L {
-                    sum[l] += value * x[column * L + l];
+                    sum[l] += value * x[l];
                 }
             }
-            y.copy_from_slice(&sum);
+            *y.at_mut(y.place(row / 3), row % 3) = sum;
         }
     }
 }
@@ -106,10 +103,15 @@ mod tests {
     #[test]
     fn two_springs_in_a_row() {
         let spring = |a: usize, b: usize, k: f64| [(a, a, k), (a, b, -k), (b, a, -k), (b, b, k)];
-        let k = AssembledOperator::from_entries(3, [spring(0, 1, 2.0), spring(1, 2, 3.0)].concat()).unwrap();
-        let mut y = [0.0; 6];
-        k.apply::<2>(&[1.0, 0.0, 0.0, 1.0, 0.0, 0.0], &mut y);
-        assert_eq!(y, [2.0, -2.0, -2.0, 5.0, 0.0, -3.0]);
+        let mesh = BlockMesh::new([1.0; 3], [1, 1, 1]);
+        let springs = [spring(0, 4, 2.0), spring(4, 23, 3.0)].concat();
+        let k = AssembledOperator::from_entries(24, springs).unwrap();
+        let mut x = Field::<2>::zeros(&mesh);
+        let mut y = Field::<2>::zeros(&mesh);
+        (x[0], x[9]) = (1.0, 1.0);
+        k.product(&x, &mut y);
+        let found = [0, 4, 23].map(|dof| [y[2 * dof], y[2 * dof + 1]]);
+        assert_eq!(found, [[2.0, -2.0], [-2.0, 5.0], [0.0, -3.0]]);
     }
 
     /// Protects: what is no stiffness is refused, with the entry.

@@ -1,33 +1,32 @@
 //! The stiffness operator: y = K x.
 //!
-//! * [`StencilOperator`] – K of a uniform elastic block, the form that runs.
+//! * [`TensorOperator`] – K of a uniform elastic block, the form that runs.
 //! * [`AssembledOperator`] – any symmetric K, row by row: discrete springs and masses, and the
 //!   reference that the other form is tested against.
 
 mod assembled;
-mod stencil;
+mod tensor;
 
 pub use assembled::AssembledOperator;
-pub use stencil::StencilOperator;
+pub use tensor::{Pass, Scratch, Spot, TensorOperator, load_all};
+
+use super::field::Field;
 
 /// K in one of its forms.
 #[derive(Debug, Clone)]
 pub enum Operator {
     /// Of a uniform elastic block.
-    Stencil(StencilOperator),
+    Tensor(TensorOperator),
     /// Given row by row.
     Assembled(AssembledOperator),
 }
 
 impl Operator {
-    /// Computes `y = K x` for `L` lanes; both arrays are node → component → lane.
-    ///
-    /// # Panics
-    /// If an array's length is not 3 · nodes · L.
-    pub fn apply<const L: usize>(&self, x: &[f64], y: &mut [f64]) {
+    /// Computes `y = K x` for `L` lanes.
+    pub fn product<const L: usize>(&self, x: &Field<L>, y: &mut Field<L>, scratch: &mut Scratch<L>) {
         match self {
-            Self::Stencil(operator) => operator.apply::<L>(x, y),
-            Self::Assembled(operator) => operator.apply::<L>(x, y),
+            Self::Tensor(operator) => operator.product(x, y, scratch),
+            Self::Assembled(operator) => operator.product(x, y),
         }
     }
 }

@@ -1,0 +1,128 @@
+//! Nodal vector fields, laid out for vectors of eight numbers.
+//!
+//! A mesh line (nodes along x) of `L` lanes is one row of numbers per component, node → lane, padded
+//! with zeros to whole [`Block`]s of eight. A block holds the three components one after the other.
+//! Neighbours in x are `L` numbers away, neighbours in y and z whole lines, so every operation on
+//! lines is the same for any lane count and its results have the same bits.
+
+use super::mesh::BlockMesh;
+use std::ops::{Index, IndexMut};
+
+/// Numbers in a vector.
+pub const WIDTH: usize = 8;
+
+/// Eight consecutive numbers of each component of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[repr(align(64))]
+pub struct Block(pub [[f64; WIDTH]; 3]);
+
+/// Where the lanes of a node are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Place {
+    block: usize,
+    slot: usize,
+}
+
+/// A vector per node and lane. Indexed by (3·node + component)·L + lane, whatever the storage.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Field<const L: usize> {
+    nodes_per_line: usize,
+    blocks_per_line: usize,
+    blocks: Vec<Block>,
+}
+
+impl<const L: usize> Field<L> {
+    const LANES_FILL_BLOCKS: () = assert!(L == 1 || L == 2 || L == 4 || L == 8, "1, 2, 4 or 8 lanes");
+
+    /// All zero, on the nodes of `mesh`.
+    pub fn zeros(mesh: &BlockMesh) -> Self {
+        let () = Self::LANES_FILL_BLOCKS;
+        let [mx, my, mz] = mesh.nodes_per_axis();
+        let blocks_per_line = (mx * L).div_ceil(WIDTH);
+        Self {
+            nodes_per_line: mx,
+            blocks_per_line,
+            blocks: vec![Block::default(); blocks_per_line * my * mz],
+        }
+    }
+
+    /// From values in the order node → component → lane.
+    ///
+    /// # Panics
+    /// If there is not one value per node, component and lane.
+    pub fn from_values(mesh: &BlockMesh, values: &[f64]) -> Self {
+        assert_eq!(values.len(), 3 * L * mesh.node_count(), "3 components of {L} lanes per node");
+        let mut field = Self::zeros(mesh);
+        for (index, value) in values.iter().enumerate() {
+            field[index] = *value;
+        }
+        field
+    }
+
+    /// The values in the order node → component → lane.
+    pub fn values(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.len()).map(|index| self[index])
+    }
+
+    /// Number of values: three components of `L` lanes per node.
+    pub fn len(&self) -> usize {
+        3 * L * self.nodes_per_line * (self.blocks.len() / self.blocks_per_line)
+    }
+
+    /// Whether there is no value; a mesh has nodes, so never.
+    pub fn is_empty(&self) -> bool {
+        self.blocks.is_empty()
+    }
+
+    /// Number of blocks of a line.
+    pub fn blocks_per_line(&self) -> usize {
+        self.blocks_per_line
+    }
+
+    /// All blocks, line after line: y faster than z.
+    pub fn blocks(&self) -> &[Block] {
+        &self.blocks
+    }
+
+    /// All blocks. What is written to the padding must be zero.
+    pub fn blocks_mut(&mut self) -> &mut [Block] {
+        &mut self.blocks
+    }
+
+    /// Where a node is.
+    pub fn place(&self, node: usize) -> Place {
+        let along = node % self.nodes_per_line * L;
+        let line = node / self.nodes_per_line;
+        Place { block: line * self.blocks_per_line + along / WIDTH, slot: along % WIDTH }
+    }
+
+    /// The lanes of one component at a place.
+    pub fn at(&self, place: Place, component: usize) -> &[f64; L] {
+        self.blocks[place.block].0[component][place.slot..]
+            .first_chunk()
+            .expect("lanes do not straddle blocks")
+    }
+
+    /// The lanes of one component at a place.
+    pub fn at_mut(&mut self, place: Place, component: usize) -> &mut [f64; L] {
+        self.blocks[place.block].0[component][place.slot..]
+            .first_chunk_mut()
+            .expect("lanes do not straddle blocks")
+    }
+}
+
+impl<const L: usize> Index<usize> for Field<L> {
+    type Output = f64;
+
+    fn index(&self, index: usize) -> &f64 {
+        let (dof, lane) = (index / L, index % L);
+        &self.at(self.place(dof / 3), dof % 3)[lane]
+    }
+}
+
+impl<const L: usize> IndexMut<usize> for Field<L> {
+    fn index_mut(&mut self, index: usize) -> &mut f64 {
+        let (dof, lane) = (index / L, index % L);
+        &mut self.at_mut(self.place(dof / 3), dof % 3)[lane]
+    }
+}
