@@ -97,6 +97,9 @@ impl<const L: usize> Field<L> {
     }
 
     /// The lanes of one component at a place.
+    ///
+    /// # Panics
+    /// Never for a place of this field: lanes do not straddle blocks.
     pub fn at(&self, place: Place, component: usize) -> &[f64; L] {
         self.blocks[place.block].0[component][place.slot..]
             .first_chunk()
@@ -104,6 +107,9 @@ impl<const L: usize> Field<L> {
     }
 
     /// The lanes of one component at a place.
+    ///
+    /// # Panics
+    /// Never for a place of this field: lanes do not straddle blocks.
     pub fn at_mut(&mut self, place: Place, component: usize) -> &mut [f64; L] {
         self.blocks[place.block].0[component][place.slot..]
             .first_chunk_mut()

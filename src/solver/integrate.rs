@@ -8,6 +8,8 @@
 //! and writes their fields once. Of the others the product is kept; they are moved when loads, supports and
 //! ties have had their say.
 
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+
 use super::field::{Block, Field, WIDTH};
 use super::model::Model;
 use super::operator::{Pass, Scratch, Spot, TensorOperator, load_all};

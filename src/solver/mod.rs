@@ -6,16 +6,19 @@
 //! mesh ─► element ─► operator ─┐
 //! material                     ├─► model (immutable) ─┐
 //! constraints ─► stability ────┤                      ├─► step (bare) ─► energy, guard, observers
-//! boundary, disk ──────────────┘   state (per lane) ──┘
+//! boundary, disk ──────────────┘                      │
+//! field ─► state (per lane) ──────────────────────────┤
+//! integrate (moves the nodes as the product passes) ──┤
 //! contact (the law and the forward-increment solve) ──┘
 //! ```
 //!
 //! # Conventions
 //! * A node's index runs x fastest, then y, then z; components are x = 0, y = 1, z = 2.
-//! * **State arrays are indexed node → component → lane**: `u[(3·node + component)·L + lane]`. The
-//!   `L` lanes are independent jobs that share one [`Model`] (mesh, material, clamp, damping, time
-//!   step) and differ in their [`Drive`] (μ, ω, load). One lane is the plain case; every lane goes
-//!   through the same operations in the same order, so its bits do not depend on its companions.
+//! * **Fields are indexed node → component → lane**, `u[(3·node + component)·L + lane]`, and stored in
+//!   blocks for vectors ([`field`]). The `L` lanes are independent jobs that share one [`Model`] (mesh,
+//!   material, clamp, damping, time step) and differ in their [`Drive`] (μ, ω, load). One lane is the plain
+//!   case; every lane goes through the same operations in the same order, so its bits do not depend on its
+//!   companions.
 //! * Plain multiply and add in f64, never fused, summed in a fixed order: the same bits on every path.
 //! * The gap is positive when open; the normal contact force N on the pin is ≥ 0 (N = −λ_n).
 //!

@@ -22,6 +22,8 @@
 //! goes through the same operations in the same order (plain multiply and add, never fused) whatever the
 //! vector width and the lane count.
 
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+
 use crate::solver::field::{Block, Field, WIDTH};
 use crate::solver::material::Material;
 use crate::solver::mesh::BlockMesh;
@@ -435,6 +437,28 @@ mod tests {
                     );
                 }
             }
+        }
+    }
+
+    /// Protects: the same bits on every vector width that this machine has.
+    #[test]
+    fn vector_widths_agree_to_the_last_bit() {
+        let material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
+        let mesh = BlockMesh::new([0.012, 0.015, 0.010], [9, 4, 3]);
+        let operator = TensorOperator::new(&mesh, &material);
+        let x = Field::<1>::from_values(&mesh, &values(3 * mesh.node_count(), 5));
+        let at = |level: Level| {
+            let mut y = Field::<1>::zeros(&mesh);
+            let mut product = Product { x: x.blocks(), y: y.blocks_mut() };
+            let mut scratch = Scratch::<1>::new(&mesh);
+            dispatch!(level, simd => operator.pass(simd, &mut product, &mut scratch));
+            y.values().map(f64::to_bits).collect::<Vec<_>>()
+        };
+        let best = at(Level::new());
+        assert_eq!(at(Level::baseline()), best, "{:?} against {:?}", Level::baseline(), Level::new());
+        #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+        if let Some(avx2) = Level::new().as_avx2() {
+            assert_eq!(at(avx2.level()), best, "AVX2 against {:?}", Level::new());
         }
     }
 
