@@ -1,0 +1,43 @@
+#!/usr/bin/env bash
+# Fuzzes the study parser and the overrides, and writes what was measured to tests/fuzz/record.json, which
+# scripts/stability.py quotes. Needs a nightly toolchain and cargo-fuzz (`cargo install cargo-fuzz`).
+#
+#   scripts/fuzz.sh [SECONDS]      time per target, 1200 by default
+#
+# The seeds in tests/fuzz/seeds stay as they are; what libFuzzer finds goes to target/fuzz. A text that makes a
+# target fail is kept in target/fuzz/artifacts and counted in the record.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+seconds=${1:-1200}
+work=target/fuzz
+mkdir -p "$work/artifacts" "$work/corpus"
+cargo +nightly fuzz build --fuzz-dir tests/fuzz --target-dir "$work" --sanitizer address
+programs=$(dirname "$(find "$work" -path '*/release/study' -type f -perm -u+x | head -n 1)")
+for target in study overrides; do
+    mkdir -p "$work/corpus/$target" "$work/artifacts/$target"
+    # A failing text ends the run; the record says so. 20 s is a hang.
+    "$programs/$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -max_len=4096 \
+        -dict=tests/fuzz/study.dict -artifact_prefix="$work/artifacts/$target/" -print_final_stats=1 \
+        "$work/corpus/$target" "tests/fuzz/seeds/$target" > "$work/$target.log" 2>&1 || true
+    tail -n 3 "$work/$target.log"
+done
+python3 - "$work" <<'END'
+import json, pathlib, re, sys
+work = pathlib.Path(sys.argv[1])
+record = {}
+for target in ("study", "overrides"):
+    log = (work / f"{target}.log").read_text(errors="replace")
+    def last(pattern):
+        found = re.findall(pattern, log)
+        return int(found[-1]) if found else None
+    record[target] = {
+        "executions": last(r"stat::number_of_executed_units:\s*(\d+)"),
+        "seconds": last(r"Done \d+ runs in (\d+) second"),
+        "edges": last(r"cov: (\d+)"),
+        "features": last(r"ft: (\d+)"),
+        "corpus": last(r"corp: (\d+)/"),
+        "failing_texts": len(list((work / "artifacts" / target).iterdir())),
+    }
+pathlib.Path("tests/fuzz/record.json").write_text(json.dumps(record, indent=2) + "\n")
+print("written: tests/fuzz/record.json")
+END
