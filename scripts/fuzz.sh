@@ -13,13 +13,16 @@ work=target/fuzz
 mkdir -p "$work/artifacts" "$work/corpus"
 cargo +nightly fuzz build --fuzz-dir tests/fuzz --target-dir "$work" --sanitizer address
 programs=$(dirname "$(find "$work" -path '*/release/study' -type f -perm -u+x | head -n 1)")
+# As cargo-fuzz does: SQLite's C sources are in the program twice.
+export ASAN_OPTIONS=detect_odr_violation=0
 for target in study overrides; do
     mkdir -p "$work/corpus/$target" "$work/artifacts/$target"
     # A failing text ends the run; the record says so. 20 s is a hang.
     "$programs/$target" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=2048 -max_len=4096 \
         -dict=tests/fuzz/study.dict -artifact_prefix="$work/artifacts/$target/" -print_final_stats=1 \
         "$work/corpus/$target" "tests/fuzz/seeds/$target" > "$work/$target.log" 2>&1 || true
-    tail -n 3 "$work/$target.log"
+    grep -q 'stat::number_of_executed_units' "$work/$target.log" || { tail -n 20 "$work/$target.log"; exit 1; }
+    grep '^Done' "$work/$target.log"
 done
 python3 - "$work" <<'END'
 import json, pathlib, re, sys

@@ -14,6 +14,7 @@ mod ending;
 mod generator;
 mod long;
 mod modes;
+mod queue;
 mod random;
 mod scenes;
 mod simplify;

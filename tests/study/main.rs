@@ -3,6 +3,7 @@
 mod expansion;
 mod keys;
 mod mini_schema;
+mod mutations;
 mod refusals;
 mod schema;
 mod shipped;
