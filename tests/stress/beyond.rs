@@ -4,8 +4,10 @@ use crate::modes::{self, Mode};
 use crate::scenes::{IDLE, in_the_air, lifted, pin};
 use crate::summary;
 use serde_json::{Value, json};
+use tribosweep::analysis;
 use tribosweep::solver::energy::{Energies, EnergyLedger};
 use tribosweep::solver::{Drive, Model, ModelDefinition, SolverError, State, guard, step};
+use tribosweep::spec::{Clamp, ClampSide, JobSpec};
 
 /// Steps between two looks of the guard, as in a job.
 const INTERVAL: u64 = 16;
@@ -133,6 +135,30 @@ fn below_the_limit_nothing_is_stopped() {
         let state = State::at_rest(&model);
         assert_eq!(guarded(&model, drive, state, 20_000), None, "β₂ = {beta2}, {damping}, pressed");
     }
+}
+
+/// Protects: at exactly the limit (one element, where the bound is exact) the highest mode alternates and friction feeds
+/// it, so that more is stored than was put in: the run is stopped and told to keep below. At 0.99 it has a result.
+#[test]
+fn the_limit_itself_is_told() {
+    let mut spec = JobSpec::default();
+    let pin = &mut spec.scene.pin;
+    (pin.size_m, pin.elements, pin.poisson_ratio) = ([0.01, 0.01, 0.01], [1, 1, 1], 0.499);
+    spec.scene.contact.mu = 2.0;
+    spec.scene.clamp = Clamp { side: ClampSide::TrailingEnd, width_m: 0.0 };
+    spec.scene.load.ramp_s = 0.0;
+    (spec.numerics.beta_r_s, spec.numerics.safety_factor) = (0.0, 1.0);
+    spec.run.stop_early = false;
+    let Err(error) = analysis::solve(&spec, &mut analysis::Unobserved) else {
+        panic!("a result at the limit")
+    };
+    let message = error.to_string();
+    assert!(
+        message.contains("1.000000 of the stability limit") && message.contains("take at most 0.99"),
+        "{message}"
+    );
+    spec.numerics.safety_factor = 0.99;
+    analysis::solve(&spec, &mut analysis::Unobserved).unwrap_or_else(|error| panic!("{error}"));
 }
 
 #[allow(clippy::too_many_arguments)]

@@ -64,8 +64,7 @@ impl JobObserver for Watch {
     }
 
     fn progress(&mut self, simulated_s: f64) -> ControlFlow<()> {
-        // `>=` is false for NaN.
-        self.ran_backwards |= !(simulated_s >= self.last_progress_s);
+        self.ran_backwards |= simulated_s.is_nan() || simulated_s < self.last_progress_s;
         self.last_progress_s = simulated_s;
         ControlFlow::Continue(())
     }

@@ -48,7 +48,9 @@ pub fn highest(definition: &ModelDefinition, closed: bool) -> Mode {
     let (mut x, mut y) = (vec![0.0; freedoms.len()], vec![0.0; freedoms.len()]);
     for (column, dofs) in motions.iter().enumerate() {
         x.fill(0.0);
-        dofs.iter().for_each(|&dof| x[dof] = 1.0);
+        for &dof in dofs {
+            x[dof] = 1.0;
+        }
         model.operator().apply::<1>(&x, &mut y);
         for (row, others) in motions.iter().enumerate() {
             let force: f64 = others.iter().map(|&dof| y[dof]).sum();
@@ -59,10 +61,14 @@ pub fn highest(definition: &ModelDefinition, closed: bool) -> Mode {
     let top = eigen.eigenvalues.imax();
     let mut shape = vec![0.0; freedoms.len()];
     for (motion, dofs) in motions.iter().enumerate() {
-        dofs.iter().for_each(|&dof| shape[dof] = eigen.eigenvectors[(motion, top)] / mass[motion].sqrt());
+        for &dof in dofs {
+            shape[dof] = eigen.eigenvectors[(motion, top)] / mass[motion].sqrt();
+        }
     }
     let largest = shape.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
-    shape.iter_mut().for_each(|value| *value /= largest);
+    for value in &mut shape {
+        *value /= largest;
+    }
     let mass_kg = shape.iter().enumerate().map(|(dof, value)| masses[dof / 3] * value * value).sum();
     Mode { omega: eigen.eigenvalues[top].sqrt(), shape, mass_kg }
 }
