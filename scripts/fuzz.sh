@@ -24,23 +24,4 @@ for target in study overrides; do
     grep -q 'stat::number_of_executed_units' "$work/$target.log" || { tail -n 20 "$work/$target.log"; exit 1; }
     grep '^Done' "$work/$target.log"
 done
-python3 - "$work" <<'END'
-import json, pathlib, re, sys
-work = pathlib.Path(sys.argv[1])
-record = {}
-for target in ("study", "overrides"):
-    log = (work / f"{target}.log").read_text(errors="replace")
-    def last(pattern):
-        found = re.findall(pattern, log)
-        return int(found[-1]) if found else None
-    record[target] = {
-        "executions": last(r"stat::number_of_executed_units:\s*(\d+)"),
-        "seconds": last(r"Done \d+ runs in (\d+) second"),
-        "edges": last(r"cov: (\d+)"),
-        "features": last(r"ft: (\d+)"),
-        "corpus": last(r"corp: (\d+)/"),
-        "failing_texts": len(list((work / "artifacts" / target).iterdir())),
-    }
-pathlib.Path("tests/fuzz/record.json").write_text(json.dumps(record, indent=2) + "\n")
-print("written: tests/fuzz/record.json")
-END
+python3 scripts/fuzz_record.py

@@ -243,7 +243,7 @@ fn magnitudes_beyond_all_pins_are_refused() {
         (r#""pin": { "young_modulus_pa": 1e300 }"#, "young_modulus_pa = 1e300", "from 1e-20 to 1e20"),
         (r#""pin": { "density_kg_m3": 1e-210 }"#, "density_kg_m3 = 1e-210", "from 1e-20 to 1e20"),
         (r#""disk": { "omega_rpm": 3e166 }"#, "omega_rpm = 3e166", "from 1e-20 to 1e20"),
-        (r#""load": { "force_n": 1e-300 }"#, "force_n = 1e-300", "from 1e-20 to 1e20"),
+        (r#""pin": { "size_m": [0.01, 1e-30, 0.01] }"#, "size_m[1] = 1e-30", "from 1e-20 to 1e20"),
         (r#""contact": { "mu": 1e21 }"#, "mu = 1e21", "at most 1e20"),
         (r#""clamp": { "width_m": 1e21 }"#, "width_m = 1e21", "at most 1e20"),
     ] {
