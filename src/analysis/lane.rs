@@ -17,7 +17,8 @@ pub struct LaneAnalysis<'a> {
     spec: &'a JobSpec,
     sampler: Sampler,
     cutter: CycleCutter,
-    monitor: DecayMonitor,
+    /// None when the run is too short for an observation: it would only keep samples that nobody judges.
+    monitor: Option<DecayMonitor>,
     cycles: Vec<Cycle>,
     steady: Option<SteadyState>,
     decays: bool,
@@ -29,11 +30,14 @@ impl<'a> LaneAnalysis<'a> {
     /// The analysis of the job `spec` in `lane`.
     pub fn new(model: &Model, spec: &'a JobSpec, lane: usize) -> Self {
         let ramp_s = spec.scene.load.ramp_s;
+        // Two steps of slack: times are multiples of the step.
+        let slidable_s = spec.run.limit_s - ramp_s + 2.0 * model.time_step_s();
+        let observes = spec.detection.decay_observation_s <= slidable_s;
         Self {
             spec,
             sampler: Sampler::new(model, lane),
             cutter: CycleCutter::new(model, ramp_s),
-            monitor: DecayMonitor::new(model.time_step_s(), ramp_s, &spec.detection),
+            monitor: observes.then(|| DecayMonitor::new(model.time_step_s(), ramp_s, &spec.detection)),
             cycles: Vec::new(),
             steady: None,
             decays: false,
@@ -55,7 +59,7 @@ impl<'a> LaneAnalysis<'a> {
             self.cycles.push(cycle);
             self.steady = steady::find(&self.cycles, &self.spec.detection);
         }
-        self.decays = self.monitor.push(&sample);
+        self.decays = self.monitor.as_mut().is_some_and(|monitor| monitor.push(&sample));
         self.late.push(&sample, energies);
         self.trailing.push(&sample, energies);
         sample
@@ -111,7 +115,7 @@ impl<'a> LaneAnalysis<'a> {
             contact_loss_share: contact_loss_share(&window.energies, energies),
             mu_reduction_stick: figures.stick_reduction(),
             mu_reduction_slip: figures.slip_reduction(),
-            growth_rate_per_s: self.monitor.growth_rate_per_s(),
+            growth_rate_per_s: self.monitor.as_ref().and_then(DecayMonitor::growth_rate_per_s),
             energy: totals(energies),
             nodes: observed_nodes(figures),
         }

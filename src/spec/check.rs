@@ -40,6 +40,24 @@ impl Violations {
         }
     }
 
+    /// Records a violation unless `value` is a positive quantity that can be computed with: see [`MAGNITUDES`].
+    pub fn require_magnitude(&mut self, field: &str, value: f64, expected: &str) {
+        let (low, high) = (*MAGNITUDES.start(), *MAGNITUDES.end());
+        if value.is_finite() && value > 0.0 && !MAGNITUDES.contains(&value) {
+            self.add(field, readable(value), format!("{expected}, from {low:e} to {high:e}"));
+        } else {
+            self.require(field, value, value > 0.0, expected);
+        }
+    }
+
+    /// Records a violation if `value`, otherwise good, is too large to be computed with: see [`MAGNITUDES`].
+    pub fn at_most(&mut self, field: &str, value: f64) {
+        let highest = *MAGNITUDES.end();
+        if value.is_finite() && value > highest {
+            self.add(field, readable(value), format!("at most {highest:e}"));
+        }
+    }
+
     /// `Ok` when nothing was found.
     ///
     /// # Errors
@@ -48,6 +66,11 @@ impl Violations {
         if self.0.is_empty() { Ok(()) } else { Err(self) }
     }
 }
+
+/// Positive quantities in SI units beyond these ends belong to no pin. Within them all that the solver forms of
+/// them (squares of forces and speeds, masses, stiffness over mass) stays far inside the range of f64; beyond,
+/// a frequency can overflow before the first step.
+const MAGNITUDES: std::ops::RangeInclusive<f64> = 1.0e-20..=1.0e20;
 
 /// A number without the zeros that plain notation spends on small and large ones.
 pub(super) fn readable(value: f64) -> String {

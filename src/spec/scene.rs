@@ -192,7 +192,7 @@ impl Scene {
     pub(super) fn check(&self, found: &mut Violations) {
         let pin = &self.pin;
         for (axis, size) in pin.size_m.iter().enumerate() {
-            found.require(&format!("scene.pin.size_m[{axis}]"), *size, *size > 0.0, "a length > 0 m");
+            found.require_magnitude(&format!("scene.pin.size_m[{axis}]"), *size, "a length > 0 m");
         }
         for (axis, &count) in pin.elements.iter().enumerate() {
             if !(1..=MAX_ELEMENTS).contains(&count) {
@@ -212,7 +212,7 @@ impl Scene {
             );
         }
         let e = pin.young_modulus_pa;
-        found.require("scene.pin.young_modulus_pa", e, e > 0.0, "a modulus > 0 Pa");
+        found.require_magnitude("scene.pin.young_modulus_pa", e, "a modulus > 0 Pa");
         let nu = pin.poisson_ratio;
         found.require(
             "scene.pin.poisson_ratio",
@@ -221,13 +221,12 @@ impl Scene {
             "a Poisson's ratio with -1 < ν < 0.5 (0.5 is incompressible: no finite wave speed)",
         );
         let rho = pin.density_kg_m3;
-        found.require("scene.pin.density_kg_m3", rho, rho > 0.0, "a density > 0 kg/m³");
+        found.require_magnitude("scene.pin.density_kg_m3", rho, "a density > 0 kg/m³");
 
         let omega = self.disk.omega_rpm;
-        found.require(
+        found.require_magnitude(
             "scene.disk.omega_rpm",
             omega,
-            omega > 0.0,
             "a speed > 0 rpm (the disk always turns towards +y)",
         );
         let radius = self.disk.track_radius_m;
@@ -237,10 +236,13 @@ impl Scene {
             radius > pin.size_m[0] / 2.0,
             "a radius larger than half the pin's width, so that the pin does not lie over the axis",
         );
+        found.at_most("scene.disk.track_radius_m", radius);
         let mu = self.contact.mu;
         found.require("scene.contact.mu", mu, mu >= 0.0, "a friction coefficient >= 0");
+        found.at_most("scene.contact.mu", mu);
         let width = self.clamp.width_m;
         found.require("scene.clamp.width_m", width, width >= 0.0, "a width >= 0 m (0 holds one node row)");
+        found.at_most("scene.clamp.width_m", width);
         let force = self.load.force_n;
         found.require("scene.load.force_n", force, force > 0.0, "a load > 0 N, pressing the pin on the disk");
         let ramp = self.load.ramp_s;

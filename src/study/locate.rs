@@ -3,6 +3,7 @@
 //! `serde_json` knows positions only while it reads and lets the last of two equal keys win; a
 //! message needs the position of any field later on, and a repeated axis must not vanish.
 
+use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 use std::ops::Range;
@@ -54,6 +55,15 @@ impl Places {
     }
 }
 
+/// Fields with longer paths have no place of their own: no study has them, and a text with a long key over many
+/// values would take memory with the square of its length.
+const LONGEST_PATH: usize = 200;
+
+/// The path that `extend` makes of `path`, or `path` itself where it is too long already.
+fn below(path: &str, extend: impl FnOnce() -> String) -> Cow<'_, str> {
+    if path.len() > LONGEST_PATH { Cow::Borrowed(path) } else { Cow::Owned(extend()) }
+}
+
 /// Path of the field `key` of the object at `path`.
 pub(super) fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
@@ -102,7 +112,9 @@ impl Scanner<'_> {
             _ => self.skip_while(|c| !",]}".contains(c) && !c.is_ascii_whitespace()),
         }
         let place = Place { key: key.unwrap_or(value), value, span: start..self.offset };
-        self.found.by_path.entry(path.to_owned()).or_insert_with(|| place.clone());
+        if path.len() <= LONGEST_PATH {
+            self.found.by_path.entry(path.to_owned()).or_insert_with(|| place.clone());
+        }
         place
     }
 
@@ -119,10 +131,11 @@ impl Scanner<'_> {
             // Decoded, because "mu" and "m\u0075" are the same key.
             let key: String = serde_json::from_str(&self.text[start..self.offset]).unwrap_or_default();
             self.skip_while(|c| c == ':' || c.is_ascii_whitespace());
-            let field = join(path, &key);
+            let field = below(path, || join(path, &key));
             let place = self.value(&field, Some(key_at));
             if !seen.insert(key) {
-                self.found.repeated.push(Repeated { path: field, place });
+                let path = field.chars().take(LONGEST_PATH).collect();
+                self.found.repeated.push(Repeated { path, place });
             }
         }
     }
@@ -134,7 +147,7 @@ impl Scanner<'_> {
             if matches!(self.peek(), Some(']') | None) {
                 break;
             }
-            self.value(&format!("{path}[{index}]"), None);
+            self.value(&below(path, || format!("{path}[{index}]")), None);
         }
         self.advance();
     }

@@ -7,6 +7,9 @@ use super::locate::{Place, Places, Repeated, join};
 /// Longer values are cut in messages.
 const SHOWN_CHARS: usize = 60;
 
+/// Longer fields, which no study has, are cut in messages.
+const LONGEST_FIELD: usize = 200;
+
 /// A study's text with the place of every field.
 #[derive(Debug, Clone)]
 pub(super) struct Origin {
@@ -27,7 +30,11 @@ impl Origin {
         Problem {
             file: self.file.clone(),
             position: place.map(|place| place.value),
-            field: if field.is_empty() { "the study".to_owned() } else { field.to_owned() },
+            field: match field.len() {
+                0 => "the study".to_owned(),
+                1..=LONGEST_FIELD => field.to_owned(),
+                _ => shorten(field),
+            },
             value: place.map(|place| self.value_text(place)),
             message: message.into(),
             help: Vec::new(),

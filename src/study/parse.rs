@@ -26,9 +26,9 @@ pub(super) fn parse(text: &str, source_name: &str) -> Result<Study, StudyError> 
     let given =
         JobSpec { scene: file.scene, numerics: file.numerics, run: file.run, detection: file.detection };
     let base = with_preset(given, file.preset, &origin);
+    check_size(file.grid.as_ref(), &origin)?;
     let axes = axes(file.grid, &base, &origin).map_err(StudyError::Invalid)?;
     let study = Study { name, description: file.description, base, axes, origin };
-    check_size(&study)?;
     refuse(check_jobs(&study))?;
     Ok(study)
 }
@@ -114,12 +114,28 @@ fn axes(
     if problems.is_empty() { Ok(axes) } else { Err(problems) }
 }
 
-fn check_size(study: &Study) -> Result<(), StudyError> {
-    let points = study.axes.iter().fold(1, |n: u128, axis| n.saturating_mul(axis.values.len() as u128));
+/// Before any value is looked at: a few axes of a million values each would take minutes to be refused.
+fn check_size(grid: Option<&Map<String, Value>>, origin: &Origin) -> Result<(), StudyError> {
+    let mut axes: Vec<_> = grid.into_iter().flatten().map(|(name, given)| (name, length(given))).collect();
+    let points = axes.iter().fold(1, |n: u128, (_, length)| n.saturating_mul(*length as u128));
     if points <= MAX_JOBS as u128 {
         return Ok(());
     }
-    let factors: Vec<_> =
-        study.axes.iter().map(|axis| format!("{} {}", axis.parameter.name, axis.values.len())).collect();
-    Err(StudyError::TooManyJobs { file: study.origin.file.clone(), points, factors: factors.join(" × ") })
+    axes.sort_by_key(|(name, _)| origin.places.by_path.get(&join("grid", name)).map(|place| place.key));
+    let factors: Vec<_> = axes.iter().map(|(name, length)| format!("{name} {length}")).collect();
+    Err(StudyError::TooManyJobs { file: origin.file.clone(), points, factors: factors.join(" × ") })
+}
+
+/// Number of values of an axis as written; 1 where it is not an axis or a range too long by itself, which
+/// reading it tells better.
+fn length(given: &Value) -> usize {
+    match given {
+        Value::Array(list) => list.len().max(1),
+        _ => given
+            .get("count")
+            .and_then(Value::as_u64)
+            .and_then(|count| usize::try_from(count).ok())
+            .filter(|count| (1..=MAX_JOBS).contains(count))
+            .unwrap_or(1),
+    }
 }

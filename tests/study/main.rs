@@ -3,6 +3,7 @@
 mod expansion;
 mod keys;
 mod mini_schema;
+mod mutations;
 mod presets;
 mod refusals;
 mod schema;

@@ -235,6 +235,22 @@ fn non_physical_values_of_the_base_job_are_all_told_with_their_place() {
     assert_eq!(text.lines().count(), 3, "{text}");
 }
 
+/// Protects: a magnitude that would overflow before the first step is refused with the range, and not called
+/// non-positive.
+#[test]
+fn magnitudes_beyond_all_pins_are_refused() {
+    for (field, value, expected) in [
+        (r#""pin": { "young_modulus_pa": 1e300 }"#, "young_modulus_pa = 1e300", "from 1e-20 to 1e20"),
+        (r#""pin": { "density_kg_m3": 1e-210 }"#, "density_kg_m3 = 1e-210", "from 1e-20 to 1e20"),
+        (r#""disk": { "omega_rpm": 3e166 }"#, "omega_rpm = 3e166", "from 1e-20 to 1e20"),
+        (r#""pin": { "size_m": [0.01, 1e-30, 0.01] }"#, "size_m[1] = 1e-30", "from 1e-20 to 1e20"),
+        (r#""contact": { "mu": 1e21 }"#, "mu = 1e21", "at most 1e20"),
+        (r#""clamp": { "width_m": 1e21 }"#, "width_m = 1e21", "at most 1e20"),
+    ] {
+        assert_contains(&refusal(&format!("{{ \"scene\": {{ {field} }} }}")), &[value, expected]);
+    }
+}
+
 #[test]
 fn non_physical_grid_values_are_told_once_each_and_named() {
     let text = refusal(

@@ -6,7 +6,7 @@ use tribosweep::worker::{Interrupt, SilentProgress, WorkError, work};
 use super::{Recorder, job, row, several, solvable, spec, submit};
 use crate::support::{Sandbox, counts, of};
 
-/// Protects: whatever is wrong with a job (its text, its values, the run, the figures), that job fails with
+/// Protects: whatever is wrong with a job (its text, its values, the run), that job fails with
 /// the reason, the observer is told, and the sweep goes on to its end.
 #[tokio::test]
 async fn a_failed_job_stops_nothing() {
@@ -18,7 +18,7 @@ async fn a_failed_job_stops_nothing() {
     incompressible.scene.pin.poisson_ratio = 0.5;
     let mut off_the_mesh = spec(0.2, 0.001);
     off_the_mesh.scene.clamp.width_m = 0.0025;
-    // Legal as numbers, but beyond what a computer can hold as a time step or a buffer.
+    // Beyond what a computer can hold as an energy, a time step or a buffer.
     let mut stiff = spec(0.2, 0.001);
     stiff.scene.pin.young_modulus_pa = 1e300;
     let mut nearly_incompressible = spec(0.2, 0.001);
@@ -26,7 +26,7 @@ async fn a_failed_job_stops_nothing() {
     let mut overdamped = spec(0.2, 0.001);
     overdamped.numerics.beta_r_s = 1.0e3;
     let bad = [
-        (solvable("stiff", &stiff), "run.limit_s"),
+        (solvable("stiff", &stiff), "scene.pin.young_modulus_pa"),
         (solvable("nearly incompressible", &nearly_incompressible), "run.limit_s"),
         (solvable("overdamped", &overdamped), "run.limit_s"),
         (job("text", "no job"), "unreadable job: "),
@@ -34,7 +34,7 @@ async fn a_failed_job_stops_nothing() {
         (solvable("values", &incompressible), "scene.pin.poisson_ratio"),
         (solvable("mesh", &off_the_mesh), "scene.clamp.width_m"),
         (solvable("run", &diverging), "diverged at step"),
-        (solvable("figures", &infinite), "slip_speed_max_m_s is not finite"),
+        (solvable("speed", &infinite), "scene.disk.omega_rpm"),
     ];
     let sandbox = Sandbox::new();
     let mut queue = sandbox.open().await;

@@ -1,0 +1,186 @@
+//! A job's run once more, with its energies balanced at every step, and how well they have to close.
+//!
+//! The balance is an identity of the scheme (`solver::energy`), so in exact arithmetic it closes to zero.
+//! In floating point every operation errs by at most ε = 2⁻⁵² of its result, and the standard model of
+//! rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, ch. 3) turns that into a bound that
+//! is computed along with the run:
+//!
+//! * The nodal force of a step is a sum of 81 products (27 neighbours × 3 components) and about ten more
+//!   terms. With |K| the sum of the elements' absolute stiffnesses it errs, at each degree of freedom, by at
+//!   most ~91 ε w,  w = |K|(|u| + β_R|p|) + m(|u| + Δt|p|)/Δt² + |external forces|; the term with 1/Δt² is the
+//!   rounding of u_{n+1} and p_{n+1} themselves, as a force. An error of the force does the work error × |Δu|. The
+//!   scheme weights the increments on both sides, and the numerical damping of β₂ > ½ takes in one more.
+//! * The step and the ledger each evaluate these sums: twice. So a step contributes at most
+//!   C ε Σ w(|Δu_n| + |Δu_{n−1}| + |Δu_{n−2}|) with C = 200.
+//! * The sums of works round once a step and term: 8 ε Σ|works so far|.
+//! * At the end, ½uKu errs by C ε ½|u||K||u|, and the kinetic energy, whose acceleration is a difference of
+//!   displacements, by C ε Σ m g (g + |u|/Δt), g = |p| + |Δu_n|/Δt + |Δu_{n−1}|/Δt.
+//!
+//! Terms in ε² are left out: nothing here takes 10¹³ steps.
+
+use tribosweep::solver::element;
+use tribosweep::solver::energy::{Energies, EnergyLedger};
+use tribosweep::solver::operator::StencilOperator;
+use tribosweep::solver::{Drive, Model, State, step};
+
+/// Roundings that a force goes through, in the step and in the ledger.
+const ROUNDINGS: f64 = 200.0;
+
+/// Steps between two audits of a job (`analysis::job`).
+pub const JOB_INTERVAL: u64 = 16;
+
+/// A run whose energies are balanced at every step.
+pub struct Audited<'a> {
+    model: &'a Model,
+    drive: Drive,
+    /// The state.
+    pub state: State<1>,
+    every: EnergyLedger<1>,
+    sampled: EnergyLedger<1>,
+    magnitudes: StencilOperator,
+    before: Vec<f64>,
+    strained: Vec<f64>,
+    forces: Vec<f64>,
+    increments: [Vec<f64>; 3],
+    force_work_j: f64,
+    sums_j: f64,
+    at_job_audit: Energies,
+    highest_stored: f64,
+    highest_magnitude: f64,
+}
+
+impl<'a> Audited<'a> {
+    /// A run from `state` (before its first step).
+    pub fn new(model: &'a Model, drive: Drive, state: State<1>) -> Self {
+        let mesh = model.mesh();
+        let stiffness = element::stiffness(model.material(), mesh.element_size_m());
+        let field = || vec![0.0; state.u.len()];
+        Self {
+            model,
+            drive,
+            every: EnergyLedger::new(model, 1),
+            sampled: EnergyLedger::new(model, JOB_INTERVAL),
+            magnitudes: StencilOperator::assemble(mesh, &stiffness.abs()),
+            before: field(),
+            strained: field(),
+            forces: field(),
+            increments: std::array::from_fn(|_| field()),
+            force_work_j: 0.0,
+            sums_j: 0.0,
+            at_job_audit: Energies::default(),
+            highest_stored: 0.0,
+            highest_magnitude: 0.0,
+            state,
+        }
+    }
+
+    /// Does one step.
+    pub fn advance(&mut self) {
+        let (model, drives) = (self.model, [self.drive]);
+        self.before.copy_from_slice(&self.state.u);
+        self.find_magnitudes();
+        self.every.before_step(model, &self.state);
+        self.sampled.before_step(model, &self.state);
+        step(model, &drives, &mut self.state);
+        self.every.after_step(model, &drives, &self.state);
+        self.sampled.after_step(model, &drives, &self.state);
+        self.add_up();
+        if self.sampled.audits(self.state.step - 1) {
+            self.at_job_audit = *self.every.energies(0);
+            self.find_highest();
+        }
+    }
+
+    /// Does `steps` steps.
+    pub fn run(&mut self, steps: u64) {
+        for _ in 0..steps {
+            self.advance();
+        }
+    }
+
+    /// The energies at the last step.
+    pub fn energies(&self) -> &Energies {
+        self.every.energies(0)
+    }
+
+    /// The energies as a job sees them, at its last audit.
+    pub fn sampled_energies(&self) -> &Energies {
+        self.sampled.energies(0)
+    }
+
+    /// The exact energies at the job's last audit.
+    pub fn energies_at_job_audit(&self) -> &Energies {
+        &self.at_job_audit
+    }
+
+    /// Largest ratios seen at the job's audits, of the stored energy and of the sum of the magnitudes of its parts,
+    /// to the energy put in and the static compression F²h/(2EA) (which the divergence guard compares).
+    pub fn highest_ratios(&self) -> [f64; 2] {
+        [self.highest_stored, self.highest_magnitude]
+    }
+
+    fn find_highest(&mut self) {
+        let [lx, ly, lz] = self.model.mesh().size_m();
+        let modulus_pa = self.model.material().young_modulus_pa;
+        let e = self.every.energies(0);
+        let scale_j = e.input_j() + self.drive.force_n.powi(2) * lz / (2.0 * modulus_pa * lx * ly);
+        self.highest_stored = self.highest_stored.max((e.kinetic_j + e.elastic_j) / scale_j);
+        self.highest_magnitude =
+            self.highest_magnitude.max((e.kinetic_j.abs() + e.elastic_j.abs()) / scale_j);
+    }
+
+    /// Largest imbalance [J] that rounding can explain.
+    pub fn rounding_bound_j(&self) -> f64 {
+        f64::EPSILON * (ROUNDINGS * (self.force_work_j + self.end_terms_j()) + 8.0 * self.sums_j)
+    }
+
+    /// w without the contact forces, which the step has yet to find.
+    fn find_magnitudes(&mut self) {
+        let (dt, beta_r) = (self.model.time_step_s(), self.model.beta_r_s());
+        for ((s, u), p) in self.strained.iter_mut().zip(&self.state.u).zip(&self.state.p) {
+            *s = u.abs() + beta_r * p.abs();
+        }
+        self.magnitudes.apply::<1>(&self.strained, &mut self.forces);
+        for (i, force) in self.forces.iter_mut().enumerate() {
+            let mass = self.model.masses_kg()[i / 3];
+            *force += mass * (self.state.u[i].abs() + dt * self.state.p[i].abs()) / (dt * dt);
+        }
+    }
+
+    fn add_up(&mut self) {
+        let mesh = self.model.mesh();
+        for (contact, slave) in self.state.contacts.force_n.iter().zip(self.model.slaves()) {
+            for c in 0..3 {
+                self.forces[3 * slave.node + c] += contact[c][0].abs();
+            }
+        }
+        // The whole load at every top node: more than its share, and simpler.
+        for node in mesh.top_nodes() {
+            self.forces[3 * node + 2] += self.state.load_n[0].abs();
+        }
+        self.increments.rotate_right(1);
+        let mut work_j = 0.0;
+        for i in 0..self.before.len() {
+            self.increments[0][i] = (self.state.u[i] - self.before[i]).abs();
+            work_j +=
+                self.forces[i] * (self.increments[0][i] + self.increments[1][i] + self.increments[2][i]);
+        }
+        self.force_work_j += work_j;
+        let e = self.every.energies(0);
+        self.sums_j += e.input_j() + e.friction_j.abs() + e.damping_j.abs() + e.contact_loss_j.abs();
+    }
+
+    fn end_terms_j(&self) -> f64 {
+        let dt = self.model.time_step_s();
+        let magnitude: Vec<f64> = self.before.iter().map(|u| u.abs()).collect();
+        let mut product = vec![0.0; magnitude.len()];
+        self.magnitudes.apply::<1>(&magnitude, &mut product);
+        let mut sum_j = 0.0;
+        for i in 0..magnitude.len() {
+            let speed = self.state.p[i].abs() + (self.increments[0][i] + self.increments[1][i]) / dt;
+            let mass = self.model.masses_kg()[i / 3];
+            sum_j += 0.5 * magnitude[i] * product[i] + mass * speed * (speed + magnitude[i] / dt);
+        }
+        sum_j
+    }
+}

@@ -1,0 +1,189 @@
+//! How a case ends, and whether that is one of the ways in which it may.
+
+use crate::audited::Audited;
+use serde_json::Value;
+use std::ops::ControlFlow;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use tribosweep::analysis::sample::Sample;
+use tribosweep::analysis::{JobError, JobObserver, JobRecord, drive, solve};
+use tribosweep::solver::{Model, SolverError, State};
+use tribosweep::spec::JobSpec;
+
+/// A legal ending.
+#[derive(Debug, Clone)]
+pub enum Ending {
+    /// A record whose energies close.
+    Result(Box<Closure>),
+    /// A refusal before the first step.
+    Refused {
+        /// The check that refused it.
+        by: &'static str,
+        /// What it said.
+        message: String,
+    },
+    /// A run that was stopped, with step and node.
+    Diverged {
+        /// The step.
+        step: u64,
+        /// What it said.
+        message: String,
+    },
+}
+
+/// How well the energies of a result close; see [`crate::audited`].
+#[derive(Debug, Clone)]
+pub struct Closure {
+    /// The record's outcome.
+    pub outcome: &'static str,
+    /// Time steps.
+    pub steps: u64,
+    /// |imbalance| over the rounding bound, every step audited; must be ≤ 1.
+    pub imbalance_over_bound: f64,
+    /// |imbalance| over the energy put in, every step audited.
+    pub residual: f64,
+    /// The rounding bound over the energy put in: below 1 the check says something.
+    pub bound_over_input: f64,
+    /// The record's own residual, which adds the sampling error of the damping's work.
+    pub sampled_residual: f64,
+    /// Largest stored energy over the energy put in: above 1 contact or damping has given energy.
+    pub highest_stored: f64,
+    /// The same of the sum of the magnitudes of its parts.
+    pub highest_magnitude: f64,
+}
+
+#[derive(Default)]
+struct Watch {
+    steps: u64,
+    last_progress_s: f64,
+    ran_backwards: bool,
+}
+
+impl JobObserver for Watch {
+    fn sample(&mut self, _: &Sample) {
+        self.steps += 1;
+    }
+
+    fn progress(&mut self, simulated_s: f64) -> ControlFlow<()> {
+        self.ran_backwards |= simulated_s.is_nan() || simulated_s < self.last_progress_s;
+        self.last_progress_s = simulated_s;
+        ControlFlow::Continue(())
+    }
+}
+
+/// Solves `spec` as the queue does and judges how it ends.
+///
+/// # Errors
+/// If it ends in a way in which no case may: what was wrong.
+pub fn examine(spec: &JobSpec) -> Result<Ending, String> {
+    let mut watch = Watch::default();
+    let solved = catch_unwind(AssertUnwindSafe(|| solve(spec, &mut watch)));
+    let Ok(solved) = solved else { return Err("it panicked".to_owned()) };
+    require(!watch.ran_backwards, || "time ran backwards".to_owned())?;
+    match solved {
+        Ok(record) => result(spec, &record, watch.steps),
+        Err(error) => failure(spec, &error, watch.steps),
+    }
+}
+
+fn require(holds: bool, otherwise: impl Fn() -> String) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(otherwise()) }
+}
+
+fn failure(spec: &JobSpec, error: &JobError, steps: u64) -> Result<Ending, String> {
+    let message = error.to_string();
+    let by = match error {
+        JobError::Spec(_) => "JobSpec::check",
+        JobError::Solver(SolverError::TimeStepTooLarge { .. }) => "time step above the limit",
+        JobError::Solver(SolverError::ClampOffMesh { .. }) => "clamp off the mesh",
+        JobError::TooManySteps { .. } => "too many steps",
+        JobError::Solver(SolverError::Diverged { step, node, .. }) => {
+            let nodes: usize = spec.scene.pin.elements.iter().map(|n| n + 1).product();
+            require(*step == steps && *node < nodes, || format!("step {step} of {steps}, node {node}"))?;
+            require(!message.contains("NaN"), || format!("a message with NaN: {message}"))?;
+            return Ok(Ending::Diverged { step: *step, message });
+        }
+        other => return Err(format!("it ended as no case may, after {steps} steps: {other:?}: {message}")),
+    };
+    require(steps == 0, || format!("refused after {steps} steps: {message}"))?;
+    let field = ["scene.", "numerics.", "run.", "detection."].iter().any(|part| message.contains(part));
+    require(field, || format!("a refusal that names no field: {message}"))?;
+    Ok(Ending::Refused { by, message })
+}
+
+fn result(spec: &JobSpec, record: &JobRecord, steps: u64) -> Result<Ending, String> {
+    require(record.steps == steps && steps > 0, || format!("{} of {steps} steps", record.steps))?;
+    stored_as_it_is(record)?;
+    plausible(spec, record)?;
+    let model = Model::from_scene(&spec.scene, &spec.numerics).map_err(|error| error.to_string())?;
+    let mut run = Audited::new(&model, drive(spec), State::at_rest(&model));
+    run.run(steps);
+    same_energies(record, &run)?;
+
+    let (energies, bound_j) = (run.energies(), run.rounding_bound_j());
+    let imbalance_j = energies.imbalance_j().abs();
+    let input_j = energies.input_j();
+    let over = |part: f64, whole: f64| if part == 0.0 { 0.0 } else { part / whole };
+    let closure = Closure {
+        outcome: record.outcome.name(),
+        steps,
+        imbalance_over_bound: over(imbalance_j, bound_j),
+        residual: over(imbalance_j, input_j),
+        bound_over_input: over(bound_j, input_j),
+        sampled_residual: record.energy_residual,
+        highest_stored: run.highest_ratios()[0],
+        highest_magnitude: run.highest_ratios()[1],
+    };
+    require(closure.imbalance_over_bound <= 1.0, || {
+        format!("the energies do not close: {closure:?}: {energies:?}")
+    })?;
+    // What the record's balance is off by is the sampling of the damping's work and nothing else.
+    let (exact, sampled) = (run.energies_at_job_audit(), run.sampled_energies());
+    let unexplained_j = (sampled.imbalance_j() + sampled.damping_j) - (exact.imbalance_j() + exact.damping_j);
+    require(unexplained_j.abs() <= bound_j, || format!("sampling changed {unexplained_j} J: {closure:?}"))?;
+    Ok(Ending::Result(Box::new(closure)))
+}
+
+/// As the queue stores it and the report reads it: no figure is null but those that may be absent.
+fn stored_as_it_is(record: &JobRecord) -> Result<(), String> {
+    let text = serde_json::to_string(record).map_err(|error| error.to_string())?;
+    let read: JobRecord = serde_json::from_str(&text).map_err(|error| format!("{error}: {text}"))?;
+    require(read == *record, || format!("read back differently: {text}"))?;
+    let Ok(Value::Object(fields)) = serde_json::to_value(record) else { return Err("no object".to_owned()) };
+    let null = fields.iter().find(|(name, value)| value.is_null() && *name != "frequency_hz");
+    require(null.is_none(), || format!("null: {null:?}"))
+}
+
+/// Facts of every record, whatever the scene.
+fn plausible(spec: &JobSpec, record: &JobRecord) -> Result<(), String> {
+    let shares = [record.stick_share, record.slip_share, record.separated_share];
+    let rounding = 1.0e-9;
+    let sum: f64 = shares.iter().sum();
+    let within = shares.iter().all(|share| (0.0..=1.0 + rounding).contains(share));
+    require(within && (sum - 1.0).abs() < rounding, || format!("shares {shares:?}"))?;
+    // Coulomb: no node's friction exceeds μN, so neither does the mean.
+    let most = spec.scene.contact.mu * (1.0 + rounding);
+    require(record.mu_star_contact.abs() <= most, || {
+        format!("mean contact friction {}", record.mu_star_contact)
+    })?;
+    // Contact pushes and never pulls.
+    let extremes = [record.n_over_f_min, record.n_over_f_max];
+    require(extremes[0] >= 0.0 && extremes[0] <= extremes[1], || format!("N/F {extremes:?}"))?;
+    let time_s = record.steps as f64 * record.time_step_s;
+    require((record.simulated_s - time_s).abs() <= rounding * time_s, || format!("{time_s} s"))
+}
+
+/// The audited run is the job's run, and its sampled ledger differs from the exact one by the damping alone.
+fn same_energies(record: &JobRecord, run: &Audited<'_>) -> Result<(), String> {
+    let (job, again) = (&record.energy, run.sampled_energies());
+    let pairs = [
+        (job.kinetic_j, again.kinetic_j),
+        (job.elastic_j, again.elastic_j),
+        (job.load_work_j, again.load_work_j),
+        (job.drive_work_j, again.drive_work_j),
+        (job.friction_j, again.friction_j),
+        (job.damping_j, again.damping_j),
+        (job.contact_loss_j, again.contact_loss_j),
+    ];
+    let same = pairs.iter().all(|(a, b)| a.to_bits() == b.to_bits());
+    require(same, || format!("another run: {job:?} and {again:?}"))
+}

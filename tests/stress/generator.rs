@@ -1,0 +1,193 @@
+//! Hostile but legal scenes: case = f(seed, index).
+//!
+//! Every parameter is drawn from its whole range, and with a fair chance from the corners of it. A small
+//! part of the cases is spoiled on purpose with one illegal value, and another with one value far outside
+//! anything physical: these must be refused.
+
+use crate::random::Random;
+use tribosweep::solver::Model;
+use tribosweep::spec::{ClampSide, JobSpec, TopFace};
+
+/// Nodes × steps of a case at most: 10 000 cases take minutes.
+const MOST_NODE_STEPS: f64 = 1.5e5;
+
+/// All clamps.
+pub const SIDES: [ClampSide; 7] = [
+    ClampSide::InnerSide,
+    ClampSide::OuterSide,
+    ClampSide::LeadingEnd,
+    ClampSide::TrailingEnd,
+    ClampSide::BothSides,
+    ClampSide::BothEnds,
+    ClampSide::WholeTop,
+];
+
+/// The job of case `index` of `seed`.
+pub fn job(seed: u64, index: u64) -> JobSpec {
+    let random = &mut Random::of_case(seed, index);
+    let mut spec = JobSpec::default();
+    pin(random, &mut spec);
+    contact(random, &mut spec);
+    clamp(random, &mut spec);
+    numerics(random, &mut spec);
+    duration(random, &mut spec);
+    if random.chance(0.06) {
+        spoil(random, &mut spec);
+    } else if random.chance(0.04) {
+        overdo(random, &mut spec);
+    }
+    spec
+}
+
+fn pin(random: &mut Random, spec: &mut JobSpec) {
+    let pin = &mut spec.scene.pin;
+    let edge_m = random.log_between(1.0e-4, 3.0e-2);
+    pin.elements = std::array::from_fn(|_| if random.chance(0.4) { 1 } else { random.whole(1, 4) });
+    if random.chance(0.12) {
+        pin.elements = [1, 1, 1];
+    }
+    // Edges of an element: up to 50 times the shortest, and exactly that in a third of the cases.
+    let long = random.whole(0, 2);
+    for axis in 0..3 {
+        let stretch = if random.chance(0.5) { 1.0 } else { random.log_between(1.0, 50.0) };
+        pin.size_m[axis] = edge_m * stretch * pin.elements[axis] as f64;
+    }
+    if random.chance(0.33) {
+        let short = (long + random.whole(1, 2)) % 3;
+        pin.size_m[short] = edge_m * pin.elements[short] as f64;
+        pin.size_m[long] = 50.0 * edge_m * pin.elements[long] as f64;
+    }
+    pin.young_modulus_pa = random.log_between(1.0e6, 1.0e12);
+    let any = random.between(-0.95, 0.499);
+    pin.poisson_ratio = if random.chance(0.5) { random.pick(&[0.0, 0.3, 0.49, 0.499, 0.499]) } else { any };
+    pin.density_kg_m3 = random.log_between(1.0e2, 3.0e4);
+}
+
+fn contact(random: &mut Random, spec: &mut JobSpec) {
+    let any = random.between(0.0, 2.0);
+    spec.scene.contact.mu = if random.chance(0.4) { random.pick(&[0.0, 0.4, 1.0, 2.0]) } else { any };
+    let radius = spec.scene.pin.size_m[0] / 2.0;
+    let far = random.log_between(1.0 + 1.0e-9, 1.0e3);
+    spec.scene.disk.track_radius_m = radius * if random.chance(0.2) { 1.0 + 1.0e-9 } else { far };
+    // Speeds at the pin's centre over five decades, in two ways: of themselves, and (as only V/F counts)
+    // against the speed μp/(ρ c_s) that belongs to the load.
+    let speed_m_s = random.log_between(1.0e-3, 1.0e2);
+    spec.scene.disk.omega_rpm = speed_m_s / spec.scene.disk.track_radius_m * 30.0 / std::f64::consts::PI;
+    let load = &mut spec.scene.load;
+    load.force_n = random.log_between(1.0e-12, 1.0e5);
+    if random.chance(0.5) {
+        let pin = &spec.scene.pin;
+        let shear_modulus_pa = pin.young_modulus_pa / (2.0 * (1.0 + pin.poisson_ratio));
+        let impedance = (shear_modulus_pa * pin.density_kg_m3).sqrt();
+        let matching_n = speed_m_s * impedance * pin.size_m[0] * pin.size_m[1];
+        load.force_n = matching_n * random.log_between(3.0e-3, 3.0e2);
+    }
+    spec.scene.top = random.pick(&[TopFace::TiedInZ, TopFace::FreeInZ]);
+}
+
+fn clamp(random: &mut Random, spec: &mut JobSpec) {
+    let pin = &spec.scene.pin;
+    let side = random.pick(&SIDES);
+    let axis =
+        usize::from(matches!(side, ClampSide::LeadingEnd | ClampSide::TrailingEnd | ClampSide::BothEnds));
+    let row_m = pin.size_m[axis] / pin.elements[axis] as f64;
+    let rows = random.whole(0, pin.elements[axis]) as f64;
+    let anything = random.chance(0.05);
+    spec.scene.clamp.side = side;
+    spec.scene.clamp.width_m = row_m * if anything { random.between(0.0, 6.0) } else { rows };
+}
+
+fn numerics(random: &mut Random, spec: &mut JobSpec) {
+    let any = random.between(0.5, 1.0);
+    spec.numerics.beta2 = if random.chance(0.6) { random.pick(&[0.5, 1.0]) } else { any };
+    let pin = &spec.scene.pin;
+    // The fraction of critical damping, ½β_Rω, of the lowest shear mode of the height or of the highest mode.
+    let modulus_pa = pin.young_modulus_pa / (2.0 * (1.0 + pin.poisson_ratio));
+    let speed_m_s = (modulus_pa / pin.density_kg_m3).sqrt();
+    let shortest_m =
+        (0..3).map(|axis| pin.size_m[axis] / pin.elements[axis] as f64).fold(f64::INFINITY, f64::min);
+    let omega =
+        if random.chance(0.3) { 1.6 * speed_m_s / pin.size_m[2] } else { 3.5 * speed_m_s / shortest_m };
+    let fraction = random.log_between(1.0e-6, 30.0);
+    spec.numerics.beta_r_s = if random.chance(0.3) { 0.0 } else { 2.0 * fraction / omega };
+    let any = random.between(0.05, 1.0);
+    spec.numerics.safety_factor = if random.chance(0.6) { random.pick(&[0.7, 0.99, 1.0]) } else { any };
+    if random.chance(0.2) {
+        // At the limit, close below it, far below it, and above it.
+        let of_limit = random.pick(&[1.0, 1.0, 0.99, 0.1, 1.02]);
+        spec.numerics.time_step_s = time_step_limit_s(spec).map(|limit_s| of_limit * limit_s);
+    }
+}
+
+/// The program's own limit, where the scene has one.
+fn time_step_limit_s(spec: &JobSpec) -> Option<f64> {
+    let numerics = tribosweep::spec::Numerics { time_step_s: None, ..spec.numerics.clone() };
+    Some(Model::from_scene(&spec.scene, &numerics).ok()?.time_step_limit_s())
+}
+
+fn duration(random: &mut Random, spec: &mut JobSpec) {
+    let limit_s = time_step_limit_s(spec).unwrap_or(1.0e-7);
+    let step_s = spec.numerics.time_step_s.unwrap_or(spec.numerics.safety_factor * limit_s);
+    let nodes: f64 = spec.scene.pin.elements.iter().map(|&n| n as f64 + 1.0).product();
+    let most = MOST_NODE_STEPS / nodes;
+    let few = random.pick(&[1.0, 2.0, 15.0, 16.0, 17.0, 100.0]);
+    let steps = if random.chance(0.1) { few } else { random.log_between(100.0, most) };
+    spec.run.limit_s = steps * step_s;
+    spec.run.stop_early = random.chance(0.7);
+    let any = random.between(0.01, 0.99);
+    spec.run.average_last_fraction = if random.chance(0.2) { random.pick(&[1.0e-6, 0.999_999]) } else { any };
+    let any = random.between(0.0, 0.9) * spec.run.limit_s;
+    spec.scene.load.ramp_s = if random.chance(0.4) { 0.0 } else { any };
+    let detection = &mut spec.detection;
+    detection.cycles = random.pick(&[2, 2, 5, 20, 10_000]);
+    detection.tolerance = random.log_between(1.0e-6, 0.99);
+    detection.drift_tolerance = random.log_between(1.0e-6, 0.99);
+    detection.regime_threshold = random.pick(&[0.0, 0.03, 0.99]);
+    let pin = &spec.scene.pin;
+    let shear_speed_m_s =
+        (pin.young_modulus_pa / (2.0 * (1.0 + pin.poisson_ratio)) / pin.density_kg_m3).sqrt();
+    let shortest_s = 100.0 * pin.size_m[2] / shear_speed_m_s;
+    detection.decay_observation_s = shortest_s * random.pick(&[1.000_001, 1.000_001, 1.0e3, 0.999]);
+    if detection.decay_observation_s < shortest_s && random.chance(0.9) {
+        detection.decay_observation_s = 1.1 * shortest_s;
+    }
+}
+
+/// One value that is not legal.
+fn spoil(random: &mut Random, spec: &mut JobSpec) {
+    let scene = &mut spec.scene;
+    match random.whole(0, 13) {
+        0 => scene.load.force_n = random.pick(&[0.0, -0.0, -30.0]),
+        1 => scene.pin.poisson_ratio = random.pick(&[0.5, 0.6, -1.0]),
+        2 => scene.pin.young_modulus_pa = random.pick(&[0.0, -1.0e9]),
+        3 => scene.pin.density_kg_m3 = 0.0,
+        4 => scene.pin.size_m[random.whole(0, 2)] = 0.0,
+        5 => scene.pin.elements[random.whole(0, 2)] = random.pick(&[0, 1001]),
+        6 => scene.contact.mu = -0.1,
+        7 => scene.disk.omega_rpm = random.pick(&[0.0, -7.0]),
+        8 => scene.disk.track_radius_m = 0.4 * scene.pin.size_m[0],
+        9 => scene.load.ramp_s = random.pick(&[-1.0e-9, spec.run.limit_s]),
+        10 => spec.numerics.beta2 = random.pick(&[0.499, 1.001]),
+        11 => spec.numerics.beta_r_s = -1.0e-12,
+        12 => spec.numerics.safety_factor = random.pick(&[0.0, 1.02]),
+        _ => spec.run.limit_s = random.pick(&[0.0, 101.0]),
+    }
+}
+
+/// One value that no pin has, up to the ends of the floating-point range.
+fn overdo(random: &mut Random, spec: &mut JobSpec) {
+    let exponent = random.between(15.0, 308.0) * random.pick(&[-1.0, 1.0]);
+    let value = 10_f64.powf(exponent);
+    let scene = &mut spec.scene;
+    match random.whole(0, 8) {
+        0 => scene.pin.young_modulus_pa = value,
+        1 => scene.pin.density_kg_m3 = value,
+        2 => scene.pin.size_m[random.whole(0, 2)] = value,
+        3 => scene.load.force_n = value,
+        4 => scene.disk.omega_rpm = value,
+        5 => scene.disk.track_radius_m = value.abs().max(scene.pin.size_m[0]),
+        6 => scene.contact.mu = value,
+        7 => spec.numerics.beta_r_s = value,
+        _ => spec.numerics.time_step_s = Some(value),
+    }
+}

@@ -1,0 +1,91 @@
+//! The true highest mode of a constrained block, from the program's own operator, by dense eigenvalues.
+
+use nalgebra::DMatrix;
+use tribosweep::solver::constraints::{Constraints, Freedom};
+use tribosweep::solver::{Model, ModelDefinition, SolverError, TimeStep, stability};
+
+/// The highest mode.
+pub struct Mode {
+    /// Its angular frequency [rad/s].
+    pub omega: f64,
+    /// Its shape at all degrees of freedom, largest entry 1.
+    pub shape: Vec<f64>,
+    /// Its modal mass [kg], shapeᵀ M shape.
+    pub mass_kg: f64,
+}
+
+/// The highest mode of `definition`'s block under its constraints; with `closed`, the contact face is held in z.
+pub fn highest(definition: &ModelDefinition, closed: bool) -> Mode {
+    let mesh = &definition.mesh;
+    let mut constraints: Constraints = definition.constraints.clone();
+    if closed {
+        constraints.fixed.extend(mesh.bottom_nodes().map(|node| 3 * node + 2));
+    }
+    let freedoms = constraints.freedoms(mesh).expect("the block's own constraints");
+    let model =
+        Model::new(ModelDefinition { time_step: TimeStep::FractionOfLimit(0.5), ..definition.clone() })
+            .expect("a model below its limit");
+    let masses = model.masses_kg();
+
+    // Column by column: the number of the independent motion of each degree of freedom.
+    let mut motions: Vec<Vec<usize>> = Vec::new();
+    let mut tied = std::collections::BTreeMap::new();
+    for (dof, freedom) in freedoms.iter().enumerate() {
+        match freedom {
+            Freedom::Fixed => {}
+            Freedom::Free => motions.push(vec![dof]),
+            Freedom::Tied(group) => {
+                let at = *tied.entry(*group).or_insert_with(|| {
+                    motions.push(Vec::new());
+                    motions.len() - 1
+                });
+                motions[at].push(dof);
+            }
+        }
+    }
+    let mass: Vec<f64> = motions.iter().map(|dofs| dofs.iter().map(|dof| masses[dof / 3]).sum()).collect();
+    let mut matrix = DMatrix::<f64>::zeros(motions.len(), motions.len());
+    let (mut x, mut y) = (vec![0.0; freedoms.len()], vec![0.0; freedoms.len()]);
+    for (column, dofs) in motions.iter().enumerate() {
+        x.fill(0.0);
+        for &dof in dofs {
+            x[dof] = 1.0;
+        }
+        model.operator().apply::<1>(&x, &mut y);
+        for (row, others) in motions.iter().enumerate() {
+            let force: f64 = others.iter().map(|&dof| y[dof]).sum();
+            matrix[(row, column)] = force / (mass[row] * mass[column]).sqrt();
+        }
+    }
+    let eigen = ((&matrix + matrix.transpose()) * 0.5).symmetric_eigen();
+    let top = eigen.eigenvalues.imax();
+    let mut shape = vec![0.0; freedoms.len()];
+    for (motion, dofs) in motions.iter().enumerate() {
+        for &dof in dofs {
+            shape[dof] = eigen.eigenvectors[(motion, top)] / mass[motion].sqrt();
+        }
+    }
+    let largest = shape.iter().fold(0.0_f64, |a, b| a.max(b.abs()));
+    for value in &mut shape {
+        *value /= largest;
+    }
+    let mass_kg = shape.iter().enumerate().map(|(dof, value)| masses[dof / 3] * value * value).sum();
+    Mode { omega: eigen.eigenvalues[top].sqrt(), shape, mass_kg }
+}
+
+/// `definition` at a fraction of its **true** stability limit, which is above the program's bound.
+pub fn at_fraction(definition: &ModelDefinition, mode: &Mode, fraction: f64) -> Result<Model, SolverError> {
+    let limit_s = stability::time_step_limit_s(mode.omega, definition.beta2, definition.beta_r_s);
+    let time_step = TimeStep::Unchecked(fraction * limit_s);
+    Model::new(ModelDefinition { time_step, ..definition.clone() })
+}
+
+/// Largest |λ| of the amplification matrix (`solver::stability`) of a mode of frequency `omega`.
+pub fn growth_per_step(omega: f64, model: &Model) -> f64 {
+    let w2 = (omega * model.time_step_s()).powi(2);
+    let b = model.beta_r_s() / model.time_step_s();
+    let determinant = 1.0 - (model.beta2() - 0.5 + b) * w2;
+    let trace = 2.0 - (0.5 + model.beta2() + b) * w2;
+    let discriminant = trace * trace - 4.0 * determinant;
+    if discriminant < 0.0 { determinant.sqrt() } else { (trace.abs() + discriminant.sqrt()) / 2.0 }
+}

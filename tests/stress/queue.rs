@@ -1,0 +1,62 @@
+//! The whole path: a study file, the queue, the database, the export.
+
+use serde_json::{Value, json};
+
+/// Corners along every axis; all combinations are jobs.
+fn study() -> Value {
+    json!({
+        "name": "corners",
+        "scene": { "pin": { "elements": [1, 1, 1] }, "clamp": { "side": "whole_top" } },
+        "run": { "limit_s": 1.0e-3 },
+        "grid": {
+            "mu": [0, 2],
+            "poisson_ratio": [-0.9, 0.499],
+            "load_n": [1.0e-12, 1.0e5],
+            "ramp_s": [0, 5.0e-4],
+            "omega_rpm": [0.01, 1000],
+            "beta2": [0.5, 1],
+            // None, strong, and so strong that the steps are too many.
+            "beta_r_s": [0, 1.0e-5, 1.0],
+            "top": ["tied_in_z", "free_in_z"],
+        },
+    })
+}
+
+/// Protects: hostile jobs in the queue end with figures in the database, or with a reason and without figures;
+/// none is lost, none stays behind, and no figure is null for not being a number.
+#[test]
+fn hostile_jobs_come_out_of_the_database() {
+    let folder = tempfile::TempDir::new().unwrap();
+    std::fs::write(folder.path().join("corners.json"), study().to_string()).unwrap();
+    let run = |arguments: &[&str]| {
+        let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_tribosweep"));
+        command.current_dir(&folder).env_remove("TRIBOSWEEP_DB").args(arguments);
+        command.timeout(std::time::Duration::from_mins(5)).output().unwrap()
+    };
+    let status = run(&["run", "corners.json"]).status;
+    assert_eq!(status.code(), Some(1), "some jobs have too many steps");
+    let exported = run(&["export", "corners.json", "--format", "json"]);
+    let text = String::from_utf8(exported.stdout).unwrap();
+    let rows: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
+    assert_eq!(rows.len(), 2_usize.pow(7) * 3);
+    let mut failed = 0;
+    for row in &rows {
+        match row["status"].as_str().unwrap() {
+            "failed" => {
+                failed += 1;
+                assert!(row["error"].as_str().unwrap().contains("run.limit_s"), "{row}");
+                assert!(row["mu_star"].is_null(), "a failed job has no result: {row}");
+            }
+            "periodic" | "decayed" | "not_periodic" => {
+                for figure in
+                    ["mu_star", "mu_star_contact", "n_over_f_max", "energy_residual", "slip_speed_max_m_s"]
+                {
+                    assert!(row[figure].is_f64(), "{figure}: {row}");
+                }
+            }
+            other => panic!("a job was left {other}: {row}"),
+        }
+    }
+    // Exactly those with the strongest damping.
+    assert_eq!(failed, rows.len() / 3);
+}

@@ -1,0 +1,44 @@
+//! Small scenes on both sides of the limit.
+
+use tribosweep::solver::boundary::{self, LoadShare};
+use tribosweep::solver::mesh::BlockMesh;
+use tribosweep::solver::{Drive, ModelDefinition, State, TimeStep, disk, material::Material};
+use tribosweep::spec::{Clamp, ClampSide, TopFace};
+
+/// The reference pin's material.
+pub const MATERIAL: Material =
+    Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
+
+/// No load, no friction, target at rest.
+pub const IDLE: Drive = Drive { mu: 0.0, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
+
+/// The reference pin on a coarse mesh: one node row of its inner side clamped, the top tied in z.
+pub fn pin(elements: [usize; 3]) -> ModelDefinition {
+    let mesh = BlockMesh::new([0.012, 0.015, 0.010], elements);
+    let clamp = Clamp { side: ClampSide::InnerSide, width_m: 0.0 };
+    let strip = boundary::clamped_strip(&mesh, &clamp).expect("a row at the edge");
+    ModelDefinition {
+        material: MATERIAL,
+        constraints: boundary::constraints(&mesh, &strip, TopFace::TiedInZ),
+        load: boundary::normal_load(&mesh),
+        surface_motion: disk::rotating_disk(&mesh, 0.0914),
+        beta2: 0.5,
+        beta_r_s: 0.0,
+        time_step: TimeStep::FractionOfLimit(0.7),
+        mesh,
+    }
+}
+
+/// The pin held in the air: no load, and displaced upwards by `height_m`.
+pub fn in_the_air(definition: ModelDefinition) -> ModelDefinition {
+    ModelDefinition { load: Vec::<LoadShare>::new(), ..definition }
+}
+
+/// At rest `height_m` above the plane, deformed by `amplitude_m` times `shape`.
+pub fn lifted(model: &tribosweep::solver::Model, height_m: f64, amplitude_m: f64, shape: &[f64]) -> State<1> {
+    let mut state = State::at_rest(model);
+    for (dof, (u, shape)) in state.u.iter_mut().zip(shape).enumerate() {
+        *u = amplitude_m * shape + if dof % 3 == 2 { height_m } else { 0.0 };
+    }
+    state
+}
