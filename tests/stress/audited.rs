@@ -5,11 +5,12 @@
 //! rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, ch. 3) turns that into a bound that
 //! is computed along with the run:
 //!
-//! * The nodal force of a step is a sum of 81 products (27 neighbours × 3 components) and about ten more
-//!   terms. With |K| the sum of the elements' absolute stiffnesses it errs, at each degree of freedom, by at
-//!   most ~91 ε w,  w = |K|(|u| + β_R|p|) + m(|u| + Δt|p|)/Δt² + |external forces|; the term with 1/Δt² is the
-//!   rounding of u_{n+1} and p_{n+1} themselves, as a force. An error of the force does the work error × |Δu|. The
-//!   scheme weights the increments on both sides, and the numerical damping of β₂ > ½ takes in one more.
+//! * The nodal force of a step goes through some 40 operations in sequence (sums along x, y and z of
+//!   `operator::tensor` and about ten more terms). With |K| the sum of the magnitudes of all its terms, before
+//!   any of them cancel, it errs, at each degree of freedom, by at most ~91 ε w with room for the sums along
+//!   lines, w = |K|(|u| + β_R|p|) + m(|u| + Δt|p|)/Δt² + |external forces|; the term with 1/Δt² is the rounding of
+//!   u_{n+1} and p_{n+1} themselves, as a force. An error of the force does the work error × |Δu|. The scheme
+//!   weights the increments on both sides, and the numerical damping of β₂ > ½ takes in one more.
 //! * The step and the ledger each evaluate these sums: twice. So a step contributes at most
 //!   C ε Σ w(|Δu_n| + |Δu_{n−1}| + |Δu_{n−2}|) with C = 200.
 //! * The sums of works round once a step and term: 8 ε Σ|works so far|.
@@ -18,9 +19,10 @@
 //!
 //! Terms in ε² are left out: nothing here takes 10¹³ steps.
 
-use tribosweep::solver::element;
 use tribosweep::solver::energy::{Energies, EnergyLedger};
-use tribosweep::solver::operator::StencilOperator;
+use tribosweep::solver::material::Material;
+use tribosweep::solver::mesh::BlockMesh;
+use tribosweep::solver::operator::AssembledOperator;
 use tribosweep::solver::{Drive, Model, State, step};
 
 /// Roundings that a force goes through, in the step and in the ledger.
@@ -37,9 +39,8 @@ pub struct Audited<'a> {
     pub state: State<1>,
     every: EnergyLedger<1>,
     sampled: EnergyLedger<1>,
-    magnitudes: StencilOperator,
+    magnitudes: AssembledOperator,
     before: Vec<f64>,
-    strained: Vec<f64>,
     forces: Vec<f64>,
     increments: [Vec<f64>; 3],
     force_work_j: f64,
@@ -53,16 +54,14 @@ impl<'a> Audited<'a> {
     /// A run from `state` (before its first step).
     pub fn new(model: &'a Model, drive: Drive, state: State<1>) -> Self {
         let mesh = model.mesh();
-        let stiffness = element::stiffness(model.material(), mesh.element_size_m());
         let field = || vec![0.0; state.u.len()];
         Self {
             model,
             drive,
             every: EnergyLedger::new(model, 1),
             sampled: EnergyLedger::new(model, JOB_INTERVAL),
-            magnitudes: StencilOperator::assemble(mesh, &stiffness.abs()),
+            magnitudes: magnitudes(mesh, model.material()),
             before: field(),
-            strained: field(),
             forces: field(),
             increments: std::array::from_fn(|_| field()),
             force_work_j: 0.0,
@@ -77,7 +76,7 @@ impl<'a> Audited<'a> {
     /// Does one step.
     pub fn advance(&mut self) {
         let (model, drives) = (self.model, [self.drive]);
-        self.before.copy_from_slice(&self.state.u);
+        self.before = self.state.u.values().collect();
         self.find_magnitudes();
         self.every.before_step(model, &self.state);
         self.sampled.before_step(model, &self.state);
@@ -137,10 +136,9 @@ impl<'a> Audited<'a> {
     /// w without the contact forces, which the step has yet to find.
     fn find_magnitudes(&mut self) {
         let (dt, beta_r) = (self.model.time_step_s(), self.model.beta_r_s());
-        for ((s, u), p) in self.strained.iter_mut().zip(&self.state.u).zip(&self.state.p) {
-            *s = u.abs() + beta_r * p.abs();
-        }
-        self.magnitudes.apply::<1>(&self.strained, &mut self.forces);
+        let strained = self.state.u.values().zip(self.state.p.values());
+        let strained: Vec<f64> = strained.map(|(u, p)| u.abs() + beta_r * p.abs()).collect();
+        self.forces = times(&self.magnitudes, &strained);
         for (i, force) in self.forces.iter_mut().enumerate() {
             let mass = self.model.masses_kg()[i / 3];
             *force += mass * (self.state.u[i].abs() + dt * self.state.p[i].abs()) / (dt * dt);
@@ -173,8 +171,7 @@ impl<'a> Audited<'a> {
     fn end_terms_j(&self) -> f64 {
         let dt = self.model.time_step_s();
         let magnitude: Vec<f64> = self.before.iter().map(|u| u.abs()).collect();
-        let mut product = vec![0.0; magnitude.len()];
-        self.magnitudes.apply::<1>(&magnitude, &mut product);
+        let product = times(&self.magnitudes, &magnitude);
         let mut sum_j = 0.0;
         for i in 0..magnitude.len() {
             let speed = self.state.p[i].abs() + (self.increments[0][i] + self.increments[1][i]) / dt;
@@ -183,4 +180,40 @@ impl<'a> Audited<'a> {
         }
         sum_j
     }
+}
+
+/// The magnitudes of all terms of K in its tensor form, element by element.
+fn magnitudes(mesh: &BlockMesh, material: &Material) -> AssembledOperator {
+    let h = mesh.element_size_m();
+    let (lambda, shear) = (material.lame_lambda_pa(), material.shear_modulus_pa());
+    // Corners a and b are on the same side along an axis or not: ∫NN is 2 or 1 sixths of h, ∫N′N′ is ±1/h, ∫N′N ±½.
+    let mass =
+        |axis: usize, a: usize, b: usize| h[axis] / 6.0 * if (a ^ b) >> axis & 1 == 0 { 2.0 } else { 1.0 };
+    let entry = |a: usize, r: usize, b: usize, c: usize| -> f64 {
+        let product = |factor: &dyn Fn(usize) -> Option<f64>| -> f64 {
+            (0..3).map(|axis| factor(axis).unwrap_or_else(|| mass(axis, a, b))).product()
+        };
+        if r == c {
+            let term = |d: usize| {
+                let modulus = if d == r { lambda + 2.0 * shear } else { shear };
+                modulus * product(&|axis| (axis == d).then(|| 1.0 / h[axis]))
+            };
+            (0..3).map(term).sum()
+        } else {
+            // λ and G times two derivatives each, in the sums and differences λ ± G.
+            2.0 * (lambda.abs() + shear) * product(&|axis| (axis == r || axis == c).then_some(0.5))
+        }
+    };
+    let entries = mesh.element_positions().flat_map(|[i, j, k]| {
+        let nodes = mesh.element_nodes(i, j, k);
+        (0..24).flat_map(move |row| (0..24).map(move |column| (row, column))).map(move |(row, column)| {
+            let (a, r, b, c) = (row / 3, row % 3, column / 3, column % 3);
+            (3 * nodes[a] + r, 3 * nodes[b] + c, entry(a, r, b, c))
+        })
+    });
+    AssembledOperator::from_entries(3 * mesh.node_count(), entries).expect("magnitudes are symmetric")
+}
+
+fn times(operator: &AssembledOperator, x: &[f64]) -> Vec<f64> {
+    (0..operator.dofs()).map(|row| operator.row(row).map(|(column, k)| k * x[column]).sum()).collect()
 }

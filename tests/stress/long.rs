@@ -64,10 +64,10 @@ fn shaken(model: &Model) -> State<1> {
     let mut state = State::at_rest(model);
     let mut random = Random::of_case(1, 0);
     let (mut momentum, mut total) = (0.0, 0.0);
-    for (dof, p) in state.p.iter_mut().enumerate() {
-        *p = random.between(-1.0e-3, 1.0e-3);
+    for dof in 0..state.p.len() {
+        state.p[dof] = random.between(-1.0e-3, 1.0e-3);
         if dof % 3 == 2 {
-            momentum += *p * model.masses_kg()[dof / 3];
+            momentum += state.p[dof] * model.masses_kg()[dof / 3];
             total += model.masses_kg()[dof / 3];
         }
     }

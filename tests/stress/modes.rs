@@ -45,13 +45,13 @@ pub fn highest(definition: &ModelDefinition, closed: bool) -> Mode {
     }
     let mass: Vec<f64> = motions.iter().map(|dofs| dofs.iter().map(|dof| masses[dof / 3]).sum()).collect();
     let mut matrix = DMatrix::<f64>::zeros(motions.len(), motions.len());
-    let (mut x, mut y) = (vec![0.0; freedoms.len()], vec![0.0; freedoms.len()]);
+    let mut x = vec![0.0; freedoms.len()];
     for (column, dofs) in motions.iter().enumerate() {
         x.fill(0.0);
         for &dof in dofs {
             x[dof] = 1.0;
         }
-        model.operator().apply::<1>(&x, &mut y);
+        let y = model.stiffness_times(&x);
         for (row, others) in motions.iter().enumerate() {
             let force: f64 = others.iter().map(|&dof| y[dof]).sum();
             matrix[(row, column)] = force / (mass[row] * mass[column]).sqrt();

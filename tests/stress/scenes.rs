@@ -2,7 +2,7 @@
 
 use tribosweep::solver::boundary::{self, LoadShare};
 use tribosweep::solver::mesh::BlockMesh;
-use tribosweep::solver::{Drive, ModelDefinition, State, TimeStep, disk, material::Material};
+use tribosweep::solver::{Drive, ModelDefinition, State, Stiffness, TimeStep, disk, material::Material};
 use tribosweep::spec::{Clamp, ClampSide, TopFace};
 
 /// The reference pin's material.
@@ -19,6 +19,7 @@ pub fn pin(elements: [usize; 3]) -> ModelDefinition {
     let strip = boundary::clamped_strip(&mesh, &clamp).expect("a row at the edge");
     ModelDefinition {
         material: MATERIAL,
+        stiffness: Stiffness::Elastic,
         constraints: boundary::constraints(&mesh, &strip, TopFace::TiedInZ),
         load: boundary::normal_load(&mesh),
         surface_motion: disk::rotating_disk(&mesh, 0.0914),
@@ -37,8 +38,8 @@ pub fn in_the_air(definition: ModelDefinition) -> ModelDefinition {
 /// At rest `height_m` above the plane, deformed by `amplitude_m` times `shape`.
 pub fn lifted(model: &tribosweep::solver::Model, height_m: f64, amplitude_m: f64, shape: &[f64]) -> State<1> {
     let mut state = State::at_rest(model);
-    for (dof, (u, shape)) in state.u.iter_mut().zip(shape).enumerate() {
-        *u = amplitude_m * shape + if dof % 3 == 2 { height_m } else { 0.0 };
+    for (dof, shape) in shape.iter().enumerate() {
+        state.u[dof] = amplitude_m * shape + if dof % 3 == 2 { height_m } else { 0.0 };
     }
     state
 }

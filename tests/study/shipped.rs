@@ -43,7 +43,7 @@ fn figure7_is_the_reference_scene_over_102_points() {
 /// Spelled out, so that a change of the defaults does not silently change the figure.
 fn reference(mu: f64, omega_rpm: f64) -> JobSpec {
     let mut spec = JobSpec::default();
-    spec.scene.pin.elements = [12, 15, 10];
+    spec.scene.pin.elements = [24, 30, 20];
     spec.scene.clamp.side = ClampSide::InnerSide;
     spec.scene.clamp.width_m = 0.001;
     spec.scene.load.ramp_s = 5.0e-4;

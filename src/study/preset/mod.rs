@@ -16,9 +16,9 @@ use serde_json::{Value, json};
 pub enum Preset {
     /// A quick look: regimes and trends.
     Draft,
-    /// The settings of figure7 and of a study without a preset.
+    /// The settings of figure7.
     Standard,
-    /// Half the element size and a smaller step than the standard, to check it by.
+    /// Two thirds of the element size and a smaller step than the standard, to check it by.
     Reference,
 }
 
@@ -54,9 +54,9 @@ impl Preset {
     /// A number and not a size in metres: the problem scales with the pin.
     pub fn elements_along_shortest_edge(self) -> usize {
         match self {
-            Self::Draft => 5,
-            Self::Standard => 10,
-            Self::Reference => 20,
+            Self::Draft => 10,
+            Self::Standard => 20,
+            Self::Reference => 30,
         }
     }
 
@@ -94,7 +94,7 @@ impl Preset {
     pub fn elements(self, pin: &Pin, clamp: &Clamp) -> [usize; 3] {
         let shortest_m = pin.size_m.iter().copied().fold(f64::INFINITY, f64::min);
         let size_m = shortest_m / self.elements_along_shortest_edge() as f64;
-        // Halves up: 15 mm in 2 mm elements are 8. A count out of bounds is for the scene's check to refuse.
+        // Halves up: 15 mm in 2 mm elements would be 8. A count out of bounds is for the scene's check to refuse.
         let mut elements = pin.size_m.map(|edge_m| ((edge_m / size_m + 0.5) as usize).max(1));
         if let Some(axis) = clamped_axis(clamp.side) {
             let wished = elements[axis];
