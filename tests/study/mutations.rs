@@ -1,5 +1,5 @@
 //! Protects: no text makes the parser panic, hang, or accept an unusable job. The fuzz targets in tests/fuzz try
-//! texts by the hundred million; these are enough to notice a slip without a nightly compiler.
+//! texts by the million; these are enough to notice a slip without a nightly compiler.
 
 #[path = "../fuzz/checks.rs"]
 mod checks;
