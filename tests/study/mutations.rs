@@ -115,7 +115,7 @@ fn mutated_overrides_are_accepted_or_refused() {
 }
 
 /// Protects: the memory for places grows with the text and not with its square: a long key over many values
-/// took 40 GB here.
+/// would take 40 GB here.
 #[test]
 fn a_long_key_over_many_values_is_refused() {
     let key = "k".repeat(200_000);
