@@ -225,7 +225,7 @@ fn failed_jobs() {
 }
 
 /// Protects: a single job that diverges ends with 1 and leaves the history that explains it; one that
-/// would take too many steps is no success either.
+/// would take too many steps is bad input, refused with 2 before it begins.
 #[test]
 fn a_single_job_that_fails() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
@@ -238,7 +238,7 @@ fn a_single_job_that_fails() {
     assert!(stderr(&diverged).contains("error: diverged at step"), "{}", stderr(&diverged));
     assert_eq!(stdout(&diverged), "");
     assert!(folder.read("history.csv").lines().count() > 10);
-    let endless = folder.command("solve mine.json --set beta_r_s=1 --json").assert().code(1);
+    let endless = folder.command("solve mine.json --set beta_r_s=1 --json").assert().code(2);
     assert!(stderr(&endless).contains("more than the"), "{}", stderr(&endless));
     assert_eq!(stdout(&endless), "");
 }
