@@ -102,7 +102,11 @@ def cases_section(ends):
     text += "\n" + runs.table(["field", "cases"], sorted(fields.items(), key=lambda item: -item[1]))
     stops = [end for end in ends if end["ending"] == "diverged"]
     if stops:
-        text += "\nThe first of the stops:\n\n"
+        overflow = sum(1 for end in stops if "no longer finite" in end["message"])
+        finite = [end["message"] for end in stops if "no longer finite" not in end["message"]]
+        limit = sum(1 for message in finite if "where the highest mode alternates" in message)
+        text += (f"\nOf the {len(stops)} stops {overflow} are overflows, {limit} runs "
+                 f"at exactly the stability limit, {len(finite) - limit} anything else. The first of them:\n\n")
         text += "".join(f"* {end['message']}\n" for end in stops[:3])
     return total, text
 
@@ -190,7 +194,7 @@ Repeat a case, here number 4711, with its job printed:
 
 The program's limit is a bound, a few percent below the true one, and a job above it is refused. To see what would happen, these
 runs take 1.02 of the **true** limit (dense eigenvalues of the constrained block, 2 × 3 × 2 elements) unchecked. In the
-air the pin starts in its highest mode, and the amplification matrix says at which audit (every 16 steps) the guard must
+air the pin starts with the velocities of its highest mode, and the amplification matrix says at which audit (every 16 steps) the guard must
 stop it. Pressed and dragged at μ = 0.4, the limit is that of a base held in z, and the mode grows out of at least the
 rounding of the load's deformation, which gives the most steps that it can take.
 

@@ -41,11 +41,11 @@ fn guarded(model: &Model, drive: Drive, mut state: State<1>, steps: u64) -> Opti
 
 /// The step at which the guard must stop a single mode: its two-term recursion (`solver::stability`) in place of
 /// the block, the energies of `solver::energy` in place of the ledger.
-fn predicted(model: &Model, mode: &Mode, amplitude_m: f64) -> u64 {
+fn predicted(model: &Model, mode: &Mode, speed_m_s: f64) -> u64 {
     let (dt, gamma, beta_r) = (model.time_step_s(), model.beta2(), model.beta_r_s());
     let (omega2, mass) = (mode.omega * mode.omega, mode.mass_kg);
     let nowhere = State::<1>::at_rest(model);
-    let (mut u, mut p, mut initial_j) = (amplitude_m, 0.0, 0.0);
+    let (mut u, mut p, mut initial_j) = (0.0, speed_m_s, 0.0);
     for n in 0..1_000_000_u64 {
         let a = -omega2 * (u + beta_r * p);
         let v = if n == 0 { p } else { p + gamma * dt * a };
@@ -80,10 +80,12 @@ fn a_free_pin_is_stopped_when_it_must_be() {
     for (beta2, damping) in integrators() {
         let (free, mode) = definition(beta2, damping, false);
         let model = modes::at_fraction(&in_the_air(free), &mode, FRACTION).unwrap();
-        // The mode may grow a thousandfold before the plane is in its way.
-        let (height_m, amplitude_m) = (1.0e-3, 1.0e-9);
-        let predicted = predicted(&model, &mode, amplitude_m);
-        let state = lifted(&model, height_m, amplitude_m, &mode.shape);
+        // It starts undeformed with a velocity, so that all of its energy is there to compare with. An amplitude of
+        // v/ω = 1 nm may grow a thousandfold before the plane is in its way.
+        let speed_m_s = 1.0e-9 * mode.omega;
+        let predicted = predicted(&model, &mode, speed_m_s);
+        assert!(predicted > 1, "nothing has grown yet: β₂ = {beta2}, {damping}");
+        let state = lifted(&model, 1.0e-6, speed_m_s, &mode.shape);
         let found = guarded(&model, IDLE, state, 10 * predicted);
         let (step, node, message) = found.unwrap_or_else(|| panic!("β₂ = {beta2}, {damping}: not stopped"));
         assert!(
@@ -128,7 +130,7 @@ fn below_the_limit_nothing_is_stopped() {
     for (beta2, damping) in integrators() {
         let (free, mode) = definition(beta2, damping, false);
         let model = modes::at_fraction(&in_the_air(free.clone()), &mode, 0.99).unwrap();
-        let state = lifted(&model, 1.0e-3, 1.0e-6, &mode.shape);
+        let state = lifted(&model, 1.0e-6, 1.0e-9 * mode.omega, &mode.shape);
         assert_eq!(guarded(&model, IDLE, state, 20_000), None, "β₂ = {beta2}, {damping}, in the air");
         let model = modes::at_fraction(&free, &mode, 0.99).unwrap();
         let drive = Drive { mu: 0.4, rate: 0.733, force_n: 30.0, ramp_s: 1.0e-4 };

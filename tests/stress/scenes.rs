@@ -30,16 +30,19 @@ pub fn pin(elements: [usize; 3]) -> ModelDefinition {
     }
 }
 
-/// The pin held in the air: no load, and displaced upwards by `height_m`.
+/// The pin without its load, to be held in the air.
 pub fn in_the_air(definition: ModelDefinition) -> ModelDefinition {
     ModelDefinition { load: Vec::<LoadShare>::new(), ..definition }
 }
 
-/// At rest `height_m` above the plane, deformed by `amplitude_m` times `shape`.
-pub fn lifted(model: &tribosweep::solver::Model, height_m: f64, amplitude_m: f64, shape: &[f64]) -> State<1> {
+/// Undeformed `height_m` above the plane, moving with `speed_m_s` times `shape`.
+pub fn lifted(model: &tribosweep::solver::Model, height_m: f64, speed_m_s: f64, shape: &[f64]) -> State<1> {
     let mut state = State::at_rest(model);
     for (dof, shape) in shape.iter().enumerate() {
-        state.u[dof] = amplitude_m * shape + if dof % 3 == 2 { height_m } else { 0.0 };
+        state.p[dof] = speed_m_s * shape;
+        if dof % 3 == 2 {
+            state.u[dof] = height_m;
+        }
     }
     state
 }

@@ -1,5 +1,5 @@
 //! Protects: no text makes the parser panic, hang, or accept an unusable job. The fuzz targets in tests/fuzz try
-//! texts by the hundred million; these are enough to notice a slip without a nightly compiler.
+//! texts by the million; these are enough to notice a slip without a nightly compiler.
 
 #[path = "../fuzz/checks.rs"]
 mod checks;
@@ -115,7 +115,7 @@ fn mutated_overrides_are_accepted_or_refused() {
 }
 
 /// Protects: the memory for places grows with the text and not with its square: a long key over many values
-/// took 40 GB here.
+/// would take 40 GB here.
 #[test]
 fn a_long_key_over_many_values_is_refused() {
     let key = "k".repeat(200_000);

@@ -111,7 +111,8 @@ fn studies_of_errors_vary_numerics_only() {
         ("studies/work_precision.json", 1, 24),
         ("studies/work_precision_damping.json", 1, 8),
         ("studies/work_precision_detection.json", 1, 16),
-        ("studies/mesh_convergence.json", 4, 32),
+        ("studies/mesh_convergence.json", 4, 40),
+        ("studies/mesh_convergence_reference.json", 4, 16),
     ] {
         let mut scenes: Vec<_> = jobs(file)
             .into_iter()
