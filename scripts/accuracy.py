@@ -262,15 +262,23 @@ def mesh_table(study):
     sizes = floats(lines[0]["sizes"])
     text = runs.table(["β_R [s]", "ω [rpm]"] + [f"h = {1e3 * size:.2f} mm" for size in sizes]
                       + ["last change", "verdict"], rows)
-    return text, worst, finest
+    return text, worst, finest, sizes
+
+
+def beyond(change, sizes):
+    """What a last change of mu* leaves to the limit, if the error falls with first or second order."""
+    first, second = (change / ((sizes[-2] / sizes[-1]) ** order - 1) for order in (1, 2))
+    return ("Where the order is not clean, what lies beyond\nthe finest mesh is known only by its size: "
+            f"{percent(first, 1)} if the error falls with first order, {percent(second, 1)} if with second.\n"
+            "The errors of the presets, which are against that mesh, have to be read with it.")
 
 
 def mesh_page():
-    reference, worst, _ = mesh_table("mesh_convergence_reference")
+    reference, worst, _, sizes = mesh_table("mesh_convergence_reference")
     text = ("The reference scene (clamp 1 mm), time step 0.8 of the limit on every mesh, the last 40 % of 9 ms:\n\n" + reference
-            + f"\nThe largest last change of μ\\* is {percent(max(worst.values()))}.\n\n"
+            + f"\nThe largest last change of μ\\* is {percent(max(worst.values()))}. {beyond(max(worst.values()), sizes)}\n\n"
             "The same with a clamp of 2 mm, Δt = 2·10⁻⁷ s on every mesh, the last 40 % of 8 ms, and two dampings:\n\n")
-    table, worst, finest = mesh_table("mesh_convergence")
+    table, worst, finest, _ = mesh_table("mesh_convergence")
     text += table
     text += ("\nVerdict: *converges* when the observed order is clean (criterion at the end), *settled* when the last change of\n"
              f"μ\\* is within {percent(WANTED / 2, 1)}, *not converged* otherwise. The largest last change is "
@@ -370,7 +378,7 @@ gives itself go before it. `tribosweep presets` prints this table.
 
 {presets_page(evidence)}
 The errors are against {mesh(MEASURE['elements'])} elements (safety factor {MEASURE['safety_factor']}, the last 40 % of 9 ms), which is not the limit
-itself: from `reference` to it μ\\* changes by up to {percent(evidence['reference']['mu_star_uncertainty'])}.
+itself: from `reference` to it μ\\* changes by up to {percent(evidence['reference']['mu_star_uncertainty'])} (see the convergence with the mesh below).
 
 ## The settings of figure7
 

@@ -230,12 +230,13 @@ def leading_end():
 def main():
     runs.build()
     table, reduction = claims()
+    elements = " × ".join(map(str, runs.shipped("figure7")["scene"]["pin"]["elements"]))
     runs.write(
         "physics.md",
         "# The paper's claims beside what is computed\n\n"
         "Written by `scripts/physics.py`; do not edit. Paper: Baillet, d'Errico, Berthier, *Influence of sliding contact\n"
         "local dynamics on macroscopic friction coefficient variation*, Revue européenne des éléments finis 14 (2005)\n"
-        "305–321. Computed: `studies/figure7.json`, the reference scene (12 × 15 × 10 elements, rigid disk, 1 mm clamp at\n"
+        f"305–321. Computed: `studies/figure7.json`, the reference scene ({elements} elements, rigid disk, 1 mm clamp at\n"
         "the inner side, top tied in z, β_R = 5·10⁻⁸ s). *Front* is the centre of the leading edge (−y), *rear* that of\n"
         "the trailing edge (+y); regimes name states with a share above 3 % of the node-time. Stresses are smoothed over\n"
         "2 µs, because the one-step force of a closing node is a property of the time step.\n\n"
@@ -245,7 +246,7 @@ def main():
         "separation by itself takes nothing. The residuals are those of the identity and of the energy balance of the\n"
         "window (drive + load = friction + damping + contact loss + change of stored energy); the contact loss is what closing\nand sticking nodes lose on a finite mesh and step, so the paper's ⟨T⟩V = friction + damping misses that share.\n\n"
         + reduction
-        + "\n## Clamps\n\nμ* and frequency at μ = 0.4 for every named clamp, 1 mm wide (`studies/clamps.json`; `~` not periodic).\n\n"
+        + "\n## Clamps\n\nμ* and frequency at μ = 0.4 for every named clamp, 1 mm wide (`studies/clamps.json`, 12 × 15 × 10 elements; `~` not periodic).\n\n"
         + clamps()
         + "\n"
         + leading_end(),
