@@ -231,6 +231,9 @@ back as they are.
 * A stop needs a growth that the guard can see: from rounding, a mode at 1.02 of the limit takes up to a few hundred steps.
   Within the last 15 steps of a run only overflow is looked for. Neither can happen at a step that the program accepts.
 * Combinations of values near the ends of what is accepted (10⁻²⁰ to 10²⁰ in SI units) are tried one at a time.
+* A load of zero is refused; the smallest is 10⁻¹² N.
+* The guard compares with all that was put in so far, which grows along a sliding run: what feeds energy slowly is noticed later
+  in a long run than in a short one.
 * Fuzzing covers texts, not the database file; grids of more than 2000 points are passed over. `detection.cycles` in the
   thousands makes the search for a limit cycle slow (it compares all of them after every cycle), though not endless.
 """

@@ -77,8 +77,8 @@ fn as_text(evidence: &Evidence) -> String {
          many more as the clamp needs to end at a node row. safety: time step as a fraction of the stability limit.\n\
          tolerance, drift: of the periodic state. cost: nodes × steps, standard = 1.\n\n\
          Errors: the largest at {} rpm, μ = {}, {},\n\
-         against {nx} × {ny} × {nz} elements with a safety factor of {}, whose own μ* still changes by up to {:.1} % from\n\
-         the next coarser mesh. Other scenes have other errors: compare two presets there.\n\
+         against {nx} × {ny} × {nz} elements with a safety factor of {}, beyond which may lie\n\
+         up to {:.1} % (first order from the next coarser mesh). Other scenes have other errors: compare two presets there.\n\
          Written by {} with solver version {}.\n",
         speeds.join(", "),
         evidence.mu,

@@ -26,3 +26,22 @@ pub fn rotating_disk(mesh: &BlockMesh, track_radius_m: f64) -> SurfaceMotion {
 pub fn straight_plane(mesh: &BlockMesh) -> SurfaceMotion {
     vec![[0.0, 1.0]; mesh.bottom_nodes().len()]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects: the base sees a rigid anticlockwise turn about the axis, v = ω × r.
+    #[test]
+    fn turns_rigidly_about_the_axis() {
+        let mesh = BlockMesh::new([0.012, 0.015, 0.010], [3, 4, 2]);
+        for (node, v) in mesh.bottom_nodes().zip(rotating_disk(&mesh, 0.0914)) {
+            let [x, y, _] = mesh.coordinates_m(node);
+            let r = [0.0914 + x, y];
+            let squared = r[0] * r[0] + r[1] * r[1];
+            let rounding = 4.0 * f64::EPSILON * squared;
+            assert!((r[0] * v[0] + r[1] * v[1]).abs() <= rounding, "node {node}: across the radius");
+            assert!((r[0] * v[1] - r[1] * v[0] - squared).abs() <= rounding, "node {node}: of size r");
+        }
+    }
+}

@@ -24,7 +24,10 @@ pub struct Place {
 }
 
 /// A vector per node and lane. Indexed by (3·node + component)·L + lane, whatever the storage.
-#[derive(Debug, Clone, PartialEq)]
+///
+/// The padding of displacements and velocities is zero: it is a neighbour of the last node in a product. A
+/// product leaves numbers in the padding of its result, which nothing may read; so fields are not compared.
+#[derive(Debug, Clone)]
 pub struct Field<const L: usize> {
     nodes_per_line: usize,
     blocks_per_line: usize,
@@ -84,7 +87,7 @@ impl<const L: usize> Field<L> {
         &self.blocks
     }
 
-    /// All blocks. What is written to the padding must be zero.
+    /// All blocks. What a product will read must keep its padding zero.
     pub fn blocks_mut(&mut self) -> &mut [Block] {
         &mut self.blocks
     }

@@ -100,3 +100,34 @@ impl<const L: usize> State<L> {
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::solver::step;
+    use crate::spec::JobSpec;
+
+    /// Protects: the ramp is linear from zero, then constant; without one the load is there at once.
+    #[test]
+    fn the_load_is_ramped() {
+        let ramped = Drive { mu: 0.0, rate: 0.0, force_n: 30.0, ramp_s: 1.0e-3 };
+        assert_eq!([0.0, 0.25e-3, 1.0e-3, 2.0e-3].map(|t| ramped.load_n(t)), [0.0, 7.5, 30.0, 30.0]);
+        assert_eq!(Drive { ramp_s: 0.0, ..ramped }.load_n(0.0), 30.0);
+    }
+
+    /// Protects: the load of a step is that of its time t_n, not of the step before or after.
+    #[test]
+    fn a_step_takes_the_load_of_its_own_time() {
+        let mut spec = JobSpec::default();
+        spec.scene.pin.elements = [6, 8, 5];
+        spec.scene.clamp.width_m = 0.002;
+        let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
+        let dt = model.time_step_s();
+        let drive = Drive { mu: 0.4, rate: 0.7, force_n: 30.0, ramp_s: 5.5 * dt };
+        let mut state = State::<1>::at_rest(&model);
+        for n in 0..8 {
+            step(&model, &[drive], &mut state);
+            assert_eq!(state.load_n[0], drive.load_n(f64::from(n) * dt), "step {n}");
+        }
+    }
+}

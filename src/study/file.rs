@@ -39,9 +39,10 @@ pub(super) struct StudyFile {
 }
 
 impl StudyFile {
-    /// The reference scene as a study file.
+    /// The shape of a study file: the reference scene, with a preset because it is a name.
     pub(super) fn template() -> Value {
-        serde_json::to_value(Self::default()).expect("a study is plain data with string keys")
+        let file = Self { preset: Some(Preset::Standard), ..Self::default() };
+        serde_json::to_value(file).expect("a study is plain data with string keys")
     }
 }
 

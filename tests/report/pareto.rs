@@ -101,9 +101,12 @@ fn an_unclean_order_is_refused() {
         matches!(unstable.order, Err(Unclean::OrderNotStable(a, b)) if a < 1.1 && b > 1.9),
         "{unstable:?}"
     );
-    // The finest figure stands, with the last difference.
+    // The finest figure stands, with what first order would leave: the last difference at a ratio of 2.
     assert_eq!(unstable.value, 0.355);
     assert!((unstable.uncertainty - 0.005).abs() < 1.0e-12);
+    // Up and down: a small last difference is no evidence, the spread of the last three levels is.
+    let restless = of(&[(4.0, 0.319), (2.0, 0.312), (1.0, 0.313)]);
+    assert!((restless.uncertainty - 0.007).abs() < 1.0e-12, "{restless:?}");
     let noisy: Vec<Level> = [(4.0, 0.34), (2.0, 0.31), (1.0, 0.3099)]
         .map(|(size, value)| Level { size, value, standard_error: 1.0e-4 })
         .to_vec();
@@ -159,7 +162,8 @@ fn errors_are_those_that_were_put_in() {
     // The reference itself is off by its correction: at most resolved to rounding, and its claim is the resolution.
     let own = &case.scores[case.reference.job];
     assert!(!own.is_resolved());
-    assert_eq!(own.claimed_error(), own.mu_star_resolution);
+    let rounded_up = own.claimed_error() / own.mu_star_resolution;
+    assert!((1.0..=1.1).contains(&rounded_up), "two digits, rounded up: {rounded_up}");
     // Brute force says the same about the front.
     let points: Vec<_> = case.scores.iter().map(|s| (s.wall_s.unwrap(), s.claimed_error())).collect();
     assert_eq!(case.scores.iter().map(|s| s.on_wall_front).collect::<Vec<_>>(), on_front(&points));

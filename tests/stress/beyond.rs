@@ -185,3 +185,28 @@ fn line(
         "node": node,
     })
 }
+
+/// Protects: the node that is told is the worst one of its own lane, and both of the guard's factors.
+#[test]
+fn the_guard_tells_the_node_and_keeps_both_factors() {
+    let model = Model::new(pin([6, 8, 5])).expect("a legal scene");
+    let drive = Drive { mu: 0.4, rate: 0.733, force_n: 0.0, ramp_s: 0.0 };
+    for (speed, node) in [(1.0, 17), (f64::NAN, 42), (f64::INFINITY, 5)] {
+        let mut state = State::<2>::at_rest(&model);
+        state.p[2 * (3 * node + 1) + 1] = speed;
+        // The other lane is worse, elsewhere.
+        state.p[2 * 3 * 60] = 1.0e9;
+        let energies = Energies { kinetic_j: f64::NAN, ..Energies::default() };
+        match guard::check(&model, &drive, &state, 1, &energies) {
+            Err(SolverError::Diverged { node: told, .. }) => assert_eq!(told, node),
+            other => panic!("not stopped: {other:?}"),
+        }
+    }
+    let state = State::<1>::at_rest(&model);
+    let stops = |kinetic_j, elastic_j| {
+        let energies = Energies { kinetic_j, elastic_j, drive_work_j: 1.0, ..Energies::default() };
+        guard::check(&model, &drive, &state, 0, &energies).is_err()
+    };
+    assert!(!stops(0.9, 1.0) && stops(1.1, 1.0), "stored: twice what was put in");
+    assert!(!stops(-49.0, 50.0) && stops(-51.0, 50.0), "magnitudes: a hundred times");
+}

@@ -77,8 +77,10 @@ fn the_mesh_follows_pin_and_clamp() {
 fn unknown_presets_are_refused() {
     let text = refusal(r#"{ "preset": "drafty" }"#);
     assert_contains(&text, &["preset = \"drafty\": expected", "did you mean `draft`?"]);
-    refusal(r#"{ "preset": null }"#);
-    refusal(r#"{ "preset": ["draft"] }"#);
+    for wrong in ["null", "3", r#"["draft"]"#, r#"{ "draft": null }"#] {
+        let text = refusal(&format!(r#"{{ "preset": {wrong} }}"#));
+        assert_contains(&text, &["preset", "expected a name, as a string"]);
+    }
     refusal(r#"{ "grid": { "preset": ["draft"] } }"#);
 }
 
@@ -140,6 +142,8 @@ fn the_stated_errors_are_those_of_the_results() {
         };
         close(largest(shares), entry.shares_error);
     }
+    let uncertain = reference.iter().map(|case| case.mu_star_uncertainty.expect("every case has one"));
+    assert_eq!(uncertain.fold(0.0, f64::max), evidence.reference.mu_star_uncertainty);
     let costs: Vec<f64> = evidence.presets.iter().map(|entry| entry.relative_cost).collect();
     assert!(costs[0] < costs[1] && costs[1] == 1.0 && costs[1] < costs[2], "{costs:?}");
 }

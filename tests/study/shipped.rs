@@ -108,7 +108,7 @@ fn every_clamp_ends_at_a_node_row() {
 #[test]
 fn studies_of_errors_vary_numerics_only() {
     for (file, cases, count) in [
-        ("studies/work_precision.json", 1, 24),
+        ("studies/work_precision.json", 1, 30),
         ("studies/work_precision_damping.json", 1, 8),
         ("studies/work_precision_detection.json", 1, 16),
         ("studies/mesh_convergence.json", 4, 40),

@@ -172,7 +172,10 @@ fn series(suffix: &str, layers: &[usize]) {
     for cfl in [1.0, 0.5] {
         let name = |what: &str| format!("cΔt/h = {cfl}{suffix}, {what}");
         let case = |what: &str| Evidence::new("B5", name(what), DOYEN);
-        let mut stress = case("worst error of the first contact's stress, 300 to 500 Pa");
+        // Below the limit the stress that dispersed waves leave behind the closing shock oscillates and decays as
+        // slowly as the front: it has no order at its worst step.
+        let mut stress =
+            (cfl == 1.0).then(|| case("worst error of the first contact's stress, 300 to 500 Pa"));
         let mut first_loss = Evidence::new("B5", name("energy lost in the first impact"), LOSS);
         let mut height = case("worst error of the base's height over h0");
         let [mut first_impulse, mut second_impulse] =
@@ -183,7 +186,9 @@ fn series(suffix: &str, layers: &[usize]) {
         for &layers in layers {
             let name = format!("{layers} elements");
             let found = bounce(layers, cfl);
-            stress.found(&name, found.worst_stress_pa, 0.0, 500.0);
+            if let Some(stress) = &mut stress {
+                stress.found(&name, found.worst_stress_pa, 0.0, 500.0);
+            }
             first_loss.found(&name, found.losses[0], closing_loss(layers, cfl), 1.0);
             height.found(&name, found.worst_height_m / HEIGHT_M, 0.0, 1.0);
             first_impulse.found(&name, found.impulses_ns_m2[0], IMPULSE_NS_M2, IMPULSE_NS_M2);
@@ -202,7 +207,7 @@ fn series(suffix: &str, layers: &[usize]) {
         let operations = ROUNDINGS_PER_FORCE * finest * 16.0 * finest / cfl;
         let rounding = operations * f64::EPSILON;
         first_loss.judge_exact(operations);
-        if cfl == 1.0 {
+        if let Some(stress) = stress {
             stress.judge_exact(operations);
             first_time.judge_bounded("a whole step at either end");
             second_time.judge_overall_order(1.0, 2.0, FRONT);
@@ -210,9 +215,6 @@ fn series(suffix: &str, layers: &[usize]) {
                 case.judge_order(1.0, 2.0, rounding);
             }
         } else {
-            // The stress that dispersed waves leave behind the closing shock oscillates and decays as slowly as the
-            // front: it has no order at its worst step.
-            drop(stress);
             for case in [first_time, second_time, height, first_impulse, second_impulse, energy] {
                 case.judge_overall_order(FRONT_ORDER, 2.0, FRONT);
             }

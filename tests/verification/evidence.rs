@@ -14,6 +14,7 @@
 //! is judged: a failing case shows up in the page, too.
 
 use serde_json::json;
+use std::cell::Cell;
 use std::fs;
 use std::path::PathBuf;
 
@@ -25,11 +26,20 @@ pub const ORDER_SLACK: f64 = 0.25;
 
 /// One case: a quantity with an exact answer, and what was found at one or more resolutions.
 #[derive(Debug)]
+#[must_use]
 pub struct Evidence {
     benchmark: &'static str,
     quantity: String,
     source: &'static str,
     rows: Vec<Row>,
+    judged: Cell<bool>,
+}
+
+/// A case that is not judged is a test that cannot fail.
+impl Drop for Evidence {
+    fn drop(&mut self) {
+        assert!(self.judged.get() || std::thread::panicking(), "{}: found, but not judged", self.quantity);
+    }
 }
 
 #[derive(Debug)]
@@ -45,7 +55,7 @@ struct Row {
 impl Evidence {
     /// A case of `benchmark` ("B1" …); `quantity` with its unit, `source` of the exact answer.
     pub fn new(benchmark: &'static str, quantity: impl Into<String>, source: &'static str) -> Self {
-        Self { benchmark, quantity: quantity.into(), source, rows: Vec::new() }
+        Self { benchmark, quantity: quantity.into(), source, rows: Vec::new(), judged: Cell::new(false) }
     }
 
     /// What was found at a resolution. `scale` makes the error relative: the exact value itself, or
@@ -135,6 +145,7 @@ impl Evidence {
     }
 
     fn judge(&self, criterion: &str, more: &serde_json::Value) {
+        self.judged.set(true);
         self.write(criterion, more);
         assert!(!self.rows.is_empty(), "{}: nothing was found", self.quantity);
         for row in &self.rows {

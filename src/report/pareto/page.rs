@@ -5,7 +5,7 @@ use super::compare::Comparison;
 use super::early::EarlyStop;
 use super::reference::{Chain, Direction, FIGURE_NAMES, FIGURES, FREQUENCY, MU_STAR, Reference};
 use super::refinement::{Limit, Unclean};
-use super::score::Score;
+use super::score::{Score, exceeds};
 use super::settings;
 use crate::report::markdown;
 use crate::report::value::{self, MISSING};
@@ -56,6 +56,7 @@ fn body(case: &Case) -> String {
 const LEGEND: &str = "\
 - error of μ\\* and f: relative to the reference; of the shares: the largest absolute difference\n\
 - `≤` not resolved: below standard error and uncertainty of the reference, which is what the number says\n\
+- `~` not periodic: an average over the last part of the run\n\
 - front: `t` no other job is faster (solver time) and better, `n` none has fewer node-steps and is better\n\n";
 
 fn reference_in_words(case: &Case) -> String {
@@ -102,7 +103,7 @@ fn chain_in_words(chain: &Chain) -> String {
 }
 
 fn limit_in_words(limit: &Limit) -> String {
-    let last = || format!("last change {:.2e}", limit.uncertainty);
+    let last = || format!("uncertain by {:.2e}", limit.uncertainty);
     match limit.order {
         Ok(order) => format!("order {order:.2}, corrected by {:.2e}", limit.uncertainty),
         Err(Unclean::TooFewLevels) => format!("two levels, {}", last()),
@@ -177,7 +178,7 @@ fn results(job: &DoneJob, score: &Score, is_reference: bool) -> [String; 8] {
 
 /// A signed relative error in percent, or the smallest one that would show.
 fn percent(error: f64, resolution: f64) -> String {
-    if error.abs() > resolution {
+    if exceeds(error, resolution) {
         format!("{:+.3} %", 100.0 * error)
     } else {
         resolved(error, resolution, |x| format!("{:.3} %", 100.0 * x))
@@ -185,7 +186,7 @@ fn percent(error: f64, resolution: f64) -> String {
 }
 
 fn resolved(error: f64, resolution: f64, write: impl Fn(f64) -> String) -> String {
-    match (error.is_finite(), error.abs() > resolution) {
+    match (error.is_finite(), exceeds(error, resolution)) {
         (false, _) => MISSING.to_owned(),
         (true, true) => write(error),
         (true, false) => format!("≤ {}", write(resolution)),

@@ -4,9 +4,14 @@
 //! (q₁ − q₂)/(q₂ − q₃) = (s₁ᵖ − s₂ᵖ)/(s₂ᵖ − s₃ᵖ), and the limit q₀ = q₃ − (q₂ − q₃)/((s₂/s₃)ᵖ − 1).
 //!
 //! The order is **clean** when there are at least three levels; the differences between the finest three have
-//! one sign and exceed twice their standard error; the order is within 0.5 … 3; and, with a fourth level, the
+//! one sign and the last exceeds twice its standard error; the order is within 0.5 … 3; and, with a fourth level, the
 //! order of the three coarser of the last four differs by at most 0.5. Then the uncertainty of the limit is the
-//! size of the correction. Otherwise the finest figure stands, with the size of the last difference.
+//! size of the correction. Otherwise the finest figure stands, and its uncertainty is
+//! * of figures that fall or rise steadily with an order that is not stable: what first order would leave,
+//!   |q₂ − q₃|/(s₂/s₃ − 1), and no less than the last difference;
+//! * of figures without an order: the spread of the last three levels, because a small last difference
+//!   between figures that go up and down says nothing;
+//! * otherwise the last difference.
 
 /// A figure at one level of refinement.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -72,18 +77,26 @@ pub fn limit(levels: &[Level]) -> Option<Limit> {
     if last.abs() <= 2.0 * before.standard_error.hypot(finest.standard_error) {
         return unclean(Unclean::WithinNoise);
     }
+    let values = [coarse.value, middle.value, fine.value];
+    let spread = values.into_iter().fold(f64::MIN, f64::max) - values.into_iter().fold(f64::MAX, f64::min);
+    let without_order = |reason| Some(Limit { value: finest.value, uncertainty: spread, order: Err(reason) });
     if (coarse.value - middle.value) * last <= 0.0 {
-        return unclean(Unclean::NotMonotone);
+        return without_order(Unclean::NotMonotone);
     }
     let order = match observed_order([coarse, middle, fine]) {
         Some(order) if ORDERS.contains(&order) => order,
-        other => return unclean(Unclean::OrderOutOfRange(other)),
+        other => return without_order(Unclean::OrderOutOfRange(other)),
     };
     if let [.., first, second, third, _] = levels {
         match observed_order([first, second, third]) {
             Some(earlier) if (earlier - order).abs() <= STABLE => {}
-            Some(earlier) => return unclean(Unclean::OrderNotStable(earlier, order)),
-            None => return unclean(Unclean::NotMonotone),
+            Some(earlier) => {
+                let first_order = last.abs() / (middle.size / fine.size - 1.0);
+                let reason = Unclean::OrderNotStable(earlier, order);
+                let uncertainty = first_order.max(last.abs());
+                return Some(Limit { value: finest.value, uncertainty, order: Err(reason) });
+            }
+            None => return without_order(Unclean::NotMonotone),
         }
     }
     let correction = last / ((middle.size / fine.size).powf(order) - 1.0);

@@ -15,9 +15,9 @@ pub struct Score {
     pub frequency_error: Option<f64>,
     /// Smallest relative error of the frequency that can be told from none.
     pub frequency_resolution: Option<f64>,
-    /// Largest absolute difference of the three shares.
+    /// Largest resolved absolute difference of the three shares; of the least resolved share where none is.
     pub shares_error: f64,
-    /// Smallest such difference that can be told from none.
+    /// Smallest difference of that share that can be told from none.
     pub shares_resolution: f64,
     /// Nodes × steps.
     pub node_steps: f64,
@@ -32,13 +32,31 @@ pub struct Score {
 impl Score {
     /// Whether the error of μ* can be told from none.
     pub fn is_resolved(&self) -> bool {
-        self.mu_star_error.abs() > self.mu_star_resolution
+        exceeds(self.mu_star_error, self.mu_star_resolution)
     }
 
-    /// The error of μ* that can be claimed: the larger of error and resolution.
+    /// The error of μ* that can be claimed: the error, or the resolution where the error is not resolved.
+    ///
+    /// A resolution is rounded up to two digits: two jobs of which neither can be told from the reference are
+    /// not better than each other in the third.
     pub fn claimed_error(&self) -> f64 {
-        self.mu_star_error.abs().max(self.mu_star_resolution)
+        if self.is_resolved() { self.mu_star_error.abs() } else { two_digits_up(self.mu_star_resolution) }
     }
+}
+
+/// Whether an error can be told from none. The reference's own error is the size of its correction and so is
+/// its resolution: equal but for rounding, and not resolved.
+pub(super) fn exceeds(error: f64, resolution: f64) -> bool {
+    error.abs() > resolution * (1.0 + 1.0e-9)
+}
+
+fn two_digits_up(value: f64) -> f64 {
+    if !(value.is_finite() && value > 0.0) {
+        return value;
+    }
+    let unit = 10.0_f64.powf(value.log10().floor() - 1.0);
+    // The tolerance keeps a number of two digits what it is.
+    (value / unit - 1.0e-9).ceil() * unit
 }
 
 /// The scores of a case's jobs.
@@ -68,7 +86,11 @@ fn score(job: &DoneJob, reference: &Reference) -> Score {
         difference(figure).map(|(error, resolution, value)| (error / value, (resolution / value).abs()))
     };
     let shares: Vec<_> = (FREQUENCY + 1..reference::FIGURES).filter_map(difference).collect();
-    let largest = |part: fn(&(f64, f64, f64)) -> f64| shares.iter().map(part).fold(0.0, f64::max);
+    // Share by share: the largest error that is resolved, or else the largest that there can be.
+    let resolved = shares.iter().filter(|(error, resolution, _)| exceeds(*error, *resolution));
+    let shown = resolved.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
+    let shown = shown.or_else(|| shares.iter().max_by(|a, b| a.1.total_cmp(&b.1)));
+    let (shares_error, shares_resolution) = shown.map_or((0.0, 0.0), |s| (s.0.abs(), s.1));
     let (mu_star_error, mu_star_resolution) = relative(MU_STAR).unwrap_or((f64::NAN, f64::NAN));
     let frequency = relative(FREQUENCY);
     Score {
@@ -76,8 +98,8 @@ fn score(job: &DoneJob, reference: &Reference) -> Score {
         mu_star_resolution,
         frequency_error: frequency.map(|(error, _)| error),
         frequency_resolution: frequency.map(|(_, resolution)| resolution),
-        shares_error: largest(|(error, ..)| error.abs()),
-        shares_resolution: largest(|(_, resolution, _)| *resolution),
+        shares_error,
+        shares_resolution,
         node_steps: job.node_steps(),
         wall_s: job.row.wall_s,
         on_wall_front: false,

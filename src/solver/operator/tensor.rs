@@ -413,7 +413,7 @@ mod tests {
     }
 
     /// Protects: the tensor form is the assembled K on every kind of node, down to one-element meshes,
-    /// for every sign of λ − G, and its padding stays zero.
+    /// for every sign of λ − G.
     #[test]
     fn equals_element_by_element_assembly() {
         for poisson_ratio in [0.3, 0.0, 0.25, 0.45, -0.4] {

@@ -28,9 +28,9 @@ pub struct ReferenceEvidence {
     pub elements: [usize; 3],
     /// Time step as a fraction of the stability limit.
     pub safety_factor: f64,
-    /// The reference's own uncertainty: the largest relative change of μ* from the next coarser mesh.
+    /// The largest of its cases' uncertainties.
     pub mu_star_uncertainty: f64,
-    /// Its results.
+    /// Its results, each with its uncertainty.
     pub cases: Vec<CaseEvidence>,
 }
 
@@ -46,6 +46,10 @@ pub struct CaseEvidence {
     pub frequency_hz: f64,
     /// Shares of stick, slip and separation.
     pub shares: [f64; 3],
+    /// Of the reference: the relative change of μ* that first order leaves beyond its mesh, from the next
+    /// coarser one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mu_star_uncertainty: Option<f64>,
 }
 
 /// What was measured of one preset.
