@@ -34,6 +34,11 @@ pub struct Field<const L: usize> {
     blocks: Vec<Block>,
 }
 
+/// Number of blocks that hold a line of `nodes` nodes with `L` lanes.
+pub fn blocks_per_line<const L: usize>(nodes: usize) -> usize {
+    (nodes * L).div_ceil(WIDTH)
+}
+
 impl<const L: usize> Field<L> {
     const LANES_FILL_BLOCKS: () = assert!(L == 1 || L == 2 || L == 4 || L == 8, "1, 2, 4 or 8 lanes");
 
@@ -41,7 +46,7 @@ impl<const L: usize> Field<L> {
     pub fn zeros(mesh: &BlockMesh) -> Self {
         let () = Self::LANES_FILL_BLOCKS;
         let [mx, my, mz] = mesh.nodes_per_axis();
-        let blocks_per_line = (mx * L).div_ceil(WIDTH);
+        let blocks_per_line = blocks_per_line::<L>(mx);
         Self {
             nodes_per_line: mx,
             blocks_per_line,
@@ -75,11 +80,6 @@ impl<const L: usize> Field<L> {
     /// Whether there is no value; a mesh has nodes, so never.
     pub fn is_empty(&self) -> bool {
         self.blocks.is_empty()
-    }
-
-    /// Number of blocks of a line.
-    pub fn blocks_per_line(&self) -> usize {
-        self.blocks_per_line
     }
 
     /// All blocks, line after line: y faster than z.

@@ -10,7 +10,7 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::field::{Block, Field, WIDTH};
+use super::field::{Block, Field, WIDTH, blocks_per_line};
 use super::model::Model;
 use super::operator::{Pass, Scratch, Spot, TensorOperator, load_all};
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
@@ -43,7 +43,7 @@ impl<const L: usize> Integration<L> {
     pub fn new(model: &Model) -> Self {
         let mesh = model.mesh();
         let [mx, my, mz] = mesh.nodes_per_axis();
-        let blocks = (mx * L).div_ceil(WIDTH);
+        let blocks = blocks_per_line::<L>(mx);
         // Lines of a kind have the same masses; (1, 1) is inside unless the block is one element thick.
         let kinds = [[1, 1], [0, 1], [1, 0], [0, 0]];
         let mut inverse_mass = vec![[0.0; WIDTH]; kinds.len() * blocks];

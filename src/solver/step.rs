@@ -96,8 +96,8 @@ fn internal_forces<const L: usize>(model: &Model, factors: Factors, state: &mut 
 /// residual −= external forces.
 fn apply_load<const L: usize>(state: &mut State<L>) {
     let work = &mut state.workspace;
-    for (spot, share) in &work.places.loaded {
-        let lanes = work.residual.at_mut(spot.place, spot.component);
+    for (dof, share) in &work.places.loaded {
+        let lanes = work.residual.at_mut(dof.place, dof.component);
         for l in 0..L {
             lanes[l] -= share * state.load_n[l];
         }
@@ -108,10 +108,10 @@ fn apply_load<const L: usize>(state: &mut State<L>) {
 fn collect_reactions<const L: usize>(state: &mut State<L>) {
     let work = &state.workspace;
     let mut reaction = [[0.0; L]; 3];
-    for spot in &work.places.fixed {
-        let lanes = work.residual.at(spot.place, spot.component);
+    for dof in &work.places.fixed {
+        let lanes = work.residual.at(dof.place, dof.component);
         for l in 0..L {
-            reaction[spot.component][l] += lanes[l];
+            reaction[dof.component][l] += lanes[l];
         }
     }
     state.reaction_n = reaction;
@@ -131,15 +131,15 @@ fn collect_held_friction<const L: usize>(state: &mut State<L>) {
 fn advance_constrained_planes<const L: usize>(model: &Model, factors: Factors, state: &mut State<L>) {
     let work = &mut state.workspace;
     // Before the general update: it overwrites the old values that the ties need.
-    for ((tie, spots), values) in model.ties().iter().zip(&work.places.tied).zip(&mut work.tied) {
+    for ((tie, dofs), values) in model.ties().iter().zip(&work.places.tied).zip(&mut work.tied) {
         let mut residual = [0.0; L];
-        for spot in spots {
-            let lanes = work.residual.at(spot.place, spot.component);
+        for dof in dofs {
+            let lanes = work.residual.at(dof.place, dof.component);
             for l in 0..L {
                 residual[l] += lanes[l];
             }
         }
-        let first = spots[0];
+        let first = dofs[0];
         let (u, p) = (state.u.at(first.place, first.component), state.p.at(first.place, first.component));
         for l in 0..L {
             let a = residual[l] * tie.inverse_mass;
@@ -148,10 +148,10 @@ fn advance_constrained_planes<const L: usize>(model: &Model, factors: Factors, s
         }
     }
     work.integration.advance_constrained_planes(factors, &mut state.u, &mut state.p, &work.residual);
-    for (spots, values) in work.places.tied.iter().zip(&work.tied) {
-        for spot in spots {
-            *state.u.at_mut(spot.place, spot.component) = values.map(|(u, _)| u);
-            *state.p.at_mut(spot.place, spot.component) = values.map(|(_, p)| p);
+    for (dofs, values) in work.places.tied.iter().zip(&work.tied) {
+        for dof in dofs {
+            *state.u.at_mut(dof.place, dof.component) = values.map(|(u, _)| u);
+            *state.p.at_mut(dof.place, dof.component) = values.map(|(_, p)| p);
         }
     }
 }
@@ -170,8 +170,8 @@ fn account_load_work<const L: usize>(state: &mut State<L>) {
 /// Displacement [m] on which a unit of the total load does work.
 fn load_stroke<const L: usize>(places: &Places, u: &Field<L>) -> [f64; L] {
     let mut stroke = [0.0; L];
-    for (spot, share) in &places.loaded {
-        let lanes = u.at(spot.place, spot.component);
+    for (dof, share) in &places.loaded {
+        let lanes = u.at(dof.place, dof.component);
         for l in 0..L {
             stroke[l] += share * lanes[l];
         }

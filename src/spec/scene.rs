@@ -121,6 +121,17 @@ pub enum ClampSide {
 }
 
 impl ClampSide {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::InnerSide,
+        Self::OuterSide,
+        Self::LeadingEnd,
+        Self::TrailingEnd,
+        Self::BothSides,
+        Self::BothEnds,
+        Self::WholeTop,
+    ];
+
     /// The name used in study files, e.g. `inner_side`.
     pub fn name(self) -> &'static str {
         match self {

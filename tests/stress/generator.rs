@@ -11,17 +11,6 @@ use tribosweep::spec::{ClampSide, JobSpec, TopFace};
 /// Nodes × steps of a case at most: 10 000 cases take minutes.
 const MOST_NODE_STEPS: f64 = 1.5e5;
 
-/// All clamps.
-pub const SIDES: [ClampSide; 7] = [
-    ClampSide::InnerSide,
-    ClampSide::OuterSide,
-    ClampSide::LeadingEnd,
-    ClampSide::TrailingEnd,
-    ClampSide::BothSides,
-    ClampSide::BothEnds,
-    ClampSide::WholeTop,
-];
-
 /// The job of case `index` of `seed`.
 pub fn job(seed: u64, index: u64) -> JobSpec {
     let random = &mut Random::of_case(seed, index);
@@ -87,7 +76,7 @@ fn contact(random: &mut Random, spec: &mut JobSpec) {
 
 fn clamp(random: &mut Random, spec: &mut JobSpec) {
     let pin = &spec.scene.pin;
-    let side = random.pick(&SIDES);
+    let side = random.pick(&ClampSide::ALL);
     let axis =
         usize::from(matches!(side, ClampSide::LeadingEnd | ClampSide::TrailingEnd | ClampSide::BothEnds));
     let row_m = pin.size_m[axis] / pin.elements[axis] as f64;

@@ -70,17 +70,10 @@ fn mini_is_small() {
 #[test]
 fn clamps_has_every_clamp() {
     let jobs = jobs("studies/clamps.json");
-    let sides = [
-        ClampSide::InnerSide,
-        ClampSide::OuterSide,
-        ClampSide::LeadingEnd,
-        ClampSide::TrailingEnd,
-        ClampSide::BothSides,
-        ClampSide::BothEnds,
-        ClampSide::WholeTop,
-    ];
-    let expected: Vec<_> =
-        sides.into_iter().flat_map(|side| [2.0, 6.0, 7.0, 12.0, 35.0].map(|omega| (side, omega))).collect();
+    let expected: Vec<_> = ClampSide::ALL
+        .into_iter()
+        .flat_map(|side| [2.0, 6.0, 7.0, 12.0, 35.0].map(|omega| (side, omega)))
+        .collect();
     let found: Vec<_> = jobs.iter().map(|j| (j.spec.scene.clamp.side, j.spec.scene.disk.omega_rpm)).collect();
     assert_eq!(found, expected);
     assert!(jobs.iter().all(|job| job.spec.scene.contact.mu == 0.4 && job.spec.scene.clamp.width_m == 0.001));

@@ -170,18 +170,23 @@ fn the_front_at_unit_cfl_converges_to_the_bar() {
     for n_star in [20.0, 40.0, 80.0] {
         let rest = push(n_star, 1.0, |_, _| {});
         let resolution = format!("n* = {n_star}");
-        let (found, exact) = worst(&rest, |j| exact_u_m(j as f64 * rest.chain.spacing_m));
-        u.found(&resolution, found, exact, PUSHED_IN_M);
-        let stored = rest.chain.strain_energy_j(&rest.state) / WORK_J;
-        strain.found(&resolution, stored, 1.0 / 3.0, 1.0);
-        let lost = (rest.energies.friction_j + rest.energies.contact_loss_j) / WORK_J;
-        friction.found(&resolution, lost, 2.0 / 3.0, 1.0);
+        at_rest(&rest, &resolution, [&mut u, &mut strain, &mut friction]);
     }
     // Rounding as above, 10 (2 n*)² roundings.
     let rounding = 10.0 * 160.0 * 160.0 * f64::EPSILON;
     u.judge_order(2.0, 2.0, rounding);
     strain.judge_order(2.0, 2.0, rounding);
     friction.judge_order(1.0, 2.0, rounding);
+}
+
+/// Displacements and the stored and dissipated parts of the work when everything has stopped.
+fn at_rest(rest: &Rest, resolution: &str, [u, strain, friction]: [&mut Evidence; 3]) {
+    let (found, exact) = worst(rest, |j| exact_u_m(j as f64 * rest.chain.spacing_m));
+    u.found(resolution, found, exact, PUSHED_IN_M);
+    let stored = rest.chain.strain_energy_j(&rest.state) / WORK_J;
+    strain.found(resolution, stored, 1.0 / 3.0, 1.0);
+    let lost = (rest.energies.friction_j + rest.energies.contact_loss_j) / WORK_J;
+    friction.found(resolution, lost, 2.0 / 3.0, 1.0);
 }
 
 /// Pushes at cΔt/h = ½ and judges displacement and energies.
@@ -198,12 +203,7 @@ fn converges_below_unit_cfl(n_stars: &[f64], name: &str) {
         let rest = push(n_star, 0.5, |_, _| {});
         let resolution = format!("n* = {n_star}");
         end.found(&resolution, rest.chain.u_m(&rest.state, 0), PUSHED_IN_M, PUSHED_IN_M);
-        let (found, exact) = worst(&rest, |j| exact_u_m(j as f64 * rest.chain.spacing_m));
-        u.found(&resolution, found, exact, PUSHED_IN_M);
-        let stored = rest.chain.strain_energy_j(&rest.state) / WORK_J;
-        strain.found(&resolution, stored, 1.0 / 3.0, 1.0);
-        let lost = (rest.energies.friction_j + rest.energies.contact_loss_j) / WORK_J;
-        friction.found(&resolution, lost, 2.0 / 3.0, 1.0);
+        at_rest(&rest, &resolution, [&mut u, &mut strain, &mut friction]);
     }
     for case in [end, strain, friction] {
         case.judge_overall_order(2.0 / 3.0, 2.0, FRONT);

@@ -18,8 +18,8 @@
 //! * The **error** of μ* and of the frequency is relative to the reference, that of the shares the largest
 //!   absolute difference of the three.
 //! * An error is **resolved** when it exceeds √(se² + se_ref²) + u, the standard errors over cycles and the
-//!   uncertainty u of the reference. What can be claimed for a job is its error, or the
-//!   resolution (rounded up to two digits) where the error is not resolved, and that is what the front and the figure are made of.
+//!   uncertainty u of the reference. What can be claimed for a job is its error, or the resolution
+//!   (rounded up to two digits) where the error is not resolved; front and figure are made of that.
 
 mod case;
 mod compare;

@@ -103,15 +103,15 @@ fn chain_in_words(chain: &Chain) -> String {
 }
 
 fn limit_in_words(limit: &Limit) -> String {
-    let last = || format!("uncertain by {:.2e}", limit.uncertainty);
+    let by = format!("uncertain by {:.2e}", limit.uncertainty);
     match limit.order {
         Ok(order) => format!("order {order:.2}, corrected by {:.2e}", limit.uncertainty),
-        Err(Unclean::TooFewLevels) => format!("two levels, {}", last()),
-        Err(Unclean::WithinNoise) => format!("converged within its standard error, {}", last()),
-        Err(Unclean::NotMonotone) => format!("not monotone, {}", last()),
-        Err(Unclean::OrderOutOfRange(Some(order))) => format!("order {order:.2} is not clean, {}", last()),
-        Err(Unclean::OrderOutOfRange(None)) => format!("no order, {}", last()),
-        Err(Unclean::OrderNotStable(a, b)) => format!("orders {a:.2} and {b:.2} differ, {}", last()),
+        Err(Unclean::TooFewLevels) => format!("two levels, {by}"),
+        Err(Unclean::WithinNoise) => format!("converged within its standard error, {by}"),
+        Err(Unclean::NotMonotone) => format!("not monotone, {by}"),
+        Err(Unclean::OrderOutOfRange(Some(order))) => format!("order {order:.2} is not clean, {by}"),
+        Err(Unclean::OrderOutOfRange(None)) => format!("no order, {by}"),
+        Err(Unclean::OrderNotStable(a, b)) => format!("orders {a:.2} and {b:.2} differ, {by}"),
     }
 }
 

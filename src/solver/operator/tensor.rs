@@ -24,7 +24,7 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use crate::solver::field::{Block, Field, WIDTH};
+use crate::solver::field::{Block, Field, WIDTH, blocks_per_line};
 use crate::solver::material::Material;
 use crate::solver::mesh::BlockMesh;
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
@@ -107,7 +107,7 @@ impl<const L: usize> Scratch<L> {
     /// Scratch for products on `mesh`.
     pub fn new(mesh: &BlockMesh) -> Self {
         let [mx, my, _] = mesh.nodes_per_axis();
-        let blocks = (mx * L).div_ceil(WIDTH);
+        let blocks = blocks_per_line::<L>(mx);
         let mut ends = vec![Ends::default(); blocks];
         for along in 0..mx * L {
             let (block, slot, node) = (along / WIDTH, along % WIDTH, along / L);
