@@ -1,20 +1,14 @@
 //! One job from its specification to its record.
 
-use super::lane::LaneAnalysis;
+use super::lanes::Lanes;
 use super::record::JobRecord;
 use super::sample::Sample;
-use crate::solver::energy::EnergyLedger;
-use crate::solver::{Drive, Model, SolverError, State, guard, step};
+use crate::solver::{Drive, Model, SolverError};
 use crate::spec::{JobSpec, Violations};
 use crate::units::rad_per_s_from_rpm;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use thiserror::Error;
-
-/// Steps between two evaluations of the stored energies (and of the divergence guard).
-///
-/// An evaluation costs two products with K; at 16 that is an eighth of a run. The damping's work is
-/// sampled as often: about four times per period of the fastest mode that damping leaves alive.
-const AUDIT_INTERVAL: u64 = 16;
 
 /// Largest number of steps of a run: a thousand times those of the reference scene's longest jobs.
 const MAX_STEPS: f64 = 5.0e7;
@@ -82,37 +76,22 @@ impl JobObserver for Unobserved {}
 pub fn solve(spec: &JobSpec, observer: &mut impl JobObserver) -> Result<JobRecord, JobError> {
     spec.check()?;
     let model = Model::from_scene(&spec.scene, &spec.numerics)?;
-    let steps = step_count(spec.run.limit_s, model.time_step_s())?;
-    let drives = [drive(spec)];
-    let mut state = State::<1>::at_rest(&model);
-    let mut ledger = EnergyLedger::new(&model, AUDIT_INTERVAL);
-    let mut analysis = LaneAnalysis::new(&model, spec, 0);
-    for n in 0..steps {
-        ledger.before_step(&model, &state);
-        step(&model, &drives, &mut state);
-        ledger.after_step(&model, &drives, &state);
-        let sample = analysis.push(&model, &drives[0], &state, ledger.energies(0));
-        observer.sample(&sample);
-        if ledger.audits(n) {
-            guard::check(&model, &drives[0], &state, 0, ledger.energies(0))?;
-            if observer.progress(sample.time_s).is_break() {
-                return Err(JobError::Interrupted);
-            }
-            if spec.run.stop_early && analysis.is_settled() {
-                break;
-            }
+    let mut lanes = Lanes::<1>::new(Arc::new(model));
+    lanes.begin(0, 0, spec.clone())?;
+    loop {
+        let ended = lanes.advance(&mut |_, sample| observer.sample(sample));
+        if let Some(ended) = ended.into_iter().next() {
+            return ended.result;
         }
-    }
-    guard::check_finite(&model, &state, 0)?;
-    let record = analysis.record(&model, &state, ledger.energies(0));
-    match record.non_finite_figure() {
-        None => Ok(record),
-        Some(figure) => Err(JobError::NotFinite { figure }),
+        let simulated_s = lanes.simulated().map(|(_, simulated_s)| simulated_s).fold(0.0, f64::max);
+        if observer.progress(simulated_s).is_break() {
+            return Err(JobError::Interrupted);
+        }
     }
 }
 
 /// Steps of a run. Buffers are sized and loops end by this number, so it must be within reason.
-fn step_count(limit_s: f64, time_step_s: f64) -> Result<u64, JobError> {
+pub(super) fn step_count(limit_s: f64, time_step_s: f64) -> Result<u64, JobError> {
     let steps = (limit_s / time_step_s).ceil();
     // `<=` is false for NaN.
     if steps <= MAX_STEPS {

@@ -4,18 +4,16 @@ use super::cycles::{Cycle, CycleCutter};
 use super::decay::DecayMonitor;
 use super::figures::Figures;
 use super::record::{EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
-use super::sample::{OBSERVED_NAMES, Sample, Sampler};
+use super::sample::{OBSERVED_NAMES, Sample};
 use super::steady::{self, SteadyState};
 use super::window::{LateWindow, Trailing, Window};
 use crate::solver::Model;
 use crate::solver::energy::Energies;
-use crate::solver::state::{Drive, State};
 use crate::spec::JobSpec;
 
 /// Follows one job's run and makes its record.
-pub struct LaneAnalysis<'a> {
-    spec: &'a JobSpec,
-    sampler: Sampler,
+pub struct LaneAnalysis {
+    spec: JobSpec,
     cutter: CycleCutter,
     /// None when the run is too short for an observation: it would only keep samples that nobody judges.
     monitor: Option<DecayMonitor>,
@@ -26,16 +24,14 @@ pub struct LaneAnalysis<'a> {
     trailing: Trailing,
 }
 
-impl<'a> LaneAnalysis<'a> {
-    /// The analysis of the job `spec` in `lane`.
-    pub fn new(model: &Model, spec: &'a JobSpec, lane: usize) -> Self {
+impl LaneAnalysis {
+    /// The analysis of the job `spec`.
+    pub fn new(model: &Model, spec: JobSpec) -> Self {
         let ramp_s = spec.scene.load.ramp_s;
         // Two steps of slack: times are multiples of the step.
         let slidable_s = spec.run.limit_s - ramp_s + 2.0 * model.time_step_s();
         let observes = spec.detection.decay_observation_s <= slidable_s;
         Self {
-            spec,
-            sampler: Sampler::new(model, lane),
             cutter: CycleCutter::new(model, ramp_s),
             monitor: observes.then(|| DecayMonitor::new(model.time_step_s(), ramp_s, &spec.detection)),
             cycles: Vec::new(),
@@ -43,26 +39,19 @@ impl<'a> LaneAnalysis<'a> {
             decays: false,
             late: LateWindow::from((1.0 - spec.run.average_last_fraction) * spec.run.limit_s),
             trailing: Trailing::new(spec.detection.decay_observation_s, model.time_step_s()),
+            spec,
         }
     }
 
-    /// Adds the step that `state` has just done; `energies` are those of the last audit.
-    pub fn push<const L: usize>(
-        &mut self,
-        model: &Model,
-        drive: &Drive,
-        state: &State<L>,
-        energies: &Energies,
-    ) -> Sample {
-        let sample = self.sampler.sample(model, drive, state);
-        if let Some(cycle) = self.cutter.push(&sample, energies) {
+    /// Adds a step; `energies` are those of the last audit.
+    pub fn push(&mut self, sample: &Sample, energies: &Energies) {
+        if let Some(cycle) = self.cutter.push(sample, energies) {
             self.cycles.push(cycle);
             self.steady = steady::find(&self.cycles, &self.spec.detection);
         }
-        self.decays = self.monitor.as_mut().is_some_and(|monitor| monitor.push(&sample));
-        self.late.push(&sample, energies);
-        self.trailing.push(&sample, energies);
-        sample
+        self.decays = self.monitor.as_mut().is_some_and(|monitor| monitor.push(sample));
+        self.late.push(sample, energies);
+        self.trailing.push(sample, energies);
     }
 
     /// Whether the run can stop: the state is periodic or has been seen to decay.
@@ -70,9 +59,9 @@ impl<'a> LaneAnalysis<'a> {
         self.steady.is_some() || self.decays
     }
 
-    /// The record of the run that ended in `state` with these final `energies`.
-    pub fn record<const L: usize>(&self, model: &Model, state: &State<L>, energies: &Energies) -> JobRecord {
-        let simulated_s = state.step as f64 * model.time_step_s();
+    /// The record of the run that ended after so many `steps` with these final `energies`.
+    pub fn record(&self, model: &Model, steps: u64, energies: &Energies) -> JobRecord {
+        let simulated_s = steps as f64 * model.time_step_s();
         let outcome = match self.steady {
             _ if self.decays => Outcome::Decayed,
             Some(_) => Outcome::Periodic,
@@ -102,7 +91,7 @@ impl<'a> LaneAnalysis<'a> {
             crossings_per_cycle: crossings,
             simulated_s,
             window_start_s: window.start_s,
-            steps: state.step,
+            steps,
             time_step_s: model.time_step_s(),
             time_step_limit_s: model.time_step_limit_s(),
             clamp_width_m: model.clamp_width_m(),

@@ -18,6 +18,7 @@ pub mod decay;
 pub mod figures;
 mod job;
 pub mod lane;
+pub mod lanes;
 mod lines;
 pub mod record;
 pub mod sample;

@@ -1,8 +1,13 @@
-//! What is observed of one lane at every step.
+//! What is observed at every step.
+
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
 use crate::solver::Model;
-use crate::solver::contact::ContactState;
+use crate::solver::contact::{ContactState, Contacts, Status};
+use crate::solver::field::{Field, WIDTH, add_slots, in_slots};
+use crate::solver::operator::load_all;
 use crate::solver::state::{Drive, State};
+use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
 /// Totals and extremes over the contact face during one step (forces at `t_n`).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -106,103 +111,216 @@ pub fn smoothing_gain(time_step_s: f64, tau_s: f64) -> f64 {
 /// the 16 kHz cycle by 2 %.
 pub const STRESS_SMOOTHING: f64 = 0.15;
 
-/// Makes [`Sample`]s of one lane.
+/// Makes the [`Sample`]s of all lanes.
 #[derive(Debug, Clone)]
-pub struct Sampler {
-    lane: usize,
+pub struct Sampler<const L: usize> {
     gain: f64,
-    sigma_n: Vec<Smoother>,
-    normal: Smoother,
-    observed: [usize; OBSERVED],
-    states: Vec<ContactState>,
-    /// x/lx and y/ly of every slave node.
-    places: Vec<[f64; 2]>,
+    /// Of every slave node: 1/area, x/lx and y/ly.
+    nodes: Field<L>,
+    /// Of every slave node after the last step: its smoothed stress, whether it was closed and whether it slipped.
+    last: Field<L>,
+    normal: [Smoother; L],
+    observed: [Observed; OBSERVED],
 }
 
-impl Sampler {
-    /// A sampler of `lane`.
-    pub fn new(model: &Model, lane: usize) -> Self {
+#[derive(Debug, Clone, Copy)]
+struct Observed {
+    slave: usize,
+    /// Velocity of the target under it in y per unit of the drive's rate.
+    motion: f64,
+}
+
+/// Sums over the contact face, lane by lane.
+#[derive(Debug, Clone, Copy)]
+struct Sums<const L: usize> {
+    normal: [f64; L],
+    tangential: [f64; L],
+    sideways: [f64; L],
+    x_moment: [f64; L],
+    y_moment: [f64; L],
+    stick_deficit: [f64; L],
+    slip_deficit: [f64; L],
+    closed: [f64; L],
+    slips: [f64; L],
+    transitions: [f64; L],
+    sigma_n_max: [f64; L],
+    slip_max: [f64; L],
+    gap_max: [f64; L],
+}
+
+impl<const L: usize> Sampler<L> {
+    /// A sampler of jobs that begin at rest.
+    pub fn new(model: &Model) -> Self {
         let mesh = model.mesh();
         let [nx, ny, _] = mesh.elements();
         let transit_s = mesh.size_m()[2] / model.material().pressure_wave_speed_m_s();
+        let mut nodes = Field::on_face(mesh);
+        for (slave, node) in model.slaves().iter().enumerate() {
+            let [x, y, _] = mesh.coordinates_m(node.node);
+            let values = [1.0 / node.area_m2, x / mesh.size_m()[0], y / mesh.size_m()[1]];
+            let place = nodes.place(slave);
+            for c in 0..3 {
+                *nodes.at_mut(place, c) = [values[c]; L];
+            }
+        }
+        let observed = [mesh.node(nx / 2, 0, 0), mesh.node(nx / 2, ny, 0)];
         Self {
-            lane,
             gain: smoothing_gain(model.time_step_s(), STRESS_SMOOTHING * transit_s),
-            sigma_n: vec![Smoother::default(); model.slaves().len()],
-            normal: Smoother::default(),
-            observed: [mesh.node(nx / 2, 0, 0), mesh.node(nx / 2, ny, 0)],
-            states: vec![ContactState::Separated; model.slaves().len()],
-            places: model
-                .slaves()
-                .iter()
-                .map(|slave| {
-                    let [x, y, _] = mesh.coordinates_m(slave.node);
-                    [x / mesh.size_m()[0], y / mesh.size_m()[1]]
-                })
-                .collect(),
+            nodes,
+            last: Field::on_face(mesh),
+            normal: [Smoother::default(); L],
+            observed: observed
+                .map(|slave| Observed { slave, motion: model.slaves()[slave].surface_motion[1] }),
         }
     }
 
-    /// The sample of the step that `state` has just done.
-    pub fn sample<const L: usize>(&mut self, model: &Model, drive: &Drive, state: &State<L>) -> Sample {
-        let l = self.lane;
+    /// Sets a lane to a lane of another sampler of the same model.
+    pub fn copy_lane<const M: usize>(&mut self, lane: usize, from: &Sampler<M>, from_lane: usize) {
+        self.last.copy_lane(lane, &from.last, from_lane);
+        self.normal[lane] = from.normal[from_lane];
+    }
+
+    /// The samples of the step that `state` has just done.
+    pub fn sample(&mut self, model: &Model, drives: &[Drive; L], state: &State<L>) -> [Sample; L] {
         let dt = model.time_step_s();
-        let contacts = &state.contacts;
-        let mut sample = Sample {
-            time_s: (state.step - 1) as f64 * dt,
+        let sums = dispatch!(Level::new(), simd => self.add_up(simd, drives, &state.contacts));
+        std::array::from_fn(|l| Sample {
+            time_s: (state.steps_done(l) - 1) as f64 * dt,
             load_n: state.load_n[l],
+            normal_n: sums.normal[l],
+            smooth_normal_n: self.normal[l].push(sums.normal[l], self.gain),
+            contact_tangential_n: sums.tangential[l],
+            contact_sideways_n: sums.sideways[l],
+            x_moment_n: sums.x_moment[l],
+            y_moment_n: sums.y_moment[l],
             // The clamp's reaction acts on the pin against the friction of the disk.
             clamp_tangential_n: -state.reaction_n[1][l],
-            ..Sample::default()
-        };
-        for (slave, slave_node) in model.slaves().iter().enumerate() {
-            let force: [f64; 3] = std::array::from_fn(|c| contacts.force_n[slave][c][l]);
-            let contact_state = contacts.state[slave][l];
-            let sigma_n = self.sigma_n[slave].push(force[2] / slave_node.area_m2, self.gain);
-            sample.normal_n += force[2];
-            sample.contact_tangential_n += force[1];
-            sample.contact_sideways_n += force[0];
-            sample.x_moment_n += force[2] * self.places[slave][0];
-            sample.y_moment_n += force[2] * self.places[slave][1];
-            sample.transitions += usize::from(contact_state != self.states[slave]);
-            self.states[slave] = contact_state;
-            sample.sigma_n_max_pa = sample.sigma_n_max_pa.max(sigma_n);
-            sample.lift_max_m = sample.lift_max_m.max(contacts.gap_m[slave][l]);
-            let mut slip_speed = 0.0;
-            match contact_state {
-                ContactState::Separated => sample.separated += 1,
-                ContactState::Stick => {
-                    sample.stick += 1;
-                    sample.stick_deficit_n += drive.mu * force[2] - force[1];
-                }
-                ContactState::Slip => {
-                    sample.slip += 1;
-                    let [x, y] = [0, 1].map(|c| contacts.relative_increment_m[slave][c][l]);
-                    let slipped = (x * x + y * y).sqrt();
-                    slip_speed = slipped / dt;
-                    if slipped > 0.0 {
-                        // Friction points along −slip, so cos φ = −s_y/|s|.
-                        sample.slip_deficit_n += drive.mu * force[2] * (1.0 + y / slipped);
-                    }
-                    sample.slip_speed_max_m_s = sample.slip_speed_max_m_s.max(slip_speed);
-                }
+            stick_deficit_n: sums.stick_deficit[l],
+            slip_deficit_n: sums.slip_deficit[l],
+            stick: (sums.closed[l] - sums.slips[l]) as usize,
+            slip: sums.slips[l] as usize,
+            separated: model.slaves().len() - sums.closed[l] as usize,
+            transitions: sums.transitions[l] as usize,
+            sigma_n_max_pa: sums.sigma_n_max[l],
+            slip_speed_max_m_s: sums.slip_max[l] / dt,
+            lift_max_m: sums.gap_max[l],
+            nodes: self.observed.map(|node| self.observe(node, model, &drives[l], state, l)),
+        })
+    }
+
+    fn observe(
+        &self,
+        node: Observed,
+        model: &Model,
+        drive: &Drive,
+        state: &State<L>,
+        lane: usize,
+    ) -> NodeSample {
+        let dt = model.time_step_s();
+        let place = state.u.place(node.slave);
+        let contacts = &state.contacts;
+        let contact_state = contacts.state_of(node.slave, lane);
+        let [x, y, _] = contacts.increment_of(node.slave, lane);
+        let slips = contact_state == ContactState::Slip;
+        NodeSample {
+            u_m: std::array::from_fn(|c| state.u.at(place, c)[lane]),
+            y_velocity_m_s: y / dt + node.motion * drive.rate,
+            gap_m: contacts.gap_of(node.slave, lane),
+            force_n: contacts.force_of(node.slave, lane),
+            sigma_n_pa: self.last.at(place, SIGMA_N)[lane],
+            slip_speed_m_s: if slips { (x * x + y * y).sqrt() / dt } else { 0.0 },
+            state: contact_state,
+        }
+    }
+
+    #[inline(always)]
+    fn add_up<S: Simd>(&mut self, simd: S, drives: &[Drive; L], contacts: &Contacts<L>) -> Sums<L> {
+        let zero = f64x8::splat(simd, 0.0);
+        let one = f64x8::splat(simd, 1.0);
+        let mu = f64x8::from_slice(simd, &in_slots(&drives.map(|drive| drive.mu)));
+        let gain = f64x8::splat(simd, self.gain);
+        let stride = self.nodes.blocks_per_line();
+        let mut lanes = [[0.0; L]; ADDED];
+        let mut largest = [[0.0; L]; COMPARED];
+        for along in 0..stride {
+            let mut sums = [zero; ADDED];
+            let mut maxima = [zero; COMPARED];
+            for at in (along..self.nodes.blocks().len()).step_by(stride) {
+                let (node, last) = (&self.nodes.blocks()[at].0, &mut self.last.blocks_mut()[at].0);
+                let force = load_all(simd, &contacts.force_n.blocks()[at].0);
+                let status = load_all(simd, &contacts.status.blocks()[at].0);
+                let (gap, closed, slips) = (
+                    status[Status::Gap as usize],
+                    status[Status::Closed as usize],
+                    status[Status::Slips as usize],
+                );
+                let before = load_all(simd, last);
+                let sigma_n = before[SIGMA_N]
+                    + gain * (force[2] * f64x8::from_slice(simd, &node[0]) - before[SIGMA_N]);
+                let changed = closed.simd_ne(before[CLOSED]) | slips.simd_ne(before[SLIPS]);
+                sigma_n.store_slice(&mut last[SIGMA_N]);
+                closed.store_slice(&mut last[CLOSED]);
+                slips.store_slice(&mut last[SLIPS]);
+                let increment = &contacts.increment_m.blocks()[at].0;
+                let (x, y) =
+                    (f64x8::from_slice(simd, &increment[0]), f64x8::from_slice(simd, &increment[1]));
+                let slipping = slips.simd_gt(zero);
+                let slipped = slipping.select((x * x + y * y).sqrt(), zero);
+                let limit = mu * force[2];
+                // Friction points along −slip, so cos φ = −s_y/|s|.
+                let misaligned = limit * (one + y / slipped);
+                sums[0] += force[2];
+                sums[1] += force[1];
+                sums[2] += force[0];
+                sums[3] += force[2] * f64x8::from_slice(simd, &node[1]);
+                sums[4] += force[2] * f64x8::from_slice(simd, &node[2]);
+                sums[5] += slipping.select(zero, limit - force[1]);
+                sums[6] += slipped.simd_gt(zero).select(misaligned, zero);
+                sums[7] += closed;
+                sums[8] += slips;
+                sums[9] += changed.select(one, zero);
+                maxima[0] = sigma_n.simd_gt(maxima[0]).select(sigma_n, maxima[0]);
+                maxima[1] = slipped.simd_gt(maxima[1]).select(slipped, maxima[1]);
+                maxima[2] = gap.simd_gt(maxima[2]).select(gap, maxima[2]);
             }
-            for (node, observed) in sample.nodes.iter_mut().zip(self.observed) {
-                if observed == slave_node.node {
-                    let increment = contacts.relative_increment_m[slave][1][l];
-                    *node = NodeSample {
-                        u_m: std::array::from_fn(|c| state.u[(3 * observed + c) * L + l]),
-                        y_velocity_m_s: increment / dt + slave_node.surface_motion[1] * drive.rate,
-                        gap_m: contacts.gap_m[slave][l],
-                        force_n: force,
-                        sigma_n_pa: sigma_n,
-                        slip_speed_m_s: slip_speed,
-                        state: contact_state,
-                    };
+            let mut slots = [0.0; WIDTH];
+            for i in 0..ADDED {
+                sums[i].store_slice(&mut slots);
+                add_slots(&mut lanes[i], &slots);
+            }
+            for i in 0..COMPARED {
+                maxima[i].store_slice(&mut slots);
+                for (slot, value) in slots.iter().enumerate() {
+                    largest[i][slot % L] = value.max(largest[i][slot % L]);
                 }
             }
         }
-        sample.smooth_normal_n = self.normal.push(sample.normal_n, self.gain);
-        sample
+        let [normal, tangential, sideways, x_moment, y_moment, stick_deficit, slip_deficit, closed, slips, transitions] =
+            lanes;
+        let [sigma_n_max, slip_max, gap_max] = largest;
+        Sums {
+            normal,
+            tangential,
+            sideways,
+            x_moment,
+            y_moment,
+            stick_deficit,
+            slip_deficit,
+            closed,
+            slips,
+            transitions,
+            sigma_n_max,
+            slip_max,
+            gap_max,
+        }
     }
 }
+
+/// Sums and maxima of a step.
+const ADDED: usize = 10;
+const COMPARED: usize = 3;
+
+/// Components of [`Sampler::last`].
+const SIGMA_N: usize = 0;
+const CLOSED: usize = 1;
+const SLIPS: usize = 2;

@@ -16,6 +16,11 @@ pub const WIDTH: usize = 8;
 #[repr(align(64))]
 pub struct Block(pub [[f64; WIDTH]; 3]);
 
+/// Eight consecutive numbers of a line.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[repr(align(64))]
+pub struct Row(pub [f64; WIDTH]);
+
 /// Where the lanes of a node are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
@@ -34,6 +39,23 @@ pub struct Field<const L: usize> {
     blocks: Vec<Block>,
 }
 
+/// The same numbers for every node: the lanes' values, slot by slot.
+pub fn in_slots<const L: usize>(lanes: &[f64; L]) -> [f64; WIDTH] {
+    std::array::from_fn(|slot| lanes[slot % L])
+}
+
+/// Adds the numbers of a block to those of their lanes, node after node.
+///
+/// All sums over nodes are made like this: first across the lines of a column of blocks, slot by slot, then
+/// along the line. So their order, and with it their bits, is the same for any lane count.
+pub fn add_slots<const L: usize>(totals: &mut [f64; L], slots: &[f64; WIDTH]) {
+    for nodes in slots.chunks_exact(L) {
+        for (total, value) in totals.iter_mut().zip(nodes) {
+            *total += value;
+        }
+    }
+}
+
 /// Number of blocks that hold a line of `nodes` nodes with `L` lanes.
 pub fn blocks_per_line<const L: usize>(nodes: usize) -> usize {
     (nodes * L).div_ceil(WIDTH)
@@ -44,14 +66,20 @@ impl<const L: usize> Field<L> {
 
     /// All zero, on the nodes of `mesh`.
     pub fn zeros(mesh: &BlockMesh) -> Self {
+        let [_, my, mz] = mesh.nodes_per_axis();
+        Self::on_lines(mesh, my * mz)
+    }
+
+    /// All zero, on the nodes of the contact face (or of any other plane in z) of `mesh`.
+    pub fn on_face(mesh: &BlockMesh) -> Self {
+        Self::on_lines(mesh, mesh.nodes_per_axis()[1])
+    }
+
+    fn on_lines(mesh: &BlockMesh, lines: usize) -> Self {
         let () = Self::LANES_FILL_BLOCKS;
-        let [mx, my, mz] = mesh.nodes_per_axis();
-        let blocks_per_line = blocks_per_line::<L>(mx);
-        Self {
-            nodes_per_line: mx,
-            blocks_per_line,
-            blocks: vec![Block::default(); blocks_per_line * my * mz],
-        }
+        let nodes_per_line = mesh.nodes_per_axis()[0];
+        let blocks_per_line = blocks_per_line::<L>(nodes_per_line);
+        Self { nodes_per_line, blocks_per_line, blocks: vec![Block::default(); blocks_per_line * lines] }
     }
 
     /// From values in the order node → component → lane.
@@ -80,6 +108,22 @@ impl<const L: usize> Field<L> {
     /// Whether there is no value; a mesh has nodes, so never.
     pub fn is_empty(&self) -> bool {
         self.blocks.is_empty()
+    }
+
+    /// Sets one lane to a lane of another field of the same nodes.
+    ///
+    /// # Panics
+    /// If the fields have different nodes, or there is no such lane.
+    pub fn copy_lane<const M: usize>(&mut self, lane: usize, from: &Field<M>, from_lane: usize) {
+        assert_eq!(self.len() / L, from.len() / M, "fields of the same nodes");
+        for dof in 0..self.len() / L {
+            self[dof * L + lane] = from[dof * M + from_lane];
+        }
+    }
+
+    /// Number of blocks that hold a line.
+    pub fn blocks_per_line(&self) -> usize {
+        self.blocks_per_line
     }
 
     /// All blocks, line after line: y faster than z.

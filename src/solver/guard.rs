@@ -94,8 +94,8 @@ fn diverged<const L: usize>(model: &Model, state: &State<L>, lane: usize, what: 
         )
     };
     SolverError::Diverged {
-        step: state.step,
-        time_s: state.step as f64 * model.time_step_s(),
+        step: state.steps_done(lane),
+        time_s: state.steps_done(lane) as f64 * model.time_step_s(),
         node,
         position_m: model.mesh().coordinates_m(node),
         what,

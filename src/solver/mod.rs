@@ -38,14 +38,15 @@ mod error;
 pub mod field;
 pub mod guard;
 mod integrate;
+mod line_table;
 pub mod material;
 pub mod mesh;
 pub mod model;
 pub mod operator;
-mod places;
 pub mod stability;
 pub mod state;
 pub mod step;
+mod supports;
 
 pub use error::SolverError;
 pub use model::{Model, ModelDefinition, Stiffness, TimeStep};
@@ -54,4 +55,4 @@ pub use step::step;
 
 /// Version of everything that can change a result's bits; part of every job's key. Raise it with
 /// any change of the scheme, the operator's rounding or the analysis.
-pub const VERSION: &str = "2";
+pub const VERSION: &str = "3";

@@ -1,11 +1,12 @@
 //! What changes during a run: per-lane fields, and the drive of each lane.
 
 use super::contact::Contacts;
+use super::contact::rigid::RigidContact;
 use super::field::Field;
 use super::integrate::Integration;
 use super::model::Model;
 use super::operator::Scratch;
-use super::places::Places;
+use super::supports::Supports;
 
 /// What one lane is driven by; everything else of a job is shared through the [`Model`].
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,11 +28,14 @@ impl Drive {
     }
 }
 
-/// The state of `L` jobs at t_n.
+/// The state of `L` jobs, each at its own t_n.
 #[derive(Debug, Clone)]
 pub struct State<const L: usize> {
-    /// Index n of the next step; the fields are those at t_n = nΔt.
+    /// Steps that the lanes have taken together.
     pub step: u64,
+    /// Value of `step` at which the job in a lane began, or would have: it is at t_n with n = `step` − `begun`,
+    /// in wrapping arithmetic, because a job may come from elsewhere in the middle of its run.
+    pub begun: [u64; L],
     /// Displacements `u_n` [m].
     pub u: Field<L>,
     /// `p_n = v_{n−1} + (1−β₂)Δt a_{n−1}` [m/s]; at n = 0 the initial velocity.
@@ -42,22 +46,12 @@ pub struct State<const L: usize> {
     pub reaction_n: [[f64; L]; 3],
     /// Load [N] at `t_{n−1}`.
     pub load_n: [f64; L],
-    /// Work increments of the load over the step: the load at `t_{n−1}` times the displacement
-    /// increments after and before that time [J].
-    pub load_work_j: LoadWork<L>,
+    /// Displacement [m] on which a unit of the load does work, at `t_{n−2}`, `t_{n−1}` and `t_n`.
+    pub load_stroke_m: [[f64; L]; 3],
     pub(super) workspace: Workspace<L>,
 }
 
-/// The load times the displacement increments on both sides of the time at which it acts [J].
-#[derive(Debug, Clone, Copy)]
-pub struct LoadWork<const L: usize> {
-    /// f_n · (u_{n+1} − u_n).
-    pub after_j: [f64; L],
-    /// f_n · (u_n − u_{n−1}).
-    pub before_j: [f64; L],
-}
-
-/// Scratch of the step; nothing in it survives it.
+/// Scratch of the step and what it needs of the model; nothing in it changes from step to step.
 #[derive(Debug, Clone)]
 pub(super) struct Workspace<const L: usize> {
     /// Scratch of the product with K.
@@ -66,38 +60,49 @@ pub(super) struct Workspace<const L: usize> {
     pub residual: Field<L>,
     /// What moves the nodes.
     pub integration: Integration<L>,
-    pub places: Places,
-    /// Displacements of the slave nodes at t_n.
-    pub slave_u: Vec<[[f64; L]; 3]>,
-    /// New displacement and p of every tied group.
-    pub tied: Vec<[(f64, f64); L]>,
-    /// Σ share·u of the loaded degrees of freedom before and at t_n.
-    pub load_stroke_m: [[f64; L]; 2],
+    pub supports: Supports<L>,
+    pub contact: RigidContact<L>,
 }
 
 impl<const L: usize> State<L> {
     /// At rest and undeformed.
     pub fn at_rest(model: &Model) -> Self {
-        let slaves = model.slaves().len();
         let field = || Field::zeros(model.mesh());
         Self {
             step: 0,
+            begun: [0; L],
             u: field(),
             p: field(),
-            contacts: Contacts::separated(slaves),
+            contacts: Contacts::separated(model.mesh()),
             reaction_n: [[0.0; L]; 3],
             load_n: [0.0; L],
-            load_work_j: LoadWork { after_j: [0.0; L], before_j: [0.0; L] },
+            load_stroke_m: [[0.0; L]; 3],
             workspace: Workspace {
                 product: Scratch::new(model.mesh()),
                 residual: field(),
-                places: Places::new::<L>(model, &field()),
                 integration: Integration::new(model),
-                slave_u: vec![[[0.0; L]; 3]; slaves],
-                tied: vec![[(0.0, 0.0); L]; model.ties().len()],
-                load_stroke_m: [[0.0; L]; 2],
+                supports: Supports::new(model),
+                contact: RigidContact::new(model),
             },
         }
+    }
+
+    /// Number n of steps that the job in a lane has done.
+    pub fn steps_done(&self, lane: usize) -> u64 {
+        self.step.wrapping_sub(self.begun[lane])
+    }
+
+    /// Sets a lane to the job in a lane of another state of the same model, wherever that is in its run.
+    pub fn copy_lane<const M: usize>(&mut self, lane: usize, from: &State<M>, from_lane: usize) {
+        self.begun[lane] = self.step.wrapping_sub(from.steps_done(from_lane));
+        self.u.copy_lane(lane, &from.u, from_lane);
+        self.p.copy_lane(lane, &from.p, from_lane);
+        self.contacts.copy_lane(lane, &from.contacts, from_lane);
+        for c in 0..3 {
+            self.reaction_n[c][lane] = from.reaction_n[c][from_lane];
+            self.load_stroke_m[c][lane] = from.load_stroke_m[c][from_lane];
+        }
+        self.load_n[lane] = from.load_n[from_lane];
     }
 }
 

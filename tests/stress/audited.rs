@@ -147,9 +147,9 @@ impl<'a> Audited<'a> {
 
     fn add_up(&mut self) {
         let mesh = self.model.mesh();
-        for (contact, slave) in self.state.contacts.force_n.iter().zip(self.model.slaves()) {
+        for (contact, slave) in self.state.contacts.forces(0).zip(self.model.slaves()) {
             for c in 0..3 {
-                self.forces[3 * slave.node + c] += contact[c][0].abs();
+                self.forces[3 * slave.node + c] += contact[c].abs();
             }
         }
         // The whole load at every top node: more than its share, and simpler.

@@ -90,7 +90,7 @@ fn started_at_rest_it_oscillates_about_the_shifted_centre() {
         let (mut y, mut worst) = (vec![-STATIC_M], (0.0, 0.0, 0.0));
         for n in 1..=steps {
             advance(&model, &drive(1.1 * STATIC_M * OMEGA), &mut state, 1);
-            assert_eq!(state.contacts.state[0][0], ContactState::Slip, "it slips all the time");
+            assert_eq!(state.contacts.state_of(0, 0), ContactState::Slip, "it slips all the time");
             let exact = STATIC_M * (1.0 - (theta(w) * n as f64).cos());
             let error = (state.u[Y] - exact).abs();
             if error >= worst.0 {
@@ -131,7 +131,7 @@ fn swing(w: f64, belt_speed_m_s: f64) -> Swing {
     while crossings.len() <= PERIODS {
         audited_step(&model, drive(belt_speed_m_s), &mut state, &mut ledger);
         let y = state.u[Y] - STATIC_M;
-        let sticks = state.contacts.state[0][0] == ContactState::Stick;
+        let sticks = state.contacts.state_of(0, 0) == ContactState::Stick;
         if crossings.is_empty() {
             assert!(sticks || y > 0.0, "it is carried until friction cannot hold it");
         } else {

@@ -46,7 +46,7 @@ fn rigid_block(pull: f64, beta2: f64, time_step_s: f64) -> Model {
 }
 
 fn is_stuck(state: &State<1>, slave: usize) -> bool {
-    state.contacts.state[slave][0] == ContactState::Stick
+    state.contacts.state_of(slave, 0) == ContactState::Stick
 }
 
 /// Slides until it sticks and as long again; time [s] and place [m] where it stopped.
@@ -220,7 +220,7 @@ fn an_elastic_block_sticks_up_to_the_friction_angle() {
         let mut slipped = false;
         for _ in 0..(1.5 * drive.ramp_s / model.time_step_s()).ceil() as usize {
             advance(&model, &drive, &mut state, 1);
-            slipped |= state.contacts.state.iter().any(|s| s[0] == ContactState::Slip);
+            slipped |= state.contacts.states(0).any(|s| s == ContactState::Slip);
         }
         assert_eq!(slipped, !sticks, "tan α = {fraction} μ");
         assert!(slipped || state.u[Y] == 0.0, "a sticking base does not creep");

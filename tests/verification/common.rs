@@ -75,7 +75,7 @@ pub fn advance(model: &Model, drive: &Drive, state: &mut State<1>, steps: usize)
 
 /// Total normal contact force of the last step [N].
 pub fn normal_force_n(state: &State<1>) -> f64 {
-    state.contacts.force_n.iter().map(|force| force[2][0]).sum()
+    state.contacts.forces(0).map(|force| force[2]).sum()
 }
 
 /// Most roundings behind one component of K u, relative to Σ|K||u|: an entry of the element's stiffness is a

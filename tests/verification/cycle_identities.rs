@@ -78,7 +78,7 @@ fn identities_hold_in_every_window() {
 
     let mut state = State::<1>::at_rest(&model);
     let mut ledger = EnergyLedger::new(&model, 1);
-    let mut sampler = Sampler::new(&model, 0);
+    let mut sampler = Sampler::new(&model);
     let mut figures = Figures::EMPTY;
     let (mut p_y, mut p_z, mut stored) = (Range::EMPTY, Range::EMPTY, Range::EMPTY);
     // Momentum, energies and time at the start of the observation.
@@ -110,13 +110,13 @@ fn identities_hold_in_every_window() {
         let after = momentum_ns(&model, &state);
         if n > 0 {
             for c in 0..3 {
-                let contact: f64 = state.contacts.force_n.iter().map(|force| force[c][0]).sum();
+                let contact: f64 = state.contacts.forces(0).map(|force| force[c]).sum();
                 let load = if c == 2 { state.load_n[0] } else { 0.0 };
                 let force = state.reaction_n[c][0] + contact - load;
                 worst_newton[c] = worst_newton[c].max(((after[c] - before[c]) / dt - force).abs());
             }
         }
-        let sample = sampler.sample(&model, &drive, &state);
+        let [sample] = sampler.sample(&model, &[drive], &state);
         if sample.time_s < TRANSIENT_S {
             start = (after, *ledger.energies(0), sample.time_s);
             continue;
@@ -126,12 +126,12 @@ fn identities_hold_in_every_window() {
         p_z.see(after[2]);
         let e = ledger.energies(0);
         stored.see(e.kinetic_j + e.elastic_j - e.load_work_j);
-        for (slave, contact_state) in state.contacts.state.iter().enumerate() {
-            if contact_state[0] == ContactState::Slip {
-                let [x, y] = [0, 1].map(|c| state.contacts.relative_increment_m[slave][c][0]);
+        for (slave, contact_state) in state.contacts.states(0).enumerate() {
+            if contact_state == ContactState::Slip {
+                let [x, y, _] = state.contacts.increment_of(slave, 0);
                 let slip = (x * x + y * y).sqrt();
                 direction_rounding_n += MU
-                    * state.contacts.force_n[slave][2][0]
+                    * state.contacts.force_of(slave, 0)[2]
                     * (8.0 * f64::EPSILON * largest_u / slip).min(2.0);
             }
         }

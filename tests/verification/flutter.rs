@@ -261,7 +261,7 @@ fn followed(model: &Model, drive: &Drive, sliding: &Sliding, mode: &Mode) -> Com
     for n in 0..steps {
         step(model, std::slice::from_ref(drive).try_into().expect("one lane"), &mut state);
         assert!(
-            state.contacts.state.iter().all(|s| s[0] == ContactState::Slip),
+            state.contacts.states(0).all(|s| s == ContactState::Slip),
             "step {n}: not steady sliding"
         );
         let after = amplitude(&state);

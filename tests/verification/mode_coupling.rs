@@ -142,7 +142,7 @@ fn slide(mu: f64, time_step_s: f64, duration_s: f64) -> (Vec<f64>, Vec<f64>) {
         y.push(state.u[Y]);
         z.push(state.u[BODY_Z]);
         step(&model, &[drive], &mut state);
-        assert_eq!(state.contacts.state[0][0], ContactState::Slip, "the measured motion is sliding");
+        assert_eq!(state.contacts.state_of(0, 0), ContactState::Slip, "the measured motion is sliding");
     }
     (y, z)
 }

@@ -80,9 +80,9 @@ fn record(evidence: &mut [Evidence; 3], name: &str, model: &Model, state: &State
         let worst = model
             .slaves()
             .iter()
-            .zip(&state.contacts.force_n)
+            .zip(state.contacts.forces(0))
             .filter(|(slave, _)| (slave.area_m2 / whole - share).abs() < 1e-9)
-            .map(|(_, force)| force[2][0])
+            .map(|(_, force)| force[2])
             .max_by(|a, b| (a - exact).abs().total_cmp(&(b - exact).abs()))
             .expect("nodes of every kind");
         forces.bounded(format!("{name}, {place}"), worst, exact, exact, force_bound);

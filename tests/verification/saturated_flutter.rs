@@ -56,16 +56,16 @@ fn saturated(mu: f64, belt_speed_m_s: f64, time_step_s: f64) -> Saturated {
     for _ in 0..steps {
         audited_step(&model, drive, &mut state, &mut ledger);
         let contacts = &state.contacts;
-        let (friction, normal) = (contacts.force_n[0][Y][0], contacts.force_n[0][Z][0]);
+        let [_, friction, normal] = contacts.force_of(0, 0);
         found.normal += normal;
         found.friction += friction;
         found.clamp -= state.reaction_n[Y][0];
-        found.shares[contacts.state[0][0] as usize] += 1.0;
-        found.deficit += match contacts.state[0][0] {
+        found.shares[contacts.state_of(0, 0) as usize] += 1.0;
+        found.deficit += match contacts.state_of(0, 0) {
             ContactState::Separated => 0.0,
             ContactState::Stick => mu * normal - friction,
             // Belt and slip are parallel: cos φ is 1 where the belt overtakes the node.
-            ContactState::Slip => mu * normal * (1.0 + contacts.relative_increment_m[0][Y][0].signum()),
+            ContactState::Slip => mu * normal * (1.0 + contacts.increment_of(0, 0)[Y].signum()),
         };
         let now = momentum(&state).map(f64::abs);
         found.largest_momentum = found.largest_momentum.max(now[0] + mu * now[1]);

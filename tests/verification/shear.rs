@@ -86,7 +86,7 @@ fn exact(interval: usize) -> (f64, f64) {
 
 /// Traction on the base over its limit.
 fn traction(state: &State<1>) -> f64 {
-    let friction: f64 = state.contacts.force_n.iter().map(|force| force[1][0]).sum();
+    let friction: f64 = state.contacts.forces(0).map(|force| force[1]).sum();
     friction / (SHEAR_LIMIT_PA * COLUMN_AREA_M2)
 }
 
@@ -130,7 +130,7 @@ fn base_velocity_climbs_in_steps_and_sticks() {
             let now = if at_front { 0.5 * (level + exact(interval - 1).1) } else { level };
             keep_worst(&mut worst_traction, traction(&state), now);
             // At the front of the third interval the traction of the step is already inside the cone.
-            let sticks = state.contacts.state.iter().all(|s| s[0] == ContactState::Stick);
+            let sticks = state.contacts.states(0).all(|s| s == ContactState::Stick);
             assert_eq!(sticks, interval >= 2, "interval {interval}, step {n}");
         }
         speeds.found(format!("interval {}", interval + 1), worst_speed.0, worst_speed.1, ratio);

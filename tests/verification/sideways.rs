@@ -47,7 +47,7 @@ fn is_carried_from_where_its_slip_ends() {
         let mut stopped_s = None;
         for n in 0..(2.0 * steps) as u64 {
             advance(&model, &drive, &mut state, 1);
-            let sticks = state.contacts.state[0][0] == ContactState::Stick;
+            let sticks = state.contacts.state_of(0, 0) == ContactState::Stick;
             stopped_s = stopped_s.or(sticks.then_some(n as f64 * model.time_step_s()));
             assert_eq!(sticks, stopped_s.is_some(), "what is carried does not slip again");
         }

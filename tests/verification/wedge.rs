@@ -30,7 +30,7 @@ fn pushed(push: f64, mu: f64) -> (f64, bool) {
     let mut sticks = true;
     for _ in 0..STEPS {
         advance(&model, &drive, &mut state, 1);
-        sticks &= state.contacts.state[0][0] == ContactState::Stick;
+        sticks &= state.contacts.state_of(0, 0) == ContactState::Stick;
     }
     let elapsed_s = STEPS as f64 * model.time_step_s();
     (state.u[Y] / (0.5 * elapsed_s * elapsed_s), sticks)

@@ -5,21 +5,37 @@
 //! |t| = μN      slip:   t opposes the relative motion
 //! ```
 
-use super::ContactState;
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+
+use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
+
+/// Friction on eight nodes.
+#[derive(Debug, Clone, Copy)]
+pub struct Friction<S: Simd> {
+    /// Its components [N].
+    pub force_n: [f64x8<S>; 2],
+    /// Which nodes stick.
+    pub sticks: mask64x8<S>,
+}
 
 /// Projects the trial tangential force (the one that would stop all relative motion) on the cone of
 /// the normal force `normal_n` ≥ 0. All forces in newton.
 ///
 /// With an isotropic mass the projection along the trial force is the exact solution: what is left
 /// of the relative motion is parallel to the trial force, so friction opposes the slip.
-pub fn project(trial_n: [f64; 2], normal_n: f64, mu: f64) -> ([f64; 2], ContactState) {
+#[inline(always)]
+pub fn project<S: Simd>(trial_n: [f64x8<S>; 2], normal_n: f64x8<S>, mu: f64x8<S>) -> Friction<S> {
     let limit = mu * normal_n;
     let trial = (trial_n[0] * trial_n[0] + trial_n[1] * trial_n[1]).sqrt();
-    if trial <= limit {
-        return (trial_n, ContactState::Stick);
-    }
+    let sticks = trial.simd_le(limit);
     let scale = limit / trial;
-    ([trial_n[0] * scale, trial_n[1] * scale], ContactState::Slip)
+    Friction {
+        force_n: [
+            sticks.select(trial_n[0], trial_n[0] * scale),
+            sticks.select(trial_n[1], trial_n[1] * scale),
+        ],
+        sticks,
+    }
 }
 
 /// Friction [N] on a node that slips by `given_m` ≠ 0 in a direction in which it is held, and that a trial
@@ -53,6 +69,7 @@ pub fn oppose(given_m: f64, free_m: f64, stiffness_n_m: f64, normal_n: f64, mu: 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use fearless_simd::{Level, dispatch};
 
     /// Protects: the force on a half-held node lies on the cone, opposes the slip that it leaves, and is
     /// found from any side and at any ratio of the slips.
@@ -78,20 +95,29 @@ mod tests {
         }
     }
 
+    /// [`super::project`] of one node, and whether it sticks.
+    fn project(trial_n: [f64; 2], normal_n: f64, mu: f64) -> ([f64; 2], bool) {
+        dispatch!(Level::new(), simd => {
+            let all = |value| f64x8::splat(simd, value);
+            let friction = super::project([all(trial_n[0]), all(trial_n[1])], all(normal_n), all(mu));
+            (friction.force_n.map(|force| force[0]), friction.sticks.test(0))
+        })
+    }
+
     /// Protects: inside the cone the force is untouched, outside it lies on the cone along the trial.
     #[test]
     fn inside_sticks_outside_slips_on_the_cone() {
-        assert_eq!(project([0.3, -0.4], 2.0, 0.25), ([0.3, -0.4], ContactState::Stick));
-        let (force, state) = project([3.0, -4.0], 2.0, 0.25);
-        assert_eq!(state, ContactState::Slip);
+        assert_eq!(project([0.3, -0.4], 2.0, 0.25), ([0.3, -0.4], true));
+        let (force, sticks) = project([3.0, -4.0], 2.0, 0.25);
+        assert!(!sticks);
         assert!((force[0] - 0.3).abs() < 1e-15 && (force[1] + 0.4).abs() < 1e-15);
     }
 
     /// Protects: without friction nothing is transmitted, and a node that is exactly still has no 0/0.
     #[test]
     fn limits_are_finite() {
-        assert_eq!(project([1.0, 0.0], 5.0, 0.0), ([0.0, 0.0], ContactState::Slip));
-        assert_eq!(project([0.0, 0.0], 5.0, 0.4), ([0.0, 0.0], ContactState::Stick));
+        assert_eq!(project([1.0, 0.0], 5.0, 0.0), ([0.0, 0.0], false));
+        assert_eq!(project([0.0, 0.0], 5.0, 0.4), ([0.0, 0.0], true));
         assert_eq!(project([0.0, 0.0], 5.0, 0.0).0, [0.0, 0.0]);
     }
 }

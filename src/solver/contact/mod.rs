@@ -6,6 +6,9 @@
 pub mod coulomb;
 pub mod rigid;
 
+use super::field::Field;
+use super::mesh::BlockMesh;
+
 /// State of a slave node during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum ContactState {
@@ -18,27 +21,89 @@ pub enum ContactState {
     Slip,
 }
 
-/// Contact of all slave nodes during the last step, slave → (component →) lane.
+/// Contact of all slave nodes during the last step; slave nodes are numbered as the nodes of the contact face.
 #[derive(Debug, Clone)]
 pub struct Contacts<const L: usize> {
     /// Contact force [N] on the pin at t_n: x, y, and N ≥ 0 in z (the multipliers are its negative).
-    pub force_n: Vec<[[f64; L]; 3]>,
-    /// Gap [m] at t_{n+1}, positive when open.
-    pub gap_m: Vec<[f64; L]>,
-    /// State during the step.
-    pub state: Vec<[ContactState; L]>,
+    pub force_n: Field<L>,
     /// Displacement increment [m] relative to the target over the step: x, y and (target at rest) z.
-    pub relative_increment_m: Vec<[[f64; L]; 3]>,
+    pub increment_m: Field<L>,
+    /// The same over the step before.
+    pub previous_increment_m: Field<L>,
+    /// What [`Status`] names, component by component.
+    pub status: Field<L>,
+}
+
+/// The components of [`Contacts::status`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// Gap [m] at t_{n+1}, positive when open.
+    Gap = 0,
+    /// 1 if the node carried a contact force during the step, otherwise 0.
+    Closed = 1,
+    /// 1 if it slipped, otherwise 0.
+    Slips = 2,
 }
 
 impl<const L: usize> Contacts<L> {
-    /// No contact at `slaves` nodes.
-    pub fn separated(slaves: usize) -> Self {
-        Self {
-            force_n: vec![[[0.0; L]; 3]; slaves],
-            gap_m: vec![[0.0; L]; slaves],
-            state: vec![[ContactState::Separated; L]; slaves],
-            relative_increment_m: vec![[[0.0; L]; 3]; slaves],
+    /// No contact at the nodes of the contact face of `mesh`.
+    pub fn separated(mesh: &BlockMesh) -> Self {
+        let face = || Field::on_face(mesh);
+        Self { force_n: face(), increment_m: face(), previous_increment_m: face(), status: face() }
+    }
+
+    /// Number of slave nodes.
+    pub fn slaves(&self) -> usize {
+        self.force_n.len() / (3 * L)
+    }
+
+    /// Contact force [N] on a slave node of a lane at t_n.
+    pub fn force_of(&self, slave: usize, lane: usize) -> [f64; 3] {
+        vector(&self.force_n, slave, lane)
+    }
+
+    /// Displacement increment [m] of a slave node of a lane relative to the target.
+    pub fn increment_of(&self, slave: usize, lane: usize) -> [f64; 3] {
+        vector(&self.increment_m, slave, lane)
+    }
+
+    /// Gap [m] of a slave node of a lane at t_{n+1}.
+    pub fn gap_of(&self, slave: usize, lane: usize) -> f64 {
+        self.status.at(self.status.place(slave), Status::Gap as usize)[lane]
+    }
+
+    /// State of a slave node of a lane during the step.
+    pub fn state_of(&self, slave: usize, lane: usize) -> ContactState {
+        let [_, closed, slips] = vector(&self.status, slave, lane);
+        if slips != 0.0 {
+            ContactState::Slip
+        } else if closed != 0.0 {
+            ContactState::Stick
+        } else {
+            ContactState::Separated
         }
     }
+
+    /// States of all slave nodes of a lane.
+    pub fn states(&self, lane: usize) -> impl Iterator<Item = ContactState> + '_ {
+        (0..self.slaves()).map(move |slave| self.state_of(slave, lane))
+    }
+
+    /// Contact forces [N] on all slave nodes of a lane.
+    pub fn forces(&self, lane: usize) -> impl Iterator<Item = [f64; 3]> + '_ {
+        (0..self.slaves()).map(move |slave| self.force_of(slave, lane))
+    }
+
+    /// Sets one lane to a lane of other contacts of the same nodes.
+    pub fn copy_lane<const M: usize>(&mut self, lane: usize, from: &Contacts<M>, from_lane: usize) {
+        self.force_n.copy_lane(lane, &from.force_n, from_lane);
+        self.increment_m.copy_lane(lane, &from.increment_m, from_lane);
+        self.previous_increment_m.copy_lane(lane, &from.previous_increment_m, from_lane);
+        self.status.copy_lane(lane, &from.status, from_lane);
+    }
+}
+
+fn vector<const L: usize>(field: &Field<L>, node: usize, lane: usize) -> [f64; 3] {
+    let place = field.place(node);
+    std::array::from_fn(|c| field.at(place, c)[lane])
 }

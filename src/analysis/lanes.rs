@@ -1,0 +1,196 @@
+//! Jobs advanced together, one in each lane.
+//!
+//! The jobs share a model and nothing else: a job's result is the same bits in any lane, with any companions and
+//! for any number of lanes. They need not begin together. A lane whose job has ended is at rest, costs what its
+//! slots in the vectors cost anyway, and can be given another job whenever the lanes are between two audits.
+
+use super::job::{self, JobError};
+use super::lane::LaneAnalysis;
+use super::record::JobRecord;
+use super::sample::{Sample, Sampler};
+use crate::solver::energy::EnergyLedger;
+use crate::solver::{Drive, Model, State, guard, step};
+use crate::spec::JobSpec;
+use std::sync::Arc;
+
+/// Steps between two evaluations of the stored energies (and of the divergence guard), and the only times at
+/// which jobs begin.
+///
+/// An evaluation costs two products with K; at 16 that is an eighth of a run. The damping's work is
+/// sampled as often: about four times per period of the fastest mode that damping leaves alive.
+const AUDIT_INTERVAL: u64 = 16;
+
+/// A lane without a job: nothing moves, nothing presses.
+const IDLE: Drive = Drive { mu: 0.0, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
+
+/// Up to `L` jobs of one model.
+pub struct Lanes<const L: usize> {
+    model: Arc<Model>,
+    state: State<L>,
+    ledger: EnergyLedger<L>,
+    sampler: Sampler<L>,
+    drives: [Drive; L],
+    runs: [Option<Run>; L],
+    /// What a lane is set to before a job begins in it.
+    rest: Box<Rest>,
+}
+
+/// A lane at rest.
+#[derive(Debug)]
+struct Rest {
+    state: State<1>,
+    ledger: EnergyLedger<1>,
+    sampler: Sampler<1>,
+}
+
+/// The job in a lane.
+struct Run {
+    ticket: u64,
+    steps: u64,
+    stop_early: bool,
+    analysis: LaneAnalysis,
+}
+
+/// A job that has ended.
+#[derive(Debug)]
+pub struct Ended {
+    /// What its owner called it.
+    pub ticket: u64,
+    /// What was found.
+    pub result: Result<JobRecord, JobError>,
+}
+
+impl<const L: usize> Lanes<L> {
+    /// Empty lanes.
+    pub fn new(model: Arc<Model>) -> Self {
+        let rest = Rest {
+            state: State::at_rest(&model),
+            ledger: EnergyLedger::new(&model, AUDIT_INTERVAL),
+            sampler: Sampler::new(&model),
+        };
+        Self {
+            state: State::at_rest(&model),
+            ledger: EnergyLedger::new(&model, AUDIT_INTERVAL),
+            sampler: Sampler::new(&model),
+            drives: [IDLE; L],
+            runs: std::array::from_fn(|_| None),
+            rest: Box::new(rest),
+            model,
+        }
+    }
+
+    /// The jobs of other lanes of the same model, wherever they are in their runs.
+    ///
+    /// # Panics
+    /// If there are more of them than lanes.
+    pub fn taken_over<const M: usize>(from: Lanes<M>) -> Self {
+        let mut lanes = Self::new(Arc::clone(&from.model));
+        lanes.state.step = from.state.step;
+        let mut free = 0..L;
+        for (from_lane, run) in from.runs.into_iter().enumerate() {
+            if run.is_some() {
+                let lane = free.next().expect("no more jobs than lanes");
+                lanes.state.copy_lane(lane, &from.state, from_lane);
+                lanes.ledger.copy_lane(lane, &from.ledger, from_lane);
+                lanes.sampler.copy_lane(lane, &from.sampler, from_lane);
+                lanes.drives[lane] = from.drives[from_lane];
+                lanes.runs[lane] = run;
+            }
+        }
+        lanes
+    }
+
+    /// A lane without a job.
+    pub fn free_lane(&self) -> Option<usize> {
+        self.runs.iter().position(Option::is_none)
+    }
+
+    /// Number of jobs.
+    pub fn jobs(&self) -> usize {
+        self.runs.iter().flatten().count()
+    }
+
+    /// Puts a job into a lane. Its specification has been checked, and its model is that of the lanes.
+    ///
+    /// # Errors
+    /// [`JobError::TooManySteps`].
+    ///
+    /// # Panics
+    /// If the lane has a job.
+    pub fn begin(&mut self, lane: usize, ticket: u64, spec: JobSpec) -> Result<(), JobError> {
+        assert!(self.runs[lane].is_none(), "lane {lane} has a job");
+        let steps = job::step_count(spec.run.limit_s, self.model.time_step_s())?;
+        self.clear(lane);
+        self.drives[lane] = job::drive(&spec);
+        let stop_early = spec.run.stop_early;
+        self.runs[lane] = Some(Run { ticket, steps, stop_early, analysis: LaneAnalysis::new(&self.model, spec) });
+        Ok(())
+    }
+
+    /// Brings a lane to rest.
+    fn clear(&mut self, lane: usize) {
+        self.state.copy_lane(lane, &self.rest.state, 0);
+        self.ledger.copy_lane(lane, &self.rest.ledger, 0);
+        self.sampler.copy_lane(lane, &self.rest.sampler, 0);
+        self.drives[lane] = IDLE;
+    }
+
+    /// Simulated time [s] of every job, by its ticket.
+    pub fn simulated(&self) -> impl Iterator<Item = (u64, f64)> + '_ {
+        let dt = self.model.time_step_s();
+        let runs = self.runs.iter().enumerate();
+        runs.filter_map(move |(lane, run)| {
+            run.as_ref().map(|run| (run.ticket, self.state.steps_done(lane) as f64 * dt))
+        })
+    }
+
+    /// Advances all jobs to just before the next audit, and returns those that ended on the way. Every step of
+    /// every job is shown to `observe`, by its ticket.
+    pub fn advance(&mut self, observe: &mut impl FnMut(u64, &Sample)) -> Vec<Ended> {
+        let mut ended = Vec::new();
+        loop {
+            let audited = self.ledger.audits(self.state.step);
+            self.ledger.before_step(&self.model, &self.state);
+            step(&self.model, &self.drives, &mut self.state);
+            self.ledger.after_step(&self.model, &self.drives, &self.state);
+            let samples = self.sampler.sample(&self.model, &self.drives, &self.state);
+            for lane in 0..L {
+                if let Some(run) = &mut self.runs[lane] {
+                    run.analysis.push(&samples[lane], self.ledger.energies(lane));
+                    observe(run.ticket, &samples[lane]);
+                    if let Some(result) = self.result(lane, audited) {
+                        ended.extend(self.runs[lane].take().map(|run| Ended { ticket: run.ticket, result }));
+                        self.clear(lane);
+                    }
+                }
+            }
+            if self.ledger.audits(self.state.step) {
+                return ended;
+            }
+        }
+    }
+
+    /// The result of the job in a lane, if it has just ended.
+    fn result(&self, lane: usize, audited: bool) -> Option<Result<JobRecord, JobError>> {
+        let run = self.runs[lane].as_ref()?;
+        let energies = self.ledger.energies(lane);
+        if audited {
+            if let Err(error) = guard::check(&self.model, &self.drives[lane], &self.state, lane, energies) {
+                return Some(Err(error.into()));
+            }
+        }
+        let steps = self.state.steps_done(lane);
+        let settled = audited && run.stop_early && run.analysis.is_settled();
+        if steps < run.steps && !settled {
+            return None;
+        }
+        if let Err(error) = guard::check_finite(&self.model, &self.state, lane) {
+            return Some(Err(error.into()));
+        }
+        let record = run.analysis.record(&self.model, steps, energies);
+        Some(match record.non_finite_figure() {
+            None => Ok(record),
+            Some(figure) => Err(JobError::NotFinite { figure }),
+        })
+    }
+}

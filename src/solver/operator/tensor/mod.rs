@@ -1,0 +1,92 @@
+//! K of a uniform block as a sum of tensor products of one-dimensional matrices.
+//!
+//! On a uniform block of trilinear, fully integrated hexahedra every term of the elastic energy is a product of
+//! one-dimensional integrals, boundaries included: with the mass M = ∫NᵢNⱼ, the stiffness S = ∫Nᵢ′Nⱼ′ and the
+//! derivative D = ∫Nᵢ′Nⱼ of linear elements in each direction,
+//!
+//! ```text
+//! K_xx = (λ+2G) Sx My Mz + G Mx Sy Mz + G Mx My Sz          (and cyclic)
+//! K_xy = λ Dx Dyᵀ Mz + G Dxᵀ Dy Mz                          (and so on)
+//! ```
+//!
+//! M = h/6 M̂ and S = Ŝ/h have the rows M̂ = (1, 4, 1), Ŝ = (−1, 2, −1), with 2 and 1 in the centre at the two
+//! ends. D = (Â + B̂)/2 and Dᵀ = (−Â + B̂)/2 with Â = (1, 0, −1) and B̂ = −1, 0, …, 0, 1 on the diagonal, so
+//!
+//! ```text
+//! K_xy = Mz/4 { Ây [−(λ+G)Âx − (λ−G)B̂x] + B̂y [(λ−G)Âx + (λ+G)B̂x] }
+//! ```
+//!
+//! About 100 operations a node, against 486 of the assembled rows. [`pass`] does them in one sweep over the mesh.
+
+mod pass;
+#[cfg(test)]
+mod tests;
+
+pub use pass::{Pass, Scratch, Spot, load_all};
+
+use crate::solver::field::{Block, Field};
+use crate::solver::material::Material;
+use crate::solver::mesh::BlockMesh;
+use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+
+/// K of a block of equal elements.
+#[derive(Debug, Clone)]
+pub struct TensorOperator {
+    nodes: [usize; 3],
+    /// Of K_cc: [Sx My Mz, Mx Sy Mz, Mx My Sz] for each component c.
+    own: [[f64; 3]; 3],
+    /// −(λ+G) of the coupling xy, xz, yz, with the third direction's scale.
+    skew: [f64; 3],
+    /// (λ−G) of the same.
+    edge: [f64; 3],
+    /// (λ−G)/(λ+G): a centre term B̂[…] is this share of the neighbour term Â[…], but for …
+    share: f64,
+    /// … 4λG/(λ+G) B̂B̂ where two faces meet, of the same.
+    corner: [f64; 3],
+}
+
+impl TensorOperator {
+    /// K of `mesh` for a material.
+    pub fn new(mesh: &BlockMesh, material: &Material) -> Self {
+        let [hx, hy, hz] = mesh.element_size_m();
+        let (lambda, g) = (material.lame_lambda_pa(), material.shear_modulus_pa());
+        let directions = [hy * hz / (36.0 * hx), hx * hz / (36.0 * hy), hx * hy / (36.0 * hz)];
+        let across = [hz / 24.0, hy / 24.0, hx / 24.0];
+        Self {
+            nodes: mesh.nodes_per_axis(),
+            own: std::array::from_fn(|c| {
+                std::array::from_fn(|d| directions[d] * if c == d { lambda + 2.0 * g } else { g })
+            }),
+            skew: across.map(|scale| -(lambda + g) * scale),
+            edge: across.map(|scale| (lambda - g) * scale),
+            share: (lambda - g) / (lambda + g),
+            corner: across.map(|scale| 4.0 * lambda * g / (lambda + g) * scale),
+        }
+    }
+
+    /// Computes `y = K x` for `L` lanes.
+    pub fn product<const L: usize>(&self, x: &Field<L>, y: &mut Field<L>, scratch: &mut Scratch<L>) {
+        let mut product = Product { x: x.blocks(), y: y.blocks_mut() };
+        dispatch!(Level::new(), simd => self.pass(simd, &mut product, scratch));
+    }
+}
+
+struct Product<'a> {
+    x: &'a [Block],
+    y: &'a mut [Block],
+}
+
+#[expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+impl<S: Simd> Pass<S> for Product<'_> {
+    #[inline(always)]
+    fn input(&self, simd: S, at: usize) -> [f64x8<S>; 3] {
+        load_all(simd, &self.x[at].0)
+    }
+
+    #[inline(always)]
+    fn output(&mut self, _: S, spot: Spot, kx: [f64x8<S>; 3]) {
+        for c in 0..3 {
+            kx[c].store_slice(&mut self.y[spot.at].0[c]);
+        }
+    }
+}
