@@ -93,6 +93,10 @@ impl Progress for Display {
         self.note(&format!("job {key} failed: {error}"));
     }
 
+    fn waiting(&mut self, reason: &str) {
+        self.note(&format!("waiting: {reason}"));
+    }
+
     fn stopped(&mut self, snapshot: &Snapshot) {
         if let Self::Bar(bar) = self {
             bar.finish_and_clear();

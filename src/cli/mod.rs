@@ -1,14 +1,19 @@
 //! The command line: one file a subcommand. Results go to stdout, everything else to stderr.
 
+mod cancel;
 mod completions;
 mod display;
+mod doctor;
 mod error;
 mod export;
+mod gc;
 mod output;
 mod pareto;
 mod planning;
 mod presets;
 mod report;
+mod retry;
+mod rm;
 mod rows;
 mod run;
 mod schema;
@@ -55,6 +60,16 @@ enum Command {
     Pareto(pareto::Args),
     /// Write one row a job as CSV or JSON lines.
     Export(export::Args),
+    /// Try failed and cancelled jobs of a study again.
+    Retry(retry::Args),
+    /// Cancel the pending jobs of a study.
+    Cancel(cancel::Args),
+    /// Remove a study; its results stay until `gc`.
+    Rm(rm::Args),
+    /// Drop jobs that no study refers to, with their results.
+    Gc,
+    /// Look for what is wrong with the database and its surroundings.
+    Doctor,
     /// Solve one job in the foreground.
     Solve(solve::Args),
     /// Check a study file without running it.
@@ -78,6 +93,11 @@ pub fn main(cli: Cli) -> u8 {
         Command::Report(args) => report::run(&args, db),
         Command::Pareto(args) => pareto::run(&args, db),
         Command::Export(args) => export::run(&args, db),
+        Command::Retry(args) => retry::run(&args, db),
+        Command::Cancel(args) => cancel::run(&args, db),
+        Command::Rm(args) => rm::run(&args, db),
+        Command::Gc => gc::run(db),
+        Command::Doctor => doctor::run(db),
         Command::Solve(args) => solve::run(&args),
         Command::Validate(args) => validate::run(&args),
         Command::Presets(args) => presets::run(&args),

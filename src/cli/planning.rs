@@ -4,7 +4,7 @@ use super::error::CliError;
 use crate::queue::{NewJob, NewStudy};
 use crate::report::JobNumerics;
 use crate::solver::{self, Model};
-use crate::spec::{Detection, JobSpec, Numerics, RunControl};
+use crate::spec::{Detection, JobSpec, Numerics, RunControl, Scene};
 use crate::study::{Job, Study, StudyError, job_key};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -47,7 +47,7 @@ impl Plan {
     }
 
     /// The study as the queue takes it.
-    pub fn for_queue(&self) -> Result<NewStudy, CliError> {
+    pub fn for_queue(&self, priority: Option<i64>) -> Result<NewStudy, CliError> {
         let jobs = self
             .jobs
             .iter()
@@ -63,6 +63,8 @@ impl Plan {
                     payload: encode(&job.spec)?,
                     parameters: encode(&row)?,
                     cost: job.cost,
+                    batch: batch(&job.spec),
+                    priority,
                 })
             })
             .collect::<Result<_, CliError>>()?;
@@ -105,6 +107,23 @@ fn numerics(spec: &JobSpec) -> JobNumerics {
 fn case_key(mut case: JobSpec) -> String {
     case.scene.pin.elements = [1, 1, 1];
     job_key(&case, "")
+}
+
+/// Names what jobs share that can be advanced together: mesh, operator and time step, whatever drives and loads them
+/// and however long they are looked at.
+fn batch(spec: &JobSpec) -> String {
+    let mut scene = spec.scene.clone();
+    let all = Scene::default();
+    scene.contact = all.contact;
+    scene.load = all.load;
+    scene.disk.omega_rpm = all.disk.omega_rpm;
+    let shared = JobSpec {
+        scene,
+        numerics: spec.numerics.clone(),
+        run: RunControl::default(),
+        detection: Detection::default(),
+    };
+    job_key(&shared, "batch")
 }
 
 /// Refuses a study with a job that the solver would refuse before its first step.

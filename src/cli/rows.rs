@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use super::planning::RowParameters;
-use crate::queue::{JobState, Queue, StudyRow, SystemClock};
+use crate::queue::{JobState, Queue, Settings, StudyRow, SystemClock};
 use crate::report::{Row, RowState};
 use crate::study::Study;
 use std::path::Path;
@@ -19,12 +19,27 @@ pub fn study_name(study: &str) -> Result<String, CliError> {
 
 /// Opens an existing database to read from it.
 pub async fn open(db: &Path) -> Result<Queue, CliError> {
-    Ok(Queue::open_existing(db, Arc::new(SystemClock)).await?)
+    Ok(Queue::open_to_read(db, Arc::new(SystemClock)).await?)
+}
+
+/// Opens an existing database to change it.
+pub async fn open_to_change(db: &Path) -> Result<Queue, CliError> {
+    Ok(Queue::open_existing(db, Arc::new(SystemClock), Settings::default()).await?)
 }
 
 /// All rows of a study.
 pub async fn read(queue: &mut Queue, study: &str) -> Result<Vec<Row>, CliError> {
-    queue.rows(study).await?.iter().map(|row| convert(study, row)).collect()
+    let mut rows = Vec::new();
+    let mut unreadable = None;
+    // Converted one by one: the records as text take several times the memory of what is read from them.
+    let read = queue.each_row(study, |row| match convert(study, &row) {
+        Ok(row) => rows.push(row),
+        Err(error) => {
+            unreadable.get_or_insert(error);
+        }
+    });
+    read.await?;
+    unreadable.map_or(Ok(rows), Err)
 }
 
 fn convert(study: &str, row: &StudyRow) -> Result<Row, CliError> {
@@ -44,6 +59,7 @@ fn convert(study: &str, row: &StudyRow) -> Result<Row, CliError> {
             RowState::Done(serde_json::from_str(record).map_err(|error| unreadable("record", error))?)
         }
         (JobState::Done, None) => RowState::Failed { error: "the record is missing".to_owned() },
+        (JobState::Cancelled, _) => RowState::Cancelled,
         (JobState::Failed, _) => RowState::Failed { error: row.error.clone().unwrap_or_default() },
     };
     Ok(Row {

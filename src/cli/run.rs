@@ -5,8 +5,8 @@ use super::output::{block_on, print};
 use super::planning::Plan;
 use super::report::{self, OutFolder};
 use super::rows;
-use super::submit::submit;
-use super::work::{Threads, work};
+use super::submit::{Priority, submit};
+use super::work::{Retries, Threads, work};
 use crate::queue::{Queue, Scope, SystemClock};
 use crate::report::tables::{Quantity, markdown};
 use std::path::{Path, PathBuf};
@@ -20,6 +20,10 @@ pub struct Args {
     #[command(flatten)]
     threads: Threads,
     #[command(flatten)]
+    retries: Retries,
+    #[command(flatten)]
+    priority: Priority,
+    #[command(flatten)]
     out: OutFolder,
 }
 
@@ -29,8 +33,8 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     let name = plan.study.name();
     report::prepare(name, &args.out)?;
     block_on(async {
-        let mut queue = Queue::open(db, Arc::new(SystemClock)).await?;
-        submit(&plan, &mut queue).await?;
+        let mut queue = Queue::open_with(db, Arc::new(SystemClock), args.retries.settings()).await?;
+        submit(&plan, &args.priority, &mut queue).await?;
         let code = work(&mut queue, &Scope::Study(name.to_owned()), &args.threads).await?;
         let rows = rows::read(&mut queue, name).await?;
         queue.close().await?;

@@ -103,8 +103,10 @@ fn parameters(row: &Row) -> String {
 }
 
 fn counts_text(counts: Counts) -> String {
+    let cancelled =
+        if counts.cancelled > 0 { format!(", {} cancelled", counts.cancelled) } else { String::new() };
     format!(
-        "{} jobs: {} done, {} failed, {} running, {} pending",
+        "{} jobs: {} done, {} failed, {} running, {} pending{cancelled}",
         counts.total(),
         counts.done,
         counts.failed,
@@ -120,5 +122,6 @@ fn counts_json(counts: Counts) -> Value {
         "failed": counts.failed,
         "running": counts.running,
         "pending": counts.pending,
+        "cancelled": counts.cancelled,
     })
 }

@@ -13,6 +13,16 @@ use std::sync::Arc;
 pub struct Args {
     /// The study file.
     study: PathBuf,
+    #[command(flatten)]
+    priority: Priority,
+}
+
+/// Which jobs go first.
+#[derive(Debug, clap::Args)]
+pub struct Priority {
+    /// Jobs of a higher priority go first, whatever study they belong to; default: 0, or what they have.
+    #[arg(long = "priority", value_name = "N", allow_negative_numbers = true)]
+    value: Option<i32>,
 }
 
 /// Plans the study.
@@ -20,23 +30,28 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     let plan = Plan::load(&args.study)?;
     block_on(async {
         let mut queue = Queue::open(db, Arc::new(SystemClock)).await?;
-        submit(&plan, &mut queue).await?;
+        submit(&plan, &args.priority, &mut queue).await?;
         queue.close().await?;
         Ok(exit::SUCCESS)
     })
 }
 
 /// Submits a study that was read before the database was opened: a bad one leaves no database behind.
-pub async fn submit(plan: &Plan, queue: &mut Queue) -> Result<(), CliError> {
-    let submitted = queue.submit(&plan.for_queue()?).await?;
+pub async fn submit(plan: &Plan, priority: &Priority, queue: &mut Queue) -> Result<(), CliError> {
+    let submitted = queue.submit(&plan.for_queue(priority.value.map(i64::from))?).await?;
     tell(format_args!(
-        "{}: {} jobs, {} new, {} already done{}",
+        "{}: {} jobs, {} new, {} already done{}{}",
         plan.study.name(),
         submitted.jobs,
         submitted.added,
         submitted.already_done,
         if submitted.already_failed > 0 {
             format!(", {} failed before", submitted.already_failed)
+        } else {
+            String::new()
+        },
+        if submitted.cancelled > 0 {
+            format!(", {} of the replaced study cancelled", submitted.cancelled)
         } else {
             String::new()
         }

@@ -3,18 +3,20 @@
 use super::display::Display;
 use super::error::CliError;
 use super::output::{block_on, tell};
-use super::rows;
 use crate::exit;
-use crate::queue::{Queue, Scope};
+use crate::queue::{Queue, Scope, Settings, SystemClock, TakenBack};
 use crate::worker::{self, Interrupt};
 use std::num::NonZeroUsize;
 use std::path::Path;
+use std::sync::Arc;
 
 /// Arguments of `work`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
     threads: Threads,
+    #[command(flatten)]
+    retries: Retries,
 }
 
 /// The number of worker threads.
@@ -25,10 +27,26 @@ pub struct Threads {
     threads: Option<u16>,
 }
 
+/// How often a job is tried whose process died.
+#[derive(Debug, clap::Args)]
+pub struct Retries {
+    /// A job whose process died so many times in a row has failed.
+    #[arg(long = "max-crashes", value_name = "N", default_value_t = Settings::default().crash_limit,
+          value_parser = clap::value_parser!(u32).range(1..))]
+    max_crashes: u32,
+}
+
+impl Retries {
+    /// What that is for the queue.
+    pub fn settings(&self) -> Settings {
+        Settings { crash_limit: self.max_crashes, ..Settings::default() }
+    }
+}
+
 /// Works through all pending jobs.
 pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     block_on(async {
-        let mut queue = rows::open(db).await?;
+        let mut queue = Queue::open_existing(db, Arc::new(SystemClock), args.retries.settings()).await?;
         let code = work(&mut queue, &Scope::All, &args.threads).await?;
         queue.close().await?;
         Ok(code)
@@ -44,14 +62,19 @@ pub async fn work(queue: &mut Queue, scope: &Scope, threads: &Threads) -> Result
     let summary = worker::work(queue, scope, threads, &interrupt, &mut Display::new()).await;
     listener.abort();
     let summary = summary?;
-    if summary.taken_back > 0 {
-        tell(format_args!(
-            "{} jobs left running by an interrupted process were taken back",
-            summary.taken_back
-        ));
+    let TakenBack { pending, failed } = summary.taken_back;
+    if pending > 0 {
+        tell(format_args!("{pending} jobs left running by an interrupted process were taken back"));
+    }
+    if failed > 0 {
+        tell(format_args!("{failed} jobs have failed because their process died again and again"));
     }
     let counts = summary.counts;
-    if counts.pending + counts.running > 0 {
+    let is_cancelled = counts.cancelled > 0 && *scope != Scope::All;
+    if is_cancelled {
+        tell(format_args!("{} jobs were cancelled meanwhile", counts.cancelled));
+    }
+    if counts.pending + counts.running > 0 || is_cancelled {
         tell("interrupted; the same command continues where it stopped");
         return Ok(exit::WORK_LEFT);
     }

@@ -2,20 +2,15 @@ use sqlx::SqliteConnection;
 
 use super::{QueueError, Scope};
 
-/// How many jobs to take, and from where.
+/// How many jobs to take, and from where: all of one batch, so that they can be run together.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Claim {
     /// Whose jobs.
     pub scope: Scope,
-    /// At most so many: the number of free workers, since an attempt counts from its claim.
+    /// At most so many. An attempt counts from its claim: what is not started is to be handed back.
     pub limit: usize,
-}
-
-impl Claim {
-    /// Takes nothing: for an exchange that only stores.
-    pub fn nothing() -> Self {
-        Self { scope: Scope::All, limit: 0 }
-    }
+    /// The batch; otherwise that of the job that comes first.
+    pub batch: Option<String>,
 }
 
 /// A job to run.
@@ -29,43 +24,86 @@ pub struct ClaimedJob {
     pub attempt: u32,
     /// Expected effort.
     pub cost: f64,
+    /// The name of what it can be run together with.
+    pub batch: String,
+    /// Where an earlier attempt got to.
+    pub checkpoint: Option<Vec<u8>>,
 }
 
-/// Dear jobs first, so that no long one is left to a single worker at the end; then by age.
-///
-/// Membership is asked of each candidate in that order, so a claim ends after `limit` hits. `IN (…)` would
-/// collect the whole study first, and without INDEXED BY the planner prefers the index of all states and
-/// sorts every pending job: either makes each claim as slow as the study is large (220 jobs a second at
-/// 100 000 pending).
-const CLAIM: &str = "
-    UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = ?2
+/// The batch of the job that comes first.
+const FIRST: &str = "
+    SELECT batch FROM jobs INDEXED BY jobs_pending
+    WHERE state = 'pending' ORDER BY priority DESC, cost DESC, id LIMIT 1";
+
+const FIRST_OF_STUDY: &str = "
+    SELECT batch FROM study_pending
+    WHERE study_id = ?1 ORDER BY priority DESC, cost DESC, job_id LIMIT 1";
+
+/// Dear jobs first within a priority, so that no long one is left to a single worker at the end; then by age.
+/// INDEXED BY: without it the planner prefers the index of all states and sorts every pending job, which makes each
+/// claim as slow as the queue is long.
+const TAKE: &str = "
+    UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = ?2, owner = ?1, lease_until_ms = ?3
     WHERE id IN (
-        SELECT j.id FROM jobs AS j INDEXED BY jobs_pending
-        WHERE j.state = 'pending'
-          AND (?1 IS NULL OR EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = ?1))
-        ORDER BY j.cost DESC, j.id
-        LIMIT ?3
+        SELECT id FROM jobs INDEXED BY jobs_pending_batch
+        WHERE state = 'pending' AND batch = ?5 ORDER BY priority DESC, cost DESC, id LIMIT ?4
     )
-    RETURNING id, key, payload, attempt, cost";
+    RETURNING id, key, payload, attempt, cost, priority, (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
+
+const TAKE_OF_STUDY: &str = "
+    UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = ?2, owner = ?1, lease_until_ms = ?3
+    WHERE id IN (
+        SELECT job_id FROM study_pending INDEXED BY study_pending_batch
+        WHERE study_id = ?6 AND batch = ?5 ORDER BY priority DESC, cost DESC, job_id LIMIT ?4
+    )
+    RETURNING id, key, payload, attempt, cost, priority, (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
+
+type Columns = (i64, String, String, u32, f64, i64, Option<Vec<u8>>);
+
+/// What all claims of a transaction have in common.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Lease {
+    pub owner: i64,
+    pub now_ms: i64,
+    pub until_ms: i64,
+}
 
 /// Marks the next jobs as running and returns them in the order of the claim.
 pub(super) async fn take(
     connection: &mut SqliteConnection,
     claim: &Claim,
-    now_ms: i64,
+    lease: Lease,
 ) -> Result<Vec<ClaimedJob>, QueueError> {
     let study_id = claim.scope.study_id(connection).await?;
     if claim.limit == 0 {
         return Ok(Vec::new());
     }
-    let mut rows: Vec<(i64, String, String, u32, f64)> = sqlx::query_as(CLAIM)
-        .bind(study_id)
-        .bind(now_ms)
+    let first = match (&claim.batch, study_id) {
+        (Some(batch), _) => Some(batch.clone()),
+        (None, None) => sqlx::query_scalar(FIRST).fetch_optional(&mut *connection).await?,
+        (None, Some(id)) => {
+            sqlx::query_scalar(FIRST_OF_STUDY).bind(id).fetch_optional(&mut *connection).await?
+        }
+    };
+    let Some(batch) = first else { return Ok(Vec::new()) };
+    let mut rows: Vec<Columns> = sqlx::query_as(if study_id.is_some() { TAKE_OF_STUDY } else { TAKE })
+        .bind(lease.owner)
+        .bind(lease.now_ms)
+        .bind(lease.until_ms)
         .bind(i64::try_from(claim.limit).unwrap_or(i64::MAX))
+        .bind(&batch)
+        .bind(study_id)
         .fetch_all(connection)
         .await?;
     // RETURNING promises no order.
-    rows.sort_by(|a, b| b.4.total_cmp(&a.4).then(a.0.cmp(&b.0)));
-    let jobs = rows.into_iter();
-    Ok(jobs.map(|(_, key, payload, attempt, cost)| ClaimedJob { key, payload, attempt, cost }).collect())
+    rows.sort_by(|a, b| b.5.cmp(&a.5).then(b.4.total_cmp(&a.4)).then(a.0.cmp(&b.0)));
+    let job = |(_, key, payload, attempt, cost, _, checkpoint): Columns| ClaimedJob {
+        key,
+        payload,
+        attempt,
+        cost,
+        batch: batch.clone(),
+        checkpoint,
+    };
+    Ok(rows.into_iter().map(job).collect())
 }

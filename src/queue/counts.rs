@@ -13,6 +13,8 @@ pub struct Counts {
     pub done: u64,
     /// Ended with an error.
     pub failed: u64,
+    /// Not wanted any more.
+    pub cancelled: u64,
 }
 
 /// The inner query comes first, so that the work follows the size of the study, not of the database.
@@ -25,7 +27,7 @@ const OF_STUDY: &str = "
 impl Counts {
     /// All jobs.
     pub fn total(&self) -> u64 {
-        self.pending + self.running + self.done + self.failed
+        self.pending + self.running + self.done + self.failed + self.cancelled
     }
 
     fn from_rows(rows: Vec<(String, i64)>) -> Self {
@@ -37,6 +39,7 @@ impl Counts {
                 JobState::Running => counts.running = count,
                 JobState::Done => counts.done = count,
                 JobState::Failed => counts.failed = count,
+                JobState::Cancelled => counts.cancelled = count,
             }
         }
         counts

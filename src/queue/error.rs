@@ -83,11 +83,36 @@ pub enum QueueError {
         mode: String,
     },
 
-    /// Another process holds the worker lock.
+    /// A process of an earlier version, which knows nothing of several workers, runs jobs.
     #[error(
-        "another `tribosweep work` or `tribosweep run` is working on {path}; wait for it to end, or stop it first"
+        "an older tribosweep is working on {path}, and its tables are to be brought up to date; \
+         wait for it to end, or stop it first"
     )]
-    AlreadyWorking {
+    OlderWorking {
+        /// The database file.
+        path: PathBuf,
+    },
+
+    /// The database cannot be brought up to date because it cannot be written.
+    #[error(
+        "{path} was written by an older tribosweep (schema {found}; this one needs {needed}) and cannot be written \
+         here; copy it to a folder that can be written"
+    )]
+    OlderDatabase {
+        /// The database file.
+        path: PathBuf,
+        /// Its schema version.
+        found: i64,
+        /// The version that this program reads.
+        needed: i64,
+    },
+
+    /// A log that is not folded in yet needs a file of shared memory to be read.
+    #[error(
+        "{path} has a write-ahead log, which cannot be read where nothing can be written; copy {path} and {path}-wal \
+         to a folder that can be written"
+    )]
+    UnreadableLog {
         /// The database file.
         path: PathBuf,
     },
@@ -137,9 +162,62 @@ pub enum QueueError {
         source: sqlx::migrate::MigrateError,
     },
 
-    /// Anything else `SQLite` reports: full disk, damaged file, a lock that another program keeps.
+    /// Somebody else holds a lock longer than the busy timeout.
+    #[error(
+        "the database is locked: another program holds a lock on it for longer than anything here takes. Close what \
+         has it open (an SQLite shell, a viewer, a backup); the same command then goes on, and nothing is lost"
+    )]
+    Locked(#[source] sqlx::Error),
+
+    /// There is no room.
+    #[error(
+        "the disk of the database is full; what was stored is kept. Make room and start the same command again"
+    )]
+    DiskFull(#[source] sqlx::Error),
+
+    /// The database may be read only.
+    #[error(
+        "the database cannot be written (its file or its folder is read-only, or belongs to somebody else); change \
+         that, or copy it and give the copy with --db"
+    )]
+    ReadOnly(#[source] sqlx::Error),
+
+    /// The file is not what `SQLite` wrote.
+    #[error(
+        "the database is damaged: {0}. Look at it with `tribosweep doctor`; what can still be read comes out of \
+         `sqlite3 FILE .recover`, and a backup is better"
+    )]
+    Damaged(#[source] sqlx::Error),
+
+    /// Anything else `SQLite` reports.
     #[error("the database reports: {0}")]
-    Database(#[from] sqlx::Error),
+    Database(#[source] sqlx::Error),
+}
+
+impl From<sqlx::Error> for QueueError {
+    fn from(source: sqlx::Error) -> Self {
+        match result_code(&source) {
+            Some(SQLITE_BUSY | SQLITE_LOCKED) => Self::Locked(source),
+            Some(SQLITE_READONLY) => Self::ReadOnly(source),
+            Some(SQLITE_CORRUPT | SQLITE_NOTADB) => Self::Damaged(source),
+            Some(SQLITE_FULL) => Self::DiskFull(source),
+            _ => Self::Database(source),
+        }
+    }
+}
+
+const SQLITE_BUSY: u32 = 5;
+const SQLITE_LOCKED: u32 = 6;
+const SQLITE_READONLY: u32 = 8;
+const SQLITE_CORRUPT: u32 = 11;
+const SQLITE_FULL: u32 = 13;
+/// A file with a wrong header.
+pub(super) const SQLITE_NOTADB: u32 = 26;
+
+/// `SQLite`'s primary result code; the extended one, which sqlx gives, has the details in its upper bits.
+pub(super) fn result_code(error: &sqlx::Error) -> Option<u32> {
+    let code = error.as_database_error()?.code()?;
+    code.parse::<u32>().ok().map(|extended| extended & 0xff)
 }
 
 fn existing(known: &[String]) -> String {

@@ -1,13 +1,11 @@
-use sqlx::Connection;
-
 use super::{Claim, ClaimedJob, Finished, Queue, QueueError, claim, finish};
 
 /// What an exchange gave back.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exchanged {
-    /// Jobs to run now, the dearest first.
-    pub claimed: Vec<ClaimedJob>,
-    /// Keys of finished jobs that were not stored, because the job is not running the attempt they name.
+    /// Jobs to run now, claim by claim, each the dearest first.
+    pub claimed: Vec<Vec<ClaimedJob>>,
+    /// Keys of finished jobs that were not stored, because this worker does not run the attempt they name.
     pub refused: Vec<String>,
 }
 
@@ -16,21 +14,35 @@ impl Queue {
     ///
     /// One transaction a turn, not one a job, is what makes thousands of jobs a second possible. Nothing
     /// claimed may start before this returns, and a job released here may be claimed again here: an
-    /// interrupted caller asks for [`Claim::nothing`].
+    /// interrupted caller claims nothing.
     ///
     /// # Errors
-    /// [`QueueError::UnknownStudy`] for the claim's scope, or if the database cannot be written; then
+    /// [`QueueError::UnknownStudy`] for a claim's scope, or if the database cannot be written; then
     /// nothing is stored or claimed, and `finished` is still the caller's to store.
-    pub async fn exchange(&mut self, finished: &[Finished], claim: &Claim) -> Result<Exchanged, QueueError> {
+    ///
+    /// # Panics
+    /// If no worker is registered.
+    pub async fn exchange(
+        &mut self,
+        finished: &[Finished],
+        claims: &[Claim],
+    ) -> Result<Exchanged, QueueError> {
         let now_ms = self.clock.now_ms();
-        let mut transaction = self.connection.begin_with("BEGIN IMMEDIATE").await?;
+        let lease =
+            claim::Lease { owner: self.registration().id, now_ms, until_ms: self.lease_until(now_ms) };
+        let provenance = self.registration().provenance.clone();
+        let mut transaction = self.write().await?;
         let mut refused = Vec::new();
         for job in finished {
-            if !finish::store(&mut transaction, job, now_ms).await? {
+            let fence = finish::Fence { key: &job.key, attempt: job.attempt, owner: lease.owner };
+            if !finish::store(&mut transaction, fence, job, &provenance, now_ms).await? {
                 refused.push(job.key.clone());
             }
         }
-        let claimed = claim::take(&mut transaction, claim, now_ms).await?;
+        let mut claimed = Vec::with_capacity(claims.len());
+        for claim in claims {
+            claimed.push(claim::take(&mut transaction, claim, lease).await?);
+        }
         transaction.commit().await?;
         Ok(Exchanged { claimed, refused })
     }

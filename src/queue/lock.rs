@@ -5,34 +5,17 @@ use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
 
 use super::QueueError;
-use super::open::resolve;
 
-/// The right to run the jobs of a database, held by one process at a time.
-#[derive(Debug)]
-pub struct WorkerLock {
-    database: PathBuf,
-    // Held for its lock, which ends when the file is closed.
-    _file: File,
-}
-
-impl WorkerLock {
-    /// Takes the lock of the database at `path`, without waiting.
-    ///
-    /// # Errors
-    /// [`QueueError::AlreadyWorking`] if another process holds it.
-    pub fn acquire(path: &Path) -> Result<Self, QueueError> {
-        let database = resolve(path)?;
-        let (lock_path, file) = open_beside(&database, ".worker")?;
-        match file.try_lock() {
-            Ok(()) => Ok(Self { database, _file: file }),
-            Err(TryLockError::WouldBlock) => Err(QueueError::AlreadyWorking { path: database }),
-            Err(TryLockError::Error(source)) => Err(QueueError::File { path: lock_path, source }),
-        }
-    }
-
-    /// The database whose jobs may be run.
-    pub(super) fn database(&self) -> &Path {
-        &self.database
+/// The lock that a process of the first schema held while it ran jobs; with it, none of them does.
+///
+/// # Errors
+/// [`QueueError::OlderWorking`] if one holds it.
+pub(super) fn former_worker_lock(database: &Path) -> Result<File, QueueError> {
+    let (path, file) = open_beside(database, ".worker")?;
+    match file.try_lock() {
+        Ok(()) => Ok(file),
+        Err(TryLockError::WouldBlock) => Err(QueueError::OlderWorking { path: database.into() }),
+        Err(TryLockError::Error(source)) => Err(QueueError::File { path, source }),
     }
 }
 
@@ -43,6 +26,11 @@ pub(super) async fn opening_lock(database: &Path) -> Result<File, QueueError> {
     // tasks of one runtime open the database.
     let locked = tokio::task::spawn_blocking(move || file.lock().map(|()| file)).await;
     locked.expect("locking a file does not panic").map_err(|source| QueueError::File { path, source })
+}
+
+/// Whether a lock file can be written beside the database.
+pub(super) fn can_be_taken(database: &Path) -> bool {
+    open_beside(database, ".lock").is_ok()
 }
 
 fn open_beside(database: &Path, suffix: &str) -> Result<(PathBuf, File), QueueError> {

@@ -3,17 +3,24 @@
 //! ```text
 //!            submit            exchange: claim             exchange: finish
 //!  NewStudy ───────► pending ──────────────────► running ──────────────────► done | failed
-//!                       ▲      attempt += 1         │
-//!                       └───────────────────────────┘
-//!                    Released (interruption), take_back (the process died)
+//!                    ▲  ▲ │    attempt += 1         │                               │
+//!                    │  │ │ cancel, remove          │                               │
+//!                    │  │ └──────────► cancelled    │                               │
+//!                    │  └──────────────────┘        │                               │
+//!                    │     submit, retry            │                             retry
+//!                    └──────────────────────────────┴───────────────────────────────┘
+//!         Released and Unstarted (interruption), take_back (the process died; too often: failed)
 //! ```
 //!
 //! * A **job** is identified by its key. Submitting a key that is there already adds nothing, so studies share
 //!   jobs and a repeated submission costs no simulation.
 //! * A **study** is identified by its name. It is a document and an ordered list of rows, each a set of
 //!   parameters that points to a job; two rows may point to the same one.
-//! * An **attempt** is one start of a job. Finishing names the attempt and counts only if the job is still
+//! * A **worker** is a process that runs jobs; there may be several. What it claims is its own, until it ends or is
+//!   gone (`take_back` says when that is).
+//! * An **attempt** is one start of a job. Finishing names the attempt and counts only if the same worker is still
 //!   running that very attempt: whoever lost a job cannot overwrite what came after.
+//! * Jobs of one **batch** can be run together; a claim takes jobs of one batch only.
 //!
 //! # Rules
 //! * Every transaction that writes starts with `BEGIN IMMEDIATE`. One that begins by reading cannot be
@@ -23,41 +30,58 @@
 //! * Reads are single statements. A transaction held open by a reader keeps the write-ahead log from being
 //!   folded back into the database, and it grows without limit.
 
+mod cancel;
+mod checkpoint;
 mod claim;
 mod clock;
 mod counts;
+mod doctor;
 mod error;
 mod exchange;
 mod filesystem;
 mod finish;
+mod garbage;
+mod heartbeat;
 mod lock;
 mod open;
+mod process;
+mod remove;
+mod retry;
 mod rows;
 mod schema;
 mod scope;
+mod settings;
 mod state;
 mod studies;
 mod submit;
 mod take_back;
 mod timings;
+mod worker;
 
+pub use cancel::Cancelled;
 pub use claim::{Claim, ClaimedJob};
 pub use clock::{Clock, SystemClock};
 pub use counts::Counts;
+pub use doctor::{Finding, examine};
 pub use error::QueueError;
 pub use exchange::Exchanged;
 pub use finish::{Finished, FinishedOutcome};
-pub use lock::WorkerLock;
+pub use garbage::Garbage;
+pub use remove::Removed;
+pub use retry::{Retried, Retry};
 pub use rows::StudyRow;
 pub use scope::Scope;
+pub use settings::Settings;
 pub use state::JobState;
 pub use studies::{StudyDocument, StudySummary};
 pub use submit::{NewJob, NewStudy, Submitted};
+pub use take_back::TakenBack;
+pub use worker::Worker;
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use sqlx::{Connection, SqliteConnection};
+use sqlx::{Connection, Sqlite, SqliteConnection, Transaction};
 
 /// One connection to the database of studies and jobs.
 #[derive(Debug)]
@@ -65,6 +89,9 @@ pub struct Queue {
     connection: SqliteConnection,
     clock: Arc<dyn Clock>,
     path: PathBuf,
+    settings: Settings,
+    /// The worker that owns what is claimed here.
+    registration: Option<worker::Registration>,
 }
 
 impl Queue {
@@ -81,5 +108,10 @@ impl Queue {
     /// If the database cannot be closed, e.g. on a full disk.
     pub async fn close(self) -> Result<(), QueueError> {
         Ok(self.connection.close().await?)
+    }
+
+    /// Begins a transaction that writes.
+    async fn write(&mut self) -> Result<Transaction<'_, Sqlite>, QueueError> {
+        Ok(self.connection.begin_with("BEGIN IMMEDIATE").await?)
     }
 }

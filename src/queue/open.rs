@@ -1,20 +1,16 @@
+use std::fs::OpenOptions;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
-use std::time::Duration;
 
 use sqlx::sqlite::{SqliteConnectOptions, SqliteSynchronous};
 use sqlx::{ConnectOptions, SqliteConnection};
 
-use super::{Clock, Queue, QueueError, filesystem, lock, schema};
-
-/// Far longer than any transaction here, so that only a lock somebody forgot ends in an error.
-const BUSY_TIMEOUT: Duration = Duration::from_secs(30);
+use super::error::{SQLITE_NOTADB, result_code};
+use super::{Clock, Queue, QueueError, Settings, filesystem, lock, schema};
 
 /// The oldest `SQLite` that does not lose data when two connections write and checkpoint a log at once.
 const OLDEST_SQLITE: [u32; 3] = [3, 51, 3];
-
-/// `SQLite`'s result code for a file with a wrong header.
-const SQLITE_NOTADB: &str = "26";
 
 impl Queue {
     /// Opens the database at `path`; creates it, but not its folder, if it is missing.
@@ -23,36 +19,99 @@ impl Queue {
     /// If the folder is missing, the path holds something else or a newer schema, or the file system or
     /// the `SQLite` library cannot be trusted with several writers.
     pub async fn open(path: &Path, clock: Arc<dyn Clock>) -> Result<Self, QueueError> {
+        Self::open_with(path, clock, Settings::default()).await
+    }
+
+    /// As [`Queue::open`], with settings other than the default.
+    ///
+    /// # Errors
+    /// As [`Queue::open`].
+    pub async fn open_with(
+        path: &Path,
+        clock: Arc<dyn Clock>,
+        settings: Settings,
+    ) -> Result<Self, QueueError> {
         let path = resolve(path)?;
-        let folder = path.parent().unwrap_or(Path::new("/"));
-        if let Some(kind) = filesystem::network_kind(folder) {
-            return Err(QueueError::NetworkFileSystem { path, kind });
-        }
-        if path.is_dir() {
-            return Err(QueueError::NotADatabase { path });
-        }
+        check_place(&path)?;
         // Creating the file, switching it to a write-ahead log and creating the tables all fail with
         // "database is locked" in one of two processes that do so at once; the busy timeout does not help.
         let opening = lock::opening_lock(&path).await?;
-        let mut connection = connect(&path).await?;
+        let mut connection = connect(&path, options(&path, settings).create_if_missing(true)).await?;
         check_library(&mut connection).await?;
         schema::check_ownership(&mut connection, &path).await?;
         use_write_ahead_log(&mut connection, &path).await?;
         schema::migrate(&mut connection, &path).await?;
+        sqlx::query("PRAGMA foreign_keys = ON").execute(&mut connection).await?;
         drop(opening);
-        Ok(Self { connection, clock, path })
+        Ok(Self { connection, clock, path, settings, registration: None })
     }
 
-    /// Opens the database at `path`, which must exist: for what only reads.
+    /// Opens the database at `path`, which must exist.
     ///
     /// # Errors
     /// [`QueueError::NoDatabase`] if there is none, otherwise as [`Queue::open`].
-    pub async fn open_existing(path: &Path, clock: Arc<dyn Clock>) -> Result<Self, QueueError> {
+    pub async fn open_existing(
+        path: &Path,
+        clock: Arc<dyn Clock>,
+        settings: Settings,
+    ) -> Result<Self, QueueError> {
         if !path.exists() {
             return Err(QueueError::NoDatabase { path: path.into() });
         }
-        Self::open(path, clock).await
+        Self::open_with(path, clock, settings).await
     }
+
+    /// Opens the database at `path`, which must exist, for what only reads: also where nothing can be written.
+    ///
+    /// # Errors
+    /// As [`Queue::open_existing`]; where nothing can be written, also if that would be needed to read.
+    pub async fn open_to_read(path: &Path, clock: Arc<dyn Clock>) -> Result<Self, QueueError> {
+        let settings = Settings::default();
+        if !path.exists() || is_writable(path) {
+            return Self::open_existing(path, clock, settings).await;
+        }
+        let path = resolve(path)?;
+        check_place(&path)?;
+        let beside = |suffix: &str| {
+            let mut name = path.as_os_str().to_owned();
+            name.push(suffix);
+            Path::new(&name).exists()
+        };
+        // Without a log nobody is writing, and SQLite need not look for one; it could not create the shared memory
+        // through which it would.
+        let has_log = beside("-wal");
+        if has_log && !beside("-shm") {
+            return Err(QueueError::UnreadableLog { path });
+        }
+        let mut connection =
+            connect(&path, options(&path, settings).read_only(true).immutable(!has_log)).await?;
+        check_library(&mut connection).await?;
+        schema::check_ownership(&mut connection, &path).await?;
+        schema::check_version(&mut connection, &path).await?;
+        Ok(Self { connection, clock, path, settings, registration: None })
+    }
+}
+
+fn check_place(path: &Path) -> Result<(), QueueError> {
+    let folder = path.parent().unwrap_or(Path::new("/"));
+    if let Some(kind) = filesystem::network_kind(folder) {
+        return Err(QueueError::NetworkFileSystem { path: path.into(), kind });
+    }
+    if path.is_dir() {
+        return Err(QueueError::NotADatabase { path: path.into() });
+    }
+    Ok(())
+}
+
+/// Whether the file can be written, and files beside it.
+pub(super) fn is_writable(path: &Path) -> bool {
+    let refused = |error: &std::io::Error| {
+        matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem)
+    };
+    let Ok(path) = resolve(path) else { return true };
+    let file = OpenOptions::new().write(true).open(&path);
+    // What is wrong otherwise is told by opening it.
+    !file.is_err_and(|error| refused(&error)) && lock::can_be_taken(&path)
 }
 
 /// The one true name of a database that may not exist yet: locks are files beside the database, and a
@@ -71,27 +130,27 @@ pub(super) fn resolve(path: &Path) -> Result<PathBuf, QueueError> {
     }
 }
 
-async fn connect(path: &Path) -> Result<SqliteConnection, QueueError> {
+fn options(path: &Path, settings: Settings) -> SqliteConnectOptions {
     SqliteConnectOptions::new()
         .filename(path)
-        .create_if_missing(true)
-        .busy_timeout(BUSY_TIMEOUT)
-        .foreign_keys(true)
+        .busy_timeout(settings.busy_timeout)
         // In a write-ahead log this can lose the last transactions in a power cut, never the database; what
         // is lost is simulated again.
         .synchronous(SqliteSynchronous::Normal)
-        .connect()
-        .await
-        .map_err(|source| open_error(path, source))
+}
+
+async fn connect(path: &Path, options: SqliteConnectOptions) -> Result<SqliteConnection, QueueError> {
+    options.connect().await.map_err(|source| open_error(path, source))
 }
 
 /// Reading a file that is not a database fails wherever `SQLite` first looks at it.
 pub(super) fn open_error(path: &Path, source: sqlx::Error) -> QueueError {
-    let code = source.as_database_error().and_then(sqlx::error::DatabaseError::code);
-    if code.as_deref() == Some(SQLITE_NOTADB) {
-        QueueError::NotADatabase { path: path.into() }
-    } else {
-        QueueError::Open { path: path.into(), source }
+    if result_code(&source) == Some(SQLITE_NOTADB) {
+        return QueueError::NotADatabase { path: path.into() };
+    }
+    match QueueError::from(source) {
+        QueueError::Database(source) => QueueError::Open { path: path.into(), source },
+        known => known,
     }
 }
 

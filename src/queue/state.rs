@@ -9,6 +9,8 @@ pub enum JobState {
     Done,
     /// Ended with an error.
     Failed,
+    /// Not wanted any more by any study.
+    Cancelled,
 }
 
 impl JobState {
@@ -19,6 +21,7 @@ impl JobState {
             Self::Running => "running",
             Self::Done => "done",
             Self::Failed => "failed",
+            Self::Cancelled => "cancelled",
         }
     }
 
@@ -28,6 +31,7 @@ impl JobState {
             "running" => Self::Running,
             "done" => Self::Done,
             "failed" => Self::Failed,
+            "cancelled" => Self::Cancelled,
             other => unreachable!("the table's CHECK admits no state `{other}`"),
         }
     }

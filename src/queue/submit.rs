@@ -1,7 +1,7 @@
 use std::collections::HashSet;
 
 use serde::Serialize;
-use sqlx::{Connection, SqliteConnection};
+use sqlx::SqliteConnection;
 
 use super::{Queue, QueueError, counts, studies};
 
@@ -27,6 +27,11 @@ pub struct NewJob {
     pub parameters: String,
     /// Expected effort, in any unit; dearer jobs are claimed first.
     pub cost: f64,
+    /// Names what the job can be run together with; may be empty.
+    pub batch: String,
+    /// Jobs of a higher priority are claimed first, whatever they cost. `None` leaves a known job's as it is; that of
+    /// a new one is 0.
+    pub priority: Option<i64>,
 }
 
 /// What a submission changed.
@@ -46,6 +51,8 @@ pub struct Submitted {
     pub already_done: u64,
     /// Jobs that were there and have failed.
     pub already_failed: u64,
+    /// Pending jobs of the replaced study that nobody asks for any more, which are cancelled.
+    pub cancelled: u64,
 }
 
 /// Rows bound as one JSON text insert twice as fast as row by row; the text of a million jobs would pass
@@ -54,15 +61,37 @@ const CHUNK: usize = 10_000;
 
 const UPSERT_STUDY: &str = "
     INSERT INTO studies (name, document, submitted_ms) VALUES (?1, ?2, ?3)
-    ON CONFLICT (name) DO UPDATE SET document = excluded.document, submitted_ms = excluded.submitted_ms
+    ON CONFLICT (name) DO UPDATE
+    SET document = excluded.document, submitted_ms = excluded.submitted_ms, cancelled_ms = NULL
     RETURNING id";
 
 /// Array elements come in their order, so that a job's number follows its place in the study.
 /// (`WHERE true` keeps the parser from reading ON CONFLICT as a join's ON.)
+///
+/// What can be run together is the program's to say, and another version may say it differently.
 const INSERT_JOBS: &str = "
-    INSERT INTO jobs (key, payload, cost, created_ms)
-    SELECT e.value ->> 0, e.value ->> 1, e.value ->> 2, ?2 FROM json_each(?1) AS e WHERE true
-    ON CONFLICT (key) DO NOTHING";
+    INSERT INTO jobs (key, payload, cost, batch, priority, created_ms)
+    SELECT e.value ->> 0, e.value ->> 1, e.value ->> 2, e.value ->> 3, COALESCE(e.value ->> 4, 0), ?2
+    FROM json_each(?1) AS e WHERE true
+    ON CONFLICT (key) DO UPDATE SET batch = excluded.batch WHERE batch <> excluded.batch";
+
+/// As above, the key is looked up for each row.
+const SET_PRIORITY: &str = "
+    UPDATE jobs SET priority = e.value ->> 4
+    FROM json_each(?1) AS e
+    WHERE jobs.key = e.value ->> 0 AND e.value ->> 4 IS NOT NULL AND jobs.priority <> e.value ->> 4";
+
+/// Who submits a job asks for it, whoever cancelled it before.
+const ASK_AGAIN: &str = "
+    UPDATE jobs SET state = 'pending', note = NULL
+    WHERE state = 'cancelled' AND id IN (SELECT job_id FROM study_jobs WHERE study_id = ?1)";
+
+/// What only the replaced document asked for.
+const CANCEL_UNASKED: &str = "
+    UPDATE jobs SET state = 'cancelled', note = ?1
+    WHERE state = 'pending' AND NOT EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = jobs.id)";
+
+const NOTE: &str = "cancelled: its study was replaced by one without it";
 
 /// CROSS JOIN keeps the order of the loops: a key is looked up for each row, not the rows for each job.
 const INSERT_ROWS: &str = "
@@ -73,8 +102,9 @@ const INSERT_ROWS: &str = "
 impl Queue {
     /// Adds a study, or replaces the document and rows of the one with its name.
     ///
-    /// Jobs that are there already keep their state and result. Jobs that no study refers to any more stay
-    /// too: their results are paid for, and the next edit may ask for them again.
+    /// Jobs that are there already keep their result; those that were cancelled are pending again. Jobs that no study
+    /// refers to any more stay too: their results are paid for, and the next edit may ask for them again. Those of
+    /// them that have not begun are cancelled.
     ///
     /// # Errors
     /// [`QueueError::BadCost`], or if the database cannot be written; then nothing has changed.
@@ -84,7 +114,7 @@ impl Queue {
             return Err(QueueError::BadCost { key: job.key.clone(), cost: job.cost });
         }
         let now_ms = self.clock.now_ms();
-        let mut transaction = self.connection.begin_with("BEGIN IMMEDIATE").await?;
+        let mut transaction = self.write().await?;
         let replaced = studies::find(&mut transaction, &study.name).await?.is_some();
         let study_id: i64 = sqlx::query_scalar(UPSERT_STUDY)
             .bind(&study.name)
@@ -96,11 +126,18 @@ impl Queue {
             .bind(study_id)
             .execute(&mut *transaction)
             .await?;
-        let mut added = 0;
+        let before = count_jobs(&mut transaction).await?;
         for (first_ordinal, chunk) in (0_i64..).step_by(CHUNK).zip(study.jobs.chunks(CHUNK)) {
-            added += insert_jobs(&mut transaction, chunk, now_ms).await?;
+            insert_jobs(&mut transaction, chunk, now_ms).await?;
             insert_rows(&mut transaction, study_id, first_ordinal, chunk).await?;
         }
+        let added = count_jobs(&mut transaction).await? - before;
+        sqlx::query(ASK_AGAIN).bind(study_id).execute(&mut *transaction).await?;
+        let cancelled = if replaced {
+            sqlx::query(CANCEL_UNASKED).bind(NOTE).execute(&mut *transaction).await?.rows_affected()
+        } else {
+            0
+        };
         let counts = counts::of_study(&mut transaction, study_id).await?;
         transaction.commit().await?;
 
@@ -113,18 +150,29 @@ impl Queue {
             already_known: jobs - added,
             already_done: counts.done,
             already_failed: counts.failed,
+            cancelled,
         })
     }
+}
+
+async fn count_jobs(connection: &mut SqliteConnection) -> Result<u64, QueueError> {
+    let count: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM jobs").fetch_one(connection).await?;
+    Ok(count.unsigned_abs())
 }
 
 async fn insert_jobs(
     connection: &mut SqliteConnection,
     jobs: &[NewJob],
     now_ms: i64,
-) -> Result<u64, QueueError> {
-    let rows: Vec<_> = jobs.iter().map(|job| (&job.key, &job.payload, job.cost)).collect();
-    let inserted = sqlx::query(INSERT_JOBS).bind(json(&rows)).bind(now_ms).execute(connection).await?;
-    Ok(inserted.rows_affected())
+) -> Result<(), QueueError> {
+    let rows: Vec<_> =
+        jobs.iter().map(|job| (&job.key, &job.payload, job.cost, &job.batch, job.priority)).collect();
+    let rows = json(&rows);
+    sqlx::query(INSERT_JOBS).bind(&rows).bind(now_ms).execute(&mut *connection).await?;
+    if jobs.iter().any(|job| job.priority.is_some()) {
+        sqlx::query(SET_PRIORITY).bind(&rows).execute(connection).await?;
+    }
+    Ok(())
 }
 
 async fn insert_rows(

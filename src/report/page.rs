@@ -118,7 +118,10 @@ fn not_periodic(row: &Row) -> Option<String> {
 }
 
 fn missing(rows: &[Row]) -> String {
-    let waiting = || rows.iter().filter(|row| matches!(row.state, RowState::Pending | RowState::Running));
+    let waiting = || {
+        rows.iter()
+            .filter(|row| matches!(row.state, RowState::Pending | RowState::Running | RowState::Cancelled))
+    };
     let total = waiting().count();
     let mut entries: Vec<String> =
         waiting().take(MISSING_NAMED).map(|row| entry(row, row.status())).collect();

@@ -68,6 +68,8 @@ pub enum RowState {
     Pending,
     /// It runs.
     Running,
+    /// It is not wanted any more.
+    Cancelled,
     /// It ended without a result.
     Failed {
         /// The reason.
@@ -78,11 +80,12 @@ pub enum RowState {
 }
 
 impl Row {
-    /// The name of the job's state in CSV: `pending`, `running`, `failed` or the outcome of its run.
+    /// The name of the job's state in CSV: `pending`, `running`, `cancelled`, `failed` or the outcome of its run.
     pub fn status(&self) -> &'static str {
         match &self.state {
             RowState::Pending => "pending",
             RowState::Running => "running",
+            RowState::Cancelled => "cancelled",
             RowState::Failed { .. } => "failed",
             RowState::Done(record) => record.outcome.name(),
         }

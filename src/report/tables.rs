@@ -62,7 +62,7 @@ impl Quantity {
 
     fn cell(self, row: &Row) -> String {
         match &row.state {
-            RowState::Pending | RowState::Running => MISSING.to_owned(),
+            RowState::Pending | RowState::Running | RowState::Cancelled => MISSING.to_owned(),
             RowState::Failed { .. } => "failed".to_owned(),
             RowState::Done(record) => self.result(record),
         }

@@ -2,16 +2,22 @@
 
 use super::eta::Eta;
 use super::executor::{Executor, JobClock};
+use super::heartbeat::Heartbeat;
 use super::interrupt::Interrupt;
 use super::progress::{Progress, RunningJob, Snapshot};
-use crate::queue::{Claim, Counts, Finished, FinishedOutcome, Queue, QueueError, Scope, WorkerLock};
+use super::provenance;
+use super::tally::Tally;
+use crate::queue::{
+    Claim, Counts, Exchanged, Finished, FinishedOutcome, Queue, QueueError, Scope, TakenBack,
+};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 use thiserror::Error;
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
-/// How often progress is shown when nothing finishes.
+/// How often progress is shown when nothing finishes, and other workers' jobs are looked at when there is nothing
+/// else to do.
 const TICK: Duration = Duration::from_millis(250);
 
 /// What a worker left behind.
@@ -19,8 +25,8 @@ const TICK: Duration = Duration::from_millis(250);
 pub struct WorkSummary {
     /// Jobs of the scope in each state.
     pub counts: Counts,
-    /// Jobs that an earlier, interrupted process had left running.
-    pub taken_back: u64,
+    /// Jobs that other processes had left running when they died.
+    pub taken_back: TakenBack,
     /// Whether it was asked to stop.
     pub interrupted: bool,
 }
@@ -38,10 +44,11 @@ pub enum WorkError {
 
 /// Works through the pending jobs of `scope` on `threads` until none is left or `interrupt` is raised.
 ///
+/// Other processes may work on the same database. Their running jobs are waited for, and done here if they die.
 /// Interrupted jobs go back to the queue.
 ///
 /// # Errors
-/// If another process works on this database, the database fails, or threads cannot be started.
+/// If the database fails, or threads cannot be started.
 pub async fn work(
     queue: &mut Queue,
     scope: &Scope,
@@ -49,13 +56,15 @@ pub async fn work(
     interrupt: &Interrupt,
     progress: &mut impl Progress,
 ) -> Result<WorkSummary, WorkError> {
-    let lock = WorkerLock::acquire(queue.path())?;
-    let taken_back = queue.take_back(&lock).await?;
+    let left = queue.counts(scope).await?;
     // No more threads than jobs to run on them.
-    let pending = usize::try_from(queue.counts(scope).await?.pending).unwrap_or(usize::MAX);
-    let threads = threads.min(pending.max(1));
+    let jobs = usize::try_from(left.pending + left.running).unwrap_or(usize::MAX);
+    let threads = threads.min(jobs.max(1));
     let (results, finished) = unbounded_channel();
     let executor = Executor::new(threads, results, interrupt.clone())?;
+    queue.register(&provenance::worker(threads)).await?;
+    let taken_back = queue.take_back().await?;
+    let tally = Tally::new(queue, scope).await?;
     let mut dispatcher = Dispatcher {
         queue,
         scope,
@@ -65,11 +74,19 @@ pub async fn work(
         finished,
         running: BTreeMap::new(),
         timings: Vec::new(),
+        heartbeat: Heartbeat::new(),
+        taken_back,
+        tally,
     };
-    dispatcher.run(progress).await?;
-    let snapshot = dispatcher.snapshot().await?;
+    let worked = dispatcher.run(progress).await;
+    // After an error too, as far as it goes: what is given back did not crash. The first error is the one to report.
+    let unregistered = dispatcher.queue.unregister().await;
+    worked.and(unregistered)?;
+    dispatcher.tally.ask(dispatcher.queue, scope).await?;
+    let snapshot = dispatcher.snapshot();
     progress.stopped(&snapshot);
-    Ok(WorkSummary { counts: snapshot.counts, taken_back, interrupted: interrupt.is_raised() })
+    let (counts, taken_back) = (snapshot.counts, dispatcher.taken_back);
+    Ok(WorkSummary { counts, taken_back, interrupted: interrupt.is_raised() })
 }
 
 struct Dispatcher<'a> {
@@ -83,55 +100,127 @@ struct Dispatcher<'a> {
     running: BTreeMap<String, (f64, Arc<JobClock>)>,
     /// (cost, seconds) of what this worker has finished.
     timings: Vec<(f64, f64)>,
+    heartbeat: Heartbeat,
+    taken_back: TakenBack,
+    tally: Tally,
 }
 
 impl Dispatcher<'_> {
     async fn run(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
         let mut done = Vec::new();
         loop {
-            let limit = if self.interrupt.is_raised() { 0 } else { self.threads - self.running.len() };
-            let claim = Claim { scope: self.scope.clone(), limit };
-            let exchanged = self.queue.exchange(&done, &claim).await?;
+            let exchanged = self.exchange(&done, progress).await?;
+            self.settle(&done, &exchanged.refused, progress);
             done.clear();
-            for job in exchanged.claimed {
+            let claimed: Vec<_> = exchanged.claimed.into_iter().flatten().collect();
+            self.tally.claimed(claimed.len() as u64);
+            for job in claimed {
                 let (key, cost) = (job.key.clone(), job.cost);
                 self.running.insert(key, (cost, self.executor.start(job)));
             }
-            if self.running.is_empty() {
-                return Ok(());
-            }
-            progress.update(&self.snapshot().await?);
-            while done.is_empty() {
+            self.tally.refresh(self.queue, self.scope).await?;
+            progress.update(&self.snapshot());
+            loop {
+                let counts = self.tally.counts;
+                let is_over = self.interrupt.is_raised() || counts.pending + counts.running == 0;
+                if self.running.is_empty() && is_over {
+                    return Ok(());
+                }
                 // Only the channel is awaited under the timeout; the database never is.
                 match tokio::time::timeout(TICK, self.finished.recv()).await {
                     Ok(Some(job)) => done.push(job),
                     Ok(None) => unreachable!("the executor holds a sender"),
-                    Err(_) => progress.update(&self.snapshot().await?),
+                    Err(_) => self.tick(progress).await?,
                 }
-            }
-            while let Ok(job) = self.finished.try_recv() {
-                done.push(job);
-            }
-            for job in &done {
-                let cost = self.running.remove(&job.key).map_or(0.0, |(cost, _)| cost);
-                match &job.outcome {
-                    FinishedOutcome::Done { .. } => self.timings.push((cost, job.wall_s)),
-                    FinishedOutcome::Failed { error } => progress.failed(&job.key, error),
-                    FinishedOutcome::Released => {}
+                while let Ok(job) = self.finished.try_recv() {
+                    done.push(job);
+                }
+                // Others may have given back what a thread here is free for.
+                let is_free = self.running.len() < self.threads && self.tally.counts.pending > 0;
+                if !done.is_empty() || (is_free && !self.interrupt.is_raised()) {
+                    break;
                 }
             }
         }
     }
 
-    async fn snapshot(&mut self) -> Result<Snapshot, QueueError> {
-        let counts = self.queue.counts(self.scope).await?;
-        let remaining_cost = self.queue.remaining_cost(self.scope).await?;
+    /// Stores what is done and claims for the free threads. While the database is locked, running jobs go on.
+    async fn exchange(
+        &mut self,
+        done: &[Finished],
+        progress: &mut impl Progress,
+    ) -> Result<Exchanged, QueueError> {
+        loop {
+            let free = self.threads - (self.running.len() - done.len());
+            let limit = if self.interrupt.is_raised() { 0 } else { free };
+            // A claim takes jobs of one batch; here every job runs on its own.
+            let claims = vec![Claim { scope: self.scope.clone(), limit: 1, batch: None }; limit];
+            self.keep_alive().await?;
+            match self.queue.exchange(done, &claims).await {
+                Err(error @ QueueError::Locked(_)) if !self.interrupt.is_raised() => {
+                    progress.waiting(&error.to_string());
+                }
+                exchanged => return exchanged,
+            }
+        }
+    }
+
+    /// What a quarter of a second without news brings.
+    async fn tick(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
+        self.keep_alive().await?;
+        self.tally.refresh(self.queue, self.scope).await?;
+        progress.update(&self.snapshot());
+        Ok(())
+    }
+
+    /// Extends the leases of what runs here and takes back what runs nowhere.
+    async fn keep_alive(&mut self) -> Result<(), QueueError> {
+        let is_waiting = self.running.is_empty() && self.tally.counts.pending == 0;
+        let is_due = self.heartbeat.is_due();
+        if !is_due && !is_waiting {
+            return Ok(());
+        }
+        match self.beat(is_due).await {
+            // A lease outlasts several heartbeats.
+            Err(QueueError::Locked(_)) => Ok(()),
+            done => done,
+        }
+    }
+
+    async fn beat(&mut self, is_due: bool) -> Result<(), QueueError> {
+        if is_due {
+            self.queue.heartbeat().await?;
+        }
+        let taken = self.queue.take_back().await?;
+        self.taken_back.pending += taken.pending;
+        self.taken_back.failed += taken.failed;
+        Ok(())
+    }
+
+    fn settle(&mut self, done: &[Finished], refused: &[String], progress: &mut impl Progress) {
+        for job in done {
+            let cost = self.running.remove(&job.key).map_or(0.0, |(cost, _)| cost);
+            if refused.contains(&job.key) {
+                // Another worker has it, and counts it.
+                continue;
+            }
+            self.tally.ended(&job.outcome, cost);
+            match &job.outcome {
+                FinishedOutcome::Done { .. } => self.timings.push((cost, job.wall_s)),
+                FinishedOutcome::Failed { error } => progress.failed(&job.key, error),
+                FinishedOutcome::Released | FinishedOutcome::Unstarted => {}
+            }
+        }
+    }
+
+    fn snapshot(&self) -> Snapshot {
+        let Tally { counts, remaining_cost, .. } = self.tally;
         let eta = Eta::estimate(&self.timings, remaining_cost, counts.pending + counts.running, self.threads);
         let running = self
             .running
             .iter()
             .map(|(key, (_, clock))| RunningJob { key: key.clone(), simulated_s: clock.simulated_s() })
             .collect();
-        Ok(Snapshot { counts, running, eta })
+        Snapshot { counts, running, eta }
     }
 }

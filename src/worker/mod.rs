@@ -14,8 +14,11 @@
 mod dispatcher;
 mod eta;
 mod executor;
+mod heartbeat;
 mod interrupt;
 mod progress;
+mod provenance;
+mod tally;
 
 pub use dispatcher::{WorkError, WorkSummary, work};
 pub use eta::Eta;

@@ -31,6 +31,11 @@ pub trait Progress {
     /// Called when a job failed.
     fn failed(&mut self, key: &str, error: &str);
 
+    /// Called when the database keeps the worker waiting.
+    fn waiting(&mut self, reason: &str) {
+        let _ = reason;
+    }
+
     /// Called once, when the worker stops.
     fn stopped(&mut self, snapshot: &Snapshot);
 }

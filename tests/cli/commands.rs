@@ -24,7 +24,7 @@ fn status_counts_jobs() {
          second  1 jobs: 0 done, 0 failed, 0 running, 1 pending\n"
     );
     let all: Value = serde_json::from_str(&folder.ok("status --json")).unwrap();
-    let jobs = |total, done, pending| json!({ "total": total, "done": done, "failed": 0, "running": 0, "pending": pending });
+    let jobs = |total, done, pending| json!({ "total": total, "done": done, "failed": 0, "running": 0, "pending": pending, "cancelled": 0 });
     assert_eq!(
         all,
         json!([{ "study": "first", "jobs": jobs(2, 2, 0) }, { "study": "second", "jobs": jobs(1, 0, 1) }])
@@ -164,6 +164,11 @@ fn completions_name_every_command() {
         "report",
         "pareto",
         "export",
+        "retry",
+        "cancel",
+        "rm",
+        "gc",
+        "doctor",
         "solve",
         "validate",
         "presets",

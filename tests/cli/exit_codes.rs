@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde_json::{Value, json};
 use tribosweep::queue::{NewJob, NewStudy, Queue, SystemClock};
 
-use crate::support::{Folder, long, rows, small, stderr, stdout};
+use crate::support::{Folder, rows, small, stderr, stdout};
 
 /// The command must end with code 2, print no result and say each of `expected`.
 fn refuses(folder: &Folder, arguments: &str, expected: &[&str]) {
@@ -174,23 +174,6 @@ fn settings_of_a_single_job() {
     );
 }
 
-/// Protects: two workers never share a database; the second says so and takes nothing away.
-#[cfg(unix)]
-#[test]
-fn a_second_worker() {
-    let folder = Folder::with("busy", &long());
-    folder.add("mine", &small(&json!({ "mu": [0.2] })));
-    let first = folder.start("run busy.json --threads 1");
-    folder.wait_for("busy", |counts| counts["running"] > 0);
-    refuses(&folder, "work", &["another `tribosweep work` or `tribosweep run` is working on"]);
-    refuses(&folder, "run mine.json", &["another `tribosweep work`"]);
-    // Planning beside a worker is fine, and so is looking.
-    folder.ok("submit mine.json");
-    assert_eq!(folder.counts("busy")["running"], 1);
-    first.signal("INT");
-    assert_eq!(first.end().0, Some(3));
-}
-
 /// Protects: jobs that diverge fail, the others do not, and everybody is told: code 1 now and again, the
 /// status, the export, the report.
 #[test]
@@ -253,6 +236,8 @@ fn an_unreadable_job() {
         payload: "no job".into(),
         parameters: r#"{"omega_rpm":7.0,"mu":0.4,"grid":[]}"#.into(),
         cost: 1.0,
+        batch: String::new(),
+        priority: None,
     };
     let study = NewStudy { name: "spoilt".into(), document: String::new(), jobs: vec![job] };
     tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap().block_on(async {

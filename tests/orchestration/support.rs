@@ -9,7 +9,8 @@ use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, SqliteConnection};
 use tempfile::TempDir;
 use tribosweep::queue::{
-    Claim, ClaimedJob, Clock, Counts, Finished, FinishedOutcome, NewJob, NewStudy, Queue, Scope,
+    Claim, ClaimedJob, Clock, Counts, Exchanged, Finished, FinishedOutcome, NewJob, NewStudy, Queue, Scope,
+    Settings, Worker,
 };
 
 /// Runs a future on a runtime of its own, for tests that need several threads.
@@ -47,8 +48,23 @@ impl Sandbox {
         self.folder.path().join("sweep.db")
     }
 
+    /// A queue of a worker that is alive: this process.
     pub async fn open(&self) -> Queue {
-        Queue::open(&self.database(), self.clock.clone()).await.unwrap()
+        self.open_as(&Worker::this_process(1, "test", "provenance")).await
+    }
+
+    /// A queue of that worker.
+    pub async fn open_as(&self, worker: &Worker) -> Queue {
+        let mut queue = Queue::open(&self.database(), self.clock.clone()).await.unwrap();
+        queue.register(worker).await.unwrap();
+        queue
+    }
+
+    /// As [`Self::open`], with settings.
+    pub async fn open_with(&self, settings: Settings) -> Queue {
+        let mut queue = Queue::open_with(&self.database(), self.clock.clone(), settings).await.unwrap();
+        queue.register(&Worker::this_process(1, "test", "provenance")).await.unwrap();
+        queue
     }
 
     /// A connection past the queue, to look at the tables or to spoil them.
@@ -64,6 +80,8 @@ pub fn job(key: &str, cost: f64) -> NewJob {
         payload: format!("payload of {key}"),
         parameters: format!("parameters of {key}"),
         cost,
+        batch: String::new(),
+        priority: None,
     }
 }
 
@@ -81,18 +99,38 @@ pub fn of(name: &str) -> Scope {
 }
 
 pub fn counts(pending: u64, running: u64, done: u64, failed: u64) -> Counts {
-    Counts { pending, running, done, failed }
+    Counts { pending, running, done, failed, cancelled: 0 }
 }
 
 /// Claims without finishing anything.
 pub async fn claim(queue: &mut Queue, scope: Scope, limit: usize) -> Vec<ClaimedJob> {
-    queue.exchange(&[], &Claim { scope, limit }).await.unwrap().claimed
+    let claim = Claim { scope, limit, batch: None };
+    queue.exchange(&[], &[claim]).await.unwrap().claimed.remove(0)
 }
 
 /// Finishes one job without claiming; whether that was accepted.
 pub async fn finish(queue: &mut Queue, key: &str, attempt: u32, outcome: FinishedOutcome) -> bool {
     let finished = Finished { key: key.into(), attempt, outcome, wall_s: 2.5 };
-    queue.exchange(&[finished], &Claim::nothing()).await.unwrap().refused.is_empty()
+    store(queue, finished).await.refused.is_empty()
+}
+
+/// Stores one end without claiming.
+pub async fn store(queue: &mut Queue, finished: Finished) -> Exchanged {
+    queue.exchange(&[finished], &[]).await.unwrap()
+}
+
+/// A worker on this machine whose process has ended.
+pub fn dead_worker() -> Worker {
+    let mut child = std::process::Command::new("true").spawn().unwrap();
+    let worker =
+        Worker { pid: child.id(), process_start: Some(1), ..Worker::this_process(1, "test", "provenance") };
+    child.wait().unwrap();
+    worker
+}
+
+/// A worker of which nothing is known here.
+pub fn foreign_worker() -> Worker {
+    Worker { host: "elsewhere".into(), ..Worker::this_process(1, "test", "provenance") }
 }
 
 pub fn done(record: &str) -> FinishedOutcome {

@@ -23,7 +23,14 @@ fn spec(mu: f64, limit_s: f64) -> JobSpec {
 }
 
 fn job(key: &str, payload: &str) -> NewJob {
-    NewJob { key: key.into(), payload: payload.into(), parameters: "{}".into(), cost: 1.0 }
+    NewJob {
+        key: key.into(),
+        payload: payload.into(),
+        parameters: "{}".into(),
+        cost: 1.0,
+        batch: String::new(),
+        priority: None,
+    }
 }
 
 fn solvable(key: &str, spec: &JobSpec) -> NewJob {

@@ -65,7 +65,9 @@ impl<'a> Case<'a> {
             reference,
             scores,
             early,
-            waiting: count(|state| matches!(state, RowState::Pending | RowState::Running)),
+            waiting: count(|state| {
+                matches!(state, RowState::Pending | RowState::Running | RowState::Cancelled)
+            }),
             failed: count(|state| matches!(state, RowState::Failed { .. })),
             jobs,
         }

@@ -64,7 +64,7 @@ fn every_job_is_claimed_exactly_once() {
             let end = |key| Finished { key, attempt: 1, outcome: done("r"), wall_s: 0.1 };
             mine.extend(claimed.iter().map(|job| job.key.clone()));
             let finished: Vec<_> = claimed.into_iter().map(|job| end(job.key)).collect();
-            let exchanged = queue.exchange(&finished, &Claim::nothing()).await.unwrap();
+            let exchanged = queue.exchange(&finished, &[]).await.unwrap();
             assert!(exchanged.refused.is_empty(), "{:?}", exchanged.refused);
         }
     };
@@ -116,7 +116,7 @@ async fn a_refused_finish_stops_no_other() {
     claim(&mut queue, Scope::All, 2).await;
     let end = |key: &str, attempt| Finished { key: key.into(), attempt, outcome: done("r"), wall_s: 0.1 };
     let batch = [end("x", 7), end("nobody's", 1), end("y", 1)];
-    let exchanged = queue.exchange(&batch, &Claim::nothing()).await.unwrap();
+    let exchanged = queue.exchange(&batch, &[]).await.unwrap();
     assert_eq!(exchanged.refused, ["x", "nobody's"]);
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(0, 1, 1, 0));
 }
@@ -129,8 +129,9 @@ async fn a_failure_is_kept_and_the_sweep_goes_on() {
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
     let error = Finished { key: "x".into(), attempt: 1, outcome: failed("diverged at 3 ms"), wall_s: 0.5 };
-    let exchanged = queue.exchange(&[error], &Claim { scope: of("a"), limit: 9 }).await.unwrap();
-    assert_eq!(keys(&exchanged.claimed), ["y"]);
+    let exchanged =
+        queue.exchange(&[error], &[Claim { scope: of("a"), limit: 9, batch: None }]).await.unwrap();
+    assert_eq!(keys(&exchanged.claimed[0]), ["y"]);
     assert_eq!(queue.counts(&of("a")).await.unwrap(), counts(0, 1, 0, 1));
     let row = queue.rows("a").await.unwrap().remove(0);
     assert_eq!(row.state, JobState::Failed);
@@ -145,7 +146,7 @@ async fn an_exchange_is_all_or_nothing() {
     queue.submit(&study("a", &["x"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
     let end = Finished { key: "x".into(), attempt: 1, outcome: done("r"), wall_s: 0.1 };
-    let error = queue.exchange(&[end], &Claim { scope: of("b"), limit: 1 }).await.unwrap_err();
+    let error = queue.exchange(&[end], &[Claim { scope: of("b"), limit: 1, batch: None }]).await.unwrap_err();
     assert!(matches!(error, QueueError::UnknownStudy { .. }), "{error:?}");
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(0, 1, 0, 0));
     assert!(finish(&mut queue, "x", 1, done("r")).await);

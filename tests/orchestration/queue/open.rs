@@ -22,7 +22,7 @@ async fn a_new_database_is_created_and_kept() {
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     queue.close().await.unwrap();
 
-    let mut again = Queue::open_existing(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    let mut again = Queue::open_to_read(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
     assert_eq!(again.counts(&of("a")).await.unwrap(), counts(2, 0, 0, 0));
     assert_eq!(again.path(), sandbox.database().canonicalize().unwrap());
     let mode: String =
@@ -35,7 +35,7 @@ async fn a_new_database_is_created_and_kept() {
 #[tokio::test]
 async fn reading_creates_nothing() {
     let sandbox = Sandbox::new();
-    let error = Queue::open_existing(&sandbox.database(), sandbox.clock.clone()).await.unwrap_err();
+    let error = Queue::open_to_read(&sandbox.database(), sandbox.clock.clone()).await.unwrap_err();
     assert!(matches!(error, QueueError::NoDatabase { .. }), "{error:?}");
     assert!(error.to_string().contains("sweep.db; submit a study first with `tribosweep submit STUDY`"));
     assert_eq!(fs::read_dir(sandbox.folder.path()).unwrap().count(), 0);
@@ -87,10 +87,13 @@ async fn an_interrupted_creation_is_completed() {
     let mut raw = sandbox.raw().await;
     for statement in [
         "PRAGMA application_id = 0",
+        "DROP TABLE checkpoints",
+        "DROP TABLE study_pending",
         "DROP TABLE results",
         "DROP TABLE study_jobs",
         "DROP TABLE jobs",
         "DROP TABLE studies",
+        "DROP TABLE workers",
         "DELETE FROM _sqlx_migrations",
     ] {
         sqlx::query(statement).execute(&mut raw).await.unwrap();
@@ -114,7 +117,7 @@ async fn a_newer_database_is_refused() {
 
     let error = error_of(&sandbox.database()).await;
     assert!(matches!(error, QueueError::NewerDatabase { found: 9001, .. }), "{error:?}");
-    assert!(error.to_string().contains("newer tribosweep (schema 9001; this one knows up to 1)"), "{error}");
+    assert!(error.to_string().contains("newer tribosweep (schema 9001; this one knows up to 2)"), "{error}");
 }
 
 /// Protects: processes that are started together on a database that does not exist yet all get it. Without

@@ -4,7 +4,7 @@ use tribosweep::queue::{
     Claim, Finished, JobState, QueueError, Scope, StudyDocument, StudyRow, StudySummary,
 };
 
-use crate::support::{Sandbox, claim, counts, done, failed, finish, of, study};
+use crate::support::{Sandbox, claim, counts, done, failed, finish, of, store, study};
 
 /// Protects: the list of studies is in the order of submission, each with its own counts.
 #[tokio::test]
@@ -47,7 +47,9 @@ async fn rows_are_complete_and_in_order() {
     let sandbox = Sandbox::new();
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["z", "y", "x", "w"])).await.unwrap();
+    sandbox.clock.set(1_000);
     claim(&mut queue, Scope::All, 3).await;
+    sandbox.clock.set(4_000);
     assert!(finish(&mut queue, "z", 1, done("record of z")).await);
     assert!(finish(&mut queue, "y", 1, failed("error of y")).await);
 
@@ -60,11 +62,22 @@ async fn rows_are_complete_and_in_order() {
         error: None,
         wall_s: None,
         attempt,
+        crashes: 0,
         note: None,
+        started_ms: None,
+        finished_ms: None,
+        provenance: None,
+    };
+    let ended = |row| StudyRow {
+        wall_s: Some(2.5),
+        started_ms: Some(1_000),
+        finished_ms: Some(4_000),
+        provenance: Some("provenance".into()),
+        ..row
     };
     let expected = [
-        StudyRow { record: Some("record of z".into()), wall_s: Some(2.5), ..row(0, "z", JobState::Done, 1) },
-        StudyRow { error: Some("error of y".into()), wall_s: Some(2.5), ..row(1, "y", JobState::Failed, 1) },
+        StudyRow { record: Some("record of z".into()), ..ended(row(0, "z", JobState::Done, 1)) },
+        StudyRow { error: Some("error of y".into()), ..ended(row(1, "y", JobState::Failed, 1)) },
         row(2, "x", JobState::Running, 1),
         row(3, "w", JobState::Pending, 0),
     ];
@@ -90,7 +103,7 @@ async fn timings_and_remaining_cost() {
     {
         sandbox.clock.set(now_ms);
         let end = Finished { key: key.into(), attempt: 1, outcome, wall_s };
-        queue.exchange(&[end], &Claim::nothing()).await.unwrap();
+        store(&mut queue, end).await;
     }
 
     assert_eq!(queue.finished_timings(&Scope::All).await.unwrap(), [(8.0, 80.0), (16.0, 170.0)]);
@@ -114,7 +127,7 @@ async fn an_unknown_study_is_answered_with_those_known() {
         queue.counts(&of("map")).await.unwrap_err(),
         queue.finished_timings(&of("map")).await.unwrap_err(),
         queue.remaining_cost(&of("map")).await.unwrap_err(),
-        queue.exchange(&[], &Claim { scope: of("map"), limit: 0 }).await.unwrap_err(),
+        queue.exchange(&[], &[Claim { scope: of("map"), limit: 0, batch: None }]).await.unwrap_err(),
     ];
     for error in errors {
         assert!(matches!(error, QueueError::UnknownStudy { .. }), "{error:?}");

@@ -1,8 +1,24 @@
 //! Interruptions, and processes that die.
 
-use tribosweep::queue::{FinishedOutcome, JobState, QueueError, Scope, WorkerLock};
+use tribosweep::queue::{FinishedOutcome, JobState, Queue, Scope, Settings, TakenBack, Worker};
 
-use crate::support::{Sandbox, claim, counts, done, finish, keys, study};
+use crate::support::{
+    Sandbox, claim, counts, dead_worker, done, failed, finish, foreign_worker, keys, study,
+};
+
+const NOTHING: TakenBack = TakenBack { pending: 0, failed: 0 };
+
+/// A day, in milliseconds.
+const DAY_MS: i64 = 86_400_000;
+
+/// A database with the jobs x, y, z, w of which `worker` claimed the first three and has done x.
+async fn left_by(sandbox: &Sandbox, worker: &Worker) -> Queue {
+    let mut queue = sandbox.open_as(worker).await;
+    queue.submit(&study("a", &["x", "y", "z", "w"])).await.unwrap();
+    claim(&mut queue, Scope::All, 3).await;
+    assert!(finish(&mut queue, "x", 1, done("record of x")).await);
+    queue
+}
 
 /// Protects: a job given back by an interrupted worker is pending again, with the reason, and its next
 /// start is a new attempt.
@@ -19,62 +35,168 @@ async fn a_released_job_is_claimed_again() {
     assert_eq!(claim(&mut queue, Scope::All, 1).await[0].attempt, 2);
 }
 
-/// Protects: jobs that a dead process left running are taken back by the next one, with the reason; what
+/// Protects: a job that was claimed and not begun is as if it had not been claimed: no attempt counts, no note, and
+/// whoever gave it back cannot give it back or finish it once more.
+#[tokio::test]
+async fn an_unstarted_job_costs_no_attempt() {
+    let sandbox = Sandbox::new();
+    let (mut queue, mut other) = (sandbox.open().await, sandbox.open().await);
+    queue.submit(&study("a", &["x"])).await.unwrap();
+    claim(&mut queue, Scope::All, 1).await;
+    assert!(finish(&mut queue, "x", 1, FinishedOutcome::Unstarted).await);
+    let row = queue.rows("a").await.unwrap().remove(0);
+    assert_eq!((row.state, row.attempt, row.note), (JobState::Pending, 0, None));
+    assert_eq!(claim(&mut other, Scope::All, 1).await[0].attempt, 1);
+    for outcome in [FinishedOutcome::Unstarted, done("late"), FinishedOutcome::Released] {
+        assert!(!finish(&mut queue, "x", 1, outcome).await, "the attempt is another worker's");
+    }
+    assert!(finish(&mut other, "x", 1, done("right")).await);
+}
+
+/// Protects: jobs that a dead process left running are taken back by the next one at once, with the reason; what
 /// was done or pending stays so, and a result the dead process still sends is refused.
 #[tokio::test]
 async fn jobs_of_a_dead_process_are_taken_back() {
     let sandbox = Sandbox::new();
-    let mut dead = sandbox.open().await;
-    let lock = WorkerLock::acquire(&sandbox.database()).unwrap();
-    dead.submit(&study("a", &["x", "y", "z", "w"])).await.unwrap();
-    claim(&mut dead, Scope::All, 3).await;
-    assert!(finish(&mut dead, "x", 1, done("record of x")).await);
-    drop(lock);
-
+    let mut dead = left_by(&sandbox, &dead_worker()).await;
     let mut queue = sandbox.open().await;
-    let lock = WorkerLock::acquire(&sandbox.database()).unwrap();
-    assert_eq!(queue.take_back(&lock).await.unwrap(), 2);
-    assert_eq!(queue.take_back(&lock).await.unwrap(), 0);
+    assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 2, failed: 0 });
+    assert_eq!(queue.take_back().await.unwrap(), NOTHING);
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(3, 0, 1, 0));
-    let notes: Vec<_> = queue.rows("a").await.unwrap().into_iter().map(|row| row.note).collect();
-    assert!(notes[0].is_none() && notes[3].is_none(), "{notes:?}");
-    assert!(notes[1].as_ref().unwrap().starts_with("taken back"), "{notes:?}");
-    assert_eq!(notes[1], notes[2]);
+    let rows = queue.rows("a").await.unwrap();
+    assert_eq!(rows.iter().map(|row| row.crashes).collect::<Vec<_>>(), [0, 1, 1, 0]);
+    assert!(rows[0].note.is_none() && rows[3].note.is_none(), "{rows:?}");
+    assert!(rows[1].note.as_ref().unwrap().starts_with("taken back"), "{rows:?}");
+    assert_eq!(rows[1].note, rows[2].note);
 
     let claimed = claim(&mut queue, Scope::All, 9).await;
     assert_eq!(keys(&claimed), ["y", "z", "w"]);
     assert_eq!(claimed.iter().map(|job| job.attempt).collect::<Vec<_>>(), [2, 2, 1]);
-    assert!(!finish(&mut dead, "y", 1, done("late")).await);
-}
-
-/// Protects: two processes never work on one database, also when one is given a symbolic link to it, since
-/// the second would take back the jobs the first is running.
-#[tokio::test]
-async fn the_worker_lock_excludes_a_second() {
-    let sandbox = Sandbox::new();
-    sandbox.open().await;
-    let link = sandbox.folder.path().join("link.db");
-    #[cfg(unix)]
-    std::os::unix::fs::symlink(sandbox.database(), &link).unwrap();
-    #[cfg(not(unix))]
-    let link = sandbox.database();
-
-    let lock = WorkerLock::acquire(&sandbox.database()).unwrap();
-    for path in [&sandbox.database(), &link] {
-        let error = WorkerLock::acquire(path).unwrap_err();
-        assert!(matches!(error, QueueError::AlreadyWorking { .. }), "{error:?}");
-        assert!(error.to_string().contains("another `tribosweep work` or `tribosweep run`"), "{error}");
+    for attempt in [1, 2] {
+        assert!(!finish(&mut dead, "y", attempt, done("late")).await);
     }
-    drop(lock);
-    WorkerLock::acquire(&link).unwrap();
+    assert!(finish(&mut queue, "y", 2, done("right")).await);
 }
 
-/// Protects: the lock of one database is no licence to take back the jobs of another.
+/// Protects: a number that was given again to another process, and a machine that was booted again, are no life.
 #[tokio::test]
-#[should_panic(expected = "another database")]
-async fn a_lock_is_for_its_own_database() {
-    let (sandbox, other) = (Sandbox::new(), Sandbox::new());
+async fn a_number_alone_is_no_process() {
+    let own = Worker::this_process(1, "test", "");
+    let reused = Worker { process_start: own.process_start.map(|start| start - 1), ..own.clone() };
+    let rebooted = Worker { boot_id: Some("an earlier boot".into()), ..own };
+    for gone in [reused, rebooted] {
+        let sandbox = Sandbox::new();
+        left_by(&sandbox, &gone).await;
+        assert_eq!(sandbox.open().await.take_back().await.unwrap().pending, 2, "{gone:?}");
+    }
+}
+
+/// Protects: nothing is taken from a process of this machine that lives, however its lease looks to a clock that
+/// jumped, forward or back; and its finish counts.
+#[tokio::test]
+async fn a_clock_that_jumps_takes_nothing() {
+    let sandbox = Sandbox::new();
+    sandbox.clock.set(1_000 * DAY_MS);
+    let mut alive = left_by(&sandbox, &Worker::this_process(1, "test", "")).await;
+    for now_ms in [3_000 * DAY_MS, 0] {
+        sandbox.clock.set(now_ms);
+        let mut queue = sandbox.open().await;
+        assert_eq!(queue.take_back().await.unwrap(), NOTHING);
+        assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(1, 2, 1, 0));
+    }
+    assert_eq!(alive.heartbeat().await.unwrap(), 2);
+    assert!(finish(&mut alive, "y", 1, done("record of y")).await);
+}
+
+/// Protects: of a worker elsewhere the lease decides: not before it is over, and a heartbeat extends it for every
+/// job. What a wrong clock wrote far ahead is over too.
+#[tokio::test]
+async fn leases_decide_elsewhere() {
+    let lease_ms = i64::try_from(Settings::default().lease.as_millis()).unwrap();
+    let sandbox = Sandbox::new();
+    let mut far = left_by(&sandbox, &foreign_worker()).await;
     let mut queue = sandbox.open().await;
-    let lock = WorkerLock::acquire(&other.database()).unwrap();
-    let _ = queue.take_back(&lock).await;
+    sandbox.clock.set(lease_ms - 1);
+    assert_eq!(queue.take_back().await.unwrap(), NOTHING);
+    assert_eq!(far.heartbeat().await.unwrap(), 2);
+    sandbox.clock.set(2 * lease_ms - 2);
+    assert_eq!(queue.take_back().await.unwrap(), NOTHING);
+    sandbox.clock.set(2 * lease_ms - 1);
+    assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 2, failed: 0 });
+    assert_eq!(far.heartbeat().await.unwrap(), 0, "it learns that it lost them");
+
+    sandbox.clock.set(1_000 * DAY_MS);
+    claim(&mut far, Scope::All, 1).await;
+    sandbox.clock.set(0);
+    assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 1, failed: 0 });
+}
+
+/// Protects: a job whose processes die is tried so often and not more, then it has failed with that reason; crashes
+/// are counted apart from attempts, and one that fails by itself is not tried again at all.
+#[tokio::test]
+async fn retries_have_a_limit() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open_with(Settings { crash_limit: 2, ..Settings::default() }).await;
+    queue.submit(&study("a", &["deadly", "bad"])).await.unwrap();
+    // An interruption is an attempt and no crash.
+    claim(&mut queue, Scope::All, 1).await;
+    assert!(finish(&mut queue, "deadly", 1, FinishedOutcome::Released).await);
+    for expected in [TakenBack { pending: 1, failed: 0 }, TakenBack { pending: 0, failed: 1 }] {
+        let mut dead = sandbox.open_as(&dead_worker()).await;
+        assert_eq!(keys(&claim(&mut dead, Scope::All, 1).await), ["deadly"]);
+        assert_eq!(queue.take_back().await.unwrap(), expected);
+    }
+    claim(&mut queue, Scope::All, 1).await;
+    assert!(finish(&mut queue, "bad", 1, failed("diverged")).await);
+    assert!(claim(&mut queue, Scope::All, 9).await.is_empty());
+    let rows = queue.rows("a").await.unwrap();
+    assert_eq!((rows[0].state, rows[0].attempt, rows[0].crashes), (JobState::Failed, 3, 2));
+    let error = rows[0].error.as_ref().unwrap();
+    assert!(error.starts_with("its process died 2 times") && error.contains("tribosweep retry"), "{error}");
+    assert_eq!(rows[0].wall_s, None, "nobody knows");
+    assert_eq!((rows[1].state, rows[1].attempt, rows[1].crashes), (JobState::Failed, 1, 0));
+}
+
+/// Protects: a checkpoint is given to the next attempt, whoever makes it; a job that gets further is not blamed for
+/// its processes; who lost the job saves nothing; and nothing is left when the job ends.
+#[tokio::test]
+async fn checkpoints_are_handed_on() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open_with(Settings { crash_limit: 2, ..Settings::default() }).await;
+    queue.submit(&study("a", &["x"])).await.unwrap();
+    let mut bytes: Option<Vec<u8>> = None;
+    for attempt in 1..=4 {
+        let mut dead = sandbox.open_as(&dead_worker()).await;
+        let job = claim(&mut dead, Scope::All, 1).await.remove(0);
+        assert_eq!((job.attempt, &job.checkpoint), (attempt, &bytes));
+        for now in [0, 255] {
+            bytes = Some(vec![now, attempt as u8, 0]);
+            assert!(dead.save_checkpoint("x", attempt, bytes.as_ref().unwrap()).await.unwrap());
+        }
+        assert!(!dead.save_checkpoint("x", attempt + 1, b"wrong").await.unwrap());
+        assert!(!queue.save_checkpoint("x", attempt, b"not its owner").await.unwrap());
+        assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 1, failed: 0 });
+        assert!(!dead.save_checkpoint("x", attempt, b"late").await.unwrap());
+    }
+    assert_eq!(claim(&mut queue, Scope::All, 1).await[0].checkpoint, bytes);
+    assert!(finish(&mut queue, "x", 5, done("r")).await);
+    assert!(!queue.save_checkpoint("x", 5, b"after the end").await.unwrap());
+    let left: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM checkpoints")
+        .fetch_one(&mut sandbox.raw().await)
+        .await
+        .unwrap();
+    assert_eq!(left, 0);
+}
+
+/// Protects: a worker that ends in order, if need be because of an error, gives back what it still holds; that is no
+/// crash.
+#[tokio::test]
+async fn an_orderly_end_gives_everything_back() {
+    let sandbox = Sandbox::new();
+    let mut ending = left_by(&sandbox, &foreign_worker()).await;
+    ending.unregister().await.unwrap();
+    let mut queue = sandbox.open().await;
+    assert_eq!(queue.take_back().await.unwrap(), NOTHING);
+    assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(3, 0, 1, 0));
+    assert!(queue.rows("a").await.unwrap().iter().all(|row| row.crashes == 0));
 }

@@ -1,6 +1,6 @@
 //! Submitting, resubmitting and sharing.
 
-use tribosweep::queue::{QueueError, Scope, Submitted};
+use tribosweep::queue::{Counts, QueueError, Scope, Submitted};
 
 use crate::support::{Sandbox, claim, counts, done, failed, finish, job, of, study};
 
@@ -19,6 +19,7 @@ async fn submitting_twice_adds_nothing() {
         already_known: 0,
         already_done: 0,
         already_failed: 0,
+        cancelled: 0,
     };
     assert_eq!(first, expected);
     claim(&mut queue, Scope::All, 2).await;
@@ -77,15 +78,17 @@ async fn an_edited_study_is_replaced() {
     let submitted = queue.submit(&edited).await.unwrap();
     assert!(submitted.replaced);
     assert_eq!((submitted.jobs, submitted.added, submitted.already_known), (2, 1, 1));
+    assert_eq!(submitted.cancelled, 1, "nobody asks for y");
     let document = queue.study("a").await.unwrap().unwrap();
     assert_eq!((document.document.as_str(), document.submitted_ms), ("edited", 2_000));
     let rows = queue.rows("a").await.unwrap();
     let rows: Vec<_> = rows.iter().map(|row| (row.ordinal, row.key.as_str())).collect();
     assert_eq!(rows, [(0, "w"), (1, "z")]);
-    assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(3, 0, 1, 0));
+    assert_eq!(queue.counts(&Scope::All).await.unwrap(), Counts { cancelled: 1, ..counts(2, 0, 1, 0) });
 
-    let submitted = queue.submit(&study("a", &["x"])).await.unwrap();
-    assert_eq!((submitted.added, submitted.already_done), (0, 1));
+    let submitted = queue.submit(&study("a", &["x", "y"])).await.unwrap();
+    assert_eq!((submitted.added, submitted.already_done, submitted.cancelled), (0, 1, 2));
+    assert_eq!(queue.counts(&of("a")).await.unwrap(), counts(1, 0, 1, 0), "y is asked for again");
 }
 
 /// Protects: two grid points with the identical job are two rows and one simulation.

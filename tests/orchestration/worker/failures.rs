@@ -1,6 +1,6 @@
 //! Jobs that fail, and workers that cannot work.
 
-use tribosweep::queue::{JobState, QueueError, Scope, WorkerLock};
+use tribosweep::queue::{JobState, QueueError, Scope};
 use tribosweep::worker::{Interrupt, SilentProgress, WorkError, work};
 
 use super::{Recorder, job, row, several, solvable, spec, submit};
@@ -58,27 +58,11 @@ async fn a_failed_job_stops_nothing() {
     assert_eq!(recorder.failures.len(), bad.len());
 }
 
-/// Protects: a second worker is refused before it touches a job.
-#[tokio::test]
-async fn a_second_worker_is_refused() {
-    let sandbox = Sandbox::new();
-    let mut queue = sandbox.open().await;
-    submit(&mut queue, "study", several(1, 0.001)).await;
-    let lock = WorkerLock::acquire(queue.path()).unwrap();
-    let refused = work(&mut queue, &Scope::All, 1, &Interrupt::default(), &mut SilentProgress).await;
-    assert!(matches!(refused, Err(WorkError::Queue(QueueError::AlreadyWorking { .. }))), "{refused:?}");
-    assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(1, 0, 0, 0));
-    drop(lock);
-    work(&mut queue, &Scope::All, 1, &Interrupt::default(), &mut SilentProgress).await.unwrap();
-    assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(0, 0, 1, 0));
-}
-
-/// Protects: an unknown study is an error, not a sweep of nothing, and the lock is free afterwards.
+/// Protects: an unknown study is an error, not a sweep of nothing.
 #[tokio::test]
 async fn an_unknown_study_is_an_error() {
     let sandbox = Sandbox::new();
     let mut queue = sandbox.open().await;
     let refused = work(&mut queue, &of("none"), 1, &Interrupt::default(), &mut SilentProgress).await;
     assert!(matches!(refused, Err(WorkError::Queue(QueueError::UnknownStudy { .. }))), "{refused:?}");
-    WorkerLock::acquire(queue.path()).unwrap();
 }

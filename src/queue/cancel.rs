@@ -1,0 +1,56 @@
+use super::{Queue, QueueError, studies};
+
+/// What a cancellation changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Cancelled {
+    /// Pending jobs that are cancelled now.
+    pub cancelled: u64,
+    /// Pending jobs that stay, because another study asks for them.
+    pub shared: u64,
+    /// Jobs that are running: they run to their end and their results are kept.
+    pub running: u64,
+}
+
+const CANCEL_STUDY: &str = "UPDATE studies SET cancelled_ms = ?2 WHERE id = ?1";
+
+/// A cancelled study asks for nothing.
+const CANCEL_JOBS: &str = "
+    UPDATE jobs SET state = 'cancelled', note = ?2
+    WHERE id IN (SELECT job_id FROM study_pending WHERE study_id = ?1)
+      AND NOT EXISTS (
+          SELECT 1 FROM study_jobs AS m JOIN studies AS s ON s.id = m.study_id
+          WHERE m.job_id = jobs.id AND s.cancelled_ms IS NULL
+      )";
+
+const SHARED: &str = "SELECT COUNT(*) FROM study_pending WHERE study_id = ?1";
+
+const RUNNING: &str = "
+    SELECT COUNT(*) FROM jobs AS j INDEXED BY jobs_owner
+    WHERE j.state = 'running' AND j.owner IS NOT NULL
+      AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = ?1)";
+
+const NOTE: &str = "cancelled: asked for by its user";
+
+impl Queue {
+    /// Cancels the pending jobs of a study that no other study asks for.
+    ///
+    /// Running jobs go on: what they have cost is paid for, and a worker that should stop is stopped itself.
+    ///
+    /// # Errors
+    /// [`QueueError::UnknownStudy`], or if the database cannot be written.
+    pub async fn cancel(&mut self, study: &str) -> Result<Cancelled, QueueError> {
+        let now_ms = self.clock.now_ms();
+        let mut transaction = self.write().await?;
+        let study_id = studies::require(&mut transaction, study).await?;
+        sqlx::query(CANCEL_STUDY).bind(study_id).bind(now_ms).execute(&mut *transaction).await?;
+        let cancelled = sqlx::query(CANCEL_JOBS).bind(study_id).bind(NOTE).execute(&mut *transaction).await?;
+        let shared: i64 = sqlx::query_scalar(SHARED).bind(study_id).fetch_one(&mut *transaction).await?;
+        let running: i64 = sqlx::query_scalar(RUNNING).bind(study_id).fetch_one(&mut *transaction).await?;
+        transaction.commit().await?;
+        Ok(Cancelled {
+            cancelled: cancelled.rows_affected(),
+            shared: shared.unsigned_abs(),
+            running: running.unsigned_abs(),
+        })
+    }
+}

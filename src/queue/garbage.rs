@@ -1,0 +1,59 @@
+use super::{Queue, QueueError};
+
+/// What was dropped.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Garbage {
+    /// Jobs that no study refers to.
+    pub jobs: u64,
+    /// Their results.
+    pub results: u64,
+    /// Workers that have ended.
+    pub workers: u64,
+    /// Bytes by which the database became smaller.
+    pub bytes: u64,
+}
+
+/// A running job is its worker's; it is dropped next time.
+const UNREFERENCED: &str = "
+    CREATE TEMP TABLE garbage AS
+    SELECT id FROM jobs WHERE state <> 'running' AND id NOT IN (SELECT job_id FROM study_jobs)";
+
+const WORKERS: &str = "
+    DELETE FROM workers
+    WHERE ended_ms IS NOT NULL AND id NOT IN (SELECT owner FROM jobs WHERE owner IS NOT NULL)";
+
+impl Queue {
+    /// Drops jobs that no study refers to, with their results, and gives their space back.
+    ///
+    /// # Errors
+    /// If the database cannot be written.
+    pub async fn collect_garbage(&mut self) -> Result<Garbage, QueueError> {
+        let before = self.pages().await?;
+        let mut garbage = Garbage::default();
+        let mut transaction = self.write().await?;
+        sqlx::query(UNREFERENCED).execute(&mut *transaction).await?;
+        let deleted = async |connection: &mut sqlx::SqliteConnection, statement: &'static str| {
+            sqlx::query(statement).execute(connection).await.map(|done| done.rows_affected())
+        };
+        garbage.results =
+            deleted(&mut transaction, "DELETE FROM results WHERE job_id IN (SELECT id FROM garbage)").await?;
+        deleted(&mut transaction, "DELETE FROM checkpoints WHERE job_id IN (SELECT id FROM garbage)").await?;
+        garbage.jobs =
+            deleted(&mut transaction, "DELETE FROM jobs WHERE id IN (SELECT id FROM garbage)").await?;
+        garbage.workers = deleted(&mut transaction, WORKERS).await?;
+        deleted(&mut transaction, "DROP TABLE garbage").await?;
+        transaction.commit().await?;
+        if garbage.jobs > 0 {
+            sqlx::query("VACUUM").execute(&mut self.connection).await?;
+        }
+        garbage.bytes = before.saturating_sub(self.pages().await?);
+        Ok(garbage)
+    }
+
+    /// The size of the database in bytes.
+    async fn pages(&mut self) -> Result<u64, QueueError> {
+        let pages: i64 = sqlx::query_scalar("PRAGMA page_count").fetch_one(&mut self.connection).await?;
+        let size: i64 = sqlx::query_scalar("PRAGMA page_size").fetch_one(&mut self.connection).await?;
+        Ok((pages * size).unsigned_abs())
+    }
+}

@@ -1,0 +1,102 @@
+use super::{Queue, QueueError, process};
+
+/// A process that is going to run jobs.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Worker {
+    /// The machine's name.
+    pub host: String,
+    /// What tells this boot of the machine from others, where the system tells.
+    pub boot_id: Option<String>,
+    /// The namespace in which the process number is valid, where the system tells.
+    pub pid_namespace: Option<String>,
+    /// The process number.
+    pub pid: u32,
+    /// When the process started, in ticks since the boot, where the system tells.
+    pub process_start: Option<i64>,
+    /// How many jobs it runs at a time.
+    pub threads: usize,
+    /// The program's version.
+    pub version: String,
+    /// What its results are made with, in any form; stored with each of them.
+    pub provenance: String,
+}
+
+impl Worker {
+    /// This process.
+    pub fn this_process(threads: usize, version: &str, provenance: &str) -> Self {
+        let pid = std::process::id();
+        Self {
+            host: process::host(),
+            boot_id: process::boot_id(),
+            pid_namespace: process::pid_namespace(),
+            pid,
+            process_start: process::start_of(pid),
+            threads,
+            version: version.to_owned(),
+            provenance: provenance.to_owned(),
+        }
+    }
+}
+
+/// What a registered queue writes beside what it does.
+#[derive(Debug, Clone)]
+pub(super) struct Registration {
+    pub id: i64,
+    pub provenance: String,
+}
+
+const REGISTER: &str = "
+    INSERT INTO workers (host, boot_id, pid_namespace, pid, process_start, threads, version, started_ms, heartbeat_ms)
+    VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?8)";
+
+const RELEASE_ALL: &str = "
+    UPDATE jobs SET state = 'pending', owner = NULL, lease_until_ms = NULL, note = ?2
+    WHERE owner = ?1 AND state = 'running'";
+
+const ENDED: &str = "released: the process ended in order, but before the job did";
+
+impl Queue {
+    /// Makes `worker` the owner of everything claimed through this queue from now on.
+    ///
+    /// # Errors
+    /// If the database cannot be written.
+    pub async fn register(&mut self, worker: &Worker) -> Result<(), QueueError> {
+        let inserted = sqlx::query(REGISTER)
+            .bind(&worker.host)
+            .bind(&worker.boot_id)
+            .bind(&worker.pid_namespace)
+            .bind(worker.pid)
+            .bind(worker.process_start)
+            .bind(i64::try_from(worker.threads).unwrap_or(i64::MAX))
+            .bind(&worker.version)
+            .bind(self.clock.now_ms())
+            .execute(&mut self.connection)
+            .await?;
+        let provenance = worker.provenance.clone();
+        self.registration = Some(Registration { id: inserted.last_insert_rowid(), provenance });
+        Ok(())
+    }
+
+    /// The end of the work: whatever is still claimed is pending again.
+    ///
+    /// A process that is about to end because of an error calls this too, as far as the error lets it: jobs that it
+    /// gives back did not crash.
+    ///
+    /// # Errors
+    /// If the database cannot be written.
+    pub async fn unregister(&mut self) -> Result<(), QueueError> {
+        let Some(Registration { id, .. }) = self.registration.take() else { return Ok(()) };
+        let now_ms = self.clock.now_ms();
+        let mut transaction = self.write().await?;
+        sqlx::query(RELEASE_ALL).bind(id).bind(ENDED).execute(&mut *transaction).await?;
+        let ended = sqlx::query("UPDATE workers SET ended_ms = ?2, heartbeat_ms = ?2 WHERE id = ?1");
+        ended.bind(id).bind(now_ms).execute(&mut *transaction).await?;
+        Ok(transaction.commit().await?)
+    }
+
+    /// # Panics
+    /// If no worker is registered: a job without an owner could not be given back when its process dies.
+    pub(super) fn registration(&self) -> &Registration {
+        self.registration.as_ref().expect("jobs are run by a registered worker")
+    }
+}

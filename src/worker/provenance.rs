@@ -1,0 +1,64 @@
+//! What results are made with: program, commit, machine, vector instructions, threads.
+
+use crate::queue::Worker;
+use fearless_simd::Level;
+use serde_json::json;
+
+/// The program's version.
+const VERSION: &str = env!("CARGO_PKG_VERSION");
+
+/// The commit it was built from; `unknown` where there was no repository, `+modified` where the sources differed.
+const COMMIT: &str = env!("TRIBOSWEEP_COMMIT");
+
+/// This process as a worker, with what its results are made with as JSON.
+pub fn worker(threads: usize) -> Worker {
+    let mut worker = Worker::this_process(threads, VERSION, "");
+    let provenance = json!({
+        "program": "tribosweep",
+        "version": VERSION,
+        "commit": COMMIT,
+        "host": worker.host,
+        "cpu": cpu_model(),
+        "architecture": std::env::consts::ARCH,
+        "system": std::env::consts::OS,
+        "vectors": vectors(),
+        "threads": threads,
+        "pid": worker.pid,
+    });
+    worker.provenance = provenance.to_string();
+    worker
+}
+
+/// The processor's name, where the system tells.
+fn cpu_model() -> Option<String> {
+    let processors = std::fs::read_to_string("/proc/cpuinfo").ok()?;
+    let line = processors.lines().find(|line| line.starts_with("model name"))?;
+    Some(line.split_once(':')?.1.trim().to_owned())
+}
+
+/// The widest vector instructions that the solver finds and uses: `Avx2`, `Neon` …
+fn vectors() -> String {
+    let level = format!("{:?}", Level::new());
+    level.split('(').next().unwrap_or(&level).to_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects: what is told is there to be read: a version, a commit, and the name alone of the vector instructions.
+    #[test]
+    fn everything_is_told() {
+        let told: serde_json::Value = serde_json::from_str(&worker(3).provenance).unwrap();
+        assert_eq!((told["version"].as_str(), told["threads"].as_u64()), (Some(VERSION), Some(3)));
+        let commit = told["commit"].as_str().unwrap().trim_end_matches("+modified").to_owned();
+        let is_hash = commit.len() == 40 && commit.chars().all(|c| c.is_ascii_hexdigit());
+        assert!(is_hash || commit == "unknown", "{commit}");
+        let vectors = told["vectors"].as_str().unwrap();
+        assert!(
+            !vectors.is_empty() && vectors.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'),
+            "{vectors}"
+        );
+        assert!(!told["host"].as_str().unwrap().is_empty());
+    }
+}
