@@ -48,7 +48,7 @@ struct Run {
     ticket: u64,
     steps: u64,
     stop_early: bool,
-    analysis: LaneAnalysis,
+    analysis: Box<LaneAnalysis>,
 }
 
 /// A job that has ended.
@@ -100,6 +100,11 @@ impl<const L: usize> Lanes<L> {
         lanes
     }
 
+    /// One lane for the same model, without a job.
+    pub fn emptied(&self) -> Lanes<1> {
+        Lanes::new(Arc::clone(&self.model))
+    }
+
     /// A lane without a job.
     pub fn free_lane(&self) -> Option<usize> {
         self.runs.iter().position(Option::is_none)
@@ -123,7 +128,8 @@ impl<const L: usize> Lanes<L> {
         self.clear(lane);
         self.drives[lane] = job::drive(&spec);
         let stop_early = spec.run.stop_early;
-        self.runs[lane] = Some(Run { ticket, steps, stop_early, analysis: LaneAnalysis::new(&self.model, spec) });
+        self.runs[lane] =
+            Some(Run { ticket, steps, stop_early, analysis: Box::new(LaneAnalysis::new(&self.model, spec)) });
         Ok(())
     }
 
@@ -174,10 +180,10 @@ impl<const L: usize> Lanes<L> {
     fn result(&self, lane: usize, audited: bool) -> Option<Result<JobRecord, JobError>> {
         let run = self.runs[lane].as_ref()?;
         let energies = self.ledger.energies(lane);
-        if audited {
-            if let Err(error) = guard::check(&self.model, &self.drives[lane], &self.state, lane, energies) {
-                return Some(Err(error.into()));
-            }
+        if audited
+            && let Err(error) = guard::check(&self.model, &self.drives[lane], &self.state, lane, energies)
+        {
+            return Some(Err(error.into()));
         }
         let steps = self.state.steps_done(lane);
         let settled = audited && run.stop_early && run.analysis.is_settled();

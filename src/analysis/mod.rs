@@ -13,6 +13,7 @@
 //! * The energy identity: work of drive and load = friction + damping + contact loss + change of stored energy.
 //! * Stresses and the extremes of N are taken behind a short low-pass ([`sample::STRESS_SMOOTHING`]).
 
+pub mod batch;
 pub mod cycles;
 pub mod decay;
 pub mod figures;

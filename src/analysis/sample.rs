@@ -255,15 +255,14 @@ impl<const L: usize> Sampler<L> {
                     status[Status::Slips as usize],
                 );
                 let before = load_all(simd, last);
-                let sigma_n = before[SIGMA_N]
-                    + gain * (force[2] * f64x8::from_slice(simd, &node[0]) - before[SIGMA_N]);
+                let sigma_n =
+                    before[SIGMA_N] + gain * (force[2] * f64x8::from_slice(simd, &node[0]) - before[SIGMA_N]);
                 let changed = closed.simd_ne(before[CLOSED]) | slips.simd_ne(before[SLIPS]);
                 sigma_n.store_slice(&mut last[SIGMA_N]);
                 closed.store_slice(&mut last[CLOSED]);
                 slips.store_slice(&mut last[SLIPS]);
                 let increment = &contacts.increment_m.blocks()[at].0;
-                let (x, y) =
-                    (f64x8::from_slice(simd, &increment[0]), f64x8::from_slice(simd, &increment[1]));
+                let (x, y) = (f64x8::from_slice(simd, &increment[0]), f64x8::from_slice(simd, &increment[1]));
                 let slipping = slips.simd_gt(zero);
                 let slipped = slipping.select((x * x + y * y).sqrt(), zero);
                 let limit = mu * force[2];
@@ -295,8 +294,18 @@ impl<const L: usize> Sampler<L> {
                 }
             }
         }
-        let [normal, tangential, sideways, x_moment, y_moment, stick_deficit, slip_deficit, closed, slips, transitions] =
-            lanes;
+        let [
+            normal,
+            tangential,
+            sideways,
+            x_moment,
+            y_moment,
+            stick_deficit,
+            slip_deficit,
+            closed,
+            slips,
+            transitions,
+        ] = lanes;
         let [sigma_n_max, slip_max, gap_max] = largest;
         Sums {
             normal,

@@ -4,7 +4,7 @@ use super::error::CliError;
 use crate::queue::{NewJob, NewStudy};
 use crate::report::JobNumerics;
 use crate::solver::{self, Model};
-use crate::spec::{Detection, JobSpec, Numerics, RunControl, Scene};
+use crate::spec::{Detection, JobSpec, Numerics, RunControl};
 use crate::study::{Job, Study, StudyError, job_key};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -63,7 +63,7 @@ impl Plan {
                     payload: encode(&job.spec)?,
                     parameters: encode(&row)?,
                     cost: job.cost,
-                    batch: batch(&job.spec),
+                    batch: job_key(&job.spec.shared_part(), solver::VERSION),
                     priority,
                 })
             })
@@ -109,28 +109,11 @@ fn case_key(mut case: JobSpec) -> String {
     job_key(&case, "")
 }
 
-/// Names what jobs share that can be advanced together: mesh, operator and time step, whatever drives and loads them
-/// and however long they are looked at.
-fn batch(spec: &JobSpec) -> String {
-    let mut scene = spec.scene.clone();
-    let all = Scene::default();
-    scene.contact = all.contact;
-    scene.load = all.load;
-    scene.disk.omega_rpm = all.disk.omega_rpm;
-    let shared = JobSpec {
-        scene,
-        numerics: spec.numerics.clone(),
-        run: RunControl::default(),
-        detection: Detection::default(),
-    };
-    job_key(&shared, "batch")
-}
-
 /// Refuses a study with a job that the solver would refuse before its first step.
 fn preflight(path: &Path, jobs: &[Job]) -> Result<(), CliError> {
     let mut seen = BTreeSet::new();
     for job in jobs {
-        if !seen.insert(shared_part(&job.spec)) {
+        if !seen.insert(job_key(&job.spec.shared_part(), solver::VERSION)) {
             continue;
         }
         if let Err(error) = Model::preflight(&job.spec.scene, &job.spec.numerics) {
@@ -141,9 +124,4 @@ fn preflight(path: &Path, jobs: &[Job]) -> Result<(), CliError> {
         }
     }
     Ok(())
-}
-
-/// What the solver's refusals depend on: the job without drive and load.
-fn shared_part(spec: &JobSpec) -> String {
-    format!("{:?}{:?}{:?}{:?}", spec.scene.pin, spec.scene.clamp, spec.scene.top, spec.numerics)
 }

@@ -140,7 +140,8 @@ impl Factors {
     ) -> [f64x8<S>; 2] {
         let a = force * f64x8::from_slice(simd, inverse_mass);
         let before = f64x8::from_slice(simd, p);
-        let stroke = before * f64x8::splat(simd, self.time_step_s) - a * f64x8::from_slice(simd, &self.u_scale);
+        let stroke =
+            before * f64x8::splat(simd, self.time_step_s) - a * f64x8::from_slice(simd, &self.u_scale);
         [f64x8::from_slice(simd, u) + stroke, before - a * f64x8::from_slice(simd, &self.p_scale)]
     }
 }

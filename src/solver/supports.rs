@@ -101,7 +101,8 @@ impl Weights {
         let stride = field.blocks_per_line();
         let blocks = &field.blocks()[self.plane * self.rows.len()..(self.plane + 1) * self.rows.len()];
         for along in 0..stride {
-            let column = blocks[along..].iter().step_by(stride).zip(self.rows[along..].iter().step_by(stride));
+            let column =
+                blocks[along..].iter().step_by(stride).zip(self.rows[along..].iter().step_by(stride));
             let mut sum = f64x8::splat(simd, 0.0);
             for (block, weight) in column {
                 sum += f64x8::from_slice(simd, &weight.0) * f64x8::from_slice(simd, &block.0[self.component]);

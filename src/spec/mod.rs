@@ -75,4 +75,20 @@ impl JobSpec {
         }
         found.into_result()
     }
+
+    /// What a job shares with all that can be advanced together with it: body, mesh, clamp, integrator and time
+    /// step. What drives and loads it, how long it runs and how it is looked at is set to the defaults.
+    #[must_use]
+    pub fn shared_part(&self) -> Self {
+        let mut scene = self.scene.clone();
+        scene.contact = Contact::default();
+        scene.load = Load::default();
+        scene.disk.omega_rpm = Disk::default().omega_rpm;
+        Self {
+            scene,
+            numerics: self.numerics.clone(),
+            run: RunControl::default(),
+            detection: Detection::default(),
+        }
+    }
 }

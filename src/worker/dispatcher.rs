@@ -1,14 +1,14 @@
 //! The dispatcher: owns the database connection, the interrupt and the progress display.
 
 use super::eta::Eta;
-use super::executor::{Executor, JobClock};
+use super::executor::{Assignment, Executor, JobClock, Report, Request};
 use super::heartbeat::Heartbeat;
 use super::interrupt::Interrupt;
 use super::progress::{Progress, RunningJob, Snapshot};
 use super::provenance;
 use super::tally::Tally;
 use crate::queue::{
-    Claim, Counts, Exchanged, Finished, FinishedOutcome, Queue, QueueError, Scope, TakenBack,
+    Claim, ClaimedJob, Counts, Exchanged, Finished, FinishedOutcome, Queue, QueueError, Scope, TakenBack,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -60,8 +60,8 @@ pub async fn work(
     // No more threads than jobs to run on them.
     let jobs = usize::try_from(left.pending + left.running).unwrap_or(usize::MAX);
     let threads = threads.min(jobs.max(1));
-    let (results, finished) = unbounded_channel();
-    let executor = Executor::new(threads, results, interrupt.clone())?;
+    let (sender, reports) = unbounded_channel();
+    let executor = Executor::new(threads, &sender, interrupt)?;
     queue.register(&provenance::worker(threads)).await?;
     let taken_back = queue.take_back().await?;
     let tally = Tally::new(queue, scope).await?;
@@ -71,7 +71,8 @@ pub async fn work(
         threads,
         interrupt,
         executor,
-        finished,
+        reports,
+        requests: Vec::new(),
         running: BTreeMap::new(),
         timings: Vec::new(),
         heartbeat: Heartbeat::new(),
@@ -95,7 +96,9 @@ struct Dispatcher<'a> {
     threads: usize,
     interrupt: &'a Interrupt,
     executor: Executor,
-    finished: UnboundedReceiver<Finished>,
+    reports: UnboundedReceiver<Report>,
+    /// What threads have asked for and have not been answered.
+    requests: Vec<Request>,
     /// Cost and clock of every running job, by key.
     running: BTreeMap<String, (f64, Arc<JobClock>)>,
     /// (cost, seconds) of what this worker has finished.
@@ -109,14 +112,12 @@ impl Dispatcher<'_> {
     async fn run(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
         let mut done = Vec::new();
         loop {
-            let exchanged = self.exchange(&done, progress).await?;
+            let asked = self.answerable();
+            let exchanged = self.exchange(&done, &asked, progress).await?;
             self.settle(&done, &exchanged.refused, progress);
             done.clear();
-            let claimed: Vec<_> = exchanged.claimed.into_iter().flatten().collect();
-            self.tally.claimed(claimed.len() as u64);
-            for job in claimed {
-                let (key, cost) = (job.key.clone(), job.cost);
-                self.running.insert(key, (cost, self.executor.start(job)));
+            for (request, jobs) in asked.into_iter().zip(exchanged.claimed) {
+                self.answer(request, jobs);
             }
             self.tally.refresh(self.queue, self.scope).await?;
             progress.update(&self.snapshot());
@@ -127,34 +128,84 @@ impl Dispatcher<'_> {
                     return Ok(());
                 }
                 // Only the channel is awaited under the timeout; the database never is.
-                match tokio::time::timeout(TICK, self.finished.recv()).await {
-                    Ok(Some(job)) => done.push(job),
-                    Ok(None) => unreachable!("the executor holds a sender"),
+                match tokio::time::timeout(TICK, self.reports.recv()).await {
+                    Ok(Some(report)) => self.take(report, &mut done),
+                    Ok(None) => unreachable!("the threads hold senders"),
                     Err(_) => self.tick(progress).await?,
                 }
-                while let Ok(job) = self.finished.try_recv() {
-                    done.push(job);
+                while let Ok(report) = self.reports.try_recv() {
+                    self.take(report, &mut done);
                 }
-                // Others may have given back what a thread here is free for.
-                let is_free = self.running.len() < self.threads && self.tally.counts.pending > 0;
-                if !done.is_empty() || (is_free && !self.interrupt.is_raised()) {
+                if !done.is_empty() || !self.is_quiet() {
                     break;
                 }
             }
         }
     }
 
-    /// Stores what is done and claims for the free threads. While the database is locked, running jobs go on.
+    fn take(&mut self, report: Report, done: &mut Vec<Finished>) {
+        match report {
+            Report::Finished(job) => done.push(job),
+            Report::Wants(request) => self.requests.push(request),
+        }
+    }
+
+    /// Whether no request can be answered: none is about a batch, and no job is there for the others.
+    fn is_quiet(&self) -> bool {
+        let has_jobs = self.tally.counts.pending > 0 && !self.interrupt.is_raised();
+        self.requests.iter().all(|request| request.batch.is_none() && !has_jobs)
+    }
+
+    /// The requests to answer now; none of them gets more than a fair share of what is left.
+    fn answerable(&mut self) -> Vec<Request> {
+        let pending = usize::try_from(self.tally.counts.pending).unwrap_or(usize::MAX);
+        let share = pending.div_ceil(self.threads).max(1);
+        let is_open = !self.interrupt.is_raised();
+        let (mut now, later): (Vec<_>, Vec<_>) = std::mem::take(&mut self.requests)
+            .into_iter()
+            .partition(|request| request.batch.is_some() || (is_open && pending > 0));
+        for request in &mut now {
+            request.limit = if is_open { request.limit.min(share) } else { 0 };
+        }
+        self.requests = later;
+        now
+    }
+
+    /// Hands a thread its jobs. A thread that asked for any job and gets none keeps its request.
+    fn answer(&mut self, request: Request, jobs: Vec<ClaimedJob>) {
+        if jobs.is_empty() && request.batch.is_none() {
+            // Others were faster. Until the next count there is nothing to ask for.
+            self.tally.counts.pending = 0;
+            self.requests.push(request);
+            return;
+        }
+        self.tally.claimed(jobs.len() as u64);
+        let assignments = jobs.into_iter().map(|job| {
+            let clock = Arc::new(JobClock::default());
+            self.running.insert(job.key.clone(), (job.cost, Arc::clone(&clock)));
+            Assignment { job, clock }
+        });
+        let assignments = assignments.collect();
+        self.executor.answer(request.thread, assignments);
+    }
+
+    /// Stores what is done and claims what is asked for. While the database is locked, running jobs go on.
     async fn exchange(
         &mut self,
         done: &[Finished],
+        asked: &[Request],
         progress: &mut impl Progress,
     ) -> Result<Exchanged, QueueError> {
         loop {
-            let free = self.threads - (self.running.len() - done.len());
-            let limit = if self.interrupt.is_raised() { 0 } else { free };
-            // A claim takes jobs of one batch; here every job runs on its own.
-            let claims = vec![Claim { scope: self.scope.clone(), limit: 1, batch: None }; limit];
+            let is_open = !self.interrupt.is_raised();
+            let claims: Vec<_> = asked
+                .iter()
+                .map(|request| Claim {
+                    scope: self.scope.clone(),
+                    limit: if is_open { request.limit } else { 0 },
+                    batch: request.batch.clone(),
+                })
+                .collect();
             self.keep_alive().await?;
             match self.queue.exchange(done, &claims).await {
                 Err(error @ QueueError::Locked(_)) if !self.interrupt.is_raised() => {

@@ -1,13 +1,14 @@
-//! Runs claimed jobs on a rayon pool and reports each one's end.
+//! Threads that advance claimed jobs, and their two-way traffic with the dispatcher.
+//!
+//! A thread without work asks for a job. With it begins a [`Crew`]: the jobs of one batch, which fills its lanes
+//! with others of the batch and asks for more whenever one ends.
 
+use super::crew::Crew;
 use super::interrupt::Interrupt;
-use crate::analysis::{self, JobError, JobObserver};
-use crate::queue::{ClaimedJob, Finished, FinishedOutcome};
-use crate::spec::JobSpec;
-use std::ops::ControlFlow;
+use crate::queue::{ClaimedJob, Finished};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::time::Instant;
+use std::sync::mpsc::{Receiver, Sender, channel};
 use tokio::sync::mpsc::UnboundedSender;
 
 /// How far a running job is.
@@ -21,88 +22,106 @@ impl JobClock {
     pub fn simulated_s(&self) -> f64 {
         self.simulated_ns.load(Ordering::Relaxed) as f64 * 1e-9
     }
+
+    pub(super) fn set(&self, simulated_s: f64) {
+        self.simulated_ns.store((simulated_s * 1e9) as u64, Ordering::Relaxed);
+    }
 }
 
-/// The pool and the way back to the dispatcher.
+/// What a thread tells the dispatcher.
+#[derive(Debug)]
+pub enum Report {
+    /// A job ended.
+    Finished(Finished),
+    /// The thread can take jobs.
+    Wants(Request),
+}
+
+/// What a thread asks for. A request for jobs of a batch is answered at once, if only with none; one for any job
+/// when there is one.
+#[derive(Debug, Clone)]
+pub struct Request {
+    /// Who asks.
+    pub thread: usize,
+    /// Of which batch; any if none.
+    pub batch: Option<String>,
+    /// At most so many jobs.
+    pub limit: usize,
+}
+
+/// A job for a thread.
+#[derive(Debug)]
+pub struct Assignment {
+    /// The job.
+    pub job: ClaimedJob,
+    /// Where its progress is shown.
+    pub clock: Arc<JobClock>,
+}
+
+/// The threads and the ways to them.
 pub struct Executor {
-    pool: rayon::ThreadPool,
-    results: UnboundedSender<Finished>,
-    interrupt: Interrupt,
+    // Dropped last: the threads end when their mailboxes close.
+    mailboxes: Vec<Sender<Vec<Assignment>>>,
+    _pool: rayon::ThreadPool,
+}
+
+/// A thread's side of the traffic.
+pub(super) struct Desk {
+    pub thread: usize,
+    pub mailbox: Receiver<Vec<Assignment>>,
+    pub reports: UnboundedSender<Report>,
+    pub interrupt: Interrupt,
 }
 
 impl Executor {
-    /// A pool of `threads` whose finished jobs go to `results`.
+    /// `threads` that send their reports to `reports`.
     ///
     /// # Errors
     /// If the threads cannot be started.
     pub fn new(
         threads: usize,
-        results: UnboundedSender<Finished>,
-        interrupt: Interrupt,
+        reports: &UnboundedSender<Report>,
+        interrupt: &Interrupt,
     ) -> Result<Self, rayon::ThreadPoolBuildError> {
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .thread_name(|i| format!("solver-{i}"))
             .build()?;
-        Ok(Self { pool, results, interrupt })
+        let mailboxes = (0..threads).map(|thread| {
+            let (sender, mailbox) = channel();
+            let desk = Desk { thread, mailbox, reports: reports.clone(), interrupt: interrupt.clone() };
+            pool.spawn(move || desk.work());
+            sender
+        });
+        Ok(Self { mailboxes: mailboxes.collect(), _pool: pool })
     }
 
-    /// Starts a claimed job.
-    pub fn start(&self, job: ClaimedJob) -> Arc<JobClock> {
-        let clock = Arc::new(JobClock::default());
-        let observed = Watch { clock: Arc::clone(&clock), interrupt: self.interrupt.clone() };
-        let results = self.results.clone();
-        self.pool.spawn(move || {
-            let begun = Instant::now();
-            let outcome = run(&job.payload, observed);
-            let wall_s = begun.elapsed().as_secs_f64();
-            // The dispatcher outlives its jobs; if it is gone, the process is ending and so is the claim.
-            let _ = results.send(Finished { key: job.key, attempt: job.attempt, outcome, wall_s });
-        });
-        clock
+    /// Answers a thread's request.
+    pub fn answer(&self, thread: usize, jobs: Vec<Assignment>) {
+        // A thread lives as long as its mailbox is open.
+        let _ = self.mailboxes[thread].send(jobs);
     }
 }
 
-/// Solves one payload. A panic is a bug, but it must not take the sweep with it.
-fn run(payload: &str, observer: Watch) -> FinishedOutcome {
-    let solved = std::panic::catch_unwind(std::panic::AssertUnwindSafe(|| solve(payload, observer)));
-    match solved {
-        Ok(outcome) => outcome,
-        Err(panic) => {
-            let message = panic
-                .downcast_ref::<String>()
-                .map(String::as_str)
-                .or_else(|| panic.downcast_ref::<&str>().copied())
-                .unwrap_or("no message");
-            FinishedOutcome::Failed { error: format!("internal error (please report it): {message}") }
+impl Desk {
+    fn work(self) {
+        loop {
+            self.ask(None, 1);
+            let Ok(jobs) = self.mailbox.recv() else { return };
+            let mut waiting = jobs;
+            // A crew gives back what belongs to another one.
+            while let Some(first) = waiting.pop() {
+                waiting.extend(Crew::run(&self, first));
+            }
         }
     }
-}
 
-fn solve(payload: &str, mut observer: Watch) -> FinishedOutcome {
-    let spec: JobSpec = match serde_json::from_str(payload) {
-        Ok(spec) => spec,
-        Err(error) => return FinishedOutcome::Failed { error: format!("unreadable job: {error}") },
-    };
-    match analysis::solve(&spec, &mut observer) {
-        Ok(record) => match serde_json::to_string(&record) {
-            Ok(record) => FinishedOutcome::Done { record },
-            Err(error) => FinishedOutcome::Failed { error: format!("unwritable record: {error}") },
-        },
-        Err(JobError::Interrupted) => FinishedOutcome::Released,
-        Err(error) => FinishedOutcome::Failed { error: error.to_string() },
+    pub fn ask(&self, batch: Option<String>, limit: usize) {
+        self.report(Report::Wants(Request { thread: self.thread, batch, limit }));
     }
-}
 
-/// Lets a job tell its time and hear the interrupt.
-struct Watch {
-    clock: Arc<JobClock>,
-    interrupt: Interrupt,
-}
-
-impl JobObserver for Watch {
-    fn progress(&mut self, simulated_s: f64) -> ControlFlow<()> {
-        self.clock.simulated_ns.store((simulated_s * 1e9) as u64, Ordering::Relaxed);
-        if self.interrupt.is_raised() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    pub fn report(&self, report: Report) {
+        // The dispatcher outlives its jobs; if it is gone, the process is ending and so is the claim.
+        let _ = self.reports.send(report);
     }
 }

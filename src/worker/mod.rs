@@ -2,15 +2,19 @@
 //! owns the work, with messages between them.
 //!
 //! ```text
-//!                 claimed jobs                    spawn
-//!  Queue ◄────► dispatcher ───────────► executor ───────► rayon threads: analysis::solve
+//!                  claimed jobs                 a thread's crew: jobs of one batch in the
+//!  Queue ◄────► dispatcher ───────────► executor ───────► lanes of analysis::batch
 //!   one transaction   ▲                                        │
-//!   a turn            └──────── finished jobs (channel) ◄──────┘
+//!   a turn            └─── finished jobs, requests (channel) ◄─┘
 //! ```
+//!
+//! Threads ask for jobs and say of which batch they can use more, because what can be advanced in one vector shares
+//! a model. The dispatcher answers from the database; meanwhile the other lanes go on.
 //!
 //! A job starts only after its claim is committed, and nothing in the pool waits for the database. A
 //! job's result depends on nothing but its specification: threads, order and companions change no bit.
 
+mod crew;
 mod dispatcher;
 mod eta;
 mod executor;

@@ -260,10 +260,7 @@ fn followed(model: &Model, drive: &Drive, sliding: &Sliding, mode: &Mode) -> Com
     let mut before = amplitude(&state);
     for n in 0..steps {
         step(model, std::slice::from_ref(drive).try_into().expect("one lane"), &mut state);
-        assert!(
-            state.contacts.states(0).all(|s| s == ContactState::Slip),
-            "step {n}: not steady sliding"
-        );
+        assert!(state.contacts.states(0).all(|s| s == ContactState::Slip), "step {n}: not steady sliding");
         let after = amplitude(&state);
         logarithm += (after / before).ln();
         before = after;

@@ -74,7 +74,11 @@ fn is_damped_by_the_friction_across() {
         let (mut ledger, mut worst_carried) = (EnergyLedger::new(&model, 1), 1.0);
         for n in 0..steps {
             audited_step(&model, DRIVE, &mut state, &mut ledger);
-            assert_eq!(state.contacts.state_of(0, 0), ContactState::Slip, "a held node slips on a moving belt");
+            assert_eq!(
+                state.contacts.state_of(0, 0),
+                ContactState::Slip,
+                "a held node slips on a moving belt"
+            );
             assert_eq!(state.u[Y], 0.0, "what is held does not move");
             let carried = -state.reaction_n[Y][0] / (MU * NORMAL_N);
             if f64::abs(carried - 1.0) >= f64::abs(worst_carried - 1.0) {

@@ -45,9 +45,7 @@ fn scaling_load_and_speed_by_powers_of_two_scales_the_bits() {
             step(&model, &[DRIVE], &mut plain);
             step(&model, &[scaled_drive], &mut scaled);
         }
-        let forces = |state: &State<1>| -> Vec<f64> {
-            state.contacts.forces(0).flatten().collect()
-        };
+        let forces = |state: &State<1>| -> Vec<f64> { state.contacts.forces(0).flatten().collect() };
         let values = |field: &Field<1>| field.values().collect::<Vec<_>>();
         let deviation = |a: &[f64], b: &[f64]| {
             let size = b.iter().fold(0.0_f64, |m, b| m.max(b.abs()));

@@ -204,8 +204,7 @@ impl<const L: usize> HeldNode<L> {
             closed = true;
             force[2] = -z * stiffness;
             let slip = [0, 1].map(|c| (face.u.at(place, c)[lane] - self.u_m[c][lane]) - carried[c]);
-            ([force[0], force[1]], slips) =
-                tangential(self.node.mobile, slip, stiffness, force[2], drive.mu);
+            ([force[0], force[1]], slips) = tangential(self.node.mobile, slip, stiffness, force[2], drive.mu);
             for c in (0..3).filter(|&c| self.node.mobile[c]) {
                 let inverse = 1.0 / self.node.mass_kg;
                 let u = &mut face.u.at_mut(place, c)[lane];
@@ -231,13 +230,7 @@ impl<const L: usize> HeldNode<L> {
 }
 
 /// Friction [N] on a closed node with the predicted `slip` [m], and whether it slips.
-fn tangential(
-    mobile: [bool; 3],
-    slip: [f64; 2],
-    stiffness: f64,
-    normal_n: f64,
-    mu: f64,
-) -> ([f64; 2], bool) {
+fn tangential(mobile: [bool; 3], slip: [f64; 2], stiffness: f64, normal_n: f64, mu: f64) -> ([f64; 2], bool) {
     let held_slip = |c: usize| !mobile[c] && slip[c] != 0.0;
     match (held_slip(0), held_slip(1)) {
         (false, false) => {

@@ -30,6 +30,7 @@ const SUMS: usize = 5;
 
 /// What an audit finds [J].
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::struct_field_names, reason = "units are part of the names")]
 pub(super) struct Found<const L: usize> {
     pub kinetic_j: [f64; L],
     pub elastic_j: [f64; L],

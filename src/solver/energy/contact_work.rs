@@ -17,6 +17,7 @@ pub(super) struct ContactWorks<const L: usize> {
 
 /// What the forces of a step did over the increments after and before their time [J].
 #[derive(Debug, Clone, Copy)]
+#[expect(clippy::struct_field_names, reason = "units are part of the names")]
 pub(super) struct StepWorks<const L: usize> {
     pub drive_j: [f64; L],
     pub friction_after_j: [f64; L],

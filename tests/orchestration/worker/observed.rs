@@ -8,8 +8,8 @@ use tribosweep::worker::{Interrupt, SilentProgress, work};
 use super::{Recorder, several, submit};
 use crate::support::{Sandbox, counts, of};
 
-/// Protects: progress only grows, the total stays, no more jobs run than there are threads, and the end is
-/// shown once with nothing left.
+/// Protects: progress only grows, the total stays, no more jobs run than there are lanes on the threads, and the end
+/// is shown once with nothing left.
 #[tokio::test]
 async fn progress_only_grows() {
     for threads in [1, 3] {
@@ -23,11 +23,9 @@ async fn progress_only_grows() {
         assert!(seen.iter().all(|counts| counts.total() == 7), "{seen:?}");
         assert_eq!(recorder.stopped.len(), 1);
         assert_eq!(recorder.stopped[0].counts, counts(0, 0, 7, 0));
-        // Before the first job is done, and after each but the last or the last few.
-        assert_eq!(seen[0], counts(7 - threads as u64, threads as u64, 0, 0));
-        assert!(recorder.snapshots.len() >= 7 / threads, "{seen:?}");
+        assert_eq!(seen[0].done, 0, "shown before the first job is done");
         for snapshot in &recorder.snapshots {
-            assert!(snapshot.running.len() <= threads);
+            assert!(snapshot.running.len() <= 8 * threads);
             assert_eq!(snapshot.running.len() as u64, snapshot.counts.running);
             assert!(snapshot.running.iter().all(|job| (0.0..=0.0021).contains(&job.simulated_s)));
         }

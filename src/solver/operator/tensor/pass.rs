@@ -171,7 +171,13 @@ impl TensorOperator {
 
     /// Lays out x of plane `k`.
     #[inline(always)]
-    fn stage<S: Simd, const L: usize>(&self, simd: S, pass: &impl Pass<S>, k: usize, scratch: &mut Scratch<L>) {
+    fn stage<S: Simd, const L: usize>(
+        &self,
+        simd: S,
+        pass: &impl Pass<S>,
+        k: usize,
+        scratch: &mut Scratch<L>,
+    ) {
         let my = self.nodes[1];
         let blocks = scratch.ends.len();
         let first = scratch.staged.as_ptr().align_offset(ALIGNMENT);
@@ -291,11 +297,8 @@ impl TensorOperator {
         let ratio = f64x8::splat(simd, self.skew[1] / self.skew[0]);
         let from_x = ratio * spread(double_y, low.a[0], here.a[0], high.a[0]);
         let mut from_y = skew_yz * (low.m[1] - high.m[1]);
-        let mut e = [
-            spread(double_y, low.a[2], here.a[2], high.a[2]),
-            skew_yz * (low.m[2] - high.m[2]),
-            zero,
-        ];
+        let mut e =
+            [spread(double_y, low.a[2], here.a[2], high.a[2]), skew_yz * (low.m[2] - high.m[2]), zero];
         if Y {
             let share = f64x8::splat(simd, out_y * self.share);
             p[0] -= share * here.a[1];

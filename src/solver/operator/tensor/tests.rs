@@ -32,8 +32,7 @@ fn equals_element_by_element_assembly() {
             let n = 3 * mesh.node_count();
             let x = values(n, 1);
             let mut reference = Field::<1>::zeros(&mesh);
-            AssembledOperator::of_block(&mesh, &ke)
-                .product(&Field::from_values(&mesh, &x), &mut reference);
+            AssembledOperator::of_block(&mesh, &ke).product(&Field::from_values(&mesh, &x), &mut reference);
             let y = product::<1>(&mesh, &material, &x);
             // At most 8·24 terms of size |ke|·½ in the one form, 110 sums of such in the other.
             let bound = 400.0 * f64::EPSILON * ke.amax();
@@ -84,10 +83,7 @@ fn lanes_do_not_see_each_other() {
         let together = product::<L>(mesh, material, &x);
         for lane in 0..L {
             let alone = product::<1>(mesh, material, &values(n, lane as u64));
-            assert!(
-                (0..n).all(|i| alone[i].to_bits() == together[L * i + lane].to_bits()),
-                "{lane} of {L}"
-            );
+            assert!((0..n).all(|i| alone[i].to_bits() == together[L * i + lane].to_bits()), "{lane} of {L}");
         }
     }
     let material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };

@@ -1,0 +1,138 @@
+//! Jobs of one model in as many lanes as they need.
+
+use super::job::JobError;
+use super::lanes::{Ended, Lanes};
+use crate::solver::Model;
+use crate::spec::JobSpec;
+use std::sync::Arc;
+
+/// Jobs that share a model, advanced together.
+///
+/// There are 1, 2, 4 or 8 lanes. Jobs move to fewer or more of them as they end and begin; no job's result
+/// depends on any of it.
+pub struct Batch {
+    shared: JobSpec,
+    widest: usize,
+    lanes: AnyLanes,
+}
+
+enum AnyLanes {
+    One(Box<Lanes<1>>),
+    Two(Box<Lanes<2>>),
+    Four(Box<Lanes<4>>),
+    Eight(Box<Lanes<8>>),
+}
+
+/// Calls the same method of lanes of any number.
+macro_rules! each {
+    ($lanes:expr, $of:ident => $call:expr) => {
+        match $lanes {
+            AnyLanes::One($of) => $call,
+            AnyLanes::Two($of) => $call,
+            AnyLanes::Four($of) => $call,
+            AnyLanes::Eight($of) => $call,
+        }
+    };
+}
+
+impl AnyLanes {
+    fn taken_over<const L: usize>(from: Lanes<L>, lanes: usize) -> Self {
+        match lanes {
+            1 => Self::One(Box::new(Lanes::taken_over(from))),
+            2 => Self::Two(Box::new(Lanes::taken_over(from))),
+            4 => Self::Four(Box::new(Lanes::taken_over(from))),
+            _ => Self::Eight(Box::new(Lanes::taken_over(from))),
+        }
+    }
+}
+
+impl Batch {
+    /// A batch without jobs, for those that share a model with `spec`.
+    ///
+    /// # Errors
+    /// If the specification is not physical or the solver refuses the model; then it would refuse it for every
+    /// job of the batch.
+    pub fn new(spec: &JobSpec) -> Result<Self, JobError> {
+        spec.check()?;
+        let model = Model::from_scene(&spec.scene, &spec.numerics)?;
+        Ok(Self {
+            shared: spec.shared_part(),
+            widest: widest(model.mesh().node_count()),
+            lanes: AnyLanes::One(Box::new(Lanes::new(Arc::new(model)))),
+        })
+    }
+
+    /// Whether a job can be advanced with those of this batch.
+    pub fn takes(&self, spec: &JobSpec) -> bool {
+        self.shared == spec.shared_part()
+    }
+
+    /// The largest number of jobs that it pays to advance together.
+    pub fn widest(&self) -> usize {
+        self.widest
+    }
+
+    /// Number of jobs.
+    pub fn jobs(&self) -> usize {
+        each!(&self.lanes, lanes => lanes.jobs())
+    }
+
+    /// Begins a job, which its owner calls `ticket`.
+    ///
+    /// # Errors
+    /// If the specification is not physical or asks for too many steps.
+    ///
+    /// # Panics
+    /// If the job is not one of this batch, or there are as many as there may be.
+    pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Result<(), JobError> {
+        spec.check()?;
+        assert!(self.takes(&spec), "a job of another model");
+        if each!(&self.lanes, lanes => lanes.free_lane()).is_none() {
+            self.fit(self.jobs() + 1);
+        }
+        each!(&mut self.lanes, lanes => {
+            let lane = lanes.free_lane().expect("no more jobs than the widest");
+            lanes.begin(lane, ticket, spec)
+        })
+    }
+
+    /// Moves the jobs to no more lanes than they need: for when no other job is to come.
+    pub fn narrow(&mut self) {
+        self.fit(self.jobs());
+    }
+
+    /// Changes the number of lanes to the smallest that holds so many jobs.
+    fn fit(&mut self, jobs: usize) {
+        let lanes = jobs.max(1).next_power_of_two().min(8);
+        let now = match &self.lanes {
+            AnyLanes::One(_) => 1,
+            AnyLanes::Two(_) => 2,
+            AnyLanes::Four(_) => 4,
+            AnyLanes::Eight(_) => 8,
+        };
+        if lanes != now {
+            let empty = AnyLanes::One(Box::new(each!(&self.lanes, lanes => lanes.emptied())));
+            let from = std::mem::replace(&mut self.lanes, empty);
+            self.lanes = each!(from, from => AnyLanes::taken_over(*from, lanes));
+        }
+    }
+
+    /// Advances all jobs by a few steps and returns those that ended.
+    pub fn advance(&mut self) -> Vec<Ended> {
+        each!(&mut self.lanes, lanes => lanes.advance(&mut |_, _| {}))
+    }
+
+    /// Simulated time [s] of every job, by its ticket.
+    pub fn simulated(&self) -> Vec<(u64, f64)> {
+        each!(&self.lanes, lanes => lanes.simulated().collect())
+    }
+}
+
+/// Nodes times lanes beyond which another lane costs more than it saves: the fields that a step reads and writes
+/// no longer stay near the core. Measured; see docs/performance.md.
+const NODES_TIMES_LANES: usize = 140_000;
+
+/// The number of lanes that pays for a mesh.
+fn widest(nodes: usize) -> usize {
+    [8, 4, 2].into_iter().find(|lanes| lanes * nodes <= NODES_TIMES_LANES).unwrap_or(1)
+}

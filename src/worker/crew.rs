@@ -1,0 +1,234 @@
+//! The jobs of one batch on one thread.
+
+use super::executor::{Assignment, Desk, Report};
+use crate::analysis::batch::Batch;
+use crate::analysis::{JobError, JobRecord};
+use crate::queue::{Finished, FinishedOutcome};
+use crate::spec::JobSpec;
+use std::collections::{BTreeMap, VecDeque};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::time::Instant;
+
+/// Jobs that are advanced together, and those that wait for a lane.
+pub(super) struct Crew<'a> {
+    desk: &'a Desk,
+    batch: Batch,
+    name: String,
+    waiting: VecDeque<Assignment>,
+    running: BTreeMap<u64, Member>,
+    tickets: u64,
+    /// Whether a request for more has not been answered yet.
+    asked: bool,
+    /// Jobs that ended since the last request: so many are asked for ahead, that short jobs need not wait for the
+    /// database.
+    ended: usize,
+    /// Jobs of another model: their batch's name was wrong.
+    strangers: Vec<Assignment>,
+}
+
+/// A job in a lane.
+struct Member {
+    assignment: Assignment,
+    /// Its share of the thread's time [s]: jobs that are advanced together share it equally.
+    share_s: f64,
+}
+
+impl<'a> Crew<'a> {
+    /// Runs a job and whatever else of its batch there is; returns jobs that belong to others.
+    pub fn run(desk: &'a Desk, first: Assignment) -> Vec<Assignment> {
+        let batch = match prepare(&first) {
+            Ok(batch) => batch,
+            Err(outcome) => {
+                finish(desk, &first, outcome, 0.0);
+                return Vec::new();
+            }
+        };
+        let mut crew = Self {
+            desk,
+            batch,
+            name: first.job.batch.clone(),
+            waiting: VecDeque::from([first]),
+            running: BTreeMap::new(),
+            tickets: 0,
+            asked: false,
+            ended: 1,
+            strangers: Vec::new(),
+        };
+        if !crew.work() {
+            crew.blame();
+        }
+        crew.strangers
+    }
+
+    /// Advances jobs until none is left; false if the solver panicked.
+    fn work(&mut self) -> bool {
+        loop {
+            if self.desk.interrupt.is_raised() {
+                self.release();
+                return true;
+            }
+            self.fill();
+            self.ask();
+            if self.running.is_empty() && !self.asked && self.waiting.is_empty() {
+                return true;
+            }
+            self.hear();
+            if self.running.is_empty() {
+                continue;
+            }
+            let begun = Instant::now();
+            // A panic is a bug, but it must not take the sweep with it.
+            let Ok(ended) = catch_unwind(AssertUnwindSafe(|| self.batch.advance())) else { return false };
+            let share_s = begun.elapsed().as_secs_f64() / self.running.len() as f64;
+            for member in self.running.values_mut() {
+                member.share_s += share_s;
+            }
+            for job in ended {
+                self.end(job.ticket, outcome(job.result));
+            }
+            for (ticket, simulated_s) in self.batch.simulated() {
+                if let Some(member) = self.running.get(&ticket) {
+                    member.assignment.clock.set(simulated_s);
+                }
+            }
+        }
+    }
+
+    /// Begins waiting jobs in free lanes.
+    fn fill(&mut self) {
+        while self.batch.jobs() < self.batch.widest() {
+            let Some(assignment) = self.waiting.pop_front() else { return };
+            let spec = match parse(&assignment) {
+                Ok(spec) => spec,
+                Err(outcome) => {
+                    finish(self.desk, &assignment, outcome, 0.0);
+                    continue;
+                }
+            };
+            if !self.batch.takes(&spec) {
+                self.strangers.push(assignment);
+                continue;
+            }
+            self.tickets += 1;
+            match self.batch.begin(self.tickets, spec) {
+                Ok(()) => {
+                    self.running.insert(self.tickets, Member { assignment, share_s: 0.0 });
+                }
+                Err(error) => finish(self.desk, &assignment, outcome(Err(error)), 0.0),
+            }
+        }
+    }
+
+    /// Asks for more jobs after one has ended, if there is a lane for them.
+    fn ask(&mut self) {
+        let free = self.batch.widest() - self.batch.jobs();
+        if !self.asked && self.ended > 0 && free > 0 && self.waiting.is_empty() {
+            self.desk.ask(Some(self.name.clone()), free + self.ended - 1);
+            (self.asked, self.ended) = (true, 0);
+        }
+    }
+
+    /// Takes the answer to a request, and waits for it when there is nothing else to do.
+    fn hear(&mut self) {
+        if !self.asked {
+            return;
+        }
+        let answer = if self.running.is_empty() {
+            // A closed mailbox is an answer, too: there is no more to come.
+            self.desk.mailbox.recv().unwrap_or_default()
+        } else {
+            match self.desk.mailbox.try_recv() {
+                Ok(jobs) => jobs,
+                Err(_) => return,
+            }
+        };
+        self.asked = false;
+        if answer.is_empty() {
+            self.batch.narrow();
+        }
+        self.waiting.extend(answer);
+        self.fill();
+    }
+
+    fn end(&mut self, ticket: u64, outcome: FinishedOutcome) {
+        let Some(member) = self.running.remove(&ticket) else { return };
+        self.ended += 1;
+        finish(self.desk, &member.assignment, outcome, member.share_s);
+    }
+
+    /// Gives everything back.
+    fn release(&mut self) {
+        for member in std::mem::take(&mut self.running).into_values() {
+            finish(self.desk, &member.assignment, FinishedOutcome::Released, member.share_s);
+        }
+        let answer = if self.asked { self.desk.mailbox.recv().unwrap_or_default() } else { Vec::new() };
+        self.asked = false;
+        for assignment in self.waiting.drain(..).chain(answer).chain(self.strangers.drain(..)) {
+            finish(self.desk, &assignment, FinishedOutcome::Unstarted, 0.0);
+        }
+    }
+
+    /// After a panic: runs the jobs one by one, so that only the one that panics by itself fails.
+    fn blame(&mut self) {
+        for member in std::mem::take(&mut self.running).into_values() {
+            let alone = catch_unwind(AssertUnwindSafe(|| alone(&member.assignment, self.desk)));
+            let outcome = alone.unwrap_or_else(|panic| {
+                let message = panic
+                    .downcast_ref::<String>()
+                    .map(String::as_str)
+                    .or_else(|| panic.downcast_ref::<&str>().copied())
+                    .unwrap_or("no message");
+                FinishedOutcome::Failed { error: format!("internal error (please report it): {message}") }
+            });
+            finish(self.desk, &member.assignment, outcome, member.share_s);
+        }
+        if self.asked {
+            self.strangers.extend(self.desk.mailbox.recv().unwrap_or_default());
+        }
+        self.strangers.extend(self.waiting.drain(..));
+    }
+}
+
+/// Solves one job without companions.
+fn alone(assignment: &Assignment, desk: &Desk) -> FinishedOutcome {
+    let (mut batch, spec) = match prepare(assignment).and_then(|batch| Ok((batch, parse(assignment)?))) {
+        Ok(prepared) => prepared,
+        Err(outcome) => return outcome,
+    };
+    if let Err(error) = batch.begin(0, spec) {
+        return outcome(Err(error));
+    }
+    loop {
+        if let Some(ended) = batch.advance().pop() {
+            return outcome(ended.result);
+        }
+        if desk.interrupt.is_raised() {
+            return FinishedOutcome::Released;
+        }
+    }
+}
+
+fn parse(assignment: &Assignment) -> Result<JobSpec, FinishedOutcome> {
+    serde_json::from_str(&assignment.job.payload)
+        .map_err(|error| FinishedOutcome::Failed { error: format!("unreadable job: {error}") })
+}
+
+fn prepare(assignment: &Assignment) -> Result<Batch, FinishedOutcome> {
+    Batch::new(&parse(assignment)?).map_err(|error| outcome(Err(error)))
+}
+
+fn outcome(result: Result<JobRecord, JobError>) -> FinishedOutcome {
+    match result {
+        Ok(record) => match serde_json::to_string(&record) {
+            Ok(record) => FinishedOutcome::Done { record },
+            Err(error) => FinishedOutcome::Failed { error: format!("unwritable record: {error}") },
+        },
+        Err(JobError::Interrupted) => FinishedOutcome::Released,
+        Err(error) => FinishedOutcome::Failed { error: error.to_string() },
+    }
+}
+
+fn finish(desk: &Desk, assignment: &Assignment, outcome: FinishedOutcome, wall_s: f64) {
+    let (key, attempt) = (assignment.job.key.clone(), assignment.job.attempt);
+    desk.report(Report::Finished(Finished { key, attempt, outcome, wall_s }));
+}
