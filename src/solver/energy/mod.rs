@@ -146,6 +146,9 @@ impl<const L: usize> EnergyLedger<L> {
         if self.keeps(model, state.step) {
             self.audit.keep(state);
         }
+        if self.audits(state.step) {
+            self.audit.begin(model, state);
+        }
     }
 
     /// Adds up the works of the step just done and, at an audit, evaluates the energies at its `t_n`.

@@ -1,0 +1,243 @@
+//! What a node and step cost, and what the parts of a scene add.
+
+use crate::machine::Machine;
+use crate::timing::seconds;
+use serde::Serialize;
+use std::sync::Arc;
+use tribosweep::analysis::batch::Batch;
+use tribosweep::analysis::lanes::Lanes;
+use tribosweep::solver::energy::EnergyLedger;
+use tribosweep::solver::operator::{Operator, Scratch, TensorOperator};
+use tribosweep::solver::{Drive, Model, State, element, operator::AssembledOperator, step};
+use tribosweep::spec::{JobSpec, TopFace};
+
+/// Additions and multiplications of an inner node in a step, counted in `operator::tensor::pass` (100) and
+/// `integrate` (6 for u + β_R p, 21 for the motion).
+const FLOPS: f64 = 127.0;
+/// Displacements and velocities are read and written once.
+const BYTES: f64 = 4.0 * 3.0 * 8.0;
+
+/// One mesh with one number of lanes; times in ns per node, step and job.
+#[derive(Debug, Serialize)]
+pub struct MeshCase {
+    elements: [usize; 3],
+    lanes: usize,
+    /// y = K x alone.
+    product_ns: f64,
+    /// A step: product, integration, contact.
+    step_ns: f64,
+    /// All that a sweep does: energies, guard, statistics and detection included.
+    job_ns: f64,
+    /// What arithmetic and what the traffic of u and p allow.
+    arithmetic_bound_ns: f64,
+    traffic_bound_ns: f64,
+}
+
+const MESHES: [[usize; 3]; 4] = [[6, 8, 5], [12, 15, 10], [24, 30, 20], [48, 60, 40]];
+
+fn spec(elements: [usize; 3]) -> JobSpec {
+    let mut spec = JobSpec::default();
+    spec.scene.pin.elements = elements;
+    spec.scene.clamp.width_m = spec.scene.pin.size_m[0] / elements[0].min(12) as f64;
+    // Long enough for any benchmark, and never settled.
+    spec.run.limit_s = 1.0;
+    spec.run.stop_early = false;
+    spec
+}
+
+fn model(spec: &JobSpec) -> Model {
+    Model::from_scene(&spec.scene, &spec.numerics).expect("a scene that can be solved")
+}
+
+/// The jobs of a sweep over ω.
+fn jobs(spec: &JobSpec, count: usize) -> Vec<JobSpec> {
+    let job = |i: usize| {
+        let mut job = spec.clone();
+        job.scene.disk.omega_rpm = 5.0 + i as f64;
+        job
+    };
+    (0..count).map(job).collect()
+}
+
+/// Nanoseconds per node, step and job.
+fn per_node(model: &Model, jobs: usize, steps: usize, call_s: f64) -> f64 {
+    call_s * 1e9 / (model.mesh().node_count() * jobs * steps) as f64
+}
+
+/// Steps per call of [`Lanes::advance`].
+const STEPS: usize = 16;
+
+fn lanes<const L: usize>(spec: &JobSpec, count: usize) -> Lanes<L> {
+    let mut lanes = Lanes::new(Arc::new(model(spec)));
+    for (lane, job) in jobs(spec, count).into_iter().enumerate() {
+        lanes.begin(lane, lane as u64, job).expect("not too many steps");
+    }
+    settle(spec, || _ = lanes.advance(&mut |_, _| {}));
+    lanes
+}
+
+/// Into the frictional contact, as far as a benchmark can wait.
+fn settle(spec: &JobSpec, mut advance: impl FnMut()) {
+    let nodes: usize = spec.scene.pin.elements.iter().product();
+    for _ in 0..(4_000_000 / nodes).clamp(2, 200) {
+        advance();
+    }
+}
+
+fn mesh<const L: usize>(elements: [usize; 3], machine: &Machine) -> MeshCase {
+    let spec = spec(elements);
+    let model = model(&spec);
+    let name = |what: &str| {
+        let [nx, ny, nz] = elements;
+        format!("mesh_{nx}x{ny}x{nz}_{what}_{L}")
+    };
+    let drives: [Drive; L] = std::array::from_fn(|lane| Drive {
+        mu: 0.4,
+        rate: 0.5 + 0.1 * lane as f64,
+        force_n: 30.0,
+        ramp_s: 5e-4,
+    });
+    let mut state = State::<L>::at_rest(&model);
+    settle(&spec, || (0..STEPS).for_each(|_| step(&model, &drives, &mut state)));
+    let x = state.u.clone();
+    let mut y = state.u.clone();
+    let mut scratch = Scratch::new(model.mesh());
+    let product_s = seconds(&name("product"), || model.operator().product(&x, &mut y, &mut scratch));
+    let step_s = seconds(&name("step"), || step(&model, &drives, &mut state));
+    let mut lanes = lanes::<L>(&spec, L);
+    let job_s = seconds(&name("job"), || _ = lanes.advance(&mut |_, _| {}));
+    let working_set = BYTES / 2.0 * (model.mesh().node_count() * L) as f64;
+    let case = MeshCase {
+        elements,
+        lanes: L,
+        product_ns: per_node(&model, L, 1, product_s),
+        step_ns: per_node(&model, L, 1, step_s),
+        job_ns: per_node(&model, L, STEPS, job_s),
+        // Vectors of one lane are padded, but not counted here: the bound is that of the work itself.
+        arithmetic_bound_ns: FLOPS / machine.plain_gflops,
+        traffic_bound_ns: BYTES / machine.gb_per_s(working_set),
+    };
+    let bound = case.arithmetic_bound_ns.max(case.traffic_bound_ns);
+    println!(
+        "{elements:>12?} {L} lanes: product {:5.2}  step {:5.2}  job {:5.2} ns; bound {bound:4.2} ns, {:3.0} % of it \
+         reached by the step",
+        case.product_ns,
+        case.step_ns,
+        case.job_ns,
+        100.0 * bound / case.step_ns
+    );
+    case
+}
+
+/// All meshes with 1, 2, 4 and 8 lanes.
+pub fn meshes(machine: &Machine) -> Vec<MeshCase> {
+    println!("\n{FLOPS} operations and {BYTES} bytes of u and p per node and step");
+    let of = |elements| {
+        [
+            mesh::<1>(elements, machine),
+            mesh::<2>(elements, machine),
+            mesh::<4>(elements, machine),
+            mesh::<8>(elements, machine),
+        ]
+    };
+    MESHES.into_iter().flat_map(of).collect()
+}
+
+/// A scene with something and without it; times in ns per node, step and job.
+#[derive(Debug, Serialize)]
+pub struct Pair {
+    what: &'static str,
+    with_ns: f64,
+    without_ns: f64,
+}
+
+impl Pair {
+    fn new(what: &'static str, with_ns: f64, without_ns: f64) -> Self {
+        println!(
+            "{what:<58} {with_ns:6.2} ns, without {without_ns:6.2} ns, ratio {:.2}",
+            with_ns / without_ns
+        );
+        Self { what, with_ns, without_ns }
+    }
+}
+
+/// Steps of one scene with eight lanes.
+fn stepping(name: &str, spec: &JobSpec, mu: f64) -> f64 {
+    let model = model(spec);
+    let drives = [Drive { mu, rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
+    let mut state = State::<8>::at_rest(&model);
+    settle(spec, || (0..STEPS).for_each(|_| step(&model, &drives, &mut state)));
+    per_node(&model, 8, 1, seconds(name, || step(&model, &drives, &mut state)))
+}
+
+/// What each part of a scene or of the bookkeeping costs, on 12 × 15 × 10 elements with eight lanes.
+pub fn pairs() -> Vec<Pair> {
+    println!("\n12 × 15 × 10 elements, 8 lanes");
+    let base = spec([12, 15, 10]);
+    let full = stepping("pair_full", &base, 0.4);
+    let mut undamped = base.clone();
+    undamped.numerics.beta_r_s = 0.0;
+    let mut free = base.clone();
+    free.scene.top = TopFace::FreeInZ;
+    let model = model(&base);
+    let drives = [Drive { mu: 0.4, rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
+    let mut state = State::<8>::at_rest(&model);
+    let mut ledger = EnergyLedger::new(&model, 16);
+    let audited_s = seconds("pair_energies", || {
+        for _ in 0..STEPS {
+            ledger.before_step(&model, &state);
+            step(&model, &drives, &mut state);
+            ledger.after_step(&model, &drives, &state);
+        }
+    });
+    let audited = per_node(&model, 8, STEPS, audited_s);
+    let mut analysed = lanes::<8>(&base, 8);
+    let analysed_s = seconds("pair_analysis", || _ = analysed.advance(&mut |_, _| {}));
+    let analysed_ns = per_node(&model, 8, STEPS, analysed_s);
+    let mut history = Vec::new();
+    let observed_s = seconds("pair_history", || {
+        history.clear();
+        analysed.advance(&mut |_, sample| history.push(*sample));
+    });
+    let element = element::stiffness(model.material(), model.mesh().element_size_m());
+    let forms = [
+        ("pair_assembled", Operator::Assembled(AssembledOperator::of_block(model.mesh(), &element))),
+        ("pair_tensor", Operator::Tensor(TensorOperator::new(model.mesh(), model.material()))),
+    ];
+    let x = state.u.clone();
+    let mut y = state.u.clone();
+    let mut scratch = Scratch::new(model.mesh());
+    let [assembled, tensor] = forms.map(|(name, operator)| {
+        per_node(&model, 8, 1, seconds(name, || operator.product(&x, &mut y, &mut scratch)))
+    });
+    vec![
+        Pair::new("damping: β_R > 0, or 0", full, stepping("pair_undamped", &undamped, 0.4)),
+        Pair::new("friction: μ > 0, or 0", full, stepping("pair_frictionless", &base, 0.0)),
+        Pair::new("top face: tied in z, or free", full, stepping("pair_free", &free, 0.4)),
+        Pair::new("energies and what the divergence guard compares, or none", audited, full),
+        Pair::new("statistics and detection, or energies alone", analysed_ns, audited),
+        Pair::new("history of every step, or none", per_node(&model, 8, STEPS, observed_s), analysed_ns),
+        Pair::new("eight jobs in eight lanes, or each alone", alone(&base), analysed_ns),
+        Pair::new("three jobs in eight lanes, or in four", sparse(&base), narrowed(&base)),
+        Pair::new("product with the assembled rows, or by tensor products", assembled, tensor),
+    ]
+}
+
+fn alone(base: &JobSpec) -> f64 {
+    let mut one = lanes::<1>(base, 1);
+    per_node(&model(base), 1, STEPS, seconds("pair_alone", || _ = one.advance(&mut |_, _| {})))
+}
+
+fn sparse(base: &JobSpec) -> f64 {
+    let mut eight = lanes::<8>(base, 3);
+    per_node(&model(base), 3, STEPS, seconds("pair_sparse", || _ = eight.advance(&mut |_, _| {})))
+}
+
+fn narrowed(base: &JobSpec) -> f64 {
+    let mut batch = Batch::new(base).expect("a scene that can be solved");
+    for (ticket, job) in jobs(base, 3).into_iter().enumerate() {
+        batch.begin(ticket as u64, job).expect("not too many steps");
+    }
+    settle(base, || _ = batch.advance());
+    per_node(&model(base), 3, STEPS, seconds("pair_narrowed", || _ = batch.advance()))
+}
