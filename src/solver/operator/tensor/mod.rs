@@ -43,6 +43,9 @@ pub struct TensorOperator {
     share: f64,
     /// … 4λG/(λ+G) B̂B̂ where two faces meet, of the same.
     corner: [f64; 3],
+    /// 1, 2 and 4, the factors of the centre. As constants they would be compiled to additions (2x = x + x), and
+    /// additions are what the product waits for.
+    powers: [f64; 3],
 }
 
 impl TensorOperator {
@@ -61,6 +64,7 @@ impl TensorOperator {
             edge: across.map(|scale| (lambda - g) * scale),
             share: (lambda - g) / (lambda + g),
             corner: across.map(|scale| 4.0 * lambda * g / (lambda + g) * scale),
+            powers: [1.0, 2.0, 4.0],
         }
     }
 

@@ -57,11 +57,12 @@ struct PlaneSums {
     ahead: [[f64; WIDTH]; 3],
 }
 
-/// Factors of the centre along x in a block: of Ŝ (half of M̂'s), and B̂.
+/// Factors of the centre along x in a block: of Ŝ, of M̂ (twice that), and B̂.
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
 struct Ends {
     centre: [f64; WIDTH],
+    double: [f64; WIDTH],
     outward: [f64; WIDTH],
 }
 
@@ -80,10 +81,13 @@ impl<const L: usize> Scratch<L> {
     pub fn new(mesh: &BlockMesh) -> Self {
         let [mx, my, _] = mesh.nodes_per_axis();
         let blocks = blocks_per_line::<L>(mx);
-        let mut ends = vec![Ends { centre: [2.0; WIDTH], outward: [0.0; WIDTH] }; blocks];
+        let mut ends =
+            vec![Ends { centre: [2.0; WIDTH], double: [4.0; WIDTH], outward: [0.0; WIDTH] }; blocks];
         for along in 0..mx * L {
             let (block, slot, node) = (along / WIDTH, along % WIDTH, along / L);
-            ends[block].centre[slot] = if node == 0 || node + 1 == mx { 1.0 } else { 2.0 };
+            let centre = if node == 0 || node + 1 == mx { 1.0 } else { 2.0 };
+            ends[block].centre[slot] = centre;
+            ends[block].double[slot] = 2.0 * centre;
             ends[block].outward[slot] = outward(node, mx);
         }
         let pitch = WIDTH * (blocks + 2);
@@ -248,14 +252,17 @@ impl TensorOperator {
             let high = f64x8::from_slice(simd, &window[WIDTH + L..2 * WIDTH + L]);
             let both = low + high;
             sums.a[c] = f64x8::splat(simd, skew[c]) * (low - high);
-            let centre = if ENDS {
+            let (single, double) = if ENDS {
                 sums.a[c] += f64x8::splat(simd, edge[c]) * column.outward(simd, j, c);
-                f64x8::from_slice(simd, &column.ends.centre) * here
+                (
+                    f64x8::from_slice(simd, &column.ends.centre) * here,
+                    f64x8::from_slice(simd, &column.ends.double) * here,
+                )
             } else {
-                here + here
+                (f64x8::splat(simd, self.powers[1]) * here, f64x8::splat(simd, self.powers[2]) * here)
             };
-            sums.m[c] = (centre + centre) + both;
-            sums.s[c] = centre - both;
+            sums.m[c] = double + both;
+            sums.s[c] = single - both;
         }
         sums
     }
@@ -276,18 +283,16 @@ impl TensorOperator {
         let [low, here, high] = lines;
         let my = self.nodes[1];
         let zero = f64x8::splat(simd, 0.0);
-        let centre_y = f64x8::splat(simd, if Y { 1.0 } else { 2.0 });
-        let centre_z = f64x8::splat(simd, if Z { 1.0 } else { 2.0 });
-        let double_y = centre_y + centre_y;
+        let [single_y, double_y] = self.centre::<S, Y>(simd);
+        let [single_z, double_z] = self.centre::<S, Z>(simd);
         let skew_yz = f64x8::splat(simd, self.skew[2]);
         let out_y = outward(j, my);
         let mut p = [zero; 3];
         let mut b = [zero; 3];
         for c in 0..3 {
-            let centre = centre_y * here.m[c];
             let both = low.m[c] + high.m[c];
-            let sy_m = centre - both;
-            let my_m = (centre + centre) + both;
+            let sy_m = single_y * here.m[c] - both;
+            let my_m = double_y * here.m[c] + both;
             let my_s = double_y * here.s[c] + (low.s[c] + high.s[c]);
             p[c] = f64x8::splat(simd, self.own[c][0]) * my_s + f64x8::splat(simd, self.own[c][1]) * sy_m;
             b[c] = f64x8::splat(simd, self.own[c][2]) * my_m;
@@ -315,8 +320,7 @@ impl TensorOperator {
         e[2] = from_x + from_y;
         let mut centre = [zero; 3];
         for c in 0..3 {
-            let twice = centre_z * p[c];
-            centre[c] = (twice + twice) + centre_z * b[c];
+            centre[c] = double_z * p[c] + single_z * b[c];
         }
         if Z {
             let share = f64x8::splat(simd, out_z * self.share);
@@ -347,6 +351,13 @@ impl TensorOperator {
             next.store_slice(&mut plane.ahead[c]);
         }
         below
+    }
+
+    /// Factors of the centre of Ŝ and M̂ in a direction, for a node on a face or not.
+    #[inline(always)]
+    fn centre<S: Simd, const FACE: bool>(&self, simd: S) -> [f64x8<S>; 2] {
+        let first = usize::from(!FACE);
+        [f64x8::splat(simd, self.powers[first]), f64x8::splat(simd, self.powers[first + 1])]
     }
 
     /// M̂y B̂x of one component.
