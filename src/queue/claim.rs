@@ -107,3 +107,34 @@ pub(super) async fn take(
     };
     Ok(rows.into_iter().map(job).collect())
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{FIRST, FIRST_OF_STUDY, TAKE, TAKE_OF_STUDY};
+    use crate::queue::{Queue, SystemClock};
+    use std::sync::Arc;
+
+    /// Protects: no claim looks at every pending job or sorts them: each reads as many entries of an index as it takes
+    /// jobs.
+    #[tokio::test]
+    async fn claims_use_their_indexes() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let mut queue = Queue::open(&folder.path().join("db"), Arc::new(SystemClock)).await.unwrap();
+        for (statement, index) in [
+            (FIRST, "jobs_pending"),
+            (FIRST_OF_STUDY, "PRIMARY KEY (study_id=?)"),
+            (TAKE, "jobs_pending_batch (batch=?)"),
+            (TAKE_OF_STUDY, "study_pending_batch (study_id=? AND batch=?)"),
+        ] {
+            let explain = sqlx::AssertSqlSafe(format!("EXPLAIN QUERY PLAN {statement}"));
+            let plan: Vec<(i64, i64, i64, String)> =
+                sqlx::query_as(explain).fetch_all(&mut queue.connection).await.unwrap();
+            let plan: Vec<_> = plan.into_iter().map(|(_, _, _, step)| step).collect();
+            assert!(plan.iter().any(|step| step.ends_with(index)), "{index}: {plan:#?}");
+            for step in &plan {
+                assert!(!step.contains("TEMP B-TREE"), "{plan:#?}");
+                assert!(!step.starts_with("SCAN") || step.ends_with("INDEX jobs_pending"), "{plan:#?}");
+            }
+        }
+    }
+}

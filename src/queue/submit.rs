@@ -114,32 +114,35 @@ impl Queue {
             return Err(QueueError::BadCost { key: job.key.clone(), cost: job.cost });
         }
         let now_ms = self.clock.now_ms();
-        let mut transaction = self.write().await?;
-        let replaced = studies::find(&mut transaction, &study.name).await?.is_some();
-        let study_id: i64 = sqlx::query_scalar(UPSERT_STUDY)
-            .bind(&study.name)
-            .bind(&study.document)
-            .bind(now_ms)
-            .fetch_one(&mut *transaction)
+        let (replaced, added, cancelled, counts) = self
+            .write(async |connection| {
+                let replaced = studies::find(connection, &study.name).await?.is_some();
+                let study_id: i64 = sqlx::query_scalar(UPSERT_STUDY)
+                    .bind(&study.name)
+                    .bind(&study.document)
+                    .bind(now_ms)
+                    .fetch_one(&mut *connection)
+                    .await?;
+                sqlx::query("DELETE FROM study_jobs WHERE study_id = ?1")
+                    .bind(study_id)
+                    .execute(&mut *connection)
+                    .await?;
+                let before = count_jobs(connection).await?;
+                for (first_ordinal, chunk) in (0_i64..).step_by(CHUNK).zip(study.jobs.chunks(CHUNK)) {
+                    insert_jobs(connection, chunk, now_ms).await?;
+                    insert_rows(connection, study_id, first_ordinal, chunk).await?;
+                }
+                let added = count_jobs(connection).await? - before;
+                sqlx::query(ASK_AGAIN).bind(study_id).execute(&mut *connection).await?;
+                let cancelled = if replaced {
+                    sqlx::query(CANCEL_UNASKED).bind(NOTE).execute(&mut *connection).await?.rows_affected()
+                } else {
+                    0
+                };
+                let counts = counts::of_study(connection, study_id).await?;
+                Ok((replaced, added, cancelled, counts))
+            })
             .await?;
-        sqlx::query("DELETE FROM study_jobs WHERE study_id = ?1")
-            .bind(study_id)
-            .execute(&mut *transaction)
-            .await?;
-        let before = count_jobs(&mut transaction).await?;
-        for (first_ordinal, chunk) in (0_i64..).step_by(CHUNK).zip(study.jobs.chunks(CHUNK)) {
-            insert_jobs(&mut transaction, chunk, now_ms).await?;
-            insert_rows(&mut transaction, study_id, first_ordinal, chunk).await?;
-        }
-        let added = count_jobs(&mut transaction).await? - before;
-        sqlx::query(ASK_AGAIN).bind(study_id).execute(&mut *transaction).await?;
-        let cancelled = if replaced {
-            sqlx::query(CANCEL_UNASKED).bind(NOTE).execute(&mut *transaction).await?.rows_affected()
-        } else {
-            0
-        };
-        let counts = counts::of_study(&mut transaction, study_id).await?;
-        transaction.commit().await?;
 
         let jobs = study.jobs.iter().map(|job| &job.key).collect::<HashSet<_>>().len() as u64;
         Ok(Submitted {

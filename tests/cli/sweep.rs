@@ -45,7 +45,7 @@ fn the_mini_study_in_one_command() {
     assert_eq!(regimes.iter().collect::<Vec<_>>(), expected.iter().collect::<Vec<_>>());
 
     let report: Vec<_> = REPORT.iter().map(|file| format!("reports/mini/{file}")).collect();
-    let others = ["mini.json", "tribosweep.db", "tribosweep.db.lock", "tribosweep.db.worker"];
+    let others = ["mini.json", "tribosweep.db", "tribosweep.db.lock"];
     let mut expected: Vec<_> = others.iter().map(|&file| file.to_owned()).chain(report).collect();
     expected.sort();
     assert_eq!(folder.files(), expected);
