@@ -180,6 +180,7 @@ async fn removing_and_collecting() {
 /// are those that it has. The order is drawn, and the same in every run.
 #[tokio::test]
 async fn a_studys_pending_jobs_are_kept() {
+    type Pending = (i64, i64, String, i64, f64);
     const KEYS: [&str; 6] = ["p", "q", "r", "s", "t", "u"];
     const PENDING: &str = "
         SELECT DISTINCT m.study_id, j.id, j.batch, j.priority, j.cost
@@ -227,7 +228,6 @@ async fn a_studys_pending_jobs_are_kept() {
             }),
             _ => drop(queue.collect_garbage().await.unwrap()),
         }
-        type Pending = (i64, i64, String, i64, f64);
         let pending: Vec<Pending> = sqlx::query_as(PENDING).fetch_all(&mut raw).await.unwrap();
         let kept: Vec<Pending> = sqlx::query_as(KEPT).fetch_all(&mut raw).await.unwrap();
         assert_eq!(kept, pending);

@@ -56,17 +56,16 @@ async fn the_first_schema_is_brought_up_to_date() {
         .iter()
         .map(|row| (row.key.as_str(), row.parameters.as_str(), row.state, row.attempt, row.wall_s))
         .collect();
-    use JobState::{Done, Failed, Pending};
     assert_eq!(
         told,
         [
-            ("pending", "a0", Pending, 0, None),
-            ("running", "a1", Pending, 2, None),
-            ("done", "a2", Done, 3, Some(1.25)),
-            ("pending", "a3", Pending, 0, None),
-            ("failed", "b0", Failed, 1, Some(0.5)),
-            ("released", "b1", Pending, 2, None),
-            ("running", "b2", Pending, 2, None),
+            ("pending", "a0", JobState::Pending, 0, None),
+            ("running", "a1", JobState::Pending, 2, None),
+            ("done", "a2", JobState::Done, 3, Some(1.25)),
+            ("pending", "a3", JobState::Pending, 0, None),
+            ("failed", "b0", JobState::Failed, 1, Some(0.5)),
+            ("released", "b1", JobState::Pending, 2, None),
+            ("running", "b2", JobState::Pending, 2, None),
         ]
     );
     assert_eq!(rows[2].record.as_deref(), Some("record of done"));
