@@ -48,7 +48,8 @@ const TAKE: &str = "
         SELECT id FROM jobs INDEXED BY jobs_pending_batch
         WHERE state = 'pending' AND batch = ?5 ORDER BY priority DESC, cost DESC, id LIMIT ?4
     )
-    RETURNING id, key, payload, attempt, cost, priority, (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
+    RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority,
+              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
 
 const TAKE_OF_STUDY: &str = "
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = ?2, owner = ?1, lease_until_ms = ?3
@@ -56,7 +57,8 @@ const TAKE_OF_STUDY: &str = "
         SELECT job_id FROM study_pending INDEXED BY study_pending_batch
         WHERE study_id = ?6 AND batch = ?5 ORDER BY priority DESC, cost DESC, job_id LIMIT ?4
     )
-    RETURNING id, key, payload, attempt, cost, priority, (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
+    RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority,
+              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
 
 type Columns = (i64, String, String, u32, f64, i64, Option<Vec<u8>>);
 

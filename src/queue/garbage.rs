@@ -36,6 +36,7 @@ impl Queue {
                     sqlx::query(statement).execute(&mut *connection).await.map(|done| done.rows_affected())
                 };
                 deleted("DELETE FROM checkpoints WHERE job_id IN (SELECT id FROM garbage)").await?;
+                deleted("DELETE FROM payloads WHERE job_id IN (SELECT id FROM garbage)").await?;
                 let garbage = Garbage {
                     results: deleted("DELETE FROM results WHERE job_id IN (SELECT id FROM garbage)").await?,
                     jobs: deleted("DELETE FROM jobs WHERE id IN (SELECT id FROM garbage)").await?,

@@ -70,10 +70,16 @@ const UPSERT_STUDY: &str = "
 ///
 /// What can be run together is the program's to say, and another version may say it differently.
 const INSERT_JOBS: &str = "
-    INSERT INTO jobs (key, payload, cost, batch, priority, created_ms)
-    SELECT e.value ->> 0, e.value ->> 1, e.value ->> 2, e.value ->> 3, COALESCE(e.value ->> 4, 0), ?2
+    INSERT INTO jobs (key, cost, batch, priority, created_ms)
+    SELECT e.value ->> 0, e.value ->> 2, e.value ->> 3, COALESCE(e.value ->> 4, 0), ?2
     FROM json_each(?1) AS e WHERE true
     ON CONFLICT (key) DO UPDATE SET batch = excluded.batch WHERE batch <> excluded.batch";
+
+/// CROSS JOIN keeps the order of the loops: a key is looked up for each row, not the rows for each job.
+const INSERT_PAYLOADS: &str = "
+    INSERT INTO payloads (job_id, payload)
+    SELECT j.id, e.value ->> 1 FROM json_each(?1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 0 WHERE true
+    ON CONFLICT (job_id) DO NOTHING";
 
 /// As above, the key is looked up for each row.
 const SET_PRIORITY: &str = "
@@ -93,7 +99,6 @@ const CANCEL_UNASKED: &str = "
 
 const NOTE: &str = "cancelled: its study was replaced by one without it";
 
-/// CROSS JOIN keeps the order of the loops: a key is looked up for each row, not the rows for each job.
 const INSERT_ROWS: &str = "
     INSERT INTO study_jobs (study_id, ordinal, job_id, parameters)
     SELECT ?2, ?3 + e.key, j.id, e.value ->> 1
@@ -172,6 +177,7 @@ async fn insert_jobs(
         jobs.iter().map(|job| (&job.key, &job.payload, job.cost, &job.batch, job.priority)).collect();
     let rows = json(&rows);
     sqlx::query(INSERT_JOBS).bind(&rows).bind(now_ms).execute(&mut *connection).await?;
+    sqlx::query(INSERT_PAYLOADS).bind(&rows).execute(&mut *connection).await?;
     if jobs.iter().any(|job| job.priority.is_some()) {
         sqlx::query(SET_PRIORITY).bind(&rows).execute(connection).await?;
     }
