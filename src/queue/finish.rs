@@ -49,16 +49,14 @@ const INSERT_RESULTS: &str = "
     WHERE j.state = 'running' AND j.owner = ?2 AND j.attempt = e.value ->> 1
     ON CONFLICT DO NOTHING";
 
+/// The plus signs leave only the key to look jobs up by, and so keep the loops in this order.
 const END: &str = "
     UPDATE jobs
-    SET state = f.state, note = COALESCE(f.note, jobs.note), attempt = jobs.attempt - f.undone,
+    SET state = e.value ->> 2, note = COALESCE(e.value ->> 3, jobs.note), attempt = jobs.attempt - (e.value ->> 4),
         owner = NULL, lease_until_ms = NULL
-    FROM (
-        SELECT j.id, e.value ->> 2 AS state, e.value ->> 3 AS note, e.value ->> 4 AS undone
-        FROM json_each(?1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 0
-        WHERE j.state = 'running' AND j.owner = ?2 AND j.attempt = e.value ->> 1
-    ) AS f
-    WHERE jobs.id = f.id
+    FROM json_each(?1) AS e
+    WHERE jobs.key = e.value ->> 0
+      AND +jobs.state = 'running' AND +jobs.owner = ?2 AND jobs.attempt = e.value ->> 1
     RETURNING key";
 
 /// Stores the ends of attempts; gives the keys of those that `owner` does not run.
@@ -109,4 +107,26 @@ fn end(job: &Finished) -> (&str, u32, &'static str, Option<&'static str>, u32) {
 
 fn json(rows: &impl Serialize) -> String {
     serde_json::to_string(rows).expect("strings and finite numbers have a JSON form")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{END, INSERT_RESULTS};
+    use crate::queue::{Queue, SystemClock};
+    use std::sync::Arc;
+
+    /// Protects: ends are looked up by their keys, and not every job is looked at for each turn.
+    #[tokio::test]
+    async fn ends_look_jobs_up_by_key() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let mut queue = Queue::open(&folder.path().join("db"), Arc::new(SystemClock)).await.unwrap();
+        for statement in [INSERT_RESULTS, END] {
+            let explain = sqlx::AssertSqlSafe(format!("EXPLAIN QUERY PLAN {statement}"));
+            let plan: Vec<(i64, i64, i64, String)> =
+                sqlx::query_as(explain).fetch_all(&mut queue.connection).await.unwrap();
+            let steps: Vec<_> = plan.iter().map(|(_, _, _, step)| step.as_str()).collect();
+            assert!(steps[0].starts_with("SCAN e "), "{steps:?}");
+            assert!(steps[1].starts_with("SEARCH ") && steps[1].ends_with("jobs_1 (key=?)"), "{steps:?}");
+        }
+    }
 }
