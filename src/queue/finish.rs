@@ -85,7 +85,9 @@ pub(super) async fn store(
 }
 
 /// Key, attempt, record, error and time.
-fn result(job: &Finished) -> Option<(&str, u32, Option<&str>, Option<&str>, f64)> {
+type ResultRow<'a> = (&'a str, u32, Option<&'a str>, Option<&'a str>, f64);
+
+fn result(job: &Finished) -> Option<ResultRow<'_>> {
     let (record, error) = match &job.outcome {
         FinishedOutcome::Done { record } => (Some(record.as_str()), None),
         FinishedOutcome::Failed { error } => (None, Some(error.as_str())),
