@@ -24,6 +24,16 @@ CREATE TABLE workers (
 -- When the study was cancelled: it asks for its jobs no more.
 ALTER TABLE studies ADD COLUMN cancelled_ms INTEGER;
 
+-- What the executor needs, apart from the jobs: claiming and finishing rewrite a job's row, and with it all that lies
+-- on the same page.
+CREATE TABLE payloads (
+    job_id  INTEGER PRIMARY KEY,
+    payload TEXT    NOT NULL,
+    FOREIGN KEY (job_id) REFERENCES jobs (id)
+) STRICT;
+
+INSERT INTO payloads (job_id, payload) SELECT id, payload FROM jobs;
+
 -- Jobs that can be run together have the same `batch`, an opaque name. `crashes` counts attempts whose process died,
 -- in a row and without a checkpoint in between. `attempt` is, with the owner, the fence that keeps a late finish out.
 CREATE TABLE jobs_2 (
@@ -41,16 +51,14 @@ CREATE TABLE jobs_2 (
     created_ms     INTEGER NOT NULL,
     started_ms     INTEGER,
     note           TEXT,
-    payload        TEXT    NOT NULL,
     CHECK ((state = 'running') = (owner IS NOT NULL)),
     CHECK ((state = 'running') = (lease_until_ms IS NOT NULL))
 ) STRICT;
 
 -- Whoever ran a job under the first schema held a lock that is ours now, so nothing is running.
-INSERT INTO jobs_2 (id, key, cost, state, attempt, created_ms, started_ms, note, payload)
+INSERT INTO jobs_2 (id, key, cost, state, attempt, created_ms, started_ms, note)
 SELECT id, key, cost, CASE state WHEN 'running' THEN 'pending' ELSE state END, attempt, created_ms, started_ms,
-       CASE state WHEN 'running' THEN 'taken back: the process that ran the job ended without finishing it' ELSE note END,
-       payload
+       CASE state WHEN 'running' THEN 'taken back: the process that ran the job ended without finishing it' ELSE note END
 FROM jobs;
 
 DROP TABLE jobs;
@@ -64,24 +72,19 @@ CREATE INDEX jobs_pending_batch ON jobs (batch, priority DESC, cost DESC, id) WH
 -- What a worker runs: its heartbeat and its end.
 CREATE INDEX jobs_owner ON jobs (owner) WHERE state = 'running';
 
--- Counting states must not read the payloads.
-CREATE INDEX jobs_state ON jobs (state);
-
 -- The pending jobs of each study in the order of claims, kept by the triggers below: looking for a study's next job
--- among all pending ones takes as long as other studies have jobs before it.
+-- among all pending ones takes as long as other studies have jobs before it. No foreign keys: what they would check is
+-- what the triggers do.
 CREATE TABLE study_pending (
-    study_id INTEGER NOT NULL REFERENCES studies (id),
+    study_id INTEGER NOT NULL,
     priority INTEGER NOT NULL,
     cost     REAL    NOT NULL,
-    job_id   INTEGER NOT NULL REFERENCES jobs (id),
+    job_id   INTEGER NOT NULL,
     batch    TEXT    NOT NULL,
     PRIMARY KEY (study_id, priority DESC, cost DESC, job_id)
 ) STRICT, WITHOUT ROWID;
 
 CREATE INDEX study_pending_batch ON study_pending (study_id, batch, priority DESC, cost DESC, job_id);
-
--- Also what a removed job is looked up by.
-CREATE INDEX study_pending_job ON study_pending (job_id);
 
 INSERT INTO study_pending (study_id, priority, cost, job_id, batch)
 SELECT DISTINCT m.study_id, j.priority, j.cost, j.id, j.batch
@@ -92,7 +95,9 @@ WHERE j.state = 'pending';
 CREATE TRIGGER jobs_pending_kept AFTER UPDATE OF state, batch, priority, cost ON jobs
 WHEN old.state = 'pending' OR new.state = 'pending'
 BEGIN
-    DELETE FROM study_pending WHERE job_id = old.id;
+    DELETE FROM study_pending
+    WHERE study_id IN (SELECT m.study_id FROM study_jobs AS m WHERE m.job_id = old.id)
+      AND priority = old.priority AND cost = old.cost AND job_id = old.id;
     INSERT INTO study_pending (study_id, priority, cost, job_id, batch)
     SELECT DISTINCT m.study_id, new.priority, new.cost, new.id, new.batch
     FROM study_jobs AS m
@@ -111,10 +116,12 @@ END;
 CREATE TRIGGER study_jobs_removed AFTER DELETE ON study_jobs
 WHEN NOT EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = old.job_id AND m.study_id = old.study_id)
 BEGIN
-    DELETE FROM study_pending WHERE job_id = old.job_id AND study_id = old.study_id;
+    DELETE FROM study_pending
+    WHERE study_id = old.study_id AND job_id = old.job_id
+      AND (priority, cost) = (SELECT j.priority, j.cost FROM jobs AS j WHERE j.id = old.job_id);
 END;
 
--- One row an attempt that ended, written once and never changed. The time it took is unknown where its process died.
+-- One row an attempt that ended, written once and never changed, one after the other as they come. The time it took is unknown where its process died.
 -- `provenance` says what it was made with, as the worker tells it.
 CREATE TABLE results_2 (
     job_id      INTEGER NOT NULL REFERENCES jobs (id),
@@ -127,7 +134,7 @@ CREATE TABLE results_2 (
     provenance  TEXT,
     PRIMARY KEY (job_id, attempt),
     CHECK ((record IS NULL) <> (error IS NULL))
-) STRICT, WITHOUT ROWID;
+) STRICT;
 
 INSERT INTO results_2 (job_id, attempt, record, error, wall_s, finished_ms)
 SELECT job_id, attempt, record, error, wall_s, finished_ms FROM results;

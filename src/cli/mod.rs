@@ -17,6 +17,7 @@ mod rm;
 mod rows;
 mod run;
 mod schema;
+mod show;
 mod solve;
 mod status;
 mod submit;
@@ -60,6 +61,8 @@ enum Command {
     Pareto(pareto::Args),
     /// Write one row a job as CSV or JSON lines.
     Export(export::Args),
+    /// Show all that is known of a job, with what its result was made with.
+    Show(show::Args),
     /// Try failed and cancelled jobs of a study again.
     Retry(retry::Args),
     /// Cancel the pending jobs of a study.
@@ -93,6 +96,7 @@ pub fn main(cli: Cli) -> u8 {
         Command::Report(args) => report::run(&args, db),
         Command::Pareto(args) => pareto::run(&args, db),
         Command::Export(args) => export::run(&args, db),
+        Command::Show(args) => show::run(&args, db),
         Command::Retry(args) => retry::run(&args, db),
         Command::Cancel(args) => cancel::run(&args, db),
         Command::Rm(args) => rm::run(&args, db),

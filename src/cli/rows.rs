@@ -42,7 +42,8 @@ pub async fn read(queue: &mut Queue, study: &str) -> Result<Vec<Row>, CliError> 
     unreadable.map_or(Ok(rows), Err)
 }
 
-fn convert(study: &str, row: &StudyRow) -> Result<Row, CliError> {
+/// What the report makes of a row.
+pub fn convert(study: &str, row: &StudyRow) -> Result<Row, CliError> {
     let unreadable = |what: &str, error: serde_json::Error| {
         CliError::Unreadable(format!(
             "job {} of {study}: its {what} was written by another version of tribosweep ({error}); \

@@ -5,8 +5,9 @@ use super::output::{block_on, print};
 use super::rows;
 use crate::analysis::Outcome;
 use crate::exit;
-use crate::queue::{Counts, Queue};
-use crate::report::{Row, RowState};
+use crate::queue::{Counts, JobState, Queue, Scope};
+use crate::report::Row;
+use serde::Deserialize;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
@@ -59,22 +60,59 @@ async fn all(queue: &mut Queue, as_json: bool) -> Result<String, CliError> {
     }))
 }
 
+/// What of a record is counted here: reading all of it takes several times as long.
+#[derive(Deserialize)]
+struct Ended {
+    outcome: Outcome,
+}
+
+/// What a study's rows tell besides their number.
+#[derive(Default)]
+struct Findings {
+    not_periodic: usize,
+    /// Failed rows, with their parameters in words and the reason.
+    failures: Vec<Failure>,
+}
+
+struct Failure {
+    job: String,
+    parameters: String,
+    error: String,
+}
+
+async fn find(queue: &mut Queue, name: &str) -> Result<Findings, CliError> {
+    let mut findings = Findings::default();
+    let mut unreadable = None;
+    let read = queue.each_row(name, |row| match row.state {
+        JobState::Failed => match rows::convert(name, &row) {
+            Ok(read) => findings.failures.push(Failure {
+                parameters: parameters(&read),
+                job: row.key,
+                error: row.error.unwrap_or_default(),
+            }),
+            Err(error) => {
+                unreadable.get_or_insert(error);
+            }
+        },
+        JobState::Done => {
+            // A record that cannot be read is the report's to complain about.
+            let ended = row.record.as_deref().map(serde_json::from_str::<Ended>);
+            let is_periodic = !matches!(ended, Some(Ok(Ended { outcome: Outcome::NotPeriodic })));
+            findings.not_periodic += usize::from(!is_periodic);
+        }
+        _ => {}
+    });
+    read.await?;
+    unreadable.map_or(Ok(findings), Err)
+}
+
 async fn one(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, CliError> {
-    let rows = rows::read(queue, name).await?;
-    let counts = queue.counts(&crate::queue::Scope::Study(name.to_owned())).await?;
-    let not_periodic =
-        rows.iter().filter(|row| row.record().is_some_and(|r| r.outcome == Outcome::NotPeriodic)).count();
-    let failures: Vec<(&Row, &str)> = rows
-        .iter()
-        .filter_map(|row| match &row.state {
-            RowState::Failed { error } => Some((row, error.as_str())),
-            _ => None,
-        })
-        .collect();
+    let Findings { not_periodic, failures } = find(queue, name).await?;
+    let counts = queue.counts(&Scope::Study(name.to_owned())).await?;
     if as_json {
         let failed: Vec<Value> = failures
             .iter()
-            .map(|(row, error)| json!({ "job": row.job, "parameters": parameters(row), "error": error }))
+            .map(|Failure { job, parameters, error }| json!({ "job": job, "parameters": parameters, "error": error }))
             .collect();
         return Ok(format!(
             "{}\n",
@@ -85,14 +123,17 @@ async fn one(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, Cli
     if not_periodic > 0 {
         let _ = writeln!(text, "{not_periodic} done jobs reached their time limit without becoming periodic");
     }
-    for (row, error) in failures.iter().take(LISTED) {
-        let _ = writeln!(text, "failed: {} ({}): {error}", row.job, parameters(row));
+    for Failure { job, parameters, error } in failures.iter().take(LISTED) {
+        let _ = writeln!(text, "failed: {job} ({parameters}): {error}");
     }
     if failures.len() > LISTED {
         let _ = writeln!(text, "… and {} more failures", failures.len() - LISTED);
     }
     if counts.pending + counts.running > 0 {
         text.push_str("continue with `tribosweep work`\n");
+    }
+    if counts.cancelled > 0 {
+        let _ = writeln!(text, "bring cancelled jobs back with `tribosweep retry {name}`");
     }
     Ok(text)
 }

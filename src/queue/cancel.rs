@@ -40,17 +40,19 @@ impl Queue {
     /// [`QueueError::UnknownStudy`], or if the database cannot be written.
     pub async fn cancel(&mut self, study: &str) -> Result<Cancelled, QueueError> {
         let now_ms = self.clock.now_ms();
-        let mut transaction = self.write().await?;
-        let study_id = studies::require(&mut transaction, study).await?;
-        sqlx::query(CANCEL_STUDY).bind(study_id).bind(now_ms).execute(&mut *transaction).await?;
-        let cancelled = sqlx::query(CANCEL_JOBS).bind(study_id).bind(NOTE).execute(&mut *transaction).await?;
-        let shared: i64 = sqlx::query_scalar(SHARED).bind(study_id).fetch_one(&mut *transaction).await?;
-        let running: i64 = sqlx::query_scalar(RUNNING).bind(study_id).fetch_one(&mut *transaction).await?;
-        transaction.commit().await?;
-        Ok(Cancelled {
-            cancelled: cancelled.rows_affected(),
-            shared: shared.unsigned_abs(),
-            running: running.unsigned_abs(),
+        self.write(async |connection| {
+            let study_id = studies::require(connection, study).await?;
+            sqlx::query(CANCEL_STUDY).bind(study_id).bind(now_ms).execute(&mut *connection).await?;
+            let cancelled =
+                sqlx::query(CANCEL_JOBS).bind(study_id).bind(NOTE).execute(&mut *connection).await?;
+            let shared: i64 = sqlx::query_scalar(SHARED).bind(study_id).fetch_one(&mut *connection).await?;
+            let running: i64 = sqlx::query_scalar(RUNNING).bind(study_id).fetch_one(&mut *connection).await?;
+            Ok(Cancelled {
+                cancelled: cancelled.rows_affected(),
+                shared: shared.unsigned_abs(),
+                running: running.unsigned_abs(),
+            })
         })
+        .await
     }
 }

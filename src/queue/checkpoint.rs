@@ -27,13 +27,14 @@ impl Queue {
     ) -> Result<bool, QueueError> {
         let owner = self.registration().id;
         let now_ms = self.clock.now_ms();
-        let mut transaction = self.write().await?;
-        let saved = sqlx::query(SAVE).bind(key).bind(attempt).bind(owner).bind(bytes).bind(now_ms);
-        let is_saved = saved.execute(&mut *transaction).await?.rows_affected() == 1;
-        if is_saved {
-            sqlx::query(FORGIVE).bind(key).execute(&mut *transaction).await?;
-        }
-        transaction.commit().await?;
-        Ok(is_saved)
+        self.write(async |connection| {
+            let saved = sqlx::query(SAVE).bind(key).bind(attempt).bind(owner).bind(bytes).bind(now_ms);
+            let is_saved = saved.execute(&mut *connection).await?.rows_affected() == 1;
+            if is_saved {
+                sqlx::query(FORGIVE).bind(key).execute(connection).await?;
+            }
+            Ok(is_saved)
+        })
+        .await
     }
 }

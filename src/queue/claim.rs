@@ -48,7 +48,8 @@ const TAKE: &str = "
         SELECT id FROM jobs INDEXED BY jobs_pending_batch
         WHERE state = 'pending' AND batch = ?5 ORDER BY priority DESC, cost DESC, id LIMIT ?4
     )
-    RETURNING id, key, payload, attempt, cost, priority, (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
+    RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority,
+              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
 
 const TAKE_OF_STUDY: &str = "
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = ?2, owner = ?1, lease_until_ms = ?3
@@ -56,7 +57,8 @@ const TAKE_OF_STUDY: &str = "
         SELECT job_id FROM study_pending INDEXED BY study_pending_batch
         WHERE study_id = ?6 AND batch = ?5 ORDER BY priority DESC, cost DESC, job_id LIMIT ?4
     )
-    RETURNING id, key, payload, attempt, cost, priority, (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
+    RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority,
+              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
 
 type Columns = (i64, String, String, u32, f64, i64, Option<Vec<u8>>);
 
@@ -106,4 +108,35 @@ pub(super) async fn take(
         checkpoint,
     };
     Ok(rows.into_iter().map(job).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{FIRST, FIRST_OF_STUDY, TAKE, TAKE_OF_STUDY};
+    use crate::queue::{Queue, SystemClock};
+    use std::sync::Arc;
+
+    /// Protects: no claim looks at every pending job or sorts them: each reads as many entries of an index as it takes
+    /// jobs.
+    #[tokio::test]
+    async fn claims_use_their_indexes() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let mut queue = Queue::open(&folder.path().join("db"), Arc::new(SystemClock)).await.unwrap();
+        for (statement, index) in [
+            (FIRST, "jobs_pending"),
+            (FIRST_OF_STUDY, "PRIMARY KEY (study_id=?)"),
+            (TAKE, "jobs_pending_batch (batch=?)"),
+            (TAKE_OF_STUDY, "study_pending_batch (study_id=? AND batch=?)"),
+        ] {
+            let explain = sqlx::AssertSqlSafe(format!("EXPLAIN QUERY PLAN {statement}"));
+            let plan: Vec<(i64, i64, i64, String)> =
+                sqlx::query_as(explain).fetch_all(&mut queue.connection).await.unwrap();
+            let plan: Vec<_> = plan.into_iter().map(|(_, _, _, step)| step).collect();
+            assert!(plan.iter().any(|step| step.ends_with(index)), "{index}: {plan:#?}");
+            for step in &plan {
+                assert!(!step.contains("TEMP B-TREE"), "{plan:#?}");
+                assert!(!step.starts_with("SCAN") || step.ends_with("INDEX jobs_pending"), "{plan:#?}");
+            }
+        }
+    }
 }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use sqlx::SqliteConnection;
 
-use super::take_back::Verdict;
+use super::take_back::{Owner, Verdict};
 use super::{Clock, Queue, QueueError, open};
 
 /// One thing that was looked at.
@@ -33,9 +33,6 @@ impl Finding {
     }
 }
 
-/// Problems that are listed; the first ones tell what is wrong.
-const LISTED: i64 = 5;
-
 const SYNCHRONOUS: [&str; 4] = ["off", "normal", "full", "extra"];
 
 const RUNNING_OF: &str = "SELECT COUNT(*) FROM jobs WHERE owner = ?1 AND state = 'running'";
@@ -43,9 +40,6 @@ const RUNNING_OF: &str = "SELECT COUNT(*) FROM jobs WHERE owner = ?1 AND state =
 const EXPIRED_OF: &str = "
     SELECT COUNT(*) FROM jobs
     WHERE owner = ?1 AND state = 'running' AND (lease_until_ms <= ?2 OR lease_until_ms > ?3)";
-
-const WORKERS: &str = "
-    SELECT id, host, pid, version, heartbeat_ms FROM workers WHERE ended_ms IS NULL ORDER BY id";
 
 /// Looks at the database at `path`. It is not changed, but for tables that are brought up to date.
 ///
@@ -91,10 +85,9 @@ async fn inspect(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), Q
     let level = usize::try_from(level).ok().and_then(|level| SYNCHRONOUS.get(level));
     findings.push(Finding::good("synchronous", *level.unwrap_or(&"unknown")));
 
-    let damage: Vec<String> = sqlx::query_scalar("SELECT integrity_check FROM pragma_integrity_check(?1)")
-        .bind(LISTED)
-        .fetch_all(&mut queue.connection)
-        .await?;
+    // The first few tell what is wrong.
+    let damage: Vec<String> =
+        sqlx::query_scalar("PRAGMA integrity_check(5)").fetch_all(&mut queue.connection).await?;
     let is_whole = damage == ["ok"];
     let advice = "; copy what can be read with `sqlite3 FILE .recover`, or take a backup";
     let text = if is_whole { "ok".to_owned() } else { damage.join("; ") + advice };
@@ -105,42 +98,38 @@ async fn inspect(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), Q
         if orphans == 0 { "ok".to_owned() } else { format!("{orphans} rows refer to what is not there") };
     findings.push(Finding::judged("references", text, orphans == 0));
 
-    leases(queue, findings).await?;
     workers(queue, findings).await
 }
 
-async fn leases(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), QueueError> {
+async fn workers(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), QueueError> {
     let (now_ms, far_ms) = queue.lease_window();
+    let owners = queue.owners().await?;
     let (mut running, mut stale) = (0, 0);
-    for (owner, verdict) in queue.owners().await? {
-        let count = |statement| sqlx::query_scalar(statement).bind(owner).bind(now_ms).bind(far_ms);
-        let own: i64 = sqlx::query_scalar(RUNNING_OF).bind(owner).fetch_one(&mut queue.connection).await?;
-        running += own;
-        stale += match verdict {
-            Verdict::Alive => 0,
-            Verdict::Gone => own,
-            Verdict::Elsewhere => count(EXPIRED_OF).fetch_one(&mut queue.connection).await?,
+    for owner in &owners {
+        let connection = &mut queue.connection;
+        let own: i64 = sqlx::query_scalar(RUNNING_OF).bind(owner.id).fetch_one(&mut *connection).await?;
+        let expired = sqlx::query_scalar(EXPIRED_OF).bind(owner.id).bind(now_ms).bind(far_ms);
+        let (word, left) = match owner.verdict() {
+            Verdict::Alive => ("alive", 0),
+            Verdict::Gone => ("gone", own),
+            Verdict::Elsewhere => ("not to be seen from here", expired.fetch_one(connection).await?),
         };
+        running += own;
+        stale += left;
+        let ago_s = (now_ms - owner.heartbeat_ms) / 1000;
+        let Owner { id, host, pid, version, .. } = owner;
+        let text = format!(
+            "{id}: process {pid} on {host}, version {version}, {word}, {own} jobs, last seen {ago_s} s ago"
+        );
+        findings.push(Finding::good("worker", text));
+    }
+    if owners.is_empty() {
+        findings.push(Finding::good("worker", "none at work"));
     }
     // Nobody has to do anything about them: the next worker does.
     let text = format!("{running} running jobs, {stale} of them left by processes that are gone");
     let advice = if stale > 0 { "; the next `tribosweep work` takes them back" } else { "" };
     findings.push(Finding::good("leases", text + advice));
-    Ok(())
-}
-
-async fn workers(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), QueueError> {
-    let now_ms = queue.clock.now_ms();
-    let workers: Vec<(i64, String, i64, String, i64)> =
-        sqlx::query_as(WORKERS).fetch_all(&mut queue.connection).await?;
-    if workers.is_empty() {
-        findings.push(Finding::good("workers", "none at work"));
-    }
-    for (id, host, pid, version, heartbeat_ms) in workers {
-        let ago_s = (now_ms - heartbeat_ms) / 1000;
-        let text = format!("{id}: process {pid} on {host}, tribosweep {version}, last seen {ago_s} s ago");
-        findings.push(Finding::good("worker", text));
-    }
     Ok(())
 }
 

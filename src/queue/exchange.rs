@@ -31,19 +31,14 @@ impl Queue {
         let lease =
             claim::Lease { owner: self.registration().id, now_ms, until_ms: self.lease_until(now_ms) };
         let provenance = self.registration().provenance.clone();
-        let mut transaction = self.write().await?;
-        let mut refused = Vec::new();
-        for job in finished {
-            let fence = finish::Fence { key: &job.key, attempt: job.attempt, owner: lease.owner };
-            if !finish::store(&mut transaction, fence, job, &provenance, now_ms).await? {
-                refused.push(job.key.clone());
+        self.write(async |connection| {
+            let refused = finish::store(connection, finished, lease.owner, &provenance, now_ms).await?;
+            let mut claimed = Vec::with_capacity(claims.len());
+            for claim in claims {
+                claimed.push(claim::take(connection, claim, lease).await?);
             }
-        }
-        let mut claimed = Vec::with_capacity(claims.len());
-        for claim in claims {
-            claimed.push(claim::take(&mut transaction, claim, lease).await?);
-        }
-        transaction.commit().await?;
-        Ok(Exchanged { claimed, refused })
+            Ok(Exchanged { claimed, refused })
+        })
+        .await
     }
 }

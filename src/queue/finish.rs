@@ -1,3 +1,6 @@
+use std::collections::HashSet;
+
+use serde::Serialize;
 use sqlx::SqliteConnection;
 
 use super::{JobState, QueueError};
@@ -34,67 +37,98 @@ pub enum FinishedOutcome {
     Unstarted,
 }
 
-/// Which attempt of whom an operation is about.
-///
-/// Its condition, `state = 'running' AND owner = … AND attempt = …`, is in every statement that speaks for an
-/// attempt: whoever lost the job in the meantime changes nothing, and learns of it from the number of rows.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Fence<'a> {
-    pub key: &'a str,
-    pub attempt: u32,
-    pub owner: i64,
-}
-
 const RELEASED: &str = "released: the work was interrupted before the job ended";
 
-const INSERT_RESULT: &str = "
+// The fence, `state = 'running' AND owner = … AND attempt = …`, is in every statement that speaks for an attempt:
+// whoever lost the job in the meantime changes nothing. All of a turn's ends are two statements, since handing a
+// statement to the database costs more than what it does for one job. CROSS JOIN: a key is looked up for each end.
+const INSERT_RESULTS: &str = "
     INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)
-    SELECT id, attempt, ?4, ?5, ?6, started_ms, ?7, ?8 FROM jobs
-    WHERE key = ?1 AND state = 'running' AND attempt = ?2 AND owner = ?3";
+    SELECT j.id, j.attempt, e.value ->> 2, e.value ->> 3, e.value ->> 4, j.started_ms, ?3, ?4
+    FROM json_each(?1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 0
+    WHERE j.state = 'running' AND j.owner = ?2 AND j.attempt = e.value ->> 1
+    ON CONFLICT DO NOTHING";
 
+/// The plus signs leave only the key to look jobs up by, and so keep the loops in this order.
 const END: &str = "
-    UPDATE jobs SET state = ?4, owner = NULL, lease_until_ms = NULL
-    WHERE key = ?1 AND state = 'running' AND attempt = ?2 AND owner = ?3";
+    UPDATE jobs
+    SET state = e.value ->> 2, note = COALESCE(e.value ->> 3, jobs.note), attempt = jobs.attempt - (e.value ->> 4),
+        owner = NULL, lease_until_ms = NULL
+    FROM json_each(?1) AS e
+    WHERE jobs.key = e.value ->> 0
+      AND +jobs.state = 'running' AND +jobs.owner = ?2 AND jobs.attempt = e.value ->> 1
+    RETURNING key";
 
-const RELEASE: &str = "
-    UPDATE jobs SET state = 'pending', owner = NULL, lease_until_ms = NULL, note = ?4
-    WHERE key = ?1 AND state = 'running' AND attempt = ?2 AND owner = ?3";
-
-const UNDO: &str = "
-    UPDATE jobs SET state = 'pending', owner = NULL, lease_until_ms = NULL, attempt = attempt - 1
-    WHERE key = ?1 AND state = 'running' AND attempt = ?2 AND owner = ?3";
-
-/// Stores the end of an attempt; `false` if the job is not running that attempt.
+/// Stores the ends of attempts; gives the keys of those that `owner` does not run.
 pub(super) async fn store(
     connection: &mut SqliteConnection,
-    fence: Fence<'_>,
-    finished: &Finished,
+    finished: &[Finished],
+    owner: i64,
     provenance: &str,
     now_ms: i64,
-) -> Result<bool, QueueError> {
-    let Fence { key, attempt, owner } = fence;
-    let fenced = |statement: &'static str| sqlx::query(statement).bind(key).bind(attempt).bind(owner);
-    let (state, record, error) = match &finished.outcome {
-        FinishedOutcome::Done { record } => (JobState::Done, Some(record), None),
-        FinishedOutcome::Failed { error } => (JobState::Failed, None, Some(error)),
-        FinishedOutcome::Released => {
-            return Ok(fenced(RELEASE).bind(RELEASED).execute(connection).await?.rows_affected() == 1);
-        }
-        FinishedOutcome::Unstarted => {
-            return Ok(fenced(UNDO).execute(connection).await?.rows_affected() == 1);
-        }
-    };
-    let inserted = fenced(INSERT_RESULT)
-        .bind(record)
-        .bind(error)
-        .bind(finished.wall_s)
-        .bind(now_ms)
-        .bind(provenance)
-        .execute(&mut *connection)
-        .await?;
-    if inserted.rows_affected() == 0 {
-        return Ok(false);
+) -> Result<Vec<String>, QueueError> {
+    if finished.is_empty() {
+        return Ok(Vec::new());
     }
-    let ended = fenced(END).bind(state.as_str()).execute(connection).await?;
-    Ok(ended.rows_affected() == 1)
+    let results: Vec<_> = finished.iter().filter_map(result).collect();
+    if !results.is_empty() {
+        let insert =
+            sqlx::query(INSERT_RESULTS).bind(json(&results)).bind(owner).bind(now_ms).bind(provenance);
+        insert.execute(&mut *connection).await?;
+    }
+    let ends: Vec<_> = finished.iter().map(end).collect();
+    let ended: Vec<String> =
+        sqlx::query_scalar(END).bind(json(&ends)).bind(owner).fetch_all(connection).await?;
+    let ended: HashSet<String> = ended.into_iter().collect();
+    let keys = finished.iter().map(|job| &job.key);
+    Ok(keys.filter(|key| !ended.contains(*key)).cloned().collect())
+}
+
+/// Key, attempt, record, error and time.
+type ResultRow<'a> = (&'a str, u32, Option<&'a str>, Option<&'a str>, f64);
+
+fn result(job: &Finished) -> Option<ResultRow<'_>> {
+    let (record, error) = match &job.outcome {
+        FinishedOutcome::Done { record } => (Some(record.as_str()), None),
+        FinishedOutcome::Failed { error } => (None, Some(error.as_str())),
+        FinishedOutcome::Released | FinishedOutcome::Unstarted => return None,
+    };
+    Some((&job.key, job.attempt, record, error, job.wall_s))
+}
+
+/// Key, attempt, state, note and the attempts that do not count.
+fn end(job: &Finished) -> (&str, u32, &'static str, Option<&'static str>, u32) {
+    let (state, note, undone) = match job.outcome {
+        FinishedOutcome::Done { .. } => (JobState::Done, None, 0),
+        FinishedOutcome::Failed { .. } => (JobState::Failed, None, 0),
+        FinishedOutcome::Released => (JobState::Pending, Some(RELEASED), 0),
+        FinishedOutcome::Unstarted => (JobState::Pending, None, 1),
+    };
+    (&job.key, job.attempt, state.as_str(), note, undone)
+}
+
+fn json(rows: &impl Serialize) -> String {
+    serde_json::to_string(rows).expect("strings and finite numbers have a JSON form")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{END, INSERT_RESULTS};
+    use crate::queue::{Queue, SystemClock};
+    use std::sync::Arc;
+
+    /// Protects: ends are looked up by their keys, and not every job is looked at for each turn.
+    #[tokio::test]
+    async fn ends_look_jobs_up_by_key() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let mut queue = Queue::open(&folder.path().join("db"), Arc::new(SystemClock)).await.unwrap();
+        for statement in [INSERT_RESULTS, END] {
+            let explain = sqlx::AssertSqlSafe(format!("EXPLAIN QUERY PLAN {statement}"));
+            let plan: Vec<(i64, i64, i64, String)> =
+                sqlx::query_as(explain).fetch_all(&mut queue.connection).await.unwrap();
+            let steps: Vec<_> = plan.iter().map(|(_, _, _, step)| step.as_str()).collect();
+            assert!(steps[0].starts_with("SCAN e "), "{steps:?}");
+            assert!(steps[1].starts_with("SEARCH ") && steps[1].ends_with("jobs_1 (key=?)"), "{steps:?}");
+        }
+    }
 }

@@ -29,20 +29,24 @@ impl Queue {
     /// If the database cannot be written.
     pub async fn collect_garbage(&mut self) -> Result<Garbage, QueueError> {
         let before = self.pages().await?;
-        let mut garbage = Garbage::default();
-        let mut transaction = self.write().await?;
-        sqlx::query(UNREFERENCED).execute(&mut *transaction).await?;
-        let deleted = async |connection: &mut sqlx::SqliteConnection, statement: &'static str| {
-            sqlx::query(statement).execute(connection).await.map(|done| done.rows_affected())
-        };
-        garbage.results =
-            deleted(&mut transaction, "DELETE FROM results WHERE job_id IN (SELECT id FROM garbage)").await?;
-        deleted(&mut transaction, "DELETE FROM checkpoints WHERE job_id IN (SELECT id FROM garbage)").await?;
-        garbage.jobs =
-            deleted(&mut transaction, "DELETE FROM jobs WHERE id IN (SELECT id FROM garbage)").await?;
-        garbage.workers = deleted(&mut transaction, WORKERS).await?;
-        deleted(&mut transaction, "DROP TABLE garbage").await?;
-        transaction.commit().await?;
+        let mut garbage = self
+            .write(async |connection| {
+                sqlx::query(UNREFERENCED).execute(&mut *connection).await?;
+                let mut deleted = async |statement: &'static str| {
+                    sqlx::query(statement).execute(&mut *connection).await.map(|done| done.rows_affected())
+                };
+                deleted("DELETE FROM checkpoints WHERE job_id IN (SELECT id FROM garbage)").await?;
+                deleted("DELETE FROM payloads WHERE job_id IN (SELECT id FROM garbage)").await?;
+                let garbage = Garbage {
+                    results: deleted("DELETE FROM results WHERE job_id IN (SELECT id FROM garbage)").await?,
+                    jobs: deleted("DELETE FROM jobs WHERE id IN (SELECT id FROM garbage)").await?,
+                    workers: deleted(WORKERS).await?,
+                    bytes: 0,
+                };
+                deleted("DROP TABLE garbage").await?;
+                Ok(garbage)
+            })
+            .await?;
         if garbage.jobs > 0 {
             sqlx::query("VACUUM").execute(&mut self.connection).await?;
         }

@@ -18,11 +18,12 @@ impl Queue {
         let owner = self.registration().id;
         let now_ms = self.clock.now_ms();
         let until_ms = self.lease_until(now_ms);
-        let mut transaction = self.write().await?;
-        sqlx::query(ALIVE).bind(owner).bind(now_ms).execute(&mut *transaction).await?;
-        let extended = sqlx::query(EXTEND).bind(owner).bind(until_ms).execute(&mut *transaction).await?;
-        transaction.commit().await?;
-        Ok(extended.rows_affected())
+        self.write(async |connection| {
+            sqlx::query(ALIVE).bind(owner).bind(now_ms).execute(&mut *connection).await?;
+            let extended = sqlx::query(EXTEND).bind(owner).bind(until_ms).execute(connection).await?;
+            Ok(extended.rows_affected())
+        })
+        .await
     }
 
     /// The end of a lease that begins now.

@@ -35,6 +35,7 @@ mod checkpoint;
 mod claim;
 mod clock;
 mod counts;
+mod details;
 mod doctor;
 mod error;
 mod exchange;
@@ -56,12 +57,14 @@ mod studies;
 mod submit;
 mod take_back;
 mod timings;
+mod transaction;
 mod worker;
 
 pub use cancel::Cancelled;
 pub use claim::{Claim, ClaimedJob};
 pub use clock::{Clock, SystemClock};
 pub use counts::Counts;
+pub use details::JobDetails;
 pub use doctor::{Finding, examine};
 pub use error::QueueError;
 pub use exchange::Exchanged;
@@ -81,7 +84,7 @@ pub use worker::Worker;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-use sqlx::{Connection, Sqlite, SqliteConnection, Transaction};
+use sqlx::{Connection, SqliteConnection};
 
 /// One connection to the database of studies and jobs.
 #[derive(Debug)]
@@ -108,10 +111,5 @@ impl Queue {
     /// If the database cannot be closed, e.g. on a full disk.
     pub async fn close(self) -> Result<(), QueueError> {
         Ok(self.connection.close().await?)
-    }
-
-    /// Begins a transaction that writes.
-    async fn write(&mut self) -> Result<Transaction<'_, Sqlite>, QueueError> {
-        Ok(self.connection.begin_with("BEGIN IMMEDIATE").await?)
     }
 }

@@ -25,14 +25,15 @@ impl Queue {
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be written.
     pub async fn remove(&mut self, study: &str) -> Result<Removed, QueueError> {
-        let mut transaction = self.write().await?;
-        let study_id = studies::require(&mut transaction, study).await?;
-        let cancelled =
-            sqlx::query(CANCEL_UNASKED).bind(study_id).bind(NOTE).execute(&mut *transaction).await?;
-        let rows = sqlx::query("DELETE FROM study_jobs WHERE study_id = ?1").bind(study_id);
-        let rows = rows.execute(&mut *transaction).await?.rows_affected();
-        sqlx::query("DELETE FROM studies WHERE id = ?1").bind(study_id).execute(&mut *transaction).await?;
-        transaction.commit().await?;
-        Ok(Removed { rows, cancelled: cancelled.rows_affected() })
+        self.write(async |connection| {
+            let study_id = studies::require(connection, study).await?;
+            let cancelled =
+                sqlx::query(CANCEL_UNASKED).bind(study_id).bind(NOTE).execute(&mut *connection).await?;
+            let rows = sqlx::query("DELETE FROM study_jobs WHERE study_id = ?1").bind(study_id);
+            let rows = rows.execute(&mut *connection).await?.rows_affected();
+            sqlx::query("DELETE FROM studies WHERE id = ?1").bind(study_id).execute(&mut *connection).await?;
+            Ok(Removed { rows, cancelled: cancelled.rows_affected() })
+        })
+        .await
     }
 }

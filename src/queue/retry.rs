@@ -33,16 +33,18 @@ impl Queue {
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be written.
     pub async fn retry(&mut self, study: &str, which: Retry) -> Result<Retried, QueueError> {
-        let mut transaction = self.write().await?;
-        let study_id = studies::require(&mut transaction, study).await?;
-        let mut retried = Retried::default();
-        let again = |state: &'static str| sqlx::query(PENDING_AGAIN).bind(study_id).bind(state).bind(NOTE);
-        retried.failed = again("failed").execute(&mut *transaction).await?.rows_affected();
-        if which == Retry::All {
-            sqlx::query(ASK_AGAIN).bind(study_id).execute(&mut *transaction).await?;
-            retried.cancelled = again("cancelled").execute(&mut *transaction).await?.rows_affected();
-        }
-        transaction.commit().await?;
-        Ok(retried)
+        self.write(async |connection| {
+            let study_id = studies::require(connection, study).await?;
+            let mut retried = Retried::default();
+            let again =
+                |state: &'static str| sqlx::query(PENDING_AGAIN).bind(study_id).bind(state).bind(NOTE);
+            retried.failed = again("failed").execute(&mut *connection).await?.rows_affected();
+            if which == Retry::All {
+                sqlx::query(ASK_AGAIN).bind(study_id).execute(&mut *connection).await?;
+                retried.cancelled = again("cancelled").execute(&mut *connection).await?.rows_affected();
+            }
+            Ok(retried)
+        })
+        .await
     }
 }

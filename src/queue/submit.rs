@@ -70,10 +70,16 @@ const UPSERT_STUDY: &str = "
 ///
 /// What can be run together is the program's to say, and another version may say it differently.
 const INSERT_JOBS: &str = "
-    INSERT INTO jobs (key, payload, cost, batch, priority, created_ms)
-    SELECT e.value ->> 0, e.value ->> 1, e.value ->> 2, e.value ->> 3, COALESCE(e.value ->> 4, 0), ?2
+    INSERT INTO jobs (key, cost, batch, priority, created_ms)
+    SELECT e.value ->> 0, e.value ->> 2, e.value ->> 3, COALESCE(e.value ->> 4, 0), ?2
     FROM json_each(?1) AS e WHERE true
     ON CONFLICT (key) DO UPDATE SET batch = excluded.batch WHERE batch <> excluded.batch";
+
+/// CROSS JOIN keeps the order of the loops: a key is looked up for each row, not the rows for each job.
+const INSERT_PAYLOADS: &str = "
+    INSERT INTO payloads (job_id, payload)
+    SELECT j.id, e.value ->> 1 FROM json_each(?1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 0 WHERE true
+    ON CONFLICT (job_id) DO NOTHING";
 
 /// As above, the key is looked up for each row.
 const SET_PRIORITY: &str = "
@@ -93,7 +99,6 @@ const CANCEL_UNASKED: &str = "
 
 const NOTE: &str = "cancelled: its study was replaced by one without it";
 
-/// CROSS JOIN keeps the order of the loops: a key is looked up for each row, not the rows for each job.
 const INSERT_ROWS: &str = "
     INSERT INTO study_jobs (study_id, ordinal, job_id, parameters)
     SELECT ?2, ?3 + e.key, j.id, e.value ->> 1
@@ -114,32 +119,35 @@ impl Queue {
             return Err(QueueError::BadCost { key: job.key.clone(), cost: job.cost });
         }
         let now_ms = self.clock.now_ms();
-        let mut transaction = self.write().await?;
-        let replaced = studies::find(&mut transaction, &study.name).await?.is_some();
-        let study_id: i64 = sqlx::query_scalar(UPSERT_STUDY)
-            .bind(&study.name)
-            .bind(&study.document)
-            .bind(now_ms)
-            .fetch_one(&mut *transaction)
+        let (replaced, added, cancelled, counts) = self
+            .write(async |connection| {
+                let replaced = studies::find(connection, &study.name).await?.is_some();
+                let study_id: i64 = sqlx::query_scalar(UPSERT_STUDY)
+                    .bind(&study.name)
+                    .bind(&study.document)
+                    .bind(now_ms)
+                    .fetch_one(&mut *connection)
+                    .await?;
+                sqlx::query("DELETE FROM study_jobs WHERE study_id = ?1")
+                    .bind(study_id)
+                    .execute(&mut *connection)
+                    .await?;
+                let before = count_jobs(connection).await?;
+                for (first_ordinal, chunk) in (0_i64..).step_by(CHUNK).zip(study.jobs.chunks(CHUNK)) {
+                    insert_jobs(connection, chunk, now_ms).await?;
+                    insert_rows(connection, study_id, first_ordinal, chunk).await?;
+                }
+                let added = count_jobs(connection).await? - before;
+                sqlx::query(ASK_AGAIN).bind(study_id).execute(&mut *connection).await?;
+                let cancelled = if replaced {
+                    sqlx::query(CANCEL_UNASKED).bind(NOTE).execute(&mut *connection).await?.rows_affected()
+                } else {
+                    0
+                };
+                let counts = counts::of_study(connection, study_id).await?;
+                Ok((replaced, added, cancelled, counts))
+            })
             .await?;
-        sqlx::query("DELETE FROM study_jobs WHERE study_id = ?1")
-            .bind(study_id)
-            .execute(&mut *transaction)
-            .await?;
-        let before = count_jobs(&mut transaction).await?;
-        for (first_ordinal, chunk) in (0_i64..).step_by(CHUNK).zip(study.jobs.chunks(CHUNK)) {
-            insert_jobs(&mut transaction, chunk, now_ms).await?;
-            insert_rows(&mut transaction, study_id, first_ordinal, chunk).await?;
-        }
-        let added = count_jobs(&mut transaction).await? - before;
-        sqlx::query(ASK_AGAIN).bind(study_id).execute(&mut *transaction).await?;
-        let cancelled = if replaced {
-            sqlx::query(CANCEL_UNASKED).bind(NOTE).execute(&mut *transaction).await?.rows_affected()
-        } else {
-            0
-        };
-        let counts = counts::of_study(&mut transaction, study_id).await?;
-        transaction.commit().await?;
 
         let jobs = study.jobs.iter().map(|job| &job.key).collect::<HashSet<_>>().len() as u64;
         Ok(Submitted {
@@ -169,6 +177,7 @@ async fn insert_jobs(
         jobs.iter().map(|job| (&job.key, &job.payload, job.cost, &job.batch, job.priority)).collect();
     let rows = json(&rows);
     sqlx::query(INSERT_JOBS).bind(&rows).bind(now_ms).execute(&mut *connection).await?;
+    sqlx::query(INSERT_PAYLOADS).bind(&rows).execute(&mut *connection).await?;
     if jobs.iter().any(|job| job.priority.is_some()) {
         sqlx::query(SET_PRIORITY).bind(&rows).execute(connection).await?;
     }

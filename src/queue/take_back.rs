@@ -25,15 +25,17 @@ pub struct TakenBack {
     pub failed: u64,
 }
 
-/// An owner of running jobs.
+/// A worker that has not ended in order, or owns jobs all the same.
 #[derive(Debug)]
-struct Owner {
-    id: i64,
-    host: String,
+pub(super) struct Owner {
+    pub id: i64,
+    pub host: String,
     boot_id: Option<String>,
     pid_namespace: Option<String>,
-    pid: u32,
+    pub pid: u32,
     process_start: Option<i64>,
+    pub version: String,
+    pub heartbeat_ms: i64,
     ended_ms: Option<i64>,
 }
 
@@ -50,10 +52,10 @@ pub(super) enum Verdict {
 const FAR_AHEAD_MS: i64 = 24 * 3600 * 1000;
 
 const OWNERS: &str = "
-    SELECT w.id, w.host, w.boot_id, w.pid_namespace, w.pid, w.process_start, w.ended_ms
-    FROM (SELECT DISTINCT owner FROM jobs INDEXED BY jobs_owner WHERE state = 'running') AS o
-    JOIN workers AS w ON w.id = o.owner
-    ORDER BY w.id";
+    SELECT id, host, boot_id, pid_namespace, pid, process_start, version, heartbeat_ms, ended_ms
+    FROM workers
+    WHERE ended_ms IS NULL OR id IN (SELECT owner FROM jobs INDEXED BY jobs_owner WHERE state = 'running')
+    ORDER BY id";
 
 /// ?4 is set where the leases decide.
 const TAKE_BACK: &str = "
@@ -78,19 +80,20 @@ impl Queue {
     /// If the database cannot be written.
     pub async fn take_back(&mut self) -> Result<TakenBack, QueueError> {
         let mut taken = TakenBack::default();
-        for (owner, verdict) in self.owners().await? {
+        for owner in self.owners().await? {
             // Its own jobs are this process' to end.
-            if verdict != Verdict::Alive && self.registration.as_ref().is_none_or(|own| own.id != owner) {
-                self.take_from(owner, verdict, &mut taken).await?;
+            let is_own = self.registration.as_ref().is_some_and(|own| own.id == owner.id);
+            let verdict = owner.verdict();
+            if verdict != Verdict::Alive && !is_own {
+                self.take_from(owner.id, verdict, &mut taken).await?;
             }
         }
         Ok(taken)
     }
 
-    /// All who own running jobs, with what is known of them.
-    pub(super) async fn owners(&mut self) -> Result<Vec<(i64, Verdict)>, QueueError> {
-        let owners: Vec<Owner> = sqlx::query_as(OWNERS).fetch_all(&mut self.connection).await?;
-        Ok(owners.iter().map(|owner| (owner.id, owner.verdict())).collect())
+    /// All who may own running jobs.
+    pub(super) async fn owners(&mut self) -> Result<Vec<Owner>, QueueError> {
+        Ok(sqlx::query_as(OWNERS).fetch_all(&mut self.connection).await?)
     }
 
     /// Leases that end in between are valid.
@@ -107,14 +110,15 @@ impl Queue {
     ) -> Result<(), QueueError> {
         let crash_limit = self.settings.crash_limit;
         let (now_ms, far_ms) = self.lease_window();
-        let mut transaction = self.write().await?;
+        let found = self.write(async |connection| {
+            let mut taken = TakenBack::default();
         let jobs: Vec<(i64, String, u32)> = sqlx::query_as(TAKE_BACK)
             .bind(owner)
             .bind(crash_limit)
             .bind(TAKEN_BACK)
             .bind((verdict == Verdict::Elsewhere).then_some(now_ms))
             .bind(far_ms)
-            .fetch_all(&mut *transaction)
+            .fetch_all(&mut *connection)
             .await?;
         for (id, state, crashes) in jobs {
             if state == "pending" {
@@ -127,13 +131,18 @@ impl Queue {
                  `tribosweep retry` tries it again"
             );
             let crashed = sqlx::query(CRASHED).bind(id).bind(error).bind(now_ms);
-            crashed.execute(&mut *transaction).await?;
+            crashed.execute(&mut *connection).await?;
         }
         if verdict == Verdict::Gone {
             let ended = sqlx::query("UPDATE workers SET ended_ms = ?2 WHERE id = ?1 AND ended_ms IS NULL");
-            ended.bind(owner).bind(now_ms).execute(&mut *transaction).await?;
+            ended.bind(owner).bind(now_ms).execute(&mut *connection).await?;
         }
-        Ok(transaction.commit().await?)
+            Ok(taken)
+        })
+        .await?;
+        taken.pending += found.pending;
+        taken.failed += found.failed;
+        Ok(())
     }
 }
 
@@ -146,13 +155,15 @@ impl FromRow<'_, SqliteRow> for Owner {
             pid_namespace: row.try_get("pid_namespace")?,
             pid: row.try_get("pid")?,
             process_start: row.try_get("process_start")?,
+            version: row.try_get("version")?,
+            heartbeat_ms: row.try_get("heartbeat_ms")?,
             ended_ms: row.try_get("ended_ms")?,
         })
     }
 }
 
 impl Owner {
-    fn verdict(&self) -> Verdict {
+    pub(super) fn verdict(&self) -> Verdict {
         let here = (process::host(), process::boot_id(), process::pid_namespace());
         if self.ended_ms.is_some() {
             return Verdict::Gone;

@@ -11,11 +11,13 @@ const FINISHED: &str = "
       AND (?1 IS NULL OR EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = ?1))
     ORDER BY r.finished_ms, j.id";
 
-const REMAINING: &str = "
-    SELECT COALESCE(SUM(j.cost), 0.0)
-    FROM jobs AS j
-    WHERE j.state IN ('pending', 'running')
-      AND (?1 IS NULL OR EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = ?1))";
+const REMAINING: &str = "SELECT COALESCE(SUM(cost), 0.0) FROM jobs WHERE state IN ('pending', 'running')";
+
+const REMAINING_OF_STUDY: &str = "
+    SELECT (SELECT COALESCE(SUM(cost), 0.0) FROM study_pending WHERE study_id = ?1)
+         + (SELECT COALESCE(SUM(j.cost), 0.0) FROM jobs AS j INDEXED BY jobs_owner
+            WHERE j.state = 'running' AND j.owner IS NOT NULL
+              AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = ?1))";
 
 impl Queue {
     /// Cost and wall time in seconds of every job of `scope` that is done, in the order they ended.
@@ -33,6 +35,10 @@ impl Queue {
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.
     pub async fn remaining_cost(&mut self, scope: &Scope) -> Result<f64, QueueError> {
         let study_id = scope.study_id(&mut self.connection).await?;
-        Ok(sqlx::query_scalar(REMAINING).bind(study_id).fetch_one(&mut self.connection).await?)
+        let remaining = match study_id {
+            None => sqlx::query_scalar(REMAINING),
+            Some(id) => sqlx::query_scalar(REMAINING_OF_STUDY).bind(id),
+        };
+        Ok(remaining.fetch_one(&mut self.connection).await?)
     }
 }

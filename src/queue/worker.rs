@@ -87,11 +87,13 @@ impl Queue {
     pub async fn unregister(&mut self) -> Result<(), QueueError> {
         let Some(Registration { id, .. }) = self.registration.take() else { return Ok(()) };
         let now_ms = self.clock.now_ms();
-        let mut transaction = self.write().await?;
-        sqlx::query(RELEASE_ALL).bind(id).bind(ENDED).execute(&mut *transaction).await?;
-        let ended = sqlx::query("UPDATE workers SET ended_ms = ?2, heartbeat_ms = ?2 WHERE id = ?1");
-        ended.bind(id).bind(now_ms).execute(&mut *transaction).await?;
-        Ok(transaction.commit().await?)
+        self.write(async |connection| {
+            sqlx::query(RELEASE_ALL).bind(id).bind(ENDED).execute(&mut *connection).await?;
+            let ended = sqlx::query("UPDATE workers SET ended_ms = ?2, heartbeat_ms = ?2 WHERE id = ?1");
+            ended.bind(id).bind(now_ms).execute(connection).await?;
+            Ok(())
+        })
+        .await
     }
 
     /// # Panics

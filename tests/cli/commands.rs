@@ -164,6 +164,7 @@ fn completions_name_every_command() {
         "report",
         "pareto",
         "export",
+        "show",
         "retry",
         "cancel",
         "rm",

@@ -88,6 +88,7 @@ async fn an_interrupted_creation_is_completed() {
     for statement in [
         "PRAGMA application_id = 0",
         "DROP TABLE checkpoints",
+        "DROP TABLE payloads",
         "DROP TABLE study_pending",
         "DROP TABLE results",
         "DROP TABLE study_jobs",

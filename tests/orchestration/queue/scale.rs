@@ -1,6 +1,8 @@
 //! The size the queue is for.
 
-use tribosweep::queue::{NewStudy, Scope};
+use std::time::{Duration, Instant};
+
+use tribosweep::queue::{Claim, ClaimedJob, Finished, FinishedOutcome, NewJob, NewStudy, Scope};
 
 use crate::support::{Sandbox, claim, counts, job, keys, of};
 
@@ -27,4 +29,104 @@ async fn a_hundred_thousand_jobs_are_planned() {
     for (index, row) in (0..).zip(&rows) {
         assert_eq!((row.ordinal, &row.key), (index, &format!("job {index}")));
     }
+}
+
+/// The fastest of several claims of four jobs, which go back unstarted.
+async fn claim_time(jobs: usize, scope: &Scope, batch: Option<&str>) -> Duration {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let of_study = |name: &str, cost: f64| NewStudy {
+        name: name.into(),
+        document: String::new(),
+        jobs: (0..jobs)
+            .map(|index| NewJob {
+                batch: format!("batch {}", index % 7),
+                ..job(&format!("{name} {index}"), cost)
+            })
+            .collect(),
+    };
+    queue.submit(&of_study("before", 9.0)).await.unwrap();
+    queue.submit(&of_study("mine", 1.0)).await.unwrap();
+    let claim = Claim { scope: scope.clone(), limit: 4, batch: batch.map(str::to_owned) };
+    let mut best = Duration::MAX;
+    for _ in 0..40 {
+        let begun = Instant::now();
+        let claimed = queue.exchange(&[], std::slice::from_ref(&claim)).await.unwrap().claimed.remove(0);
+        best = best.min(begun.elapsed());
+        assert_eq!(claimed.len(), 4);
+        let back = claimed.into_iter().map(|job| Finished {
+            key: job.key,
+            attempt: job.attempt,
+            outcome: FinishedOutcome::Unstarted,
+            wall_s: 0.0,
+        });
+        queue.exchange(&back.collect::<Vec<_>>(), &[]).await.unwrap();
+    }
+    best
+}
+
+/// Protects: a claim takes no longer for a hundred times as many pending jobs: over all, in a study behind another
+/// one's jobs, and in a named batch.
+#[tokio::test]
+async fn claims_take_no_longer_in_a_long_queue() {
+    for (scope, batch) in [(Scope::All, None), (of("mine"), None), (of("mine"), Some("batch 3"))] {
+        let (short, long) = (claim_time(500, &scope, batch).await, claim_time(50_000, &scope, batch).await);
+        assert!(long < 5 * short, "{scope:?} {batch:?}: {short:?} for 1000 jobs, {long:?} for 100 000");
+    }
+}
+
+/// Measures, for `scripts/queue_scale.py`: claiming and finishing with a solver that does nothing.
+///
+/// Protects: nothing is lost at full speed, and no exchange takes longer at its end than at its beginning.
+#[tokio::test]
+#[ignore = "a measurement of many seconds"]
+async fn throughput() {
+    const JOBS: usize = 100_000;
+    let record = "r".repeat(1_500);
+    for limit in [4, 16, 64] {
+        let sandbox = Sandbox::new();
+        let mut queue = sandbox.open().await;
+        let jobs = (0..JOBS)
+            .map(|index| NewJob {
+                payload: "p".repeat(1_000),
+                ..job(&format!("job {index}"), (index % 97) as f64)
+            })
+            .collect();
+        let begun = Instant::now();
+        queue.submit(&NewStudy { name: "large".into(), document: String::new(), jobs }).await.unwrap();
+        let planning = begun.elapsed();
+        let claim = Claim { scope: of("large"), limit, batch: None };
+        let (mut finished, mut parts) = (Vec::new(), Vec::new());
+        let (mut done, mut part) = (0, Instant::now());
+        loop {
+            let exchanged = queue.exchange(&finished, std::slice::from_ref(&claim)).await.unwrap();
+            assert!(exchanged.refused.is_empty());
+            if exchanged.claimed[0].is_empty() {
+                break;
+            }
+            done += exchanged.claimed[0].len();
+            if done / (JOBS / 4) > parts.len() {
+                parts.push(part.elapsed());
+                part = Instant::now();
+            }
+            let outcome = || FinishedOutcome::Done { record: record.clone() };
+            let end = |job: ClaimedJob| Finished {
+                key: job.key,
+                attempt: job.attempt,
+                outcome: outcome(),
+                wall_s: 0.1,
+            };
+            finished = exchanged.claimed.into_iter().flatten().map(end).collect();
+        }
+        assert_eq!(queue.counts(&of("large")).await.unwrap(), counts(0, 0, JOBS as u64, 0));
+        let total: Duration = parts.iter().sum();
+        let rate = JOBS as f64 / total.as_secs_f64();
+        println!("planned in {planning:.2?}; {limit} a turn: {rate:.0} jobs a second, quarters {parts:.2?}");
+        assert!(parts[3] < 3 * parts[0], "{parts:?}");
+        let begun = Instant::now();
+        queue.counts(&of("large")).await.unwrap();
+        println!("counting a study: {:.0?}", begun.elapsed());
+    }
+    let peak = std::fs::read_to_string("/proc/self/status").unwrap();
+    println!("{}", peak.lines().find(|line| line.starts_with("VmHWM")).unwrap_or_default());
 }

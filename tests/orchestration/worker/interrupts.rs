@@ -61,7 +61,9 @@ async fn an_interrupt_gives_running_jobs_back() {
     // The rest in a version that ends, under the same keys.
     let mut raw = sandbox.raw().await;
     for job in &several(6, 0.001)[2..] {
-        let update = sqlx::query("UPDATE jobs SET payload = ?2 WHERE key = ?1");
+        let update = sqlx::query(
+            "UPDATE payloads SET payload = ?2 WHERE job_id = (SELECT id FROM jobs WHERE key = ?1)",
+        );
         update.bind(&job.key).bind(&job.payload).execute(&mut raw).await.unwrap();
     }
     let summary = work(&mut queue, &Scope::All, 2, &Interrupt::default(), &mut SilentProgress).await.unwrap();

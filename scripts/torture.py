@@ -1,0 +1,184 @@
+#!/usr/bin/env python3
+"""Kills worker processes at random for as long as it is told, then compares the export with an undisturbed run.
+
+    cargo build --release
+    python3 scripts/torture.py [--kills 300] [--workers 3] [--jobs 400] [--seed 1]
+
+Several processes work on one database. Again and again one of them is killed (kill -9), stopped for a while, or
+interrupted; now and then the database's files are copied while all processes stand still, and the copy is opened.
+After each kill, results that were finished before must be there unchanged. At the end the export must be that of an
+undisturbed run, byte for byte but for the run times, with one result a job, and no more jobs repeated than were running
+in killed processes. Prints the counts; exits non-zero when something does not hold. Only Python's standard library.
+"""
+
+import argparse
+import csv
+import io
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import sqlite3
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+FILES = ["tribosweep.db", "tribosweep.db-wal", "tribosweep.db-shm"]
+
+
+def study(jobs):
+    """A grid of small jobs of some tens of milliseconds."""
+    speeds = [round(1.0 + 0.5 * k, 3) for k in range(max(1, jobs // 10))]
+    return {
+        "name": "torture",
+        "scene": {"pin": {"elements": [3, 4, 3]}, "clamp": {"width_m": 0.004}},
+        "run": {"limit_s": 0.03, "stop_early": False},
+        "grid": {"mu": [round(0.05 * k, 3) for k in range(1, 11)], "omega_rpm": speeds},
+    }
+
+
+class Sweep:
+    """A folder with the study and its database."""
+
+    def __init__(self, program, folder, jobs):
+        self.program, self.folder = program, pathlib.Path(folder)
+        (self.folder / "torture.json").write_text(json.dumps(study(jobs)))
+
+    def call(self, *arguments, folder=None):
+        done = subprocess.run([self.program, *arguments], cwd=folder or self.folder, capture_output=True, text=True)
+        if done.returncode != 0:
+            raise SystemExit(f"FAILED: {' '.join(arguments)} ended with {done.returncode}: {done.stderr}")
+        return done.stdout
+
+    def worker(self):
+        return subprocess.Popen(
+            [self.program, "work", "--threads", "1", "--max-crashes", "1000000"],
+            cwd=self.folder,
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+
+    def export(self, folder=None):
+        return list(csv.DictReader(io.StringIO(self.call("export", "torture", folder=folder))))
+
+
+def finished(rows):
+    """The line of every job that has ended, run time and all: done again, it would have another one."""
+    return {row["job"]: tuple(row.values()) for row in rows if row["wall_s"]}
+
+
+def timeless(rows):
+    return [{name: cell for name, cell in row.items() if name != "wall_s"} for row in rows]
+
+
+def check(holds, text):
+    if not holds:
+        raise SystemExit(f"FAILED: {text}")
+
+
+def stand_still(workers):
+    """Stops every process and waits until it does."""
+    for worker in workers:
+        worker.send_signal(signal.SIGSTOP)
+    for worker in workers:
+        while True:
+            try:
+                states = [
+                    stat.read_text().rsplit(")", 1)[1].split()[0]
+                    for stat in pathlib.Path(f"/proc/{worker.pid}/task").glob("*/stat")
+                ]
+            except OSError:
+                states = []
+            if all(state in "TZX" for state in states):
+                break
+            time.sleep(0.001)
+
+
+def copy(sweep, workers, draw):
+    """A copy at one instant, its files in any order, must open whole with every finished result."""
+    stand_still(workers)
+    before = finished(sweep.export())
+    with tempfile.TemporaryDirectory() as other:
+        for name in draw.sample(FILES, 3):
+            if (sweep.folder / name).exists():
+                shutil.copy(sweep.folder / name, other)
+        for worker in workers:
+            worker.send_signal(signal.SIGCONT)
+        check(finished(sweep.export(other)) == before, "a copy lost results")
+        check("PROBLEM" not in sweep.call("doctor", folder=other), "a copy is damaged")
+
+
+def torture(sweep, options, draw):
+    sweep.call("submit", "torture.json")
+    workers = [sweep.worker() for _ in range(options.workers)]
+    counts = dict.fromkeys(["kills", "ended before the kill", "interrupts", "stops", "copies"], 0)
+    seen = {}
+    while counts["kills"] < options.kills:
+        time.sleep(draw.uniform(0.0, options.pause))
+        index = draw.randrange(len(workers))
+        victim, deed = workers[index], draw.random()
+        if deed < 0.05:
+            counts["copies"] += 1
+            copy(sweep, workers, draw)
+        elif deed < 0.15:
+            counts["stops"] += 1
+            victim.send_signal(signal.SIGSTOP)
+            time.sleep(draw.uniform(0.0, 0.3))
+            victim.send_signal(signal.SIGCONT)
+        else:
+            is_kill = deed >= 0.25
+            victim.send_signal(signal.SIGKILL if is_kill else signal.SIGINT)
+            workers[index] = sweep.worker()
+            code = victim.wait()
+            name = ("kills" if code == -signal.SIGKILL else "ended before the kill") if is_kill else "interrupts"
+            counts[name] += 1
+        now = finished(sweep.export())
+        lost = [job for job, line in seen.items() if now.get(job) != line]
+        check(not lost, f"lost or done again: {lost}")
+        seen = now
+        if len(seen) == options.jobs:
+            break
+    for worker in workers:
+        check(worker.wait() in (0, 3), f"a worker ended with {worker.returncode}")
+    sweep.call("work")
+    return counts
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--kills", type=int, default=300)
+    parser.add_argument("--workers", type=int, default=3)
+    parser.add_argument("--jobs", type=int, default=400, help="a multiple of ten")
+    parser.add_argument("--pause", type=float, default=0.08, help="longest time between two deeds [s]")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--program", default=str(ROOT / "target/release/tribosweep"))
+    options = parser.parse_args()
+    draw = random.Random(options.seed)
+    os.environ.pop("TRIBOSWEEP_DB", None)
+    begun = time.monotonic()
+    with tempfile.TemporaryDirectory() as calm, tempfile.TemporaryDirectory() as wild:
+        reference = Sweep(options.program, calm, options.jobs)
+        reference.call("run", "torture.json")
+        sweep = Sweep(options.program, wild, options.jobs)
+        counts = torture(sweep, options, draw)
+        check(timeless(sweep.export()) == timeless(reference.export()), "the export is another one")
+        database = sqlite3.connect(f"file:{sweep.folder / FILES[0]}?mode=ro", uri=True)
+        jobs, attempts = database.execute("SELECT COUNT(*), SUM(attempt) FROM jobs WHERE state = 'done'").fetchone()
+        (results,) = database.execute("SELECT COUNT(*) FROM results").fetchone()
+        database.close()
+        check(jobs == results == options.jobs, f"{jobs} jobs and {results} results of {options.jobs}")
+        repeated = attempts - jobs
+        allowed = counts["kills"] + counts["interrupts"]
+        check(repeated <= allowed, f"{repeated} jobs repeated, {allowed} processes were killed or interrupted")
+    for name, count in counts.items():
+        print(f"{name}: {count}")
+    print(f"jobs: {jobs}, results: {results}, repeated: {repeated}, lost: 0, recorded twice: 0")
+    print(f"export: the same as undisturbed, in {time.monotonic() - begun:.0f} s")
+
+
+if __name__ == "__main__":
+    sys.exit(main())

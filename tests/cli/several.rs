@@ -1,0 +1,207 @@
+//! Several processes on one database, some of which are killed: every job is done once, nothing that was finished is
+//! lost, and the bytes are those of an undisturbed run.
+#![cfg(unix)]
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::time::{Duration, Instant};
+
+use serde_json::{Value, json};
+use sqlx::sqlite::SqliteConnectOptions;
+use sqlx::{ConnectOptions, SqliteConnection};
+
+use crate::support::{Folder, Running, long, rows, small, wait, wall_times, without_wall_times};
+
+/// More jobs than a process does in its life here, some tens of milliseconds each.
+fn many() -> Value {
+    let mut study = small(&json!({
+        "mu": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6],
+        "omega_rpm": [1, 2, 3, 5, 7, 10, 15, 20, 30, 50],
+    }));
+    study["run"] = json!({ "limit_s": 0.03, "stop_early": false });
+    study
+}
+
+fn undisturbed(study: &Value) -> String {
+    let folder = Folder::with("study", study);
+    folder.ok("run study.json");
+    without_wall_times(&folder.ok("export study"))
+}
+
+/// Rows of a statement, past the program.
+fn read<T>(folder: &Folder, statement: &'static str) -> Vec<T>
+where
+    T: Send + Unpin + for<'r> sqlx::FromRow<'r, sqlx::sqlite::SqliteRow>,
+{
+    tokio::runtime::Builder::new_current_thread().build().unwrap().block_on(async {
+        let options = SqliteConnectOptions::new().filename(folder.path("tribosweep.db"));
+        let mut connection: SqliteConnection = options.connect().await.unwrap();
+        sqlx::query_as(statement).fetch_all(&mut connection).await.unwrap()
+    })
+}
+
+/// Numbers that look random and are the same in every run.
+struct Draw(u64);
+
+impl Draw {
+    fn below(&mut self, limit: u64) -> u64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) % limit
+    }
+}
+
+/// Protects: two processes that work on one study share it: both do some of its jobs, none does another's, and both
+/// say that all is done.
+#[test]
+fn two_workers_share_a_study() {
+    let folder = Folder::with("study", &many());
+    folder.ok("submit study.json");
+    let workers = [folder.start("work --threads 1"), folder.start("work --threads 1")];
+    for worker in workers {
+        let (code, _, messages) = worker.end();
+        assert_eq!(code, Some(0), "{messages}");
+        assert!(!messages.contains("taken back"), "{messages}");
+    }
+    assert_eq!(without_wall_times(&folder.ok("export study")), undisturbed(&many()));
+    let attempts: Vec<(i64, i64)> = read(&folder, "SELECT MIN(attempt), MAX(attempt) FROM jobs");
+    assert_eq!(attempts, [(1, 1)]);
+    let by_worker: Vec<(i64, i64)> =
+        read(&folder, "SELECT provenance ->> 'pid', COUNT(*) FROM results GROUP BY 1");
+    assert_eq!(by_worker.len(), 2, "{by_worker:?}");
+    assert_eq!(by_worker.iter().map(|(_, count)| count).sum::<i64>(), 60);
+    assert!(folder.ok("doctor").contains("none at work"));
+}
+
+/// Protects: when one of two processes is killed, the other takes its jobs back while it works, does them, and ends
+/// with everything done; nothing that either had finished is done again.
+#[test]
+fn the_other_goes_on() {
+    let folder = Folder::with("study", &long());
+    folder.ok("submit study.json");
+    let survivor = folder.start("work --threads 1");
+    let killed = folder.start("work --threads 1");
+    folder.wait_for("study", |counts| counts["done"] >= 2 && counts["running"] == 2);
+    killed.signal("KILL");
+    assert_eq!(killed.end().0, None);
+    let before = wall_times(&folder.ok("export study"));
+    let (code, _, messages) = survivor.end();
+    assert_eq!(code, Some(0), "{messages}");
+    let export = folder.ok("export study");
+    assert_eq!(without_wall_times(&export), undisturbed(&long()));
+    let after = wall_times(&export);
+    for (job, wall_s) in &before {
+        assert_eq!(&after[job], wall_s, "{job} was done again");
+    }
+    let crashes: Vec<(i64, i64)> = read(&folder, "SELECT SUM(crashes), SUM(attempt) - COUNT(*) FROM jobs");
+    assert_eq!(crashes, [(1, 1)], "the one job that was running");
+}
+
+/// Protects: a job whose processes die again and again fails with that reason, and is run again when it is asked for.
+#[test]
+fn a_deadly_job_fails() {
+    let mut study = long();
+    study["grid"] = json!({ "mu": [0.2] });
+    study["run"]["limit_s"] = json!(1.0);
+    let folder = Folder::with("study", &study);
+    folder.ok("submit study.json");
+    for _ in 0..2 {
+        let work = folder.start("work --max-crashes 2");
+        folder.wait_for("study", |counts| counts["running"] == 1);
+        work.signal("KILL");
+        assert_eq!(work.end().0, None);
+    }
+    let (code, _, messages) = folder.start("work --max-crashes 2").end();
+    assert_eq!(code, Some(1), "{messages}");
+    assert!(messages.contains("died again and again"), "{messages}");
+    let status = folder.ok("status study");
+    assert!(status.contains("its process died 2 times"), "{status}");
+    folder.ok("retry study --failed");
+    folder.ok("work");
+    assert_eq!(rows(&folder.ok("export study"))[0]["error"], "");
+}
+
+/// Protects: a copy of the database's files at any instant of a process that writes it, as a power cut or a backup
+/// leaves them, in whatever order they are copied, opens whole and holds every result that was finished by then.
+#[test]
+fn a_copy_at_any_instant_is_whole() {
+    let folder = Folder::with("study", &many());
+    let mut draw = Draw(11);
+    let run = folder.start("run study.json --threads 2");
+    folder.wait_for("study", |counts| counts["done"] > 0);
+    let mut seen = BTreeSet::new();
+    for copy in 0..12 {
+        std::thread::sleep(Duration::from_millis(draw.below(90)));
+        // The instant: the process stands still while its files are copied.
+        run.signal("STOP");
+        stopped(&run);
+        let finished = wall_times(&folder.ok("export study"));
+        let other = Folder::new();
+        let mut files = ["", "-wal", "-shm"];
+        files.rotate_left(copy % 3);
+        for suffix in files.iter().filter(|suffix| copy % 4 > 0 || **suffix != "-shm") {
+            let name = format!("tribosweep.db{suffix}");
+            std::fs::copy(folder.path(&name), other.path(&name)).unwrap();
+        }
+        run.signal("CONT");
+        assert_eq!(wall_times(&other.ok("export study")), finished);
+        assert!(other.ok("doctor").contains("integrity    ok"), "{}", other.ok("doctor"));
+        seen.insert(finished.len());
+        if finished.len() == 60 {
+            break;
+        }
+    }
+    assert!(seen.len() > 3, "copies at different instants: {seen:?}");
+}
+
+/// Waits until every thread of the process stands still.
+fn stopped(run: &Running) {
+    let tasks = format!("/proc/{}/task", run.id());
+    wait("the process to stop", || {
+        std::fs::read_dir(&tasks).unwrap().all(|task| {
+            let stat = std::fs::read_to_string(task.unwrap().path().join("stat")).unwrap_or_default();
+            stat.rsplit(')').next().is_some_and(|rest| rest.starts_with(" T") || rest.starts_with(" Z"))
+        })
+    });
+}
+
+/// Protects: many random kills of several processes lose no finished result, repeat no more than what was running,
+/// record nothing twice, and end in the bytes of an undisturbed run. (`scripts/torture.py` does the same for long.)
+#[test]
+fn many_kills_lose_nothing() {
+    const WORKERS: usize = 3;
+    const TIME: Duration = Duration::from_secs(8);
+    let folder = Folder::with("study", &many());
+    folder.ok("submit study.json");
+    let mut draw = Draw(5);
+    let start = || folder.start("work --threads 1 --max-crashes 1000");
+    let mut workers: Vec<Running> = (0..WORKERS).map(|_| start()).collect();
+    let mut kills = 0;
+    let mut finished = BTreeMap::new();
+    let begun = Instant::now();
+    while begun.elapsed() < TIME && finished.len() < 60 {
+        std::thread::sleep(Duration::from_millis(draw.below(60)));
+        let index = draw.below(WORKERS as u64) as usize;
+        let killed = std::mem::replace(&mut workers[index], start());
+        killed.signal("KILL");
+        kills += u64::from(killed.end().0.is_none());
+        let now = wall_times(&folder.ok("export study"));
+        for (job, wall_s) in &finished {
+            assert_eq!(now.get(job), Some(wall_s), "{job} was lost or done again");
+        }
+        finished = now;
+    }
+    for worker in workers {
+        let (code, _, messages) = worker.end();
+        assert_eq!(code, Some(0), "{messages}");
+    }
+    assert_eq!(without_wall_times(&folder.ok("export study")), undisturbed(&many()));
+    let counts: Vec<(i64, i64, i64)> = read(
+        &folder,
+        "SELECT COUNT(*), SUM(attempt), (SELECT COUNT(*) FROM results) FROM jobs WHERE state = 'done'",
+    );
+    let (jobs, attempts, results) = counts[0];
+    assert_eq!((jobs, results), (60, 60));
+    assert!(kills >= 10, "{kills} kills are no torture");
+    let repeated = (attempts - jobs).unsigned_abs();
+    assert!(repeated <= kills, "{repeated} jobs were repeated after {kills} kills of one thread each");
+    println!("{kills} kills, {repeated} jobs repeated, {jobs} jobs");
+}

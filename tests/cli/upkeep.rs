@@ -1,0 +1,117 @@
+//! Looking after studies and their database: retry, cancel, rm, gc, doctor, show, priorities.
+
+use serde_json::{Value, json};
+
+use crate::support::{Folder, rows, small, stderr, stdout};
+
+/// Protects: what is cancelled is not run, is counted as that, and comes back with `retry` or with a submission.
+#[test]
+fn cancelled_jobs_stay_away_until_asked_for() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
+    folder.ok("submit mine.json");
+    let cancelled = folder.command("cancel mine").assert().code(0);
+    assert!(stderr(&cancelled).contains("mine: 2 pending jobs cancelled; `tribosweep retry mine`"));
+    folder.ok("work");
+    assert_eq!(folder.counts("mine")["cancelled"], 2);
+    assert!(folder.ok("status mine").contains("0 pending, 2 cancelled"));
+    assert!(rows(&folder.ok("export mine")).iter().all(|row| row["status"] == "cancelled"));
+    let retried = folder.command("retry mine.json").assert().code(0);
+    assert!(stderr(&retried).contains("0 failed and 2 cancelled jobs are pending again"));
+    folder.ok("cancel mine");
+    folder.ok("run mine.json");
+    assert_eq!(folder.counts("mine")["done"], 2);
+}
+
+/// Protects: failed jobs are run again when asked for, and only they.
+#[test]
+fn failed_jobs_are_retried() {
+    let folder = Folder::with("bad", &small(&json!({ "load_n": [30, 1e200] })));
+    folder.command("run bad.json").assert().code(1);
+    let done = |export: &str| rows(export)[0]["wall_s"].clone();
+    let before = done(&folder.ok("export bad"));
+    folder.ok("retry bad --failed");
+    assert_eq!(folder.counts("bad")["pending"], 1);
+    folder.command("work").assert().code(1);
+    let export = folder.ok("export bad");
+    assert_eq!(done(&export), before);
+    let shown: Value =
+        serde_json::from_str(&folder.ok(&format!("show {}", rows(&export)[1]["job"]))).unwrap();
+    assert_eq!((shown["state"].as_str(), shown["attempt"].as_u64()), (Some("failed"), Some(2)));
+}
+
+/// Protects: a removed study is gone, its results stay until `gc` says what it dropped.
+#[test]
+fn removed_studies_leave_no_garbage() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
+    folder.add("other", &small(&json!({ "mu": [0.4] })));
+    folder.ok("run mine.json");
+    folder.ok("submit other.json");
+    folder.ok("rm mine");
+    folder.command("status mine").assert().code(2);
+    let collected = folder.ok("gc");
+    assert!(collected.starts_with("dropped 1 jobs, 1 results and "), "{collected}");
+    assert!(folder.ok("gc").starts_with("dropped 0 jobs, 0 results and 0 "));
+    assert_eq!(folder.counts("other")["done"], 1, "shared with what was removed");
+    assert_eq!(folder.command("rm mine").assert().get_output().status.code(), Some(2));
+}
+
+/// Protects: a priority goes before cost: the study that is urgent is done first.
+#[test]
+fn an_urgent_study_goes_first() {
+    let folder = Folder::with("slow", &small(&json!({ "mu": [0.2, 0.3] })));
+    let mut cheap = small(&json!({ "mu": [0.4] }));
+    cheap["run"]["limit_s"] = json!(0.006);
+    folder.add("urgent", &cheap);
+    folder.ok("submit slow.json --priority -3");
+    folder.ok("submit urgent.json");
+    folder.ok("work --threads 1");
+    let ended = |study: &str| {
+        let jobs = rows(&folder.ok(&format!("export {study}")));
+        let shown = |job: &str| serde_json::from_str::<Value>(&folder.ok(&format!("show {job}"))).unwrap();
+        jobs.iter().map(|row| shown(&row["job"])["finished_ms"].as_i64().unwrap()).collect::<Vec<_>>()
+    };
+    assert!(ended("urgent")[0] <= *ended("slow").iter().min().unwrap());
+}
+
+/// Protects: every result says what it was made with, and a key may be shortened as far as it is one job's.
+#[test]
+fn a_result_says_where_it_comes_from() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
+    folder.ok("run mine.json --threads 2");
+    let job = rows(&folder.ok("export mine"))[0]["job"].clone();
+    let shown: Value = serde_json::from_str(&folder.ok(&format!("show {}", &job[..10]))).unwrap();
+    assert_eq!((shown["job"].as_str(), &shown["studies"]), (Some(job.as_str()), &json!(["mine"])));
+    let provenance = &shown["provenance"];
+    assert_eq!(provenance["version"], env!("CARGO_PKG_VERSION"));
+    assert_eq!(provenance["threads"], 2);
+    for field in ["commit", "host", "vectors"] {
+        assert!(!provenance[field].as_str().unwrap().is_empty(), "{provenance}");
+    }
+    assert!(shown["started_ms"].as_i64().unwrap() <= shown["finished_ms"].as_i64().unwrap());
+    let several = folder.command("show").arg("").assert().code(2);
+    assert!(stderr(&several).contains("several jobs begin with"), "{}", stderr(&several));
+    let none = folder.command("show zz").assert().code(2);
+    assert!(stderr(&none).contains("no job's key begins with `zz`"), "{}", stderr(&none));
+}
+
+/// Protects: a healthy database is called that; a damaged one is a problem with the code of bad surroundings, as is
+/// what is no database at all.
+#[test]
+fn the_doctor_tells_the_healthy_from_the_ill() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
+    folder.ok("run mine.json");
+    let healthy = folder.ok("doctor");
+    for subject in ["SQLite", "journal", "synchronous", "integrity", "references", "leases", "worker"] {
+        let line = healthy
+            .lines()
+            .find(|line| line.contains(subject))
+            .unwrap_or_else(|| panic!("{subject}: {healthy}"));
+        assert!(line.starts_with("ok "), "{line}");
+    }
+    assert!(healthy.contains("wal") && healthy.contains("normal"), "{healthy}");
+    folder.write("text.db", &"this is no database ".repeat(100));
+    let ill = folder.command("doctor --db text.db").assert().code(2);
+    assert!(stdout(&ill).contains("PROBLEM  opens"), "{}", stdout(&ill));
+    let missing = folder.command("doctor --db none.db").assert().code(2);
+    assert!(stderr(&missing).contains("no database at none.db"), "{}", stderr(&missing));
+}

@@ -1,0 +1,176 @@
+//! What the surroundings do to a database: locks, full disks, files that cannot be written, damage. Each ends in a
+//! message that says what to do, with nothing lost.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+use std::time::Duration;
+
+use tribosweep::queue::{Queue, QueueError, Scope, Settings, examine};
+
+use crate::support::{Sandbox, claim, counts, done, finish, of, study};
+
+fn impatient() -> Settings {
+    Settings { busy_timeout: Duration::from_millis(50), ..Settings::default() }
+}
+
+/// A file system of its own on a folder, for as long as this lives; none where mounting is refused.
+struct Mount(PathBuf);
+
+impl Mount {
+    fn new(folder: &Path, options: &str) -> Option<Self> {
+        let mut mount = Command::new("mount");
+        mount.args(["-t", "tmpfs", "-o", options, "tmpfs"]).arg(folder);
+        let is_mounted = mount.output().is_ok_and(|output| output.status.success());
+        if !is_mounted {
+            eprintln!("skipped: mounting a file system is refused here");
+        }
+        is_mounted.then(|| Self(folder.to_owned()))
+    }
+
+    fn remount(&self, options: &str) {
+        let options = format!("remount,{options}");
+        assert!(Command::new("mount").args(["-o", &options]).arg(&self.0).status().unwrap().success());
+    }
+}
+
+impl Drop for Mount {
+    fn drop(&mut self) {
+        let _ = Command::new("umount").arg("-l").arg(&self.0).status();
+    }
+}
+
+/// Protects: a lock that another program keeps longer than the busy timeout ends in a message that says so; what was
+/// finished is still the caller's and is stored afterwards, and readers are not kept out at all.
+#[tokio::test]
+async fn a_lock_that_is_kept() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open_with(impatient()).await;
+    queue.submit(&study("a", &["x", "y"])).await.unwrap();
+    claim(&mut queue, Scope::All, 1).await;
+    let mut foreign = sandbox.raw().await;
+    sqlx::raw_sql("BEGIN IMMEDIATE").execute(&mut foreign).await.unwrap();
+    let errors = [
+        queue.submit(&study("b", &["z"])).await.unwrap_err(),
+        queue.exchange(&[], &[]).await.unwrap_err(),
+        queue.heartbeat().await.unwrap_err(),
+        queue.cancel("a").await.unwrap_err(),
+    ];
+    for error in errors {
+        assert!(matches!(error, QueueError::Locked(_)), "{error:?}");
+        assert!(error.to_string().contains("another program holds a lock"), "{error}");
+    }
+    let mut reader = Queue::open_with(&sandbox.database(), sandbox.clock.clone(), impatient()).await.unwrap();
+    assert_eq!(reader.counts(&of("a")).await.unwrap(), counts(1, 1, 0, 0));
+    sqlx::raw_sql("ROLLBACK").execute(&mut foreign).await.unwrap();
+    assert!(finish(&mut queue, "x", 1, done("r")).await);
+    assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(1, 0, 1, 0));
+}
+
+/// Protects: a full disk is called that, what was stored before is there, and with room again the same queue goes on.
+#[tokio::test]
+async fn a_full_disk() {
+    let sandbox = Sandbox::new();
+    let Some(mount) = Mount::new(sandbox.folder.path(), "size=1M") else { return };
+    let mut queue = sandbox.open().await;
+    queue.submit(&study("a", &["x", "y"])).await.unwrap();
+    claim(&mut queue, Scope::All, 2).await;
+    assert!(finish(&mut queue, "x", 1, done("r")).await);
+    // What is finished is larger than what is left.
+    let large = "r".repeat(2_000_000);
+    let end = tribosweep::queue::Finished { key: "y".into(), attempt: 1, outcome: done(&large), wall_s: 1.0 };
+    let error = queue.exchange(std::slice::from_ref(&end), &[]).await.unwrap_err();
+    assert!(matches!(error, QueueError::DiskFull(_)), "{error:?}");
+    assert!(error.to_string().contains("Make room"), "{error}");
+    assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(0, 1, 1, 0));
+    mount.remount("size=20M");
+    assert!(queue.exchange(&[end], &[]).await.unwrap().refused.is_empty());
+    assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(0, 0, 2, 0));
+    assert_eq!(queue.rows("a").await.unwrap()[0].record.as_deref(), Some("r"));
+    queue.close().await.unwrap();
+}
+
+/// Protects: a database where nothing can be written can be read, and changes nothing; writing says why it cannot.
+#[tokio::test]
+async fn a_read_only_folder() {
+    let sandbox = Sandbox::new();
+    let Some(mount) = Mount::new(sandbox.folder.path(), "size=20M") else { return };
+    let mut queue = sandbox.open().await;
+    queue.submit(&study("a", &["x", "y"])).await.unwrap();
+    claim(&mut queue, Scope::All, 1).await;
+    assert!(finish(&mut queue, "x", 1, done("r")).await);
+    queue.close().await.unwrap();
+    mount.remount("ro");
+
+    let mut reader = Queue::open_to_read(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    assert_eq!(reader.counts(&of("a")).await.unwrap(), counts(1, 0, 1, 0));
+    assert_eq!(reader.rows("a").await.unwrap()[0].record.as_deref(), Some("r"));
+    let error = reader.cancel("a").await.unwrap_err();
+    assert!(matches!(error, QueueError::ReadOnly(_)), "{error:?}");
+    let findings = examine(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    let problems: Vec<_> = findings.iter().filter(|finding| finding.is_problem).collect();
+    assert_eq!(problems.iter().map(|finding| finding.subject).collect::<Vec<_>>(), ["writable"]);
+    let error = Queue::open(&sandbox.database(), sandbox.clock.clone()).await.unwrap_err();
+    assert!(error.to_string().contains("Read-only file system"), "{error}");
+}
+
+/// Protects: a log that is not folded in is not passed over where it cannot be read: the results in it would be
+/// missing without a word.
+#[tokio::test]
+async fn a_log_in_a_read_only_folder() {
+    let (sandbox, copy) = (Sandbox::new(), Sandbox::new());
+    let Some(mount) = Mount::new(copy.folder.path(), "size=20M") else { return };
+    let mut queue = sandbox.open().await;
+    queue.submit(&study("a", &["x"])).await.unwrap();
+    for suffix in ["", "-wal"] {
+        let name = format!("sweep.db{suffix}");
+        fs::copy(sandbox.folder.path().join(&name), copy.folder.path().join(&name)).unwrap();
+    }
+    mount.remount("ro");
+    let error = Queue::open_to_read(&copy.database(), copy.clock.clone()).await.unwrap_err();
+    assert!(matches!(error, QueueError::UnreadableLog { .. }), "{error:?}");
+    assert!(error.to_string().contains("-wal to a folder that can be written"), "{error}");
+}
+
+/// Protects: damage is called damage, by what meets it and by the examination, and the file stays as it is.
+#[tokio::test]
+async fn a_damaged_file() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let keys: Vec<String> = (0..500).map(|index| format!("job {index}")).collect();
+    queue.submit(&study("a", &keys.iter().map(String::as_str).collect::<Vec<_>>())).await.unwrap();
+    queue.close().await.unwrap();
+    let healthy = examine(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    assert!(healthy.iter().all(|finding| !finding.is_problem), "{healthy:#?}");
+
+    let mut bytes = fs::read(sandbox.database()).unwrap();
+    // All but the first pages, which say what is where.
+    let from = bytes.len() / 2;
+    bytes[from..].fill(0x5a);
+    fs::write(sandbox.database(), &bytes).unwrap();
+    let findings = examine(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    assert!(findings.iter().any(|finding| finding.is_problem), "{findings:#?}");
+    let mut queue = Queue::open_to_read(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    let error = queue.rows("a").await.unwrap_err();
+    assert!(matches!(error, QueueError::Damaged(_)), "{error:?}");
+    assert!(error.to_string().contains("tribosweep doctor"), "{error}");
+    assert_eq!(fs::read(sandbox.database()).unwrap(), bytes);
+}
+
+/// Protects: the examination tells what the next worker will do about jobs of dead processes, and names the living.
+#[tokio::test]
+async fn the_examination_sees_workers() {
+    let sandbox = Sandbox::new();
+    let mut dead = sandbox.open_as(&crate::support::dead_worker()).await;
+    let mut alive = sandbox.open().await;
+    alive.submit(&study("a", &["x", "y", "z"])).await.unwrap();
+    claim(&mut dead, Scope::All, 2).await;
+    claim(&mut alive, Scope::All, 1).await;
+    let findings = examine(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    let text: Vec<_> = findings.iter().map(|finding| finding.text.as_str()).collect();
+    assert!(text.iter().any(|text| text.starts_with("3 running jobs, 2 of them left")), "{text:#?}");
+    assert!(text.iter().any(|text| text.contains("gone, 2 jobs")), "{text:#?}");
+    assert!(text.iter().any(|text| text.contains("alive, 1 jobs")), "{text:#?}");
+    let missing = examine(&sandbox.folder.path().join("none.db"), sandbox.clock.clone()).await.unwrap_err();
+    assert!(matches!(missing, QueueError::NoDatabase { .. }), "{missing:?}");
+}
