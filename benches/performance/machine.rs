@@ -1,6 +1,6 @@
 //! What one core of this machine can do.
 
-use crate::timing::seconds;
+use crate::timing::fastest;
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use serde::Serialize;
 use std::hint::black_box;
@@ -77,15 +77,15 @@ fn sweep<S: Simd>(simd: S, array: &mut [[f64; 8]]) {
 /// Measures this machine.
 pub fn measure() -> Machine {
     let level = Level::new();
-    let fused_s = seconds("machine_fused", || {
+    let fused_s = fastest("machine_fused", || {
         black_box(dispatch!(level, simd => fused(simd, black_box(1.0))));
     });
-    let plain_s = seconds("machine_plain", || {
+    let plain_s = fastest("machine_plain", || {
         black_box(dispatch!(level, simd => plain(simd, black_box(1.0))));
     });
     let bandwidth = [1 << 14, 1 << 19, 1 << 23, 1 << 28].map(|bytes: usize| {
         let mut array = vec![[0.0; 8]; bytes / 64];
-        let sweep_s = seconds(&format!("machine_bandwidth_{bytes}"), || {
+        let sweep_s = fastest(&format!("machine_bandwidth_{bytes}"), || {
             dispatch!(level, simd => sweep(simd, black_box(&mut array)));
         });
         Bandwidth { bytes, gb_per_s: 2.0 * bytes as f64 / sweep_s * 1e-9 }

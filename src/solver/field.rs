@@ -121,6 +121,22 @@ impl<const L: usize> Field<L> {
         }
     }
 
+    /// Σ over all nodes and components of this times another field of the same nodes.
+    pub fn dot(&self, other: &Self) -> [f64; L] {
+        let mut columns = vec![Row::default(); self.blocks_per_line];
+        for (at, (a, b)) in self.blocks.iter().zip(&other.blocks).enumerate() {
+            let column = &mut columns[at % self.blocks_per_line].0;
+            for i in 0..WIDTH {
+                column[i] += a.0[0][i] * b.0[0][i] + a.0[1][i] * b.0[1][i] + a.0[2][i] * b.0[2][i];
+            }
+        }
+        let mut total = [0.0; L];
+        for column in &columns {
+            add_slots(&mut total, &column.0);
+        }
+        total
+    }
+
     /// Number of blocks that hold a line.
     pub fn blocks_per_line(&self) -> usize {
         self.blocks_per_line

@@ -78,14 +78,14 @@ impl<const L: usize> Integration<L> {
         residual: &mut Field<L>,
         scratch: &mut Scratch<L>,
     ) {
-        let (u, p, residual) = (u.blocks_mut(), p.blocks_mut(), residual.blocks_mut());
-        if factors.beta_r_s == 0.0 {
-            let mut advance = Advance::<L, false> { integration: self, factors, u, p, residual };
-            dispatch!(Level::new(), simd => operator.pass(simd, &mut advance, scratch));
-        } else {
-            let mut advance = Advance::<L, true> { integration: self, factors, u, p, residual };
-            dispatch!(Level::new(), simd => operator.pass(simd, &mut advance, scratch));
-        }
+        let mut advance = Advance {
+            integration: self,
+            factors,
+            u: u.blocks_mut(),
+            p: p.blocks_mut(),
+            residual: residual.blocks_mut(),
+        };
+        dispatch!(Level::new(), simd => operator.pass(simd, &mut advance, scratch));
     }
 
     /// Moves the constrained planes above the contact face by their residual.
@@ -146,7 +146,7 @@ impl Factors {
     }
 }
 
-struct Advance<'a, const L: usize, const DAMPED: bool> {
+struct Advance<'a, const L: usize> {
     integration: &'a Integration<L>,
     factors: &'a Factors,
     u: &'a mut [Block],
@@ -154,11 +154,11 @@ struct Advance<'a, const L: usize, const DAMPED: bool> {
     residual: &'a mut [Block],
 }
 
-impl<S: Simd, const L: usize, const DAMPED: bool> Pass<S> for Advance<'_, L, DAMPED> {
+impl<S: Simd, const L: usize> Pass<S> for Advance<'_, L> {
     #[inline(always)]
     fn input(&self, simd: S, at: usize) -> [f64x8<S>; 3] {
         let mut strained = load_all(simd, &self.u[at].0);
-        if DAMPED {
+        if self.factors.beta_r_s != 0.0 {
             let beta_r = f64x8::splat(simd, self.factors.beta_r_s);
             let p = load_all(simd, &self.p[at].0);
             for c in 0..3 {

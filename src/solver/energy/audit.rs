@@ -2,10 +2,10 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use crate::solver::field::{Block, Field, Row, WIDTH, add_slots, in_slots};
+use crate::solver::field::{Field, Row, WIDTH, add_slots, in_slots};
 use crate::solver::line_table::LineTable;
 use crate::solver::model::Model;
-use crate::solver::operator::{Operator, Pass, Scratch, Spot, load_all};
+use crate::solver::operator::Scratch;
 use crate::solver::state::State;
 use crate::solver::step::factors;
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
@@ -18,7 +18,9 @@ pub(super) struct Audit<const L: usize> {
     /// K p.
     kp: Field<L>,
     scratch: Scratch<L>,
-    /// Sums of the columns of blocks, in the order of [`Found`].
+    elastic_j: [f64; L],
+    damping_before_j: [f64; L],
+    /// Sums of the columns of blocks.
     columns: Vec<[Row; SUMS]>,
     /// For β₂ > ½.
     jumps: Option<Jumps<L>>,
@@ -35,13 +37,11 @@ struct Jumps<const L: usize> {
     increment: Field<L>,
 }
 
-/// Kinetic, elastic, damping after and before t_n, and ΔaMΔa.
-const SUMS: usize = 5;
+/// Kinetic energy, damping after t_n, and ΔaMΔa.
+const SUMS: usize = 3;
 const KINETIC: usize = 0;
-const ELASTIC: usize = 1;
-const DAMPING_AFTER: usize = 2;
-const DAMPING_BEFORE: usize = 3;
-const INERTIAL_JUMP: usize = 4;
+const DAMPING_AFTER: usize = 1;
+const INERTIAL_JUMP: usize = 2;
 
 /// What an audit finds [J].
 #[derive(Debug, Clone, Copy)]
@@ -70,6 +70,8 @@ impl<const L: usize> Audit<L> {
             p: field(),
             kp: field(),
             scratch: Scratch::new(model.mesh()),
+            elastic_j: [0.0; L],
+            damping_before_j: [0.0; L],
             columns: vec![[Row::default(); SUMS]; field().blocks_per_line()],
             jumps,
         }
@@ -90,34 +92,23 @@ impl<const L: usize> Audit<L> {
         }
     }
 
-    /// Sums over the state before the step: what u and p do against K.
+    /// What u and p do against K before the step.
     pub fn begin(&mut self, model: &Model, state: &State<L>) {
-        self.columns.fill([Row::default(); SUMS]);
-        let columns = &mut self.columns;
-        match model.operator() {
-            Operator::Tensor(operator) => {
-                let (x, factor) = (state.u.blocks(), 0.5);
-                let mut elastic = Dot::<false> { x, kx: &mut [], columns, sum: ELASTIC, factor };
-                dispatch!(Level::new(), simd => operator.pass(simd, &mut elastic, &mut self.scratch));
-                if model.beta_r_s() > 0.0 {
-                    let factor = model.beta_r_s() * model.time_step_s();
-                    let (x, kx) = (state.p.blocks(), self.kp.blocks_mut());
-                    let mut damping = Dot::<true> { x, kx, columns, sum: DAMPING_BEFORE, factor };
-                    dispatch!(Level::new(), simd => operator.pass(simd, &mut damping, &mut self.scratch));
-                }
-            }
-            Operator::Assembled(operator) => {
-                operator.product(&state.u, &mut self.kp);
-                add_columns(columns, ELASTIC, 0.5, &state.u, &self.kp);
-                operator.product(&state.p, &mut self.kp);
-                let factor = model.beta_r_s() * model.time_step_s();
-                add_columns(columns, DAMPING_BEFORE, factor, &state.p, &self.kp);
-            }
+        let (operator, dt, beta_r) = (model.operator(), model.time_step_s(), model.beta_r_s());
+        // K u is not kept.
+        self.elastic_j = operator.product(&state.u, &mut self.kp, &mut self.scratch).map(|form| 0.5 * form);
+        if beta_r == 0.0 {
+            return;
         }
+        let form = operator.product(&state.p, &mut self.kp, &mut self.scratch);
+        self.damping_before_j = form.map(|form| beta_r * dt * form);
         if let Some(jumps) = &self.jumps {
             // Δu of the step before is Δt p + (γ−½) Δt² a.
-            let factor = model.beta_r_s() * (model.beta2() - 0.5) * model.time_step_s().powi(2);
-            add_columns(columns, DAMPING_BEFORE, factor, &jumps.previous_acceleration, &self.kp);
+            let factor = beta_r * (model.beta2() - 0.5) * dt * dt;
+            let form = jumps.previous_acceleration.dot(&self.kp);
+            for lane in 0..L {
+                self.damping_before_j[lane] += factor * form[lane];
+            }
         }
     }
 
@@ -153,8 +144,13 @@ impl<const L: usize> Audit<L> {
             }
         }
         let numerical_j = self.numerical_loss(model, &sums[INERTIAL_JUMP]);
-        let [kinetic_j, elastic_j, damping_after_j, damping_before_j, _] = sums;
-        Found { kinetic_j, elastic_j, damping_after_j, damping_before_j, numerical_j }
+        Found {
+            kinetic_j: sums[KINETIC],
+            elastic_j: self.elastic_j,
+            damping_after_j: sums[DAMPING_AFTER],
+            damping_before_j: self.damping_before_j,
+            numerical_j,
+        }
     }
 
     /// The sums over all nodes that need the state after the step.
@@ -175,6 +171,7 @@ impl<const L: usize> Audit<L> {
         let dt = f64x8::splat(simd, dt);
         let zero = f64x8::splat(simd, 0.0);
         let blocks = self.columns.len();
+        self.columns.fill([Row::default(); SUMS]);
         for k in 0..mz {
             for along in 0..blocks {
                 let mut sums = [zero; SUMS];
@@ -219,13 +216,7 @@ impl<const L: usize> Audit<L> {
                 }
             }
         }
-        model.operator().product(&jumps.increment, &mut self.kp, &mut self.scratch);
-        self.columns.fill([Row::default(); SUMS]);
-        add_columns(&mut self.columns, ELASTIC, 1.0, &jumps.increment, &self.kp);
-        let mut elastic_jump_j = [0.0; L];
-        for column in &self.columns {
-            add_slots(&mut elastic_jump_j, &column[ELASTIC].0);
-        }
+        let elastic_jump_j = model.operator().product(&jumps.increment, &mut self.kp, &mut self.scratch);
         std::array::from_fn(|lane| {
             (gamma - 0.5) * (elastic_jump_j[lane] - 0.5 * gamma * dt * dt * inertial_jump_j[lane])
         })
@@ -236,52 +227,6 @@ impl<const L: usize> Audit<L> {
 fn u_scales<const L: usize>(model: &Model, state: &State<L>) -> [f64; L] {
     let dt = model.time_step_s();
     std::array::from_fn(|lane| factors(model.beta2(), state.steps_done(lane) - 1).0 * dt * dt)
-}
-
-/// factor · x·Kx, added up by columns as the product passes; keeps K x if asked to.
-struct Dot<'a, const KEEPS: bool> {
-    x: &'a [Block],
-    kx: &'a mut [Block],
-    columns: &'a mut [[Row; SUMS]],
-    sum: usize,
-    factor: f64,
-}
-
-impl<S: Simd, const KEEPS: bool> Pass<S> for Dot<'_, KEEPS> {
-    #[inline(always)]
-    fn input(&self, simd: S, at: usize) -> [f64x8<S>; 3] {
-        load_all(simd, &self.x[at].0)
-    }
-
-    #[inline(always)]
-    fn output(&mut self, simd: S, spot: Spot, kx: [f64x8<S>; 3]) {
-        let x = load_all(simd, &self.x[spot.at].0);
-        let product = x[0] * kx[0] + x[1] * kx[1] + x[2] * kx[2];
-        let total = &mut self.columns[spot.along][self.sum].0;
-        (f64x8::from_slice(simd, total) + f64x8::splat(simd, self.factor) * product).store_slice(total);
-        if KEEPS {
-            for c in 0..3 {
-                kx[c].store_slice(&mut self.kx[spot.at].0[c]);
-            }
-        }
-    }
-}
-
-/// Adds factor · a·b to a sum, by columns.
-fn add_columns<const L: usize>(
-    columns: &mut [[Row; SUMS]],
-    sum: usize,
-    factor: f64,
-    a: &Field<L>,
-    b: &Field<L>,
-) {
-    let blocks = a.blocks_per_line();
-    for (at, (a, b)) in a.blocks().iter().zip(b.blocks()).enumerate() {
-        let total = &mut columns[at % blocks][sum].0;
-        for i in 0..WIDTH {
-            total[i] += factor * (a.0[0][i] * b.0[0][i] + a.0[1][i] * b.0[1][i] + a.0[2][i] * b.0[2][i]);
-        }
-    }
 }
 
 #[inline(always)]

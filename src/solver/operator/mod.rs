@@ -22,11 +22,19 @@ pub enum Operator {
 }
 
 impl Operator {
-    /// Computes `y = K x` for `L` lanes.
-    pub fn product<const L: usize>(&self, x: &Field<L>, y: &mut Field<L>, scratch: &mut Scratch<L>) {
+    /// Computes `y = K x` for `L` lanes and returns x·y.
+    pub fn product<const L: usize>(
+        &self,
+        x: &Field<L>,
+        y: &mut Field<L>,
+        scratch: &mut Scratch<L>,
+    ) -> [f64; L] {
         match self {
             Self::Tensor(operator) => operator.product(x, y, scratch),
-            Self::Assembled(operator) => operator.product(x, y),
+            Self::Assembled(operator) => {
+                operator.product(x, y);
+                x.dot(y)
+            }
         }
     }
 }

@@ -24,7 +24,7 @@ mod tests;
 
 pub use pass::{Pass, Scratch, Spot, load_all};
 
-use crate::solver::field::{Block, Field};
+use crate::solver::field::{Block, Field, Row, add_slots};
 use crate::solver::material::Material;
 use crate::solver::mesh::BlockMesh;
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
@@ -68,16 +68,29 @@ impl TensorOperator {
         }
     }
 
-    /// Computes `y = K x` for `L` lanes.
-    pub fn product<const L: usize>(&self, x: &Field<L>, y: &mut Field<L>, scratch: &mut Scratch<L>) {
-        let mut product = Product { x: x.blocks(), y: y.blocks_mut() };
+    /// Computes `y = K x` for `L` lanes and returns x·y.
+    pub fn product<const L: usize>(
+        &self,
+        x: &Field<L>,
+        y: &mut Field<L>,
+        scratch: &mut Scratch<L>,
+    ) -> [f64; L] {
+        let mut forms = vec![Row::default(); x.blocks_per_line()];
+        let mut product = Product { x: x.blocks(), y: y.blocks_mut(), forms: &mut forms };
         dispatch!(Level::new(), simd => self.pass(simd, &mut product, scratch));
+        let mut total = [0.0; L];
+        for slots in &forms {
+            add_slots(&mut total, &slots.0);
+        }
+        total
     }
 }
 
 struct Product<'a> {
     x: &'a [Block],
     y: &'a mut [Block],
+    /// x·y by columns.
+    forms: &'a mut [Row],
 }
 
 #[expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
@@ -88,7 +101,11 @@ impl<S: Simd> Pass<S> for Product<'_> {
     }
 
     #[inline(always)]
-    fn output(&mut self, _: S, spot: Spot, kx: [f64x8<S>; 3]) {
+    fn output(&mut self, simd: S, spot: Spot, kx: [f64x8<S>; 3]) {
+        let x = load_all(simd, &self.x[spot.at].0);
+        let form = x[0] * kx[0] + x[1] * kx[1] + x[2] * kx[2];
+        let total = &mut self.forms[spot.along].0;
+        (f64x8::from_slice(simd, total) + form).store_slice(total);
         for c in 0..3 {
             kx[c].store_slice(&mut self.y[spot.at].0[c]);
         }

@@ -127,23 +127,28 @@ struct Column<'a, const L: usize> {
     ends: &'a Ends,
 }
 
+/// A vector of a line with the ones before and after it.
+type Window = [f64; 3 * WIDTH];
+
 impl<const L: usize> Column<'_, L> {
-    /// One component of a line's block with its surroundings: a vector on either side.
+    /// One component of the block of each line, with its surroundings.
     #[inline(always)]
-    fn window(&self, j: usize, c: usize) -> &[f64] {
-        let start = (3 * j + c) * self.pitch + WIDTH * self.along;
-        &self.staged[start..start + 3 * WIDTH]
+    fn windows(&self, c: usize) -> impl Iterator<Item = &Window> {
+        let start = c * self.pitch + WIDTH * self.along;
+        self.staged[start..].chunks(3 * self.pitch).map_while(<[f64]>::first_chunk)
     }
 
     /// B̂x of a line's block.
     #[inline(always)]
     fn outward<S: Simd>(&self, simd: S, j: usize, c: usize) -> f64x8<S> {
-        f64x8::from_slice(simd, &self.ends.outward) * here(simd, self.window(j, c))
+        let start = (3 * j + c) * self.pitch + WIDTH * (self.along + 1);
+        let here = f64x8::from_slice(simd, &self.staged[start..start + WIDTH]);
+        f64x8::from_slice(simd, &self.ends.outward) * here
     }
 }
 
 #[inline(always)]
-fn here<S: Simd>(simd: S, window: &[f64]) -> f64x8<S> {
+fn here<S: Simd>(simd: S, window: &Window) -> f64x8<S> {
     f64x8::from_slice(simd, &window[WIDTH..2 * WIDTH])
 }
 
@@ -218,9 +223,15 @@ impl TensorOperator {
         let zero = [f64x8::splat(simd, 0.0); 3];
         let none = LineSums { m: zero, s: zero, a: zero };
         let out_z = outward(k, mz);
-        let mut lines = [none, self.sum_along_x::<S, L, ENDS>(simd, &column, 0), none];
+        let mut windows = column.windows(0).zip(column.windows(1)).zip(column.windows(2));
+        let mut lines = [none; 3];
+        if let Some(((x, y), z)) = windows.next() {
+            lines[1] = self.sum_along_x::<S, L, ENDS>(simd, column.ends, [x, y, z]);
+        }
         for (j, sums) in sums.iter_mut().enumerate() {
-            lines[2] = if j + 1 < my { self.sum_along_x::<S, L, ENDS>(simd, &column, j + 1) } else { none };
+            if let Some(((x, y), z)) = windows.next() {
+                lines[2] = self.sum_along_x::<S, L, ENDS>(simd, column.ends, [x, y, z]);
+            }
             let below = if j == 0 || j + 1 == my {
                 self.combine::<S, L, true, Z, ENDS>(simd, &column, j, out_z, &lines, sums)
             } else {
@@ -238,26 +249,23 @@ impl TensorOperator {
     fn sum_along_x<S: Simd, const L: usize, const ENDS: bool>(
         &self,
         simd: S,
-        column: &Column<'_, L>,
-        j: usize,
+        ends: &Ends,
+        windows: [&Window; 3],
     ) -> LineSums<S> {
         let zero = [f64x8::splat(simd, 0.0); 3];
         let mut sums = LineSums { m: zero, s: zero, a: zero };
         let skew = [self.skew[0], self.skew[0], self.skew[1]];
         let edge = [self.edge[0], -self.edge[0], -self.edge[1]];
         for c in 0..3 {
-            let window = column.window(j, c);
+            let window = windows[c];
             let low = f64x8::from_slice(simd, &window[WIDTH - L..2 * WIDTH - L]);
             let here = here(simd, window);
             let high = f64x8::from_slice(simd, &window[WIDTH + L..2 * WIDTH + L]);
             let both = low + high;
             sums.a[c] = f64x8::splat(simd, skew[c]) * (low - high);
             let (single, double) = if ENDS {
-                sums.a[c] += f64x8::splat(simd, edge[c]) * column.outward(simd, j, c);
-                (
-                    f64x8::from_slice(simd, &column.ends.centre) * here,
-                    f64x8::from_slice(simd, &column.ends.double) * here,
-                )
+                sums.a[c] += f64x8::splat(simd, edge[c]) * (f64x8::from_slice(simd, &ends.outward) * here);
+                (f64x8::from_slice(simd, &ends.centre) * here, f64x8::from_slice(simd, &ends.double) * here)
             } else {
                 (f64x8::splat(simd, self.powers[1]) * here, f64x8::splat(simd, self.powers[2]) * here)
             };

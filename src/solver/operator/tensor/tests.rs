@@ -56,7 +56,8 @@ fn vector_widths_agree_to_the_last_bit() {
     let x = Field::<1>::from_values(&mesh, &values(3 * mesh.node_count(), 5));
     let at = |level: Level| {
         let mut y = Field::<1>::zeros(&mesh);
-        let mut product = Product { x: x.blocks(), y: y.blocks_mut() };
+        let mut forms = vec![Row::default(); x.blocks_per_line()];
+        let mut product = Product { x: x.blocks(), y: y.blocks_mut(), forms: &mut forms };
         let mut scratch = Scratch::<1>::new(&mesh);
         dispatch!(level, simd => operator.pass(simd, &mut product, &mut scratch));
         y.values().map(f64::to_bits).collect::<Vec<_>>()
