@@ -130,7 +130,7 @@ impl Batch {
 
 /// Nodes times lanes beyond which another lane costs more than it saves: the fields that a step reads and writes
 /// no longer stay near the core. Measured; see docs/performance.md.
-const NODES_TIMES_LANES: usize = 140_000;
+const NODES_TIMES_LANES: usize = 40_000;
 
 /// The number of lanes that pays for a mesh.
 fn widest(nodes: usize) -> usize {

@@ -7,7 +7,10 @@ use crate::queue::{Finished, FinishedOutcome};
 use crate::spec::JobSpec;
 use std::collections::{BTreeMap, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::time::Instant;
+use std::time::{Duration, Instant};
+
+/// Requests that follow one another faster than this are made ahead of need.
+const SHORT: Duration = Duration::from_millis(50);
 
 /// Jobs that are advanced together, and those that wait for a lane.
 pub(super) struct Crew<'a> {
@@ -19,8 +22,9 @@ pub(super) struct Crew<'a> {
     tickets: u64,
     /// Whether a request for more has not been answered yet.
     asked: bool,
-    /// Jobs that ended since the last request: so many are asked for ahead, that short jobs need not wait for the
-    /// database.
+    /// When a request was made last …
+    asked_at: Instant,
+    /// … and the jobs that have ended since.
     ended: usize,
     /// Jobs of another model: their batch's name was wrong.
     strangers: Vec<Assignment>,
@@ -51,6 +55,7 @@ impl<'a> Crew<'a> {
             running: BTreeMap::new(),
             tickets: 0,
             asked: false,
+            asked_at: Instant::now(),
             ended: 1,
             strangers: Vec::new(),
         };
@@ -123,8 +128,11 @@ impl<'a> Crew<'a> {
     fn ask(&mut self) {
         let free = self.batch.widest() - self.batch.jobs();
         if !self.asked && self.ended > 0 && free > 0 && self.waiting.is_empty() {
-            self.desk.ask(Some(self.name.clone()), free + self.ended - 1);
-            (self.asked, self.ended) = (true, 0);
+            // Short jobs need not wait for the database, long ones are not to wait here while others are idle.
+            let is_busy = self.asked_at.elapsed() < SHORT;
+            let ahead = if is_busy { self.ended - 1 } else { 0 };
+            self.desk.ask(Some(self.name.clone()), free + ahead);
+            (self.asked, self.asked_at, self.ended) = (true, Instant::now(), 0);
         }
     }
 

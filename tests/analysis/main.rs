@@ -1,5 +1,6 @@
 //! What the analysis finds in known signals and in short runs.
 
+mod batch;
 mod decay;
 mod extremes;
 mod figures;

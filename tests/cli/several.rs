@@ -11,15 +11,19 @@ use sqlx::{ConnectOptions, SqliteConnection};
 
 use crate::support::{Folder, Running, long, rows, small, wait, wall_times, without_wall_times};
 
-/// More jobs than a process does in its life here, some tens of milliseconds each.
+/// More jobs than a process does in its life here, of different lengths, some tens of milliseconds each.
 fn many() -> Value {
     let mut study = small(&json!({
         "mu": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6],
-        "omega_rpm": [1, 2, 3, 5, 7, 10, 15, 20, 30, 50],
+        "omega_rpm": [5, 20],
+        "limit_s": [0.04, 0.06, 0.08, 0.10, 0.12],
     }));
-    study["run"] = json!({ "limit_s": 0.03, "stop_early": false });
+    study["run"] = json!({ "stop_early": false });
     study
 }
+
+/// Jobs that a thread runs at once.
+const LANES: u64 = 8;
 
 fn undisturbed(study: &Value) -> String {
     let folder = Folder::with("study", study);
@@ -75,24 +79,26 @@ fn two_workers_share_a_study() {
 /// with everything done; nothing that either had finished is done again.
 #[test]
 fn the_other_goes_on() {
-    let folder = Folder::with("study", &long());
+    let folder = Folder::with("study", &many());
     folder.ok("submit study.json");
     let survivor = folder.start("work --threads 1");
     let killed = folder.start("work --threads 1");
-    folder.wait_for("study", |counts| counts["done"] >= 2 && counts["running"] == 2);
+    folder.wait_for("study", |counts| counts["done"] >= 2 && counts["running"] > LANES);
     killed.signal("KILL");
     assert_eq!(killed.end().0, None);
     let before = wall_times(&folder.ok("export study"));
     let (code, _, messages) = survivor.end();
     assert_eq!(code, Some(0), "{messages}");
     let export = folder.ok("export study");
-    assert_eq!(without_wall_times(&export), undisturbed(&long()));
+    assert_eq!(without_wall_times(&export), undisturbed(&many()));
     let after = wall_times(&export);
     for (job, wall_s) in &before {
         assert_eq!(&after[job], wall_s, "{job} was done again");
     }
     let crashes: Vec<(i64, i64)> = read(&folder, "SELECT SUM(crashes), SUM(attempt) - COUNT(*) FROM jobs");
-    assert_eq!(crashes, [(1, 1)], "the one job that was running");
+    let (crashes, repeated) = crashes[0];
+    assert!((1..=LANES).contains(&crashes.unsigned_abs()), "{crashes} jobs were running in the one thread");
+    assert_eq!(repeated, crashes);
 }
 
 /// Protects: a job whose processes die again and again fails with that reason, and is run again when it is asked for.
@@ -134,6 +140,11 @@ fn a_copy_at_any_instant_is_whole() {
         run.signal("STOP");
         stopped(&run);
         let finished = wall_times(&folder.ok("export study"));
+        if finished.len() == 60 {
+            // The process may have closed the database before it stopped.
+            run.signal("CONT");
+            break;
+        }
         let other = Folder::new();
         let mut files = ["", "-wal", "-shm"];
         files.rotate_left(copy % 3);
@@ -145,9 +156,6 @@ fn a_copy_at_any_instant_is_whole() {
         assert_eq!(wall_times(&other.ok("export study")), finished);
         assert!(other.ok("doctor").contains("integrity    ok"), "{}", other.ok("doctor"));
         seen.insert(finished.len());
-        if finished.len() == 60 {
-            break;
-        }
     }
     assert!(seen.len() > 3, "copies at different instants: {seen:?}");
 }
@@ -178,7 +186,7 @@ fn many_kills_lose_nothing() {
     let mut finished = BTreeMap::new();
     let begun = Instant::now();
     while begun.elapsed() < TIME && finished.len() < 60 {
-        std::thread::sleep(Duration::from_millis(draw.below(60)));
+        std::thread::sleep(Duration::from_millis(draw.below(250)));
         let index = draw.below(WORKERS as u64) as usize;
         let killed = std::mem::replace(&mut workers[index], start());
         killed.signal("KILL");
@@ -202,6 +210,8 @@ fn many_kills_lose_nothing() {
     assert_eq!((jobs, results), (60, 60));
     assert!(kills >= 10, "{kills} kills are no torture");
     let repeated = (attempts - jobs).unsigned_abs();
-    assert!(repeated <= kills, "{repeated} jobs were repeated after {kills} kills of one thread each");
+    // Besides what runs, a thread may hold as many that are to follow.
+    let most = 2 * LANES * kills;
+    assert!(repeated <= most, "{repeated} jobs were repeated after {kills} kills of one thread each");
     println!("{kills} kills, {repeated} jobs repeated, {jobs} jobs");
 }

@@ -169,12 +169,16 @@ pub fn small(grid: &Value) -> Value {
     })
 }
 
-/// Twelve jobs that take some tenths of a second each and as long as one another: time to interrupt them.
+/// Jobs that take some tenths of a second and as long as one another: time to interrupt them. There are more than two
+/// threads advance together, so that some are left when the first are done.
 pub fn long() -> Value {
-    let mut study = small(&json!({ "mu": [0.2, 0.3, 0.4], "omega_rpm": [2, 5, 7, 20] }));
+    let mut study = small(&json!({ "mu": [0.2, 0.3, 0.4, 0.5], "omega_rpm": [2, 3, 5, 7, 10, 20] }));
     study["run"] = json!({ "limit_s": 0.2, "stop_early": false });
     study
 }
+
+/// Jobs of [`long`].
+pub const LONG_JOBS: u64 = 24;
 
 /// One row of an export, by column.
 pub type ExportRow = BTreeMap<String, String>;

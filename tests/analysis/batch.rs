@@ -1,0 +1,94 @@
+//! Jobs that are advanced together.
+
+use crate::signals::coarse;
+use std::collections::BTreeMap;
+use tribosweep::analysis::batch::Batch;
+use tribosweep::analysis::{Unobserved, solve};
+use tribosweep::spec::JobSpec;
+
+/// Jobs of one model that differ in all that may: friction, speed, load, ramp, length, and whether they stop early.
+fn jobs() -> Vec<JobSpec> {
+    (0..11)
+        .map(|i| {
+            let mut job = coarse();
+            job.scene.contact.mu = [0.4, 0.0, 0.55, 0.2][i % 4];
+            job.scene.disk.omega_rpm = 1.0 + 9.0 * i as f64;
+            job.scene.load.force_n = 30.0 / (1 + i % 3) as f64;
+            job.scene.load.ramp_s = [5.0e-4, 0.0, 1.0e-3][i % 3];
+            job.run.limit_s = 0.001 * (2 + i % 5) as f64 + 1.7e-5 * i as f64;
+            job.run.stop_early = i % 2 == 0;
+            job.numerics.beta2 = 0.6;
+            job
+        })
+        .collect()
+}
+
+fn alone(job: &JobSpec) -> String {
+    serde_json::to_string(&solve(job, &mut Unobserved).unwrap()).unwrap()
+}
+
+/// Protects: a job's record is the same bytes whether it runs alone or beside others, in whatever lane, begun when
+/// others are in the middle, moved to more lanes when others come and to fewer when they end.
+#[test]
+fn companions_change_nothing() {
+    let jobs = jobs();
+    let mut batch = Batch::new(&jobs[0]).unwrap();
+    assert_eq!(batch.widest(), 8, "a small mesh");
+    let mut found = BTreeMap::new();
+    let mut waiting = jobs.iter().enumerate();
+    let (mut turns, mut widths) = (0, std::collections::BTreeSet::new());
+    while found.len() < jobs.len() {
+        // One more every third turn: begun at different steps, up to all lanes.
+        if turns % 3 == 0 && batch.jobs() < batch.widest() {
+            match waiting.next() {
+                Some((ticket, job)) => batch.begin(ticket as u64, job.clone()).unwrap(),
+                None => batch.narrow(),
+            }
+        }
+        for ended in batch.advance() {
+            found.insert(ended.ticket, serde_json::to_string(&ended.result.unwrap()).unwrap());
+        }
+        widths.insert(batch.jobs());
+        turns += 1;
+    }
+    assert!((0..=8).all(|jobs| widths.contains(&jobs)), "every number of companions: {widths:?}");
+    for (ticket, job) in jobs.iter().enumerate() {
+        assert_eq!(found[&(ticket as u64)], alone(job), "job {ticket}");
+    }
+}
+
+/// Protects: a job that is refused as it begins ends with the error that it has alone; the lane takes another one.
+#[test]
+fn a_refused_job_leaves_its_lane_free() {
+    let good = coarse();
+    let mut endless = good.clone();
+    endless.run.limit_s = 100.0;
+    let mut batch = Batch::new(&good).unwrap();
+    let refused = batch.begin(1, endless.clone()).unwrap_err().to_string();
+    assert_eq!(refused, solve(&endless, &mut Unobserved).unwrap_err().to_string());
+    batch.begin(2, good.clone()).unwrap();
+    let mut ended = Vec::new();
+    while ended.is_empty() {
+        ended = batch.advance();
+    }
+    let ended = ended.remove(0);
+    assert_eq!((ended.ticket, serde_json::to_string(&ended.result.unwrap()).unwrap()), (2, alone(&good)));
+}
+
+/// Protects: what cannot be advanced together is told apart.
+#[test]
+fn jobs_of_other_models_are_not_taken() {
+    let job = coarse();
+    let batch = Batch::new(&job).unwrap();
+    let changed = |change: fn(&mut JobSpec)| {
+        let mut other = job.clone();
+        change(&mut other);
+        batch.takes(&other)
+    };
+    assert!(changed(|job| job.scene.contact.mu = 0.1));
+    assert!(changed(|job| job.detection.tolerance = 0.02));
+    assert!(!changed(|job| job.scene.pin.density_kg_m3 = 2400.0));
+    assert!(!changed(|job| job.scene.disk.track_radius_m = 0.08));
+    assert!(!changed(|job| job.scene.clamp.width_m *= 0.9));
+    assert!(!changed(|job| job.numerics.beta_r_s = 0.0));
+}
