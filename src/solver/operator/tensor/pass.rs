@@ -39,7 +39,7 @@ pub trait Pass<S: Simd> {
 }
 
 /// Scratch of a pass.
-#[derive(Debug, Clone)]
+#[derive(Debug)]
 pub struct Scratch<const L: usize> {
     /// The plane's x: line → component → a vector that ends with a zero node, the nodes, a vector of zeros.
     staged: Vec<f64>,
@@ -96,6 +96,18 @@ impl<const L: usize> Scratch<L> {
             pitch,
             columns: vec![PlaneSums::default(); blocks * my],
             ends,
+        }
+    }
+}
+
+impl<const L: usize> Clone for Scratch<L> {
+    /// Fresh scratch: the copy's numbers start elsewhere in their cache line, so its zeros lie elsewhere, too.
+    fn clone(&self) -> Self {
+        Self {
+            staged: vec![0.0; self.staged.len()],
+            pitch: self.pitch,
+            columns: vec![PlaneSums::default(); self.columns.len()],
+            ends: self.ends.clone(),
         }
     }
 }

@@ -95,3 +95,29 @@ fn lanes_do_not_see_each_other() {
         compare::<8>(&mesh, &material);
     }
 }
+
+/// Protects: scratch that has been used and copied serves as well as new scratch, wherever the copy lies in memory.
+#[test]
+fn copied_scratch_is_as_good_as_new() {
+    let material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
+    let mesh = BlockMesh::new([0.012, 0.015, 0.010], [4, 3, 3]);
+    let operator = TensorOperator::new(&mesh, &material);
+    let x = Field::<1>::from_values(&mesh, &values(3 * mesh.node_count(), 7));
+    let product = |scratch: &mut Scratch<1>| {
+        let mut y = Field::<1>::zeros(&mesh);
+        operator.product(&x, &mut y, scratch);
+        y.values().map(f64::to_bits).collect::<Vec<_>>()
+    };
+    let mut used = Scratch::<1>::new(&mesh);
+    let expected = product(&mut used);
+    // Kept, so that every copy lies elsewhere.
+    let copies: Vec<Scratch<1>> = (0..50)
+        .map(|odd| {
+            let _shift = vec![0_u8; 16 * odd + 1];
+            let mut copy = used.clone();
+            assert_eq!(product(&mut copy), expected, "copy {odd}");
+            copy
+        })
+        .collect();
+    assert_eq!(copies.len(), 50);
+}
