@@ -5,7 +5,7 @@ use crate::timing::{ROUNDS, seconds};
 use serde::Serialize;
 use std::sync::Arc;
 use tribosweep::analysis::batch::Batch;
-use tribosweep::analysis::lanes::Lanes;
+use tribosweep::analysis::lanes::{AUDIT_INTERVAL, Lanes};
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::operator::{Operator, Scratch, TensorOperator};
 use tribosweep::solver::{Drive, Model, State, element, operator::AssembledOperator, step};
@@ -66,7 +66,7 @@ fn per_node(model: &Model, jobs: usize, steps: usize, call_s: f64) -> f64 {
 }
 
 /// Steps per call of [`Lanes::advance`].
-const STEPS: usize = 16;
+const STEPS: usize = AUDIT_INTERVAL as usize;
 
 fn lanes<const L: usize>(spec: &JobSpec, count: usize) -> Lanes<L> {
     let mut lanes = Lanes::new(Arc::new(model(spec)));
@@ -219,7 +219,7 @@ fn round_of_pairs() -> Vec<Pair> {
     let model = model(&base);
     let drives = [Drive { mu: 0.4, rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
     let mut state = State::<8>::at_rest(&model);
-    let mut ledger = EnergyLedger::new(&model, 16);
+    let mut ledger = EnergyLedger::new(&model, AUDIT_INTERVAL);
     let audited_s = seconds("pair_energies", || {
         for _ in 0..STEPS {
             ledger.before_step(&model, &state);

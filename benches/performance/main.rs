@@ -3,7 +3,7 @@
 //! Prints what the machine can do, what a node and step cost against that, and what each part of a scene adds. The
 //! numbers are also written to `target/performance.json`, from which `scripts/performance.py` makes its tables.
 //!
-//! Times are medians of Criterion's samples. One core is used.
+//! Times are medians of Criterion's samples, the fastest of several rounds. One core is used.
 
 mod cases;
 mod machine;

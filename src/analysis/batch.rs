@@ -87,11 +87,12 @@ impl Batch {
     pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Result<(), JobError> {
         spec.check()?;
         assert!(self.takes(&spec), "a job of another model");
+        assert!(self.jobs() < self.widest, "no more jobs than the widest");
         if each!(&self.lanes, lanes => lanes.free_lane()).is_none() {
             self.fit(self.jobs() + 1);
         }
         each!(&mut self.lanes, lanes => {
-            let lane = lanes.free_lane().expect("no more jobs than the widest");
+            let lane = lanes.free_lane().expect("a lane was made");
             lanes.begin(lane, ticket, spec)
         })
     }

@@ -18,7 +18,7 @@ use std::sync::Arc;
 ///
 /// An evaluation costs two products with K; at 16 that is an eighth of a run. The damping's work is
 /// sampled as often: about four times per period of the fastest mode that damping leaves alive.
-const AUDIT_INTERVAL: u64 = 16;
+pub const AUDIT_INTERVAL: u64 = 16;
 
 /// A lane without a job: nothing moves, nothing presses.
 const IDLE: Drive = Drive { mu: 0.0, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };

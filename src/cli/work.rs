@@ -22,7 +22,7 @@ pub struct Args {
 /// The number of worker threads.
 #[derive(Debug, clap::Args)]
 pub struct Threads {
-    /// Number of jobs solved at the same time; default: the number of cores.
+    /// Number of threads, each of which advances up to eight jobs together; default: the number of cores.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
 }

@@ -9,7 +9,8 @@ pub struct Claim {
     pub scope: Scope,
     /// At most so many. An attempt counts from its claim: what is not started is to be handed back.
     pub limit: usize,
-    /// The batch; otherwise that of the job that comes first.
+    /// The batch; otherwise that of the job that comes first. While a job of a higher priority waits, a batch without
+    /// one gives nothing.
     pub batch: Option<String>,
 }
 
@@ -30,13 +31,13 @@ pub struct ClaimedJob {
     pub checkpoint: Option<Vec<u8>>,
 }
 
-/// The batch of the job that comes first.
+/// Batch and priority of the job that comes first.
 const FIRST: &str = "
-    SELECT batch FROM jobs INDEXED BY jobs_pending
+    SELECT batch, priority FROM jobs INDEXED BY jobs_pending
     WHERE state = 'pending' ORDER BY priority DESC, cost DESC, id LIMIT 1";
 
 const FIRST_OF_STUDY: &str = "
-    SELECT batch FROM study_pending
+    SELECT batch, priority FROM study_pending
     WHERE study_id = ?1 ORDER BY priority DESC, cost DESC, job_id LIMIT 1";
 
 /// Dear jobs first within a priority, so that no long one is left to a single worker at the end; then by age.
@@ -46,7 +47,7 @@ const TAKE: &str = "
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = ?2, owner = ?1, lease_until_ms = ?3
     WHERE id IN (
         SELECT id FROM jobs INDEXED BY jobs_pending_batch
-        WHERE state = 'pending' AND batch = ?5 ORDER BY priority DESC, cost DESC, id LIMIT ?4
+        WHERE state = 'pending' AND batch = ?5 AND priority >= ?7 ORDER BY priority DESC, cost DESC, id LIMIT ?4
     )
     RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority,
               (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
@@ -55,7 +56,7 @@ const TAKE_OF_STUDY: &str = "
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = ?2, owner = ?1, lease_until_ms = ?3
     WHERE id IN (
         SELECT job_id FROM study_pending INDEXED BY study_pending_batch
-        WHERE study_id = ?6 AND batch = ?5 ORDER BY priority DESC, cost DESC, job_id LIMIT ?4
+        WHERE study_id = ?6 AND batch = ?5 AND priority >= ?7 ORDER BY priority DESC, cost DESC, job_id LIMIT ?4
     )
     RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority,
               (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
@@ -80,14 +81,15 @@ pub(super) async fn take(
     if claim.limit == 0 {
         return Ok(Vec::new());
     }
-    let first = match (&claim.batch, study_id) {
-        (Some(batch), _) => Some(batch.clone()),
-        (None, None) => sqlx::query_scalar(FIRST).fetch_optional(&mut *connection).await?,
-        (None, Some(id)) => {
-            sqlx::query_scalar(FIRST_OF_STUDY).bind(id).fetch_optional(&mut *connection).await?
-        }
+    let first: Option<(String, i64)> = match study_id {
+        None => sqlx::query_as(FIRST).fetch_optional(&mut *connection).await?,
+        Some(id) => sqlx::query_as(FIRST_OF_STUDY).bind(id).fetch_optional(&mut *connection).await?,
     };
-    let Some(batch) = first else { return Ok(Vec::new()) };
+    let Some((first_batch, priority)) = first else { return Ok(Vec::new()) };
+    let (batch, lowest_priority) = match &claim.batch {
+        Some(batch) => (batch.clone(), priority),
+        None => (first_batch, i64::MIN),
+    };
     let mut rows: Vec<Columns> = sqlx::query_as(if study_id.is_some() { TAKE_OF_STUDY } else { TAKE })
         .bind(lease.owner)
         .bind(lease.now_ms)
@@ -95,6 +97,7 @@ pub(super) async fn take(
         .bind(i64::try_from(claim.limit).unwrap_or(i64::MAX))
         .bind(&batch)
         .bind(study_id)
+        .bind(lowest_priority)
         .fetch_all(connection)
         .await?;
     // RETURNING promises no order.
@@ -125,8 +128,8 @@ mod tests {
         for (statement, index) in [
             (FIRST, "jobs_pending"),
             (FIRST_OF_STUDY, "PRIMARY KEY (study_id=?)"),
-            (TAKE, "jobs_pending_batch (batch=?)"),
-            (TAKE_OF_STUDY, "study_pending_batch (study_id=? AND batch=?)"),
+            (TAKE, "jobs_pending_batch (batch=? AND priority>?)"),
+            (TAKE_OF_STUDY, "study_pending_batch (study_id=? AND batch=? AND priority>?)"),
         ] {
             let explain = sqlx::AssertSqlSafe(format!("EXPLAIN QUERY PLAN {statement}"));
             let plan: Vec<(i64, i64, i64, String)> =

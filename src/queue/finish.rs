@@ -14,7 +14,7 @@ pub struct Finished {
     pub attempt: u32,
     /// How it ended.
     pub outcome: FinishedOutcome,
-    /// How long it took, in seconds.
+    /// How long it took, in seconds; jobs that run together share their time.
     pub wall_s: f64,
 }
 

@@ -24,7 +24,7 @@ pub struct Row {
     pub mu: f64,
     /// What is known of the job.
     pub state: RowState,
-    /// Wall-clock time the job took, in seconds.
+    /// The job's share of its thread's time, in seconds: jobs that are advanced together share it equally.
     pub wall_s: Option<f64>,
     /// The job's numerics, in the grid or not; absent in studies submitted by a version that did not keep them.
     pub numerics: Option<JobNumerics>,

@@ -119,6 +119,15 @@ impl<const L: usize> Field<L> {
         for dof in 0..self.len() / L {
             self[dof * L + lane] = from[dof * M + from_lane];
         }
+        // A lane that has overflowed has left more than numbers beside its nodes, and a product would read it.
+        let used = self.nodes_per_line * L;
+        for line in self.blocks.chunks_exact_mut(self.blocks_per_line) {
+            for along in (used + lane..line.len() * WIDTH).step_by(L) {
+                for component in &mut line[along / WIDTH].0 {
+                    component[along % WIDTH] = 0.0;
+                }
+            }
+        }
     }
 
     /// Σ over all nodes and components of this times another field of the same nodes.

@@ -51,7 +51,7 @@ pub struct State<const L: usize> {
     pub(super) workspace: Workspace<L>,
 }
 
-/// Scratch of the step and what it needs of the model; nothing in it changes from step to step.
+/// Scratch of the step and what it needs of the model; nothing in it is carried from step to step.
 #[derive(Debug, Clone)]
 pub(super) struct Workspace<const L: usize> {
     /// Scratch of the product with K.

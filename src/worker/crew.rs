@@ -40,7 +40,8 @@ struct Member {
 impl<'a> Crew<'a> {
     /// Runs a job and whatever else of its batch there is; returns jobs that belong to others.
     pub fn run(desk: &'a Desk, first: Assignment) -> Vec<Assignment> {
-        let batch = match prepare(&first) {
+        let prepared = catch_unwind(|| prepare(&first)).unwrap_or_else(|panic| Err(internal_error(&*panic)));
+        let batch = match prepared {
             Ok(batch) => batch,
             Err(outcome) => {
                 finish(desk, &first, outcome, 0.0);
@@ -72,17 +73,21 @@ impl<'a> Crew<'a> {
                 self.release();
                 return true;
             }
-            self.fill();
+            // A panic is a bug, but it must not take the sweep with it.
+            if catch_unwind(AssertUnwindSafe(|| self.fill())).is_err() {
+                return false;
+            }
             self.ask();
             if self.running.is_empty() && !self.asked && self.waiting.is_empty() {
                 return true;
             }
-            self.hear();
+            if catch_unwind(AssertUnwindSafe(|| self.hear())).is_err() {
+                return false;
+            }
             if self.running.is_empty() {
                 continue;
             }
             let begun = Instant::now();
-            // A panic is a bug, but it must not take the sweep with it.
             let Ok(ended) = catch_unwind(AssertUnwindSafe(|| self.batch.advance())) else { return false };
             let share_s = begun.elapsed().as_secs_f64() / self.running.len() as f64;
             for member in self.running.values_mut() {
@@ -115,11 +120,10 @@ impl<'a> Crew<'a> {
                 continue;
             }
             self.tickets += 1;
-            match self.batch.begin(self.tickets, spec) {
-                Ok(()) => {
-                    self.running.insert(self.tickets, Member { assignment, share_s: 0.0 });
-                }
-                Err(error) => finish(self.desk, &assignment, outcome(Err(error)), 0.0),
+            // Before it begins: whatever happens, somebody has to answer for it.
+            self.running.insert(self.tickets, Member { assignment, share_s: 0.0 });
+            if let Err(error) = self.batch.begin(self.tickets, spec) {
+                self.end(self.tickets, outcome(Err(error)));
             }
         }
     }
@@ -179,16 +183,11 @@ impl<'a> Crew<'a> {
     /// After a panic: runs the jobs one by one, so that only the one that panics by itself fails.
     fn blame(&mut self) {
         for member in std::mem::take(&mut self.running).into_values() {
+            let begun = Instant::now();
             let alone = catch_unwind(AssertUnwindSafe(|| alone(&member.assignment, self.desk)));
-            let outcome = alone.unwrap_or_else(|panic| {
-                let message = panic
-                    .downcast_ref::<String>()
-                    .map(String::as_str)
-                    .or_else(|| panic.downcast_ref::<&str>().copied())
-                    .unwrap_or("no message");
-                FinishedOutcome::Failed { error: format!("internal error (please report it): {message}") }
-            });
-            finish(self.desk, &member.assignment, outcome, member.share_s);
+            let outcome = alone.unwrap_or_else(|panic| internal_error(&*panic));
+            let share_s = member.share_s + begun.elapsed().as_secs_f64();
+            finish(self.desk, &member.assignment, outcome, share_s);
         }
         if self.asked {
             self.strangers.extend(self.desk.mailbox.recv().unwrap_or_default());
@@ -210,10 +209,22 @@ fn alone(assignment: &Assignment, desk: &Desk) -> FinishedOutcome {
         if let Some(ended) = batch.advance().pop() {
             return outcome(ended.result);
         }
+        for (_, simulated_s) in batch.simulated() {
+            assignment.clock.set(simulated_s);
+        }
         if desk.interrupt.is_raised() {
             return FinishedOutcome::Released;
         }
     }
+}
+
+fn internal_error(panic: &(dyn std::any::Any + Send)) -> FinishedOutcome {
+    let message = panic
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| panic.downcast_ref::<&str>().copied())
+        .unwrap_or("no message");
+    FinishedOutcome::Failed { error: format!("internal error (please report it): {message}") }
 }
 
 fn parse(assignment: &Assignment) -> Result<JobSpec, FinishedOutcome> {

@@ -124,7 +124,7 @@ impl Dispatcher<'_> {
             loop {
                 let counts = self.tally.counts;
                 let is_over = self.interrupt.is_raised() || counts.pending + counts.running == 0;
-                if self.running.is_empty() && is_over {
+                if self.running.is_empty() && is_over && self.is_left_with_nothing().await? {
                     return Ok(());
                 }
                 // Only the channel is awaited under the timeout; the database never is.
@@ -141,6 +141,13 @@ impl Dispatcher<'_> {
                 }
             }
         }
+    }
+
+    /// Whether there is nothing to do but stop. What is counted here may be older than what others do.
+    async fn is_left_with_nothing(&mut self) -> Result<bool, QueueError> {
+        self.tally.ask(self.queue, self.scope).await?;
+        let counts = self.tally.counts;
+        Ok(self.interrupt.is_raised() || counts.pending + counts.running == 0)
     }
 
     fn take(&mut self, report: Report, done: &mut Vec<Finished>) {

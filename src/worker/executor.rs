@@ -60,7 +60,7 @@ pub struct Assignment {
 
 /// The threads and the ways to them.
 pub struct Executor {
-    // Dropped last: the threads end when their mailboxes close.
+    // Dropped first: the threads end when their mailboxes close.
     mailboxes: Vec<Sender<Vec<Assignment>>>,
     _pool: rayon::ThreadPool,
 }

@@ -28,8 +28,8 @@ use tribosweep::solver::{Drive, Model, State, step};
 /// Roundings that a force goes through, in the step and in the ledger.
 const ROUNDINGS: f64 = 200.0;
 
-/// Steps between two audits of a job (`analysis::job`).
-pub const JOB_INTERVAL: u64 = 16;
+/// Steps between two audits of a job.
+pub const JOB_INTERVAL: u64 = tribosweep::analysis::lanes::AUDIT_INTERVAL;
 
 /// A run whose energies are balanced at every step.
 pub struct Audited<'a> {

@@ -141,7 +141,7 @@ impl<const L: usize> EnergyLedger<L> {
 
     /// Keeps what the audit of the coming step needs of the state at `t_n`.
     ///
-    /// Steps are counted together for all lanes: one that begins between audits is audited with the others.
+    /// Steps are counted together for all lanes, so that jobs have to begin at an audit.
     pub fn before_step(&mut self, model: &Model, state: &State<L>) {
         if self.keeps(model, state.step) {
             self.audit.keep(state);

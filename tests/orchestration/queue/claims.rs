@@ -91,6 +91,21 @@ async fn a_higher_priority_goes_first() {
     assert_eq!(keys(&claim(&mut queue, Scope::All, 9).await), ["u", "x", "y"]);
 }
 
+/// Protects: whoever asks for more of a batch gets none while a job of a higher priority waits elsewhere, so that it is
+/// not kept waiting until the batch is done.
+#[tokio::test]
+async fn a_higher_priority_ends_a_batch() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    queue.submit(&study_of("slow", jobs(&[("x", 9.0, "a", None), ("y", 8.0, "a", None)]))).await.unwrap();
+    let more = [all(1, Some("a"))];
+    assert_eq!(keys(&exchange(&mut queue, &more).await[0]), ["x"]);
+    queue.submit(&study_of("urgent", jobs(&[("u", 1.0, "b", Some(5))]))).await.unwrap();
+    assert!(exchange(&mut queue, &more).await[0].is_empty());
+    assert_eq!(keys(&exchange(&mut queue, &[all(1, None)]).await[0]), ["u"]);
+    assert_eq!(keys(&exchange(&mut queue, &more).await[0]), ["y"]);
+}
+
 /// Protects: a batch is the program's to name, and another version's name replaces that of pending jobs.
 #[tokio::test]
 async fn a_batch_is_renamed_by_a_submission() {
