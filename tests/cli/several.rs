@@ -106,12 +106,13 @@ fn the_other_goes_on() {
 fn a_deadly_job_fails() {
     let mut study = long();
     study["grid"] = json!({ "mu": [0.2] });
-    study["run"]["limit_s"] = json!(1.0);
+    study["run"]["limit_s"] = json!(4.0);
     let folder = Folder::with("study", &study);
     folder.ok("submit study.json");
-    for _ in 0..2 {
+    for attempt in 1..=2 {
         let work = folder.start("work --max-crashes 2");
-        folder.wait_for("study", |counts| counts["running"] == 1);
+        // The job is "running" from the process before until this one has taken it.
+        wait("the attempt", || read::<(i64,)>(&folder, "SELECT attempt FROM jobs") == [(attempt,)]);
         work.signal("KILL");
         assert_eq!(work.end().0, None);
     }
