@@ -36,7 +36,7 @@ macro_rules! each {
 }
 
 impl AnyLanes {
-    fn taken_over<const L: usize>(from: Lanes<L>, lanes: usize) -> Self {
+    fn taken_over<const L: usize>(from: &mut Lanes<L>, lanes: usize) -> Self {
         match lanes {
             1 => Self::One(Box::new(Lanes::taken_over(from))),
             2 => Self::Two(Box::new(Lanes::taken_over(from))),
@@ -112,9 +112,7 @@ impl Batch {
             AnyLanes::Eight(_) => 8,
         };
         if lanes != now {
-            let empty = AnyLanes::One(Box::new(each!(&self.lanes, lanes => lanes.emptied())));
-            let from = std::mem::replace(&mut self.lanes, empty);
-            self.lanes = each!(from, from => AnyLanes::taken_over(*from, lanes));
+            self.lanes = each!(&mut self.lanes, from => AnyLanes::taken_over(from, lanes));
         }
     }
 

@@ -31,16 +31,6 @@ pub struct Lanes<const L: usize> {
     sampler: Sampler<L>,
     drives: [Drive; L],
     runs: [Option<Run>; L],
-    /// What a lane is set to before a job begins in it.
-    rest: Box<Rest>,
-}
-
-/// A lane at rest.
-#[derive(Debug)]
-struct Rest {
-    state: State<1>,
-    ledger: EnergyLedger<1>,
-    sampler: Sampler<1>,
 }
 
 /// The job in a lane.
@@ -63,46 +53,35 @@ pub struct Ended {
 impl<const L: usize> Lanes<L> {
     /// Empty lanes.
     pub fn new(model: Arc<Model>) -> Self {
-        let rest = Rest {
-            state: State::at_rest(&model),
-            ledger: EnergyLedger::new(&model, AUDIT_INTERVAL),
-            sampler: Sampler::new(&model),
-        };
         Self {
             state: State::at_rest(&model),
             ledger: EnergyLedger::new(&model, AUDIT_INTERVAL),
             sampler: Sampler::new(&model),
             drives: [IDLE; L],
             runs: std::array::from_fn(|_| None),
-            rest: Box::new(rest),
             model,
         }
     }
 
-    /// The jobs of other lanes of the same model, wherever they are in their runs.
+    /// Lanes with the jobs of other lanes of the same model, wherever these are in their runs.
     ///
     /// # Panics
     /// If there are more of them than lanes.
-    pub fn taken_over<const M: usize>(from: Lanes<M>) -> Self {
+    pub fn taken_over<const M: usize>(from: &mut Lanes<M>) -> Self {
         let mut lanes = Self::new(Arc::clone(&from.model));
         lanes.state.step = from.state.step;
         let mut free = 0..L;
-        for (from_lane, run) in from.runs.into_iter().enumerate() {
-            if run.is_some() {
+        for from_lane in 0..M {
+            if let Some(run) = from.runs[from_lane].take() {
                 let lane = free.next().expect("no more jobs than lanes");
                 lanes.state.copy_lane(lane, &from.state, from_lane);
                 lanes.ledger.copy_lane(lane, &from.ledger, from_lane);
                 lanes.sampler.copy_lane(lane, &from.sampler, from_lane);
                 lanes.drives[lane] = from.drives[from_lane];
-                lanes.runs[lane] = run;
+                lanes.runs[lane] = Some(run);
             }
         }
         lanes
-    }
-
-    /// One lane for the same model, without a job.
-    pub fn emptied(&self) -> Lanes<1> {
-        Lanes::new(Arc::clone(&self.model))
     }
 
     /// A lane without a job.
@@ -125,7 +104,8 @@ impl<const L: usize> Lanes<L> {
     pub fn begin(&mut self, lane: usize, ticket: u64, spec: JobSpec) -> Result<(), JobError> {
         assert!(self.runs[lane].is_none(), "lane {lane} has a job");
         let steps = job::step_count(spec.run.limit_s, self.model.time_step_s())?;
-        self.clear(lane);
+        // A free lane is at rest.
+        self.state.begun[lane] = self.state.step;
         self.drives[lane] = job::drive(&spec);
         let stop_early = spec.run.stop_early;
         self.runs[lane] =
@@ -135,9 +115,9 @@ impl<const L: usize> Lanes<L> {
 
     /// Brings a lane to rest.
     fn clear(&mut self, lane: usize) {
-        self.state.copy_lane(lane, &self.rest.state, 0);
-        self.ledger.copy_lane(lane, &self.rest.ledger, 0);
-        self.sampler.copy_lane(lane, &self.rest.sampler, 0);
+        self.state.clear_lane(lane);
+        self.ledger.clear_lane(lane);
+        self.sampler.clear_lane(lane);
         self.drives[lane] = IDLE;
     }
 

@@ -130,23 +130,36 @@ struct Observed {
     motion: f64,
 }
 
-/// Sums over the contact face, lane by lane.
+/// Sums and maxima over the contact face, lane by lane.
 #[derive(Debug, Clone, Copy)]
-struct Sums<const L: usize> {
-    normal: [f64; L],
-    tangential: [f64; L],
-    sideways: [f64; L],
-    x_moment: [f64; L],
-    y_moment: [f64; L],
-    stick_deficit: [f64; L],
-    slip_deficit: [f64; L],
-    closed: [f64; L],
-    slips: [f64; L],
-    transitions: [f64; L],
-    sigma_n_max: [f64; L],
-    slip_max: [f64; L],
-    gap_max: [f64; L],
+struct Totals<const L: usize> {
+    sums: [[f64; L]; SUMS],
+    maxima: [[f64; L]; MAXIMA],
 }
+
+/// What [`Totals::sums`] are of.
+const SUMS: usize = 10;
+const NORMAL: usize = 0;
+const TANGENTIAL: usize = 1;
+const SIDEWAYS: usize = 2;
+const X_MOMENT: usize = 3;
+const Y_MOMENT: usize = 4;
+const STICK_DEFICIT: usize = 5;
+const SLIP_DEFICIT: usize = 6;
+const ALL_CLOSED: usize = 7;
+const ALL_SLIPPING: usize = 8;
+const TRANSITIONS: usize = 9;
+
+/// What [`Totals::maxima`] are of.
+const MAXIMA: usize = 3;
+const STRESS: usize = 0;
+const SLIPPED: usize = 1;
+const GAP: usize = 2;
+
+/// Components of [`Sampler::last`].
+const SIGMA_N: usize = 0;
+const CLOSED: usize = 1;
+const SLIPS: usize = 2;
 
 impl<const L: usize> Sampler<L> {
     /// A sampler of jobs that begin at rest.
@@ -154,15 +167,10 @@ impl<const L: usize> Sampler<L> {
         let mesh = model.mesh();
         let [nx, ny, _] = mesh.elements();
         let transit_s = mesh.size_m()[2] / model.material().pressure_wave_speed_m_s();
-        let mut nodes = Field::on_face(mesh);
-        for (slave, node) in model.slaves().iter().enumerate() {
+        let nodes = model.on_slaves(|node| {
             let [x, y, _] = mesh.coordinates_m(node.node);
-            let values = [1.0 / node.area_m2, x / mesh.size_m()[0], y / mesh.size_m()[1]];
-            let place = nodes.place(slave);
-            for c in 0..3 {
-                *nodes.at_mut(place, c) = [values[c]; L];
-            }
-        }
+            [1.0 / node.area_m2, x / mesh.size_m()[0], y / mesh.size_m()[1]]
+        });
         let observed = [mesh.node(nx / 2, 0, 0), mesh.node(nx / 2, ny, 0)];
         Self {
             gain: smoothing_gain(model.time_step_s(), STRESS_SMOOTHING * transit_s),
@@ -180,30 +188,37 @@ impl<const L: usize> Sampler<L> {
         self.normal[lane] = from.normal[from_lane];
     }
 
+    /// Forgets a lane.
+    pub fn clear_lane(&mut self, lane: usize) {
+        self.last.clear_lane(lane);
+        self.normal[lane] = Smoother::default();
+    }
+
     /// The samples of the step that `state` has just done.
     pub fn sample(&mut self, model: &Model, drives: &[Drive; L], state: &State<L>) -> [Sample; L] {
         let dt = model.time_step_s();
-        let sums = dispatch!(Level::new(), simd => self.add_up(simd, drives, &state.contacts));
+        let Totals { sums, maxima } =
+            dispatch!(Level::new(), simd => self.add_up(simd, drives, &state.contacts));
         std::array::from_fn(|l| Sample {
             time_s: (state.steps_done(l) - 1) as f64 * dt,
             load_n: state.load_n[l],
-            normal_n: sums.normal[l],
-            smooth_normal_n: self.normal[l].push(sums.normal[l], self.gain),
-            contact_tangential_n: sums.tangential[l],
-            contact_sideways_n: sums.sideways[l],
-            x_moment_n: sums.x_moment[l],
-            y_moment_n: sums.y_moment[l],
+            normal_n: sums[NORMAL][l],
+            smooth_normal_n: self.normal[l].push(sums[NORMAL][l], self.gain),
+            contact_tangential_n: sums[TANGENTIAL][l],
+            contact_sideways_n: sums[SIDEWAYS][l],
+            x_moment_n: sums[X_MOMENT][l],
+            y_moment_n: sums[Y_MOMENT][l],
             // The clamp's reaction acts on the pin against the friction of the disk.
             clamp_tangential_n: -state.reaction_n[1][l],
-            stick_deficit_n: sums.stick_deficit[l],
-            slip_deficit_n: sums.slip_deficit[l],
-            stick: (sums.closed[l] - sums.slips[l]) as usize,
-            slip: sums.slips[l] as usize,
-            separated: model.slaves().len() - sums.closed[l] as usize,
-            transitions: sums.transitions[l] as usize,
-            sigma_n_max_pa: sums.sigma_n_max[l],
-            slip_speed_max_m_s: sums.slip_max[l] / dt,
-            lift_max_m: sums.gap_max[l],
+            stick_deficit_n: sums[STICK_DEFICIT][l],
+            slip_deficit_n: sums[SLIP_DEFICIT][l],
+            stick: (sums[ALL_CLOSED][l] - sums[ALL_SLIPPING][l]) as usize,
+            slip: sums[ALL_SLIPPING][l] as usize,
+            separated: model.slaves().len() - sums[ALL_CLOSED][l] as usize,
+            transitions: sums[TRANSITIONS][l] as usize,
+            sigma_n_max_pa: maxima[STRESS][l],
+            slip_speed_max_m_s: maxima[SLIPPED][l] / dt,
+            lift_max_m: maxima[GAP][l],
             nodes: self.observed.map(|node| self.observe(node, model, &drives[l], state, l)),
         })
     }
@@ -234,17 +249,16 @@ impl<const L: usize> Sampler<L> {
     }
 
     #[inline(always)]
-    fn add_up<S: Simd>(&mut self, simd: S, drives: &[Drive; L], contacts: &Contacts<L>) -> Sums<L> {
+    fn add_up<S: Simd>(&mut self, simd: S, drives: &[Drive; L], contacts: &Contacts<L>) -> Totals<L> {
         let zero = f64x8::splat(simd, 0.0);
         let one = f64x8::splat(simd, 1.0);
         let mu = f64x8::from_slice(simd, &in_slots(&drives.map(|drive| drive.mu)));
         let gain = f64x8::splat(simd, self.gain);
         let stride = self.nodes.blocks_per_line();
-        let mut lanes = [[0.0; L]; ADDED];
-        let mut largest = [[0.0; L]; COMPARED];
+        let mut totals = Totals { sums: [[0.0; L]; SUMS], maxima: [[0.0; L]; MAXIMA] };
         for along in 0..stride {
-            let mut sums = [zero; ADDED];
-            let mut maxima = [zero; COMPARED];
+            let mut sums = [zero; SUMS];
+            let mut maxima = [zero; MAXIMA];
             for at in (along..self.nodes.blocks().len()).step_by(stride) {
                 let (node, last) = (&self.nodes.blocks()[at].0, &mut self.last.blocks_mut()[at].0);
                 let force = load_all(simd, &contacts.force_n.blocks()[at].0);
@@ -268,68 +282,33 @@ impl<const L: usize> Sampler<L> {
                 let limit = mu * force[2];
                 // Friction points along −slip, so cos φ = −s_y/|s|.
                 let misaligned = limit * (one + y / slipped);
-                sums[0] += force[2];
-                sums[1] += force[1];
-                sums[2] += force[0];
-                sums[3] += force[2] * f64x8::from_slice(simd, &node[1]);
-                sums[4] += force[2] * f64x8::from_slice(simd, &node[2]);
-                sums[5] += slipping.select(zero, limit - force[1]);
-                sums[6] += slipped.simd_gt(zero).select(misaligned, zero);
-                sums[7] += closed;
-                sums[8] += slips;
-                sums[9] += changed.select(one, zero);
-                maxima[0] = sigma_n.simd_gt(maxima[0]).select(sigma_n, maxima[0]);
-                maxima[1] = slipped.simd_gt(maxima[1]).select(slipped, maxima[1]);
-                maxima[2] = gap.simd_gt(maxima[2]).select(gap, maxima[2]);
+                sums[NORMAL] += force[2];
+                sums[TANGENTIAL] += force[1];
+                sums[SIDEWAYS] += force[0];
+                sums[X_MOMENT] += force[2] * f64x8::from_slice(simd, &node[1]);
+                sums[Y_MOMENT] += force[2] * f64x8::from_slice(simd, &node[2]);
+                sums[STICK_DEFICIT] += slipping.select(zero, limit - force[1]);
+                sums[SLIP_DEFICIT] += slipped.simd_gt(zero).select(misaligned, zero);
+                sums[ALL_CLOSED] += closed;
+                sums[ALL_SLIPPING] += slips;
+                sums[TRANSITIONS] += changed.select(one, zero);
+                maxima[STRESS] = sigma_n.simd_gt(maxima[STRESS]).select(sigma_n, maxima[STRESS]);
+                maxima[SLIPPED] = slipped.simd_gt(maxima[SLIPPED]).select(slipped, maxima[SLIPPED]);
+                maxima[GAP] = gap.simd_gt(maxima[GAP]).select(gap, maxima[GAP]);
             }
             let mut slots = [0.0; WIDTH];
-            for i in 0..ADDED {
+            for i in 0..SUMS {
                 sums[i].store_slice(&mut slots);
-                add_slots(&mut lanes[i], &slots);
+                add_slots(&mut totals.sums[i], &slots);
             }
-            for i in 0..COMPARED {
+            for i in 0..MAXIMA {
                 maxima[i].store_slice(&mut slots);
                 for (slot, value) in slots.iter().enumerate() {
-                    largest[i][slot % L] = value.max(largest[i][slot % L]);
+                    let largest = &mut totals.maxima[i][slot % L];
+                    *largest = value.max(*largest);
                 }
             }
         }
-        let [
-            normal,
-            tangential,
-            sideways,
-            x_moment,
-            y_moment,
-            stick_deficit,
-            slip_deficit,
-            closed,
-            slips,
-            transitions,
-        ] = lanes;
-        let [sigma_n_max, slip_max, gap_max] = largest;
-        Sums {
-            normal,
-            tangential,
-            sideways,
-            x_moment,
-            y_moment,
-            stick_deficit,
-            slip_deficit,
-            closed,
-            slips,
-            transitions,
-            sigma_n_max,
-            slip_max,
-            gap_max,
-        }
+        totals
     }
 }
-
-/// Sums and maxima of a step.
-const ADDED: usize = 10;
-const COMPARED: usize = 3;
-
-/// Components of [`Sampler::last`].
-const SIGMA_N: usize = 0;
-const CLOSED: usize = 1;
-const SLIPS: usize = 2;

@@ -112,31 +112,31 @@ impl Queue {
         let (now_ms, far_ms) = self.lease_window();
         let found = self.write(async |connection| {
             let mut taken = TakenBack::default();
-        let jobs: Vec<(i64, String, u32)> = sqlx::query_as(TAKE_BACK)
-            .bind(owner)
-            .bind(crash_limit)
-            .bind(TAKEN_BACK)
-            .bind((verdict == Verdict::Elsewhere).then_some(now_ms))
-            .bind(far_ms)
-            .fetch_all(&mut *connection)
-            .await?;
-        for (id, state, crashes) in jobs {
-            if state == "pending" {
-                taken.pending += 1;
-                continue;
+            let jobs: Vec<(i64, String, u32)> = sqlx::query_as(TAKE_BACK)
+                .bind(owner)
+                .bind(crash_limit)
+                .bind(TAKEN_BACK)
+                .bind((verdict == Verdict::Elsewhere).then_some(now_ms))
+                .bind(far_ms)
+                .fetch_all(&mut *connection)
+                .await?;
+            for (id, state, crashes) in jobs {
+                if state == "pending" {
+                    taken.pending += 1;
+                    continue;
+                }
+                taken.failed += 1;
+                let error = format!(
+                    "its process died {crashes} times without finishing it (killed, out of memory, a crash, a power cut); \
+                     `tribosweep retry` tries it again"
+                );
+                let crashed = sqlx::query(CRASHED).bind(id).bind(error).bind(now_ms);
+                crashed.execute(&mut *connection).await?;
             }
-            taken.failed += 1;
-            let error = format!(
-                "its process died {crashes} times without finishing it (killed, out of memory, a crash, a power cut); \
-                 `tribosweep retry` tries it again"
-            );
-            let crashed = sqlx::query(CRASHED).bind(id).bind(error).bind(now_ms);
-            crashed.execute(&mut *connection).await?;
-        }
-        if verdict == Verdict::Gone {
-            let ended = sqlx::query("UPDATE workers SET ended_ms = ?2 WHERE id = ?1 AND ended_ms IS NULL");
-            ended.bind(owner).bind(now_ms).execute(&mut *connection).await?;
-        }
+            if verdict == Verdict::Gone {
+                let ended = sqlx::query("UPDATE workers SET ended_ms = ?2 WHERE id = ?1 AND ended_ms IS NULL");
+                ended.bind(owner).bind(now_ms).execute(&mut *connection).await?;
+            }
             Ok(taken)
         })
         .await?;

@@ -116,16 +116,17 @@ impl<const L: usize> Field<L> {
     /// If the fields have different nodes, or there is no such lane.
     pub fn copy_lane<const M: usize>(&mut self, lane: usize, from: &Field<M>, from_lane: usize) {
         assert_eq!(self.len() / L, from.len() / M, "fields of the same nodes");
+        self.clear_lane(lane);
         for dof in 0..self.len() / L {
             self[dof * L + lane] = from[dof * M + from_lane];
         }
-        // A lane that has overflowed has left more than numbers beside its nodes, and a product would read it.
-        let used = self.nodes_per_line * L;
-        for line in self.blocks.chunks_exact_mut(self.blocks_per_line) {
-            for along in (used + lane..line.len() * WIDTH).step_by(L) {
-                for component in &mut line[along / WIDTH].0 {
-                    component[along % WIDTH] = 0.0;
-                }
+    }
+
+    /// Sets one lane to zero, padding included: a lane that has overflowed has left its mark there, too.
+    pub fn clear_lane(&mut self, lane: usize) {
+        for row in self.blocks.iter_mut().flat_map(|block| &mut block.0) {
+            for value in row.iter_mut().skip(lane).step_by(L) {
+                *value = 0.0;
             }
         }
     }

@@ -288,6 +288,18 @@ impl Model {
         &self.slaves
     }
 
+    /// Three numbers of every slave node, the same in all lanes, on the contact face.
+    pub fn on_slaves<const L: usize>(&self, values: impl Fn(&SlaveNode) -> [f64; 3]) -> Field<L> {
+        let mut field = Field::on_face(&self.mesh);
+        for (slave, node) in self.slaves.iter().enumerate() {
+            let place = field.place(slave);
+            for (component, value) in values(node).into_iter().enumerate() {
+                *field.at_mut(place, component) = [value; L];
+            }
+        }
+        field
+    }
+
     /// β₂ of the scheme.
     pub fn beta2(&self) -> f64 {
         self.beta2

@@ -104,6 +104,19 @@ impl<const L: usize> State<L> {
         }
         self.load_n[lane] = from.load_n[from_lane];
     }
+
+    /// Brings a lane to rest; a job that begins in it begins now.
+    pub fn clear_lane(&mut self, lane: usize) {
+        self.begun[lane] = self.step;
+        self.u.clear_lane(lane);
+        self.p.clear_lane(lane);
+        self.contacts.clear_lane(lane);
+        for c in 0..3 {
+            self.reaction_n[c][lane] = 0.0;
+            self.load_stroke_m[c][lane] = 0.0;
+        }
+        self.load_n[lane] = 0.0;
+    }
 }
 
 #[cfg(test)]

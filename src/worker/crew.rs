@@ -74,18 +74,19 @@ impl<'a> Crew<'a> {
                 return true;
             }
             // A panic is a bug, but it must not take the sweep with it.
-            if catch_unwind(AssertUnwindSafe(|| self.fill())).is_err() {
+            let heard = catch_unwind(AssertUnwindSafe(|| {
+                self.hear();
+                self.fill();
+            }));
+            if heard.is_err() {
                 return false;
             }
             self.ask();
-            if self.running.is_empty() && !self.asked && self.waiting.is_empty() {
-                return true;
-            }
-            if catch_unwind(AssertUnwindSafe(|| self.hear())).is_err() {
-                return false;
-            }
             if self.running.is_empty() {
-                continue;
+                if self.asked {
+                    continue;
+                }
+                return true;
             }
             let begun = Instant::now();
             let Ok(ended) = catch_unwind(AssertUnwindSafe(|| self.batch.advance())) else { return false };
@@ -159,7 +160,6 @@ impl<'a> Crew<'a> {
             self.batch.narrow();
         }
         self.waiting.extend(answer);
-        self.fill();
     }
 
     fn end(&mut self, ticket: u64, outcome: FinishedOutcome) {
@@ -242,7 +242,6 @@ fn outcome(result: Result<JobRecord, JobError>) -> FinishedOutcome {
             Ok(record) => FinishedOutcome::Done { record },
             Err(error) => FinishedOutcome::Failed { error: format!("unwritable record: {error}") },
         },
-        Err(JobError::Interrupted) => FinishedOutcome::Released,
         Err(error) => FinishedOutcome::Failed { error: error.to_string() },
     }
 }

@@ -172,7 +172,7 @@ impl Dispatcher<'_> {
             .into_iter()
             .partition(|request| request.batch.is_some() || (is_open && pending > 0));
         for request in &mut now {
-            request.limit = if is_open { request.limit.min(share) } else { 0 };
+            request.limit = request.limit.min(share);
         }
         self.requests = later;
         now

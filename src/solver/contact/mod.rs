@@ -101,6 +101,15 @@ impl<const L: usize> Contacts<L> {
         self.previous_increment_m.copy_lane(lane, &from.previous_increment_m, from_lane);
         self.status.copy_lane(lane, &from.status, from_lane);
     }
+
+    /// Separates all nodes of a lane.
+    pub fn clear_lane(&mut self, lane: usize) {
+        for field in
+            [&mut self.force_n, &mut self.increment_m, &mut self.previous_increment_m, &mut self.status]
+        {
+            field.clear_lane(lane);
+        }
+    }
 }
 
 fn vector<const L: usize>(field: &Field<L>, node: usize, lane: usize) -> [f64; 3] {

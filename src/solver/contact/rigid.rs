@@ -54,18 +54,15 @@ pub(in crate::solver) struct Face<'a, const L: usize> {
 
 impl<const L: usize> RigidContact<L> {
     pub fn new(model: &Model) -> Self {
-        let mut nodes = Field::on_face(model.mesh());
-        let mut held = Vec::new();
-        for (slave, node) in model.slaves().iter().enumerate() {
-            let place = nodes.place(slave);
-            *nodes.at_mut(place, 0) = [node.surface_motion[0]; L];
-            *nodes.at_mut(place, 1) = [node.surface_motion[1]; L];
-            if node.mobile == [true; 3] {
-                *nodes.at_mut(place, 2) = [node.mass_kg; L];
-            } else {
-                held.push(HeldNode { place, node: *node, u_m: [[0.0; L]; 3] });
-            }
-        }
+        let is_free = |node: &SlaveNode| node.mobile == [true; 3];
+        let nodes: Field<L> = model.on_slaves(|node| {
+            let [x, y] = node.surface_motion;
+            [x, y, if is_free(node) { node.mass_kg } else { 0.0 }]
+        });
+        let held = model.slaves().iter().enumerate().filter(|(_, node)| !is_free(node));
+        let held = held
+            .map(|(slave, node)| HeldNode { place: nodes.place(slave), node: *node, u_m: [[0.0; L]; 3] })
+            .collect();
         Self { nodes, held }
     }
 

@@ -84,6 +84,13 @@ impl<const L: usize> Audit<L> {
         }
     }
 
+    /// Forgets a lane.
+    pub fn clear_lane(&mut self, lane: usize) {
+        if let Some(jumps) = &mut self.jumps {
+            jumps.previous_acceleration.clear_lane(lane);
+        }
+    }
+
     /// Keeps the state before the step.
     pub fn keep(&mut self, state: &State<L>) {
         self.p.clone_from(&state.p);

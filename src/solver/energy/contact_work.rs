@@ -28,13 +28,7 @@ pub(super) struct StepWorks<const L: usize> {
 
 impl<const L: usize> ContactWorks<L> {
     pub fn new(model: &Model) -> Self {
-        let mut motion = Field::on_face(model.mesh());
-        for (slave, node) in model.slaves().iter().enumerate() {
-            let place = motion.place(slave);
-            for c in 0..2 {
-                *motion.at_mut(place, c) = [node.surface_motion[c]; L];
-            }
-        }
+        let motion = model.on_slaves(|node| [node.surface_motion[0], node.surface_motion[1], 0.0]);
         Self { motion }
     }
 

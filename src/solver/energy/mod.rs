@@ -139,6 +139,13 @@ impl<const L: usize> EnergyLedger<L> {
         self.audit.copy_lane(lane, &from.audit, from_lane);
     }
 
+    /// Forgets a lane.
+    pub fn clear_lane(&mut self, lane: usize) {
+        self.sums[lane] = LaneSums::default();
+        self.energies[lane] = Energies::default();
+        self.audit.clear_lane(lane);
+    }
+
     /// Keeps what the audit of the coming step needs of the state at `t_n`.
     ///
     /// Steps are counted together for all lanes, so that jobs have to begin at an audit.

@@ -75,13 +75,14 @@ impl TensorOperator {
         y: &mut Field<L>,
         scratch: &mut Scratch<L>,
     ) -> [f64; L] {
-        let mut forms = vec![Row::default(); x.blocks_per_line()];
+        let mut forms = scratch.take_forms();
         let mut product = Product { x: x.blocks(), y: y.blocks_mut(), forms: &mut forms };
         dispatch!(Level::new(), simd => self.pass(simd, &mut product, scratch));
         let mut total = [0.0; L];
         for slots in &forms {
             add_slots(&mut total, &slots.0);
         }
+        scratch.give_forms(forms);
         total
     }
 }

@@ -12,7 +12,7 @@
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
 use super::TensorOperator;
-use crate::solver::field::{WIDTH, blocks_per_line};
+use crate::solver::field::{Row, WIDTH, blocks_per_line};
 use crate::solver::mesh::BlockMesh;
 use fearless_simd::{Simd, f64x8, prelude::*};
 
@@ -48,6 +48,8 @@ pub struct Scratch<const L: usize> {
     /// What the plane before has so far, and what it adds to this one: block along the line → line.
     columns: Vec<PlaneSums>,
     ends: Vec<Ends>,
+    /// Room for x·Kx by columns.
+    forms: Vec<Row>,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -73,7 +75,7 @@ impl Ends {
     }
 }
 
-/// `f64`s in a cache line, the alignment of whole vectors.
+/// Bytes of a cache line, on which whole vectors are to begin.
 const ALIGNMENT: usize = 64;
 
 impl<const L: usize> Scratch<L> {
@@ -96,7 +98,19 @@ impl<const L: usize> Scratch<L> {
             pitch,
             columns: vec![PlaneSums::default(); blocks * my],
             ends,
+            forms: vec![Row::default(); blocks],
         }
+    }
+
+    /// A zero for each column of blocks, lent for a pass.
+    pub(super) fn take_forms(&mut self) -> Vec<Row> {
+        let mut forms = std::mem::take(&mut self.forms);
+        forms.fill(Row::default());
+        forms
+    }
+
+    pub(super) fn give_forms(&mut self, forms: Vec<Row>) {
+        self.forms = forms;
     }
 }
 
@@ -108,6 +122,7 @@ impl<const L: usize> Clone for Scratch<L> {
             pitch: self.pitch,
             columns: vec![PlaneSums::default(); self.columns.len()],
             ends: self.ends.clone(),
+            forms: self.forms.clone(),
         }
     }
 }
