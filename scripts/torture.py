@@ -2,13 +2,14 @@
 """Kills worker processes at random for as long as it is told, then compares the export with an undisturbed run.
 
     cargo build --release
-    python3 scripts/torture.py [--kills 300] [--workers 3] [--jobs 400] [--seed 1]
+    python3 scripts/torture.py [--kills 300] [--workers 3] [--jobs 6000] [--seed 1]
 
 Several processes work on one database. Again and again one of them is killed (kill -9), stopped for a while, or
-interrupted; now and then the database's files are copied while all processes stand still, and the copy is opened.
+interrupted; now and then the database's files are copied while all processes stand still, and the copy is opened. Some
+processes keep the states of their running jobs, most do not.
 After each kill, results that were finished before must be there unchanged. At the end the export must be that of an
 undisturbed run, byte for byte but for the run times, with one result a job, and no more jobs repeated than were running
-in killed processes. Prints the counts; exits non-zero when something does not hold. Only Python's standard library.
+in killed processes. Ends earlier when no job is left. Prints the counts; exits non-zero when something does not hold. Only Python's standard library.
 """
 
 import argparse
@@ -27,16 +28,17 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
+LANES = 8
 FILES = ["tribosweep.db", "tribosweep.db-wal", "tribosweep.db-shm"]
 
 
 def study(jobs):
-    """A grid of small jobs of some tens of milliseconds."""
+    """A grid of jobs of some milliseconds, of which a thread advances LANES together."""
     speeds = [round(1.0 + 0.5 * k, 3) for k in range(max(1, jobs // 10))]
     return {
         "name": "torture",
         "scene": {"pin": {"elements": [3, 4, 3]}, "clamp": {"width_m": 0.004}},
-        "run": {"limit_s": 0.03, "stop_early": False},
+        "run": {"limit_s": 0.1, "stop_early": False},
         "grid": {"mu": [round(0.05 * k, 3) for k in range(1, 11)], "omega_rpm": speeds},
     }
 
@@ -54,9 +56,10 @@ class Sweep:
             raise SystemExit(f"FAILED: {' '.join(arguments)} ended with {done.returncode}: {done.stderr}")
         return done.stdout
 
-    def worker(self):
+    def worker(self, draw):
+        often = draw.choice(["0", "0", "0.02"])
         return subprocess.Popen(
-            [self.program, "work", "--threads", "1", "--max-crashes", "1000000"],
+            [self.program, "work", "--threads", "1", "--max-crashes", "1000000", "--checkpoint-every", often],
             cwd=self.folder,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -100,21 +103,24 @@ def stand_still(workers):
 
 def copy(sweep, workers, draw):
     """A copy at one instant, its files in any order, must open whole with every finished result."""
-    stand_still(workers)
     before = finished(sweep.export())
+    stand_still(workers)
     with tempfile.TemporaryDirectory() as other:
         for name in draw.sample(FILES, 3):
             if (sweep.folder / name).exists():
                 shutil.copy(sweep.folder / name, other)
         for worker in workers:
             worker.send_signal(signal.SIGCONT)
-        check(finished(sweep.export(other)) == before, "a copy lost results")
+        # A process that stands still may hold a lock, so nobody else looks before it goes on.
+        then, after = finished(sweep.export(other)), finished(sweep.export())
+        check(before.items() <= then.items(), "a copy lost results")
+        check(then.items() <= after.items(), "a copy has results that were never finished")
         check("PROBLEM" not in sweep.call("doctor", folder=other), "a copy is damaged")
 
 
 def torture(sweep, options, draw):
     sweep.call("submit", "torture.json")
-    workers = [sweep.worker() for _ in range(options.workers)]
+    workers = [sweep.worker(draw) for _ in range(options.workers)]
     counts = dict.fromkeys(["kills", "ended before the kill", "interrupts", "stops", "copies"], 0)
     seen = {}
     while counts["kills"] < options.kills:
@@ -132,7 +138,7 @@ def torture(sweep, options, draw):
         else:
             is_kill = deed >= 0.25
             victim.send_signal(signal.SIGKILL if is_kill else signal.SIGINT)
-            workers[index] = sweep.worker()
+            workers[index] = sweep.worker(draw)
             code = victim.wait()
             name = ("kills" if code == -signal.SIGKILL else "ended before the kill") if is_kill else "interrupts"
             counts[name] += 1
@@ -152,8 +158,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--kills", type=int, default=300)
     parser.add_argument("--workers", type=int, default=3)
-    parser.add_argument("--jobs", type=int, default=400, help="a multiple of ten")
-    parser.add_argument("--pause", type=float, default=0.08, help="longest time between two deeds [s]")
+    parser.add_argument("--jobs", type=int, default=6000, help="a multiple of ten")
+    parser.add_argument("--pause", type=float, default=0.05, help="longest time between two deeds [s]")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--program", default=str(ROOT / "target/release/tribosweep"))
     options = parser.parse_args()
@@ -172,8 +178,8 @@ def main():
         database.close()
         check(jobs == results == options.jobs, f"{jobs} jobs and {results} results of {options.jobs}")
         repeated = attempts - jobs
-        allowed = counts["kills"] + counts["interrupts"]
-        check(repeated <= allowed, f"{repeated} jobs repeated, {allowed} processes were killed or interrupted")
+        allowed = LANES * (counts["kills"] + counts["interrupts"])
+        check(repeated <= allowed, f"{repeated} jobs repeated, at most {allowed} were running")
     for name, count in counts.items():
         print(f"{name}: {count}")
     print(f"jobs: {jobs}, results: {results}, repeated: {repeated}, lost: 0, recorded twice: 0")

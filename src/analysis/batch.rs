@@ -1,5 +1,6 @@
 //! Jobs of one model in as many lanes as they need.
 
+use super::checkpoint::Unreadable;
 use super::job::JobError;
 use super::lanes::{Ended, Lanes};
 use crate::solver::Model;
@@ -86,15 +87,39 @@ impl Batch {
     /// If the job is not one of this batch, or there are as many as there may be.
     pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Result<(), JobError> {
         spec.check()?;
-        assert!(self.takes(&spec), "a job of another model");
-        assert!(self.jobs() < self.widest, "no more jobs than the widest");
-        if each!(&self.lanes, lanes => lanes.free_lane()).is_none() {
-            self.fit(self.jobs() + 1);
-        }
+        self.make_room(&spec);
         each!(&mut self.lanes, lanes => {
             let lane = lanes.free_lane().expect("a lane was made");
             lanes.begin(lane, ticket, spec)
         })
+    }
+
+    /// Goes on with a job where a [`Batch::checkpoint`] of it left off. Its result has the bits of a run in one go.
+    ///
+    /// # Errors
+    /// [`Unreadable`]; then the job has not begun.
+    ///
+    /// # Panics
+    /// As [`Batch::begin`].
+    pub fn resume(&mut self, ticket: u64, spec: JobSpec, checkpoint: &[u8]) -> Result<(), Unreadable> {
+        self.make_room(&spec);
+        each!(&mut self.lanes, lanes => {
+            let lane = lanes.free_lane().expect("a lane was made");
+            lanes.resume(lane, ticket, spec, checkpoint)
+        })
+    }
+
+    /// Where a job is in its run, for [`Batch::resume`] of the same program; none if there is no such job.
+    pub fn checkpoint(&self, ticket: u64) -> Option<Vec<u8>> {
+        each!(&self.lanes, lanes => lanes.checkpoint(ticket))
+    }
+
+    fn make_room(&mut self, spec: &JobSpec) {
+        assert!(self.takes(spec), "a job of another model");
+        assert!(self.jobs() < self.widest, "no more jobs than the widest");
+        if each!(&self.lanes, lanes => lanes.free_lane()).is_none() {
+            self.fit(self.jobs() + 1);
+        }
     }
 
     /// Moves the jobs to no more lanes than they need: for when no other job is to come.

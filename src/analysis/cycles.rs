@@ -4,9 +4,10 @@ use super::figures::Figures;
 use super::sample::{Sample, Smoother, smoothing_gain};
 use crate::solver::Model;
 use crate::solver::energy::Energies;
+use serde::{Deserialize, Serialize};
 
 /// One passage from an upward crossing of N = F to the next.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
     /// Start [s], interpolated.
     pub start_s: f64,
@@ -43,7 +44,7 @@ const HYSTERESIS: f64 = 0.25;
 const AMPLITUDE_MEMORY: f64 = 16.0;
 
 /// Cuts a run into cycles on the fly.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CycleCutter {
     gain: f64,
     /// Fraction of the remembered amplitude that a step leaves.

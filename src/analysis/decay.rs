@@ -7,11 +7,13 @@
 use super::lines::LineMonitor;
 use super::sample::Sample;
 use crate::spec::Detection;
+use serde::{Deserialize, Serialize};
 
 /// The signals watched, all over F: N, its first moments about the y and x axes, and the sideways friction.
 const SIGNALS: usize = 4;
 
 /// Watches sliding for growth and decay.
+#[derive(Serialize, Deserialize)]
 pub struct DecayMonitor {
     ramp_s: f64,
     monitors: [LineMonitor; SIGNALS],

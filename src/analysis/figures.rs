@@ -1,10 +1,11 @@
 //! Sums and extremes of samples over a window, and the figures that follow from them.
 
 use super::sample::{OBSERVED, Sample};
+use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
 /// Sums and extremes over consecutive steps.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
     /// Number of steps; the first and the last of a cycle count by the part that belongs to it.
     weight: f64,
@@ -32,7 +33,7 @@ pub struct Figures {
 }
 
 /// Extremes of one observed node.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct NodeFigures {
     y_min_m: f64,
     y_max_m: f64,

@@ -10,9 +10,12 @@ use super::window::{LateWindow, Trailing, Window};
 use crate::solver::Model;
 use crate::solver::energy::Energies;
 use crate::spec::JobSpec;
+use serde::{Deserialize, Serialize};
 
 /// Follows one job's run and makes its record.
+#[derive(Serialize, Deserialize)]
 pub struct LaneAnalysis {
+    #[serde(skip)]
     spec: JobSpec,
     cutter: CycleCutter,
     /// None when the run is too short for an observation: it would only keep samples that nobody judges.
@@ -41,6 +44,12 @@ impl LaneAnalysis {
             trailing: Trailing::new(spec.detection.decay_observation_s, model.time_step_s()),
             spec,
         }
+    }
+
+    /// The same analysis, read from where it was kept, where its job's specification is not.
+    #[must_use]
+    pub fn of(self, spec: JobSpec) -> Self {
+        Self { spec, ..self }
     }
 
     /// Adds a step; `energies` are those of the last audit.
@@ -105,6 +114,8 @@ impl LaneAnalysis {
             mu_reduction_stick: figures.stick_reduction(),
             mu_reduction_slip: figures.slip_reduction(),
             growth_rate_per_s: self.monitor.as_ref().and_then(DecayMonitor::growth_rate_per_s),
+            obstacle: (outcome == Outcome::NotPeriodic)
+                .then(|| steady::obstacle(&self.cycles, &self.spec.detection)),
             energy: totals(energies),
             nodes: observed_nodes(figures),
         }

@@ -4,6 +4,7 @@
 //! for any number of lanes. They need not begin together. A lane whose job has ended is at rest, costs what its
 //! slots in the vectors cost anyway, and can be given another job whenever the lanes are between two audits.
 
+use super::checkpoint::{self, Unreadable};
 use super::job::{self, JobError};
 use super::lane::LaneAnalysis;
 use super::record::JobRecord;
@@ -74,9 +75,7 @@ impl<const L: usize> Lanes<L> {
         for from_lane in 0..M {
             if let Some(run) = from.runs[from_lane].take() {
                 let lane = free.next().expect("no more jobs than lanes");
-                lanes.state.copy_lane(lane, &from.state, from_lane);
-                lanes.ledger.copy_lane(lane, &from.ledger, from_lane);
-                lanes.sampler.copy_lane(lane, &from.sampler, from_lane);
+                lanes.load(lane, &mut from.save(from_lane).into_iter());
                 lanes.drives[lane] = from.drives[from_lane];
                 lanes.runs[lane] = Some(run);
             }
@@ -113,11 +112,55 @@ impl<const L: usize> Lanes<L> {
         Ok(())
     }
 
-    /// Brings a lane to rest.
+    /// Puts a job into a lane where a [`Lanes::checkpoint`] of it left off. Its result has the bits of a run in one go.
+    ///
+    /// # Errors
+    /// [`Unreadable`]; then the lane is as it was.
+    ///
+    /// # Panics
+    /// As [`Lanes::begin`], or if the job would not begin there.
+    pub fn resume(
+        &mut self,
+        lane: usize,
+        ticket: u64,
+        spec: JobSpec,
+        bytes: &[u8],
+    ) -> Result<(), Unreadable> {
+        let (numbers, analysis) = checkpoint::decode(bytes, self.save(lane).len())?;
+        self.begin(lane, ticket, spec.clone()).expect("a job that has begun before");
+        self.load(lane, &mut numbers.into_iter());
+        if let Some(run) = &mut self.runs[lane] {
+            *run.analysis = analysis.of(spec);
+        }
+        Ok(())
+    }
+
+    /// Where a job is in its run; none if there is no such job.
+    pub fn checkpoint(&self, ticket: u64) -> Option<Vec<u8>> {
+        let lane = self.runs.iter().position(|run| run.as_ref().is_some_and(|run| run.ticket == ticket))?;
+        let analysis = &self.runs[lane].as_ref()?.analysis;
+        Some(checkpoint::encode(&self.save(lane), analysis))
+    }
+
+    /// The numbers of a lane, wherever its job is in its run.
+    fn save(&self, lane: usize) -> Vec<f64> {
+        let mut saved = Vec::new();
+        self.state.save_lane(lane, &mut saved);
+        self.ledger.save_lane(lane, &mut saved);
+        self.sampler.save_lane(lane, &mut saved);
+        saved
+    }
+
+    /// Sets a lane to the numbers of another one.
+    fn load(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
+        self.state.load_lane(lane, saved);
+        self.ledger.load_lane(lane, saved);
+        self.sampler.load_lane(lane, saved);
+    }
+
+    /// Brings a lane to rest: all its numbers are zero.
     fn clear(&mut self, lane: usize) {
-        self.state.clear_lane(lane);
-        self.ledger.clear_lane(lane);
-        self.sampler.clear_lane(lane);
+        self.load(lane, &mut std::iter::repeat(0.0));
         self.drives[lane] = IDLE;
     }
 

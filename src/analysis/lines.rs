@@ -15,6 +15,7 @@
 //! observation. A longer `decay_observation_s` resolves both.
 
 use realfft::{RealFftPlanner, RealToComplex};
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 use std::f64::consts::PI;
 use std::sync::Arc;
@@ -43,6 +44,7 @@ const STEADY_STANDARD_ERRORS: f64 = 6.0;
 const SMALLEST_FALL: f64 = 1.0e-3;
 
 /// Watches one signal for growth and decay.
+#[derive(Serialize, Deserialize)]
 pub struct LineMonitor {
     hop: usize,
     hop_s: f64,
@@ -57,7 +59,7 @@ pub struct LineMonitor {
 }
 
 /// What the last observation time says of a signal.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     /// Growth rate [1/s] of the fastest growing (or slowest decaying) strong line, or, once everything has
     /// decayed to rounding, the last one measured; none if there was never more than rounding.
@@ -67,11 +69,20 @@ pub struct Verdict {
 }
 
 /// Successive spectra of one kind.
+#[derive(Serialize, Deserialize)]
 struct Stretches {
-    window: fn(f64) -> f64,
+    taper: Taper,
     kept: usize,
+    #[serde(skip)]
     plan: Option<Plan>,
     spectra: VecDeque<Vec<f64>>,
+}
+
+/// The window of a stretch, a function over −1 … 1.
+#[derive(Clone, Copy, Serialize, Deserialize)]
+enum Taper {
+    Hann,
+    Kaiser,
 }
 
 /// What a transform needs; made when the first stretch is complete.
@@ -82,8 +93,8 @@ struct Plan {
 }
 
 impl Stretches {
-    fn new(hops: usize, window: fn(f64) -> f64) -> Self {
-        Self { window, kept: HOPS - hops + 1, plan: None, spectra: VecDeque::new() }
+    fn new(hops: usize, taper: Taper) -> Self {
+        Self { taper, kept: HOPS - hops + 1, plan: None, spectra: VecDeque::new() }
     }
 
     /// Adds the stretch `samples`, always equally long.
@@ -91,7 +102,7 @@ impl Stretches {
         let plan = self.plan.get_or_insert_with(|| {
             let length = samples.len();
             let weights: Vec<f64> =
-                (0..length).map(|i| (self.window)((2.0 * i as f64 + 1.0) / length as f64 - 1.0)).collect();
+                (0..length).map(|i| self.taper.at((2.0 * i as f64 + 1.0) / length as f64 - 1.0)).collect();
             let weight = weights.iter().sum();
             Plan { transform: RealFftPlanner::new().plan_fft_forward(length), weights, weight }
         });
@@ -130,14 +141,13 @@ impl Stretches {
     }
 }
 
-/// Hann window over −1 … 1.
-fn hann(x: f64) -> f64 {
-    0.5 + 0.5 * (PI * x).cos()
-}
-
-/// Kaiser window over −1 … 1.
-fn kaiser(x: f64) -> f64 {
-    bessel_i0(KAISER_BETA * (1.0 - x * x).sqrt()) / bessel_i0(KAISER_BETA)
+impl Taper {
+    fn at(self, x: f64) -> f64 {
+        match self {
+            Self::Hann => 0.5 + 0.5 * (PI * x).cos(),
+            Self::Kaiser => bessel_i0(KAISER_BETA * (1.0 - x * x).sqrt()) / bessel_i0(KAISER_BETA),
+        }
+    }
 }
 
 /// Modified Bessel function of the first kind and order 0, by its series.
@@ -164,8 +174,8 @@ impl LineMonitor {
             hop_s: hop * time_step_s,
             since_hop: 0,
             samples: Vec::new(),
-            long: Stretches::new(LONG, kaiser),
-            short: Stretches::new(SHORT, hann),
+            long: Stretches::new(LONG, Taper::Kaiser),
+            short: Stretches::new(SHORT, Taper::Hann),
             start_amplitude: 0.0,
             hops: 0,
             measured: None,

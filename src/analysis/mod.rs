@@ -14,6 +14,7 @@
 //! * Stresses and the extremes of N are taken behind a short low-pass ([`sample::STRESS_SMOOTHING`]).
 
 pub mod batch;
+mod checkpoint;
 pub mod cycles;
 pub mod decay;
 pub mod figures;
@@ -26,5 +27,6 @@ pub mod sample;
 pub mod steady;
 mod window;
 
+pub use checkpoint::Unreadable;
 pub use job::{JobError, JobObserver, Unobserved, drive, solve};
 pub use record::{EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};

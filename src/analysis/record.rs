@@ -1,5 +1,6 @@
 //! The record of one job: every figure that was found in its run.
 
+use super::steady::Obstacle;
 use serde::{Deserialize, Serialize};
 
 /// How a run ended.
@@ -154,6 +155,9 @@ pub struct JobRecord {
     /// at the end of the run, when the last of it was steady sliding; negative: sliding is stable.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub growth_rate_per_s: Option<f64>,
+    /// Why the run was not found periodic, where it was not (nor to decay).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub obstacle: Option<Obstacle>,
     /// Energies at the end of the run.
     pub energy: EnergyTotals,
     /// The two observed nodes.

@@ -4,10 +4,11 @@
 
 use crate::solver::Model;
 use crate::solver::contact::{ContactState, Contacts, Status};
-use crate::solver::field::{Field, WIDTH, add_slots, in_slots};
+use crate::solver::field::{Field, WIDTH, add_slots, in_slots, next};
 use crate::solver::operator::load_all;
 use crate::solver::state::{Drive, State};
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use serde::{Deserialize, Serialize};
 
 /// Totals and extremes over the contact face during one step (forces at `t_n`).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -86,7 +87,7 @@ impl NodeSample {
 }
 
 /// A first-order low-pass filter.
-#[derive(Debug, Clone, Copy, Default)]
+#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
 pub struct Smoother {
     value: f64,
 }
@@ -182,16 +183,16 @@ impl<const L: usize> Sampler<L> {
         }
     }
 
-    /// Sets a lane to a lane of another sampler of the same model.
-    pub fn copy_lane<const M: usize>(&mut self, lane: usize, from: &Sampler<M>, from_lane: usize) {
-        self.last.copy_lane(lane, &from.last, from_lane);
-        self.normal[lane] = from.normal[from_lane];
+    /// Appends a lane.
+    pub fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
+        self.last.save_lane(lane, saved);
+        saved.push(self.normal[lane].value);
     }
 
-    /// Forgets a lane.
-    pub fn clear_lane(&mut self, lane: usize) {
-        self.last.clear_lane(lane);
-        self.normal[lane] = Smoother::default();
+    /// Sets a lane to a saved one; all zeros forget it.
+    pub fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
+        self.last.load_lane(lane, saved);
+        [self.normal[lane].value] = next(saved);
     }
 
     /// The samples of the step that `state` has just done.

@@ -9,12 +9,13 @@
 use super::cycles::Cycle;
 use super::figures::Figures;
 use crate::spec::Detection;
+use serde::{Deserialize, Serialize};
 
 /// Largest number of section crossings in one limit cycle.
 const MAX_CROSSINGS: usize = 4;
 
 /// A periodic steady state at the end of a sequence of cycles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SteadyState {
     /// Section crossings per limit cycle.
     pub crossings_per_cycle: usize,
@@ -32,8 +33,63 @@ pub fn find(cycles: &[Cycle], detection: &Detection) -> Option<SteadyState> {
     })
 }
 
+/// What keeps the end of a run from counting as periodic.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Obstacle {
+    /// There are fewer section crossings than have to repeat.
+    FewCycles {
+        /// How many there are.
+        found: usize,
+        /// How many have to repeat.
+        needed: usize,
+    },
+    /// All nodes slip all the time: there is growth or decay, and no limit cycle.
+    SlipOnly,
+    /// A figure is not the same from cycle to cycle, whatever is taken for a cycle.
+    Unsteady {
+        /// The figure that is farthest from what is tolerated.
+        figure: String,
+        /// Its largest minus its smallest value over the cycles; relative to the mean for period, stress and amplitude.
+        spread: f64,
+        /// The difference of its means over the halves of them, likewise.
+        drift: f64,
+    },
+}
+
+/// What keeps the end of `cycles` from being periodic, where [`find`] finds nothing.
+pub fn obstacle(cycles: &[Cycle], detection: &Detection) -> Obstacle {
+    let few = Obstacle::FewCycles { found: cycles.len(), needed: detection.cycles };
+    let attempts = (1..=MAX_CROSSINGS).filter_map(|m| {
+        let window = &cycles[cycles.len().checked_sub(m * detection.cycles)?..];
+        let groups: Vec<[f64; FIGURES]> = window.chunks_exact(m).map(figures_of).collect();
+        if slips_only(&groups) {
+            return Some((f64::INFINITY, Obstacle::SlipOnly));
+        }
+        let excesses = (0..FIGURES).map(|f| (Variation::of(&groups, f).excess(detection), f));
+        let (excess, f) = excesses.max_by(|a, b| a.0.total_cmp(&b.0))?;
+        let Variation { spread, drift, scale } = Variation::of(&groups, f);
+        // Infinity has no form in a record.
+        let relative = |x: f64| if scale > 0.0 { x / scale } else { 0.0 };
+        let figure = NAMES[f].to_owned();
+        Some((excess, Obstacle::Unsteady { figure, spread: relative(spread), drift: relative(drift) }))
+    });
+    attempts.min_by(|a, b| a.0.total_cmp(&b.0)).map_or(few, |(_, obstacle)| obstacle)
+}
+
 /// Number of figures compared.
 const FIGURES: usize = 8;
+/// Their names.
+const NAMES: [&str; FIGURES] = [
+    "mu_star",
+    "n_over_f",
+    "stick_share",
+    "slip_share",
+    "separated_share",
+    "period",
+    "sigma_n_max",
+    "amplitude of N",
+];
 /// Figures from this index on are compared relative to their mean.
 const FIRST_RELATIVE: usize = 5;
 
@@ -53,20 +109,45 @@ fn figures_of(group: &[Cycle]) -> [f64; FIGURES] {
 }
 
 fn repeats(groups: &[[f64; FIGURES]], detection: &Detection) -> bool {
+    !slips_only(groups) && (0..FIGURES).all(|f| Variation::of(groups, f).is_tolerated(detection))
+}
+
+/// All nodes slipping all the time is linear: it has no limit cycle, only growth or decay.
+fn slips_only(groups: &[[f64; FIGURES]]) -> bool {
     let slip = 3;
-    // All nodes slipping all the time is linear: it has no limit cycle, only growth or decay.
-    if groups.iter().all(|group| group[slip] >= 1.0) {
-        return false;
-    }
-    let half = groups.len() / 2;
-    (0..FIGURES).all(|f| {
+    groups.iter().all(|group| group[slip] >= 1.0)
+}
+
+/// How a figure varies over the groups.
+struct Variation {
+    spread: f64,
+    drift: f64,
+    scale: f64,
+}
+
+impl Variation {
+    fn of(groups: &[[f64; FIGURES]], f: usize) -> Self {
+        let half = groups.len() / 2;
         let mean = |part: &[[f64; FIGURES]]| part.iter().map(|g| g[f]).sum::<f64>() / part.len() as f64;
-        let scale = if f < FIRST_RELATIVE { 1.0 } else { mean(groups) };
         let highest = groups.iter().map(|g| g[f]).fold(f64::NEG_INFINITY, f64::max);
         let lowest = groups.iter().map(|g| g[f]).fold(f64::INFINITY, f64::min);
-        let drift = (mean(&groups[groups.len() - half..]) - mean(&groups[..half])).abs();
-        highest - lowest <= detection.tolerance * scale && drift <= detection.drift_tolerance * scale
-    })
+        Self {
+            spread: highest - lowest,
+            drift: (mean(&groups[groups.len() - half..]) - mean(&groups[..half])).abs(),
+            scale: if f < FIRST_RELATIVE { 1.0 } else { mean(groups) },
+        }
+    }
+
+    fn is_tolerated(&self, detection: &Detection) -> bool {
+        self.spread <= detection.tolerance * self.scale
+            && self.drift <= detection.drift_tolerance * self.scale
+    }
+
+    /// Spread or drift over what is tolerated, whichever is larger.
+    fn excess(&self, detection: &Detection) -> f64 {
+        let over = |x: f64, tolerance: f64| if x == 0.0 { 0.0 } else { x / (tolerance * self.scale) };
+        over(self.spread, detection.tolerance).max(over(self.drift, detection.drift_tolerance))
+    }
 }
 
 /// Frequency [Hz] of the fundamental over consecutive `cycles`, `crossings` of which make a limit cycle.

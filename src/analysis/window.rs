@@ -3,9 +3,11 @@
 use super::figures::Figures;
 use super::sample::Sample;
 use crate::solver::energy::Energies;
+use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
 /// The last part of a run that ends at its time limit.
+#[derive(Serialize, Deserialize)]
 pub(super) struct LateWindow {
     /// Where it starts [s].
     pub start_s: f64,
@@ -31,6 +33,7 @@ impl LateWindow {
 }
 
 /// The last observation time, in equal blocks of steps.
+#[derive(Serialize, Deserialize)]
 pub(super) struct Trailing {
     steps_per_block: u64,
     steps: u64,
@@ -38,6 +41,7 @@ pub(super) struct Trailing {
 }
 
 /// Some consecutive steps.
+#[derive(Serialize, Deserialize)]
 struct Block {
     start_s: f64,
     figures: Figures,

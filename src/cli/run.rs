@@ -6,7 +6,7 @@ use super::planning::Plan;
 use super::report::{self, OutFolder};
 use super::rows;
 use super::submit::{Priority, submit};
-use super::work::{Retries, Threads, work};
+use super::work::{Checkpoints, Retries, Threads, options, work};
 use crate::queue::{Queue, Scope, SystemClock};
 use crate::report::tables::{Quantity, markdown};
 use std::path::{Path, PathBuf};
@@ -19,6 +19,8 @@ pub struct Args {
     study: PathBuf,
     #[command(flatten)]
     threads: Threads,
+    #[command(flatten)]
+    checkpoints: Checkpoints,
     #[command(flatten)]
     retries: Retries,
     #[command(flatten)]
@@ -35,7 +37,8 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     block_on(async {
         let mut queue = Queue::open_with(db, Arc::new(SystemClock), args.retries.settings()).await?;
         submit(&plan, &args.priority, &mut queue).await?;
-        let code = work(&mut queue, &Scope::Study(name.to_owned()), &args.threads).await?;
+        let options = options(&args.threads, &args.checkpoints);
+        let code = work(&mut queue, &Scope::Study(name.to_owned()), options).await?;
         let rows = rows::read(&mut queue, name).await?;
         queue.close().await?;
         print(&markdown(&rows, Quantity::MuStar))?;

@@ -5,16 +5,19 @@ use super::error::CliError;
 use super::output::{block_on, tell};
 use crate::exit;
 use crate::queue::{Queue, Scope, Settings, SystemClock, TakenBack};
-use crate::worker::{self, Interrupt};
+use crate::worker::{self, Interrupt, WorkOptions};
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Arguments of `work`.
 #[derive(Debug, clap::Args)]
 pub struct Args {
     #[command(flatten)]
     threads: Threads,
+    #[command(flatten)]
+    checkpoints: Checkpoints,
     #[command(flatten)]
     retries: Retries,
 }
@@ -25,6 +28,31 @@ pub struct Threads {
     /// Number of threads, each of which advances up to eight jobs together; default: the number of cores.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     threads: Option<u16>,
+}
+
+/// How often the states of long jobs are kept.
+#[derive(Debug, clap::Args)]
+pub struct Checkpoints {
+    /// Keep the state of every running job at this interval, so that after an interruption it goes on from there;
+    /// jobs shorter than two intervals are not kept, 0 keeps none.
+    #[arg(long = "checkpoint-every", value_name = "SECONDS", value_parser = parse_seconds,
+          default_value_t = WorkOptions::CHECKPOINT_INTERVAL.as_secs_f64())]
+    seconds: f64,
+}
+
+fn parse_seconds(text: &str) -> Result<f64, String> {
+    let seconds = text.parse().ok().filter(|seconds| Duration::try_from_secs_f64(*seconds).is_ok());
+    seconds.ok_or_else(|| "expected a number of seconds, 0 or more".to_owned())
+}
+
+/// Number of threads and checkpoints.
+pub fn options(threads: &Threads, checkpoints: &Checkpoints) -> WorkOptions {
+    let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
+    WorkOptions {
+        threads: threads.threads.map_or_else(cores, usize::from),
+        checkpoint_interval: Some(Duration::from_secs_f64(checkpoints.seconds))
+            .filter(|interval| !interval.is_zero()),
+    }
 }
 
 /// How often a job is tried whose process died.
@@ -47,19 +75,17 @@ impl Retries {
 pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     block_on(async {
         let mut queue = Queue::open_existing(db, Arc::new(SystemClock), args.retries.settings()).await?;
-        let code = work(&mut queue, &Scope::All, &args.threads).await?;
+        let code = work(&mut queue, &Scope::All, options(&args.threads, &args.checkpoints)).await?;
         queue.close().await?;
         Ok(code)
     })
 }
 
 /// Works through the pending jobs of `scope` until they are done or Ctrl-C; returns the exit code.
-pub async fn work(queue: &mut Queue, scope: &Scope, threads: &Threads) -> Result<u8, CliError> {
-    let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
-    let threads = threads.threads.map_or_else(cores, usize::from);
+pub async fn work(queue: &mut Queue, scope: &Scope, options: WorkOptions) -> Result<u8, CliError> {
     let interrupt = Interrupt::default();
     let listener = tokio::spawn(listen(interrupt.clone(), "stopping; running jobs go back to the queue"));
-    let summary = worker::work(queue, scope, threads, &interrupt, &mut Display::new()).await;
+    let summary = worker::work(queue, scope, options, &interrupt, &mut Display::new()).await;
     listener.abort();
     let summary = summary?;
     let TakenBack { pending, failed } = summary.taken_back;

@@ -201,6 +201,9 @@ impl From<sqlx::Error> for QueueError {
             Some(SQLITE_READONLY) => Self::ReadOnly(source),
             Some(SQLITE_CORRUPT | SQLITE_NOTADB) => Self::Damaged(source),
             Some(SQLITE_FULL) => Self::DiskFull(source),
+            Some(SQLITE_IOERR) if extended_code(&source) == Some(SQLITE_IOERR_SHMSIZE) => {
+                Self::DiskFull(source)
+            }
             _ => Self::Database(source),
         }
     }
@@ -209,6 +212,9 @@ impl From<sqlx::Error> for QueueError {
 const SQLITE_BUSY: u32 = 5;
 const SQLITE_LOCKED: u32 = 6;
 const SQLITE_READONLY: u32 = 8;
+const SQLITE_IOERR: u32 = 10;
+/// There is no room for the shared memory, the first thing that whoever opens the database writes.
+const SQLITE_IOERR_SHMSIZE: u32 = SQLITE_IOERR | (19 << 8);
 const SQLITE_CORRUPT: u32 = 11;
 const SQLITE_FULL: u32 = 13;
 /// A file with a wrong header.
@@ -216,8 +222,11 @@ pub(super) const SQLITE_NOTADB: u32 = 26;
 
 /// `SQLite`'s primary result code; the extended one, which sqlx gives, has the details in its upper bits.
 pub(super) fn result_code(error: &sqlx::Error) -> Option<u32> {
-    let code = error.as_database_error()?.code()?;
-    code.parse::<u32>().ok().map(|extended| extended & 0xff)
+    extended_code(error).map(|extended| extended & 0xff)
+}
+
+fn extended_code(error: &sqlx::Error) -> Option<u32> {
+    error.as_database_error()?.code()?.parse().ok()
 }
 
 fn existing(known: &[String]) -> String {

@@ -44,6 +44,14 @@ pub fn in_slots<const L: usize>(lanes: &[f64; L]) -> [f64; WIDTH] {
     std::array::from_fn(|slot| lanes[slot % L])
 }
 
+/// The next numbers of a lane that was saved.
+///
+/// # Panics
+/// If there are too few.
+pub fn next<const N: usize>(saved: &mut dyn Iterator<Item = f64>) -> [f64; N] {
+    std::array::from_fn(|_| saved.next().expect("as many numbers as were saved"))
+}
+
 /// Adds the numbers of a block to those of their lanes, node after node.
 ///
 /// All sums over nodes are made like this: first across the lines of a column of blocks, slot by slot, then
@@ -110,24 +118,23 @@ impl<const L: usize> Field<L> {
         self.blocks.is_empty()
     }
 
-    /// Sets one lane to a lane of another field of the same nodes.
-    ///
-    /// # Panics
-    /// If the fields have different nodes, or there is no such lane.
-    pub fn copy_lane<const M: usize>(&mut self, lane: usize, from: &Field<M>, from_lane: usize) {
-        assert_eq!(self.len() / L, from.len() / M, "fields of the same nodes");
-        self.clear_lane(lane);
-        for dof in 0..self.len() / L {
-            self[dof * L + lane] = from[dof * M + from_lane];
-        }
+    /// Appends the values of one lane.
+    pub fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
+        saved.extend((0..self.len() / L).map(|dof| self[dof * L + lane]));
     }
 
-    /// Sets one lane to zero, padding included: a lane that has overflowed has left its mark there, too.
-    pub fn clear_lane(&mut self, lane: usize) {
+    /// Sets one lane to saved values, and its padding to zero: a lane that has overflowed has left its mark there, too.
+    ///
+    /// # Panics
+    /// If there are too few values.
+    pub fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
         for row in self.blocks.iter_mut().flat_map(|block| &mut block.0) {
             for value in row.iter_mut().skip(lane).step_by(L) {
                 *value = 0.0;
             }
+        }
+        for dof in 0..self.len() / L {
+            [self[dof * L + lane]] = next(saved);
         }
     }
 

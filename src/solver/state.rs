@@ -2,7 +2,7 @@
 
 use super::contact::Contacts;
 use super::contact::rigid::RigidContact;
-use super::field::Field;
+use super::field::{Field, next};
 use super::integrate::Integration;
 use super::model::Model;
 use super::operator::Scratch;
@@ -92,30 +92,29 @@ impl<const L: usize> State<L> {
         self.step.wrapping_sub(self.begun[lane])
     }
 
-    /// Sets a lane to the job in a lane of another state of the same model, wherever that is in its run.
-    pub fn copy_lane<const M: usize>(&mut self, lane: usize, from: &State<M>, from_lane: usize) {
-        self.begun[lane] = self.step.wrapping_sub(from.steps_done(from_lane));
-        self.u.copy_lane(lane, &from.u, from_lane);
-        self.p.copy_lane(lane, &from.p, from_lane);
-        self.contacts.copy_lane(lane, &from.contacts, from_lane);
-        for c in 0..3 {
-            self.reaction_n[c][lane] = from.reaction_n[c][from_lane];
-            self.load_stroke_m[c][lane] = from.load_stroke_m[c][from_lane];
-        }
-        self.load_n[lane] = from.load_n[from_lane];
+    /// Appends all that a lane's job needs to go on, in any lane of any state of the same model.
+    pub fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
+        // Exact: there are fewer steps than 2⁵³.
+        saved.push(self.steps_done(lane) as f64);
+        self.u.save_lane(lane, saved);
+        self.p.save_lane(lane, saved);
+        self.contacts.save_lane(lane, saved);
+        saved.extend(self.reaction_n.map(|reaction| reaction[lane]));
+        saved.extend(self.load_stroke_m.map(|stroke| stroke[lane]));
+        saved.push(self.load_n[lane]);
     }
 
-    /// Brings a lane to rest; a job that begins in it begins now.
-    pub fn clear_lane(&mut self, lane: usize) {
-        self.begun[lane] = self.step;
-        self.u.clear_lane(lane);
-        self.p.clear_lane(lane);
-        self.contacts.clear_lane(lane);
-        for c in 0..3 {
-            self.reaction_n[c][lane] = 0.0;
-            self.load_stroke_m[c][lane] = 0.0;
+    /// Sets a lane to a saved job, wherever that is in its run; all zeros are a job that begins at rest.
+    pub fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
+        let [steps] = next(saved);
+        self.begun[lane] = self.step.wrapping_sub(steps as u64);
+        self.u.load_lane(lane, saved);
+        self.p.load_lane(lane, saved);
+        self.contacts.load_lane(lane, saved);
+        for component in self.reaction_n.iter_mut().chain(&mut self.load_stroke_m) {
+            [component[lane]] = next(saved);
         }
-        self.load_n[lane] = 0.0;
+        [self.load_n[lane]] = next(saved);
     }
 }
 

@@ -1,5 +1,6 @@
 //! The jobs of one batch on one thread.
 
+use super::checkpoint::{self, Kept, Pace};
 use super::executor::{Assignment, Desk, Report};
 use crate::analysis::batch::Batch;
 use crate::analysis::{JobError, JobRecord};
@@ -35,6 +36,7 @@ struct Member {
     assignment: Assignment,
     /// Its share of the thread's time [s]: jobs that are advanced together share it equally.
     share_s: f64,
+    pace: Pace,
 }
 
 impl<'a> Crew<'a> {
@@ -97,10 +99,22 @@ impl<'a> Crew<'a> {
             for job in ended {
                 self.end(job.ticket, outcome(job.result));
             }
-            for (ticket, simulated_s) in self.batch.simulated() {
-                if let Some(member) = self.running.get(&ticket) {
-                    member.assignment.clock.set(simulated_s);
-                }
+            self.look();
+        }
+    }
+
+    /// Shows how far the jobs are, and keeps those that it is time to keep.
+    fn look(&mut self) {
+        let now = Instant::now();
+        for (ticket, simulated_s) in self.batch.simulated() {
+            let Some(member) = self.running.get_mut(&ticket) else { continue };
+            member.assignment.clock.set(simulated_s);
+            member.pace.look(now, simulated_s);
+            if let Some(interval) = self.desk.checkpoint_interval
+                && member.pace.is_due(now, simulated_s, interval)
+                && member.assignment.clock.begin_keeping()
+            {
+                keep(self.desk, &self.batch, ticket, member);
             }
         }
     }
@@ -108,7 +122,7 @@ impl<'a> Crew<'a> {
     /// Begins waiting jobs in free lanes.
     fn fill(&mut self) {
         while self.batch.jobs() < self.batch.widest() {
-            let Some(assignment) = self.waiting.pop_front() else { return };
+            let Some(mut assignment) = self.waiting.pop_front() else { return };
             let spec = match parse(&assignment) {
                 Ok(spec) => spec,
                 Err(outcome) => {
@@ -121,12 +135,31 @@ impl<'a> Crew<'a> {
                 continue;
             }
             self.tickets += 1;
+            let kept = assignment.job.checkpoint.take();
+            let pace = Pace::new(spec.run.limit_s);
             // Before it begins: whatever happens, somebody has to answer for it.
-            self.running.insert(self.tickets, Member { assignment, share_s: 0.0 });
+            self.running.insert(self.tickets, Member { assignment, share_s: 0.0, pace });
+            if self.resume(kept.as_deref(), &spec) {
+                continue;
+            }
             if let Err(error) = self.batch.begin(self.tickets, spec) {
                 self.end(self.tickets, outcome(Err(error)));
             }
         }
+    }
+
+    /// Goes on with the newest member where an earlier attempt left off; whether there is such a place.
+    fn resume(&mut self, kept: Option<&[u8]>, spec: &JobSpec) -> bool {
+        let Some(member) = self.running.get_mut(&self.tickets) else { return false };
+        let Some((spent_s, place)) = kept.and_then(|kept| checkpoint::open(&member.assignment.job, kept))
+        else {
+            return false;
+        };
+        let is_resumed = self.batch.resume(self.tickets, spec.clone(), place).is_ok();
+        if is_resumed {
+            member.share_s = spent_s;
+        }
+        is_resumed
     }
 
     /// Asks for more jobs after one has ended, if there is a lane for them.
@@ -168,8 +201,18 @@ impl<'a> Crew<'a> {
         finish(self.desk, &member.assignment, outcome, member.share_s);
     }
 
-    /// Gives everything back.
+    /// Gives everything back, long jobs with where they are.
     fn release(&mut self) {
+        if let Some(interval) = self.desk.checkpoint_interval {
+            let now = Instant::now();
+            for (ticket, simulated_s) in self.batch.simulated() {
+                if let Some(member) = self.running.get(&ticket)
+                    && member.pace.is_long(now, simulated_s, interval)
+                {
+                    keep(self.desk, &self.batch, ticket, member);
+                }
+            }
+        }
         for member in std::mem::take(&mut self.running).into_values() {
             finish(self.desk, &member.assignment, FinishedOutcome::Released, member.share_s);
         }
@@ -193,6 +236,15 @@ impl<'a> Crew<'a> {
             self.strangers.extend(self.desk.mailbox.recv().unwrap_or_default());
         }
         self.strangers.extend(self.waiting.drain(..));
+    }
+}
+
+/// Sends where a job is to the database.
+fn keep(desk: &Desk, batch: &Batch, ticket: u64, member: &Member) {
+    if let Some(place) = batch.checkpoint(ticket) {
+        let job = &member.assignment.job;
+        let bytes = checkpoint::seal(job, member.share_s, &place);
+        desk.report(Report::Checkpoint(Kept { key: job.key.clone(), attempt: job.attempt, bytes }));
     }
 }
 

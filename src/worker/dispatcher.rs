@@ -1,9 +1,11 @@
 //! The dispatcher: owns the database connection, the interrupt and the progress display.
 
+use super::checkpoint::Kept;
 use super::eta::Eta;
 use super::executor::{Assignment, Executor, JobClock, Report, Request};
 use super::heartbeat::Heartbeat;
 use super::interrupt::Interrupt;
+use super::options::WorkOptions;
 use super::progress::{Progress, RunningJob, Snapshot};
 use super::provenance;
 use super::tally::Tally;
@@ -42,26 +44,26 @@ pub enum WorkError {
     Threads(#[from] rayon::ThreadPoolBuildError),
 }
 
-/// Works through the pending jobs of `scope` on `threads` until none is left or `interrupt` is raised.
+/// Works through the pending jobs of `scope` until none is left or `interrupt` is raised.
 ///
 /// Other processes may work on the same database. Their running jobs are waited for, and done here if they die.
-/// Interrupted jobs go back to the queue.
+/// Interrupted jobs go back to the queue, long ones with where they are.
 ///
 /// # Errors
 /// If the database fails, or threads cannot be started.
 pub async fn work(
     queue: &mut Queue,
     scope: &Scope,
-    threads: usize,
+    options: WorkOptions,
     interrupt: &Interrupt,
     progress: &mut impl Progress,
 ) -> Result<WorkSummary, WorkError> {
     let left = queue.counts(scope).await?;
     // No more threads than jobs to run on them.
     let jobs = usize::try_from(left.pending + left.running).unwrap_or(usize::MAX);
-    let threads = threads.min(jobs.max(1));
+    let threads = options.threads.min(jobs.max(1));
     let (sender, reports) = unbounded_channel();
-    let executor = Executor::new(threads, &sender, interrupt)?;
+    let executor = Executor::new(WorkOptions { threads, ..options }, &sender, interrupt)?;
     queue.register(&provenance::worker(threads)).await?;
     let taken_back = queue.take_back().await?;
     let tally = Tally::new(queue, scope).await?;
@@ -73,6 +75,7 @@ pub async fn work(
         executor,
         reports,
         requests: Vec::new(),
+        checkpoints: Vec::new(),
         running: BTreeMap::new(),
         timings: Vec::new(),
         heartbeat: Heartbeat::new(),
@@ -99,6 +102,8 @@ struct Dispatcher<'a> {
     reports: UnboundedReceiver<Report>,
     /// What threads have asked for and have not been answered.
     requests: Vec<Request>,
+    /// What is to be kept.
+    checkpoints: Vec<Kept>,
     /// Cost and clock of every running job, by key.
     running: BTreeMap<String, (f64, Arc<JobClock>)>,
     /// (cost, seconds) of what this worker has finished.
@@ -112,6 +117,7 @@ impl Dispatcher<'_> {
     async fn run(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
         let mut done = Vec::new();
         loop {
+            self.keep_checkpoints().await?;
             let asked = self.answerable();
             let exchanged = self.exchange(&done, &asked, progress).await?;
             self.settle(&done, &exchanged.refused, progress);
@@ -136,7 +142,7 @@ impl Dispatcher<'_> {
                 while let Ok(report) = self.reports.try_recv() {
                     self.take(report, &mut done);
                 }
-                if !done.is_empty() || !self.is_quiet() {
+                if !done.is_empty() || !self.checkpoints.is_empty() || !self.is_quiet() {
                     break;
                 }
             }
@@ -153,6 +159,7 @@ impl Dispatcher<'_> {
     fn take(&mut self, report: Report, done: &mut Vec<Finished>) {
         match report {
             Report::Finished(job) => done.push(job),
+            Report::Checkpoint(kept) => self.checkpoints.push(kept),
             Report::Wants(request) => self.requests.push(request),
         }
     }
@@ -194,6 +201,24 @@ impl Dispatcher<'_> {
         });
         let assignments = assignments.collect();
         self.executor.answer(request.thread, assignments);
+    }
+
+    /// Keeps where long jobs are. Before their ends: what is released takes its last checkpoint with it.
+    async fn keep_checkpoints(&mut self) -> Result<(), QueueError> {
+        let mut is_locked = false;
+        for Kept { key, attempt, bytes } in std::mem::take(&mut self.checkpoints) {
+            if !is_locked {
+                match self.queue.save_checkpoint(&key, attempt, &bytes).await {
+                    // The one before is still there, and the next one comes.
+                    Err(QueueError::Locked(_)) => is_locked = true,
+                    saved => _ = saved?,
+                }
+            }
+            if let Some((_, clock)) = self.running.get(&key) {
+                clock.end_keeping();
+            }
+        }
+        Ok(())
     }
 
     /// Stores what is done and claims what is asked for. While the database is locked, running jobs go on.

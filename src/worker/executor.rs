@@ -3,24 +3,40 @@
 //! A thread without work asks for a job. With it begins a [`Crew`]: the jobs of one batch, which fills its lanes
 //! with others of the batch and asks for more whenever one ends.
 
+use super::checkpoint::Kept;
 use super::crew::Crew;
 use super::interrupt::Interrupt;
+use super::options::WorkOptions;
 use crate::queue::{ClaimedJob, Finished};
 use std::sync::Arc;
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, Sender, channel};
+use std::time::Duration;
 use tokio::sync::mpsc::UnboundedSender;
 
 /// How far a running job is.
 #[derive(Debug, Default)]
 pub struct JobClock {
     simulated_ns: AtomicU64,
+    /// Whether a checkpoint is on its way to the database. There is one at a time: a database that is locked for an
+    /// hour must not fill the memory.
+    keeping: AtomicBool,
 }
 
 impl JobClock {
     /// Simulated time [s].
     pub fn simulated_s(&self) -> f64 {
         self.simulated_ns.load(Ordering::Relaxed) as f64 * 1e-9
+    }
+
+    /// A checkpoint has arrived, or is lost.
+    pub(super) fn end_keeping(&self) {
+        self.keeping.store(false, Ordering::Relaxed);
+    }
+
+    /// Whether a checkpoint may be sent; if so, it is on its way.
+    pub(super) fn begin_keeping(&self) -> bool {
+        !self.keeping.swap(true, Ordering::Relaxed)
     }
 
     pub(super) fn set(&self, simulated_s: f64) {
@@ -33,6 +49,8 @@ impl JobClock {
 pub enum Report {
     /// A job ended.
     Finished(Finished),
+    /// Where a job is.
+    Checkpoint(Kept),
     /// The thread can take jobs.
     Wants(Request),
 }
@@ -71,25 +89,33 @@ pub(super) struct Desk {
     pub mailbox: Receiver<Vec<Assignment>>,
     pub reports: UnboundedSender<Report>,
     pub interrupt: Interrupt,
+    pub checkpoint_interval: Option<Duration>,
 }
 
 impl Executor {
-    /// `threads` that send their reports to `reports`.
+    /// Threads that send their reports to `reports`.
     ///
     /// # Errors
     /// If the threads cannot be started.
     pub fn new(
-        threads: usize,
+        options: WorkOptions,
         reports: &UnboundedSender<Report>,
         interrupt: &Interrupt,
     ) -> Result<Self, rayon::ThreadPoolBuildError> {
+        let WorkOptions { threads, checkpoint_interval } = options;
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .thread_name(|i| format!("solver-{i}"))
             .build()?;
         let mailboxes = (0..threads).map(|thread| {
             let (sender, mailbox) = channel();
-            let desk = Desk { thread, mailbox, reports: reports.clone(), interrupt: interrupt.clone() };
+            let desk = Desk {
+                thread,
+                mailbox,
+                reports: reports.clone(),
+                interrupt: interrupt.clone(),
+                checkpoint_interval,
+            };
             pool.spawn(move || desk.work());
             sender
         });

@@ -11,15 +11,19 @@
 //! Threads ask for jobs and say of which batch they can use more, because what can be advanced in one vector shares
 //! a model. The dispatcher answers from the database; meanwhile the other lanes go on.
 //!
+//! The states of long jobs are kept in the database now and then, and go on from there after an interruption.
+//!
 //! A job starts only after its claim is committed, and nothing in the pool waits for the database. A
 //! job's result depends on nothing but its specification: threads, order and companions change no bit.
 
+mod checkpoint;
 mod crew;
 mod dispatcher;
 mod eta;
 mod executor;
 mod heartbeat;
 mod interrupt;
+mod options;
 mod progress;
 mod provenance;
 mod tally;
@@ -27,4 +31,5 @@ mod tally;
 pub use dispatcher::{WorkError, WorkSummary, work};
 pub use eta::Eta;
 pub use interrupt::Interrupt;
+pub use options::WorkOptions;
 pub use progress::{Progress, RunningJob, SilentProgress, Snapshot};

@@ -5,10 +5,10 @@ use fearless_simd::Level;
 use serde_json::json;
 
 /// The program's version.
-const VERSION: &str = env!("CARGO_PKG_VERSION");
+pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The commit it was built from; `unknown` where there was no repository, `+modified` where the sources differed.
-const COMMIT: &str = env!("TRIBOSWEEP_COMMIT");
+pub(super) const COMMIT: &str = env!("TRIBOSWEEP_COMMIT");
 
 /// This process as a worker, with what its results are made with as JSON.
 pub fn worker(threads: usize) -> Worker {

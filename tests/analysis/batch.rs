@@ -57,6 +57,73 @@ fn companions_change_nothing() {
     }
 }
 
+/// Protects: a job that is kept at any audit and goes on in another batch, in another lane beside others, and again from
+/// there, has the bytes of a run in one go: its analysis (cycles, watch for a decay, averages) goes on, too.
+#[test]
+fn a_resumed_job_has_the_same_bits() {
+    let mut jobs = jobs();
+    // Judged stable, after an observation that is interrupted.
+    jobs[3].detection.decay_observation_s = 0.0026;
+    jobs[3].run.limit_s = 0.012;
+    jobs[3].scene.contact.mu = 0.2;
+    for job in [0, 2, 3, 7] {
+        let mut records = Vec::new();
+        for pause in [1, 5, 13] {
+            let mut batch = Batch::new(&jobs[job]).unwrap();
+            batch.begin(1, jobs[job].clone()).unwrap();
+            let (mut resumed, mut turns) = (0, 0);
+            let record = loop {
+                let ended = batch.advance().into_iter().find(|ended| ended.ticket == 1);
+                if let Some(ended) = ended {
+                    break serde_json::to_string(&ended.result.unwrap()).unwrap();
+                }
+                turns += 1;
+                if turns % pause == 0 && resumed < 40 {
+                    let kept = batch.checkpoint(1).unwrap();
+                    batch = Batch::new(&jobs[job]).unwrap();
+                    // The companion is at another step, and the job in another lane than before.
+                    if resumed % 2 == 0 {
+                        batch.begin(9, jobs[1].clone()).unwrap();
+                        batch.advance();
+                    }
+                    batch.resume(1, jobs[job].clone(), &kept).unwrap();
+                    assert_eq!(batch.checkpoint(1).unwrap(), kept, "what was kept is what is there");
+                    resumed += 1;
+                }
+            };
+            assert!(resumed > 2, "job {job} was resumed {resumed} times");
+            records.push(record);
+        }
+        let whole = alone(&jobs[job]);
+        assert!(records.iter().all(|record| *record == whole), "job {job}");
+    }
+    assert!(alone(&jobs[3]).contains("decayed"), "the watch for a decay was among it");
+}
+
+/// Protects: a checkpoint that is not one of this model is refused, and the lane takes the job from its beginning.
+#[test]
+fn a_foreign_checkpoint_is_refused() {
+    let job = coarse();
+    let mut finer = job.clone();
+    finer.scene.pin.elements[0] += 1;
+    let mut other = Batch::new(&finer).unwrap();
+    other.begin(1, finer).unwrap();
+    other.advance();
+    let kept = other.checkpoint(1).unwrap();
+    assert!(other.checkpoint(2).is_none(), "no such job");
+    let mut batch = Batch::new(&job).unwrap();
+    for bytes in [&kept[..], &kept[..kept.len() / 2], b""] {
+        batch.resume(1, job.clone(), bytes).unwrap_err();
+        assert_eq!(batch.jobs(), 0);
+    }
+    batch.begin(1, job.clone()).unwrap();
+    let mut ended = Vec::new();
+    while ended.is_empty() {
+        ended = batch.advance();
+    }
+    assert_eq!(serde_json::to_string(&ended.remove(0).result.unwrap()).unwrap(), alone(&job));
+}
+
 /// Protects: a job that is refused as it begins ends with the error that it has alone; the lane takes another one.
 #[test]
 fn a_refused_job_leaves_its_lane_free() {

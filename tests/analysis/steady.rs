@@ -2,7 +2,7 @@
 
 use crate::signals::{LOAD_N, SQUEAL_HZ, STEP_S, cut, sample, sine};
 use tribosweep::analysis::cycles::Cycle;
-use tribosweep::analysis::steady::{self, SteadyState};
+use tribosweep::analysis::steady::{self, Obstacle, SteadyState};
 use tribosweep::spec::Detection;
 
 /// What is found at the end of every prefix of `cycles`.
@@ -47,6 +47,40 @@ fn a_drift_of_friction_is_not_periodic() {
     never_periodic(&drifting(0.002), "rising friction");
     never_periodic(&drifting(-0.002), "falling friction");
     assert!(steady::find(&drifting(0.0005), &Detection::default()).is_some(), "half of what is tolerated");
+}
+
+/// Protects: what is told of a run that is not periodic is what keeps it from being so: the figure that varies, by how
+/// much, that all nodes slip, or that there are too few cycles.
+#[test]
+fn what_is_not_periodic_is_told_why() {
+    let detection = Detection::default();
+    let told = |cycles: &[Cycle]| {
+        assert_eq!(steady::find(cycles, &detection), None);
+        steady::obstacle(cycles, &detection)
+    };
+    let periodic = cut(STEP_S, 0.015, |t| sample(t, 1.0 + 0.5 * sine(SQUEAL_HZ, t, 0.0)));
+    let few = &periodic[5..5 + detection.cycles - 1];
+    assert_eq!(told(few), Obstacle::FewCycles { found: detection.cycles - 1, needed: detection.cycles });
+    // T/F that rises by 0.002 per ten cycles: so much between the halves of twenty.
+    let drifting = cut(STEP_S, 0.015, |t| {
+        let mut sample = sample(t, 1.0 + 0.5 * sine(SQUEAL_HZ, t, 0.0));
+        sample.clamp_tangential_n += 0.002 * t * SQUEAL_HZ / 10.0 * LOAD_N;
+        sample
+    });
+    let Obstacle::Unsteady { figure, spread, drift } = told(&drifting) else { panic!("unsteady") };
+    assert_eq!(figure, "mu_star");
+    // Both to the interpolation of a cycle's ends: a step in a cycle.
+    let tolerance = STEP_S * SQUEAL_HZ * 0.002;
+    assert!(
+        (drift - 0.002).abs() < tolerance && (spread - 0.0038).abs() < 2.0 * tolerance,
+        "{spread}, {drift}"
+    );
+    let slipping = cut(STEP_S, 0.015, |t| {
+        let mut sample = sample(t, 1.0 + 0.1 * sine(SQUEAL_HZ, t, 0.0));
+        (sample.slip, sample.stick, sample.separated) = (10, 0, 0);
+        sample
+    });
+    assert_eq!(told(&slipping), Obstacle::SlipOnly);
 }
 
 /// Protects: an exactly periodic state is found as soon as `cycles` cycles of it are there, not sooner.

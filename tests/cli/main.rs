@@ -6,10 +6,13 @@ mod commands;
 mod determinism;
 mod exit_codes;
 mod interruption;
+#[path = "../support/mount.rs"]
+mod mount;
 mod one_job;
 mod several;
 mod sharing;
 mod streams;
 mod support;
+mod surroundings;
 mod sweep;
 mod upkeep;

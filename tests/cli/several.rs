@@ -126,6 +126,29 @@ fn a_deadly_job_fails() {
     assert_eq!(rows(&folder.ok("export study"))[0]["error"], "");
 }
 
+/// Protects: a long job whose process is killed goes on from its last checkpoint to the same bytes, and is not blamed.
+#[test]
+fn a_killed_long_job_goes_on() {
+    let mut study = long();
+    study["grid"] = json!({ "mu": [0.2, 0.4] });
+    study["run"]["limit_s"] = json!(2.0);
+    let undisturbed = Folder::with("study", &study);
+    undisturbed.ok("run study.json");
+    let folder = Folder::with("study", &study);
+    folder.ok("submit study.json");
+    let kept = || read::<(i64,)>(&folder, "SELECT COALESCE(SUM(attempt), 0) FROM checkpoints");
+    for attempt in 1..=3 {
+        let work = folder.start("work --checkpoint-every 0.02 --max-crashes 2");
+        // Both jobs, each by this attempt.
+        wait("a checkpoint", || kept() == [(2 * attempt,)]);
+        work.signal("KILL");
+        assert_eq!(work.end().0, None);
+    }
+    folder.ok("work --max-crashes 2");
+    let [expected, found] = [&undisturbed, &folder].map(|of| without_wall_times(&of.ok("export study")));
+    assert_eq!(found, expected);
+}
+
 /// Protects: a copy of the database's files at any instant of a process that writes it, as a power cut or a backup
 /// leaves them, in whatever order they are copied, opens whole and holds every result that was finished by then.
 #[test]

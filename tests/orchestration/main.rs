@@ -1,5 +1,7 @@
 //! Orchestration: what must hold of studies and jobs whatever is interrupted, repeated or done at once.
 
+#[path = "../support/mount.rs"]
+mod mount;
 mod queue;
 mod support;
 mod worker;

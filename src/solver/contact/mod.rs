@@ -94,20 +94,19 @@ impl<const L: usize> Contacts<L> {
         (0..self.slaves()).map(move |slave| self.force_of(slave, lane))
     }
 
-    /// Sets one lane to a lane of other contacts of the same nodes.
-    pub fn copy_lane<const M: usize>(&mut self, lane: usize, from: &Contacts<M>, from_lane: usize) {
-        self.force_n.copy_lane(lane, &from.force_n, from_lane);
-        self.increment_m.copy_lane(lane, &from.increment_m, from_lane);
-        self.previous_increment_m.copy_lane(lane, &from.previous_increment_m, from_lane);
-        self.status.copy_lane(lane, &from.status, from_lane);
+    /// Appends a lane.
+    pub fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
+        for field in [&self.force_n, &self.increment_m, &self.previous_increment_m, &self.status] {
+            field.save_lane(lane, saved);
+        }
     }
 
-    /// Separates all nodes of a lane.
-    pub fn clear_lane(&mut self, lane: usize) {
+    /// Sets a lane to a saved one; all zeros separate its nodes.
+    pub fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
         for field in
             [&mut self.force_n, &mut self.increment_m, &mut self.previous_increment_m, &mut self.status]
         {
-            field.clear_lane(lane);
+            field.load_lane(lane, saved);
         }
     }
 }

@@ -77,17 +77,17 @@ impl<const L: usize> Audit<L> {
         }
     }
 
-    /// Sets a lane to a lane of another audit. Between audits only the acceleration is kept.
-    pub fn copy_lane<const M: usize>(&mut self, lane: usize, from: &Audit<M>, from_lane: usize) {
-        if let (Some(jumps), Some(from)) = (&mut self.jumps, &from.jumps) {
-            jumps.previous_acceleration.copy_lane(lane, &from.previous_acceleration, from_lane);
+    /// Appends what is kept of a lane between audits: only the acceleration.
+    pub fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
+        if let Some(jumps) = &self.jumps {
+            jumps.previous_acceleration.save_lane(lane, saved);
         }
     }
 
-    /// Forgets a lane.
-    pub fn clear_lane(&mut self, lane: usize) {
+    /// Sets a lane to a saved one.
+    pub fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
         if let Some(jumps) = &mut self.jumps {
-            jumps.previous_acceleration.clear_lane(lane);
+            jumps.previous_acceleration.load_lane(lane, saved);
         }
     }
 

@@ -23,13 +23,15 @@
 mod audit;
 mod contact_work;
 
+use super::field::next;
 use super::model::Model;
 use super::state::{Drive, State};
 use audit::Audit;
 use contact_work::ContactWorks;
+use serde::{Deserialize, Serialize};
 
 /// Energies [J] of one lane: stored now, done and lost since the start.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Energies {
     /// Kinetic, ½vMv − (γ/4)Δt²aMa.
     pub kinetic_j: f64,
@@ -132,18 +134,50 @@ impl<const L: usize> EnergyLedger<L> {
         &self.energies[lane]
     }
 
-    /// Sets a lane to a lane of another ledger, both of them between audits of the same step.
-    pub fn copy_lane<const M: usize>(&mut self, lane: usize, from: &EnergyLedger<M>, from_lane: usize) {
-        self.sums[lane] = from.sums[from_lane];
-        self.energies[lane] = from.energies[from_lane];
-        self.audit.copy_lane(lane, &from.audit, from_lane);
+    /// Appends a lane, which is to be just before an audit.
+    pub fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
+        let LaneSums { load, drive, friction, contact_loss, damping, numerical_j } = self.sums[lane];
+        for work in [load, drive, friction, contact_loss, damping] {
+            saved.extend([work.after_j, work.before_j]);
+        }
+        saved.push(numerical_j);
+        let Energies {
+            kinetic_j,
+            elastic_j,
+            initial_j,
+            load_work_j,
+            drive_work_j,
+            friction_j,
+            damping_j,
+            contact_loss_j,
+        } = self.energies[lane];
+        saved.extend([kinetic_j, elastic_j, initial_j, load_work_j]);
+        saved.extend([drive_work_j, friction_j, damping_j, contact_loss_j]);
+        self.audit.save_lane(lane, saved);
     }
 
-    /// Forgets a lane.
-    pub fn clear_lane(&mut self, lane: usize) {
-        self.sums[lane] = LaneSums::default();
-        self.energies[lane] = Energies::default();
-        self.audit.clear_lane(lane);
+    /// Sets a lane to a saved one, just before an audit of this ledger; all zeros forget it.
+    pub fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
+        let mut work = || {
+            let [after_j, before_j] = next(saved);
+            Work { after_j, before_j }
+        };
+        let [load, drive, friction, contact_loss, damping] = std::array::from_fn(|_| work());
+        let [numerical_j] = next(saved);
+        self.sums[lane] = LaneSums { load, drive, friction, contact_loss, damping, numerical_j };
+        let [kinetic_j, elastic_j, initial_j, load_work_j] = next(saved);
+        let [drive_work_j, friction_j, damping_j, contact_loss_j] = next(saved);
+        self.energies[lane] = Energies {
+            kinetic_j,
+            elastic_j,
+            initial_j,
+            load_work_j,
+            drive_work_j,
+            friction_j,
+            damping_j,
+            contact_loss_j,
+        };
+        self.audit.load_lane(lane, saved);
     }
 
     /// Keeps what the audit of the coming step needs of the state at `t_n`.

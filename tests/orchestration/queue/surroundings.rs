@@ -2,42 +2,15 @@
 //! message that says what to do, with nothing lost.
 
 use std::fs;
-use std::path::{Path, PathBuf};
-use std::process::Command;
 use std::time::Duration;
 
 use tribosweep::queue::{Queue, QueueError, Scope, Settings, examine};
 
+use crate::mount::Mount;
 use crate::support::{Sandbox, claim, counts, done, finish, of, study};
 
 fn impatient() -> Settings {
     Settings { busy_timeout: Duration::from_millis(50), ..Settings::default() }
-}
-
-/// A file system of its own on a folder, for as long as this lives; none where mounting is refused.
-struct Mount(PathBuf);
-
-impl Mount {
-    fn new(folder: &Path, options: &str) -> Option<Self> {
-        let mut mount = Command::new("mount");
-        mount.args(["-t", "tmpfs", "-o", options, "tmpfs"]).arg(folder);
-        let is_mounted = mount.output().is_ok_and(|output| output.status.success());
-        if !is_mounted {
-            eprintln!("skipped: mounting a file system is refused here");
-        }
-        is_mounted.then(|| Self(folder.to_owned()))
-    }
-
-    fn remount(&self, options: &str) {
-        let options = format!("remount,{options}");
-        assert!(Command::new("mount").args(["-o", &options]).arg(&self.0).status().unwrap().success());
-    }
-}
-
-impl Drop for Mount {
-    fn drop(&mut self) {
-        let _ = Command::new("umount").arg("-l").arg(&self.0).status();
-    }
 }
 
 /// Protects: a lock that another program keeps longer than the busy timeout ends in a message that says so; what was

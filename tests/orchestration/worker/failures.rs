@@ -1,7 +1,7 @@
 //! Jobs that fail, and workers that cannot work.
 
 use tribosweep::queue::{JobState, QueueError, Scope};
-use tribosweep::worker::{Interrupt, SilentProgress, WorkError, work};
+use tribosweep::worker::{Interrupt, SilentProgress, WorkError, WorkOptions, work};
 
 use super::{Recorder, job, row, several, solvable, spec, submit};
 use crate::support::{Sandbox, counts, of};
@@ -43,7 +43,9 @@ async fn a_failed_job_stops_nothing() {
     submit(&mut queue, "study", jobs).await;
 
     let mut recorder = Recorder::new(|_| ());
-    let summary = work(&mut queue, &Scope::All, 2, &Interrupt::default(), &mut recorder).await.unwrap();
+    let summary = work(&mut queue, &Scope::All, WorkOptions::new(2), &Interrupt::default(), &mut recorder)
+        .await
+        .unwrap();
     assert_eq!(summary.counts, counts(0, 0, 2, 9));
     assert!(!summary.interrupted);
     for (job, expected) in &bad {
@@ -63,6 +65,7 @@ async fn a_failed_job_stops_nothing() {
 async fn an_unknown_study_is_an_error() {
     let sandbox = Sandbox::new();
     let mut queue = sandbox.open().await;
-    let refused = work(&mut queue, &of("none"), 1, &Interrupt::default(), &mut SilentProgress).await;
+    let refused =
+        work(&mut queue, &of("none"), WorkOptions::new(1), &Interrupt::default(), &mut SilentProgress).await;
     assert!(matches!(refused, Err(WorkError::Queue(QueueError::UnknownStudy { .. }))), "{refused:?}");
 }

@@ -1,9 +1,11 @@
 //! A worker that is asked to stop.
 
+use std::time::Duration;
+use tribosweep::analysis::{Unobserved, solve};
 use tribosweep::queue::{JobState, Scope, TakenBack};
-use tribosweep::worker::{Interrupt, SilentProgress, work};
+use tribosweep::worker::{Interrupt, SilentProgress, WorkOptions, work};
 
-use super::{Recorder, several, submit};
+use super::{Recorder, row, several, submit};
 use crate::support::{Sandbox, claim, counts, dead_worker};
 
 /// Protects: a worker that is to stop before it starts claims nothing, and says that work is left.
@@ -15,7 +17,8 @@ async fn an_early_interrupt_claims_nothing() {
     let interrupt = Interrupt::default();
     interrupt.raise();
     let mut recorder = Recorder::new(|_| ());
-    let summary = work(&mut queue, &Scope::All, 2, &interrupt, &mut recorder).await.unwrap();
+    let summary =
+        work(&mut queue, &Scope::All, WorkOptions::new(2), &interrupt, &mut recorder).await.unwrap();
     assert!(summary.interrupted);
     assert_eq!(summary.counts, counts(3, 0, 0, 0));
     assert_eq!(recorder.stopped.len(), 1);
@@ -46,7 +49,8 @@ async fn an_interrupt_gives_running_jobs_back() {
             raised.raise();
         }
     });
-    let summary = work(&mut queue, &Scope::All, 2, &interrupt, &mut recorder).await.unwrap();
+    let summary =
+        work(&mut queue, &Scope::All, WorkOptions::new(2), &interrupt, &mut recorder).await.unwrap();
     assert!(summary.interrupted);
     assert_eq!(summary.counts, counts(4, 0, 2, 0));
     assert!(recorder.failures.is_empty(), "{:?}", recorder.failures);
@@ -66,12 +70,61 @@ async fn an_interrupt_gives_running_jobs_back() {
         );
         update.bind(&job.key).bind(&job.payload).execute(&mut raw).await.unwrap();
     }
-    let summary = work(&mut queue, &Scope::All, 2, &Interrupt::default(), &mut SilentProgress).await.unwrap();
+    let summary =
+        work(&mut queue, &Scope::All, WorkOptions::new(2), &Interrupt::default(), &mut SilentProgress)
+            .await
+            .unwrap();
     assert_eq!((summary.counts, summary.interrupted), (counts(0, 0, 6, 0), false));
     let after = queue.rows("study").await.unwrap();
     assert_eq!(after.iter().map(|row| row.attempt).collect::<Vec<_>>(), [1, 1, 2, 2, 2, 2]);
     for (before, after) in before.iter().zip(&after).take(2) {
         assert_eq!((&before.record, before.wall_s), (&after.record, after.wall_s));
+    }
+}
+
+/// Protects: a long job that is interrupted, again and again, goes on where it was, to the bits of a run in one go; the
+/// time it took is that of all attempts. What is short, or of a worker that keeps nothing, begins anew.
+#[tokio::test]
+async fn long_jobs_go_on_where_they_were() {
+    const LIMIT_S: f64 = 0.4;
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let jobs = several(3, LIMIT_S);
+    submit(&mut queue, "study", jobs.clone()).await;
+    let mut raw = sandbox.raw().await;
+    let often = Some(Duration::from_millis(1));
+    let never = Some(Duration::from_hours(1));
+    // Each with the part of the run after which it is interrupted, and what it then leaves.
+    for (interval, part, kept) in [(None, 0.1, 0), (never, 0.2, 0), (often, 0.3, 3), (often, 0.6, 3)] {
+        let interrupt = Interrupt::default();
+        let raised = interrupt.clone();
+        let mut recorder = Recorder::new(move |snapshot| {
+            if snapshot.running.iter().filter(|job| job.simulated_s > part * LIMIT_S).count() == 3 {
+                raised.raise();
+            }
+        });
+        let options = WorkOptions { threads: 2, checkpoint_interval: interval };
+        let summary = work(&mut queue, &Scope::All, options, &interrupt, &mut recorder).await.unwrap();
+        assert_eq!(summary.counts, counts(3, 0, 0, 0));
+        let count: (i64,) =
+            sqlx::query_as("SELECT COUNT(*) FROM checkpoints").fetch_one(&mut raw).await.unwrap();
+        assert_eq!(count.0, kept);
+        // A job that has not been looked at yet shows no time.
+        let places = recorder.snapshots.iter().flat_map(|snapshot| &snapshot.running);
+        let begun = places.map(|job| job.simulated_s).filter(|&s| s > 0.0).fold(LIMIT_S, f64::min);
+        assert_eq!(begun > 0.3 * LIMIT_S, part == 0.6, "went on from {begun} s");
+    }
+    let options = WorkOptions { threads: 2, checkpoint_interval: often };
+    let summary =
+        work(&mut queue, &Scope::All, options, &Interrupt::default(), &mut SilentProgress).await.unwrap();
+    assert_eq!(summary.counts, counts(0, 0, 3, 0));
+    let left: (i64,) = sqlx::query_as("SELECT COUNT(*) FROM checkpoints").fetch_one(&mut raw).await.unwrap();
+    assert_eq!(left.0, 0);
+    for job in &jobs {
+        let row = row(&mut queue, "study", &job.key).await;
+        assert_eq!(row.attempt, 5);
+        let alone = solve(&serde_json::from_str(&job.payload).unwrap(), &mut Unobserved).unwrap();
+        assert_eq!(row.record.unwrap(), serde_json::to_string(&alone).unwrap());
     }
 }
 
@@ -84,7 +137,10 @@ async fn jobs_left_running_are_taken_back() {
     claim(&mut dead, Scope::All, 2).await;
     drop(dead);
     let mut queue = sandbox.open().await;
-    let summary = work(&mut queue, &Scope::All, 2, &Interrupt::default(), &mut SilentProgress).await.unwrap();
+    let summary =
+        work(&mut queue, &Scope::All, WorkOptions::new(2), &Interrupt::default(), &mut SilentProgress)
+            .await
+            .unwrap();
     assert_eq!(summary.taken_back, TakenBack { pending: 2, failed: 0 });
     assert_eq!(summary.counts, counts(0, 0, 3, 0));
 }

@@ -3,7 +3,7 @@
 use tribosweep::analysis::{self, JobRecord, Unobserved};
 use tribosweep::queue::Scope;
 use tribosweep::spec::JobSpec;
-use tribosweep::worker::{Interrupt, SilentProgress, work};
+use tribosweep::worker::{Interrupt, SilentProgress, WorkOptions, work};
 
 use super::{Recorder, several, submit};
 use crate::support::{Sandbox, counts, of};
@@ -17,7 +17,9 @@ async fn progress_only_grows() {
         let mut queue = sandbox.open().await;
         submit(&mut queue, "study", several(7, 0.002)).await;
         let mut recorder = Recorder::new(|_| ());
-        work(&mut queue, &Scope::All, threads, &Interrupt::default(), &mut recorder).await.unwrap();
+        work(&mut queue, &Scope::All, WorkOptions::new(threads), &Interrupt::default(), &mut recorder)
+            .await
+            .unwrap();
         let seen: Vec<_> = recorder.counts().collect();
         assert!(seen.windows(2).all(|pair| pair[0].done <= pair[1].done), "{seen:?}");
         assert!(seen.iter().all(|counts| counts.total() == 7), "{seen:?}");
@@ -51,7 +53,7 @@ async fn a_running_job_tells_its_time() {
             raised.raise();
         }
     });
-    work(&mut queue, &Scope::All, 1, &interrupt, &mut recorder).await.unwrap();
+    work(&mut queue, &Scope::All, WorkOptions::new(1), &interrupt, &mut recorder).await.unwrap();
     assert!(times.windows(2).all(|pair| pair[0] <= pair[1]), "{times:?}");
     assert!(times.last() > times.first(), "{times:?}");
 }
@@ -73,7 +75,9 @@ async fn records_are_those_of_the_solver() {
         let sandbox = Sandbox::new();
         let mut queue = sandbox.open().await;
         submit(&mut queue, "study", jobs.clone()).await;
-        work(&mut queue, &Scope::All, threads, &Interrupt::default(), &mut SilentProgress).await.unwrap();
+        work(&mut queue, &Scope::All, WorkOptions::new(threads), &Interrupt::default(), &mut SilentProgress)
+            .await
+            .unwrap();
         let rows = queue.rows("study").await.unwrap();
         stored.push(rows.into_iter().map(|row| row.record.unwrap()).collect());
         let read = stored.last().unwrap().iter().map(|text| serde_json::from_str::<JobRecord>(text).unwrap());
@@ -90,7 +94,10 @@ async fn a_worker_keeps_to_its_study() {
     let jobs = several(5, 0.001);
     submit(&mut queue, "mine", jobs[..3].to_vec()).await;
     submit(&mut queue, "other", jobs[2..].to_vec()).await;
-    let summary = work(&mut queue, &of("mine"), 2, &Interrupt::default(), &mut SilentProgress).await.unwrap();
+    let summary =
+        work(&mut queue, &of("mine"), WorkOptions::new(2), &Interrupt::default(), &mut SilentProgress)
+            .await
+            .unwrap();
     assert_eq!(summary.counts, counts(0, 0, 3, 0));
     // They share one job.
     assert_eq!(queue.counts(&of("other")).await.unwrap(), counts(2, 0, 1, 0));
