@@ -18,13 +18,13 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent.parent
 COPY = ROOT / "target" / "mutants"
-COPIED = ["Cargo.toml", "Cargo.lock", "build.rs", "src", "migrations", "studies", "scripts"]
+COPIED = ["Cargo.toml", "Cargo.lock", "build.rs", "src", "benches", "tests", "migrations", "studies", "scripts"]
 
 # Name, file, text that occurs there once, and what stands in its place.
 MUTANTS = [
     ("friction cone 1 % too wide", "src/solver/contact/coulomb.rs",
      "    let limit = mu * normal_n;\n    let trial =",
-     "    let limit = f64x8::splat(mu.witness(), 1.01) * mu * normal_n;\n    let trial ="),
+     "    let limit = f64x8::splat(mu.simd, 1.01) * mu * normal_n;\n    let trial ="),
     ("friction cone a square instead of a circle", "src/solver/contact/coulomb.rs",
      "let trial = (trial_n[0] * trial_n[0] + trial_n[1] * trial_n[1]).sqrt();",
      "let (x, y) = (trial_n[0].abs(), trial_n[1].abs());\n    let trial = x.simd_gt(y).select(x, y);"),

@@ -30,3 +30,4 @@ mod window;
 pub use checkpoint::Unreadable;
 pub use job::{JobError, JobObserver, Unobserved, drive, solve};
 pub use record::{EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
+pub use steady::Obstacle;

@@ -1,5 +1,5 @@
 //! Locks of the operating system on files beside the database. They end with the process that holds them,
-//! however it ends, so there is nothing stale to clean up; the empty files stay.
+//! however it ends, so there is nothing stale to clean up; the empty file of the opening lock stays.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
@@ -7,15 +7,29 @@ use std::path::{Path, PathBuf};
 use super::QueueError;
 
 /// The lock that a process of the first schema held while it ran jobs; with it, none of them does.
-///
-/// # Errors
-/// [`QueueError::OlderWorking`] if one holds it.
-pub(super) fn former_worker_lock(database: &Path) -> Result<File, QueueError> {
-    let (path, file) = open_beside(database, ".worker")?;
-    match file.try_lock() {
-        Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => Err(QueueError::OlderWorking { path: database.into() }),
-        Err(TryLockError::Error(source)) => Err(QueueError::File { path, source }),
+pub(super) struct FormerWorkerLock {
+    path: PathBuf,
+    _file: File,
+}
+
+impl FormerWorkerLock {
+    /// Takes it.
+    ///
+    /// # Errors
+    /// [`QueueError::OlderWorking`] if a process holds it.
+    pub fn take(database: &Path) -> Result<Self, QueueError> {
+        let (path, file) = open_beside(database, ".worker")?;
+        match file.try_lock() {
+            Ok(()) => Ok(Self { path, _file: file }),
+            Err(TryLockError::WouldBlock) => Err(QueueError::OlderWorking { path: database.into() }),
+            Err(TryLockError::Error(source)) => Err(QueueError::File { path, source }),
+        }
+    }
+
+    /// Ends it with its file, when nobody needs it any more: no process of the first schema opens a newer database.
+    pub fn remove(self) {
+        // An empty file that stays is no harm.
+        let _ = std::fs::remove_file(&self.path);
     }
 }
 

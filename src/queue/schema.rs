@@ -7,7 +7,8 @@ use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
 use sqlx::{SqlSafeStr, SqliteConnection};
 
 use super::open::open_error;
-use super::{QueueError, lock};
+use super::QueueError;
+use super::lock::FormerWorkerLock;
 
 /// Set by the first migration: "trib" in ASCII.
 const APPLICATION_ID: i64 = 0x7472_6962;
@@ -41,14 +42,16 @@ pub(super) async fn migrate(connection: &mut SqliteConnection, path: &Path) -> R
     let known = newest(&migrator);
     // Tables are rebuilt under those that refer to them; the pragma does nothing inside a migration's transaction.
     sqlx::query("PRAGMA foreign_keys = OFF").execute(&mut *connection).await?;
-    let former = if version(connection).await? == 1 { Some(lock::former_worker_lock(path)?) } else { None };
+    let former = if version(connection).await? == 1 { Some(FormerWorkerLock::take(path)?) } else { None };
     migrator.run(connection).await.map_err(|error| match error {
         MigrateError::VersionMissing(found) if found > known => {
             QueueError::NewerDatabase { path: path.into(), found, known }
         }
         source => QueueError::Migrate { path: path.into(), source },
     })?;
-    drop(former);
+    if let Some(former) = former {
+        former.remove();
+    }
     Ok(())
 }
 

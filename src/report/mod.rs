@@ -7,6 +7,7 @@
 //! * [`tables`] – speed by friction coefficient, as Markdown and CSV.
 //! * [`figure`] – μ* and frequency against speed, as SVG.
 //! * [`pareto`] – error against run time of jobs that differ in their numerics only.
+//! * [`trouble`] – where in the grid jobs fail or do not become periodic, and why.
 //! * [`write()`] – a folder with all of it and a page that holds it together.
 
 mod error;
@@ -20,6 +21,7 @@ mod page;
 pub mod pareto;
 mod row;
 pub mod tables;
+pub mod trouble;
 mod value;
 
 pub use error::ReportError;

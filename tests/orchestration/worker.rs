@@ -2,6 +2,7 @@
 
 mod failures;
 mod interrupts;
+mod locked;
 mod observed;
 
 use serde_json::json;

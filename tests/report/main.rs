@@ -7,3 +7,4 @@ mod pareto;
 mod svg;
 mod synthetic;
 mod tables;
+mod trouble;

@@ -123,6 +123,7 @@ async fn an_older_worker_is_waited_for() {
     assert_eq!(running, 1, "it is as it was");
     drop(lock);
     sandbox.open().await;
+    assert!(!sandbox.folder.path().join("sweep.db.worker").exists(), "it is of no use any more");
 }
 
 /// Protects: a migration that cannot be made changes nothing, says why, and is made by the next opening.

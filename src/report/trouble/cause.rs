@@ -1,0 +1,65 @@
+//! Why a job is in trouble.
+
+use crate::analysis::{JobRecord, Obstacle, Outcome};
+use crate::report::row::{Row, RowState};
+use crate::report::value;
+
+/// What is wrong with a job.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Cause {
+    /// `failed` or `not periodic`.
+    pub what: &'static str,
+    /// Equal for jobs with the same cause, whatever the numbers in it.
+    pub class: String,
+    /// In words, with the numbers of one job.
+    pub why: String,
+}
+
+/// What is wrong with a row's job, if anything is.
+pub fn cause(row: &Row) -> Option<Cause> {
+    match &row.state {
+        RowState::Failed { error } => {
+            Some(Cause { what: "failed", class: without_numbers(error), why: error.clone() })
+        }
+        RowState::Done(record) if record.outcome == Outcome::NotPeriodic => {
+            let (class, why) = obstacle(record);
+            Some(Cause { what: "not periodic", class, why })
+        }
+        _ => None,
+    }
+}
+
+fn obstacle(record: &JobRecord) -> (String, String) {
+    let growth = record.growth_rate_per_s.filter(|rate| rate.is_finite());
+    let growth = growth.map_or_else(String::new, |rate| format!(" (growth rate {rate:.0} /s)"));
+    match &record.obstacle {
+        None => ("time limit".to_owned(), "the time limit came first".to_owned()),
+        Some(Obstacle::FewCycles { found, needed }) => (
+            "few cycles".to_owned(),
+            format!("the time limit came after {found} of the {needed} cycles that have to repeat{growth}"),
+        ),
+        Some(Obstacle::SlipOnly) => (
+            "slip only".to_owned(),
+            format!("all nodes slip all the time, and neither growth nor decay is established{growth}"),
+        ),
+        Some(Obstacle::Unsteady { figure, spread, drift }) => (
+            format!("unsteady {figure}"),
+            format!(
+                "{figure} is not the same from cycle to cycle: it spreads by {} and drifts by {}",
+                significant(*spread),
+                significant(*drift)
+            ),
+        ),
+    }
+}
+
+/// Two digits are enough to compare with a tolerance.
+fn significant(x: f64) -> String {
+    format!("{x:.1e}").parse().map_or_else(|_| value::number(x), value::number)
+}
+
+/// A message whose numbers do not count: the step at which a run diverged is not why it did.
+fn without_numbers(text: &str) -> String {
+    let is_number = |word: &str| word.chars().any(|c| c.is_ascii_digit());
+    text.split_whitespace().map(|word| if is_number(word) { "#" } else { word }).collect::<Vec<_>>().join(" ")
+}

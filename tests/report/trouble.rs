@@ -1,0 +1,106 @@
+//! Where jobs fail or do not become periodic.
+
+use crate::synthetic::{failed, periodic, record, row, with};
+use tribosweep::analysis::{Obstacle, Outcome, Regime};
+use tribosweep::report::trouble::{LISTED, Region, regions, sentence};
+use tribosweep::report::{Row, RowState};
+
+fn unsteady(figure: &str, spread: f64) -> RowState {
+    let mut record = record(Outcome::NotPeriodic, Regime::StickSlip, 0.3);
+    record.obstacle = Some(Obstacle::Unsteady { figure: figure.to_owned(), spread, drift: 0.25 * spread });
+    RowState::Done(Box::new(record))
+}
+
+/// A grid of 4 × 6 jobs that are well but for `state`.
+fn study(state: impl Fn(usize, usize) -> Option<RowState>) -> Vec<Row> {
+    let (mus, omegas) = ([0.1, 0.2, 0.3, 0.4], [100.0, 1.0, 2.0, 5.0, 10.0, 50.0]);
+    let at = |m: usize, o: usize| row(omegas[o], mus[m], state(m, o).unwrap_or_else(|| periodic(0.3)));
+    (0..4).flat_map(|m| (0..6).map(move |o| (m, o))).map(|(m, o)| at(m, o)).collect()
+}
+
+fn in_short(region: &Region) -> (usize, usize, &str, &str) {
+    (region.jobs, region.of, &region.place, region.cause.what)
+}
+
+/// Protects: neighbours in the grid are one region, diagonals and the order of the values' sizes (not of the document)
+/// included; what is apart or has another cause is another one; the numbers in a message are no other cause.
+#[test]
+fn regions_are_what_hangs_together() {
+    // Speeds in the document: 100, 1, 2, 5, 10, 50; by size 100 is a neighbour of 50 and not of 1.
+    let rows = study(|m, o| match (m, o) {
+        (3, 0) => Some(failed("diverged at step 17 (t = 3.2e-5 s)")),
+        (3, 5) => Some(failed("diverged at step 4 (t = 1e-5 s)")),
+        (2, 4) => Some(failed("diverged at step 5 (t = 1e-5 s)")),
+        (0, 1) => Some(failed("diverged at step 9 (t = 1e-5 s)")),
+        (3, 1) => Some(unsteady("mu_star", 0.034)),
+        (3, 2) => Some(unsteady("mu_star", 0.05)),
+        (2, 1) => Some(unsteady("period", 0.05)),
+        _ => None,
+    });
+    let found = regions(&rows);
+    let found: Vec<_> = found.largest.iter().map(in_short).collect();
+    assert_eq!(
+        found,
+        [
+            (3, 6, "ω = 10 … 100 rpm, μ = 0.3 … 0.4", "failed"),
+            (2, 2, "ω = 1 … 2 rpm, μ = 0.4", "not periodic"),
+            (1, 1, "ω = 1 rpm, μ = 0.1", "failed"),
+            (1, 1, "ω = 1 rpm, μ = 0.3", "not periodic"),
+        ]
+    );
+}
+
+/// Protects: a sentence says what, how many of how many, where, why and which job.
+#[test]
+fn a_region_is_told_in_a_sentence() {
+    let rows = study(|m, o| (m == 3 && o < 3 && o != 1).then(|| unsteady("mu_star", 0.034)));
+    let found = regions(&rows);
+    assert_eq!(
+        found.largest.iter().map(sentence).collect::<Vec<_>>(),
+        [
+            "not periodic: 1 job at ω = 100 rpm, μ = 0.4: mu_star is not the same from cycle to cycle: it spreads by \
+             0.034 and drifts by 0.0085 (job job-100-0.4)",
+            "not periodic: 1 job at ω = 2 rpm, μ = 0.4: mu_star is not the same from cycle to cycle: it spreads by \
+             0.034 and drifts by 0.0085 (job job-2-0.4)",
+        ]
+    );
+    let everywhere = regions(&study(|_, _| Some(failed("no room"))));
+    assert_eq!(sentence(&everywhere.largest[0]), "failed: 24 jobs: no room (job job-100-0.1, for example)");
+    assert!(regions(&study(|_, _| None)).largest.is_empty());
+}
+
+/// Protects: values that are no numbers have no neighbours, a parameter that some jobs lack is a value too, and what is
+/// the same in all jobs is not told.
+#[test]
+fn words_are_places_of_their_own() {
+    let mut rows = Vec::new();
+    for side in ["inner_side", "outer_side"] {
+        for mu in [0.2, 0.4] {
+            rows.push(with(row(7.0, mu, failed("no")), "clamp.side", side));
+        }
+    }
+    rows.push(row(7.0, 0.4, failed("no")));
+    let places: Vec<_> =
+        regions(&rows).largest.into_iter().map(|region| (region.jobs, region.place)).collect();
+    assert_eq!(
+        places,
+        [
+            (2, "μ = 0.2 … 0.4, clamp.side = inner_side".to_owned()),
+            (2, "μ = 0.2 … 0.4, clamp.side = outer_side".to_owned()),
+            (1, "μ = 0.4, clamp.side not set".to_owned()),
+        ]
+    );
+}
+
+/// Protects: a study full of scattered failures is told in a bounded number of lines, and none is forgotten.
+#[test]
+fn many_regions_are_counted() {
+    let rows: Vec<Row> = (0..100)
+        .map(|i| {
+            let state = if i % 2 == 0 { failed("no") } else { periodic(0.3) };
+            row(f64::from(i), 0.4, state)
+        })
+        .collect();
+    let found = regions(&rows);
+    assert_eq!((found.largest.len(), found.more, found.jobs_in_more), (LISTED, 50 - LISTED, 50 - LISTED));
+}
