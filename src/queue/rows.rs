@@ -1,3 +1,5 @@
+use std::ops::ControlFlow;
+
 use sqlx::sqlite::SqliteRow;
 use sqlx::{FromRow, Row};
 
@@ -71,7 +73,11 @@ impl Queue {
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.
     pub async fn rows(&mut self, study: &str) -> Result<Vec<StudyRow>, QueueError> {
         let mut rows = Vec::new();
-        self.row_pages(study, None, |page| rows.extend(page)).await?;
+        self.row_pages(study, None, |page| {
+            rows.extend(page);
+            ControlFlow::Continue(())
+        })
+        .await?;
         Ok(rows)
     }
 
@@ -81,12 +87,16 @@ impl Queue {
     /// As [`Queue::rows`].
     pub async fn failed_rows(&mut self, study: &str) -> Result<Vec<StudyRow>, QueueError> {
         let mut rows = Vec::new();
-        self.row_pages(study, Some(JobState::Failed), |page| rows.extend(page)).await?;
+        self.row_pages(study, Some(JobState::Failed), |page| {
+            rows.extend(page);
+            ControlFlow::Continue(())
+        })
+        .await?;
         Ok(rows)
     }
 
     /// Shows the rows of a study to `look`, in the order of its document, some at a time: for those who do not need
-    /// them all at once.
+    /// them all at once. It may say that it has seen enough.
     ///
     /// What changes meanwhile is seen in later rows and not in earlier ones.
     ///
@@ -95,7 +105,7 @@ impl Queue {
     pub async fn each_page(
         &mut self,
         study: &str,
-        look: impl FnMut(Vec<StudyRow>),
+        look: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
     ) -> Result<(), QueueError> {
         self.row_pages(study, None, look).await
     }
@@ -105,7 +115,11 @@ impl Queue {
     ///
     /// # Errors
     /// As [`Queue::rows`].
-    pub async fn each_parameters(&mut self, study: &str, mut look: impl FnMut(&str)) -> Result<(), QueueError> {
+    pub async fn each_parameters(
+        &mut self,
+        study: &str,
+        mut look: impl FnMut(&str),
+    ) -> Result<(), QueueError> {
         let study_id = studies::require(&mut self.connection, study).await?;
         let mut next = 0_i64;
         loop {
@@ -133,7 +147,7 @@ impl Queue {
         &mut self,
         study: &str,
         state: Option<JobState>,
-        mut look: impl FnMut(Vec<StudyRow>),
+        mut look: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
     ) -> Result<(), QueueError> {
         let study_id = studies::require(&mut self.connection, study).await?;
         let mut next = 0_i64;
@@ -143,7 +157,9 @@ impl Queue {
             let page: Vec<StudyRow> = page.fetch_all(&mut self.connection).await?;
             let Some(last) = page.last() else { return Ok(()) };
             next = last.ordinal.cast_signed() + 1;
-            look(page);
+            if look(page).is_break() {
+                return Ok(());
+            }
         }
     }
 }
