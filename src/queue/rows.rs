@@ -57,13 +57,17 @@ const PARAMETERS: &str = "
 const PAGE: i64 = 1_000;
 
 /// Counts the rows of a study by a field of their jobs' records, those that are no objects in JSON or lack the field as
-/// null.
+/// null. LIMIT: without it the inner query becomes part of the outer one, which then sorts whole records.
 const RECORDED: &str = "
-    SELECT IIF(json_valid(r.record), r.record ->> ?2, NULL) AS field, COUNT(*)
-    FROM study_jobs AS m
-    CROSS JOIN jobs AS j ON j.id = m.job_id
-    CROSS JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt
-    WHERE m.study_id = ?1 AND j.state = 'done'
+    SELECT field, COUNT(*)
+    FROM (
+        SELECT IIF(json_valid(r.record), r.record ->> ?2, NULL) AS field
+        FROM study_jobs AS m
+        CROSS JOIN jobs AS j ON j.id = m.job_id
+        CROSS JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt
+        WHERE m.study_id = ?1 AND j.state = 'done'
+        LIMIT -1
+    )
     GROUP BY field";
 
 impl Queue {

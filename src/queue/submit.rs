@@ -245,3 +245,42 @@ fn as_rows(rows: &[Row<'_>]) -> String {
 fn json(rows: &impl Serialize) -> String {
     serde_json::to_string(rows).expect("strings and finite numbers have a JSON form")
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{NewJob, NewStudy};
+    use crate::queue::{Queue, SystemClock};
+    use std::sync::Arc;
+
+    /// Protects: a study that is submitted again writes what has changed and nothing else, whatever its size.
+    #[tokio::test]
+    async fn only_what_changed_is_written() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let mut queue = Queue::open(&folder.path().join("db"), Arc::new(SystemClock)).await.unwrap();
+        let job = |number: usize| NewJob {
+            key: format!("job {number}"),
+            payload: "payload".into(),
+            parameters: format!("{number}"),
+            cost: 1.0,
+            batch: "batch".into(),
+            priority: None,
+        };
+        let mut study =
+            NewStudy { name: "a".into(), document: String::new(), jobs: (0..500).map(job).collect() };
+        let mut written = async |study: &NewStudy| {
+            let total = "SELECT total_changes()";
+            let before: i64 = sqlx::query_scalar(total).fetch_one(&mut queue.connection).await.unwrap();
+            queue.submit(study).await.unwrap();
+            let after: i64 = sqlx::query_scalar(total).fetch_one(&mut queue.connection).await.unwrap();
+            after - before
+        };
+        assert!(written(&study).await >= 500);
+        assert_eq!(written(&study).await, 1, "the study itself");
+        study.jobs[7].parameters = "otherwise".into();
+        let one = written(&study).await;
+        assert!((2..10).contains(&one), "{one} for one row");
+        study.jobs.truncate(499);
+        let one = written(&study).await;
+        assert!((2..10).contains(&one), "{one} for one row less");
+    }
+}

@@ -26,15 +26,14 @@ pub fn write(rows: &[Row], out_dir: &Path, title: &str) -> Result<Vec<PathBuf>, 
     let mut folder = Folder::create(out_dir)?;
 
     let layout = Layout::new(rows);
-    let (tables, figures) = rayon::join(
-        || {
-            QUANTITIES
-                .into_par_iter()
-                .map(|(quantity, stem)| table(&layout, quantity, stem))
-                .collect::<Vec<_>>()
-        },
-        || PLOTS.into_par_iter().map(|(plot, _)| figure::figures_of(&layout, plot)).collect::<Vec<_>>(),
-    );
+    let tables = || QUANTITIES.into_par_iter().map(|(quantity, stem)| table(&layout, quantity, stem));
+    let figures = || PLOTS.into_par_iter().map(|(plot, _)| figure::figures_of(&layout, plot));
+    let jobs = || {
+        let mut out = Vec::new();
+        export::csv(rows, &mut out).map(|()| out)
+    };
+    let ((tables, figures), jobs): ((Vec<_>, Vec<_>), _) =
+        rayon::join(|| rayon::join(|| tables().collect(), || figures().collect()), jobs);
     for table in &tables {
         folder.text(&format!("{}.md", table.stem), &page::of_table(table, title))?;
         folder.with(&format!("{}.csv", table.stem), |out| tables::csv_of(&layout, table.quantity, out))?;
@@ -50,7 +49,10 @@ pub fn write(rows: &[Row], out_dir: &Path, title: &str) -> Result<Vec<PathBuf>, 
         }
     }
 
-    folder.with("jobs.csv", |out| export::csv(rows, out))?;
+    folder.with("jobs.csv", |out| {
+        *out = jobs?;
+        Ok(())
+    })?;
     folder.text("report.md", &page::of_report(rows, &tables, &links, title))?;
     Ok(folder.written)
 }
