@@ -131,7 +131,9 @@ impl Queue {
             let page: Vec<(i64, String)> = page.fetch_all(&mut self.connection).await?;
             let Some((last, _)) = page.last() else { return Ok(()) };
             next = last + 1;
-            page.iter().for_each(|(_, parameters)| look(parameters));
+            for (_, parameters) in &page {
+                look(parameters);
+            }
         }
     }
 

@@ -131,7 +131,9 @@ pub(super) fn io_error(error: ::csv::Error) -> io::Error {
 /// Names of the parameters other than ω and μ, in the order in which they first appear.
 pub(super) fn further_names(rows: &[Row]) -> Vec<&str> {
     let mut names = Vec::new();
-    rows.iter().for_each(|row| add_further_names(&mut names, &row.parameters));
+    for row in rows {
+        add_further_names(&mut names, &row.parameters);
+    }
     names
 }
 

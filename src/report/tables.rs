@@ -131,7 +131,7 @@ fn lines<'a>(
     for job in &group.jobs {
         let here = quantity.cell(job.row);
         match &mut cells[job.at][job.mu] {
-            Some(others) => *others += &format!(" / {here}"),
+            Some(others) => others.extend([" / ", &here]),
             free => *free = Some(here),
         }
     }
