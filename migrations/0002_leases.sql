@@ -91,9 +91,18 @@ SELECT DISTINCT m.study_id, j.priority, j.cost, j.id, j.batch
 FROM study_jobs AS m JOIN jobs AS j ON j.id = m.job_id
 WHERE j.state = 'pending';
 
--- One trigger and not two: the order of triggers is not defined.
-CREATE TRIGGER jobs_pending_kept AFTER UPDATE OF state, batch, priority, cost ON jobs
-WHEN old.state = 'pending' OR new.state = 'pending'
+-- One trigger for each kind of change, since the order of triggers is not defined. What a claim does has one that does
+-- nothing else: it runs for every job.
+CREATE TRIGGER jobs_pending_no_more AFTER UPDATE OF state ON jobs
+WHEN old.state = 'pending' AND new.state <> 'pending'
+BEGIN
+    DELETE FROM study_pending
+    WHERE study_id IN (SELECT m.study_id FROM study_jobs AS m WHERE m.job_id = old.id)
+      AND priority = old.priority AND cost = old.cost AND job_id = old.id;
+END;
+
+CREATE TRIGGER jobs_pending_changed AFTER UPDATE OF state, batch, priority, cost ON jobs
+WHEN new.state = 'pending'
 BEGIN
     DELETE FROM study_pending
     WHERE study_id IN (SELECT m.study_id FROM study_jobs AS m WHERE m.job_id = old.id)
@@ -101,7 +110,7 @@ BEGIN
     INSERT INTO study_pending (study_id, priority, cost, job_id, batch)
     SELECT DISTINCT m.study_id, new.priority, new.cost, new.id, new.batch
     FROM study_jobs AS m
-    WHERE m.job_id = new.id AND new.state = 'pending';
+    WHERE m.job_id = new.id;
 END;
 
 CREATE TRIGGER study_jobs_added AFTER INSERT ON study_jobs
@@ -121,8 +130,8 @@ BEGIN
       AND (priority, cost) = (SELECT j.priority, j.cost FROM jobs AS j WHERE j.id = old.job_id);
 END;
 
--- One row an attempt that ended, written once and never changed, one after the other as they come. The time it took is unknown where its process died.
--- `provenance` says what it was made with, as the worker tells it.
+-- One row an attempt that ended, written once and never changed, one after the other as they come. The time it took is
+-- unknown where its process died. `provenance` says what it was made with, as the worker tells it.
 CREATE TABLE results_2 (
     job_id      INTEGER NOT NULL REFERENCES jobs (id),
     attempt     INTEGER NOT NULL,
@@ -151,7 +160,7 @@ CREATE TABLE checkpoints (
 ) STRICT;
 
 CREATE TRIGGER jobs_ended AFTER UPDATE OF state ON jobs
-WHEN new.state IN ('done', 'failed', 'cancelled')
+WHEN new.state IN ('done', 'failed', 'cancelled') AND EXISTS (SELECT 1 FROM checkpoints WHERE job_id = new.id)
 BEGIN
     DELETE FROM checkpoints WHERE job_id = new.id;
 END;

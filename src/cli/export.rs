@@ -1,10 +1,11 @@
 //! `tribosweep export`: one row a job.
 
 use super::error::CliError;
-use super::output::{block_on, print, write_file};
+use super::output::{block_on, fill_file, stream};
 use super::rows;
 use crate::exit;
-use crate::report::export;
+use crate::report::export::Export;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 
 /// Arguments of `export`.
@@ -33,20 +34,24 @@ enum Format {
 /// Exports the study.
 pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     let name = rows::study_name(&args.study)?;
-    let rows = block_on(async {
-        let mut queue = rows::open(db).await?;
-        let rows = rows::read(&mut queue, &name).await?;
-        queue.close().await?;
-        Ok(rows)
-    })?;
-    let mut content = Vec::new();
-    match args.format {
-        Format::Csv => export::csv(&rows, &mut content)?,
-        Format::Json => export::json_lines(&rows, &mut content)?,
-    }
+    let fill = |out: &mut dyn Write| block_on(write(&name, args.format, db, out));
     match &args.file {
-        Some(path) => write_file(path, &content)?,
-        None => print(&content)?,
+        Some(path) => fill_file(path, fill)?,
+        None => stream(fill)?,
     }
     Ok(exit::SUCCESS)
+}
+
+/// Reads the study twice, first for the names of its parameters, so as not to hold its rows.
+async fn write(study: &str, format: Format, db: &Path, out: &mut dyn Write) -> Result<(), CliError> {
+    let mut queue = rows::open(db).await?;
+    let further = rows::further_names(&mut queue, study).await?;
+    let mut export = match format {
+        Format::Csv => Export::csv(further, out)?,
+        Format::Json => Export::json_lines(further, out),
+    };
+    rows::each(&mut queue, study, |row| Ok(export.write(&row)?)).await?;
+    export.finish()?;
+    queue.close().await?;
+    Ok(())
 }

@@ -2,8 +2,9 @@
 
 use super::error::CliError;
 use std::fmt::Display;
+use std::fs::File;
 use std::future::Future;
-use std::io::{ErrorKind, Write};
+use std::io::{BufWriter, ErrorKind, Write};
 use std::path::Path;
 
 /// Runs a future on a runtime of this thread.
@@ -33,16 +34,40 @@ pub fn tell(line: impl Display) {
 /// What is no regular file (`/dev/null`, a pipe) is written to and stays what it is, and a link leads to
 /// the file that is replaced.
 pub fn write_file(path: &Path, content: &[u8]) -> Result<(), CliError> {
+    fill_file(path, |out| Ok(out.write_all(content)?))
+}
+
+/// As [`write_file`], for what is not held all at once: `fill` writes it. If it fails, nothing is replaced.
+pub fn fill_file(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn Write) -> Result<(), CliError>,
+) -> Result<(), CliError> {
     let failed = |source| CliError::File { path: path.display().to_string(), source };
+    let write = |path: &Path| {
+        let mut out = BufWriter::new(File::create(path).map_err(failed)?);
+        let filled = fill(&mut out).and_then(|()| Ok(out.flush()?));
+        // What is written goes to this file and nowhere else.
+        filled.map_err(|error| if let CliError::Output(source) = error { failed(source) } else { error })
+    };
     if path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
-        return std::fs::write(path, content).map_err(failed);
+        return write(path);
     }
     let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     let mut partial = target.as_os_str().to_owned();
     partial.push(".partial");
-    std::fs::write(&partial, content).and_then(|()| std::fs::rename(&partial, &target)).map_err(|source| {
+    let partial = Path::new(&partial);
+    let written = write(partial).and_then(|()| std::fs::rename(partial, &target).map_err(failed));
+    written.inspect_err(|_| {
         // The first error is the one to report; that of the clean-up adds nothing.
-        let _ = std::fs::remove_file(&partial);
-        failed(source)
+        let _ = std::fs::remove_file(partial);
     })
+}
+
+/// Writes to standard output what is not held all at once, and takes a reader that has seen enough as [`print`] does.
+pub fn stream(fill: impl FnOnce(&mut dyn Write) -> Result<(), CliError>) -> Result<(), CliError> {
+    let mut out = BufWriter::new(std::io::stdout().lock());
+    match fill(&mut out).and_then(|()| Ok(out.flush()?)) {
+        Err(CliError::Output(error)) if error.kind() == ErrorKind::BrokenPipe => Ok(()),
+        filled => filled,
+    }
 }

@@ -6,6 +6,7 @@ use crate::report::JobNumerics;
 use crate::solver::{self, Model};
 use crate::spec::{Detection, JobSpec, Numerics, RunControl};
 use crate::study::{Job, Study, StudyError, job_key};
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
 use std::path::Path;
@@ -16,6 +17,8 @@ pub struct Plan {
     pub study: Study,
     /// Its jobs.
     pub jobs: Vec<Job>,
+    /// For each of them the name of what it can be run together with.
+    batches: Vec<String>,
     document: String,
 }
 
@@ -42,16 +45,19 @@ impl Plan {
             .map_err(|reason| StudyError::Read { file: source_name.clone(), reason })?;
         let study = Study::parse(&document, &source_name)?;
         let jobs = study.expand(solver::VERSION)?;
-        preflight(path, &jobs)?;
-        Ok(Self { study, jobs, document })
+        let batches: Vec<String> =
+            jobs.par_iter().map(|job| job_key(&job.spec.shared_part(), solver::VERSION)).collect();
+        preflight(path, &jobs, &batches)?;
+        Ok(Self { study, jobs, batches, document })
     }
 
     /// The study as the queue takes it.
     pub fn for_queue(&self, priority: Option<i64>) -> Result<NewStudy, CliError> {
         let jobs = self
             .jobs
-            .iter()
-            .map(|job| {
+            .par_iter()
+            .zip(&self.batches)
+            .map(|(job, batch)| {
                 let row = RowParameters {
                     omega_rpm: job.spec.scene.disk.omega_rpm,
                     mu: job.spec.scene.contact.mu,
@@ -63,7 +69,7 @@ impl Plan {
                     payload: encode(&job.spec)?,
                     parameters: encode(&row)?,
                     cost: job.cost,
-                    batch: job_key(&job.spec.shared_part(), solver::VERSION),
+                    batch: batch.clone(),
                     priority,
                 })
             })
@@ -110,10 +116,10 @@ fn case_key(mut case: JobSpec) -> String {
 }
 
 /// Refuses a study with a job that the solver would refuse before its first step.
-fn preflight(path: &Path, jobs: &[Job]) -> Result<(), CliError> {
+fn preflight(path: &Path, jobs: &[Job], batches: &[String]) -> Result<(), CliError> {
     let mut seen = BTreeSet::new();
-    for job in jobs {
-        if !seen.insert(job_key(&job.spec.shared_part(), solver::VERSION)) {
+    for (job, batch) in jobs.iter().zip(batches) {
+        if !seen.insert(batch) {
             continue;
         }
         if let Err(error) = Model::preflight(&job.spec.scene, &job.spec.numerics) {

@@ -3,8 +3,10 @@
 use super::error::CliError;
 use super::planning::RowParameters;
 use crate::queue::{JobState, Queue, Settings, StudyRow, SystemClock};
-use crate::report::{Row, RowState};
+use crate::report::{Row, RowState, export};
 use crate::study::Study;
+use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
+use std::ops::ControlFlow;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -30,16 +32,42 @@ pub async fn open_to_change(db: &Path) -> Result<Queue, CliError> {
 /// All rows of a study.
 pub async fn read(queue: &mut Queue, study: &str) -> Result<Vec<Row>, CliError> {
     let mut rows = Vec::new();
-    let mut unreadable = None;
-    // Converted one by one: the records as text take several times the memory of what is read from them.
-    let read = queue.each_row(study, |row| match convert(study, &row) {
-        Ok(row) => rows.push(row),
-        Err(error) => {
-            unreadable.get_or_insert(error);
+    each(queue, study, |row| {
+        rows.push(row);
+        Ok(())
+    })
+    .await?;
+    Ok(rows)
+}
+
+/// Shows the rows of a study to `look`, up to the first error: as text, the records of all would take several times the
+/// memory of what is read from them.
+pub async fn each(
+    queue: &mut Queue,
+    study: &str,
+    mut look: impl FnMut(Row) -> Result<(), CliError>,
+) -> Result<(), CliError> {
+    let mut shown = Ok(());
+    let read = queue.each_page(study, |page| {
+        let rows: Vec<_> = page.par_iter().map(|row| convert(study, row)).collect();
+        shown = rows.into_iter().try_for_each(|row| look(row?));
+        if shown.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    });
+    read.await?;
+    shown
+}
+
+/// The names of a study's parameters other than ω and μ, in the order in which they first appear.
+pub async fn further_names(queue: &mut Queue, study: &str) -> Result<Vec<String>, CliError> {
+    let mut names = Vec::new();
+    // Those that cannot be read are complained about with their rows.
+    let read = queue.each_parameters(study, |parameters| {
+        if let Ok(RowParameters { grid, .. }) = serde_json::from_str(parameters) {
+            export::add_further_names(&mut names, &grid);
         }
     });
     read.await?;
-    unreadable.map_or(Ok(rows), Err)
+    Ok(names)
 }
 
 /// What the report makes of a row.

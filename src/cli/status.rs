@@ -5,9 +5,8 @@ use super::output::{block_on, print};
 use super::rows;
 use crate::analysis::Outcome;
 use crate::exit;
-use crate::queue::{Counts, JobState, Queue, Scope};
+use crate::queue::{Counts, Queue, Scope};
 use crate::report::Row;
-use serde::Deserialize;
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
@@ -60,50 +59,30 @@ async fn all(queue: &mut Queue, as_json: bool) -> Result<String, CliError> {
     }))
 }
 
-/// What of a record is counted here: reading all of it takes several times as long.
-#[derive(Deserialize)]
-struct Ended {
-    outcome: Outcome,
-}
-
 /// What a study's rows tell besides their number.
-#[derive(Default)]
 struct Findings {
-    not_periodic: usize,
-    /// Failed rows, with their parameters in words and the reason.
+    not_periodic: u64,
     failures: Vec<Failure>,
 }
 
+/// A failed row, with its parameters in words and the reason.
 struct Failure {
     job: String,
     parameters: String,
     error: String,
 }
 
+/// Counts in the database: of all that records hold, a word of each is of interest here. A record that cannot be read is
+/// the report's to complain about.
 async fn find(queue: &mut Queue, name: &str) -> Result<Findings, CliError> {
-    let mut findings = Findings::default();
-    let mut unreadable = None;
-    let read = queue.each_row(name, |row| match row.state {
-        JobState::Failed => match rows::convert(name, &row) {
-            Ok(read) => findings.failures.push(Failure {
-                parameters: parameters(&read),
-                job: row.key,
-                error: row.error.unwrap_or_default(),
-            }),
-            Err(error) => {
-                unreadable.get_or_insert(error);
-            }
-        },
-        JobState::Done => {
-            // A record that cannot be read is the report's to complain about.
-            let ended = row.record.as_deref().map(serde_json::from_str::<Ended>);
-            let is_periodic = !matches!(ended, Some(Ok(Ended { outcome: Outcome::NotPeriodic })));
-            findings.not_periodic += usize::from(!is_periodic);
-        }
-        _ => {}
+    let outcomes = queue.recorded(name, "$.outcome").await?;
+    let not_periodic = outcomes.into_iter().filter(|(outcome, _)| outcome == Outcome::NotPeriodic.name());
+    let not_periodic = not_periodic.map(|(_, rows)| rows).sum();
+    let failures = queue.failed_rows(name).await?.into_iter().map(|row| {
+        let parameters = parameters(&rows::convert(name, &row)?);
+        Ok(Failure { parameters, job: row.key, error: row.error.unwrap_or_default() })
     });
-    read.await?;
-    unreadable.map_or(Ok(findings), Err)
+    Ok(Findings { not_periodic, failures: failures.collect::<Result<_, CliError>>()? })
 }
 
 async fn one(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, CliError> {

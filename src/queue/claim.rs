@@ -31,37 +31,46 @@ pub struct ClaimedJob {
     pub checkpoint: Option<Vec<u8>>,
 }
 
-/// Batch and priority of the job that comes first.
-const FIRST: &str = "
-    SELECT batch, priority FROM jobs INDEXED BY jobs_pending
-    WHERE state = 'pending' ORDER BY priority DESC, cost DESC, id LIMIT 1";
-
-const FIRST_OF_STUDY: &str = "
-    SELECT batch, priority FROM study_pending
-    WHERE study_id = ?1 ORDER BY priority DESC, cost DESC, job_id LIMIT 1";
-
-/// Dear jobs first within a priority, so that no long one is left to a single worker at the end; then by age.
-/// INDEXED BY: without it the planner prefers the index of all states and sorts every pending job, which makes each
-/// claim as slow as the queue is long.
+/// One statement a claim, since handing a statement to the database costs more than what it does for one job.
+///
+/// Dear jobs first within a priority, so that no long one is left to a single worker at the end; then by age. Without
+/// a batch (?5) it is that of the job that comes first; with one, nothing of a lower priority than that job's is taken.
+/// INDEXED BY: without it the planner may sort every pending job, which makes each claim as slow as the queue is long.
 const TAKE: &str = "
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = ?2, owner = ?1, lease_until_ms = ?3
     WHERE id IN (
         SELECT id FROM jobs INDEXED BY jobs_pending_batch
-        WHERE state = 'pending' AND batch = ?5 AND priority >= ?7 ORDER BY priority DESC, cost DESC, id LIMIT ?4
+        WHERE state = 'pending'
+          AND batch = COALESCE(?5, (
+              SELECT batch FROM jobs INDEXED BY jobs_pending
+              WHERE state = 'pending' ORDER BY priority DESC, cost DESC, id LIMIT 1))
+          AND priority >= (
+              SELECT IIF(?5 IS NULL, -9223372036854775808, priority) FROM jobs INDEXED BY jobs_pending
+              WHERE state = 'pending' ORDER BY priority DESC, cost DESC, id LIMIT 1)
+        ORDER BY priority DESC, cost DESC, id LIMIT ?4
     )
-    RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority,
+    RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
               (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
 
+/// As above, of the study named ?6.
 const TAKE_OF_STUDY: &str = "
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = ?2, owner = ?1, lease_until_ms = ?3
     WHERE id IN (
         SELECT job_id FROM study_pending INDEXED BY study_pending_batch
-        WHERE study_id = ?6 AND batch = ?5 AND priority >= ?7 ORDER BY priority DESC, cost DESC, job_id LIMIT ?4
+        WHERE study_id = (SELECT id FROM studies WHERE name = ?6)
+          AND batch = COALESCE(?5, (
+              SELECT batch FROM study_pending WHERE study_id = (SELECT id FROM studies WHERE name = ?6)
+              ORDER BY priority DESC, cost DESC, job_id LIMIT 1))
+          AND priority >= (
+              SELECT IIF(?5 IS NULL, -9223372036854775808, priority) FROM study_pending
+              WHERE study_id = (SELECT id FROM studies WHERE name = ?6)
+              ORDER BY priority DESC, cost DESC, job_id LIMIT 1)
+        ORDER BY priority DESC, cost DESC, job_id LIMIT ?4
     )
-    RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority,
+    RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
               (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)";
 
-type Columns = (i64, String, String, u32, f64, i64, Option<Vec<u8>>);
+type Columns = (i64, String, String, u32, f64, i64, String, Option<Vec<u8>>);
 
 /// What all claims of a transaction have in common.
 #[derive(Debug, Clone, Copy)]
@@ -77,37 +86,35 @@ pub(super) async fn take(
     claim: &Claim,
     lease: Lease,
 ) -> Result<Vec<ClaimedJob>, QueueError> {
-    let study_id = claim.scope.study_id(connection).await?;
-    if claim.limit == 0 {
-        return Ok(Vec::new());
+    let mut rows: Vec<Columns> = Vec::new();
+    if claim.limit > 0 {
+        let take = match &claim.scope {
+            Scope::All => sqlx::query_as(TAKE),
+            Scope::Study(_) => sqlx::query_as(TAKE_OF_STUDY),
+        };
+        let mut take = take
+            .bind(lease.owner)
+            .bind(lease.now_ms)
+            .bind(lease.until_ms)
+            .bind(i64::try_from(claim.limit).unwrap_or(i64::MAX))
+            .bind(&claim.batch);
+        if let Scope::Study(name) = &claim.scope {
+            take = take.bind(name);
+        }
+        rows = take.fetch_all(&mut *connection).await?;
     }
-    let first: Option<(String, i64)> = match study_id {
-        None => sqlx::query_as(FIRST).fetch_optional(&mut *connection).await?,
-        Some(id) => sqlx::query_as(FIRST_OF_STUDY).bind(id).fetch_optional(&mut *connection).await?,
-    };
-    let Some((first_batch, priority)) = first else { return Ok(Vec::new()) };
-    let (batch, lowest_priority) = match &claim.batch {
-        Some(batch) => (batch.clone(), priority),
-        None => (first_batch, i64::MIN),
-    };
-    let mut rows: Vec<Columns> = sqlx::query_as(if study_id.is_some() { TAKE_OF_STUDY } else { TAKE })
-        .bind(lease.owner)
-        .bind(lease.now_ms)
-        .bind(lease.until_ms)
-        .bind(i64::try_from(claim.limit).unwrap_or(i64::MAX))
-        .bind(&batch)
-        .bind(study_id)
-        .bind(lowest_priority)
-        .fetch_all(connection)
-        .await?;
+    if rows.is_empty() {
+        // A study that is not there has no jobs either.
+        claim.scope.study_id(connection).await?;
+    }
     // RETURNING promises no order.
     rows.sort_by(|a, b| b.5.cmp(&a.5).then(b.4.total_cmp(&a.4)).then(a.0.cmp(&b.0)));
-    let job = |(_, key, payload, attempt, cost, _, checkpoint): Columns| ClaimedJob {
+    let job = |(_, key, payload, attempt, cost, _, batch, checkpoint): Columns| ClaimedJob {
         key,
         payload,
         attempt,
         cost,
-        batch: batch.clone(),
+        batch,
         checkpoint,
     };
     Ok(rows.into_iter().map(job).collect())
@@ -115,7 +122,7 @@ pub(super) async fn take(
 
 #[cfg(test)]
 mod tests {
-    use super::{FIRST, FIRST_OF_STUDY, TAKE, TAKE_OF_STUDY};
+    use super::{TAKE, TAKE_OF_STUDY};
     use crate::queue::{Queue, SystemClock};
     use std::sync::Arc;
 
@@ -125,17 +132,20 @@ mod tests {
     async fn claims_use_their_indexes() {
         let folder = tempfile::TempDir::new().unwrap();
         let mut queue = Queue::open(&folder.path().join("db"), Arc::new(SystemClock)).await.unwrap();
-        for (statement, index) in [
-            (FIRST, "jobs_pending"),
-            (FIRST_OF_STUDY, "PRIMARY KEY (study_id=?)"),
-            (TAKE, "jobs_pending_batch (batch=? AND priority>?)"),
-            (TAKE_OF_STUDY, "study_pending_batch (study_id=? AND batch=? AND priority>?)"),
+        for (statement, indexes) in [
+            (TAKE, ["jobs_pending_batch (batch=? AND priority>?)", "INDEX jobs_pending"]),
+            (
+                TAKE_OF_STUDY,
+                ["study_pending_batch (study_id=? AND batch=? AND priority>?)", "PRIMARY KEY (study_id=?)"],
+            ),
         ] {
             let explain = sqlx::AssertSqlSafe(format!("EXPLAIN QUERY PLAN {statement}"));
             let plan: Vec<(i64, i64, i64, String)> =
                 sqlx::query_as(explain).fetch_all(&mut queue.connection).await.unwrap();
             let plan: Vec<_> = plan.into_iter().map(|(_, _, _, step)| step).collect();
-            assert!(plan.iter().any(|step| step.ends_with(index)), "{index}: {plan:#?}");
+            for index in indexes {
+                assert!(plan.iter().any(|step| step.ends_with(index)), "{index}: {plan:#?}");
+            }
             for step in &plan {
                 assert!(!step.contains("TEMP B-TREE"), "{plan:#?}");
                 assert!(!step.starts_with("SCAN") || step.ends_with("INDEX jobs_pending"), "{plan:#?}");

@@ -39,22 +39,23 @@ pub enum FinishedOutcome {
 
 const RELEASED: &str = "released: the work was interrupted before the job ended";
 
-// The fence, `state = 'running' AND owner = … AND attempt = …`, is in every statement that speaks for an attempt:
-// whoever lost the job in the meantime changes nothing. All of a turn's ends are two statements, since handing a
-// statement to the database costs more than what it does for one job. CROSS JOIN: a key is looked up for each end.
-const INSERT_RESULTS: &str = "
+/// All of a turn's ends in one go, since handing a statement to the database costs more than what it does for one job:
+/// ?1 has the results and ?5 the ends.
+///
+/// The fence, `state = 'running' AND owner = … AND attempt = …`, is in every statement that speaks for an attempt:
+/// whoever lost the job in the meantime changes nothing. CROSS JOIN: a key is looked up for each end; the plus signs
+/// leave only the key to look jobs up by, and so keep the loops in this order.
+const STORE: &str = "
     INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)
     SELECT j.id, j.attempt, e.value ->> 2, e.value ->> 3, e.value ->> 4, j.started_ms, ?3, ?4
     FROM json_each(?1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 0
     WHERE j.state = 'running' AND j.owner = ?2 AND j.attempt = e.value ->> 1
-    ON CONFLICT DO NOTHING";
+    ON CONFLICT DO NOTHING;
 
-/// The plus signs leave only the key to look jobs up by, and so keep the loops in this order.
-const END: &str = "
     UPDATE jobs
     SET state = e.value ->> 2, note = COALESCE(e.value ->> 3, jobs.note), attempt = jobs.attempt - (e.value ->> 4),
         owner = NULL, lease_until_ms = NULL
-    FROM json_each(?1) AS e
+    FROM json_each(?5) AS e
     WHERE jobs.key = e.value ->> 0
       AND +jobs.state = 'running' AND +jobs.owner = ?2 AND jobs.attempt = e.value ->> 1
     RETURNING key";
@@ -71,14 +72,15 @@ pub(super) async fn store(
         return Ok(Vec::new());
     }
     let results: Vec<_> = finished.iter().filter_map(result).collect();
-    if !results.is_empty() {
-        let insert =
-            sqlx::query(INSERT_RESULTS).bind(json(&results)).bind(owner).bind(now_ms).bind(provenance);
-        insert.execute(&mut *connection).await?;
-    }
     let ends: Vec<_> = finished.iter().map(end).collect();
-    let ended: Vec<String> =
-        sqlx::query_scalar(END).bind(json(&ends)).bind(owner).fetch_all(connection).await?;
+    let ended: Vec<String> = sqlx::query_scalar(STORE)
+        .bind(json(&results))
+        .bind(owner)
+        .bind(now_ms)
+        .bind(provenance)
+        .bind(json(&ends))
+        .fetch_all(connection)
+        .await?;
     let ended: HashSet<String> = ended.into_iter().collect();
     let keys = finished.iter().map(|job| &job.key);
     Ok(keys.filter(|key| !ended.contains(*key)).cloned().collect())
@@ -113,7 +115,7 @@ fn json(rows: &impl Serialize) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{END, INSERT_RESULTS};
+    use super::STORE;
     use crate::queue::{Queue, SystemClock};
     use std::sync::Arc;
 
@@ -122,7 +124,7 @@ mod tests {
     async fn ends_look_jobs_up_by_key() {
         let folder = tempfile::TempDir::new().unwrap();
         let mut queue = Queue::open(&folder.path().join("db"), Arc::new(SystemClock)).await.unwrap();
-        for statement in [INSERT_RESULTS, END] {
+        for statement in STORE.split(';') {
             let explain = sqlx::AssertSqlSafe(format!("EXPLAIN QUERY PLAN {statement}"));
             let plan: Vec<(i64, i64, i64, String)> =
                 sqlx::query_as(explain).fetch_all(&mut queue.connection).await.unwrap();

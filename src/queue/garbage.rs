@@ -48,7 +48,10 @@ impl Queue {
             })
             .await?;
         if garbage.jobs > 0 {
+            // The new database is built in the temporary store: not in memory.
+            sqlx::query("PRAGMA temp_store = FILE").execute(&mut self.connection).await?;
             sqlx::query("VACUUM").execute(&mut self.connection).await?;
+            sqlx::query("PRAGMA temp_store = MEMORY").execute(&mut self.connection).await?;
         }
         garbage.bytes = before.saturating_sub(self.pages().await?);
         Ok(garbage)

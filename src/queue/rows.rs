@@ -1,3 +1,5 @@
+use std::ops::ControlFlow;
+
 use sqlx::sqlite::SqliteRow;
 use sqlx::{FromRow, Row};
 
@@ -35,19 +37,38 @@ pub struct StudyRow {
 }
 
 /// A job that is to be tried again has results of earlier attempts, which say nothing of this one.
+///
+/// Without ?4, all rows; with it, those whose jobs are in that state.
 const ROWS: &str = "
     SELECT m.ordinal, j.key, m.parameters, j.state, r.record, r.error, r.wall_s, j.attempt, j.crashes, j.note,
            r.started_ms, r.finished_ms, r.provenance
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
-    WHERE m.study_id = ?1 AND m.ordinal >= ?2
+    WHERE m.study_id = ?1 AND m.ordinal >= ?2 AND (?4 IS NULL OR j.state = ?4)
     ORDER BY m.ordinal
     LIMIT ?3";
+
+const PARAMETERS: &str = "
+    SELECT ordinal, parameters FROM study_jobs WHERE study_id = ?1 AND ordinal >= ?2 ORDER BY ordinal LIMIT ?3";
 
 /// Rows that are read at a time: a reader that takes all at once keeps the write-ahead log from being folded back
 /// meanwhile, and needs the memory for all.
 const PAGE: i64 = 1_000;
+
+/// Counts the rows of a study by a field of their jobs' records, those that are no objects in JSON or lack the field as
+/// null. LIMIT: without it the inner query becomes part of the outer one, which then sorts whole records.
+const RECORDED: &str = "
+    SELECT field, COUNT(*)
+    FROM (
+        SELECT IIF(json_valid(r.record), r.record ->> ?2, NULL) AS field
+        FROM study_jobs AS m
+        CROSS JOIN jobs AS j ON j.id = m.job_id
+        CROSS JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt
+        WHERE m.study_id = ?1 AND j.state = 'done'
+        LIMIT -1
+    )
+    GROUP BY field";
 
 impl Queue {
     /// The rows of a study, in the order of its document.
@@ -56,46 +77,116 @@ impl Queue {
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.
     pub async fn rows(&mut self, study: &str) -> Result<Vec<StudyRow>, QueueError> {
         let mut rows = Vec::new();
-        self.each_row(study, |row| rows.push(row)).await?;
+        self.row_pages(study, None, |page| {
+            rows.extend(page);
+            ControlFlow::Continue(())
+        })
+        .await?;
         Ok(rows)
     }
 
-    /// Shows the rows of a study to `look`, in the order of its document, one at a time: for those who do not need
-    /// them all at once.
+    /// Those rows of a study whose jobs have failed, in the order of its document.
+    ///
+    /// # Errors
+    /// As [`Queue::rows`].
+    pub async fn failed_rows(&mut self, study: &str) -> Result<Vec<StudyRow>, QueueError> {
+        let mut rows = Vec::new();
+        self.row_pages(study, Some(JobState::Failed), |page| {
+            rows.extend(page);
+            ControlFlow::Continue(())
+        })
+        .await?;
+        Ok(rows)
+    }
+
+    /// Shows the rows of a study to `look`, in the order of its document, some at a time: for those who do not need
+    /// them all at once. It may say that it has seen enough.
     ///
     /// What changes meanwhile is seen in later rows and not in earlier ones.
     ///
     /// # Errors
     /// As [`Queue::rows`].
-    pub async fn each_row(&mut self, study: &str, mut look: impl FnMut(StudyRow)) -> Result<(), QueueError> {
+    pub async fn each_page(
+        &mut self,
+        study: &str,
+        look: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
+    ) -> Result<(), QueueError> {
+        self.row_pages(study, None, look).await
+    }
+
+    /// Shows the parameters of a study's rows to `look`, in the order of its document: without what their jobs have
+    /// found, which is most of what rows are.
+    ///
+    /// # Errors
+    /// As [`Queue::rows`].
+    pub async fn each_parameters(
+        &mut self,
+        study: &str,
+        mut look: impl FnMut(&str),
+    ) -> Result<(), QueueError> {
+        let study_id = studies::require(&mut self.connection, study).await?;
+        let mut next = 0_i64;
+        loop {
+            let page = sqlx::query_as(PARAMETERS).bind(study_id).bind(next).bind(PAGE);
+            let page: Vec<(i64, String)> = page.fetch_all(&mut self.connection).await?;
+            let Some((last, _)) = page.last() else { return Ok(()) };
+            next = last + 1;
+            for (_, parameters) in &page {
+                look(parameters);
+            }
+        }
+    }
+
+    /// How many of a study's done rows have each value of the field at `path` of their records, which are JSON to
+    /// whoever asks. Rows whose record has none are not counted.
+    ///
+    /// # Errors
+    /// As [`Queue::rows`].
+    pub async fn recorded(&mut self, study: &str, path: &str) -> Result<Vec<(String, u64)>, QueueError> {
+        let study_id = studies::require(&mut self.connection, study).await?;
+        let counted = sqlx::query_as(RECORDED).bind(study_id).bind(path);
+        let counted: Vec<(Option<String>, i64)> = counted.fetch_all(&mut self.connection).await?;
+        Ok(counted.into_iter().filter_map(|(value, count)| Some((value?, count.unsigned_abs()))).collect())
+    }
+
+    async fn row_pages(
+        &mut self,
+        study: &str,
+        state: Option<JobState>,
+        mut look: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
+    ) -> Result<(), QueueError> {
         let study_id = studies::require(&mut self.connection, study).await?;
         let mut next = 0_i64;
         loop {
             let page = sqlx::query_as(ROWS).bind(study_id).bind(next).bind(PAGE);
+            let page = page.bind(state.map(JobState::as_str));
             let page: Vec<StudyRow> = page.fetch_all(&mut self.connection).await?;
             let Some(last) = page.last() else { return Ok(()) };
             next = last.ordinal.cast_signed() + 1;
-            page.into_iter().for_each(&mut look);
+            if look(page).is_break() {
+                return Ok(());
+            }
         }
     }
 }
 
 impl FromRow<'_, SqliteRow> for StudyRow {
     fn from_row(row: &SqliteRow) -> Result<Self, sqlx::Error> {
+        // By place, not by name: looking names up takes as long as reading.
         Ok(Self {
-            ordinal: row.try_get::<i64, _>("ordinal")?.unsigned_abs(),
-            key: row.try_get("key")?,
-            parameters: row.try_get("parameters")?,
-            state: JobState::from_column(row.try_get("state")?),
-            record: row.try_get("record")?,
-            error: row.try_get("error")?,
-            wall_s: row.try_get("wall_s")?,
-            attempt: row.try_get("attempt")?,
-            crashes: row.try_get("crashes")?,
-            note: row.try_get("note")?,
-            started_ms: row.try_get("started_ms")?,
-            finished_ms: row.try_get("finished_ms")?,
-            provenance: row.try_get("provenance")?,
+            ordinal: row.try_get::<i64, _>(0)?.unsigned_abs(),
+            key: row.try_get(1)?,
+            parameters: row.try_get(2)?,
+            state: JobState::from_column(row.try_get(3)?),
+            record: row.try_get(4)?,
+            error: row.try_get(5)?,
+            wall_s: row.try_get(6)?,
+            attempt: row.try_get(7)?,
+            crashes: row.try_get(8)?,
+            note: row.try_get(9)?,
+            started_ms: row.try_get(10)?,
+            finished_ms: row.try_get(11)?,
+            provenance: row.try_get(12)?,
         })
     }
 }

@@ -99,10 +99,25 @@ const CANCEL_UNASKED: &str = "
 
 const NOTE: &str = "cancelled: its study was replaced by one without it";
 
+/// Rows beyond the end of the new document.
+const DELETE_SURPLUS: &str = "DELETE FROM study_jobs WHERE study_id = ?1 AND ordinal >= ?2";
+
+/// The places in the array of rows that are not there, or otherwise. A row that is there has its job and its payload.
+const CHANGED: &str = "
+    SELECT e.key
+    FROM json_each(?1) AS e
+    LEFT JOIN study_jobs AS m ON m.study_id = ?2 AND m.ordinal = e.value ->> 0
+    LEFT JOIN jobs AS j ON j.id = m.job_id
+    WHERE j.key IS NOT e.value ->> 1 OR m.parameters IS NOT e.value ->> 2 OR j.batch IS NOT e.value ->> 3
+    ORDER BY e.key";
+
+const DELETE_ROWS: &str = "
+    DELETE FROM study_jobs WHERE study_id = ?2 AND ordinal IN (SELECT e.value ->> 0 FROM json_each(?1) AS e)";
+
 const INSERT_ROWS: &str = "
     INSERT INTO study_jobs (study_id, ordinal, job_id, parameters)
-    SELECT ?2, ?3 + e.key, j.id, e.value ->> 1
-    FROM json_each(?1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 0";
+    SELECT ?2, e.value ->> 0, j.id, e.value ->> 2
+    FROM json_each(?1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 1";
 
 impl Queue {
     /// Adds a study, or replaces the document and rows of the one with its name.
@@ -128,14 +143,19 @@ impl Queue {
                     .bind(now_ms)
                     .fetch_one(&mut *connection)
                     .await?;
-                sqlx::query("DELETE FROM study_jobs WHERE study_id = ?1")
-                    .bind(study_id)
-                    .execute(&mut *connection)
-                    .await?;
+                let end = i64::try_from(study.jobs.len()).unwrap_or(i64::MAX);
+                sqlx::query(DELETE_SURPLUS).bind(study_id).bind(end).execute(&mut *connection).await?;
                 let before = count_jobs(connection).await?;
-                for (first_ordinal, chunk) in (0_i64..).step_by(CHUNK).zip(study.jobs.chunks(CHUNK)) {
-                    insert_jobs(connection, chunk, now_ms).await?;
-                    insert_rows(connection, study_id, first_ordinal, chunk).await?;
+                let rows: Vec<_> = (0_i64..).zip(&study.jobs).collect();
+                for chunk in rows.chunks(CHUNK) {
+                    if replaced {
+                        let changed = changed(connection, study_id, chunk).await?;
+                        delete_rows(connection, study_id, &changed).await?;
+                        insert(connection, study_id, &changed, now_ms).await?;
+                    } else {
+                        insert(connection, study_id, chunk, now_ms).await?;
+                    }
+                    set_priority(connection, chunk).await?;
                 }
                 let added = count_jobs(connection).await? - before;
                 sqlx::query(ASK_AGAIN).bind(study_id).execute(&mut *connection).await?;
@@ -168,33 +188,99 @@ async fn count_jobs(connection: &mut SqliteConnection) -> Result<u64, QueueError
     Ok(count.unsigned_abs())
 }
 
-async fn insert_jobs(
+/// A row of a study with its place.
+type Row<'a> = (i64, &'a NewJob);
+
+/// Those of `rows` that the study does not have as they are: a study that is submitted again unchanged writes none.
+async fn changed<'a>(
     connection: &mut SqliteConnection,
-    jobs: &[NewJob],
+    study_id: i64,
+    rows: &[Row<'a>],
+) -> Result<Vec<Row<'a>>, QueueError> {
+    let changed: Vec<i64> =
+        sqlx::query_scalar(CHANGED).bind(as_rows(rows)).bind(study_id).fetch_all(connection).await?;
+    Ok(changed.into_iter().map(|place| rows[place as usize]).collect())
+}
+
+async fn delete_rows(
+    connection: &mut SqliteConnection,
+    study_id: i64,
+    rows: &[Row<'_>],
+) -> Result<(), QueueError> {
+    sqlx::query(DELETE_ROWS).bind(as_rows(rows)).bind(study_id).execute(connection).await?;
+    Ok(())
+}
+
+async fn insert(
+    connection: &mut SqliteConnection,
+    study_id: i64,
+    rows: &[Row<'_>],
     now_ms: i64,
 ) -> Result<(), QueueError> {
-    let rows: Vec<_> =
-        jobs.iter().map(|job| (&job.key, &job.payload, job.cost, &job.batch, job.priority)).collect();
-    let rows = json(&rows);
-    sqlx::query(INSERT_JOBS).bind(&rows).bind(now_ms).execute(&mut *connection).await?;
-    sqlx::query(INSERT_PAYLOADS).bind(&rows).execute(&mut *connection).await?;
-    if jobs.iter().any(|job| job.priority.is_some()) {
-        sqlx::query(SET_PRIORITY).bind(&rows).execute(connection).await?;
+    let jobs = as_jobs(rows);
+    sqlx::query(INSERT_JOBS).bind(&jobs).bind(now_ms).execute(&mut *connection).await?;
+    sqlx::query(INSERT_PAYLOADS).bind(&jobs).execute(&mut *connection).await?;
+    sqlx::query(INSERT_ROWS).bind(as_rows(rows)).bind(study_id).execute(connection).await?;
+    Ok(())
+}
+
+async fn set_priority(connection: &mut SqliteConnection, rows: &[Row<'_>]) -> Result<(), QueueError> {
+    let prioritised: Vec<_> = rows.iter().copied().filter(|(_, job)| job.priority.is_some()).collect();
+    if !prioritised.is_empty() {
+        sqlx::query(SET_PRIORITY).bind(as_jobs(&prioritised)).execute(connection).await?;
     }
     Ok(())
 }
 
-async fn insert_rows(
-    connection: &mut SqliteConnection,
-    study_id: i64,
-    first_ordinal: i64,
-    jobs: &[NewJob],
-) -> Result<(), QueueError> {
-    let rows: Vec<_> = jobs.iter().map(|job| (&job.key, &job.parameters)).collect();
-    sqlx::query(INSERT_ROWS).bind(json(&rows)).bind(study_id).bind(first_ordinal).execute(connection).await?;
-    Ok(())
+fn as_jobs(rows: &[Row<'_>]) -> String {
+    let jobs = rows.iter().map(|(_, job)| (&job.key, &job.payload, job.cost, &job.batch, job.priority));
+    json(&jobs.collect::<Vec<_>>())
+}
+
+fn as_rows(rows: &[Row<'_>]) -> String {
+    let rows = rows.iter().map(|(ordinal, job)| (ordinal, &job.key, &job.parameters, &job.batch));
+    json(&rows.collect::<Vec<_>>())
 }
 
 fn json(rows: &impl Serialize) -> String {
     serde_json::to_string(rows).expect("strings and finite numbers have a JSON form")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{NewJob, NewStudy};
+    use crate::queue::{Queue, SystemClock};
+    use std::sync::Arc;
+
+    /// Protects: a study that is submitted again writes what has changed and nothing else, whatever its size.
+    #[tokio::test]
+    async fn only_what_changed_is_written() {
+        let folder = tempfile::TempDir::new().unwrap();
+        let mut queue = Queue::open(&folder.path().join("db"), Arc::new(SystemClock)).await.unwrap();
+        let job = |number: usize| NewJob {
+            key: format!("job {number}"),
+            payload: "payload".into(),
+            parameters: format!("{number}"),
+            cost: 1.0,
+            batch: "batch".into(),
+            priority: None,
+        };
+        let mut study =
+            NewStudy { name: "a".into(), document: String::new(), jobs: (0..500).map(job).collect() };
+        let mut written = async |study: &NewStudy| {
+            let total = "SELECT total_changes()";
+            let before: i64 = sqlx::query_scalar(total).fetch_one(&mut queue.connection).await.unwrap();
+            queue.submit(study).await.unwrap();
+            let after: i64 = sqlx::query_scalar(total).fetch_one(&mut queue.connection).await.unwrap();
+            after - before
+        };
+        assert!(written(&study).await >= 500);
+        assert_eq!(written(&study).await, 1, "the study itself");
+        study.jobs[7].parameters = "otherwise".into();
+        let one = written(&study).await;
+        assert!((2..10).contains(&one), "{one} for one row");
+        study.jobs.truncate(499);
+        let one = written(&study).await;
+        assert!((2..10).contains(&one), "{one} for one row less");
+    }
 }

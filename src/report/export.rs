@@ -1,6 +1,6 @@
 //! One line a job, for other programs: CSV and JSON lines with the same fields.
 
-use super::row::{Row, RowState};
+use super::row::{Row, RowState, is_further};
 use super::value;
 use crate::analysis::JobRecord;
 use serde::Serializer;
@@ -45,32 +45,79 @@ const RECORD_FIELDS: usize = 18;
 /// # Errors
 /// Those of the writer.
 pub fn csv<W: Write>(rows: &[Row], out: W) -> io::Result<()> {
-    let further = further_names(rows);
-    let mut writer = ::csv::Writer::from_writer(out);
-    writer.write_record(field_names(&further)).map_err(io_error)?;
-    for row in rows {
-        writer.write_record(fields(row, &further).iter().map(value::text)).map_err(io_error)?;
-    }
-    writer.flush()
+    let mut export = Export::csv(owned(further_names(rows)), out)?;
+    rows.iter().try_for_each(|row| export.write(row))?;
+    export.finish()
 }
 
 /// Writes one JSON object per job and line, with the fields of [`csv()`]; null where it has an empty cell.
 ///
 /// # Errors
 /// Those of the writer.
-pub fn json_lines<W: Write>(rows: &[Row], mut out: W) -> io::Result<()> {
-    let further = further_names(rows);
-    let names = field_names(&further);
-    for row in rows {
-        let mut line = serde_json::Serializer::new(&mut out);
-        let mut map = line.serialize_map(Some(names.len()))?;
-        for (name, value) in names.iter().zip(fields(row, &further)) {
-            map.serialize_entry(name, &value)?;
-        }
-        map.end()?;
-        out.write_all(b"\n")?;
+pub fn json_lines<W: Write>(rows: &[Row], out: W) -> io::Result<()> {
+    let mut export = Export::json_lines(owned(further_names(rows)), out);
+    rows.iter().try_for_each(|row| export.write(row))?;
+    export.finish()
+}
+
+/// An export that is written row by row, for studies whose rows nobody wants to hold all at once.
+pub struct Export<W: Write> {
+    further: Vec<String>,
+    lines: Lines<W>,
+}
+
+enum Lines<W: Write> {
+    Csv(Box<::csv::Writer<W>>),
+    Json { out: W, names: Vec<String> },
+}
+
+impl<W: Write> Export<W> {
+    /// CSV, with `further` parameters besides ω and μ; writes the header.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn csv(further: Vec<String>, out: W) -> io::Result<Self> {
+        let mut writer = ::csv::Writer::from_writer(out);
+        writer.write_record(field_names(&further)).map_err(io_error)?;
+        Ok(Self { further, lines: Lines::Csv(Box::new(writer)) })
     }
-    out.flush()
+
+    /// JSON lines, with `further` parameters besides ω and μ.
+    pub fn json_lines(further: Vec<String>, out: W) -> Self {
+        let names = field_names(&further);
+        Self { further, lines: Lines::Json { out, names } }
+    }
+
+    /// Writes a job.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn write(&mut self, row: &Row) -> io::Result<()> {
+        let fields = fields(row, &self.further);
+        match &mut self.lines {
+            Lines::Csv(writer) => writer.write_record(fields.iter().map(value::text)).map_err(io_error),
+            Lines::Json { out, names } => {
+                let mut line = serde_json::Serializer::new(&mut *out);
+                let mut map = line.serialize_map(Some(names.len()))?;
+                for (name, value) in names.iter().zip(fields) {
+                    map.serialize_entry(name, &value)?;
+                }
+                map.end()?;
+                out.write_all(b"\n")
+            }
+        }
+    }
+
+    /// Writes what is left.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn finish(self) -> io::Result<()> {
+        match self.lines {
+            Lines::Csv(mut writer) => writer.flush(),
+            Lines::Json { mut out, .. } => out.flush(),
+        }
+    }
 }
 
 /// A CSV error as the I/O error it comes from, so that a caller can tell a closed pipe.
@@ -84,23 +131,37 @@ pub(super) fn io_error(error: ::csv::Error) -> io::Error {
 /// Names of the parameters other than ω and μ, in the order in which they first appear.
 pub(super) fn further_names(rows: &[Row]) -> Vec<&str> {
     let mut names = Vec::new();
-    for (name, _) in rows.iter().flat_map(Row::further) {
-        if !names.contains(&name) {
-            names.push(name);
-        }
+    for row in rows {
+        add_further_names(&mut names, &row.parameters);
     }
     names
 }
 
-fn field_names(further: &[&str]) -> Vec<String> {
+/// Adds those of a job's parameters that `names` does not have.
+pub fn add_further_names<'a, N>(names: &mut Vec<N>, parameters: &'a [(String, Value)])
+where
+    N: AsRef<str> + From<&'a str>,
+{
+    for (name, _) in parameters.iter().filter(|(name, _)| is_further(name)) {
+        if !names.iter().any(|known| known.as_ref() == name) {
+            names.push(N::from(name));
+        }
+    }
+}
+
+fn owned(names: Vec<&str>) -> Vec<String> {
+    names.into_iter().map(str::to_owned).collect()
+}
+
+fn field_names(further: &[String]) -> Vec<String> {
     // A parameter may share its name with a result: both keep a column of their own.
-    let unique = |name: &&str| {
-        if HEADER.contains(name) { format!("parameter_{name}") } else { (*name).to_owned() }
+    let unique = |name: &String| {
+        if HEADER.contains(&name.as_str()) { format!("parameter_{name}") } else { name.clone() }
     };
     HEADER.iter().map(|&name| name.to_owned()).chain(further.iter().map(unique)).collect()
 }
 
-fn fields(row: &Row, further: &[&str]) -> Vec<Value> {
+fn fields(row: &Row, further: &[String]) -> Vec<Value> {
     let error = match &row.state {
         RowState::Failed { error } => Value::from(error.as_str()),
         _ => Value::Null,

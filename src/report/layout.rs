@@ -4,7 +4,7 @@ use super::export::further_names;
 use super::row::{MU, OMEGA, Row};
 use super::value;
 use serde_json::Value;
-use std::collections::HashSet;
+use std::collections::HashMap;
 
 /// A study laid out in two dimensions, once per combination of its further parameters.
 pub(super) struct Layout<'a> {
@@ -25,15 +25,28 @@ pub(super) struct Group<'a> {
     /// The combination, in the order of [`Layout::further`].
     pub key: Vec<(&'a str, Value)>,
     /// Its jobs.
-    pub rows: Vec<&'a Row>,
+    pub jobs: Vec<Placed<'a>>,
     /// The values along the axis: ascending if they are numbers, otherwise in the order of the study.
     pub axis_values: Vec<Value>,
 }
 
+/// A job with its place.
+pub(super) struct Placed<'a> {
+    pub row: &'a Row,
+    /// Which of [`Group::axis_values`] it has.
+    pub at: usize,
+    /// Which of [`Layout::mus`] it has.
+    pub mu: usize,
+}
+
 impl<'a> Layout<'a> {
+    /// Looks at every job's values as text, which takes longer than anything that is done with the layout afterwards:
+    /// a report has one for all its tables and figures.
     pub fn new(rows: &'a [Row]) -> Self {
         let varies = |name: &str| {
-            rows.iter().map(|row| value::text(&row.parameter(name))).collect::<HashSet<_>>().len() > 1
+            let mut texts = rows.iter().map(|row| value::text(&row.parameter(name)));
+            let first = texts.next();
+            texts.any(|text| Some(text) != first)
         };
         let (mut further, constant): (Vec<&str>, Vec<&str>) =
             further_names(rows).into_iter().partition(|name| varies(name));
@@ -44,7 +57,7 @@ impl<'a> Layout<'a> {
         let mut mus: Vec<f64> = rows.iter().map(|row| row.mu).collect();
         mus.sort_by(f64::total_cmp);
         mus.dedup();
-        let groups = groups(rows, axis, &further);
+        let groups = groups(rows, axis, &further, &mus);
         Self { axis, further, constants, mus, groups }
     }
 
@@ -59,41 +72,52 @@ impl Group<'_> {
     pub fn caption(&self) -> String {
         self.key.iter().map(|(name, value)| value::assignment(name, value)).collect::<Vec<_>>().join(", ")
     }
+
+    fn sort_axis(&mut self) {
+        if !self.axis_values.iter().all(Value::is_number) {
+            return;
+        }
+        let number = |at: &usize| self.axis_values[*at].as_f64().unwrap_or_default();
+        let mut order: Vec<usize> = (0..self.axis_values.len()).collect();
+        order.sort_by(|a, b| number(a).total_cmp(&number(b)));
+        let mut rank = vec![0; order.len()];
+        for (place, &at) in order.iter().enumerate() {
+            rank[at] = place;
+        }
+        self.axis_values = order.iter().map(|&at| self.axis_values[at].clone()).collect();
+        for job in &mut self.jobs {
+            job.at = rank[job.at];
+        }
+    }
 }
 
-fn groups<'a>(rows: &'a [Row], axis: &str, further: &[&'a str]) -> Vec<Group<'a>> {
+fn groups<'a>(rows: &'a [Row], axis: &str, further: &[&'a str], mus: &[f64]) -> Vec<Group<'a>> {
     let mut groups: Vec<Group<'a>> = Vec::new();
+    // By what is shown: 1 and 1.0 are the same value.
+    let mut known: HashMap<Vec<String>, usize> = HashMap::new();
+    let mut places: Vec<HashMap<String, usize>> = Vec::new();
     for row in rows {
         let key: Vec<_> = further.iter().map(|&name| (name, row.parameter(name))).collect();
-        // The last group first: a study's jobs come mostly in runs of one combination.
-        match groups.iter_mut().rev().find(|group| same(&group.key, &key)) {
-            Some(group) => group.rows.push(row),
-            None => groups.push(Group { key, rows: vec![row], axis_values: Vec::new() }),
+        let texts = key.iter().map(|(_, value)| value::text(value)).collect();
+        let number = *known.entry(texts).or_insert(groups.len());
+        if number == groups.len() {
+            groups.push(Group { key, jobs: Vec::new(), axis_values: Vec::new() });
+            places.push(HashMap::new());
         }
+        let (group, places) = (&mut groups[number], &mut places[number]);
+        let value = row.parameter(axis);
+        let at = *places.entry(value::text(&value)).or_insert(group.axis_values.len());
+        if at == group.axis_values.len() {
+            group.axis_values.push(value);
+        }
+        group.jobs.push(Placed { row, at, mu: mus.partition_point(|&mu| mu < row.mu) });
     }
     if groups.is_empty() {
         // A study without jobs still has tables and figures to look at: empty ones.
-        groups.push(Group { key: Vec::new(), rows: Vec::new(), axis_values: Vec::new() });
+        groups.push(Group { key: Vec::new(), jobs: Vec::new(), axis_values: Vec::new() });
     }
-    for group in &mut groups {
-        group.axis_values = distinct_sorted(group.rows.iter().map(|row| row.parameter(axis)));
-    }
+    groups.iter_mut().for_each(Group::sort_axis);
     groups
-}
-
-/// Equality of what is shown: 1 and 1.0 are the same value.
-fn same(a: &[(&str, Value)], b: &[(&str, Value)]) -> bool {
-    a.iter().zip(b).all(|((_, a), (_, b))| value::text(a) == value::text(b))
-}
-
-fn distinct_sorted(values: impl Iterator<Item = Value>) -> Vec<Value> {
-    let mut seen = HashSet::new();
-    let mut distinct: Vec<Value> = values.filter(|value| seen.insert(value::text(value))).collect();
-    if distinct.iter().all(Value::is_number) {
-        let key = |value: &Value| value.as_f64().unwrap_or_default();
-        distinct.sort_by(|a, b| key(a).total_cmp(&key(b)));
-    }
-    distinct
 }
 
 /// All parameters of a job in words, ω and μ first.

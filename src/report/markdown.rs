@@ -32,6 +32,10 @@ pub(super) fn table(header: &[String], lines: &[Vec<String>], right_aligned: boo
 
 /// Text on one line that a table or a heading holds as it is.
 pub(super) fn escape(text: &str) -> String {
+    // Most cells are numbers, and there are very many of them.
+    if text.bytes().all(|c| c.is_ascii_alphanumeric() || matches!(c, b'.' | b'_' | b'~' | b'-')) {
+        return text.to_owned();
+    }
     one_line(text)
         .replace('\\', "\\\\")
         .replace('|', "\\|")

@@ -3,7 +3,7 @@
 use super::figure::Plot;
 use super::layout::parameters_in_words;
 use super::row::{Row, RowState};
-use super::tables::{self, Quantity};
+use super::tables::Quantity;
 use super::{markdown, value};
 use crate::analysis::{JobRecord, Outcome};
 
@@ -17,17 +17,24 @@ pub(super) struct FigureLink {
     pub file: String,
 }
 
+/// A table and what its files are called.
+pub(super) struct Table {
+    pub quantity: Quantity,
+    pub stem: &'static str,
+    pub markdown: String,
+}
+
 /// The page of one table.
-pub(super) fn of_table(rows: &[Row], quantity: Quantity, title: &str) -> String {
-    format!("# {}: {}\n\n{}", markdown::escape(title), quantity.title(), tables::markdown(rows, quantity))
+pub(super) fn of_table(table: &Table, title: &str) -> String {
+    format!("# {}: {}\n\n{}", markdown::escape(title), table.quantity.title(), table.markdown)
 }
 
 /// The page of the whole report.
-pub(super) fn of_report(rows: &[Row], figures: &[FigureLink], title: &str) -> String {
+pub(super) fn of_report(rows: &[Row], tables: &[Table], figures: &[FigureLink], title: &str) -> String {
     let mut page = format!("# {}\n\n{}\n", markdown::escape(title), summary(rows));
-    page += &section("Macroscopic friction", Some(Plot::MuStar), Quantity::MuStar, "mu_star", rows, figures);
-    page += &section("Frequency", Some(Plot::Frequency), Quantity::Frequency, "frequency", rows, figures);
-    page += &section("Contact regime", None, Quantity::Regime, "regime", rows, figures);
+    for table in tables {
+        page += &section(table, figures);
+    }
     let failed: Vec<String> = rows.iter().filter_map(failed).collect();
     page += &list("Failed jobs", failed.len(), &failed);
     let not_periodic: Vec<String> = rows.iter().filter_map(not_periodic).collect();
@@ -69,14 +76,13 @@ fn worst(name: &str, rows: &[Row], residual: impl Fn(&JobRecord) -> f64) -> Stri
         .unwrap_or_default()
 }
 
-fn section(
-    heading: &str,
-    plot: Option<Plot>,
-    quantity: Quantity,
-    stem: &str,
-    rows: &[Row],
-    figures: &[FigureLink],
-) -> String {
+fn section(table: &Table, figures: &[FigureLink]) -> String {
+    let Table { quantity, stem, markdown: lines } = table;
+    let (heading, plot) = match quantity {
+        Quantity::MuStar => ("Macroscopic friction", Some(Plot::MuStar)),
+        Quantity::Frequency => ("Frequency", Some(Plot::Frequency)),
+        Quantity::Regime => ("Contact regime", None),
+    };
     let mut parts = vec![format!("\n## {heading}\n\n")];
     for figure in figures.iter().filter(|figure| Some(figure.plot) == plot) {
         if !figure.caption.is_empty() {
@@ -85,7 +91,7 @@ fn section(
         parts.push(format!("![{}]({})\n\n", quantity.title(), figure.file));
     }
     parts.push(format!("Table: [{stem}.md]({stem}.md), [{stem}.csv]({stem}.csv)\n\n"));
-    parts.push(tables::markdown(rows, quantity));
+    parts.push(lines.clone());
     parts.concat()
 }
 

@@ -9,6 +9,11 @@ pub(super) const OMEGA: &str = "omega_rpm";
 /// The grid parameter that is the local friction coefficient.
 pub(super) const MU: &str = "mu";
 
+/// Whether a parameter is one of those that have no place of their own everywhere, as ω and μ have.
+pub(super) fn is_further(name: &str) -> bool {
+    name != OMEGA && name != MU
+}
+
 /// One job of a study: its parameters and what is known of it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Row {
@@ -99,12 +104,12 @@ impl Row {
         }
     }
 
-    /// The parameters other than ω and μ, which have a place of their own everywhere.
+    /// The parameters other than ω and μ.
     pub(super) fn further(&self) -> impl Iterator<Item = (&str, &Value)> {
         self.parameters
             .iter()
             .map(|(name, value)| (name.as_str(), value))
-            .filter(|(name, _)| *name != OMEGA && *name != MU)
+            .filter(|(name, _)| is_further(name))
     }
 
     /// The value of a parameter; null where this job has none of that name.

@@ -6,7 +6,6 @@ use super::row::{Row, RowState};
 use super::value::MISSING;
 use super::{markdown, value};
 use crate::analysis::{JobRecord, Outcome, Regime};
-use std::collections::HashMap;
 use std::io::{self, Write};
 
 /// What a table shows.
@@ -71,8 +70,11 @@ impl Quantity {
 
 /// The tables of one quantity as Markdown: one per combination of further parameters, and a legend.
 pub fn markdown(rows: &[Row], quantity: Quantity) -> String {
-    let layout = Layout::new(rows);
-    let mut parts = vec![constants(&layout)];
+    markdown_of(&Layout::new(rows), quantity)
+}
+
+pub(super) fn markdown_of(layout: &Layout, quantity: Quantity) -> String {
+    let mut parts = vec![constants(layout)];
     let header: Vec<String> = std::iter::once(layout.axis_label().to_owned())
         .chain(layout.mus.iter().map(|&mu| format!("μ = {}", value::rounded(mu))))
         .collect();
@@ -80,7 +82,7 @@ pub fn markdown(rows: &[Row], quantity: Quantity) -> String {
         if !group.key.is_empty() {
             parts.push(format!("### {}\n\n", markdown::escape(&group.caption())));
         }
-        let lines: Vec<Vec<String>> = lines(&layout, group, quantity)
+        let lines: Vec<Vec<String>> = lines(layout, group, quantity)
             .map(|(at, cells)| std::iter::once(at).chain(cells).collect())
             .collect();
         parts.push(markdown::table(&header, &lines, quantity != Quantity::Regime));
@@ -97,7 +99,10 @@ pub fn markdown(rows: &[Row], quantity: Quantity) -> String {
 /// # Errors
 /// Those of the writer.
 pub fn csv<W: Write>(rows: &[Row], quantity: Quantity, out: W) -> io::Result<()> {
-    let layout = Layout::new(rows);
+    csv_of(&Layout::new(rows), quantity, out)
+}
+
+pub(super) fn csv_of<W: Write>(layout: &Layout, quantity: Quantity, out: W) -> io::Result<()> {
     let mut writer = ::csv::Writer::from_writer(out);
     let header = layout
         .further
@@ -107,7 +112,7 @@ pub fn csv<W: Write>(rows: &[Row], quantity: Quantity, out: W) -> io::Result<()>
         .chain(layout.mus.iter().map(|&mu| format!("mu={}", value::rounded(mu))));
     writer.write_record(header).map_err(io_error)?;
     for group in &layout.groups {
-        for (at, cells) in lines(&layout, group, quantity) {
+        for (at, cells) in lines(layout, group, quantity) {
             let key = group.key.iter().map(|(_, value)| value::text(value));
             let cells = cells.into_iter().map(|cell| if cell == MISSING { String::new() } else { cell });
             writer.write_record(key.chain([at]).chain(cells)).map_err(io_error)?;
@@ -122,21 +127,16 @@ fn lines<'a>(
     group: &'a Group,
     quantity: Quantity,
 ) -> impl Iterator<Item = (String, Vec<String>)> + 'a {
-    let mut cells: HashMap<(String, String), Vec<String>> = HashMap::new();
-    for row in &group.rows {
-        let place = (value::text(&row.parameter(layout.axis)), value::number(row.mu));
-        cells.entry(place).or_default().push(quantity.cell(row));
+    let mut cells: Vec<Vec<Option<String>>> = vec![vec![None; layout.mus.len()]; group.axis_values.len()];
+    for job in &group.jobs {
+        let here = quantity.cell(job.row);
+        match &mut cells[job.at][job.mu] {
+            Some(others) => others.extend([" / ", &here]),
+            free => *free = Some(here),
+        }
     }
-    group.axis_values.iter().map(move |at| {
-        let place = value::text(at);
-        let line = layout
-            .mus
-            .iter()
-            .map(|&mu| {
-                let here = cells.get(&(place.clone(), value::number(mu)));
-                here.map_or_else(|| MISSING.to_owned(), |here| here.join(" / "))
-            })
-            .collect();
+    group.axis_values.iter().zip(cells).map(|(at, cells)| {
+        let line = cells.into_iter().map(|cell| cell.unwrap_or_else(|| MISSING.to_owned())).collect();
         (value::shown(at), line)
     })
 }

@@ -4,6 +4,7 @@ use super::error::StudyError;
 use super::key::job_key;
 use super::{Study, cost, json};
 use crate::spec::JobSpec;
+use rayon::iter::{IndexedParallelIterator, IntoParallelIterator, ParallelIterator};
 use serde::Serialize;
 use serde_json::Value;
 use std::collections::HashSet;
@@ -35,28 +36,30 @@ impl Study {
     /// None for a study from [`Study::parse`], which has checked every job; the signature leaves room
     /// for studies that are too large to be checked in advance.
     pub fn expand(&self, solver_version: &str) -> Result<Vec<Job>, StudyError> {
+        let point = |(indices, spec): (Vec<usize>, JobSpec)| Job {
+            key: job_key(&spec, solver_version),
+            cost: cost::node_steps(&spec),
+            parameters: self.parameters_at(&indices),
+            spec,
+        };
+        let mut jobs: Vec<Job> = self.points().map(point).collect();
         let mut seen = HashSet::new();
-        let mut jobs = Vec::with_capacity(self.grid_size());
-        for (indices, spec) in self.points() {
-            let key = job_key(&spec, solver_version);
-            if seen.insert(key.clone()) {
-                let cost = cost::node_steps(&spec);
-                jobs.push(Job { key, parameters: self.parameters_at(&indices), cost, spec });
-            }
-        }
+        jobs.retain(|job| seen.insert(job.key.clone()));
         Ok(jobs)
     }
 
     /// Every grid point with the indices of its values, in the order of [`Study::expand`].
-    pub(super) fn points(&self) -> impl Iterator<Item = (Vec<usize>, JobSpec)> {
-        let mut job = json::encode(&self.base);
-        (0..self.grid_size()).map(move |number| {
-            let indices = self.indices_of(number);
-            for (axis, &index) in self.axes.iter().zip(&indices) {
-                axis.parameter.set(&mut job, &axis.values[index]);
-            }
-            (indices, json::checked_job(&job))
-        })
+    pub(super) fn points(&self) -> impl IndexedParallelIterator<Item = (Vec<usize>, JobSpec)> {
+        (0..self.grid_size()).into_par_iter().map_init(
+            || json::encode(&self.base),
+            |job, number| {
+                let indices = self.indices_of(number);
+                for (axis, &index) in self.axes.iter().zip(&indices) {
+                    axis.parameter.set(job, &axis.values[index]);
+                }
+                (indices, json::checked_job(job))
+            },
+        )
     }
 
     /// The parameters and values of a grid point.

@@ -3,6 +3,7 @@
 use super::Study;
 use super::error::Problem;
 use crate::spec::FieldError;
+use rayon::iter::ParallelIterator;
 use serde_json::Value;
 use std::collections::HashMap;
 
@@ -17,8 +18,8 @@ struct Found {
 pub(super) fn check_jobs(study: &Study) -> Vec<Problem> {
     let mut found: Vec<Found> = Vec::new();
     let mut known: HashMap<(String, String, String), usize> = HashMap::new();
-    for (indices, spec) in study.points() {
-        let Err(violations) = spec.check() else { continue };
+    let violations = study.points().filter_map(|(indices, spec)| Some((indices, spec.check().err()?)));
+    for (indices, violations) in violations.collect::<Vec<_>>() {
         for violation in violations.0 {
             let FieldError { field, value, expected } = violation.clone();
             let index = *known.entry((field, value, expected)).or_insert(found.len());

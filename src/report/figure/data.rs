@@ -4,7 +4,6 @@ use super::Plot;
 use super::axis::Axis;
 use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::report::layout::{Group, Layout};
-use crate::report::row::Row;
 
 /// One job's result in a figure.
 pub(super) struct Point {
@@ -28,25 +27,23 @@ pub(super) struct Curve {
 /// One curve per μ of the study, also where this group has no results: colours and legend stay the
 /// same in all its figures.
 pub(super) fn curves(layout: &Layout, group: &Group, plot: Plot, x_axis: &Axis) -> Vec<Curve> {
+    let at: Vec<Option<f64>> = group.axis_values.iter().map(|value| x_axis.place(value)).collect();
+    let mut results: Vec<Vec<(f64, &JobRecord)>> = vec![Vec::new(); layout.mus.len()];
+    for job in &group.jobs {
+        if let (Some(x), Some(record)) = (at[job.at], job.row.record()) {
+            results[job.mu].push((x, record));
+        }
+    }
     layout
         .mus
         .iter()
-        .map(|&mu| {
-            let mut results: Vec<(f64, &JobRecord)> = group
-                .rows
-                .iter()
-                .filter(|row| row.mu == mu)
-                .filter_map(|row| place(layout, x_axis, row))
-                .collect();
+        .zip(results)
+        .map(|(&mu, mut results)| {
             results.sort_by(|a, b| a.0.total_cmp(&b.0));
             let points = results.iter().filter_map(|&(x, record)| point(plot, x, record)).collect();
             Curve { mu, points, stretches: stretches(plot, &results) }
         })
         .collect()
-}
-
-fn place<'a>(layout: &Layout, x_axis: &Axis, row: &'a Row) -> Option<(f64, &'a JobRecord)> {
-    Some((x_axis.place(&row.parameter(layout.axis))?, row.record()?))
 }
 
 fn point(plot: Plot, x: f64, record: &JobRecord) -> Option<Point> {

@@ -42,10 +42,13 @@ pub struct Figure {
 /// # Errors
 /// The drawing library's; drawing into a string gives it no reason to fail.
 pub fn figures(rows: &[Row], plot: Plot) -> Result<Vec<Figure>, FigureError> {
-    let layout = Layout::new(rows);
+    figures_of(&Layout::new(rows), plot)
+}
+
+pub(super) fn figures_of(layout: &Layout, plot: Plot) -> Result<Vec<Figure>, FigureError> {
     let mut taken = HashSet::new();
     let draw = |group: &Group| {
-        let svg = chart::draw(&layout, group, plot)?;
+        let svg = chart::draw(layout, group, plot)?;
         Ok(Figure { suffix: free_suffix(group, &mut taken), caption: group.caption(), svg })
     };
     layout.groups.iter().map(draw).collect()

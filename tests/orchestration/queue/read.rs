@@ -1,5 +1,7 @@
 //! What reports and progress read.
 
+use std::ops::ControlFlow;
+
 use tribosweep::queue::{
     Claim, Finished, JobState, QueueError, Scope, StudyDocument, StudyRow, StudySummary,
 };
@@ -136,4 +138,52 @@ async fn an_unknown_study_is_answered_with_those_known() {
             "there is no study `map` in the database; it has: speed map, friction map"
         );
     }
+}
+
+/// Protects: what records hold in one field is counted row by row, of done jobs alone; a record that has no such field,
+/// or is not JSON, counts nowhere and stops nothing.
+#[tokio::test]
+async fn records_are_counted_by_a_field() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let mut a = study("a", &["p", "q", "r", "s", "t", "p"]);
+    a.jobs[5].parameters = "p again".into();
+    queue.submit(&a).await.unwrap();
+    claim(&mut queue, of("a"), 9).await;
+    for (key, outcome) in [
+        ("p", done("{\"end\": \"good\"}")),
+        ("q", done("{\"end\": \"bad\"}")),
+        ("r", done("not JSON")),
+        ("s", failed("{\"end\": \"good\"}")),
+        ("t", done("{\"start\": \"good\"}")),
+    ] {
+        assert!(finish(&mut queue, key, 1, outcome).await);
+    }
+    let mut counted = queue.recorded("a", "$.end").await.unwrap();
+    counted.sort();
+    assert_eq!(counted, [("bad".to_owned(), 1), ("good".to_owned(), 2)]);
+    let failed = queue.failed_rows("a").await.unwrap();
+    assert_eq!(failed.iter().map(|row| (row.ordinal, row.key.as_str())).collect::<Vec<_>>(), [(3, "s")]);
+}
+
+/// Protects: whoever has seen enough of a study is not shown the rest.
+#[tokio::test]
+async fn reading_can_be_stopped() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let names: Vec<String> = (0..2_500).map(|number| format!("job {number}")).collect();
+    queue.submit(&study("a", &names.iter().map(String::as_str).collect::<Vec<_>>())).await.unwrap();
+    for (stop, seen) in [(true, 1_000), (false, 2_500)] {
+        let mut rows = 0;
+        let look = |page: Vec<StudyRow>| {
+            rows += page.len();
+            if stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+        };
+        queue.each_page("a", look).await.unwrap();
+        assert_eq!(rows, seen);
+    }
+    let mut parameters = Vec::new();
+    queue.each_parameters("a", |text| parameters.push(text.to_owned())).await.unwrap();
+    assert_eq!(parameters.len(), 2_500);
+    assert_eq!(parameters[2_499], "parameters of job 2499");
 }
