@@ -2,11 +2,13 @@
 
 use super::error::CliError;
 use super::output::{block_on, print};
+use super::planning::RowParameters;
 use super::rows;
 use crate::analysis::Outcome;
 use crate::exit;
 use crate::queue::{Counts, Queue, Scope};
-use crate::report::Row;
+use crate::report::trouble::{Grid, LISTED, Region, Regions, cause, sentences};
+use crate::report::{Row, RowState};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
@@ -20,9 +22,6 @@ pub struct Args {
     #[arg(long)]
     json: bool,
 }
-
-/// So many failures are listed; the rest is counted.
-const LISTED: usize = 10;
 
 /// Shows the state of one or all studies.
 pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
@@ -59,54 +58,52 @@ async fn all(queue: &mut Queue, as_json: bool) -> Result<String, CliError> {
     }))
 }
 
-/// What a study's rows tell besides their number.
-struct Findings {
-    not_periodic: u64,
-    failures: Vec<Failure>,
+/// The rows of a study that are in trouble. Of all others only the parameters are read: records are most of a study.
+struct Trouble {
+    failed: Vec<Row>,
+    not_periodic: usize,
+    regions: Regions,
 }
 
-/// A failed row, with its parameters in words and the reason.
-struct Failure {
-    job: String,
-    parameters: String,
-    error: String,
-}
-
-/// Counts in the database: of all that records hold, a word of each is of interest here. A record that cannot be read is
-/// the report's to complain about.
-async fn find(queue: &mut Queue, name: &str) -> Result<Findings, CliError> {
-    let outcomes = queue.recorded(name, "$.outcome").await?;
-    let not_periodic = outcomes.into_iter().filter(|(outcome, _)| outcome == Outcome::NotPeriodic.name());
-    let not_periodic = not_periodic.map(|(_, rows)| rows).sum();
-    let failures = queue.failed_rows(name).await?.into_iter().map(|row| {
-        let parameters = parameters(&rows::convert(name, &row)?);
-        Ok(Failure { parameters, job: row.key, error: row.error.unwrap_or_default() })
+async fn find(queue: &mut Queue, name: &str) -> Result<Trouble, CliError> {
+    let mut grid = Grid::default();
+    let mut unreadable = None;
+    let read = queue.each_parameters(name, |text| match serde_json::from_str::<RowParameters>(text) {
+        Ok(row) => grid.add(row.omega_rpm, row.mu, &row.grid),
+        Err(error) => _ = unreadable.get_or_insert(error),
     });
-    Ok(Findings { not_periodic, failures: failures.collect::<Result<_, CliError>>()? })
+    read.await?;
+    if let Some(error) = unreadable {
+        return Err(CliError::Unreadable(format!(
+            "the parameters of {name} were written by another version of tribosweep ({error}); submit the study to a \
+             new database"
+        )));
+    }
+    let failed = queue.failed_rows(name).await?;
+    let not_periodic = queue.recorded_rows(name, "$.outcome", Outcome::NotPeriodic.name()).await?;
+    let mut rows = Vec::new();
+    for row in failed.iter().chain(&not_periodic) {
+        rows.push((row.ordinal as usize, rows::convert(name, row)?));
+    }
+    let troubled = rows.iter().filter_map(|(place, row)| Some((*place, row.job.as_str(), cause(row)?)));
+    let regions = grid.regions(troubled, LISTED);
+    let not_periodic = rows.split_off(failed.len()).len();
+    Ok(Trouble { failed: rows.into_iter().map(|(_, row)| row).collect(), not_periodic, regions })
 }
 
 async fn one(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, CliError> {
-    let Findings { not_periodic, failures } = find(queue, name).await?;
+    let trouble = find(queue, name).await?;
     let counts = queue.counts(&Scope::Study(name.to_owned())).await?;
     if as_json {
-        let failed: Vec<Value> = failures
-            .iter()
-            .map(|Failure { job, parameters, error }| json!({ "job": job, "parameters": parameters, "error": error }))
-            .collect();
-        return Ok(format!(
-            "{}\n",
-            json!({ "study": name, "jobs": counts_json(counts), "not_periodic": not_periodic, "failures": failed })
-        ));
+        return Ok(format!("{}\n", trouble_json(name, counts, &trouble)));
     }
+    let Trouble { not_periodic, regions, .. } = trouble;
     let mut text = format!("{name}: {}\n", counts_text(counts));
     if not_periodic > 0 {
         let _ = writeln!(text, "{not_periodic} done jobs reached their time limit without becoming periodic");
     }
-    for Failure { job, parameters, error } in failures.iter().take(LISTED) {
-        let _ = writeln!(text, "failed: {job} ({parameters}): {error}");
-    }
-    if failures.len() > LISTED {
-        let _ = writeln!(text, "… and {} more failures", failures.len() - LISTED);
+    for line in sentences(&regions) {
+        let _ = writeln!(text, "{line}");
     }
     if counts.pending + counts.running > 0 {
         text.push_str("continue with `tribosweep work`\n");
@@ -115,6 +112,32 @@ async fn one(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, Cli
         let _ = writeln!(text, "bring cancelled jobs back with `tribosweep retry {name}`");
     }
     Ok(text)
+}
+
+fn trouble_json(name: &str, counts: Counts, trouble: &Trouble) -> Value {
+    let failures: Vec<Value> = trouble
+        .failed
+        .iter()
+        .map(|row| {
+            let error = if let RowState::Failed { error } = &row.state { error.as_str() } else { "" };
+            json!({ "job": row.job, "parameters": parameters(row), "error": error })
+        })
+        .collect();
+    let regions = trouble.regions.largest.iter();
+    let regions: Vec<Value> = regions
+        .map(|Region { jobs, of, place, cause, example }| {
+            json!({
+                "what": cause.what, "jobs": jobs, "of": of, "place": place, "why": cause.why, "example": example
+            })
+        })
+        .collect();
+    json!({
+        "study": name,
+        "jobs": counts_json(counts),
+        "not_periodic": trouble.not_periodic,
+        "failures": failures,
+        "regions": regions,
+    })
 }
 
 fn parameters(row: &Row) -> String {

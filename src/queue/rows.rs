@@ -38,7 +38,8 @@ pub struct StudyRow {
 
 /// A job that is to be tried again has results of earlier attempts, which say nothing of this one.
 ///
-/// Without ?4, all rows; with it, those whose jobs are in that state.
+/// Without ?4, all rows; with it, those whose jobs are in that state, and with ?5 those of them whose records have ?6
+/// there.
 const ROWS: &str = "
     SELECT m.ordinal, j.key, m.parameters, j.state, r.record, r.error, r.wall_s, j.attempt, j.crashes, j.note,
            r.started_ms, r.finished_ms, r.provenance
@@ -46,6 +47,7 @@ const ROWS: &str = "
     JOIN jobs AS j ON j.id = m.job_id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
     WHERE m.study_id = ?1 AND m.ordinal >= ?2 AND (?4 IS NULL OR j.state = ?4)
+      AND (?5 IS NULL OR IIF(json_valid(r.record), r.record ->> ?5, NULL) = ?6)
     ORDER BY m.ordinal
     LIMIT ?3";
 
@@ -56,19 +58,13 @@ const PARAMETERS: &str = "
 /// meanwhile, and needs the memory for all.
 const PAGE: i64 = 1_000;
 
-/// Counts the rows of a study by a field of their jobs' records, those that are no objects in JSON or lack the field as
-/// null. LIMIT: without it the inner query becomes part of the outer one, which then sorts whole records.
-const RECORDED: &str = "
-    SELECT field, COUNT(*)
-    FROM (
-        SELECT IIF(json_valid(r.record), r.record ->> ?2, NULL) AS field
-        FROM study_jobs AS m
-        CROSS JOIN jobs AS j ON j.id = m.job_id
-        CROSS JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt
-        WHERE m.study_id = ?1 AND j.state = 'done'
-        LIMIT -1
-    )
-    GROUP BY field";
+/// Which rows.
+#[derive(Clone, Copy)]
+enum Filter<'a> {
+    All,
+    Failed,
+    Recorded { path: &'a str, value: &'a str },
+}
 
 impl Queue {
     /// The rows of a study, in the order of its document.
@@ -76,13 +72,7 @@ impl Queue {
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.
     pub async fn rows(&mut self, study: &str) -> Result<Vec<StudyRow>, QueueError> {
-        let mut rows = Vec::new();
-        self.row_pages(study, None, |page| {
-            rows.extend(page);
-            ControlFlow::Continue(())
-        })
-        .await?;
-        Ok(rows)
+        self.collect(study, Filter::All).await
     }
 
     /// Those rows of a study whose jobs have failed, in the order of its document.
@@ -90,13 +80,21 @@ impl Queue {
     /// # Errors
     /// As [`Queue::rows`].
     pub async fn failed_rows(&mut self, study: &str) -> Result<Vec<StudyRow>, QueueError> {
-        let mut rows = Vec::new();
-        self.row_pages(study, Some(JobState::Failed), |page| {
-            rows.extend(page);
-            ControlFlow::Continue(())
-        })
-        .await?;
-        Ok(rows)
+        self.collect(study, Filter::Failed).await
+    }
+
+    /// Those done rows of a study whose records, which are JSON to whoever asks, have that value at `path`, in the order
+    /// of its document.
+    ///
+    /// # Errors
+    /// As [`Queue::rows`].
+    pub async fn recorded_rows(
+        &mut self,
+        study: &str,
+        path: &str,
+        value: &str,
+    ) -> Result<Vec<StudyRow>, QueueError> {
+        self.collect(study, Filter::Recorded { path, value }).await
     }
 
     /// Shows the rows of a study to `look`, in the order of its document, some at a time: for those who do not need
@@ -111,7 +109,7 @@ impl Queue {
         study: &str,
         look: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
     ) -> Result<(), QueueError> {
-        self.row_pages(study, None, look).await
+        self.row_pages(study, Filter::All, look).await
     }
 
     /// Shows the parameters of a study's rows to `look`, in the order of its document: without what their jobs have
@@ -137,29 +135,32 @@ impl Queue {
         }
     }
 
-    /// How many of a study's done rows have each value of the field at `path` of their records, which are JSON to
-    /// whoever asks. Rows whose record has none are not counted.
-    ///
-    /// # Errors
-    /// As [`Queue::rows`].
-    pub async fn recorded(&mut self, study: &str, path: &str) -> Result<Vec<(String, u64)>, QueueError> {
-        let study_id = studies::require(&mut self.connection, study).await?;
-        let counted = sqlx::query_as(RECORDED).bind(study_id).bind(path);
-        let counted: Vec<(Option<String>, i64)> = counted.fetch_all(&mut self.connection).await?;
-        Ok(counted.into_iter().filter_map(|(value, count)| Some((value?, count.unsigned_abs()))).collect())
+    async fn collect(&mut self, study: &str, filter: Filter<'_>) -> Result<Vec<StudyRow>, QueueError> {
+        let mut rows = Vec::new();
+        self.row_pages(study, filter, |page| {
+            rows.extend(page);
+            ControlFlow::Continue(())
+        })
+        .await?;
+        Ok(rows)
     }
 
     async fn row_pages(
         &mut self,
         study: &str,
-        state: Option<JobState>,
+        filter: Filter<'_>,
         mut look: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
     ) -> Result<(), QueueError> {
         let study_id = studies::require(&mut self.connection, study).await?;
+        let (state, path, value) = match filter {
+            Filter::All => (None, None, None),
+            Filter::Failed => (Some(JobState::Failed), None, None),
+            Filter::Recorded { path, value } => (Some(JobState::Done), Some(path), Some(value)),
+        };
         let mut next = 0_i64;
         loop {
             let page = sqlx::query_as(ROWS).bind(study_id).bind(next).bind(PAGE);
-            let page = page.bind(state.map(JobState::as_str));
+            let page = page.bind(state.map(JobState::as_str)).bind(path).bind(value);
             let page: Vec<StudyRow> = page.fetch_all(&mut self.connection).await?;
             let Some(last) = page.last() else { return Ok(()) };
             next = last.ordinal.cast_signed() + 1;

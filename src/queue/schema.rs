@@ -6,9 +6,9 @@ use std::path::Path;
 use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
 use sqlx::{SqlSafeStr, SqliteConnection};
 
-use super::open::open_error;
 use super::QueueError;
 use super::lock::FormerWorkerLock;
+use super::open::open_error;
 
 /// Set by the first migration: "trib" in ASCII.
 const APPLICATION_ID: i64 = 0x7472_6962;

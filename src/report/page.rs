@@ -4,11 +4,11 @@ use super::figure::Plot;
 use super::layout::parameters_in_words;
 use super::row::{Row, RowState};
 use super::tables::Quantity;
-use super::{markdown, value};
+use super::{markdown, trouble, value};
 use crate::analysis::{JobRecord, Outcome};
 
-/// Jobs without a result are named up to this number: the rest are in the export.
-const MISSING_NAMED: usize = 20;
+/// Jobs in a list are named up to this number: the rest are in the export.
+const NAMED: usize = 20;
 
 /// A figure's file and what it shows.
 pub(super) struct FigureLink {
@@ -35,11 +35,10 @@ pub(super) fn of_report(rows: &[Row], tables: &[Table], figures: &[FigureLink], 
     for table in tables {
         page += &section(table, figures);
     }
-    let failed: Vec<String> = rows.iter().filter_map(failed).collect();
-    page += &list("Failed jobs", failed.len(), &failed);
-    let not_periodic: Vec<String> = rows.iter().filter_map(not_periodic).collect();
-    page += &list("Not periodic", not_periodic.len(), &not_periodic);
-    page += &missing(rows);
+    page += &trouble(rows);
+    page += &list("Failed jobs", rows, failed);
+    page += &list("Not periodic", rows, not_periodic);
+    page += &list("Missing jobs", rows, missing);
     page + "\n## Data\n\nOne line per job with all figures: [jobs.csv](jobs.csv).\n"
 }
 
@@ -95,8 +94,27 @@ fn section(table: &Table, figures: &[FigureLink]) -> String {
     parts.concat()
 }
 
-fn list(heading: &str, count: usize, entries: &[String]) -> String {
-    if count == 0 { String::new() } else { format!("\n## {heading} ({count})\n\n{}", entries.concat()) }
+/// Where jobs fail or do not become periodic.
+fn trouble(rows: &[Row]) -> String {
+    let sentences = trouble::sentences(&trouble::regions(rows));
+    if sentences.is_empty() {
+        return String::new();
+    }
+    let lines = sentences.iter().map(|sentence| format!("- {}\n", markdown::escape(sentence)));
+    format!("\n## Where it fails\n\n{}", lines.collect::<String>())
+}
+
+/// The rows that have an entry, the first of them with it.
+fn list(heading: &str, rows: &[Row], entry: fn(&Row) -> Option<String>) -> String {
+    let mut entries = rows.iter().filter_map(entry);
+    let named: Vec<String> = entries.by_ref().take(NAMED).collect();
+    if named.is_empty() {
+        return String::new();
+    }
+    let more = entries.count();
+    let rest =
+        if more > 0 { format!("- and {more} more: see [jobs.csv](jobs.csv)\n") } else { String::new() };
+    format!("\n## {heading} ({})\n\n{}{rest}", named.len() + more, named.concat())
 }
 
 fn entry(row: &Row, what: &str) -> String {
@@ -123,16 +141,7 @@ fn not_periodic(row: &Row) -> Option<String> {
     Some(entry(row, &reason))
 }
 
-fn missing(rows: &[Row]) -> String {
-    let waiting = || {
-        rows.iter()
-            .filter(|row| matches!(row.state, RowState::Pending | RowState::Running | RowState::Cancelled))
-    };
-    let total = waiting().count();
-    let mut entries: Vec<String> =
-        waiting().take(MISSING_NAMED).map(|row| entry(row, row.status())).collect();
-    if total > MISSING_NAMED {
-        entries.push(format!("- and {} more: see [jobs.csv](jobs.csv)\n", total - MISSING_NAMED));
-    }
-    list("Missing jobs", total, &entries)
+fn missing(row: &Row) -> Option<String> {
+    let is_missing = matches!(row.state, RowState::Pending | RowState::Running | RowState::Cancelled);
+    is_missing.then(|| entry(row, row.status()))
 }

@@ -2,7 +2,7 @@
 
 use crate::synthetic::{failed, periodic, record, row, with};
 use tribosweep::analysis::{Obstacle, Outcome, Regime};
-use tribosweep::report::trouble::{LISTED, Region, regions, sentence};
+use tribosweep::report::trouble::{LISTED, Region, regions, sentences};
 use tribosweep::report::{Row, RowState};
 
 fn unsteady(figure: &str, spread: f64) -> RowState {
@@ -54,9 +54,8 @@ fn regions_are_what_hangs_together() {
 #[test]
 fn a_region_is_told_in_a_sentence() {
     let rows = study(|m, o| (m == 3 && o < 3 && o != 1).then(|| unsteady("mu_star", 0.034)));
-    let found = regions(&rows);
     assert_eq!(
-        found.largest.iter().map(sentence).collect::<Vec<_>>(),
+        sentences(&regions(&rows)),
         [
             "not periodic: 1 job at ω = 100 rpm, μ = 0.4: mu_star is not the same from cycle to cycle: it spreads by \
              0.034 and drifts by 0.0085 (job job-100-0.4)",
@@ -65,8 +64,8 @@ fn a_region_is_told_in_a_sentence() {
         ]
     );
     let everywhere = regions(&study(|_, _| Some(failed("no room"))));
-    assert_eq!(sentence(&everywhere.largest[0]), "failed: 24 jobs: no room (job job-100-0.1, for example)");
-    assert!(regions(&study(|_, _| None)).largest.is_empty());
+    assert_eq!(sentences(&everywhere), ["failed: 24 jobs: no room (job job-100-0.1, for example)"]);
+    assert!(sentences(&regions(&study(|_, _| None))).is_empty());
 }
 
 /// Protects: values that are no numbers have no neighbours, a parameter that some jobs lack is a value too, and what is
@@ -103,4 +102,5 @@ fn many_regions_are_counted() {
         .collect();
     let found = regions(&rows);
     assert_eq!((found.largest.len(), found.more, found.jobs_in_more), (LISTED, 50 - LISTED, 50 - LISTED));
+    assert_eq!(sentences(&found)[LISTED], "and 38 more jobs in 38 smaller regions");
 }

@@ -25,8 +25,17 @@ pub fn regions(rows: &[Row]) -> Regions {
     grid.regions(troubled.filter_map(|(place, row)| Some((place, row.job.as_str(), cause(row)?))), LISTED)
 }
 
+/// All regions in sentences.
+pub fn sentences(regions: &Regions) -> Vec<String> {
+    let mut sentences: Vec<String> = regions.largest.iter().map(sentence).collect();
+    if regions.more > 0 {
+        sentences.push(format!("and {} more jobs in {} smaller regions", regions.jobs_in_more, regions.more));
+    }
+    sentences
+}
+
 /// A region in a sentence.
-pub fn sentence(region: &Region) -> String {
+fn sentence(region: &Region) -> String {
     let Region { jobs, of, place, cause, example } = region;
     let mut text = format!("{}: {jobs}", cause.what);
     if jobs != of {

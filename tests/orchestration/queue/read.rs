@@ -140,10 +140,10 @@ async fn an_unknown_study_is_answered_with_those_known() {
     }
 }
 
-/// Protects: what records hold in one field is counted row by row, of done jobs alone; a record that has no such field,
-/// or is not JSON, counts nowhere and stops nothing.
+/// Protects: rows are found by what their records hold in one field, of done jobs alone; a record that has no such
+/// field, or is not JSON, is not found and stops nothing.
 #[tokio::test]
-async fn records_are_counted_by_a_field() {
+async fn rows_are_found_by_a_field() {
     let sandbox = Sandbox::new();
     let mut queue = sandbox.open().await;
     let mut a = study("a", &["p", "q", "r", "s", "t", "p"]);
@@ -159,9 +159,10 @@ async fn records_are_counted_by_a_field() {
     ] {
         assert!(finish(&mut queue, key, 1, outcome).await);
     }
-    let mut counted = queue.recorded("a", "$.end").await.unwrap();
-    counted.sort();
-    assert_eq!(counted, [("bad".to_owned(), 1), ("good".to_owned(), 2)]);
+    for (value, ordinals) in [("good", vec![0, 5]), ("bad", vec![1]), ("none", vec![])] {
+        let found = queue.recorded_rows("a", "$.end", value).await.unwrap();
+        assert_eq!(found.iter().map(|row| row.ordinal).collect::<Vec<_>>(), ordinals, "{value}");
+    }
     let failed = queue.failed_rows("a").await.unwrap();
     assert_eq!(failed.iter().map(|row| (row.ordinal, row.key.as_str())).collect::<Vec<_>>(), [(3, "s")]);
 }
