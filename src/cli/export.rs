@@ -4,6 +4,7 @@ use super::error::CliError;
 use super::output::{block_on, fill_file, stream};
 use super::rows;
 use crate::exit;
+use crate::queue::Rows;
 use crate::report::export::Export;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -50,7 +51,7 @@ async fn write(study: &str, format: Format, db: &Path, out: &mut dyn Write) -> R
         Format::Csv => Export::csv(further, out)?,
         Format::Json => Export::json_lines(further, out),
     };
-    rows::each(&mut queue, study, |row| Ok(export.write(&row)?)).await?;
+    rows::each(&mut queue, study, Rows::All, |_, row| Ok(export.write(&row)?)).await?;
     export.finish()?;
     queue.close().await?;
     Ok(())

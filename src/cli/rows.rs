@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use super::planning::RowParameters;
-use crate::queue::{JobState, Queue, Settings, StudyRow, SystemClock};
+use crate::queue::{JobState, Queue, Rows, Settings, StudyRow, SystemClock};
 use crate::report::{Row, RowState, export};
 use crate::study::Study;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
@@ -32,7 +32,7 @@ pub async fn open_to_change(db: &Path) -> Result<Queue, CliError> {
 /// All rows of a study.
 pub async fn read(queue: &mut Queue, study: &str) -> Result<Vec<Row>, CliError> {
     let mut rows = Vec::new();
-    each(queue, study, |row| {
+    each(queue, study, Rows::All, |_, row| {
         rows.push(row);
         Ok(())
     })
@@ -40,17 +40,18 @@ pub async fn read(queue: &mut Queue, study: &str) -> Result<Vec<Row>, CliError> 
     Ok(rows)
 }
 
-/// Shows the rows of a study to `look`, up to the first error: as text, the records of all would take several times the
+/// Shows rows of a study to `look`, up to the first error: as text, the records of all would take several times the
 /// memory of what is read from them.
 pub async fn each(
     queue: &mut Queue,
     study: &str,
-    mut look: impl FnMut(Row) -> Result<(), CliError>,
+    which: Rows<'_>,
+    mut look: impl FnMut(u64, Row) -> Result<(), CliError>,
 ) -> Result<(), CliError> {
     let mut shown = Ok(());
-    let read = queue.each_page(study, |page| {
-        let rows: Vec<_> = page.par_iter().map(|row| convert(study, row)).collect();
-        shown = rows.into_iter().try_for_each(|row| look(row?));
+    let read = queue.each_page(study, which, |page| {
+        let rows: Vec<_> = page.par_iter().map(|row| (row.ordinal, convert(study, row))).collect();
+        shown = rows.into_iter().try_for_each(|(ordinal, row)| look(ordinal, row?));
         if shown.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
     });
     read.await?;

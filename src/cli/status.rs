@@ -6,7 +6,7 @@ use super::planning::RowParameters;
 use super::rows;
 use crate::analysis::Outcome;
 use crate::exit;
-use crate::queue::{Counts, Queue, Scope};
+use crate::queue::{Counts, Queue, Rows, Scope};
 use crate::report::trouble::{Grid, LISTED, Region, Regions, cause, sentences};
 use crate::report::{Row, RowState};
 use serde_json::{Value, json};
@@ -79,16 +79,24 @@ async fn find(queue: &mut Queue, name: &str) -> Result<Trouble, CliError> {
              new database"
         )));
     }
-    let failed = queue.failed_rows(name).await?;
-    let not_periodic = queue.recorded_rows(name, "$.outcome", Outcome::NotPeriodic.name()).await?;
-    let mut rows = Vec::new();
-    for row in failed.iter().chain(&not_periodic) {
-        rows.push((row.ordinal as usize, rows::convert(name, row)?));
-    }
-    let troubled = rows.iter().filter_map(|(place, row)| Some((*place, row.job.as_str(), cause(row)?)));
-    let regions = grid.regions(troubled, LISTED);
-    let not_periodic = rows.split_off(failed.len()).len();
-    Ok(Trouble { failed: rows.into_iter().map(|(_, row)| row).collect(), not_periodic, regions })
+    let (mut troubled, mut failed) = (Vec::new(), Vec::new());
+    let mut note = |place: u64, row: &Row| {
+        troubled.extend(cause(row).map(|cause| (place as usize, row.job.clone(), cause)));
+    };
+    rows::each(queue, name, Rows::Failed, |place, row| {
+        note(place, &row);
+        failed.push(row);
+        Ok(())
+    })
+    .await?;
+    let not_periodic = Rows::Recorded { path: "$.outcome", value: Outcome::NotPeriodic.name() };
+    rows::each(queue, name, not_periodic, |place, row| {
+        note(place, &row);
+        Ok(())
+    })
+    .await?;
+    let not_periodic = troubled.len() - failed.len();
+    Ok(Trouble { failed, not_periodic, regions: grid.regions(troubled, LISTED) })
 }
 
 async fn one(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, CliError> {

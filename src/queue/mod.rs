@@ -72,7 +72,7 @@ pub use finish::{Finished, FinishedOutcome};
 pub use garbage::Garbage;
 pub use remove::Removed;
 pub use retry::{Retried, Retry};
-pub use rows::StudyRow;
+pub use rows::{Rows, StudyRow};
 pub use scope::Scope;
 pub use settings::Settings;
 pub use state::JobState;

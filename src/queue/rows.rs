@@ -5,7 +5,7 @@ use sqlx::{FromRow, Row};
 
 use super::{JobState, Queue, QueueError, studies};
 
-/// One row of a study with what is known of its job.
+/// One row of a study with what reports show of its job; [`Queue::jobs`] knows more of a single one.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyRow {
     /// Place in the study, from 0.
@@ -28,21 +28,17 @@ pub struct StudyRow {
     pub crashes: u32,
     /// Why the job last went back to pending, if it ever did.
     pub note: Option<String>,
-    /// When the attempt that ended began, in milliseconds since 1970-01-01 UTC, if that is known.
-    pub started_ms: Option<i64>,
-    /// When it ended.
-    pub finished_ms: Option<i64>,
-    /// What the result was made with, as its worker told it.
-    pub provenance: Option<String>,
 }
 
 /// A job that is to be tried again has results of earlier attempts, which say nothing of this one.
 ///
+/// All that is short comes in one column: every value that is handed on costs more than what is in it. (Not the time:
+/// JSON has it to 15 digits.)
+///
 /// Without ?4, all rows; with it, those whose jobs are in that state, and with ?5 those of them whose records have ?6
 /// there.
 const ROWS: &str = "
-    SELECT m.ordinal, j.key, m.parameters, j.state, r.record, r.error, r.wall_s, j.attempt, j.crashes, j.note,
-           r.started_ms, r.finished_ms, r.provenance
+    SELECT json_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note), m.parameters, r.record, r.wall_s
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
@@ -58,12 +54,20 @@ const PARAMETERS: &str = "
 /// meanwhile, and needs the memory for all.
 const PAGE: i64 = 1_000;
 
-/// Which rows.
-#[derive(Clone, Copy)]
-enum Filter<'a> {
+/// Which rows of a study.
+#[derive(Debug, Clone, Copy)]
+pub enum Rows<'a> {
+    /// All of them.
     All,
+    /// Those whose jobs have failed.
     Failed,
-    Recorded { path: &'a str, value: &'a str },
+    /// Those whose jobs are done and whose records, which are JSON to whoever asks, have a value somewhere.
+    Recorded {
+        /// Where, as a path of `SQLite`'s: `$.field`.
+        path: &'a str,
+        /// The value.
+        value: &'a str,
+    },
 }
 
 impl Queue {
@@ -72,33 +76,17 @@ impl Queue {
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.
     pub async fn rows(&mut self, study: &str) -> Result<Vec<StudyRow>, QueueError> {
-        self.collect(study, Filter::All).await
+        let mut rows = Vec::new();
+        self.each_page(study, Rows::All, |page| {
+            rows.extend(page);
+            ControlFlow::Continue(())
+        })
+        .await?;
+        Ok(rows)
     }
 
-    /// Those rows of a study whose jobs have failed, in the order of its document.
-    ///
-    /// # Errors
-    /// As [`Queue::rows`].
-    pub async fn failed_rows(&mut self, study: &str) -> Result<Vec<StudyRow>, QueueError> {
-        self.collect(study, Filter::Failed).await
-    }
-
-    /// Those done rows of a study whose records, which are JSON to whoever asks, have that value at `path`, in the order
-    /// of its document.
-    ///
-    /// # Errors
-    /// As [`Queue::rows`].
-    pub async fn recorded_rows(
-        &mut self,
-        study: &str,
-        path: &str,
-        value: &str,
-    ) -> Result<Vec<StudyRow>, QueueError> {
-        self.collect(study, Filter::Recorded { path, value }).await
-    }
-
-    /// Shows the rows of a study to `look`, in the order of its document, some at a time: for those who do not need
-    /// them all at once. It may say that it has seen enough.
+    /// Shows rows of a study to `look`, in the order of its document, some at a time: for those who do not need them all
+    /// at once. It may say that it has seen enough.
     ///
     /// What changes meanwhile is seen in later rows and not in earlier ones.
     ///
@@ -107,9 +95,26 @@ impl Queue {
     pub async fn each_page(
         &mut self,
         study: &str,
-        look: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
+        which: Rows<'_>,
+        mut look: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
     ) -> Result<(), QueueError> {
-        self.row_pages(study, Filter::All, look).await
+        let study_id = studies::require(&mut self.connection, study).await?;
+        let (state, path, value) = match which {
+            Rows::All => (None, None, None),
+            Rows::Failed => (Some(JobState::Failed), None, None),
+            Rows::Recorded { path, value } => (Some(JobState::Done), Some(path), Some(value)),
+        };
+        let mut next = 0_i64;
+        loop {
+            let page = sqlx::query_as(ROWS).bind(study_id).bind(next).bind(PAGE);
+            let page = page.bind(state.map(JobState::as_str)).bind(path).bind(value);
+            let page: Vec<StudyRow> = page.fetch_all(&mut self.connection).await?;
+            let Some(last) = page.last() else { return Ok(()) };
+            next = last.ordinal.cast_signed() + 1;
+            if look(page).is_break() {
+                return Ok(());
+            }
+        }
     }
 
     /// Shows the parameters of a study's rows to `look`, in the order of its document: without what their jobs have
@@ -134,60 +139,17 @@ impl Queue {
             }
         }
     }
-
-    async fn collect(&mut self, study: &str, filter: Filter<'_>) -> Result<Vec<StudyRow>, QueueError> {
-        let mut rows = Vec::new();
-        self.row_pages(study, filter, |page| {
-            rows.extend(page);
-            ControlFlow::Continue(())
-        })
-        .await?;
-        Ok(rows)
-    }
-
-    async fn row_pages(
-        &mut self,
-        study: &str,
-        filter: Filter<'_>,
-        mut look: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
-    ) -> Result<(), QueueError> {
-        let study_id = studies::require(&mut self.connection, study).await?;
-        let (state, path, value) = match filter {
-            Filter::All => (None, None, None),
-            Filter::Failed => (Some(JobState::Failed), None, None),
-            Filter::Recorded { path, value } => (Some(JobState::Done), Some(path), Some(value)),
-        };
-        let mut next = 0_i64;
-        loop {
-            let page = sqlx::query_as(ROWS).bind(study_id).bind(next).bind(PAGE);
-            let page = page.bind(state.map(JobState::as_str)).bind(path).bind(value);
-            let page: Vec<StudyRow> = page.fetch_all(&mut self.connection).await?;
-            let Some(last) = page.last() else { return Ok(()) };
-            next = last.ordinal.cast_signed() + 1;
-            if look(page).is_break() {
-                return Ok(());
-            }
-        }
-    }
 }
 
 impl FromRow<'_, SqliteRow> for StudyRow {
     fn from_row(row: &SqliteRow) -> Result<Self, sqlx::Error> {
+        type Short = (u64, String, String, Option<String>, u32, u32, Option<String>);
         // By place, not by name: looking names up takes as long as reading.
-        Ok(Self {
-            ordinal: row.try_get::<i64, _>(0)?.unsigned_abs(),
-            key: row.try_get(1)?,
-            parameters: row.try_get(2)?,
-            state: JobState::from_column(row.try_get(3)?),
-            record: row.try_get(4)?,
-            error: row.try_get(5)?,
-            wall_s: row.try_get(6)?,
-            attempt: row.try_get(7)?,
-            crashes: row.try_get(8)?,
-            note: row.try_get(9)?,
-            started_ms: row.try_get(10)?,
-            finished_ms: row.try_get(11)?,
-            provenance: row.try_get(12)?,
-        })
+        let short: &str = row.try_get(0)?;
+        let (ordinal, key, state, error, attempt, crashes, note): Short =
+            serde_json::from_str(short).map_err(|error| sqlx::Error::Decode(error.into()))?;
+        let state = JobState::from_column(&state);
+        let (parameters, record, wall_s) = (row.try_get(1)?, row.try_get(2)?, row.try_get(3)?);
+        Ok(Self { ordinal, key, parameters, state, record, error, wall_s, attempt, crashes, note })
     }
 }

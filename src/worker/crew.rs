@@ -168,7 +168,7 @@ impl<'a> Crew<'a> {
         if !self.asked && self.ended > 0 && free > 0 && self.waiting.is_empty() {
             // Short jobs need not wait for the database, long ones are not to wait here while others are idle.
             let is_busy = self.asked_at.elapsed() < SHORT;
-            let ahead = if is_busy { self.ended - 1 } else { 0 };
+            let ahead = if is_busy { (self.ended - 1).min(self.batch.widest()) } else { 0 };
             self.desk.ask(Some(self.name.clone()), free + ahead);
             (self.asked, self.asked_at, self.ended) = (true, Instant::now(), 0);
         }

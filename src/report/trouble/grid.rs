@@ -51,7 +51,7 @@ struct Axis {
 /// A job in trouble.
 struct Troubled<'a> {
     point: &'a [usize],
-    job: &'a str,
+    job: String,
     cause: Cause,
 }
 
@@ -79,9 +79,9 @@ impl Grid {
 
     /// The regions of those rows that are in trouble (by place, with job and cause), the largest first, of which so many
     /// are looked at closely.
-    pub fn regions<'a>(
+    pub fn regions(
         mut self,
-        troubled: impl Iterator<Item = (usize, &'a str, Cause)>,
+        troubled: impl IntoIterator<Item = (usize, String, Cause)>,
         limit: usize,
     ) -> Regions {
         self.sort();
@@ -113,7 +113,7 @@ impl Grid {
             of: self.points.iter().filter(|point| is_within(point, &ranges)).count(),
             place: self.in_words(&ranges),
             cause: part[0].cause.clone(),
-            example: part[0].job.to_owned(),
+            example: part[0].job.clone(),
         }
     }
 

@@ -22,7 +22,7 @@ pub fn regions(rows: &[Row]) -> Regions {
         grid.add(row.omega_rpm, row.mu, &row.parameters);
     }
     let troubled = rows.iter().enumerate();
-    grid.regions(troubled.filter_map(|(place, row)| Some((place, row.job.as_str(), cause(row)?))), LISTED)
+    grid.regions(troubled.filter_map(|(place, row)| Some((place, row.job.clone(), cause(row)?))), LISTED)
 }
 
 /// All regions in sentences.

@@ -69,7 +69,8 @@ async fn the_first_schema_is_brought_up_to_date() {
         ]
     );
     assert_eq!(rows[2].record.as_deref(), Some("record of done"));
-    assert_eq!((rows[2].finished_ms, &rows[2].provenance), (Some(100), &None));
+    let details = &queue.jobs("done", 1).await.unwrap()[0];
+    assert_eq!((details.finished_ms, &details.provenance), (Some(100), &None));
     assert_eq!(rows[4].error.as_deref(), Some("error of failed"));
     assert!(rows[1].note.as_ref().unwrap().starts_with("taken back"), "{:?}", rows[1]);
     assert!(rows[5].note.as_ref().unwrap().starts_with("released"), "{:?}", rows[5]);

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use tribosweep::queue::{
-    Claim, Finished, JobState, QueueError, Scope, StudyDocument, StudyRow, StudySummary,
+    Claim, Finished, JobState, Queue, QueueError, Rows, Scope, StudyDocument, StudyRow, StudySummary,
 };
 
 use crate::support::{Sandbox, claim, counts, done, failed, finish, of, store, study};
@@ -66,17 +66,8 @@ async fn rows_are_complete_and_in_order() {
         attempt,
         crashes: 0,
         note: None,
-        started_ms: None,
-        finished_ms: None,
-        provenance: None,
     };
-    let ended = |row| StudyRow {
-        wall_s: Some(2.5),
-        started_ms: Some(1_000),
-        finished_ms: Some(4_000),
-        provenance: Some("provenance".into()),
-        ..row
-    };
+    let ended = |row| StudyRow { wall_s: Some(2.5), ..row };
     let expected = [
         StudyRow { record: Some("record of z".into()), ..ended(row(0, "z", JobState::Done, 1)) },
         StudyRow { error: Some("error of y".into()), ..ended(row(1, "y", JobState::Failed, 1)) },
@@ -140,6 +131,17 @@ async fn an_unknown_study_is_answered_with_those_known() {
     }
 }
 
+/// The places of the rows of study `a`.
+async fn ordinals_of(queue: &mut Queue, which: Rows<'_>) -> Vec<u64> {
+    let mut found = Vec::new();
+    let look = |page: Vec<StudyRow>| {
+        found.extend(page.iter().map(|row| row.ordinal));
+        ControlFlow::Continue(())
+    };
+    queue.each_page("a", which, look).await.unwrap();
+    found
+}
+
 /// Protects: rows are found by what their records hold in one field, of done jobs alone; a record that has no such
 /// field, or is not JSON, is not found and stops nothing.
 #[tokio::test]
@@ -160,11 +162,13 @@ async fn rows_are_found_by_a_field() {
         assert!(finish(&mut queue, key, 1, outcome).await);
     }
     for (value, ordinals) in [("good", vec![0, 5]), ("bad", vec![1]), ("none", vec![])] {
-        let found = queue.recorded_rows("a", "$.end", value).await.unwrap();
-        assert_eq!(found.iter().map(|row| row.ordinal).collect::<Vec<_>>(), ordinals, "{value}");
+        assert_eq!(
+            ordinals_of(&mut queue, Rows::Recorded { path: "$.end", value }).await,
+            ordinals,
+            "{value}"
+        );
     }
-    let failed = queue.failed_rows("a").await.unwrap();
-    assert_eq!(failed.iter().map(|row| (row.ordinal, row.key.as_str())).collect::<Vec<_>>(), [(3, "s")]);
+    assert_eq!(ordinals_of(&mut queue, Rows::Failed).await, [3]);
 }
 
 /// Protects: whoever has seen enough of a study is not shown the rest.
@@ -180,7 +184,7 @@ async fn reading_can_be_stopped() {
             rows += page.len();
             if stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        queue.each_page("a", look).await.unwrap();
+        queue.each_page("a", Rows::All, look).await.unwrap();
         assert_eq!(rows, seen);
     }
     let mut parameters = Vec::new();
