@@ -35,7 +35,8 @@ CREATE TABLE payloads (
 INSERT INTO payloads (job_id, payload) SELECT id, payload FROM jobs;
 
 -- Jobs that can be run together have the same `batch`, an opaque name. `crashes` counts attempts whose process died,
--- in a row and without a checkpoint in between. `attempt` is, with the owner, the fence that keeps a late finish out.
+-- in a row and without a checkpoint in between. `label` is what the worker calls the end of a job that is done, in a word,
+-- so that those that ended alike are found without reading their records. `attempt` is, with the owner, the fence that keeps a late finish out.
 CREATE TABLE jobs_2 (
     id             INTEGER PRIMARY KEY,
     key            TEXT    NOT NULL UNIQUE,
@@ -51,6 +52,7 @@ CREATE TABLE jobs_2 (
     created_ms     INTEGER NOT NULL,
     started_ms     INTEGER,
     note           TEXT,
+    label          TEXT,
     CHECK ((state = 'running') = (owner IS NOT NULL)),
     CHECK ((state = 'running') = (lease_until_ms IS NOT NULL))
 ) STRICT;
@@ -150,6 +152,12 @@ SELECT job_id, attempt, record, error, wall_s, finished_ms FROM results;
 
 DROP TABLE results;
 ALTER TABLE results_2 RENAME TO results;
+
+-- Records of the first schema's program say it themselves.
+UPDATE jobs
+SET label = (SELECT IIF(json_valid(r.record), r.record ->> '$.outcome', NULL)
+             FROM results AS r WHERE r.job_id = jobs.id AND r.attempt = jobs.attempt)
+WHERE state = 'done';
 
 -- Where a job that was interrupted can go on: the last state that an attempt left, gone with the job's end.
 CREATE TABLE checkpoints (

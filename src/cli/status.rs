@@ -89,7 +89,7 @@ async fn find(queue: &mut Queue, name: &str) -> Result<Trouble, CliError> {
         Ok(())
     })
     .await?;
-    let not_periodic = Rows::Recorded { path: "$.outcome", value: Outcome::NotPeriodic.name() };
+    let not_periodic = Rows::Done(Outcome::NotPeriodic.name());
     rows::each(queue, name, not_periodic, |place, row| {
         note(place, &row);
         Ok(())

@@ -25,6 +25,8 @@ pub enum FinishedOutcome {
     Done {
         /// The result.
         record: String,
+        /// How it ended, in a word by which such jobs are found.
+        label: String,
     },
     /// Without a result, and the same would happen again.
     Failed {
@@ -54,7 +56,7 @@ const STORE: &str = "
 
     UPDATE jobs
     SET state = e.value ->> 2, note = COALESCE(e.value ->> 3, jobs.note), attempt = jobs.attempt - (e.value ->> 4),
-        owner = NULL, lease_until_ms = NULL
+        label = e.value ->> 5, owner = NULL, lease_until_ms = NULL
     FROM json_each(?5) AS e
     WHERE jobs.key = e.value ->> 0
       AND +jobs.state = 'running' AND +jobs.owner = ?2 AND jobs.attempt = e.value ->> 1
@@ -91,22 +93,24 @@ type ResultRow<'a> = (&'a str, u32, Option<&'a str>, Option<&'a str>, f64);
 
 fn result(job: &Finished) -> Option<ResultRow<'_>> {
     let (record, error) = match &job.outcome {
-        FinishedOutcome::Done { record } => (Some(record.as_str()), None),
+        FinishedOutcome::Done { record, .. } => (Some(record.as_str()), None),
         FinishedOutcome::Failed { error } => (None, Some(error.as_str())),
         FinishedOutcome::Released | FinishedOutcome::Unstarted => return None,
     };
     Some((&job.key, job.attempt, record, error, job.wall_s))
 }
 
-/// Key, attempt, state, note and the attempts that do not count.
-fn end(job: &Finished) -> (&str, u32, &'static str, Option<&'static str>, u32) {
-    let (state, note, undone) = match job.outcome {
-        FinishedOutcome::Done { .. } => (JobState::Done, None, 0),
-        FinishedOutcome::Failed { .. } => (JobState::Failed, None, 0),
-        FinishedOutcome::Released => (JobState::Pending, Some(RELEASED), 0),
-        FinishedOutcome::Unstarted => (JobState::Pending, None, 1),
+/// Key, attempt, state, note, the attempts that do not count, and label.
+type EndRow<'a> = (&'a str, u32, &'static str, Option<&'static str>, u32, Option<&'a str>);
+
+fn end(job: &Finished) -> EndRow<'_> {
+    let (state, note, undone, label) = match &job.outcome {
+        FinishedOutcome::Done { label, .. } => (JobState::Done, None, 0, Some(label.as_str())),
+        FinishedOutcome::Failed { .. } => (JobState::Failed, None, 0, None),
+        FinishedOutcome::Released => (JobState::Pending, Some(RELEASED), 0, None),
+        FinishedOutcome::Unstarted => (JobState::Pending, None, 1, None),
     };
-    (&job.key, job.attempt, state.as_str(), note, undone)
+    (&job.key, job.attempt, state.as_str(), note, undone, label)
 }
 
 fn json(rows: &impl Serialize) -> String {

@@ -35,15 +35,14 @@ pub struct StudyRow {
 /// All that is short comes in one column: every value that is handed on costs more than what is in it. (Not the time:
 /// JSON has it to 15 digits.)
 ///
-/// Without ?4, all rows; with it, those whose jobs are in that state, and with ?5 those of them whose records have ?6
-/// there.
+/// Without ?4, all rows; with it, those whose jobs are in that state, and with ?5 those of them with that label.
 const ROWS: &str = "
     SELECT json_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note), m.parameters, r.record, r.wall_s
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
     WHERE m.study_id = ?1 AND m.ordinal >= ?2 AND (?4 IS NULL OR j.state = ?4)
-      AND (?5 IS NULL OR IIF(json_valid(r.record), r.record ->> ?5, NULL) = ?6)
+      AND (?5 IS NULL OR j.label = ?5)
     ORDER BY m.ordinal
     LIMIT ?3";
 
@@ -61,13 +60,8 @@ pub enum Rows<'a> {
     All,
     /// Those whose jobs have failed.
     Failed,
-    /// Those whose jobs are done and whose records, which are JSON to whoever asks, have a value somewhere.
-    Recorded {
-        /// Where, as a path of `SQLite`'s: `$.field`.
-        path: &'a str,
-        /// The value.
-        value: &'a str,
-    },
+    /// Those whose jobs are done with this label.
+    Done(&'a str),
 }
 
 impl Queue {
@@ -99,15 +93,15 @@ impl Queue {
         mut look: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
     ) -> Result<(), QueueError> {
         let study_id = studies::require(&mut self.connection, study).await?;
-        let (state, path, value) = match which {
-            Rows::All => (None, None, None),
-            Rows::Failed => (Some(JobState::Failed), None, None),
-            Rows::Recorded { path, value } => (Some(JobState::Done), Some(path), Some(value)),
+        let (state, label) = match which {
+            Rows::All => (None, None),
+            Rows::Failed => (Some(JobState::Failed), None),
+            Rows::Done(label) => (Some(JobState::Done), Some(label)),
         };
         let mut next = 0_i64;
         loop {
             let page = sqlx::query_as(ROWS).bind(study_id).bind(next).bind(PAGE);
-            let page = page.bind(state.map(JobState::as_str)).bind(path).bind(value);
+            let page = page.bind(state.map(JobState::as_str)).bind(label);
             let page: Vec<StudyRow> = page.fetch_all(&mut self.connection).await?;
             let Some(last) = page.last() else { return Ok(()) };
             next = last.ordinal.cast_signed() + 1;

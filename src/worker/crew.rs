@@ -291,7 +291,7 @@ fn prepare(assignment: &Assignment) -> Result<Batch, FinishedOutcome> {
 fn outcome(result: Result<JobRecord, JobError>) -> FinishedOutcome {
     match result {
         Ok(record) => match serde_json::to_string(&record) {
-            Ok(record) => FinishedOutcome::Done { record },
+            Ok(text) => FinishedOutcome::Done { record: text, label: record.outcome.name().to_owned() },
             Err(error) => FinishedOutcome::Failed { error: format!("unwritable record: {error}") },
         },
         Err(error) => FinishedOutcome::Failed { error: error.to_string() },

@@ -199,8 +199,18 @@ fn failed_jobs() {
 
     let status: Value = serde_json::from_str(&folder.ok("status bad --json")).unwrap();
     assert_eq!(status["failures"].as_array().unwrap().len(), 3);
-    assert_eq!(folder.ok("status bad").lines().filter(|line| line.starts_with("failed: ")).count(), 3);
-    assert!(folder.read("reports/bad/report.md").contains("## Failed jobs (3)"));
+    // One that diverged, and two neighbours with too many steps.
+    let text = folder.ok("status bad");
+    let [diverged, endless] = [
+        "1 job at beta_r_s = 5e-8, load_n = 1e200: diverged",
+        "2 jobs at beta_r_s = 1, load_n = 30 … 1e200: run.limit_s",
+    ];
+    for region in [diverged, endless] {
+        assert!(text.lines().any(|line| line.starts_with(&format!("failed: {region}"))), "{text}");
+    }
+    let report = folder.read("reports/bad/report.md");
+    assert!(report.contains("## Failed jobs (3)"), "{report}");
+    assert!(report.contains(&format!("## Where it fails\n\n- failed: {endless}")), "{report}");
 
     let again = folder.command("run bad.json").assert().code(1);
     assert!(stderr(&again).contains("1 already done, 3 failed before"), "{}", stderr(&again));

@@ -25,6 +25,9 @@ fn many() -> Value {
 /// Jobs that a thread runs at once.
 const LANES: u64 = 8;
 
+/// Jobs that a thread holds at most: in its lanes, waiting for one, and ended but not stored yet.
+const HELD: u64 = 3 * LANES;
+
 fn undisturbed(study: &Value) -> String {
     let folder = Folder::with("study", study);
     folder.ok("run study.json");
@@ -97,7 +100,7 @@ fn the_other_goes_on() {
     }
     let crashes: Vec<(i64, i64)> = read(&folder, "SELECT SUM(crashes), SUM(attempt) - COUNT(*) FROM jobs");
     let (crashes, repeated) = crashes[0];
-    assert!((1..=LANES).contains(&crashes.unsigned_abs()), "{crashes} jobs were running in the one thread");
+    assert!((1..=HELD).contains(&crashes.unsigned_abs()), "{crashes} jobs were held by the one thread");
     assert_eq!(repeated, crashes);
 }
 
@@ -243,8 +246,7 @@ fn many_kills_lose_nothing() {
     assert_eq!((jobs, results), (60, 60));
     assert!(kills >= 10, "{kills} kills are no torture");
     let repeated = (attempts - jobs).unsigned_abs();
-    // Besides what runs, a thread may hold as many that are to follow.
-    let most = 2 * LANES * kills;
+    let most = HELD * kills;
     assert!(repeated <= most, "{repeated} jobs were repeated after {kills} kills of one thread each");
     println!("{kills} kills, {repeated} jobs repeated, {jobs} jobs");
 }

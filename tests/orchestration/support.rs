@@ -133,8 +133,12 @@ pub fn foreign_worker() -> Worker {
     Worker { host: "elsewhere".into(), ..Worker::this_process(1, "test", "provenance") }
 }
 
+pub fn labelled(record: &str, label: &str) -> FinishedOutcome {
+    FinishedOutcome::Done { record: record.into(), label: label.into() }
+}
+
 pub fn done(record: &str) -> FinishedOutcome {
-    FinishedOutcome::Done { record: record.into() }
+    labelled(record, "end")
 }
 
 pub fn failed(error: &str) -> FinishedOutcome {

@@ -23,7 +23,7 @@ const FIRST_SCHEMA_ROWS: &str = "
         (1, 0, 1, 'a0'), (1, 1, 3, 'a1'), (1, 2, 4, 'a2'), (1, 3, 1, 'a3'),
         (2, 0, 5, 'b0'), (2, 1, 2, 'b1'), (2, 2, 3, 'b2');
     INSERT INTO results VALUES
-        (4, 3, 'record of done', NULL, 1.25, 100),
+        (4, 3, '{\"outcome\": \"well\"}', NULL, 1.25, 100),
         (5, 1, NULL, 'error of failed', 0.5, 200),
         (9, 1, 'record of unreferenced', NULL, 9.5, 300);";
 
@@ -68,7 +68,13 @@ async fn the_first_schema_is_brought_up_to_date() {
             ("running", "b2", JobState::Pending, 2, None),
         ]
     );
-    assert_eq!(rows[2].record.as_deref(), Some("record of done"));
+    assert_eq!(rows[2].record.as_deref(), Some("{\"outcome\": \"well\"}"));
+    let labels: Vec<(String, Option<String>)> =
+        sqlx::query_as("SELECT key, label FROM jobs WHERE state = 'done' ORDER BY id")
+            .fetch_all(&mut sandbox.raw().await)
+            .await
+            .unwrap();
+    assert_eq!(labels, [("done".into(), Some("well".into())), ("unreferenced".into(), None)]);
     let details = &queue.jobs("done", 1).await.unwrap()[0];
     assert_eq!((details.finished_ms, &details.provenance), (Some(100), &None));
     assert_eq!(rows[4].error.as_deref(), Some("error of failed"));

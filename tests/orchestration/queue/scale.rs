@@ -110,7 +110,7 @@ async fn throughput() {
                 parts.push(part.elapsed());
                 part = Instant::now();
             }
-            let outcome = || FinishedOutcome::Done { record: record.clone() };
+            let outcome = || FinishedOutcome::Done { record: record.clone(), label: "end".to_owned() };
             let end = |job: ClaimedJob| Finished {
                 key: job.key,
                 attempt: job.attempt,
