@@ -1,7 +1,11 @@
-//! Tells the program which commit it was built from: part of what every result is stored with.
+//! Tells the program what it was built from: the commit, which is stored with every result, and a hash of the sources,
+//! which tells two builds of a modified commit apart.
 
+use std::hash::{DefaultHasher, Hasher};
 use std::path::Path;
 use std::process::Command;
+
+const SOURCES: [&str; 5] = ["build.rs", "Cargo.toml", "Cargo.lock", "migrations", "src"];
 
 fn main() {
     // The commit changes with HEAD or with the branch it names, what is modified with the sources.
@@ -11,14 +15,30 @@ fn main() {
     if let Some(branch) = git(&["symbolic-ref", "--quiet", "HEAD"]) {
         watch(&["rev-parse", "--git-path", &branch]);
     }
-    for path in ["build.rs", "Cargo.toml", "Cargo.lock", "migrations", "src"] {
+    let mut hasher = DefaultHasher::new();
+    for path in SOURCES {
         println!("cargo::rerun-if-changed={path}");
+        hash(Path::new(path), &mut hasher);
     }
+    println!("cargo::rustc-env=TRIBOSWEEP_SOURCES={:016x}", hasher.finish());
     let commit = git(&["rev-parse", "HEAD"]).unwrap_or_else(|| "unknown".to_owned());
-    let changed =
-        ["status", "--porcelain", "--", "build.rs", "Cargo.toml", "Cargo.lock", "migrations", "src"];
+    let changed: Vec<&str> = ["status", "--porcelain", "--"].into_iter().chain(SOURCES).collect();
     let suffix = if git(&changed).is_some_and(|files| !files.is_empty()) { "+modified" } else { "" };
     println!("cargo::rustc-env=TRIBOSWEEP_COMMIT={commit}{suffix}");
+}
+
+/// Adds a file, or all files below a folder in the order of their names.
+fn hash(path: &Path, hasher: &mut DefaultHasher) {
+    hasher.write(path.to_string_lossy().as_bytes());
+    if let Ok(entries) = std::fs::read_dir(path) {
+        let mut below: Vec<_> = entries.flatten().map(|entry| entry.path()).collect();
+        below.sort();
+        for path in &below {
+            hash(path, hasher);
+        }
+    } else if let Ok(content) = std::fs::read(path) {
+        hasher.write(&content);
+    }
 }
 
 /// What git answers; nothing if there is no git, or the sources are not in a repository.

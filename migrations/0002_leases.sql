@@ -6,7 +6,8 @@
 
 -- A process that runs jobs. Numbers are never used twice: a late finish of an old one must not pass for a new one's.
 -- `process_start` is in the kernel's ticks since the boot: with it, a process number that was given again is told
--- from the old one. A process number means something only to the same boot and namespace.
+-- from the old one. A process number means something only to the same boot and namespace. A process that had been asked
+-- to stop (`stopping_ms`) and is gone did not crash.
 CREATE TABLE workers (
     id            INTEGER PRIMARY KEY AUTOINCREMENT,
     host          TEXT    NOT NULL,
@@ -18,6 +19,7 @@ CREATE TABLE workers (
     version       TEXT    NOT NULL,
     started_ms    INTEGER NOT NULL,
     heartbeat_ms  INTEGER NOT NULL,
+    stopping_ms   INTEGER,
     ended_ms      INTEGER
 ) STRICT;
 
@@ -35,8 +37,9 @@ CREATE TABLE payloads (
 INSERT INTO payloads (job_id, payload) SELECT id, payload FROM jobs;
 
 -- Jobs that can be run together have the same `batch`, an opaque name. `crashes` counts attempts whose process died,
--- in a row and without a checkpoint in between. `label` is what the worker calls the end of a job that is done, in a word,
--- so that those that ended alike are found without reading their records. `attempt` is, with the owner, the fence that keeps a late finish out.
+-- in a row and without a checkpoint in between. `label` is what the worker calls the end of a job that is done, in a
+-- word, so that those that ended alike are found without reading their records. `attempt` is, with the owner, the fence
+-- that keeps a late finish out.
 CREATE TABLE jobs_2 (
     id             INTEGER PRIMARY KEY,
     key            TEXT    NOT NULL UNIQUE,
@@ -159,7 +162,8 @@ SET label = (SELECT IIF(json_valid(r.record), r.record ->> '$.outcome', NULL)
              FROM results AS r WHERE r.job_id = jobs.id AND r.attempt = jobs.attempt)
 WHERE state = 'done';
 
--- Where a job that was interrupted can go on: the last state that an attempt left, gone with the job's end.
+-- Where a job that was interrupted can go on: the last state that an attempt left, gone when the job is done or fails
+-- by itself. One whose processes died, or that was cancelled, may be asked for again.
 CREATE TABLE checkpoints (
     job_id   INTEGER PRIMARY KEY REFERENCES jobs (id),
     attempt  INTEGER NOT NULL,
@@ -168,7 +172,8 @@ CREATE TABLE checkpoints (
 ) STRICT;
 
 CREATE TRIGGER jobs_ended AFTER UPDATE OF state ON jobs
-WHEN new.state IN ('done', 'failed', 'cancelled') AND EXISTS (SELECT 1 FROM checkpoints WHERE job_id = new.id)
+WHEN (new.state = 'done' OR new.state = 'failed' AND new.crashes = 0)
+ AND EXISTS (SELECT 1 FROM checkpoints WHERE job_id = new.id)
 BEGIN
     DELETE FROM checkpoints WHERE job_id = new.id;
 END;

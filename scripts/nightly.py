@@ -4,7 +4,7 @@
     scripts/nightly.py JOBS.csv FOLDER      compare; writes FOLDER/summary.md and FOLDER/nightly.csv
     scripts/nightly.py JOBS.csv --accept    make these the reference values
 
-The reference is studies/mini.reference.csv. It is not the truth (the mesh is coarse) but what this program computes;
+The reference is scripts/nightly_reference.csv. It is not the truth (the mesh is coarse) but what this program computes;
 whoever accepts another one says why in the commit. Only Python's standard library.
 """
 
@@ -37,13 +37,22 @@ POINT = ["omega_rpm", "mu"]
 COLUMNS = POINT + SAME + list(TOLERANCES)
 
 
+def broken(why):
+    """Ends with a code that is not that of a drift."""
+    print(why, file=sys.stderr)
+    sys.exit(2)
+
+
 def read(path):
     """The lines of a table by their grid point."""
-    with open(path, newline="") as file:
-        lines = list(csv.DictReader(file))
+    try:
+        with open(path, newline="") as file:
+            lines = list(csv.DictReader(file))
+    except OSError as error:
+        broken(error)
     missing = set(COLUMNS) - set(lines[0] if lines else [])
     if missing:
-        raise SystemExit(f"{path}: no column {', '.join(sorted(missing))}")
+        broken(f"{path}: no column {', '.join(sorted(missing))}")
     return {tuple(float(line[name]) for name in POINT): line for line in lines}
 
 
@@ -78,7 +87,7 @@ def summary(lines, found):
     drifted = [line for line in lines if line[-1] != "ok"]
     text = ["# Nightly sweep\n"]
     verdict = f"**{len(drifted)} of {len(lines)} figures have drifted.**" if drifted else "No drift."
-    text.append(f"{verdict} {len(found)} jobs, {len(lines)} figures compared with `studies/mini.reference.csv`.\n")
+    text.append(f"{verdict} {len(found)} jobs, {len(lines)} figures compared with `scripts/nightly_reference.csv`.\n")
     if drifted:
         text.append("| ω [rpm] | μ | figure | reference | found | difference | tolerance |")
         text.append("| ---: | ---: | :--- | ---: | ---: | ---: | ---: |")
@@ -107,7 +116,7 @@ def accept(found):
 
 def main():
     if len(sys.argv) != 3:
-        raise SystemExit(__doc__)
+        broken(__doc__)
     found = read(sys.argv[1])
     if sys.argv[2] == "--accept":
         accept(found)

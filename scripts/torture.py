@@ -8,8 +8,8 @@ Several processes work on one database. Again and again one of them is killed (k
 interrupted; now and then the database's files are copied while all processes stand still, and the copy is opened. Some
 processes keep the states of their running jobs, most do not.
 After each kill, results that were finished before must be there unchanged. At the end the export must be that of an
-undisturbed run, byte for byte but for the run times, with one result a job, and no more jobs repeated than were running
-in killed processes. Ends earlier when no job is left. Prints the counts; exits non-zero when something does not hold. Only Python's standard library.
+undisturbed run, byte for byte but for the run times, with one result a job, and no more jobs repeated than killed processes can hold.
+Ends earlier when no job is left. Prints the counts; exits non-zero when something does not hold. Only Python's standard library.
 """
 
 import argparse

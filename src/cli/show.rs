@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::output::{block_on, print};
 use super::rows;
 use crate::exit;
-use crate::queue::JobDetails;
+use crate::queue::{JobDetails, StudyDocument};
 use serde_json::{Value, json};
 use std::path::Path;
 
@@ -17,12 +17,17 @@ pub struct Args {
 
 /// Prints the job as JSON.
 pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
-    let jobs = block_on(async {
+    let (jobs, studies) = block_on(async {
         let mut queue = rows::open(db).await?;
         // Two are enough to know that there are several.
         let jobs = queue.jobs(&args.job, 2).await?;
+        let mut studies = Vec::new();
+        for name in jobs.first().map_or(&[][..], |job| &job.studies) {
+            // It may have been removed in between.
+            studies.extend(queue.study(name).await?);
+        }
         queue.close().await?;
-        Ok(jobs)
+        Ok((jobs, studies))
     })?;
     let job = match jobs.as_slice() {
         [job] => job,
@@ -41,19 +46,15 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
             )));
         }
     };
-    print(&format!("{:#}\n", describe(job)))?;
+    print(&format!("{:#}\n", describe(job, &studies)))?;
     Ok(exit::SUCCESS)
 }
 
-fn describe(job: &JobDetails) -> Value {
-    // What another version wrote in another form is shown as it is.
-    let provenance = job
-        .provenance
-        .as_ref()
-        .map(|text| serde_json::from_str::<Value>(text).unwrap_or_else(|_| Value::from(text.as_str())));
+fn describe(job: &JobDetails, studies: &[StudyDocument]) -> Value {
+    let study = |study: &StudyDocument| json!({ "name": study.name, "submitted_ms": study.submitted_ms, "document": as_json(&study.document) });
     json!({
         "job": job.key,
-        "studies": job.studies,
+        "studies": studies.iter().map(study).collect::<Vec<_>>(),
         "state": job.state.as_str(),
         "attempt": job.attempt,
         "crashes": job.crashes,
@@ -65,6 +66,11 @@ fn describe(job: &JobDetails) -> Value {
         "wall_s": job.wall_s,
         "started_ms": job.started_ms,
         "finished_ms": job.finished_ms,
-        "provenance": provenance,
+        "provenance": job.provenance.as_deref().map(as_json),
     })
+}
+
+/// What is not JSON, or what another version wrote in another form, is shown as it is.
+fn as_json(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|_| Value::from(text))
 }

@@ -9,7 +9,7 @@ use crate::worker::{self, Interrupt, WorkOptions};
 use std::num::NonZeroUsize;
 use std::path::Path;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 /// Arguments of `work`.
 #[derive(Debug, clap::Args)]
@@ -40,9 +40,13 @@ pub struct Checkpoints {
     seconds: f64,
 }
 
+/// The shortest interval of checkpoints: making one takes some milliseconds.
+const SHORTEST: Duration = Duration::from_millis(1);
+
 fn parse_seconds(text: &str) -> Result<f64, String> {
-    let seconds = text.parse().ok().filter(|seconds| Duration::try_from_secs_f64(*seconds).is_ok());
-    seconds.ok_or_else(|| "expected a number of seconds, 0 or more".to_owned())
+    let is_interval = |seconds: f64| Duration::try_from_secs_f64(seconds).is_ok_and(|it| it >= SHORTEST);
+    let seconds = text.parse().ok().filter(|&seconds| seconds == 0.0 || is_interval(seconds));
+    seconds.ok_or_else(|| format!("expected a number of seconds, at least {}, or 0", SHORTEST.as_secs_f64()))
 }
 
 /// Number of threads and checkpoints.
@@ -107,12 +111,18 @@ pub async fn work(queue: &mut Queue, scope: &Scope, options: WorkOptions) -> Res
     Ok(if counts.failed > 0 { exit::SOME_FAILED } else { exit::SUCCESS })
 }
 
-/// The first signal asks the worker to stop, the second ends the process at once.
+/// One stop may arrive as several signals, to the process and to its group.
+const ONE_STOP: Duration = Duration::from_secs(1);
+
+/// The first signal asks the worker to stop, another one a moment later ends the process at once.
 pub async fn listen(interrupt: Interrupt, message: &str) {
     stop_signal().await;
     tell(format_args!("{message} (once more to stop at once)"));
     interrupt.raise();
-    stop_signal().await;
+    let asked = Instant::now();
+    while asked.elapsed() < ONE_STOP {
+        stop_signal().await;
+    }
     std::process::exit(i32::from(exit::WORK_LEFT));
 }
 

@@ -9,8 +9,8 @@ pub struct Claim {
     pub scope: Scope,
     /// At most so many. An attempt counts from its claim: what is not started is to be handed back.
     pub limit: usize,
-    /// The batch; otherwise that of the job that comes first. While a job of a higher priority waits, a batch without
-    /// one gives nothing.
+    /// The batch; otherwise that of the job that comes first, whatever the priority of its further jobs. While a job of a
+    /// higher priority waits, a batch that is named gives only jobs of that priority.
     pub batch: Option<String>,
 }
 

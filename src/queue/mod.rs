@@ -46,6 +46,7 @@ mod heartbeat;
 mod lock;
 mod open;
 mod process;
+mod remaining;
 mod remove;
 mod retry;
 mod rows;
@@ -56,7 +57,6 @@ mod state;
 mod studies;
 mod submit;
 mod take_back;
-mod timings;
 mod transaction;
 mod worker;
 

@@ -36,6 +36,7 @@ pub(super) struct Owner {
     process_start: Option<i64>,
     pub version: String,
     pub heartbeat_ms: i64,
+    stopping_ms: Option<i64>,
     ended_ms: Option<i64>,
 }
 
@@ -52,16 +53,16 @@ pub(super) enum Verdict {
 const FAR_AHEAD_MS: i64 = 24 * 3600 * 1000;
 
 const OWNERS: &str = "
-    SELECT id, host, boot_id, pid_namespace, pid, process_start, version, heartbeat_ms, ended_ms
+    SELECT id, host, boot_id, pid_namespace, pid, process_start, version, heartbeat_ms, stopping_ms, ended_ms
     FROM workers
     WHERE ended_ms IS NULL OR id IN (SELECT owner FROM jobs INDEXED BY jobs_owner WHERE state = 'running')
     ORDER BY id";
 
-/// ?4 is set where the leases decide.
+/// ?4 is set where the leases decide; ?6 is 1 for a crash, and 0 where the process had been asked to stop.
 const TAKE_BACK: &str = "
     UPDATE jobs
-    SET state = CASE WHEN crashes + 1 >= ?2 THEN 'failed' ELSE 'pending' END,
-        crashes = crashes + 1, owner = NULL, lease_until_ms = NULL, note = ?3
+    SET state = CASE WHEN crashes + ?6 >= ?2 THEN 'failed' ELSE 'pending' END,
+        crashes = crashes + ?6, owner = NULL, lease_until_ms = NULL, note = ?3
     WHERE owner = ?1 AND state = 'running'
       AND (?4 IS NULL OR lease_until_ms <= ?4 OR lease_until_ms > ?5)
     RETURNING id, state, crashes";
@@ -85,7 +86,7 @@ impl Queue {
             let is_own = self.registration.as_ref().is_some_and(|own| own.id == owner.id);
             let verdict = owner.verdict();
             if verdict != Verdict::Alive && !is_own {
-                self.take_from(owner.id, verdict, &mut taken).await?;
+                self.take_from(&owner, verdict, &mut taken).await?;
             }
         }
         Ok(taken)
@@ -104,7 +105,7 @@ impl Queue {
 
     async fn take_from(
         &mut self,
-        owner: i64,
+        owner: &Owner,
         verdict: Verdict,
         taken: &mut TakenBack,
     ) -> Result<(), QueueError> {
@@ -113,11 +114,12 @@ impl Queue {
         let found = self.write(async |connection| {
             let mut taken = TakenBack::default();
             let jobs: Vec<(i64, String, u32)> = sqlx::query_as(TAKE_BACK)
-                .bind(owner)
+                .bind(owner.id)
                 .bind(crash_limit)
                 .bind(TAKEN_BACK)
                 .bind((verdict == Verdict::Elsewhere).then_some(now_ms))
                 .bind(far_ms)
+                .bind(i64::from(owner.stopping_ms.is_none()))
                 .fetch_all(&mut *connection)
                 .await?;
             for (id, state, crashes) in jobs {
@@ -135,7 +137,7 @@ impl Queue {
             }
             if verdict == Verdict::Gone {
                 let ended = sqlx::query("UPDATE workers SET ended_ms = ?2 WHERE id = ?1 AND ended_ms IS NULL");
-                ended.bind(owner).bind(now_ms).execute(&mut *connection).await?;
+                ended.bind(owner.id).bind(now_ms).execute(&mut *connection).await?;
             }
             Ok(taken)
         })
@@ -157,6 +159,7 @@ impl FromRow<'_, SqliteRow> for Owner {
             process_start: row.try_get("process_start")?,
             version: row.try_get("version")?,
             heartbeat_ms: row.try_get("heartbeat_ms")?,
+            stopping_ms: row.try_get("stopping_ms")?,
             ended_ms: row.try_get("ended_ms")?,
         })
     }

@@ -96,6 +96,21 @@ impl Queue {
         .await
     }
 
+    /// Says that the worker has been asked to stop: if its process is ended before it has given its jobs back, that is
+    /// no crash of theirs.
+    ///
+    /// # Errors
+    /// If the database cannot be written.
+    ///
+    /// # Panics
+    /// If no worker is registered.
+    pub async fn stopping(&mut self) -> Result<(), QueueError> {
+        let id = self.registration().id;
+        let stopping = sqlx::query("UPDATE workers SET stopping_ms = ?2 WHERE id = ?1");
+        stopping.bind(id).bind(self.clock.now_ms()).execute(&mut self.connection).await?;
+        Ok(())
+    }
+
     /// # Panics
     /// If no worker is registered: a job without an owner could not be given back when its process dies.
     pub(super) fn registration(&self) -> &Registration {

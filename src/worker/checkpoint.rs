@@ -85,7 +85,7 @@ pub(super) fn open<'a>(job: &ClaimedJob, sealed: &'a [u8]) -> Option<(f64, &'a [
 
 fn digest(job: &ClaimedJob, kept: &[u8]) -> blake3::Hash {
     let mut hasher = blake3::Hasher::new();
-    for part in [provenance::VERSION, provenance::COMMIT, &job.key, &job.payload] {
+    for part in [provenance::SOURCES, &job.key, &job.payload] {
         // Separated, so that none runs into the next.
         hasher.update(part.as_bytes()).update(&[0]);
     }

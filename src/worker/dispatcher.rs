@@ -79,6 +79,7 @@ pub async fn work(
         running: BTreeMap::new(),
         timings: Vec::new(),
         heartbeat: Heartbeat::new(),
+        is_stopping: false,
         taken_back,
         tally,
     };
@@ -109,6 +110,8 @@ struct Dispatcher<'a> {
     /// (cost, seconds) of what this worker has finished.
     timings: Vec<(f64, f64)>,
     heartbeat: Heartbeat,
+    /// Whether the database knows of the interruption.
+    is_stopping: bool,
     taken_back: TakenBack,
     tally: Tally,
 }
@@ -117,7 +120,7 @@ impl Dispatcher<'_> {
     async fn run(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
         let mut done = Vec::new();
         loop {
-            self.keep_checkpoints().await?;
+            self.keep_checkpoints(progress).await;
             let asked = self.answerable();
             let exchanged = self.exchange(&done, &asked, progress).await?;
             self.settle(&done, &exchanged.refused, progress);
@@ -204,21 +207,26 @@ impl Dispatcher<'_> {
     }
 
     /// Keeps where long jobs are. Before their ends: what is released takes its last checkpoint with it.
-    async fn keep_checkpoints(&mut self) -> Result<(), QueueError> {
-        let mut is_locked = false;
+    ///
+    /// A checkpoint is a help and not a result: where it cannot be kept, the work goes on, and the one before is there.
+    async fn keep_checkpoints(&mut self, progress: &mut impl Progress) {
+        let mut is_refused = false;
         for Kept { key, attempt, bytes } in std::mem::take(&mut self.checkpoints) {
-            if !is_locked {
+            while !is_refused {
                 match self.queue.save_checkpoint(&key, attempt, &bytes).await {
-                    // The one before is still there, and the next one comes.
-                    Err(QueueError::Locked(_)) => is_locked = true,
-                    saved => _ = saved?,
+                    Ok(_) => break,
+                    Err(error) => {
+                        progress.waiting(&format!("the state of running jobs cannot be kept: {error}"));
+                        // No other one comes for what is released now.
+                        let is_last = self.interrupt.is_raised() && matches!(error, QueueError::Locked(_));
+                        is_refused = !is_last;
+                    }
                 }
             }
             if let Some((_, clock)) = self.running.get(&key) {
                 clock.end_keeping();
             }
         }
-        Ok(())
     }
 
     /// Stores what is done and claims what is asked for. While the database is locked, running jobs go on.
@@ -240,7 +248,8 @@ impl Dispatcher<'_> {
                 .collect();
             self.keep_alive().await?;
             match self.queue.exchange(done, &claims).await {
-                Err(error @ QueueError::Locked(_)) if !self.interrupt.is_raised() => {
+                // After an interruption, too: what is finished is not to be thrown away.
+                Err(error @ QueueError::Locked(_)) => {
                     progress.waiting(&error.to_string());
                 }
                 exchanged => return exchanged,
@@ -258,6 +267,10 @@ impl Dispatcher<'_> {
 
     /// Extends the leases of what runs here and takes back what runs nowhere.
     async fn keep_alive(&mut self) -> Result<(), QueueError> {
+        if self.interrupt.is_raised() && !self.is_stopping {
+            // If it is ended at once now, that is no crash. Where it cannot be said, it is taken for one.
+            self.is_stopping = self.queue.stopping().await.is_ok();
+        }
         let is_waiting = self.running.is_empty() && self.tally.counts.pending == 0;
         let is_due = self.heartbeat.is_due();
         if !is_due && !is_waiting {

@@ -5,10 +5,13 @@ use fearless_simd::Level;
 use serde_json::json;
 
 /// The program's version.
-pub(super) const VERSION: &str = env!("CARGO_PKG_VERSION");
+const VERSION: &str = env!("CARGO_PKG_VERSION");
 
 /// The commit it was built from; `unknown` where there was no repository, `+modified` where the sources differed.
-pub(super) const COMMIT: &str = env!("TRIBOSWEEP_COMMIT");
+const COMMIT: &str = env!("TRIBOSWEEP_COMMIT");
+
+/// A hash of the sources it was built from: another one is another program, whatever its commit.
+pub(super) const SOURCES: &str = env!("TRIBOSWEEP_SOURCES");
 
 /// This process as a worker, with what its results are made with as JSON.
 pub fn worker(threads: usize) -> Worker {

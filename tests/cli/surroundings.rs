@@ -10,7 +10,7 @@ use sqlx::ConnectOptions;
 use sqlx::sqlite::SqliteConnectOptions;
 
 use crate::mount::Mount;
-use crate::support::{Folder, long, stderr, stdout, without_wall_times};
+use crate::support::{Folder, long, small, stderr, stdout, without_wall_times};
 
 fn undisturbed(study: &Value) -> String {
     let folder = Folder::with("study", study);
@@ -47,6 +47,26 @@ fn a_disk_that_fills_up() {
     fs::remove_file(&filler).unwrap();
     folder.ok("work");
     assert_eq!(without_wall_times(&folder.ok("export study")), undisturbed(&study));
+}
+
+/// Protects: a disk with room for results and none for the states of running jobs does not stop a sweep.
+#[test]
+fn a_disk_that_is_too_small_for_checkpoints() {
+    let folder = Folder::new();
+    let Some(_mount) = Mount::new(&folder.path(""), "size=1500k") else { return };
+    // A state takes a megabyte.
+    let mut study = small(&json!({ "mu": [0.2, 0.4], "omega_rpm": [7, 20] }));
+    study["scene"]["pin"]["elements"] = json!([24, 30, 20]);
+    study["run"] = json!({ "limit_s": 0.002, "stop_early": false });
+    folder.add("study", &study);
+    folder.ok("submit study.json");
+    let (code, _, told) = folder.start("work --checkpoint-every 0.05").end();
+    assert_eq!(code, Some(0), "{told}");
+    assert!(
+        told.contains("the state of running jobs cannot be kept: the disk of the database is full"),
+        "{told}"
+    );
+    assert_eq!(folder.counts("study")["done"], 4);
 }
 
 /// Protects: a sweep on a disk that can only be read can be looked at, and says why it cannot be worked on; it goes on

@@ -80,7 +80,10 @@ fn a_result_says_where_it_comes_from() {
     folder.ok("run mine.json --threads 2");
     let job = rows(&folder.ok("export mine"))[0]["job"].clone();
     let shown: Value = serde_json::from_str(&folder.ok(&format!("show {}", &job[..10]))).unwrap();
-    assert_eq!((shown["job"].as_str(), &shown["studies"]), (Some(job.as_str()), &json!(["mine"])));
+    assert_eq!(shown["job"].as_str(), Some(job.as_str()));
+    let study = &shown["studies"][0];
+    let submitted: Value = serde_json::from_str(&folder.read("mine.json")).unwrap();
+    assert_eq!((&study["name"], &study["document"]), (&json!("mine"), &submitted));
     let provenance = &shown["provenance"];
     assert_eq!(provenance["version"], env!("CARGO_PKG_VERSION"));
     assert_eq!(provenance["threads"], 2);

@@ -2,7 +2,7 @@
 
 use crate::synthetic::{failed, periodic, record, row, with};
 use tribosweep::analysis::{Obstacle, Outcome, Regime};
-use tribosweep::report::trouble::{LISTED, Region, regions, sentences};
+use tribosweep::report::trouble::{Grid, LISTED, Region, cause, regions, sentences};
 use tribosweep::report::{Row, RowState};
 
 fn unsteady(figure: &str, spread: f64) -> RowState {
@@ -103,4 +103,22 @@ fn many_regions_are_counted() {
     let found = regions(&rows);
     assert_eq!((found.largest.len(), found.more, found.jobs_in_more), (LISTED, 50 - LISTED, 50 - LISTED));
     assert_eq!(sentences(&found)[LISTED], "and 38 more jobs in 38 smaller regions");
+}
+
+/// Protects: with many parameters the neighbours are those along one of them, so that looking for them takes no longer
+/// than there are jobs; a row that is not in the grid, because the study was replaced meanwhile, is left out.
+#[test]
+fn many_parameters_are_no_burden() {
+    let mut rows = Vec::new();
+    for corner in 0..1 << 10 {
+        let bits = (0..10).map(|bit| ((corner >> bit) & 1_i32, format!("p{bit}")));
+        rows.push(bits.fold(row(7.0, 0.4, failed("no")), |row, (value, name)| with(row, &name, value)));
+    }
+    assert_eq!(sentences(&regions(&rows))[0].split(" (job").next(), Some("failed: 1024 jobs: no"));
+
+    let mut grid = Grid::default();
+    grid.add(7.0, 0.4, &[]);
+    let trouble = cause(&rows[0]).unwrap();
+    let found = grid.regions([(0, "a".to_owned(), trouble.clone()), (1, "b".to_owned(), trouble)], LISTED);
+    assert_eq!((found.largest.len(), found.largest[0].jobs, found.more), (1, 1, 0));
 }

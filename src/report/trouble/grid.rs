@@ -87,8 +87,10 @@ impl Grid {
         self.sort();
         let mut causes: BTreeMap<(&'static str, String), Vec<Troubled>> = BTreeMap::new();
         for (place, job, cause) in troubled {
+            // A study that is replaced while it is read may have more rows than it had.
+            let Some(point) = self.points.get(place) else { continue };
             let same = causes.entry((cause.what, cause.class.clone())).or_default();
-            same.push(Troubled { point: &self.points[place], job, cause });
+            same.push(Troubled { point, job, cause });
         }
         let mut parts: Vec<Vec<&Troubled>> = causes.values().flat_map(|same| self.connected(same)).collect();
         // Stable: equal studies have equal regions.
@@ -150,6 +152,7 @@ impl Grid {
             at.entry(job.point).or_default().push(index);
         }
         let steps = self.steps();
+        let mut neighbour = Vec::with_capacity(self.axes.len());
         let mut parts = Vec::new();
         let mut is_taken = vec![false; troubled.len()];
         for first in 0..troubled.len() {
@@ -163,10 +166,10 @@ impl Grid {
                 let point = troubled[part[next]].point;
                 next += 1;
                 for step in &steps {
-                    let neighbour: Option<Vec<usize>> =
-                        point.iter().zip(step).map(|(at, by)| at.checked_add_signed(*by)).collect();
-                    let there = neighbour.and_then(|neighbour| at.get(neighbour.as_slice()));
-                    for &index in there.into_iter().flatten() {
+                    neighbour.clear();
+                    // A place before the first is none.
+                    neighbour.extend(point.iter().zip(step).map(|(at, by)| at.wrapping_add_signed(*by)));
+                    for &index in at.get(neighbour.as_slice()).into_iter().flatten() {
                         if !std::mem::replace(&mut is_taken[index], true) {
                             part.push(index);
                         }
@@ -179,13 +182,24 @@ impl Grid {
         parts
     }
 
-    /// From a point to its neighbours, itself included: no more than a place further along every ordered parameter.
+    /// From a point to its neighbours, itself included: a place further along any of the ordered parameters, or along one
+    /// of them where there are so many that the corners between them are too many to look at.
     fn steps(&self) -> Vec<Vec<isize>> {
-        self.axes.iter().fold(vec![Vec::new()], |steps, axis| {
-            let ways: &[isize] = if axis.is_ordered() && axis.values.len() > 1 { &[0, -1, 1] } else { &[0] };
-            let with = |step: &Vec<isize>, way: isize| step.iter().copied().chain([way]).collect();
-            steps.iter().flat_map(|step| ways.iter().map(move |&way| with(step, way))).collect()
-        })
+        let ordered: Vec<usize> = (0..self.axes.len())
+            .filter(|&axis| self.axes[axis].is_ordered() && self.axes[axis].values.len() > 1)
+            .collect();
+        let mut steps = vec![vec![0; self.axes.len()]];
+        for &axis in &ordered {
+            let from = if ordered.len() > WITH_CORNERS { 1 } else { steps.len() };
+            for step in 0..from {
+                for way in [-1, 1] {
+                    let mut further = steps[step].clone();
+                    further[axis] = way;
+                    steps.push(further);
+                }
+            }
+        }
+        steps
     }
 
     fn in_words(&self, ranges: &[(usize, usize)]) -> String {
@@ -206,6 +220,9 @@ impl Grid {
         words.collect::<Vec<_>>().join(", ")
     }
 }
+
+/// Up to so many parameters, neighbours across corners are neighbours: 3³ places around a point.
+const WITH_CORNERS: usize = 3;
 
 /// In place of a value's number where a point has none.
 const ABSENT: usize = usize::MAX;

@@ -45,7 +45,8 @@ fn sentence(region: &Region) -> String {
     if !place.is_empty() {
         let _ = write!(text, " at {place}");
     }
-    let _ = write!(text, ": {}", cause.why);
+    // On one line.
+    let _ = write!(text, ": {}", cause.why.split_whitespace().collect::<Vec<_>>().join(" "));
     if *jobs > 1 {
         let _ = write!(text, " (job {example}, for example)");
     } else {

@@ -1,6 +1,6 @@
 //! Interruptions, and processes that die.
 
-use tribosweep::queue::{FinishedOutcome, JobState, Queue, Scope, Settings, TakenBack, Worker};
+use tribosweep::queue::{FinishedOutcome, JobState, Queue, Retry, Scope, Settings, TakenBack, Worker};
 
 use crate::support::{
     Sandbox, claim, counts, dead_worker, done, failed, finish, foreign_worker, keys, study,
@@ -186,6 +186,49 @@ async fn checkpoints_are_handed_on() {
         .await
         .unwrap();
     assert_eq!(left, 0);
+}
+
+/// Protects: a process that had been asked to stop and is gone did not crash: its jobs are pending again however often
+/// they crashed before.
+#[tokio::test]
+async fn who_is_stopped_twice_has_not_crashed() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open_with(Settings { crash_limit: 2, ..Settings::default() }).await;
+    queue.submit(&study("a", &["x"])).await.unwrap();
+    for (is_stopped, expected) in [
+        (true, TakenBack { pending: 1, failed: 0 }),
+        (false, TakenBack { pending: 1, failed: 0 }),
+        (true, TakenBack { pending: 1, failed: 0 }),
+        (false, TakenBack { pending: 0, failed: 1 }),
+    ] {
+        let mut dead = sandbox.open_as(&dead_worker()).await;
+        claim(&mut dead, Scope::All, 1).await;
+        if is_stopped {
+            dead.stopping().await.unwrap();
+        }
+        assert_eq!(queue.take_back().await.unwrap(), expected);
+    }
+    assert_eq!(queue.rows("a").await.unwrap()[0].crashes, 2);
+}
+
+/// Protects: a job that failed because its processes died goes on from its checkpoint when it is asked for again, and so
+/// does one that was cancelled; one that fails by itself begins anew.
+#[tokio::test]
+async fn a_checkpoint_outlasts_crashes() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open_with(Settings { crash_limit: 1, ..Settings::default() }).await;
+    queue.submit(&study("a", &["x"])).await.unwrap();
+    let mut dead = sandbox.open_as(&dead_worker()).await;
+    claim(&mut dead, Scope::All, 1).await;
+    assert!(dead.save_checkpoint("x", 1, b"kept").await.unwrap());
+    assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 0, failed: 1 });
+    queue.retry("a", Retry::Failed).await.unwrap();
+    queue.cancel("a").await.unwrap();
+    queue.retry("a", Retry::All).await.unwrap();
+    assert_eq!(claim(&mut queue, Scope::All, 1).await[0].checkpoint.as_deref(), Some(&b"kept"[..]));
+    assert!(finish(&mut queue, "x", 2, failed("diverged")).await);
+    queue.retry("a", Retry::Failed).await.unwrap();
+    assert_eq!(claim(&mut queue, Scope::All, 1).await[0].checkpoint, None);
 }
 
 /// Protects: a worker that ends in order, if need be because of an error, gives back what it still holds; that is no

@@ -1,15 +1,6 @@
-//! What an honest estimate of the time left needs: jobs differ in cost by orders of magnitude, so a mean
-//! time per job says nothing, but time per cost does.
+//! What is left to do, by cost: jobs differ in it by orders of magnitude, so their number says nothing of the time.
 
 use super::{Queue, QueueError, Scope};
-
-/// Failed jobs are left out: most of them stop early, and would make the rest look cheap.
-const FINISHED: &str = "
-    SELECT j.cost, r.wall_s
-    FROM jobs AS j JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt
-    WHERE j.state = 'done'
-      AND (?1 IS NULL OR EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = ?1))
-    ORDER BY r.finished_ms, j.id";
 
 const REMAINING: &str = "SELECT COALESCE(SUM(cost), 0.0) FROM jobs WHERE state IN ('pending', 'running')";
 
@@ -20,15 +11,6 @@ const REMAINING_OF_STUDY: &str = "
               AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = ?1))";
 
 impl Queue {
-    /// Cost and wall time in seconds of every job of `scope` that is done, in the order they ended.
-    ///
-    /// # Errors
-    /// [`QueueError::UnknownStudy`], or if the database cannot be read.
-    pub async fn finished_timings(&mut self, scope: &Scope) -> Result<Vec<(f64, f64)>, QueueError> {
-        let study_id = scope.study_id(&mut self.connection).await?;
-        Ok(sqlx::query_as(FINISHED).bind(study_id).fetch_all(&mut self.connection).await?)
-    }
-
     /// The cost of all jobs of `scope` that are pending or running.
     ///
     /// # Errors
