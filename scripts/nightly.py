@@ -12,7 +12,7 @@ import csv
 import sys
 from pathlib import Path
 
-REFERENCE = Path(__file__).resolve().parent.parent / "studies" / "mini.reference.csv"
+REFERENCE = Path(__file__).resolve().parent / "nightly_reference.csv"
 
 # What may differ without the physics being another one is the moment at which a run is found periodic and stops. What
 # that changes is measured in docs/accuracy.md ("What stopping early changes"), at the study's own detection settings;

@@ -8,6 +8,7 @@ mod exit_codes;
 mod interruption;
 #[path = "../support/mount.rs"]
 mod mount;
+mod nightly;
 mod one_job;
 mod several;
 mod sharing;
