@@ -47,6 +47,16 @@ fn status_tells_of_jobs_that_did_not_become_periodic() {
     assert!(folder.ok("status short").contains("1 done jobs reached their time limit"));
     let status: Value = serde_json::from_str(&folder.ok("status short --json")).unwrap();
     assert_eq!(status["not_periodic"], 1);
+    let region = &status["regions"][0];
+    assert_eq!(
+        (&region["what"], &region["jobs"], &region["of"]),
+        (&json!("not periodic"), &json!(1), &json!(1))
+    );
+    let why = region["why"].as_str().unwrap();
+    assert!(
+        why.contains("cycles that have to repeat") || why.contains("(tolerated: 0.01 and 0.001)"),
+        "{why}"
+    );
 }
 
 /// Protects: a database without studies is no error, and says what to do.

@@ -1,7 +1,7 @@
 //! Why a job is in trouble.
 
 use crate::analysis::{JobRecord, Obstacle, Outcome};
-use crate::report::row::{Row, RowState};
+use crate::report::row::{JobNumerics, Row, RowState};
 use crate::report::value;
 
 /// What is wrong with a job.
@@ -22,14 +22,14 @@ pub fn cause(row: &Row) -> Option<Cause> {
             Some(Cause { what: "failed", class: without_numbers(error), why: error.clone() })
         }
         RowState::Done(record) if record.outcome == Outcome::NotPeriodic => {
-            let (class, why) = obstacle(record);
+            let (class, why) = obstacle(record, row.numerics.as_ref());
             Some(Cause { what: "not periodic", class, why })
         }
         _ => None,
     }
 }
 
-fn obstacle(record: &JobRecord) -> (String, String) {
+fn obstacle(record: &JobRecord, numerics: Option<&JobNumerics>) -> (String, String) {
     let growth = record.growth_rate_per_s.filter(|rate| rate.is_finite());
     let growth = growth.map_or_else(String::new, |rate| format!(" (growth rate {rate:.0} /s)"));
     match &record.obstacle {
@@ -45,17 +45,23 @@ fn obstacle(record: &JobRecord) -> (String, String) {
         Some(Obstacle::Unsteady { figure, spread, drift }) => (
             format!("unsteady {figure}"),
             format!(
-                "{figure} is not the same from cycle to cycle: it spreads by {} and drifts by {}",
+                "{figure} is not the same from cycle to cycle: it spreads by {} and drifts by {}{}",
                 significant(*spread),
-                significant(*drift)
+                significant(*drift),
+                numerics.map_or_else(String::new, tolerated)
             ),
         ),
     }
 }
 
-/// Two digits are enough to compare with a tolerance.
+fn tolerated(numerics: &JobNumerics) -> String {
+    let JobNumerics { tolerance, drift_tolerance, .. } = numerics;
+    format!(" (tolerated: {} and {})", value::number(*tolerance), value::number(*drift_tolerance))
+}
+
+/// Three digits are enough to compare with a tolerance.
 fn significant(x: f64) -> String {
-    format!("{x:.1e}").parse().map_or_else(|_| value::number(x), value::number)
+    format!("{x:.2e}").parse().map_or_else(|_| value::number(x), value::number)
 }
 
 /// A message whose numbers do not count: the step at which a run diverged is not why it did.
