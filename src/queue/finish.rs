@@ -1,8 +1,8 @@
 use std::collections::HashSet;
 
-use serde::Serialize;
 use sqlx::SqliteConnection;
 
+use super::bulk::json;
 use super::{JobState, QueueError};
 
 /// The end of one attempt.
@@ -111,10 +111,6 @@ fn end(job: &Finished) -> EndRow<'_> {
         FinishedOutcome::Unstarted => (JobState::Pending, None, 1, None),
     };
     (&job.key, job.attempt, state.as_str(), note, undone, label)
-}
-
-fn json(rows: &impl Serialize) -> String {
-    serde_json::to_string(rows).expect("strings and finite numbers have a JSON form")
 }
 
 #[cfg(test)]

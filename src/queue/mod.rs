@@ -30,6 +30,7 @@
 //! * Reads are single statements. A transaction held open by a reader keeps the write-ahead log from being
 //!   folded back into the database, and it grows without limit.
 
+mod bulk;
 mod cancel;
 mod checkpoint;
 mod claim;

@@ -1,8 +1,8 @@
 use std::collections::HashSet;
 
-use serde::Serialize;
 use sqlx::SqliteConnection;
 
+use super::bulk::json;
 use super::{Queue, QueueError, counts, studies};
 
 /// A study to be submitted.
@@ -240,10 +240,6 @@ fn as_jobs(rows: &[Row<'_>]) -> String {
 fn as_rows(rows: &[Row<'_>]) -> String {
     let rows = rows.iter().map(|(ordinal, job)| (ordinal, &job.key, &job.parameters, &job.batch));
     json(&rows.collect::<Vec<_>>())
-}
-
-fn json(rows: &impl Serialize) -> String {
-    serde_json::to_string(rows).expect("strings and finite numbers have a JSON form")
 }
 
 #[cfg(test)]

@@ -74,17 +74,7 @@ impl Group<'_> {
     }
 
     fn sort_axis(&mut self) {
-        if !self.axis_values.iter().all(Value::is_number) {
-            return;
-        }
-        let number = |at: &usize| self.axis_values[*at].as_f64().unwrap_or_default();
-        let mut order: Vec<usize> = (0..self.axis_values.len()).collect();
-        order.sort_by(|a, b| number(a).total_cmp(&number(b)));
-        let mut rank = vec![0; order.len()];
-        for (place, &at) in order.iter().enumerate() {
-            rank[at] = place;
-        }
-        self.axis_values = order.iter().map(|&at| self.axis_values[at].clone()).collect();
+        let rank = value::sort(&mut self.axis_values);
         for job in &mut self.jobs {
             job.at = rank[job.at];
         }

@@ -56,3 +56,18 @@ pub(super) fn assignment(name: &str, value: &Value) -> String {
         _ => format!("{name} = {}", shown(value)),
     }
 }
+
+/// Sorts values that are numbers, and leaves others as they are; gives the new place of each.
+pub(super) fn sort(values: &mut Vec<Value>) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..values.len()).collect();
+    if values.iter().all(Value::is_number) {
+        let number = |at: &usize| values[*at].as_f64().unwrap_or_default();
+        order.sort_by(|a, b| number(a).total_cmp(&number(b)));
+    }
+    let mut places = vec![0; order.len()];
+    for (place, &at) in order.iter().enumerate() {
+        places[at] = place;
+    }
+    *values = order.iter().map(|&at| values[at].clone()).collect();
+    places
+}

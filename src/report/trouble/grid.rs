@@ -128,17 +128,7 @@ impl Grid {
             for point in self.points.iter_mut().filter(|point| point[number] == ABSENT) {
                 point[number] = axis.number(&Value::Null);
             }
-            if !axis.is_ordered() {
-                continue;
-            }
-            let value = |at: usize| axis.values[at].as_f64().unwrap_or_default();
-            let mut order: Vec<usize> = (0..axis.values.len()).collect();
-            order.sort_by(|&a, &b| value(a).total_cmp(&value(b)));
-            let mut rank = vec![0; order.len()];
-            for (place, &at) in order.iter().enumerate() {
-                rank[at] = place;
-            }
-            axis.values = order.iter().map(|&at| axis.values[at].clone()).collect();
+            let rank = value::sort(&mut axis.values);
             for point in &mut self.points {
                 point[number] = rank[point[number]];
             }

@@ -5,11 +5,16 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use tokio::sync::oneshot;
-use tribosweep::queue::{Scope, Settings};
+use tribosweep::queue::{Queue, Scope, Settings};
 use tribosweep::worker::{Interrupt, WorkOptions, work};
 
 use super::{Recorder, several, solvable, spec, submit};
 use crate::support::Sandbox;
+
+/// A queue that asks again and again rather than wait.
+async fn impatient(sandbox: &Sandbox) -> Queue {
+    sandbox.open_with(Settings { busy_timeout: Duration::from_millis(20), ..Settings::default() }).await
+}
 
 /// Locks the database for some time when it is told to.
 async fn lock_for(sandbox: &Sandbox, time: Duration) -> (oneshot::Sender<()>, tokio::task::JoinHandle<()>) {
@@ -30,8 +35,7 @@ async fn lock_for(sandbox: &Sandbox, time: Duration) -> (oneshot::Sender<()>, to
 async fn the_solver_does_not_wait_for_the_database() {
     const KEPT: Duration = Duration::from_secs(2);
     let sandbox = Sandbox::new();
-    let mut queue =
-        sandbox.open_with(Settings { busy_timeout: Duration::from_millis(20), ..Settings::default() }).await;
+    let mut queue = impatient(&sandbox).await;
     // One that outlasts the lock, and some of which one or other ends while it is there, on a fast machine and a slow one.
     let mut jobs = several(7, 50.0);
     for (i, job) in (1..).zip(&mut jobs[1..]) {
@@ -77,8 +81,7 @@ async fn the_solver_does_not_wait_for_the_database() {
 async fn an_interruption_waits_for_the_lock() {
     const KEPT: Duration = Duration::from_secs(1);
     let sandbox = Sandbox::new();
-    let mut queue =
-        sandbox.open_with(Settings { busy_timeout: Duration::from_millis(20), ..Settings::default() }).await;
+    let mut queue = impatient(&sandbox).await;
     submit(&mut queue, "study", several(7, 50.0)).await;
     let (begin, other) = lock_for(&sandbox, KEPT).await;
     let (interrupt, is_begun) = (Interrupt::default(), Arc::new(AtomicBool::new(false)));
