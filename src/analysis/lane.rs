@@ -3,11 +3,13 @@
 use super::cycles::{Cycle, CycleCutter};
 use super::decay::DecayMonitor;
 use super::figures::Figures;
-use super::record::{EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
+use super::record::{ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
 use super::sample::{OBSERVED_NAMES, Sample};
 use super::steady::{self, SteadyState};
 use super::window::{LateWindow, Trailing, Window};
 use crate::solver::Model;
+use crate::solver::contact::Solves;
+use crate::solver::disk::DiskBody;
 use crate::solver::energy::Energies;
 use crate::spec::JobSpec;
 use serde::{Deserialize, Serialize};
@@ -68,8 +70,15 @@ impl LaneAnalysis {
         self.steady.is_some() || self.decays
     }
 
-    /// The record of the run that ended after so many `steps` with these final `energies`.
-    pub fn record(&self, model: &Model, steps: u64, energies: &Energies) -> JobRecord {
+    /// The record of the run that ended after so many `steps` with these final `energies`, and these contact solves
+    /// on an elastic disk.
+    pub fn record(
+        &self,
+        model: &Model,
+        steps: u64,
+        energies: &Energies,
+        solves: Option<&Solves>,
+    ) -> JobRecord {
         let simulated_s = steps as f64 * model.time_step_s();
         let outcome = match self.steady {
             _ if self.decays => Outcome::Decayed,
@@ -116,6 +125,7 @@ impl LaneAnalysis {
             growth_rate_per_s: self.monitor.as_ref().and_then(DecayMonitor::growth_rate_per_s),
             obstacle: (outcome == Outcome::NotPeriodic)
                 .then(|| steady::obstacle(&self.cycles, &self.spec.detection)),
+            disk: model.disk().zip(solves).map(|(body, solves)| elastic_disk(body, solves, steps)),
             energy: totals(energies),
             nodes: observed_nodes(figures),
         }
@@ -197,6 +207,19 @@ fn energy_identity(start: &Energies, end: &Energies) -> f64 {
 fn contact_loss_share(start: &Energies, end: &Energies) -> f64 {
     let drive_j = end.drive_work_j - start.drive_work_j;
     if drive_j == 0.0 { 0.0 } else { (end.contact_loss_j - start.contact_loss_j) / drive_j }
+}
+
+fn elastic_disk(body: &DiskBody, solves: &Solves, steps: u64) -> ElasticDisk {
+    let made = body.mesh().report();
+    ElasticDisk {
+        elements: made.elements,
+        track_element_m: made.track_element_m,
+        longest_edge_m: made.longest_edge_m,
+        stages: body.stages().count(),
+        sweeps_mean: solves.sweeps / steps as f64,
+        sweeps_max: solves.most_sweeps,
+        residual_max: solves.residual,
+    }
 }
 
 fn totals(energies: &Energies) -> EnergyTotals {

@@ -208,6 +208,9 @@ impl<const L: usize> Lanes<L> {
         {
             return Some(Err(error.into()));
         }
+        if let Err(error) = guard::check_contact(&self.model, &self.state, lane) {
+            return Some(Err(error.into()));
+        }
         let steps = self.state.steps_done(lane);
         let settled = audited && run.stop_early && run.analysis.is_settled();
         if steps < run.steps && !settled {
@@ -216,7 +219,7 @@ impl<const L: usize> Lanes<L> {
         if let Err(error) = guard::check_finite(&self.model, &self.state, lane) {
             return Some(Err(error.into()));
         }
-        let record = run.analysis.record(&self.model, steps, energies);
+        let record = run.analysis.record(&self.model, steps, energies, self.state.contacts.solves_of(lane));
         Some(match record.non_finite_figure() {
             None => Ok(record),
             Some(figure) => Err(JobError::NotFinite { figure }),

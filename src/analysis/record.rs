@@ -89,6 +89,25 @@ pub struct ObservedNode {
     pub slip_speed_max_m_s: f64,
 }
 
+/// The mesh and the contact solves of an elastic disk.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct ElasticDisk {
+    /// Elements in θ, r and z.
+    pub elements: [usize; 3],
+    /// Longest edge [m] of the elements under the track, in θ, r and z.
+    pub track_element_m: [f64; 3],
+    /// Longest edge [m] elsewhere.
+    pub longest_edge_m: f64,
+    /// Stages that the disk takes in a time step.
+    pub stages: usize,
+    /// Gauss–Seidel sweeps of a contact solve, on average.
+    pub sweeps_mean: f64,
+    /// Most sweeps of a contact solve.
+    pub sweeps_max: f64,
+    /// Largest change of a nodal force in the last sweep of a solve, over the largest force.
+    pub residual_max: f64,
+}
+
 /// What was found in one run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobRecord {
@@ -158,6 +177,9 @@ pub struct JobRecord {
     /// Why the run was not found periodic, where it was not (nor to decay).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub obstacle: Option<Obstacle>,
+    /// The elastic disk, if it is one.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub disk: Option<ElasticDisk>,
     /// Energies at the end of the run.
     pub energy: EnergyTotals,
     /// The two observed nodes.

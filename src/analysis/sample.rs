@@ -238,9 +238,10 @@ impl<const L: usize> Sampler<L> {
         let contact_state = contacts.state_of(node.slave, lane);
         let [x, y, _] = contacts.increment_of(node.slave, lane);
         let slips = contact_state == ContactState::Slip;
+        let yielding = contacts.elastic.as_ref().map_or(0.0, |elastic| elastic.yielding_m.at(place, 1)[lane]);
         NodeSample {
             u_m: std::array::from_fn(|c| state.u.at(place, c)[lane]),
-            y_velocity_m_s: y / dt + node.motion * drive.rate,
+            y_velocity_m_s: (y + yielding) / dt + node.motion * drive.rate,
             gap_m: contacts.gap_of(node.slave, lane),
             force_n: contacts.force_of(node.slave, lane),
             sigma_n_pa: self.last.at(place, SIGMA_N)[lane],

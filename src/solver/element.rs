@@ -10,7 +10,7 @@
 //! ```
 
 use super::material::Material;
-use nalgebra::{SMatrix, Vector3};
+use nalgebra::{Matrix3, SMatrix, Vector3};
 
 /// The 24 × 24 stiffness matrix of one element, rows and columns `3·node + component` [N/m].
 pub type ElementStiffness = SMatrix<f64, 24, 24>;
@@ -44,6 +44,45 @@ pub fn stiffness(material: &Material, h: [f64; 3]) -> ElementStiffness {
     }
     // Rounding differs between (a, b) and (b, a); an exactly symmetric operator keeps energies exact.
     (k + k.transpose()) * 0.5
+}
+
+/// Stiffness [N/m] and row-sum lumped volumes [m³] of an isoparametric hexahedron with these corners [m], numbered
+/// as above, by 2 × 2 × 2 Gauss points.
+///
+/// # Panics
+/// If the element is inverted.
+pub fn isoparametric(material: &Material, corners: &[Vector3<f64>; 8]) -> (ElementStiffness, [f64; 8]) {
+    let lambda = material.lame_lambda_pa();
+    let shear = material.shear_modulus_pa();
+    let mut k = ElementStiffness::zeros();
+    let mut volumes = [0.0; 8];
+    for point in 0..8 {
+        let xi = gauss_point(point);
+        // On the cube [−1, 1]³ itself, edges 2.
+        let local = gradients_at(xi, [2.0; 3]);
+        let jacobian: Matrix3<f64> = local.iter().zip(corners).map(|(g, x)| g * x.transpose()).sum();
+        let weight = jacobian.determinant();
+        assert!(weight > 0.0, "an inverted element");
+        let inverse = jacobian.try_inverse().expect("an element with a volume");
+        let gradients = local.map(|g| inverse * g);
+        for (a, ga) in gradients.iter().enumerate() {
+            let shape: f64 =
+                (0..3).map(|axis| if a >> axis & 1 == 0 { 1.0 - xi[axis] } else { 1.0 + xi[axis] }).product();
+            volumes[a] += weight * shape / 8.0;
+            for (b, gb) in gradients.iter().enumerate() {
+                for i in 0..3 {
+                    for j in 0..3 {
+                        let mut value = lambda * ga[i] * gb[j] + shear * ga[j] * gb[i];
+                        if i == j {
+                            value += shear * ga.dot(gb);
+                        }
+                        k[(3 * a + i, 3 * b + j)] += weight * value;
+                    }
+                }
+            }
+        }
+    }
+    ((k + k.transpose()) * 0.5, volumes)
 }
 
 /// Position of a Gauss point in [−1, 1]³.

@@ -41,6 +41,24 @@ pub enum SolverError {
     /// The stiffness matrix that was given is none.
     #[error("not a stiffness matrix: {0}")]
     Stiffness(String),
+    /// The contact forces on an elastic disk were not found.
+    #[error(
+        "the contact solve of step {step} (t = {time_s:.6e} s) did not converge: after {sweeps} sweeps the forces \
+         still change by {residual:.1e} of the largest, more than {tolerance:.0e}; a disk that is much lighter or \
+         softer than the pin, or a very high friction coefficient, can have no solution or several"
+    )]
+    ContactNotSolved {
+        /// The step.
+        step: u64,
+        /// Its time [s].
+        time_s: f64,
+        /// Sweeps done.
+        sweeps: u32,
+        /// Change of the forces in the last one, over the largest force.
+        residual: f64,
+        /// What it should have been.
+        tolerance: f64,
+    },
     /// The run diverged; there is no result.
     #[error(
         "diverged at step {step} (t = {time_s:.6e} s), worst at node {node} \

@@ -74,20 +74,21 @@ impl<const L: usize> Field<L> {
 
     /// All zero, on the nodes of `mesh`.
     pub fn zeros(mesh: &BlockMesh) -> Self {
-        let [_, my, mz] = mesh.nodes_per_axis();
-        Self::on_lines(mesh, my * mz)
+        let [mx, my, mz] = mesh.nodes_per_axis();
+        Self::with_lines(mx, my * mz)
+    }
+
+    /// All zero, on so many lines of so many nodes.
+    pub fn with_lines(nodes_per_line: usize, lines: usize) -> Self {
+        let () = Self::LANES_FILL_BLOCKS;
+        let blocks_per_line = blocks_per_line::<L>(nodes_per_line);
+        Self { nodes_per_line, blocks_per_line, blocks: vec![Block::default(); blocks_per_line * lines] }
     }
 
     /// All zero, on the nodes of the contact face (or of any other plane in z) of `mesh`.
     pub fn on_face(mesh: &BlockMesh) -> Self {
-        Self::on_lines(mesh, mesh.nodes_per_axis()[1])
-    }
-
-    fn on_lines(mesh: &BlockMesh, lines: usize) -> Self {
-        let () = Self::LANES_FILL_BLOCKS;
-        let nodes_per_line = mesh.nodes_per_axis()[0];
-        let blocks_per_line = blocks_per_line::<L>(nodes_per_line);
-        Self { nodes_per_line, blocks_per_line, blocks: vec![Block::default(); blocks_per_line * lines] }
+        let [mx, my, _] = mesh.nodes_per_axis();
+        Self::with_lines(mx, my)
     }
 
     /// From values in the order node → component → lane.

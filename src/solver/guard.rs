@@ -1,5 +1,6 @@
 //! Stops a run that diverges.
 
+use super::contact::elastic::{MAX_SWEEPS, TOLERANCE};
 use super::energy::Energies;
 use super::error::SolverError;
 use super::field::Field;
@@ -64,11 +65,35 @@ pub fn check<const L: usize>(
 /// [`SolverError::Diverged`] if one is not.
 pub fn check_finite<const L: usize>(model: &Model, state: &State<L>, lane: usize) -> Result<(), SolverError> {
     let finite = |field: &Field<L>| field.values().skip(lane).step_by(L).all(f64::is_finite);
-    if finite(&state.u) && finite(&state.p) {
+    let disk_is_finite = state.disk.as_ref().is_none_or(|disk| disk.is_finite(lane));
+    if finite(&state.u) && finite(&state.p) && disk_is_finite {
         Ok(())
     } else {
         Err(diverged(model, state, lane, NOT_FINITE.to_owned()))
     }
+}
+
+/// Checks that the contact solves of a lane on an elastic target have converged.
+///
+/// # Errors
+/// [`SolverError::ContactNotSolved`] if one has not.
+pub fn check_contact<const L: usize>(
+    model: &Model,
+    state: &State<L>,
+    lane: usize,
+) -> Result<(), SolverError> {
+    let Some(elastic) = &state.contacts.elastic else { return Ok(()) };
+    let solves = &elastic.solves[lane];
+    if solves.failed_step == 0.0 {
+        return Ok(());
+    }
+    Err(SolverError::ContactNotSolved {
+        step: solves.failed_step as u64,
+        time_s: solves.failed_step * model.time_step_s(),
+        sweeps: MAX_SWEEPS,
+        residual: solves.residual,
+        tolerance: TOLERANCE,
+    })
 }
 
 /// Above this fraction of the stability limit the step itself is suspect.

@@ -2,7 +2,8 @@
 
 use super::boundary::{self, LoadShare};
 use super::constraints::{Constraints, Freedom};
-use super::disk::{self, SurfaceMotion};
+use super::disk::body::Unclocked;
+use super::disk::{self, DiskBody, DiskDefinition, SurfaceMotion};
 use super::element;
 use super::error::SolverError;
 use super::field::Field;
@@ -97,6 +98,7 @@ pub struct Model {
     time_step_s: f64,
     time_step_limit_s: f64,
     clamp_width_m: f64,
+    disk: Option<Box<DiskBody>>,
 }
 
 impl Model {
@@ -107,15 +109,12 @@ impl Model {
     pub fn from_scene(scene: &Scene, numerics: &Numerics) -> Result<Self, SolverError> {
         let mesh = BlockMesh::new(scene.pin.size_m, scene.pin.elements);
         let strip = boundary::clamped_strip(&mesh, &scene.clamp)?;
-        let surface_motion = match scene.disk.kind {
-            DiskKind::Rigid => disk::rotating_disk(&mesh, scene.disk.track_radius_m),
-        };
         let definition = ModelDefinition {
             material: Material::of_pin(&scene.pin),
             stiffness: Stiffness::Elastic,
             constraints: boundary::constraints(&mesh, &strip, scene.top),
             load: boundary::normal_load(&mesh),
-            surface_motion,
+            surface_motion: disk::rotating_disk(&mesh, scene.disk.track_radius_m),
             beta2: numerics.beta2,
             beta_r_s: numerics.beta_r_s,
             time_step: numerics
@@ -123,7 +122,11 @@ impl Model {
                 .map_or(TimeStep::FractionOfLimit(numerics.safety_factor), TimeStep::Given),
             mesh,
         };
-        Ok(Self { clamp_width_m: strip.width_m, ..Self::new(definition)? })
+        let model = match scene.disk.kind {
+            DiskKind::Rigid => Self::new(definition)?,
+            DiskKind::Elastic => Self::on_elastic_disk(definition, DiskDefinition::of_scene(scene))?,
+        };
+        Ok(Self { clamp_width_m: strip.width_m, ..model })
     }
 
     /// Whether [`Model::from_scene`] would accept the scene; cheap unless a time step is given.
@@ -139,6 +142,28 @@ impl Model {
         Ok(())
     }
 
+    /// A model from its parts on an elastic disk, which the pin's surface motion says to be a rotating one.
+    ///
+    /// # Errors
+    /// As [`Model::new`], and if a node of the contact face is held or tied, or β₂ is not ½: these are solved on a
+    /// rigid target only.
+    ///
+    /// # Panics
+    /// As [`Model::new`].
+    pub fn on_elastic_disk(definition: ModelDefinition, disk: DiskDefinition) -> Result<Self, SolverError> {
+        let on_face = |node: &usize| definition.mesh.bottom_nodes().contains(node);
+        let tied = definition.constraints.ties.iter().flat_map(|tie| tie.nodes.iter());
+        if tied.chain(definition.constraints.fixed.iter().map(|dof| dof / 3).collect::<Vec<_>>().iter()).any(on_face) {
+            return Err(SolverError::Constraints(
+                "on an elastic disk no node of the contact face may be held or tied".to_owned(),
+            ));
+        }
+        if definition.beta2 != 0.5 {
+            return Err(SolverError::Constraints("an elastic disk is for β₂ = ½ only".to_owned()));
+        }
+        Self::build(definition, Some(Unclocked::new(disk)))
+    }
+
     /// A model from its parts.
     ///
     /// # Errors
@@ -147,6 +172,10 @@ impl Model {
     /// # Panics
     /// If there is not one surface velocity per contact-face node.
     pub fn new(definition: ModelDefinition) -> Result<Self, SolverError> {
+        Self::build(definition, None)
+    }
+
+    fn build(definition: ModelDefinition, disk: Option<Unclocked>) -> Result<Self, SolverError> {
         let ModelDefinition {
             mesh,
             material,
@@ -178,9 +207,13 @@ impl Model {
                 (Operator::Assembled(springs), bound)
             }
         };
-        let limit = stability::time_step_limit_s(omega_max, beta2, beta_r_s);
+        let pin_limit = stability::time_step_limit_s(omega_max, beta2, beta_r_s);
+        let disk_limit = disk.as_ref().map_or(f64::INFINITY, |disk| disk.longest_step_s(beta_r_s));
+        let limit = pin_limit.min(disk_limit);
+        let omega_max = disk.as_ref().filter(|_| disk_limit < pin_limit).map_or(omega_max, Unclocked::omega_max);
         let time_step_s = match time_step {
-            TimeStep::FractionOfLimit(fraction) => fraction * limit,
+            // The disk's limit has its margin.
+            TimeStep::FractionOfLimit(fraction) => (fraction * pin_limit).min(disk_limit),
             // The limit itself is a legal step; computing it rounds.
             TimeStep::Given(dt) if dt <= limit * (1.0 + 1e-12) => dt,
             TimeStep::Given(dt) => {
@@ -191,6 +224,12 @@ impl Model {
                 });
             }
             TimeStep::Unchecked(dt) => dt,
+        };
+        let disk = match disk {
+            None => None,
+            Some(disk) => Some(Box::new(disk.with_step(time_step_s, beta_r_s).ok_or(
+                SolverError::TimeStepTooLarge { time_step_s, limit_s: limit, omega_max_rad_s: omega_max },
+            )?)),
         };
 
         let inverse_mass = freedoms
@@ -245,6 +284,7 @@ impl Model {
             time_step_s,
             time_step_limit_s: limit,
             clamp_width_m: 0.0,
+            disk,
             mesh,
         })
     }
@@ -323,6 +363,11 @@ impl Model {
     /// The clamp's width [m] that the mesh gives.
     pub fn clamp_width_m(&self) -> f64 {
         self.clamp_width_m
+    }
+
+    /// The elastic disk, if there is one.
+    pub fn disk(&self) -> Option<&DiskBody> {
+        self.disk.as_deref()
     }
 
     pub(super) fn constrained_planes(&self) -> &[bool] {

@@ -1,7 +1,9 @@
 //! What changes during a run: per-lane fields, and the drive of each lane.
 
 use super::contact::Contacts;
+use super::contact::elastic::ElasticContact;
 use super::contact::rigid::RigidContact;
+use super::disk::{DiskBody, DiskState};
 use super::field::{Field, next};
 use super::integrate::Integration;
 use super::model::Model;
@@ -42,6 +44,8 @@ pub struct State<const L: usize> {
     pub p: Field<L>,
     /// Contact during the step that led here.
     pub contacts: Contacts<L>,
+    /// An elastic disk.
+    pub disk: Option<Box<DiskState<L>>>,
     /// Sum of the clamp's reactions [N] on the pin at `t_{n−1}`, x, y and z.
     pub reaction_n: [[f64; L]; 3],
     /// Load [N] at `t_{n−1}`.
@@ -61,7 +65,23 @@ pub(super) struct Workspace<const L: usize> {
     /// What moves the nodes.
     pub integration: Integration<L>,
     pub supports: Supports<L>,
-    pub contact: RigidContact<L>,
+    pub contact: ContactSolve<L>,
+}
+
+/// The contact solve that the target needs.
+#[derive(Debug, Clone)]
+pub(super) enum ContactSolve<const L: usize> {
+    Rigid(RigidContact<L>),
+    Elastic(Box<ElasticContact<L>>),
+}
+
+impl<const L: usize> ContactSolve<L> {
+    fn new(model: &Model, disk: Option<&DiskBody>) -> Self {
+        match disk {
+            None => Self::Rigid(RigidContact::new(model)),
+            Some(disk) => Self::Elastic(Box::new(ElasticContact::new(model, disk))),
+        }
+    }
 }
 
 impl<const L: usize> State<L> {
@@ -73,7 +93,11 @@ impl<const L: usize> State<L> {
             begun: [0; L],
             u: field(),
             p: field(),
-            contacts: Contacts::separated(model.mesh()),
+            contacts: match model.disk() {
+                None => Contacts::separated(model.mesh()),
+                Some(_) => Contacts::on_elastic_target(model.mesh()),
+            },
+            disk: model.disk().map(|disk| Box::new(DiskState::at_rest(disk))),
             reaction_n: [[0.0; L]; 3],
             load_n: [0.0; L],
             load_stroke_m: [[0.0; L]; 3],
@@ -82,7 +106,7 @@ impl<const L: usize> State<L> {
                 residual: field(),
                 integration: Integration::new(model),
                 supports: Supports::new(model),
-                contact: RigidContact::new(model),
+                contact: ContactSolve::new(model, model.disk()),
             },
         }
     }
@@ -99,6 +123,9 @@ impl<const L: usize> State<L> {
         self.u.save_lane(lane, saved);
         self.p.save_lane(lane, saved);
         self.contacts.save_lane(lane, saved);
+        if let Some(disk) = &self.disk {
+            disk.save_lane(lane, saved);
+        }
         saved.extend(self.reaction_n.map(|reaction| reaction[lane]));
         saved.extend(self.load_stroke_m.map(|stroke| stroke[lane]));
         saved.push(self.load_n[lane]);
@@ -111,6 +138,9 @@ impl<const L: usize> State<L> {
         self.u.load_lane(lane, saved);
         self.p.load_lane(lane, saved);
         self.contacts.load_lane(lane, saved);
+        if let Some(disk) = &mut self.disk {
+            disk.load_lane(lane, saved);
+        }
         for component in self.reaction_n.iter_mut().chain(&mut self.load_stroke_m) {
             [component[lane]] = next(saved);
         }

@@ -11,12 +11,12 @@
 //!
 //! At n = 0, p_0 is the initial velocity v_0 and the factors are ½ and 1−β₂: the half-force first step.
 
-use super::contact::rigid::Face;
+use super::contact::{elastic, rigid};
 use super::field::in_slots;
 use super::integrate::Factors;
 use super::model::Model;
 use super::operator::Operator;
-use super::state::{Drive, State};
+use super::state::{ContactSolve, Drive, State};
 
 /// Factors of Δt² a in `u_{n+1}` and of Δt a in `p_{n+1}`.
 pub(super) fn factors(beta2: f64, step: u64) -> (f64, f64) {
@@ -44,17 +44,31 @@ pub fn step<const L: usize>(model: &Model, drives: &[Drive; L], state: &mut Stat
     let work = &mut state.workspace;
     state.reaction_n = work.supports.apply(&state.load_n, &mut work.residual);
     work.integration.advance_constrained_planes(&factors, &mut state.u, &mut state.p, &work.residual);
-    let mut face = Face {
-        u: &mut state.u,
-        p: &mut state.p,
-        residual: &work.residual,
-        inverse_mass: work.integration.face_inverse_mass(),
-    };
-    let held_n = work.contact.solve(&factors, drives, &mut face, &mut state.contacts);
-    for c in 0..3 {
-        for lane in 0..L {
-            state.reaction_n[c][lane] -= held_n[c][lane];
+    let inverse_mass = work.integration.face_inverse_mass();
+    match (&mut work.contact, model.disk(), &mut state.disk) {
+        (ContactSolve::Rigid(contact), _, _) => {
+            let mut face =
+                rigid::Face { u: &mut state.u, p: &mut state.p, residual: &work.residual, inverse_mass };
+            let held_n = contact.solve(&factors, drives, &mut face, &mut state.contacts);
+            for c in 0..3 {
+                for lane in 0..L {
+                    state.reaction_n[c][lane] -= held_n[c][lane];
+                }
+            }
         }
+        (ContactSolve::Elastic(contact), Some(body), Some(disk)) => {
+            let mut face =
+                elastic::Face { u: &mut state.u, p: &mut state.p, residual: &work.residual, inverse_mass };
+            let steps: [u64; L] = std::array::from_fn(|lane| state.step.wrapping_sub(state.begun[lane]) + 1);
+            let given = elastic::Given {
+                factors: &factors,
+                drives,
+                steps,
+                turned_rad: std::array::from_fn(|lane| drives[lane].rate * (steps[lane] as f64 * dt)),
+            };
+            contact.solve(body, &given, &mut face, disk, &mut state.contacts);
+        }
+        (ContactSolve::Elastic(_), _, _) => unreachable!("an elastic contact has a disk"),
     }
     let [_, before, now] = state.load_stroke_m;
     state.load_stroke_m = [before, now, work.supports.load_stroke_m(&state.u)];

@@ -14,11 +14,13 @@
 mod check;
 mod detection;
 mod numerics;
+mod ring;
 mod scene;
 
 pub use check::{FieldError, Violations};
 pub use detection::Detection;
 pub use numerics::{Numerics, RunControl};
+pub use ring::{Clock, Ring, TargetSurface};
 pub use scene::{Clamp, ClampSide, Contact, Disk, DiskKind, Load, Pin, Scene, TopFace};
 
 use schemars::JsonSchema;
@@ -61,6 +63,9 @@ impl JobSpec {
                 format!("less than the run's time limit (run.limit_s = {})", self.run.limit_s),
             );
         }
+        if self.scene.disk.kind == DiskKind::Elastic {
+            self.check_sweep(&mut found);
+        }
         let observation_s = self.detection.decay_observation_s;
         let shortest_s = SHORTEST_OBSERVATION * self.scene.pin.shear_transit_s();
         if observation_s < shortest_s {
@@ -74,6 +79,31 @@ impl JobSpec {
             );
         }
         found.into_result()
+    }
+
+    /// An elastic disk is fine only where the pin passes, and is not damped by the integrator.
+    fn check_sweep(&self, found: &mut Violations) {
+        let swept_deg = self.scene.disk.omega_rpm * 6.0 * self.run.limit_s;
+        let arc_deg = self.scene.disk.ring.track_arc_deg;
+        if arc_deg < 360.0 && swept_deg > arc_deg {
+            found.add(
+                "scene.disk.ring.track_arc_deg",
+                arc_deg,
+                format!(
+                    "at least {:.4}, the arc that the pin sweeps at {} rpm during run.limit_s = {} s, or 360",
+                    swept_deg.min(360.0),
+                    self.scene.disk.omega_rpm,
+                    self.run.limit_s
+                ),
+            );
+        }
+        if self.numerics.beta2 != 0.5 {
+            found.add(
+                "numerics.beta2",
+                self.numerics.beta2,
+                "0.5 with an elastic disk, whose energies are kept for the central difference only; damp with beta_r_s",
+            );
+        }
     }
 
     /// What a job shares with all that can be advanced together with it: body, mesh, clamp, integrator and time

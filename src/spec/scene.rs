@@ -1,6 +1,7 @@
 //! The scene: pin, disk, contact law, boundary conditions and load.
 
 use super::check::Violations;
+use super::ring::Ring;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -65,6 +66,8 @@ pub enum DiskKind {
     /// A rigid plane that turns about the disk's axis.
     #[default]
     Rigid,
+    /// An elastic ring: see [`Ring`].
+    Elastic,
 }
 
 /// The rotating disk. Its surface moves towards +y under the pin.
@@ -77,11 +80,13 @@ pub struct Disk {
     pub omega_rpm: f64,
     /// Distance R [m] of the pin's centre from the axis.
     pub track_radius_m: f64,
+    /// The body of an elastic disk; a rigid one does not use it.
+    pub ring: Ring,
 }
 
 impl Default for Disk {
     fn default() -> Self {
-        Self { kind: DiskKind::Rigid, omega_rpm: 7.0, track_radius_m: 0.0914 }
+        Self { kind: DiskKind::Rigid, omega_rpm: 7.0, track_radius_m: 0.0914, ring: Ring::default() }
     }
 }
 
@@ -248,6 +253,9 @@ impl Scene {
             "a radius larger than half the pin's width, so that the pin does not lie over the axis",
         );
         found.at_most("scene.disk.track_radius_m", radius);
+        if self.disk.kind == DiskKind::Elastic {
+            self.disk.ring.check(pin, radius, found);
+        }
         let mu = self.contact.mu;
         found.require("scene.contact.mu", mu, mu >= 0.0, "a friction coefficient >= 0");
         found.at_most("scene.contact.mu", mu);

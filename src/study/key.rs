@@ -1,7 +1,7 @@
 //! The key of a job: a hash of everything that determines its result.
 
 use super::json::encode;
-use crate::spec::{Clamp, ClampSide, JobSpec, Numerics};
+use crate::spec::{Clamp, ClampSide, DiskKind, JobSpec, Numerics};
 use serde_json::Value;
 use std::fmt::Write;
 
@@ -12,7 +12,7 @@ const HEX_DIGITS: usize = 32;
 ///
 /// Canonical means: fields sorted, no space, numbers in their shortest exact form, 0 for −0, and
 /// fields that have no effect replaced: the clamp's width where no strip uses it, the safety factor where
-/// the time step is given. A new `solver_version` changes every key, so that
+/// the time step is given; or left out: the ring of a rigid disk. A new `solver_version` changes every key, so that
 /// old results are not taken for new ones.
 pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     let mut spec = spec.clone();
@@ -22,8 +22,14 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     if spec.numerics.time_step_s.is_some() {
         spec.numerics.safety_factor = Numerics::default().safety_factor;
     }
+    let mut job = encode(&spec);
+    if spec.scene.disk.kind == DiskKind::Rigid
+        && let Some(disk) = job.pointer_mut("/scene/disk").and_then(Value::as_object_mut)
+    {
+        disk.remove("ring");
+    }
     let mut text = String::new();
-    write_canonical(&encode(&spec), &mut text);
+    write_canonical(&job, &mut text);
     // The version cannot run into the job: it is quoted and the job begins with a brace.
     let hash = blake3::hash(format!("{}{text}", Value::from(solver_version)).as_bytes());
     hash.to_hex()[..HEX_DIGITS].to_owned()

@@ -1,7 +1,7 @@
 //! The registry of parameters: what a grid or an override can set, by short name.
 
 use super::suggest;
-use crate::spec::{ClampSide, DiskKind, TopFace};
+use crate::spec::{ClampSide, Clock, DiskKind, TargetSurface, TopFace};
 use schemars::{Schema, SchemaGenerator};
 use serde_json::Value;
 
@@ -40,6 +40,8 @@ const fn parameter(name: &'static str, pointer: &'static str, kind: Kind, doc: &
 const CLAMP_SIDE: Kind = Kind::Name(SchemaGenerator::subschema_for::<ClampSide>);
 const TOP_FACE: Kind = Kind::Name(SchemaGenerator::subschema_for::<TopFace>);
 const DISK_KIND: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskKind>);
+const TARGET: Kind = Kind::Name(SchemaGenerator::subschema_for::<TargetSurface>);
+const CLOCK: Kind = Kind::Name(SchemaGenerator::subschema_for::<Clock>);
 
 /// All parameters, in the order in which help and messages list them.
 #[rustfmt::skip]
@@ -50,6 +52,17 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("ramp_s", "/scene/load/ramp_s", Kind::Number, "duration of the load's linear ramp [s]"),
     parameter("track_radius_m", "/scene/disk/track_radius_m", Kind::Number, "distance of the pin's centre from the axis [m]"),
     parameter("disk_kind", "/scene/disk/kind", DISK_KIND, "what the disk is made of [name]"),
+    parameter("disk_young_modulus_pa", "/scene/disk/ring/young_modulus_pa", Kind::Number, "Young's modulus of an elastic disk [Pa]"),
+    parameter("disk_poisson_ratio", "/scene/disk/ring/poisson_ratio", Kind::Number, "Poisson's ratio of an elastic disk [-]"),
+    parameter("disk_density_kg_m3", "/scene/disk/ring/density_kg_m3", Kind::Number, "density of an elastic disk [kg/m³]"),
+    parameter("disk_inner_radius_m", "/scene/disk/ring/inner_radius_m", Kind::Number, "inner radius of an elastic disk [m]"),
+    parameter("disk_outer_radius_m", "/scene/disk/ring/outer_radius_m", Kind::Number, "outer radius of an elastic disk [m]"),
+    parameter("disk_thickness_m", "/scene/disk/ring/thickness_m", Kind::Number, "thickness of an elastic disk [m]"),
+    parameter("disk_element_size_m", "/scene/disk/ring/element_size_m", Kind::Number, "largest element of an elastic disk under the track [m]"),
+    parameter("disk_coarse_element_size_m", "/scene/disk/ring/coarse_element_size_m", Kind::Number, "largest element of an elastic disk elsewhere [m]"),
+    parameter("track_arc_deg", "/scene/disk/ring/track_arc_deg", Kind::Number, "arc of an elastic disk that the pin may sweep [°]"),
+    parameter("target", "/scene/disk/ring/target", TARGET, "how an elastic disk's surface is interpolated [name]"),
+    parameter("disk_clock", "/scene/disk/ring/clock", CLOCK, "whether an elastic disk has its own time step [name]"),
     parameter("young_modulus_pa", "/scene/pin/young_modulus_pa", Kind::Number, "Young's modulus of the pin [Pa]"),
     parameter("poisson_ratio", "/scene/pin/poisson_ratio", Kind::Number, "Poisson's ratio of the pin [-]"),
     parameter("density_kg_m3", "/scene/pin/density_kg_m3", Kind::Number, "density of the pin [kg/m³]"),

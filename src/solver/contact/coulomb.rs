@@ -38,6 +38,13 @@ pub fn project<S: Simd>(trial_n: [f64x8<S>; 2], normal_n: f64x8<S>, mu: f64x8<S>
     }
 }
 
+/// [`project`] of one node: the force [N] and whether it sticks.
+pub fn project_one(trial_n: [f64; 2], normal_n: f64, mu: f64) -> ([f64; 2], bool) {
+    let limit = mu * normal_n;
+    let trial = (trial_n[0] * trial_n[0] + trial_n[1] * trial_n[1]).sqrt();
+    if trial <= limit { (trial_n, true) } else { (trial_n.map(|t| t * (limit / trial)), false) }
+}
+
 /// Friction [N] on a node that slips by `given_m` ≠ 0 in a direction in which it is held, and that a trial
 /// force of zero would let slip by `free_m` in the other one, where a force t changes the slip by
 /// t/`stiffness_n_m`. It opposes the whole slip, t = −μN s/|s|: components in the held and in the free

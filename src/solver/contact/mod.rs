@@ -4,7 +4,11 @@
 //! below its target at t_{n+1} gets a constraint row, and the multipliers that put it back act at t_n.
 
 pub mod coulomb;
+pub mod elastic;
+pub mod patch;
 pub mod rigid;
+
+pub use elastic::Solves;
 
 use super::field::Field;
 use super::mesh::BlockMesh;
@@ -32,6 +36,20 @@ pub struct Contacts<const L: usize> {
     pub previous_increment_m: Field<L>,
     /// What [`Status`] names, component by component.
     pub status: Field<L>,
+    /// On an elastic target.
+    pub elastic: Option<Box<ElasticContacts<L>>>,
+}
+
+/// What there is besides on an elastic target.
+#[derive(Debug, Clone)]
+pub struct ElasticContacts<const L: usize> {
+    /// How the target itself moves under each slave node during the step [m]: x, y, and in z by how much its surface
+    /// at t_n is higher where the node will be than where it is.
+    pub yielding_m: Field<L>,
+    /// The same over the step before.
+    pub previous_yielding_m: Field<L>,
+    /// How the contact solves went.
+    pub solves: [Solves; L],
 }
 
 /// The components of [`Contacts::status`].
@@ -49,7 +67,37 @@ impl<const L: usize> Contacts<L> {
     /// No contact at the nodes of the contact face of `mesh`.
     pub fn separated(mesh: &BlockMesh) -> Self {
         let face = || Field::on_face(mesh);
-        Self { force_n: face(), increment_m: face(), previous_increment_m: face(), status: face() }
+        Self {
+            force_n: face(),
+            increment_m: face(),
+            previous_increment_m: face(),
+            status: face(),
+            elastic: None,
+        }
+    }
+
+    /// The same on an elastic target.
+    pub fn on_elastic_target(mesh: &BlockMesh) -> Self {
+        let face = || Field::on_face(mesh);
+        let elastic = ElasticContacts {
+            yielding_m: face(),
+            previous_yielding_m: face(),
+            solves: [Solves::default(); L],
+        };
+        Self { elastic: Some(Box::new(elastic)), ..Self::separated(mesh) }
+    }
+
+    /// What was found over the last step is now of the step before.
+    pub(super) fn swap_increments(&mut self) {
+        std::mem::swap(&mut self.increment_m, &mut self.previous_increment_m);
+        if let Some(elastic) = &mut self.elastic {
+            std::mem::swap(&mut elastic.yielding_m, &mut elastic.previous_yielding_m);
+        }
+    }
+
+    /// How the contact solves of a lane went, on an elastic target.
+    pub fn solves_of(&self, lane: usize) -> Option<&Solves> {
+        self.elastic.as_ref().map(|elastic| &elastic.solves[lane])
     }
 
     /// Number of slave nodes.
@@ -99,6 +147,11 @@ impl<const L: usize> Contacts<L> {
         for field in [&self.force_n, &self.increment_m, &self.previous_increment_m, &self.status] {
             field.save_lane(lane, saved);
         }
+        if let Some(elastic) = &self.elastic {
+            elastic.yielding_m.save_lane(lane, saved);
+            elastic.previous_yielding_m.save_lane(lane, saved);
+            elastic.solves[lane].save(saved);
+        }
     }
 
     /// Sets a lane to a saved one; all zeros separate its nodes.
@@ -107,6 +160,11 @@ impl<const L: usize> Contacts<L> {
             [&mut self.force_n, &mut self.increment_m, &mut self.previous_increment_m, &mut self.status]
         {
             field.load_lane(lane, saved);
+        }
+        if let Some(elastic) = &mut self.elastic {
+            elastic.yielding_m.load_lane(lane, saved);
+            elastic.previous_yielding_m.load_lane(lane, saved);
+            elastic.solves[lane] = Solves::load(saved);
         }
     }
 }

@@ -74,7 +74,7 @@ impl<const L: usize> RigidContact<L> {
         face: &mut Face<'_, L>,
         contacts: &mut Contacts<L>,
     ) -> [[f64; L]; 3] {
-        std::mem::swap(&mut contacts.increment_m, &mut contacts.previous_increment_m);
+        contacts.swap_increments();
         for held in &mut self.held {
             for c in 0..3 {
                 held.u_m[c] = *face.u.at(held.place, c);

@@ -20,6 +20,9 @@ pub(super) struct ContactWorks<const L: usize> {
 #[expect(clippy::struct_field_names, reason = "units are part of the names")]
 pub(super) struct StepWorks<const L: usize> {
     pub drive_j: [f64; L],
+    /// Work of the drive over the slopes of an elastic target.
+    pub slope_after_j: [f64; L],
+    pub slope_before_j: [f64; L],
     pub friction_after_j: [f64; L],
     pub friction_before_j: [f64; L],
     pub contact_loss_after_j: [f64; L],
@@ -74,14 +77,39 @@ impl<const L: usize> ContactWorks<L> {
         }
         let [drive_j, friction_after_j, friction_before_j, contact_loss_after_j, contact_loss_before_j] =
             sums;
+        let [slope_after_j, slope_before_j] = match &contacts.elastic {
+            None => [[0.0; L]; 2],
+            Some(elastic) => {
+                [&elastic.yielding_m, &elastic.previous_yielding_m].map(|way| normal_work(contacts, way))
+            }
+        };
         StepWorks {
             drive_j,
+            slope_after_j,
+            slope_before_j,
             friction_after_j,
             friction_before_j,
             contact_loss_after_j,
             contact_loss_before_j,
         }
     }
+}
+
+/// Normal forces times an increment.
+fn normal_work<const L: usize>(contacts: &Contacts<L>, way_m: &Field<L>) -> [f64; L] {
+    let stride = way_m.blocks_per_line();
+    let mut total = [0.0; L];
+    for along in 0..stride {
+        let mut slots = [0.0; WIDTH];
+        let column = contacts.force_n.blocks()[along..].iter().zip(&way_m.blocks()[along..]).step_by(stride);
+        for (force, way) in column {
+            for i in 0..WIDTH {
+                slots[i] += force.0[2][i] * way.0[2][i];
+            }
+        }
+        add_slots(&mut total, &slots);
+    }
+    total
 }
 
 /// Force times increment: the tangential part, and the normal one.

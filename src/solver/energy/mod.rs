@@ -11,7 +11,7 @@
 //!
 //! For γ = ½ the kinetic part is ½ v_{n−½} M v_{n+½}. So a force f_n does the work
 //! f_n·[(1−γ)Δu_n + γΔu_{n−1}]. For contact forces this splits into
-//! * the drive's work f_t·VΔt,
+//! * the drive's work f_t·VΔt (and N times the rise of an elastic disk's surface along the node's way),
 //! * friction: −f_t·[(1−γ)s_n + γs_{n−1}] of the slipping nodes, s the increment relative to the target,
 //! * contact loss: the same product for the tangential forces of sticking nodes, and −N·[(1−γ)Δz_n +
 //!   γΔz_{n−1}] of all nodes: what a velocity jump costs when a node sticks or closes.
@@ -19,14 +19,19 @@
 //! Work of load and contact ([`contact_work`]) is summed every step (boundary nodes only). The stored energies and the
 //! damping need products with K and are evaluated ([`audit`]) every `interval` steps, the damping's work being
 //! the sample times `interval`. With `interval` = 1 the balance closes to rounding.
+//!
+//! The energies of an elastic disk ([`disk`]) are added to those of the pin; what is inside is then the work
+//! of the contact forces on both, in which the increments are relative to the deformed target.
 
 mod audit;
 mod contact_work;
+mod disk;
 
 use super::field::next;
 use super::model::Model;
 use super::state::{Drive, State};
 use audit::Audit;
+use disk::DiskAudit;
 use contact_work::ContactWorks;
 use serde::{Deserialize, Serialize};
 
@@ -106,6 +111,7 @@ pub struct EnergyLedger<const L: usize> {
     energies: [Energies; L],
     contact: ContactWorks<L>,
     audit: Audit<L>,
+    disk: Option<DiskAudit<L>>,
 }
 
 impl<const L: usize> EnergyLedger<L> {
@@ -121,6 +127,7 @@ impl<const L: usize> EnergyLedger<L> {
             energies: [Energies::default(); L],
             contact: ContactWorks::new(model),
             audit: Audit::new(model),
+            disk: model.disk().map(DiskAudit::new),
         }
     }
 
@@ -189,6 +196,9 @@ impl<const L: usize> EnergyLedger<L> {
         }
         if self.audits(state.step) {
             self.audit.begin(model, state);
+            if let (Some(audit), Some(body), Some(disk)) = (&mut self.disk, model.disk(), &state.disk) {
+                audit.begin(body, disk, model.time_step_s(), model.beta_r_s());
+            }
         }
     }
 
@@ -205,6 +215,7 @@ impl<const L: usize> EnergyLedger<L> {
             if state.steps_done(l) > 1 {
                 sums.drive.before_j += works.drive_j[l];
             }
+            sums.drive.before_j += works.slope_before_j[l];
         }
         let mut damping_after_j = [0.0; L];
         if self.keeps(model, done) {
@@ -219,7 +230,7 @@ impl<const L: usize> EnergyLedger<L> {
             sums.load.after_j += state.load_n[l] * (next[l] - last[l]);
             sums.friction.after_j += works.friction_after_j[l];
             sums.contact_loss.after_j += works.contact_loss_after_j[l];
-            sums.drive.after_j += works.drive_j[l];
+            sums.drive.after_j += works.drive_j[l] + works.slope_after_j[l];
             sums.damping.after_j += damping_after_j[l];
         }
     }
@@ -233,7 +244,11 @@ impl<const L: usize> EnergyLedger<L> {
     fn evaluate(&mut self, model: &Model, state: &State<L>) -> [f64; L] {
         let gamma = model.beta2();
         let samples = self.interval as f64;
-        let found = self.audit.evaluate(model, state);
+        let mut found = self.audit.evaluate(model, state);
+        if let (Some(audit), Some(disk)) = (&self.disk, &state.disk) {
+            let begins = std::array::from_fn(|lane| state.steps_done(lane) == 1);
+            audit.add_to(&mut found, disk, model, &begins);
+        }
         for l in 0..L {
             let sums = &mut self.sums[l];
             let begins = state.steps_done(l) == 1;

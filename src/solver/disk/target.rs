@@ -1,6 +1,6 @@
 //! The moving target under the slave nodes.
 
-use super::mesh::BlockMesh;
+use crate::solver::mesh::BlockMesh;
 
 /// Velocity of the target's surface under each slave node per unit of the drive's rate, x and y.
 ///

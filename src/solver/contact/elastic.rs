@@ -1,0 +1,530 @@
+//! The forward-increment solve on an elastic disk.
+//!
+//! Pin and disk are predicted to t_{n+1} without contact. A slave node s carries the row G_s = (1, −N_1, …, −N_k) of
+//! the shape functions of the patch under it at t_{n+1}, and multipliers f (force on the pin; its negative, spread
+//! by the same shape functions, acts on the disk) are found such that
+//!
+//! ```text
+//! g = g* + cΔt² (1/m_s + N C Nᵀ) f     g ≥ 0, N ≥ 0, g N = 0     |t| ≤ μN, slip opposes t
+//! ```
+//!
+//! C = B M⁻¹ is the disk's response ([`Response`](crate::solver::disk::response::Response)); it couples slave nodes
+//! that share target nodes. Gauss–Seidel sweeps solve node by node: normal force, then projection on its cone.
+//! Within a sweep what a node has changed is passed on with M⁻¹, the largest that C can be; after it C itself is
+//! applied. The solve begins with the forces of the step before and ends when no force changes by more than
+//! [`TOLERANCE`] of the largest.
+//!
+//! The gap is measured to the deformed target; slip is the pin's motion past the material point of the disk that
+//! is under the node at t_{n+1}, and so has no jump where a node passes from one patch to the next. The normal
+//! is that of the undeformed top: slopes are 10⁻⁶.
+
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+
+use super::coulomb::project_one;
+use super::patch::{Grid, Share, Spot};
+use super::{Contacts, Status};
+use crate::solver::disk::response::column_at;
+use crate::solver::disk::{DiskBody, DiskState};
+use crate::solver::field::{Block, Field, Place, next};
+use crate::solver::integrate::Factors;
+use crate::solver::model::Model;
+use crate::solver::state::Drive;
+use crate::spec::TargetSurface;
+use fearless_simd::{Level, Simd, dispatch, prelude::*};
+use fearless_simd::f64x8;
+
+/// Largest change of a nodal force in the last sweep, over the largest nodal force.
+pub const TOLERANCE: f64 = 1.0e-10;
+
+/// The solve has failed after so many sweeps. The reference scene takes six.
+pub const MAX_SWEEPS: u32 = 500;
+
+/// What is fixed during a run, and scratch.
+#[derive(Debug, Clone)]
+pub(in crate::solver) struct ElasticContact<const L: usize> {
+    grid: Grid,
+    slaves: Vec<Slave>,
+    /// Smallest and largest angle [rad] of a slave node.
+    angles_rad: [f64; 2],
+    /// Sine and cosine of the angles of the mesh's columns.
+    directions: Vec<(f64, f64)>,
+    /// Displacements [m] of the pin's face and of the disk's top at t_n.
+    face_before: Field<L>,
+    top_before: Field<L>,
+    rows: Vec<Row>,
+    targets: Targets,
+}
+
+/// A slave node.
+#[derive(Debug, Clone, Copy)]
+struct Slave {
+    place: Place,
+    angle_rad: f64,
+    across: Spot,
+    inverse_mass: f64,
+    motion: [f64; 2],
+}
+
+/// A slave node's constraint during the solve of one lane; vectors in the pin's directions.
+#[derive(Debug, Clone, Copy, Default)]
+struct Row {
+    /// Slip in x and y and gap [m] of the prediction.
+    free_m: [f64; 3],
+    force_n: [f64; 3],
+    /// Displacement per force [m/N]: of the pin's node alone, and of all the row.
+    own: f64,
+    compliance: f64,
+    sticks: bool,
+}
+
+/// The nodes of the disk's top that the slave nodes of a lane can touch, column by column.
+#[derive(Debug, Clone)]
+struct Targets {
+    rows: usize,
+    /// The track's column of the first ones.
+    first: isize,
+    nodes: Vec<TargetNode>,
+}
+
+/// One of them; vectors in the pin's directions unless said otherwise.
+#[derive(Debug, Clone, Copy, Default)]
+struct TargetNode {
+    /// Index in the mesh, column in mesh and track, row of the track.
+    node: usize,
+    column: usize,
+    row: usize,
+    /// Of the angle at which the node is at t_{n+1}.
+    cos: f64,
+    sin: f64,
+    /// Height [m] at t_n, and increment [m] of the prediction.
+    height_m: f64,
+    increment_m: [f64; 3],
+    inverse_mass: f64,
+    /// Force [N] that the slave nodes receive through it.
+    force_n: [f64; 3],
+    /// By how much it gives way under that force [m].
+    given_way_m: [f64; 3],
+}
+
+/// The slave nodes at t_n, which the solve takes to t_{n+1}.
+pub(in crate::solver) struct Face<'a, const L: usize> {
+    pub u: &'a mut Field<L>,
+    pub p: &'a mut Field<L>,
+    /// K (u + β_R p) − external forces [N].
+    pub residual: &'a Field<L>,
+    /// 1/m of every degree of freedom.
+    pub inverse_mass: &'a [Block],
+}
+
+/// What a step is given.
+pub(in crate::solver) struct Given<'a, const L: usize> {
+    pub factors: &'a Factors,
+    pub drives: &'a [Drive; L],
+    /// Number n + 1 of the step.
+    pub steps: [u64; L],
+    /// How far the disk has turned at t_{n+1}.
+    pub turned_rad: [f64; L],
+}
+
+/// How the solves of a lane went.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Solves {
+    /// Sweeps of all its steps.
+    pub sweeps: f64,
+    /// Most sweeps of a step.
+    pub most_sweeps: f64,
+    /// Largest change of a force in a last sweep, over the largest force.
+    pub residual: f64,
+    /// Step whose solve did not converge, counted from 1; 0 if there is none.
+    pub failed_step: f64,
+}
+
+impl Solves {
+    /// Adds the solve of a step, counted from 1.
+    fn add(&mut self, step: u64, sweeps: u32, residual: f64) {
+        let sweeps = f64::from(sweeps);
+        self.sweeps += sweeps;
+        self.most_sweeps = self.most_sweeps.max(sweeps);
+        self.residual = self.residual.max(residual);
+        if sweeps > f64::from(MAX_SWEEPS) && self.failed_step == 0.0 {
+            self.failed_step = step as f64;
+        }
+    }
+
+    pub(super) fn save(&self, saved: &mut Vec<f64>) {
+        saved.extend([self.sweeps, self.most_sweeps, self.residual, self.failed_step]);
+    }
+
+    pub(super) fn load(saved: &mut dyn Iterator<Item = f64>) -> Self {
+        let [sweeps, most_sweeps, residual, failed_step] = next(saved);
+        Self { sweeps, most_sweeps, residual, failed_step }
+    }
+}
+
+impl<const L: usize> ElasticContact<L> {
+    pub fn new(model: &Model, body: &DiskBody) -> Self {
+        let grid = Grid::new(body.mesh(), body.target());
+        let face_before = Field::on_face(model.mesh());
+        let slaves: Vec<Slave> = model
+            .slaves()
+            .iter()
+            .enumerate()
+            .map(|(index, slave)| {
+                // The lever arms (−Y, X) say where a node is.
+                let [minus_y, x] = slave.surface_motion;
+                Slave {
+                    place: face_before.place(index),
+                    angle_rad: libm::atan2(-minus_y, x),
+                    across: grid.across(libm::hypot(x, minus_y)),
+                    inverse_mass: 1.0 / slave.mass_kg,
+                    motion: slave.surface_motion,
+                }
+            })
+            .collect();
+        let angles = || slaves.iter().map(|slave| slave.angle_rad);
+        let angles_rad = [angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max)];
+        let [columns, rows, _] = body.mesh().nodes_per_axis();
+        Self {
+            angles_rad,
+            directions: body.mesh().angles_rad().iter().map(|angle| libm::sincos(*angle)).collect(),
+            face_before,
+            top_before: Field::with_lines(columns, rows),
+            rows: vec![Row::default(); slaves.len()],
+            targets: Targets { rows: grid.rows(), first: 0, nodes: Vec::new() },
+            slaves,
+            grid,
+        }
+    }
+
+    /// Moves the slave nodes and the disk.
+    pub fn solve(
+        &mut self,
+        body: &DiskBody,
+        given: &Given<'_, L>,
+        face: &mut Face<'_, L>,
+        disk: &mut DiskState<L>,
+        contacts: &mut Contacts<L>,
+    ) {
+        contacts.swap_increments();
+        let count = self.face_before.blocks().len();
+        self.face_before.blocks_mut().copy_from_slice(&face.u.blocks()[..count]);
+        let top = self.top_before.blocks().len();
+        self.top_before.blocks_mut().copy_from_slice(&disk.u.blocks()[..top]);
+        disk.predict(body, given.factors);
+        dispatch!(Level::new(), simd => predict(simd, given.factors, face, count));
+        for lane in 0..L {
+            self.gather(body, given.turned_rad[lane], lane, disk);
+            let first = self.targets.first;
+            match body.target() {
+                TargetSurface::Bilinear => {
+                    let shares: Vec<_> =
+                        self.spots(given, lane).map(|(a, b)| self.grid.bilinear(a, b, first)).collect();
+                    self.solve_lane(body, given, lane, &shares, face, disk, contacts);
+                }
+                TargetSurface::Ferguson => {
+                    let shares: Vec<_> =
+                        self.spots(given, lane).map(|(a, b)| self.grid.ferguson(a, b, first)).collect();
+                    self.solve_lane(body, given, lane, &shares, face, disk, contacts);
+                }
+            }
+        }
+    }
+
+    /// Where the slave nodes of a lane are on the track at t_{n+1}.
+    fn spots(&self, given: &Given<'_, L>, lane: usize) -> impl Iterator<Item = (Spot, Spot)> + '_ {
+        let turned_rad = given.turned_rad[lane];
+        self.slaves.iter().map(move |slave| (self.grid.along(slave.angle_rad - turned_rad), slave.across))
+    }
+
+    /// Collects the target nodes of a lane.
+    fn gather(&mut self, body: &DiskBody, turned_rad: f64, lane: usize, disk: &DiskState<L>) {
+        let [low, high] = self.angles_rad.map(|angle| self.grid.along(angle - turned_rad).cell);
+        let (first, last) = (low - self.grid.margin(), high + 1 + self.grid.margin());
+        let (sin, cos) = libm::sincos(turned_rad);
+        let mesh = body.mesh();
+        self.targets.first = first;
+        self.targets.nodes.clear();
+        for column in first..=last {
+            let column = self.grid.track_column(column);
+            let (sin_there, cos_there) = self.directions[column];
+            for row in 0..self.targets.rows {
+                let node = mesh.node(column, mesh.track().first_row + row, 0);
+                let place = disk.u.place(node);
+                let before: [f64; 3] = std::array::from_fn(|c| self.top_before.at(place, c)[lane]);
+                let mut target = TargetNode {
+                    node,
+                    column,
+                    row,
+                    cos: cos_there * cos - sin_there * sin,
+                    sin: sin_there * cos + cos_there * sin,
+                    height_m: before[2],
+                    inverse_mass: body.inverse_mass()[node],
+                    ..TargetNode::default()
+                };
+                let increment_m = std::array::from_fn(|c| disk.u.at(place, c)[lane] - before[c]);
+                target.increment_m = target.in_pin(increment_m);
+                self.targets.nodes.push(target);
+            }
+        }
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "a lane of a solve has that many parts")]
+    fn solve_lane<const K: usize>(
+        &mut self,
+        body: &DiskBody,
+        given: &Given<'_, L>,
+        lane: usize,
+        shares: &[[Share; K]],
+        face: &mut Face<'_, L>,
+        disk: &mut DiskState<L>,
+        contacts: &mut Contacts<L>,
+    ) {
+        let (u_scale, p_scale) = (given.factors.u_scale[lane], given.factors.p_scale[lane]);
+        let drive = &given.drives[lane];
+        let travel_m = drive.rate * given.factors.time_step_s;
+        for ((slave, row), shares) in self.slaves.iter().zip(&mut self.rows).zip(shares) {
+            let end: [f64; 3] = std::array::from_fn(|c| face.u.at(slave.place, c)[lane]);
+            let before = [0, 1].map(|c| self.face_before.at(slave.place, c)[lane]);
+            let slip = [0, 1].map(|c| end[c] - before[c] - slave.motion[c] * travel_m);
+            *row = Row {
+                free_m: [slip[0], slip[1], end[2]],
+                force_n: std::array::from_fn(|c| contacts.force_n.at(slave.place, c)[lane]),
+                own: u_scale * slave.inverse_mass,
+                compliance: u_scale * slave.inverse_mass,
+                sticks: false,
+            };
+            for share in shares {
+                let node = self.targets.node(share);
+                row.free_m[0] -= share.weight * node.increment_m[0];
+                row.free_m[1] -= share.weight * node.increment_m[1];
+                row.free_m[2] -= share.weight * (node.height_m + node.increment_m[2]);
+                row.compliance += share.weight * share.weight * (u_scale * node.inverse_mass);
+            }
+        }
+        let (sweeps, residual) = self.targets.sweep(body, u_scale, drive.mu, &mut self.rows, shares);
+        if let Some(elastic) = &mut contacts.elastic {
+            elastic.solves[lane].add(given.steps[lane], sweeps, residual);
+        }
+        self.targets.spread(&self.rows, shares);
+        self.targets.respond(body, u_scale);
+        for ((slave, row), shares) in self.slaves.iter().zip(&self.rows).zip(shares) {
+            let place = slave.place;
+            let relative = self.targets.relative_m(row, shares);
+            let closed = row.force_n[2] > 0.0;
+            let gap_before = contacts.status.at(place, Status::Gap as usize)[lane];
+            let gap = if closed { 0.0 } else { relative[2] };
+            for c in 0..3 {
+                let force = row.force_n[c];
+                face.u.at_mut(place, c)[lane] += row.own * force;
+                face.p.at_mut(place, c)[lane] += (p_scale * slave.inverse_mass) * force;
+                contacts.force_n.at_mut(place, c)[lane] = force;
+            }
+            let increment = [relative[0], relative[1], gap - gap_before];
+            let status = [gap, f64::from(u8::from(closed)), f64::from(u8::from(closed && !row.sticks))];
+            // The surface under the node at t_n, and what is then under its place at t_{n+1}.
+            let under = self.face_before.at(place, 2)[lane] - gap_before;
+            let ahead: f64 =
+                shares.iter().map(|share| share.weight * self.targets.node(share).height_m).sum();
+            let moved = [0, 1].map(|c| face.u.at(place, c)[lane] - self.face_before.at(place, c)[lane]);
+            let yielding = [
+                moved[0] - increment[0] - slave.motion[0] * travel_m,
+                moved[1] - increment[1] - slave.motion[1] * travel_m,
+                ahead - under,
+            ];
+            for c in 0..3 {
+                contacts.increment_m.at_mut(place, c)[lane] = increment[c];
+                contacts.status.at_mut(place, c)[lane] = status[c];
+                if let Some(elastic) = &mut contacts.elastic {
+                    elastic.yielding_m.at_mut(place, c)[lane] = yielding[c];
+                }
+            }
+        }
+        self.targets.move_disk(body, lane, u_scale, p_scale, disk);
+    }
+}
+
+/// Moves the slave nodes as if there were no contact.
+#[inline(always)]
+fn predict<S: Simd, const L: usize>(simd: S, factors: &Factors, face: &mut Face<'_, L>, count: usize) {
+    let moving = face.u.blocks_mut()[..count].iter_mut().zip(&mut face.p.blocks_mut()[..count]);
+    for ((u, p), (residual, inverse)) in moving.zip(face.residual.blocks().iter().zip(face.inverse_mass)) {
+        for c in 0..3 {
+            let force = f64x8::from_slice(simd, &residual.0[c]);
+            let [next_u, next_p] = factors.moved(simd, force, &inverse.0[c], &u.0[c], &p.0[c]);
+            next_u.store_slice(&mut u.0[c]);
+            next_p.store_slice(&mut p.0[c]);
+        }
+    }
+}
+
+impl TargetNode {
+    /// A vector of the node's own directions in the pin's.
+    fn in_pin(&self, [radial, tangential, axial]: [f64; 3]) -> [f64; 3] {
+        [radial * self.cos - tangential * self.sin, radial * self.sin + tangential * self.cos, axial]
+    }
+
+    /// The force on the node in its own directions.
+    fn own_force_n(&self) -> [f64; 3] {
+        let [x, y, z] = self.force_n;
+        [x * self.cos + y * self.sin, y * self.cos - x * self.sin, z]
+    }
+}
+
+impl Targets {
+    fn node(&self, share: &Share) -> &TargetNode {
+        &self.nodes[share.column * self.rows + share.row]
+    }
+
+    /// Slip and gap [m] of a slave node under the forces as they stand.
+    fn relative_m(&self, row: &Row, shares: &[Share]) -> [f64; 3] {
+        let mut relative: [f64; 3] = std::array::from_fn(|c| row.free_m[c] + row.own * row.force_n[c]);
+        for share in shares {
+            let node = self.node(share);
+            for c in 0..3 {
+                relative[c] += share.weight * node.given_way_m[c];
+            }
+        }
+        relative
+    }
+
+    /// Sweeps over the slave nodes until their forces stand still: how many it took, and the last change.
+    fn sweep<const K: usize>(
+        &mut self,
+        body: &DiskBody,
+        u_scale: f64,
+        mu: f64,
+        rows: &mut [Row],
+        shares: &[[Share; K]],
+    ) -> (u32, f64) {
+        self.spread(rows, shares);
+        self.respond(body, u_scale);
+        let couples_further = body.response().reach() > 0;
+        let mut residual = f64::INFINITY;
+        for sweep in 1..=MAX_SWEEPS {
+            let (mut change, mut largest) = (0.0_f64, 0.0_f64);
+            for (row, shares) in rows.iter_mut().zip(shares) {
+                let relative = self.relative_m(row, shares);
+                let stiffness = 1.0 / row.compliance;
+                // A number that is not finite gives no force; the guard finds it.
+                let normal = (row.force_n[2] - relative[2] * stiffness).max(0.0);
+                let trial = [0, 1].map(|c| row.force_n[c] - relative[c] * stiffness);
+                let (friction, sticks) =
+                    if normal > 0.0 { project_one(trial, normal, mu) } else { ([0.0; 2], false) };
+                let force = [friction[0], friction[1], normal];
+                row.sticks = sticks;
+                largest = largest.max(normal);
+                if force == row.force_n {
+                    continue;
+                }
+                let delta: [f64; 3] = std::array::from_fn(|c| force[c] - row.force_n[c]);
+                row.force_n = force;
+                for share in shares {
+                    let node = &mut self.nodes[share.column * self.rows + share.row];
+                    for c in 0..3 {
+                        let part = share.weight * delta[c];
+                        node.force_n[c] += part;
+                        node.given_way_m[c] += (u_scale * node.inverse_mass) * part;
+                        change = change.max(delta[c].abs());
+                    }
+                }
+            }
+            if couples_further {
+                self.respond(body, u_scale);
+            }
+            residual = if largest > 0.0 { change / largest } else { change };
+            if change <= TOLERANCE * largest {
+                return (sweep, residual);
+            }
+        }
+        (MAX_SWEEPS + 1, residual)
+    }
+
+    /// Spreads the slave nodes' forces over the target nodes.
+    fn spread<const K: usize>(&mut self, rows: &[Row], shares: &[[Share; K]]) {
+        for node in &mut self.nodes {
+            node.force_n = [0.0; 3];
+        }
+        for (row, shares) in rows.iter().zip(shares).filter(|(row, _)| row.force_n[2] > 0.0) {
+            for share in shares {
+                let node = &mut self.nodes[share.column * self.rows + share.row];
+                for c in 0..3 {
+                    node.force_n[c] += share.weight * row.force_n[c];
+                }
+            }
+        }
+    }
+
+    /// cΔt² C f at the target nodes.
+    fn respond(&mut self, body: &DiskBody, u_scale: f64) {
+        for node in &mut self.nodes {
+            node.given_way_m = [0.0; 3];
+        }
+        let columns = self.nodes.len() / self.rows;
+        for at in 0..self.nodes.len() {
+            let source = self.nodes[at];
+            if source.force_n == [0.0; 3] {
+                continue;
+            }
+            let force = source.own_force_n();
+            let place = [(at / self.rows) as isize, (at % self.rows) as isize];
+            for moved in body.response().of(source.column, source.row) {
+                let [column, row] = [place[0] + moved.offset[0], place[1] + moved.offset[1]];
+                let inside = (0..columns as isize).contains(&column) && (0..self.rows as isize).contains(&row);
+                if moved.offset[2] > 0 || !inside {
+                    continue;
+                }
+                let node = &mut self.nodes[column as usize * self.rows + row as usize];
+                let way = node.in_pin(times(&moved.per_force, force).map(|way| u_scale * way));
+                for c in 0..3 {
+                    node.given_way_m[c] += way[c];
+                }
+            }
+        }
+    }
+
+    /// Moves the disk by the reaction.
+    fn move_disk<const L: usize>(
+        &self,
+        body: &DiskBody,
+        lane: usize,
+        u_scale: f64,
+        p_scale: f64,
+        disk: &mut DiskState<L>,
+    ) {
+        let mesh = body.mesh();
+        let first_row = mesh.track().first_row as isize;
+        for source in self.nodes.iter().filter(|node| node.force_n != [0.0; 3]) {
+            let force = source.own_force_n();
+            for moved in body.response().of(source.column, source.row) {
+                let row = first_row + source.row as isize + moved.offset[1];
+                let (Some(column), Ok(row)) =
+                    (column_at(mesh, source.column, moved.offset[0]), usize::try_from(row))
+                else {
+                    continue;
+                };
+                let depth = moved.offset[2] as usize;
+                let [_, rows, planes] = mesh.nodes_per_axis();
+                if row >= rows || depth >= planes {
+                    continue;
+                }
+                let place = disk.u.place(mesh.node(column, row, depth));
+                let way = times(&moved.per_force, force);
+                for c in 0..3 {
+                    disk.u.at_mut(place, c)[lane] -= u_scale * way[c];
+                    disk.p.at_mut(place, c)[lane] -= p_scale * way[c];
+                }
+            }
+            if let Some(unfiltered) = &mut disk.unfiltered {
+                let place = unfiltered.place(source.node);
+                for c in 0..3 {
+                    unfiltered.at_mut(place, c)[lane] -= p_scale * (source.inverse_mass * force[c]);
+                }
+            }
+        }
+    }
+}
+
+/// A 3 × 3 matrix times a vector.
+fn times(matrix: &[[f64; 3]; 3], x: [f64; 3]) -> [f64; 3] {
+    std::array::from_fn(|c| matrix[c][0] * x[0] + matrix[c][1] * x[1] + matrix[c][2] * x[2])
+}

@@ -1,0 +1,130 @@
+//! The body of an elastic disk.
+
+use super::check::Violations;
+use super::scene::Pin;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+/// An elastic ring, meshed with hexahedra in (r, θ, z), whose top face is the target of the contact. The nodes of
+/// its inner radius turn rigidly at ω and are blocked in z. Defaults to the steel disk of Baillet et al. 2005.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Ring {
+    /// Inner radius [m].
+    pub inner_radius_m: f64,
+    /// Outer radius [m].
+    pub outer_radius_m: f64,
+    /// Thickness [m].
+    pub thickness_m: f64,
+    /// Young's modulus [Pa].
+    pub young_modulus_pa: f64,
+    /// Poisson's ratio, −1 < ν < 0.5.
+    pub poisson_ratio: f64,
+    /// Density [kg/m³].
+    pub density_kg_m3: f64,
+    /// Largest edge [m] of the elements under the track.
+    pub element_size_m: f64,
+    /// Largest edge [m] of the elements far from it.
+    pub coarse_element_size_m: f64,
+    /// Arc [°] that the pin's centre may sweep during the run; under it the mesh is fine. 360: all around.
+    pub track_arc_deg: f64,
+    /// How the target surface is interpolated between its nodes.
+    pub target: TargetSurface,
+    /// Whether the disk has a time step of its own.
+    pub clock: Clock,
+}
+
+/// The target surface between its nodes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum TargetSurface {
+    /// Four-node quadrilaterals.
+    #[default]
+    Bilinear,
+    /// Bicubic Ferguson patches, with continuous tangents across their edges.
+    Ferguson,
+}
+
+/// How the disk's time step is chosen.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Clock {
+    /// The disk takes as many stages in each step of the pin as it needs to be stable.
+    #[default]
+    Own,
+    /// One stage: the step of both bodies is the smaller of the two.
+    Common,
+}
+
+impl Default for Ring {
+    fn default() -> Self {
+        Self {
+            inner_radius_m: 0.070,
+            outer_radius_m: 0.120,
+            thickness_m: 0.085,
+            young_modulus_pa: 2.1e11,
+            poisson_ratio: 0.3,
+            density_kg_m3: 7800.0,
+            element_size_m: 0.0025,
+            coarse_element_size_m: 0.012,
+            track_arc_deg: 25.0,
+            target: TargetSurface::Bilinear,
+            clock: Clock::Own,
+        }
+    }
+}
+
+/// More elements in one direction than this are a slip of the keyboard.
+const MAX_ELEMENTS: f64 = 2000.0;
+
+impl Ring {
+    /// Adds every violated limit to `found`, of a disk under `pin` at the radius `track_m`.
+    pub(super) fn check(&self, pin: &Pin, track_m: f64, found: &mut Violations) {
+        let field = |name: &str| format!("scene.disk.ring.{name}");
+        let lengths = [
+            ("inner_radius_m", self.inner_radius_m),
+            ("outer_radius_m", self.outer_radius_m),
+            ("thickness_m", self.thickness_m),
+            ("element_size_m", self.element_size_m),
+            ("coarse_element_size_m", self.coarse_element_size_m),
+        ];
+        for (name, length) in lengths {
+            found.require_magnitude(&field(name), length, "a length > 0 m");
+        }
+        found.require_magnitude(&field("young_modulus_pa"), self.young_modulus_pa, "a modulus > 0 Pa");
+        let nu = self.poisson_ratio;
+        found.require(&field("poisson_ratio"), nu, nu > -1.0 && nu < 0.5, "a Poisson's ratio with -1 < ν < 0.5");
+        found.require_magnitude(&field("density_kg_m3"), self.density_kg_m3, "a density > 0 kg/m³");
+        let arc = self.track_arc_deg;
+        found.require(&field("track_arc_deg"), arc, arc > 0.0 && arc <= 360.0, "an arc, 0 < track_arc_deg <= 360");
+        let (fine, coarse) = (self.element_size_m, self.coarse_element_size_m);
+        found.require(
+            &field("coarse_element_size_m"),
+            coarse,
+            coarse >= fine,
+            &format!("at least element_size_m = {fine}"),
+        );
+        let longest = (std::f64::consts::TAU * track_m).max(self.thickness_m).max(self.outer_radius_m);
+        found.require(
+            &field("element_size_m"),
+            fine,
+            fine * MAX_ELEMENTS >= longest,
+            &format!("at least {:e} m: no more than {MAX_ELEMENTS} elements in a direction", longest / MAX_ELEMENTS),
+        );
+        // Under the pin's corners, and an element more for tangents at the patches' corners.
+        let [half_x, half_y] = [pin.size_m[0] / 2.0, pin.size_m[1] / 2.0];
+        let (low, high) = (track_m - half_x - fine, (track_m + half_x).hypot(half_y) + fine);
+        found.require(
+            &field("inner_radius_m"),
+            self.inner_radius_m,
+            self.inner_radius_m <= low,
+            &format!("at most {low:.6} m, an element inside of the pin's inner side"),
+        );
+        found.require(
+            &field("outer_radius_m"),
+            self.outer_radius_m,
+            self.outer_radius_m >= high,
+            &format!("at least {high:.6} m, an element outside of the pin's outer corners"),
+        );
+    }
+}
