@@ -457,28 +457,32 @@ impl Targets {
     /// cΔt² C f at the target nodes.
     fn respond(&mut self, body: &DiskBody, u_scale: f64) {
         for node in &mut self.nodes {
+            // In the node's own directions at first.
             node.given_way_m = [0.0; 3];
         }
-        let columns = self.nodes.len() / self.rows;
+        let reach = body.response().reach() as isize;
+        let (columns, rows) = ((self.nodes.len() / self.rows) as isize, self.rows as isize);
         for at in 0..self.nodes.len() {
             let source = self.nodes[at];
             if source.force_n == [0.0; 3] {
                 continue;
             }
             let force = source.own_force_n();
-            let place = [(at / self.rows) as isize, (at % self.rows) as isize];
-            for moved in body.response().of(source.column, source.row) {
-                let [column, row] = [place[0] + moved.offset[0], place[1] + moved.offset[1]];
-                let inside = (0..columns as isize).contains(&column) && (0..self.rows as isize).contains(&row);
-                if moved.offset[2] > 0 || !inside {
-                    continue;
-                }
-                let node = &mut self.nodes[column as usize * self.rows + row as usize];
-                let way = node.in_pin(times(&moved.per_force, force).map(|way| u_scale * way));
-                for c in 0..3 {
-                    node.given_way_m[c] += way[c];
+            let (column, row) = (at as isize / rows, at as isize % rows);
+            let top = body.response().of(source.column, source.row);
+            let line = 2 * reach + 1;
+            for r in -row.min(reach)..=reach.min(rows - 1 - row) {
+                for c in -column.min(reach)..=reach.min(columns - 1 - column) {
+                    let way = times(&top[((r + reach) * line + c + reach) as usize], force);
+                    let node = &mut self.nodes[((column + c) * rows + row + r) as usize];
+                    for i in 0..3 {
+                        node.given_way_m[i] += way[i];
+                    }
                 }
             }
+        }
+        for node in &mut self.nodes {
+            node.given_way_m = node.in_pin(node.given_way_m.map(|way| u_scale * way));
         }
     }
 
@@ -492,23 +496,21 @@ impl Targets {
         disk: &mut DiskState<L>,
     ) {
         let mesh = body.mesh();
-        let first_row = mesh.track().first_row as isize;
+        let [_, rows, planes] = mesh.nodes_per_axis();
+        let reach = body.response().reach() as isize;
+        let line = 2 * reach + 1;
         for source in self.nodes.iter().filter(|node| node.force_n != [0.0; 3]) {
             let force = source.own_force_n();
-            for moved in body.response().of(source.column, source.row) {
-                let row = first_row + source.row as isize + moved.offset[1];
-                let (Some(column), Ok(row)) =
-                    (column_at(mesh, source.column, moved.offset[0]), usize::try_from(row))
-                else {
-                    continue;
-                };
-                let depth = moved.offset[2] as usize;
-                let [_, rows, planes] = mesh.nodes_per_axis();
-                if row >= rows || depth >= planes {
+            let row = (mesh.track().first_row + source.row) as isize;
+            for (at, per_force) in body.response().of(source.column, source.row).iter().enumerate() {
+                let at = at as isize;
+                let (c, r, depth) = (at % line - reach, at / line % line - reach, (at / (line * line)) as usize);
+                let Some(column) = column_at(mesh, source.column, c) else { continue };
+                if !(0..rows as isize).contains(&(row + r)) || depth >= planes {
                     continue;
                 }
-                let place = disk.u.place(mesh.node(column, row, depth));
-                let way = times(&moved.per_force, force);
+                let place = disk.u.place(mesh.node(column, (row + r) as usize, depth));
+                let way = times(per_force, force);
                 for c in 0..3 {
                     disk.u.at_mut(place, c)[lane] -= u_scale * way[c];
                     disk.p.at_mut(place, c)[lane] -= p_scale * way[c];

@@ -68,7 +68,7 @@ impl Unclocked {
             Clock::Own => MAX_STAGES,
             Clock::Common => 1,
         };
-        let omega_max_squared = bound::omega_max_squared(&elements);
+        let omega_max_squared = bound::omega_max_squared(&definition.mesh, &elements);
         Self { definition, operator, masses_kg, omega_max_squared, most_stages }
     }
 

@@ -45,14 +45,23 @@ impl Elements {
         &self.all
     }
 
-    fn at(&self, angle_rad: f64, i: usize, k: usize) -> &SectorElement {
+    /// Where among all the element between the radii i and i + 1 and the depths k and k + 1 of a sector is.
+    pub fn index(&self, angle_rad: f64, i: usize, k: usize) -> usize {
         let angle = self.angles_rad.iter().position(|known| *known == angle_rad).expect("a known sector");
-        &self.all[(angle * self.layers + k) * self.rows + i]
+        (angle * self.layers + k) * self.rows + i
+    }
+
+    fn at(&self, angle_rad: f64, i: usize, k: usize) -> &SectorElement {
+        &self.all[self.index(angle_rad, i, k)]
     }
 }
 
 /// A row's blocks: neighbouring line (depth and radius −1, 0, 1) → column −1, 0, 1 → component of x → of y.
 type NodeRow = [[[[f64; 3]; 3]; 3]; 9];
+
+/// The same of a node between equal sectors, which is its own mirror image: 14 numbers a line, in the order in which
+/// [`Around::even_sum`] takes them.
+type EvenRow = [[f64; 14]; 9];
 
 /// K of a ring.
 #[derive(Debug, Clone)]
@@ -62,8 +71,12 @@ pub struct RingOperator {
     closed: bool,
     /// Class of every column.
     classes: Vec<usize>,
+    /// Whether a class is between equal sectors.
+    even: Vec<bool>,
     /// Class → depth → radius.
     rows: Vec<NodeRow>,
+    /// The same; zero for classes that are not even.
+    even_rows: Vec<EvenRow>,
 }
 
 impl RingOperator {
@@ -97,7 +110,15 @@ impl RingOperator {
             masses[(classes[j] * planes + k) * rows + i]
         };
         let masses_kg = (0..mesh.node_count()).map(mass).collect();
-        (Self { nodes, closed: mesh.is_closed(), classes, rows: found }, masses_kg)
+        let operator = Self {
+            nodes,
+            closed: mesh.is_closed(),
+            classes,
+            even: kinds.iter().map(|[before, after]| before.is_some() && before == after).collect(),
+            even_rows: found.iter().map(even_row).collect(),
+            rows: found,
+        };
+        (operator, masses_kg)
     }
 
     /// K of a mesh of a material, for looking at it, and the lumped masses [kg].
@@ -144,8 +165,12 @@ impl RingOperator {
                     let mut sums = [f64x8::splat(simd, 0.0); 3];
                     let kinds = &scratch.kinds[along];
                     for (nth, kind) in kinds.iter().enumerate() {
-                        let row = &self.rows[(kind.class * planes + k) * rows + i];
-                        let found = around.sum(simd, row);
+                        let row = (kind.class * planes + k) * rows + i;
+                        let found = if self.even[kind.class] {
+                            around.even_sum(simd, &self.even_rows[row])
+                        } else {
+                            around.sum(simd, &self.rows[row])
+                        };
                         if nth == 0 {
                             sums = found;
                         } else {
@@ -201,31 +226,86 @@ impl<const L: usize> Around<'_, L> {
     /// A row times what is around the block.
     #[inline(always)]
     fn sum<S: Simd>(&self, simd: S, row: &NodeRow) -> [f64x8<S>; 3] {
-        let [_, rows, planes] = self.nodes;
-        let pitch = self.scratch.pitch;
         let mut sums = [f64x8::splat(simd, 0.0); 3];
-        for k in self.k.saturating_sub(1)..(self.k + 2).min(planes) {
-            for i in self.i.saturating_sub(1)..(self.i + 2).min(rows) {
-                let neighbour = &row[(k + 1 - self.k) * 3 + (i + 1 - self.i)];
-                let start = 3 * (i + rows * k) * pitch + WIDTH * (self.along + 1);
-                let mut part = [f64x8::splat(simd, 0.0); 3];
-                for d in 0..3 {
-                    let line = &self.scratch.staged[start + d * pitch - WIDTH..start + d * pitch + 2 * WIDTH];
-                    for (column, from) in [WIDTH - L, WIDTH, WIDTH + L].into_iter().enumerate() {
-                        let x = f64x8::from_slice(simd, &line[from..from + WIDTH]);
-                        let factors = &neighbour[column][d];
-                        part[0] += f64x8::splat(simd, factors[0]) * x;
-                        part[1] += f64x8::splat(simd, factors[1]) * x;
-                        part[2] += f64x8::splat(simd, factors[2]) * x;
+        for (neighbour, line) in self.lines() {
+            let factors = &row[neighbour];
+            let mut part = [f64x8::splat(simd, 0.0); 3];
+            for d in 0..3 {
+                let window = self.window(line, d);
+                for (column, from) in [WIDTH - L, WIDTH, WIDTH + L].into_iter().enumerate() {
+                    let x = f64x8::from_slice(simd, &window[from..from + WIDTH]);
+                    for c in 0..3 {
+                        part[c] += f64x8::splat(simd, factors[column][d][c]) * x;
                     }
                 }
-                for c in 0..3 {
-                    sums[c] += part[c];
-                }
+            }
+            for c in 0..3 {
+                sums[c] += part[c];
             }
         }
         sums
     }
+
+    /// The same for a node between equal sectors: components that change their sign in the mirror see differences of
+    /// the neighbours, the others sums.
+    #[inline(always)]
+    fn even_sum<S: Simd>(&self, simd: S, row: &EvenRow) -> [f64x8<S>; 3] {
+        let zero = f64x8::splat(simd, 0.0);
+        let mut sums = [zero; 3];
+        for (neighbour, line) in self.lines() {
+            let f = &row[neighbour];
+            let (mut here, mut both, mut rise) = ([zero; 3], [zero; 3], [zero; 3]);
+            for d in 0..3 {
+                let window = self.window(line, d);
+                let low = f64x8::from_slice(simd, &window[WIDTH - L..2 * WIDTH - L]);
+                let high = f64x8::from_slice(simd, &window[WIDTH + L..2 * WIDTH + L]);
+                here[d] = f64x8::from_slice(simd, &window[WIDTH..2 * WIDTH]);
+                both[d] = low + high;
+                rise[d] = high - low;
+            }
+            let [r, t, z] = here;
+            sums[0] += (f64x8::splat(simd, f[0]) * r + f64x8::splat(simd, f[1]) * z)
+                + (f64x8::splat(simd, f[2]) * both[0] + f64x8::splat(simd, f[3]) * both[2])
+                + f64x8::splat(simd, f[4]) * rise[1];
+            sums[1] += (f64x8::splat(simd, f[5]) * t + f64x8::splat(simd, f[6]) * both[1])
+                + (f64x8::splat(simd, f[7]) * rise[0] + f64x8::splat(simd, f[8]) * rise[2]);
+            sums[2] += (f64x8::splat(simd, f[9]) * r + f64x8::splat(simd, f[10]) * z)
+                + (f64x8::splat(simd, f[11]) * both[0] + f64x8::splat(simd, f[12]) * both[2])
+                + f64x8::splat(simd, f[13]) * rise[1];
+        }
+        sums
+    }
+
+    /// The neighbouring lines that there are: number among nine, and where the line's block begins in what is staged.
+    #[inline(always)]
+    fn lines(&self) -> impl Iterator<Item = (usize, usize)> {
+        let [_, rows, planes] = self.nodes;
+        let (i, k, pitch, along) = (self.i, self.k, self.scratch.pitch, self.along);
+        (k.saturating_sub(1)..(k + 2).min(planes)).flat_map(move |depth| {
+            (i.saturating_sub(1)..(i + 2).min(rows)).map(move |radius| {
+                ((depth + 1 - k) * 3 + (radius + 1 - i), 3 * (radius + rows * depth) * pitch + WIDTH * along)
+            })
+        })
+    }
+
+    /// A block of one component of a line with the vectors before and after it.
+    #[inline(always)]
+    fn window(&self, line: usize, component: usize) -> &[f64; 3 * WIDTH] {
+        self.scratch.staged[line + component * self.scratch.pitch..].first_chunk().expect("a line ends with a vector")
+    }
+}
+
+/// The numbers of a row of a node between equal sectors.
+fn even_row(row: &NodeRow) -> EvenRow {
+    std::array::from_fn(|line| {
+        let here = |c: usize, d: usize| row[line][1][d][c];
+        let after = |c: usize, d: usize| row[line][2][d][c];
+        [
+            here(0, 0), here(0, 2), after(0, 0), after(0, 2), after(0, 1),
+            here(1, 1), after(1, 1), after(1, 0), after(1, 2),
+            here(2, 0), here(2, 2), after(2, 0), after(2, 2), after(2, 1),
+        ]
+    })
 }
 
 /// Scratch of a product.

@@ -13,17 +13,9 @@ pub struct Response {
     /// Of every column of nodes of the track: which of the different neighbourhoods it has.
     columns: Vec<usize>,
     rows: usize,
-    /// Neighbourhood → row of the track → what a unit force there does.
-    loads: Vec<Vec<Moved>>,
-}
-
-/// What a force on one node moves.
-#[derive(Debug, Clone, Copy)]
-pub struct Moved {
-    /// Columns, rows and planes from the loaded node.
-    pub offset: [isize; 3],
-    /// Component of the motion → of the force [1/kg].
-    pub per_force: [[f64; 3]; 3],
+    /// Neighbourhood → row of the track → depth, row and column from −reach to reach: component of the motion → of
+    /// the force.
+    loads: Vec<Vec<[[f64; 3]; 3]>>,
 }
 
 /// Lanes: one for each component of the force, and one that stays empty.
@@ -71,8 +63,9 @@ impl Response {
         self.reach
     }
 
-    /// What a force on a node of the track moves, the node counted in the track's columns and rows.
-    pub fn of(&self, column: usize, row: usize) -> &[Moved] {
+    /// What a force on a node of the track moves, the node counted in the track's columns and rows: depth, row and
+    /// column from −reach to reach, columns fastest; zero where there is no node [1/kg].
+    pub fn of(&self, column: usize, row: usize) -> &[[[f64; 3]; 3]] {
         let all = &self.loads[self.columns[column]];
         let each = all.len() / self.rows;
         &all[row * each..(row + 1) * each]
@@ -98,7 +91,7 @@ fn unit_forces(
     stages: &Stages,
     time_step_s: f64,
     node: usize,
-) -> Vec<Moved> {
+) -> Vec<[[f64; 3]; 3]> {
     let [columns, rows, planes] = mesh.nodes_per_axis();
     let field = || Field::<LANES>::with_lines(columns, rows * planes);
     let (mut d, mut before, mut product) = (field(), field(), field());
@@ -129,11 +122,10 @@ fn unit_forces(
                 let at = column_at(mesh, j, column)
                     .zip(usize::try_from(i as isize + row).ok().filter(|at| *at < rows))
                     .filter(|_| (depth as usize) < planes);
-                let per_force = at.map_or([[0.0; 3]; 3], |(column, row)| {
+                moved.push(at.map_or([[0.0; 3]; 3], |(column, row)| {
                     let place = d.place(mesh.node(column, row, depth as usize));
                     std::array::from_fn(|c| std::array::from_fn(|lane| scale * d.at(place, c)[lane]))
-                });
-                moved.push(Moved { offset: [column, row, depth], per_force });
+                }));
             }
         }
     }

@@ -38,8 +38,19 @@ pub(super) fn element(
             turned.fixed_view_mut::<3, 3>(3 * a, 3 * b).copy_from(&own);
         }
     }
+    let symmetric = (turned + turned.transpose()) * 0.5;
+    // A sector is its own mirror image; rounding is not.
+    let mirror = |index: usize| {
+        let (corner, component) = (index / 3, index % 3);
+        (3 * (corner ^ 2) + component, if component == 1 { -1.0 } else { 1.0 })
+    };
+    let mirrored = ElementStiffness::from_fn(|row, col| {
+        let ((row, row_sign), (col, col_sign)) = (mirror(row), mirror(col));
+        row_sign * col_sign * symmetric[(row, col)]
+    });
+    let volumes: [f64; 8] = std::array::from_fn(|corner| 0.5 * (volumes[corner] + volumes[corner ^ 2]));
     SectorElement {
-        stiffness: (turned + turned.transpose()) * 0.5,
+        stiffness: (symmetric + mirrored) * 0.5,
         masses_kg: volumes.map(|volume| material.density_kg_m3 * volume),
     }
 }
