@@ -48,11 +48,31 @@ pub(in crate::solver) struct ElasticContact<const L: usize> {
     angles_rad: [f64; 2],
     /// Sine and cosine of the angles of the mesh's columns.
     directions: Vec<(f64, f64)>,
-    /// Displacements [m] of the pin's face and of the disk's top at t_n.
-    face_before: Field<L>,
-    top_before: Field<L>,
+    /// The pin's face and the disk's top at t_n.
+    face_before: Before<L>,
+    top_before: Before<L>,
     rows: Vec<Row>,
     targets: Targets,
+}
+
+/// Displacements [m] at t_n and, as p_n, over the step before [m/s].
+#[derive(Debug, Clone)]
+struct Before<const L: usize> {
+    u: Field<L>,
+    p: Field<L>,
+}
+
+impl<const L: usize> Before<L> {
+    fn new(field: Field<L>) -> Self {
+        Self { u: field.clone(), p: field }
+    }
+
+    /// Keeps the first blocks of these.
+    fn keep(&mut self, u: &Field<L>, p: &Field<L>) {
+        let count = self.u.blocks().len();
+        self.u.blocks_mut().copy_from_slice(&u.blocks()[..count]);
+        self.p.blocks_mut().copy_from_slice(&p.blocks()[..count]);
+    }
 }
 
 /// A slave node.
@@ -99,6 +119,8 @@ struct TargetNode {
     /// Height [m] at t_n, and increment [m] of the prediction.
     height_m: f64,
     increment_m: [f64; 3],
+    /// Increment [m] of the step before.
+    last_increment_m: [f64; 3],
     inverse_mass: f64,
     /// Force [N] that the slave nodes receive through it.
     force_n: [f64; 3],
@@ -164,7 +186,7 @@ impl Solves {
 impl<const L: usize> ElasticContact<L> {
     pub fn new(model: &Model, body: &DiskBody) -> Self {
         let grid = Grid::new(body.mesh(), body.target());
-        let face_before = Field::on_face(model.mesh());
+        let face = Field::<L>::on_face(model.mesh());
         let slaves: Vec<Slave> = model
             .slaves()
             .iter()
@@ -173,7 +195,7 @@ impl<const L: usize> ElasticContact<L> {
                 // The lever arms (−Y, X) say where a node is.
                 let [minus_y, x] = slave.surface_motion;
                 Slave {
-                    place: face_before.place(index),
+                    place: face.place(index),
                     angle_rad: libm::atan2(-minus_y, x),
                     across: grid.across(libm::hypot(x, minus_y)),
                     inverse_mass: 1.0 / slave.mass_kg,
@@ -187,8 +209,8 @@ impl<const L: usize> ElasticContact<L> {
         Self {
             angles_rad,
             directions: body.mesh().angles_rad().iter().map(|angle| libm::sincos(*angle)).collect(),
-            face_before,
-            top_before: Field::with_lines(columns, rows),
+            face_before: Before::new(face),
+            top_before: Before::new(Field::with_lines(columns, rows)),
             rows: vec![Row::default(); slaves.len()],
             targets: Targets { rows: grid.rows(), first: 0, nodes: Vec::new() },
             slaves,
@@ -206,14 +228,13 @@ impl<const L: usize> ElasticContact<L> {
         contacts: &mut Contacts<L>,
     ) {
         contacts.swap_increments();
-        let count = self.face_before.blocks().len();
-        self.face_before.blocks_mut().copy_from_slice(&face.u.blocks()[..count]);
-        let top = self.top_before.blocks().len();
-        self.top_before.blocks_mut().copy_from_slice(&disk.u.blocks()[..top]);
+        self.face_before.keep(face.u, face.p);
+        self.top_before.keep(&disk.u, &disk.p);
+        let count = self.face_before.u.blocks().len();
         disk.predict(body, given.factors);
         dispatch!(Level::new(), simd => predict(simd, given.factors, face, count));
         for lane in 0..L {
-            self.gather(body, given.turned_rad[lane], lane, disk);
+            self.gather(body, given, lane, disk);
             let first = self.targets.first;
             match body.target() {
                 TargetSurface::Bilinear => {
@@ -237,7 +258,8 @@ impl<const L: usize> ElasticContact<L> {
     }
 
     /// Collects the target nodes of a lane.
-    fn gather(&mut self, body: &DiskBody, turned_rad: f64, lane: usize, disk: &DiskState<L>) {
+    fn gather(&mut self, body: &DiskBody, given: &Given<'_, L>, lane: usize, disk: &DiskState<L>) {
+        let (turned_rad, dt) = (given.turned_rad[lane], given.factors.time_step_s);
         let [low, high] = self.angles_rad.map(|angle| self.grid.along(angle - turned_rad).cell);
         let (first, last) = (low - self.grid.margin(), high + 1 + self.grid.margin());
         let (sin, cos) = libm::sincos(turned_rad);
@@ -250,7 +272,8 @@ impl<const L: usize> ElasticContact<L> {
             for row in 0..self.targets.rows {
                 let node = mesh.node(column, mesh.track().first_row + row, 0);
                 let place = disk.u.place(node);
-                let before: [f64; 3] = std::array::from_fn(|c| self.top_before.at(place, c)[lane]);
+                let before: [f64; 3] = std::array::from_fn(|c| self.top_before.u.at(place, c)[lane]);
+                let last_increment_m = std::array::from_fn(|c| dt * self.top_before.p.at(place, c)[lane]);
                 let mut target = TargetNode {
                     node,
                     column,
@@ -263,6 +286,7 @@ impl<const L: usize> ElasticContact<L> {
                 };
                 let increment_m = std::array::from_fn(|c| disk.u.at(place, c)[lane] - before[c]);
                 target.increment_m = target.in_pin(increment_m);
+                target.last_increment_m = target.in_pin(last_increment_m);
                 self.targets.nodes.push(target);
             }
         }
@@ -284,7 +308,7 @@ impl<const L: usize> ElasticContact<L> {
         let travel_m = drive.rate * given.factors.time_step_s;
         for ((slave, row), shares) in self.slaves.iter().zip(&mut self.rows).zip(shares) {
             let end: [f64; 3] = std::array::from_fn(|c| face.u.at(slave.place, c)[lane]);
-            let before = [0, 1].map(|c| self.face_before.at(slave.place, c)[lane]);
+            let before = [0, 1].map(|c| self.face_before.u.at(slave.place, c)[lane]);
             let slip = [0, 1].map(|c| end[c] - before[c] - slave.motion[c] * travel_m);
             *row = Row {
                 free_m: [slip[0], slip[1], end[2]],
@@ -322,10 +346,28 @@ impl<const L: usize> ElasticContact<L> {
             let increment = [relative[0], relative[1], gap - gap_before];
             let status = [gap, f64::from(u8::from(closed)), f64::from(u8::from(closed && !row.sticks))];
             // The surface under the node at t_n, and what is then under its place at t_{n+1}.
-            let under = self.face_before.at(place, 2)[lane] - gap_before;
-            let ahead: f64 =
-                shares.iter().map(|share| share.weight * self.targets.node(share).height_m).sum();
-            let moved = [0, 1].map(|c| face.u.at(place, c)[lane] - self.face_before.at(place, c)[lane]);
+            let under = self.face_before.u.at(place, 2)[lane] - gap_before;
+            let mut ahead = 0.0;
+            // What the constraint of this step says of the step before: its forces do work over that, too.
+            let mut last: [f64; 3] =
+                std::array::from_fn(|c| given.factors.time_step_s * self.face_before.p.at(place, c)[lane]);
+            for share in shares {
+                let node = self.targets.node(share);
+                ahead += share.weight * node.height_m;
+                for c in 0..3 {
+                    last[c] -= share.weight * node.last_increment_m[c];
+                }
+            }
+            if given.steps[lane] > 1 {
+                for c in 0..2 {
+                    contacts.previous_increment_m.at_mut(place, c)[lane] = last[c] - slave.motion[c] * travel_m;
+                }
+                let closing = contacts.previous_increment_m.at(place, 2)[lane];
+                if let Some(elastic) = &mut contacts.elastic {
+                    elastic.previous_yielding_m.at_mut(place, 2)[lane] = last[2] - closing;
+                }
+            }
+            let moved = [0, 1].map(|c| face.u.at(place, c)[lane] - self.face_before.u.at(place, c)[lane]);
             let yielding = [
                 moved[0] - increment[0] - slave.motion[0] * travel_m,
                 moved[1] - increment[1] - slave.motion[1] * travel_m,
