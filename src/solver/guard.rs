@@ -1,6 +1,6 @@
 //! Stops a run that diverges.
 
-use super::contact::elastic::{MAX_SWEEPS, TOLERANCE};
+use super::contact::sweeps::{MAX_SWEEPS, TOLERANCE};
 use super::energy::Energies;
 use super::error::SolverError;
 use super::field::Field;

@@ -153,7 +153,10 @@ impl Model {
     pub fn on_elastic_disk(definition: ModelDefinition, disk: DiskDefinition) -> Result<Self, SolverError> {
         let on_face = |node: &usize| definition.mesh.bottom_nodes().contains(node);
         let tied = definition.constraints.ties.iter().flat_map(|tie| tie.nodes.iter());
-        if tied.chain(definition.constraints.fixed.iter().map(|dof| dof / 3).collect::<Vec<_>>().iter()).any(on_face) {
+        if tied
+            .chain(definition.constraints.fixed.iter().map(|dof| dof / 3).collect::<Vec<_>>().iter())
+            .any(on_face)
+        {
             return Err(SolverError::Constraints(
                 "on an elastic disk no node of the contact face may be held or tied".to_owned(),
             ));
@@ -210,7 +213,8 @@ impl Model {
         let pin_limit = stability::time_step_limit_s(omega_max, beta2, beta_r_s);
         let disk_limit = disk.as_ref().map_or(f64::INFINITY, |disk| disk.longest_step_s(beta_r_s));
         let limit = pin_limit.min(disk_limit);
-        let omega_max = disk.as_ref().filter(|_| disk_limit < pin_limit).map_or(omega_max, Unclocked::omega_max);
+        let omega_max =
+            disk.as_ref().filter(|_| disk_limit < pin_limit).map_or(omega_max, Unclocked::omega_max);
         let time_step_s = match time_step {
             // The disk's limit has its margin.
             TimeStep::FractionOfLimit(fraction) => (fraction * pin_limit).min(disk_limit),
@@ -257,18 +261,8 @@ impl Model {
                 mobile: std::array::from_fn(|c| freedoms[3 * node + c] != Freedom::Fixed),
             })
             .collect();
-        let constrained_planes = {
-            let [_, _, planes] = mesh.nodes_per_axis();
-            // Springs are not advanced plane by plane.
-            let mut constrained = vec![matches!(operator, Operator::Assembled(_)); planes];
-            constrained[0] = true;
-            let loaded = load.iter().map(|share| share.dof);
-            let tied = ties.iter().flat_map(|tie| tie.dofs.iter().copied());
-            for dof in constraints.fixed.iter().copied().chain(loaded).chain(tied) {
-                constrained[mesh.grid_position(dof / 3)[2]] = true;
-            }
-            constrained
-        };
+        let constrained_planes =
+            constrained_planes(&mesh, &constraints, &load, matches!(operator, Operator::Assembled(_)));
         Ok(Self {
             operator,
             constrained_planes,
@@ -389,4 +383,23 @@ impl Model {
     pub(super) fn load(&self) -> &[LoadShare] {
         &self.load
     }
+}
+
+/// Which planes of nodes have more to do than to follow their forces.
+fn constrained_planes(
+    mesh: &BlockMesh,
+    constraints: &Constraints,
+    load: &[LoadShare],
+    assembled: bool,
+) -> Vec<bool> {
+    let [_, _, planes] = mesh.nodes_per_axis();
+    // Springs are not advanced plane by plane.
+    let mut constrained = vec![assembled; planes];
+    constrained[0] = true;
+    let loaded = load.iter().map(|share| share.dof);
+    let tied = constraints.ties.iter().flat_map(|tie| tie.nodes.iter().map(|node| 3 * node + tie.component));
+    for dof in constraints.fixed.iter().copied().chain(loaded).chain(tied) {
+        constrained[mesh.grid_position(dof / 3)[2]] = true;
+    }
+    constrained
 }

@@ -93,10 +93,20 @@ impl Ring {
         }
         found.require_magnitude(&field("young_modulus_pa"), self.young_modulus_pa, "a modulus > 0 Pa");
         let nu = self.poisson_ratio;
-        found.require(&field("poisson_ratio"), nu, nu > -1.0 && nu < 0.5, "a Poisson's ratio with -1 < ν < 0.5");
+        found.require(
+            &field("poisson_ratio"),
+            nu,
+            nu > -1.0 && nu < 0.5,
+            "a Poisson's ratio with -1 < ν < 0.5",
+        );
         found.require_magnitude(&field("density_kg_m3"), self.density_kg_m3, "a density > 0 kg/m³");
         let arc = self.track_arc_deg;
-        found.require(&field("track_arc_deg"), arc, arc > 0.0 && arc <= 360.0, "an arc, 0 < track_arc_deg <= 360");
+        found.require(
+            &field("track_arc_deg"),
+            arc,
+            arc > 0.0 && arc <= 360.0,
+            "an arc, 0 < track_arc_deg <= 360",
+        );
         let (fine, coarse) = (self.element_size_m, self.coarse_element_size_m);
         found.require(
             &field("coarse_element_size_m"),
@@ -109,7 +119,10 @@ impl Ring {
             &field("element_size_m"),
             fine,
             fine * MAX_ELEMENTS >= longest,
-            &format!("at least {:e} m: no more than {MAX_ELEMENTS} elements in a direction", longest / MAX_ELEMENTS),
+            &format!(
+                "at least {:e} m: no more than {MAX_ELEMENTS} elements in a direction",
+                longest / MAX_ELEMENTS
+            ),
         );
         // Under the pin's corners, and an element more for tangents at the patches' corners.
         let [half_x, half_y] = [pin.size_m[0] / 2.0, pin.size_m[1] / 2.0];

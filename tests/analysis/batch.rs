@@ -4,10 +4,10 @@ use crate::signals::coarse;
 use std::collections::BTreeMap;
 use tribosweep::analysis::batch::Batch;
 use tribosweep::analysis::{Unobserved, solve};
-use tribosweep::spec::JobSpec;
+use tribosweep::spec::{DiskKind, JobSpec};
 
 /// Jobs of one model that differ in all that may: friction, speed, load, ramp, length, and whether they stop early.
-fn jobs() -> Vec<JobSpec> {
+fn jobs(disk: DiskKind) -> Vec<JobSpec> {
     (0..11)
         .map(|i| {
             let mut job = coarse();
@@ -17,7 +17,14 @@ fn jobs() -> Vec<JobSpec> {
             job.scene.load.ramp_s = [5.0e-4, 0.0, 1.0e-3][i % 3];
             job.run.limit_s = 0.001 * (2 + i % 5) as f64 + 1.7e-5 * i as f64;
             job.run.stop_early = i % 2 == 0;
-            job.numerics.beta2 = 0.6;
+            job.scene.disk.kind = disk;
+            match disk {
+                DiskKind::Rigid => job.numerics.beta2 = 0.6,
+                DiskKind::Elastic => {
+                    job.scene.disk.ring.element_size_m = 0.006;
+                    job.scene.disk.ring.coarse_element_size_m = 0.03;
+                }
+            }
             job
         })
         .collect()
@@ -31,7 +38,17 @@ fn alone(job: &JobSpec) -> String {
 /// others are in the middle, moved to more lanes when others come and to fewer when they end.
 #[test]
 fn companions_change_nothing() {
-    let jobs = jobs();
+    companions_change_nothing_on(DiskKind::Rigid);
+}
+
+/// Protects: the same on an elastic disk, over which lanes of different speed are at different places.
+#[test]
+fn companions_change_nothing_on_an_elastic_disk() {
+    companions_change_nothing_on(DiskKind::Elastic);
+}
+
+fn companions_change_nothing_on(disk: DiskKind) {
+    let jobs = jobs(disk);
     let mut batch = Batch::new(&jobs[0]).unwrap();
     assert_eq!(batch.widest(), 8, "a small mesh");
     let mut found = BTreeMap::new();
@@ -61,7 +78,17 @@ fn companions_change_nothing() {
 /// there, has the bytes of a run in one go: its analysis (cycles, watch for a decay, averages) goes on, too.
 #[test]
 fn a_resumed_job_has_the_same_bits() {
-    let mut jobs = jobs();
+    resumed_jobs_have_the_same_bits(DiskKind::Rigid);
+}
+
+/// Protects: the same on an elastic disk, whose state is kept with the job's.
+#[test]
+fn a_resumed_job_on_an_elastic_disk_has_the_same_bits() {
+    resumed_jobs_have_the_same_bits(DiskKind::Elastic);
+}
+
+fn resumed_jobs_have_the_same_bits(disk: DiskKind) {
+    let mut jobs = jobs(disk);
     // Judged stable, after an observation that is interrupted.
     jobs[3].detection.decay_observation_s = 0.0026;
     jobs[3].run.limit_s = 0.012;

@@ -38,7 +38,10 @@ fn energies_close_with_stages() {
             ledger.after_step(&model, &[drive], &state);
         }
         let energies = ledger.energies(0);
-        assert!(energies.friction_j > 0.5 * energies.input_j() && energies.contact_loss_j > 0.0, "{energies:?}");
+        assert!(
+            energies.friction_j > 0.5 * energies.input_j() && energies.contact_loss_j > 0.0,
+            "{energies:?}"
+        );
         evidence.found(format!("{target:?}"), energies.imbalance_j(), 0.0, energies.input_j());
         most_steps = most_steps.max(steps as f64);
     }

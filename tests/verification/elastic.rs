@@ -36,13 +36,8 @@ pub fn on_block(base: ModelDefinition, below: &Below) -> Model {
     } else {
         Vec::new()
     };
-    let disk = DiskDefinition {
-        mesh,
-        material: below.material,
-        held,
-        target: below.target,
-        clock: below.clock,
-    };
+    let disk =
+        DiskDefinition { mesh, material: below.material, held, target: below.target, clock: below.clock };
     let surface_motion = disk::rotating_disk(&base.mesh, radius);
     Model::on_elastic_disk(ModelDefinition { surface_motion, ..base }, disk).unwrap()
 }

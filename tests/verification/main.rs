@@ -27,6 +27,7 @@ mod integrator;
 mod invariance;
 mod mode_coupling;
 mod modes;
+mod on_elastic_disk;
 mod particles;
 mod patch;
 mod reference;

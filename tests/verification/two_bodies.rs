@@ -118,7 +118,8 @@ fn equal_bars_exchange_their_velocities() {
 #[test]
 fn dissimilar_bars_stay_in_contact() {
     for (clock, name) in [(Clock::Common, "one clock"), (Clock::Own, "two clocks")] {
-        let mut first = Evidence::new("B4b", format!("dissimilar bars, {name}, first stress over its size"), RUNCIE);
+        let mut first =
+            Evidence::new("B4b", format!("dissimilar bars, {name}, first stress over its size"), RUNCIE);
         let mut second =
             Evidence::new("B4b", format!("dissimilar bars, {name}, second stress over the first"), RUNCIE);
         for layers in [20, 40, 80] {

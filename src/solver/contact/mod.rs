@@ -7,8 +7,9 @@ pub mod coulomb;
 pub mod elastic;
 pub mod patch;
 pub mod rigid;
+pub mod sweeps;
 
-pub use elastic::Solves;
+pub use sweeps::Solves;
 
 use super::field::Field;
 use super::mesh::BlockMesh;
@@ -46,7 +47,7 @@ pub struct ElasticContacts<const L: usize> {
     /// How the target itself moves under each slave node during the step [m]: x, y, and in z by how much its surface
     /// at t_n is higher where the node will be than where it is.
     pub yielding_m: Field<L>,
-    /// The same over the step before.
+    /// Over the step before; in z by the patches of this step, as [`Contacts::previous_increment_m`] is.
     pub previous_yielding_m: Field<L>,
     /// How the contact solves went.
     pub solves: [Solves; L],

@@ -66,7 +66,11 @@ impl Grid {
     /// The place of an angle [rad] along the track. Beyond the ends of one that has ends it is continued.
     pub fn along(&self, angle_rad: f64) -> Spot {
         let at = (angle_rad - self.track.first_angle_rad) / self.track.sector_rad;
-        if self.endless { spot(at, isize::MIN, isize::MAX) } else { spot(at, 0, self.track.sectors as isize - 1) }
+        if self.endless {
+            spot(at, isize::MIN, isize::MAX)
+        } else {
+            spot(at, 0, self.track.sectors as isize - 1)
+        }
     }
 
     /// The place of a radius [m] across the track.
@@ -123,7 +127,8 @@ impl Grid {
             }
         }
         let mut shares = [Share::default(); SMOOTH];
-        let places = (0..16).map(|n| (n / 4, n % 4)).filter(|(a, b)| !(matches!(a, 0 | 3) && matches!(b, 0 | 3)));
+        let places =
+            (0..16).map(|n| (n / 4, n % 4)).filter(|(a, b)| !(matches!(a, 0 | 3) && matches!(b, 0 | 3)));
         for (share, (a, b)) in shares.iter_mut().zip(places) {
             // A node that does not exist has no weight; any other may stand for it.
             let row = (row + b as isize - 1).clamp(0, self.rows() as isize - 1);
@@ -208,7 +213,8 @@ mod tests {
     fn crossing_an_edge_is_smooth() {
         let wavy = |column: f64, row: f64| (1.3 * column).sin() * (0.7 * row).cos();
         let h = 1e-6;
-        for (target, continuous_slope) in [(TargetSurface::Bilinear, false), (TargetSurface::Ferguson, true)] {
+        for (target, continuous_slope) in [(TargetSurface::Bilinear, false), (TargetSurface::Ferguson, true)]
+        {
             let grid = grid(target);
             let at = |y: f64, x: f64| {
                 let angle = -0.2 + 0.04 * y;
@@ -224,7 +230,8 @@ mod tests {
                 let shifted = |by: f64| if along { at(y + by, x) } else { at(y, x + by) };
                 // The slope is of size 1.
                 assert!((shifted(h) - shifted(-h)).abs() < 4.0 * h);
-                let (before, after) = ((shifted(-h) - shifted(-2.0 * h)) / h, (shifted(2.0 * h) - shifted(h)) / h);
+                let (before, after) =
+                    ((shifted(-h) - shifted(-2.0 * h)) / h, (shifted(2.0 * h) - shifted(h)) / h);
                 assert_eq!((after - before).abs() < 1e-4, continuous_slope, "{target:?}: {before} {after}");
             }
         }

@@ -19,38 +19,29 @@ pub(super) fn omega_max_squared(mesh: &RingMesh, elements: &Elements) -> f64 {
         let nodes: [usize; 8] = std::array::from_fn(|corner| corner);
         alone.push(largest([(element, nodes)].into_iter(), 8));
     }
-    let mut patches: Vec<(f64, Vec<f64>, Range<usize>, Range<usize>)> = Vec::new();
+    let mut patches: Vec<Patch> = Vec::new();
     for columns in parts(sectors.len()) {
         let angles = sectors[columns].to_vec();
-        if patches.iter().any(|(_, known, _, _)| *known == angles) {
+        if patches.iter().any(|known| known.angles_rad == angles) {
             continue;
         }
         for layers in parts(planes - 1) {
             for rings in parts(rows - 1) {
-                let worst = each(&angles, &rings, &layers)
-                    .map(|[a, i, k]| alone[elements.index(angles[a], i, k)])
-                    .fold(0.0, f64::max);
-                patches.push((worst, angles.clone(), rings, layers.clone()));
+                let mut patch =
+                    Patch { alone: 0.0, angles_rad: angles.clone(), rings, layers: layers.clone() };
+                let members = patch.places().map(|[a, i, k]| alone[elements.index(angles[a], i, k)]);
+                patch.alone = members.fold(0.0, f64::max);
+                patches.push(patch);
             }
         }
     }
-    patches.sort_by(|a, b| b.0.total_cmp(&a.0));
+    patches.sort_by(|a, b| b.alone.total_cmp(&a.alone));
     let mut bound = 0.0_f64;
-    for (worst, angles, rings, layers) in &patches {
-        if *worst <= bound {
+    for patch in &patches {
+        if patch.alone <= bound {
             break;
         }
-        let (columns, across) = (angles.len() + 1, rings.len() + 1);
-        let members = each(angles, rings, layers).map(|[a, i, k]| {
-            let (i0, k0) = (i - rings.start, k - layers.start);
-            // Corner bits: outer radius, later angle, upper plane.
-            let node = |corner: usize| {
-                let (j, i, k) = (a + (corner >> 1 & 1), i0 + (corner & 1), k0 + 1 - (corner >> 2));
-                j + columns * (i + across * k)
-            };
-            (&elements.all()[elements.index(angles[a], i, k)], std::array::from_fn(node))
-        });
-        bound = bound.max(largest(members, columns * across * (layers.len() + 1)));
+        bound = bound.max(patch.joined(elements));
     }
     bound
 }
@@ -65,12 +56,37 @@ fn parts(count: usize) -> Vec<Range<usize>> {
     parts
 }
 
-fn each<'a>(
-    angles: &'a [f64],
-    rings: &'a Range<usize>,
-    layers: &'a Range<usize>,
-) -> impl Iterator<Item = [usize; 3]> + 'a {
-    (0..angles.len()).flat_map(move |a| rings.clone().flat_map(move |i| layers.clone().map(move |k| [a, i, k])))
+/// Neighbouring elements.
+struct Patch {
+    /// The largest ω² of any of them by itself.
+    alone: f64,
+    angles_rad: Vec<f64>,
+    rings: Range<usize>,
+    layers: Range<usize>,
+}
+
+impl Patch {
+    /// Its elements: sector of the patch, radius, depth.
+    fn places(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
+        let rings =
+            move |a| self.rings.clone().flat_map(move |i| self.layers.clone().map(move |k| [a, i, k]));
+        (0..self.angles_rad.len()).flat_map(rings)
+    }
+
+    /// The largest ω² of all of them together.
+    fn joined(&self, elements: &Elements) -> f64 {
+        let (columns, across) = (self.angles_rad.len() + 1, self.rings.len() + 1);
+        let members = self.places().map(|[a, i, k]| {
+            let (inside, below) = (i - self.rings.start, k - self.layers.start);
+            // Corner bits: outer radius, later angle, upper plane.
+            let node = |corner: usize| {
+                let (j, i, k) = (a + (corner >> 1 & 1), inside + (corner & 1), below + 1 - (corner >> 2));
+                j + columns * (i + across * k)
+            };
+            (&elements.all()[elements.index(self.angles_rad[a], i, k)], std::array::from_fn(node))
+        });
+        largest(members, columns * across * (self.layers.len() + 1))
+    }
 }
 
 /// Largest ω² of elements that are joined at these nodes.

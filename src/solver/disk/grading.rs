@@ -10,7 +10,8 @@ pub fn graded(length: f64, fine: f64, coarse: f64) -> Vec<f64> {
     let total = |count: usize, growth: f64| -> f64 { sizes(count, fine, coarse, growth).sum() };
     // Forgives the rounding of decimal lengths.
     let enough = length * (1.0 - 1.0e-9);
-    let count = (1..).find(|&count| total(count, GROWTH) >= enough).unwrap_or(1);
+    let most = (length / fine).ceil().max(1.0) as usize;
+    let count = (1..most).find(|&count| total(count, GROWTH) >= enough).unwrap_or(most);
     if total(count, 1.0) >= enough {
         return vec![length / count as f64; count];
     }
@@ -38,7 +39,9 @@ mod tests {
     /// Protects: the elements fill the length, begin fine, and stay within the growth and the coarse size.
     #[test]
     fn sizes_fill_the_length_within_the_limits() {
-        for (length, fine, coarse) in [(0.085, 0.0025, 0.012), (0.0154, 0.0025, 0.012), (0.002, 0.0025, 0.012)] {
+        for (length, fine, coarse) in
+            [(0.085, 0.0025, 0.012), (0.0154, 0.0025, 0.012), (0.002, 0.0025, 0.012)]
+        {
             let found = graded(length, fine, coarse);
             assert!((found.iter().sum::<f64>() / length - 1.0).abs() < 1e-9, "{found:?}");
             assert!(found[0] <= fine * (1.0 + 1e-9));

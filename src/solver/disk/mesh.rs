@@ -55,24 +55,21 @@ impl RingMesh {
         let (fine, coarse) = (ring.element_size_m, ring.coarse_element_size_m);
         let [half_x, half_y] = [pin.size_m[0] / 2.0, pin.size_m[1] / 2.0];
         let (inside, outside) = (track_radius_m - half_x, (track_radius_m + half_x).hypot(half_y));
-        let radii = |low: f64, high: f64, count: usize, from: f64, to: f64| {
-            let mut radii: Vec<f64> = vec![low];
-            for size in graded(low - from, (high - low) / count as f64, coarse) {
-                radii.insert(0, radii[0] - size);
-            }
-            radii[0] = from;
-            let first = radii.len() - 1;
-            radii.extend((1..=count).map(|row| low + (high - low) * row as f64 / count as f64));
-            for size in graded(to - high, (high - low) / count as f64, coarse) {
-                radii.push(radii[radii.len() - 1] + size);
-            }
-            *radii.last_mut().expect("a ring has radii") = to;
-            (first, radii)
-        };
         // An element more on either side: patches take tangents from their neighbours.
         let (low, high) = (inside - fine, outside + fine);
         let rows = count(high - low, fine);
-        let (first_row, radii_m) = radii(low, high, rows, ring.inner_radius_m, ring.outer_radius_m);
+        let element_m = (high - low) / rows as f64;
+        let inwards = graded(low - ring.inner_radius_m, element_m, coarse);
+        let outwards = graded(ring.outer_radius_m - high, element_m, coarse);
+        let radii_m: Vec<f64> = (inwards.iter().rev())
+            .scan(ring.inner_radius_m, |radius, size| Some(std::mem::replace(radius, *radius + size)))
+            .chain((0..rows).map(|row| low + element_m * row as f64))
+            .chain(std::iter::once(high))
+            .chain(outwards.iter().scan(high, |radius, size| {
+                *radius += size;
+                Some(*radius)
+            }))
+            .collect();
 
         let half_angle = libm::atan2(half_y, inside);
         let arc = ring.track_arc_deg.to_radians();
@@ -98,9 +95,9 @@ impl RingMesh {
             first_angle_rad,
             sector_rad: sectors_rad[0],
             sectors,
-            first_row,
+            first_row: inwards.len(),
             first_radius_m: low,
-            element_m: (high - low) / rows as f64,
+            element_m,
             elements: rows,
         };
         Self::new(sectors_rad, radii_m, heights_m, true, track)
@@ -136,7 +133,13 @@ impl RingMesh {
         )
     }
 
-    fn new(sectors_rad: Vec<f64>, radii_m: Vec<f64>, heights_m: Vec<f64>, closed: bool, track: Track) -> Self {
+    fn new(
+        sectors_rad: Vec<f64>,
+        radii_m: Vec<f64>,
+        heights_m: Vec<f64>,
+        closed: bool,
+        track: Track,
+    ) -> Self {
         let mut angles_rad = vec![track.first_angle_rad];
         for sector in &sectors_rad[..sectors_rad.len() - usize::from(closed)] {
             angles_rad.push(angles_rad[angles_rad.len() - 1] + sector);

@@ -151,7 +151,8 @@ impl<const L: usize> DiskWorkspace<L> {
         let given = self.strained.blocks().iter().zip(self.moved.blocks());
         for (z, (x, d)) in self.stage.blocks_mut().iter_mut().zip(given) {
             for c in 0..3 {
-                (f64x8::from_slice(simd, &x.0[c]) + f64x8::from_slice(simd, &d.0[c])).store_slice(&mut z.0[c]);
+                (f64x8::from_slice(simd, &x.0[c]) + f64x8::from_slice(simd, &d.0[c]))
+                    .store_slice(&mut z.0[c]);
             }
         }
     }
@@ -159,8 +160,11 @@ impl<const L: usize> DiskWorkspace<L> {
     /// d ← α d − γ d_before − σ A (x + d).
     #[inline(always)]
     fn next_stage<S: Simd>(&mut self, simd: S, stage: &Stage) {
-        let [own, before, force_s2] =
-            [f64x8::splat(simd, stage.own), f64x8::splat(simd, stage.before), f64x8::splat(simd, stage.force_s2)];
+        let [own, before, force_s2] = [
+            f64x8::splat(simd, stage.own),
+            f64x8::splat(simd, stage.before),
+            f64x8::splat(simd, stage.force_s2),
+        ];
         for (at, inverse) in self.inverse_mass.iter().enumerate() {
             let inverse = f64x8::from_slice(simd, &inverse.0);
             for c in 0..3 {

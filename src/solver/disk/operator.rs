@@ -174,7 +174,8 @@ impl RingOperator {
                         if nth == 0 {
                             sums = found;
                         } else {
-                            let here = f64x8::from_slice(simd, &kind.slots.0).simd_gt(f64x8::splat(simd, 0.0));
+                            let here =
+                                f64x8::from_slice(simd, &kind.slots.0).simd_gt(f64x8::splat(simd, 0.0));
                             for c in 0..3 {
                                 sums[c] = here.select(found[c], sums[c]);
                             }
@@ -291,7 +292,9 @@ impl<const L: usize> Around<'_, L> {
     /// A block of one component of a line with the vectors before and after it.
     #[inline(always)]
     fn window(&self, line: usize, component: usize) -> &[f64; 3 * WIDTH] {
-        self.scratch.staged[line + component * self.scratch.pitch..].first_chunk().expect("a line ends with a vector")
+        self.scratch.staged[line + component * self.scratch.pitch..]
+            .first_chunk()
+            .expect("a line ends with a vector")
     }
 }
 
@@ -301,9 +304,20 @@ fn even_row(row: &NodeRow) -> EvenRow {
         let here = |c: usize, d: usize| row[line][1][d][c];
         let after = |c: usize, d: usize| row[line][2][d][c];
         [
-            here(0, 0), here(0, 2), after(0, 0), after(0, 2), after(0, 1),
-            here(1, 1), after(1, 1), after(1, 0), after(1, 2),
-            here(2, 0), here(2, 2), after(2, 0), after(2, 2), after(2, 1),
+            here(0, 0),
+            here(0, 2),
+            after(0, 0),
+            after(0, 2),
+            after(0, 1),
+            here(1, 1),
+            after(1, 1),
+            after(1, 0),
+            after(1, 2),
+            here(2, 0),
+            here(2, 2),
+            after(2, 0),
+            after(2, 2),
+            after(2, 1),
         ]
     })
 }

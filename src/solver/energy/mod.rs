@@ -31,8 +31,8 @@ use super::field::next;
 use super::model::Model;
 use super::state::{Drive, State};
 use audit::Audit;
-use disk::DiskAudit;
 use contact_work::ContactWorks;
+use disk::DiskAudit;
 use serde::{Deserialize, Serialize};
 
 /// Energies [J] of one lane: stored now, done and lost since the start.
