@@ -29,5 +29,5 @@ mod window;
 
 pub use checkpoint::Unreadable;
 pub use job::{JobError, JobObserver, Unobserved, drive, solve};
-pub use record::{EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
+pub use record::{ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
 pub use steady::Obstacle;

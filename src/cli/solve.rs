@@ -4,8 +4,9 @@ use super::error::CliError;
 use super::output::{print, tell, write_file};
 use super::work::listen;
 use crate::analysis::sample::{OBSERVED_NAMES, Sample};
-use crate::analysis::{self, JobError, JobObserver, JobRecord};
+use crate::analysis::{self, ElasticDisk, JobError, JobObserver, JobRecord};
 use crate::exit;
+use crate::solver::SolverError;
 use crate::solver::contact::ContactState;
 use crate::study::{Preset, Study};
 use crate::worker::Interrupt;
@@ -79,7 +80,7 @@ pub fn run(args: &Args) -> Result<u8, CliError> {
         }
         Err(JobError::Spec(violations)) => Err(CliError::Plan(violations.to_string())),
         Err(
-            error @ (JobError::Solver(crate::solver::SolverError::Diverged { .. })
+            error @ (JobError::Solver(SolverError::Diverged { .. } | SolverError::ContactNotSolved { .. })
             | JobError::NotFinite { .. }),
         ) => {
             tell(format_args!("error: {error}"));
@@ -182,6 +183,7 @@ fn as_text(record: &JobRecord) -> String {
     let growth = record
         .growth_rate_per_s
         .map_or_else(String::new, |rate| format!("growth rate            {rate:.0} 1/s\n"));
+    let disk = record.disk.as_ref().map_or_else(String::new, disk_lines);
     format!(
         "outcome                {} after {:.3} ms ({} steps of {:.4e} s)\n\
          regime                 {}\n\
@@ -192,7 +194,8 @@ fn as_text(record: &JobRecord) -> String {
          N/F                    {:.3} to {:.3}\n\
          largest normal stress  {:.4} MPa\n\
          largest slip speed     {:.1} mm/s\n\
-         residuals              energy {:.1e}, identities {:.1e}\n",
+         residuals              energy {:.1e}, identities {:.1e}\n\
+         {disk}",
         record.outcome.name(),
         record.simulated_s * 1e3,
         record.steps,
@@ -210,5 +213,24 @@ fn as_text(record: &JobRecord) -> String {
         record.slip_speed_max_m_s * 1e3,
         record.energy_residual,
         record.identity_residual(),
+    )
+}
+
+/// What the mesh generator made of the elastic disk, and how its contact solves went.
+fn disk_lines(disk: &ElasticDisk) -> String {
+    let [columns, rows, layers] = disk.elements;
+    let [along, across, down] = disk.track_element_m.map(|edge| edge * 1e3);
+    format!(
+        "disk                   {columns} × {rows} × {layers} elements in θ, r and z, {along:.2} × {across:.2} × {down:.2} mm \
+         under the track, at most {:.1} mm elsewhere; {} to a step\n\
+         contact solves         {:.1} sweeps, at most {:.0}; last change of a force {:.0e} of the largest\n",
+        disk.longest_edge_m * 1e3,
+        match disk.stages {
+            1 => "one stage".to_owned(),
+            stages => format!("{stages} stages"),
+        },
+        disk.sweeps_mean,
+        disk.sweeps_max,
+        disk.residual_max,
     )
 }

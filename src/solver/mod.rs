@@ -9,7 +9,7 @@
 //! boundary, disk ──────────────┘                      │
 //! field ─► state (per lane) ──────────────────────────┤
 //! integrate (moves the nodes as the product passes) ──┤
-//! contact (the law and the forward-increment solve) ──┘
+//! contact (the law and the forward-increment solves) ─┘
 //! ```
 //!
 //! # Conventions
@@ -22,11 +22,10 @@
 //! * Plain multiply and add in f64, never fused, summed in a fixed order: the same bits on every path.
 //! * The gap is positive when open; the normal contact force N on the pin is ≥ 0 (N = −λ_n).
 //!
-//! # Where an elastic disk will go
-//! The step predicts all bodies without contact and hands the slave nodes to [`contact`], which
-//! corrects them. For a rigid target the contact operator G M⁻¹ Gᵀ is diagonal and the correction
-//! is closed-form ([`contact::rigid`]); a deformable target is a second body with its own model and
-//! state, and a sibling of that file with its Gauss–Seidel sweeps. The law ([`contact::coulomb`]) is the same.
+//! # Two bodies
+//! The pin is always there. An elastic disk ([`disk`]) is a second body with a model and a state of its own; the step
+//! hands both to [`contact::elastic`], which predicts and corrects them. Without it [`contact::rigid`] does that for
+//! the pin alone, and nothing of the disk is made or read.
 
 pub mod boundary;
 pub mod constraints;

@@ -2,7 +2,7 @@
 
 use super::parse;
 use serde_json::Value;
-use tribosweep::spec::{ClampSide, JobSpec};
+use tribosweep::spec::{ClampSide, DiskKind, JobSpec};
 use tribosweep::study::job_key;
 
 fn key(spec: &JobSpec) -> String {
@@ -17,6 +17,7 @@ fn key_of(text: &str) -> String {
 fn full() -> JobSpec {
     let mut spec = JobSpec::default();
     spec.numerics.time_step_s = Some(1.0e-8);
+    spec.scene.disk.kind = DiskKind::Elastic;
     spec
 }
 
@@ -44,7 +45,9 @@ fn another(value: &Value, pointer: &str) -> Option<Value> {
         _ => match pointer {
             "/scene/clamp/side" => Some(Value::from("both_ends")),
             "/scene/top" => Some(Value::from("free_in_z")),
-            "/scene/disk/kind" => None,
+            "/scene/disk/kind" => Some(Value::from("rigid")),
+            "/scene/disk/ring/target" => Some(Value::from("ferguson")),
+            "/scene/disk/ring/clock" => Some(Value::from("common")),
             other => panic!("{other} = {value}: this test needs another value for it"),
         },
     }
@@ -129,6 +132,19 @@ fn the_width_of_a_whole_top_clamp_does_not_change_the_key() {
     assert_eq!(with(ClampSide::WholeTop, 0.001), with(ClampSide::WholeTop, 0.005));
     assert_ne!(with(ClampSide::BothEnds, 0.001), with(ClampSide::BothEnds, 0.005));
     assert_ne!(with(ClampSide::WholeTop, 0.001), with(ClampSide::InnerSide, 0.001));
+}
+
+#[test]
+fn the_ring_of_a_rigid_disk_does_not_change_the_key() {
+    let with = |kind, young_modulus_pa| {
+        let mut spec = JobSpec::default();
+        spec.scene.disk.kind = kind;
+        spec.scene.disk.ring.young_modulus_pa = young_modulus_pa;
+        key(&spec)
+    };
+    assert_eq!(with(DiskKind::Rigid, 2.1e11), with(DiskKind::Rigid, 7.0e10));
+    assert_ne!(with(DiskKind::Elastic, 2.1e11), with(DiskKind::Elastic, 7.0e10));
+    assert_ne!(with(DiskKind::Rigid, 2.1e11), with(DiskKind::Elastic, 2.1e11));
 }
 
 /// Keys are stored: results must be found again by a later build. When a change of the job's fields or

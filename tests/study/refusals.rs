@@ -293,3 +293,32 @@ fn long_listings_are_cut_and_counted() {
     assert_eq!(error.problems()[1].field, "scene.contact.mu");
     assert_eq!(error.problems()[1].value.as_deref(), Some("-2"));
 }
+
+/// Protects: an elastic disk that cannot carry the pin, or that the pin would leave, is refused with what it needs; the
+/// ring of a rigid disk is not looked at.
+#[test]
+fn disks_that_do_not_fit_are_refused() {
+    let ring = |kind: &str, ring: &str, rest: &str| {
+        format!(r#"{{ "scene": {{ "disk": {{ "kind": "{kind}", "ring": {{ {ring} }} }} }}{rest} }}"#)
+    };
+    for (values, rest, expected) in [
+        (r#""inner_radius_m": 0.09"#, "", vec!["ring.inner_radius_m = 0.09", "at most 0.0829", "inner side"]),
+        (r#""outer_radius_m": 0.095"#, "", vec!["ring.outer_radius_m = 0.095", "at least 0.100", "outer corners"]),
+        (r#""thickness_m": 0"#, "", vec!["ring.thickness_m = 0", "a length > 0 m"]),
+        (r#""young_modulus_pa": -1"#, "", vec!["ring.young_modulus_pa = -1", "a modulus > 0 Pa"]),
+        (r#""poisson_ratio": 0.5"#, "", vec!["ring.poisson_ratio = 0.5", "ν < 0.5"]),
+        (r#""element_size_m": 0.02"#, "", vec!["coarse_element_size_m = 0.012", "at least element_size_m = 0.02"]),
+        (r#""element_size_m": 1e-5"#, "", vec!["ring.element_size_m = 0.00001", "no more than 2000 elements"]),
+        (r#""track_arc_deg": 400"#, "", vec!["ring.track_arc_deg = 400", "track_arc_deg <= 360"]),
+        (
+            r#""track_arc_deg": 10"#,
+            r#", "grid": { "omega_rpm": [7, 100] }"#,
+            vec!["ring.track_arc_deg = 10", "at least 24.0000", "100 rpm", "limit_s = 0.04"],
+        ),
+        ("", r#", "numerics": { "beta2": 0.6 }"#, vec!["numerics.beta2 = 0.6", "0.5 with an elastic disk"]),
+        (r#""elements": [1, 2, 3]"#, "", vec!["scene.disk.ring.elements", "no such field"]),
+    ] {
+        assert_contains(&refusal(&ring("elastic", values, rest)), &expected);
+    }
+    parse(&ring("rigid", r#""inner_radius_m": 0.09"#, r#", "numerics": { "beta2": 0.6 }"#));
+}

@@ -23,7 +23,7 @@
 //!
 //! The force of the first step in contact is an arbitrary spike below C = 1; impulse and times are not.
 //!
-//! Impact of two deformable bars is not here: the target is rigid as yet.
+//! Impact of two deformable bars is in `two_bodies`.
 
 use crate::common::{
     COLUMN_HEIGHT_M, FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, axial_bar, normal_force_n,

@@ -6,7 +6,7 @@
 //! stress (Hooke); the contact patch test of R. L. Taylor, P. Papadopoulos, *On a patch test for contact
 //! problems in two dimensions* (1991). Pin, p = 30/180 MPa: 1.6667 µm free, 1.2381 µm confined.
 //!
-//! Two stacked blocks, the other half of the contact patch test, are not here: the target is rigid as yet.
+//! Two stacked blocks, the other half of the contact patch test, are in `on_elastic_disk`.
 //!
 //! Rounding: a step rounds a nodal force by ROUNDINGS_PER_FORCE·ε·Σ|K||u|. Displacements carry that along and
 //! give it back as forces of (ω_maxΔt)² ≤ 2 times its size (at 0.7 of the limit) at every later step, so a force is

@@ -98,17 +98,14 @@ impl Stages {
     /// The longest step [s] for which [`Stages::fewest`] finds some.
     pub fn longest_step_s(largest_per_s2: f64, most: usize, beta_r_s: f64) -> f64 {
         let works = |dt: f64| Self::fewest(largest_per_s2, most, dt, beta_r_s).is_some();
-        // One stage works at the first, and no number of them at the second: Δt²Ã < 4 and A > Ã.
-        let omega = largest_per_s2.sqrt();
-        let mut low = 2.0 * MARGIN.sqrt() / omega;
+        // Not with every shorter step do several stages work, since damping weighs more in it. So the search comes from
+        // above: m stages reach less than m times the undamped limit of one.
+        let mut high = 2.0 * most as f64 / largest_per_s2.sqrt();
+        let mut low = high;
         while !works(low) {
-            low *= 0.5;
+            (high, low) = (low, low * 0.98);
         }
-        let mut high = 2.0 * low;
-        while works(high) {
-            high *= 2.0;
-        }
-        for _ in 0..60 {
+        for _ in 0..50 {
             let middle = 0.5 * (low + high);
             *(if works(middle) { &mut low } else { &mut high }) = middle;
         }
@@ -176,6 +173,16 @@ mod tests {
                 assert!(error(0.1) < 0.01 / 4.0);
             }
         }
+    }
+
+    /// Protects: the longest step is found where damping is so strong that stages do not work with all shorter ones.
+    #[test]
+    fn strong_damping_does_not_hide_the_longest_step() {
+        let (largest_per_s2, beta_r_s) = (1.0e15, 5.0e-8);
+        let longest = Stages::longest_step_s(largest_per_s2, MAX_STAGES, beta_r_s);
+        let works = |dt: f64| Stages::fewest(largest_per_s2, MAX_STAGES, dt, beta_r_s).is_some();
+        assert!(works(longest) && !works(0.5 * longest) && works(0.1 * longest));
+        assert!((1..1000).all(|n| !works(longest * (1.0 + 1.0e-3 * f64::from(n)))));
     }
 
     /// Protects: more stages allow a longer step, nearly in proportion.
