@@ -31,6 +31,7 @@ mod reference;
 mod ring_modes;
 mod ring_ritz;
 mod ring_rotation;
+mod ring_settlement;
 mod ring_statics;
 mod ring_tools;
 mod ritz;

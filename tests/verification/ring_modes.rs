@@ -2,9 +2,9 @@
 //!
 //! Problem: the eigenfrequencies of K φ = ω² M φ with the ring's own stiffness and lumped mass. A uniform closed
 //! ring is its own image after one sector, so modes have n waves around: nodal amplitudes in r and z times cos nθ
-//! for u_r and u_z, and sin nθ for u_θ (for n = 0 also sin and cos the other way round, which is torsion). The products of K with such
-//! fields give a small dense problem for every n, with no mode left out. It is split by the mirror in
-//! the middle plane.
+//! for u_r and u_z, and sin nθ for u_θ (for n = 0 also sin and cos the other way round, which is torsion). The
+//! products of K with such fields give a small dense problem for every n, with no mode left out. It is split by the
+//! mirror in the middle plane.
 //!
 //! They tend to those of the elastic ring with order 2 in the element size: the trilinear field makes ω² O(h²) too
 //! high, lumping O(h²) too low, for smooth modes (G. Strang, G. J. Fix, *An analysis of the finite element method*,
@@ -14,8 +14,8 @@
 //! * Torsional modes, u_θ = R(r) cos(kπz/H) with the frequencies f² = f_r² + (k c_s/2H)². Free surfaces leave
 //!   R = r with f_r = 0 and R = A J₁(κr) + B Y₁(κr), κ = 2πf_r/c_s, with J₂(κa) Y₂(κb) = J₂(κb) Y₂(κa), for
 //!   R′ − R/r is −κ times the same of second order (K. F. Graff, *Wave motion in elastic solids*, 1975, ch. 8).
-//! * All other modes from the Rayleigh–Ritz method up to degree 14 (see `ring_ritz`); what it leaves is less than its change
-//!   from degree 12.
+//! * All other modes from the Rayleigh–Ritz method up to degree 14 (see `ring_ritz`); what it leaves is less than its
+//!   change from degree 12.
 //!
 //! Modes are matched by their class and rank within it, which refinement does not change. In one mode
 //! (`CANCELLING`) the h² errors of the lumped mass, which lower a frequency, and of the trilinear field, which raise

@@ -1,7 +1,7 @@
 //! R3 Rigid motions of the ring.
 //!
 //! Problem: K u of the three translations and the three linearised rotations u = e × x, in the nodes' own
-//! directions. There a translation is (cos θ, −sin θ, 0) and the turn about the axis (0, r, 0), so this is a test of
+//! directions. There a translation along x is (cos θ, −sin θ, 0) and the turn about the axis (0, r, 0), so this is a test of
 //! the turned element matrices, of the class of columns that each row belongs to and of the ring's closure.
 //!
 //! Exact answer: no force. Isoparametric elements contain all linear fields, whatever their shape. Rounding is
@@ -22,8 +22,8 @@ fn rigid_motions(body: &RingBody) -> Vec<Nodal> {
     translations.chain(rotations).collect()
 }
 
-/// Protects: all rows of K, those at the joint of the closed ring, at the ends of a sector and between unequal sectors
-/// included: they strain nothing where the motion is rigid.
+/// Protects: all rows of K, those at the joint of the closed ring, at the ends of a sector and between unequal
+/// sectors included: they strain nothing where the motion is rigid.
 #[test]
 fn ring_rigid_motions_carry_no_force() {
     let mut evidence =
@@ -46,7 +46,7 @@ fn ring_rigid_motions_carry_no_force() {
     evidence.judge_exact(most);
 }
 
-/// Protects: the test above can fail: a rotation in which only the top turns is not rigid, and its force is no rounding.
+/// Protects: the test above can fail: a twist is not rigid, and its force is no rounding.
 #[test]
 fn ring_twist_carries_a_force() {
     let body = RingBody::new(graded_mesh(0.005, 0.012));

@@ -75,7 +75,7 @@ fn ring_patch_test() {
 }
 
 /// Displacement [m] of the half-space under a load of 1 N at the origin, at a Cartesian place with z upwards.
-fn boussinesq_m([x, y, z]: [f64; 3]) -> [f64; 3] {
+pub fn boussinesq_m([x, y, z]: [f64; 3]) -> [f64; 3] {
     let depth = -z;
     let rho = (x * x + y * y + z * z).sqrt();
     let nu = STEEL.poisson_ratio;
