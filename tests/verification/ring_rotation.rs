@@ -1,8 +1,8 @@
 //! R3 Rigid motions of the ring.
 //!
 //! Problem: K u of the three translations and the three linearised rotations u = e × x, in the nodes' own
-//! directions. There a translation along x is (cos θ, −sin θ, 0) and the turn about the axis (0, r, 0), so this is a test of
-//! the turned element matrices, of the class of columns that each row belongs to and of the ring's closure.
+//! directions. There a translation along x is (cos θ, −sin θ, 0) and the turn about the axis (0, r, 0), so this is a
+//! test of the turned element matrices, of the class of columns that each row belongs to and of the ring's closure.
 //!
 //! Exact answer: no force. Isoparametric elements contain all linear fields, whatever their shape. Rounding is
 //! counted in [`RingBody::roundings`].

@@ -121,7 +121,7 @@ fn ring_point_load_converges_to_boussinesq() {
         let u = body.solve(&load, |dof| far(dof / 3), start);
         for (evidence, offset) in settled.iter_mut().zip(places) {
             let at: [usize; 3] = std::array::from_fn(|axis| {
-                centre[axis].checked_add_signed(offset[axis] * scale as isize).expect("inside")
+                centre[axis].checked_add_signed(offset[axis] * scale.cast_signed()).expect("inside")
             });
             let node = mesh.node(at[0], at[1], at[2]);
             let x = body.position_m(node);
