@@ -1,4 +1,4 @@
-//! R4 The ring's top settles under the pin's load.
+//! R2 The ring's top settles under the pin's load.
 //!
 //! Problem: 30 N spread evenly over the pin's footprint, 12 mm × 15 mm with its centre at the radius 91.4 mm, on
 //! the reference ring with its inner radius held; the mean settlement of the footprint, on graded meshes as in a
@@ -184,7 +184,7 @@ fn own_part_m(body: &RingBody) -> f64 {
 fn ring_settlement_under_the_pin_converges() {
     let [coarse, fine] = [0.006, 0.003].map(|size| own_part_m(&RingBody::new(graded_mesh(size, size))));
     let exact = half_space_m(SIZE_M) + fine;
-    let mut evidence = Evidence::new("R4", "ring, mean settlement of the footprint under 30 N [m]", SOURCE);
+    let mut evidence = Evidence::new("R2", "ring, mean settlement of the footprint under 30 N [m]", SOURCE);
     let (mut elements, mut errors) = (Vec::new(), Vec::new());
     for size in [0.003, 0.003 / 2.0_f64.sqrt(), 0.0015] {
         let body = RingBody::new(graded_mesh(size, 2.0 * size));
