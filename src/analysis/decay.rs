@@ -12,6 +12,13 @@ use serde::{Deserialize, Serialize};
 /// The signals watched, all over F: N, its first moments about the y and x axes, and the sideways friction.
 const SIGNALS: usize = 4;
 
+/// Amplitude, over F, below which lines are not judged on an elastic disk.
+///
+/// Nodes that pass from patch to patch excite the disk all the time, and its lowest modes, at some kHz, are
+/// hardly damped: what they ring with never ends, at 10⁻⁸ to 10⁻⁷ of F on steel. So a growth that is slower than
+/// about 300 1/s and begins below this is not seen within an observation of 8 ms.
+pub const ELASTIC_FLOOR: f64 = 1.0e-6;
+
 /// Watches sliding for growth and decay.
 #[derive(Serialize, Deserialize)]
 pub struct DecayMonitor {
@@ -21,9 +28,10 @@ pub struct DecayMonitor {
 }
 
 impl DecayMonitor {
-    /// A monitor that starts after the load's ramp.
-    pub fn new(time_step_s: f64, ramp_s: f64, detection: &Detection) -> Self {
-        let monitors = std::array::from_fn(|_| LineMonitor::new(time_step_s, detection.decay_observation_s));
+    /// A monitor that starts after the load's ramp and judges what is above the amplitude `floor`, over F.
+    pub fn new(time_step_s: f64, ramp_s: f64, detection: &Detection, floor: f64) -> Self {
+        let observation_s = detection.decay_observation_s;
+        let monitors = std::array::from_fn(|_| LineMonitor::new(time_step_s, observation_s, floor));
         Self { ramp_s, monitors, decays: false }
     }
 

@@ -1,8 +1,9 @@
 //! The analysis of one lane, fed step by step.
 
 use super::cycles::{Cycle, CycleCutter};
-use super::decay::DecayMonitor;
+use super::decay::{self, DecayMonitor};
 use super::figures::Figures;
+use super::lines;
 use super::record::{ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
 use super::sample::{OBSERVED_NAMES, Sample};
 use super::steady::{self, SteadyState};
@@ -38,7 +39,8 @@ impl LaneAnalysis {
         let observes = spec.detection.decay_observation_s <= slidable_s;
         Self {
             cutter: CycleCutter::new(model, ramp_s),
-            monitor: observes.then(|| DecayMonitor::new(model.time_step_s(), ramp_s, &spec.detection)),
+            monitor: observes
+                .then(|| DecayMonitor::new(model.time_step_s(), ramp_s, &spec.detection, decay_floor(model))),
             cycles: Vec::new(),
             steady: None,
             decays: false,
@@ -181,6 +183,11 @@ impl LaneAnalysis {
             frequency_hz: Some(steady::frequency_hz(whole, crossings)),
         }
     }
+}
+
+/// Amplitude, over F, below which there is nothing to be seen of growth or decay.
+fn decay_floor(model: &Model) -> f64 {
+    if model.disk().is_some() { decay::ELASTIC_FLOOR } else { lines::ROUNDING }
 }
 
 /// Names the regime from the outcome and the shares of stick and separation.

@@ -10,6 +10,8 @@
 //!   10⁻³ of the strongest) must decay steadily: two lines too close for the long stretches beat, and a
 //!   beat falls for a while, but not along an exponential.
 //!
+//! Lines below a floor are not judged: rounding, or what keeps exciting the system.
+//!
 //! What this cannot tell: a line within the main lobe of one that is 10³ times stronger or more (1.4 kHz at
 //! an observation of 8 ms, in inverse proportion to it), and two lines whose beat takes longer than the
 //! observation. A longer `decay_observation_s` resolves both.
@@ -34,7 +36,7 @@ const LEAKAGE: f64 = 1.0e-7;
 /// A line is strong within this factor of the strongest.
 const STRONG: f64 = 1.0e-3;
 /// Amplitudes (of signals of order one) below this are rounding.
-const ROUNDING: f64 = 1.0e-11;
+pub const ROUNDING: f64 = 1.0e-11;
 /// A rate is believed when it differs from zero by this many standard errors.
 const STANDARD_ERRORS: f64 = 3.0;
 /// The same for the short stretches, whose misfit is a beat rather than chance: a correlation of −0.875
@@ -46,6 +48,7 @@ const SMALLEST_FALL: f64 = 1.0e-3;
 /// Watches one signal for growth and decay.
 #[derive(Serialize, Deserialize)]
 pub struct LineMonitor {
+    floor: f64,
     hop: usize,
     hop_s: f64,
     since_hop: usize,
@@ -62,7 +65,7 @@ pub struct LineMonitor {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
     /// Growth rate [1/s] of the fastest growing (or slowest decaying) strong line, or, once everything has
-    /// decayed to rounding, the last one measured; none if there was never more than rounding.
+    /// decayed to the floor, the last one measured; none if there was never more than that.
     pub growth_rate_per_s: Option<f64>,
     /// Whether all lines decay.
     pub decays: bool,
@@ -164,12 +167,13 @@ fn bessel_i0(x: f64) -> f64 {
 }
 
 impl LineMonitor {
-    /// A monitor that judges over `observation_s`.
-    pub fn new(time_step_s: f64, observation_s: f64) -> Self {
+    /// A monitor that judges over `observation_s` what is above the amplitude `floor`.
+    pub fn new(time_step_s: f64, observation_s: f64, floor: f64) -> Self {
         // However long the observation, a stretch has a number of steps that can be written down.
         let longest = (u32::MAX as usize / HOPS) as f64;
         let hop = (observation_s / (HOPS as f64 * time_step_s)).ceil().clamp(8.0, longest);
         Self {
+            floor,
             hop: hop as usize,
             hop_s: hop * time_step_s,
             since_hop: 0,
@@ -231,14 +235,14 @@ impl LineMonitor {
     fn judge(&mut self) -> Verdict {
         let last = &self.long.spectra[self.long.spectra.len() - 1];
         let highest = last.iter().skip(FIRST_LINE).copied().fold(0.0, f64::max);
-        if highest < ROUNDING {
-            // Everything has decayed to rounding since the signal began: a measured decay, too.
+        if highest < self.floor {
+            // Everything has decayed to the floor since the signal began: a measured decay, too.
             let elapsed_s = self.hop_s * (self.hops - SHORT as u64) as f64;
-            let at_least =
-                (self.start_amplitude > ROUNDING).then(|| (ROUNDING / self.start_amplitude).ln() / elapsed_s);
+            let at_least = (self.start_amplitude > self.floor)
+                .then(|| (self.floor / self.start_amplitude).ln() / elapsed_s);
             return Verdict { growth_rate_per_s: self.measured.or(at_least), decays: true };
         }
-        let faintest = ROUNDING.max(LEAKAGE * highest);
+        let faintest = self.floor.max(LEAKAGE * highest);
         let smallest = SMALLEST_FALL / HOPS as f64;
         let mut fastest = f64::NEG_INFINITY;
         let mut decays = true;

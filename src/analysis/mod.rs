@@ -21,7 +21,7 @@ pub mod figures;
 mod job;
 pub mod lane;
 pub mod lanes;
-mod lines;
+pub mod lines;
 pub mod record;
 pub mod sample;
 pub mod steady;

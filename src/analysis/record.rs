@@ -104,7 +104,8 @@ pub struct ElasticDisk {
     pub sweeps_mean: f64,
     /// Most sweeps of a contact solve.
     pub sweeps_max: f64,
-    /// Largest change of a nodal force in the last sweep of a solve, over the largest force.
+    /// Largest residual of a solve: by how much a force misses its own row of the contact equations, over the largest
+    /// force.
     pub residual_max: f64,
 }
 

@@ -223,7 +223,7 @@ fn disk_lines(disk: &ElasticDisk) -> String {
     format!(
         "disk                   {columns} × {rows} × {layers} elements in θ, r and z, {along:.2} × {across:.2} × {down:.2} mm \
          under the track, at most {:.1} mm elsewhere; {} to a step\n\
-         contact solves         {:.1} sweeps, at most {:.0}; last change of a force {:.0e} of the largest\n",
+         contact solves         {:.1} sweeps, at most {:.0}; residual {:.0e} of the largest force\n",
         disk.longest_edge_m * 1e3,
         match disk.stages {
             1 => "one stage".to_owned(),

@@ -44,8 +44,9 @@ pub enum SolverError {
     /// The contact forces on an elastic disk were not found.
     #[error(
         "the contact solve of step {step} (t = {time_s:.6e} s) did not converge: after {sweeps} sweeps the forces \
-         still change by {residual:.1e} of the largest, more than {tolerance:.0e}; a disk that is much lighter or \
-         softer than the pin, or a very high friction coefficient, can have no solution or several"
+         are off by {residual:.1e} of the largest, more than {tolerance:.0e}; sweeps converge slowly where many slave \
+         nodes share target nodes that are lighter than they: look for a very light disk, or a very high friction \
+         coefficient, with which there may be no solution"
     )]
     ContactNotSolved {
         /// The step.
@@ -54,7 +55,7 @@ pub enum SolverError {
         time_s: f64,
         /// Sweeps done.
         sweeps: u32,
-        /// Change of the forces in the last one, over the largest force.
+        /// Residual of the forces, over the largest force.
         residual: f64,
         /// What it should have been.
         tolerance: f64,

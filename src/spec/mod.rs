@@ -85,7 +85,7 @@ impl JobSpec {
     fn check_sweep(&self, found: &mut Violations) {
         let swept_deg = self.scene.disk.omega_rpm * 6.0 * self.run.limit_s;
         let arc_deg = self.scene.disk.ring.track_arc_deg;
-        if arc_deg < 360.0 && swept_deg > arc_deg {
+        if arc_deg < 360.0 && swept_deg > arc_deg * ring::FORGIVEN {
             found.add(
                 "scene.disk.ring.track_arc_deg",
                 arc_deg,
@@ -114,6 +114,9 @@ impl JobSpec {
         scene.contact = Contact::default();
         scene.load = Load::default();
         scene.disk.omega_rpm = Disk::default().omega_rpm;
+        if scene.disk.kind == DiskKind::Rigid {
+            scene.disk.ring = Ring::default();
+        }
         Self {
             scene,
             numerics: self.numerics.clone(),

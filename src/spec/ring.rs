@@ -77,7 +77,28 @@ impl Default for Ring {
 /// More elements in one direction than this are a slip of the keyboard.
 const MAX_ELEMENTS: f64 = 2000.0;
 
+/// About so many elements in each direction are between fine and coarse.
+const GRADED_ELEMENTS: f64 = 5.0;
+
+/// Largest number of nodes: about a gigabyte of fields, and days of run time.
+const MAX_NODES: f64 = 2.0e6;
+
+/// Forgives the rounding of decimal lengths.
+pub(super) const FORGIVEN: f64 = 1.0 + 1.0e-9;
+
 impl Ring {
+    /// About the number of nodes under `pin` at the radius `track_m`: fine ones under the track, coarse ones elsewhere.
+    pub fn about_nodes(&self, pin: &Pin, track_m: f64) -> f64 {
+        let (fine, coarse) = (self.element_size_m, self.coarse_element_size_m);
+        let along = |length: f64, under: f64| {
+            under.min(length) / fine + (length - under).max(0.0) / coarse + GRADED_ELEMENTS
+        };
+        let around_m = std::f64::consts::TAU * track_m;
+        let around = along(around_m, around_m * self.track_arc_deg / 360.0 + pin.size_m[1]);
+        let across = along(self.outer_radius_m - self.inner_radius_m, pin.size_m[0]);
+        around * across * along(self.thickness_m, fine)
+    }
+
     /// Adds every violated limit to `found`, of a disk under `pin` at the radius `track_m`.
     pub(super) fn check(&self, pin: &Pin, track_m: f64, found: &mut Violations) {
         let field = |name: &str| format!("scene.disk.ring.{name}");
@@ -127,16 +148,24 @@ impl Ring {
         // Under the pin's corners, and an element more for tangents at the patches' corners.
         let [half_x, half_y] = [pin.size_m[0] / 2.0, pin.size_m[1] / 2.0];
         let (low, high) = (track_m - half_x - fine, (track_m + half_x).hypot(half_y) + fine);
+        let nodes = self.about_nodes(pin, track_m);
+        if nodes > MAX_NODES {
+            found.add(
+                &field("element_size_m"),
+                fine,
+                format!("larger elements here or in coarse_element_size_m: about {nodes:.1e} nodes, at most {MAX_NODES:.0e}"),
+            );
+        }
         found.require(
             &field("inner_radius_m"),
             self.inner_radius_m,
-            self.inner_radius_m <= low,
+            self.inner_radius_m <= low * FORGIVEN,
             &format!("at most {low:.6} m, an element inside of the pin's inner side"),
         );
         found.require(
             &field("outer_radius_m"),
             self.outer_radius_m,
-            self.outer_radius_m >= high,
+            self.outer_radius_m * FORGIVEN >= high,
             &format!("at least {high:.6} m, an element outside of the pin's outer corners"),
         );
     }

@@ -21,19 +21,9 @@ pub(super) fn node_steps(spec: &JobSpec) -> f64 {
     let step = spec.numerics.time_step_s.unwrap_or(spec.numerics.safety_factor * shortest / wave_speed);
     let nodes = match spec.scene.disk.kind {
         DiskKind::Rigid => nodes,
-        DiskKind::Elastic => nodes + DISK_NODE * disk_nodes(spec),
+        DiskKind::Elastic => {
+            nodes + DISK_NODE * spec.scene.disk.ring.about_nodes(pin, spec.scene.disk.track_radius_m)
+        }
     };
     nodes * (spec.run.limit_s / step).ceil().max(1.0)
-}
-
-/// About the number of an elastic disk's nodes: fine ones under the track, coarse ones elsewhere.
-fn disk_nodes(spec: &JobSpec) -> f64 {
-    let (disk, pin) = (&spec.scene.disk, &spec.scene.pin);
-    let ring = &disk.ring;
-    let (fine, coarse) = (ring.element_size_m, ring.coarse_element_size_m);
-    let along = |length: f64, under: f64| under.min(length) / fine + (length - under).max(0.0) / coarse + 2.0;
-    let track_m = std::f64::consts::TAU * disk.track_radius_m;
-    let around = along(track_m, track_m * ring.track_arc_deg / 360.0 + pin.size_m[1]);
-    let across = along(ring.outer_radius_m - ring.inner_radius_m, pin.size_m[0]);
-    around * across * along(ring.thickness_m, fine)
 }

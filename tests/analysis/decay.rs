@@ -2,6 +2,7 @@
 
 use crate::signals::{Random, STEP_S, sample, sine};
 use tribosweep::analysis::decay::DecayMonitor;
+use tribosweep::analysis::lines::ROUNDING;
 use tribosweep::analysis::sample::Sample;
 use tribosweep::spec::Detection;
 
@@ -18,7 +19,7 @@ fn value(lines: &[Line], t: f64) -> f64 {
 }
 
 fn monitor() -> DecayMonitor {
-    DecayMonitor::new(STEP_S, 0.0, &Detection::default())
+    DecayMonitor::new(STEP_S, 0.0, &Detection::default(), ROUNDING)
 }
 
 /// Time [s] at which sliding with these lines is first declared decaying, and the rate then.
@@ -199,11 +200,11 @@ fn stick_or_separation_starts_anew() {
 /// costs nothing and declares nothing.
 #[test]
 fn ramp_and_endless_observation() {
-    let mut ramped = DecayMonitor::new(STEP_S, 1.0, &Detection::default());
+    let mut ramped = DecayMonitor::new(STEP_S, 1.0, &Detection::default(), ROUNDING);
     assert!(!(0..20_000).any(|n| ramped.push(&sliding(f64::from(n) * STEP_S, 1.0))));
     for observation in [1.0e9, 1.0e300] {
         let detection = Detection { decay_observation_s: observation, ..Detection::default() };
-        let mut endless = DecayMonitor::new(STEP_S, 0.0, &detection);
+        let mut endless = DecayMonitor::new(STEP_S, 0.0, &detection, ROUNDING);
         assert!(!(0..20_000).any(|n| endless.push(&sliding(f64::from(n) * STEP_S, 1.0))));
     }
 }

@@ -7,6 +7,7 @@ mod figures;
 mod frequency;
 mod identities;
 mod interruption;
+mod on_elastic_disk;
 mod signals;
 mod statistics;
 mod steady;

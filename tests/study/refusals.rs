@@ -303,12 +303,29 @@ fn disks_that_do_not_fit_are_refused() {
     };
     for (values, rest, expected) in [
         (r#""inner_radius_m": 0.09"#, "", vec!["ring.inner_radius_m = 0.09", "at most 0.0829", "inner side"]),
-        (r#""outer_radius_m": 0.095"#, "", vec!["ring.outer_radius_m = 0.095", "at least 0.100", "outer corners"]),
+        (
+            r#""outer_radius_m": 0.095"#,
+            "",
+            vec!["ring.outer_radius_m = 0.095", "at least 0.100", "outer corners"],
+        ),
         (r#""thickness_m": 0"#, "", vec!["ring.thickness_m = 0", "a length > 0 m"]),
         (r#""young_modulus_pa": -1"#, "", vec!["ring.young_modulus_pa = -1", "a modulus > 0 Pa"]),
         (r#""poisson_ratio": 0.5"#, "", vec!["ring.poisson_ratio = 0.5", "ν < 0.5"]),
-        (r#""element_size_m": 0.02"#, "", vec!["coarse_element_size_m = 0.012", "at least element_size_m = 0.02"]),
-        (r#""element_size_m": 1e-5"#, "", vec!["ring.element_size_m = 0.00001", "no more than 2000 elements"]),
+        (
+            r#""element_size_m": 0.02"#,
+            "",
+            vec!["coarse_element_size_m = 0.012", "at least element_size_m = 0.02"],
+        ),
+        (
+            r#""element_size_m": 1e-5"#,
+            "",
+            vec!["ring.element_size_m = 0.00001", "no more than 2000 elements"],
+        ),
+        (
+            r#""element_size_m": 3e-4, "coarse_element_size_m": 3e-4"#,
+            "",
+            vec!["larger elements", "nodes, at most 2e6"],
+        ),
         (r#""track_arc_deg": 400"#, "", vec!["ring.track_arc_deg = 400", "track_arc_deg <= 360"]),
         (
             r#""track_arc_deg": 10"#,
@@ -320,5 +337,8 @@ fn disks_that_do_not_fit_are_refused() {
     ] {
         assert_contains(&refusal(&ring("elastic", values, rest)), &expected);
     }
+    // An element from the pin on either side is enough, and so is an arc of just what is swept.
+    parse(&ring("elastic", r#""inner_radius_m": 0.0829, "outer_radius_m": 0.100189"#, ""));
+    parse(&ring("elastic", r#""track_arc_deg": 24"#, r#", "grid": { "omega_rpm": [100] }"#));
     parse(&ring("rigid", r#""inner_radius_m": 0.09"#, r#", "numerics": { "beta2": 0.6 }"#));
 }

@@ -20,6 +20,7 @@ use crate::evidence::Evidence;
 use std::f64::consts::{PI, TAU};
 use tribosweep::analysis::cycles::{Cycle, CycleCutter};
 use tribosweep::analysis::decay::DecayMonitor;
+use tribosweep::analysis::lines::ROUNDING;
 use tribosweep::analysis::sample::Sample;
 use tribosweep::analysis::steady;
 use tribosweep::solver::Model;
@@ -131,7 +132,7 @@ fn growth_rate_of_a_decaying_line() {
         Evidence::new("B16", "growth rate of a damped line [1/s]", "the signal's own growth rate");
     for (rate, hz) in [(-50.0, SQUEAL_HZ), (-500.0, SQUEAL_HZ), (-500.0, 31_000.0), (-200.0, 90_000.0)] {
         let step_s = 8.5e-7;
-        let mut monitor = DecayMonitor::new(step_s, 0.0, &detection);
+        let mut monitor = DecayMonitor::new(step_s, 0.0, &detection, ROUNDING);
         let found = (0..).find_map(|n| {
             let t = f64::from(n) * step_s;
             let line = 0.1 * (rate * t).exp() * (TAU * hz * t).cos();

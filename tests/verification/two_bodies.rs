@@ -92,8 +92,7 @@ fn rounding(impact: &Impact, layers: usize) -> f64 {
     ROUNDINGS_PER_FORCE * (8 * layers * impact.steps) as f64 * f64::EPSILON
 }
 
-/// Protects: equal bars exchange their velocities with the exact stress, whether or not the lower one has stages of its
-/// own; momentum and energy are kept.
+/// Protects: equal bars exchange their velocities with the exact stress; momentum and energy are kept.
 #[test]
 fn equal_bars_exchange_their_velocities() {
     let mut stress = Evidence::new("B4b", "equal bars, contact stress over ρcv/2", RUNCIE);

@@ -238,12 +238,13 @@ impl<const L: usize> ElasticContact<L> {
                 row.compliance += share.weight * share.weight * (u_scale * node.inverse_mass);
             }
         }
-        let (sweeps, residual) = self.targets.sweep(body, u_scale, drive.mu, &mut self.rows, shares);
+        let sweeps = self.targets.sweep(body, u_scale, drive.mu, &mut self.rows, shares);
+        self.targets.spread(&self.rows, shares);
+        self.targets.respond(body, u_scale);
+        let residual = self.targets.residual(drive.mu, &self.rows, shares);
         if let Some(elastic) = &mut contacts.elastic {
             elastic.solves[lane].add(given.steps[lane], sweeps, residual);
         }
-        self.targets.spread(&self.rows, shares);
-        self.targets.respond(body, u_scale);
         for ((slave, row), shares) in self.slaves.iter().zip(&self.rows).zip(shares) {
             let place = slave.place;
             let relative = self.targets.relative_m(row, shares);

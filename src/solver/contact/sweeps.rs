@@ -23,7 +23,7 @@ pub struct Solves {
     pub sweeps: f64,
     /// Most sweeps of a step.
     pub most_sweeps: f64,
-    /// Largest change of a force in a last sweep, over the largest force.
+    /// Largest residual of the forces that were found, over the largest force.
     pub residual: f64,
     /// Step whose solve did not converge, counted from 1; 0 if there is none.
     pub failed_step: f64,
@@ -124,7 +124,33 @@ impl Targets {
         relative
     }
 
-    /// Sweeps over the slave nodes until their forces stand still: how many it took, and the last change.
+    /// The force [N] that solves a row by itself, the others as they stand, and whether it sticks.
+    fn solve_row(&self, row: &Row, shares: &[Share], mu: f64) -> ([f64; 3], bool) {
+        let relative = self.relative_m(row, shares);
+        let stiffness = 1.0 / row.compliance;
+        // A number that is not finite gives no force; the guard finds it.
+        let normal = (row.force_n[2] - relative[2] * stiffness).max(0.0);
+        let trial = [0, 1].map(|c| row.force_n[c] - relative[c] * stiffness);
+        let (friction, sticks) =
+            if normal > 0.0 { project_one(trial, normal, mu) } else { ([0.0; 2], false) };
+        ([friction[0], friction[1], normal], sticks)
+    }
+
+    /// By how much the forces miss their own rows, over the largest force: max |f − solved(f)| / max N.
+    pub fn residual<const K: usize>(&self, mu: f64, rows: &[Row], shares: &[[Share; K]]) -> f64 {
+        let (mut missed, mut largest) = (0.0_f64, 0.0_f64);
+        for (row, shares) in rows.iter().zip(shares) {
+            let (force, _) = self.solve_row(row, shares, mu);
+            largest = largest.max(row.force_n[2]);
+            for c in 0..3 {
+                missed = missed.max((force[c] - row.force_n[c]).abs());
+            }
+        }
+        if largest > 0.0 { missed / largest } else { missed }
+    }
+
+    /// Sweeps over the slave nodes until their forces stand still: how many it took, more than [`MAX_SWEEPS`] if they
+    /// did not.
     pub fn sweep<const K: usize>(
         &mut self,
         body: &DiskBody,
@@ -132,24 +158,16 @@ impl Targets {
         mu: f64,
         rows: &mut [Row],
         shares: &[[Share; K]],
-    ) -> (u32, f64) {
+    ) -> u32 {
         self.spread(rows, shares);
         self.respond(body, u_scale);
         let couples_further = body.response().reach() > 0;
-        let mut residual = f64::INFINITY;
         for sweep in 1..=MAX_SWEEPS {
             let (mut change, mut largest) = (0.0_f64, 0.0_f64);
             for (row, shares) in rows.iter_mut().zip(shares) {
-                let relative = self.relative_m(row, shares);
-                let stiffness = 1.0 / row.compliance;
-                // A number that is not finite gives no force; the guard finds it.
-                let normal = (row.force_n[2] - relative[2] * stiffness).max(0.0);
-                let trial = [0, 1].map(|c| row.force_n[c] - relative[c] * stiffness);
-                let (friction, sticks) =
-                    if normal > 0.0 { project_one(trial, normal, mu) } else { ([0.0; 2], false) };
-                let force = [friction[0], friction[1], normal];
+                let (force, sticks) = self.solve_row(row, shares, mu);
                 row.sticks = sticks;
-                largest = largest.max(normal);
+                largest = largest.max(force[2]);
                 if force == row.force_n {
                     continue;
                 }
@@ -168,12 +186,12 @@ impl Targets {
             if couples_further {
                 self.respond(body, u_scale);
             }
-            residual = if largest > 0.0 { change / largest } else { change };
             if change <= TOLERANCE * largest {
-                return (sweep, residual);
+                // Where nothing touches, nothing was solved.
+                return if largest > 0.0 { sweep } else { 0 };
             }
         }
-        (MAX_SWEEPS + 1, residual)
+        MAX_SWEEPS + 1
     }
 
     /// Spreads the slave nodes' forces over the target nodes.

@@ -5,8 +5,11 @@ const GROWTH: f64 = 1.4;
 
 /// Sizes of the elements over `length`, the first of size `fine` and none above `coarse` (nor, by rounding, above
 /// `fine` where `length` is shorter). Neighbours differ by [`GROWTH`] at most, and no element is smaller than it has
-/// to be.
+/// to be. None at all over no length.
 pub fn graded(length: f64, fine: f64, coarse: f64) -> Vec<f64> {
+    if length <= 0.0 {
+        return Vec::new();
+    }
     let total = |count: usize, growth: f64| -> f64 { sizes(count, fine, coarse, growth).sum() };
     // Forgives the rounding of decimal lengths.
     let enough = length * (1.0 - 1.0e-9);

@@ -55,8 +55,12 @@ impl RingMesh {
         let (fine, coarse) = (ring.element_size_m, ring.coarse_element_size_m);
         let [half_x, half_y] = [pin.size_m[0] / 2.0, pin.size_m[1] / 2.0];
         let (inside, outside) = (track_radius_m - half_x, (track_radius_m + half_x).hypot(half_y));
-        // An element more on either side: patches take tangents from their neighbours.
-        let (low, high) = (inside - fine, outside + fine);
+        // An element more on either side, from which patches take tangents; all of what is left if that is less
+        // than half an element.
+        let low =
+            if inside - 1.5 * fine <= ring.inner_radius_m { ring.inner_radius_m } else { inside - fine };
+        let high =
+            if outside + 1.5 * fine >= ring.outer_radius_m { ring.outer_radius_m } else { outside + fine };
         let rows = count(high - low, fine);
         let element_m = (high - low) / rows as f64;
         let inwards = graded(low - ring.inner_radius_m, element_m, coarse);
@@ -73,7 +77,7 @@ impl RingMesh {
 
         let half_angle = libm::atan2(half_y, inside);
         let arc = ring.track_arc_deg.to_radians();
-        let sector = fine / outside;
+        let sector = fine / high;
         let span = arc + 2.0 * (half_angle + sector);
         let (first_angle_rad, sectors, sectors_rad) = if span >= TAU - 2.0 * sector {
             let sectors = count(TAU, sector);
@@ -81,7 +85,7 @@ impl RingMesh {
         } else {
             let sectors = count(span, sector);
             let sector = span / sectors as f64;
-            let half_way = graded((TAU - span) / 2.0, sector, coarse / outside);
+            let half_way = graded((TAU - span) / 2.0, sector, (coarse / ring.outer_radius_m).max(sector));
             let mut all = vec![sector; sectors];
             all.extend(&half_way);
             all.extend(half_way.iter().rev());
