@@ -14,9 +14,10 @@ const SIGNALS: usize = 4;
 
 /// Amplitude, over F, below which lines are not judged on an elastic disk.
 ///
-/// Nodes that pass from patch to patch excite the disk all the time, and its lowest modes, at some kHz, are
-/// hardly damped: what they ring with never ends, at 10⁻⁸ to 10⁻⁷ of F on steel. So a growth that is slower than
-/// about 300 1/s and begins below this is not seen within an observation of 8 ms.
+/// Nodes that pass from patch to patch excite the disk all the time, and its lowest modes, at some kHz, are hardly
+/// damped: N never comes to rest. On steel with elements of 2.5 mm what is left after 50 ms is less than 4·10⁻⁸ of F at
+/// 7 rpm and 10⁻⁶ at 100 rpm. So a growth that is slower than about 300 1/s and begins below this is not seen
+/// within an observation of 8 ms.
 pub const ELASTIC_FLOOR: f64 = 1.0e-6;
 
 /// Watches sliding for growth and decay.
