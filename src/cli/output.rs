@@ -23,6 +23,19 @@ pub fn print<T: AsRef<[u8]> + ?Sized>(content: &T) -> Result<(), CliError> {
     }
 }
 
+/// Characters in a line of the terminal that shows standard output; a hundred where there is none.
+pub fn width() -> usize {
+    terminal_size::terminal_size_of(std::io::stdout()).map_or(100, |(width, _)| usize::from(width.0))
+}
+
+/// A text with its colours where standard output shows them: on a terminal, unless `NO_COLOR` is set.
+pub fn coloured(text: String) -> String {
+    match anstream::AutoStream::choice(&std::io::stdout()) {
+        anstream::ColorChoice::Never => anstream::adapter::strip_str(&text).to_string(),
+        _ => text,
+    }
+}
+
 /// Writes a line to standard error. If nobody can read it, the work goes on all the same: `eprintln!`
 /// would end the sweep with a panic.
 pub fn tell(line: impl Display) {

@@ -1,17 +1,21 @@
 //! `tribosweep status`: how far the studies are.
 
 use super::error::CliError;
-use super::output::{block_on, print};
+use super::output::{self, block_on, print};
 use super::planning::RowParameters;
 use super::rows;
 use crate::analysis::Outcome;
 use crate::exit;
 use crate::queue::{Counts, Queue, Rows, Scope};
+use crate::report::overview::overview;
 use crate::report::trouble::{Grid, LISTED, Region, Regions, cause, sentences};
 use crate::report::{Row, RowState};
 use serde_json::{Value, json};
 use std::fmt::Write;
 use std::path::Path;
+
+/// Studies with more jobs are told in numbers alone: reading their records takes longer than looking at them is worth.
+const SHOWN: u64 = 2_000;
 
 /// Arguments of `status`.
 #[derive(Debug, clap::Args)]
@@ -35,7 +39,7 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
         queue.close().await?;
         Ok(text)
     })?;
-    print(&text)?;
+    print(&output::coloured(text))?;
     Ok(exit::SUCCESS)
 }
 
@@ -107,6 +111,9 @@ async fn one(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, Cli
     }
     let Trouble { not_periodic, regions, .. } = trouble;
     let mut text = format!("{name}: {}\n", counts_text(counts));
+    if counts.total() <= SHOWN {
+        text.push_str(&overview(&rows::read(queue, name).await?, output::width()));
+    }
     if not_periodic > 0 {
         let _ = writeln!(text, "{not_periodic} done jobs reached their time limit without becoming periodic");
     }

@@ -6,6 +6,7 @@
 //! * [`export`] – one line a job, for other programs.
 //! * [`tables`] – speed by friction coefficient, as Markdown and CSV.
 //! * [`figure`] – μ* and frequency against speed, as SVG.
+//! * [`overview`] – a letter for every job, for a terminal.
 //! * [`pareto`] – error against run time of jobs that differ in their numerics only.
 //! * [`trouble`] – where in the grid jobs fail or do not become periodic, and why.
 //! * [`write()`] – a folder with all of it and a page that holds it together.
@@ -17,6 +18,7 @@ mod files;
 mod folder;
 mod layout;
 mod markdown;
+pub mod overview;
 mod page;
 pub mod pareto;
 mod row;

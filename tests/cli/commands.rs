@@ -12,9 +12,12 @@ fn status_counts_jobs() {
     let folder = Folder::with("first", &small(&json!({ "mu": [0.2, 0.4] })));
     folder.add("second", &small(&json!({ "omega_rpm": [20] })));
     folder.ok("submit first.json");
+    // No terminal, no colours.
     assert_eq!(
         folder.ok("status first"),
-        "first: 2 jobs: 0 done, 0 failed, 0 running, 2 pending\ncontinue with `tribosweep work`\n"
+        "first: 2 jobs: 0 done, 0 failed, 0 running, 2 pending\n\
+         μ \\ ω [rpm] 7\n        0.4 .\n        0.2 .\n. pending\n\
+         continue with `tribosweep work`\n"
     );
     folder.ok("work");
     folder.ok("submit second.json");

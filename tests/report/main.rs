@@ -3,6 +3,7 @@
 mod export;
 mod figure;
 mod folder;
+mod overview;
 mod pareto;
 mod svg;
 mod synthetic;

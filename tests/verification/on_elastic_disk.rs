@@ -88,6 +88,7 @@ fn action_is_reaction() {
     };
     let mut evidence =
         Evidence::new("R5", "reaction on the disk over the force on the pin", "Newton's third law");
+    let mut worst = (0.0, 0.0, 0.0, 1.0);
     for _ in 0..600 {
         let before = momentum(&state);
         let elastic: f64 = {
@@ -104,10 +105,12 @@ fn action_is_reaction() {
         advance(&model, &drive, &mut state, 1);
         let on_disk = (momentum(&state) - before) / model.time_step_s() - elastic;
         let on_pin: f64 = state.contacts.forces(0).map(|force| force[2]).sum();
-        if on_pin > 1.0 {
-            evidence.found(format!("step {}", state.step), -on_disk, on_pin, on_pin + elastic.abs());
+        let scale = on_pin + elastic.abs();
+        if on_pin > 1.0 && (on_disk + on_pin).abs() / scale >= worst.0 {
+            worst = ((on_disk + on_pin).abs() / scale, -on_disk, on_pin, scale);
         }
     }
+    evidence.found("the worst of 600 steps", worst.1, worst.2, worst.3);
     // A sum over the disk's nodes of rows of K and of momenta, which are Δt⁻¹ times the forces' impulse so far.
     evidence.judge_exact(crate::common::ROUNDINGS_PER_FORCE * (body.mesh().node_count() * 600) as f64);
 }

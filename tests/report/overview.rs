@@ -1,0 +1,60 @@
+//! The grid of letters for a terminal.
+
+use crate::synthetic::{done, failed, periodic, row};
+use tribosweep::analysis::{Outcome, Regime};
+use tribosweep::report::overview::overview;
+use tribosweep::report::{Row, RowState};
+
+/// Without colours.
+fn plain(rows: &[Row], width: usize) -> String {
+    anstream::adapter::strip_str(&overview(rows, width)).to_string()
+}
+
+fn study() -> Vec<Row> {
+    vec![
+        row(0.5, 0.2, done(Outcome::Decayed, Regime::Stable, 0.2)),
+        row(0.5, 0.4, periodic(0.38)),
+        row(7.0, 0.2, RowState::Running),
+        row(7.0, 0.4, done(Outcome::NotPeriodic, Regime::StickSlipSeparation, 0.3)),
+        row(100.0, 0.2, RowState::Pending),
+        row(100.0, 0.4, failed("diverged")),
+    ]
+}
+
+/// Protects: every job has its letter at its place, the highest friction on top, and what the letters mean is said.
+#[test]
+fn every_job_has_its_letter() {
+    let text = plain(&study(), 80);
+    let lines: Vec<&str> = text.lines().collect();
+    assert_eq!(
+        &lines[..3],
+        ["μ \\ ω [rpm] 0.5   7 100", "        0.4   K   x   !", "        0.2   S   >   ."],
+        "{text}"
+    );
+    for meaning in [
+        "S stable",
+        "K stick–slip",
+        "x stick–slip–separation, not periodic",
+        "! failed",
+        "> running",
+        ". pending",
+    ] {
+        assert!(lines[3..].join(" ").contains(meaning), "{meaning} is not in {text}");
+    }
+}
+
+/// Protects: a narrow terminal gets the same letters in several pieces, no line longer than it is wide.
+#[test]
+fn narrow_terminals_get_pieces() {
+    let text = plain(&study(), 20);
+    assert!(text.lines().take(6).all(|line| line.chars().count() <= 20), "{text}");
+    let lines = text.lines().take(6).filter(|line| line.starts_with("  "));
+    let letters: String = lines.flat_map(|line| line.chars().skip("μ \\ ω [rpm]".chars().count())).collect();
+    assert_eq!(letters.chars().filter(|c| "KxS!.>".contains(*c)).count(), 6, "{text}");
+}
+
+/// Protects: no jobs, no grid.
+#[test]
+fn without_jobs_there_is_nothing_to_show() {
+    assert_eq!(overview(&[], 80), "");
+}
