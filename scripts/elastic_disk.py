@@ -168,8 +168,8 @@ The disk's own clock makes up to four stages in a step of the pin; the common cl
 
 {runs.table(["disk", "step [s]", *HEADER], rows)}
 What the stages change is to be read against what the step itself changes, for the rigid disk as for the elastic one. Ferguson
-patches change hardly anything here, because steel deflects by nanometres; on a soft disk they halve the waver of
-the normal force (tests/verification/on_elastic_disk.rs).
+patches change hardly anything here, because steel deflects by nanometres; what they do for the normal force on a
+soft disk is in docs/verification.md, R5.
 """
 
 
