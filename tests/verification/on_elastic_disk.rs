@@ -65,11 +65,16 @@ fn riding_over_edges_is_smooth() {
         let square = found.iter().map(|[_, n]| (n / mean - 1.0).powi(2)).sum::<f64>() / found.len() as f64;
         waver.push(square.sqrt());
     }
-    println!("waver of N: {waver:?}");
     evidence.judge_bounded(
         "friction is projected on μN node by node; the nodes' slip turns by less than 10⁻³ rad",
     );
-    assert!(waver[1] < waver[0], "{waver:?}");
+    let mut gain = Evidence::new(
+        "R5",
+        "waver of N on Ferguson patches over that on bilinear ones",
+        "kinks of the surface",
+    );
+    gain.bounded("E = 20 GPa, 6 mm, 100 rpm", waver[1] / waver[0], 0.0, 1.0, 1.0);
+    gain.judge_bounded("what has no kinks excites less than what has");
 }
 
 /// Protects: the forces that the pin receives are those that the disk receives, at every step.
