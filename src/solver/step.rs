@@ -11,7 +11,7 @@
 //!
 //! At n = 0, p_0 is the initial velocity v_0 and the factors are ½ and 1−β₂: the half-force first step.
 
-use super::contact::{elastic, rigid};
+use super::contact::{Face, elastic};
 use super::field::in_slots;
 use super::integrate::Factors;
 use super::model::Model;
@@ -27,8 +27,9 @@ pub(super) fn factors(beta2: f64, step: u64) -> (f64, f64) {
 pub fn step<const L: usize>(model: &Model, drives: &[Drive; L], state: &mut State<L>) {
     let dt = model.time_step_s();
     let (mut u_scale, mut p_scale) = ([0.0; L], [0.0; L]);
+    let steps: [u64; L] = std::array::from_fn(|lane| state.steps_done(lane));
     for lane in 0..L {
-        let n = state.steps_done(lane);
+        let n = steps[lane];
         state.load_n[lane] = drives[lane].load_n(n as f64 * dt);
         let (u_factor, p_factor) = factors(model.beta2(), n);
         (u_scale[lane], p_scale[lane]) = (u_factor * dt * dt, p_factor * dt);
@@ -45,10 +46,9 @@ pub fn step<const L: usize>(model: &Model, drives: &[Drive; L], state: &mut Stat
     state.reaction_n = work.supports.apply(&state.load_n, &mut work.residual);
     work.integration.advance_constrained_planes(&factors, &mut state.u, &mut state.p, &work.residual);
     let inverse_mass = work.integration.face_inverse_mass();
+    let mut face = Face { u: &mut state.u, p: &mut state.p, residual: &work.residual, inverse_mass };
     match (&mut work.contact, model.disk(), &mut state.disk) {
         (ContactSolve::Rigid(contact), _, _) => {
-            let mut face =
-                rigid::Face { u: &mut state.u, p: &mut state.p, residual: &work.residual, inverse_mass };
             let held_n = contact.solve(&factors, drives, &mut face, &mut state.contacts);
             for c in 0..3 {
                 for lane in 0..L {
@@ -57,14 +57,11 @@ pub fn step<const L: usize>(model: &Model, drives: &[Drive; L], state: &mut Stat
             }
         }
         (ContactSolve::Elastic(contact), Some(body), Some(disk)) => {
-            let mut face =
-                elastic::Face { u: &mut state.u, p: &mut state.p, residual: &work.residual, inverse_mass };
-            let steps: [u64; L] = std::array::from_fn(|lane| state.step.wrapping_sub(state.begun[lane]) + 1);
             let given = elastic::Given {
                 factors: &factors,
                 drives,
-                steps,
-                turned_rad: std::array::from_fn(|lane| drives[lane].rate * (steps[lane] as f64 * dt)),
+                steps: steps.map(|n| n + 1),
+                turned_rad: std::array::from_fn(|lane| drives[lane].rate * ((steps[lane] + 1) as f64 * dt)),
             };
             contact.solve(body, &given, &mut face, disk, &mut state.contacts);
         }

@@ -20,15 +20,14 @@
 
 use super::patch::{Grid, Share, Spot};
 use super::sweeps::{Row, TargetNode, Targets};
-use super::{Contacts, Status};
+use super::{Contacts, Face, Status};
 use crate::solver::disk::{DiskBody, DiskState};
-use crate::solver::field::{Block, Field, Place};
+use crate::solver::field::{Field, Place};
 use crate::solver::integrate::Factors;
 use crate::solver::model::Model;
 use crate::solver::state::Drive;
 use crate::spec::TargetSurface;
-use fearless_simd::f64x8;
-use fearless_simd::{Level, Simd, dispatch, prelude::*};
+use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
 /// What is fixed during a run, and scratch.
 #[derive(Debug, Clone)]
@@ -74,16 +73,6 @@ struct Slave {
     across: Spot,
     inverse_mass: f64,
     motion: [f64; 2],
-}
-
-/// The slave nodes at t_n, which the solve takes to t_{n+1}.
-pub(in crate::solver) struct Face<'a, const L: usize> {
-    pub u: &'a mut Field<L>,
-    pub p: &'a mut Field<L>,
-    /// K (u + β_R p) − external forces [N].
-    pub residual: &'a Field<L>,
-    /// 1/m of every degree of freedom.
-    pub inverse_mass: &'a [Block],
 }
 
 /// What a step is given.

@@ -11,8 +11,18 @@ pub mod sweeps;
 
 pub use sweeps::Solves;
 
-use super::field::Field;
+use super::field::{Block, Field};
 use super::mesh::BlockMesh;
+
+/// The slave nodes at t_n, which the solve takes to t_{n+1}.
+pub(in crate::solver) struct Face<'a, const L: usize> {
+    pub u: &'a mut Field<L>,
+    pub p: &'a mut Field<L>,
+    /// K (u + β_R p) − external forces [N].
+    pub residual: &'a Field<L>,
+    /// 1/m of every degree of freedom, 0 where it is fixed.
+    pub inverse_mass: &'a [Block],
+}
 
 /// State of a slave node during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]

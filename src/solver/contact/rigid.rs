@@ -17,8 +17,8 @@
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
 use super::coulomb::{self, project};
-use super::{Contacts, Status};
-use crate::solver::field::{Block, Field, Place, in_slots};
+use super::{Contacts, Face, Status};
+use crate::solver::field::{Field, Place, in_slots};
 use crate::solver::integrate::Factors;
 use crate::solver::model::{Model, SlaveNode};
 use crate::solver::state::Drive;
@@ -40,16 +40,6 @@ struct HeldNode<const L: usize> {
     node: SlaveNode,
     /// Its displacements [m] at t_n.
     u_m: [[f64; L]; 3],
-}
-
-/// The slave nodes at t_n, which the solve takes to t_{n+1}.
-pub(in crate::solver) struct Face<'a, const L: usize> {
-    pub u: &'a mut Field<L>,
-    pub p: &'a mut Field<L>,
-    /// K (u + β_R p) − external forces [N].
-    pub residual: &'a Field<L>,
-    /// 1/m of every degree of freedom, 0 where it is fixed.
-    pub inverse_mass: &'a [Block],
 }
 
 impl<const L: usize> RigidContact<L> {

@@ -183,12 +183,12 @@ impl Targets {
                     }
                 }
             }
-            if couples_further {
-                self.respond(body, u_scale);
-            }
             if change <= TOLERANCE * largest {
                 // Where nothing touches, nothing was solved.
                 return if largest > 0.0 { sweep } else { 0 };
+            }
+            if couples_further {
+                self.respond(body, u_scale);
             }
         }
         MAX_SWEEPS + 1

@@ -108,11 +108,6 @@ impl DiskBody {
         &self.definition.mesh
     }
 
-    /// Its material.
-    pub fn material(&self) -> &Material {
-        &self.definition.material
-    }
-
     /// How its top is interpolated.
     pub fn target(&self) -> TargetSurface {
         self.definition.target
