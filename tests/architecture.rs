@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module at the top may use besides itself. `cli` and `main` join the rest together.
-const MAY_USE: [(&str, &[&str]); 11] = [
+const MAY_USE: [(&str, &[&str]); 12] = [
     ("spec", &[]),
     ("units", &[]),
     ("exit", &[]),
@@ -12,9 +12,13 @@ const MAY_USE: [(&str, &[&str]); 11] = [
     ("solver", &["spec", "units"]),
     ("analysis", &["solver", "spec", "units"]),
     ("study", &["spec"]),
-    ("report", &["analysis"]),
+    ("publish", &[]),
+    ("report", &["analysis", "publish"]),
     ("worker", &["analysis", "queue", "spec"]),
-    ("cli", &["analysis", "exit", "queue", "report", "solver", "spec", "study", "units", "worker"]),
+    (
+        "cli",
+        &["analysis", "exit", "publish", "queue", "report", "solver", "spec", "study", "units", "worker"],
+    ),
     ("main", &["cli"]),
 ];
 

@@ -1,7 +1,7 @@
 //! What ends a command, beyond the failure of a job.
 
+use crate::publish::PublishError;
 use crate::queue::QueueError;
-use crate::report::ReportError;
 use crate::study::StudyError;
 use crate::worker::WorkError;
 use thiserror::Error;
@@ -23,7 +23,7 @@ pub enum CliError {
     Work(#[from] WorkError),
     /// The report.
     #[error(transparent)]
-    Report(#[from] ReportError),
+    Report(#[from] PublishError),
     /// A file that cannot be written or read.
     #[error("{path}: {source}")]
     File {

@@ -1,8 +1,8 @@
 //! One line a job, for other programs: CSV and JSON lines with the same fields.
 
 use super::row::{Row, RowState, is_further};
-use super::value;
 use crate::analysis::JobRecord;
+use crate::publish::value;
 use serde::Serializer;
 use serde::ser::SerializeMap;
 use serde_json::Value;

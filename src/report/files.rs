@@ -1,12 +1,12 @@
 //! The report as a folder of files.
 
-use super::error::ReportError;
 use super::figure::{self, Plot};
-use super::folder::Folder;
 use super::layout::Layout;
 use super::page::{self, FigureLink, Table};
 use super::tables::{self, Quantity};
 use super::{export, row::Row};
+use crate::publish::Folder;
+use crate::publish::PublishError;
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
 
@@ -22,7 +22,7 @@ const PLOTS: [(Plot, &str); 2] = [(Plot::MuStar, "figure7"), (Plot::Frequency, "
 ///
 /// # Errors
 /// The first file that could not be written. Files before it are complete.
-pub fn write(rows: &[Row], out_dir: &Path, title: &str) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write(rows: &[Row], out_dir: &Path, title: &str) -> Result<Vec<PathBuf>, PublishError> {
     let mut folder = Folder::create(out_dir)?;
 
     let layout = Layout::new(rows);
@@ -42,7 +42,7 @@ pub fn write(rows: &[Row], out_dir: &Path, title: &str) -> Result<Vec<PathBuf>, 
     let mut links = Vec::new();
     for ((plot, stem), figures) in PLOTS.into_iter().zip(figures) {
         let path = || out_dir.join(format!("{stem}.svg"));
-        for figure in figures.map_err(|source| ReportError::Figure { path: path(), source })? {
+        for figure in figures.map_err(|source| PublishError::Figure { path: path(), source })? {
             let file = format!("{stem}{}.svg", figure.suffix);
             folder.text(&file, &figure.svg)?;
             links.push(FigureLink { plot, caption: figure.caption, file });

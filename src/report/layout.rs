@@ -1,8 +1,9 @@
 //! How the parameters of a study are laid out: one along the rows, μ over the columns, the others apart.
 
 use super::export::further_names;
-use super::row::{MU, OMEGA, Row};
-use super::value;
+use super::row::Row;
+use crate::publish::value;
+use crate::publish::value::{MU, OMEGA};
 use serde_json::Value;
 use std::collections::HashMap;
 

@@ -11,11 +11,9 @@
 //! * [`trouble`] – where in the grid jobs fail or do not become periodic, and why.
 //! * [`write()`] – a folder with all of it and a page that holds it together.
 
-mod error;
 pub mod export;
 pub mod figure;
 mod files;
-mod folder;
 mod layout;
 mod markdown;
 pub mod overview;
@@ -24,8 +22,6 @@ pub mod pareto;
 mod row;
 pub mod tables;
 pub mod trouble;
-mod value;
 
-pub use error::ReportError;
 pub use files::write;
 pub use row::{JobNumerics, Row, RowState};

@@ -2,8 +2,8 @@
 
 use super::layout::{Group, Layout};
 use super::row::{Row, RowState};
-use super::value;
 use crate::analysis::{Outcome, Regime};
+use crate::publish::value;
 use anstyle::{AnsiColor, Style};
 use std::fmt::Write;
 

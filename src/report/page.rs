@@ -4,8 +4,9 @@ use super::figure::Plot;
 use super::layout::parameters_in_words;
 use super::row::{Row, RowState};
 use super::tables::Quantity;
-use super::{markdown, trouble, value};
+use super::{markdown, trouble};
 use crate::analysis::{JobRecord, Outcome};
+use crate::publish::value;
 
 /// Jobs in a list are named up to this number: the rest are in the export.
 const NAMED: usize = 20;

@@ -1,13 +1,9 @@
 //! One job as a report sees it.
 
 use crate::analysis::JobRecord;
+use crate::publish::value::{MU, OMEGA};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
-
-/// The grid parameter that is the disk speed.
-pub(super) const OMEGA: &str = "omega_rpm";
-/// The grid parameter that is the local friction coefficient.
-pub(super) const MU: &str = "mu";
 
 /// Whether a parameter is one of those that have no place of their own everywhere, as ω and μ have.
 pub(super) fn is_further(name: &str) -> bool {

@@ -2,10 +2,11 @@
 
 use super::export::io_error;
 use super::layout::{Group, Layout};
+use super::markdown;
 use super::row::{Row, RowState};
-use super::value::MISSING;
-use super::{markdown, value};
 use crate::analysis::{JobRecord, Outcome, Regime};
+use crate::publish::value;
+use crate::publish::value::MISSING;
 use std::io::{self, Write};
 
 /// What a table shows.

@@ -4,7 +4,8 @@ use crate::synthetic::{failed, partial_study, periodic, row, with};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use tribosweep::report::{ReportError, Row, RowState, write};
+use tribosweep::publish::PublishError;
+use tribosweep::report::{Row, RowState, write};
 
 const FILES: [&str; 10] = [
     "figure7.svg",
@@ -134,7 +135,7 @@ fn an_error_names_the_path() {
     let blocked = folder.path().join("jobs.csv");
     fs::create_dir(&blocked).expect("a folder");
     let error = write(&partial_study(), folder.path(), "Reference").expect_err("jobs.csv is a folder");
-    assert!(matches!(&error, ReportError::File { path, .. } if *path == blocked), "{error:?}");
+    assert!(matches!(&error, PublishError::File { path, .. } if *path == blocked), "{error:?}");
     assert!(error.to_string().contains(&blocked.display().to_string()), "{error}");
     assert!(
         names(folder.path()).iter().all(|name| FILES.contains(&name.as_str())),
@@ -144,5 +145,5 @@ fn an_error_names_the_path() {
 
     let file = folder.path().join("mu_star.md");
     let error = write(&[], &file, "Reference").expect_err("a file is not a folder");
-    assert!(matches!(&error, ReportError::Folder { path, .. } if *path == file), "{error:?}");
+    assert!(matches!(&error, PublishError::Folder { path, .. } if *path == file), "{error:?}");
 }

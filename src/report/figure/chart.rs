@@ -1,10 +1,11 @@
 //! The drawing: axes, guides, curves, error bars, markers.
 
-use super::axis::Axis;
 use super::data::{self, Curve, Point};
-use super::{FigureError, Plot, legend, marker, palette};
+use super::{Plot, legend, marker};
+use crate::publish::plot::axis::Axis;
+use crate::publish::plot::{CURVE_WIDTH, DASH, FONT, FigureError, GRID, GUIDE_WIDTH, MARGIN, TEXT, palette};
+use crate::publish::value::OMEGA;
 use crate::report::layout::{Group, Layout};
-use crate::report::row::OMEGA;
 use plotters::chart::{ChartBuilder, ChartContext};
 use plotters::coord::Shift;
 use plotters::coord::cartesian::Cartesian2d;
@@ -22,20 +23,6 @@ const LEGEND_WIDTH: u32 = 420;
 const CAPTION_HEIGHT: u32 = 64;
 const X_LABELS: u32 = 104;
 const Y_LABELS: u32 = 150;
-
-/// Room around plot and legend [px].
-pub(in crate::report) const MARGIN: i32 = 36;
-/// Size of text [px].
-pub(in crate::report) const TEXT: i32 = 34;
-/// Fonts that have μ, ω and the dash, on every system one.
-pub(in crate::report) const FONT: &str = "Helvetica, Arial, Liberation Sans, DejaVu Sans, sans-serif";
-/// Width of a curve [px].
-pub(in crate::report) const CURVE_WIDTH: u32 = 4;
-/// Width of a guide [px].
-pub(in crate::report) const GUIDE_WIDTH: u32 = 3;
-/// Length of a dash and of the gap after it [px].
-pub(in crate::report) const DASH: i32 = 12;
-const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;

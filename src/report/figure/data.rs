@@ -1,8 +1,8 @@
 //! The points of a figure.
 
 use super::Plot;
-use super::axis::Axis;
 use crate::analysis::{JobRecord, Outcome, Regime};
+use crate::publish::plot::axis::Axis;
 use crate::report::layout::{Group, Layout};
 
 /// One job's result in a figure.

@@ -1,10 +1,11 @@
 //! The legend in the strip beside the plot: friction coefficients by colour, regimes by shape.
 
+use super::Plot;
 use super::data::Curve;
 use super::marker::{self, regime_label};
-use super::{FigureError, Plot, chart, palette};
 use crate::analysis::Regime;
-use crate::report::value;
+use crate::publish::plot::{self, FigureError, palette};
+use crate::publish::value;
 use plotters::coord::Shift;
 use plotters::prelude::{BLACK, DrawingArea, PathElement, RGBColor, SVGBackend, Text};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
@@ -36,12 +37,12 @@ pub(super) fn draw(
     plot: Plot,
 ) -> Result<(), FigureError> {
     let entries = entries(curves, plot);
-    let room = area.dim_in_pixel().1 as i32 - 2 * chart::MARGIN;
+    let room = area.dim_in_pixel().1 as i32 - 2 * plot::MARGIN;
     let pitch = (room / entries.len().max(1) as i32).min(46);
     // A long legend is set smaller rather than cut.
-    let size = chart::TEXT.min(pitch * 5 / 6);
+    let size = plot::TEXT.min(pitch * 5 / 6);
     for (line, entry) in entries.iter().enumerate() {
-        draw_entry(area, entry, chart::MARGIN + pitch / 2 + line as i32 * pitch, size)?;
+        draw_entry(area, entry, plot::MARGIN + pitch / 2 + line as i32 * pitch, size)?;
     }
     Ok(())
 }
@@ -77,7 +78,7 @@ fn draw_entry(
     size: i32,
 ) -> Result<(), FigureError> {
     let text = |text: String, x: i32| {
-        let style = TextStyle::from((chart::FONT, size).into_font()).pos(Pos::new(HPos::Left, VPos::Center));
+        let style = TextStyle::from((plot::FONT, size).into_font()).pos(Pos::new(HPos::Left, VPos::Center));
         area.draw(&Text::new(text, (x, y), style))
     };
     let beside = SAMPLE + 18;
@@ -85,13 +86,13 @@ fn draw_entry(
         Entry::Space => Ok(()),
         Entry::Heading(heading) => text(heading.to_owned(), 0),
         Entry::Curve(colour, mu) => {
-            area.draw(&PathElement::new([(0, y), (SAMPLE, y)], colour.stroke_width(chart::CURVE_WIDTH)))?;
+            area.draw(&PathElement::new([(0, y), (SAMPLE, y)], colour.stroke_width(plot::CURVE_WIDTH)))?;
             text(value::rounded(mu), beside)
         }
         Entry::Guide => {
-            for x in (0..SAMPLE).step_by(chart::DASH as usize * 2) {
-                let dash = [(x, y), ((x + chart::DASH).min(SAMPLE), y)];
-                area.draw(&PathElement::new(dash, BLACK.stroke_width(chart::GUIDE_WIDTH)))?;
+            for x in (0..SAMPLE).step_by(plot::DASH as usize * 2) {
+                let dash = [(x, y), ((x + plot::DASH).min(SAMPLE), y)];
+                area.draw(&PathElement::new(dash, BLACK.stroke_width(plot::GUIDE_WIDTH)))?;
             }
             text("μ* = μ".to_owned(), beside)
         }

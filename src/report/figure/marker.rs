@@ -1,7 +1,7 @@
 //! Markers: the shape is the contact regime, hollow is without a periodic state.
 
-use super::FigureError;
 use crate::analysis::Regime;
+use crate::publish::plot::FigureError;
 use plotters::coord::Shift;
 use plotters::prelude::{Circle, DrawingArea, Polygon, RGBColor, SVGBackend, WHITE};
 

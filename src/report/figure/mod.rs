@@ -2,20 +2,16 @@
 
 #![expect(clippy::cast_possible_wrap, reason = "pixels and legend lines: thousands, not billions")]
 
-pub(super) mod axis;
-pub(super) mod chart;
+mod chart;
 mod data;
 mod legend;
 mod marker;
-pub(super) mod palette;
 
 use super::layout::{Group, Layout};
 use super::row::Row;
-use super::value;
+use crate::publish::plot::FigureError;
+use crate::publish::value;
 use std::collections::HashSet;
-
-/// Why a figure could not be drawn.
-pub type FigureError = plotters::drawing::DrawingAreaErrorKind<std::io::Error>;
 
 /// What a figure shows over the disk speed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -5,8 +5,8 @@ use super::reference::{self, Reference};
 use super::score::{self, Score};
 use super::settings;
 use crate::analysis::JobRecord;
+use crate::publish::value;
 use crate::report::row::{JobNumerics, Row, RowState};
-use crate::report::value;
 
 /// A finished job with everything that the comparison needs.
 #[derive(Debug, Clone, Copy)]

@@ -5,9 +5,9 @@ use super::compare::Comparison;
 use super::reference::{FIGURES, figures};
 use super::refinement::Unclean;
 use super::score::Score;
+use crate::publish::value::{number, text};
 use crate::report::export::{further_names, io_error};
 use crate::report::row::Row;
-use crate::report::value::{number, text};
 use std::io::{self, Write};
 
 /// The fields of every line; grid parameters that are not among them follow.

@@ -43,8 +43,8 @@ pub use page::markdown;
 pub use reference::{Chain, Direction, Reference, Target};
 pub use score::Score;
 
-use super::error::ReportError;
-use super::folder::Folder;
+use crate::publish::Folder;
+use crate::publish::PublishError;
 use std::path::{Path, PathBuf};
 
 /// Writes `pareto.md`, `pareto.csv`, `refinement.csv` and one figure a case (`pareto.svg`, `pareto-2.svg`, …) into `out_dir`;
@@ -52,13 +52,13 @@ use std::path::{Path, PathBuf};
 ///
 /// # Errors
 /// The first file that could not be written.
-pub fn write(comparison: &Comparison, out_dir: &Path, title: &str) -> Result<Vec<PathBuf>, ReportError> {
+pub fn write(comparison: &Comparison, out_dir: &Path, title: &str) -> Result<Vec<PathBuf>, PublishError> {
     let mut folder = Folder::create(out_dir)?;
     let mut figures = Vec::new();
     for (index, case) in comparison.cases.iter().enumerate() {
         let name = if index == 0 { "pareto.svg".to_owned() } else { format!("pareto-{}.svg", index + 1) };
         let svg =
-            plot::draw(case).map_err(|source| ReportError::Figure { path: out_dir.join(&name), source })?;
+            plot::draw(case).map_err(|source| PublishError::Figure { path: out_dir.join(&name), source })?;
         folder.text(&name, &svg)?;
         figures.push(name);
     }

@@ -7,8 +7,8 @@ use super::reference::{Chain, Direction, FIGURE_NAMES, FIGURES, FREQUENCY, MU_ST
 use super::refinement::{Limit, Unclean};
 use super::score::{Score, exceeds};
 use super::settings;
+use crate::publish::value::{self, MISSING};
 use crate::report::markdown;
-use crate::report::value::{self, MISSING};
 
 /// The tables of all cases.
 pub fn markdown(comparison: &Comparison) -> String {

@@ -4,9 +4,8 @@
 
 use super::case::Case;
 use super::page::figure_title;
-use crate::report::figure::axis::Axis;
-use crate::report::figure::chart::{DASH, FONT, MARGIN, TEXT};
-use crate::report::figure::{FigureError, palette};
+use crate::publish::plot::axis::Axis;
+use crate::publish::plot::{DASH, FONT, FigureError, GRID, MARGIN, TEXT, palette};
 use plotters::chart::ChartBuilder;
 use plotters::coord::Shift;
 use plotters::prelude::{
@@ -25,7 +24,6 @@ const CAPTION_HEIGHT: u32 = 64;
 const X_LABELS: u32 = 104;
 const Y_LABELS: u32 = 170;
 const RADIUS: i32 = 12;
-const GRID: RGBColor = RGBColor(0xE4, 0xE4, 0xE4);
 const GREY: RGBColor = RGBColor(0x50, 0x50, 0x50);
 
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;

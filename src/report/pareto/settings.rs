@@ -1,7 +1,7 @@
 //! The numerics of a job in words, and which of a grid's parameters they are.
 
+use crate::publish::value;
 use crate::report::row::{JobNumerics, Row};
-use crate::report::value;
 
 /// Grid parameters that change the numerics and not the physical case.
 const NUMERICS: [&str; 16] = [

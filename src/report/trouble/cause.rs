@@ -1,8 +1,8 @@
 //! Why a job is in trouble.
 
 use crate::analysis::{JobRecord, Obstacle, Outcome};
+use crate::publish::value;
 use crate::report::row::{JobNumerics, Row, RowState};
-use crate::report::value;
 
 /// What is wrong with a job.
 #[derive(Debug, Clone, PartialEq, Eq)]

@@ -1,8 +1,8 @@
 //! Regions of the grid of a study.
 
 use super::cause::Cause;
-use crate::report::row::{MU, OMEGA};
-use crate::report::value;
+use crate::publish::value;
+use crate::publish::value::{MU, OMEGA};
 use serde_json::Value;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};

@@ -1,12 +1,12 @@
-//! What can go wrong while a report is written.
+//! What can go wrong while results are published.
 
-use super::figure::FigureError;
+use super::plot::FigureError;
 use std::path::PathBuf;
 
-/// A report, or a part of it, could not be written.
+/// A folder of results, or a part of it, could not be written.
 #[derive(Debug, thiserror::Error)]
-pub enum ReportError {
-    /// The folder for the report could not be made.
+pub enum PublishError {
+    /// The folder could not be made.
     #[error("cannot create the folder {}", path.display())]
     Folder {
         /// The folder.

@@ -1,13 +1,13 @@
 //! Axes with ticks where a reader expects them.
 
-use crate::report::value;
+use crate::publish::value;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use serde_json::Value;
 use std::ops::Range;
 
 /// An axis of a figure.
 #[derive(Debug, Clone, PartialEq)]
-pub(in crate::report) enum Axis {
+pub enum Axis {
     /// Logarithmic, for positive numbers.
     Log(Range<f64>),
     /// Linear.

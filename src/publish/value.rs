@@ -2,13 +2,18 @@
 
 use serde_json::Value;
 
+/// The parameter that is the disk speed.
+pub const OMEGA: &str = "omega_rpm";
+/// The parameter that is the local friction coefficient.
+pub const MU: &str = "mu";
+
 /// Stands for a result that is not there.
-pub(super) const MISSING: &str = "–";
+pub const MISSING: &str = "–";
 
 /// The shortest text that reads back as the same number.
 ///
 /// Exponents outside the range where digits are readable: `1e-9`, not `0.000000001`.
-pub(super) fn number(x: f64) -> String {
+pub fn number(x: f64) -> String {
     if x == 0.0 {
         // Not `-0`.
         return "0".to_owned();
@@ -17,17 +22,17 @@ pub(super) fn number(x: f64) -> String {
 }
 
 /// A number for a reader: without the rounding of a computed grid, 0.15 for 0.15000000000000002.
-pub(super) fn rounded(x: f64) -> String {
+pub fn rounded(x: f64) -> String {
     format!("{x:.9e}").parse().map_or_else(|_| number(x), number)
 }
 
 /// A number with fixed decimals, or the mark of a missing result where it is not finite.
-pub(super) fn fixed(x: f64, decimals: usize) -> String {
+pub fn fixed(x: f64, decimals: usize) -> String {
     if x.is_finite() { format!("{x:.decimals$}") } else { MISSING.to_owned() }
 }
 
 /// A value in a cell. Empty for null; arrays as `12x15x10`.
-pub(super) fn text(value: &Value) -> String {
+pub fn text(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),
@@ -40,7 +45,7 @@ pub(super) fn text(value: &Value) -> String {
 }
 
 /// A value for a reader: [`text`], but numbers [`rounded`].
-pub(super) fn shown(value: &Value) -> String {
+pub fn shown(value: &Value) -> String {
     match value {
         Value::Number(n) if n.is_f64() => n.as_f64().map(rounded).unwrap_or_default(),
         _ => text(value),
@@ -48,17 +53,17 @@ pub(super) fn shown(value: &Value) -> String {
 }
 
 /// `name = value`, with the symbols of the field for ω and μ.
-pub(super) fn assignment(name: &str, value: &Value) -> String {
+pub fn assignment(name: &str, value: &Value) -> String {
     match name {
-        super::row::OMEGA => format!("ω = {} rpm", shown(value)),
-        super::row::MU => format!("μ = {}", shown(value)),
+        OMEGA => format!("ω = {} rpm", shown(value)),
+        MU => format!("μ = {}", shown(value)),
         _ if value.is_null() => format!("{name} not set"),
         _ => format!("{name} = {}", shown(value)),
     }
 }
 
 /// Sorts values that are numbers, and leaves others as they are; gives the new place of each.
-pub(super) fn sort(values: &mut Vec<Value>) -> Vec<usize> {
+pub fn sort(values: &mut Vec<Value>) -> Vec<usize> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     if values.iter().all(Value::is_number) {
         let number = |at: &usize| values[*at].as_f64().unwrap_or_default();

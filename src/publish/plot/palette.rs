@@ -24,7 +24,7 @@ const SEQUENCE: [RGBColor; 5] = [
 ];
 
 /// The colour of curve `index` of `count`: distinct ones as long as they last, then a sequence.
-pub(in crate::report) fn colour(index: usize, count: usize) -> RGBColor {
+pub fn colour(index: usize, count: usize) -> RGBColor {
     if count <= OKABE_ITO.len() {
         return OKABE_ITO[index];
     }

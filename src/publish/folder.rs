@@ -1,12 +1,12 @@
 //! A folder whose files appear whole.
 
-use super::error::ReportError;
+use super::error::PublishError;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
 /// A folder that files are written into.
-pub(super) struct Folder<'a> {
+pub struct Folder<'a> {
     path: &'a Path,
     /// The files written so far.
     pub written: Vec<PathBuf>,
@@ -14,13 +14,13 @@ pub(super) struct Folder<'a> {
 
 impl<'a> Folder<'a> {
     /// Creates the folder unless it is there.
-    pub fn create(path: &'a Path) -> Result<Self, ReportError> {
-        fs::create_dir_all(path).map_err(|source| ReportError::Folder { path: path.to_owned(), source })?;
+    pub fn create(path: &'a Path) -> Result<Self, PublishError> {
+        fs::create_dir_all(path).map_err(|source| PublishError::Folder { path: path.to_owned(), source })?;
         Ok(Self { path, written: Vec::new() })
     }
 
     /// Writes a file of text.
-    pub fn text(&mut self, name: &str, text: &str) -> Result<(), ReportError> {
+    pub fn text(&mut self, name: &str, text: &str) -> Result<(), PublishError> {
         self.with(name, |out| {
             out.extend_from_slice(text.as_bytes());
             Ok(())
@@ -32,7 +32,7 @@ impl<'a> Folder<'a> {
         &mut self,
         name: &str,
         fill: impl FnOnce(&mut Vec<u8>) -> io::Result<()>,
-    ) -> Result<(), ReportError> {
+    ) -> Result<(), PublishError> {
         let path = self.path.join(name);
         let mut contents = Vec::new();
         match fill(&mut contents).and_then(|()| replace(self.path, name, &contents)) {
@@ -40,7 +40,7 @@ impl<'a> Folder<'a> {
                 self.written.push(path);
                 Ok(())
             }
-            Err(source) => Err(ReportError::File { path, source }),
+            Err(source) => Err(PublishError::File { path, source }),
         }
     }
 }
