@@ -1,0 +1,337 @@
+//! Panels one above the other: curves over bands, marks and levels, with a legend beside each.
+
+use super::axis::Axis;
+use super::{Area, CURVE_WIDTH, DASH, FONT, FigureError, GRID, GUIDE_WIDTH, MARGIN, TEXT};
+use plotters::chart::{ChartBuilder, ChartContext, LabelAreaPosition};
+use plotters::coord::cartesian::Cartesian2d;
+use plotters::prelude::{BLACK, Circle, DashedLineSeries, PathElement, RGBColor, Rectangle, SVGBackend};
+use plotters::style::text_anchor::HPos;
+use plotters::style::{Color, ShapeStyle};
+
+/// Width of a figure [px], twice what it is shown at.
+const WIDTH: u32 = 1800;
+const LEGEND_WIDTH: u32 = 400;
+const TITLE_HEIGHT: u32 = 60;
+const X_LABELS: u32 = 100;
+const Y_LABELS: u32 = 140;
+/// Lines of a legend are so far apart [px].
+const PITCH: i32 = 42;
+/// Length of a sample of a line in a legend [px].
+const SAMPLE: i32 = 48;
+const DOT: i32 = 7;
+
+/// An axis with its label.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Scale {
+    /// The quantity and its unit.
+    pub label: String,
+    /// The axis.
+    pub axis: Axis,
+}
+
+impl Scale {
+    /// A linear scale that spans the numbers that are finite, and at least `least`.
+    pub fn spanning(label: &str, values: impl Iterator<Item = f64>, least: f64) -> Self {
+        let (low, high) = values
+            .filter(|x| x.is_finite())
+            .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
+        let axis = if low <= high { Axis::spanning(low, high, least) } else { Axis::Names(Vec::new()) };
+        Self { label: label.to_owned(), axis }
+    }
+
+    /// A linear scale from `low` to `high` without any room beyond.
+    pub fn from_to(label: &str, low: f64, high: f64) -> Self {
+        Self { label: label.to_owned(), axis: Axis::Linear(low..high) }
+    }
+}
+
+/// How a series is drawn.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Stroke {
+    /// Its points joined; a number that is not finite ends a stretch.
+    Line,
+    /// The same, thin.
+    Fine,
+    /// Dashed.
+    Dashed,
+    /// Its points alone.
+    Dots,
+}
+
+/// Numbers to draw.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Series {
+    /// Its name in the legend; none where another one has it.
+    pub label: Option<String>,
+    /// Its colour.
+    pub colour: RGBColor,
+    /// How it is drawn.
+    pub stroke: Stroke,
+    /// Whether it belongs to the scale on the right.
+    pub right: bool,
+    /// Its points.
+    pub points: Vec<(f64, f64)>,
+}
+
+impl Series {
+    /// A line on the left scale.
+    pub fn line(label: &str, colour: RGBColor, points: Vec<(f64, f64)>) -> Self {
+        Self { label: Some(label.to_owned()), colour, stroke: Stroke::Line, right: false, points }
+    }
+}
+
+/// A stretch of the abscissa.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Band {
+    /// What it is, in the legend; once per name.
+    pub label: &'static str,
+    /// Its colour, which is lightened.
+    pub colour: RGBColor,
+    /// From where to where.
+    pub span: (f64, f64),
+}
+
+/// A place on the abscissa.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Mark {
+    /// Its name, written on top; may be empty.
+    pub label: String,
+    /// Where it is.
+    pub at: f64,
+}
+
+/// A value of the ordinate to compare with.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Level {
+    /// What it is, in the legend.
+    pub label: String,
+    /// The value.
+    pub at: f64,
+    /// Whether it belongs to the scale on the right.
+    pub right: bool,
+}
+
+/// One of the drawings of a figure.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Panel {
+    /// What it shows, written above.
+    pub title: String,
+    /// Height [px] without title, twice what it is shown at.
+    pub height: u32,
+    /// The abscissa.
+    pub x: Scale,
+    /// The ordinate.
+    pub y: Scale,
+    /// A second ordinate.
+    pub right: Option<Scale>,
+    /// What is behind everything else.
+    pub bands: Vec<Band>,
+    /// Vertical lines.
+    pub marks: Vec<Mark>,
+    /// Horizontal lines.
+    pub levels: Vec<Level>,
+    /// The curves.
+    pub series: Vec<Series>,
+}
+
+impl Panel {
+    /// A panel with nothing in it, of the usual height.
+    pub fn new(title: &str, x: Scale, y: Scale) -> Self {
+        Self {
+            title: title.to_owned(),
+            height: 560,
+            x,
+            y,
+            right: None,
+            bands: Vec::new(),
+            marks: Vec::new(),
+            levels: Vec::new(),
+            series: Vec::new(),
+        }
+    }
+}
+
+type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
+
+/// Draws panels one above the other as SVG.
+///
+/// # Errors
+/// The drawing library's; drawing into a string gives it no reason to fail.
+pub fn stack(panels: &[Panel]) -> Result<String, FigureError> {
+    let height = panels.iter().map(|panel| panel.height + TITLE_HEIGHT).sum();
+    super::drawn((WIDTH, height), |root| {
+        let mut rest = root.clone();
+        for panel in panels {
+            let (here, below) = rest.split_vertically(panel.height + TITLE_HEIGHT);
+            draw(&here, panel)?;
+            rest = below;
+        }
+        Ok(())
+    })
+}
+
+fn draw(area: &Area, panel: &Panel) -> Result<(), FigureError> {
+    let (title, below) = area.split_vertically(TITLE_HEIGHT);
+    super::write(&title, &panel.title, (MARGIN, TITLE_HEIGHT as i32 * 2 / 3), TEXT + 2, HPos::Left)?;
+    let (left, legend) = below.split_horizontally(WIDTH - LEGEND_WIDTH);
+    let mut chart = axes(&left, &panel.x, &panel.y, panel.right.is_some(), false)?;
+    draw_bands(&mut chart, panel)?;
+    draw_curves(&mut chart, panel, false)?;
+    if let Some(scale) = &panel.right {
+        let mut chart = axes(&left, &panel.x, scale, true, true)?;
+        draw_curves(&mut chart, panel, true)?;
+    }
+    draw_marks(&chart, panel)?;
+    draw_legend(&legend, panel)
+}
+
+/// Axes on the left and below, or the one on the right alone; both cover the same rectangle.
+fn axes<'a, 'b>(
+    area: &'a Area<'b>,
+    x: &Scale,
+    y: &Scale,
+    both: bool,
+    right: bool,
+) -> Result<Chart<'a, 'b>, FigureError> {
+    let room = if both { Y_LABELS as i32 } else { 0 };
+    let mut builder = ChartBuilder::on(area);
+    builder.margin(MARGIN).margin_top(MARGIN / 2).set_label_area_size(LabelAreaPosition::Bottom, X_LABELS);
+    if right {
+        builder.margin_left(MARGIN + Y_LABELS as i32).set_label_area_size(LabelAreaPosition::Right, Y_LABELS);
+    } else {
+        builder.margin_right(MARGIN + room).set_label_area_size(LabelAreaPosition::Left, Y_LABELS);
+    }
+    let mut chart = builder.build_cartesian_2d(x.axis.clone(), y.axis.clone())?;
+    let mut mesh = chart.configure_mesh();
+    mesh.bold_line_style(if right {
+        plotters::style::TRANSPARENT.stroke_width(0)
+    } else {
+        GRID.stroke_width(2)
+    })
+    .light_line_style(plotters::style::TRANSPARENT)
+    .axis_style(BLACK.stroke_width(2))
+    .set_all_tick_mark_size(8)
+    .x_label_style((FONT, TEXT))
+    .y_label_style((FONT, TEXT))
+    .axis_desc_style((FONT, TEXT))
+    .y_desc(y.label.as_str());
+    if right {
+        mesh.disable_x_axis();
+    } else {
+        mesh.x_desc(x.label.as_str());
+    }
+    mesh.draw()?;
+    Ok(chart)
+}
+
+fn draw_bands(chart: &mut Chart, panel: &Panel) -> Result<(), FigureError> {
+    let (across, up) = (chart.x_range(), chart.y_range());
+    for band in &panel.bands {
+        let (from, to) = (band.span.0.max(across.start), band.span.1.min(across.end));
+        if from < to {
+            let style = ShapeStyle::from(lightened(band.colour)).filled();
+            chart.draw_series([Rectangle::new([(from, up.start), (to, up.end)], style)])?;
+        }
+    }
+    Ok(())
+}
+
+/// A colour that curves can be read on.
+fn lightened(RGBColor(r, g, b): RGBColor) -> RGBColor {
+    let mix = |c: u8| (0.25 * f64::from(c) + 0.75 * 255.0).round() as u8;
+    RGBColor(mix(r), mix(g), mix(b))
+}
+
+fn draw_curves(chart: &mut Chart, panel: &Panel, right: bool) -> Result<(), FigureError> {
+    let across = chart.x_range();
+    for level in panel.levels.iter().filter(|level| level.right == right) {
+        let ends = [(across.start, level.at), (across.end, level.at)];
+        chart.draw_series(DashedLineSeries::new(ends, DASH, DASH, BLACK.stroke_width(GUIDE_WIDTH)))?;
+    }
+    for series in panel.series.iter().filter(|series| series.right == right) {
+        match series.stroke {
+            Stroke::Dots => {
+                let dots = series.points.iter().filter(|(_, y)| y.is_finite());
+                chart.draw_series(dots.map(|&at| Circle::new(at, DOT, series.colour.filled())))?;
+            }
+            Stroke::Dashed => {
+                let style = series.colour.stroke_width(CURVE_WIDTH);
+                for stretch in stretches(&series.points) {
+                    chart.draw_series(DashedLineSeries::new(stretch.to_vec(), DASH, DASH / 2, style))?;
+                }
+            }
+            Stroke::Line | Stroke::Fine => {
+                let width = if series.stroke == Stroke::Line { CURVE_WIDTH } else { 2 };
+                let style = series.colour.stroke_width(width);
+                let paths =
+                    stretches(&series.points).map(|stretch| PathElement::new(stretch.to_vec(), style));
+                chart.draw_series(paths)?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Points between those that are not finite.
+fn stretches(points: &[(f64, f64)]) -> impl Iterator<Item = &[(f64, f64)]> {
+    points.split(|(x, y)| !x.is_finite() || !y.is_finite()).filter(|stretch| stretch.len() > 1)
+}
+
+fn draw_marks(chart: &Chart, panel: &Panel) -> Result<(), FigureError> {
+    let area = chart.plotting_area().strip_coord_spec();
+    let (left, _) = area.get_base_pixel();
+    let height = area.dim_in_pixel().1 as i32;
+    let low = chart.y_range().start;
+    for mark in &panel.marks {
+        let x = chart.backend_coord(&(mark.at, low)).0 - left;
+        for y in (0..height).step_by(DASH as usize * 2) {
+            area.draw(&PathElement::new([(x, y), (x, (y + DASH).min(height))], BLACK.stroke_width(2)))?;
+        }
+        if !mark.label.is_empty() {
+            super::write(&area, &mark.label, (x + 8, 24), TEXT, HPos::Left)?;
+        }
+    }
+    Ok(())
+}
+
+fn draw_legend(area: &Area, panel: &Panel) -> Result<(), FigureError> {
+    let mut y = MARGIN;
+    let beside = SAMPLE + 16;
+    let mut line = |area: &Area, label: &str, sample: &dyn Fn(i32) -> Result<(), FigureError>| {
+        sample(y)?;
+        super::write(area, label, (beside, y), TEXT - 2, HPos::Left)?;
+        y += PITCH;
+        Ok::<(), FigureError>(())
+    };
+    for series in &panel.series {
+        let Some(label) = &series.label else { continue };
+        line(area, label, &|y| match series.stroke {
+            Stroke::Dots => area.draw(&Circle::new((SAMPLE / 2, y), DOT, series.colour.filled())),
+            Stroke::Dashed => {
+                let style = series.colour.stroke_width(CURVE_WIDTH);
+                area.draw(&PathElement::new([(0, y), (SAMPLE / 3, y)], style))?;
+                area.draw(&PathElement::new([(2 * SAMPLE / 3, y), (SAMPLE, y)], style))
+            }
+            Stroke::Line | Stroke::Fine => {
+                area.draw(&PathElement::new([(0, y), (SAMPLE, y)], series.colour.stroke_width(CURVE_WIDTH)))
+            }
+        })?;
+    }
+    for level in &panel.levels {
+        line(area, &level.label, &|y| {
+            let dash =
+                |from| PathElement::new([(from, y), (from + DASH, y)], BLACK.stroke_width(GUIDE_WIDTH));
+            area.draw(&dash(0))?;
+            area.draw(&dash(SAMPLE - DASH))
+        })?;
+    }
+    let mut named = Vec::new();
+    for band in &panel.bands {
+        if !named.contains(&band.label) {
+            named.push(band.label);
+            let style = ShapeStyle::from(lightened(band.colour)).filled();
+            line(area, band.label, &|y| area.draw(&Rectangle::new([(0, y - 14), (SAMPLE, y + 14)], style)))?;
+        }
+    }
+    Ok(())
+}
