@@ -73,7 +73,7 @@ fn lanes<const L: usize>(spec: &JobSpec, count: usize) -> Lanes<L> {
     for (lane, job) in jobs(spec, count).into_iter().enumerate() {
         lanes.begin(lane, lane as u64, job).expect("not too many steps");
     }
-    settle(spec, || _ = lanes.advance(&mut |_, _| {}));
+    settle(spec, || _ = lanes.advance(&mut |_| {}));
     lanes
 }
 
@@ -106,7 +106,7 @@ fn mesh<const L: usize>(elements: [usize; 3], machine: &Machine) -> MeshCase {
     let product_s = seconds(&name("product"), || model.operator().product(&x, &mut y, &mut scratch));
     let step_s = seconds(&name("step"), || step(&model, &drives, &mut state));
     let mut lanes = lanes::<L>(&spec, L);
-    let job_s = seconds(&name("job"), || _ = lanes.advance(&mut |_, _| {}));
+    let job_s = seconds(&name("job"), || _ = lanes.advance(&mut |_| {}));
     let working_set = BYTES / 2.0 * (model.mesh().node_count() * L) as f64;
     MeshCase {
         elements,
@@ -229,12 +229,12 @@ fn round_of_pairs() -> Vec<Pair> {
     });
     let audited = per_node(&model, 8, STEPS, audited_s);
     let mut analysed = lanes::<8>(&base, 8);
-    let analysed_s = seconds("pair_analysis", || _ = analysed.advance(&mut |_, _| {}));
+    let analysed_s = seconds("pair_analysis", || _ = analysed.advance(&mut |_| {}));
     let analysed_ns = per_node(&model, 8, STEPS, analysed_s);
     let mut history = Vec::new();
     let observed_s = seconds("pair_history", || {
         history.clear();
-        analysed.advance(&mut |_, sample| history.push(*sample));
+        analysed.advance(&mut |moment| history.push(*moment.sample));
     });
     let element = element::stiffness(model.material(), model.mesh().element_size_m());
     let forms = [
@@ -262,12 +262,12 @@ fn round_of_pairs() -> Vec<Pair> {
 
 fn alone(base: &JobSpec) -> f64 {
     let mut one = lanes::<1>(base, 1);
-    per_node(&model(base), 1, STEPS, seconds("pair_alone", || _ = one.advance(&mut |_, _| {})))
+    per_node(&model(base), 1, STEPS, seconds("pair_alone", || _ = one.advance(&mut |_| {})))
 }
 
 fn sparse(base: &JobSpec) -> f64 {
     let mut eight = lanes::<8>(base, 3);
-    per_node(&model(base), 3, STEPS, seconds("pair_sparse", || _ = eight.advance(&mut |_, _| {})))
+    per_node(&model(base), 3, STEPS, seconds("pair_sparse", || _ = eight.advance(&mut |_| {})))
 }
 
 fn narrowed(base: &JobSpec) -> f64 {

@@ -143,7 +143,7 @@ impl Batch {
 
     /// Advances all jobs by a few steps and returns those that ended.
     pub fn advance(&mut self) -> Vec<Ended> {
-        each!(&mut self.lanes, lanes => lanes.advance(&mut |_, _| {}))
+        each!(&mut self.lanes, lanes => lanes.advance(&mut |_| {}))
     }
 
     /// Simulated time [s] of every job, by its ticket.

@@ -1,8 +1,7 @@
 //! One job from its specification to its record.
 
-use super::lanes::Lanes;
+use super::lanes::{Lanes, Moment};
 use super::record::JobRecord;
-use super::sample::Sample;
 use crate::solver::{Drive, Model, SolverError};
 use crate::spec::{JobSpec, Violations};
 use crate::units::rad_per_s_from_rpm;
@@ -51,8 +50,8 @@ pub enum JobError {
 /// Looks on while a job runs.
 pub trait JobObserver {
     /// Called after every step.
-    fn sample(&mut self, sample: &Sample) {
-        let _ = sample;
+    fn step(&mut self, moment: &Moment<'_, 1>) {
+        let _ = moment;
     }
 
     /// Called every few steps with the simulated time [s]; `Break` interrupts the job.
@@ -79,7 +78,7 @@ pub fn solve(spec: &JobSpec, observer: &mut impl JobObserver) -> Result<JobRecor
     let mut lanes = Lanes::<1>::new(Arc::new(model));
     lanes.begin(0, 0, spec.clone())?;
     loop {
-        let ended = lanes.advance(&mut |_, sample| observer.sample(sample));
+        let ended = lanes.advance(&mut |moment| observer.step(moment));
         if let Some(ended) = ended.into_iter().next() {
             return ended.result;
         }

@@ -42,6 +42,22 @@ struct Run {
     analysis: Box<LaneAnalysis>,
 }
 
+/// What can be seen of a job after a step.
+pub struct Moment<'a, const L: usize> {
+    /// What the job's owner calls it.
+    pub ticket: u64,
+    /// The lane that it is in.
+    pub lane: usize,
+    /// Totals and extremes of the step.
+    pub sample: &'a Sample,
+    /// What the lanes share.
+    pub model: &'a Model,
+    /// The state that the step led to.
+    pub state: &'a State<L>,
+    /// What made the sample, with the smoothed stress of every contact node.
+    pub sampler: &'a Sampler<L>,
+}
+
 /// A job that has ended.
 #[derive(Debug)]
 pub struct Ended {
@@ -174,8 +190,8 @@ impl<const L: usize> Lanes<L> {
     }
 
     /// Advances all jobs to just before the next audit, and returns those that ended on the way. Every step of
-    /// every job is shown to `observe`, by its ticket.
-    pub fn advance(&mut self, observe: &mut impl FnMut(u64, &Sample)) -> Vec<Ended> {
+    /// every job is shown to `observe`.
+    pub fn advance(&mut self, observe: &mut impl FnMut(&Moment<'_, L>)) -> Vec<Ended> {
         let mut ended = Vec::new();
         loop {
             let audited = self.ledger.audits(self.state.step);
@@ -186,7 +202,14 @@ impl<const L: usize> Lanes<L> {
             for lane in 0..L {
                 if let Some(run) = &mut self.runs[lane] {
                     run.analysis.push(&samples[lane], self.ledger.energies(lane));
-                    observe(run.ticket, &samples[lane]);
+                    observe(&Moment {
+                        ticket: run.ticket,
+                        lane,
+                        sample: &samples[lane],
+                        model: &self.model,
+                        state: &self.state,
+                        sampler: &self.sampler,
+                    });
                     if let Some(result) = self.result(lane, audited) {
                         ended.extend(self.runs[lane].take().map(|run| Ended { ticket: run.ticket, result }));
                         self.clear(lane);

@@ -29,5 +29,6 @@ mod window;
 
 pub use checkpoint::Unreadable;
 pub use job::{JobError, JobObserver, Unobserved, drive, solve};
+pub use lanes::Moment;
 pub use record::{ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
 pub use steady::Obstacle;

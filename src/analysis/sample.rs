@@ -121,14 +121,8 @@ pub struct Sampler<const L: usize> {
     /// Of every slave node after the last step: its smoothed stress, whether it was closed and whether it slipped.
     last: Field<L>,
     normal: [Smoother; L],
-    observed: [Observed; OBSERVED],
-}
-
-#[derive(Debug, Clone, Copy)]
-struct Observed {
-    slave: usize,
-    /// Velocity of the target under it in y per unit of the drive's rate.
-    motion: f64,
+    /// The slave nodes that are always observed.
+    observed: [usize; OBSERVED],
 }
 
 /// Sums and maxima over the contact face, lane by lane.
@@ -178,8 +172,7 @@ impl<const L: usize> Sampler<L> {
             nodes,
             last: Field::on_face(mesh),
             normal: [Smoother::default(); L],
-            observed: observed
-                .map(|slave| Observed { slave, motion: model.slaves()[slave].surface_motion[1] }),
+            observed,
         }
     }
 
@@ -220,31 +213,42 @@ impl<const L: usize> Sampler<L> {
             sigma_n_max_pa: maxima[STRESS][l],
             slip_speed_max_m_s: maxima[SLIPPED][l] / dt,
             lift_max_m: maxima[GAP][l],
-            nodes: self.observed.map(|node| self.observe(node, model, &drives[l], state, l)),
+            nodes: self.observed.map(|slave| self.node(slave, model, &drives[l], state, l)),
         })
     }
 
-    fn observe(
+    /// Smoothed normal stress [Pa] of a slave node of a lane.
+    pub fn sigma_n_pa(&self, slave: usize, lane: usize) -> f64 {
+        self.last.at(self.last.place(slave), SIGMA_N)[lane]
+    }
+
+    /// The gain of its smoothers.
+    pub fn gain(&self) -> f64 {
+        self.gain
+    }
+
+    /// One slave node of a lane during the step that `state` has just done.
+    pub fn node(
         &self,
-        node: Observed,
+        slave: usize,
         model: &Model,
         drive: &Drive,
         state: &State<L>,
         lane: usize,
     ) -> NodeSample {
         let dt = model.time_step_s();
-        let place = state.u.place(node.slave);
+        let place = state.u.place(slave);
         let contacts = &state.contacts;
-        let contact_state = contacts.state_of(node.slave, lane);
-        let [x, y, _] = contacts.increment_of(node.slave, lane);
+        let contact_state = contacts.state_of(slave, lane);
+        let [x, y, _] = contacts.increment_of(slave, lane);
         let slips = contact_state == ContactState::Slip;
         let yielding = contacts.elastic.as_ref().map_or(0.0, |elastic| elastic.yielding_m.at(place, 1)[lane]);
         NodeSample {
             u_m: std::array::from_fn(|c| state.u.at(place, c)[lane]),
-            y_velocity_m_s: (y + yielding) / dt + node.motion * drive.rate,
-            gap_m: contacts.gap_of(node.slave, lane),
-            force_n: contacts.force_of(node.slave, lane),
-            sigma_n_pa: self.last.at(place, SIGMA_N)[lane],
+            y_velocity_m_s: (y + yielding) / dt + model.slaves()[slave].surface_motion[1] * drive.rate,
+            gap_m: contacts.gap_of(slave, lane),
+            force_n: contacts.force_of(slave, lane),
+            sigma_n_pa: self.sigma_n_pa(slave, lane),
             slip_speed_m_s: if slips { (x * x + y * y).sqrt() / dt } else { 0.0 },
             state: contact_state,
         }

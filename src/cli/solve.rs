@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::output::{print, tell, write_file};
 use super::work::listen;
 use crate::analysis::sample::{OBSERVED_NAMES, Sample};
-use crate::analysis::{self, ElasticDisk, JobError, JobObserver, JobRecord};
+use crate::analysis::{self, ElasticDisk, JobError, JobObserver, JobRecord, Moment};
 use crate::exit;
 use crate::solver::SolverError;
 use crate::solver::contact::ContactState;
@@ -97,9 +97,9 @@ struct Recorder {
 }
 
 impl JobObserver for Recorder {
-    fn sample(&mut self, sample: &Sample) {
+    fn step(&mut self, moment: &Moment<'_, 1>) {
         if let Some(history) = &mut self.history {
-            history.add(sample);
+            history.add(moment.sample);
         }
     }
 

@@ -2,8 +2,7 @@
 
 use crate::signals::coarse;
 use std::ops::ControlFlow;
-use tribosweep::analysis::sample::Sample;
-use tribosweep::analysis::{JobError, JobObserver, solve};
+use tribosweep::analysis::{JobError, JobObserver, Moment, solve};
 
 /// Asks to stop from a simulated time on; counts the steps and looks at their times.
 struct StopsAt {
@@ -15,7 +14,8 @@ struct StopsAt {
 }
 
 impl JobObserver for StopsAt {
-    fn sample(&mut self, sample: &Sample) {
+    fn step(&mut self, moment: &Moment<'_, 1>) {
+        let sample = moment.sample;
         assert!(self.steps == 0 || sample.time_s > self.last_s, "time runs forwards");
         self.last_s = sample.time_s;
         self.steps += 1;

@@ -4,8 +4,7 @@ use crate::audited::Audited;
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use tribosweep::analysis::sample::Sample;
-use tribosweep::analysis::{JobError, JobObserver, JobRecord, drive, solve};
+use tribosweep::analysis::{JobError, JobObserver, JobRecord, Moment, drive, solve};
 use tribosweep::solver::{Model, SolverError, State};
 use tribosweep::spec::JobSpec;
 
@@ -59,7 +58,7 @@ struct Watch {
 }
 
 impl JobObserver for Watch {
-    fn sample(&mut self, _: &Sample) {
+    fn step(&mut self, _: &Moment<'_, 1>) {
         self.steps += 1;
     }
 
