@@ -16,12 +16,14 @@
 //! * [`queue`] – jobs in `SQLite`; payloads are opaque strings, nothing of mechanics.
 //! * [`worker`] – dispatcher (signals, database, progress) and executor (rayon).
 //! * [`publish`] – what reports are made of: values as text, drawings, folders.
+//! * [`inspect`] – one job run again and looked into: histories, cycles, snapshots, fields.
 //! * [`report`] – tables, figures and CSV from records.
 //! * [`cli`] – one file a subcommand.
 
 pub mod analysis;
 pub mod cli;
 pub mod exit;
+pub mod inspect;
 pub mod publish;
 pub mod queue;
 pub mod report;

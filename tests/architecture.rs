@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module at the top may use besides itself. `cli` and `main` join the rest together.
-const MAY_USE: [(&str, &[&str]); 12] = [
+const MAY_USE: [(&str, &[&str]); 13] = [
     ("spec", &[]),
     ("units", &[]),
     ("exit", &[]),
@@ -13,11 +13,15 @@ const MAY_USE: [(&str, &[&str]); 12] = [
     ("analysis", &["solver", "spec", "units"]),
     ("study", &["spec"]),
     ("publish", &[]),
+    ("inspect", &["analysis", "publish", "solver", "spec", "units"]),
     ("report", &["analysis", "publish"]),
     ("worker", &["analysis", "queue", "spec"]),
     (
         "cli",
-        &["analysis", "exit", "publish", "queue", "report", "solver", "spec", "study", "units", "worker"],
+        &[
+            "analysis", "exit", "inspect", "publish", "queue", "report", "solver", "spec", "study", "units",
+            "worker",
+        ],
     ),
     ("main", &["cli"]),
 ];

@@ -53,6 +53,13 @@ pub struct Sample {
     pub nodes: [NodeSample; OBSERVED],
 }
 
+impl Sample {
+    /// Friction over normal force, of all contact forces in y; 0 without contact.
+    pub fn equivalent_friction(&self) -> f64 {
+        if self.normal_n > 0.0 { self.contact_tangential_n / self.normal_n } else { 0.0 }
+    }
+}
+
 /// Number of observed nodes.
 pub const OBSERVED: usize = 2;
 

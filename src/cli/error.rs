@@ -21,9 +21,9 @@ pub enum CliError {
     /// The worker.
     #[error(transparent)]
     Work(#[from] WorkError),
-    /// The report.
+    /// A report or a look into a job.
     #[error(transparent)]
-    Report(#[from] PublishError),
+    Publish(#[from] PublishError),
     /// A file that cannot be written or read.
     #[error("{path}: {source}")]
     File {

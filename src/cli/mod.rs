@@ -6,7 +6,9 @@ mod display;
 mod doctor;
 mod error;
 mod export;
+mod foreground;
 mod gc;
+mod inspect;
 mod output;
 mod pareto;
 mod planning;
@@ -75,6 +77,8 @@ enum Command {
     Doctor,
     /// Solve one job in the foreground.
     Solve(solve::Args),
+    /// Run one job again and look into it: histories, cycles, snapshots, fields for ParaView.
+    Inspect(inspect::Args),
     /// Check a study file without running it.
     Validate(validate::Args),
     /// Show the accuracy presets with their settings and measured errors.
@@ -103,6 +107,7 @@ pub fn main(cli: Cli) -> u8 {
         Command::Gc => gc::run(db),
         Command::Doctor => doctor::run(db),
         Command::Solve(args) => solve::run(&args),
+        Command::Inspect(args) => inspect::run(&args, db),
         Command::Validate(args) => validate::run(&args),
         Command::Presets(args) => presets::run(&args),
         Command::Schema(args) => schema::run(&args),

@@ -1,13 +1,11 @@
 //! `tribosweep solve`: one job in the foreground, with its history.
 
 use super::error::CliError;
+use super::foreground;
 use super::output::{print, tell, write_file};
-use super::work::listen;
 use crate::analysis::sample::{OBSERVED_NAMES, Sample};
-use crate::analysis::{self, ElasticDisk, JobError, JobObserver, JobRecord, Moment};
+use crate::analysis::{self, ElasticDisk, JobObserver, JobRecord, Moment};
 use crate::exit;
-use crate::solver::SolverError;
-use crate::solver::contact::ContactState;
 use crate::study::{Preset, Study};
 use crate::worker::Interrupt;
 use std::fmt::Write;
@@ -20,10 +18,10 @@ pub struct Args {
     /// The study file that gives the scene.
     study: PathBuf,
     /// Fix a parameter of the grid, or change any other one; may be repeated.
-    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = parse_setting)]
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = foreground::parse_setting)]
     settings: Vec<(String, String)>,
     /// Take mesh, time step and detection from a preset instead of the study; `--set` goes before it.
-    #[arg(long, value_name = "NAME", value_parser = parse_preset)]
+    #[arg(long, value_name = "NAME", value_parser = foreground::parse_preset)]
     preset: Option<Preset>,
     /// Write the time history as CSV: load, total normal and tangential forces (tangential_n at the clamp,
     /// contact_tangential_n and mu_eq at the contact), numbers of nodes in each state, and displacement,
@@ -38,29 +36,10 @@ pub struct Args {
     json: bool,
 }
 
-fn parse_setting(text: &str) -> Result<(String, String), String> {
-    match text.split_once('=') {
-        Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
-        _ => Err("expected NAME=VALUE, for example omega_rpm=7".to_owned()),
-    }
-}
-
-fn parse_preset(text: &str) -> Result<Preset, String> {
-    let names = || Preset::ALL.map(Preset::name).join(", ");
-    Preset::find(text).ok_or_else(|| format!("expected one of {}", names()))
-}
-
 /// Solves the job and prints what was found; nothing is stored.
 pub fn run(args: &Args) -> Result<u8, CliError> {
     let spec = Study::load(&args.study)?.single_with_preset(args.preset, &args.settings)?;
-    let interrupt = Interrupt::default();
-    let raised = interrupt.clone();
-    std::thread::spawn(move || {
-        let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
-        if let Ok(runtime) = runtime {
-            runtime.block_on(listen(raised, "stopping"));
-        }
-    });
+    let interrupt = foreground::interrupt();
     let mut recorder =
         Recorder { interrupt, history: args.history.as_ref().map(|_| History::new(args.every.get())) };
     let solved = analysis::solve(&spec, &mut recorder);
@@ -74,19 +53,7 @@ pub fn run(args: &Args) -> Result<u8, CliError> {
             print(&if args.json { as_json(&record)? } else { as_text(&record) })?;
             Ok(exit::SUCCESS)
         }
-        Err(JobError::Interrupted) => {
-            tell("interrupted");
-            Ok(exit::WORK_LEFT)
-        }
-        Err(JobError::Spec(violations)) => Err(CliError::Plan(violations.to_string())),
-        Err(
-            error @ (JobError::Solver(SolverError::Diverged { .. } | SolverError::ContactNotSolved { .. })
-            | JobError::NotFinite { .. }),
-        ) => {
-            tell(format_args!("error: {error}"));
-            Ok(exit::SOME_FAILED)
-        }
-        Err(error) => Err(CliError::Plan(error.to_string())),
+        Err(error) => foreground::ended(error),
     }
 }
 
@@ -136,7 +103,6 @@ impl History {
         if !(self.steps - 1).is_multiple_of(self.every) {
             return;
         }
-        let mu_eq = if sample.normal_n > 0.0 { sample.contact_tangential_n / sample.normal_n } else { 0.0 };
         let _ = write!(
             self.text,
             "{:e},{},{},{},{},{},{},{},{}",
@@ -145,25 +111,21 @@ impl History {
             sample.normal_n,
             sample.clamp_tangential_n,
             sample.contact_tangential_n,
-            mu_eq,
+            sample.equivalent_friction(),
             sample.stick,
             sample.slip,
             sample.separated
         );
         for node in &sample.nodes {
-            let state = match node.state {
-                ContactState::Separated => "separated",
-                ContactState::Stick => "stick",
-                ContactState::Slip => "slip",
-            };
             let [x, y, z] = node.u_m;
             let _ = write!(
                 self.text,
-                ",{x:e},{y:e},{z:e},{},{},{},{},{state}",
+                ",{x:e},{y:e},{z:e},{},{},{},{},{}",
                 node.y_velocity_m_s,
                 node.sigma_n_pa,
                 node.slip_speed_m_s,
-                node.equivalent_friction()
+                node.equivalent_friction(),
+                node.state.name()
             );
         }
         self.text.push('\n');
@@ -177,7 +139,7 @@ fn as_json(record: &JobRecord) -> Result<String, CliError> {
 }
 
 /// The figures that people look for first.
-fn as_text(record: &JobRecord) -> String {
+pub fn as_text(record: &JobRecord) -> String {
     let frequency =
         record.frequency_hz.map_or_else(|| "none".to_owned(), |frequency| format!("{frequency:.1} Hz"));
     let growth = record

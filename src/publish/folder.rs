@@ -19,6 +19,11 @@ impl<'a> Folder<'a> {
         Ok(Self { path, written: Vec::new() })
     }
 
+    /// Where a file of this name is.
+    pub fn path_of(&self, name: &str) -> PathBuf {
+        self.path.join(name)
+    }
+
     /// Writes a file of text.
     pub fn text(&mut self, name: &str, text: &str) -> Result<(), PublishError> {
         self.with(name, |out| {
@@ -33,7 +38,7 @@ impl<'a> Folder<'a> {
         name: &str,
         fill: impl FnOnce(&mut Vec<u8>) -> io::Result<()>,
     ) -> Result<(), PublishError> {
-        let path = self.path.join(name);
+        let path = self.path_of(name);
         let mut contents = Vec::new();
         match fill(&mut contents).and_then(|()| replace(self.path, name, &contents)) {
             Ok(()) => {

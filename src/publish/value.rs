@@ -76,3 +76,10 @@ pub fn sort(values: &mut Vec<Value>) -> Vec<usize> {
     *values = order.iter().map(|&at| values[at].clone()).collect();
     places
 }
+
+/// Text as a part of a file's name: letters, digits, `.`, `_` and `-`.
+pub fn in_file_name(text: &str) -> String {
+    text.chars()
+        .map(|c| if c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-') { c } else { '-' })
+        .collect()
+}

@@ -45,6 +45,7 @@ pub mod operator;
 pub mod stability;
 pub mod state;
 pub mod step;
+pub mod stress;
 mod supports;
 
 pub use error::SolverError;

@@ -38,6 +38,33 @@ impl Study {
         preset: Option<Preset>,
         overrides: &[(String, String)],
     ) -> Result<JobSpec, StudyError> {
+        let (spec, left_open) = self.pick(preset, overrides)?;
+        if left_open.is_empty() {
+            return Ok(spec);
+        }
+        Err(StudyError::Invalid(left_open.into_iter().map(|axis| self.left_open(axis)).collect()))
+    }
+
+    /// [`Study::single_with_preset`], but parameters of the grid that are left open have the base job's value. Also
+    /// gives the names of these.
+    ///
+    /// # Errors
+    /// Those of [`Study::single`] but for open parameters.
+    pub fn single_on_base(
+        &self,
+        preset: Option<Preset>,
+        overrides: &[(String, String)],
+    ) -> Result<(JobSpec, Vec<&'static str>), StudyError> {
+        let (spec, left_open) = self.pick(preset, overrides)?;
+        Ok((spec, left_open.into_iter().map(|axis| axis.parameter.name).collect()))
+    }
+
+    /// The job with these overrides, and the axes of the grid of which no value is picked.
+    fn pick(
+        &self,
+        preset: Option<Preset>,
+        overrides: &[(String, String)],
+    ) -> Result<(JobSpec, Vec<&Axis>), StudyError> {
         let mut job = json::encode(&self.base);
         let mut problems = Vec::new();
         let mut taken: Vec<&Parameter> = Vec::new();
@@ -59,15 +86,17 @@ impl Study {
                 Err(message) => problems.push(problem(message).with_help(parameter.help())),
             }
         }
+        let mut left_open = Vec::new();
         for axis in &self.axes {
             match axis.values.as_slice() {
                 [only] => axis.parameter.set(&mut job, only),
                 _ if taken.iter().any(|parameter| parameter.sets(&axis.parameter.field())) => {}
                 _ if preset.is_some() && Preset::covers(axis.parameter) => {}
-                _ => problems.push(self.left_open(axis)),
+                _ => left_open.push(axis),
             }
         }
         if !problems.is_empty() {
+            problems.extend(left_open.into_iter().map(|axis| self.left_open(axis)));
             return Err(StudyError::Invalid(problems));
         }
         for (parameter, value) in &settings {
@@ -76,7 +105,7 @@ impl Study {
         if let Some(preset) = preset {
             preset.override_job(&mut job, &taken);
         }
-        self.checked(&job, &taken)
+        Ok((self.checked(&job, &taken)?, left_open))
     }
 
     fn left_open(&self, axis: &Axis) -> Problem {

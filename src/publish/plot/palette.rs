@@ -14,6 +14,16 @@ const OKABE_ITO: [RGBColor; 8] = [
     RGBColor(0xF0, 0xE4, 0x42),
 ];
 
+/// Black.
+pub const BLACK: RGBColor = RGBColor(0, 0, 0);
+/// Contact states, in the paper's colours as far as the colour-blind can tell them apart: blue sticks, green slips, red
+/// is separated.
+pub const STICK: RGBColor = OKABE_ITO[0];
+/// A node in slip.
+pub const SLIP: RGBColor = OKABE_ITO[2];
+/// A separated node.
+pub const SEPARATED: RGBColor = OKABE_ITO[1];
+
 /// Stops of viridis without its yellow end, which is lost on white.
 const SEQUENCE: [RGBColor; 5] = [
     RGBColor(0x44, 0x01, 0x54),
@@ -28,7 +38,12 @@ pub fn colour(index: usize, count: usize) -> RGBColor {
     if count <= OKABE_ITO.len() {
         return OKABE_ITO[index];
     }
-    let at = index as f64 / (count - 1) as f64 * (SEQUENCE.len() - 1) as f64;
+    sequence(index as f64 / (count - 1) as f64)
+}
+
+/// The colour at a share, from 0 to 1, of the sequence from dark to light.
+pub fn sequence(share: f64) -> RGBColor {
+    let at = share * (SEQUENCE.len() - 1) as f64;
     let stop = (at as usize).min(SEQUENCE.len() - 2);
     let (from, to, share) = (SEQUENCE[stop], SEQUENCE[stop + 1], at - stop as f64);
     let mix = |a: u8, b: u8| (f64::from(a) + share * (f64::from(b) - f64::from(a))).round() as u8;

@@ -19,6 +19,8 @@ const PITCH: i32 = 42;
 /// Length of a sample of a line in a legend [px].
 const SAMPLE: i32 = 48;
 const DOT: i32 = 7;
+/// Height of a row of labels of marks [px]; there are two, because marks may be close to each other.
+const MARK_ROW: i32 = 38;
 
 /// An axis with its label.
 #[derive(Debug, Clone, PartialEq)]
@@ -91,6 +93,19 @@ pub struct Band {
     pub span: (f64, f64),
 }
 
+/// A rectangle, drawn in its full colour.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Tile {
+    /// What it is, in the legend; once per name.
+    pub label: &'static str,
+    /// Its colour.
+    pub colour: RGBColor,
+    /// From where to where along the abscissa.
+    pub across: (f64, f64),
+    /// From where to where along the ordinate.
+    pub up: (f64, f64),
+}
+
 /// A place on the abscissa.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
@@ -126,6 +141,8 @@ pub struct Panel {
     pub right: Option<Scale>,
     /// What is behind everything else.
     pub bands: Vec<Band>,
+    /// What is on the bands.
+    pub tiles: Vec<Tile>,
     /// Vertical lines.
     pub marks: Vec<Mark>,
     /// Horizontal lines.
@@ -144,6 +161,7 @@ impl Panel {
             y,
             right: None,
             bands: Vec::new(),
+            tiles: Vec::new(),
             marks: Vec::new(),
             levels: Vec::new(),
             series: Vec::new(),
@@ -174,14 +192,16 @@ fn draw(area: &Area, panel: &Panel) -> Result<(), FigureError> {
     let (title, below) = area.split_vertically(TITLE_HEIGHT);
     super::write(&title, &panel.title, (MARGIN, TITLE_HEIGHT as i32 * 2 / 3), TEXT + 2, HPos::Left)?;
     let (left, legend) = below.split_horizontally(WIDTH - LEGEND_WIDTH);
-    let mut chart = axes(&left, &panel.x, &panel.y, panel.right.is_some(), false)?;
+    let labelled = panel.marks.iter().any(|mark| !mark.label.is_empty());
+    let top = if labelled { 2 * MARK_ROW + MARGIN / 4 } else { MARGIN / 2 };
+    let mut chart = axes(&left, &panel.x, &panel.y, top, panel.right.is_some(), false)?;
     draw_bands(&mut chart, panel)?;
     draw_curves(&mut chart, panel, false)?;
     if let Some(scale) = &panel.right {
-        let mut chart = axes(&left, &panel.x, scale, true, true)?;
+        let mut chart = axes(&left, &panel.x, scale, top, true, true)?;
         draw_curves(&mut chart, panel, true)?;
     }
-    draw_marks(&chart, panel)?;
+    draw_marks(&left, &chart, panel)?;
     draw_legend(&legend, panel)
 }
 
@@ -190,12 +210,13 @@ fn axes<'a, 'b>(
     area: &'a Area<'b>,
     x: &Scale,
     y: &Scale,
+    top: i32,
     both: bool,
     right: bool,
 ) -> Result<Chart<'a, 'b>, FigureError> {
     let room = if both { Y_LABELS as i32 } else { 0 };
     let mut builder = ChartBuilder::on(area);
-    builder.margin(MARGIN).margin_top(MARGIN / 2).set_label_area_size(LabelAreaPosition::Bottom, X_LABELS);
+    builder.margin(MARGIN).margin_top(top).set_label_area_size(LabelAreaPosition::Bottom, X_LABELS);
     if right {
         builder.margin_left(MARGIN + Y_LABELS as i32).set_label_area_size(LabelAreaPosition::Right, Y_LABELS);
     } else {
@@ -232,6 +253,9 @@ fn draw_bands(chart: &mut Chart, panel: &Panel) -> Result<(), FigureError> {
             let style = ShapeStyle::from(lightened(band.colour)).filled();
             chart.draw_series([Rectangle::new([(from, up.start), (to, up.end)], style)])?;
         }
+    }
+    for Tile { colour, across, up, .. } in &panel.tiles {
+        chart.draw_series([Rectangle::new([(across.0, up.0), (across.1, up.1)], colour.filled())])?;
     }
     Ok(())
 }
@@ -277,18 +301,23 @@ fn stretches(points: &[(f64, f64)]) -> impl Iterator<Item = &[(f64, f64)]> {
     points.split(|(x, y)| !x.is_finite() || !y.is_finite()).filter(|stretch| stretch.len() > 1)
 }
 
-fn draw_marks(chart: &Chart, panel: &Panel) -> Result<(), FigureError> {
-    let area = chart.plotting_area().strip_coord_spec();
-    let (left, _) = area.get_base_pixel();
-    let height = area.dim_in_pixel().1 as i32;
-    let low = chart.y_range().start;
+fn draw_marks(area: &Area, chart: &Chart, panel: &Panel) -> Result<(), FigureError> {
+    let (left, top) = area.get_base_pixel();
+    let (across, up) = (chart.x_range(), chart.y_range());
+    let (_, high) = chart.backend_coord(&(across.start, up.end));
+    let (_, low) = chart.backend_coord(&(across.start, up.start));
+    let mut taken = [i32::MIN; 2];
     for mark in &panel.marks {
-        let x = chart.backend_coord(&(mark.at, low)).0 - left;
-        for y in (0..height).step_by(DASH as usize * 2) {
-            area.draw(&PathElement::new([(x, y), (x, (y + DASH).min(height))], BLACK.stroke_width(2)))?;
+        let x = chart.backend_coord(&(mark.at, up.start)).0 - left;
+        for y in (high - top..low - top).step_by(DASH as usize * 2) {
+            area.draw(&PathElement::new([(x, y), (x, (y + DASH).min(low - top))], BLACK.stroke_width(2)))?;
         }
         if !mark.label.is_empty() {
-            super::write(&area, &mark.label, (x + 8, 24), TEXT, HPos::Left)?;
+            let half = mark.label.chars().count() as i32 * TEXT / 4;
+            let row = usize::from(x - half < taken[0]);
+            taken[row] = x + half + 8;
+            let y = high - top - MARK_ROW / 2 - row as i32 * MARK_ROW;
+            super::write(area, &mark.label, (x, y), TEXT, HPos::Center)?;
         }
     }
     Ok(())
@@ -325,12 +354,13 @@ fn draw_legend(area: &Area, panel: &Panel) -> Result<(), FigureError> {
             area.draw(&dash(SAMPLE - DASH))
         })?;
     }
+    let bands = panel.bands.iter().map(|band| (band.label, lightened(band.colour)));
     let mut named = Vec::new();
-    for band in &panel.bands {
-        if !named.contains(&band.label) {
-            named.push(band.label);
-            let style = ShapeStyle::from(lightened(band.colour)).filled();
-            line(area, band.label, &|y| area.draw(&Rectangle::new([(0, y - 14), (SAMPLE, y + 14)], style)))?;
+    for (name, colour) in bands.chain(panel.tiles.iter().map(|tile| (tile.label, tile.colour))) {
+        if !named.contains(&name) {
+            named.push(name);
+            let style = ShapeStyle::from(colour).filled();
+            line(area, name, &|y| area.draw(&Rectangle::new([(0, y - 14), (SAMPLE, y + 14)], style)))?;
         }
     }
     Ok(())

@@ -57,12 +57,7 @@ const MAX_SUFFIX: usize = 120;
 fn free_suffix(group: &Group, taken: &mut HashSet<String>) -> String {
     let words: Vec<String> =
         group.key.iter().map(|(name, value)| format!("-{name}-{}", value::text(value))).collect();
-    let slug: String = words
-        .concat()
-        .chars()
-        .map(|c| if c.is_ascii_alphanumeric() || matches!(c, '.' | '_' | '-') { c } else { '-' })
-        .take(MAX_SUFFIX)
-        .collect();
+    let slug: String = value::in_file_name(&words.concat()).chars().take(MAX_SUFFIX).collect();
     let numbered = (2..).map(|n| format!("{slug}-{n}"));
     std::iter::once(slug.clone())
         .chain(numbered)

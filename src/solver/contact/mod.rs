@@ -36,6 +36,17 @@ pub enum ContactState {
     Slip,
 }
 
+impl ContactState {
+    /// The name used in tables and CSV.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Separated => "separated",
+            Self::Stick => "stick",
+            Self::Slip => "slip",
+        }
+    }
+}
+
 /// Contact of all slave nodes during the last step; slave nodes are numbered as the nodes of the contact face.
 #[derive(Debug, Clone)]
 pub struct Contacts<const L: usize> {

@@ -1,0 +1,175 @@
+//! The second of the two runs, the same to the last bit: everything of the time that is looked at.
+
+use super::place::ObservedNode;
+use super::survey::Windows;
+use crate::analysis::sample::{NodeSample, Sample, Smoother};
+use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment};
+use crate::solver::{Drive, Model};
+use crate::spec::JobSpec;
+use std::collections::VecDeque;
+use std::ops::ControlFlow;
+
+/// No more steps than this are kept of the totals: the last ones.
+const MOST_TOTALS: usize = 1 << 20;
+
+/// What was seen.
+#[derive(Debug, Clone)]
+pub struct Capture {
+    /// The record: the same as the first run's.
+    pub record: JobRecord,
+    /// What the job was solved on.
+    pub model: Model,
+    /// Totals of every step from [`Windows::totals_from_s`] on, or of the last million.
+    pub totals: Vec<Sample>,
+    /// For every observed node its steps in [`Windows::shown_s`].
+    pub nodes: Vec<Vec<NodeStep>>,
+    /// The contact face at every step of [`Windows::cycle_s`].
+    pub face: Vec<FaceStep>,
+    /// The pin at equally spaced times of that cycle.
+    pub frames: Vec<Frame>,
+}
+
+/// One observed node during one step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NodeStep {
+    /// t_n [s].
+    pub time_s: f64,
+    /// Displacement, velocity, force and state.
+    pub node: NodeSample,
+    /// Friction stress [Pa] in x and y behind the smoother of the normal stress.
+    pub tau_pa: [f64; 2],
+}
+
+/// All contact nodes during one step.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FaceStep {
+    /// t_n [s].
+    pub time_s: f64,
+    /// The slave nodes in their order.
+    pub nodes: Vec<NodeSample>,
+}
+
+/// The pin at one time.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Frame {
+    /// t_n [s].
+    pub time_s: f64,
+    /// Displacements [m] after the step, in the order node → component.
+    pub u_m: Vec<f64>,
+    /// Velocities [m/s] over the step, likewise.
+    pub velocity_m_s: Vec<f64>,
+    /// The contact face during the step.
+    pub face: Vec<NodeSample>,
+}
+
+/// Runs the job again and looks at `nodes`, at the contact face and, `frames` times, at the pin.
+///
+/// # Errors
+/// Those of [`analysis::solve`].
+///
+/// # Panics
+/// If the run has no step: no job is that short.
+pub fn capture(
+    spec: &JobSpec,
+    windows: &Windows,
+    nodes: &[ObservedNode],
+    frames: usize,
+    go_on: &mut impl FnMut(f64) -> ControlFlow<()>,
+) -> Result<Capture, JobError> {
+    let mut recorder = Recorder {
+        windows,
+        nodes,
+        drive: analysis::drive(spec),
+        frame_times_s: frame_times_s(windows, frames),
+        model: None,
+        totals: VecDeque::new(),
+        smoothers: vec![[Smoother::default(); 2]; nodes.len()],
+        histories: vec![Vec::new(); nodes.len()],
+        face: Vec::new(),
+        frames: Vec::new(),
+        go_on,
+    };
+    let record = analysis::solve(spec, &mut recorder)?;
+    Ok(Capture {
+        record,
+        model: recorder.model.expect("a run has a step"),
+        totals: recorder.totals.into(),
+        nodes: recorder.histories,
+        face: recorder.face,
+        frames: recorder.frames,
+    })
+}
+
+/// Latest first.
+fn frame_times_s(windows: &Windows, frames: usize) -> Vec<f64> {
+    let [start_s, end_s] = windows.cycle_s;
+    (0..frames).rev().map(|k| start_s + (end_s - start_s) * k as f64 / frames as f64).collect()
+}
+
+struct Recorder<'a, G> {
+    windows: &'a Windows,
+    nodes: &'a [ObservedNode],
+    drive: Drive,
+    frame_times_s: Vec<f64>,
+    model: Option<Model>,
+    totals: VecDeque<Sample>,
+    smoothers: Vec<[Smoother; 2]>,
+    histories: Vec<Vec<NodeStep>>,
+    face: Vec<FaceStep>,
+    frames: Vec<Frame>,
+    go_on: &'a mut G,
+}
+
+impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
+    fn step(&mut self, moment: &Moment<'_, 1>) {
+        let time_s = moment.sample.time_s;
+        let within = |[start_s, end_s]: [f64; 2]| time_s >= start_s && time_s < end_s;
+        if self.model.is_none() {
+            self.model = Some(moment.model.clone());
+        }
+        if time_s >= self.windows.totals_from_s {
+            if self.totals.len() == MOST_TOTALS {
+                self.totals.pop_front();
+            }
+            self.totals.push_back(*moment.sample);
+        }
+        let shown = within(self.windows.shown_s);
+        for ((observed, smoothers), history) in
+            self.nodes.iter().zip(&mut self.smoothers).zip(&mut self.histories)
+        {
+            let node =
+                moment.sampler.node(observed.slave, moment.model, &self.drive, moment.state, moment.lane);
+            let area_m2 = moment.model.slaves()[observed.slave].area_m2;
+            let gain = moment.sampler.gain();
+            let tau_pa = std::array::from_fn(|c| smoothers[c].push(node.force_n[c] / area_m2, gain));
+            if shown {
+                history.push(NodeStep { time_s, node, tau_pa });
+            }
+        }
+        if within(self.windows.cycle_s) {
+            self.face.push(FaceStep { time_s, nodes: self.face_of(moment) });
+        }
+        let due = |next_s: &mut f64| time_s >= *next_s;
+        if self.frame_times_s.pop_if(due).is_some() {
+            // There may be fewer steps in a cycle than frames.
+            while self.frame_times_s.pop_if(due).is_some() {}
+            self.frames.push(Frame {
+                time_s,
+                u_m: moment.state.u.values().collect(),
+                velocity_m_s: moment.state.p.values().collect(),
+                face: self.face_of(moment),
+            });
+        }
+    }
+
+    fn progress(&mut self, simulated_s: f64) -> ControlFlow<()> {
+        (self.go_on)(simulated_s)
+    }
+}
+
+impl<G> Recorder<'_, G> {
+    fn face_of(&self, moment: &Moment<'_, 1>) -> Vec<NodeSample> {
+        let node = |slave| moment.sampler.node(slave, moment.model, &self.drive, moment.state, moment.lane);
+        (0..moment.model.slaves().len()).map(node).collect()
+    }
+}

@@ -1,0 +1,153 @@
+//! Histories of the observed nodes.
+
+use super::{MEGA, MICRO, MILLI, drawn_as};
+use crate::inspect::capture::NodeStep;
+use crate::inspect::look::{Look, Observed};
+use crate::inspect::phases::Phase;
+use crate::publish::plot::palette;
+use crate::publish::plot::panel::{Band, Level, Mark, Panel, Scale, Series, Stroke};
+use crate::solver::contact::ContactState;
+
+/// Every observed node with its steps.
+fn each<'a>(look: &'a Look, panel: impl Fn(&'a Observed, &'a [NodeStep]) -> Panel) -> Vec<Panel> {
+    look.observed.iter().zip(&look.capture.nodes).map(|(observed, steps)| panel(observed, steps)).collect()
+}
+
+/// The name of a node for a reader.
+fn title(observed: &Observed) -> String {
+    let [x, y] = observed.node.at_m.map(|at| at * MILLI);
+    format!("{} (x = {x:.2} mm, y = {y:.2} mm)", observed.node.name.replace('_', " "))
+}
+
+/// Time in microseconds since the begin of what is shown.
+fn time_scale(look: &Look) -> (impl Fn(f64) -> f64 + use<>, Scale) {
+    let [start_s, end_s] = look.survey.windows.shown_s;
+    let since = move |time_s: f64| (time_s - start_s) * MICRO;
+    (since, Scale::from_to("time [µs]", 0.0, (end_s - start_s) * MICRO))
+}
+
+fn velocity(steps: &[NodeStep], since: impl Fn(f64) -> f64) -> (Series, Scale) {
+    let points: Vec<_> =
+        steps.iter().map(|step| (since(step.time_s), step.node.y_velocity_m_s * MILLI)).collect();
+    let scale = Scale::spanning("velocity in y [mm/s]", points.iter().map(|point| point.1), 1.0);
+    let label = Some("velocity in y (right)".to_owned());
+    (Series { label, colour: palette::BLACK, stroke: Stroke::Fine, right: true, points }, scale)
+}
+
+fn disk(observed: &Observed, right: bool) -> Level {
+    Level { label: "disk".to_owned(), at: observed.target_velocity_m_s * MILLI, right }
+}
+
+fn bands(phases: &[Phase], since: impl Fn(f64) -> f64) -> Vec<Band> {
+    let band = |phase: &Phase| {
+        let (label, colour) = drawn_as(phase.state);
+        Band { label, colour, span: (since(phase.start_s), since(phase.end_s)) }
+    };
+    phases.iter().map(band).collect()
+}
+
+/// Figure 2a.
+pub fn displacements(look: &Look) -> Vec<Panel> {
+    each(look, |observed, steps| {
+        let (since, x) = time_scale(look);
+        let of = |c: usize| -> Vec<(f64, f64)> {
+            steps.iter().map(|step| (since(step.time_s), step.node.u_m[c] * MICRO)).collect()
+        };
+        let components = ["x", "y", "z"].map(|name| format!("displacement in {name}"));
+        let series: Vec<Series> = components
+            .iter()
+            .enumerate()
+            .map(|(c, name)| Series::line(name, palette::colour(c, 3), of(c)))
+            .collect();
+        let all = series.iter().flat_map(|series| &series.points).map(|point| point.1);
+        let y = Scale::spanning("displacement [µm]", all, 0.01);
+        let (velocity, scale) = velocity(steps, &since);
+        let mut panel = Panel::new(&title(observed), x, y);
+        panel.right = Some(scale);
+        panel.levels = vec![disk(observed, true)];
+        panel.series = series;
+        panel.series.push(velocity);
+        panel
+    })
+}
+
+/// Figure 2b.
+pub fn friction(look: &Look) -> Vec<Panel> {
+    each(look, |observed, steps| {
+        let (since, x) = time_scale(look);
+        let mu = look.spec.scene.contact.mu;
+        let points: Vec<_> =
+            steps.iter().map(|step| (since(step.time_s), step.node.equivalent_friction())).collect();
+        let y = Scale::from_to("μ_eq", -0.05 * mu.max(0.02), 1.2 * mu.max(0.02));
+        let (velocity, scale) = velocity(steps, &since);
+        let mut panel = Panel::new(&title(observed), x, y);
+        panel.right = Some(scale);
+        panel.bands = bands(&observed.phases, &since);
+        panel.series = vec![Series::line("μ_eq = |τ/σ_n|", palette::colour(3, 8), points), velocity];
+        panel
+    })
+}
+
+/// Figure 3b.
+pub fn phase_planes(look: &Look) -> Vec<Panel> {
+    each(look, |observed, steps| {
+        let point = |step: &NodeStep| (step.node.u_m[1] * MICRO, step.node.y_velocity_m_s * MILLI);
+        let x = Scale::spanning("displacement in y [µm]", steps.iter().map(|step| point(step).0), 0.01);
+        let y = Scale::spanning("velocity in y [mm/s]", steps.iter().map(|step| point(step).1), 1.0);
+        let mut panel = Panel::new(&title(observed), x, y);
+        for state in [ContactState::Stick, ContactState::Slip, ContactState::Separated] {
+            let (label, colour) = drawn_as(state);
+            panel.series.push(Series::line(label, colour, path_in(state, steps, point)));
+        }
+        panel.levels = vec![disk(observed, false)];
+        panel
+    })
+}
+
+/// The parts of a path that a node makes in a state, each up to the point where the next begins.
+fn path_in(
+    state: ContactState,
+    steps: &[NodeStep],
+    point: impl Fn(&NodeStep) -> (f64, f64),
+) -> Vec<(f64, f64)> {
+    let mut path = Vec::new();
+    for pair in steps.windows(2) {
+        if pair[0].node.state == state {
+            path.extend([point(&pair[0]), point(&pair[1])]);
+        } else if path.last().is_some_and(|last: &(f64, f64)| last.0.is_finite()) {
+            path.push((f64::NAN, f64::NAN));
+        }
+    }
+    path
+}
+
+/// Figure 4.
+pub fn cycles(look: &Look) -> Vec<Panel> {
+    each(look, |observed, steps| {
+        let [shown_start_s, shown_end_s] = look.survey.windows.shown_s;
+        let wanted = observed
+            .instants
+            .map_or([shown_start_s, shown_end_s], |instants| instants.span_s(look.survey.windows.period_s));
+        let (start_s, end_s) = (wanted[0].max(shown_start_s), wanted[1].min(shown_end_s));
+        let since = |time_s: f64| (time_s - start_s) * MICRO;
+        let x = Scale::from_to("time [µs]", 0.0, since(end_s));
+        let within: Vec<NodeStep> =
+            steps.iter().filter(|step| step.time_s >= start_s && step.time_s <= end_s).copied().collect();
+        let stress: Vec<_> =
+            within.iter().map(|step| (since(step.time_s), step.node.sigma_n_pa * MEGA)).collect();
+        let all = stress.iter().map(|point| point.1).chain([0.0]);
+        let y = Scale::spanning("normal contact stress [MPa]", all, 0.01);
+        let (velocity, scale) = velocity(&within, since);
+        let mut panel = Panel::new(&title(observed), x, y);
+        panel.right = Some(scale);
+        panel.bands = bands(&observed.phases, since);
+        panel.levels = vec![disk(observed, true)];
+        panel.marks = observed.instants.map_or_else(Vec::new, |instants| {
+            let mark =
+                |(letter, time_s): (char, f64)| Mark { label: format!("t_{letter}"), at: since(time_s) };
+            instants.named().into_iter().map(mark).collect()
+        });
+        panel.series = vec![Series::line("normal stress", palette::colour(3, 8), stress), velocity];
+        panel
+    })
+}

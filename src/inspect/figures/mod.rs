@@ -1,0 +1,146 @@
+//! The drawings: the paper's figures 2 to 5 of one job, its figure 8 of several, and what goes with them.
+
+mod face;
+mod histories;
+mod overlay;
+mod snapshots;
+mod totals;
+
+pub use overlay::overlay;
+
+use super::look::Look;
+use crate::publish::plot::FigureError;
+use crate::publish::plot::palette::{SEPARATED, SLIP, STICK};
+use crate::publish::plot::panel::{Panel, stack};
+use crate::publish::{Folder, PublishError};
+use crate::solver::contact::ContactState;
+use plotters::style::RGBColor;
+
+/// A figure of a look.
+#[derive(Debug, Clone, PartialEq)]
+pub struct LookFigure {
+    /// Its file, without the ending.
+    pub stem: &'static str,
+    /// What it shows, for a reader.
+    pub caption: String,
+    /// The tables that hold its numbers.
+    pub data: Vec<String>,
+    /// The drawing.
+    pub svg: String,
+}
+
+/// Draws and writes all figures.
+///
+/// # Errors
+/// The first figure that could not be drawn or written.
+pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, PublishError> {
+    let histories: Vec<String> =
+        look.observed.iter().map(|observed| format!("node_{}.csv", observed.node.name)).collect();
+    let with = |more: &[&str]| -> Vec<String> {
+        histories.iter().cloned().chain(more.iter().map(|&name| name.to_owned())).collect()
+    };
+    let only = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
+    let mu = look.spec.scene.contact.mu;
+    let parts: [(&'static str, String, Vec<String>, Drawing); 9] = [
+        (
+            "figure2a",
+            "Displacements in the three directions and velocity in y of the observed nodes (the paper's Figure 2a)."
+                .to_owned(),
+            histories.clone(),
+            Box::new(|| panels(&histories::displacements(look))),
+        ),
+        (
+            "figure2b",
+            format!(
+                "Equivalent friction coefficient |τ/σ_n| and velocity in y (Figure 2b): {mu} is slip, less is stick, \
+                 0 is separation."
+            ),
+            with(&["phases.csv"]),
+            Box::new(|| panels(&histories::friction(look))),
+        ),
+        (
+            "figure3a",
+            "Trajectories of the contact nodes in the y–z plane over one cycle (Figure 3a): all of them about their \
+             means, and those on three lines where the nodes are, displacements in y enlarged."
+                .to_owned(),
+            only(&["face.csv"]),
+            Box::new(|| panels(&face::trajectories(look))),
+        ),
+        (
+            "figure3b",
+            "Phase plane of the observed nodes (Figure 3b): the level is the velocity of the disk under the node."
+                .to_owned(),
+            histories.clone(),
+            Box::new(|| panels(&histories::phase_planes(look))),
+        ),
+        (
+            "figure4",
+            "Normal contact stress (behind the job's low-pass) and velocity in y over one cycle (Figure 4). Contact \
+             begins at t_A, stick at t_B, the stress is largest at t_C, stick ends at t_D, contact at t_E, and the \
+             separation at t_F."
+                .to_owned(),
+            with(&["instants.csv"]),
+            Box::new(|| panels(&histories::cycles(look))),
+        ),
+        (
+            "figure5",
+            "Four instants of a cycle (Figure 5): velocities in the middle plane of the pin with the contact forces \
+             under it, and the contact face from above with the states and friction forces of its nodes."
+                .to_owned(),
+            only(&["face.csv", "fields.pvd"]),
+            Box::new(|| snapshots::draw(look)),
+        ),
+        (
+            "wave",
+            "States of the nodes along the middle of the contact face over one cycle: the front is below, the rear \
+             above."
+                .to_owned(),
+            only(&["face.csv", "wave.csv"]),
+            Box::new(|| panels(&[face::waves(look)])),
+        ),
+        (
+            "totals",
+            "Total normal contact force N and tangential force T at the clamp: the whole run, and the last cycles \
+             with their begins, where the filtered N rises through F (the filter delays by a constant time)."
+                .to_owned(),
+            only(&["run.csv", "totals.csv", "cycles.csv"]),
+            Box::new(|| panels(&totals::forces(look))),
+        ),
+        (
+            "spectrum",
+            "Spectrum of the total normal contact force over the averaging window.".to_owned(),
+            only(&["spectrum.csv"]),
+            Box::new(|| panels(&[totals::spectrum(look)])),
+        ),
+    ];
+    let mut figures = Vec::new();
+    for (stem, caption, data, draw) in parts {
+        let name = format!("{stem}.svg");
+        let svg = draw().map_err(|source| PublishError::Figure { path: folder.path_of(&name), source })?;
+        folder.text(&name, &svg)?;
+        figures.push(LookFigure { stem, caption, data, svg });
+    }
+    Ok(figures)
+}
+
+type Drawing<'a> = Box<dyn Fn() -> Result<String, FigureError> + 'a>;
+
+fn panels(panels: &[Panel]) -> Result<String, FigureError> {
+    stack(panels)
+}
+
+/// Contact states as they are drawn: name and colour.
+fn drawn_as(state: ContactState) -> (&'static str, RGBColor) {
+    match state {
+        ContactState::Stick => ("stick", STICK),
+        ContactState::Slip => ("slip", SLIP),
+        ContactState::Separated => ("separated", SEPARATED),
+    }
+}
+
+/// Micrometres, microseconds.
+const MICRO: f64 = 1e6;
+/// Millimetres, and millimetres per second.
+const MILLI: f64 = 1e3;
+/// Megapascals.
+const MEGA: f64 = 1e-6;

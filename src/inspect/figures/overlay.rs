@@ -1,0 +1,39 @@
+//! Figure 8: stresses at a node in several jobs, one over the other.
+
+use super::{MEGA, MICRO};
+use crate::inspect::overlay::Trace;
+use crate::publish::plot::panel::{Panel, Scale, Series, stack};
+use crate::publish::plot::{FigureError, palette};
+
+/// Draws normal and tangential stress over the time since the begin of a cycle.
+///
+/// # Errors
+/// The drawing library's.
+pub fn overlay(node: &str, traces: &[Trace]) -> Result<String, FigureError> {
+    let longest_s = traces.iter().map(|trace| trace.duration_s).fold(f64::MIN_POSITIVE, f64::max);
+    let panel = |title: &str, label: &str, value: &dyn Fn(&crate::inspect::capture::NodeStep) -> f64| {
+        let series: Vec<Series> = traces
+            .iter()
+            .enumerate()
+            .map(|(number, trace)| {
+                let point = |step: &_| {
+                    let step: &crate::inspect::capture::NodeStep = step;
+                    ((step.time_s - trace.from_s) * MICRO, value(step) * MEGA)
+                };
+                let points = trace.steps.iter().map(point).collect();
+                Series::line(&trace.label, palette::colour(number, traces.len()), points)
+            })
+            .collect();
+        let all = series.iter().flat_map(|series| &series.points).map(|point| point.1).chain([0.0]);
+        let y = Scale::spanning(label, all, 0.01);
+        let x = Scale::from_to("time since N rose through F [µs]", 0.0, longest_s * MICRO);
+        let mut panel = Panel::new(title, x, y);
+        panel.series = series;
+        panel
+    };
+    let name = node.replace('_', " ");
+    stack(&[
+        panel(&format!("a) {name}: normal contact stress"), "σ_n [MPa]", &|step| step.node.sigma_n_pa),
+        panel(&format!("b) {name}: tangential contact stress in y"), "τ_y [MPa]", &|step| step.tau_pa[1]),
+    ])
+}

@@ -1,0 +1,264 @@
+//! Four instants of a cycle: the middle plane of the pin and its contact face.
+
+use super::{MICRO, drawn_as};
+use crate::inspect::capture::Frame;
+use crate::inspect::look::Look;
+use crate::publish::plot::{Area, FigureError, MARGIN, TEXT, drawn, palette, write};
+use crate::solver::contact::ContactState;
+use plotters::element::{Circle, PathElement, Polygon};
+use plotters::style::text_anchor::HPos;
+use plotters::style::{Color, RGBColor};
+
+const WIDTH: u32 = 1800;
+const ROW: u32 = 720;
+const TITLE: i32 = 70;
+const FOOT: u32 = 150;
+const GREY: RGBColor = RGBColor(0xB0, 0xB0, 0xB0);
+/// Largest radius [px] of a contact node's dot.
+const DOT: i32 = 10;
+/// Arrows are drawn at so many nodes of a line, or a few more: they are to be told apart.
+const ARROWS: usize = 15;
+
+/// An instant: what it is and which frame is nearest.
+struct Snapshot<'a> {
+    label: String,
+    frame: &'a Frame,
+}
+
+/// Draws the snapshots, one below the other.
+///
+/// # Errors
+/// The drawing library's.
+pub fn draw(look: &Look) -> Result<String, FigureError> {
+    let snapshots = snapshots(look);
+    let scales = Scales::of(look, &snapshots);
+    drawn((WIDTH, ROW * snapshots.len() as u32 + FOOT), |root| {
+        let mut rest = root.clone();
+        for snapshot in &snapshots {
+            let (row, below) = rest.split_vertically(ROW);
+            draw_row(&row, look, snapshot, &scales)?;
+            rest = below;
+        }
+        draw_legend(&rest, &scales)
+    })
+}
+
+/// In the paper's phases of the first observed node that has all of them; otherwise four quarters of the cycle.
+fn snapshots(look: &Look) -> Vec<Snapshot<'_>> {
+    let windows = &look.survey.windows;
+    let complete = look.observed.iter().find_map(|observed| {
+        let instants = observed.instants?;
+        let (a, b, d) = (instants.contact_s?, instants.stick_s?, instants.slip_s?);
+        let (c, e, f) = (instants.peak_s, instants.separation_s?, instants.end_s?);
+        let name = observed.node.name.replace('_', " ");
+        Some([
+            (format!("{name} between t_A and t_B: contact has begun"), (a + b) / 2.0),
+            (format!("{name} at t_C: stick, largest stress"), c),
+            (format!("{name} between t_D and t_E: slip"), (d + e) / 2.0),
+            (format!("{name} between t_E and t_F: separated"), (e + f) / 2.0),
+        ])
+    });
+    let quarters = || {
+        [0, 1, 2, 3].map(|quarter| {
+            let label = format!("{quarter}/4 of the cycle");
+            (label, windows.cycle_s[0] + f64::from(quarter) / 4.0 * windows.period_s)
+        })
+    };
+    let times = complete.unwrap_or_else(quarters);
+    let snapshot = |(label, time_s): (String, f64)| {
+        let distance = |frame: &&Frame| {
+            let apart = (frame.time_s - time_s) / windows.period_s;
+            (apart - apart.round()).abs()
+        };
+        let frame = look.capture.frames.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        Some(Snapshot { label, frame })
+    };
+    times.into_iter().filter_map(snapshot).collect()
+}
+
+/// How long arrows are, the same in all snapshots.
+struct Scales {
+    /// Pixels per metre.
+    px_per_m: f64,
+    /// Radius [px] of a node's dot.
+    dot: i32,
+    /// Arrows are at every so many nodes.
+    stride: usize,
+    /// Pixels per m/s.
+    px_per_m_s: f64,
+    /// Largest speed [m/s].
+    speed_m_s: f64,
+    /// Pixels per newton.
+    px_per_n: f64,
+    /// Largest contact force [N].
+    force_n: f64,
+}
+
+impl Scales {
+    fn of(look: &Look, snapshots: &[Snapshot]) -> Self {
+        let [lx, ly, lz] = look.mesh().size_m();
+        let ([hx, hy, _], [_, ny, _]) = (look.mesh().element_size_m(), look.mesh().elements());
+        let stride = ny.div_ceil(ARROWS);
+        let room = f64::from(WIDTH) / 2.0 - 3.0 * f64::from(MARGIN);
+        let high = f64::from(ROW) - f64::from(TITLE) - f64::from(MARGIN);
+        // The side view has the forces below, as much room as a third of the pin.
+        let px_per_m = (room / ly).min(high / (lz * 1.4)).min(high / lx);
+        let plane = || {
+            snapshots
+                .iter()
+                .flat_map(|snapshot| snapshot.frame.velocity_m_s.chunks_exact(3))
+                .map(|v| v[1].hypot(v[2]))
+        };
+        let speed_m_s = plane().fold(f64::MIN_POSITIVE, f64::max);
+        let forces = snapshots.iter().flat_map(|snapshot| &snapshot.frame.face);
+        let force_n = forces
+            .map(|node| node.force_n.iter().map(|f| f * f).sum::<f64>().sqrt())
+            .fold(f64::MIN_POSITIVE, f64::max);
+        // The longest arrows reach over one and a half of their distances.
+        let px_per_m_s = 1.5 * stride as f64 * hy * px_per_m / speed_m_s;
+        let dot = ((0.4 * hx.min(hy) * px_per_m) as i32).clamp(2, DOT);
+        Self {
+            px_per_m,
+            dot,
+            stride,
+            px_per_m_s,
+            speed_m_s,
+            px_per_n: 0.3 * lz * px_per_m / force_n,
+            force_n,
+        }
+    }
+}
+
+fn draw_row(area: &Area, look: &Look, snapshot: &Snapshot, scales: &Scales) -> Result<(), FigureError> {
+    let since = (snapshot.frame.time_s - look.survey.windows.shown_s[0]) * MICRO;
+    write(area, &format!("{}  ({since:.1} µs)", snapshot.label), (MARGIN, TITLE / 2), TEXT, HPos::Left)?;
+    let (left, right) = area.split_horizontally(WIDTH / 2);
+    draw_side(&left, look, snapshot.frame, scales)?;
+    draw_face(&right, look, snapshot.frame, scales)
+}
+
+/// The middle plane: velocities at its nodes, forces under it.
+fn draw_side(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result<(), FigureError> {
+    let mesh = look.mesh();
+    let [nx, ny, nz] = mesh.elements();
+    let [_, ly, lz] = mesh.size_m();
+    let middle = i64::from(WIDTH / 4) as f64;
+    let base = f64::from(TITLE) + lz * scales.px_per_m;
+    let pixel = |y: f64, z: f64| (middle + y * scales.px_per_m, base - z * scales.px_per_m);
+    let corners = [(-ly / 2.0, 0.0), (ly / 2.0, 0.0), (ly / 2.0, lz), (-ly / 2.0, lz), (-ly / 2.0, 0.0)];
+    let outline = corners.map(|(y, z)| rounded(pixel(y, z)));
+    area.draw(&PathElement::new(outline, GREY.stroke_width(3)))?;
+    for k in (0..=nz).step_by(scales.stride) {
+        for j in (0..=ny).step_by(scales.stride) {
+            let node = mesh.node(nx / 2, j, k);
+            let [_, y, z] = mesh.coordinates_m(node);
+            let v = &frame.velocity_m_s[3 * node..3 * node + 3];
+            let from = pixel(y, z);
+            let to = (from.0 + v[1] * scales.px_per_m_s, from.1 - v[2] * scales.px_per_m_s);
+            arrow(area, from, to, palette::BLACK, 2)?;
+        }
+    }
+    for j in 0..=ny {
+        let slave = mesh.node(nx / 2, j, 0);
+        let [_, y, _] = mesh.coordinates_m(slave);
+        let (node, tip) = (&frame.face[slave], pixel(y, 0.0));
+        let [_, friction, normal] = node.force_n;
+        // Forces on the pin end where they act.
+        let from = (tip.0 - friction * scales.px_per_n, tip.1 + normal * scales.px_per_n);
+        if node.state != ContactState::Separated && j % scales.stride == 0 {
+            arrow(area, from, tip, drawn_as(node.state).1, 3)?;
+        }
+        dot(area, rounded(tip), node.state, scales.dot)?;
+    }
+    write(area, "front", rounded(pixel(-ly / 2.0, -0.12 * lz)), TEXT - 4, HPos::Right)?;
+    write(area, "rear", rounded(pixel(ly / 2.0, -0.12 * lz)), TEXT - 4, HPos::Left)
+}
+
+/// The contact face from above: states and friction forces.
+fn draw_face(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result<(), FigureError> {
+    let mesh = look.mesh();
+    let [lx, ly, _] = mesh.size_m();
+    let middle = f64::from(WIDTH / 4);
+    let centre = f64::from(TITLE) + lx / 2.0 * scales.px_per_m;
+    let pixel = |x: f64, y: f64| (middle + y * scales.px_per_m, centre - x * scales.px_per_m);
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)];
+    let outline = corners.map(|(x, y)| rounded(pixel(x * lx / 2.0, y * ly / 2.0)));
+    area.draw(&PathElement::new(outline, GREY.stroke_width(3)))?;
+    let place = |slave| {
+        let [x, y, _] = mesh.coordinates_m(slave);
+        pixel(x, y)
+    };
+    for (slave, node) in frame.face.iter().enumerate() {
+        dot(area, rounded(place(slave)), node.state, scales.dot)?;
+    }
+    // On the dots, which would hide them.
+    for (slave, node) in frame.face.iter().enumerate() {
+        let [i, j, _] = mesh.grid_position(slave);
+        if node.state != ContactState::Separated && i % scales.stride == 0 && j % scales.stride == 0 {
+            let from = place(slave);
+            let [sideways, along, _] = node.force_n;
+            let to = (from.0 + along * scales.px_per_n, from.1 - sideways * scales.px_per_n);
+            arrow(area, from, to, palette::BLACK, 3)?;
+        }
+    }
+    Ok(())
+}
+
+/// A node: the shape says its state, too.
+fn dot(area: &Area, at: (i32, i32), state: ContactState, radius: i32) -> Result<(), FigureError> {
+    let colour = drawn_as(state).1;
+    match state {
+        ContactState::Stick => area.draw(&Circle::new(at, radius, colour.filled())),
+        ContactState::Slip => {
+            let corners =
+                [(0, -radius), (radius, 0), (0, radius), (-radius, 0)].map(|(dx, dy)| (at.0 + dx, at.1 + dy));
+            area.draw(&Polygon::new(corners, colour))
+        }
+        ContactState::Separated => area.draw(&Circle::new(at, radius - 1, colour.stroke_width(2))),
+    }
+}
+
+/// Shorter ones [px] have no direction to show.
+const SHORTEST: f64 = 3.0;
+
+fn arrow(
+    area: &Area,
+    from: (f64, f64),
+    to: (f64, f64),
+    colour: RGBColor,
+    width: u32,
+) -> Result<(), FigureError> {
+    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
+    let length = dx.hypot(dy);
+    if length < SHORTEST {
+        return Ok(());
+    }
+    area.draw(&PathElement::new([rounded(from), rounded(to)], colour.stroke_width(width)))?;
+    let (ux, uy) = (dx / length, dy / length);
+    let head = (0.4 * length).min(14.0);
+    let corner = |side: f64| {
+        rounded((to.0 - head * ux - 0.4 * side * head * uy, to.1 - head * uy + 0.4 * side * head * ux))
+    };
+    area.draw(&Polygon::new([rounded(to), corner(1.0), corner(-1.0)], colour))
+}
+
+fn draw_legend(area: &Area, scales: &Scales) -> Result<(), FigureError> {
+    let mut x = MARGIN + DOT;
+    for state in [ContactState::Stick, ContactState::Slip, ContactState::Separated] {
+        dot(area, (x, 30), state, DOT)?;
+        write(area, drawn_as(state).0, (x + 26, 30), TEXT, HPos::Left)?;
+        x += 240;
+    }
+    let scale = |x: f64, length: f64, colour, width, text: &str| {
+        arrow(area, (x, 95.0), (x + length, 95.0), colour, width)?;
+        write(area, text, ((x + length) as i32 + 24, 95), TEXT, HPos::Left)
+    };
+    let text = format!("velocity {:.0} mm/s", scales.speed_m_s * 1e3);
+    scale(f64::from(MARGIN), scales.speed_m_s * scales.px_per_m_s, palette::BLACK, 2, &text)?;
+    let text = format!("contact force on the pin {:.2} N", scales.force_n);
+    scale(700.0, scales.force_n * scales.px_per_n, drawn_as(ContactState::Slip).1, 3, &text)
+}
+
+fn rounded((x, y): (f64, f64)) -> (i32, i32) {
+    (x.round() as i32, y.round() as i32)
+}

@@ -1,0 +1,220 @@
+//! A job looked into: both runs and what is found in what they kept.
+
+use super::capture::{Capture, FaceStep, capture};
+use super::phases::{Instants, Phase, phases};
+use super::place::{ObservedNode, Place};
+use super::spectrum::Spectrum;
+use super::survey::{Survey, survey};
+use crate::analysis::JobError;
+use crate::solver::mesh::BlockMesh;
+use crate::spec::JobSpec;
+use crate::units::rad_per_s_from_rpm;
+use std::ops::ControlFlow;
+
+/// What to look at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Options {
+    /// The nodes whose histories are shown.
+    pub places: Vec<Place>,
+    /// Number of cycles that are shown, at least [`Options::FEWEST_CYCLES`].
+    pub cycles: usize,
+    /// Number of times of a cycle at which the whole pin is kept, at least [`Options::FEWEST_FRAMES`].
+    pub frames: usize,
+}
+
+impl Options {
+    /// A node's cycle, which begins and ends anywhere, is found in so many of the job's.
+    pub const FEWEST_CYCLES: usize = 3;
+    /// Snapshots are taken from the frames: with fewer they would not be where they are said to be.
+    pub const FEWEST_FRAMES: usize = 16;
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Self { places: Place::USUAL.to_vec(), cycles: 4, frames: 48 }
+    }
+}
+
+/// Why a job cannot be looked into.
+#[derive(Debug, thiserror::Error)]
+pub enum LookError {
+    /// A node is not there.
+    #[error("{0}")]
+    Place(String),
+    /// The job has no record.
+    #[error(transparent)]
+    Job(#[from] JobError),
+}
+
+/// One job looked into.
+#[derive(Debug, Clone)]
+pub struct Look {
+    /// The job.
+    pub spec: JobSpec,
+    /// The first run.
+    pub survey: Survey,
+    /// The second run.
+    pub capture: Capture,
+    /// The observed nodes, in the order of [`Capture::nodes`].
+    pub observed: Vec<Observed>,
+    /// The spectrum of the total normal force over [`Capture::totals`].
+    pub spectrum: Spectrum,
+}
+
+/// What is found in the history of an observed node.
+#[derive(Debug, Clone)]
+pub struct Observed {
+    /// The node.
+    pub node: ObservedNode,
+    /// Velocity [m/s] of the undeformed target under it, in y.
+    pub target_velocity_m_s: f64,
+    /// Its phases in the time that is shown.
+    pub phases: Vec<Phase>,
+    /// The instants of a cycle.
+    pub instants: Option<Instants>,
+}
+
+impl Look {
+    /// Runs the job twice and looks.
+    ///
+    /// `go_on` hears the simulated time [s] of the run that goes on and may end it.
+    ///
+    /// # Errors
+    /// [`LookError`].
+    pub fn into(
+        spec: &JobSpec,
+        options: &Options,
+        go_on: &mut impl FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Self, LookError> {
+        spec.check().map_err(JobError::from)?;
+        let mesh = BlockMesh::new(spec.scene.pin.size_m, spec.scene.pin.elements);
+        let nodes: Vec<ObservedNode> = options
+            .places
+            .iter()
+            .map(|place| place.find(&mesh))
+            .collect::<Result<_, _>>()
+            .map_err(LookError::Place)?;
+        let survey = survey(spec, options.cycles.max(Options::FEWEST_CYCLES), go_on)?;
+        let windows = &survey.windows;
+        let capture = capture(spec, windows, &nodes, options.frames.max(Options::FEWEST_FRAMES), go_on)?;
+        let rate = rad_per_s_from_rpm(spec.scene.disk.omega_rpm);
+        let observed = nodes
+            .into_iter()
+            .zip(&capture.nodes)
+            .map(|(node, steps)| {
+                let end_s = windows.shown_s[1];
+                let phases = phases(steps.iter().map(|step| (step.time_s, step.node.state)), end_s);
+                let stress: Vec<_> = steps.iter().map(|step| (step.time_s, step.node.sigma_n_pa)).collect();
+                let instants = Instants::find(&phases, &stress, windows.shown_s[0], windows.period_s);
+                let target_velocity_m_s = rate * capture.model.slaves()[node.slave].surface_motion[1];
+                Observed { node, target_velocity_m_s, phases, instants }
+            })
+            .collect();
+        let normal: Vec<f64> = capture.totals.iter().map(|sample| sample.normal_n).collect();
+        let spectrum = Spectrum::of(&normal, survey.record.time_step_s);
+        Ok(Self { spec: spec.clone(), survey, capture, observed, spectrum })
+    }
+
+    /// The mesh of the pin.
+    pub fn mesh(&self) -> &BlockMesh {
+        self.capture.model.mesh()
+    }
+}
+
+/// A node's trajectory over the cycle in the y–z plane: y, z displacements [m].
+pub fn loop_of(face: &[FaceStep], slave: usize) -> Vec<(f64, f64)> {
+    face.iter()
+        .map(|step| {
+            let [_, y, z] = step.nodes[slave].u_m;
+            (y, z)
+        })
+        .collect()
+}
+
+/// Area [m²] that a closed loop goes around: positive counter-clockwise, seen with y to the right and z upwards.
+pub fn area_m2(path: &[(f64, f64)]) -> f64 {
+    let next = path.iter().cycle().skip(1);
+    path.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f64>() / 2.0
+}
+
+/// The instants of a node on the line through the middle of the contact face along the sliding direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Station {
+    /// Its y [m] from the pin's axis.
+    pub y_m: f64,
+    /// Its instants, if the contact face was kept for any step.
+    pub instants: Option<Instants>,
+}
+
+/// The instants along that line, from front to rear, from one cycle that is taken for one of many.
+pub fn stations(look: &Look) -> Vec<Station> {
+    let mesh = look.mesh();
+    let [nx, ny, _] = mesh.elements();
+    let [start_s, end_s] = look.survey.windows.cycle_s;
+    let period_s = end_s - start_s;
+    let station = |j: usize| {
+        let slave = mesh.node(nx / 2, j, 0);
+        let thrice = (0..3).flat_map(|turn| {
+            look.capture
+                .face
+                .iter()
+                .map(move |step| (step.time_s + f64::from(turn) * period_s, &step.nodes[slave]))
+        });
+        let thrice: Vec<_> = thrice.collect();
+        let phases =
+            phases(thrice.iter().map(|(time_s, node)| (*time_s, node.state)), start_s + 3.0 * period_s);
+        let stress: Vec<_> = thrice.iter().map(|(time_s, node)| (*time_s, node.sigma_n_pa)).collect();
+        // The first phase may be the end of one that began before: it is looked for a little later.
+        let instants = Instants::find(&phases, &stress, start_s + 0.25 * period_s, period_s);
+        Station { y_m: mesh.coordinates_m(slave)[1], instants }
+    };
+    (0..=ny).map(station).collect()
+}
+
+/// How much later [s] an instant is at the last of some stations than at the first, from station to station by the
+/// shorter way around the period; none unless two stations have it.
+pub fn delay_s(
+    stations: &[Station],
+    instant: impl Fn(&Instants) -> Option<f64>,
+    period_s: f64,
+) -> Option<f64> {
+    let times: Vec<f64> = stations.iter().filter_map(|station| instant(station.instants.as_ref()?)).collect();
+    let shorter = |delay: f64| delay - period_s * (delay / period_s).round();
+    (times.len() > 1).then(|| times.windows(2).map(|pair| shorter(pair[1] - pair[0])).sum())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects: the sense of a loop: counter-clockwise is positive, and the area is that of the loop wherever it is.
+    #[test]
+    fn loops_have_a_sense() {
+        let circle = |sense: f64| -> Vec<(f64, f64)> {
+            (0..400)
+                .map(|k| {
+                    let angle = sense * f64::from(k) * std::f64::consts::TAU / 400.0;
+                    (3.0 + 2.0 * angle.cos(), -1.0 + 2.0 * angle.sin())
+                })
+                .collect()
+        };
+        // A polygon of n corners in a circle of radius 2.
+        let exact = 0.5 * 400.0 * 4.0 * (std::f64::consts::TAU / 400.0).sin();
+        for sense in [1.0, -1.0] {
+            assert!((area_m2(&circle(sense)) - sense * exact).abs() < 1e-11);
+        }
+    }
+
+    /// Protects: a wave's delay goes the shorter way around the period from node to node, and is the sum of that.
+    #[test]
+    fn delays_go_around_the_period() {
+        let at = |time_s| Station {
+            y_m: 0.0,
+            instants: Some(Instants { slip_s: Some(time_s), ..Instants::default() }),
+        };
+        let wave = [at(0.9), at(1.1), at(0.3), at(0.5)];
+        let delay = delay_s(&wave, |instants| instants.slip_s, 1.0).unwrap();
+        assert!((delay - 0.6).abs() < 1e-12, "{delay}");
+        assert_eq!(delay_s(&wave, |instants| instants.stick_s, 1.0), None);
+    }
+}

@@ -1,0 +1,34 @@
+//! One job looked into: what the paper's figures 2 to 5 and 8 show, of any job.
+//!
+//! ```text
+//! spec ─► survey (first run: record, cycles) ─► capture (the same run again, watched) ─┬─► tables (CSV)
+//!                                                                                      ├─► figures (SVG)
+//!                                        phases, spectrum, loops ◄─────────────────────┤
+//!                                                                                      └─► fields (VTK)
+//! ```
+//!
+//! A job's run is the same to the last bit whenever it is made. So it is made twice: the first time to learn when its
+//! last limit cycles are, the second time to keep everything of just these. No state of a run has to be kept on the
+//! chance that it belongs to them, and nothing that solves jobs knows of being watched.
+
+mod capture;
+mod envelope;
+mod fields;
+mod figures;
+mod look;
+mod overlay;
+mod phases;
+mod place;
+mod spectrum;
+mod summary;
+mod survey;
+mod tables;
+mod vtu;
+mod write;
+
+pub use figures::LookFigure;
+pub use look::{Look, LookError, Observed, Options};
+pub use overlay::{Trace, write_overlay};
+pub use place::Place;
+pub use summary::Summary;
+pub use write::write;

@@ -1,0 +1,197 @@
+//! The phases of a node's contact, and the instants at which they change.
+
+use crate::solver::contact::ContactState;
+
+/// A stretch of time in one state.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Phase {
+    /// The state.
+    pub state: ContactState,
+    /// Time [s] of its first step.
+    pub start_s: f64,
+    /// Time [s] of the first step after it.
+    pub end_s: f64,
+}
+
+impl Phase {
+    /// Duration [s].
+    pub fn duration_s(&self) -> f64 {
+        self.end_s - self.start_s
+    }
+}
+
+/// The phases of consecutive steps (time of t_n [s], state), the last one up to `end_s`.
+pub fn phases(steps: impl Iterator<Item = (f64, ContactState)>, end_s: f64) -> Vec<Phase> {
+    let mut phases: Vec<Phase> = Vec::new();
+    for (time_s, state) in steps {
+        match phases.last_mut() {
+            Some(last) if last.state == state => {}
+            last => {
+                if let Some(last) = last {
+                    last.end_s = time_s;
+                }
+                phases.push(Phase { state, start_s: time_s, end_s });
+            }
+        }
+    }
+    phases
+}
+
+/// The instants of a cycle of a node, as in the paper's Figure 4; those of phases that a node does not have are not
+/// there.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Instants {
+    /// t_A [s]: contact begins, at the end of the longest separation.
+    pub contact_s: Option<f64>,
+    /// t_B [s]: stick begins.
+    pub stick_s: Option<f64>,
+    /// t_C [s]: the normal stress is largest.
+    pub peak_s: f64,
+    /// t_D [s]: stick ends.
+    pub slip_s: Option<f64>,
+    /// t_E [s]: contact ends, at the begin of the next longest separation.
+    pub separation_s: Option<f64>,
+    /// t_F [s]: that separation ends.
+    pub end_s: Option<f64>,
+}
+
+impl Instants {
+    /// Letter and time [s] of those that are there, in the order of the letters.
+    pub fn named(&self) -> Vec<(char, f64)> {
+        let all = [
+            ('A', self.contact_s),
+            ('B', self.stick_s),
+            ('C', Some(self.peak_s)),
+            ('D', self.slip_s),
+            ('E', self.separation_s),
+            ('F', self.end_s),
+        ];
+        all.into_iter().filter_map(|(letter, time_s)| Some((letter, time_s?))).collect()
+    }
+
+    /// The time [s] that is shown for them: all of them, and a twentieth of a period before and after; a period around
+    /// the peak for a node that does not separate.
+    pub fn span_s(&self, period_s: f64) -> [f64; 2] {
+        match (self.contact_s, self.end_s) {
+            (Some(from_s), Some(to_s)) => [from_s - period_s / 20.0, to_s + period_s / 20.0],
+            _ => [self.peak_s - period_s / 2.0, self.peak_s + period_s / 2.0],
+        }
+    }
+
+    /// Finds the instants of the cycle that begins in the period from `from_s` on.
+    ///
+    /// Phases of a few steps (a node that touches before it closes, or slips in between while it sticks) are not the
+    /// cycle's. Of the separations that begin in a period the longest counts; stick is from the begin of the first to
+    /// the end of the last phase in which the node sticks for a twentieth of a period or more. `stress` are times [s]
+    /// and normal stresses [Pa] of the steps.
+    ///
+    /// None if there is no step in that period.
+    pub fn find(phases: &[Phase], stress: &[(f64, f64)], from_s: f64, period_s: f64) -> Option<Self> {
+        let longest = |state: ContactState, [from_s, to_s]: [f64; 2]| {
+            let begun = phases.iter().filter(|phase| phase.state == state);
+            begun
+                .filter(|phase| phase.start_s >= from_s && phase.start_s < to_s)
+                .max_by(|a, b| a.duration_s().total_cmp(&b.duration_s()))
+        };
+        let before = longest(ContactState::Separated, [from_s, from_s + period_s]);
+        let contact_s = before.map(|phase| phase.end_s);
+        // From a separation to the next, and none: a period from anywhere.
+        let after = before.and_then(|phase| {
+            let begin_s = phase.start_s + period_s / 2.0;
+            longest(ContactState::Separated, [begin_s, begin_s + period_s])
+        });
+        let touching = match (contact_s, after) {
+            (Some(from_s), Some(after)) => [from_s, after.start_s],
+            _ => [from_s, from_s + period_s],
+        };
+        let within = stress.iter().filter(|(time_s, _)| *time_s >= touching[0] && *time_s <= touching[1]);
+        let (peak_s, _) = within.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let sticks = || {
+            let whole = |phase: &&Phase| phase.start_s >= touching[0] && phase.start_s < touching[1];
+            let long =
+                |phase: &&Phase| phase.state == ContactState::Stick && phase.duration_s() >= period_s / 20.0;
+            phases.iter().filter(whole).filter(long)
+        };
+        Some(Self {
+            contact_s,
+            stick_s: sticks().next().map(|phase| phase.start_s),
+            peak_s: *peak_s,
+            slip_s: sticks().next_back().map(|phase| phase.end_s),
+            separation_s: after.map(|phase| phase.start_s),
+            end_s: after.map(|phase| phase.end_s),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ContactState::{Separated, Slip, Stick};
+
+    /// Steps of 1 s: `cycle` again and again.
+    fn steps(cycle: &[(ContactState, usize)], times: usize) -> Vec<(f64, ContactState)> {
+        let once = cycle.iter().flat_map(|&(state, count)| std::iter::repeat_n(state, count));
+        let all: Vec<_> = once.collect::<Vec<_>>().repeat(times);
+        all.into_iter().enumerate().map(|(n, state)| (n as f64, state)).collect()
+    }
+
+    fn found(cycle: &[(ContactState, usize)], peak: usize) -> Instants {
+        let period: usize = cycle.iter().map(|(_, count)| count).sum();
+        let steps = steps(cycle, 4);
+        let stress: Vec<_> =
+            steps.iter().map(|&(t, _)| (t, -((t as usize % period) as f64 - peak as f64).abs())).collect();
+        let end_s = steps.len() as f64;
+        let phases = phases(steps.into_iter(), end_s);
+        Instants::find(&phases, &stress, 0.0, period as f64).unwrap()
+    }
+
+    /// Protects: phases begin and end where the state changes, and none is lost.
+    #[test]
+    fn phases_follow_each_other() {
+        let found = phases(steps(&[(Slip, 2), (Stick, 3), (Separated, 1)], 2).into_iter(), 12.0);
+        let expected = [
+            (Slip, 0, 2),
+            (Stick, 2, 5),
+            (Separated, 5, 6),
+            (Slip, 6, 8),
+            (Stick, 8, 11),
+            (Separated, 11, 12),
+        ];
+        let expected: Vec<_> = expected
+            .map(|(state, start, end)| Phase { state, start_s: f64::from(start), end_s: f64::from(end) })
+            .into();
+        assert_eq!(found, expected);
+    }
+
+    /// Protects: the instants of the paper's cycle in their order, wherever in it the search begins, and though the
+    /// node touches for a step before it closes and slips for one while it sticks.
+    #[test]
+    fn the_papers_cycle_has_six_instants() {
+        let cycle = [
+            (Slip, 4),
+            (Stick, 6),
+            (Slip, 1),
+            (Stick, 2),
+            (Slip, 5),
+            (Separated, 8),
+            (Slip, 1),
+            (Separated, 2),
+        ];
+        let instants = found(&cycle, 9);
+        // The first separation that is long is from 18 to 26; the next one from 47.
+        let times: Vec<_> = instants.named();
+        assert_eq!(times, [('A', 26.0), ('B', 33.0), ('C', 38.0), ('D', 42.0), ('E', 47.0), ('F', 55.0)]);
+        assert!(times.windows(2).all(|pair| pair[0].1 < pair[1].1));
+    }
+
+    /// Protects: phases that are not there are not made up.
+    #[test]
+    fn other_regimes_have_fewer_instants() {
+        let stick_slip = found(&[(Slip, 5), (Stick, 9)], 7);
+        assert_eq!(stick_slip.named(), [('B', 5.0), ('C', 7.0), ('D', 14.0)]);
+        let slip_separation = found(&[(Slip, 5), (Separated, 9)], 2);
+        assert_eq!(slip_separation.named(), [('A', 14.0), ('C', 16.0), ('E', 19.0), ('F', 28.0)]);
+        let sliding = found(&[(Slip, 10)], 3);
+        assert_eq!(sliding.named(), [('C', 3.0)]);
+    }
+}

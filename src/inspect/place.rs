@@ -1,0 +1,146 @@
+//! Nodes of the contact face by name or by coordinates.
+
+use crate::solver::mesh::BlockMesh;
+
+/// Names of the nodes that have one, with where they are across the sliding direction (x) and along it (y), from −1 to
+/// 1: the disk moves towards +y, so the front is at −1.
+const NAMED: [(&str, [i8; 2]); 9] = [
+    ("front_centre", [0, -1]),
+    ("rear_centre", [0, 1]),
+    ("centre", [0, 0]),
+    ("inner_centre", [-1, 0]),
+    ("outer_centre", [1, 0]),
+    ("front_inner", [-1, -1]),
+    ("front_outer", [1, -1]),
+    ("rear_inner", [-1, 1]),
+    ("rear_outer", [1, 1]),
+];
+
+/// A node of the contact face as its user asks for it.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Place {
+    /// One that has a name.
+    Named(&'static str),
+    /// The nearest to coordinates x and y [m] from the pin's axis.
+    At([f64; 2]),
+}
+
+impl Place {
+    /// The paper's node 1 and node 2.
+    pub const USUAL: [Self; 2] = [Self::Named("front_centre"), Self::Named("rear_centre")];
+
+    /// Reads a name, or `X,Y` in millimetres from the pin's axis.
+    ///
+    /// # Errors
+    /// What would be right, if it is neither.
+    pub fn parse(text: &str) -> Result<Self, String> {
+        if let Some((name, _)) = NAMED.iter().find(|(name, _)| *name == text) {
+            return Ok(Self::Named(name));
+        }
+        let number = |text: &str| text.trim().parse::<f64>().ok().filter(|mm| mm.is_finite());
+        let coordinates =
+            text.split_once(',').and_then(|(x, y)| Some([number(x)? * 1e-3, number(y)? * 1e-3]));
+        coordinates.map(Self::At).ok_or_else(|| {
+            let names: Vec<&str> = NAMED.iter().map(|(name, _)| *name).collect();
+            format!(
+                "expected one of {}, or X,Y in millimetres from the pin's axis, for example -3,0",
+                names.join(", ")
+            )
+        })
+    }
+
+    /// The slave node.
+    ///
+    /// # Errors
+    /// If the coordinates are beyond the face.
+    pub fn find(&self, mesh: &BlockMesh) -> Result<ObservedNode, String> {
+        let [lx, ly, _] = mesh.size_m();
+        let [x, y] = match self {
+            Self::At(at) => *at,
+            Self::Named(name) => {
+                let found = NAMED.iter().find(|(known, _)| known == name);
+                let [across, along] = found.map_or([0, 0], |(_, place)| *place);
+                [f64::from(across) * lx / 2.0, f64::from(along) * ly / 2.0]
+            }
+        };
+        // Half a micrometre of forgiveness for decimal millimetres.
+        if x.abs() > lx / 2.0 + 5e-7 || y.abs() > ly / 2.0 + 5e-7 {
+            return Err(format!(
+                "{},{} mm is not on the contact face; expected x from {} to {} and y from {} to {}",
+                x * 1e3,
+                y * 1e3,
+                -lx * 500.0,
+                lx * 500.0,
+                -ly * 500.0,
+                ly * 500.0
+            ));
+        }
+        let [nx, ny, _] = mesh.elements();
+        // With an odd number of elements no node is in the middle: the lower one is taken, as everywhere.
+        let index = |at: f64, length: f64, n: usize| {
+            let exact = (at / length + 0.5) * n as f64;
+            ((exact - 0.5 - 1e-9).ceil().max(0.0) as usize).min(n)
+        };
+        let slave = mesh.node(index(x, lx, nx), index(y, ly, ny), 0);
+        let [x, y, _] = mesh.coordinates_m(slave);
+        let name = match self {
+            Self::Named(name) => (*name).to_owned(),
+            Self::At(_) => format!("x{:+.3}_y{:+.3}mm", x * 1e3, y * 1e3),
+        };
+        Ok(ObservedNode { name, slave, at_m: [x, y] })
+    }
+}
+
+/// A node of the contact face to look at.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ObservedNode {
+    /// Its name, which can be part of a file's.
+    pub name: String,
+    /// Its number among the slave nodes.
+    pub slave: usize,
+    /// Its x and y [m] from the pin's axis.
+    pub at_m: [f64; 2],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn mesh() -> BlockMesh {
+        BlockMesh::new([0.012, 0.015, 0.010], [12, 15, 10])
+    }
+
+    /// Protects: the names that a job's record uses mean the same nodes here: the middle of the leading and of the
+    /// trailing edge, also where no node is in the middle of a side.
+    #[test]
+    fn names_mean_what_records_mean() {
+        let mesh = mesh();
+        let found: Vec<_> = Place::USUAL.iter().map(|place| place.find(&mesh).unwrap().slave).collect();
+        assert_eq!(found, [mesh.node(6, 0, 0), mesh.node(6, 15, 0)]);
+        let centre = Place::parse("centre").unwrap().find(&mesh).unwrap();
+        assert_eq!(centre.slave, mesh.node(6, 7, 0));
+        let corner = Place::parse("rear_outer").unwrap().find(&mesh).unwrap();
+        assert_eq!((corner.slave, corner.at_m), (mesh.node(12, 15, 0), [0.006, 0.0075]));
+    }
+
+    /// Protects: coordinates give the nearest node, and its own coordinates in its name.
+    #[test]
+    fn coordinates_give_the_nearest_node() {
+        let node = Place::parse("-2.4,3.1").unwrap().find(&mesh()).unwrap();
+        assert_eq!(node.slave, mesh().node(4, 11, 0));
+        assert_eq!(node.name, "x-2.000_y+3.500mm");
+        let edge = Place::parse("6,-7.5").unwrap().find(&mesh()).unwrap();
+        assert_eq!(edge.slave, mesh().node(12, 0, 0));
+    }
+
+    /// Protects: what is no node is refused with what would be right.
+    #[test]
+    fn other_texts_are_refused() {
+        for text in ["front", "1;2", "1,inf", ""] {
+            let error = Place::parse(text).unwrap_err();
+            assert!(error.contains("front_centre") && error.contains("millimetres"), "{error}");
+        }
+        let error = Place::parse("7,0").unwrap().find(&mesh()).unwrap_err();
+        assert!(error.contains("7,0 mm") && error.contains("x from -6 to 6"), "{error}");
+    }
+}

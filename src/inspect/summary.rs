@@ -1,0 +1,215 @@
+//! The numbers that a look finds, as one JSON document.
+
+use super::look::{Look, Observed, area_m2, delay_s, loop_of, stations};
+use super::phases::{Instants, Phase};
+use crate::analysis::JobRecord;
+use crate::solver::contact::ContactState;
+use crate::spec::JobSpec;
+use serde::Serialize;
+
+/// What a look finds, in numbers.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Summary {
+    /// Everything that determines the run.
+    pub job: JobSpec,
+    /// The job's record.
+    pub record: JobRecord,
+    /// Whether there are cycles; otherwise the period below is that of the pin as a quarter-wave resonator in shear.
+    pub cycles: bool,
+    /// Duration [s] of a cycle.
+    pub period_s: f64,
+    /// What is shown of the observed nodes, from and to [s].
+    pub shown_s: [f64; 2],
+    /// The cycle of which the contact face and the pin are shown, from and to [s].
+    pub cycle_s: [f64; 2],
+    /// The observed nodes over what is shown of them.
+    pub nodes: Vec<NodeSummary>,
+    /// All nodes of the contact face over the cycle.
+    pub face: FaceSummary,
+    /// How the state changes travel along the middle of the contact face.
+    pub waves: Waves,
+    /// The largest lines of the total normal force, frequency [Hz] and amplitude [N].
+    pub spectrum_peaks: Vec<(f64, f64)>,
+}
+
+/// An observed node.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct NodeSummary {
+    /// Its name.
+    pub name: String,
+    /// Its x and y [m] from the pin's axis.
+    pub at_m: [f64; 2],
+    /// Velocity [m/s] of the target under it in y.
+    pub target_velocity_m_s: f64,
+    /// Peak-to-peak displacement [m] in x, y and z.
+    pub peak_to_peak_m: [f64; 3],
+    /// Largest gap [m].
+    pub lift_max_m: f64,
+    /// Largest smoothed normal contact stress [Pa].
+    pub sigma_n_max_pa: f64,
+    /// Largest velocity [m/s] relative to the target, in contact or not.
+    pub relative_speed_max_m_s: f64,
+    /// Largest slip speed [m/s] in contact.
+    pub slip_speed_max_m_s: f64,
+    /// Largest |v_y − target| [m/s] while it sticks: 0 but for rounding on a rigid disk.
+    pub stick_speed_error_m_s: f64,
+    /// Largest |μ_eq − μ| while it slips: 0 but for rounding.
+    pub slip_friction_error: f64,
+    /// Shares of the time in stick, slip and separation.
+    pub shares: [f64; 3],
+    /// Number of longest separations, or of longest sticks where there is none, over duration: how often its own cycle
+    /// comes [Hz].
+    pub frequency_hz: Option<f64>,
+    /// The instants of a cycle [s].
+    pub instants: Option<InstantsSummary>,
+}
+
+/// The instants of a cycle of a node, each where there is one, and what the node does then.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct InstantsSummary {
+    /// Name (`t_A` … `t_F`), time [s], normal stress [Pa] and velocity [m/s] relative to the target in y.
+    pub at: Vec<(String, f64, f64, f64)>,
+    /// Normal stress [Pa] at its maximum, t_C.
+    pub peak_pa: f64,
+    /// Largest slip speed [m/s] between t_D and t_E.
+    pub slip_before_separation_m_s: Option<f64>,
+}
+
+/// The contact face over a cycle.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FaceSummary {
+    /// Number of nodes.
+    pub nodes: usize,
+    /// Number of nodes whose loop in the y–z plane goes counter-clockwise, seen with y to the right and z upwards.
+    pub counter_clockwise: usize,
+    /// Largest gap [m].
+    pub lift_max_m: f64,
+    /// Largest slip speed [m/s].
+    pub slip_speed_max_m_s: f64,
+    /// Largest smoothed normal stress [Pa].
+    pub sigma_n_max_pa: f64,
+}
+
+/// How much later [s] an instant is at the rear than at the front; negative when it travels towards the front.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Waves {
+    /// Contact begins, t_A.
+    pub contact_s: Option<f64>,
+    /// Stick begins, t_B.
+    pub stick_s: Option<f64>,
+    /// Stick ends, t_D.
+    pub slip_s: Option<f64>,
+    /// Contact ends, t_E.
+    pub separation_s: Option<f64>,
+}
+
+impl Summary {
+    /// The numbers of a look.
+    pub fn of(look: &Look) -> Self {
+        let windows = &look.survey.windows;
+        let stations = stations(look);
+        let delay = |instant: fn(&Instants) -> Option<f64>| delay_s(&stations, instant, windows.period_s);
+        Self {
+            job: look.spec.clone(),
+            record: look.survey.record.clone(),
+            cycles: windows.cycles,
+            period_s: windows.period_s,
+            shown_s: windows.shown_s,
+            cycle_s: windows.cycle_s,
+            nodes: (0..look.observed.len()).map(|number| node(look, number)).collect(),
+            face: face(look),
+            waves: Waves {
+                contact_s: delay(|instants| instants.contact_s),
+                stick_s: delay(|instants| instants.stick_s),
+                slip_s: delay(|instants| instants.slip_s),
+                separation_s: delay(|instants| instants.separation_s),
+            },
+            spectrum_peaks: look.spectrum.peaks(5),
+        }
+    }
+}
+
+fn largest(values: impl Iterator<Item = f64>) -> f64 {
+    values.fold(0.0, f64::max)
+}
+
+fn node(look: &Look, number: usize) -> NodeSummary {
+    let Observed { node, target_velocity_m_s, phases, instants } = &look.observed[number];
+    let steps = &look.capture.nodes[number];
+    let mu = look.spec.scene.contact.mu;
+    let relative = |velocity_m_s: f64| velocity_m_s - target_velocity_m_s;
+    let in_state = |state: ContactState| steps.iter().filter(move |step| step.node.state == state);
+    let share = |state| in_state(state).count() as f64 / steps.len().max(1) as f64;
+    let peak_to_peak = |c: usize| {
+        let values = steps.iter().map(|step| step.node.u_m[c]);
+        let [low, high] =
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+        if low <= high { high - low } else { 0.0 }
+    };
+    NodeSummary {
+        name: node.name.clone(),
+        at_m: node.at_m,
+        target_velocity_m_s: *target_velocity_m_s,
+        peak_to_peak_m: [0, 1, 2].map(peak_to_peak),
+        lift_max_m: largest(steps.iter().map(|step| step.node.gap_m)),
+        sigma_n_max_pa: largest(steps.iter().map(|step| step.node.sigma_n_pa)),
+        relative_speed_max_m_s: largest(steps.iter().map(|step| relative(step.node.y_velocity_m_s).abs())),
+        slip_speed_max_m_s: largest(steps.iter().map(|step| step.node.slip_speed_m_s)),
+        stick_speed_error_m_s: largest(
+            in_state(ContactState::Stick).map(|step| relative(step.node.y_velocity_m_s).abs()),
+        ),
+        slip_friction_error: largest(
+            in_state(ContactState::Slip).map(|step| (step.node.equivalent_friction() - mu).abs()),
+        ),
+        shares: [ContactState::Stick, ContactState::Slip, ContactState::Separated].map(share),
+        frequency_hz: own_frequency_hz(look, phases),
+        instants: instants.as_ref().map(|instants| {
+            let nearest = |time_s: f64| {
+                let distance = |at: &f64| (at - time_s).abs();
+                steps.iter().min_by(|a, b| distance(&a.time_s).total_cmp(&distance(&b.time_s)))
+            };
+            let named = instants.named().into_iter().filter_map(|(letter, time_s)| {
+                let step = nearest(time_s)?;
+                let velocity_m_s = relative(step.node.y_velocity_m_s);
+                Some((format!("t_{letter}"), time_s, step.node.sigma_n_pa, velocity_m_s))
+            });
+            let slipping = instants.slip_s.zip(instants.separation_s).map(|(from_s, to_s)| {
+                let within = steps.iter().filter(|step| step.time_s >= from_s && step.time_s <= to_s);
+                largest(within.map(|step| step.node.slip_speed_m_s))
+            });
+            InstantsSummary {
+                at: named.collect(),
+                peak_pa: nearest(instants.peak_s).map_or(0.0, |step| step.node.sigma_n_pa),
+                slip_before_separation_m_s: slipping,
+            }
+        }),
+    }
+}
+
+/// The phases of a state that last at least half as long as its longest come once a cycle.
+fn own_frequency_hz(look: &Look, phases: &[Phase]) -> Option<f64> {
+    let begins = |state: ContactState| -> Vec<f64> {
+        // What is cut by the begin or the end of the time that is shown says nothing of its length.
+        let whole = phases.get(1..phases.len().saturating_sub(1)).unwrap_or_default();
+        let of_state = || whole.iter().filter(|phase| phase.state == state);
+        let longest_s = largest(of_state().map(Phase::duration_s));
+        of_state().filter(|phase| phase.duration_s() >= 0.5 * longest_s).map(|phase| phase.start_s).collect()
+    };
+    let separations = begins(ContactState::Separated);
+    let times = if separations.len() > 1 { separations } else { begins(ContactState::Stick) };
+    let (first, last) = (times.first()?, times.last()?);
+    (look.survey.windows.cycles && last > first).then(|| (times.len() - 1) as f64 / (last - first))
+}
+
+fn face(look: &Look) -> FaceSummary {
+    let face = &look.capture.face;
+    let nodes = look.capture.model.slaves().len();
+    let all = || face.iter().flat_map(|step| &step.nodes);
+    FaceSummary {
+        nodes,
+        counter_clockwise: (0..nodes).filter(|&slave| area_m2(&loop_of(face, slave)) > 0.0).count(),
+        lift_max_m: largest(all().map(|node| node.gap_m)),
+        slip_speed_max_m_s: largest(all().map(|node| node.slip_speed_m_s)),
+        sigma_n_max_pa: largest(all().map(|node| node.sigma_n_pa)),
+    }
+}

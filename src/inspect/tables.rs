@@ -1,0 +1,203 @@
+//! What the figures show, as CSV.
+
+use super::capture::NodeStep;
+use super::look::{Look, stations};
+use super::phases::Instants;
+use crate::analysis::sample::{NodeSample, Sample};
+use crate::publish::value::number;
+use crate::publish::{Folder, PublishError};
+use std::io;
+
+/// Writes all tables.
+///
+/// # Errors
+/// The first file that could not be written.
+pub fn write(look: &Look, folder: &mut Folder) -> Result<(), PublishError> {
+    folder.with("run.csv", |out| csv(&RUN, run_lines(look), out))?;
+    folder.with("cycles.csv", |out| csv(&CYCLES, cycle_lines(look), out))?;
+    folder.with("totals.csv", |out| csv(&TOTALS, look.capture.totals.iter().map(totals_line), out))?;
+    folder.with("spectrum.csv", |out| {
+        let lines =
+            look.spectrum.lines().map(|(frequency, amplitude)| vec![number(frequency), number(amplitude)]);
+        csv(&["frequency_hz", "normal_amplitude_n"], lines, out)
+    })?;
+    for (observed, steps) in look.observed.iter().zip(&look.capture.nodes) {
+        let name = format!("node_{}.csv", observed.node.name);
+        folder.with(&name, |out| csv(&history_header(), steps.iter().map(history_line), out))?;
+    }
+    folder.with("phases.csv", |out| csv(&PHASES, phase_lines(look), out))?;
+    folder.with("instants.csv", |out| csv(&INSTANTS, instant_lines(look), out))?;
+    folder.with("face.csv", |out| {
+        let mut header = vec!["time_s", "node", "x_m", "y_m"];
+        header.extend(NODE);
+        csv(&header, face_lines(look), out)
+    })?;
+    folder.with("wave.csv", |out| csv(&WAVE, wave_lines(look), out))
+}
+
+/// Writes a header and lines.
+pub fn csv(header: &[&str], lines: impl Iterator<Item = Vec<String>>, out: &mut Vec<u8>) -> io::Result<()> {
+    let mut writer = ::csv::Writer::from_writer(out);
+    writer.write_record(header).map_err(io::Error::other)?;
+    for line in lines {
+        writer.write_record(line).map_err(io::Error::other)?;
+    }
+    writer.flush()
+}
+
+fn optional(value: Option<f64>) -> String {
+    value.map_or_else(String::new, number)
+}
+
+const RUN: [&str; 5] =
+    ["start_s", "normal_min_n", "normal_max_n", "clamp_tangential_min_n", "clamp_tangential_max_n"];
+
+fn run_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
+    look.survey.envelope.pieces().iter().map(|piece| {
+        let [[low, high], [left, right]] = [piece.normal_n, piece.tangential_n];
+        [piece.start_s, low, high, left, right].map(number).to_vec()
+    })
+}
+
+const CYCLES: [&str; 3] = ["passage", "start_s", "end_s"];
+
+fn cycle_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
+    let passages = look.survey.passages_s.iter().enumerate();
+    passages.map(|(at, [start_s, end_s])| vec![at.to_string(), number(*start_s), number(*end_s)])
+}
+
+const TOTALS: [&str; 11] = [
+    "time_s",
+    "load_n",
+    "normal_n",
+    "smooth_normal_n",
+    "clamp_tangential_n",
+    "contact_tangential_n",
+    "contact_sideways_n",
+    "mu_eq",
+    "stick_nodes",
+    "slip_nodes",
+    "separated_nodes",
+];
+
+fn totals_line(sample: &Sample) -> Vec<String> {
+    let mut line = [
+        sample.time_s,
+        sample.load_n,
+        sample.normal_n,
+        sample.smooth_normal_n,
+        sample.clamp_tangential_n,
+        sample.contact_tangential_n,
+        sample.contact_sideways_n,
+        sample.equivalent_friction(),
+    ]
+    .map(number)
+    .to_vec();
+    line.extend([sample.stick, sample.slip, sample.separated].map(|count| count.to_string()));
+    line
+}
+
+/// What is told of a contact node during a step.
+const NODE: [&str; 12] = [
+    "ux_m",
+    "uy_m",
+    "uz_m",
+    "y_velocity_m_s",
+    "gap_m",
+    "friction_x_n",
+    "friction_y_n",
+    "normal_n",
+    "sigma_n_pa",
+    "slip_speed_m_s",
+    "mu_eq",
+    "state",
+];
+
+fn node_cells(node: &NodeSample) -> Vec<String> {
+    let [ux, uy, uz] = node.u_m;
+    let [x, y, n] = node.force_n;
+    let mut cells = [
+        ux,
+        uy,
+        uz,
+        node.y_velocity_m_s,
+        node.gap_m,
+        x,
+        y,
+        n,
+        node.sigma_n_pa,
+        node.slip_speed_m_s,
+        node.equivalent_friction(),
+    ]
+    .map(number)
+    .to_vec();
+    cells.push(node.state.name().to_owned());
+    cells
+}
+
+/// Columns of a node's history.
+pub fn history_header() -> Vec<&'static str> {
+    let mut header = vec!["time_s"];
+    header.extend(NODE);
+    header.extend(["tau_x_pa", "tau_y_pa"]);
+    header
+}
+
+/// A step of a node's history.
+pub fn history_line(step: &NodeStep) -> Vec<String> {
+    let mut line = vec![number(step.time_s)];
+    line.extend(node_cells(&step.node));
+    line.extend(step.tau_pa.map(number));
+    line
+}
+
+const PHASES: [&str; 4] = ["node", "state", "start_s", "end_s"];
+
+fn phase_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
+    look.observed.iter().flat_map(|observed| {
+        observed.phases.iter().map(|phase| {
+            let (start, end) = (number(phase.start_s), number(phase.end_s));
+            vec![observed.node.name.clone(), phase.state.name().to_owned(), start, end]
+        })
+    })
+}
+
+const INSTANTS: [&str; 3] = ["node", "instant", "time_s"];
+
+fn instant_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
+    look.observed.iter().flat_map(|observed| {
+        let named = observed.instants.as_ref().map_or_else(Vec::new, Instants::named);
+        let name = observed.node.name.clone();
+        named
+            .into_iter()
+            .map(move |(letter, time_s)| vec![name.clone(), format!("t_{letter}"), number(time_s)])
+    })
+}
+
+fn face_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
+    look.capture.face.iter().flat_map(|step| {
+        step.nodes.iter().enumerate().map(|(slave, node)| {
+            let [x, y, _] = look.mesh().coordinates_m(slave);
+            let mut line = vec![number(step.time_s), slave.to_string(), number(x), number(y)];
+            line.extend(node_cells(node));
+            line
+        })
+    })
+}
+
+const WAVE: [&str; 6] = ["y_m", "contact_s", "stick_s", "peak_s", "slip_s", "separation_s"];
+
+fn wave_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
+    stations(look).into_iter().map(|station| {
+        let of =
+            |instant: fn(&Instants) -> Option<f64>| optional(station.instants.as_ref().and_then(instant));
+        vec![
+            number(station.y_m),
+            of(|instants| instants.contact_s),
+            of(|instants| instants.stick_s),
+            of(|instants| Some(instants.peak_s)),
+            of(|instants| instants.slip_s),
+            of(|instants| instants.separation_s),
+        ]
+    })
+}

@@ -1,0 +1,107 @@
+//! VTK's XML files of unstructured grids (`.vtu`) and of series of them (`.pvd`), as ParaView reads them.
+//!
+//! Format: VTK File Formats, "XML File Formats"; data appended raw, little-endian, each array behind its number of bytes.
+
+use std::fmt::Write as _;
+use std::io::{self, Write};
+
+/// VTK's number for a hexahedron of eight nodes.
+const HEXAHEDRON: u8 = 12;
+
+/// Values at the points.
+pub enum Values {
+    /// Numbers, so many to a point.
+    Numbers(usize, Vec<f32>),
+    /// Small integers, one to a point.
+    Codes(Vec<i8>),
+}
+
+/// A named array of values at the points.
+pub struct PointData {
+    /// Its name.
+    pub name: &'static str,
+    /// Names of its components, where they have some.
+    pub components: &'static [&'static str],
+    /// The values.
+    pub values: Values,
+}
+
+/// Writes a grid of hexahedra: points [m], eight points to a cell in VTK's order, and values at the points.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_grid(
+    points_m: &[[f64; 3]],
+    cells: &[[usize; 8]],
+    data: &[PointData],
+    out: &mut impl Write,
+) -> io::Result<()> {
+    let mut arrays = Arrays::default();
+    let mut header = format!(
+        "<?xml version=\"1.0\"?>\n\
+         <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
+         <UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
+        points_m.len(),
+        cells.len()
+    );
+    for array in data {
+        header += &match &array.values {
+            Values::Numbers(count, numbers) => {
+                let bytes = numbers.iter().flat_map(|x| x.to_le_bytes()).collect();
+                arrays.add("Float32", array.name, *count, array.components, bytes)
+            }
+            Values::Codes(codes) => {
+                let bytes = codes.iter().flat_map(|x| x.to_le_bytes()).collect();
+                arrays.add("Int8", array.name, 1, array.components, bytes)
+            }
+        };
+    }
+    let coordinates = points_m.iter().flatten().flat_map(|x| x.to_le_bytes()).collect();
+    let connectivity = cells.iter().flatten().flat_map(|&point| (point as i64).to_le_bytes()).collect();
+    let offsets = (1..=cells.len()).flat_map(|cell| (8 * cell as i64).to_le_bytes()).collect();
+    header += "</PointData>\n<Points>\n";
+    header += &arrays.add("Float64", "points", 3, &[], coordinates);
+    header += "</Points>\n<Cells>\n";
+    header += &arrays.add("Int64", "connectivity", 1, &[], connectivity);
+    header += &arrays.add("Int64", "offsets", 1, &[], offsets);
+    header += &arrays.add("UInt8", "types", 1, &[], vec![HEXAHEDRON; cells.len()]);
+    header += "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+    out.write_all(header.as_bytes())?;
+    out.write_all(&arrays.bytes)?;
+    out.write_all(b"\n</AppendedData>\n</VTKFile>\n")
+}
+
+/// Writes a series of files, each with its time.
+///
+/// # Errors
+/// Those of the writer.
+pub fn write_series<'a>(files: impl Iterator<Item = (f64, &'a str)>, out: &mut impl Write) -> io::Result<()> {
+    out.write_all(
+        b"<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"1.0\" byte_order=\"LittleEndian\">\n<Collection>\n",
+    )?;
+    for (time, file) in files {
+        writeln!(out, "<DataSet timestep=\"{time:e}\" part=\"0\" file=\"{file}\"/>")?;
+    }
+    out.write_all(b"</Collection>\n</VTKFile>\n")
+}
+
+/// The appended data.
+#[derive(Default)]
+struct Arrays {
+    bytes: Vec<u8>,
+}
+
+impl Arrays {
+    /// Appends an array and gives the element that refers to it.
+    fn add(&mut self, kind: &str, name: &str, count: usize, components: &[&str], bytes: Vec<u8>) -> String {
+        let mut element =
+            format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{count}\"");
+        for (number, component) in components.iter().enumerate() {
+            let _ = write!(element, " ComponentName{number}=\"{component}\"");
+        }
+        let _ = writeln!(element, " format=\"appended\" offset=\"{}\"/>", self.bytes.len());
+        self.bytes.extend((bytes.len() as u64).to_le_bytes());
+        self.bytes.extend(bytes);
+        element
+    }
+}
