@@ -14,6 +14,9 @@ pub struct Folder<'a> {
 
 impl<'a> Folder<'a> {
     /// Creates the folder unless it is there.
+    ///
+    /// # Errors
+    /// If it cannot be made.
     pub fn create(path: &'a Path) -> Result<Self, PublishError> {
         fs::create_dir_all(path).map_err(|source| PublishError::Folder { path: path.to_owned(), source })?;
         Ok(Self { path, written: Vec::new() })
@@ -25,6 +28,9 @@ impl<'a> Folder<'a> {
     }
 
     /// Writes a file of text.
+    ///
+    /// # Errors
+    /// If it cannot be written; an earlier version of it is unchanged.
     pub fn text(&mut self, name: &str, text: &str) -> Result<(), PublishError> {
         self.with(name, |out| {
             out.extend_from_slice(text.as_bytes());
@@ -33,6 +39,9 @@ impl<'a> Folder<'a> {
     }
 
     /// Writes a file that `fill` gives the contents of.
+    ///
+    /// # Errors
+    /// As [`Folder::text`], and those of `fill`.
     pub fn with(
         &mut self,
         name: &str,

@@ -1,0 +1,66 @@
+// The tooltip of figures. What it says is what the browser would show by itself, later: the titles of the shapes in
+// every drawing's group "hits". Arrow keys go from one to the next.
+"use strict";
+(() => {
+  const tip = document.createElement("div");
+  tip.id = "tip";
+  tip.setAttribute("role", "tooltip");
+  tip.hidden = true;
+  document.body.append(tip);
+  let chosen = null;
+
+  const hide = () => {
+    if (chosen) chosen.classList.remove("chosen");
+    chosen = null;
+    tip.hidden = true;
+  };
+
+  const show = (hit) => {
+    if (hit === chosen) return;
+    hide();
+    chosen = hit;
+    hit.classList.add("chosen");
+    tip.textContent = hit.getAttribute("aria-label");
+    tip.hidden = false;
+    const at = hit.getBoundingClientRect();
+    const own = tip.getBoundingClientRect();
+    const width = document.documentElement.clientWidth;
+    const left = Math.min(Math.max(at.left + at.width / 2 - own.width / 2, 4), width - own.width - 4);
+    const above = at.top - own.height - 8;
+    tip.style.left = left + "px";
+    tip.style.top = (above > 4 ? above : at.bottom + 8) + "px";
+  };
+
+  for (const group of document.querySelectorAll("svg .hits")) {
+    const hits = [...group.children];
+    hits.forEach((hit, index) => {
+      // The browser's tooltip would be a second one.
+      const title = hit.querySelector("title");
+      hit.setAttribute("aria-label", title.textContent);
+      hit.setAttribute("role", "img");
+      hit.setAttribute("tabindex", index ? "-1" : "0");
+      title.remove();
+    });
+    const hitOf = (event) => {
+      const hit = event.target.closest && event.target.closest(".hits > *");
+      return hit && group.contains(hit) ? hit : null;
+    };
+    for (const kind of ["pointerover", "pointerdown", "focusin"]) {
+      group.addEventListener(kind, (event) => { const hit = hitOf(event); if (hit) show(hit); });
+    }
+    group.addEventListener("pointerout", (event) => { if (event.pointerType !== "touch") hide(); });
+    group.addEventListener("focusout", hide);
+    group.addEventListener("keydown", (event) => {
+      const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
+      if (event.key === "Escape") hide();
+      const next = step && hits[hits.indexOf(hitOf(event)) + step];
+      if (!next) return;
+      event.preventDefault();
+      event.target.setAttribute("tabindex", "-1");
+      next.setAttribute("tabindex", "0");
+      next.focus();
+    });
+  }
+  document.addEventListener("pointerdown", (event) => { if (!event.target.closest(".hits")) hide(); });
+  document.addEventListener("scroll", hide, { capture: true, passive: true });
+})();
