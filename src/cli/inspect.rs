@@ -97,8 +97,8 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     let folder = args.out(&study, &picked.slug());
     let title = format!("{}: {}", study.name(), picked.words());
     inspect::write(&look, &folder, &title)?;
-    tell(format_args!("written to {}", folder.display()));
-    print(&solve::as_text(&look.survey.record))?;
+    tell(solve::as_text(&look.survey.record).trim_end());
+    print(&format!("{}\n", folder.join(inspect::PAGE).display()))?;
     Ok(exit::SUCCESS)
 }
 

@@ -6,33 +6,40 @@ use super::phases::Instants;
 use crate::analysis::sample::{NodeSample, Sample};
 use crate::publish::value::number;
 use crate::publish::{Folder, PublishError};
+use std::collections::BTreeMap;
 use std::io;
 
-/// Writes all tables.
+/// Writes all tables; returns their texts by their names.
 ///
 /// # Errors
 /// The first file that could not be written.
-pub fn write(look: &Look, folder: &mut Folder) -> Result<(), PublishError> {
-    folder.with("run.csv", |out| csv(&RUN, run_lines(look), out))?;
-    folder.with("cycles.csv", |out| csv(&CYCLES, cycle_lines(look), out))?;
-    folder.with("totals.csv", |out| csv(&TOTALS, look.capture.totals.iter().map(totals_line), out))?;
-    folder.with("spectrum.csv", |out| {
-        let lines =
-            look.spectrum.lines().map(|(frequency, amplitude)| vec![number(frequency), number(amplitude)]);
-        csv(&["frequency_hz", "normal_amplitude_n"], lines, out)
-    })?;
+pub fn write(look: &Look, folder: &mut Folder) -> Result<BTreeMap<String, String>, PublishError> {
+    let mut tables = BTreeMap::new();
+    let mut add = |name: &str, header: &[&str], lines: &mut dyn Iterator<Item = Vec<String>>| {
+        let mut text = Vec::new();
+        folder.with(name, |out| {
+            csv(header, lines, out)?;
+            text.clone_from(out);
+            Ok(())
+        })?;
+        tables.insert(name.to_owned(), String::from_utf8_lossy(&text).into_owned());
+        Ok::<(), PublishError>(())
+    };
+    add("run.csv", &RUN, &mut run_lines(look))?;
+    add("cycles.csv", &CYCLES, &mut cycle_lines(look))?;
+    add("totals.csv", &TOTALS, &mut look.capture.totals.iter().map(totals_line))?;
+    add("spectrum.csv", &SPECTRUM, &mut look.spectrum.lines().map(|(f, a)| vec![number(f), number(a)]))?;
     for (observed, steps) in look.observed.iter().zip(&look.capture.nodes) {
         let name = format!("node_{}.csv", observed.node.name);
-        folder.with(&name, |out| csv(&history_header(), steps.iter().map(history_line), out))?;
+        add(&name, &history_header(), &mut steps.iter().map(history_line))?;
     }
-    folder.with("phases.csv", |out| csv(&PHASES, phase_lines(look), out))?;
-    folder.with("instants.csv", |out| csv(&INSTANTS, instant_lines(look), out))?;
-    folder.with("face.csv", |out| {
-        let mut header = vec!["time_s", "node", "x_m", "y_m"];
-        header.extend(NODE);
-        csv(&header, face_lines(look), out)
-    })?;
-    folder.with("wave.csv", |out| csv(&WAVE, wave_lines(look), out))
+    add("phases.csv", &PHASES, &mut phase_lines(look))?;
+    add("instants.csv", &INSTANTS, &mut instant_lines(look))?;
+    let mut header = vec!["time_s", "node", "x_m", "y_m"];
+    header.extend(NODE);
+    add("face.csv", &header, &mut face_lines(look))?;
+    add("wave.csv", &WAVE, &mut wave_lines(look))?;
+    Ok(tables)
 }
 
 /// Writes a header and lines.
@@ -65,6 +72,8 @@ fn cycle_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
     let passages = look.survey.passages_s.iter().enumerate();
     passages.map(|(at, [start_s, end_s])| vec![at.to_string(), number(*start_s), number(*end_s)])
 }
+
+const SPECTRUM: [&str; 2] = ["frequency_hz", "normal_amplitude_n"];
 
 const TOTALS: [&str; 11] = [
     "time_s",

@@ -2,11 +2,15 @@
 
 use super::look::Look;
 use super::summary::Summary;
-use super::{fields, figures, tables};
+use super::{fields, figures, page, tables};
 use crate::publish::{Folder, PublishError};
 use std::path::{Path, PathBuf};
 
-/// Writes figures, tables, fields and the summary `inspection.json` into `out_dir`; returns the files.
+/// The page that holds everything together.
+pub const PAGE: &str = "index.html";
+
+/// Writes figures, tables, fields, the summary `inspection.json` and the page `index.html` into `out_dir`; returns the
+/// files.
 ///
 /// Files appear whole; files of the same name are replaced, others are left alone.
 ///
@@ -14,13 +18,15 @@ use std::path::{Path, PathBuf};
 /// The first file that could not be written. Files before it are complete.
 pub fn write(look: &Look, out_dir: &Path, title: &str) -> Result<Vec<PathBuf>, PublishError> {
     let mut folder = Folder::create(out_dir)?;
-    tables::write(look, &mut folder)?;
-    figures::write(look, &mut folder)?;
+    let tables = tables::write(look, &mut folder)?;
+    let figures = figures::write(look, &mut folder)?;
     fields::write(&look.capture, &mut folder)?;
+    let summary = Summary::of(look);
     folder.with("inspection.json", |out| {
-        serde_json::to_writer_pretty(&mut *out, &Summary::of(look))?;
+        serde_json::to_writer_pretty(&mut *out, &summary)?;
         out.push(b'\n');
         Ok(())
     })?;
+    folder.text(PAGE, &page::of(look, &summary, &figures, &tables, title))?;
     Ok(folder.written)
 }
