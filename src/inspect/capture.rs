@@ -146,9 +146,10 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
                 history.push(NodeStep { time_s, node, tau_pa });
             }
         }
-        if within(self.windows.cycle_s) {
-            self.face.push(FaceStep { time_s, nodes: self.face_of(moment) });
+        if !within(self.windows.cycle_s) {
+            return;
         }
+        self.face.push(FaceStep { time_s, nodes: self.face_of(moment) });
         let due = |next_s: &mut f64| time_s >= *next_s;
         if self.frame_times_s.pop_if(due).is_some() {
             // There may be fewer steps in a cycle than frames.

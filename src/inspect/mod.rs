@@ -27,9 +27,13 @@ mod tables;
 mod vtu;
 mod write;
 
+pub use capture::{Capture, FaceStep, Frame, NodeStep};
 pub use figures::LookFigure;
 pub use look::{Look, LookError, Observed, Options};
 pub use overlay::{Trace, write_overlay};
-pub use place::Place;
+pub use phases::{Instants, Phase};
+pub use place::{ObservedNode, Place};
+pub use spectrum::Spectrum;
 pub use summary::Summary;
+pub use survey::{Survey, Windows};
 pub use write::{PAGE, write};

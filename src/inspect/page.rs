@@ -71,14 +71,14 @@ fn head(look: &Look, summary: &Summary) -> Markup {
             "shares of the node-time".to_owned(),
         ),
         (
-            "waves front to rear",
+            "separation, front to rear",
             delay(summary.waves.separation_s, ly),
-            "of separation; negative: it travels from the rear to the front".to_owned(),
+            "later at the rear; negative: it travels from the rear to the front".to_owned(),
         ),
         (
             "loops",
-            format!("{} of {}", summary.face.counter_clockwise, summary.face.nodes),
-            "counter-clockwise (y to the right, z upwards)".to_owned(),
+            format!("{} of {}", summary.face.counter_clockwise, summary.face.separating),
+            "of the nodes that separate go counter-clockwise (y to the right, z upwards)".to_owned(),
         ),
     ];
     html! {

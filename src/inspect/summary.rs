@@ -80,7 +80,9 @@ pub struct InstantsSummary {
 pub struct FaceSummary {
     /// Number of nodes.
     pub nodes: usize,
-    /// Number of nodes whose loop in the y–z plane goes counter-clockwise, seen with y to the right and z upwards.
+    /// Number of nodes that separate: the others stay in the plane of a rigid disk, and have no loop.
+    pub separating: usize,
+    /// Number of these whose loop in the y–z plane goes counter-clockwise, seen with y to the right and z upwards.
     pub counter_clockwise: usize,
     /// Largest gap [m].
     pub lift_max_m: f64,
@@ -205,9 +207,15 @@ fn face(look: &Look) -> FaceSummary {
     let face = &look.capture.face;
     let nodes = look.capture.model.slaves().len();
     let all = || face.iter().flat_map(|step| &step.nodes);
+    let separates =
+        |slave: &usize| face.iter().any(|step| step.nodes[*slave].state == ContactState::Separated);
     FaceSummary {
         nodes,
-        counter_clockwise: (0..nodes).filter(|&slave| area_m2(&loop_of(face, slave)) > 0.0).count(),
+        separating: (0..nodes).filter(separates).count(),
+        counter_clockwise: (0..nodes)
+            .filter(separates)
+            .filter(|&slave| area_m2(&loop_of(face, slave)) > 0.0)
+            .count(),
         lift_max_m: largest(all().map(|node| node.gap_m)),
         slip_speed_max_m_s: largest(all().map(|node| node.slip_speed_m_s)),
         sigma_n_max_pa: largest(all().map(|node| node.sigma_n_pa)),

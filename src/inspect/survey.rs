@@ -2,7 +2,7 @@
 
 use super::envelope::Envelope;
 use crate::analysis::cycles::CycleCutter;
-use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment};
+use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment, Outcome};
 use crate::solver::Model;
 use crate::solver::energy::Energies;
 use crate::spec::JobSpec;
@@ -66,7 +66,8 @@ impl Windows {
         let needed = cycles * crossings;
         let end_s = record.simulated_s;
         let (cycles_found, period_s, shown_s, cycle_s) = match passages_s.len().checked_sub(needed) {
-            Some(first) => {
+            // What is left of an oscillation that decays is no cycle.
+            Some(first) if record.outcome != Outcome::Decayed => {
                 let shown = &passages_s[first..];
                 let start_s = shown[0][0];
                 let period_s = (shown[needed - 1][1] - start_s) / cycles as f64;
@@ -79,7 +80,7 @@ impl Windows {
                     [shown[at][0], shown[at + crossings - 1][1]],
                 )
             }
-            None => {
+            _ => {
                 let start_s = |periods: usize| (end_s - periods as f64 * quarter_wave_s).max(0.0);
                 let cycle_s = [start_s(cycles.min(2)), start_s(cycles.min(2) - 1)];
                 (false, quarter_wave_s, [start_s(cycles), end_s], cycle_s)

@@ -26,7 +26,7 @@ pub fn overlay(node: &str, traces: &[Trace]) -> Result<String, FigureError> {
             .collect();
         let all = series.iter().flat_map(|series| &series.points).map(|point| point.1).chain([0.0]);
         let y = Scale::spanning(label, all, 0.01);
-        let x = Scale::from_to("time since N rose through F [µs]", 0.0, longest_s * MICRO);
+        let x = Scale::from_to("time since a cycle began [µs]", 0.0, longest_s * MICRO);
         let mut panel = Panel::new(title, x, y);
         panel.series = series;
         panel

@@ -1,0 +1,21 @@
+//! What a look into a job shows: that it is the job's own run, and that what is written can be read.
+
+mod looks;
+mod readers;
+
+use std::ops::ControlFlow;
+use tribosweep::inspect::{Look, Options};
+use tribosweep::spec::JobSpec;
+
+/// 6 × 8 × 5 elements, 2 mm strip, 7 rpm, μ = 0.4: a stick–slip–separation cycle in half a second.
+pub fn coarse() -> JobSpec {
+    let mut spec = JobSpec::default();
+    spec.scene.pin.elements = [6, 8, 5];
+    spec.scene.clamp.width_m = 0.002;
+    spec
+}
+
+/// Looks into a job.
+pub fn look_into(spec: &JobSpec, options: &Options) -> Look {
+    Look::into(spec, options, &mut |_| ControlFlow::Continue(())).unwrap()
+}

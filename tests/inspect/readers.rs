@@ -1,0 +1,162 @@
+//! The fields in the eyes of others' readers: VTK, which ParaView is made of, and meshio.
+
+use crate::{coarse, look_into};
+use serde_json::Value;
+use std::path::Path;
+use std::process::Command;
+use tribosweep::analysis::sample::NodeSample;
+use tribosweep::inspect::{Frame, Look, Options, write};
+use tribosweep::solver::contact::ContactState;
+use tribosweep::solver::stress;
+
+/// Reads a series and prints all times and what is in its files, as JSON.
+const WITH_VTK: &str = r#"
+import json, os, sys
+import xml.etree.ElementTree as tree
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+def read(path):
+    reader = vtk.vtkXMLUnstructuredGridReader()
+    reader.SetFileName(path)
+    reader.Update()
+    grid = reader.GetOutput()
+    data = grid.GetPointData()
+    arrays = {data.GetArrayName(i): vtk_to_numpy(data.GetArray(i)).tolist() for i in range(data.GetNumberOfArrays())}
+    sizes = vtk.vtkCellSizeFilter()
+    sizes.SetInputData(grid)
+    sizes.Update()
+    volumes = vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Volume")).tolist()
+    points = vtk_to_numpy(grid.GetPoints().GetData()).tolist()
+    return {"points": points, "volumes": volumes, "arrays": arrays}
+
+series = sys.argv[1]
+parts = list(tree.parse(series).getroot().iter("DataSet"))
+files = [os.path.join(os.path.dirname(series), part.get("file")) for part in parts]
+json.dump({"times": [float(part.get("timestep")) for part in parts], "files": [read(file) for file in files]},
+          sys.stdout)
+"#;
+
+/// The same with meshio.
+const WITH_MESHIO: &str = r#"
+import json, os, sys
+import xml.etree.ElementTree as tree
+import numpy
+import meshio
+
+def read(path):
+    mesh = meshio.read(path)
+    cells = mesh.cells_dict["hexahedron"]
+    a = mesh.points[cells]
+    edges = [a[:, i] - a[:, 0] for i in (1, 3, 4)]
+    volumes = numpy.einsum("ij,ij->i", numpy.cross(edges[0], edges[1]), edges[2])
+    arrays = {name: values.tolist() for name, values in mesh.point_data.items()}
+    return {"points": mesh.points.tolist(), "volumes": volumes.tolist(), "arrays": arrays}
+
+series = sys.argv[1]
+parts = list(tree.parse(series).getroot().iter("DataSet"))
+files = [os.path.join(os.path.dirname(series), part.get("file")) for part in parts]
+json.dump({"times": [float(part.get("timestep")) for part in parts], "files": [read(file) for file in files]},
+          sys.stdout)
+"#;
+
+fn python() -> String {
+    std::env::var("TRIBOSWEEP_PYTHON").unwrap_or_else(|_| "python3".to_owned())
+}
+
+/// What a reader finds; none where it is not installed.
+fn read_with(module: &str, script: &str, series: &Path) -> Option<Value> {
+    let has = Command::new(python()).args(["-c", &format!("import {module}")]).output();
+    if !has.is_ok_and(|output| output.status.success()) {
+        eprintln!(
+            "skipped: {} has no module {module} (pip install {module}; TRIBOSWEEP_PYTHON names another)",
+            python()
+        );
+        return None;
+    }
+    let output = Command::new(python()).args(["-c", script]).arg(series).output().unwrap();
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    Some(serde_json::from_slice(&output.stdout).unwrap())
+}
+
+fn numbers(value: &Value) -> Vec<f64> {
+    match value {
+        Value::Array(entries) => entries.iter().flat_map(numbers).collect(),
+        number => vec![number.as_f64().unwrap()],
+    }
+}
+
+/// What comes through of one array of all frames.
+fn assert_came_through(name: &str, frames: &[(&Value, Vec<f64>)]) {
+    for (read, written) in frames {
+        let read = numbers(read);
+        assert_eq!(read.len(), written.len(), "{name}");
+        for (r, w) in read.iter().zip(written) {
+            // They are stored with 24 bits.
+            assert!((r - w).abs() <= w.abs() * f64::from(f32::EPSILON), "{name}: {r} instead of {w}");
+        }
+    }
+    let varies = frames.windows(2).any(|pair| pair[0].1 != pair[1].1);
+    assert!(varies, "{name} is the same in all frames: it could be anything");
+}
+
+/// Values of the contact nodes, which have the first numbers, and `elsewhere` at all others.
+fn on_face(nodes: usize, elsewhere: f64, value: fn(&NodeSample) -> Vec<f64>) -> impl Fn(&Frame) -> Vec<f64> {
+    move |frame| {
+        let mut all: Vec<f64> = frame.face.iter().flat_map(value).collect();
+        all.resize(all.len() / frame.face.len() * nodes, elsewhere);
+        all
+    }
+}
+
+fn code(state: ContactState) -> f64 {
+    match state {
+        ContactState::Separated => 0.0,
+        ContactState::Stick => 1.0,
+        ContactState::Slip => 2.0,
+    }
+}
+
+fn assert_is_the_look(read: &Value, look: &Look) {
+    let mesh = look.mesh();
+    let frames = &look.capture.frames;
+    assert_eq!(numbers(&read["times"]), frames.iter().map(|frame| frame.time_s).collect::<Vec<_>>());
+    let files = read["files"].as_array().unwrap();
+    assert_eq!(files.len(), frames.len());
+    let [hx, hy, hz] = mesh.element_size_m();
+    let points: Vec<f64> = (0..mesh.node_count()).flat_map(|node| mesh.coordinates_m(node)).collect();
+    for file in files {
+        assert_eq!(numbers(&file["points"]), points);
+        // Positive and whole: corners in another order would make twisted cells.
+        let volumes = numbers(&file["volumes"]);
+        assert_eq!(volumes.len(), mesh.element_positions().count());
+        assert!(volumes.iter().all(|volume| (volume / (hx * hy * hz) - 1.0).abs() < 1e-9), "{volumes:?}");
+    }
+    let nodes = mesh.node_count();
+    let compare = |name: &str, written: &dyn Fn(&Frame) -> Vec<f64>| {
+        let both: Vec<_> =
+            files.iter().zip(frames).map(|(file, frame)| (&file["arrays"][name], written(frame))).collect();
+        assert_came_through(name, &both);
+    };
+    compare("displacement_m", &|frame| frame.u_m.clone());
+    compare("velocity_m_s", &|frame| frame.velocity_m_s.clone());
+    compare("stress_pa", &|frame| stress::nodal_pa(mesh, look.capture.model.material(), &frame.u_m).concat());
+    compare("contact_force_n", &on_face(nodes, 0.0, |node| node.force_n.to_vec()));
+    compare("normal_contact_stress_pa", &on_face(nodes, 0.0, |node| vec![node.sigma_n_pa]));
+    compare("gap_m", &on_face(nodes, 0.0, |node| vec![node.gap_m]));
+    compare("contact_state", &on_face(nodes, -1.0, |node| vec![code(node.state)]));
+}
+
+/// Protects: VTK and meshio read every number that was written, at its point and its time.
+#[test]
+fn readers_find_what_was_written() {
+    let look = look_into(&coarse(), &Options { frames: 16, ..Options::default() });
+    let folder = tempfile::tempdir().unwrap();
+    write(&look, folder.path(), "readers").unwrap();
+    let series = folder.path().join("fields.pvd");
+    for (module, script) in [("vtk", WITH_VTK), ("meshio", WITH_MESHIO)] {
+        if let Some(read) = read_with(module, script, &series) {
+            assert_is_the_look(&read, &look);
+        }
+    }
+}
