@@ -287,13 +287,21 @@ fn draw_curves(chart: &mut Chart, panel: &Panel, right: bool) -> Result<(), Figu
             Stroke::Line | Stroke::Fine => {
                 let width = if series.stroke == Stroke::Line { CURVE_WIDTH } else { 2 };
                 let style = series.colour.stroke_width(width);
-                let paths =
-                    stretches(&series.points).map(|stretch| PathElement::new(stretch.to_vec(), style));
+                let paths: Vec<_> = stretches(&series.points)
+                    .map(|stretch| PathElement::new(visible(chart, stretch), style))
+                    .collect();
                 chart.draw_series(paths)?;
             }
         }
     }
     Ok(())
+}
+
+/// The points of a stretch without those on the pixel of the one before.
+fn visible(chart: &Chart, stretch: &[(f64, f64)]) -> Vec<(f64, f64)> {
+    let mut points = stretch.to_vec();
+    points.dedup_by_key(|point| chart.backend_coord(point));
+    points
 }
 
 /// Points between those that are not finite.
