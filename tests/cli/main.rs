@@ -5,6 +5,7 @@ mod accuracy;
 mod commands;
 mod determinism;
 mod exit_codes;
+mod inspect;
 mod interruption;
 #[path = "../support/mount.rs"]
 mod mount;

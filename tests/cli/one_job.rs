@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{Folder, Running, rows, small, stderr, wait};
+use crate::support::{Folder, handles_interrupts, rows, small, stderr, wait};
 
 const HISTORY: &str = "time_s,load_n,normal_n,tangential_n,contact_tangential_n,mu_eq,stick_nodes,slip_nodes,\
 separated_nodes,front_centre_ux_m,front_centre_uy_m,front_centre_uz_m,front_centre_y_velocity_m_s,\
@@ -156,12 +156,4 @@ fn an_interrupted_job_keeps_its_history() {
     assert_eq!((code, out.as_str()), (Some(3), ""), "{err}");
     assert!(err.contains("interrupted"), "{err}");
     assert!(!History::read(&folder, "history.csv").0.is_empty());
-}
-
-/// Whether SIGINT is one of the signals that the process catches.
-#[cfg(target_os = "linux")]
-fn handles_interrupts(process: &Running) -> bool {
-    let status = std::fs::read_to_string(format!("/proc/{}/status", process.id())).unwrap();
-    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
-    u64::from_str_radix(caught.trim(), 16).unwrap() & 0b10 != 0
 }

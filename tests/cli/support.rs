@@ -143,6 +143,14 @@ impl Drop for Running {
     }
 }
 
+/// Whether SIGINT is one of the signals that the process catches.
+#[cfg(target_os = "linux")]
+pub fn handles_interrupts(process: &Running) -> bool {
+    let status = std::fs::read_to_string(format!("/proc/{}/status", process.id())).unwrap();
+    let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap();
+    u64::from_str_radix(caught.trim(), 16).unwrap() & 0b10 != 0
+}
+
 /// Asks until the answer is yes.
 pub fn wait(for_what: &str, mut enough: impl FnMut() -> bool) {
     let begun = Instant::now();

@@ -297,10 +297,17 @@ fn draw_curves(chart: &mut Chart, panel: &Panel, right: bool) -> Result<(), Figu
     Ok(())
 }
 
-/// The points of a stretch without those on the pixel of the one before.
+/// The points of a stretch without those within a pixel, as shown, of the one that is drawn before them.
 fn visible(chart: &Chart, stretch: &[(f64, f64)]) -> Vec<(f64, f64)> {
-    let mut points = stretch.to_vec();
-    points.dedup_by_key(|point| chart.backend_coord(point));
+    let pixel = |point: &(f64, f64)| chart.backend_coord(point);
+    let near = |a: (i32, i32), b: (i32, i32)| (a.0 - b.0).abs() <= 2 && (a.1 - b.1).abs() <= 2;
+    let mut points: Vec<(f64, f64)> = Vec::new();
+    for point in stretch {
+        if points.last().is_none_or(|last| !near(pixel(last), pixel(point))) {
+            points.push(*point);
+        }
+    }
+    points.extend(stretch.last());
     points
 }
 

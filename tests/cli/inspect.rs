@@ -1,0 +1,129 @@
+//! `inspect`: a job run again and looked into.
+
+use serde_json::{Value, json};
+
+use crate::support::{ExportRow, Folder, handles_interrupts, long, rows, small, stderr, wait};
+
+fn folder() -> Folder {
+    Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4], "omega_rpm": [2, 7] })))
+}
+
+fn summary(folder: &Folder, out: &str) -> Value {
+    serde_json::from_str(&folder.read(format!("{out}/inspection.json"))).unwrap()
+}
+
+/// Protects: a job by its parameters, by its key and from the database is the same job as the one that `solve` runs,
+/// and everything that the page names is there.
+#[test]
+fn a_job_is_looked_into() {
+    let folder = folder();
+    let page = folder.ok("inspect mine.json omega_rpm=7 mu=0.4");
+    assert_eq!(page.trim(), "reports/mine/mu-0.4_omega_rpm-7/index.html");
+    let found = summary(&folder, "reports/mine/mu-0.4_omega_rpm-7");
+    let record: Value =
+        serde_json::from_str(&folder.ok("solve mine.json --set mu=0.4 --set omega_rpm=7 --json")).unwrap();
+    assert_eq!(found["record"], record);
+    let names: Vec<_> = found["nodes"].as_array().unwrap().iter().map(|node| &node["name"]).collect();
+    assert_eq!(names, ["front_centre", "rear_centre"]);
+    for figure in ["2a", "2b", "3a", "3b", "4", "5"] {
+        assert!(
+            folder.read(format!("reports/mine/mu-0.4_omega_rpm-7/figure{figure}.svg")).starts_with("<svg")
+        );
+    }
+    let history = rows(&folder.read("reports/mine/mu-0.4_omega_rpm-7/node_rear_centre.csv"));
+    assert!(history.len() > 100 && history.iter().any(|row| row["state"] == "slip"));
+
+    folder.ok("submit mine.json");
+    let key = rows(&folder.ok("export mine"))
+        .into_iter()
+        .find(|row| row["mu"] == "0.4" && row["omega_rpm"] == "7")
+        .unwrap()["job"]
+        .clone();
+    for (study, out) in [("mine", "by_name"), ("mine.json", "by_file")] {
+        folder.ok(&format!("inspect {study} {} --out {out}", &key[..10]));
+        assert_eq!(summary(&folder, out), found, "{study}");
+    }
+}
+
+/// Protects: what is not given is the study's scene's, and is told; nodes, cycles and frames are those that are asked for.
+#[test]
+fn the_rest_is_the_scenes() {
+    let folder = folder();
+    let assert = folder
+        .command("inspect mine.json mu=0.2 --node -2,3 --node centre --cycles 3 --frames 16 --out look")
+        .assert()
+        .code(0);
+    assert!(stderr(&assert).contains("from the study's scene: ω = 7 rpm\n"), "{}", stderr(&assert));
+    let found = summary(&folder, "look");
+    assert_eq!(
+        (&found["job"]["scene"]["contact"]["mu"], &found["job"]["scene"]["disk"]["omega_rpm"]),
+        (&json!(0.2), &json!(7.0))
+    );
+    assert_eq!(found["nodes"][1]["name"], "centre");
+    assert_eq!(std::fs::read_dir(folder.path("look/fields")).unwrap().count(), 16);
+}
+
+/// Protects: an overlay has a stretch of every job, one and a half cycles from where its cycle begins, and figure and
+/// numbers for every node.
+#[test]
+fn jobs_are_laid_over_each_other() {
+    let folder = folder();
+    let files =
+        folder.ok("inspect mine.json mu=0.4 --overlay omega_rpm=2,7,20 --node front_centre --node centre");
+    assert_eq!(files.lines().count(), 4, "{files}");
+    let overlay = rows(&folder.read("reports/mine/overlay_omega_rpm/figure8_front_centre.csv"));
+    for speed in ["2", "7", "20"] {
+        let of_job: Vec<_> = overlay.iter().filter(|row| row["job"] == format!("ω = {speed} rpm")).collect();
+        folder.ok(&format!("inspect mine.json mu=0.4 omega_rpm={speed} --out look"));
+        let until_s = 1.5 * summary(&folder, "look")["period_s"].as_f64().unwrap();
+        let number = |row: &ExportRow, name: &str| -> f64 { row[name].parse().unwrap() };
+        let (first, last) = (of_job[0], of_job[of_job.len() - 1]);
+        let step_s = (number(last, "time_s") - number(first, "time_s")) / (of_job.len() - 1) as f64;
+        let (from_s, to_s) = (number(first, "since_cycle_begin_s"), number(last, "since_cycle_begin_s"));
+        assert!(from_s >= 0.0 && from_s < step_s, "{speed} rpm: {from_s} s");
+        assert!(to_s <= until_s && to_s > until_s - step_s, "{speed} rpm: {to_s} of {until_s} s");
+    }
+    assert!(folder.read("reports/mine/overlay_omega_rpm/figure8_centre.svg").contains("ω = 20 rpm"));
+}
+
+/// Protects: mistakes are told with what would be right, and nothing is written.
+#[test]
+fn mistakes_are_told() {
+    let folder = folder();
+    for (arguments, told) in [
+        ("mine.json omega=7", "did you mean `omega_rpm`"),
+        ("mine.json mu=nought", "mu"),
+        ("mine.json 0000", "no job of mine has a key that begins with `0000`"),
+        ("mine.json omega_rpm=7 0000", "expected NAME=VALUE"),
+        ("mine.json --node front", "front_centre, rear_centre"),
+        ("mine.json --node 90,0", "90,0 mm is not on the contact face; expected x from -6 to 6"),
+        ("mine.json --cycles 2", "3..=100"),
+        ("mine.json --overlay omega_rpm", "expected NAME=VALUE"),
+        ("mine.json --overlay omega_rpm=,", "--overlay omega_rpm: expected values"),
+        ("mine.json --overlay speed=1,2", "no such parameter"),
+        ("mine.json 0000 --overlay mu=0.2,0.3", "expected NAME=VALUE, not the key `0000`"),
+        ("mine.json 0000 --preset draft", "has its own mesh"),
+        ("other.json", "other.json"),
+    ] {
+        let assert = folder.command(&format!("inspect {arguments}")).assert().code(2);
+        assert!(stderr(&assert).contains(told), "{arguments}: {}", stderr(&assert));
+    }
+    assert_eq!(folder.files(), ["mine.json"]);
+    folder.ok("submit mine.json");
+    let assert = folder.command("inspect yours mu=0.2").assert().code(2);
+    assert!(stderr(&assert).contains("mine"), "{}", stderr(&assert));
+}
+
+/// Protects: Ctrl-C ends a look, nothing half-written is left, and the exit code says that work is left.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_look_can_be_stopped() {
+    let folder = Folder::with("long", &long());
+    let running = folder.start("inspect long.json mu=0.4 omega_rpm=7 limit_s=100 --out look");
+    wait("the signal handler", || handles_interrupts(&running));
+    running.signal("INT");
+    let (code, out, error) = running.end();
+    assert_eq!((code, out.as_str()), (Some(3), ""), "{error}");
+    assert!(error.contains("interrupted"), "{error}");
+    assert_eq!(folder.files(), ["long.json"]);
+}
