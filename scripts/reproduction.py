@@ -254,12 +254,12 @@ def verdicts(*nodes):
         ("up to 6 rpm the largest σ_n grows with ω", lambda rows: increases([row["peak"] for row in low(rows)])),
         ("up to 6 rpm it is reached while the node sticks",
          lambda rows: all(row["peak_state"] == "stick" for row in low(rows))),
-        ("up to 6 rpm |τ/σ_n| while the node sticks falls with ω",
+        ("up to 6 rpm the ratio of τ to σ_n while the node sticks falls with ω",
          lambda rows: increases([-row["ratio"] for row in low(rows)])),
         ("above 6 rpm stick becomes shorter with ω", lambda rows: increases([-row["stick"] for row in high(rows)])),
         ("above 6 rpm separation becomes longer with ω", lambda rows: increases([row["separated"] for row in high(rows)])),
     ]
-    lines = [[claim, *("agrees" if holds(rows) else "not from every speed to the next" for rows in nodes)]
+    lines = [[claim, *("agrees" if holds(rows) else "not at every speed" for rows in nodes)]
              for claim, holds in claims]
     return runs.table(["claim", "front centre", "behind the edge"], lines)
 
