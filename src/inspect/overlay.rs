@@ -3,6 +3,7 @@
 use super::capture::NodeStep;
 use super::figures;
 use super::look::{Look, LookError, Observed, Options};
+use super::place::ObservedNode;
 use super::tables::{csv, history_header, history_line};
 use crate::publish::{Folder, PublishError};
 use crate::spec::JobSpec;
@@ -17,8 +18,8 @@ const CYCLES: f64 = 1.5;
 pub struct Trace {
     /// What tells the job from the others.
     pub label: String,
-    /// The node's name.
-    pub node: String,
+    /// The node.
+    pub node: ObservedNode,
     /// Where a cycle begins [s].
     pub from_s: f64,
     /// What is shown from there [s].
@@ -45,7 +46,7 @@ impl Trace {
         let until_s = from_s + duration_s;
         let trace = |(observed, mut steps): (Observed, Vec<NodeStep>)| {
             steps.retain(|step| step.time_s >= from_s && step.time_s <= until_s);
-            Self { label: label.to_owned(), node: observed.node.name, from_s, duration_s, steps }
+            Self { label: label.to_owned(), node: observed.node, from_s, duration_s, steps }
         };
         Ok(look.observed.into_iter().zip(look.capture.nodes).map(trace).collect())
     }
@@ -56,10 +57,10 @@ impl Trace {
 /// # Errors
 /// The first file that could not be written.
 pub fn write_overlay(traces: &[Trace], out_dir: &Path) -> Result<Vec<PathBuf>, PublishError> {
-    let node = traces.first().map_or("", |trace| trace.node.as_str());
+    let node = traces.first().map_or("", |trace| trace.node.name.as_str());
     let mut folder = Folder::create(out_dir)?;
     let name = format!("figure8_{node}.svg");
-    let svg = figures::overlay(node, traces)
+    let svg = figures::overlay(traces)
         .map_err(|source| PublishError::Figure { path: folder.path_of(&name), source })?;
     folder.text(&name, &svg)?;
     folder.with(&format!("figure8_{node}.csv"), |out| {

@@ -106,12 +106,10 @@ fn data(name: &str, tables: &BTreeMap<String, String>) -> Markup {
 }
 
 fn nodes(summary: &Summary) -> Markup {
-    let header: Vec<String> = std::iter::once(String::new())
-        .chain(summary.nodes.iter().map(|node| node.name.replace('_', " ")))
-        .collect();
+    let header: Vec<String> =
+        std::iter::once(String::new()).chain(summary.nodes.iter().map(|node| node.title.clone())).collect();
     type Figure = (&'static str, fn(&NodeSummary) -> String);
-    let figures: [Figure; 9] = [
-        ("x, y [mm]", |node| node.at_m.map(|at| format!("{:.2}", at * 1e3)).join(", ")),
+    let figures: [Figure; 8] = [
         ("velocity of the disk [mm/s]", |node| fixed(node.target_velocity_m_s * 1e3, 1)),
         ("peak-to-peak displacement x, y, z [µm]", |node| {
             node.peak_to_peak_m.map(|range| fixed(range * 1e6, 2)).join(", ")
@@ -135,7 +133,7 @@ fn nodes(summary: &Summary) -> Markup {
         let at = node.instants.iter().flat_map(|instants| &instants.at);
         at.map(move |(name, time_s, stress_pa, velocity_m_s)| {
             vec![
-                html! { (node.name.replace('_', " ")) " " (name) },
+                html! { (node.title) " " (name) },
                 html! { (fixed((time_s - summary.shown_s[0]) * 1e6, 2)) },
                 html! { (fixed(stress_pa * 1e-6, 3)) },
                 html! { (fixed(velocity_m_s * 1e3, 1)) },

@@ -83,11 +83,12 @@ impl Place {
         };
         let slave = mesh.node(index(x, lx, nx), index(y, ly, ny), 0);
         let [x, y, _] = mesh.coordinates_m(slave);
-        let name = match self {
-            Self::Named(name) => (*name).to_owned(),
-            Self::At(_) => format!("x{:+.3}_y{:+.3}mm", x * 1e3, y * 1e3),
+        let place = format!("x = {:.2} mm, y = {:.2} mm", x * 1e3, y * 1e3);
+        let (name, title) = match self {
+            Self::Named(name) => ((*name).to_owned(), format!("{} ({place})", name.replace('_', " "))),
+            Self::At(_) => (format!("x{:+.3}_y{:+.3}mm", x * 1e3, y * 1e3), place),
         };
-        Ok(ObservedNode { name, slave, at_m: [x, y] })
+        Ok(ObservedNode { name, title, slave, at_m: [x, y] })
     }
 }
 
@@ -96,6 +97,8 @@ impl Place {
 pub struct ObservedNode {
     /// Its name, which can be part of a file's.
     pub name: String,
+    /// Its name and place for a reader.
+    pub title: String,
     /// Its number among the slave nodes.
     pub slave: usize,
     /// Its x and y [m] from the pin's axis.

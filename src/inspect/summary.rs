@@ -37,6 +37,8 @@ pub struct Summary {
 pub struct NodeSummary {
     /// Its name.
     pub name: String,
+    /// Its name and place for a reader.
+    pub title: String,
     /// Its x and y [m] from the pin's axis.
     pub at_m: [f64; 2],
     /// Velocity [m/s] of the target under it in y.
@@ -150,6 +152,7 @@ fn node(look: &Look, number: usize) -> NodeSummary {
     };
     NodeSummary {
         name: node.name.clone(),
+        title: node.title.clone(),
         at_m: node.at_m,
         target_velocity_m_s: *target_velocity_m_s,
         peak_to_peak_m: [0, 1, 2].map(peak_to_peak),

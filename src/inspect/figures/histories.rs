@@ -13,12 +13,6 @@ fn each<'a>(look: &'a Look, panel: impl Fn(&'a Observed, &'a [NodeStep]) -> Pane
     look.observed.iter().zip(&look.capture.nodes).map(|(observed, steps)| panel(observed, steps)).collect()
 }
 
-/// The name of a node for a reader.
-fn title(observed: &Observed) -> String {
-    let [x, y] = observed.node.at_m.map(|at| at * MILLI);
-    format!("{} (x = {x:.2} mm, y = {y:.2} mm)", observed.node.name.replace('_', " "))
-}
-
 /// Time in microseconds since the begin of what is shown.
 fn time_scale(look: &Look) -> (impl Fn(f64) -> f64 + use<>, Scale) {
     let [start_s, end_s] = look.survey.windows.shown_s;
@@ -62,7 +56,7 @@ pub fn displacements(look: &Look) -> Vec<Panel> {
         let all = series.iter().flat_map(|series| &series.points).map(|point| point.1);
         let y = Scale::spanning("displacement [µm]", all, 0.01);
         let (velocity, scale) = velocity(steps, &since);
-        let mut panel = Panel::new(&title(observed), x, y);
+        let mut panel = Panel::new(&observed.node.title, x, y);
         panel.right = Some(scale);
         panel.levels = vec![disk(observed, true)];
         panel.series = series;
@@ -80,7 +74,7 @@ pub fn friction(look: &Look) -> Vec<Panel> {
             steps.iter().map(|step| (since(step.time_s), step.node.equivalent_friction())).collect();
         let y = Scale::from_to("μ_eq", -0.05 * mu.max(0.02), 1.2 * mu.max(0.02));
         let (velocity, scale) = velocity(steps, &since);
-        let mut panel = Panel::new(&title(observed), x, y);
+        let mut panel = Panel::new(&observed.node.title, x, y);
         panel.right = Some(scale);
         panel.bands = bands(&observed.phases, &since);
         panel.series = vec![Series::line("μ_eq = |τ/σ_n|", palette::colour(3, 8), points), velocity];
@@ -94,7 +88,7 @@ pub fn phase_planes(look: &Look) -> Vec<Panel> {
         let point = |step: &NodeStep| (step.node.u_m[1] * MICRO, step.node.y_velocity_m_s * MILLI);
         let x = Scale::spanning("displacement in y [µm]", steps.iter().map(|step| point(step).0), 0.01);
         let y = Scale::spanning("velocity in y [mm/s]", steps.iter().map(|step| point(step).1), 1.0);
-        let mut panel = Panel::new(&title(observed), x, y);
+        let mut panel = Panel::new(&observed.node.title, x, y);
         for state in [ContactState::Stick, ContactState::Slip, ContactState::Separated] {
             let (label, colour) = drawn_as(state);
             panel.series.push(Series::line(label, colour, path_in(state, steps, point)));
@@ -138,7 +132,7 @@ pub fn cycles(look: &Look) -> Vec<Panel> {
         let all = stress.iter().map(|point| point.1).chain([0.0]);
         let y = Scale::spanning("normal contact stress [MPa]", all, 0.01);
         let (velocity, scale) = velocity(&within, since);
-        let mut panel = Panel::new(&title(observed), x, y);
+        let mut panel = Panel::new(&observed.node.title, x, y);
         panel.right = Some(scale);
         panel.bands = bands(&observed.phases, since);
         panel.levels = vec![disk(observed, true)];

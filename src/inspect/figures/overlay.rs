@@ -9,7 +9,7 @@ use crate::publish::plot::{FigureError, palette};
 ///
 /// # Errors
 /// The drawing library's.
-pub fn overlay(node: &str, traces: &[Trace]) -> Result<String, FigureError> {
+pub fn overlay(traces: &[Trace]) -> Result<String, FigureError> {
     let longest_s = traces.iter().map(|trace| trace.duration_s).fold(f64::MIN_POSITIVE, f64::max);
     let panel = |title: &str, label: &str, value: &dyn Fn(&crate::inspect::capture::NodeStep) -> f64| {
         let series: Vec<Series> = traces
@@ -31,7 +31,7 @@ pub fn overlay(node: &str, traces: &[Trace]) -> Result<String, FigureError> {
         panel.series = series;
         panel
     };
-    let name = node.replace('_', " ");
+    let name = traces.first().map_or("", |trace| trace.node.title.as_str());
     stack(&[
         panel(&format!("a) {name}: normal contact stress"), "σ_n [MPa]", &|step| step.node.sigma_n_pa),
         panel(&format!("b) {name}: tangential contact stress in y"), "τ_y [MPa]", &|step| step.tau_pa[1]),

@@ -11,7 +11,8 @@ use plotters::style::{Color, RGBColor};
 
 const WIDTH: u32 = 1800;
 const ROW: u32 = 720;
-const TITLE: i32 = 70;
+/// Room for the title, and for arrows that point out of the pin.
+const TITLE: i32 = 110;
 const FOOT: u32 = 150;
 const GREY: RGBColor = RGBColor(0xB0, 0xB0, 0xB0);
 /// Largest radius [px] of a contact node's dot.
@@ -50,7 +51,7 @@ fn snapshots(look: &Look) -> Vec<Snapshot<'_>> {
         let instants = observed.instants?;
         let (a, b, d) = (instants.contact_s?, instants.stick_s?, instants.slip_s?);
         let (c, e, f) = (instants.peak_s, instants.separation_s?, instants.end_s?);
-        let name = observed.node.name.replace('_', " ");
+        let name = &observed.node.title;
         Some([
             (format!("{name} between t_A and t_B: contact has begun"), (a + b) / 2.0),
             (format!("{name} at t_C: stick, largest stress"), c),
@@ -92,6 +93,10 @@ struct Scales {
     px_per_n: f64,
     /// Largest contact force [N].
     force_n: f64,
+    /// Pixels per newton of friction, seen from above.
+    px_per_friction_n: f64,
+    /// Largest friction force [N].
+    friction_n: f64,
 }
 
 impl Scales {
@@ -110,28 +115,32 @@ impl Scales {
                 .map(|v| v[1].hypot(v[2]))
         };
         let speed_m_s = plane().fold(f64::MIN_POSITIVE, f64::max);
-        let forces = snapshots.iter().flat_map(|snapshot| &snapshot.frame.face);
-        let force_n = forces
-            .map(|node| node.force_n.iter().map(|f| f * f).sum::<f64>().sqrt())
-            .fold(f64::MIN_POSITIVE, f64::max);
+        let largest = |size: fn([f64; 3]) -> f64| {
+            let nodes = snapshots.iter().flat_map(|snapshot| &snapshot.frame.face);
+            nodes.map(|node| size(node.force_n)).fold(f64::MIN_POSITIVE, f64::max)
+        };
+        let force_n = largest(|[x, y, n]| x.hypot(y).hypot(n));
+        let friction_n = largest(|[x, y, _]| x.hypot(y));
         // The longest arrows reach over one and a half of their distances.
-        let px_per_m_s = 1.5 * stride as f64 * hy * px_per_m / speed_m_s;
+        let longest = 1.5 * stride as f64 * hy * px_per_m;
         let dot = ((0.4 * hx.min(hy) * px_per_m) as i32).clamp(2, DOT);
         Self {
             px_per_m,
             dot,
             stride,
-            px_per_m_s,
+            px_per_m_s: longest / speed_m_s,
             speed_m_s,
             px_per_n: 0.3 * lz * px_per_m / force_n,
             force_n,
+            px_per_friction_n: 1.5 * longest / friction_n,
+            friction_n,
         }
     }
 }
 
 fn draw_row(area: &Area, look: &Look, snapshot: &Snapshot, scales: &Scales) -> Result<(), FigureError> {
     let since = (snapshot.frame.time_s - look.survey.windows.shown_s[0]) * MICRO;
-    write(area, &format!("{}  ({since:.1} µs)", snapshot.label), (MARGIN, TITLE / 2), TEXT, HPos::Left)?;
+    write(area, &format!("{}  ({since:.1} µs)", snapshot.label), (MARGIN, 34), TEXT, HPos::Left)?;
     let (left, right) = area.split_horizontally(WIDTH / 2);
     draw_side(&left, look, snapshot.frame, scales)?;
     draw_face(&right, look, snapshot.frame, scales)
@@ -197,7 +206,8 @@ fn draw_face(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result
         if node.state != ContactState::Separated && i % scales.stride == 0 && j % scales.stride == 0 {
             let from = place(slave);
             let [sideways, along, _] = node.force_n;
-            let to = (from.0 + along * scales.px_per_n, from.1 - sideways * scales.px_per_n);
+            let scale = scales.px_per_friction_n;
+            let to = (from.0 + along * scale, from.1 - sideways * scale);
             arrow(area, from, to, palette::BLACK, 3)?;
         }
     }
@@ -255,8 +265,10 @@ fn draw_legend(area: &Area, scales: &Scales) -> Result<(), FigureError> {
     };
     let text = format!("velocity {:.0} mm/s", scales.speed_m_s * 1e3);
     scale(f64::from(MARGIN), scales.speed_m_s * scales.px_per_m_s, palette::BLACK, 2, &text)?;
-    let text = format!("contact force on the pin {:.2} N", scales.force_n);
-    scale(700.0, scales.force_n * scales.px_per_n, drawn_as(ContactState::Slip).1, 3, &text)
+    let text = format!("contact force {:.2} N", scales.force_n);
+    scale(540.0, scales.force_n * scales.px_per_n, drawn_as(ContactState::Slip).1, 3, &text)?;
+    let text = format!("friction, from above, {:.3} N", scales.friction_n);
+    scale(1140.0, scales.friction_n * scales.px_per_friction_n, palette::BLACK, 3, &text)
 }
 
 fn rounded((x, y): (f64, f64)) -> (i32, i32) {
