@@ -3,6 +3,7 @@
 //! The drawing library rounds to whole pixels, so drawings are made at twice the size that they are shown at.
 
 pub mod axis;
+pub mod canvas;
 pub mod hits;
 pub mod palette;
 

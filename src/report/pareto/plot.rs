@@ -5,28 +5,18 @@
 use super::case::Case;
 use super::page::figure_title;
 use crate::publish::plot::axis::Axis;
+use crate::publish::plot::canvas::{self, Area, X_LABELS, write};
 use crate::publish::plot::{DASH, FONT, FigureError, GRID, MARGIN, TEXT, palette};
 use plotters::chart::ChartBuilder;
-use plotters::coord::Shift;
-use plotters::prelude::{
-    BLACK, Circle, DashedLineSeries, DrawingArea, IntoDrawingArea, PathElement, Polygon, RGBColor,
-    SVGBackend, Text, WHITE,
-};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, IntoFont, TextStyle};
+use plotters::prelude::{BLACK, Circle, DashedLineSeries, PathElement, Polygon, RGBColor, WHITE};
+use plotters::style::Color;
+use plotters::style::text_anchor::HPos;
 use serde_json::Value;
 
-// As in the other figures: drawn at twice the size it is shown at, because the backend rounds to pixels.
-const SIZE: (u32, u32) = (1800, 1120);
-const SHOWN: (u32, u32) = (900, 560);
 const LEGEND_WIDTH: u32 = 440;
-const CAPTION_HEIGHT: u32 = 64;
-const X_LABELS: u32 = 104;
 const Y_LABELS: u32 = 170;
 const RADIUS: i32 = 12;
 const GREY: RGBColor = RGBColor(0x50, 0x50, 0x50);
-
-type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
 struct Point {
     time_s: f64,
@@ -42,23 +32,13 @@ struct Point {
 pub(super) fn draw(case: &Case) -> Result<String, FigureError> {
     let meshes = meshes(case);
     let points = points(case, &meshes);
-    let mut svg = String::new();
-    {
-        let root = SVGBackend::with_string(&mut svg, SIZE).into_drawing_area();
-        root.fill(&WHITE)?;
-        let (top, below) = root.split_vertically(CAPTION_HEIGHT);
-        // XML has no place for control characters.
-        let caption: String = case.caption.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
-        let room = SIZE.0 as i32 - 2 * MARGIN;
-        let size = (room * 2 / caption.chars().count().max(1) as i32).clamp(8, TEXT);
-        write(&top, &caption, (SIZE.0 as i32 / 2, CAPTION_HEIGHT as i32 * 2 / 3), size, HPos::Center)?;
-        let (left, right) = below.split_horizontally(SIZE.0 - LEGEND_WIDTH);
+    canvas::sheet((canvas::WIDTH, canvas::HEIGHT), |root| {
+        let below = canvas::caption(root, &case.caption)?;
+        let (left, right) = below.split_horizontally(canvas::WIDTH - LEGEND_WIDTH);
         draw_plot(&left, &points)?;
         draw_legend(&right, &meshes, &points)?;
-        root.present()?;
-    }
-    let size = |(width, height): (u32, u32)| format!("width=\"{width}\" height=\"{height}\"");
-    Ok(svg.replacen(&size(SIZE), &size(SHOWN), 1))
+        Ok(Vec::new())
+    })
 }
 
 /// The meshes of a case, coarsest first.
@@ -202,9 +182,4 @@ fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(
         area.draw(&PathElement::new([(0, y), (2 * (RADIUS + 12), y)], BLACK.stroke_width(3)))?;
     }
     Ok(())
-}
-
-fn write(area: &Area, text: &str, at: (i32, i32), size: i32, anchor: HPos) -> Result<(), FigureError> {
-    let style = TextStyle::from((FONT, size).into_font()).pos(Pos::new(anchor, VPos::Center));
-    area.draw(&Text::new(text.to_owned(), at, style))
 }

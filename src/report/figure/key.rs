@@ -1,0 +1,51 @@
+//! A key beside or above a drawing: samples of colours with what they mean.
+
+use crate::publish::plot::canvas::{self, Area};
+use crate::publish::plot::{FigureError, MARGIN, TEXT, palette};
+use plotters::prelude::{BLACK, PathElement, RGBColor};
+use plotters::style::Color;
+use plotters::style::text_anchor::HPos;
+
+/// An entry: a filled square with a letter in it, or a heading where there is no colour.
+pub(super) struct Entry {
+    pub sample: Option<(RGBColor, String)>,
+    pub label: String,
+}
+
+/// Side of a sample [px].
+const SAMPLE: i32 = 44;
+const PITCH: i32 = 54;
+
+/// Draws the entries below one another, from so far down.
+pub(super) fn below(area: &Area, top: i32, entries: &[Entry]) -> Result<(), FigureError> {
+    let room = area.dim_in_pixel().1 as i32 - top - MARGIN / 2;
+    let pitch = (room / entries.len().max(1) as i32).min(PITCH);
+    for (line, entry) in entries.iter().enumerate() {
+        draw(area, (0, top + pitch / 2 + line as i32 * pitch), pitch * 4 / 5, entry)?;
+    }
+    Ok(())
+}
+
+/// Draws the entries beside one another, each in so much room.
+pub(super) fn beside(area: &Area, left: i32, room: i32, entries: &[Entry]) -> Result<(), FigureError> {
+    let middle = area.dim_in_pixel().1 as i32 / 2;
+    for (place, entry) in entries.iter().enumerate() {
+        draw(area, (left + place as i32 * room, middle), SAMPLE, entry)?;
+    }
+    Ok(())
+}
+
+fn draw(area: &Area, (x, y): (i32, i32), side: i32, entry: &Entry) -> Result<(), FigureError> {
+    let side = side.min(SAMPLE);
+    let size = TEXT.min(side * 4 / 5);
+    let Some((colour, letter)) = &entry.sample else {
+        return canvas::write(area, &entry.label, (x, y), size, HPos::Left);
+    };
+    let (left, right, top, bottom) = (x, x + side, y - side / 2, y - side / 2 + side);
+    canvas::cell(area, (left, top), (right, bottom), *colour)?;
+    let outline = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
+    area.draw(&PathElement::new(outline, BLACK.mix(0.4).stroke_width(1)))?;
+    let ink = palette::ink_on(*colour);
+    canvas::write_in(area, letter, (x + side / 2, y), size, HPos::Center, ink)?;
+    canvas::write(area, &entry.label, (right + 16, y), size, HPos::Left)
+}

@@ -1,0 +1,85 @@
+//! The page's beginning and its end: what is there, what is missing, what was found.
+
+use crate::analysis::JobRecord;
+use crate::publish::{html, value};
+use crate::report::Report;
+use crate::report::layout::parameters_in_words;
+use crate::report::row::Row;
+use crate::report::summary::{self, Summary};
+use crate::report::tip::short;
+use maud::{Markup, html};
+
+/// Numbers to begin with, and what is missing before them.
+pub(super) fn summary(report: &Report) -> Markup {
+    let rows = report.rows;
+    let summary = Summary::of(rows);
+    let mut tiles = vec![
+        ("jobs done", format!("{} of {}", summary.done(), summary.total), summary.done_in_words()),
+        ("failed", summary.failed.to_string(), String::new()),
+        (
+            "missing",
+            summary.missing().to_string(),
+            if summary.missing() > 0 { summary.missing_in_words() } else { String::new() },
+        ),
+    ];
+    tiles.extend(drop_of_friction(rows));
+    tiles.extend(frequencies(rows));
+    tiles.extend(residual("largest energy residual", rows, |record| record.energy_residual.abs()));
+    tiles.extend(residual("largest identity residual", rows, JobRecord::identity_residual));
+    html! {
+        @if summary.missing() > 0 {
+            (html::warning(&html! {
+                strong { "This report is incomplete: " (summary.missing()) " of " (summary.total) " jobs are missing" }
+                " (" (summary.missing_in_words()) "). Figures and tables hold only the jobs that are done."
+            }))
+        }
+        @if summary.failed > 0 {
+            (html::warning(&html! {
+                strong {
+                    @if summary.failed == 1 { "1 job has failed" } @else { (summary.failed) " jobs have failed" }
+                }
+                " and has no result: see " a href="#trouble" { "where and why" } "."
+            }))
+        }
+        (html::tiles(&tiles))
+    }
+}
+
+type Tile = (&'static str, String, String);
+
+/// Where the macroscopic coefficient is farthest below the local one.
+fn drop_of_friction(rows: &[Row]) -> Option<Tile> {
+    let ratio = |row: &Row| Some(row.record()?.mu_star / row.mu).filter(|ratio| ratio.is_finite());
+    let ratios = rows.iter().filter_map(|row| Some((ratio(row)?, row)));
+    let (ratio, row) = ratios.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(("lowest μ*/μ", value::fixed(ratio, 3), parameters_in_words(row)))
+}
+
+fn frequencies(rows: &[Row]) -> Option<Tile> {
+    let found = rows.iter().filter_map(|row| row.record()?.frequency_hz).filter(|f| f.is_finite());
+    let (low, high) =
+        found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), f| (low.min(f), high.max(f)));
+    let told = format!("{} – {} kHz", value::fixed(low / 1e3, 1), value::fixed(high / 1e3, 1));
+    (low <= high).then_some(("frequencies", told, String::new()))
+}
+
+fn residual(name: &'static str, rows: &[Row], of: impl Fn(&JobRecord) -> f64) -> Option<Tile> {
+    let (residual, row) = summary::worst(rows, of)?;
+    Some((name, short(residual), parameters_in_words(row)))
+}
+
+/// When it was written, and what else there is.
+pub(super) fn foot(report: &Report) -> Markup {
+    html! {
+        footer {
+            p.note {
+                "Written " (value::moment(report.written_ms)) " by tribosweep. "
+                @if let Some(seconds) = report.refresh_s {
+                    "The study is not finished: this page loads itself anew every " (seconds) " s. "
+                }
+                "In the folder it was written to are the figures as SVG, the tables and the data behind the figures as "
+                "CSV, and " code { "jobs.csv" } ", one line per job with everything."
+            }
+        }
+    }
+}
