@@ -15,8 +15,8 @@
 //! * [`study`] – studies as data: parse, check, expand into jobs, key, schema.
 //! * [`queue`] – jobs in `SQLite`; payloads are opaque strings, nothing of mechanics.
 //! * [`worker`] – dispatcher (signals, database, progress) and executor (rayon).
-//! * [`publish`] – what reports are made of: values as text, drawings, folders.
-//! * [`report`] – tables, figures and CSV from records.
+//! * [`publish`] – what reports are made of: values as text, drawings, pages, folders.
+//! * [`report`] – page, tables, figures and CSV from records.
 //! * [`cli`] – one file a subcommand.
 
 pub mod analysis;

@@ -17,3 +17,4 @@ mod support;
 mod surroundings;
 mod sweep;
 mod upkeep;
+mod watch;

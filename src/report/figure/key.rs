@@ -2,14 +2,33 @@
 
 use crate::publish::plot::canvas::{self, Area};
 use crate::publish::plot::{FigureError, MARGIN, TEXT, palette};
-use plotters::prelude::{BLACK, PathElement, RGBColor};
+use plotters::prelude::{BLACK, PathElement, RGBColor, WHITE};
 use plotters::style::Color;
 use plotters::style::text_anchor::HPos;
 
-/// An entry: a filled square with a letter in it, or a heading where there is no colour.
+/// An entry.
 pub(super) struct Entry {
-    pub sample: Option<(RGBColor, String)>,
+    pub sample: Sample,
     pub label: String,
+}
+
+/// A filled square with a sign in it.
+pub(super) struct Sample {
+    pub ground: RGBColor,
+    pub sign: char,
+    pub ink: RGBColor,
+}
+
+impl Sample {
+    /// A sign that shows on its ground.
+    pub fn ground(ground: RGBColor, sign: char) -> Self {
+        Self { ground, sign, ink: palette::ink_on(ground) }
+    }
+
+    /// A sign in its colour on white.
+    pub fn ink(ink: RGBColor, sign: char) -> Self {
+        Self { ground: WHITE, sign, ink }
+    }
 }
 
 /// Side of a sample [px].
@@ -38,14 +57,11 @@ pub(super) fn beside(area: &Area, left: i32, room: i32, entries: &[Entry]) -> Re
 fn draw(area: &Area, (x, y): (i32, i32), side: i32, entry: &Entry) -> Result<(), FigureError> {
     let side = side.min(SAMPLE);
     let size = TEXT.min(side * 4 / 5);
-    let Some((colour, letter)) = &entry.sample else {
-        return canvas::write(area, &entry.label, (x, y), size, HPos::Left);
-    };
     let (left, right, top, bottom) = (x, x + side, y - side / 2, y - side / 2 + side);
-    canvas::cell(area, (left, top), (right, bottom), *colour)?;
+    let Sample { ground, sign, ink } = entry.sample;
+    canvas::cell(area, (left, top), (right, bottom), ground)?;
     let outline = [(left, top), (right, top), (right, bottom), (left, bottom), (left, top)];
     area.draw(&PathElement::new(outline, BLACK.mix(0.4).stroke_width(1)))?;
-    let ink = palette::ink_on(*colour);
-    canvas::write_in(area, letter, (x + side / 2, y), size, HPos::Center, ink)?;
+    canvas::write_in(area, &sign.to_string(), (x + side / 2, y), size, HPos::Center, ink)?;
     canvas::write(area, &entry.label, (right + 16, y), size, HPos::Left)
 }

@@ -1,6 +1,6 @@
 //! Maps of a group's grid: a cell for every job, speeds across, friction coefficients up.
 
-use super::key::{self, Entry};
+use super::key::{self, Entry, Sample};
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area};
 use crate::publish::plot::hits::{Hit, Shape};
@@ -63,7 +63,7 @@ pub(super) fn frequencies(layout: &Layout, group: &Group) -> Result<String, Figu
     };
     let mut entries = signs(group.jobs.iter().map(|job| job.row).filter(|row| frequency(row).is_none()));
     for entry in &mut entries {
-        entry.sample = entry.sample.take().map(|(_, letter)| (NO_VALUE, letter));
+        entry.sample.ground = NO_VALUE;
     }
     let scale = if low <= high { SCALE } else { 0 };
     draw(layout, group, face, scale + 60 * entries.len() as i32 + 40, |area| {
@@ -80,6 +80,9 @@ const SCALE: i32 = 360;
 /// Of so many colours.
 const STEPS: i32 = 60;
 
+/// The letters of signs, in the order in which they are explained.
+const ORDER: &str = "SKkXxPp?!>.-";
+
 /// The signs that occur, each once.
 fn signs<'a>(rows: impl Iterator<Item = &'a Row>) -> Vec<Entry> {
     let mut used: Vec<Sign> = Vec::new();
@@ -88,9 +91,9 @@ fn signs<'a>(rows: impl Iterator<Item = &'a Row>) -> Vec<Entry> {
             used.push(sign);
         }
     }
-    used.sort_by_key(|sign| (!sign.letter.is_alphabetic(), sign.letter.to_ascii_uppercase(), sign.letter));
+    used.sort_by_key(|sign| ORDER.find(sign.letter));
     let entry = |sign: &Sign| Entry {
-        sample: Some((sign.fill, sign.letter.to_string())),
+        sample: Sample::ground(sign.fill, sign.letter),
         label: sign.meaning.to_owned(),
     };
     used.iter().map(entry).collect()
@@ -190,8 +193,9 @@ fn draw_cells(
             let Face { fill, text, value } = face(job.row);
             canvas::cell(area, from, to, fill)?;
             let room = (to.0 - from.0 - 6).max(0);
-            let size =
-                (room * 2 / (text.chars().count() as i32 + 1)).min((to.1 - from.1) * 2 / 3).min(TEXT + 4);
+            // A digit is somewhat more than half as wide as high.
+            let fitting = room * 19 / (10 * text.chars().count().max(1) as i32);
+            let size = fitting.min((to.1 - from.1) * 2 / 3).min(TEXT + 4);
             if size >= LEAST_TEXT {
                 let at = ((from.0 + to.0) / 2, (from.1 + to.1) / 2);
                 canvas::write_in(area, &text, at, size, HPos::Center, palette::ink_on(fill))?;

@@ -1,6 +1,6 @@
 //! How well energies and identities close, for every job of a study.
 
-use super::key::{self, Entry};
+use super::key::{self, Entry, Sample};
 use crate::analysis::JobRecord;
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area, Chart, X_LABELS};
@@ -53,7 +53,7 @@ pub(in crate::report) fn draw(rows: &[Row]) -> Result<String, FigureError> {
         let (left, right) = root.split_horizontally(SIZE.0 - LEGEND_WIDTH);
         let hits = draw_plot(&left, rows)?;
         let entry = |kind: &Kind| Entry {
-            sample: Some((kind.colour, if kind.round { "●" } else { "◆" }.to_owned())),
+            sample: Sample::ink(kind.colour, if kind.round { '●' } else { '◆' }),
             label: kind.label.to_owned(),
         };
         key::below(&right, MARGIN, &KINDS.map(|kind| entry(&kind)))?;

@@ -1,6 +1,6 @@
 //! How the contact divides its time between stick, slip and separation: a panel for every friction coefficient.
 
-use super::key::{self, Entry};
+use super::key::{self, Entry, Sample};
 use crate::analysis::JobRecord;
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area, Chart};
@@ -46,7 +46,7 @@ pub(super) fn draw(layout: &Layout, group: &Group) -> Result<String, FigureError
         let (head, below) = below.split_vertically(HEAD);
         let (below, foot) = below.split_vertically(rows as u32 * PANEL);
         let entries = LAYERS.map(|(label, colour)| Entry {
-            sample: Some((colour, String::new())),
+            sample: Sample::ground(colour, ' '),
             label: format!("{label} [% of node-time]"),
         });
         key::beside(&head, MARGIN + 90, 520, &entries)?;

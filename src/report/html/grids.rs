@@ -21,8 +21,8 @@ const MOST_DRAWN: usize = 20_000;
 pub(super) fn friction(parts: &Parts) -> Markup {
     let axis = parts.layout.axis_label();
     let caption = format!(
-        "Macroscopic friction coefficient μ* against {axis}, one curve per local coefficient μ (dashed: μ* = μ); bars are \
-         standard errors."
+        "Macroscopic friction coefficient μ* against {axis}, one curve per local coefficient μ (dashed: μ* = μ). Error \
+         bars where they are larger than a marker."
     );
     html! {
         (figures(parts, Plot::MuStar, &caption))
@@ -93,7 +93,7 @@ pub(super) fn times(parts: &Parts) -> Markup {
     tiles.extend(
         times
             .steps_per_s
-            .map(|steps| ("steps per second", value::fixed(steps, 0), "of one job, per thread".to_owned())),
+            .map(|steps| ("steps per second", value::fixed(steps, 0), "of a job, per thread".to_owned())),
     );
     let header = ["parameters", "thread time", "steps", "steps per second", "job"].map(str::to_owned);
     let lines: Vec<Vec<Markup>> = times.slowest.iter().map(|(row, seconds)| slow(row, *seconds)).collect();

@@ -59,7 +59,7 @@ fn frequencies(rows: &[Row]) -> Option<Tile> {
     let found = rows.iter().filter_map(|row| row.record()?.frequency_hz).filter(|f| f.is_finite());
     let (low, high) =
         found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), f| (low.min(f), high.max(f)));
-    let told = format!("{} – {} kHz", value::fixed(low / 1e3, 1), value::fixed(high / 1e3, 1));
+    let told = format!("{}–{} kHz", value::fixed(low / 1e3, 1), value::fixed(high / 1e3, 1));
     (low <= high).then_some(("frequencies", told, String::new()))
 }
 

@@ -9,17 +9,8 @@ const COMMIT_LENGTH: usize = 12;
 
 pub(super) fn section(origin: &Origin) -> Markup {
     let doubts = origin.doubts();
-    let header = [
-        "results",
-        "program",
-        "machine",
-        "processor",
-        "vectors",
-        "threads",
-        "first finished",
-        "last finished",
-    ]
-    .map(str::to_owned);
+    let header =
+        ["results", "program", "machine", "processor", "vectors", "threads", "finished"].map(str::to_owned);
     let lines: Vec<Vec<Markup>> = origin.made.iter().map(line).collect();
     html! {
         @for doubt in &doubts { (html::warning(&html! { (doubt) })) }
@@ -45,6 +36,6 @@ fn line(made: &Made) -> Vec<Markup> {
         line.push(html! { "unknown" });
         line.extend((0..4).map(|_| html! { (value::MISSING) }));
     }
-    line.extend([made.first_ms, made.last_ms].map(|ms| html! { (value::moment(ms)) }));
+    line.push(html! { (value::moment(made.first_ms)) br; "to " (value::moment(made.last_ms)) });
     line
 }
