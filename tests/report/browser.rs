@@ -190,6 +190,7 @@ fn pointing_at_a_job_tells_its_values() {
     let inside = "(() => { const b = document.getElementById('tip').getBoundingClientRect(); \
                   return b.left >= 0 && b.top >= 0 && b.right <= innerWidth && b.bottom <= innerHeight; })()";
     assert_eq!(browser.evaluate(inside), true);
+    leave_picture(&mut browser, "report-tip.png");
     browser.move_mouse(2.0, 2.0);
     assert_eq!(tip(&mut browser), "");
 
@@ -228,13 +229,13 @@ fn phones_and_printers_show_it_all() {
     let widths =
         browser.evaluate("[innerWidth, document.documentElement.scrollWidth, document.body.scrollWidth]");
     assert_eq!(widths, serde_json::json!([390, 390, 390]));
+    leave_picture(&mut browser, "report-phone.png");
     let figure = look(&mut browser, "figure7.csv");
     let smallest = figure["texts"].as_array().unwrap().iter().map(|text| number(&text["size"]));
     assert!(smallest.clone().fold(f64::MAX, f64::min) > 10.0, "{:?}", smallest.collect::<Vec<_>>());
 
-    leave_picture(&mut browser, "report-phone.png");
-
     browser.resize(1200, 900, false);
+    browser.open(&page);
     leave_picture(&mut browser, "report-desktop.png");
     let pdf = browser.print();
     assert!(pdf.starts_with(b"%PDF-"));

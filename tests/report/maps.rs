@@ -96,6 +96,7 @@ fn frequencies_are_told_twice() {
         at(2.0, 15_432.1),
         at(5.0, 9_876.5),
         row(7.0, 0.4, done(Outcome::Decayed, Regime::Stable, 0.4)),
+        row(9.0, 0.4, done(Outcome::NotPeriodic, Regime::StickSlip, 0.4)),
     ];
     let elements = only(&rows, Plot::FrequencyMap);
     let told =
@@ -103,6 +104,7 @@ fn frequencies_are_told_twice() {
     assert_eq!(told("job-1-0.4"), ("9.9", Some("9876.5")));
     assert_eq!(told("job-2-0.4"), ("15.4", Some("15432.1")));
     assert_eq!(told("job-7-0.4"), ("S", Some("")));
+    assert_eq!(told("job-9-0.4"), ("14.5~", Some("14512.4")));
     let fill = |job: &str| {
         let hit = hit(&elements, job);
         let same = |e: &&Element| {

@@ -1,5 +1,6 @@
-// The tooltip of figures. What it says is what the browser would show by itself, later: the titles of the shapes in
-// every drawing's group "hits". Arrow keys go from one to the next.
+// Boxes that scroll show whether there is more to the right, and figures have a tooltip. What it says is what the
+// browser would show by itself, later: the titles of the shapes in every drawing's group "hits". Arrow keys go from one
+// to the next.
 "use strict";
 (() => {
   const tip = document.createElement("div");
@@ -61,6 +62,12 @@
       next.focus();
     });
   }
+  for (const box of document.querySelectorAll(".scroll")) {
+    const look = () => box.classList.toggle("more", box.scrollLeft + box.clientWidth < box.scrollWidth - 2);
+    box.addEventListener("scroll", look, { passive: true });
+    new ResizeObserver(look).observe(box);
+  }
+
   document.addEventListener("pointerdown", (event) => { if (!event.target.closest(".hits")) hide(); });
   document.addEventListener("scroll", hide, { capture: true, passive: true });
 })();

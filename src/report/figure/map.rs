@@ -1,6 +1,7 @@
 //! Maps of a group's grid: a cell for every job, speeds across, friction coefficients up.
 
 use super::key::{self, Entry, Sample};
+use crate::analysis::Outcome;
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area};
 use crate::publish::plot::hits::{Hit, Shape};
@@ -56,7 +57,7 @@ pub(super) fn frequencies(layout: &Layout, group: &Group) -> Result<String, Figu
     let face = |row: &Row| match frequency(row) {
         Some(f) => Face {
             fill: palette::sequential(share(f)),
-            text: value::fixed(f / per_unit, 1),
+            text: value::fixed(f / per_unit, 1) + not_periodic(row),
             value: value::number(f),
         },
         None => Face { fill: NO_VALUE, text: sign(row).letter.to_string(), value: String::new() },
@@ -72,6 +73,11 @@ pub(super) fn frequencies(layout: &Layout, group: &Group) -> Result<String, Figu
         }
         key::below(area, HEAD + scale, &entries)
     })
+}
+
+/// The mark of tables, too.
+fn not_periodic(row: &Row) -> &'static str {
+    if row.record().is_some_and(|record| record.outcome == Outcome::NotPeriodic) { "~" } else { "" }
 }
 
 const NO_VALUE: RGBColor = RGBColor(0xEC, 0xEC, 0xEC);
@@ -105,7 +111,9 @@ fn draw_scale(area: &Area, (low, high): (f64, f64), unit: &str) -> Result<(), Fi
     let y = |share: f64| bottom - (share * f64::from(bottom - top)).round() as i32;
     for step in 0..STEPS {
         let share = |step: i32| f64::from(step) / f64::from(STEPS);
-        let colour = palette::sequential(share(step) + 0.5 / f64::from(STEPS));
+        // A single value has the colour of its cells.
+        let middle = if high > low { share(step) + 0.5 / f64::from(STEPS) } else { 0.5 };
+        let colour = palette::sequential(middle);
         canvas::cell(area, (0, y(share(step + 1))), (width, y(share(step))), colour)?;
     }
     let marks = if high > low { Axis::Linear(low..high).marks() } else { vec![(low, value::fixed(low, 1))] };
@@ -192,7 +200,9 @@ fn draw_cells(
             let to = (cells.x(start + part) - GAP, cells.y(job.mu) + cells.row - GAP);
             let Face { fill, text, value } = face(job.row);
             canvas::cell(area, from, to, fill)?;
-            let room = (to.0 - from.0 - 6).max(0);
+            // Columns differ by a pixel; their texts do not.
+            let room =
+                (((cells.right - cells.left) as f64 * part) as i32 / cells.columns as i32 - GAP - 6).max(0);
             // A digit is somewhat more than half as wide as high.
             let fitting = room * 19 / (10 * text.chars().count().max(1) as i32);
             let size = fitting.min((to.1 - from.1) * 2 / 3).min(TEXT + 4);

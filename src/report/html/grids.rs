@@ -33,7 +33,8 @@ pub(super) fn friction(parts: &Parts) -> Markup {
 pub(super) fn frequency(parts: &Parts) -> Markup {
     let axis = parts.layout.axis_label();
     let curves = format!("Fundamental frequency of the total normal contact force against {axis}.");
-    let map = format!("The same frequencies over {axis} and μ. Letters: jobs without a frequency.");
+    let map =
+        format!("The same frequencies over {axis} and μ. Letters: jobs without a frequency; ~ not periodic.");
     html! {
         (figures(parts, Plot::Frequency, &curves))
         (figures(parts, Plot::FrequencyMap, &map))

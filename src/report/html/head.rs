@@ -24,8 +24,7 @@ pub(super) fn summary(report: &Report) -> Markup {
     ];
     tiles.extend(drop_of_friction(rows));
     tiles.extend(frequencies(rows));
-    tiles.extend(residual("largest energy residual", rows, |record| record.energy_residual.abs()));
-    tiles.extend(residual("largest identity residual", rows, JobRecord::identity_residual));
+    tiles.extend(residuals(rows));
     html! {
         @if summary.missing() > 0 {
             (html::warning(&html! {
@@ -38,7 +37,7 @@ pub(super) fn summary(report: &Report) -> Markup {
                 strong {
                     @if summary.failed == 1 { "1 job has failed" } @else { (summary.failed) " jobs have failed" }
                 }
-                " and has no result: see " a href="#trouble" { "where and why" } "."
+                ": see " a href="#trouble" { "where and why" } "."
             }))
         }
         (html::tiles(&tiles))
@@ -59,13 +58,18 @@ fn frequencies(rows: &[Row]) -> Option<Tile> {
     let found = rows.iter().filter_map(|row| row.record()?.frequency_hz).filter(|f| f.is_finite());
     let (low, high) =
         found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), f| (low.min(f), high.max(f)));
-    let told = format!("{}–{} kHz", value::fixed(low / 1e3, 1), value::fixed(high / 1e3, 1));
+    let [low_khz, high_khz] = [low, high].map(|f| value::fixed(f / 1e3, 1));
+    let told =
+        if low_khz == high_khz { format!("{low_khz} kHz") } else { format!("{low_khz}–{high_khz} kHz") };
     (low <= high).then_some(("frequencies", told, String::new()))
 }
 
-fn residual(name: &'static str, rows: &[Row], of: impl Fn(&JobRecord) -> f64) -> Option<Tile> {
-    let (residual, row) = summary::worst(rows, of)?;
-    Some((name, short(residual), parameters_in_words(row)))
+fn residuals(rows: &[Row]) -> Option<Tile> {
+    let (energy, one) = summary::worst(rows, |record| record.energy_residual.abs())?;
+    let (identity, other) = summary::worst(rows, JobRecord::identity_residual)?;
+    let note =
+        format!("energy at {}; identities at {}", parameters_in_words(one), parameters_in_words(other));
+    Some(("largest residuals", format!("{}, {}", short(energy), short(identity)), note))
 }
 
 /// When it was written, and what else there is.
