@@ -5,7 +5,7 @@ use super::output::{block_on, print, tell};
 use super::work::listen;
 use super::{origin, rows};
 use crate::exit;
-use crate::queue::{Clock, Counts, MadeWith, Queue, Scope, SystemClock};
+use crate::queue::{Clock, Counts, Queue, Scope, SystemClock};
 use crate::report::{self, Report};
 use crate::worker::Interrupt;
 use std::path::{Path, PathBuf};
@@ -92,16 +92,16 @@ pub async fn write_rows(
 #[derive(PartialEq)]
 struct Seen {
     counts: Counts,
+    starts: u64,
     submitted_ms: Option<i64>,
-    made: Vec<MadeWith>,
 }
 
 impl Seen {
     async fn now(queue: &mut Queue, name: &str) -> Result<Self, CliError> {
         Ok(Self {
             counts: queue.counts(&Scope::Study(name.to_owned())).await?,
+            starts: queue.starts(name).await?,
             submitted_ms: queue.study(name).await?.map(|study| study.submitted_ms),
-            made: queue.made_with(name).await?,
         })
     }
 

@@ -56,6 +56,7 @@ mod rows;
 mod schema;
 mod scope;
 mod settings;
+mod starts;
 mod state;
 mod studies;
 mod submit;

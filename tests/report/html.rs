@@ -131,7 +131,7 @@ fn results_have_their_origin() {
     for part in [
         "Submitted 1970-01-01 00:00 UTC",
         "1970-01-02 00:00 UTCto 1970-01-04 00:00 UTC",
-        "0.1.0 aaaa",
+        "0.1.0aaaa",
         "Quick 9000 (x86_64 linux)",
         "Avx2",
         "{ \"name\": \"mine\" }",

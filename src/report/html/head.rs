@@ -67,8 +67,11 @@ fn frequencies(rows: &[Row]) -> Option<Tile> {
 fn residuals(rows: &[Row]) -> Option<Tile> {
     let (energy, one) = summary::worst(rows, |record| record.energy_residual.abs())?;
     let (identity, other) = summary::worst(rows, JobRecord::identity_residual)?;
-    let note =
-        format!("energy at {}; identities at {}", parameters_in_words(one), parameters_in_words(other));
+    let note = if one.job == other.job {
+        format!("energy, identities; both at {}", parameters_in_words(one))
+    } else {
+        format!("energy at {}; identities at {}", parameters_in_words(one), parameters_in_words(other))
+    };
     Some(("largest residuals", format!("{}, {}", short(energy), short(identity)), note))
 }
 

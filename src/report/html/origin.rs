@@ -26,7 +26,7 @@ fn line(made: &Made) -> Vec<Markup> {
         let (commit, modified) = maker.commit.split_at(maker.commit.find('+').unwrap_or(maker.commit.len()));
         let short: String = commit.chars().take(COMMIT_LENGTH).collect();
         line.extend([
-            html! { (maker.version) " " code title=(maker.commit) { (short) (modified) } },
+            html! { (maker.version) br; code title=(maker.commit) { (short) (modified) } },
             html! { (maker.host) },
             html! { (maker.cpu.as_deref().unwrap_or(value::MISSING)) " (" (maker.platform) ")" },
             html! { (maker.vectors) },

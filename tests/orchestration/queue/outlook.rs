@@ -1,6 +1,6 @@
 //! Who is there, how long jobs took, and what results were made with.
 
-use tribosweep::queue::{Alive, MadeWith, QueueError, Scope, Worker};
+use tribosweep::queue::{Alive, FinishedOutcome, MadeWith, QueueError, Scope, Worker};
 
 use crate::support::{Sandbox, claim, dead_worker, done, failed, finish, foreign_worker, job, of, study};
 
@@ -43,6 +43,23 @@ async fn timings_are_those_of_done_jobs() {
     finish(&mut queue, "other", 1, done("record")).await;
     assert_eq!(queue.timings("a").await.unwrap(), [(8.0, 2.5)]);
     assert!(matches!(queue.timings("c").await, Err(QueueError::UnknownStudy { .. })));
+}
+
+/// Protects: whatever happens to a study's jobs shows in their counts or in how often they were started.
+#[tokio::test]
+async fn starts_show_what_counts_do_not() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    queue.submit(&study("a", &["x", "y", "x"])).await.unwrap();
+    assert_eq!(queue.starts("a").await.unwrap(), 0);
+    let first = claim(&mut queue, of("a"), 1).await.remove(0);
+    let before = queue.counts(&of("a")).await.unwrap();
+    // The job is given back, and the other one is taken.
+    finish(&mut queue, &first.key, 1, FinishedOutcome::Released).await;
+    claim(&mut queue, of("a"), 1).await;
+    assert_eq!(queue.counts(&of("a")).await.unwrap(), before);
+    assert_eq!(queue.starts("a").await.unwrap(), 2);
+    assert!(matches!(queue.starts("c").await, Err(QueueError::UnknownStudy { .. })));
 }
 
 /// Protects: of a large study an even sample is looked at.
