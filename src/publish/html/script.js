@@ -16,6 +16,18 @@
     tip.hidden = true;
   };
 
+  // Above the shape if there is room, below it otherwise.
+  const place = () => {
+    if (!chosen) return;
+    const at = chosen.getBoundingClientRect();
+    const own = tip.getBoundingClientRect();
+    const width = document.documentElement.clientWidth;
+    const left = Math.min(Math.max(at.left + at.width / 2 - own.width / 2, 4), width - own.width - 4);
+    const above = at.top - own.height - 8;
+    tip.style.left = left + "px";
+    tip.style.top = (above > 4 ? above : at.bottom + 8) + "px";
+  };
+
   const show = (hit) => {
     if (hit === chosen) return;
     hide();
@@ -23,13 +35,7 @@
     hit.classList.add("chosen");
     tip.textContent = hit.getAttribute("aria-label");
     tip.hidden = false;
-    const at = hit.getBoundingClientRect();
-    const own = tip.getBoundingClientRect();
-    const width = document.documentElement.clientWidth;
-    const left = Math.min(Math.max(at.left + at.width / 2 - own.width / 2, 4), width - own.width - 4);
-    const above = at.top - own.height - 8;
-    tip.style.left = left + "px";
-    tip.style.top = (above > 4 ? above : at.bottom + 8) + "px";
+    place();
   };
 
   for (const group of document.querySelectorAll("svg .hits")) {
@@ -69,5 +75,7 @@
   }
 
   document.addEventListener("pointerdown", (event) => { if (!event.target.closest(".hits")) hide(); });
-  document.addEventListener("scroll", hide, { capture: true, passive: true });
+  // What is focused is scrolled into sight.
+  document.addEventListener("scroll", place, { capture: true, passive: true });
+  window.addEventListener("resize", place);
 })();
