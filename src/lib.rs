@@ -15,9 +15,9 @@
 //! * [`study`] – studies as data: parse, check, expand into jobs, key, schema.
 //! * [`queue`] – jobs in `SQLite`; payloads are opaque strings, nothing of mechanics.
 //! * [`worker`] – dispatcher (signals, database, progress) and executor (rayon).
-//! * [`publish`] – what reports are made of: values as text, drawings, folders.
+//! * [`publish`] – what reports are made of: values as text, drawings, pages, folders.
 //! * [`inspect`] – one job run again and looked into: histories, cycles, snapshots, fields.
-//! * [`report`] – tables, figures and CSV from records.
+//! * [`report`] – page, tables, figures and CSV from records.
 //! * [`cli`] – one file a subcommand.
 
 pub mod analysis;

@@ -4,12 +4,12 @@ use super::error::CliError;
 use super::output::{block_on, print, tell};
 use super::{foreground, rows, solve};
 use crate::exit;
-use crate::inspect::{self, Look, LookError, Options, Place, Trace};
+use crate::inspect::{self, Look, LookError, Options, Origin, Place, Trace};
 use crate::publish::value;
 use crate::solver;
 use crate::spec::JobSpec;
 use crate::study::{Parameter, Preset, Study};
-use crate::worker::Interrupt;
+use crate::worker::{self, Interrupt};
 use indicatif::{ProgressBar, ProgressStyle};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde_json::Value;
@@ -95,8 +95,9 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     };
     pace.bar.finish_and_clear();
     let folder = args.out(&study, &picked.slug());
-    let title = format!("{}: {}", study.name(), picked.words());
-    inspect::write(&look, &folder, &title)?;
+    let origin =
+        Origin { title: format!("{}: {}", study.name(), picked.words()), made_with: worker::program() };
+    inspect::write(&look, &folder, &origin)?;
     tell(solve::as_text(&look.survey.record).trim_end());
     print(&format!("{}\n", folder.join(inspect::PAGE).display()))?;
     Ok(exit::SUCCESS)

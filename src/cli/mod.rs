@@ -9,6 +9,8 @@ mod export;
 mod foreground;
 mod gc;
 mod inspect;
+mod origin;
+mod outlook;
 mod output;
 mod pareto;
 mod planning;
@@ -57,7 +59,7 @@ enum Command {
     Work(work::Args),
     /// Show how far the studies are.
     Status(status::Args),
-    /// Write a study's tables and figures.
+    /// Write a study's page, tables and figures.
     Report(report::Args),
     /// Compare jobs that differ in their numerics: error against run time.
     Pareto(pareto::Args),

@@ -40,9 +40,9 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
         let options = options(&args.threads, &args.checkpoints);
         let code = work(&mut queue, &Scope::Study(name.to_owned()), options).await?;
         let rows = rows::read(&mut queue, name).await?;
-        queue.close().await?;
         print(&markdown(&rows, Quantity::MuStar))?;
-        report::write(&rows, name, &args.out)?;
+        report::write_rows(&mut queue, &rows, name, &args.out, None).await?;
+        queue.close().await?;
         Ok(code)
     })
 }

@@ -1,6 +1,7 @@
 //! `tribosweep status`: how far the studies are.
 
 use super::error::CliError;
+use super::outlook::{self, Outlook};
 use super::output::{self, block_on, print};
 use super::planning::RowParameters;
 use super::rows;
@@ -106,11 +107,15 @@ async fn find(queue: &mut Queue, name: &str) -> Result<Trouble, CliError> {
 async fn one(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, CliError> {
     let trouble = find(queue, name).await?;
     let counts = queue.counts(&Scope::Study(name.to_owned())).await?;
+    let outlook = outlook::read(queue, name, counts).await?;
     if as_json {
-        return Ok(format!("{}\n", trouble_json(name, counts, &trouble)));
+        return Ok(format!("{}\n", one_json(name, counts, outlook.as_ref(), &trouble)));
     }
     let Trouble { not_periodic, regions, .. } = trouble;
     let mut text = format!("{name}: {}\n", counts_text(counts));
+    if let Some(outlook) = &outlook {
+        text.push_str(&outlook.in_words(output::width()));
+    }
     if counts.total() <= SHOWN {
         text.push_str(&overview(&rows::read(queue, name).await?, output::width()));
     }
@@ -129,7 +134,7 @@ async fn one(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, Cli
     Ok(text)
 }
 
-fn trouble_json(name: &str, counts: Counts, trouble: &Trouble) -> Value {
+fn one_json(name: &str, counts: Counts, outlook: Option<&Outlook>, trouble: &Trouble) -> Value {
     let failures: Vec<Value> = trouble
         .failed
         .iter()
@@ -149,6 +154,7 @@ fn trouble_json(name: &str, counts: Counts, trouble: &Trouble) -> Value {
     json!({
         "study": name,
         "jobs": counts_json(counts),
+        "outlook": outlook.map(Outlook::json),
         "not_periodic": trouble.not_periodic,
         "failures": failures,
         "regions": regions,

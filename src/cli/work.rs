@@ -49,11 +49,15 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
     seconds.ok_or_else(|| format!("expected a number of seconds, at least {}, or 0", SHORTEST.as_secs_f64()))
 }
 
+/// The number of threads unless another one is given.
+pub fn all_cores() -> usize {
+    std::thread::available_parallelism().map_or(1, NonZeroUsize::get)
+}
+
 /// Number of threads and checkpoints.
 pub fn options(threads: &Threads, checkpoints: &Checkpoints) -> WorkOptions {
-    let cores = || std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     WorkOptions {
-        threads: threads.threads.map_or_else(cores, usize::from),
+        threads: threads.threads.map_or_else(all_cores, usize::from),
         checkpoint_interval: Some(Duration::from_secs_f64(checkpoints.seconds))
             .filter(|interval| !interval.is_zero()),
     }

@@ -36,4 +36,4 @@ pub use place::{ObservedNode, Place};
 pub use spectrum::Spectrum;
 pub use summary::Summary;
 pub use survey::{Survey, Windows};
-pub use write::{PAGE, write};
+pub use write::{Origin, PAGE, write};

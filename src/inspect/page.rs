@@ -3,6 +3,7 @@
 use super::figures::LookFigure;
 use super::look::Look;
 use super::summary::{NodeSummary, Summary};
+use super::write::Origin;
 use crate::publish::html::{self, download, figure, navigation, section, table, tiles, warning};
 use crate::publish::value::{MISSING, fixed, number};
 use maud::{Markup, html};
@@ -30,7 +31,7 @@ pub fn of(
     summary: &Summary,
     figures: &[LookFigure],
     tables: &BTreeMap<String, String>,
-    title: &str,
+    origin: &Origin,
 ) -> String {
     let heading = |stem: &str| TITLES.iter().find(|(name, _)| *name == stem).map_or("", |(_, title)| *title);
     let links = figures.iter().map(|figure| (figure.stem, heading(figure.stem)));
@@ -46,9 +47,9 @@ pub fn of(
             }))
         }
         (section("nodes", last[0].1, &nodes(summary)))
-        (section("files", last[1].1, &files()))
+        (section("files", last[1].1, &html! { (files()) p { "Made with " (origin.made_with) "." } }))
     };
-    html::page(title, None, &body)
+    html::page(&origin.title, None, &body)
 }
 
 fn head(look: &Look, summary: &Summary) -> Markup {
@@ -99,17 +100,20 @@ fn delay(delay_s: Option<f64>, length_m: f64) -> String {
 
 /// A table to download, or where it is.
 fn data(name: &str, tables: &BTreeMap<String, String>) -> Markup {
-    match tables.get(name).filter(|text| text.len() <= LARGEST) {
-        Some(text) => download(name, text),
-        None => html! { code { (name) } " (beside this page)" },
+    if let Some(text) = tables.get(name).filter(|text| text.len() <= LARGEST) {
+        download(name, text)
+    } else {
+        html! { code { (name) } " (beside this page)" }
     }
 }
+
+/// A line of the table of nodes: its name and the value of a node.
+type NodeLine = (&'static str, fn(&NodeSummary) -> String);
 
 fn nodes(summary: &Summary) -> Markup {
     let header: Vec<String> =
         std::iter::once(String::new()).chain(summary.nodes.iter().map(|node| node.title.clone())).collect();
-    type Figure = (&'static str, fn(&NodeSummary) -> String);
-    let figures: [Figure; 8] = [
+    let figures: [NodeLine; 8] = [
         ("velocity of the disk [mm/s]", |node| fixed(node.target_velocity_m_s * 1e3, 1)),
         ("peak-to-peak displacement x, y, z [µm]", |node| {
             node.peak_to_peak_m.map(|range| fixed(range * 1e6, 2)).join(", ")
@@ -123,7 +127,7 @@ fn nodes(summary: &Summary) -> Markup {
             node.frequency_hz.map_or_else(|| MISSING.to_owned(), |f| fixed(f, 0))
         }),
     ];
-    let line = |(name, figure): &Figure| -> Vec<Markup> {
+    let line = |(name, figure): &NodeLine| -> Vec<Markup> {
         std::iter::once(html! { (name) })
             .chain(summary.nodes.iter().map(|node| html! { (figure(node)) }))
             .collect()

@@ -96,6 +96,7 @@ pub struct FaceSummary {
 
 /// How much later [s] an instant is at the rear than at the front; negative when it travels towards the front.
 #[derive(Debug, Clone, PartialEq, Serialize)]
+#[expect(clippy::struct_field_names, reason = "a unit is not a name")]
 pub struct Waves {
     /// Contact begins, t_A.
     pub contact_s: Option<f64>,

@@ -6,6 +6,15 @@ use super::{fields, figures, page, tables};
 use crate::publish::{Folder, PublishError};
 use std::path::{Path, PathBuf};
 
+/// Where a look comes from.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Origin {
+    /// The study and the job's parameters.
+    pub title: String,
+    /// The program that ran it.
+    pub made_with: String,
+}
+
 /// The page that holds everything together.
 pub const PAGE: &str = "index.html";
 
@@ -16,7 +25,7 @@ pub const PAGE: &str = "index.html";
 ///
 /// # Errors
 /// The first file that could not be written. Files before it are complete.
-pub fn write(look: &Look, out_dir: &Path, title: &str) -> Result<Vec<PathBuf>, PublishError> {
+pub fn write(look: &Look, out_dir: &Path, origin: &Origin) -> Result<Vec<PathBuf>, PublishError> {
     let mut folder = Folder::create(out_dir)?;
     let tables = tables::write(look, &mut folder)?;
     let figures = figures::write(look, &mut folder)?;
@@ -27,6 +36,6 @@ pub fn write(look: &Look, out_dir: &Path, title: &str) -> Result<Vec<PathBuf>, P
         out.push(b'\n');
         Ok(())
     })?;
-    folder.text(PAGE, &page::of(look, &summary, &figures, &tables, title))?;
+    folder.text(PAGE, &page::of(look, &summary, &figures, &tables, origin))?;
     Ok(folder.written)
 }

@@ -30,6 +30,7 @@
 //! * Reads are single statements. A transaction held open by a reader keeps the write-ahead log from being
 //!   folded back into the database, and it grows without limit.
 
+mod alive;
 mod bulk;
 mod cancel;
 mod checkpoint;
@@ -45,6 +46,7 @@ mod finish;
 mod garbage;
 mod heartbeat;
 mod lock;
+mod made;
 mod open;
 mod process;
 mod remaining;
@@ -54,13 +56,16 @@ mod rows;
 mod schema;
 mod scope;
 mod settings;
+mod starts;
 mod state;
 mod studies;
 mod submit;
 mod take_back;
+mod timings;
 mod transaction;
 mod worker;
 
+pub use alive::Alive;
 pub use cancel::Cancelled;
 pub use claim::{Claim, ClaimedJob};
 pub use clock::{Clock, SystemClock};
@@ -71,6 +76,7 @@ pub use error::QueueError;
 pub use exchange::Exchanged;
 pub use finish::{Finished, FinishedOutcome};
 pub use garbage::Garbage;
+pub use made::MadeWith;
 pub use remove::Removed;
 pub use retry::{Retried, Retry};
 pub use rows::{Rows, StudyRow};

@@ -36,6 +36,7 @@ pub(super) struct Owner {
     process_start: Option<i64>,
     pub version: String,
     pub heartbeat_ms: i64,
+    pub threads: u64,
     stopping_ms: Option<i64>,
     ended_ms: Option<i64>,
 }
@@ -53,7 +54,8 @@ pub(super) enum Verdict {
 const FAR_AHEAD_MS: i64 = 24 * 3600 * 1000;
 
 const OWNERS: &str = "
-    SELECT id, host, boot_id, pid_namespace, pid, process_start, version, heartbeat_ms, stopping_ms, ended_ms
+    SELECT id, host, boot_id, pid_namespace, pid, process_start, version, heartbeat_ms, threads, stopping_ms,
+           ended_ms
     FROM workers
     WHERE ended_ms IS NULL OR id IN (SELECT owner FROM jobs INDEXED BY jobs_owner WHERE state = 'running')
     ORDER BY id";
@@ -159,6 +161,7 @@ impl FromRow<'_, SqliteRow> for Owner {
             process_start: row.try_get("process_start")?,
             version: row.try_get("version")?,
             heartbeat_ms: row.try_get("heartbeat_ms")?,
+            threads: row.try_get("threads")?,
             stopping_ms: row.try_get("stopping_ms")?,
             ended_ms: row.try_get("ended_ms")?,
         })
@@ -166,6 +169,11 @@ impl FromRow<'_, SqliteRow> for Owner {
 }
 
 impl Owner {
+    /// Whether it has been asked to stop.
+    pub(super) fn is_stopping(&self) -> bool {
+        self.stopping_ms.is_some()
+    }
+
     pub(super) fn verdict(&self) -> Verdict {
         let here = (process::host(), process::boot_id(), process::pid_namespace());
         if self.ended_ms.is_some() {

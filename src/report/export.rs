@@ -120,6 +120,29 @@ impl<W: Write> Export<W> {
     }
 }
 
+/// The data behind a figure: for each of the rows its key, ω, μ and further parameters, some fields of the export, and how
+/// it ended.
+pub(super) fn selection<'a>(
+    rows: impl IntoIterator<Item = &'a Row>,
+    further: &[&str],
+    columns: &[&str],
+) -> io::Result<Vec<u8>> {
+    let further: Vec<String> = further.iter().map(|&name| name.to_owned()).collect();
+    let names = field_names(&further);
+    let selected = ["job", "omega_rpm", "mu"].iter().chain(columns).chain(&["status"]);
+    let places: Vec<usize> = selected
+        .filter_map(|name| HEADER.iter().position(|own| own == name))
+        .chain(HEADER.len()..names.len())
+        .collect();
+    let mut writer = ::csv::Writer::from_writer(Vec::new());
+    writer.write_record(places.iter().map(|&place| &names[place])).map_err(io_error)?;
+    for row in rows {
+        let fields = fields(row, &further);
+        writer.write_record(places.iter().map(|&place| value::text(&fields[place]))).map_err(io_error)?;
+    }
+    writer.into_inner().map_err(|error| io::Error::other(error.to_string()))
+}
+
 /// A CSV error as the I/O error it comes from, so that a caller can tell a closed pipe.
 pub(super) fn io_error(error: ::csv::Error) -> io::Error {
     match error.into_kind() {

@@ -1,60 +1,103 @@
 //! The report as a folder of files.
 
-use super::figure::{self, Plot};
+use super::figure::{self, Data, Figure, Plot, RESIDUALS, RUN_TIMES};
+use super::html::{self, Parts};
 use super::layout::Layout;
+use super::origin::Origin;
 use super::page::{self, FigureLink, Table};
 use super::tables::{self, Quantity};
 use super::{export, row::Row};
-use crate::publish::Folder;
-use crate::publish::PublishError;
+use crate::publish::plot::FigureError;
+use crate::publish::{Folder, PublishError};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
 
 const QUANTITIES: [(Quantity, &str); 3] =
     [(Quantity::MuStar, "mu_star"), (Quantity::Frequency, "frequency"), (Quantity::Regime, "regime")];
 
-const PLOTS: [(Plot, &str); 2] = [(Plot::MuStar, "figure7"), (Plot::Frequency, "frequency")];
+/// What a report is about.
+#[derive(Debug, Clone, Copy)]
+pub struct Report<'a> {
+    /// Its title: the study's name.
+    pub title: &'a str,
+    /// The study's jobs.
+    pub rows: &'a [Row],
+    /// Where they come from, if that is known.
+    pub origin: Option<&'a Origin>,
+    /// When it is written, in milliseconds since 1970-01-01 UTC.
+    pub written_ms: i64,
+    /// How often the page loads itself anew, if it is going to be written again.
+    pub refresh_s: Option<u32>,
+}
 
-/// Writes tables, figures, the export and the page `report.md` into `out_dir`; returns the files.
+/// Writes the page `report.html`, tables, figures with the data behind them, the export and `report.md` into `out_dir`;
+/// returns the files.
 ///
 /// Every file appears whole: it is written beside its place and then renamed. A folder that exists
 /// is fine; files of the same name are replaced, others are left alone.
 ///
 /// # Errors
 /// The first file that could not be written. Files before it are complete.
-pub fn write(rows: &[Row], out_dir: &Path, title: &str) -> Result<Vec<PathBuf>, PublishError> {
+pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishError> {
     let mut folder = Folder::create(out_dir)?;
+    let Report { title, rows, .. } = *report;
 
     let layout = Layout::new(rows);
     let tables = || QUANTITIES.into_par_iter().map(|(quantity, stem)| table(&layout, quantity, stem));
-    let figures = || PLOTS.into_par_iter().map(|(plot, _)| figure::figures_of(&layout, plot));
+    let figures = || Plot::ALL.into_par_iter().map(|plot| (plot, figure::figures_of(&layout, plot)));
     let jobs = || {
         let mut out = Vec::new();
         export::csv(rows, &mut out).map(|()| out)
     };
-    let ((tables, figures), jobs): ((Vec<_>, Vec<_>), _) =
-        rayon::join(|| rayon::join(|| tables().collect(), || figures().collect()), jobs);
+    let residuals = || figure::residuals::draw(rows);
+    let ((tables, figures), (jobs, residuals)): ((Vec<_>, Vec<_>), _) = rayon::join(
+        || rayon::join(|| tables().collect(), || figures().collect()),
+        || rayon::join(jobs, residuals),
+    );
     for table in &tables {
         folder.text(&format!("{}.md", table.stem), &page::of_table(table, title))?;
         folder.with(&format!("{}.csv", table.stem), |out| tables::csv_of(&layout, table.quantity, out))?;
     }
 
     let mut links = Vec::new();
-    for ((plot, stem), figures) in PLOTS.into_iter().zip(figures) {
-        let path = || out_dir.join(format!("{stem}.svg"));
-        for figure in figures.map_err(|source| PublishError::Figure { path: path(), source })? {
-            let file = format!("{stem}{}.svg", figure.suffix);
+    let mut drawn: Vec<(Plot, Vec<Figure>)> = Vec::new();
+    for (plot, figures) in figures {
+        let figures = figures.map_err(|source| undrawn(out_dir, plot.stem(), source))?;
+        for figure in &figures {
+            let file = format!("{}{}.svg", plot.stem(), figure.suffix);
             folder.text(&file, &figure.svg)?;
-            links.push(FigureLink { plot, caption: figure.caption, file });
+            links.push(FigureLink { plot, caption: figure.caption.clone(), file });
         }
+        drawn.push((plot, figures));
     }
+    let residuals = residuals.map_err(|source| undrawn(out_dir, RESIDUALS.stem, source))?;
+    folder.text(&format!("{}.svg", RESIDUALS.stem), &residuals)?;
 
+    let mut data_files = Vec::new();
+    for Data { stem, columns } in Plot::ALL.map(Plot::data).into_iter().chain([RESIDUALS, RUN_TIMES]) {
+        let file = format!("{stem}.csv");
+        // Two figures may show the same.
+        if data_files.contains(&file) {
+            continue;
+        }
+        folder.with(&file, |out| {
+            *out = export::selection(rows, &layout.further, columns)?;
+            Ok(())
+        })?;
+        data_files.push(file);
+    }
     folder.with("jobs.csv", |out| {
         *out = jobs?;
         Ok(())
     })?;
-    folder.text("report.md", &page::of_report(rows, &tables, &links, title))?;
+    folder.text("report.md", &page::of_report(rows, &tables, &links, &data_files, title))?;
+    let parts = Parts { report, layout: &layout, figures: &drawn, residuals: &residuals };
+    folder.text("report.html", &html::page(&parts))?;
     Ok(folder.written)
+}
+
+fn undrawn(out_dir: &Path, stem: &str, source: FigureError) -> PublishError {
+    PublishError::Figure { path: out_dir.join(format!("{stem}.svg")), source }
 }
 
 fn table(layout: &Layout, quantity: Quantity, stem: &'static str) -> Table {

@@ -62,13 +62,32 @@ impl<'a> Layout<'a> {
         Self { axis, further, constants, mus, groups }
     }
 
+    /// What is the same in all jobs, in words; may be empty.
+    pub fn constants_in_words(&self) -> String {
+        let words = self.constants.iter().map(|(name, value)| value::assignment(name, value));
+        words.collect::<Vec<_>>().join(", ")
+    }
+
+    /// The axis with its name and unit.
+    pub fn axis_name(&self) -> &'a str {
+        if self.axis == OMEGA { "disk speed ω [rpm]" } else { self.axis }
+    }
+
     /// The axis as a label, with its unit.
     pub fn axis_label(&self) -> &'a str {
         if self.axis == OMEGA { "ω [rpm]" } else { self.axis }
     }
 }
 
+/// Figures with more jobs do not tell of each of them: the files would be larger than anybody wants to look at.
+pub(super) const MOST_TOLD: usize = 2_000;
+
 impl Group<'_> {
+    /// Whether figures tell of each job.
+    pub fn is_told(&self) -> bool {
+        self.jobs.len() <= MOST_TOLD
+    }
+
     /// The combination in words; empty if there are no further parameters.
     pub fn caption(&self) -> String {
         self.key.iter().map(|(name, value)| value::assignment(name, value)).collect::<Vec<_>>().join(", ")

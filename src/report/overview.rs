@@ -1,24 +1,14 @@
 //! A study at a glance, for a terminal: a letter for every job, friction coefficients down, speeds across.
 
 use super::layout::{Group, Layout};
-use super::row::{Row, RowState};
-use crate::analysis::{Outcome, Regime};
+use super::row::Row;
+use super::sign::{SEVERAL, Sign, sign};
 use crate::publish::value;
-use anstyle::{AnsiColor, Style};
+use anstyle::Style;
 use std::fmt::Write;
 
 /// No more combinations of further parameters than this are shown.
 const GROUPS: usize = 6;
-
-/// A kind of job: its letter, what that means, and its colour, which says nothing that the letter does not.
-#[derive(Debug, Clone, Copy, PartialEq)]
-struct Sign {
-    letter: char,
-    meaning: &'static str,
-    colour: AnsiColor,
-}
-
-const SEVERAL: Sign = Sign { letter: '+', meaning: "several jobs", colour: AnsiColor::White };
 
 /// The grid, in lines of at most `width` characters where its labels leave room; with colours, for the caller to strip
 /// where they are not wanted. Nothing if there are no jobs.
@@ -96,31 +86,4 @@ fn grid(layout: &Layout<'_>, group: &Group<'_>, width: usize, used: &mut Vec<Sig
 fn painted(sign: Sign) -> String {
     let style = Style::new().fg_color(Some(sign.colour.into()));
     format!("{style}{}{style:#}", sign.letter)
-}
-
-fn sign(row: &Row) -> Sign {
-    let sign = |letter, meaning, colour| Sign { letter, meaning, colour };
-    match &row.state {
-        RowState::Pending => sign('.', "pending", AnsiColor::BrightBlack),
-        RowState::Running => sign('>', "running", AnsiColor::Cyan),
-        RowState::Cancelled => sign('-', "cancelled", AnsiColor::BrightBlack),
-        RowState::Failed { .. } => sign('!', "failed", AnsiColor::Red),
-        RowState::Done(record) => {
-            let settled = record.outcome != Outcome::NotPeriodic;
-            match (record.regime, settled) {
-                (Regime::Stable, _) => sign('S', "stable", AnsiColor::Blue),
-                (Regime::StickSlip, true) => sign('K', "stick–slip", AnsiColor::Yellow),
-                (Regime::StickSlip, false) => sign('k', "stick–slip, not periodic", AnsiColor::Yellow),
-                (Regime::StickSlipSeparation, true) => sign('X', "stick–slip–separation", AnsiColor::Magenta),
-                (Regime::StickSlipSeparation, false) => {
-                    sign('x', "stick–slip–separation, not periodic", AnsiColor::Magenta)
-                }
-                (Regime::SlipSeparation, true) => sign('P', "slip–separation", AnsiColor::Green),
-                (Regime::SlipSeparation, false) => {
-                    sign('p', "slip–separation, not periodic", AnsiColor::Green)
-                }
-                (Regime::Undecided, _) => sign('?', "undecided", AnsiColor::Red),
-            }
-        }
-    }
 }

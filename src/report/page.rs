@@ -3,6 +3,7 @@
 use super::figure::Plot;
 use super::layout::parameters_in_words;
 use super::row::{Row, RowState};
+use super::summary::{self, Summary};
 use super::tables::Quantity;
 use super::{markdown, trouble};
 use crate::analysis::{JobRecord, Outcome};
@@ -31,8 +32,18 @@ pub(super) fn of_table(table: &Table, title: &str) -> String {
 }
 
 /// The page of the whole report.
-pub(super) fn of_report(rows: &[Row], tables: &[Table], figures: &[FigureLink], title: &str) -> String {
-    let mut page = format!("# {}\n\n{}\n", markdown::escape(title), summary(rows));
+pub(super) fn of_report(
+    rows: &[Row],
+    tables: &[Table],
+    figures: &[FigureLink],
+    data: &[String],
+    title: &str,
+) -> String {
+    let mut page = format!(
+        "# {}\n\nAs a page for a browser, with all figures and tables in it: [report.html](report.html).\n\n{}\n",
+        markdown::escape(title),
+        summary(rows)
+    );
     for table in tables {
         page += &section(table, figures);
     }
@@ -40,36 +51,34 @@ pub(super) fn of_report(rows: &[Row], tables: &[Table], figures: &[FigureLink], 
     page += &list("Failed jobs", rows, failed);
     page += &list("Not periodic", rows, not_periodic);
     page += &list("Missing jobs", rows, missing);
-    page + "\n## Data\n\nOne line per job with all figures: [jobs.csv](jobs.csv).\n"
+    page += "\n## Residuals\n\n![residuals of energy balance and identities](residuals.svg)\n";
+    let data: Vec<String> = data.iter().map(|file| format!("[{file}]({file})")).collect();
+    page + &format!(
+        "\n## Data\n\nOne line per job with all figures: [jobs.csv](jobs.csv). Behind the figures: {}.\n",
+        data.join(", ")
+    )
 }
 
 fn summary(rows: &[Row]) -> String {
-    let count = |status: &str| rows.iter().filter(|row| row.status() == status).count();
-    let done = rows.iter().filter(|row| row.record().is_some()).count();
-    let (failed, running, pending) = (count("failed"), count("running"), count("pending"));
+    let summary = Summary::of(rows);
     let mut text = format!(
-        "{done} of {} jobs done ({} periodic, {} decayed, {} not periodic), {failed} failed, {} missing \
-         ({running} running, {pending} pending).\n",
-        rows.len(),
-        count(Outcome::Periodic.name()),
-        count(Outcome::Decayed.name()),
-        count(Outcome::NotPeriodic.name()),
-        running + pending,
+        "{} of {} jobs done ({}), {} failed, {} missing ({}).\n",
+        summary.done(),
+        summary.total,
+        summary.done_in_words(),
+        summary.failed,
+        summary.missing(),
+        summary.missing_in_words(),
     );
-    if done < rows.len() {
+    if summary.done() < summary.total {
         text += "\n**This report is incomplete**: tables and figures hold only the jobs that are done.\n";
     }
     text += &worst("energy residual", rows, |record| record.energy_residual.abs());
-    text += &worst("identity residual", rows, JobRecord::identity_residual);
-    text
+    text + &worst("identity residual", rows, JobRecord::identity_residual)
 }
 
-/// The job that fits worst: the first to look at if a figure is in doubt.
 fn worst(name: &str, rows: &[Row], residual: impl Fn(&JobRecord) -> f64) -> String {
-    rows.iter()
-        .filter_map(|row| Some((residual(row.record()?), row)))
-        .filter(|(residual, _)| residual.is_finite())
-        .max_by(|a, b| a.0.total_cmp(&b.0))
+    summary::worst(rows, residual)
         .map(|(residual, row)| {
             format!("\nLargest {name}: {residual:.1e} ({}).\n", markdown::escape(&parameters_in_words(row)))
         })
@@ -78,17 +87,17 @@ fn worst(name: &str, rows: &[Row], residual: impl Fn(&JobRecord) -> f64) -> Stri
 
 fn section(table: &Table, figures: &[FigureLink]) -> String {
     let Table { quantity, stem, markdown: lines } = table;
-    let (heading, plot) = match quantity {
-        Quantity::MuStar => ("Macroscopic friction", Some(Plot::MuStar)),
-        Quantity::Frequency => ("Frequency", Some(Plot::Frequency)),
-        Quantity::Regime => ("Contact regime", None),
+    let (heading, plots): (_, &[Plot]) = match quantity {
+        Quantity::MuStar => ("Macroscopic friction", &[Plot::MuStar]),
+        Quantity::Frequency => ("Frequency", &[Plot::Frequency, Plot::FrequencyMap]),
+        Quantity::Regime => ("Contact regime", &[Plot::RegimeMap, Plot::Shares]),
     };
     let mut parts = vec![format!("\n## {heading}\n\n")];
-    for figure in figures.iter().filter(|figure| Some(figure.plot) == plot) {
+    for figure in figures.iter().filter(|figure| plots.contains(&figure.plot)) {
         if !figure.caption.is_empty() {
             parts.push(format!("{}:\n\n", markdown::escape(&figure.caption)));
         }
-        parts.push(format!("![{}]({})\n\n", quantity.title(), figure.file));
+        parts.push(format!("![{}]({})\n\n", figure.plot.title(), figure.file));
     }
     parts.push(format!("Table: [{stem}.md]({stem}.md), [{stem}.csv]({stem}.csv)\n\n"));
     parts.push(lines.clone());

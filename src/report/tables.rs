@@ -30,20 +30,24 @@ impl Quantity {
         }
     }
 
-    fn legend(self) -> String {
-        let own: &[&str] = match self {
-            Self::MuStar => &["`~` not periodic: an average over the last part of the run"],
+    /// What the marks in its cells mean.
+    pub(super) fn legend(self) -> impl Iterator<Item = (&'static str, &'static str)> {
+        let own: &[_] = match self {
+            Self::MuStar => &[("~", "not periodic: an average over the last part of the run")],
             Self::Frequency => &[
-                "fundamental frequency of the total normal contact force",
-                "`stable` the oscillation decays",
-                "`none` no frequency found",
-                "`~` not periodic",
+                ("", "fundamental frequency of the total normal contact force"),
+                ("stable", "the oscillation decays"),
+                ("none", "no frequency found"),
+                ("~", "not periodic"),
             ],
-            Self::Regime => &["`~` not periodic: from the last part of the run"],
+            Self::Regime => &[("~", "not periodic: from the last part of the run")],
         };
-        let common =
-            ["`failed` no result", "`–` no result yet, or no such job", "`a / b` several jobs at this point"];
-        own.iter().chain(&common).map(|entry| format!("- {entry}\n")).collect::<Vec<_>>().concat()
+        let common = [
+            ("failed", "no result"),
+            ("–", "no result yet, or no such job"),
+            ("a / b", "several jobs at this point"),
+        ];
+        own.iter().copied().chain(common)
     }
 
     fn result(self, record: &JobRecord) -> String {
@@ -76,9 +80,7 @@ pub fn markdown(rows: &[Row], quantity: Quantity) -> String {
 
 pub(super) fn markdown_of(layout: &Layout, quantity: Quantity) -> String {
     let mut parts = vec![constants(layout)];
-    let header: Vec<String> = std::iter::once(layout.axis_label().to_owned())
-        .chain(layout.mus.iter().map(|&mu| format!("μ = {}", value::rounded(mu))))
-        .collect();
+    let header = header(layout);
     for group in &layout.groups {
         if !group.key.is_empty() {
             parts.push(format!("### {}\n\n", markdown::escape(&group.caption())));
@@ -89,7 +91,10 @@ pub(super) fn markdown_of(layout: &Layout, quantity: Quantity) -> String {
         parts.push(markdown::table(&header, &lines, quantity != Quantity::Regime));
         parts.push("\n".to_owned());
     }
-    parts.push(quantity.legend());
+    parts.extend(quantity.legend().map(|(mark, meaning)| match mark {
+        "" => format!("- {meaning}\n"),
+        mark => format!("- `{mark}` {meaning}\n"),
+    }));
     parts.concat()
 }
 
@@ -122,8 +127,14 @@ pub(super) fn csv_of<W: Write>(layout: &Layout, quantity: Quantity, out: W) -> i
     writer.flush()
 }
 
+/// The heads of all columns.
+pub(super) fn header(layout: &Layout) -> Vec<String> {
+    let mus = layout.mus.iter().map(|&mu| format!("μ = {}", value::rounded(mu)));
+    std::iter::once(layout.axis_label().to_owned()).chain(mus).collect()
+}
+
 /// Each value along the axis with its cells, one per μ.
-fn lines<'a>(
+pub(super) fn lines<'a>(
     layout: &'a Layout,
     group: &'a Group,
     quantity: Quantity,
@@ -143,10 +154,6 @@ fn lines<'a>(
 }
 
 fn constants(layout: &Layout) -> String {
-    if layout.constants.is_empty() {
-        return String::new();
-    }
-    let words: Vec<String> =
-        layout.constants.iter().map(|(name, value)| value::assignment(name, value)).collect();
-    format!("In all jobs: {}.\n\n", markdown::escape(&words.join(", ")))
+    let words = layout.constants_in_words();
+    if words.is_empty() { words } else { format!("In all jobs: {}.\n\n", markdown::escape(&words)) }
 }

@@ -33,3 +33,4 @@ pub use eta::Eta;
 pub use interrupt::Interrupt;
 pub use options::WorkOptions;
 pub use progress::{Progress, RunningJob, SilentProgress, Snapshot};
+pub use provenance::program;

@@ -13,6 +13,11 @@ const COMMIT: &str = env!("TRIBOSWEEP_COMMIT");
 /// A hash of the sources it was built from: another one is another program, whatever its commit.
 pub(super) const SOURCES: &str = env!("TRIBOSWEEP_SOURCES");
 
+/// This program: its name, version and commit.
+pub fn program() -> String {
+    format!("tribosweep {VERSION}, commit {COMMIT}")
+}
+
 /// This process as a worker, with what its results are made with as JSON.
 pub fn worker(threads: usize) -> Worker {
     let mut worker = Worker::this_process(threads, VERSION, "");

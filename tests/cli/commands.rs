@@ -4,7 +4,7 @@ use std::path::Path;
 
 use serde_json::{Value, json};
 
-use crate::support::{Folder, HEADER, rows, small, stdout};
+use crate::support::{Folder, HEADER, long, rows, small, stdout};
 
 /// Protects: the progress of one and of all studies, as text and as JSON, before and after the work.
 #[test]
@@ -16,6 +16,7 @@ fn status_counts_jobs() {
     assert_eq!(
         folder.ok("status first"),
         "first: 2 jobs: 0 done, 0 failed, 0 running, 2 pending\n\
+         ░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░░ 0 %, no worker is running\n\
          μ \\ ω [rpm] 7\n        0.4 .\n        0.2 .\n. pending\n\
          continue with `tribosweep work`\n"
     );
@@ -36,6 +37,36 @@ fn status_counts_jobs() {
     assert_eq!(one["study"], "first");
     assert_eq!(one["jobs"], jobs(2, 2, 0));
     assert_eq!(one["failures"], json!([]));
+    assert_eq!(one["outlook"], json!(null), "nothing is left to wait for");
+}
+
+/// Protects: the time that is left is that of the workers that are there, and without one it is said that there is none;
+/// text and JSON have the same.
+#[test]
+fn status_looks_ahead() {
+    let folder = Folder::with("long", &long());
+    let working = folder.start("run long.json --threads 1");
+    // Some jobs are evidence enough.
+    folder.wait_for("long", |jobs| jobs["done"] >= 4);
+    let look = || -> Value { serde_json::from_str(&folder.ok("status long --json")).unwrap() };
+    let text = folder.ok("status long");
+    let status = look();
+    assert_eq!((&status["outlook"]["workers"], &status["outlook"]["worker_threads"]), (&json!(1), &json!(1)));
+    let remaining = &status["outlook"]["remaining_s"];
+    let (low, high) = (remaining["low"].as_f64().unwrap(), remaining["high"].as_f64().unwrap());
+    assert!(low >= 0.0 && low <= high && high > 0.0, "{status}");
+    assert!(text.contains("█") && text.contains(" left with 1 thread\n"), "{text}");
+    assert!(!text.contains('\u{1b}'), "no terminal, no colours");
+
+    working.signal("KILL");
+    working.end();
+    let status = look();
+    assert_eq!((&status["outlook"]["workers"], &status["outlook"]["worker_threads"]), (&json!(0), &json!(0)));
+    assert!(status["outlook"]["remaining_s"]["high"].as_f64().unwrap() > 0.0, "{status}");
+    let text = folder.ok("status long");
+    assert!(text.contains("no worker is running; it would take "), "{text}");
+    let share = status["outlook"]["ended_share"].as_f64().unwrap();
+    assert!(text.contains(&format!(" {:.0} %", (100.0 * share).floor())), "{text}");
 }
 
 /// Protects: jobs that were stopped by their time limit are named as such, because their figures are
@@ -101,9 +132,9 @@ fn report_writes_a_folder() {
     folder.ok("run mine.json --out first");
     assert!(folder.path("first/report.md").exists() && !folder.path("reports").exists());
     let printed = folder.ok("report mine.json --out deep/down");
-    assert_eq!(Path::new(printed.trim_end()), Path::new("deep/down/report.md"));
+    assert_eq!(Path::new(printed.trim_end()), Path::new("deep/down/report.html"));
     assert_eq!(folder.read("deep/down/report.md"), folder.read("first/report.md"));
-    assert_eq!(Path::new(folder.ok("report mine").trim_end()), Path::new("reports/mine/report.md"));
+    assert_eq!(Path::new(folder.ok("report mine").trim_end()), Path::new("reports/mine/report.html"));
     let mut files = folder.files();
     files.retain(|file| file.starts_with("reports"));
     assert!(files.len() >= 9, "{files:?}");

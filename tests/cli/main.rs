@@ -18,3 +18,4 @@ mod support;
 mod surroundings;
 mod sweep;
 mod upkeep;
+mod watch;

@@ -7,17 +7,28 @@ use serde_json::Value;
 use crate::support::{Folder, HEADER, rows, stderr, stdout};
 
 /// Every table and figure of a study over ω and μ.
-const REPORT: [&str; 10] = [
+const REPORT: [&str; 21] = [
+    "figure7.csv",
     "figure7.svg",
     "frequency.csv",
     "frequency.md",
     "frequency.svg",
+    "frequency_map.csv",
+    "frequency_map.svg",
     "jobs.csv",
     "mu_star.csv",
     "mu_star.md",
     "regime.csv",
     "regime.md",
+    "regime_map.csv",
+    "regime_map.svg",
+    "report.html",
     "report.md",
+    "residuals.csv",
+    "residuals.svg",
+    "run_times.csv",
+    "shares.csv",
+    "shares.svg",
 ];
 
 /// Protects: one command takes the shipped quick study from its file to the table of μ*, the files of the

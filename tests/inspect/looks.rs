@@ -3,7 +3,7 @@
 use crate::{coarse, look_into};
 use std::ops::ControlFlow;
 use tribosweep::analysis::{JobError, Outcome, Regime, Unobserved, solve};
-use tribosweep::inspect::{Look, LookError, Options, Place, Summary, write};
+use tribosweep::inspect::{Look, LookError, Options, Origin, Place, Summary, write};
 use tribosweep::solver::contact::ContactState;
 use tribosweep::spec::DiskKind;
 
@@ -140,7 +140,7 @@ fn stable_sliding_has_no_cycles() {
     );
     assert_eq!(summary.nodes[0].shares, [0.0, 1.0, 0.0]);
     let folder = tempfile::tempdir().unwrap();
-    let files = write(&look, folder.path(), "stable").unwrap();
+    let files = write(&look, folder.path(), &Origin::default()).unwrap();
     assert!(files.iter().all(|file| file.is_file()));
     let page = std::fs::read_to_string(folder.path().join("index.html")).unwrap();
     assert!(page.contains("no limit cycle"), "the page says so");

@@ -16,6 +16,9 @@ pub fn coarse() -> JobSpec {
 }
 
 /// Looks into a job.
+///
+/// # Panics
+/// If it cannot be done.
 pub fn look_into(spec: &JobSpec, options: &Options) -> Look {
     Look::into(spec, options, &mut |_| ControlFlow::Continue(())).unwrap()
 }

@@ -5,7 +5,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 use tribosweep::analysis::sample::NodeSample;
-use tribosweep::inspect::{Frame, Look, Options, write};
+use tribosweep::inspect::{Frame, Look, Options, Origin, write};
 use tribosweep::solver::contact::ContactState;
 use tribosweep::solver::stress;
 
@@ -152,7 +152,7 @@ fn assert_is_the_look(read: &Value, look: &Look) {
 fn readers_find_what_was_written() {
     let look = look_into(&coarse(), &Options { frames: 16, ..Options::default() });
     let folder = tempfile::tempdir().unwrap();
-    write(&look, folder.path(), "readers").unwrap();
+    write(&look, folder.path(), &Origin::default()).unwrap();
     let series = folder.path().join("fields.pvd");
     for (module, script) in [("vtk", WITH_VTK), ("meshio", WITH_MESHIO)] {
         if let Some(read) = read_with(module, script, &series) {

@@ -4,6 +4,7 @@ mod claims;
 mod exchange;
 mod migrate;
 mod open;
+mod outlook;
 mod read;
 mod recovery;
 mod scale;

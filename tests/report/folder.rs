@@ -1,23 +1,34 @@
 //! The report as a folder: all files, whole, and a page that says what is missing.
 
-use crate::synthetic::{failed, partial_study, periodic, row, with};
+use crate::synthetic::{failed, partial_study, periodic, report, row, with};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use tribosweep::publish::PublishError;
 use tribosweep::report::{Row, RowState, write};
 
-const FILES: [&str; 10] = [
+const FILES: [&str; 21] = [
+    "figure7.csv",
     "figure7.svg",
     "frequency.csv",
     "frequency.md",
     "frequency.svg",
+    "frequency_map.csv",
+    "frequency_map.svg",
     "jobs.csv",
     "mu_star.csv",
     "mu_star.md",
     "regime.csv",
     "regime.md",
+    "regime_map.csv",
+    "regime_map.svg",
+    "report.html",
     "report.md",
+    "residuals.csv",
+    "residuals.svg",
+    "run_times.csv",
+    "shares.csv",
+    "shares.svg",
 ];
 
 fn names(folder: &Path) -> BTreeSet<String> {
@@ -27,7 +38,7 @@ fn names(folder: &Path) -> BTreeSet<String> {
 
 fn page(rows: &[Row]) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    write(rows, folder.path(), "Reference").expect("the report is written");
+    write(&report(rows), folder.path()).expect("the report is written");
     fs::read_to_string(folder.path().join("report.md")).expect("the page is there")
 }
 
@@ -36,7 +47,7 @@ fn page(rows: &[Row]) -> String {
 fn writes_exactly_the_documented_files() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let inside = folder.path().join("new").join("deeper");
-    let written = write(&partial_study(), &inside, "Reference").expect("the report is written");
+    let written = write(&report(&partial_study()), &inside).expect("the report is written");
     let expected: BTreeSet<String> = FILES.map(str::to_owned).into();
     assert_eq!(names(&inside), expected);
     let returned: BTreeSet<String> = written
@@ -52,8 +63,8 @@ fn writes_exactly_the_documented_files() {
 fn an_existing_folder_is_updated() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     fs::write(folder.path().join("notes.txt"), "mine").expect("a file");
-    write(&[row(7.0, 0.4, RowState::Pending)], folder.path(), "Reference").expect("the first report");
-    write(&[row(7.0, 0.4, periodic(0.35))], folder.path(), "Reference").expect("the second report");
+    write(&report(&[row(7.0, 0.4, RowState::Pending)]), folder.path()).expect("the first report");
+    write(&report(&[row(7.0, 0.4, periodic(0.35))]), folder.path()).expect("the second report");
     let jobs = fs::read_to_string(folder.path().join("jobs.csv")).expect("the export");
     assert!(jobs.contains(",periodic,") && !jobs.contains(",pending,"), "{jobs}");
     assert_eq!(fs::read_to_string(folder.path().join("notes.txt")).expect("a file"), "mine");
@@ -91,9 +102,9 @@ fn the_page_links_every_file() {
         .flat_map(|side| partial_study().into_iter().map(move |row| with(row, "clamp_side", side)))
         .collect();
     let folder = tempfile::tempdir().expect("a temporary folder");
-    let written = write(&rows, folder.path(), "Reference").expect("the report is written");
+    let written = write(&report(&rows), folder.path()).expect("the report is written");
     let page = fs::read_to_string(folder.path().join("report.md")).expect("the page is there");
-    assert_eq!(written.len(), FILES.len() + 2, "two figures twice");
+    assert_eq!(written.len(), FILES.len() + 5, "five figures twice");
     for path in written.iter().filter(|path| !path.ends_with("report.md")) {
         let name = path.file_name().expect("a name").to_string_lossy();
         assert!(page.contains(&format!("]({name})")), "{name}");
@@ -134,7 +145,7 @@ fn an_error_names_the_path() {
     // A folder in the place of a file cannot be replaced by a file.
     let blocked = folder.path().join("jobs.csv");
     fs::create_dir(&blocked).expect("a folder");
-    let error = write(&partial_study(), folder.path(), "Reference").expect_err("jobs.csv is a folder");
+    let error = write(&report(&partial_study()), folder.path()).expect_err("jobs.csv is a folder");
     assert!(matches!(&error, PublishError::File { path, .. } if *path == blocked), "{error:?}");
     assert!(error.to_string().contains(&blocked.display().to_string()), "{error}");
     assert!(
@@ -144,6 +155,6 @@ fn an_error_names_the_path() {
     );
 
     let file = folder.path().join("mu_star.md");
-    let error = write(&[], &file, "Reference").expect_err("a file is not a folder");
+    let error = write(&report(&[]), &file).expect_err("a file is not a folder");
     assert!(matches!(&error, PublishError::Folder { path, .. } if *path == file), "{error:?}");
 }

@@ -1,8 +1,13 @@
 //! Reports from made-up records: what a reader or a program finds in the files.
 
+mod browser;
+#[path = "../support/browser.rs"]
+mod chromium;
 mod export;
 mod figure;
 mod folder;
+mod html;
+mod maps;
 mod overview;
 mod pareto;
 mod svg;

@@ -2,7 +2,12 @@
 
 use serde_json::Value;
 use tribosweep::analysis::{EnergyTotals, JobRecord, Outcome, Regime};
-use tribosweep::report::{Row, RowState};
+use tribosweep::report::{Report, Row, RowState};
+
+/// The report of these rows, of which nothing else is known.
+pub fn report(rows: &[Row]) -> Report<'_> {
+    Report { title: "Reference", rows, origin: None, written_ms: 0, refresh_s: None }
+}
 
 pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
     JobRecord {

@@ -44,7 +44,7 @@ fn all_loops(look: &Look) -> Panel {
             _ if j == ny / 2 => Some("middle".to_owned()),
             _ => None,
         };
-        let colour = palette::sequence(j as f64 / ny as f64);
+        let colour = palette::sequential(j as f64 / ny as f64);
         Series { label, colour, stroke: Stroke::Fine, right: false, points }
     };
     let series: Vec<Series> = (0..=ny).map(across).collect();
@@ -131,7 +131,7 @@ pub fn waves(look: &Look) -> Panel {
     });
     panel.series = vec![Series {
         label: Some("largest stress".to_owned()),
-        colour: palette::BLACK,
+        colour: plotters::style::BLACK,
         stroke: Stroke::Dots,
         right: false,
         points: peaks.collect(),

@@ -25,7 +25,7 @@ fn velocity(steps: &[NodeStep], since: impl Fn(f64) -> f64) -> (Series, Scale) {
         steps.iter().map(|step| (since(step.time_s), step.node.y_velocity_m_s * MILLI)).collect();
     let scale = Scale::spanning("velocity in y [mm/s]", points.iter().map(|point| point.1), 1.0);
     let label = Some("velocity in y (right)".to_owned());
-    (Series { label, colour: palette::BLACK, stroke: Stroke::Fine, right: true, points }, scale)
+    (Series { label, colour: plotters::style::BLACK, stroke: Stroke::Fine, right: true, points }, scale)
 }
 
 fn disk(observed: &Observed, right: bool) -> Level {

@@ -3,13 +3,13 @@
 use super::{MICRO, drawn_as};
 use crate::inspect::capture::Frame;
 use crate::inspect::look::Look;
-use crate::publish::plot::{Area, FigureError, MARGIN, TEXT, drawn, palette, write};
+use crate::publish::plot::canvas::{Area, WIDTH, sheet, write};
+use crate::publish::plot::{FigureError, MARGIN, TEXT};
 use crate::solver::contact::ContactState;
 use plotters::element::{Circle, PathElement, Polygon};
 use plotters::style::text_anchor::HPos;
-use plotters::style::{Color, RGBColor};
+use plotters::style::{BLACK, Color, RGBColor};
 
-const WIDTH: u32 = 1800;
 const ROW: u32 = 720;
 /// Room for the title, and for arrows that point out of the pin.
 const TITLE: i32 = 110;
@@ -33,14 +33,15 @@ struct Snapshot<'a> {
 pub fn draw(look: &Look) -> Result<String, FigureError> {
     let snapshots = snapshots(look);
     let scales = Scales::of(look, &snapshots);
-    drawn((WIDTH, ROW * snapshots.len() as u32 + FOOT), |root| {
+    sheet((WIDTH, ROW * snapshots.len() as u32 + FOOT), |root| {
         let mut rest = root.clone();
         for snapshot in &snapshots {
             let (row, below) = rest.split_vertically(ROW);
             draw_row(&row, look, snapshot, &scales)?;
             rest = below;
         }
-        draw_legend(&rest, &scales)
+        draw_legend(&rest, &scales)?;
+        Ok(Vec::new())
     })
 }
 
@@ -164,7 +165,7 @@ fn draw_side(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result
             let v = &frame.velocity_m_s[3 * node..3 * node + 3];
             let from = pixel(y, z);
             let to = (from.0 + v[1] * scales.px_per_m_s, from.1 - v[2] * scales.px_per_m_s);
-            arrow(area, from, to, palette::BLACK, 2)?;
+            arrow(area, from, to, BLACK, 2)?;
         }
     }
     for j in 0..=ny {
@@ -208,7 +209,7 @@ fn draw_face(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result
             let [sideways, along, _] = node.force_n;
             let scale = scales.px_per_friction_n;
             let to = (from.0 + along * scale, from.1 - sideways * scale);
-            arrow(area, from, to, palette::BLACK, 3)?;
+            arrow(area, from, to, BLACK, 3)?;
         }
     }
     Ok(())
@@ -264,11 +265,11 @@ fn draw_legend(area: &Area, scales: &Scales) -> Result<(), FigureError> {
         write(area, text, ((x + length) as i32 + 24, 95), TEXT, HPos::Left)
     };
     let text = format!("velocity {:.0} mm/s", scales.speed_m_s * 1e3);
-    scale(f64::from(MARGIN), scales.speed_m_s * scales.px_per_m_s, palette::BLACK, 2, &text)?;
+    scale(f64::from(MARGIN), scales.speed_m_s * scales.px_per_m_s, BLACK, 2, &text)?;
     let text = format!("contact force {:.2} N", scales.force_n);
     scale(540.0, scales.force_n * scales.px_per_n, drawn_as(ContactState::Slip).1, 3, &text)?;
     let text = format!("friction, from above, {:.3} N", scales.friction_n);
-    scale(1140.0, scales.friction_n * scales.px_per_friction_n, palette::BLACK, 3, &text)
+    scale(1140.0, scales.friction_n * scales.px_per_friction_n, BLACK, 3, &text)
 }
 
 fn rounded((x, y): (f64, f64)) -> (i32, i32) {

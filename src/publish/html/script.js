@@ -1,5 +1,6 @@
-// The tooltip of figures. What it says is what the browser would show by itself, later: the titles of the shapes in
-// every drawing's group "hits". Arrow keys go from one to the next.
+// Boxes that scroll show whether there is more to the right, and figures have a tooltip. What it says is what the
+// browser would show by itself, later: the titles of the shapes in every drawing's group "hits". Arrow keys go from one
+// to the next.
 "use strict";
 (() => {
   const tip = document.createElement("div");
@@ -15,6 +16,18 @@
     tip.hidden = true;
   };
 
+  // Above the shape if there is room, below it otherwise.
+  const place = () => {
+    if (!chosen) return;
+    const at = chosen.getBoundingClientRect();
+    const own = tip.getBoundingClientRect();
+    const width = document.documentElement.clientWidth;
+    const left = Math.min(Math.max(at.left + at.width / 2 - own.width / 2, 4), width - own.width - 4);
+    const above = at.top - own.height - 8;
+    tip.style.left = left + "px";
+    tip.style.top = (above > 4 ? above : at.bottom + 8) + "px";
+  };
+
   const show = (hit) => {
     if (hit === chosen) return;
     hide();
@@ -22,13 +35,7 @@
     hit.classList.add("chosen");
     tip.textContent = hit.getAttribute("aria-label");
     tip.hidden = false;
-    const at = hit.getBoundingClientRect();
-    const own = tip.getBoundingClientRect();
-    const width = document.documentElement.clientWidth;
-    const left = Math.min(Math.max(at.left + at.width / 2 - own.width / 2, 4), width - own.width - 4);
-    const above = at.top - own.height - 8;
-    tip.style.left = left + "px";
-    tip.style.top = (above > 4 ? above : at.bottom + 8) + "px";
+    place();
   };
 
   for (const group of document.querySelectorAll("svg .hits")) {
@@ -61,6 +68,14 @@
       next.focus();
     });
   }
+  for (const box of document.querySelectorAll(".scroll")) {
+    const look = () => box.classList.toggle("more", box.scrollLeft + box.clientWidth < box.scrollWidth - 2);
+    box.addEventListener("scroll", look, { passive: true });
+    new ResizeObserver(look).observe(box);
+  }
+
   document.addEventListener("pointerdown", (event) => { if (!event.target.closest(".hits")) hide(); });
-  document.addEventListener("scroll", hide, { capture: true, passive: true });
+  // What is focused is scrolled into sight.
+  document.addEventListener("scroll", place, { capture: true, passive: true });
+  window.addEventListener("resize", place);
 })();

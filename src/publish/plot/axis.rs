@@ -80,6 +80,11 @@ impl Axis {
         }
     }
 
+    /// Where its ticks are, and what is written at them.
+    pub fn marks(&self) -> Vec<(f64, String)> {
+        self.ticks().into_iter().map(|tick| (tick, self.label(tick))).collect()
+    }
+
     /// The longest tick label, in characters.
     pub fn longest_label(&self) -> usize {
         self.ticks().into_iter().map(|tick| self.label(tick).chars().count()).max().unwrap_or(0)

@@ -1,15 +1,13 @@
 //! Panels one above the other: curves over bands, marks and levels, with a legend beside each.
 
 use super::axis::Axis;
-use super::{Area, CURVE_WIDTH, DASH, FONT, FigureError, GRID, GUIDE_WIDTH, MARGIN, TEXT};
-use plotters::chart::{ChartBuilder, ChartContext, LabelAreaPosition};
-use plotters::coord::cartesian::Cartesian2d;
-use plotters::prelude::{BLACK, Circle, DashedLineSeries, PathElement, RGBColor, Rectangle, SVGBackend};
+use super::canvas::{self, Area, Chart, WIDTH, write};
+use super::{CURVE_WIDTH, DASH, FONT, FigureError, GRID, GUIDE_WIDTH, MARGIN, TEXT};
+use plotters::chart::{ChartBuilder, LabelAreaPosition};
+use plotters::prelude::{BLACK, Circle, DashedLineSeries, PathElement, RGBColor, Rectangle};
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color, ShapeStyle};
 
-/// Width of a figure [px], twice what it is shown at.
-const WIDTH: u32 = 1800;
 const LEGEND_WIDTH: u32 = 400;
 const TITLE_HEIGHT: u32 = 60;
 const X_LABELS: u32 = 100;
@@ -169,28 +167,26 @@ impl Panel {
     }
 }
 
-type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
-
 /// Draws panels one above the other as SVG.
 ///
 /// # Errors
 /// The drawing library's; drawing into a string gives it no reason to fail.
 pub fn stack(panels: &[Panel]) -> Result<String, FigureError> {
     let height = panels.iter().map(|panel| panel.height + TITLE_HEIGHT).sum();
-    super::drawn((WIDTH, height), |root| {
+    canvas::sheet((WIDTH, height), |root| {
         let mut rest = root.clone();
         for panel in panels {
             let (here, below) = rest.split_vertically(panel.height + TITLE_HEIGHT);
             draw(&here, panel)?;
             rest = below;
         }
-        Ok(())
+        Ok(Vec::new())
     })
 }
 
 fn draw(area: &Area, panel: &Panel) -> Result<(), FigureError> {
     let (title, below) = area.split_vertically(TITLE_HEIGHT);
-    super::write(&title, &panel.title, (MARGIN, TITLE_HEIGHT as i32 * 2 / 3), TEXT + 2, HPos::Left)?;
+    write(&title, &panel.title, (MARGIN, TITLE_HEIGHT as i32 * 2 / 3), TEXT + 2, HPos::Left)?;
     let (left, legend) = below.split_horizontally(WIDTH - LEGEND_WIDTH);
     let labelled = panel.marks.iter().any(|mark| !mark.label.is_empty());
     let top = if labelled { 2 * MARK_ROW + MARGIN / 4 } else { MARGIN / 2 };
@@ -332,7 +328,7 @@ fn draw_marks(area: &Area, chart: &Chart, panel: &Panel) -> Result<(), FigureErr
             let row = usize::from(x - half < taken[0]);
             taken[row] = x + half + 8;
             let y = high - top - MARK_ROW / 2 - row as i32 * MARK_ROW;
-            super::write(area, &mark.label, (x, y), TEXT, HPos::Center)?;
+            write(area, &mark.label, (x, y), TEXT, HPos::Center)?;
         }
     }
     Ok(())
@@ -343,7 +339,7 @@ fn draw_legend(area: &Area, panel: &Panel) -> Result<(), FigureError> {
     let beside = SAMPLE + 16;
     let mut line = |area: &Area, label: &str, sample: &dyn Fn(i32) -> Result<(), FigureError>| {
         sample(y)?;
-        super::write(area, label, (beside, y), TEXT - 2, HPos::Left)?;
+        write(area, label, (beside, y), TEXT - 2, HPos::Left)?;
         y += PITCH;
         Ok::<(), FigureError>(())
     };

@@ -1,12 +1,17 @@
 //! The points of a figure.
 
-use super::Plot;
+use super::Ordinate;
 use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::publish::plot::axis::Axis;
 use crate::report::layout::{Group, Layout};
+use crate::report::row::Row;
+use serde_json::Value;
 
 /// One job's result in a figure.
-pub(super) struct Point {
+pub(super) struct Point<'a> {
+    pub row: &'a Row,
+    /// The value along the axis, and where that is.
+    pub at: &'a Value,
     pub x: f64,
     pub y: f64,
     /// Standard error of `y`; 0 where none is known.
@@ -16,22 +21,22 @@ pub(super) struct Point {
 }
 
 /// All results for one friction coefficient.
-pub(super) struct Curve {
+pub(super) struct Curve<'a> {
     pub mu: f64,
     /// Results from left to right.
-    pub points: Vec<Point>,
+    pub points: Vec<Point<'a>>,
     /// Stretches to be joined by a line.
     pub stretches: Vec<Vec<(f64, f64)>>,
 }
 
 /// One curve per μ of the study, also where this group has no results: colours and legend stay the
 /// same in all its figures.
-pub(super) fn curves(layout: &Layout, group: &Group, plot: Plot, x_axis: &Axis) -> Vec<Curve> {
+pub(super) fn curves<'a>(layout: &Layout, group: &'a Group, plot: Ordinate, x_axis: &Axis) -> Vec<Curve<'a>> {
     let at: Vec<Option<f64>> = group.axis_values.iter().map(|value| x_axis.place(value)).collect();
-    let mut results: Vec<Vec<(f64, &JobRecord)>> = vec![Vec::new(); layout.mus.len()];
+    let mut results: Vec<Vec<Found>> = vec![Vec::new(); layout.mus.len()];
     for job in &group.jobs {
         if let (Some(x), Some(record)) = (at[job.at], job.row.record()) {
-            results[job.mu].push((x, record));
+            results[job.mu].push(Found { x, at: &group.axis_values[job.at], row: job.row, record });
         }
     }
     layout
@@ -39,34 +44,43 @@ pub(super) fn curves(layout: &Layout, group: &Group, plot: Plot, x_axis: &Axis) 
         .iter()
         .zip(results)
         .map(|(&mu, mut results)| {
-            results.sort_by(|a, b| a.0.total_cmp(&b.0));
-            let points = results.iter().filter_map(|&(x, record)| point(plot, x, record)).collect();
+            results.sort_by(|a, b| a.x.total_cmp(&b.x));
+            let points = results.iter().filter_map(|found| point(plot, found)).collect();
             Curve { mu, points, stretches: stretches(plot, &results) }
         })
         .collect()
 }
 
-fn point(plot: Plot, x: f64, record: &JobRecord) -> Option<Point> {
+/// A job with a result, and where it is.
+#[derive(Clone, Copy)]
+struct Found<'a> {
+    x: f64,
+    at: &'a Value,
+    row: &'a Row,
+    record: &'a JobRecord,
+}
+
+fn point<'a>(plot: Ordinate, found: &Found<'a>) -> Option<Point<'a>> {
+    let Found { x, at, row, record } = *found;
     let (y, error) = match plot {
-        Plot::MuStar => (record.mu_star, record.mu_star_se),
-        Plot::Frequency => (record.frequency_hz?, 0.0),
+        Ordinate::MuStar => (record.mu_star, record.mu_star_se),
+        Ordinate::Frequency => (record.frequency_hz?, 0.0),
     };
     let error = if error.is_finite() { error.abs() } else { 0.0 };
     let periodic = record.outcome != Outcome::NotPeriodic;
-    y.is_finite().then_some(Point { x, y, error, regime: record.regime, periodic })
+    y.is_finite().then_some(Point { row, at, x, y, error, regime: record.regime, periodic })
 }
 
 /// Joins neighbours; jobs at the same place by their mean. A job that is done but has no value (no
 /// oscillation, hence no frequency) ends a stretch: a line across it would claim one.
-fn stretches(plot: Plot, results: &[(f64, &JobRecord)]) -> Vec<Vec<(f64, f64)>> {
+fn stretches(plot: Ordinate, results: &[Found]) -> Vec<Vec<(f64, f64)>> {
     let mut stretches = vec![Vec::new()];
-    for here in results.chunk_by(|a, b| a.0 == b.0) {
-        let values: Vec<f64> =
-            here.iter().filter_map(|&(x, record)| Some(point(plot, x, record)?.y)).collect();
+    for here in results.chunk_by(|a, b| a.x == b.x) {
+        let values: Vec<f64> = here.iter().filter_map(|found| Some(point(plot, found)?.y)).collect();
         if values.is_empty() {
             stretches.push(Vec::new());
         } else if let Some(stretch) = stretches.last_mut() {
-            stretch.push((here[0].0, values.iter().sum::<f64>() / values.len() as f64));
+            stretch.push((here[0].x, values.iter().sum::<f64>() / values.len() as f64));
         }
     }
     stretches.retain(|stretch| stretch.len() > 1);

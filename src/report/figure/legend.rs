@@ -1,15 +1,16 @@
 //! The legend in the strip beside the plot: friction coefficients by colour, regimes by shape.
 
-use super::Plot;
+use super::Ordinate;
 use super::data::Curve;
-use super::marker::{self, regime_label};
+use super::marker;
 use crate::analysis::Regime;
+use crate::publish::plot::canvas::{self, Area};
 use crate::publish::plot::{self, FigureError, palette};
 use crate::publish::value;
-use plotters::coord::Shift;
-use plotters::prelude::{BLACK, DrawingArea, PathElement, RGBColor, SVGBackend, Text};
-use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, IntoFont, TextStyle};
+use crate::report::sign::regime_label;
+use plotters::prelude::{BLACK, PathElement, RGBColor};
+use plotters::style::Color;
+use plotters::style::text_anchor::HPos;
 
 const REGIMES: [Regime; 5] = [
     Regime::Stable,
@@ -31,11 +32,7 @@ enum Entry {
 }
 
 /// Draws the legend into its strip.
-pub(super) fn draw(
-    area: &DrawingArea<SVGBackend, Shift>,
-    curves: &[Curve],
-    plot: Plot,
-) -> Result<(), FigureError> {
+pub(super) fn draw(area: &Area, curves: &[Curve], plot: Ordinate) -> Result<(), FigureError> {
     let entries = entries(curves, plot);
     let room = area.dim_in_pixel().1 as i32 - 2 * plot::MARGIN;
     let pitch = (room / entries.len().max(1) as i32).min(46);
@@ -47,11 +44,11 @@ pub(super) fn draw(
     Ok(())
 }
 
-fn entries(curves: &[Curve], plot: Plot) -> Vec<Entry> {
+fn entries(curves: &[Curve], plot: Ordinate) -> Vec<Entry> {
     let mut entries = vec![Entry::Heading("local friction coefficient μ")];
     let colour = |index| palette::colour(index, curves.len());
     entries.extend(curves.iter().enumerate().map(|(i, curve)| Entry::Curve(colour(i), curve.mu)));
-    if plot == Plot::MuStar {
+    if plot == Ordinate::MuStar {
         entries.push(Entry::Guide);
     }
     let points = || curves.iter().flat_map(|curve| &curve.points);
@@ -71,34 +68,26 @@ fn entries(curves: &[Curve], plot: Plot) -> Vec<Entry> {
     entries
 }
 
-fn draw_entry(
-    area: &DrawingArea<SVGBackend, Shift>,
-    entry: &Entry,
-    y: i32,
-    size: i32,
-) -> Result<(), FigureError> {
-    let text = |text: String, x: i32| {
-        let style = TextStyle::from((plot::FONT, size).into_font()).pos(Pos::new(HPos::Left, VPos::Center));
-        area.draw(&Text::new(text, (x, y), style))
-    };
+fn draw_entry(area: &Area, entry: &Entry, y: i32, size: i32) -> Result<(), FigureError> {
+    let text = |text: &str, x: i32| canvas::write(area, text, (x, y), size, HPos::Left);
     let beside = SAMPLE + 18;
     match *entry {
         Entry::Space => Ok(()),
-        Entry::Heading(heading) => text(heading.to_owned(), 0),
+        Entry::Heading(heading) => text(heading, 0),
         Entry::Curve(colour, mu) => {
             area.draw(&PathElement::new([(0, y), (SAMPLE, y)], colour.stroke_width(plot::CURVE_WIDTH)))?;
-            text(value::rounded(mu), beside)
+            text(&value::rounded(mu), beside)
         }
         Entry::Guide => {
             for x in (0..SAMPLE).step_by(plot::DASH as usize * 2) {
                 let dash = [(x, y), ((x + plot::DASH).min(SAMPLE), y)];
                 area.draw(&PathElement::new(dash, BLACK.stroke_width(plot::GUIDE_WIDTH)))?;
             }
-            text("μ* = μ".to_owned(), beside)
+            text("μ* = μ", beside)
         }
         Entry::Marker(regime, periodic, label) => {
             marker::draw(area, (SAMPLE / 2, y), regime, periodic, GREY)?;
-            text(label.to_owned(), beside)
+            text(label, beside)
         }
     }
 }

@@ -2,28 +2,17 @@
 
 use crate::analysis::Regime;
 use crate::publish::plot::FigureError;
-use plotters::coord::Shift;
-use plotters::prelude::{Circle, DrawingArea, Polygon, RGBColor, SVGBackend, WHITE};
+use crate::publish::plot::canvas::Area;
+use plotters::prelude::{Circle, Polygon, RGBColor, WHITE};
 
 /// Radius of a circle marker [px].
 pub(super) const RADIUS: i32 = 11;
 /// What is cut out of a hollow marker, as a share of it.
 const HOLE: f64 = 0.58;
 
-/// The regime as a reader's text.
-pub(super) fn regime_label(regime: Regime) -> &'static str {
-    match regime {
-        Regime::Stable => "stable",
-        Regime::StickSlip => "stick–slip",
-        Regime::StickSlipSeparation => "stick–slip–separation",
-        Regime::SlipSeparation => "slip–separation",
-        Regime::Undecided => "undecided",
-    }
-}
-
 /// Draws one marker: one shape in `colour`, and a white one on it if hollow.
 pub(super) fn draw(
-    area: &DrawingArea<SVGBackend, Shift>,
+    area: &Area,
     at: (i32, i32),
     regime: Regime,
     periodic: bool,
@@ -47,7 +36,7 @@ fn corners(regime: Regime) -> &'static [(f64, f64)] {
 }
 
 fn shape(
-    area: &DrawingArea<SVGBackend, Shift>,
+    area: &Area,
     (x, y): (i32, i32),
     regime: Regime,
     scale: f64,

@@ -1,11 +1,15 @@
-//! Figure 7 and its companion: μ* and frequency against disk speed, one curve per μ, as SVG.
+//! Figure 7 and its companions, as SVG: curves against disk speed, maps over speed and friction, shares, residuals.
 
 #![expect(clippy::cast_possible_wrap, reason = "pixels and legend lines: thousands, not billions")]
 
 mod chart;
 mod data;
+mod key;
 mod legend;
+mod map;
 mod marker;
+pub(super) mod residuals;
+mod shares;
 
 use super::layout::{Group, Layout};
 use super::row::Row;
@@ -13,13 +17,86 @@ use crate::publish::plot::FigureError;
 use crate::publish::value;
 use std::collections::HashSet;
 
-/// What a figure shows over the disk speed.
+/// What a figure shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Plot {
-    /// Macroscopic friction coefficient μ*, with μ itself as a guide.
+    /// Macroscopic friction coefficient μ* over the disk speed, with μ itself as a guide.
     MuStar,
-    /// Frequency of the limit cycle.
+    /// Frequency of the limit cycle over the disk speed.
     Frequency,
+    /// Contact regimes over disk speed and friction coefficient.
+    RegimeMap,
+    /// Frequencies over disk speed and friction coefficient.
+    FrequencyMap,
+    /// Shares of stick, slip and separation over the disk speed, for each friction coefficient.
+    Shares,
+}
+
+/// What is behind figures, as a file.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Data {
+    /// What the file is called.
+    pub stem: &'static str,
+    /// Which fields of the export are in it besides the parameters and how a job ended.
+    pub columns: &'static [&'static str],
+}
+
+/// What is behind the figure of residuals.
+pub(super) const RESIDUALS: Data =
+    Data { stem: "residuals", columns: &["energy_residual", "identity_residual"] };
+/// What is behind the statistics of run times.
+pub(super) const RUN_TIMES: Data =
+    Data { stem: "run_times", columns: &["wall_s", "steps", "simulated_s", "time_step_s"] };
+
+/// What curves show over the disk speed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Ordinate {
+    MuStar,
+    Frequency,
+}
+
+impl Plot {
+    /// All of them.
+    pub const ALL: [Self; 5] =
+        [Self::MuStar, Self::Frequency, Self::RegimeMap, Self::FrequencyMap, Self::Shares];
+
+    /// What its files are called.
+    pub fn stem(self) -> &'static str {
+        match self {
+            Self::MuStar => "figure7",
+            Self::Frequency => "frequency",
+            Self::RegimeMap => "regime_map",
+            Self::FrequencyMap => "frequency_map",
+            Self::Shares => "shares",
+        }
+    }
+
+    /// The file with the data behind it and the fields of the export that are in it.
+    pub(super) fn data(self) -> Data {
+        match self {
+            Self::MuStar => {
+                Data { stem: "figure7", columns: &["mu_star", "mu_star_se", "mu_star_contact", "regime"] }
+            }
+            Self::Frequency | Self::FrequencyMap => {
+                Data { stem: "frequency_map", columns: &["frequency_hz", "regime"] }
+            }
+            Self::RegimeMap => Data { stem: "regime_map", columns: &["regime", "error"] },
+            Self::Shares => {
+                Data { stem: "shares", columns: &["stick_share", "slip_share", "separated_share", "regime"] }
+            }
+        }
+    }
+
+    /// What it shows, in words.
+    pub fn title(self) -> &'static str {
+        match self {
+            Self::MuStar => "macroscopic friction coefficient μ*",
+            Self::Frequency => "frequency",
+            Self::RegimeMap => "contact regimes",
+            Self::FrequencyMap => "map of frequencies",
+            Self::Shares => "shares of stick, slip and separation",
+        }
+    }
 }
 
 /// One figure: the jobs with one combination of the further parameters.
@@ -44,7 +121,13 @@ pub fn figures(rows: &[Row], plot: Plot) -> Result<Vec<Figure>, FigureError> {
 pub(super) fn figures_of(layout: &Layout, plot: Plot) -> Result<Vec<Figure>, FigureError> {
     let mut taken = HashSet::new();
     let draw = |group: &Group| {
-        let svg = chart::draw(layout, group, plot)?;
+        let svg = match plot {
+            Plot::MuStar => chart::draw(layout, group, Ordinate::MuStar),
+            Plot::Frequency => chart::draw(layout, group, Ordinate::Frequency),
+            Plot::RegimeMap => map::regimes(layout, group),
+            Plot::FrequencyMap => map::frequencies(layout, group),
+            Plot::Shares => shares::draw(layout, group),
+        }?;
         Ok(Figure { suffix: free_suffix(group, &mut taken), caption: group.caption(), svg })
     };
     layout.groups.iter().map(draw).collect()

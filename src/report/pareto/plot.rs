@@ -5,19 +5,15 @@
 use super::case::Case;
 use super::page::figure_title;
 use crate::publish::plot::axis::Axis;
-use crate::publish::plot::{
-    Area, DASH, FONT, FigureError, GRID, MARGIN, TEXT, drawn, fitting, palette, write,
-};
+use crate::publish::plot::canvas::{self, Area, X_LABELS, write};
+use crate::publish::plot::{DASH, FONT, FigureError, GRID, MARGIN, TEXT, palette};
 use plotters::chart::ChartBuilder;
 use plotters::prelude::{BLACK, Circle, DashedLineSeries, PathElement, Polygon, RGBColor, WHITE};
 use plotters::style::Color;
 use plotters::style::text_anchor::HPos;
 use serde_json::Value;
 
-const SIZE: (u32, u32) = (1800, 1120);
 const LEGEND_WIDTH: u32 = 440;
-const CAPTION_HEIGHT: u32 = 64;
-const X_LABELS: u32 = 104;
 const Y_LABELS: u32 = 170;
 const RADIUS: i32 = 12;
 const GREY: RGBColor = RGBColor(0x50, 0x50, 0x50);
@@ -36,14 +32,12 @@ struct Point {
 pub(super) fn draw(case: &Case) -> Result<String, FigureError> {
     let meshes = meshes(case);
     let points = points(case, &meshes);
-    drawn(SIZE, |root| {
-        let (top, below) = root.split_vertically(CAPTION_HEIGHT);
-        let size = fitting(case.caption.chars().count(), SIZE.0 as i32 - 2 * MARGIN);
-        let middle = (SIZE.0 as i32 / 2, CAPTION_HEIGHT as i32 * 2 / 3);
-        write(&top, &case.caption, middle, size, HPos::Center)?;
-        let (left, right) = below.split_horizontally(SIZE.0 - LEGEND_WIDTH);
+    canvas::sheet((canvas::WIDTH, canvas::HEIGHT), |root| {
+        let below = canvas::caption(root, &case.caption)?;
+        let (left, right) = below.split_horizontally(canvas::WIDTH - LEGEND_WIDTH);
         draw_plot(&left, &points)?;
-        draw_legend(&right, &meshes, &points)
+        draw_legend(&right, &meshes, &points)?;
+        Ok(Vec::new())
     })
 }
 

@@ -1,0 +1,119 @@
+//! What all drawings have in common: the sheet, text on it, a caption, a frame.
+
+#![expect(clippy::cast_possible_wrap, reason = "pixels and characters: thousands, not billions")]
+
+use super::axis::Axis;
+use super::hits::{self, Hit};
+use super::{FONT, FigureError, MARGIN, TEXT};
+use plotters::chart::ChartContext;
+use plotters::coord::Shift;
+use plotters::coord::cartesian::Cartesian2d;
+use plotters::prelude::{
+    BLACK, DrawingArea, IntoDrawingArea, PathElement, RGBColor, Rectangle, SVGBackend, Text, WHITE,
+};
+use plotters::style::text_anchor::{HPos, Pos, VPos};
+use plotters::style::{Color, IntoFont};
+
+/// A part of a sheet.
+pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
+/// A part of a sheet with two axes.
+pub type Chart<'a, 'b> = ChartContext<'a, SVGBackend<'b>, Cartesian2d<Axis, Axis>>;
+
+/// Width of a sheet with a legend beside the plot [px].
+pub const WIDTH: u32 = 1800;
+/// Its usual height [px].
+pub const HEIGHT: u32 = 1120;
+/// Height of a caption [px].
+const CAPTION_HEIGHT: u32 = 64;
+/// Height of the labels below an abscissa, with its name [px].
+pub const X_LABELS: u32 = 104;
+
+/// Draws on a white sheet of so many pixels, shown at half that size, and adds the points that `draw` tells of.
+///
+/// # Errors
+/// The drawing library's; drawing into a string gives it no reason to fail.
+pub fn sheet(
+    size: (u32, u32),
+    draw: impl FnOnce(&Area) -> Result<Vec<Hit>, FigureError>,
+) -> Result<String, FigureError> {
+    let mut svg = String::new();
+    let points = {
+        let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
+        root.fill(&WHITE)?;
+        let points = draw(&root)?;
+        root.present()?;
+        points
+    };
+    let as_text = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
+    let svg = svg.replacen(&as_text(size.0, size.1), &as_text(size.0 / 2, size.1 / 2), 1);
+    Ok(hits::append(&svg, &points))
+}
+
+/// Height of the caption of these words [px]: none if there are no words.
+pub fn caption_height(words: &str) -> u32 {
+    if words.is_empty() { 0 } else { CAPTION_HEIGHT }
+}
+
+/// Draws the caption on top, if there are words for it, and returns what is left below.
+///
+/// # Errors
+/// As [`sheet`].
+pub fn caption<'a>(root: &Area<'a>, words: &str) -> Result<Area<'a>, FigureError> {
+    if words.is_empty() {
+        return Ok(root.clone());
+    }
+    let (top, below) = root.split_vertically(CAPTION_HEIGHT);
+    let width = root.dim_in_pixel().0 as i32;
+    let size = fitting(words.chars().count(), width - 2 * MARGIN);
+    write(&top, words, (width / 2, CAPTION_HEIGHT as i32 * 2 / 3), size, HPos::Center)?;
+    Ok(below)
+}
+
+/// Writes one line of black text at the height of `at`.
+///
+/// # Errors
+/// As [`sheet`].
+pub fn write(area: &Area, text: &str, at: (i32, i32), size: i32, anchor: HPos) -> Result<(), FigureError> {
+    write_in(area, text, at, size, anchor, BLACK)
+}
+
+/// As [`write`], in a colour.
+///
+/// # Errors
+/// As [`sheet`].
+pub fn write_in(
+    area: &Area,
+    text: &str,
+    at: (i32, i32),
+    size: i32,
+    anchor: HPos,
+    colour: RGBColor,
+) -> Result<(), FigureError> {
+    // XML has no place for control characters.
+    let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    let style = (FONT, size).into_font().color(&colour).pos(Pos::new(anchor, VPos::Center));
+    area.draw(&Text::new(text, at, style))
+}
+
+/// The size at which text of this length stays within `room`: a character is about half as wide as high.
+pub fn fitting(characters: usize, room: i32) -> i32 {
+    (room * 2 / characters.max(1) as i32).clamp(8, TEXT)
+}
+
+/// Closes the frame that the two axes of a chart begin.
+///
+/// # Errors
+/// As [`sheet`].
+pub fn frame(chart: &Chart) -> Result<(), FigureError> {
+    let area = chart.plotting_area().strip_coord_spec();
+    let (right, bottom) = (area.dim_in_pixel().0 as i32 - 1, area.dim_in_pixel().1 as i32 - 1);
+    area.draw(&PathElement::new([(0, 0), (right, 0), (right, bottom)], BLACK.stroke_width(2)))
+}
+
+/// Fills a cell from its upper left to its lower right corner.
+///
+/// # Errors
+/// As [`sheet`].
+pub fn cell(area: &Area, from: (i32, i32), to: (i32, i32), colour: RGBColor) -> Result<(), FigureError> {
+    area.draw(&Rectangle::new([from, to], colour.filled()))
+}

@@ -1,0 +1,19 @@
+use super::{Queue, QueueError, studies};
+
+const STARTS: &str = "
+    SELECT COALESCE(SUM(j.attempt), 0)
+    FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = ?1) AS m
+    JOIN jobs AS j ON j.id = m.job_id";
+
+impl Queue {
+    /// How many times jobs of a study were started. It never falls while the study is the same: with the counts by state
+    /// it tells whether anything has changed, without reading results.
+    ///
+    /// # Errors
+    /// [`QueueError::UnknownStudy`], or if the database cannot be read.
+    pub async fn starts(&mut self, study: &str) -> Result<u64, QueueError> {
+        let study_id = studies::require(&mut self.connection, study).await?;
+        let starts: i64 = sqlx::query_scalar(STARTS).bind(study_id).fetch_one(&mut self.connection).await?;
+        Ok(starts.unsigned_abs())
+    }
+}

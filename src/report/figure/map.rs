@@ -1,0 +1,250 @@
+//! Maps of a group's grid: a cell for every job, speeds across, friction coefficients up.
+
+use super::key::{self, Entry, Sample};
+use crate::analysis::Outcome;
+use crate::publish::plot::axis::Axis;
+use crate::publish::plot::canvas::{self, Area};
+use crate::publish::plot::hits::{Hit, Shape};
+use crate::publish::plot::{FigureError, MARGIN, TEXT, palette};
+use crate::publish::value;
+use crate::report::layout::{Group, Layout, Placed};
+use crate::report::row::Row;
+use crate::report::sign::{Sign, sign};
+use crate::report::tip::tip;
+use plotters::prelude::RGBColor;
+use plotters::style::text_anchor::HPos;
+
+/// Room for the names of friction coefficients [px].
+const Y_LABELS: i32 = 130;
+/// Room above the cells, for the name of what is named beside them [px].
+const HEAD: i32 = 72;
+const LEGEND_WIDTH: i32 = 500;
+/// Height of a row of cells, where there are few and where there are many [px].
+const ROW: (i32, i32) = (86, 12);
+/// What all rows should fit in, as long as that leaves them the least height [px].
+const ROWS: i32 = 1000;
+/// No text is set smaller [px].
+const LEAST_TEXT: i32 = 16;
+/// Between cells [px].
+const GAP: i32 = 2;
+
+/// What a cell looks like.
+struct Face {
+    fill: RGBColor,
+    text: String,
+    /// Full precision, for the data.
+    value: String,
+}
+
+/// The contact regimes.
+pub(super) fn regimes(layout: &Layout, group: &Group) -> Result<String, FigureError> {
+    let face = |row: &Row| {
+        let sign = sign(row);
+        Face { fill: sign.fill, text: sign.letter.to_string(), value: sign.letter.to_string() }
+    };
+    let entries = signs(group.jobs.iter().map(|job| job.row));
+    draw(layout, group, face, 60 * entries.len() as i32, |area| key::below(area, HEAD, &entries))
+}
+
+/// The frequencies, as colours and as numbers.
+pub(super) fn frequencies(layout: &Layout, group: &Group) -> Result<String, FigureError> {
+    let frequency = |row: &Row| row.record()?.frequency_hz.filter(|f| f.is_finite());
+    let found = group.jobs.iter().filter_map(|job| frequency(job.row));
+    let (low, high) =
+        found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), f| (low.min(f), high.max(f)));
+    let share = |f: f64| if high > low { (f - low) / (high - low) } else { 0.5 };
+    let (unit, per_unit) = if high >= 1000.0 { ("kHz", 1000.0) } else { ("Hz", 1.0) };
+    let face = |row: &Row| match frequency(row) {
+        Some(f) => Face {
+            fill: palette::sequential(share(f)),
+            text: value::fixed(f / per_unit, 1) + not_periodic(row),
+            value: value::number(f),
+        },
+        None => Face { fill: NO_VALUE, text: sign(row).letter.to_string(), value: String::new() },
+    };
+    let mut entries = signs(group.jobs.iter().map(|job| job.row).filter(|row| frequency(row).is_none()));
+    for entry in &mut entries {
+        entry.sample.ground = NO_VALUE;
+    }
+    let scale = if low <= high { SCALE } else { 0 };
+    draw(layout, group, face, scale + 60 * entries.len() as i32 + 40, |area| {
+        if low <= high {
+            draw_scale(area, (low / per_unit, high / per_unit), unit)?;
+        }
+        key::below(area, HEAD + scale, &entries)
+    })
+}
+
+/// The mark of tables, too.
+fn not_periodic(row: &Row) -> &'static str {
+    if row.record().is_some_and(|record| record.outcome == Outcome::NotPeriodic) { "~" } else { "" }
+}
+
+const NO_VALUE: RGBColor = RGBColor(0xEC, 0xEC, 0xEC);
+/// Height of the colour scale with its heading [px].
+const SCALE: i32 = 360;
+/// Of so many colours.
+const STEPS: i32 = 60;
+
+/// The letters of signs, in the order in which they are explained.
+const ORDER: &str = "SKkXxPp?!>.-";
+
+/// The signs that occur, each once.
+fn signs<'a>(rows: impl Iterator<Item = &'a Row>) -> Vec<Entry> {
+    let mut used: Vec<Sign> = Vec::new();
+    for sign in rows.map(sign) {
+        if !used.contains(&sign) {
+            used.push(sign);
+        }
+    }
+    used.sort_by_key(|sign| ORDER.find(sign.letter));
+    let entry = |sign: &Sign| Entry {
+        sample: Sample::ground(sign.fill, sign.letter),
+        label: sign.meaning.to_owned(),
+    };
+    used.iter().map(entry).collect()
+}
+
+fn draw_scale(area: &Area, (low, high): (f64, f64), unit: &str) -> Result<(), FigureError> {
+    canvas::write(area, &format!("frequency [{unit}]"), (0, HEAD / 2), TEXT, HPos::Left)?;
+    let (top, bottom, width) = (HEAD, HEAD + SCALE - 90, 56);
+    let y = |share: f64| bottom - (share * f64::from(bottom - top)).round() as i32;
+    for step in 0..STEPS {
+        let share = |step: i32| f64::from(step) / f64::from(STEPS);
+        // A single value has the colour of its cells.
+        let middle = if high > low { share(step) + 0.5 / f64::from(STEPS) } else { 0.5 };
+        let colour = palette::sequential(middle);
+        canvas::cell(area, (0, y(share(step + 1))), (width, y(share(step))), colour)?;
+    }
+    let marks = if high > low { Axis::Linear(low..high).marks() } else { vec![(low, value::fixed(low, 1))] };
+    for (at, label) in marks {
+        let share = if high > low { (at - low) / (high - low) } else { 0.5 };
+        canvas::cell(area, (width, y(share) - 1), (width + 10, y(share) + 1), RGBColor(0, 0, 0))?;
+        canvas::write(area, &label, (width + 20, y(share)), TEXT, HPos::Left)?;
+    }
+    Ok(())
+}
+
+/// Where the cells are.
+struct Cells {
+    columns: usize,
+    rows: usize,
+    left: i32,
+    right: i32,
+    top: i32,
+    row: i32,
+}
+
+impl Cells {
+    /// Between columns `at` and `at + 1` …
+    fn x(&self, at: f64) -> i32 {
+        self.left + (f64::from(self.right - self.left) * at / self.columns.max(1) as f64).round() as i32
+    }
+
+    /// The largest friction is on top.
+    fn y(&self, mu: usize) -> i32 {
+        self.top + (self.rows - 1 - mu) as i32 * self.row
+    }
+
+    fn bottom(&self) -> i32 {
+        self.top + self.rows as i32 * self.row
+    }
+}
+
+fn draw(
+    layout: &Layout,
+    group: &Group,
+    face: impl Fn(&Row) -> Face,
+    legend_height: i32,
+    legend: impl FnOnce(&Area) -> Result<(), FigureError>,
+) -> Result<String, FigureError> {
+    let (columns, rows) = (group.axis_values.len(), layout.mus.len());
+    let caption = group.caption();
+    let offset = canvas::caption_height(&caption) as i32;
+    let cells = Cells {
+        columns,
+        rows,
+        left: MARGIN + Y_LABELS,
+        right: canvas::WIDTH as i32 - LEGEND_WIDTH - MARGIN,
+        top: HEAD,
+        row: (ROWS / rows.max(1) as i32).clamp(ROW.1, ROW.0),
+    };
+    let height = (cells.bottom() + canvas::X_LABELS as i32 + MARGIN / 2).max(HEAD + legend_height + MARGIN);
+    canvas::sheet((canvas::WIDTH, (height + offset) as u32), |root| {
+        let below = canvas::caption(root, &caption)?;
+        let (left, right) = below.split_horizontally(canvas::WIDTH as i32 - LEGEND_WIDTH);
+        draw_labels(&left, layout, group, &cells)?;
+        let hits = draw_cells(&left, layout, group, &cells, face, offset)?;
+        legend(&right)?;
+        Ok(if group.is_told() { hits } else { Vec::new() })
+    })
+}
+
+fn draw_cells(
+    area: &Area,
+    layout: &Layout,
+    group: &Group,
+    cells: &Cells,
+    face: impl Fn(&Row) -> Face,
+    offset: i32,
+) -> Result<Vec<Hit>, FigureError> {
+    let mut jobs: Vec<&Placed> = group.jobs.iter().collect();
+    jobs.sort_by_key(|job| (job.mu, job.at));
+    let mut hits = Vec::with_capacity(jobs.len());
+    for here in jobs.chunk_by(|a, b| (a.mu, a.at) == (b.mu, b.at)) {
+        // Several jobs at one place share its cell.
+        let part = 1.0 / here.len() as f64;
+        for (number, job) in here.iter().enumerate() {
+            let start = job.at as f64 + number as f64 * part;
+            let from = (cells.x(start), cells.y(job.mu));
+            let to = (cells.x(start + part) - GAP, cells.y(job.mu) + cells.row - GAP);
+            let Face { fill, text, value } = face(job.row);
+            canvas::cell(area, from, to, fill)?;
+            // Columns differ by a pixel; their texts do not.
+            let room =
+                (((cells.right - cells.left) as f64 * part) as i32 / cells.columns as i32 - GAP - 6).max(0);
+            // A digit is somewhat more than half as wide as high.
+            let fitting = room * 19 / (10 * text.chars().count().max(1) as i32);
+            let size = fitting.min((to.1 - from.1) * 2 / 3).min(TEXT + 4);
+            if size >= LEAST_TEXT {
+                let at = ((from.0 + to.0) / 2, (from.1 + to.1) / 2);
+                canvas::write_in(area, &text, at, size, HPos::Center, palette::ink_on(fill))?;
+            }
+            let x = value::text(&group.axis_values[job.at]);
+            hits.push(Hit {
+                shape: Shape::Cell { from: (from.0, from.1 + offset), to: (to.0, to.1 + offset) },
+                title: tip(job.row),
+                data: vec![
+                    ("job", job.row.job.clone()),
+                    ("x", x),
+                    ("y", value::number(layout.mus[job.mu])),
+                    ("value", value),
+                ],
+            });
+        }
+    }
+    Ok(hits)
+}
+
+fn draw_labels(area: &Area, layout: &Layout, group: &Group, cells: &Cells) -> Result<(), FigureError> {
+    let beside = cells.left - 16;
+    canvas::write(area, "μ", (beside, HEAD / 2), TEXT + 4, HPos::Right)?;
+    let size = (cells.row - 2).clamp(LEAST_TEXT, TEXT);
+    let every = (size as usize).div_ceil(cells.row as usize);
+    for (index, mu) in layout.mus.iter().enumerate().step_by(every) {
+        let at = (beside, cells.y(index) + (cells.row - GAP) / 2);
+        canvas::write(area, &value::rounded(*mu), at, size, HPos::Right)?;
+    }
+    let labels: Vec<String> = group.axis_values.iter().map(value::shown).collect();
+    let longest = labels.iter().map(|label| label.chars().count()).max().unwrap_or(0) as i32 + 1;
+    let room = (cells.right - cells.left) / cells.columns.max(1) as i32;
+    let size = canvas::fitting(longest as usize, room).max(LEAST_TEXT);
+    let every = (longest * size / 2).div_euclid(room.max(1)) as usize + 1;
+    let every = if longest * size / 2 <= room { 1 } else { every };
+    for (index, label) in labels.iter().enumerate().step_by(every) {
+        let at = (cells.x(index as f64 + 0.5) - GAP / 2, cells.bottom() + 28);
+        canvas::write(area, label, at, size, HPos::Center)?;
+    }
+    let middle = ((cells.left + cells.right) / 2, cells.bottom() + 78);
+    canvas::write(area, layout.axis_name(), middle, TEXT + 4, HPos::Center)
+}

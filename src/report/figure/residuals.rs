@@ -1,0 +1,124 @@
+//! How well energies and identities close, for every job of a study.
+
+use super::key::{self, Entry, Sample};
+use crate::analysis::JobRecord;
+use crate::publish::plot::axis::Axis;
+use crate::publish::plot::canvas::{self, Area, Chart, X_LABELS};
+use crate::publish::plot::hits::{Hit, Shape};
+use crate::publish::plot::{FONT, FigureError, GRID, MARGIN, TEXT, palette};
+use crate::publish::value;
+use crate::report::layout::MOST_TOLD;
+use crate::report::row::Row;
+use crate::report::tip::tip;
+use plotters::chart::ChartBuilder;
+use plotters::prelude::{BLACK, Circle, Polygon, RGBColor};
+use plotters::style::text_anchor::HPos;
+use plotters::style::{Color, TRANSPARENT};
+use serde_json::Value;
+
+const SIZE: (u32, u32) = (canvas::WIDTH, 860);
+const LEGEND_WIDTH: u32 = 400;
+const Y_LABELS: u32 = 170;
+const RADIUS: i32 = 9;
+
+/// A kind of residual: its name, its colour, whether its marker is round, and its value.
+struct Kind {
+    name: &'static str,
+    label: &'static str,
+    colour: RGBColor,
+    round: bool,
+    of: fn(&JobRecord) -> f64,
+}
+
+const KINDS: [Kind; 2] = [
+    Kind {
+        name: "identity_residual",
+        label: "identities",
+        colour: palette::VERMILLION,
+        round: false,
+        of: JobRecord::identity_residual,
+    },
+    Kind {
+        name: "energy_residual",
+        label: "energy balance",
+        colour: palette::BLUE,
+        round: true,
+        of: |record| record.energy_residual.abs(),
+    },
+];
+
+/// Draws the residuals of all rows in their order. What is exactly zero has no place on a logarithmic axis.
+pub(in crate::report) fn draw(rows: &[Row]) -> Result<String, FigureError> {
+    canvas::sheet(SIZE, |root| {
+        let (left, right) = root.split_horizontally(SIZE.0 - LEGEND_WIDTH);
+        let hits = draw_plot(&left, rows)?;
+        let entry = |kind: &Kind| Entry {
+            sample: Sample::ink(kind.colour, if kind.round { '●' } else { '◆' }),
+            label: kind.label.to_owned(),
+        };
+        key::below(&right, MARGIN, &KINDS.map(|kind| entry(&kind)))?;
+        Ok(if rows.len() <= MOST_TOLD { hits } else { Vec::new() })
+    })
+}
+
+fn draw_plot(area: &Area, rows: &[Row]) -> Result<Vec<Hit>, FigureError> {
+    let points = |kind: &'static Kind| {
+        rows.iter().enumerate().filter_map(move |(place, row)| {
+            let residual = (kind.of)(row.record()?);
+            (residual.is_finite() && residual > 0.0).then_some((place, row, residual))
+        })
+    };
+    let all: Vec<Value> = KINDS.iter().flat_map(points).map(|(_, _, residual)| residual.into()).collect();
+    if all.is_empty() {
+        let (width, height) = area.dim_in_pixel();
+        canvas::write(area, "no results yet", (width as i32 / 2, height as i32 / 3), TEXT, HPos::Center)?;
+        return Ok(Vec::new());
+    }
+    let mut chart = ChartBuilder::on(area)
+        .margin(MARGIN)
+        .x_label_area_size(X_LABELS)
+        .y_label_area_size(Y_LABELS)
+        .build_cartesian_2d(Axis::spanning(1.0, rows.len() as f64, 1.0), Axis::across(&all, true))?;
+    chart
+        .configure_mesh()
+        .bold_line_style(GRID.stroke_width(2))
+        .light_line_style(TRANSPARENT)
+        .axis_style(BLACK.stroke_width(2))
+        .set_all_tick_mark_size(8)
+        .x_label_style((FONT, TEXT))
+        .y_label_style((FONT, TEXT))
+        .axis_desc_style((FONT, TEXT + 4))
+        .x_desc("job, in the order of the study")
+        .y_desc("residual")
+        .draw()?;
+    canvas::frame(&chart)?;
+    let mut hits = Vec::new();
+    for kind in &KINDS {
+        for (place, row, residual) in points(kind) {
+            let at = (place as f64 + 1.0, residual);
+            draw_marker(area, &chart, at, kind)?;
+            hits.push(Hit {
+                shape: Shape::Around { at: chart.backend_coord(&at), radius: 2 * RADIUS },
+                title: tip(row),
+                data: vec![
+                    ("job", row.job.clone()),
+                    ("x", (place + 1).to_string()),
+                    ("y", value::number(residual)),
+                    ("kind", kind.name.to_owned()),
+                ],
+            });
+        }
+    }
+    Ok(hits)
+}
+
+fn draw_marker(area: &Area, chart: &Chart, at: (f64, f64), kind: &Kind) -> Result<(), FigureError> {
+    let (left, top) = area.get_base_pixel();
+    let (x, y) = chart.backend_coord(&at);
+    let (x, y) = (x - left, y - top);
+    if kind.round {
+        return area.draw(&Circle::new((x, y), RADIUS, kind.colour.filled()));
+    }
+    let reach = RADIUS + 3;
+    area.draw(&Polygon::new([(x, y - reach), (x + reach, y), (x, y + reach), (x - reach, y)], kind.colour))
+}

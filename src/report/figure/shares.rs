@@ -1,0 +1,198 @@
+//! How the contact divides its time between stick, slip and separation: a panel for every friction coefficient.
+
+use super::key::{self, Entry, Sample};
+use crate::analysis::JobRecord;
+use crate::publish::plot::axis::Axis;
+use crate::publish::plot::canvas::{self, Area, Chart};
+use crate::publish::plot::hits::{Hit, Shape};
+use crate::publish::plot::{FONT, FigureError, MARGIN, TEXT, palette};
+use crate::publish::value::{self, OMEGA};
+use crate::report::layout::{Group, Layout};
+use crate::report::row::Row;
+use crate::report::tip::tip;
+use plotters::chart::ChartBuilder;
+use plotters::prelude::{BLACK, PathElement, Polygon, RGBColor, Rectangle, WHITE};
+use plotters::style::text_anchor::HPos;
+use plotters::style::{Color, TRANSPARENT};
+use serde_json::Value;
+
+/// From the bottom to the top; the lightest in the middle, so that the three differ without colours.
+const LAYERS: [(&str, RGBColor); 3] =
+    [("stick", palette::BLUE), ("slip", RGBColor(0xE0, 0xE0, 0xE0)), ("separated", palette::VERMILLION)];
+/// Height of a panel [px].
+const PANEL: u32 = 400;
+const HEAD: u32 = 72;
+const TITLE: u32 = 54;
+const SMALL: i32 = 28;
+
+/// A job in a panel: along the axis, and where the layers end [%].
+struct Column<'a> {
+    row: &'a Row,
+    at: usize,
+    value: &'a Value,
+    x: f64,
+    ends: [f64; 4],
+}
+
+/// Draws all panels of a group.
+pub(super) fn draw(layout: &Layout, group: &Group) -> Result<String, FigureError> {
+    let panels = layout.mus.len().max(1);
+    let columns = if panels <= 6 { panels.min(3) } else { 4 };
+    let rows = panels.div_ceil(columns);
+    let caption = group.caption();
+    let height = canvas::caption_height(&caption) + HEAD + rows as u32 * PANEL + MARGIN as u32 + 40;
+    canvas::sheet((canvas::WIDTH, height), |root| {
+        let below = canvas::caption(root, &caption)?;
+        let (head, below) = below.split_vertically(HEAD);
+        let (below, foot) = below.split_vertically(rows as u32 * PANEL);
+        let entries = LAYERS.map(|(label, colour)| Entry {
+            sample: Sample::ground(colour, ' '),
+            label: format!("{label} [% of node-time]"),
+        });
+        key::beside(&head, MARGIN + 90, 520, &entries)?;
+        let parts = below.split_evenly((rows, columns));
+        let mut hits = Vec::new();
+        for ((index, mu), part) in layout.mus.iter().enumerate().zip(&parts) {
+            hits.extend(draw_panel(part, layout, group, index, *mu)?);
+        }
+        canvas::write(&foot, layout.axis_name(), (canvas::WIDTH as i32 / 2, 24), TEXT, HPos::Center)?;
+        Ok(if group.is_told() { hits } else { Vec::new() })
+    })
+}
+
+fn draw_panel(
+    area: &Area,
+    layout: &Layout,
+    group: &Group,
+    index: usize,
+    mu: f64,
+) -> Result<Vec<Hit>, FigureError> {
+    let x_axis = Axis::across(&group.axis_values, layout.axis == OMEGA);
+    let columns = columns(group, index, &x_axis);
+    let width = area.dim_in_pixel().0 as i32;
+    let names = if let Axis::Names(names) = &x_axis { names.len() } else { 1 };
+    let x_text = canvas::fitting(x_axis.longest_label() + 1, (width - 120) / names.max(1) as i32).min(SMALL);
+    let (top, below) = area.split_vertically(TITLE);
+    canvas::write(&top, &format!("μ = {}", value::rounded(mu)), (width / 2 + 30, 30), TEXT, HPos::Center)?;
+    let mut chart = ChartBuilder::on(&below)
+        .margin_right(24)
+        .margin_left(12)
+        .margin_bottom(8)
+        .x_label_area_size(52)
+        .y_label_area_size(76)
+        .build_cartesian_2d(x_axis.clone(), Axis::Linear(0.0..100.0))?;
+    draw_layers(&mut chart, &columns, &x_axis)?;
+    chart
+        .configure_mesh()
+        .disable_mesh()
+        .light_line_style(TRANSPARENT)
+        .axis_style(BLACK.stroke_width(2))
+        .set_all_tick_mark_size(6)
+        .x_label_style((FONT, x_text))
+        .y_label_style((FONT, SMALL))
+        .draw()?;
+    canvas::frame(&chart)?;
+    if columns.is_empty() {
+        let inside = chart.plotting_area().strip_coord_spec();
+        let (width, height) = inside.dim_in_pixel();
+        let at = (width as i32 / 2, height as i32 / 2);
+        canvas::write(&inside, "no results yet", at, SMALL, HPos::Center)?;
+    }
+    Ok(hits(&chart, &columns))
+}
+
+fn columns<'a>(group: &'a Group, mu: usize, x_axis: &Axis) -> Vec<Column<'a>> {
+    let mut columns: Vec<Column> = group
+        .jobs
+        .iter()
+        .filter(|job| job.mu == mu)
+        .filter_map(|job| {
+            let value = &group.axis_values[job.at];
+            let ends = ends(job.row.record()?)?;
+            Some(Column { row: job.row, at: job.at, value, x: x_axis.place(value)?, ends })
+        })
+        .collect();
+    columns.sort_by_key(|column| column.at);
+    columns
+}
+
+fn ends(record: &JobRecord) -> Option<[f64; 4]> {
+    let JobRecord { stick_share, slip_share, separated_share, .. } = *record;
+    let ends = [0.0, stick_share, stick_share + slip_share, stick_share + slip_share + separated_share];
+    ends.iter().all(|end| end.is_finite()).then_some(ends.map(|end| (100.0 * end).clamp(0.0, 100.0)))
+}
+
+/// Areas between neighbours in the grid, where they are along numbers; what stands alone is a bar.
+fn draw_layers(chart: &mut Chart, columns: &[Column], x_axis: &Axis) -> Result<(), FigureError> {
+    let are_joined = |a: &Column, b: &Column| !matches!(x_axis, Axis::Names(_)) && b.at <= a.at + 1;
+    for stretch in columns.chunk_by(are_joined) {
+        for (layer, (_, colour)) in LAYERS.iter().enumerate() {
+            if stretch.len() == 1 {
+                draw_bar(chart, &stretch[0], layer, *colour)?;
+                continue;
+            }
+            let upper = stretch.iter().map(|column| (column.x, column.ends[layer + 1]));
+            let lower = stretch.iter().rev().map(|column| (column.x, column.ends[layer]));
+            let outline: Vec<(f64, f64)> = upper.chain(lower).collect();
+            chart.draw_series(std::iter::once(Polygon::new(outline, colour.filled())))?;
+        }
+        if stretch.len() > 1 {
+            // Where there is a job: between them is a guess.
+            for column in stretch {
+                let line = [(column.x, 0.0), (column.x, 100.0)];
+                chart
+                    .draw_series(std::iter::once(PathElement::new(line, WHITE.mix(0.75).stroke_width(2))))?;
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Half the width of a bar [px].
+const HALF_BAR: i32 = 14;
+
+fn draw_bar(chart: &Chart, column: &Column, layer: usize, colour: RGBColor) -> Result<(), FigureError> {
+    let area = chart.plotting_area().strip_coord_spec();
+    let (left, top) = area.get_base_pixel();
+    let pixel = |end: f64| {
+        let (x, y) = chart.backend_coord(&(column.x, end));
+        (x - left, y - top)
+    };
+    let (upper, lower) = (pixel(column.ends[layer + 1]), pixel(column.ends[layer]));
+    area.draw(&Rectangle::new(
+        [(upper.0 - HALF_BAR, upper.1), (lower.0 + HALF_BAR, lower.1)],
+        colour.filled(),
+    ))
+}
+
+/// A column's hit reaches half-way to its neighbours.
+fn hits(chart: &Chart, columns: &[Column]) -> Vec<Hit> {
+    let inside = chart.plotting_area().strip_coord_spec();
+    let left = inside.get_base_pixel().0;
+    let right = left + inside.dim_in_pixel().0 as i32;
+    let pixel = |column: &Column, end: f64| chart.backend_coord(&(column.x, end));
+    let x: Vec<i32> = columns.iter().map(|column| pixel(column, 0.0).0).collect();
+    let between = |a: i32, b: i32| (a + b) / 2;
+    let hit = |(index, column): (usize, &Column)| {
+        let from = index.checked_sub(1).map_or(left, |before| between(x[before], x[index]));
+        let to = x.get(index + 1).map_or(right, |after| between(x[index], *after));
+        let reach = |edge: i32| edge.clamp(x[index] - 40, x[index] + 40);
+        let percent = |layer: usize| value::number(column.ends[layer + 1] - column.ends[layer]);
+        Hit {
+            shape: Shape::Cell {
+                from: (reach(from), pixel(column, 100.0).1),
+                to: (reach(to).max(reach(from) + 1), pixel(column, 0.0).1),
+            },
+            title: tip(column.row),
+            data: vec![
+                ("job", column.row.job.clone()),
+                ("x", value::text(column.value)),
+                ("mu", value::number(column.row.mu)),
+                ("stick", percent(0)),
+                ("slip", percent(1)),
+                ("separated", percent(2)),
+            ],
+        }
+    };
+    columns.iter().enumerate().map(hit).collect()
+}

@@ -1,0 +1,224 @@
+//! Sections that show the grid of a study: figures with the data behind them, and tables.
+
+use super::Parts;
+use crate::publish::{html, value};
+use crate::report::export;
+use crate::report::figure::{Data, Plot, RESIDUALS, RUN_TIMES};
+use crate::report::layout::{Group, MOST_TOLD, parameters_in_words};
+use crate::report::row::Row;
+use crate::report::tables::{self, Quantity};
+use crate::report::times::Times;
+use crate::report::tip::short_key;
+use maud::{Markup, html};
+
+/// No more combinations of further parameters than this are shown.
+const MOST_GROUPS: usize = 6;
+/// Beyond so many jobs, no further combination is shown …
+const MOST_JOBS: usize = 4_000;
+/// … and a single one that has more is not drawn.
+const MOST_DRAWN: usize = 20_000;
+
+pub(super) fn friction(parts: &Parts) -> Markup {
+    let axis = parts.layout.axis_label();
+    let caption = format!(
+        "Macroscopic friction coefficient μ* against {axis}, one curve per local coefficient μ (dashed: μ* = μ). Error \
+         bars where they are larger than a marker."
+    );
+    html! {
+        (figures(parts, Plot::MuStar, &caption))
+        (table(parts, Quantity::MuStar))
+    }
+}
+
+pub(super) fn frequency(parts: &Parts) -> Markup {
+    let axis = parts.layout.axis_label();
+    let curves = format!("Fundamental frequency of the total normal contact force against {axis}.");
+    let map =
+        format!("The same frequencies over {axis} and μ. Letters: jobs without a frequency; ~ not periodic.");
+    html! {
+        (figures(parts, Plot::Frequency, &curves))
+        (figures(parts, Plot::FrequencyMap, &map))
+        (table(parts, Quantity::Frequency))
+    }
+}
+
+pub(super) fn regimes(parts: &Parts) -> Markup {
+    let caption = format!(
+        "Contact regime of every job over {} and μ. Small letters on a pale ground: the run did not become periodic.",
+        parts.layout.axis_label()
+    );
+    html! {
+        (figures(parts, Plot::RegimeMap, &caption))
+        (table(parts, Quantity::Regime))
+    }
+}
+
+pub(super) fn shares(parts: &Parts) -> Markup {
+    let caption = format!(
+        "How the contact nodes' time divides between stick, slip and separation, against {}. White lines: where there is a \
+         job.",
+        parts.layout.axis_label()
+    );
+    figures(parts, Plot::Shares, &caption)
+}
+
+pub(super) fn residuals(parts: &Parts) -> Markup {
+    let rows = parts.report.rows;
+    let told = rows.len() <= MOST_TOLD;
+    let caption = "How well energies and identities close in every job: the energy balance of the whole run over the \
+                   energy put in, and the larger residual of two identities of the averaging window.";
+    let data = told.then(|| csv(parts, rows.iter(), RESIDUALS));
+    let file = format!("{}.csv", RESIDUALS.stem);
+    html! {
+        @if rows.len() <= MOST_DRAWN {
+            (html::figure(parts.residuals, caption, data.as_deref().map(|csv| (file.as_str(), csv))))
+        } @else {
+            (left_out(&format!("{} jobs are too many for this page", rows.len()), "residuals.svg"))
+        }
+    }
+}
+
+pub(super) fn times(parts: &Parts) -> Markup {
+    let rows = parts.report.rows;
+    let Some(times) = Times::of(rows) else {
+        return html! { p { "No job has ended yet." } };
+    };
+    let told = |seconds: f64| value::duration(seconds);
+    let mut tiles = vec![
+        ("thread time, all jobs", told(times.total_s), format!("{} jobs", times.jobs)),
+        ("shortest", told(times.min_s), String::new()),
+        ("median", told(times.median_s), String::new()),
+        ("mean", told(times.mean_s), String::new()),
+        ("longest", told(times.max_s), String::new()),
+    ];
+    tiles.extend(
+        times
+            .steps_per_s
+            .map(|steps| ("steps per second", value::fixed(steps, 0), "of a job, per thread".to_owned())),
+    );
+    let header = ["parameters", "thread time", "steps", "steps per second", "job"].map(str::to_owned);
+    let lines: Vec<Vec<Markup>> = times.slowest.iter().map(|(row, seconds)| slow(row, *seconds)).collect();
+    let data = (rows.len() <= MOST_TOLD).then(|| csv(parts, rows.iter(), RUN_TIMES));
+    html! {
+        p {
+            "A job's time is its share of its thread's: jobs that are advanced together share it equally."
+            @if let Some(csv) = data { " " (html::download(&format!("{}.csv", RUN_TIMES.stem), &csv)) }
+        }
+        (html::tiles(&tiles))
+        h3 { "Slowest jobs" }
+        (html::table(&header, &lines))
+    }
+}
+
+fn slow(row: &Row, seconds: f64) -> Vec<Markup> {
+    let steps = row.record().map(|record| record.steps);
+    let cell = |text: Option<String>| html! { (text.as_deref().unwrap_or(value::MISSING)) };
+    vec![
+        html! { (parameters_in_words(row)) },
+        html! { (value::duration(seconds)) },
+        cell(steps.map(|steps| steps.to_string())),
+        cell(steps.filter(|_| seconds > 0.0).map(|steps| value::fixed(steps as f64 / seconds, 0))),
+        html! { code { (short_key(row)) } },
+    ]
+}
+
+/// How many groups are shown.
+fn shown(parts: &Parts) -> usize {
+    let mut jobs = 0;
+    let fits = |(index, group): (usize, &Group)| {
+        jobs += group.jobs.len();
+        if index == 0 { jobs <= MOST_DRAWN } else { index < MOST_GROUPS && jobs <= MOST_JOBS }
+    };
+    parts.layout.groups.iter().enumerate().map(fits).take_while(|fits| *fits).count()
+}
+
+/// The figures of one kind, with the data behind them.
+fn figures(parts: &Parts, plot: Plot, caption: &str) -> Markup {
+    let groups = &parts.layout.groups;
+    let (shown, data) = (shown(parts), plot.data());
+    let figures = parts.figures.iter().filter(|(own, _)| *own == plot).flat_map(|(_, figures)| figures);
+    html! {
+        @for (group, figure) in groups.iter().zip(figures).take(shown) {
+            @if !figure.caption.is_empty() { h3 { (figure.caption) } }
+            @let csv = group.is_told().then(|| csv(parts, group.jobs.iter().map(|job| job.row), data));
+            @let file = format!("{}{}.csv", data.stem, figure.suffix);
+            (html::figure(&figure.svg, caption, csv.as_deref().map(|csv| (file.as_str(), csv))))
+            @if csv.is_none() {
+                p.note { "Too many jobs to point at each of them; the data are in " code { (data.stem) ".csv" } "." }
+            }
+        }
+        @if shown < groups.len() {
+            @let files = format!("{}*.svg", plot.stem());
+            (left_out(&what_is_left_out(parts, shown), &files))
+        }
+    }
+}
+
+fn what_is_left_out(parts: &Parts, shown: usize) -> String {
+    let groups = &parts.layout.groups;
+    let jobs: usize = groups[shown..].iter().map(|group| group.jobs.len()).sum();
+    if groups.len() == 1 {
+        return format!("{jobs} jobs are too many for this page");
+    }
+    let more = if shown > 0 { "more " } else { "" };
+    format!(
+        "{} {more}combinations of parameters, {jobs} jobs, are left out of this page",
+        groups.len() - shown
+    )
+}
+
+fn left_out(what: &str, files: &str) -> Markup {
+    html! { p.note { "… " (what) ": see " code { (files) } " in its folder." } }
+}
+
+fn csv<'a>(parts: &Parts, rows: impl Iterator<Item = &'a Row>, data: Data) -> String {
+    // Text that is made of strings is text.
+    export::selection(rows, &parts.layout.further, data.columns)
+        .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
+        .unwrap_or_default()
+}
+
+fn table(parts: &Parts, quantity: Quantity) -> Markup {
+    let layout = parts.layout;
+    let constants = layout.constants_in_words();
+    let header = tables::header(layout);
+    let shown = shown(parts);
+    let word_cells = quantity == Quantity::Regime;
+    let cell = |text: &str| {
+        // Names of regimes break at their parts.
+        if word_cells {
+            html! { (text.replace('_', "-")) }
+        } else {
+            html! { (text) }
+        }
+    };
+    let table = |group: &Group| {
+        let lines: Vec<Vec<Markup>> = tables::lines(layout, group, quantity)
+            .map(|(at, cells)| {
+                std::iter::once(html! { (at) }).chain(cells.iter().map(|text| cell(text))).collect()
+            })
+            .collect();
+        html::table(&header, &lines)
+    };
+    let content = html! {
+        @if !constants.is_empty() { p { "In all jobs: " (constants) "." } }
+        @for group in layout.groups.iter().take(shown) {
+            @if !group.key.is_empty() { h3 { (group.caption()) } }
+            (table(group))
+        }
+        @if shown < layout.groups.len() {
+            (left_out(&what_is_left_out(parts, shown), "the tables"))
+        }
+        ul.note {
+            @for (mark, meaning) in quantity.legend() {
+                li { @if !mark.is_empty() { code { (mark) } " " } (meaning) }
+            }
+        }
+    };
+    let heading = format!("Table: {}", quantity.title());
+    if quantity == Quantity::MuStar {
+        html! { h3 { (heading) } (content) }
+    } else {
+        html::details(&heading, &content)
+    }
+}

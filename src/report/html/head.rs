@@ -1,0 +1,92 @@
+//! The page's beginning and its end: what is there, what is missing, what was found.
+
+use crate::analysis::JobRecord;
+use crate::publish::{html, value};
+use crate::report::Report;
+use crate::report::layout::parameters_in_words;
+use crate::report::row::Row;
+use crate::report::summary::{self, Summary};
+use crate::report::tip::short;
+use maud::{Markup, html};
+
+/// Numbers to begin with, and what is missing before them.
+pub(super) fn summary(report: &Report) -> Markup {
+    let rows = report.rows;
+    let summary = Summary::of(rows);
+    let mut tiles = vec![
+        ("jobs done", format!("{} of {}", summary.done(), summary.total), summary.done_in_words()),
+        ("failed", summary.failed.to_string(), String::new()),
+        (
+            "missing",
+            summary.missing().to_string(),
+            if summary.missing() > 0 { summary.missing_in_words() } else { String::new() },
+        ),
+    ];
+    tiles.extend(drop_of_friction(rows));
+    tiles.extend(frequencies(rows));
+    tiles.extend(residuals(rows));
+    html! {
+        @if summary.missing() > 0 {
+            (html::warning(&html! {
+                strong { "This report is incomplete: " (summary.missing()) " of " (summary.total) " jobs are missing" }
+                " (" (summary.missing_in_words()) "). Figures and tables hold only the jobs that are done."
+            }))
+        }
+        @if summary.failed > 0 {
+            (html::warning(&html! {
+                strong {
+                    @if summary.failed == 1 { "1 job has failed" } @else { (summary.failed) " jobs have failed" }
+                }
+                ": see " a href="#trouble" { "where and why" } "."
+            }))
+        }
+        (html::tiles(&tiles))
+    }
+}
+
+type Tile = (&'static str, String, String);
+
+/// Where the macroscopic coefficient is farthest below the local one.
+fn drop_of_friction(rows: &[Row]) -> Option<Tile> {
+    let ratio = |row: &Row| Some(row.record()?.mu_star / row.mu).filter(|ratio| ratio.is_finite());
+    let ratios = rows.iter().filter_map(|row| Some((ratio(row)?, row)));
+    let (ratio, row) = ratios.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(("lowest μ*/μ", value::fixed(ratio, 3), parameters_in_words(row)))
+}
+
+fn frequencies(rows: &[Row]) -> Option<Tile> {
+    let found = rows.iter().filter_map(|row| row.record()?.frequency_hz).filter(|f| f.is_finite());
+    let (low, high) =
+        found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), f| (low.min(f), high.max(f)));
+    let [low_khz, high_khz] = [low, high].map(|f| value::fixed(f / 1e3, 1));
+    let told =
+        if low_khz == high_khz { format!("{low_khz} kHz") } else { format!("{low_khz}–{high_khz} kHz") };
+    (low <= high).then_some(("frequencies", told, String::new()))
+}
+
+fn residuals(rows: &[Row]) -> Option<Tile> {
+    let (energy, one) = summary::worst(rows, |record| record.energy_residual.abs())?;
+    let (identity, other) = summary::worst(rows, JobRecord::identity_residual)?;
+    let note = if one.job == other.job {
+        format!("energy, identities; both at {}", parameters_in_words(one))
+    } else {
+        format!("energy at {}; identities at {}", parameters_in_words(one), parameters_in_words(other))
+    };
+    Some(("largest residuals", format!("{}, {}", short(energy), short(identity)), note))
+}
+
+/// When it was written, and what else there is.
+pub(super) fn foot(report: &Report) -> Markup {
+    html! {
+        footer {
+            p.note {
+                "Written " (value::moment(report.written_ms)) " by tribosweep. "
+                @if let Some(seconds) = report.refresh_s {
+                    "The study is not finished: this page loads itself anew every " (seconds) " s. "
+                }
+                "In the folder it was written to are the figures as SVG, the tables and the data behind the figures as "
+                "CSV, and " code { "jobs.csv" } ", one line per job with everything."
+            }
+        }
+    }
+}

@@ -1,0 +1,73 @@
+//! What failed and what did not become periodic, where and why; and what is missing.
+
+use crate::analysis::Outcome;
+use crate::publish::{html, value};
+use crate::report::layout::parameters_in_words;
+use crate::report::row::{Row, RowState};
+use crate::report::tip::short_key;
+use crate::report::trouble;
+use maud::{Markup, html};
+
+/// Jobs in a list are named up to this number.
+const NAMED: usize = 100;
+
+/// Nothing, if no job is in trouble or missing.
+pub(super) fn section(rows: &[Row]) -> Option<Markup> {
+    let regions = trouble::sentences(&trouble::regions(rows));
+    let failed = list("Failed jobs", rows, failed);
+    let not_periodic = list("Not periodic", rows, not_periodic);
+    let missing = list("Missing jobs", rows, missing);
+    let parts: Vec<Markup> = [failed, not_periodic, missing].into_iter().flatten().collect();
+    if parts.is_empty() {
+        return None;
+    }
+    Some(html! {
+        @if !regions.is_empty() {
+            p { "Neighbours in the grid with the same cause are one region:" }
+            ul { @for sentence in &regions { li { (sentence) } } }
+        }
+        @for part in &parts { (part) }
+    })
+}
+
+/// The rows of which there is something to say, the first of them in a table.
+fn list(heading: &str, rows: &[Row], why: fn(&Row) -> Option<Markup>) -> Option<Markup> {
+    let mut entries = rows.iter().filter_map(|row| Some((row, why(row)?)));
+    let line = |(row, why): (&Row, Markup)| {
+        vec![html! { (parameters_in_words(row)) }, why, html! { code { (short_key(row)) } }]
+    };
+    let lines: Vec<Vec<Markup>> = entries.by_ref().take(NAMED).map(line).collect();
+    if lines.is_empty() {
+        return None;
+    }
+    let more = entries.count();
+    let header = ["parameters", "why", "job"].map(str::to_owned);
+    Some(html! {
+        h3 { (heading) " (" (lines.len() + more) ")" }
+        (html::table(&header, &lines))
+        @if more > 0 { p.note { "… and " (more) " more: see " code { "jobs.csv" } "." } }
+    })
+}
+
+fn failed(row: &Row) -> Option<Markup> {
+    match &row.state {
+        RowState::Failed { error } => Some(html! { span.words { (error) } }),
+        _ => None,
+    }
+}
+
+fn not_periodic(row: &Row) -> Option<Markup> {
+    let record = row.record().filter(|record| record.outcome == Outcome::NotPeriodic)?;
+    let why = trouble::cause(row)?.why;
+    Some(html! {
+        span.words {
+            (why) "; after " (value::number(record.simulated_s)) " s μ* = " (value::fixed(record.mu_star, 4)) " ± "
+            (value::fixed(record.mu_star_se, 4)) " over " (record.cycles) " cycles"
+        }
+    })
+}
+
+fn missing(row: &Row) -> Option<Markup> {
+    let is_missing = matches!(row.state, RowState::Pending | RowState::Running | RowState::Cancelled);
+    is_missing.then(|| html! { (row.status()) })
+}

@@ -1,0 +1,66 @@
+//! A study in a few numbers.
+
+use super::row::{Row, RowState};
+use crate::analysis::{JobRecord, Outcome};
+
+/// How many jobs there are of each kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Summary {
+    pub total: usize,
+    pub periodic: usize,
+    pub decayed: usize,
+    pub not_periodic: usize,
+    pub failed: usize,
+    pub running: usize,
+    pub pending: usize,
+    pub cancelled: usize,
+}
+
+impl Summary {
+    pub fn of(rows: &[Row]) -> Self {
+        let mut summary = Self { total: rows.len(), ..Self::default() };
+        for row in rows {
+            *match &row.state {
+                RowState::Pending => &mut summary.pending,
+                RowState::Running => &mut summary.running,
+                RowState::Cancelled => &mut summary.cancelled,
+                RowState::Failed { .. } => &mut summary.failed,
+                RowState::Done(record) => match record.outcome {
+                    Outcome::Periodic => &mut summary.periodic,
+                    Outcome::Decayed => &mut summary.decayed,
+                    Outcome::NotPeriodic => &mut summary.not_periodic,
+                },
+            } += 1;
+        }
+        summary
+    }
+
+    pub fn done(&self) -> usize {
+        self.periodic + self.decayed + self.not_periodic
+    }
+
+    pub fn missing(&self) -> usize {
+        self.running + self.pending + self.cancelled
+    }
+
+    /// What is missing, in words.
+    pub fn missing_in_words(&self) -> String {
+        let cancelled =
+            if self.cancelled > 0 { format!(", {} cancelled", self.cancelled) } else { String::new() };
+        format!("{} running, {} pending{cancelled}", self.running, self.pending)
+    }
+
+    /// How those that are done ended, in words.
+    pub fn done_in_words(&self) -> String {
+        let Self { periodic, decayed, not_periodic, .. } = self;
+        format!("{periodic} periodic, {decayed} decayed, {not_periodic} not periodic")
+    }
+}
+
+/// The job that fits worst: the first to look at if a figure is in doubt.
+pub(super) fn worst(rows: &[Row], residual: impl Fn(&JobRecord) -> f64) -> Option<(f64, &Row)> {
+    rows.iter()
+        .filter_map(|row| Some((residual(row.record()?), row)))
+        .filter(|(residual, _)| residual.is_finite())
+        .max_by(|a, b| a.0.total_cmp(&b.0))
+}

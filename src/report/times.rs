@@ -1,0 +1,76 @@
+//! How long jobs took. A job's time is its share of its thread's.
+
+use super::row::Row;
+
+/// So many jobs that took longest are named.
+const SLOWEST: usize = 8;
+
+/// The times of a study's jobs.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Times<'a> {
+    /// Of so many jobs the time is known.
+    pub jobs: usize,
+    pub total_s: f64,
+    pub min_s: f64,
+    pub median_s: f64,
+    pub mean_s: f64,
+    pub max_s: f64,
+    /// Time steps of one job in a second of a thread, over all jobs with a result.
+    pub steps_per_s: Option<f64>,
+    /// Those that took longest, with their times.
+    pub slowest: Vec<(&'a Row, f64)>,
+}
+
+impl<'a> Times<'a> {
+    /// None if no time is known.
+    pub fn of(rows: &'a [Row]) -> Option<Self> {
+        let known = |row: &'a Row| Some((row, row.wall_s.filter(|s| s.is_finite())?));
+        let mut times: Vec<(&Row, f64)> = rows.iter().filter_map(known).collect();
+        times.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let (jobs, &(_, max_s)) = (times.len(), times.first()?);
+        let total_s: f64 = times.iter().map(|(_, s)| s).sum();
+        let with_steps = times.iter().filter_map(|(row, s)| Some((row.record()?.steps as f64, s)));
+        let (steps, seconds) = with_steps.fold((0.0, 0.0), |(steps, all), (own, s)| (steps + own, all + s));
+        Some(Self {
+            jobs,
+            total_s,
+            min_s: times[jobs - 1].1,
+            median_s: f64::midpoint(times[(jobs - 1) / 2].1, times[jobs / 2].1),
+            mean_s: total_s / jobs as f64,
+            max_s,
+            steps_per_s: (seconds > 0.0).then_some(steps / seconds),
+            slowest: times.into_iter().take(SLOWEST).collect(),
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::report::RowState;
+
+    fn row(wall_s: Option<f64>) -> Row {
+        Row {
+            study: String::new(),
+            job: String::new(),
+            parameters: Vec::new(),
+            omega_rpm: 1.0,
+            mu: 0.1,
+            state: RowState::Pending,
+            wall_s,
+            numerics: None,
+        }
+    }
+
+    /// Protects: the statistics of times that are known, in any order, with an even number of them.
+    #[test]
+    fn times_are_summed_up() {
+        let rows = [Some(4.0), None, Some(1.0), Some(10.0), Some(2.0)].map(row);
+        let times = Times::of(&rows).unwrap();
+        assert_eq!((times.jobs, times.total_s, times.mean_s), (4, 17.0, 4.25));
+        assert_eq!((times.min_s, times.median_s, times.max_s), (1.0, 3.0, 10.0));
+        assert_eq!(times.slowest.iter().map(|slow| slow.1).collect::<Vec<_>>(), [10.0, 4.0, 2.0, 1.0]);
+        assert_eq!(times.steps_per_s, None);
+        assert_eq!(Times::of(&rows[1..2]), None);
+    }
+}

@@ -1,0 +1,74 @@
+//! What a point of a figure tells about its job.
+
+use super::layout::parameters_in_words;
+use super::row::{Row, RowState};
+use super::sign::regime_label;
+use crate::analysis::{JobRecord, Outcome};
+use crate::publish::value::{fixed, number};
+
+/// So many characters of a job's key tell it apart, and are enough for `show`.
+const KEY_LENGTH: usize = 12;
+/// So much is told of why a job failed.
+const REASON_LENGTH: usize = 240;
+
+/// A job in a few lines, its parameters first.
+pub(super) fn tip(row: &Row) -> String {
+    let mut lines = vec![parameters_in_words(row)];
+    match &row.state {
+        RowState::Done(record) => lines.extend(results(record)),
+        RowState::Failed { error } => {
+            let reason: String = error.chars().take(REASON_LENGTH).collect();
+            lines.push(format!("failed: {reason}"));
+        }
+        RowState::Pending | RowState::Running | RowState::Cancelled => lines.push(row.status().to_owned()),
+    }
+    lines.push(format!("job {}", short_key(row)));
+    lines.join("\n")
+}
+
+/// The beginning of a job's key.
+pub(super) fn short_key(row: &Row) -> String {
+    row.job.chars().take(KEY_LENGTH).collect()
+}
+
+/// How a run ended, for a reader.
+pub(super) fn outcome_label(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Periodic => "periodic",
+        Outcome::Decayed => "decayed",
+        Outcome::NotPeriodic => "not periodic",
+    }
+}
+
+fn results(record: &JobRecord) -> Vec<String> {
+    let percent = |share: f64| fixed(100.0 * share, 1);
+    let mut lines = vec![
+        format!("μ* = {} ± {}", fixed(record.mu_star, 4), fixed(record.mu_star_se, 4)),
+        format!("{}, {}", regime_label(record.regime), outcome_label(record.outcome)),
+        format!(
+            "stick {} %, slip {} %, separated {} %",
+            percent(record.stick_share),
+            percent(record.slip_share),
+            percent(record.separated_share)
+        ),
+    ];
+    if let Some(frequency) = record.frequency_hz {
+        lines.insert(1, format!("{} Hz", fixed(frequency, 0)));
+    }
+    lines.push(format!(
+        "residuals: energy {}, identities {}",
+        short(record.energy_residual),
+        short(record.identity_residual())
+    ));
+    lines
+}
+
+/// Two digits are enough for what should be zero.
+pub(super) fn short(residual: f64) -> String {
+    format!("{residual:.1e}").parse().map_or_else(
+        |_| number(residual),
+        |rounded: f64| {
+            if rounded == 0.0 { "0".to_owned() } else { format!("{rounded:.1e}") }
+        },
+    )
+}

@@ -1,0 +1,116 @@
+//! Who is there, how long jobs took, and what results were made with.
+
+use tribosweep::queue::{Alive, FinishedOutcome, MadeWith, QueueError, Scope, Worker};
+
+use crate::support::{Sandbox, claim, dead_worker, done, failed, finish, foreign_worker, job, of, study};
+
+fn alive(workers: u64, threads: u64) -> Alive {
+    Alive { workers, threads }
+}
+
+/// Protects: workers are there while their process is, whatever their last sign of life; one that is to stop is not
+/// waited for; of one that cannot be seen its signs of life decide.
+#[tokio::test]
+async fn the_living_are_counted() {
+    let sandbox = Sandbox::new();
+    let lease_ms = 120_000;
+    sandbox.clock.set(10 * lease_ms);
+    let mut own = sandbox.open_as(&Worker { threads: 3, ..Worker::this_process(1, "test", "") }).await;
+    assert_eq!(own.alive().await.unwrap(), alive(1, 3));
+    sandbox.open_as(&dead_worker()).await;
+    assert_eq!(own.alive().await.unwrap(), alive(1, 3));
+    sandbox.open_as(&Worker { threads: 4, ..foreign_worker() }).await;
+    assert_eq!(own.alive().await.unwrap(), alive(2, 7));
+    sandbox.clock.set(11 * lease_ms);
+    assert_eq!(own.alive().await.unwrap(), alive(1, 3), "a lease without a sign of life");
+    own.stopping().await.unwrap();
+    assert_eq!(own.alive().await.unwrap(), alive(0, 0));
+}
+
+/// Protects: an estimate is made of the study's jobs that are done, with what they cost and took.
+#[tokio::test]
+async fn timings_are_those_of_done_jobs() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let mut own = study("a", &[]);
+    own.jobs = vec![job("x", 8.0), job("y", 4.0), job("z", 2.0)];
+    queue.submit(&own).await.unwrap();
+    queue.submit(&study("b", &["other"])).await.unwrap();
+    claim(&mut queue, Scope::All, 4).await;
+    assert!(queue.timings("a").await.unwrap().is_empty());
+    finish(&mut queue, "x", 1, done("record")).await;
+    finish(&mut queue, "y", 1, failed("error")).await;
+    finish(&mut queue, "other", 1, done("record")).await;
+    assert_eq!(queue.timings("a").await.unwrap(), [(8.0, 2.5)]);
+    assert!(matches!(queue.timings("c").await, Err(QueueError::UnknownStudy { .. })));
+}
+
+/// Protects: whatever happens to a study's jobs shows in their counts or in how often they were started.
+#[tokio::test]
+async fn starts_show_what_counts_do_not() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    queue.submit(&study("a", &["x", "y", "x"])).await.unwrap();
+    assert_eq!(queue.starts("a").await.unwrap(), 0);
+    let first = claim(&mut queue, of("a"), 1).await.remove(0);
+    let before = queue.counts(&of("a")).await.unwrap();
+    // The job is given back, and the other one is taken.
+    finish(&mut queue, &first.key, 1, FinishedOutcome::Released).await;
+    claim(&mut queue, of("a"), 1).await;
+    assert_eq!(queue.counts(&of("a")).await.unwrap(), before);
+    assert_eq!(queue.starts("a").await.unwrap(), 2);
+    assert!(matches!(queue.starts("c").await, Err(QueueError::UnknownStudy { .. })));
+}
+
+/// Protects: of a large study an even sample is looked at.
+#[tokio::test]
+async fn timings_of_many_jobs_are_a_sample() {
+    let sandbox = Sandbox::new();
+    let mut queue = sandbox.open().await;
+    let mut own = study("a", &[]);
+    own.jobs = (0..2_500).map(|i| job(&format!("job {i}"), f64::from(i))).collect();
+    queue.submit(&own).await.unwrap();
+    let mut raw = sandbox.raw().await;
+    sqlx::query("UPDATE jobs SET state = 'done', attempt = 1").execute(&mut raw).await.unwrap();
+    sqlx::query("INSERT INTO results (job_id, attempt, record, wall_s, finished_ms) SELECT id, 1, '', cost, 0 FROM jobs")
+        .execute(&mut raw)
+        .await
+        .unwrap();
+    let timings = queue.timings("a").await.unwrap();
+    assert_eq!(timings.len(), 834);
+    let mean = timings.iter().map(|(cost, _)| cost).sum::<f64>() / timings.len() as f64;
+    assert!((mean - 1_250.0).abs() < 5.0, "{mean}");
+}
+
+/// Protects: what results were made with is told once, with the number of jobs and the times of the attempts that count;
+/// what other studies have is not told.
+#[tokio::test]
+async fn origins_are_told_once() {
+    let sandbox = Sandbox::new();
+    let worker = |provenance| Worker::this_process(1, "test", provenance);
+    let mut first = sandbox.open_as(&worker("first")).await;
+    first.submit(&study("a", &["x", "y", "z", "x"])).await.unwrap();
+    first.submit(&study("b", &["other"])).await.unwrap();
+    assert!(first.made_with("a").await.unwrap().is_empty());
+    claim(&mut first, of("a"), 2).await;
+    claim(&mut first, of("b"), 1).await;
+    sandbox.clock.set(1_000);
+    finish(&mut first, "x", 1, done("record")).await;
+    finish(&mut first, "other", 1, done("record")).await;
+    sandbox.clock.set(2_000);
+    finish(&mut first, "y", 1, failed("error")).await;
+    let mut second = sandbox.open_as(&worker("second")).await;
+    claim(&mut second, of("a"), 1).await;
+    sandbox.clock.set(3_000);
+    finish(&mut second, "z", 1, done("record")).await;
+
+    let made = |provenance: &str, jobs, first_finished_ms, last_finished_ms| MadeWith {
+        provenance: Some(provenance.to_owned()),
+        jobs,
+        first_finished_ms,
+        last_finished_ms,
+    };
+    let expected = [made("first", 2, 1_000, 2_000), made("second", 1, 3_000, 3_000)];
+    assert_eq!(first.made_with("a").await.unwrap(), expected);
+    assert!(matches!(first.made_with("c").await, Err(QueueError::UnknownStudy { .. })));
+}
