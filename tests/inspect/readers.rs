@@ -9,10 +9,23 @@ use tribosweep::inspect::{Frame, Look, Options, Origin, write};
 use tribosweep::solver::contact::ContactState;
 use tribosweep::solver::stress;
 
-/// Reads a series and prints all times and what is in its files, as JSON.
-const WITH_VTK: &str = r#"
+/// Begins both scripts.
+const HEAD: &str = r"
 import json, os, sys
 import xml.etree.ElementTree as tree
+";
+
+/// Ends both: reads a series and prints all times and what is in its files, as JSON.
+const TAIL: &str = r#"
+series = sys.argv[1]
+parts = list(tree.parse(series).getroot().iter("DataSet"))
+files = [os.path.join(os.path.dirname(series), part.get("file")) for part in parts]
+json.dump({"times": [float(part.get("timestep")) for part in parts], "files": [read(file) for file in files]},
+          sys.stdout)
+"#;
+
+/// How VTK reads a file.
+const WITH_VTK: &str = r#"
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
@@ -29,18 +42,10 @@ def read(path):
     volumes = vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Volume")).tolist()
     points = vtk_to_numpy(grid.GetPoints().GetData()).tolist()
     return {"points": points, "volumes": volumes, "arrays": arrays}
-
-series = sys.argv[1]
-parts = list(tree.parse(series).getroot().iter("DataSet"))
-files = [os.path.join(os.path.dirname(series), part.get("file")) for part in parts]
-json.dump({"times": [float(part.get("timestep")) for part in parts], "files": [read(file) for file in files]},
-          sys.stdout)
 "#;
 
-/// The same with meshio.
+/// How meshio does.
 const WITH_MESHIO: &str = r#"
-import json, os, sys
-import xml.etree.ElementTree as tree
 import numpy
 import meshio
 
@@ -52,12 +57,6 @@ def read(path):
     volumes = numpy.einsum("ij,ij->i", numpy.cross(edges[0], edges[1]), edges[2])
     arrays = {name: values.tolist() for name, values in mesh.point_data.items()}
     return {"points": mesh.points.tolist(), "volumes": volumes.tolist(), "arrays": arrays}
-
-series = sys.argv[1]
-parts = list(tree.parse(series).getroot().iter("DataSet"))
-files = [os.path.join(os.path.dirname(series), part.get("file")) for part in parts]
-json.dump({"times": [float(part.get("timestep")) for part in parts], "files": [read(file) for file in files]},
-          sys.stdout)
 "#;
 
 fn python() -> String {
@@ -74,7 +73,8 @@ fn read_with(module: &str, script: &str, series: &Path) -> Option<Value> {
         );
         return None;
     }
-    let output = Command::new(python()).args(["-c", script]).arg(series).output().unwrap();
+    let output =
+        Command::new(python()).args(["-c", &[HEAD, script, TAIL].concat()]).arg(series).output().unwrap();
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     Some(serde_json::from_slice(&output.stdout).unwrap())
 }

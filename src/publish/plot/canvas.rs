@@ -4,15 +4,15 @@
 
 use super::axis::Axis;
 use super::hits::{self, Hit};
-use super::{FONT, FigureError, MARGIN, TEXT};
-use plotters::chart::ChartContext;
+use super::{FONT, FigureError, GRID, MARGIN, TEXT};
+use plotters::chart::{ChartContext, MeshStyle};
 use plotters::coord::Shift;
 use plotters::coord::cartesian::Cartesian2d;
 use plotters::prelude::{
     BLACK, DrawingArea, IntoDrawingArea, PathElement, RGBColor, Rectangle, SVGBackend, Text, WHITE,
 };
 use plotters::style::text_anchor::{HPos, Pos, VPos};
-use plotters::style::{Color, IntoFont};
+use plotters::style::{Color, IntoFont, TRANSPARENT};
 
 /// A part of a sheet.
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -98,6 +98,19 @@ pub fn write_in(
 /// The size at which text of this length stays within `room`: a character is about half as wide as high.
 pub fn fitting(characters: usize, room: i32) -> i32 {
     (room * 2 / characters.max(1) as i32).clamp(8, TEXT)
+}
+
+/// The mesh and the axes of a chart in the style of all, to be given names and drawn.
+pub fn mesh<'a, 'b, 'c>(chart: &'b mut Chart<'a, 'c>) -> MeshStyle<'a, 'b, Axis, Axis, SVGBackend<'c>> {
+    let mut mesh = chart.configure_mesh();
+    mesh.bold_line_style(GRID.stroke_width(2))
+        .light_line_style(TRANSPARENT)
+        .axis_style(BLACK.stroke_width(2))
+        .set_all_tick_mark_size(8)
+        .x_label_style((FONT, TEXT))
+        .y_label_style((FONT, TEXT))
+        .axis_desc_style((FONT, TEXT + 4));
+    mesh
 }
 
 /// Closes the frame that the two axes of a chart begin.

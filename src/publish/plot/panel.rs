@@ -2,7 +2,7 @@
 
 use super::axis::Axis;
 use super::canvas::{self, Area, Chart, WIDTH, write};
-use super::{CURVE_WIDTH, DASH, FONT, FigureError, GRID, GUIDE_WIDTH, MARGIN, TEXT};
+use super::{CURVE_WIDTH, DASH, FONT, FigureError, GUIDE_WIDTH, MARGIN, TEXT};
 use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::prelude::{BLACK, Circle, DashedLineSeries, PathElement, RGBColor, Rectangle};
 use plotters::style::text_anchor::HPos;
@@ -219,21 +219,10 @@ fn axes<'a, 'b>(
         builder.margin_right(MARGIN + room).set_label_area_size(LabelAreaPosition::Left, Y_LABELS);
     }
     let mut chart = builder.build_cartesian_2d(x.axis.clone(), y.axis.clone())?;
-    let mut mesh = chart.configure_mesh();
-    mesh.bold_line_style(if right {
-        plotters::style::TRANSPARENT.stroke_width(0)
-    } else {
-        GRID.stroke_width(2)
-    })
-    .light_line_style(plotters::style::TRANSPARENT)
-    .axis_style(BLACK.stroke_width(2))
-    .set_all_tick_mark_size(8)
-    .x_label_style((FONT, TEXT))
-    .y_label_style((FONT, TEXT))
-    .axis_desc_style((FONT, TEXT))
-    .y_desc(y.label.as_str());
+    let mut mesh = canvas::mesh(&mut chart);
+    mesh.y_desc(y.label.as_str()).axis_desc_style((FONT, TEXT));
     if right {
-        mesh.disable_x_axis();
+        mesh.disable_x_axis().disable_mesh();
     } else {
         mesh.x_desc(x.label.as_str());
     }

@@ -5,12 +5,12 @@ use super::{Ordinate, legend, marker};
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area, Chart, X_LABELS};
 use crate::publish::plot::hits::{Hit, Shape};
-use crate::publish::plot::{CURVE_WIDTH, DASH, FONT, FigureError, GRID, GUIDE_WIDTH, MARGIN, TEXT, palette};
+use crate::publish::plot::{CURVE_WIDTH, DASH, FONT, FigureError, GUIDE_WIDTH, MARGIN, TEXT, palette};
 use crate::publish::value::{self, OMEGA};
 use crate::report::layout::{Group, Layout};
 use crate::report::tip::tip;
 use plotters::chart::ChartBuilder;
-use plotters::prelude::{BLACK, DashedLineSeries, LineSeries, PathElement, RGBColor};
+use plotters::prelude::{DashedLineSeries, LineSeries, PathElement, RGBColor};
 use plotters::style::Color;
 use plotters::style::text_anchor::HPos;
 
@@ -50,19 +50,11 @@ fn draw_plot(
         .x_label_area_size(X_LABELS)
         .y_label_area_size(Y_LABELS)
         .build_cartesian_2d(x_axis, y_axis)?;
-    let mut mesh = chart.configure_mesh();
-    mesh.bold_line_style(GRID.stroke_width(2))
-        .light_line_style(plotters::style::TRANSPARENT)
-        .axis_style(BLACK.stroke_width(2))
-        .set_all_tick_mark_size(8)
-        .x_label_style((FONT, x_text))
-        .y_label_style((FONT, TEXT))
-        .axis_desc_style((FONT, TEXT + 4))
-        .x_desc(x_label)
-        .y_desc(match plot {
-            Ordinate::MuStar => "macroscopic friction coefficient μ*",
-            Ordinate::Frequency => "frequency [Hz]",
-        });
+    let mut mesh = canvas::mesh(&mut chart);
+    mesh.x_label_style((FONT, x_text)).x_desc(x_label).y_desc(match plot {
+        Ordinate::MuStar => "macroscopic friction coefficient μ*",
+        Ordinate::Frequency => "frequency [Hz]",
+    });
     if plot == Ordinate::MuStar {
         // The guides are the horizontal lines here; a grid would run along some of them.
         mesh.disable_y_mesh();

@@ -5,15 +5,15 @@ use crate::analysis::JobRecord;
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area, Chart, X_LABELS};
 use crate::publish::plot::hits::{Hit, Shape};
-use crate::publish::plot::{FONT, FigureError, GRID, MARGIN, TEXT, palette};
+use crate::publish::plot::{FigureError, MARGIN, TEXT, palette};
 use crate::publish::value;
 use crate::report::layout::MOST_TOLD;
 use crate::report::row::Row;
 use crate::report::tip::tip;
 use plotters::chart::ChartBuilder;
-use plotters::prelude::{BLACK, Circle, Polygon, RGBColor};
+use plotters::prelude::{Circle, Polygon, RGBColor};
+use plotters::style::Color;
 use plotters::style::text_anchor::HPos;
-use plotters::style::{Color, TRANSPARENT};
 use serde_json::Value;
 
 const SIZE: (u32, u32) = (canvas::WIDTH, 860);
@@ -79,18 +79,7 @@ fn draw_plot(area: &Area, rows: &[Row]) -> Result<Vec<Hit>, FigureError> {
         .x_label_area_size(X_LABELS)
         .y_label_area_size(Y_LABELS)
         .build_cartesian_2d(Axis::spanning(1.0, rows.len() as f64, 1.0), Axis::across(&all, true))?;
-    chart
-        .configure_mesh()
-        .bold_line_style(GRID.stroke_width(2))
-        .light_line_style(TRANSPARENT)
-        .axis_style(BLACK.stroke_width(2))
-        .set_all_tick_mark_size(8)
-        .x_label_style((FONT, TEXT))
-        .y_label_style((FONT, TEXT))
-        .axis_desc_style((FONT, TEXT + 4))
-        .x_desc("job, in the order of the study")
-        .y_desc("residual")
-        .draw()?;
+    canvas::mesh(&mut chart).x_desc("job, in the order of the study").y_desc("residual").draw()?;
     canvas::frame(&chart)?;
     let mut hits = Vec::new();
     for kind in &KINDS {

@@ -18,7 +18,7 @@ use serde_json::Value;
 
 /// From the bottom to the top; the lightest in the middle, so that the three differ without colours.
 const LAYERS: [(&str, RGBColor); 3] =
-    [("stick", palette::BLUE), ("slip", RGBColor(0xE0, 0xE0, 0xE0)), ("separated", palette::VERMILLION)];
+    [("stick", palette::STICK), ("slip", RGBColor(0xE0, 0xE0, 0xE0)), ("separated", palette::SEPARATED)];
 /// Height of a panel [px].
 const PANEL: u32 = 400;
 const HEAD: u32 = 72;

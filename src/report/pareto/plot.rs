@@ -6,7 +6,7 @@ use super::case::Case;
 use super::page::figure_title;
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area, X_LABELS, write};
-use crate::publish::plot::{DASH, FONT, FigureError, GRID, MARGIN, TEXT, palette};
+use crate::publish::plot::{DASH, FigureError, MARGIN, TEXT, palette};
 use plotters::chart::ChartBuilder;
 use plotters::prelude::{BLACK, Circle, DashedLineSeries, PathElement, Polygon, RGBColor, WHITE};
 use plotters::style::Color;
@@ -88,18 +88,7 @@ fn draw_plot(area: &Area, points: &[Point]) -> Result<(), FigureError> {
             axis(points.iter().map(|point| point.time_s)),
             axis(points.iter().map(|point| point.error)),
         )?;
-    chart
-        .configure_mesh()
-        .bold_line_style(GRID.stroke_width(2))
-        .light_line_style(plotters::style::TRANSPARENT)
-        .axis_style(BLACK.stroke_width(2))
-        .set_all_tick_mark_size(8)
-        .x_label_style((FONT, TEXT))
-        .y_label_style((FONT, TEXT))
-        .axis_desc_style((FONT, TEXT + 4))
-        .x_desc("solver time of the job [s]")
-        .y_desc(figure_title())
-        .draw()?;
+    canvas::mesh(&mut chart).x_desc("solver time of the job [s]").y_desc(figure_title()).draw()?;
     let mut front: Vec<(f64, f64)> =
         points.iter().filter(|point| point.on_front).map(|point| (point.time_s, point.error)).collect();
     front.sort_by(|a, b| a.0.total_cmp(&b.0));
