@@ -224,11 +224,6 @@ impl<const L: usize> Sampler<L> {
         })
     }
 
-    /// Smoothed normal stress [Pa] of a slave node of a lane.
-    pub fn sigma_n_pa(&self, slave: usize, lane: usize) -> f64 {
-        self.last.at(self.last.place(slave), SIGMA_N)[lane]
-    }
-
     /// The gain of its smoothers.
     pub fn gain(&self) -> f64 {
         self.gain
@@ -255,7 +250,7 @@ impl<const L: usize> Sampler<L> {
             y_velocity_m_s: (y + yielding) / dt + model.slaves()[slave].surface_motion[1] * drive.rate,
             gap_m: contacts.gap_of(slave, lane),
             force_n: contacts.force_of(slave, lane),
-            sigma_n_pa: self.sigma_n_pa(slave, lane),
+            sigma_n_pa: self.last.at(place, SIGMA_N)[lane],
             slip_speed_m_s: if slips { (x * x + y * y).sqrt() / dt } else { 0.0 },
             state: contact_state,
         }
