@@ -100,6 +100,11 @@ pub struct Smoother {
 }
 
 impl Smoother {
+    /// A filter that has had this input for ever.
+    pub fn at(value: f64) -> Self {
+        Self { value }
+    }
+
     /// Advances by one step with the gain 1 − exp(−Δt/τ).
     pub fn push(&mut self, input: f64, gain: f64) -> f64 {
         self.value += gain * (input - self.value);

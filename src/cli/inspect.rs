@@ -46,6 +46,9 @@ pub struct Args {
     folder: Option<PathBuf>,
 }
 
+/// What messages call the parameters of a job.
+const GIVEN: &str = "NAME=VALUE";
+
 /// A job with the parameters that tell it from others.
 struct Picked {
     spec: JobSpec,
@@ -86,21 +89,60 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     }
     let picked = pick(args, &study, &args.job)?;
     picked.tell_own();
-    let places = if args.nodes.is_empty() { Place::USUAL.to_vec() } else { args.nodes.clone() };
+    let places = args.places(&Place::USUAL);
     let options = Options { places, cycles: args.cycles.into(), frames: args.frames.into() };
+    let preset = args.preset.map(Preset::name);
+    let slug: Vec<String> = std::iter::once(picked.slug()).chain(preset.map(str::to_owned)).collect();
+    let folder = args.out(&study, &slug.join("_"));
     let mut pace = Pace::new(&picked, foreground::interrupt());
-    let look = match Look::into(&picked.spec, &options, &mut |simulated_s| pace.go_on(simulated_s)) {
+    let look = match in_folder(&folder, || {
+        Look::into(&picked.spec, &options, &mut |simulated_s| pace.go_on(simulated_s))
+    })? {
         Ok(look) => look,
         Err(error) => return ended(error),
     };
     pace.bar.finish_and_clear();
-    let folder = args.out(&study, &picked.slug());
-    let origin =
-        Origin { title: format!("{}: {}", study.name(), picked.words()), made_with: worker::program() };
+    let shown = &look.survey.windows;
+    if shown.cycles && shown.count < options.cycles {
+        tell(format_args!("{} cycles are shown: there are no more like them", shown.count));
+    }
+    let of_preset = preset.map_or_else(String::new, |name| format!(", preset {name}"));
+    let origin = Origin {
+        title: format!("{}: {}{of_preset}", study.name(), picked.words()),
+        made_with: worker::program(),
+    };
     inspect::write(&look, &folder, &origin)?;
     tell(solve::as_text(&look.survey.record).trim_end());
     print(&format!("{}\n", folder.join(inspect::PAGE).display()))?;
     Ok(exit::SUCCESS)
+}
+
+/// Creates a folder that results will go to, so that one that cannot be written is noticed before the work; without
+/// results it is gone again, unless something is in it.
+fn in_folder<T>(
+    folder: &Path,
+    work: impl FnOnce() -> Result<T, LookError>,
+) -> Result<Result<T, LookError>, CliError> {
+    let missing: Vec<&Path> = folder.ancestors().take_while(|ancestor| !ancestor.exists()).collect();
+    let failed = |source| CliError::File { path: folder.display().to_string(), source };
+    std::fs::create_dir_all(folder).map_err(failed)?;
+    // Who may enter a folder may not always write into it.
+    try_to_write(folder).map_err(failed)?;
+    let found = work();
+    if found.is_err() {
+        for folder in missing {
+            // Not if there is anything in it.
+            let _ = std::fs::remove_dir(folder);
+        }
+    }
+    Ok(found)
+}
+
+/// Creates a file in a folder and removes it.
+fn try_to_write(folder: &Path) -> std::io::Result<()> {
+    let path = folder.join(format!(".inspect.{}.tmp", std::process::id()));
+    std::fs::File::create(&path)?;
+    std::fs::remove_file(&path)
 }
 
 /// The study in a file, or the one in the database as it was submitted.
@@ -141,7 +183,7 @@ fn pick(args: &Args, study: &Study, job: &[String]) -> Result<Picked, CliError> 
         .map(|text| foreground::parse_setting(text))
         .collect::<Result<_, _>>()
         .map_err(|error| CliError::Plan(format!("JOB: {error}, or one key")))?;
-    let (spec, own) = study.single_on_base(args.preset, &settings)?;
+    let (spec, own) = study.single_on_base(GIVEN, args.preset, &settings)?;
     let names: Vec<&str> = study
         .axes()
         .map(|(parameter, _)| parameter.name)
@@ -151,6 +193,12 @@ fn pick(args: &Args, study: &Study, job: &[String]) -> Result<Picked, CliError> 
 }
 
 fn by_key(study: &Study, key: &str) -> Result<Picked, CliError> {
+    if key.is_empty() || Parameter::find(key).is_some() {
+        let name = if key.is_empty() { "omega_rpm" } else { key };
+        return Err(CliError::Plan(format!(
+            "JOB: expected a job's key or NAME=VALUE, for example {name}=…; got `{key}`"
+        )));
+    }
     let jobs = study.expand(solver::VERSION)?;
     let mut found = jobs.into_iter().filter(|job| job.key.starts_with(key));
     match (found.next(), found.next()) {
@@ -224,7 +272,12 @@ impl Pace {
 /// Runs the jobs of an overlay on all cores and writes a figure for each node.
 fn overlay(args: &Args, study: &Study) -> Result<u8, CliError> {
     let Some((name, list)) = &args.overlay else { return Ok(exit::SUCCESS) };
-    let texts: Vec<&str> = list.split(',').map(str::trim).filter(|text| !text.is_empty()).collect();
+    let mut texts: Vec<&str> = Vec::new();
+    for text in list.split(',').map(str::trim).filter(|text| !text.is_empty()) {
+        if !texts.contains(&text) {
+            texts.push(text);
+        }
+    }
     if texts.is_empty() {
         return Err(CliError::Plan(format!("--overlay {name}: expected values, for example {name}=2,4,6")));
     }
@@ -239,27 +292,36 @@ fn overlay(args: &Args, study: &Study) -> Result<u8, CliError> {
         })
         .collect::<Result<_, _>>()?;
     picked[0].tell_own();
-    let places = if args.nodes.is_empty() { Place::USUAL[..1].to_vec() } else { args.nodes.clone() };
+    let places = args.places(&Place::USUAL[..1]);
+    let common = Picked {
+        parameters: picked[0].parameters.iter().filter(|(own, _)| own != name).cloned().collect(),
+        spec: picked[0].spec.clone(),
+        own: Vec::new(),
+    };
+    let parts = ["overlay", name, &common.slug(), args.preset.map_or("", Preset::name)];
+    let slug: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
+    let folder = args.out(study, &value::in_file_name(&slug.join("_")));
     let interrupt = foreground::interrupt();
     let options = Options { places: places.clone(), cycles: args.cycles.into(), frames: args.frames.into() };
-    let traces: Result<Vec<Vec<Trace>>, LookError> = picked
-        .par_iter()
-        .map(|picked| {
-            let label = picked.parameters.iter().find(|(own, _)| own == name);
-            let label = label.map_or_else(String::new, |(name, value)| value::assignment(name, value));
-            Trace::of_job(&label, &picked.spec, &options, &mut |_| {
-                if interrupt.is_raised() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
-            })
+    let run = |picked: &Picked| {
+        let label = picked.parameters.iter().find(|(own, _)| own == name);
+        let label = label.map_or_else(String::new, |(name, value)| value::assignment(name, value));
+        Trace::of_job(&label, &picked.spec, &options, &mut |_| {
+            if interrupt.is_raised() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
-        .collect();
+    };
+    let traces = in_folder(&folder, || picked.par_iter().map(run).collect::<Result<Vec<Vec<Trace>>, _>>())?;
     let traces = match traces {
         Ok(traces) => traces,
         Err(error) => return ended(error),
     };
-    let folder = args.out(study, &value::in_file_name(&format!("overlay_{name}")));
+    let title = match common.words() {
+        words if words.is_empty() => study.name().to_owned(),
+        words => format!("{}: {words}", study.name()),
+    };
     for node in 0..places.len() {
         let of_node: Vec<Trace> = traces.iter().map(|of_job| of_job[node].clone()).collect();
-        for file in inspect::write_overlay(&of_node, &folder)? {
+        for file in inspect::write_overlay(&title, &of_node, &folder)? {
             print(&format!("{}\n", file.display()))?;
         }
     }
@@ -267,6 +329,17 @@ fn overlay(args: &Args, study: &Study) -> Result<u8, CliError> {
 }
 
 impl Args {
+    /// The nodes that are asked for, each once.
+    fn places(&self, usual: &[Place]) -> Vec<Place> {
+        let mut places: Vec<Place> = Vec::new();
+        for place in if self.nodes.is_empty() { usual } else { &self.nodes } {
+            if !places.contains(place) {
+                places.push(place.clone());
+            }
+        }
+        places
+    }
+
     fn out(&self, study: &Study, name: &str) -> PathBuf {
         self.folder.clone().unwrap_or_else(|| Path::new("reports").join(study.name()).join(name))
     }

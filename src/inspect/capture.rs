@@ -1,8 +1,9 @@
 //! The second of the two runs, the same to the last bit: everything of the time that is looked at.
 
 use super::place::ObservedNode;
+use super::smooth::without_delay;
 use super::survey::Windows;
-use crate::analysis::sample::{NodeSample, Sample, Smoother};
+use crate::analysis::sample::{NodeSample, Sample};
 use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment};
 use crate::solver::{Drive, Model};
 use crate::spec::JobSpec;
@@ -19,6 +20,8 @@ pub struct Capture {
     pub record: JobRecord,
     /// What the job was solved on.
     pub model: Model,
+    /// The gain of the job's smoother of stresses, 1 − exp(−Δt/τ).
+    pub stress_gain: f64,
     /// Totals of every step from [`Windows::totals_from_s`] on, or of the last million.
     pub totals: Vec<Sample>,
     /// For every observed node its steps in [`Windows::shown_s`].
@@ -36,8 +39,8 @@ pub struct NodeStep {
     pub time_s: f64,
     /// Displacement, velocity, force and state.
     pub node: NodeSample,
-    /// Friction stress [Pa] in x and y behind the smoother of the normal stress.
-    pub tau_pa: [f64; 2],
+    /// Contact stress [Pa]: friction in x and y, and normal, behind a low-pass that does not delay them.
+    pub stress_pa: [f64; 3],
 }
 
 /// All contact nodes during one step.
@@ -82,22 +85,38 @@ pub fn capture(
         drive: analysis::drive(spec),
         frame_times_s: frame_times_s(windows, frames),
         model: None,
+        gain: 0.0,
         totals: VecDeque::new(),
-        smoothers: vec![[Smoother::default(); 2]; nodes.len()],
         histories: vec![Vec::new(); nodes.len()],
         face: Vec::new(),
         frames: Vec::new(),
         go_on,
     };
     let record = analysis::solve(spec, &mut recorder)?;
+    let model = recorder.model.expect("a run has a step");
+    let histories = nodes.iter().zip(recorder.histories);
+    let history = |(node, steps): (&ObservedNode, Vec<(f64, NodeSample)>)| {
+        node_steps(steps, model.slaves()[node.slave].area_m2, recorder.gain)
+    };
     Ok(Capture {
         record,
-        model: recorder.model.expect("a run has a step"),
+        stress_gain: recorder.gain,
         totals: recorder.totals.into(),
-        nodes: recorder.histories,
+        nodes: histories.map(history).collect(),
+        model,
         face: recorder.face,
         frames: recorder.frames,
     })
+}
+
+/// A node's history with its stresses.
+fn node_steps(steps: Vec<(f64, NodeSample)>, area_m2: f64, gain: f64) -> Vec<NodeStep> {
+    let [x, y, n] = [0, 1, 2].map(|c| {
+        let raw: Vec<f64> = steps.iter().map(|(_, node)| node.force_n[c] / area_m2).collect();
+        without_delay(&raw, gain)
+    });
+    let steps = steps.into_iter().enumerate();
+    steps.map(|(i, (time_s, node))| NodeStep { time_s, node, stress_pa: [x[i], y[i], n[i]] }).collect()
 }
 
 /// Latest first.
@@ -112,9 +131,9 @@ struct Recorder<'a, G> {
     drive: Drive,
     frame_times_s: Vec<f64>,
     model: Option<Model>,
+    gain: f64,
     totals: VecDeque<Sample>,
-    smoothers: Vec<[Smoother; 2]>,
-    histories: Vec<Vec<NodeStep>>,
+    histories: Vec<Vec<(f64, NodeSample)>>,
     face: Vec<FaceStep>,
     frames: Vec<Frame>,
     go_on: &'a mut G,
@@ -126,6 +145,7 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
         let within = |[start_s, end_s]: [f64; 2]| time_s >= start_s && time_s < end_s;
         if self.model.is_none() {
             self.model = Some(moment.model.clone());
+            self.gain = moment.sampler.gain();
         }
         if time_s >= self.windows.totals_from_s {
             if self.totals.len() == MOST_TOTALS {
@@ -133,17 +153,11 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
             }
             self.totals.push_back(*moment.sample);
         }
-        let shown = within(self.windows.shown_s);
-        for ((observed, smoothers), history) in
-            self.nodes.iter().zip(&mut self.smoothers).zip(&mut self.histories)
-        {
-            let node =
-                moment.sampler.node(observed.slave, moment.model, &self.drive, moment.state, moment.lane);
-            let area_m2 = moment.model.slaves()[observed.slave].area_m2;
-            let gain = moment.sampler.gain();
-            let tau_pa = std::array::from_fn(|c| smoothers[c].push(node.force_n[c] / area_m2, gain));
-            if shown {
-                history.push(NodeStep { time_s, node, tau_pa });
+        if within(self.windows.shown_s) {
+            for (observed, history) in self.nodes.iter().zip(&mut self.histories) {
+                let slave = observed.slave;
+                let node = moment.sampler.node(slave, moment.model, &self.drive, moment.state, moment.lane);
+                history.push((time_s, node));
             }
         }
         if !within(self.windows.cycle_s) {

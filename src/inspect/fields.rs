@@ -12,7 +12,7 @@ use crate::solver::stress;
 const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
 /// The folder of the files that `fields.pvd` names.
-const PARTS: &str = "fields";
+pub(super) const PARTS: &str = "fields";
 
 /// Writes `fields.pvd` and a folder with a file for each frame.
 ///
@@ -49,8 +49,10 @@ fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointDa
         values: Values::Numbers(count, values.into_iter().map(|x| x as f32).collect()),
     };
     // Slave nodes have the first numbers.
-    let of_face = |count: usize, value: &dyn Fn(&NodeSample) -> Vec<f64>| {
-        let mut all: Vec<f64> = frame.face.iter().flat_map(value).collect();
+    let of_face = |count: usize, value: &dyn Fn(&NodeSample, f64) -> Vec<f64>| {
+        let areas = capture.model.slaves().iter().map(|slave| slave.area_m2);
+        let mut all: Vec<f64> =
+            frame.face.iter().zip(areas).flat_map(|(node, area_m2)| value(node, area_m2)).collect();
         all.resize(count * mesh.node_count(), 0.0);
         all
     };
@@ -60,9 +62,14 @@ fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointDa
     vec![
         numbers("displacement_m", 3, &[], frame.u_m.clone()),
         numbers("velocity_m_s", 3, &[], frame.velocity_m_s.clone()),
-        numbers("contact_force_n", 3, &[], of_face(3, &|node| node.force_n.to_vec())),
-        numbers("normal_contact_stress_pa", 1, &[], of_face(1, &|node| vec![node.sigma_n_pa])),
-        numbers("gap_m", 1, &[], of_face(1, &|node| vec![node.gap_m])),
+        numbers("contact_force_n", 3, &[], of_face(3, &|node, _| node.force_n.to_vec())),
+        numbers(
+            "normal_contact_stress_pa",
+            1,
+            &[],
+            of_face(1, &|node, area_m2| vec![node.force_n[2] / area_m2]),
+        ),
+        numbers("gap_m", 1, &[], of_face(1, &|node, _| vec![node.gap_m])),
         PointData { name: "contact_state", components: &[], values: Values::Codes(codes) },
         numbers("stress_pa", 6, &stress::COMPONENTS, stress.into_iter().flatten().collect()),
     ]

@@ -104,7 +104,7 @@ impl Look {
             .map(|(node, steps)| {
                 let end_s = windows.shown_s[1];
                 let phases = phases(steps.iter().map(|step| (step.time_s, step.node.state)), end_s);
-                let stress: Vec<_> = steps.iter().map(|step| (step.time_s, step.node.sigma_n_pa)).collect();
+                let stress: Vec<_> = steps.iter().map(|step| (step.time_s, step.stress_pa[2])).collect();
                 let instants = Instants::find(&phases, &stress, windows.shown_s[0], windows.period_s);
                 let target_velocity_m_s = rate * capture.model.slaves()[node.slave].surface_motion[1];
                 Observed { node, target_velocity_m_s, phases, instants }
@@ -137,52 +137,6 @@ pub fn area_m2(path: &[(f64, f64)]) -> f64 {
     path.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f64>() / 2.0
 }
 
-/// The instants of a node on the line through the middle of the contact face along the sliding direction.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Station {
-    /// Its y [m] from the pin's axis.
-    pub y_m: f64,
-    /// Its instants, if the contact face was kept for any step.
-    pub instants: Option<Instants>,
-}
-
-/// The instants along that line, from front to rear, from one cycle that is taken for one of many.
-pub fn stations(look: &Look) -> Vec<Station> {
-    let mesh = look.mesh();
-    let [nx, ny, _] = mesh.elements();
-    let [start_s, end_s] = look.survey.windows.cycle_s;
-    let period_s = end_s - start_s;
-    let station = |j: usize| {
-        let slave = mesh.node(nx / 2, j, 0);
-        let thrice = (0..3).flat_map(|turn| {
-            look.capture
-                .face
-                .iter()
-                .map(move |step| (step.time_s + f64::from(turn) * period_s, &step.nodes[slave]))
-        });
-        let thrice: Vec<_> = thrice.collect();
-        let phases =
-            phases(thrice.iter().map(|(time_s, node)| (*time_s, node.state)), start_s + 3.0 * period_s);
-        let stress: Vec<_> = thrice.iter().map(|(time_s, node)| (*time_s, node.sigma_n_pa)).collect();
-        // The first phase may be the end of one that began before: it is looked for a little later.
-        let instants = Instants::find(&phases, &stress, start_s + 0.25 * period_s, period_s);
-        Station { y_m: mesh.coordinates_m(slave)[1], instants }
-    };
-    (0..=ny).map(station).collect()
-}
-
-/// How much later [s] an instant is at the last of some stations than at the first, from station to station by the
-/// shorter way around the period; none unless two stations have it.
-pub fn delay_s(
-    stations: &[Station],
-    instant: impl Fn(&Instants) -> Option<f64>,
-    period_s: f64,
-) -> Option<f64> {
-    let times: Vec<f64> = stations.iter().filter_map(|station| instant(station.instants.as_ref()?)).collect();
-    let shorter = |delay: f64| delay - period_s * (delay / period_s).round();
-    (times.len() > 1).then(|| times.windows(2).map(|pair| shorter(pair[1] - pair[0])).sum())
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -203,18 +157,5 @@ mod tests {
         for sense in [1.0, -1.0] {
             assert!((area_m2(&circle(sense)) - sense * exact).abs() < 1e-11);
         }
-    }
-
-    /// Protects: a wave's delay goes the shorter way around the period from node to node, and is the sum of that.
-    #[test]
-    fn delays_go_around_the_period() {
-        let at = |time_s| Station {
-            y_m: 0.0,
-            instants: Some(Instants { slip_s: Some(time_s), ..Instants::default() }),
-        };
-        let wave = [at(0.9), at(1.1), at(0.3), at(0.5)];
-        let delay = delay_s(&wave, |instants| instants.slip_s, 1.0).unwrap();
-        assert!((delay - 0.6).abs() < 1e-12, "{delay}");
-        assert_eq!(delay_s(&wave, |instants| instants.stick_s, 1.0), None);
     }
 }

@@ -44,23 +44,24 @@ impl Trace {
         let windows = &look.survey.windows;
         let (from_s, duration_s) = (windows.shown_s[0], CYCLES * windows.period_s);
         let until_s = from_s + duration_s;
+        let label = if windows.cycles { label.to_owned() } else { format!("{label} (no cycle)") };
         let trace = |(observed, mut steps): (Observed, Vec<NodeStep>)| {
             steps.retain(|step| step.time_s >= from_s && step.time_s <= until_s);
-            Self { label: label.to_owned(), node: observed.node, from_s, duration_s, steps }
+            Self { label: label.clone(), node: observed.node, from_s, duration_s, steps }
         };
         Ok(look.observed.into_iter().zip(look.capture.nodes).map(trace).collect())
     }
 }
 
-/// Writes the figure of one node and its numbers; returns the files.
+/// Writes the figure of one node and its numbers; returns the files. `title` is what the jobs have in common.
 ///
 /// # Errors
 /// The first file that could not be written.
-pub fn write_overlay(traces: &[Trace], out_dir: &Path) -> Result<Vec<PathBuf>, PublishError> {
+pub fn write_overlay(title: &str, traces: &[Trace], out_dir: &Path) -> Result<Vec<PathBuf>, PublishError> {
     let node = traces.first().map_or("", |trace| trace.node.name.as_str());
     let mut folder = Folder::create(out_dir)?;
     let name = format!("figure8_{node}.svg");
-    let svg = figures::overlay(traces)
+    let svg = figures::overlay(title, traces)
         .map_err(|source| PublishError::Figure { path: folder.path_of(&name), source })?;
     folder.text(&name, &svg)?;
     folder.with(&format!("figure8_{node}.csv"), |out| {

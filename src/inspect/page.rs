@@ -5,7 +5,7 @@ use super::look::Look;
 use super::summary::{NodeSummary, Summary};
 use super::write::Origin;
 use crate::publish::html::{self, download, figure, navigation, section, table, tiles, warning};
-use crate::publish::value::{MISSING, fixed, number};
+use crate::publish::value::{MISSING, digits, fixed, number};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 
@@ -44,6 +44,7 @@ pub fn of(
             (section(drawn.stem, heading(drawn.stem), &html! {
                 (figure(&drawn.svg, &drawn.caption, None))
                 p { "Data: " @for name in &drawn.data { (data(name, tables)) " " } }
+                @if drawn.stem == "wave" { (waves(summary)) }
             }))
         }
         (section("nodes", last[0].1, &nodes(summary)))
@@ -55,7 +56,6 @@ pub fn of(
 fn head(look: &Look, summary: &Summary) -> Markup {
     let record = &summary.record;
     let frequency = record.frequency_hz.map_or_else(|| "none".to_owned(), |f| format!("{f:.0} Hz"));
-    let [_, ly, _] = look.mesh().size_m();
     let numbers = [
         (
             "μ*",
@@ -72,11 +72,6 @@ fn head(look: &Look, summary: &Summary) -> Markup {
             "shares of the node-time".to_owned(),
         ),
         (
-            "separation, front to rear",
-            delay(summary.waves.separation_s, ly),
-            "later at the rear; negative: it travels from the rear to the front".to_owned(),
-        ),
-        (
             "loops",
             format!("{} of {}", summary.face.counter_clockwise, summary.face.separating),
             "of the nodes that separate go counter-clockwise (y to the right, z upwards)".to_owned(),
@@ -87,15 +82,54 @@ fn head(look: &Look, summary: &Summary) -> Markup {
             (warning(&html! { "This job has no limit cycle: the end of its run is shown, over periods of 4h/c_s, "
                 "the pin's as a quarter-wave resonator in shear." }))
         }
+        p { (numerics(look)) }
         (tiles(&numbers))
     }
 }
 
-fn delay(delay_s: Option<f64>, length_m: f64) -> String {
-    delay_s.map_or_else(
-        || MISSING.to_owned(),
-        |delay_s| format!("{:+.1} µs ({:.0} m/s)", delay_s * 1e6, (length_m / delay_s).abs()),
+/// Mesh, step and disk in a line.
+fn numerics(look: &Look) -> String {
+    let [nx, ny, nz] = look.mesh().elements();
+    let record = &look.survey.record;
+    let disk = if look.capture.model.disk().is_some() { "an elastic disk" } else { "a rigid disk" };
+    format!(
+        "{nx} × {ny} × {nz} elements on {disk}, {} steps of {} s; {} cycles are shown.",
+        record.steps,
+        digits(record.time_step_s, 3),
+        look.survey.windows.count
     )
+}
+
+/// The waves, one in a line.
+fn waves(summary: &Summary) -> Markup {
+    let header = ["change", "y from … to [mm]", "begins [µs]", "takes [µs]", "speed [m/s], towards"]
+        .map(str::to_owned);
+    let lines: Vec<Vec<Markup>> = summary
+        .waves
+        .iter()
+        .map(|wave| {
+            let [from, to] = wave.from_to_m.map(|y| y * 1e3);
+            let speed = wave.speed_m_s().map_or_else(
+                || MISSING.to_owned(),
+                |speed| format!("{:.0}, {}", speed.abs(), if speed > 0.0 { "rear" } else { "front" }),
+            );
+            vec![
+                html! { (wave.change.name()) },
+                html! { (fixed(from, 2)) " … " (fixed(to, 2)) },
+                html! { (fixed(wave.start_s * 1e6, 1)) },
+                html! { (fixed(wave.delay_s.abs() * 1e6, 1)) },
+                html! { (speed) },
+            ]
+        })
+        .collect();
+    html! {
+        @if lines.is_empty() { p { "No change of state runs over neighbouring nodes of this line." } }
+        @else {
+            (table(&header, &lines))
+            p { "Each run of neighbouring nodes that have a change is a wave of its own; \"begins\" is at its first "
+                "node, from the front, since the begin of the cycle." }
+        }
+    }
 }
 
 /// A table to download, or where it is.
@@ -111,46 +145,50 @@ fn data(name: &str, tables: &BTreeMap<String, String>) -> Markup {
 type NodeLine = (&'static str, fn(&NodeSummary) -> String);
 
 fn nodes(summary: &Summary) -> Markup {
-    let header: Vec<String> =
-        std::iter::once(String::new()).chain(summary.nodes.iter().map(|node| node.title.clone())).collect();
+    let header: Vec<String> = std::iter::once(String::new())
+        .chain(summary.nodes.iter().map(|node| node.name.replace('_', " ")))
+        .collect();
     let figures: [NodeLine; 8] = [
-        ("velocity of the disk [mm/s]", |node| fixed(node.target_velocity_m_s * 1e3, 1)),
-        ("peak-to-peak displacement x, y, z [µm]", |node| {
-            node.peak_to_peak_m.map(|range| fixed(range * 1e6, 2)).join(", ")
-        }),
+        ("x, y [mm]", |node| node.at_m.map(|at| format!("{:.2}", at * 1e3)).join(", ")),
+        ("range of x, y, z [µm]", |node| node.peak_to_peak_m.map(|range| fixed(range * 1e6, 2)).join(", ")),
         ("largest gap [µm]", |node| fixed(node.lift_max_m * 1e6, 3)),
-        ("largest normal stress [MPa]", |node| fixed(node.sigma_n_max_pa * 1e-6, 3)),
+        ("largest σ_n [MPa], as in the record", |node| fixed(node.sigma_n_max_pa * 1e-6, 3)),
         ("largest slip speed [mm/s]", |node| fixed(node.slip_speed_max_m_s * 1e3, 0)),
         ("largest speed relative to the disk [mm/s]", |node| fixed(node.relative_speed_max_m_s * 1e3, 0)),
-        ("shares of stick, slip, separation", |node| node.shares.map(|share| fixed(share, 2)).join(", ")),
-        ("its own frequency [Hz]", |node| {
+        ("stick, slip, separated", |node| node.shares.map(|share| fixed(share, 2)).join(", ")),
+        ("separates, or sticks, with [Hz]", |node| {
             node.frequency_hz.map_or_else(|| MISSING.to_owned(), |f| fixed(f, 0))
         }),
     ];
     let line = |(name, figure): &NodeLine| -> Vec<Markup> {
-        std::iter::once(html! { (name) })
+        std::iter::once(html! { span.words { (name) } })
             .chain(summary.nodes.iter().map(|node| html! { (figure(node)) }))
             .collect()
     };
     let lines: Vec<Vec<Markup>> = figures.iter().map(line).collect();
-    let instants = summary.nodes.iter().flat_map(|node| {
-        let at = node.instants.iter().flat_map(|instants| &instants.at);
-        at.map(move |(name, time_s, stress_pa, velocity_m_s)| {
-            vec![
-                html! { (node.title) " " (name) },
-                html! { (fixed((time_s - summary.shown_s[0]) * 1e6, 2)) },
-                html! { (fixed(stress_pa * 1e-6, 3)) },
-                html! { (fixed(velocity_m_s * 1e3, 1)) },
-            ]
-        })
-    });
-    let columns =
-        ["instant", "time [µs]", "normal stress [MPa]", "velocity in y relative to the disk [mm/s]"]
-            .map(str::to_owned);
+    let columns = ["", "time [µs]", "state", "σ_n [MPa]", "v_y − disk [mm/s]"].map(str::to_owned);
     html! {
         (table(&header, &lines))
-        (table(&columns, &instants.collect::<Vec<_>>()))
+        @for node in &summary.nodes {
+            h3 { (node.title) }
+            (table(&columns, &instants(node, summary.shown_s[0])))
+        }
     }
+}
+
+/// The instants of a node, one in a line.
+fn instants(node: &NodeSummary, from_s: f64) -> Vec<Vec<Markup>> {
+    let at = node.instants.iter().flat_map(|instants| &instants.at);
+    at.map(|(name, time_s, stress_pa, velocity_m_s, state)| {
+        vec![
+            html! { (name) },
+            html! { (fixed((time_s - from_s) * 1e6, 2)) },
+            html! { (state) },
+            html! { (fixed(stress_pa * 1e-6, 3)) },
+            html! { (fixed(velocity_m_s * 1e3, 1)) },
+        ]
+    })
+    .collect()
 }
 
 fn files() -> Markup {
@@ -161,7 +199,8 @@ fn files() -> Markup {
             li { code { "face.csv" } " – every contact node at every step of a cycle; " code { "wave.csv" } }
             li { code { "totals.csv" } ", " code { "run.csv" } ", " code { "cycles.csv" } ", " code { "spectrum.csv" } }
             li { code { "fields.pvd" } " – the pin over a cycle, for ParaView: displacement, velocity, contact force, "
-                "normal contact stress, gap, contact state (−1 no contact node, 0 separated, 1 stick, 2 slip) and stress" }
+                "normal contact stress (force over tributary area), gap, contact state (−1 no contact node, 0 separated, "
+                "1 stick, 2 slip) and stress; velocities are those over the step that led to the displacements" }
         }
     }
 }

@@ -80,43 +80,46 @@ impl Instants {
 
     /// Finds the instants of the cycle that begins in the period from `from_s` on.
     ///
-    /// Phases of a few steps (a node that touches before it closes, or slips in between while it sticks) are not the
-    /// cycle's. Of the separations that begin in a period the longest counts; stick is from the begin of the first to
-    /// the end of the last phase in which the node sticks for a twentieth of a period or more. `stress` are times [s]
-    /// and normal stresses [Pa] of the steps.
+    /// The cycle goes from the end of a separation to that of the next; at a node that does not separate, from the begin
+    /// of a slip to that of the next. Phases of a few steps (a node that touches before it closes, or slips in between
+    /// while it sticks) are not the cycle's: of the separations, or slips, that begin in a period the longest counts, and
+    /// stick is from the begin of the first to the end of the last phase in which the node sticks for a twentieth of a
+    /// period or more. The first of `phases` may have begun before it was looked at, and is not taken for one that
+    /// begins. `stress` are times [s] and normal stresses [Pa] of the steps.
     ///
-    /// None if there is no step in that period.
+    /// None if there is no step in the cycle.
     pub fn find(phases: &[Phase], stress: &[(f64, f64)], from_s: f64, period_s: f64) -> Option<Self> {
-        let longest = |state: ContactState, [from_s, to_s]: [f64; 2]| {
-            let begun = phases.iter().filter(|phase| phase.state == state);
-            begun
-                .filter(|phase| phase.start_s >= from_s && phase.start_s < to_s)
-                .max_by(|a, b| a.duration_s().total_cmp(&b.duration_s()))
+        let begun = |state: ContactState, [from_s, to_s]: [f64; 2]| {
+            let of_state = phases.iter().skip(1).filter(move |phase| phase.state == state);
+            of_state.filter(move |phase| phase.start_s >= from_s && phase.start_s < to_s)
         };
-        let before = longest(ContactState::Separated, [from_s, from_s + period_s]);
-        let contact_s = before.map(|phase| phase.end_s);
-        // From a separation to the next, and none: a period from anywhere.
+        let longest = |state: ContactState, span_s: [f64; 2]| {
+            begun(state, span_s).max_by(|a, b| a.duration_s().total_cmp(&b.duration_s()))
+        };
+        let period = [from_s, from_s + period_s];
+        let before = longest(ContactState::Separated, period);
         let after = before.and_then(|phase| {
             let begin_s = phase.start_s + period_s / 2.0;
             longest(ContactState::Separated, [begin_s, begin_s + period_s])
         });
-        let touching = match (contact_s, after) {
-            (Some(from_s), Some(after)) => [from_s, after.start_s],
-            _ => [from_s, from_s + period_s],
+        let cycle = if let (Some(before), Some(after)) = (before, after) {
+            [before.end_s, after.start_s]
+        } else {
+            let start_s = longest(ContactState::Slip, period).map_or(from_s, |phase| phase.start_s);
+            [start_s, start_s + period_s]
         };
-        let within = stress.iter().filter(|(time_s, _)| *time_s >= touching[0] && *time_s <= touching[1]);
+        let within = stress.iter().filter(|(time_s, _)| *time_s >= cycle[0] && *time_s < cycle[1]);
         let (peak_s, _) = within.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let sticks = || {
-            let whole = |phase: &&Phase| phase.start_s >= touching[0] && phase.start_s < touching[1];
-            let long =
-                |phase: &&Phase| phase.state == ContactState::Stick && phase.duration_s() >= period_s / 20.0;
-            phases.iter().filter(whole).filter(long)
-        };
+        let mut sticks =
+            begun(ContactState::Stick, cycle).filter(|phase| phase.duration_s() >= period_s / 20.0);
+        let first = sticks.next();
+        let last = sticks.next_back().or(first);
+        let separates = before.is_some() && after.is_some();
         Some(Self {
-            contact_s,
-            stick_s: sticks().next().map(|phase| phase.start_s),
+            contact_s: before.filter(|_| separates).map(|phase| phase.end_s),
+            stick_s: first.map(|phase| phase.start_s),
             peak_s: *peak_s,
-            slip_s: sticks().next_back().map(|phase| phase.end_s),
+            slip_s: last.map(|phase| phase.end_s),
             separation_s: after.map(|phase| phase.start_s),
             end_s: after.map(|phase| phase.end_s),
         })
@@ -189,6 +192,9 @@ mod tests {
     fn other_regimes_have_fewer_instants() {
         let stick_slip = found(&[(Slip, 5), (Stick, 9)], 7);
         assert_eq!(stick_slip.named(), [('B', 5.0), ('C', 7.0), ('D', 14.0)]);
+        // Wherever in the cycle the look begins: here within a stick.
+        let from_stick = found(&[(Stick, 4), (Slip, 5), (Stick, 5)], 11);
+        assert_eq!(from_stick.named(), [('B', 9.0), ('C', 11.0), ('D', 18.0)]);
         let slip_separation = found(&[(Slip, 5), (Separated, 9)], 2);
         assert_eq!(slip_separation.named(), [('A', 14.0), ('C', 16.0), ('E', 19.0), ('F', 28.0)]);
         let sliding = found(&[(Slip, 10)], 3);

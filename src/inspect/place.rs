@@ -1,5 +1,6 @@
 //! Nodes of the contact face by name or by coordinates.
 
+use crate::publish::value::rounded;
 use crate::solver::mesh::BlockMesh;
 
 /// Names of the nodes that have one, with where they are across the sliding direction (x) and along it (y), from −1 to
@@ -67,8 +68,8 @@ impl Place {
         if x.abs() > lx / 2.0 + 5e-7 || y.abs() > ly / 2.0 + 5e-7 {
             return Err(format!(
                 "{},{} mm is not on the contact face; expected x from {} to {} and y from {} to {}",
-                x * 1e3,
-                y * 1e3,
+                rounded(x * 1e3),
+                rounded(y * 1e3),
                 -lx * 500.0,
                 lx * 500.0,
                 -ly * 500.0,

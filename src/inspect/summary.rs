@@ -1,7 +1,8 @@
 //! The numbers that a look finds, as one JSON document.
 
-use super::look::{Look, Observed, area_m2, delay_s, loop_of, stations};
-use super::phases::{Instants, Phase};
+use super::look::{Look, Observed, area_m2, loop_of};
+use super::phases::Phase;
+use super::waves::{Wave, stations, waves};
 use crate::analysis::JobRecord;
 use crate::solver::contact::ContactState;
 use crate::spec::JobSpec;
@@ -26,8 +27,9 @@ pub struct Summary {
     pub nodes: Vec<NodeSummary>,
     /// All nodes of the contact face over the cycle.
     pub face: FaceSummary,
-    /// How the state changes travel along the middle of the contact face.
-    pub waves: Waves,
+    /// How the state changes travel along the middle of the contact face, over each run of neighbouring nodes that have
+    /// them.
+    pub waves: Vec<Wave>,
     /// The largest lines of the total normal force, frequency [Hz] and amplitude [N].
     pub spectrum_peaks: Vec<(f64, f64)>,
 }
@@ -59,8 +61,9 @@ pub struct NodeSummary {
     pub slip_friction_error: f64,
     /// Shares of the time in stick, slip and separation.
     pub shares: [f64; 3],
-    /// Number of longest separations, or of longest sticks where there is none, over duration: how often its own cycle
-    /// comes [Hz].
+    /// How often it separates, or sticks if it does not separate [Hz]: the number of such phases, at least half as long as
+    /// the longest, in the cycles that are shown, over their duration. In a limit cycle of several humps it is a multiple
+    /// of the cycle's frequency.
     pub frequency_hz: Option<f64>,
     /// The instants of a cycle [s].
     pub instants: Option<InstantsSummary>,
@@ -69,8 +72,9 @@ pub struct NodeSummary {
 /// The instants of a cycle of a node, each where there is one, and what the node does then.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InstantsSummary {
-    /// Name (`t_A` … `t_F`), time [s], normal stress [Pa] and velocity [m/s] relative to the target in y.
-    pub at: Vec<(String, f64, f64, f64)>,
+    /// Name (`t_A` … `t_F`), time [s], normal stress [Pa] behind a low-pass without delay, velocity [m/s] relative to the
+    /// target in y, and state.
+    pub at: Vec<(String, f64, f64, f64, String)>,
     /// Normal stress [Pa] at its maximum, t_C.
     pub peak_pa: f64,
     /// Largest slip speed [m/s] between t_D and t_E.
@@ -94,26 +98,10 @@ pub struct FaceSummary {
     pub sigma_n_max_pa: f64,
 }
 
-/// How much later [s] an instant is at the rear than at the front; negative when it travels towards the front.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-#[expect(clippy::struct_field_names, reason = "a unit is not a name")]
-pub struct Waves {
-    /// Contact begins, t_A.
-    pub contact_s: Option<f64>,
-    /// Stick begins, t_B.
-    pub stick_s: Option<f64>,
-    /// Stick ends, t_D.
-    pub slip_s: Option<f64>,
-    /// Contact ends, t_E.
-    pub separation_s: Option<f64>,
-}
-
 impl Summary {
     /// The numbers of a look.
     pub fn of(look: &Look) -> Self {
         let windows = &look.survey.windows;
-        let stations = stations(look);
-        let delay = |instant: fn(&Instants) -> Option<f64>| delay_s(&stations, instant, windows.period_s);
         Self {
             job: look.spec.clone(),
             record: look.survey.record.clone(),
@@ -123,12 +111,7 @@ impl Summary {
             cycle_s: windows.cycle_s,
             nodes: (0..look.observed.len()).map(|number| node(look, number)).collect(),
             face: face(look),
-            waves: Waves {
-                contact_s: delay(|instants| instants.contact_s),
-                stick_s: delay(|instants| instants.stick_s),
-                slip_s: delay(|instants| instants.slip_s),
-                separation_s: delay(|instants| instants.separation_s),
-            },
+            waves: waves(&stations(look), windows.cycle_s[0], windows.period_s),
             spectrum_peaks: look.spectrum.peaks(5),
         }
     }
@@ -177,7 +160,8 @@ fn node(look: &Look, number: usize) -> NodeSummary {
             let named = instants.named().into_iter().filter_map(|(letter, time_s)| {
                 let step = nearest(time_s)?;
                 let velocity_m_s = relative(step.node.y_velocity_m_s);
-                Some((format!("t_{letter}"), time_s, step.node.sigma_n_pa, velocity_m_s))
+                let state = step.node.state.name().to_owned();
+                Some((format!("t_{letter}"), time_s, step.stress_pa[2], velocity_m_s, state))
             });
             let slipping = instants.slip_s.zip(instants.separation_s).map(|(from_s, to_s)| {
                 let within = steps.iter().filter(|step| step.time_s >= from_s && step.time_s <= to_s);
@@ -185,26 +169,33 @@ fn node(look: &Look, number: usize) -> NodeSummary {
             });
             InstantsSummary {
                 at: named.collect(),
-                peak_pa: nearest(instants.peak_s).map_or(0.0, |step| step.node.sigma_n_pa),
+                peak_pa: nearest(instants.peak_s).map_or(0.0, |step| step.stress_pa[2]),
                 slip_before_separation_m_s: slipping,
             }
         }),
     }
 }
 
-/// The phases of a state that last at least half as long as its longest come once a cycle.
+/// The first and the last phase are cut by the begin and the end of the cycles that are shown. They are one phase if they
+/// are of one state: what is shown are whole cycles.
 fn own_frequency_hz(look: &Look, phases: &[Phase]) -> Option<f64> {
-    let begins = |state: ContactState| -> Vec<f64> {
-        // What is cut by the begin or the end of the time that is shown says nothing of its length.
-        let whole = phases.get(1..phases.len().saturating_sub(1)).unwrap_or_default();
-        let of_state = || whole.iter().filter(|phase| phase.state == state);
-        let longest_s = largest(of_state().map(Phase::duration_s));
-        of_state().filter(|phase| phase.duration_s() >= 0.5 * longest_s).map(|phase| phase.start_s).collect()
+    let windows = &look.survey.windows;
+    let count = |state: ContactState| {
+        let mut durations_s: Vec<f64> = Vec::new();
+        for (number, phase) in phases.iter().enumerate().filter(|(_, phase)| phase.state == state) {
+            let continues_first = number > 0 && number + 1 == phases.len() && phases[0].state == state;
+            match durations_s.first_mut() {
+                Some(first) if continues_first => *first += phase.duration_s(),
+                _ => durations_s.push(phase.duration_s()),
+            }
+        }
+        let longest_s = largest(durations_s.iter().copied());
+        durations_s.iter().filter(|duration_s| **duration_s >= 0.5 * longest_s).count()
     };
-    let separations = begins(ContactState::Separated);
-    let times = if separations.len() > 1 { separations } else { begins(ContactState::Stick) };
-    let (first, last) = (times.first()?, times.last()?);
-    (look.survey.windows.cycles && last > first).then(|| (times.len() - 1) as f64 / (last - first))
+    let separations = count(ContactState::Separated);
+    let times = if separations > 0 { separations } else { count(ContactState::Stick) };
+    let duration_s = windows.shown_s[1] - windows.shown_s[0];
+    (windows.cycles && times > 0).then(|| times as f64 / duration_s)
 }
 
 fn face(look: &Look) -> FaceSummary {

@@ -1,6 +1,7 @@
 //! The first of the two runs: what is found in the job, and when its last limit cycles are.
 
 use super::envelope::Envelope;
+use super::look::Options;
 use crate::analysis::cycles::CycleCutter;
 use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment, Outcome};
 use crate::solver::Model;
@@ -24,6 +25,8 @@ pub struct Survey {
 /// What of a run is looked at, all at its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Windows {
+    /// Number of cycles, or of such periods, that are shown.
+    pub count: usize,
     /// Whether there are limit cycles (or cycles of a state that is not periodic); otherwise the period is that of the
     /// pin as a quarter-wave resonator in shear, 4h/c_s.
     pub cycles: bool,
@@ -63,6 +66,12 @@ pub fn survey(
 impl Windows {
     fn of(record: &JobRecord, passages_s: &[[f64; 2]], cycles: usize, quarter_wave_s: f64) -> Self {
         let crossings = record.crossings_per_cycle;
+        // No more than repeat: what is before the averaging window is the way there.
+        let there = match record.outcome {
+            Outcome::Periodic => record.cycles.min(passages_s.len() / crossings),
+            _ => passages_s.len() / crossings,
+        };
+        let cycles = if there >= Options::FEWEST_CYCLES { cycles.min(there) } else { cycles };
         let needed = cycles * crossings;
         let end_s = record.simulated_s;
         let (cycles_found, period_s, shown_s, cycle_s) = match passages_s.len().checked_sub(needed) {
@@ -87,6 +96,7 @@ impl Windows {
             }
         };
         Self {
+            count: cycles,
             cycles: cycles_found,
             period_s,
             shown_s,

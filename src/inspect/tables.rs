@@ -1,8 +1,9 @@
 //! What the figures show, as CSV.
 
 use super::capture::NodeStep;
-use super::look::{Look, stations};
+use super::look::Look;
 use super::phases::Instants;
+use super::waves::{Change, stations};
 use crate::analysis::sample::{NodeSample, Sample};
 use crate::publish::value::number;
 use crate::publish::{Folder, PublishError};
@@ -37,6 +38,8 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<BTreeMap<String, String
     add("instants.csv", &INSTANTS, &mut instant_lines(look))?;
     let mut header = vec!["time_s", "node", "x_m", "y_m"];
     header.extend(NODE);
+    // As the record has it, behind a low-pass that delays.
+    header.push("sigma_n_delayed_pa");
     add("face.csv", &header, &mut face_lines(look))?;
     add("wave.csv", &WAVE, &mut wave_lines(look))?;
     Ok(tables)
@@ -107,7 +110,7 @@ fn totals_line(sample: &Sample) -> Vec<String> {
 }
 
 /// What is told of a contact node during a step.
-const NODE: [&str; 12] = [
+const NODE: [&str; 11] = [
     "ux_m",
     "uy_m",
     "uz_m",
@@ -116,7 +119,6 @@ const NODE: [&str; 12] = [
     "friction_x_n",
     "friction_y_n",
     "normal_n",
-    "sigma_n_pa",
     "slip_speed_m_s",
     "mu_eq",
     "state",
@@ -134,7 +136,6 @@ fn node_cells(node: &NodeSample) -> Vec<String> {
         x,
         y,
         n,
-        node.sigma_n_pa,
         node.slip_speed_m_s,
         node.equivalent_friction(),
     ]
@@ -148,7 +149,7 @@ fn node_cells(node: &NodeSample) -> Vec<String> {
 pub fn history_header() -> Vec<&'static str> {
     let mut header = vec!["time_s"];
     header.extend(NODE);
-    header.extend(["tau_x_pa", "tau_y_pa"]);
+    header.extend(["tau_x_pa", "tau_y_pa", "sigma_n_pa"]);
     header
 }
 
@@ -156,7 +157,7 @@ pub fn history_header() -> Vec<&'static str> {
 pub fn history_line(step: &NodeStep) -> Vec<String> {
     let mut line = vec![number(step.time_s)];
     line.extend(node_cells(&step.node));
-    line.extend(step.tau_pa.map(number));
+    line.extend(step.stress_pa.map(number));
     line
 }
 
@@ -189,6 +190,7 @@ fn face_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
             let [x, y, _] = look.mesh().coordinates_m(slave);
             let mut line = vec![number(step.time_s), slave.to_string(), number(x), number(y)];
             line.extend(node_cells(node));
+            line.push(number(node.sigma_n_pa));
             line
         })
     })
@@ -198,15 +200,9 @@ const WAVE: [&str; 6] = ["y_m", "contact_s", "stick_s", "peak_s", "slip_s", "sep
 
 fn wave_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
     stations(look).into_iter().map(|station| {
-        let of =
-            |instant: fn(&Instants) -> Option<f64>| optional(station.instants.as_ref().and_then(instant));
-        vec![
-            number(station.y_m),
-            of(|instants| instants.contact_s),
-            of(|instants| instants.stick_s),
-            of(|instants| Some(instants.peak_s)),
-            of(|instants| instants.slip_s),
-            of(|instants| instants.separation_s),
-        ]
+        let of = |change: Change| optional(station.at(change));
+        let peak = optional(station.instants.map(|instants| instants.peak_s));
+        let [contact, stick, slip, separation] = Change::ALL.map(of);
+        vec![number(station.y_m), contact, stick, peak, slip, separation]
     })
 }

@@ -6,6 +6,9 @@ use super::{fields, figures, page, tables};
 use crate::publish::{Folder, PublishError};
 use std::path::{Path, PathBuf};
 
+/// All numbers of it.
+const SUMMARY: &str = "inspection.json";
+
 /// Where a look comes from.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Origin {
@@ -27,15 +30,35 @@ pub const PAGE: &str = "index.html";
 /// The first file that could not be written. Files before it are complete.
 pub fn write(look: &Look, out_dir: &Path, origin: &Origin) -> Result<Vec<PathBuf>, PublishError> {
     let mut folder = Folder::create(out_dir)?;
+    remove_former(out_dir);
     let tables = tables::write(look, &mut folder)?;
     let figures = figures::write(look, &mut folder)?;
     fields::write(&look.capture, &mut folder)?;
     let summary = Summary::of(look);
-    folder.with("inspection.json", |out| {
+    folder.with(SUMMARY, |out| {
         serde_json::to_writer_pretty(&mut *out, &summary)?;
         out.push(b'\n');
         Ok(())
     })?;
     folder.text(PAGE, &page::of(look, &summary, &figures, &tables, origin))?;
     Ok(folder.written)
+}
+
+/// Removes what an earlier look left whose files go by nodes and frames: those of others would pass for this one's.
+/// What cannot be removed stays; a file of this look that cannot be written says so itself.
+fn remove_former(out_dir: &Path) {
+    if !out_dir.join(SUMMARY).is_file() {
+        return;
+    }
+    for (folder, begin, end) in
+        [(out_dir.to_owned(), "node_", ".csv"), (out_dir.join(fields::PARTS), "pin_", ".vtu")]
+    {
+        let files = std::fs::read_dir(folder).into_iter().flatten().flatten();
+        for file in files.filter(|file| {
+            let name = file.file_name();
+            name.to_str().is_some_and(|name| name.starts_with(begin) && name.ends_with(end))
+        }) {
+            let _ = std::fs::remove_file(file.path());
+        }
+    }
 }

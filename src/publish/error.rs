@@ -7,7 +7,7 @@ use std::path::PathBuf;
 #[derive(Debug, thiserror::Error)]
 pub enum PublishError {
     /// The folder could not be made.
-    #[error("cannot create the folder {}", path.display())]
+    #[error("cannot create the folder {}: {source}", path.display())]
     Folder {
         /// The folder.
         path: PathBuf,
@@ -15,7 +15,7 @@ pub enum PublishError {
         source: std::io::Error,
     },
     /// A file could not be written; an earlier version of it is unchanged.
-    #[error("cannot write {}", path.display())]
+    #[error("cannot write {}: {source}", path.display())]
     File {
         /// The file.
         path: PathBuf,
@@ -23,7 +23,7 @@ pub enum PublishError {
         source: std::io::Error,
     },
     /// A figure could not be drawn.
-    #[error("cannot draw {}", path.display())]
+    #[error("cannot draw {}: {source}", path.display())]
     Figure {
         /// The file it was meant for.
         path: PathBuf,

@@ -23,7 +23,12 @@ pub fn number(x: f64) -> String {
 
 /// A number for a reader: without the rounding of a computed grid, 0.15 for 0.15000000000000002.
 pub fn rounded(x: f64) -> String {
-    format!("{x:.9e}").parse().map_or_else(|_| number(x), number)
+    digits(x, 10)
+}
+
+/// A number with so many significant digits, at least one, and no zeros after them.
+pub fn digits(x: f64, digits: usize) -> String {
+    format!("{x:.0$e}", digits.max(1) - 1).parse().map_or_else(|_| number(x), number)
 }
 
 /// A number with fixed decimals, or the mark of a missing result where it is not finite.

@@ -142,7 +142,7 @@ fn not_periodic(row: &Row) -> Option<String> {
     let record = row.record().filter(|record| record.outcome == Outcome::NotPeriodic)?;
     let reason = format!(
         "time limit reached after {} s without a periodic state; {}, μ\\* = {} ± {} over {} cycles",
-        value::number(record.simulated_s),
+        value::digits(record.simulated_s, 4),
         record.regime.name(),
         value::fixed(record.mu_star, 4),
         value::fixed(record.mu_star_se, 4),

@@ -38,39 +38,46 @@ impl Study {
         preset: Option<Preset>,
         overrides: &[(String, String)],
     ) -> Result<JobSpec, StudyError> {
-        let (spec, left_open) = self.pick(preset, overrides)?;
+        let (found, left_open) = self.pick(SOURCE, preset, overrides);
         if left_open.is_empty() {
-            return Ok(spec);
+            return found;
         }
-        Err(StudyError::Invalid(left_open.into_iter().map(|axis| self.left_open(axis)).collect()))
+        let mut problems = match found {
+            Err(StudyError::Invalid(problems)) => problems,
+            _ => Vec::new(),
+        };
+        problems.extend(left_open.into_iter().map(|axis| self.left_open(axis)));
+        Err(StudyError::Invalid(problems))
     }
 
     /// [`Study::single_with_preset`], but parameters of the grid that are left open have the base job's value. Also
-    /// gives the names of these.
+    /// gives the names of these. `source` is what messages say of where the overrides come from.
     ///
     /// # Errors
     /// Those of [`Study::single`] but for open parameters.
     pub fn single_on_base(
         &self,
+        source: &str,
         preset: Option<Preset>,
         overrides: &[(String, String)],
     ) -> Result<(JobSpec, Vec<&'static str>), StudyError> {
-        let (spec, left_open) = self.pick(preset, overrides)?;
-        Ok((spec, left_open.into_iter().map(|axis| axis.parameter.name).collect()))
+        let (spec, left_open) = self.pick(source, preset, overrides);
+        Ok((spec?, left_open.into_iter().map(|axis| axis.parameter.name).collect()))
     }
 
-    /// The job with these overrides, and the axes of the grid of which no value is picked.
+    /// The job with these overrides, and the axes of the grid of which no value is picked: there it has the base job's.
     fn pick(
         &self,
+        source: &str,
         preset: Option<Preset>,
         overrides: &[(String, String)],
-    ) -> Result<(JobSpec, Vec<&Axis>), StudyError> {
+    ) -> (Result<JobSpec, StudyError>, Vec<&Axis>) {
         let mut job = json::encode(&self.base);
         let mut problems = Vec::new();
         let mut taken: Vec<&Parameter> = Vec::new();
         let mut settings = Vec::new();
         for (name, text) in overrides {
-            let problem = |message| problem(name, text, message);
+            let problem = |message| problem(source, name, text, message);
             let Some(parameter) = Parameter::find(name) else {
                 problems.push(Problem { help: unknown_help(name), ..problem("no such parameter".into()) });
                 continue;
@@ -96,8 +103,7 @@ impl Study {
             }
         }
         if !problems.is_empty() {
-            problems.extend(left_open.into_iter().map(|axis| self.left_open(axis)));
-            return Err(StudyError::Invalid(problems));
+            return (Err(StudyError::Invalid(problems)), left_open);
         }
         for (parameter, value) in &settings {
             parameter.set(&mut job, value);
@@ -105,7 +111,7 @@ impl Study {
         if let Some(preset) = preset {
             preset.override_job(&mut job, &taken);
         }
-        Ok((self.checked(&job, &taken)?, left_open))
+        (self.checked(source, &job, &taken), left_open)
     }
 
     fn left_open(&self, axis: &Axis) -> Problem {
@@ -119,13 +125,13 @@ impl Study {
             .with_help(format!("pick one with --set {name}={}", values[0].trim_matches('"')))
     }
 
-    fn checked(&self, job: &Value, overridden: &[&Parameter]) -> Result<JobSpec, StudyError> {
+    fn checked(&self, source: &str, job: &Value, overridden: &[&Parameter]) -> Result<JobSpec, StudyError> {
         let spec = json::checked_job(job);
         let Err(violations) = spec.check() else { return Ok(spec) };
         let describe = |violation: &crate::spec::FieldError| {
             let message = format!("expected {}", violation.expected);
             let origin = if overridden.iter().any(|parameter| parameter.sets(&violation.field)) {
-                problem(&violation.field, &violation.value, message)
+                problem(source, &violation.field, &violation.value, message)
             } else {
                 self.origin.problem(&violation.field, message)
             };
@@ -135,9 +141,9 @@ impl Study {
     }
 }
 
-fn problem(field: &str, value: &str, message: String) -> Problem {
+fn problem(source: &str, field: &str, value: &str, message: String) -> Problem {
     Problem {
-        file: SOURCE.to_owned(),
+        file: source.to_owned(),
         position: None,
         field: field.to_owned(),
         value: Some(shorten(value)),

@@ -1,9 +1,10 @@
 //! A look is the job's own run.
 
 use crate::{coarse, look_into};
+use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use tribosweep::analysis::{JobError, Outcome, Regime, Unobserved, solve};
-use tribosweep::inspect::{Look, LookError, Options, Origin, Place, Summary, write};
+use tribosweep::inspect::{Change, Look, LookError, Options, Origin, Place, Summary, write};
 use tribosweep::solver::contact::ContactState;
 use tribosweep::spec::DiskKind;
 
@@ -53,39 +54,94 @@ fn what_is_shown_adds_up() {
     }
 }
 
-/// Protects: the instants are where the paper's figure 4 has them: in their order, with the states they are named
-/// after between them, and the largest stress at t_C.
+/// Protects: the instants are where the paper's figure 4 has them, at nodes that separate and at nodes that do not: in
+/// their order, within one period, at the steps at which the states change, and the largest stress at t_C.
 #[test]
 fn the_instants_are_those_of_the_states() {
+    let mut kinds = BTreeSet::new();
+    for omega_rpm in [1.0, 2.0, 4.0, 7.0, 20.0] {
+        let mut spec = coarse();
+        spec.scene.disk.omega_rpm = omega_rpm;
+        let look = look_into(&spec, &Options::default());
+        let period_s = look.survey.windows.period_s;
+        for (observed, steps) in look.observed.iter().zip(&look.capture.nodes) {
+            let instants = observed.instants.unwrap();
+            let letters: String = instants.named().iter().map(|(letter, _)| *letter).collect();
+            let told = format!("{omega_rpm} rpm, {}: {:?}", observed.node.name, instants.named());
+            let place = |time_s: f64| steps.iter().position(|step| step.time_s >= time_s).unwrap();
+            let state = |time_s: f64| steps[place(time_s)].node.state;
+            let before = |time_s: f64| steps[place(time_s) - 1].node.state;
+            if let (Some(b), Some(d)) = (instants.stick_s, instants.slip_s) {
+                assert!(b < d && d - b < period_s, "{told}");
+                assert!(state(b) == ContactState::Stick && before(b) != ContactState::Stick, "{told}");
+                assert!(state(d) != ContactState::Stick && before(d) == ContactState::Stick, "{told}");
+            }
+            if let (Some(a), Some(e), Some(f)) = (instants.contact_s, instants.separation_s, instants.end_s) {
+                assert!(
+                    state(a) != ContactState::Separated && before(a) == ContactState::Separated,
+                    "{told}"
+                );
+                let apart = &steps[place(e)..place(f)];
+                assert!(apart.iter().all(|step| step.node.state == ContactState::Separated), "{told}");
+                assert!(
+                    before(e) != ContactState::Separated && state(f) != ContactState::Separated,
+                    "{told}"
+                );
+                assert!((f - a - period_s).abs() < 0.1 * period_s, "one cycle, not two: {told}");
+                assert!(instants.peak_s >= a && instants.peak_s < e, "{told}");
+                let between = &steps[place(a)..place(e)];
+                let largest = between.iter().map(|step| step.stress_pa[2]).fold(0.0, f64::max);
+                assert_eq!(steps[place(instants.peak_s)].stress_pa[2], largest, "{told}");
+                if let (Some(b), Some(d)) = (instants.stick_s, instants.slip_s) {
+                    assert!(a <= b && d <= e, "{told}");
+                }
+            } else {
+                assert!(!letters.contains(['A', 'E', 'F']), "all of a separation or none of it: {told}");
+            }
+            kinds.insert(letters);
+        }
+    }
+    // With and without separation: the loop above has seen both.
+    assert!(kinds.contains("ABCDEF") && kinds.contains("BCD"), "{kinds:?}");
+}
+
+/// Protects: waves are told of neighbours that have the change and of no others: contact begins and ends at the nodes
+/// that separate, and every wave's delay is that of its nodes.
+#[test]
+fn waves_are_those_of_the_face() {
     let look = look_into(&coarse(), &Options::default());
-    let observed = &look.observed[0];
-    assert_eq!(observed.node.name, "front_centre");
-    let instants = observed.instants.unwrap();
-    let named = instants.named();
-    assert_eq!(named.iter().map(|(letter, _)| *letter).collect::<String>(), "ABCDEF");
-    assert!(named.windows(2).all(|pair| pair[0].1 <= pair[1].1), "{named:?}");
-    let steps = &look.capture.nodes[0];
-    let states = |from_s: f64, to_s: f64| {
-        steps
-            .iter()
-            .filter(move |step| step.time_s >= from_s && step.time_s < to_s)
-            .map(|step| step.node.state)
-    };
-    let [a, b, d, e, f] =
-        [instants.contact_s, instants.stick_s, instants.slip_s, instants.separation_s, instants.end_s]
-            .map(Option::unwrap);
-    assert!(states(e, f).all(|state| state == ContactState::Separated));
-    let dt = look.survey.record.time_step_s;
-    assert!(
-        states(a, a + 0.5 * dt).chain(states(f, f + 0.5 * dt)).all(|state| state != ContactState::Separated)
-    );
-    assert!(states(b, b + 0.5 * dt).all(|state| state == ContactState::Stick));
-    assert!(states(d, d + 0.5 * dt).all(|state| state != ContactState::Stick));
-    let stress = |time_s: f64| steps.iter().find(|step| step.time_s == time_s).unwrap().node.sigma_n_pa;
-    let between = steps.iter().filter(|step| step.time_s >= a && step.time_s <= e);
-    assert_eq!(stress(instants.peak_s), between.map(|step| step.node.sigma_n_pa).fold(0.0, f64::max));
-    // One cycle, not two.
-    assert!((f - a - look.survey.windows.period_s).abs() < 0.1 * look.survey.windows.period_s);
+    let mesh = look.mesh();
+    let [nx, ny, _] = mesh.elements();
+    let separates: Vec<bool> = (0..=ny)
+        .map(|j| {
+            let states = look.capture.face.iter().map(|step| step.nodes[mesh.node(nx / 2, j, 0)].state);
+            states.into_iter().any(|state| state == ContactState::Separated)
+        })
+        .collect();
+    let runs: Vec<[usize; 2]> = (0..=ny)
+        .filter(|&j| separates[j] && (j == 0 || !separates[j - 1]))
+        .map(|j| [j, (j..=ny).take_while(|&k| separates[k]).last().unwrap()])
+        .filter(|[first, last]| last > first)
+        .collect();
+    let y = |j: usize| mesh.coordinates_m(mesh.node(0, j, 0))[1];
+    let expected: Vec<_> = runs.iter().map(|&[first, last]| [y(first), y(last)]).collect();
+    assert!(!expected.is_empty());
+    let summary = Summary::of(&look);
+    for change in [Change::Contact, Change::Separation] {
+        let found: Vec<_> =
+            summary.waves.iter().filter(|wave| wave.change == change).map(|wave| wave.from_to_m).collect();
+        assert_eq!(found, expected, "{change:?}");
+    }
+}
+
+/// Protects: no more cycles are shown than repeat: the way there is not passed off for limit cycles.
+#[test]
+fn no_more_cycles_than_there_are() {
+    let look = look_into(&coarse(), &Options { cycles: 1000, ..Options::default() });
+    let (windows, record) = (&look.survey.windows, &look.survey.record);
+    assert!(windows.cycles);
+    assert_eq!(windows.count, record.cycles);
+    assert!((windows.shown_s[0] / record.window_start_s - 1.0).abs() < 1e-12, "{windows:?}");
 }
 
 /// Protects: what the figures claim of stick and slip: a node that sticks has the velocity of the disk and one that
@@ -135,9 +191,7 @@ fn stable_sliding_has_no_cycles() {
     let look = look_into(&spec, &Options::default());
     assert_eq!(look.survey.record.regime, Regime::Stable);
     let summary = Summary::of(&look);
-    assert!(
-        !summary.cycles && summary.waves.separation_s.is_none() && summary.nodes[0].frequency_hz.is_none()
-    );
+    assert!(!summary.cycles && summary.waves.is_empty() && summary.nodes[0].frequency_hz.is_none());
     assert_eq!(summary.nodes[0].shares, [0.0, 1.0, 0.0]);
     let folder = tempfile::tempdir().unwrap();
     let files = write(&look, folder.path(), &Origin::default()).unwrap();
@@ -190,8 +244,8 @@ fn a_look_can_be_interrupted() {
     }
 }
 
-/// Protects: jobs on an elastic disk, where a node that sticks moves with a surface that itself moves: by less than
-/// it slips, and not by nothing.
+/// Protects: jobs on an elastic disk, where a node that sticks moves with a surface that itself moves: not by nothing,
+/// and as much slower than the pin as the disk is stiffer.
 #[test]
 fn an_elastic_disk_moves_under_sticking_nodes() {
     let mut spec = coarse();
@@ -200,8 +254,9 @@ fn an_elastic_disk_moves_under_sticking_nodes() {
     let look = look_into(&spec, &Options { frames: 16, ..Options::default() });
     assert_eq!(look.survey.record, look.capture.record);
     let node = &Summary::of(&look).nodes[0];
-    assert!(
-        node.stick_speed_error_m_s > 0.0 && node.stick_speed_error_m_s < 0.1 * node.slip_speed_max_m_s,
-        "{node:?}"
-    );
+    // The same forces move two half-spaces in the ratio of their stiffness, here 1 : 210; the pin, a block with free
+    // sides, moves by several times what a half-space would.
+    let ratio = spec.scene.pin.young_modulus_pa / spec.scene.disk.ring.young_modulus_pa;
+    let bound_m_s = 10.0 * ratio * node.relative_speed_max_m_s;
+    assert!(node.stick_speed_error_m_s > 0.0 && node.stick_speed_error_m_s < bound_m_s, "{node:?}");
 }

@@ -1,6 +1,10 @@
 //! What a look into a job shows: that it is the job's own run, and that what is written can be read.
 
+#[path = "../support/browser.rs"]
+#[expect(dead_code, reason = "reports are tested with more of it")]
+mod chromium;
 mod looks;
+mod page;
 mod readers;
 
 use std::ops::ControlFlow;

@@ -142,7 +142,13 @@ fn assert_is_the_look(read: &Value, look: &Look) {
     compare("velocity_m_s", &|frame| frame.velocity_m_s.clone());
     compare("stress_pa", &|frame| stress::nodal_pa(mesh, look.capture.model.material(), &frame.u_m).concat());
     compare("contact_force_n", &on_face(nodes, 0.0, |node| node.force_n.to_vec()));
-    compare("normal_contact_stress_pa", &on_face(nodes, 0.0, |node| vec![node.sigma_n_pa]));
+    compare("normal_contact_stress_pa", &|frame| {
+        let slaves = look.capture.model.slaves();
+        let mut all: Vec<f64> =
+            frame.face.iter().zip(slaves).map(|(node, slave)| node.force_n[2] / slave.area_m2).collect();
+        all.resize(nodes, 0.0);
+        all
+    });
     compare("gap_m", &on_face(nodes, 0.0, |node| vec![node.gap_m]));
     compare("contact_state", &on_face(nodes, -1.0, |node| vec![code(node.state)]));
 }

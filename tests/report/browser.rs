@@ -135,27 +135,66 @@ fn points_are_where_their_values_are() {
     }
 }
 
-/// Protects: in every other figure each job that has a result has its point, with the values of the data behind it.
+/// Points of a figure: all, or those of a kind; and for each of their values its name, the column that has it, and
+/// how many times what is there it is.
+type Points = (Option<&'static str>, &'static [(&'static str, &'static str, f64)]);
+
+/// Protects: in every other figure each job that has a result has its points, with the values of the data behind it.
 #[test]
 fn every_figure_tells_its_data() {
     let Some(mut browser) = Browser::start() else { return };
     let (folder, page) = written(&study());
     browser.open(&page);
-    for (file, attribute, column) in
-        [("regime_map.csv", "y", "mu"), ("residuals.csv", "job", "job"), ("shares.csv", "mu", "mu")]
-    {
+    let figures: [(&str, &[Points]); 4] = [
+        ("regime_map.csv", &[(None, &[("x", "omega_rpm", 1.0), ("y", "mu", 1.0)])]),
+        ("frequency_map.csv", &[(None, &[("x", "omega_rpm", 1.0), ("y", "frequency_hz", 1.0)])]),
+        (
+            "residuals.csv",
+            &[
+                (Some("energy_residual"), &[("y", "energy_residual", 1.0)]),
+                (Some("identity_residual"), &[("y", "identity_residual", 1.0)]),
+            ],
+        ),
+        (
+            "shares.csv",
+            &[(
+                None,
+                &[
+                    ("mu", "mu", 1.0),
+                    ("stick", "stick_share", 100.0),
+                    ("slip", "slip_share", 100.0),
+                    ("separated", "separated_share", 100.0),
+                ],
+            )],
+        ),
+    ];
+    for (file, kinds) in figures {
         let figure = look(&mut browser, file);
-        for line in csv(folder.path(), file) {
-            let hits: Vec<&Value> =
-                figure["hits"].as_array().unwrap().iter().filter(|hit| hit["job"] == *line["job"]).collect();
-            let has_result = matches!(line["status"].as_str(), "periodic" | "decayed" | "not_periodic");
-            assert_eq!(!hits.is_empty(), has_result || file == "regime_map.csv", "{file}: {line:?}");
-            assert!(hits.iter().all(|hit| hit[attribute] == *line[column]), "{file}: {line:?}");
+        let hits = figure["hits"].as_array().unwrap();
+        let mut compared = 0;
+        for (line, (kind, values)) in
+            csv(folder.path(), file).iter().flat_map(|line| kinds.iter().map(move |k| (line, k)))
+        {
+            let of_job = hits.iter().filter(|hit| hit["job"] == *line["job"]);
+            let found: Vec<&Value> =
+                of_job.filter(|hit| kind.is_none_or(|kind| hit["kind"] == *kind)).collect();
+            // What has no number has no point; a map has a cell for every job.
+            let has_values = values.iter().all(|(_, column, _)| !line[*column].is_empty());
+            assert_eq!(found.len(), usize::from(has_values), "{file}: {line:?}");
+            for ((name, column, factor), hit) in
+                values.iter().flat_map(|value| found.iter().map(move |hit| (value, hit)))
+            {
+                let (shown, written) = (number(&hit[*name]), line[*column].parse::<f64>().unwrap() * factor);
+                // The residuals' figure shows their size; percent are rounded once.
+                assert!(
+                    (shown - written.abs()).abs() <= 4.0 * f64::EPSILON * shown.abs(),
+                    "{file}: {line:?} {hit}"
+                );
+                compared += 1;
+            }
         }
+        assert!(compared > 5, "{file}: {compared}");
     }
-    let shares = look(&mut browser, "shares.csv");
-    let hit = &shares["hits"][0];
-    assert_eq!(["stick", "slip", "separated"].map(|name| number(&hit[name])), [25.0, 50.0, 25.0]);
 }
 
 /// What the tooltip says; nothing if it is not there.
@@ -241,4 +280,13 @@ fn phones_and_printers_show_it_all() {
     assert!(pdf.starts_with(b"%PDF-"));
     let pages = pdf.windows(b"/Type /Page\n".len()).filter(|part| part.starts_with(b"/Type /Page\n")).count();
     assert!((3..20).contains(&pages), "{pages} pages");
+    // What is folded away on the screen is open on paper, and as it was afterwards.
+    let mut open_after = |event: &str| {
+        let script = format!(
+            "(() => {{ dispatchEvent(new Event('{event}')); return document.querySelectorAll('details[open]').length; }})()"
+        );
+        number(&browser.evaluate(&script))
+    };
+    assert!(open_after("beforeprint") >= 2.0);
+    assert_eq!(open_after("afterprint"), 0.0);
 }

@@ -1,8 +1,9 @@
 //! The whole contact face over a cycle.
 
 use super::{MICRO, MILLI, drawn_as};
-use crate::inspect::look::{Look, loop_of, stations};
+use crate::inspect::look::{Look, loop_of};
 use crate::inspect::phases::{Instants, phases};
+use crate::inspect::waves::stations;
 use crate::publish::plot::palette;
 use crate::publish::plot::panel::{Panel, Scale, Series, Stroke, Tile};
 
@@ -123,6 +124,7 @@ pub fn waves(look: &Look) -> Panel {
             });
         }
     }
+    panel.tiles.sort_by_key(|tile| super::ORDER.iter().position(|name| *name == tile.label));
     let period_s = end_s - start_s;
     let peaks = stations(look).into_iter().filter_map(|station| {
         let Instants { peak_s, .. } = station.instants?;

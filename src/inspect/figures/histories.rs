@@ -37,7 +37,9 @@ fn bands(phases: &[Phase], since: impl Fn(f64) -> f64) -> Vec<Band> {
         let (label, colour) = drawn_as(phase.state);
         Band { label, colour, span: (since(phase.start_s), since(phase.end_s)) }
     };
-    phases.iter().map(band).collect()
+    let mut bands: Vec<Band> = phases.iter().map(band).collect();
+    bands.sort_by_key(|band| super::ORDER.iter().position(|name| *name == band.label));
+    bands
 }
 
 /// Figure 2a.
@@ -128,7 +130,7 @@ pub fn cycles(look: &Look) -> Vec<Panel> {
         let within: Vec<NodeStep> =
             steps.iter().filter(|step| step.time_s >= start_s && step.time_s <= end_s).copied().collect();
         let stress: Vec<_> =
-            within.iter().map(|step| (since(step.time_s), step.node.sigma_n_pa * MEGA)).collect();
+            within.iter().map(|step| (since(step.time_s), step.stress_pa[2] * MEGA)).collect();
         let all = stress.iter().map(|point| point.1).chain([0.0]);
         let y = Scale::spanning("normal contact stress [MPa]", all, 0.01);
         let (velocity, scale) = velocity(&within, since);

@@ -75,7 +75,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
         ),
         (
             "figure4",
-            "Normal contact stress (behind the job's low-pass) and velocity in y over one cycle (Figure 4). Contact \
+            "Normal contact stress (behind a low-pass without delay) and velocity in y over one cycle (Figure 4). Contact \
              begins at t_A, stick at t_B, the stress is largest at t_C, stick ends at t_D, contact at t_E, and the \
              separation at t_F."
                 .to_owned(),
@@ -137,6 +137,9 @@ fn drawn_as(state: ContactState) -> (&'static str, RGBColor) {
         ContactState::Separated => ("separated", SEPARATED),
     }
 }
+
+/// Contact states in the order of legends.
+const ORDER: [&str; 3] = ["stick", "slip", "separated"];
 
 /// Micrometres, microseconds.
 const MICRO: f64 = 1e6;

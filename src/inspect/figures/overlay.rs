@@ -5,11 +5,11 @@ use crate::inspect::overlay::Trace;
 use crate::publish::plot::panel::{Panel, Scale, Series, stack};
 use crate::publish::plot::{FigureError, palette};
 
-/// Draws normal and tangential stress over the time since the begin of a cycle.
+/// Draws, under what the jobs have in common, normal and tangential stress over the time since the begin of a cycle.
 ///
 /// # Errors
 /// The drawing library's.
-pub fn overlay(traces: &[Trace]) -> Result<String, FigureError> {
+pub fn overlay(title: &str, traces: &[Trace]) -> Result<String, FigureError> {
     let longest_s = traces.iter().map(|trace| trace.duration_s).fold(f64::MIN_POSITIVE, f64::max);
     let panel = |title: &str, label: &str, value: &dyn Fn(&crate::inspect::capture::NodeStep) -> f64| {
         let series: Vec<Series> = traces
@@ -33,7 +33,9 @@ pub fn overlay(traces: &[Trace]) -> Result<String, FigureError> {
     };
     let name = traces.first().map_or("", |trace| trace.node.title.as_str());
     stack(&[
-        panel(&format!("a) {name}: normal contact stress"), "σ_n [MPa]", &|step| step.node.sigma_n_pa),
-        panel(&format!("b) {name}: tangential contact stress in y"), "τ_y [MPa]", &|step| step.tau_pa[1]),
+        panel(&format!("{title}; {name}; a) normal stress"), "σ_n [MPa]", &|step| step.stress_pa[2]),
+        panel(&format!("{title}; {name}; b) tangential stress in y"), "τ_y [MPa]", &|step| {
+            step.stress_pa[1]
+        }),
     ])
 }

@@ -48,17 +48,20 @@ pub fn draw(look: &Look) -> Result<String, FigureError> {
 /// In the paper's phases of the first observed node that has all of them; otherwise four quarters of the cycle.
 fn snapshots(look: &Look) -> Vec<Snapshot<'_>> {
     let windows = &look.survey.windows;
-    let complete = look.observed.iter().find_map(|observed| {
+    let complete = look.observed.iter().zip(&look.capture.nodes).find_map(|(observed, steps)| {
         let instants = observed.instants?;
         let (a, b, d) = (instants.contact_s?, instants.stick_s?, instants.slip_s?);
         let (c, e, f) = (instants.peak_s, instants.separation_s?, instants.end_s?);
         let name = &observed.node.title;
-        Some([
-            (format!("{name} between t_A and t_B: contact has begun"), (a + b) / 2.0),
-            (format!("{name} at t_C: stick, largest stress"), c),
-            (format!("{name} between t_D and t_E: slip"), (d + e) / 2.0),
-            (format!("{name} between t_E and t_F: separated"), (e + f) / 2.0),
-        ])
+        let peak = steps.iter().find(|step| step.time_s == c)?;
+        let times = [
+            ("between t_A and t_B: contact has begun".to_owned(), (a + b) / 2.0),
+            (format!("at t_C, largest stress: {}", drawn_as(peak.node.state).0), c),
+            ("between t_D and t_E: slip".to_owned(), (d + e) / 2.0),
+            ("between t_E and t_F: separated".to_owned(), (e + f) / 2.0),
+        ];
+        let since = |time_s: f64| (time_s - a) * MICRO;
+        Some(times.map(|(what, time_s)| (format!("{name} {what}, t_A + {:.1} µs", since(time_s)), time_s)))
     });
     let quarters = || {
         [0, 1, 2, 3].map(|quarter| {
@@ -140,8 +143,7 @@ impl Scales {
 }
 
 fn draw_row(area: &Area, look: &Look, snapshot: &Snapshot, scales: &Scales) -> Result<(), FigureError> {
-    let since = (snapshot.frame.time_s - look.survey.windows.shown_s[0]) * MICRO;
-    write(area, &format!("{}  ({since:.1} µs)", snapshot.label), (MARGIN, 34), TEXT, HPos::Left)?;
+    write(area, &snapshot.label, (MARGIN, 34), TEXT, HPos::Left)?;
     let (left, right) = area.split_horizontally(WIDTH / 2);
     draw_side(&left, look, snapshot.frame, scales)?;
     draw_face(&right, look, snapshot.frame, scales)

@@ -129,7 +129,7 @@ pub fn warning(content: &Markup) -> Markup {
     html! { div.warning role="note" { (content) } }
 }
 
-/// What is shown when it is asked for; on paper it is left out unless it is open.
+/// What is shown when it is asked for, and on paper.
 pub fn details(summary: &str, content: &Markup) -> Markup {
     html! { details { summary { (summary) } (content) } }
 }

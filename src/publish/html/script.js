@@ -74,6 +74,16 @@
     new ResizeObserver(look).observe(box);
   }
 
+  // Paper cannot be unfolded.
+  const folded = [];
+  window.addEventListener("beforeprint", () => {
+    for (const part of document.querySelectorAll("details:not([open])")) {
+      part.open = true;
+      folded.push(part);
+    }
+  });
+  window.addEventListener("afterprint", () => { for (const part of folded.splice(0)) part.open = false; });
+
   document.addEventListener("pointerdown", (event) => { if (!event.target.closest(".hits")) hide(); });
   // What is focused is scrolled into sight.
   document.addEventListener("scroll", place, { capture: true, passive: true });

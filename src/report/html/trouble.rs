@@ -61,7 +61,7 @@ fn not_periodic(row: &Row) -> Option<Markup> {
     let why = trouble::cause(row)?.why;
     Some(html! {
         span.words {
-            (why) "; after " (value::number(record.simulated_s)) " s μ* = " (value::fixed(record.mu_star, 4)) " ± "
+            (why) "; after " (value::digits(record.simulated_s, 4)) " s μ* = " (value::fixed(record.mu_star, 4)) " ± "
             (value::fixed(record.mu_star_se, 4)) " over " (record.cycles) " cycles"
         }
     })

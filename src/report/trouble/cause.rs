@@ -61,7 +61,7 @@ fn tolerated(numerics: &JobNumerics) -> String {
 
 /// Three digits are enough to compare with a tolerance.
 fn significant(x: f64) -> String {
-    format!("{x:.2e}").parse().map_or_else(|_| value::number(x), value::number)
+    value::digits(x, 3)
 }
 
 /// A message whose numbers do not count: the step at which a run diverged is not why it did.

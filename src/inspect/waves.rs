@@ -1,0 +1,157 @@
+//! How state changes travel along the middle of the contact face.
+
+use super::look::Look;
+use super::phases::{Instants, phases};
+use super::smooth::without_delay;
+use serde::Serialize;
+
+/// The instants of a node on the line through the middle of the contact face along the sliding direction.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Station {
+    /// Its y [m] from the pin's axis.
+    pub y_m: f64,
+    /// Its instants, if the contact face was kept for any step.
+    pub instants: Option<Instants>,
+}
+
+/// A change of state that can travel.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Change {
+    /// Contact begins, t_A.
+    Contact,
+    /// Stick begins, t_B.
+    Stick,
+    /// Stick ends, t_D.
+    Slip,
+    /// Contact ends, t_E.
+    Separation,
+}
+
+impl Change {
+    /// All of them, in the order of their instants.
+    pub const ALL: [Self; 4] = [Self::Contact, Self::Stick, Self::Slip, Self::Separation];
+
+    /// What happens, for a reader.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Contact => "contact begins",
+            Self::Stick => "stick begins",
+            Self::Slip => "stick ends",
+            Self::Separation => "contact ends",
+        }
+    }
+}
+
+impl Station {
+    /// When a change happens here [s], if it does.
+    pub fn at(&self, change: Change) -> Option<f64> {
+        let instants = self.instants.as_ref()?;
+        match change {
+            Change::Contact => instants.contact_s,
+            Change::Stick => instants.stick_s,
+            Change::Slip => instants.slip_s,
+            Change::Separation => instants.separation_s,
+        }
+    }
+}
+
+/// A change that runs over neighbouring stations.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Wave {
+    /// What changes.
+    pub change: Change,
+    /// y [m] of the first and the last of the stations, from front to rear.
+    pub from_to_m: [f64; 2],
+    /// When it is at the first of them [s] after the begin of the cycle, within one period.
+    pub start_s: f64,
+    /// How much later [s] it is at the last; negative if it runs towards the front.
+    pub delay_s: f64,
+}
+
+impl Wave {
+    /// Its speed [m/s] along y, positive towards the rear; none if it is everywhere at once.
+    pub fn speed_m_s(&self) -> Option<f64> {
+        let [from_m, to_m] = self.from_to_m;
+        (self.delay_s != 0.0).then(|| (to_m - from_m) / self.delay_s)
+    }
+}
+
+/// The instants along that line, from front to rear, from one cycle that is taken for one of many.
+pub fn stations(look: &Look) -> Vec<Station> {
+    let mesh = look.mesh();
+    let [nx, ny, _] = mesh.elements();
+    let [start_s, end_s] = look.survey.windows.cycle_s;
+    let period_s = end_s - start_s;
+    let face = &look.capture.face;
+    let station = |j: usize| {
+        let slave = mesh.node(nx / 2, j, 0);
+        let thrice = || {
+            (0..3).flat_map(|turn| {
+                face.iter().map(move |step| (step.time_s + f64::from(turn) * period_s, &step.nodes[slave]))
+            })
+        };
+        let phases = phases(thrice().map(|(time_s, node)| (time_s, node.state)), start_s + 3.0 * period_s);
+        let area_m2 = look.capture.model.slaves()[slave].area_m2;
+        let raw: Vec<f64> = thrice().map(|(_, node)| node.force_n[2] / area_m2).collect();
+        let stress: Vec<(f64, f64)> =
+            thrice().map(|(time_s, _)| time_s).zip(without_delay(&raw, look.capture.stress_gain)).collect();
+        let instants = Instants::find(&phases, &stress, start_s, period_s);
+        Station { y_m: mesh.coordinates_m(slave)[1], instants }
+    };
+    (0..=ny).map(station).collect()
+}
+
+/// The waves of a cycle that begins at `start_s`: every change over every run of two or more neighbouring stations that
+/// have it, with times from station to station by the shorter way around the period. Between runs nothing is said.
+pub fn waves(stations: &[Station], start_s: f64, period_s: f64) -> Vec<Wave> {
+    let mut waves = Vec::new();
+    for change in Change::ALL {
+        let times: Vec<Option<f64>> = stations.iter().map(|station| station.at(change)).collect();
+        let runs = times.iter().zip(stations).collect::<Vec<_>>();
+        for run in runs.split(|(time_s, _)| time_s.is_none()).filter(|run| run.len() > 1) {
+            let at: Vec<f64> = run.iter().filter_map(|(time_s, _)| **time_s).collect();
+            let shorter = |delay_s: f64| delay_s - period_s * (delay_s / period_s).round();
+            waves.push(Wave {
+                change,
+                from_to_m: [run[0].1.y_m, run[run.len() - 1].1.y_m],
+                start_s: (at[0] - start_s).rem_euclid(period_s),
+                delay_s: at.windows(2).map(|pair| shorter(pair[1] - pair[0])).sum(),
+            });
+        }
+    }
+    waves
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn at(y_m: f64, slip_s: Option<f64>) -> Station {
+        Station { y_m, instants: Some(Instants { slip_s, ..Instants::default() }) }
+    }
+
+    /// Protects: a wave goes the shorter way around the period from node to node, over neighbours only: where nodes in
+    /// between do not have the change there are two waves and no time between them.
+    #[test]
+    fn waves_run_over_neighbours() {
+        let line = [
+            at(-2.0, Some(10.9)),
+            at(-1.0, Some(10.1)),
+            at(0.0, Some(10.3)),
+            at(1.0, None),
+            at(2.0, Some(10.7)),
+            at(3.0, None),
+            at(4.0, Some(10.6)),
+            at(5.0, Some(10.4)),
+        ];
+        let found = waves(&line, 10.0, 1.0);
+        let [first, second] = found.as_slice() else { panic!("{found:?}") };
+        assert_eq!((first.change, first.from_to_m), (Change::Slip, [-2.0, 0.0]));
+        // 0.9 to 1.1 and 1.3, the shorter way.
+        assert!((first.delay_s - 0.4).abs() < 1e-12 && (first.start_s - 0.9).abs() < 1e-12, "{first:?}");
+        assert!((first.speed_m_s().unwrap() - 5.0).abs() < 1e-9);
+        assert_eq!(second.from_to_m, [4.0, 5.0]);
+        assert!((second.speed_m_s().unwrap() + 5.0).abs() < 1e-9, "towards the front: {second:?}");
+    }
+}

@@ -1,0 +1,35 @@
+//! The page of a look in a browser.
+
+use crate::chromium::Browser;
+use crate::{coarse, look_into};
+use tribosweep::inspect::{Options, Origin, PAGE, write};
+
+/// Protects: the page needs nothing but itself, nothing in it is an error, it has all drawings, and neither on a desk nor
+/// on a phone is it wider than its window; on a desk its tables need no scrolling either.
+#[test]
+fn the_page_is_whole() {
+    let Some(mut browser) = Browser::start() else { return };
+    let look = look_into(&coarse(), &Options::default());
+    let folder = tempfile::tempdir().unwrap();
+    write(&look, folder.path(), &Origin { title: "<b>mine</b>".to_owned(), made_with: String::new() })
+        .unwrap();
+    let page = folder.path().canonicalize().unwrap().join(PAGE);
+    for (width, is_phone) in [(390, true), (1200, false)] {
+        browser.resize(width, 900, is_phone);
+        browser.open(&page);
+        let overflow = browser.evaluate("Math.max(0, document.documentElement.scrollWidth - innerWidth)");
+        assert_eq!(overflow, 0, "{width} px");
+        if !is_phone {
+            let script = "[...document.querySelectorAll('.scroll:has(table)')].filter(box => box.scrollWidth > box.clientWidth).length";
+            assert_eq!(browser.evaluate(script), 0, "tables that are cut");
+        }
+        assert_eq!(browser.evaluate("document.querySelectorAll('figure svg').length"), 9);
+        assert_eq!(browser.evaluate("document.querySelector('h1').textContent"), "<b>mine</b>");
+    }
+    assert!(browser.complaints().is_empty(), "{:?}", browser.complaints());
+    let requests = browser.requests();
+    assert!(
+        requests.iter().all(|url| url.starts_with("file://") || url.starts_with("data:")),
+        "{requests:?}"
+    );
+}
