@@ -71,7 +71,7 @@ fn jobs_are_laid_over_each_other() {
     let files =
         folder.ok("inspect mine.json mu=0.4 --overlay omega_rpm=2,7,20 --node front_centre --node centre");
     assert_eq!(files.lines().count(), 4, "{files}");
-    let overlay = rows(&folder.read("reports/mine/overlay_omega_rpm/figure8_front_centre.csv"));
+    let overlay = rows(&folder.read("reports/mine/overlay_omega_rpm_mu-0.4/figure8_front_centre.csv"));
     for speed in ["2", "7", "20"] {
         let of_job: Vec<_> = overlay.iter().filter(|row| row["job"] == format!("ω = {speed} rpm")).collect();
         folder.ok(&format!("inspect mine.json mu=0.4 omega_rpm={speed} --out look"));
@@ -83,7 +83,7 @@ fn jobs_are_laid_over_each_other() {
         assert!(from_s >= 0.0 && from_s < step_s, "{speed} rpm: {from_s} s");
         assert!(to_s <= until_s && to_s > until_s - step_s, "{speed} rpm: {to_s} of {until_s} s");
     }
-    assert!(folder.read("reports/mine/overlay_omega_rpm/figure8_centre.svg").contains("ω = 20 rpm"));
+    assert!(folder.read("reports/mine/overlay_omega_rpm_mu-0.4/figure8_centre.svg").contains("ω = 20 rpm"));
 }
 
 /// Protects: mistakes are told with what would be right, and nothing is written.
@@ -104,6 +104,10 @@ fn mistakes_are_told() {
         ("mine.json 0000 --overlay mu=0.2,0.3", "expected NAME=VALUE, not the key `0000`"),
         ("mine.json 0000 --preset draft", "has its own mesh"),
         ("other.json", "other.json"),
+        ("mine.json mu", "NAME=VALUE, for example mu=…"),
+        ("mine.json omega=7", "NAME=VALUE: omega"),
+        ("mine.json --node 9,0", "9,0 mm is not"),
+        ("mine.json --out mine.json/look", "mine.json/look: "),
     ] {
         let assert = folder.command(&format!("inspect {arguments}")).assert().code(2);
         assert!(stderr(&assert).contains(told), "{arguments}: {}", stderr(&assert));
