@@ -64,8 +64,8 @@ def towards_front(summary, change):
     return length[True] / max(sum(length.values()), 1e-12)
 
 
-def judge(holds):
-    return "**Agrees:**" if holds else "**Differs:**"
+def judge(holds, otherwise="Differs"):
+    return "**Agrees:**" if holds else f"**{otherwise}:**"
 
 
 def near(value, claimed, share):
@@ -245,9 +245,9 @@ def page():
         + picture("wave", "Waves along the middle of the contact face")
         + wave_table(fine)
         + "\nTimes are since the begin of the cycle; every run of neighbouring nodes that have a change is a wave of its own.\n"
-        f"{judge(towards_front(fine, 'stick') > 0.5 and towards_front(fine, 'slip') > 0.5)} stick begins and ends later towards the "
+        f"{judge(min(towards_front(fine, 'stick'), towards_front(fine, 'slip')) > 0.99, 'Agrees in part')} stick begins and ends later towards the "
         f"front over {100 * towards_front(fine, 'stick'):.0f} % and {100 * towards_front(fine, 'slip'):.0f} % of the length of these waves.\n"
-        f"{judge(towards_front(fine, 'separation') > 0.5 and towards_front(fine, 'contact') > 0.5)} the paper lets contact and separation run from "
+        f"{judge(min(towards_front(fine, 'separation'), towards_front(fine, 'contact')) > 0.99, 'Agrees in part')} the paper lets contact and separation run from "
         f"the rear to the front, too. Ours do so over {100 * towards_front(fine, 'contact'):.0f} % and\n"
         f"{100 * towards_front(fine, 'separation'):.0f} % of the length: the nodes in the middle of the face do not separate, and on either side of them "
         "separation runs inwards\nfrom the edge. What goes from the rear to the front is the turn of the two sides.\n\n"
