@@ -3,7 +3,7 @@
 //! ```text
 //! spec ─► survey (first run: record, cycles) ─► capture (the same run again, watched) ─┬─► tables (CSV)
 //!                                                                                      ├─► figures (SVG)
-//!                                        phases, spectrum, loops ◄─────────────────────┤
+//!                                 phases, waves, spectrum, loops ◄─────────────────────┤
 //!                                                                                      └─► fields (VTK)
 //! ```
 //!
