@@ -66,19 +66,18 @@ impl Picked {
             tell(format_args!("from the study's scene: {}", words.join(", ")));
         }
     }
+}
 
-    /// The parameters in words.
-    fn words(&self) -> String {
-        let words: Vec<String> =
-            self.parameters.iter().map(|(name, value)| value::assignment(name, value)).collect();
-        words.join(", ")
-    }
+/// A study with parameters in words.
+fn title(study: &Study, parameters: &[(String, Value)]) -> String {
+    let words: Vec<String> = parameters.iter().map(|(name, value)| value::assignment(name, value)).collect();
+    if words.is_empty() { study.name().to_owned() } else { format!("{}: {}", study.name(), words.join(", ")) }
+}
 
-    /// The parameters as a file's name.
-    fn slug(&self) -> String {
-        let parts = self.parameters.iter().map(|(name, value)| format!("{name}-{}", value::text(value)));
-        value::in_file_name(&parts.collect::<Vec<_>>().join("_"))
-    }
+/// Parameters as a file's name, which may be empty.
+fn slug(parameters: &[(String, Value)]) -> String {
+    let parts = parameters.iter().map(|(name, value)| format!("{name}-{}", value::text(value)));
+    value::in_file_name(&parts.collect::<Vec<_>>().join("_"))
 }
 
 /// Runs the job twice and writes what is found.
@@ -92,8 +91,7 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     let places = args.places(&Place::USUAL);
     let options = Options { places, cycles: args.cycles.into(), frames: args.frames.into() };
     let preset = args.preset.map(Preset::name);
-    let slug: Vec<String> = std::iter::once(picked.slug()).chain(preset.map(str::to_owned)).collect();
-    let folder = args.out(&study, &slug.join("_"));
+    let folder = args.out(&study, &[&slug(&picked.parameters), preset.unwrap_or("")]);
     let mut pace = Pace::new(&picked, foreground::interrupt());
     let look = match in_folder(&folder, || {
         Look::into(&picked.spec, &options, &mut |simulated_s| pace.go_on(simulated_s))
@@ -107,10 +105,8 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
         tell(format_args!("{} cycles are shown: there are no more like them", shown.count));
     }
     let of_preset = preset.map_or_else(String::new, |name| format!(", preset {name}"));
-    let origin = Origin {
-        title: format!("{}: {}{of_preset}", study.name(), picked.words()),
-        made_with: worker::program(),
-    };
+    let title = title(&study, &picked.parameters) + &of_preset;
+    let origin = Origin { title, made_with: worker::program() };
     inspect::write(&look, &folder, &origin)?;
     tell(solve::as_text(&look.survey.record).trim_end());
     print(&format!("{}\n", folder.join(inspect::PAGE).display()))?;
@@ -293,14 +289,10 @@ fn overlay(args: &Args, study: &Study) -> Result<u8, CliError> {
         .collect::<Result<_, _>>()?;
     picked[0].tell_own();
     let places = args.places(&Place::USUAL[..1]);
-    let common = Picked {
-        parameters: picked[0].parameters.iter().filter(|(own, _)| own != name).cloned().collect(),
-        spec: picked[0].spec.clone(),
-        own: Vec::new(),
-    };
-    let parts = ["overlay", name, &common.slug(), args.preset.map_or("", Preset::name)];
-    let slug: Vec<&str> = parts.into_iter().filter(|part| !part.is_empty()).collect();
-    let folder = args.out(study, &value::in_file_name(&slug.join("_")));
+    let common: Vec<(String, Value)> =
+        picked[0].parameters.iter().filter(|(own, _)| own != name).cloned().collect();
+    let preset = args.preset.map_or("", Preset::name);
+    let folder = args.out(study, &["overlay", name, &slug(&common), preset]);
     let interrupt = foreground::interrupt();
     let options = Options { places: places.clone(), cycles: args.cycles.into(), frames: args.frames.into() };
     let run = |picked: &Picked| {
@@ -315,10 +307,7 @@ fn overlay(args: &Args, study: &Study) -> Result<u8, CliError> {
         Ok(traces) => traces,
         Err(error) => return ended(error),
     };
-    let title = match common.words() {
-        words if words.is_empty() => study.name().to_owned(),
-        words => format!("{}: {words}", study.name()),
-    };
+    let title = title(study, &common);
     for node in 0..places.len() {
         let of_node: Vec<Trace> = traces.iter().map(|of_job| of_job[node].clone()).collect();
         for file in inspect::write_overlay(&title, &of_node, &folder)? {
@@ -340,7 +329,10 @@ impl Args {
         places
     }
 
-    fn out(&self, study: &Study, name: &str) -> PathBuf {
+    /// The folder that is asked for, or one of the study's with a name of these parts.
+    fn out(&self, study: &Study, parts: &[&str]) -> PathBuf {
+        let parts: Vec<&str> = parts.iter().copied().filter(|part| !part.is_empty()).collect();
+        let name = if parts.is_empty() { "job".to_owned() } else { value::in_file_name(&parts.join("_")) };
         self.folder.clone().unwrap_or_else(|| Path::new("reports").join(study.name()).join(name))
     }
 }

@@ -45,6 +45,36 @@ fn a_job_is_looked_into() {
     }
 }
 
+/// Protects: looks that differ in anything that the command is told do not share a folder, and none is the report's.
+#[test]
+fn looks_have_folders_of_their_own() {
+    let folder = folder();
+    let mut single = small(&Value::Null);
+    single.as_object_mut().unwrap().remove("grid");
+    folder.add("single", &single);
+    let pages = [
+        "single.json",
+        "mine.json mu=0.4",
+        "mine.json mu=0.4 --preset draft",
+        "mine.json mu=0.4 limit_s=0.013",
+    ]
+    .map(|job| folder.ok(&format!("inspect {job}")));
+    assert_eq!(pages[0].trim(), "reports/single/job/index.html");
+    assert_eq!(pages.iter().collect::<std::collections::BTreeSet<_>>().len(), pages.len(), "{pages:?}");
+    let overlays = ["mu=0.4", "mu=0.2"]
+        .map(|job| folder.ok(&format!("inspect mine.json {job} --overlay omega_rpm=2,7")));
+    assert_ne!(overlays[0], overlays[1]);
+    // A look with other nodes leaves nothing of the one before.
+    folder.ok("inspect mine.json mu=0.4 --node centre --frames 16");
+    let files: Vec<String> = std::fs::read_dir(folder.path("reports/mine/mu-0.4_omega_rpm-7"))
+        .unwrap()
+        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+        .filter(|name| name.starts_with("node_"))
+        .collect();
+    assert_eq!(files, ["node_centre.csv"]);
+    assert_eq!(std::fs::read_dir(folder.path("reports/mine/mu-0.4_omega_rpm-7/fields")).unwrap().count(), 16);
+}
+
 /// Protects: what is not given is the study's scene's, and is told; nodes, cycles and frames are those that are asked for.
 #[test]
 fn the_rest_is_the_scenes() {
