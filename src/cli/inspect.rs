@@ -36,10 +36,12 @@ pub struct Args {
     #[arg(long, value_name = "NAME=VALUE,VALUE,…", value_parser = foreground::parse_setting)]
     overlay: Option<(String, String)>,
     /// Number of cycles to show.
-    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u16).range(3..=100))]
+    #[arg(long, value_name = "N", default_value_t = Options::default().cycles as u16,
+          value_parser = clap::value_parser!(u16).range(Options::FEWEST_CYCLES as i64..=100))]
     cycles: u16,
     /// Number of times of a cycle at which the whole pin is written for ParaView.
-    #[arg(long, value_name = "N", default_value_t = 48, value_parser = clap::value_parser!(u16).range(16..=1000))]
+    #[arg(long, value_name = "N", default_value_t = Options::default().frames as u16,
+          value_parser = clap::value_parser!(u16).range(Options::FEWEST_FRAMES as i64..=1000))]
     frames: u16,
     /// Folder for what is found; default: reports/STUDY/JOB.
     #[arg(long = "out", value_name = "DIR")]

@@ -4,7 +4,7 @@ use super::capture::{Capture, FaceStep, capture};
 use super::phases::{Instants, Phase, phases};
 use super::place::{ObservedNode, Place};
 use super::spectrum::Spectrum;
-use super::survey::{Survey, survey};
+use super::survey::{FEWEST_CYCLES, Survey, survey};
 use crate::analysis::JobError;
 use crate::solver::mesh::BlockMesh;
 use crate::spec::JobSpec;
@@ -23,8 +23,8 @@ pub struct Options {
 }
 
 impl Options {
-    /// A node's cycle, which begins and ends anywhere, is found in so many of the job's.
-    pub const FEWEST_CYCLES: usize = 3;
+    /// With fewer a node's cycle is not found.
+    pub const FEWEST_CYCLES: usize = FEWEST_CYCLES;
     /// Snapshots are taken from the frames: with fewer they would not be where they are said to be.
     pub const FEWEST_FRAMES: usize = 16;
 }

@@ -5,6 +5,7 @@ use super::figures;
 use super::look::{Look, LookError, Observed, Options};
 use super::place::ObservedNode;
 use super::tables::{csv, history_header, history_line};
+use crate::publish::value::number;
 use crate::publish::{Folder, PublishError};
 use crate::spec::JobSpec;
 use std::ops::ControlFlow;
@@ -69,7 +70,7 @@ pub fn write_overlay(title: &str, traces: &[Trace], out_dir: &Path) -> Result<Ve
         header.extend(history_header());
         let lines = traces.iter().flat_map(|trace| {
             trace.steps.iter().map(|step| {
-                let since = crate::publish::value::number(step.time_s - trace.from_s);
+                let since = number(step.time_s - trace.from_s);
                 let mut line = vec![trace.label.clone(), since];
                 line.extend(history_line(step));
                 line

@@ -12,19 +12,6 @@ use std::collections::BTreeMap;
 /// Larger tables [bytes] are beside the page, not in it.
 const LARGEST: usize = 400_000;
 
-/// Titles of the figures, in their order.
-const TITLES: [(&str, &str); 9] = [
-    ("figure2a", "Displacements and velocity"),
-    ("figure2b", "Stick, slip and separation"),
-    ("figure3a", "Trajectories"),
-    ("figure3b", "Phase planes"),
-    ("figure4", "One cycle"),
-    ("figure5", "Snapshots"),
-    ("wave", "Waves"),
-    ("totals", "Total forces"),
-    ("spectrum", "Spectrum"),
-];
-
 /// The page; `tables` are the CSV files by their names.
 pub fn of(
     look: &Look,
@@ -33,15 +20,14 @@ pub fn of(
     tables: &BTreeMap<String, String>,
     origin: &Origin,
 ) -> String {
-    let heading = |stem: &str| TITLES.iter().find(|(name, _)| *name == stem).map_or("", |(_, title)| *title);
-    let links = figures.iter().map(|figure| (figure.stem, heading(figure.stem)));
+    let links = figures.iter().map(|figure| (figure.stem, figure.heading));
     let last = [("nodes", "Nodes in numbers"), ("files", "Files")];
     let sections: Vec<(&str, &str)> = links.chain(last).collect();
     let body = html! {
         (head(look, summary))
         (navigation(sections))
         @for drawn in figures {
-            (section(drawn.stem, heading(drawn.stem), &html! {
+            (section(drawn.stem, drawn.heading, &html! {
                 (figure(&drawn.svg, &drawn.caption, None))
                 p { "Data: " @for name in &drawn.data { (data(name, tables)) " " } }
                 @if drawn.stem == "wave" { (waves(summary)) }

@@ -1,13 +1,15 @@
 //! The first of the two runs: what is found in the job, and when its last limit cycles are.
 
 use super::envelope::Envelope;
-use super::look::Options;
 use crate::analysis::cycles::CycleCutter;
 use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment, Outcome};
 use crate::solver::Model;
 use crate::solver::energy::Energies;
 use crate::spec::JobSpec;
 use std::ops::ControlFlow;
+
+/// A node's cycle, which begins and ends anywhere, is found in so many of the job's.
+pub const FEWEST_CYCLES: usize = 3;
 
 /// What the first run of a job tells the second.
 #[derive(Debug, Clone)]
@@ -71,7 +73,7 @@ impl Windows {
             Outcome::Periodic => record.cycles.min(passages_s.len() / crossings),
             _ => passages_s.len() / crossings,
         };
-        let cycles = if there >= Options::FEWEST_CYCLES { cycles.min(there) } else { cycles };
+        let cycles = if there >= FEWEST_CYCLES { cycles.min(there) } else { cycles };
         let needed = cycles * crossings;
         let end_s = record.simulated_s;
         let (cycles_found, period_s, shown_s, cycle_s) = match passages_s.len().checked_sub(needed) {

@@ -21,6 +21,8 @@ use plotters::style::RGBColor;
 pub struct LookFigure {
     /// Its file, without the ending.
     pub stem: &'static str,
+    /// What it shows, in a word or two.
+    pub heading: &'static str,
     /// What it shows, for a reader.
     pub caption: String,
     /// The tables that hold its numbers.
@@ -41,9 +43,10 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
     };
     let only = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
     let mu = look.spec.scene.contact.mu;
-    let parts: [(&'static str, String, Vec<String>, Drawing); 9] = [
+    let parts: [(&'static str, &'static str, String, Vec<String>, Drawing); 9] = [
         (
             "figure2a",
+            "Displacements and velocity",
             "Displacements in the three directions and velocity in y of the observed nodes (the paper's Figure 2a)."
                 .to_owned(),
             histories.clone(),
@@ -51,6 +54,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
         ),
         (
             "figure2b",
+            "Stick, slip and separation",
             format!(
                 "Equivalent friction coefficient |τ/σ_n| and velocity in y (Figure 2b): {mu} is slip, less is stick, \
                  0 is separation."
@@ -60,6 +64,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
         ),
         (
             "figure3a",
+            "Trajectories",
             "Trajectories of the contact nodes in the y–z plane over one cycle (Figure 3a): all of them about their \
              means, and those on three lines where the nodes are, displacements in y enlarged."
                 .to_owned(),
@@ -68,6 +73,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
         ),
         (
             "figure3b",
+            "Phase planes",
             "Phase plane of the observed nodes (Figure 3b): the level is the velocity of the disk under the node."
                 .to_owned(),
             histories.clone(),
@@ -75,6 +81,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
         ),
         (
             "figure4",
+            "One cycle",
             "Normal contact stress (behind a low-pass without delay) and velocity in y over one cycle (Figure 4). Contact \
              begins at t_A, stick at t_B, the stress is largest at t_C, stick ends at t_D, contact at t_E, and the \
              separation at t_F."
@@ -84,6 +91,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
         ),
         (
             "figure5",
+            "Snapshots",
             "Four instants of a cycle (Figure 5): velocities in the middle plane of the pin with the contact forces \
              under it, and the contact face from above with the states and friction forces of its nodes."
                 .to_owned(),
@@ -92,6 +100,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
         ),
         (
             "wave",
+            "Waves",
             "States of the nodes along the middle of the contact face over one cycle: the front is below, the rear \
              above."
                 .to_owned(),
@@ -100,6 +109,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
         ),
         (
             "totals",
+            "Total forces",
             "Total normal contact force N and tangential force T at the clamp: the whole run, and the last cycles \
              with their begins, where the filtered N rises through F (the filter delays by a constant time)."
                 .to_owned(),
@@ -108,17 +118,18 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
         ),
         (
             "spectrum",
+            "Spectrum",
             "Spectrum of the total normal contact force over the averaging window.".to_owned(),
             only(&["spectrum.csv"]),
             Box::new(|| panels(&[totals::spectrum(look)])),
         ),
     ];
     let mut figures = Vec::new();
-    for (stem, caption, data, draw) in parts {
+    for (stem, heading, caption, data, draw) in parts {
         let name = format!("{stem}.svg");
         let svg = draw().map_err(|source| PublishError::Figure { path: folder.path_of(&name), source })?;
         folder.text(&name, &svg)?;
-        figures.push(LookFigure { stem, caption, data, svg });
+        figures.push(LookFigure { stem, heading, caption, data, svg });
     }
     Ok(figures)
 }

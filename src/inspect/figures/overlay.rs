@@ -1,6 +1,7 @@
 //! Figure 8: stresses at a node in several jobs, one over the other.
 
 use super::{MEGA, MICRO};
+use crate::inspect::capture::NodeStep;
 use crate::inspect::overlay::Trace;
 use crate::publish::plot::panel::{Panel, Scale, Series, stack};
 use crate::publish::plot::{FigureError, palette};
@@ -11,15 +12,12 @@ use crate::publish::plot::{FigureError, palette};
 /// The drawing library's.
 pub fn overlay(title: &str, traces: &[Trace]) -> Result<String, FigureError> {
     let longest_s = traces.iter().map(|trace| trace.duration_s).fold(f64::MIN_POSITIVE, f64::max);
-    let panel = |title: &str, label: &str, value: &dyn Fn(&crate::inspect::capture::NodeStep) -> f64| {
+    let panel = |title: &str, label: &str, value: &dyn Fn(&NodeStep) -> f64| {
         let series: Vec<Series> = traces
             .iter()
             .enumerate()
             .map(|(number, trace)| {
-                let point = |step: &_| {
-                    let step: &crate::inspect::capture::NodeStep = step;
-                    ((step.time_s - trace.from_s) * MICRO, value(step) * MEGA)
-                };
+                let point = |step: &NodeStep| ((step.time_s - trace.from_s) * MICRO, value(step) * MEGA);
                 let points = trace.steps.iter().map(point).collect();
                 Series::line(&trace.label, palette::colour(number, traces.len()), points)
             })

@@ -1,6 +1,7 @@
 //! Total forces and their spectrum.
 
 use super::{MICRO, MILLI};
+use crate::inspect::envelope::Piece;
 use crate::inspect::look::Look;
 use crate::publish::plot::palette;
 use crate::publish::plot::panel::{Level, Mark, Panel, Scale, Series, Stroke};
@@ -16,7 +17,7 @@ pub fn forces(look: &Look) -> Vec<Panel> {
 fn whole_run(look: &Look) -> Panel {
     let pieces = look.survey.envelope.pieces();
     // Up and down through every piece: its extremes as they would be seen if all steps were drawn.
-    let band = |range: fn(&crate::inspect::envelope::Piece) -> [f64; 2]| -> Vec<(f64, f64)> {
+    let band = |range: fn(&Piece) -> [f64; 2]| -> Vec<(f64, f64)> {
         let ends = |piece| range(piece).map(|force| (piece.start_s * MILLI, force));
         pieces.iter().flat_map(ends).collect()
     };
