@@ -20,6 +20,14 @@ pub struct Args {
     checkpoints: Checkpoints,
     #[command(flatten)]
     retries: Retries,
+    /// Stay when nothing is left to do, and end when no job has come for so long (60s, 5m, 2h); without it, end at once.
+    #[arg(long = "idle-exit", value_name = "DURATION", value_parser = parse_duration)]
+    idle_exit: Option<Duration>,
+}
+
+fn parse_duration(text: &str) -> Result<Duration, String> {
+    humantime::parse_duration(text)
+        .map_err(|error| format!("{error}; expected a duration such as 60s, 5m or 2h"))
 }
 
 /// The number of worker threads.
@@ -79,23 +87,66 @@ impl Retries {
     }
 }
 
-/// Works through all pending jobs.
+/// Works through all pending jobs, and stays for more if that is wanted.
 pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
     block_on(async {
         let mut queue = Queue::open_existing(db, Arc::new(SystemClock), args.retries.settings()).await?;
-        let code = work(&mut queue, &Scope::All, options(&args.threads, &args.checkpoints)).await?;
+        let options = options(&args.threads, &args.checkpoints);
+        let code = until_stopped(async |interrupt| {
+            loop {
+                let code = work_through(&mut queue, &Scope::All, options, interrupt).await?;
+                let Some(patience) = args.idle_exit.filter(|_| !interrupt.is_raised()) else {
+                    return Ok(code);
+                };
+                if !jobs_come(&mut queue, patience, interrupt).await? {
+                    return Ok(code);
+                }
+            }
+        })
+        .await?;
         queue.close().await?;
         Ok(code)
     })
 }
 
-/// Works through the pending jobs of `scope` until they are done or Ctrl-C; returns the exit code.
-pub async fn work(queue: &mut Queue, scope: &Scope, options: WorkOptions) -> Result<u8, CliError> {
+/// How often an idle worker looks for jobs, and how long an interruption may go unnoticed.
+const IDLE_TICK: Duration = Duration::from_millis(250);
+
+/// Waits for jobs; false if none has come for `patience`, or after an interruption.
+async fn jobs_come(queue: &mut Queue, patience: Duration, interrupt: &Interrupt) -> Result<bool, CliError> {
+    let begun = Instant::now();
+    while begun.elapsed() < patience && !interrupt.is_raised() {
+        let counts = queue.counts(&Scope::All).await?;
+        if counts.pending + counts.running > 0 {
+            return Ok(true);
+        }
+        tokio::time::sleep(IDLE_TICK.min(patience)).await;
+    }
+    Ok(false)
+}
+
+/// Does some work that Ctrl-C asks to stop.
+async fn until_stopped<T>(work: impl AsyncFnOnce(&Interrupt) -> Result<T, CliError>) -> Result<T, CliError> {
     let interrupt = Interrupt::default();
     let listener = tokio::spawn(listen(interrupt.clone(), "stopping; running jobs go back to the queue"));
-    let summary = worker::work(queue, scope, options, &interrupt, &mut Display::new()).await;
+    let done = work(&interrupt).await;
     listener.abort();
-    let summary = summary?;
+    done
+}
+
+/// Works through the pending jobs of `scope` until they are done or Ctrl-C; returns the exit code.
+pub async fn work(queue: &mut Queue, scope: &Scope, options: WorkOptions) -> Result<u8, CliError> {
+    until_stopped(async |interrupt| work_through(queue, scope, options, interrupt).await).await
+}
+
+/// Works until no job is left or `interrupt` is raised, and says what is to be said of it.
+async fn work_through(
+    queue: &mut Queue,
+    scope: &Scope,
+    options: WorkOptions,
+    interrupt: &Interrupt,
+) -> Result<u8, CliError> {
+    let summary = worker::work(queue, scope, options, interrupt, &mut Display::new()).await?;
     let TakenBack { pending, failed } = summary.taken_back;
     if pending > 0 {
         tell(format_args!("{pending} jobs left running by an interrupted process were taken back"));

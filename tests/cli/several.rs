@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, SqliteConnection};
 
-use crate::support::{Folder, Running, long, rows, small, wait, wall_times, without_wall_times};
+use crate::support::{Folder, Running, long, rows, small, stderr, wait, wall_times, without_wall_times};
 
 /// More jobs than a process does in its life here, of different lengths, some tens of milliseconds each.
 fn many() -> Value {
@@ -229,7 +229,8 @@ fn many_kills_lose_nothing() {
     let mut finished = BTreeMap::new();
     let begun = Instant::now();
     while begun.elapsed() < TIME && finished.len() < 60 {
-        std::thread::sleep(Duration::from_millis(draw.below(250)));
+        // Often enough for many kills before the last job on a fast machine, and not so often that none ends.
+        std::thread::sleep(Duration::from_millis(draw.below(80)));
         let index = draw.below(WORKERS as u64) as usize;
         let killed = std::mem::replace(&mut workers[index], start());
         killed.signal("KILL");
@@ -256,4 +257,37 @@ fn many_kills_lose_nothing() {
     let most = HELD * kills;
     assert!(repeated <= most, "{repeated} jobs were repeated after {kills} kills of one thread each");
     println!("{kills} kills, {repeated} jobs repeated, {jobs} jobs");
+}
+
+/// Protects: a worker that is told to stay takes up what is submitted while it is idle, and ends by itself when nothing
+/// has come for as long as it was told.
+#[test]
+fn an_idle_worker_takes_up_what_comes() {
+    let folder = Folder::with("first", &small(&json!({ "mu": [0.2, 0.3] })));
+    folder.add("second", &small(&json!({ "mu": [0.4, 0.5] })));
+    folder.ok("submit first.json");
+    let worker = folder.start("work --idle-exit 3s");
+    folder.wait_for("first", |jobs| jobs["done"] == 2);
+    // It is idle for a moment.
+    std::thread::sleep(Duration::from_millis(700));
+    folder.ok("submit second.json");
+    folder.wait_for("second", |jobs| jobs["done"] == 2);
+    let (code, _, err) = worker.end();
+    assert_eq!(code, Some(0), "{err}");
+    let assert = folder.command("work --idle-exit soon").assert().code(2);
+    assert!(stderr(&assert).contains("expected a duration such as 60s"), "{}", stderr(&assert));
+}
+
+/// Protects: an idle worker is stopped by Ctrl-C at once, and nothing is left over.
+#[cfg(target_os = "linux")]
+#[test]
+fn an_idle_worker_can_be_stopped() {
+    let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
+    folder.ok("submit mine.json");
+    let worker = folder.start("work --idle-exit 1h");
+    folder.wait_for("mine", |jobs| jobs["done"] == 1);
+    std::thread::sleep(Duration::from_millis(700));
+    worker.signal("INT");
+    let (code, _, err) = worker.end();
+    assert_eq!(code, Some(0), "{err}");
 }
