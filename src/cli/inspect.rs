@@ -36,11 +36,11 @@ pub struct Args {
     #[arg(long, value_name = "NAME=VALUE,VALUE,…", value_parser = foreground::parse_setting)]
     overlay: Option<(String, String)>,
     /// Number of cycles to show.
-    #[arg(long, value_name = "N", default_value_t = Options::default().cycles as u16,
+    #[arg(long, value_name = "N", conflicts_with = "overlay", default_value_t = Options::default().cycles as u16,
           value_parser = clap::value_parser!(u16).range(Options::FEWEST_CYCLES as i64..=100))]
     cycles: u16,
     /// Number of times of a cycle at which the whole pin is written for ParaView.
-    #[arg(long, value_name = "N", default_value_t = Options::default().frames as u16,
+    #[arg(long, value_name = "N", conflicts_with = "overlay", default_value_t = Options::default().frames as u16,
           value_parser = clap::value_parser!(u16).range(Options::FEWEST_FRAMES as i64..=1000))]
     frames: u16,
     /// Folder for what is found; default: reports/STUDY/JOB.
@@ -296,11 +296,10 @@ fn overlay(args: &Args, study: &Study) -> Result<u8, CliError> {
     let preset = args.preset.map_or("", Preset::name);
     let folder = args.out(study, &["overlay", name, &slug(&common), preset]);
     let interrupt = foreground::interrupt();
-    let options = Options { places: places.clone(), cycles: args.cycles.into(), frames: args.frames.into() };
     let run = |picked: &Picked| {
         let label = picked.parameters.iter().find(|(own, _)| own == name);
         let label = label.map_or_else(String::new, |(name, value)| value::assignment(name, value));
-        Trace::of_job(&label, &picked.spec, &options, &mut |_| {
+        Trace::of_job(&label, &picked.spec, &places, &mut |_| {
             if interrupt.is_raised() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
     };

@@ -86,14 +86,7 @@ impl Look {
         options: &Options,
         go_on: &mut impl FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Self, LookError> {
-        spec.check().map_err(JobError::from)?;
-        let mesh = BlockMesh::new(spec.scene.pin.size_m, spec.scene.pin.elements);
-        let nodes: Vec<ObservedNode> = options
-            .places
-            .iter()
-            .map(|place| place.find(&mesh))
-            .collect::<Result<_, _>>()
-            .map_err(LookError::Place)?;
+        let nodes = nodes_of(spec, &options.places)?;
         let survey = survey(spec, options.cycles.max(Options::FEWEST_CYCLES), go_on)?;
         let windows = &survey.windows;
         let capture = capture(spec, windows, &nodes, options.frames.max(Options::FEWEST_FRAMES), go_on)?;
@@ -119,6 +112,13 @@ impl Look {
     pub fn mesh(&self) -> &BlockMesh {
         self.capture.model.mesh()
     }
+}
+
+/// The nodes at these places of a job that has been checked.
+pub fn nodes_of(spec: &JobSpec, places: &[Place]) -> Result<Vec<ObservedNode>, LookError> {
+    spec.check().map_err(JobError::from)?;
+    let mesh = BlockMesh::new(spec.scene.pin.size_m, spec.scene.pin.elements);
+    places.iter().map(|place| place.find(&mesh)).collect::<Result<_, _>>().map_err(LookError::Place)
 }
 
 /// A node's trajectory over the cycle in the y–z plane: y, z displacements [m].

@@ -1,9 +1,10 @@
 //! The same node in several jobs.
 
-use super::capture::NodeStep;
+use super::capture::{NodeStep, capture};
 use super::figures;
-use super::look::{Look, LookError, Observed, Options};
-use super::place::ObservedNode;
+use super::look::{LookError, Options, nodes_of};
+use super::place::{ObservedNode, Place};
+use super::survey::{Survey, survey};
 use super::tables::{csv, history_header, history_line};
 use crate::publish::value::number;
 use crate::publish::{Folder, PublishError};
@@ -38,19 +39,21 @@ impl Trace {
     pub fn of_job(
         label: &str,
         spec: &JobSpec,
-        options: &Options,
+        places: &[Place],
         go_on: &mut impl FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Vec<Self>, LookError> {
-        let look = Look::into(spec, options, go_on)?;
-        let windows = &look.survey.windows;
+        let nodes = nodes_of(spec, places)?;
+        let Survey { windows, .. } = survey(spec, Options::default().cycles, go_on)?;
+        // No frames: nothing is shown of the pin.
+        let capture = capture(spec, &windows, &nodes, 0, go_on)?;
         let (from_s, duration_s) = (windows.shown_s[0], CYCLES * windows.period_s);
         let until_s = from_s + duration_s;
         let label = if windows.cycles { label.to_owned() } else { format!("{label} (no cycle)") };
-        let trace = |(observed, mut steps): (Observed, Vec<NodeStep>)| {
+        let trace = |(node, mut steps): (ObservedNode, Vec<NodeStep>)| {
             steps.retain(|step| step.time_s >= from_s && step.time_s <= until_s);
-            Self { label: label.clone(), node: observed.node, from_s, duration_s, steps }
+            Self { label: label.clone(), node, from_s, duration_s, steps }
         };
-        Ok(look.observed.into_iter().zip(look.capture.nodes).map(trace).collect())
+        Ok(nodes.into_iter().zip(capture.nodes).map(trace).collect())
     }
 }
 

@@ -9,10 +9,7 @@ use crate::publish::value::{MISSING, digits, fixed, number};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 
-/// Larger tables [bytes] are beside the page, not in it.
-const LARGEST: usize = 400_000;
-
-/// The page; `tables` are the CSV files by their names.
+/// The page; `tables` are the CSV files that it holds, by their names.
 pub fn of(
     look: &Look,
     summary: &Summary,
@@ -120,7 +117,7 @@ fn waves(summary: &Summary) -> Markup {
 
 /// A table to download, or where it is.
 fn data(name: &str, tables: &BTreeMap<String, String>) -> Markup {
-    if let Some(text) = tables.get(name).filter(|text| text.len() <= LARGEST) {
+    if let Some(text) = tables.get(name) {
         download(name, text)
     } else {
         html! { code { (name) } " (beside this page)" }

@@ -10,21 +10,23 @@ use crate::publish::{Folder, PublishError};
 use std::collections::BTreeMap;
 use std::io;
 
-/// Writes all tables; returns their texts by their names.
+/// Larger tables [bytes] are beside the page, not in it.
+const LARGEST: usize = 400_000;
+
+/// Writes all tables; returns the texts of those that are not too large for a page by their names.
 ///
 /// # Errors
 /// The first file that could not be written.
 pub fn write(look: &Look, folder: &mut Folder) -> Result<BTreeMap<String, String>, PublishError> {
     let mut tables = BTreeMap::new();
     let mut add = |name: &str, header: &[&str], lines: &mut dyn Iterator<Item = Vec<String>>| {
-        let mut text = Vec::new();
         folder.with(name, |out| {
             csv(header, lines, out)?;
-            text.clone_from(out);
+            if out.len() <= LARGEST {
+                tables.insert(name.to_owned(), String::from_utf8_lossy(out).into_owned());
+            }
             Ok(())
-        })?;
-        tables.insert(name.to_owned(), String::from_utf8_lossy(&text).into_owned());
-        Ok::<(), PublishError>(())
+        })
     };
     add("run.csv", &RUN, &mut run_lines(look))?;
     add("cycles.csv", &CYCLES, &mut cycle_lines(look))?;

@@ -134,6 +134,7 @@ fn mistakes_are_told() {
         ("mine.json 0000 --overlay mu=0.2,0.3", "expected NAME=VALUE, not the key `0000`"),
         ("mine.json 0000 --preset draft", "has its own mesh"),
         ("other.json", "other.json"),
+        ("mine.json --overlay mu=0.2,0.4 --frames 20", "cannot be used with"),
         ("mine.json mu", "NAME=VALUE, for example mu=…"),
         ("mine.json omega=7", "NAME=VALUE: omega"),
         ("mine.json --node 9,0", "9,0 mm is not"),

@@ -1,6 +1,6 @@
 //! The whole contact face over a cycle.
 
-use super::{MICRO, MILLI, drawn_as};
+use super::{MICRO, MILLI, colour_of, place_in_legend};
 use crate::inspect::look::{Look, loop_of};
 use crate::inspect::phases::{Instants, phases};
 use crate::inspect::waves::stations;
@@ -115,7 +115,7 @@ pub fn waves(look: &Look) -> Panel {
         let rows = ((at_m - half_m).max(-ly / 2.0) * MILLI, (at_m + half_m).min(ly / 2.0) * MILLI);
         let steps = look.capture.face.iter().map(|step| (step.time_s, step.nodes[slave].state));
         for phase in phases(steps, end_s) {
-            let (label, colour) = drawn_as(phase.state);
+            let (label, colour) = (phase.state.name(), colour_of(phase.state));
             panel.tiles.push(Tile {
                 label,
                 colour,
@@ -124,7 +124,7 @@ pub fn waves(look: &Look) -> Panel {
             });
         }
     }
-    panel.tiles.sort_by_key(|tile| super::ORDER.iter().position(|name| *name == tile.label));
+    panel.tiles.sort_by_key(|tile| place_in_legend(tile.label));
     let period_s = end_s - start_s;
     let peaks = stations(look).into_iter().filter_map(|station| {
         let Instants { peak_s, .. } = station.instants?;

@@ -1,6 +1,6 @@
 //! Histories of the observed nodes.
 
-use super::{MEGA, MICRO, MILLI, drawn_as};
+use super::{MEGA, MICRO, MILLI, STATES, colour_of, place_in_legend};
 use crate::inspect::capture::NodeStep;
 use crate::inspect::look::{Look, Observed};
 use crate::inspect::phases::Phase;
@@ -34,11 +34,11 @@ fn disk(observed: &Observed, right: bool) -> Level {
 
 fn bands(phases: &[Phase], since: impl Fn(f64) -> f64) -> Vec<Band> {
     let band = |phase: &Phase| {
-        let (label, colour) = drawn_as(phase.state);
+        let (label, colour) = (phase.state.name(), colour_of(phase.state));
         Band { label, colour, span: (since(phase.start_s), since(phase.end_s)) }
     };
     let mut bands: Vec<Band> = phases.iter().map(band).collect();
-    bands.sort_by_key(|band| super::ORDER.iter().position(|name| *name == band.label));
+    bands.sort_by_key(|band| place_in_legend(band.label));
     bands
 }
 
@@ -91,9 +91,8 @@ pub fn phase_planes(look: &Look) -> Vec<Panel> {
         let x = Scale::spanning("displacement in y [µm]", steps.iter().map(|step| point(step).0), 0.01);
         let y = Scale::spanning("velocity in y [mm/s]", steps.iter().map(|step| point(step).1), 1.0);
         let mut panel = Panel::new(&observed.node.title, x, y);
-        for state in [ContactState::Stick, ContactState::Slip, ContactState::Separated] {
-            let (label, colour) = drawn_as(state);
-            panel.series.push(Series::line(label, colour, path_in(state, steps, point)));
+        for state in STATES {
+            panel.series.push(Series::line(state.name(), colour_of(state), path_in(state, steps, point)));
         }
         panel.levels = vec![disk(observed, false)];
         panel

@@ -11,7 +11,7 @@ pub use overlay::overlay;
 use super::look::Look;
 use crate::publish::plot::FigureError;
 use crate::publish::plot::palette::{SEPARATED, SLIP, STICK};
-use crate::publish::plot::panel::{Panel, stack};
+use crate::publish::plot::panel::stack;
 use crate::publish::{Folder, PublishError};
 use crate::solver::contact::ContactState;
 use plotters::style::RGBColor;
@@ -50,7 +50,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
             "Displacements in the three directions and velocity in y of the observed nodes (the paper's Figure 2a)."
                 .to_owned(),
             histories.clone(),
-            Box::new(|| panels(&histories::displacements(look))),
+            Box::new(|| stack(&histories::displacements(look))),
         ),
         (
             "figure2b",
@@ -60,7 +60,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
                  0 is separation."
             ),
             with(&["phases.csv"]),
-            Box::new(|| panels(&histories::friction(look))),
+            Box::new(|| stack(&histories::friction(look))),
         ),
         (
             "figure3a",
@@ -69,7 +69,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
              means, and those on three lines where the nodes are, displacements in y enlarged."
                 .to_owned(),
             only(&["face.csv"]),
-            Box::new(|| panels(&face::trajectories(look))),
+            Box::new(|| stack(&face::trajectories(look))),
         ),
         (
             "figure3b",
@@ -77,7 +77,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
             "Phase plane of the observed nodes (Figure 3b): the level is the velocity of the disk under the node."
                 .to_owned(),
             histories.clone(),
-            Box::new(|| panels(&histories::phase_planes(look))),
+            Box::new(|| stack(&histories::phase_planes(look))),
         ),
         (
             "figure4",
@@ -87,7 +87,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
              separation at t_F."
                 .to_owned(),
             with(&["instants.csv"]),
-            Box::new(|| panels(&histories::cycles(look))),
+            Box::new(|| stack(&histories::cycles(look))),
         ),
         (
             "figure5",
@@ -105,7 +105,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
              above."
                 .to_owned(),
             only(&["face.csv", "wave.csv"]),
-            Box::new(|| panels(&[face::waves(look)])),
+            Box::new(|| stack(&[face::waves(look)])),
         ),
         (
             "totals",
@@ -114,14 +114,14 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
              with their begins, where the filtered N rises through F (the filter delays by a constant time)."
                 .to_owned(),
             only(&["run.csv", "totals.csv", "cycles.csv"]),
-            Box::new(|| panels(&totals::forces(look))),
+            Box::new(|| stack(&totals::forces(look))),
         ),
         (
             "spectrum",
             "Spectrum",
             "Spectrum of the total normal contact force over the averaging window.".to_owned(),
             only(&["spectrum.csv"]),
-            Box::new(|| panels(&[totals::spectrum(look)])),
+            Box::new(|| stack(&[totals::spectrum(look)])),
         ),
     ];
     let mut figures = Vec::new();
@@ -136,21 +136,22 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
 
 type Drawing<'a> = Box<dyn Fn() -> Result<String, FigureError> + 'a>;
 
-fn panels(panels: &[Panel]) -> Result<String, FigureError> {
-    stack(panels)
+/// Contact states in the order of legends.
+const STATES: [ContactState; 3] = [ContactState::Stick, ContactState::Slip, ContactState::Separated];
+
+/// The place in legends of what is called like a state.
+fn place_in_legend(label: &str) -> Option<usize> {
+    STATES.iter().position(|state| state.name() == label)
 }
 
-/// Contact states as they are drawn: name and colour.
-fn drawn_as(state: ContactState) -> (&'static str, RGBColor) {
+/// The colour of a contact state.
+fn colour_of(state: ContactState) -> RGBColor {
     match state {
-        ContactState::Stick => ("stick", STICK),
-        ContactState::Slip => ("slip", SLIP),
-        ContactState::Separated => ("separated", SEPARATED),
+        ContactState::Stick => STICK,
+        ContactState::Slip => SLIP,
+        ContactState::Separated => SEPARATED,
     }
 }
-
-/// Contact states in the order of legends.
-const ORDER: [&str; 3] = ["stick", "slip", "separated"];
 
 /// Micrometres, microseconds.
 const MICRO: f64 = 1e6;

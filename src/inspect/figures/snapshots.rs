@@ -1,6 +1,6 @@
 //! Four instants of a cycle: the middle plane of the pin and its contact face.
 
-use super::{MICRO, drawn_as};
+use super::{MICRO, STATES, colour_of};
 use crate::inspect::capture::Frame;
 use crate::inspect::look::Look;
 use crate::publish::plot::canvas::{Area, WIDTH, sheet, write};
@@ -56,7 +56,7 @@ fn snapshots(look: &Look) -> Vec<Snapshot<'_>> {
         let peak = steps.iter().find(|step| step.time_s == c)?;
         let times = [
             ("between t_A and t_B: contact has begun".to_owned(), (a + b) / 2.0),
-            (format!("at t_C, largest stress: {}", drawn_as(peak.node.state).0), c),
+            (format!("at t_C, largest stress: {}", peak.node.state.name()), c),
             ("between t_D and t_E: slip".to_owned(), (d + e) / 2.0),
             ("between t_E and t_F: separated".to_owned(), (e + f) / 2.0),
         ];
@@ -178,7 +178,7 @@ fn draw_side(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result
         // Forces on the pin end where they act.
         let from = (tip.0 - friction * scales.px_per_n, tip.1 + normal * scales.px_per_n);
         if node.state != ContactState::Separated && j % scales.stride == 0 {
-            arrow(area, from, tip, drawn_as(node.state).1, 3)?;
+            arrow(area, from, tip, colour_of(node.state), 3)?;
         }
         dot(area, rounded(tip), node.state, scales.dot)?;
     }
@@ -219,7 +219,7 @@ fn draw_face(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result
 
 /// A node: the shape says its state, too.
 fn dot(area: &Area, at: (i32, i32), state: ContactState, radius: i32) -> Result<(), FigureError> {
-    let colour = drawn_as(state).1;
+    let colour = colour_of(state);
     match state {
         ContactState::Stick => area.draw(&Circle::new(at, radius, colour.filled())),
         ContactState::Slip => {
@@ -257,9 +257,9 @@ fn arrow(
 
 fn draw_legend(area: &Area, scales: &Scales) -> Result<(), FigureError> {
     let mut x = MARGIN + DOT;
-    for state in [ContactState::Stick, ContactState::Slip, ContactState::Separated] {
+    for state in STATES {
         dot(area, (x, 30), state, DOT)?;
-        write(area, drawn_as(state).0, (x + 26, 30), TEXT, HPos::Left)?;
+        write(area, state.name(), (x + 26, 30), TEXT, HPos::Left)?;
         x += 240;
     }
     let scale = |x: f64, length: f64, colour, width, text: &str| {
@@ -269,7 +269,7 @@ fn draw_legend(area: &Area, scales: &Scales) -> Result<(), FigureError> {
     let text = format!("velocity {:.0} mm/s", scales.speed_m_s * 1e3);
     scale(f64::from(MARGIN), scales.speed_m_s * scales.px_per_m_s, BLACK, 2, &text)?;
     let text = format!("contact force {:.2} N", scales.force_n);
-    scale(540.0, scales.force_n * scales.px_per_n, drawn_as(ContactState::Slip).1, 3, &text)?;
+    scale(540.0, scales.force_n * scales.px_per_n, colour_of(ContactState::Slip), 3, &text)?;
     let text = format!("friction, from above, {:.3} N", scales.friction_n);
     scale(1140.0, scales.friction_n * scales.px_per_friction_n, BLACK, 3, &text)
 }

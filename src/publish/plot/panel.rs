@@ -52,8 +52,6 @@ pub enum Stroke {
     Line,
     /// The same, thin.
     Fine,
-    /// Dashed.
-    Dashed,
     /// Its points alone.
     Dots,
 }
@@ -263,12 +261,6 @@ fn draw_curves(chart: &mut Chart, panel: &Panel, right: bool) -> Result<(), Figu
                 let dots = series.points.iter().filter(|(_, y)| y.is_finite());
                 chart.draw_series(dots.map(|&at| Circle::new(at, DOT, series.colour.filled())))?;
             }
-            Stroke::Dashed => {
-                let style = series.colour.stroke_width(CURVE_WIDTH);
-                for stretch in stretches(&series.points) {
-                    chart.draw_series(DashedLineSeries::new(stretch.to_vec(), DASH, DASH / 2, style))?;
-                }
-            }
             Stroke::Line | Stroke::Fine => {
                 let width = if series.stroke == Stroke::Line { CURVE_WIDTH } else { 2 };
                 let style = series.colour.stroke_width(width);
@@ -336,11 +328,6 @@ fn draw_legend(area: &Area, panel: &Panel) -> Result<(), FigureError> {
         let Some(label) = &series.label else { continue };
         line(area, label, &|y| match series.stroke {
             Stroke::Dots => area.draw(&Circle::new((SAMPLE / 2, y), DOT, series.colour.filled())),
-            Stroke::Dashed => {
-                let style = series.colour.stroke_width(CURVE_WIDTH);
-                area.draw(&PathElement::new([(0, y), (SAMPLE / 3, y)], style))?;
-                area.draw(&PathElement::new([(2 * SAMPLE / 3, y), (SAMPLE, y)], style))
-            }
             Stroke::Line | Stroke::Fine => {
                 area.draw(&PathElement::new([(0, y), (SAMPLE, y)], series.colour.stroke_width(CURVE_WIDTH)))
             }
