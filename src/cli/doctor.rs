@@ -3,14 +3,12 @@
 use super::error::CliError;
 use super::output::{block_on, print};
 use crate::exit;
-use crate::queue::{SystemClock, examine};
+use crate::queue::{Clock, Location, examine};
 use std::fmt::Write;
-use std::path::Path;
-use std::sync::Arc;
 
 /// Prints what was looked at; the exit code says whether something needs doing.
-pub fn run(db: &Path) -> Result<u8, CliError> {
-    let findings = block_on(async { Ok(examine(db, Arc::new(SystemClock)).await?) })?;
+pub fn run(db: &Location) -> Result<u8, CliError> {
+    let findings = block_on(async { Ok(examine(db, Clock::OfDatabase).await?) })?;
     let width = findings.iter().map(|finding| finding.subject.len()).max().unwrap_or(0);
     let text = findings.iter().fold(String::new(), |mut text, finding| {
         let mark = if finding.is_problem { "PROBLEM" } else { "ok" };

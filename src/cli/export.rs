@@ -4,10 +4,10 @@ use super::error::CliError;
 use super::output::{block_on, fill_file, stream};
 use super::rows;
 use crate::exit;
-use crate::queue::Rows;
+use crate::queue::{Location, Rows};
 use crate::report::export::Export;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Arguments of `export`.
 #[derive(Debug, clap::Args)]
@@ -33,7 +33,7 @@ enum Format {
 }
 
 /// Exports the study.
-pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let name = rows::study_name(&args.study)?;
     let fill = |out: &mut dyn Write| block_on(write(&name, args.format, db, out));
     match &args.file {
@@ -44,7 +44,7 @@ pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
 }
 
 /// Reads the study twice, first for the names of its parameters, so as not to hold its rows.
-async fn write(study: &str, format: Format, db: &Path, out: &mut dyn Write) -> Result<(), CliError> {
+async fn write(study: &str, format: Format, db: &Location, out: &mut dyn Write) -> Result<(), CliError> {
     let mut queue = rows::open(db).await?;
     let further = rows::further_names(&mut queue, study).await?;
     let mut export = match format {

@@ -4,10 +4,10 @@ use super::error::CliError;
 use super::output::{block_on, print};
 use super::rows;
 use crate::exit;
-use std::path::Path;
+use crate::queue::Location;
 
 /// Drops jobs that no study refers to, with their results, and says how many.
-pub fn run(db: &Path) -> Result<u8, CliError> {
+pub fn run(db: &Location) -> Result<u8, CliError> {
     let garbage = block_on(async {
         let mut queue = rows::open_to_change(db).await?;
         let garbage = queue.collect_garbage().await?;

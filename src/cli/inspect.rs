@@ -6,6 +6,7 @@ use super::{foreground, rows, solve};
 use crate::exit;
 use crate::inspect::{self, Look, LookError, Options, Origin, Place, Trace};
 use crate::publish::value;
+use crate::queue::Location;
 use crate::solver;
 use crate::spec::JobSpec;
 use crate::study::{Parameter, Preset, Study};
@@ -83,7 +84,7 @@ fn slug(parameters: &[(String, Value)]) -> String {
 }
 
 /// Runs the job twice and writes what is found.
-pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let study = study(&args.study, db)?;
     if args.overlay.is_some() {
         return overlay(args, &study);
@@ -144,7 +145,7 @@ fn try_to_write(folder: &Path) -> std::io::Result<()> {
 }
 
 /// The study in a file, or the one in the database as it was submitted.
-fn study(study: &str, db: &Path) -> Result<Study, CliError> {
+fn study(study: &str, db: &Location) -> Result<Study, CliError> {
     let path = Path::new(study);
     if path.extension().is_some_and(|extension| extension == "json") {
         return Ok(Study::load(path)?);

@@ -29,8 +29,9 @@ mod validate;
 mod work;
 
 use crate::exit;
+use crate::queue::Location;
+use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
-use std::path::PathBuf;
 
 /// Sweeps of explicit dynamic contact simulations of a pin-on-disk tribometer.
 ///
@@ -44,9 +45,10 @@ use std::path::PathBuf;
 pub struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// The database of studies, jobs and results.
-    #[arg(long, global = true, value_name = "PATH", env = "TRIBOSWEEP_DB", default_value = "tribosweep.db")]
-    db: PathBuf,
+    /// The database of studies, jobs and results: a file, or postgres://USER@HOST/DATABASE.
+    #[arg(long, global = true, value_name = "PATH|URL", env = "TRIBOSWEEP_DB", hide_env_values = true,
+          default_value = "tribosweep.db", value_parser = OsStringValueParser::new().try_map(Location::parse))]
+    db: Location,
 }
 
 #[derive(Debug, Subcommand)]
@@ -93,7 +95,7 @@ enum Command {
 
 /// Runs the command and gives its exit code.
 pub fn main(cli: Cli) -> u8 {
-    let db = cli.db.as_path();
+    let db = &cli.db;
     let result = match cli.command {
         Command::Run(args) => run::run(&args, db),
         Command::Submit(args) => submit::run(&args, db),

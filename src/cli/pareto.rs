@@ -5,8 +5,8 @@ use super::output::{block_on, print, tell};
 use super::report::OutFolder;
 use super::rows;
 use crate::exit;
+use crate::queue::Location;
 use crate::report::pareto;
-use std::path::Path;
 
 /// Arguments of `pareto`.
 #[derive(Debug, clap::Args)]
@@ -19,7 +19,7 @@ pub struct Args {
 }
 
 /// Compares the finished jobs, prints the tables and writes the files.
-pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let names = args.studies.iter().map(|study| rows::study_name(study)).collect::<Result<Vec<_>, _>>()?;
     let rows = block_on(async {
         let mut queue = rows::open(db).await?;

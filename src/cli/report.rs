@@ -5,7 +5,7 @@ use super::output::{block_on, print, tell};
 use super::work::listen;
 use super::{origin, rows};
 use crate::exit;
-use crate::queue::{Clock, Counts, Queue, Scope, SystemClock};
+use crate::queue::{Counts, Location, Queue, Scope};
 use crate::report::{self, Report};
 use crate::worker::Interrupt;
 use std::path::{Path, PathBuf};
@@ -41,7 +41,7 @@ impl OutFolder {
 }
 
 /// Writes the report and prints the path of its page.
-pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let name = rows::study_name(&args.study)?;
     block_on(async {
         let mut queue = rows::open(db).await?;
@@ -81,7 +81,7 @@ pub async fn write_rows(
 ) -> Result<(), CliError> {
     let origin = origin::read(queue, name).await?;
     let folder = out.of(name);
-    let written_ms = SystemClock.now_ms();
+    let written_ms = queue.now_ms().await?;
     let report = Report { title: name, rows, origin: origin.as_ref(), written_ms, refresh_s };
     report::write(&report, &folder)?;
     tell(format_args!("report written to {}", folder.display()));

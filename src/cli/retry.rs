@@ -4,8 +4,7 @@ use super::error::CliError;
 use super::output::{block_on, tell};
 use super::rows;
 use crate::exit;
-use crate::queue::Retry;
-use std::path::Path;
+use crate::queue::{Location, Retry};
 
 /// Arguments of `retry`.
 #[derive(Debug, clap::Args)]
@@ -18,7 +17,7 @@ pub struct Args {
 }
 
 /// Makes the jobs pending again.
-pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let name = rows::study_name(&args.study)?;
     let which = if args.failed { Retry::Failed } else { Retry::All };
     let retried = block_on(async {

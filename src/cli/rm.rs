@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::output::{block_on, tell};
 use super::rows;
 use crate::exit;
-use std::path::Path;
+use crate::queue::Location;
 
 /// Arguments of `rm`.
 #[derive(Debug, clap::Args)]
@@ -14,7 +14,7 @@ pub struct Args {
 }
 
 /// Removes the study.
-pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let name = rows::study_name(&args.study)?;
     let removed = block_on(async {
         let mut queue = rows::open_to_change(db).await?;

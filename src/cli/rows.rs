@@ -2,13 +2,12 @@
 
 use super::error::CliError;
 use super::planning::RowParameters;
-use crate::queue::{JobState, Queue, Rows, Settings, StudyRow, SystemClock};
+use crate::queue::{Clock, JobState, Location, Queue, Rows, Settings, StudyRow};
 use crate::report::{Row, RowState, export};
 use crate::study::Study;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::ops::ControlFlow;
 use std::path::Path;
-use std::sync::Arc;
 
 /// The name of a study given as its name or as its file.
 pub fn study_name(study: &str) -> Result<String, CliError> {
@@ -20,13 +19,13 @@ pub fn study_name(study: &str) -> Result<String, CliError> {
 }
 
 /// Opens an existing database to read from it.
-pub async fn open(db: &Path) -> Result<Queue, CliError> {
-    Ok(Queue::open_to_read(db, Arc::new(SystemClock)).await?)
+pub async fn open(db: &Location) -> Result<Queue, CliError> {
+    Ok(Queue::open_to_read(db.clone(), Clock::OfDatabase).await?)
 }
 
 /// Opens an existing database to change it.
-pub async fn open_to_change(db: &Path) -> Result<Queue, CliError> {
-    Ok(Queue::open_existing(db, Arc::new(SystemClock), Settings::default()).await?)
+pub async fn open_to_change(db: &Location) -> Result<Queue, CliError> {
+    Ok(Queue::open_existing(db.clone(), Clock::OfDatabase, Settings::default()).await?)
 }
 
 /// All rows of a study.

@@ -7,10 +7,9 @@ use super::report::{self, OutFolder};
 use super::rows;
 use super::submit::{Priority, submit};
 use super::work::{Checkpoints, Retries, Threads, options, work};
-use crate::queue::{Queue, Scope, SystemClock};
+use crate::queue::{Clock, Location, Queue, Scope};
 use crate::report::tables::{Quantity, markdown};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::PathBuf;
 
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
@@ -30,12 +29,12 @@ pub struct Args {
 }
 
 /// Runs the whole sweep; an interrupted one reports what it has.
-pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let plan = Plan::load(&args.study)?;
     let name = plan.study.name();
     report::prepare(name, &args.out)?;
     block_on(async {
-        let mut queue = Queue::open_with(db, Arc::new(SystemClock), args.retries.settings()).await?;
+        let mut queue = Queue::open_with(db.clone(), Clock::OfDatabase, args.retries.settings()).await?;
         submit(&plan, &args.priority, &mut queue).await?;
         let options = options(&args.threads, &args.checkpoints);
         let code = work(&mut queue, &Scope::Study(name.to_owned()), options).await?;

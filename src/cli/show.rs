@@ -4,9 +4,8 @@ use super::error::CliError;
 use super::output::{block_on, print};
 use super::rows;
 use crate::exit;
-use crate::queue::{JobDetails, StudyDocument};
+use crate::queue::{JobDetails, Location, StudyDocument};
 use serde_json::{Value, json};
-use std::path::Path;
 
 /// Arguments of `show`.
 #[derive(Debug, clap::Args)]
@@ -16,7 +15,7 @@ pub struct Args {
 }
 
 /// Prints the job as JSON.
-pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let (jobs, studies) = block_on(async {
         let mut queue = rows::open(db).await?;
         // Two are enough to know that there are several.

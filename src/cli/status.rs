@@ -7,13 +7,12 @@ use super::planning::RowParameters;
 use super::rows;
 use crate::analysis::Outcome;
 use crate::exit;
-use crate::queue::{Counts, Queue, Rows, Scope};
+use crate::queue::{Counts, Location, Queue, Rows, Scope};
 use crate::report::overview::overview;
 use crate::report::trouble::{Grid, LISTED, Region, Regions, cause, sentences};
 use crate::report::{Row, RowState};
 use serde_json::{Value, json};
 use std::fmt::Write;
-use std::path::Path;
 
 /// Studies with more jobs are told in numbers alone: reading their records takes longer than looking at them is worth.
 const SHOWN: u64 = 2_000;
@@ -29,7 +28,7 @@ pub struct Args {
 }
 
 /// Shows the state of one or all studies.
-pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let name = args.study.as_deref().map(rows::study_name).transpose()?;
     let text = block_on(async {
         let mut queue = rows::open(db).await?;

@@ -4,9 +4,8 @@ use super::error::CliError;
 use super::output::{block_on, tell};
 use super::planning::Plan;
 use crate::exit;
-use crate::queue::{Queue, SystemClock};
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use crate::queue::{Clock, Location, Queue};
+use std::path::PathBuf;
 
 /// Arguments of `submit`.
 #[derive(Debug, clap::Args)]
@@ -26,10 +25,10 @@ pub struct Priority {
 }
 
 /// Plans the study.
-pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let plan = Plan::load(&args.study)?;
     block_on(async {
-        let mut queue = Queue::open(db, Arc::new(SystemClock)).await?;
+        let mut queue = Queue::open(db.clone(), Clock::OfDatabase).await?;
         submit(&plan, &args.priority, &mut queue).await?;
         queue.close().await?;
         Ok(exit::SUCCESS)

@@ -4,11 +4,9 @@ use super::display::Display;
 use super::error::CliError;
 use super::output::{block_on, tell};
 use crate::exit;
-use crate::queue::{Queue, Scope, Settings, SystemClock, TakenBack};
+use crate::queue::{Clock, Location, Queue, Scope, Settings, TakenBack};
 use crate::worker::{self, Interrupt, WorkOptions};
 use std::num::NonZeroUsize;
-use std::path::Path;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 /// Arguments of `work`.
@@ -88,9 +86,9 @@ impl Retries {
 }
 
 /// Works through all pending jobs, and stays for more if that is wanted.
-pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     block_on(async {
-        let mut queue = Queue::open_existing(db, Arc::new(SystemClock), args.retries.settings()).await?;
+        let mut queue = Queue::open_existing(db.clone(), Clock::OfDatabase, args.retries.settings()).await?;
         let options = options(&args.threads, &args.checkpoints);
         let code = until_stopped(async |interrupt| {
             loop {

@@ -1,3 +1,4 @@
+use super::engine::{Statement, query};
 use super::{Queue, QueueError, studies};
 
 /// What a cancellation changed.
@@ -11,23 +12,29 @@ pub struct Cancelled {
     pub running: u64,
 }
 
-const CANCEL_STUDY: &str = "UPDATE studies SET cancelled_ms = ?2 WHERE id = ?1";
+const CANCEL_STUDY: &str = "UPDATE studies SET cancelled_ms = $2 WHERE id = $1";
 
 /// A cancelled study asks for nothing.
 const CANCEL_JOBS: &str = "
-    UPDATE jobs SET state = 'cancelled', note = ?2
-    WHERE id IN (SELECT job_id FROM study_pending WHERE study_id = ?1)
+    UPDATE jobs SET state = 'cancelled', note = $2
+    WHERE id IN (SELECT job_id FROM study_pending WHERE study_id = $1)
       AND NOT EXISTS (
           SELECT 1 FROM study_jobs AS m JOIN studies AS s ON s.id = m.study_id
           WHERE m.job_id = jobs.id AND s.cancelled_ms IS NULL
       )";
 
-const SHARED: &str = "SELECT COUNT(*) FROM study_pending WHERE study_id = ?1";
+const SHARED: &str = "SELECT COUNT(*) FROM study_pending WHERE study_id = $1";
 
-const RUNNING: &str = "
+const RUNNING: Statement = Statement::each(
+    "
     SELECT COUNT(*) FROM jobs AS j INDEXED BY jobs_owner
     WHERE j.state = 'running' AND j.owner IS NOT NULL
-      AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = ?1)";
+      AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $1)",
+    "
+    SELECT COUNT(*) FROM jobs AS j
+    WHERE j.state = 'running'
+      AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $1)",
+);
 
 const NOTE: &str = "cancelled: asked for by its user";
 
@@ -39,16 +46,14 @@ impl Queue {
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be written.
     pub async fn cancel(&mut self, study: &str) -> Result<Cancelled, QueueError> {
-        let now_ms = self.clock.now_ms();
-        self.write(async |connection| {
+        self.write(async |connection, now_ms| {
             let study_id = studies::require(connection, study).await?;
-            sqlx::query(CANCEL_STUDY).bind(study_id).bind(now_ms).execute(&mut *connection).await?;
-            let cancelled =
-                sqlx::query(CANCEL_JOBS).bind(study_id).bind(NOTE).execute(&mut *connection).await?;
-            let shared: i64 = sqlx::query_scalar(SHARED).bind(study_id).fetch_one(&mut *connection).await?;
-            let running: i64 = sqlx::query_scalar(RUNNING).bind(study_id).fetch_one(&mut *connection).await?;
+            query(CANCEL_STUDY).bind(study_id).bind(now_ms).run(connection).await?;
+            let cancelled = query(CANCEL_JOBS).bind(study_id).bind(NOTE).run(connection).await?;
+            let shared: i64 = query(SHARED).bind(study_id).scalar(connection).await?;
+            let running: i64 = query(RUNNING).bind(study_id).scalar(connection).await?;
             Ok(Cancelled {
-                cancelled: cancelled.rows_affected(),
+                cancelled: cancelled,
                 shared: shared.unsigned_abs(),
                 running: running.unsigned_abs(),
             })

@@ -1,13 +1,14 @@
+use super::engine::query;
 use super::{Queue, QueueError};
 
 const SAVE: &str = "
     INSERT INTO checkpoints (job_id, attempt, bytes, saved_ms)
-    SELECT id, attempt, ?4, ?5 FROM jobs WHERE key = ?1 AND state = 'running' AND attempt = ?2 AND owner = ?3
+    SELECT id, attempt, $4, $5 FROM jobs WHERE key = $1 AND state = 'running' AND attempt = $2 AND owner = $3
     ON CONFLICT (job_id) DO UPDATE
     SET attempt = excluded.attempt, bytes = excluded.bytes, saved_ms = excluded.saved_ms";
 
 /// A job that gets further with each attempt is not what kills its processes.
-const FORGIVE: &str = "UPDATE jobs SET crashes = 0 WHERE key = ?1 AND crashes > 0";
+const FORGIVE: &str = "UPDATE jobs SET crashes = 0 WHERE key = $1 AND crashes > 0";
 
 impl Queue {
     /// Keeps where a running attempt is, instead of what was kept before; `false` if the worker lost the job.
@@ -26,12 +27,11 @@ impl Queue {
         bytes: &[u8],
     ) -> Result<bool, QueueError> {
         let owner = self.registration().id;
-        let now_ms = self.clock.now_ms();
-        self.write(async |connection| {
-            let saved = sqlx::query(SAVE).bind(key).bind(attempt).bind(owner).bind(bytes).bind(now_ms);
-            let is_saved = saved.execute(&mut *connection).await?.rows_affected() == 1;
+        self.write_own(async |connection, now_ms| {
+            let saved = query(SAVE).bind(key).bind(attempt).bind(owner).bind(bytes).bind(now_ms);
+            let is_saved = saved.run(connection).await? == 1;
             if is_saved {
-                sqlx::query(FORGIVE).bind(key).execute(connection).await?;
+                query(FORGIVE).bind(key).run(connection).await?;
             }
             Ok(is_saved)
         })

@@ -1,5 +1,4 @@
-use sqlx::SqliteConnection;
-
+use super::engine::{Connection, query};
 use super::{JobState, Queue, QueueError, Scope};
 
 /// Jobs by state. A job that several rows of a study point to counts once: it is simulated once.
@@ -20,7 +19,7 @@ pub struct Counts {
 /// The inner query comes first, so that the work follows the size of the study, not of the database.
 const OF_STUDY: &str = "
     SELECT j.state, COUNT(*)
-    FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = ?1) AS m
+    FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = $1) AS m
     JOIN jobs AS j ON j.id = m.job_id
     GROUP BY j.state";
 
@@ -55,12 +54,12 @@ impl Queue {
         if let Some(id) = scope.study_id(&mut self.connection).await? {
             return of_study(&mut self.connection, id).await;
         }
-        let rows = sqlx::query_as("SELECT state, COUNT(*) FROM jobs GROUP BY state");
-        Ok(Counts::from_rows(rows.fetch_all(&mut self.connection).await?))
+        let rows = query("SELECT state, COUNT(*) FROM jobs GROUP BY state");
+        Ok(Counts::from_rows(rows.all(&mut self.connection).await?))
     }
 }
 
-pub(super) async fn of_study(connection: &mut SqliteConnection, study_id: i64) -> Result<Counts, QueueError> {
-    let rows = sqlx::query_as(OF_STUDY).bind(study_id).fetch_all(connection).await?;
+pub(super) async fn of_study(connection: &mut Connection, study_id: i64) -> Result<Counts, QueueError> {
+    let rows = query(OF_STUDY).bind(study_id).all(connection).await?;
     Ok(Counts::from_rows(rows))
 }

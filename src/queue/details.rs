@@ -1,6 +1,4 @@
-use sqlx::sqlite::SqliteRow;
-use sqlx::{FromRow, Row};
-
+use super::engine::query;
 use super::{JobState, Queue, QueueError};
 
 /// All that is known of a job but its payload and record.
@@ -36,22 +34,34 @@ pub struct JobDetails {
     pub studies: Vec<String>,
 }
 
-/// Keys that begin with ?1: a range, so that the index is used, and no character of the key is a wildcard.
+/// Keys that begin with $1: a range, so that the index is used, and no character of the key is a wildcard.
 const JOBS: &str = "
     SELECT j.id, j.key, j.state, j.priority, j.cost, j.batch, j.attempt, j.crashes, j.note, j.started_ms,
            r.error, r.wall_s, r.finished_ms, r.provenance
     FROM jobs AS j
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
-    WHERE j.key >= ?1 AND substr(j.key, 1, length(?1)) = ?1
-    ORDER BY j.key LIMIT ?2";
+    WHERE j.key >= $1 AND substr(j.key, 1, length($1)) = $1
+    ORDER BY j.key LIMIT $2";
 
 const STUDIES: &str = "
-    SELECT name FROM studies WHERE id IN (SELECT study_id FROM study_jobs WHERE job_id = ?1) ORDER BY id";
+    SELECT name FROM studies WHERE id IN (SELECT study_id FROM study_jobs WHERE job_id = $1) ORDER BY id";
 
-struct Found {
-    id: i64,
-    details: JobDetails,
-}
+type Columns = (
+    i64,
+    String,
+    String,
+    i64,
+    f64,
+    String,
+    i64,
+    i64,
+    Option<String>,
+    Option<i64>,
+    Option<String>,
+    Option<f64>,
+    Option<i64>,
+    Option<String>,
+);
 
 impl Queue {
     /// The jobs whose keys begin with `key`, at most `limit` of them.
@@ -59,36 +69,48 @@ impl Queue {
     /// # Errors
     /// If the database cannot be read.
     pub async fn jobs(&mut self, key: &str, limit: u32) -> Result<Vec<JobDetails>, QueueError> {
-        let found = sqlx::query_as(JOBS).bind(key).bind(limit);
-        let found: Vec<Found> = found.fetch_all(&mut self.connection).await?;
+        let found = query(JOBS).bind(key).bind(limit);
+        let found: Vec<Columns> = found.all(&mut self.connection).await?;
         let mut jobs = Vec::with_capacity(found.len());
-        for Found { id, mut details } in found {
-            let studies = sqlx::query_scalar(STUDIES).bind(id);
-            details.studies = studies.fetch_all(&mut self.connection).await?;
-            jobs.push(details);
+        for columns in found {
+            let studies = query(STUDIES).bind(columns.0).scalars(&mut self.connection).await?;
+            jobs.push(details(columns, studies));
         }
         Ok(jobs)
     }
 }
 
-impl FromRow<'_, SqliteRow> for Found {
-    fn from_row(row: &SqliteRow) -> Result<Self, sqlx::Error> {
-        let details = JobDetails {
-            key: row.try_get("key")?,
-            state: JobState::from_column(row.try_get("state")?),
-            priority: row.try_get("priority")?,
-            cost: row.try_get("cost")?,
-            batch: row.try_get("batch")?,
-            attempt: row.try_get("attempt")?,
-            crashes: row.try_get("crashes")?,
-            note: row.try_get("note")?,
-            error: row.try_get("error")?,
-            wall_s: row.try_get("wall_s")?,
-            started_ms: row.try_get("started_ms")?,
-            finished_ms: row.try_get("finished_ms")?,
-            provenance: row.try_get("provenance")?,
-            studies: Vec::new(),
-        };
-        Ok(Self { id: row.try_get("id")?, details })
+fn details(columns: Columns, studies: Vec<String>) -> JobDetails {
+    let (
+        _,
+        key,
+        state,
+        priority,
+        cost,
+        batch,
+        attempt,
+        crashes,
+        note,
+        started_ms,
+        error,
+        wall_s,
+        finished_ms,
+        made,
+    ) = columns;
+    JobDetails {
+        key,
+        state: JobState::from_column(&state),
+        priority,
+        cost,
+        batch,
+        attempt: attempt as u32,
+        crashes: crashes as u32,
+        note,
+        error,
+        wall_s,
+        started_ms,
+        finished_ms,
+        provenance: made,
+        studies,
     }
 }

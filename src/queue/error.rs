@@ -1,5 +1,10 @@
 use std::path::PathBuf;
 
+use sqlx::error::DatabaseError;
+use sqlx::sqlite::SqliteError;
+
+use super::Location;
+
 /// What can go wrong with the queue, with what to do about it in the text.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -12,10 +17,10 @@ pub enum QueueError {
     },
 
     /// There is nothing to read.
-    #[error("no database at {path}; submit a study first with `tribosweep submit STUDY`")]
+    #[error("no database at {database}; submit a study first with `tribosweep submit STUDY`")]
     NoDatabase {
         /// Where the database was looked for.
-        path: PathBuf,
+        database: Location,
     },
 
     /// The path holds something else.
@@ -36,12 +41,12 @@ pub enum QueueError {
 
     /// The database's schema has migrations this program does not know.
     #[error(
-        "{path} was written by a newer tribosweep (schema {found}; this one knows up to {known}); \
+        "{database} was written by a newer tribosweep (schema {found}; this one knows up to {known}); \
          update tribosweep, or give another database path"
     )]
     NewerDatabase {
-        /// The database file.
-        path: PathBuf,
+        /// The database.
+        database: Location,
         /// Its schema version.
         found: i64,
         /// The newest schema version this program knows.
@@ -145,29 +150,42 @@ pub enum QueueError {
     },
 
     /// The database file could not be opened.
-    #[error("cannot open the database {path}: {source}")]
+    #[error("cannot open the database {database}: {source}")]
     Open {
-        /// The database file.
-        path: PathBuf,
-        /// What `SQLite` said.
+        /// The database.
+        database: Location,
+        /// What the database said.
         source: sqlx::Error,
     },
 
     /// The tables could not be created or brought up to date.
-    #[error("cannot bring the tables of {path} up to date: {source}")]
+    #[error("cannot bring the tables of {database} up to date: {source}")]
     Migrate {
-        /// The database file.
-        path: PathBuf,
+        /// The database.
+        database: Location,
         /// What the migration said.
         source: sqlx::migrate::MigrateError,
+    },
+
+    /// The server cannot be used as it is asked for.
+    #[error("{database}: {reason}")]
+    Server {
+        /// The database.
+        database: Location,
+        /// What is wrong, and what would be right.
+        reason: String,
     },
 
     /// Somebody else holds a lock longer than the busy timeout.
     #[error(
         "the database is locked: another program holds a lock on it for longer than anything here takes. Close what \
-         has it open (an SQLite shell, a viewer, a backup); the same command then goes on, and nothing is lost"
+         has it open (a database shell, a viewer, a backup); the same command then goes on, and nothing is lost"
     )]
     Locked(#[source] sqlx::Error),
+
+    /// The server does not answer, or has ended the connection. What was sent last may have been done or not.
+    #[error("the database server cannot be reached: {0}. The same command then goes on, and nothing is lost")]
+    Unreachable(String),
 
     /// There is no room.
     #[error(
@@ -177,8 +195,8 @@ pub enum QueueError {
 
     /// The database may be read only.
     #[error(
-        "the database cannot be written (its file or its folder is read-only, or belongs to somebody else); change \
-         that, or copy it and give the copy with --db"
+        "the database cannot be written (its file or folder is read-only or somebody else's, or the server does not allow \
+         it to this user: {0}); change that, or copy it and give the copy with --db"
     )]
     ReadOnly(#[source] sqlx::Error),
 
@@ -189,14 +207,26 @@ pub enum QueueError {
     )]
     Damaged(#[source] sqlx::Error),
 
-    /// Anything else `SQLite` reports.
+    /// Anything else the database reports.
     #[error("the database reports: {0}")]
     Database(#[source] sqlx::Error),
 }
 
+impl QueueError {
+    /// Whether the same may well succeed a while later.
+    pub fn is_transient(&self) -> bool {
+        matches!(self, Self::Locked(_) | Self::Unreachable(_))
+    }
+}
+
 impl From<sqlx::Error> for QueueError {
     fn from(source: sqlx::Error) -> Self {
-        match result_code(&source) {
+        #[cfg(feature = "postgres")]
+        let source = match super::postgres::error::known(source) {
+            Ok(known) => return known,
+            Err(other) => other,
+        };
+        match sqlite_code(&source) {
             Some(SQLITE_BUSY | SQLITE_LOCKED) => Self::Locked(source),
             Some(SQLITE_READONLY) => Self::ReadOnly(source),
             Some(SQLITE_CORRUPT | SQLITE_NOTADB) => Self::Damaged(source),
@@ -221,12 +251,12 @@ const SQLITE_FULL: u32 = 13;
 pub(super) const SQLITE_NOTADB: u32 = 26;
 
 /// `SQLite`'s primary result code; the extended one, which sqlx gives, has the details in its upper bits.
-pub(super) fn result_code(error: &sqlx::Error) -> Option<u32> {
+pub(super) fn sqlite_code(error: &sqlx::Error) -> Option<u32> {
     extended_code(error).map(|extended| extended & 0xff)
 }
 
 fn extended_code(error: &sqlx::Error) -> Option<u32> {
-    error.as_database_error()?.code()?.parse().ok()
+    error.as_database_error()?.try_downcast_ref::<SqliteError>()?.code()?.parse().ok()
 }
 
 fn existing(known: &[String]) -> String {

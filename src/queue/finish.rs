@@ -1,8 +1,7 @@
 use std::collections::HashSet;
 
-use sqlx::SqliteConnection;
-
 use super::bulk::json;
+use super::engine::{Connection, Statement, query};
 use super::{JobState, QueueError};
 
 /// The end of one attempt.
@@ -39,32 +38,62 @@ pub enum FinishedOutcome {
     Unstarted,
 }
 
+impl FinishedOutcome {
+    /// Whether the job has come to its end.
+    pub(super) fn is_end(&self) -> bool {
+        matches!(self, Self::Done { .. } | Self::Failed { .. })
+    }
+}
+
 const RELEASED: &str = "released: the work was interrupted before the job ended";
 
 /// All of a turn's ends in one go, since handing a statement to the database costs more than what it does for one job:
-/// ?1 has the results and ?5 the ends.
+/// $1 has the results and $5 the ends.
 ///
 /// The fence, `state = 'running' AND owner = … AND attempt = …`, is in every statement that speaks for an attempt:
-/// whoever lost the job in the meantime changes nothing. CROSS JOIN: a key is looked up for each end; the plus signs
-/// leave only the key to look jobs up by, and so keep the loops in this order.
-const STORE: &str = "
+/// whoever lost the job in the meantime changes nothing.
+///
+/// `SQLite`: CROSS JOIN, so that a key is looked up for each end; the plus signs leave only the key to look jobs up by,
+/// and so keep the loops in this order.
+const STORE: Statement = Statement::each(
+    "
     INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)
-    SELECT j.id, j.attempt, e.value ->> 2, e.value ->> 3, e.value ->> 4, j.started_ms, ?3, ?4
-    FROM json_each(?1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 0
-    WHERE j.state = 'running' AND j.owner = ?2 AND j.attempt = e.value ->> 1
+    SELECT j.id, j.attempt, e.value ->> 2, e.value ->> 3, e.value ->> 4, j.started_ms, $3, $4
+    FROM json_each($1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 0
+    WHERE j.state = 'running' AND j.owner = $2 AND j.attempt = e.value ->> 1
     ON CONFLICT DO NOTHING;
 
     UPDATE jobs
     SET state = e.value ->> 2, note = COALESCE(e.value ->> 3, jobs.note), attempt = jobs.attempt - (e.value ->> 4),
         label = e.value ->> 5, owner = NULL, lease_until_ms = NULL
-    FROM json_each(?5) AS e
+    FROM json_each($5) AS e
     WHERE jobs.key = e.value ->> 0
-      AND +jobs.state = 'running' AND +jobs.owner = ?2 AND jobs.attempt = e.value ->> 1
-    RETURNING key";
+      AND +jobs.state = 'running' AND +jobs.owner = $2 AND jobs.attempt = e.value ->> 1
+    RETURNING key",
+    "
+    WITH ended AS (
+        UPDATE jobs
+        SET state = e.value ->> 2, note = COALESCE(e.value ->> 3, jobs.note),
+            attempt = jobs.attempt - (e.value ->> 4)::bigint, label = e.value ->> 5,
+            owner = NULL, lease_until_ms = NULL
+        FROM json_array_elements($5::json) AS e (value)
+        WHERE jobs.key = e.value ->> 0
+          AND jobs.state = 'running' AND jobs.owner = $2 AND jobs.attempt = (e.value ->> 1)::bigint
+        RETURNING jobs.id, jobs.key, jobs.attempt, jobs.started_ms
+    ), stored AS (
+        INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)
+        SELECT ended.id, ended.attempt, r.value ->> 2, r.value ->> 3, (r.value ->> 4)::double precision,
+               ended.started_ms, $3, $4
+        FROM json_array_elements($1::json) AS r (value)
+        JOIN ended ON ended.key = r.value ->> 0 AND ended.attempt = (r.value ->> 1)::bigint
+        ON CONFLICT DO NOTHING
+    )
+    SELECT key FROM ended",
+);
 
 /// Stores the ends of attempts; gives the keys of those that `owner` does not run.
 pub(super) async fn store(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     finished: &[Finished],
     owner: i64,
     provenance: &str,
@@ -75,13 +104,13 @@ pub(super) async fn store(
     }
     let results: Vec<_> = finished.iter().filter_map(result).collect();
     let ends: Vec<_> = finished.iter().map(end).collect();
-    let ended: Vec<String> = sqlx::query_scalar(STORE)
+    let ended: Vec<String> = query(STORE)
         .bind(json(&results))
         .bind(owner)
         .bind(now_ms)
         .bind(provenance)
         .bind(json(&ends))
-        .fetch_all(connection)
+        .scalars(connection)
         .await?;
     let ended: HashSet<String> = ended.into_iter().collect();
     let keys = finished.iter().map(|job| &job.key);
@@ -116,18 +145,17 @@ fn end(job: &Finished) -> EndRow<'_> {
 #[cfg(test)]
 mod tests {
     use super::STORE;
-    use crate::queue::{Queue, SystemClock};
-    use std::sync::Arc;
+    use crate::queue::{Clock, Queue};
 
     /// Protects: ends are looked up by their keys, and not every job is looked at for each turn.
     #[tokio::test]
     async fn ends_look_jobs_up_by_key() {
         let folder = tempfile::TempDir::new().unwrap();
-        let mut queue = Queue::open(&folder.path().join("db"), Arc::new(SystemClock)).await.unwrap();
-        for statement in STORE.split(';') {
+        let mut queue = Queue::open(folder.path().join("db"), Clock::OfDatabase).await.unwrap();
+        for statement in STORE.sqlite().split(';') {
             let explain = sqlx::AssertSqlSafe(format!("EXPLAIN QUERY PLAN {statement}"));
             let plan: Vec<(i64, i64, i64, String)> =
-                sqlx::query_as(explain).fetch_all(&mut queue.connection).await.unwrap();
+                sqlx::query_as(explain).fetch_all(queue.connection.sqlite()).await.unwrap();
             let steps: Vec<_> = plan.iter().map(|(_, _, _, step)| step.as_str()).collect();
             assert!(steps[0].starts_with("SCAN e "), "{steps:?}");
             assert!(steps[1].starts_with("SEARCH ") && steps[1].ends_with("jobs_1 (key=?)"), "{steps:?}");

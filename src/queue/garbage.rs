@@ -1,3 +1,4 @@
+use super::engine::query;
 use super::{Queue, QueueError};
 
 /// What was dropped.
@@ -28,13 +29,11 @@ impl Queue {
     /// # Errors
     /// If the database cannot be written.
     pub async fn collect_garbage(&mut self) -> Result<Garbage, QueueError> {
-        let before = self.pages().await?;
+        let before = self.connection.size().await?;
         let mut garbage = self
-            .write(async |connection| {
-                sqlx::query(UNREFERENCED).execute(&mut *connection).await?;
-                let mut deleted = async |statement: &'static str| {
-                    sqlx::query(statement).execute(&mut *connection).await.map(|done| done.rows_affected())
-                };
+            .write(async |connection, _| {
+                query(UNREFERENCED).run(connection).await?;
+                let mut deleted = async |statement: &'static str| query(statement).run(connection).await;
                 deleted("DELETE FROM checkpoints WHERE job_id IN (SELECT id FROM garbage)").await?;
                 deleted("DELETE FROM payloads WHERE job_id IN (SELECT id FROM garbage)").await?;
                 let garbage = Garbage {
@@ -48,19 +47,9 @@ impl Queue {
             })
             .await?;
         if garbage.jobs > 0 {
-            // The new database is built in the temporary store: not in memory.
-            sqlx::query("PRAGMA temp_store = FILE").execute(&mut self.connection).await?;
-            sqlx::query("VACUUM").execute(&mut self.connection).await?;
-            sqlx::query("PRAGMA temp_store = MEMORY").execute(&mut self.connection).await?;
+            self.connection.compact().await?;
         }
-        garbage.bytes = before.saturating_sub(self.pages().await?);
+        garbage.bytes = before.saturating_sub(self.connection.size().await?);
         Ok(garbage)
-    }
-
-    /// The size of the database in bytes.
-    async fn pages(&mut self) -> Result<u64, QueueError> {
-        let pages: i64 = sqlx::query_scalar("PRAGMA page_count").fetch_one(&mut self.connection).await?;
-        let size: i64 = sqlx::query_scalar("PRAGMA page_size").fetch_one(&mut self.connection).await?;
-        Ok((pages * size).unsigned_abs())
     }
 }

@@ -1,8 +1,11 @@
+use super::engine::query;
 use super::{Queue, QueueError};
 
-const EXTEND: &str = "UPDATE jobs SET lease_until_ms = ?2 WHERE owner = ?1 AND state = 'running'";
+const EXTEND: &str = "UPDATE jobs SET lease_until_ms = $2 WHERE owner = $1 AND state = 'running'";
 
-const ALIVE: &str = "UPDATE workers SET heartbeat_ms = ?2 WHERE id = ?1";
+/// One that was silent for so long that it was taken for dead is not.
+const ALIVE: &str =
+    "UPDATE workers SET heartbeat_ms = $2, finished = $3, jobs_per_s = $4, ended_ms = NULL WHERE id = $1";
 
 impl Queue {
     /// A sign of life: extends the leases of all that the registered worker runs, and returns how many there are.
@@ -15,19 +18,20 @@ impl Queue {
     /// # Panics
     /// If no worker is registered.
     pub async fn heartbeat(&mut self) -> Result<u64, QueueError> {
-        let owner = self.registration().id;
-        let now_ms = self.clock.now_ms();
-        let until_ms = self.lease_until(now_ms);
-        self.write(async |connection| {
-            sqlx::query(ALIVE).bind(owner).bind(now_ms).execute(&mut *connection).await?;
-            let extended = sqlx::query(EXTEND).bind(owner).bind(until_ms).execute(connection).await?;
-            Ok(extended.rows_affected())
+        let lease_ms = self.lease_ms();
+        let registration = self.registration_mut();
+        let (owner, finished) = (registration.id, registration.pace.finished());
+        let jobs_per_s = registration.pace.jobs_per_s();
+        self.write_own(async |connection, now_ms| {
+            let alive = query(ALIVE).bind(owner).bind(now_ms).bind(finished).bind(Some(jobs_per_s));
+            alive.run(connection).await?;
+            query(EXTEND).bind(owner).bind(now_ms.saturating_add(lease_ms)).run(connection).await
         })
         .await
     }
 
-    /// The end of a lease that begins now.
-    pub(super) fn lease_until(&self, now_ms: i64) -> i64 {
-        now_ms.saturating_add(i64::try_from(self.settings.lease.as_millis()).unwrap_or(i64::MAX))
+    /// How long a lease is.
+    pub(super) fn lease_ms(&self) -> i64 {
+        i64::try_from(self.settings.lease.as_millis()).unwrap_or(i64::MAX)
     }
 }

@@ -1,4 +1,5 @@
-//! Jobs in `SQLite`. Payloads, parameters and records are opaque strings; nothing here knows mechanics.
+//! Jobs in a database: a file of `SQLite`'s, or PostgreSQL. Payloads, parameters and records are opaque strings;
+//! nothing here knows mechanics.
 //!
 //! ```text
 //!            submit            exchange: claim             exchange: finish
@@ -23,14 +24,17 @@
 //! * Jobs of one **batch** can be run together; a claim takes jobs of one batch only.
 //!
 //! # Rules
-//! * Every transaction that writes starts with `BEGIN IMMEDIATE`. One that begins by reading cannot be
-//!   promoted while another writes, and fails at once with "database is locked", whatever the busy timeout.
+//! * What is done is written once, for both databases; `engine` has what is different between them, and a statement that
+//!   they do not have in common comes in two dialects, side by side.
+//! * Whatever is written is written in a transaction that begins with its lock: alone, or beside others that change
+//!   only what their own worker has in hand or what nobody has (`engine::Access`). On `SQLite` all are alone, and a
+//!   transaction that begins by reading cannot be promoted while another writes: it fails at once with "database is
+//!   locked", whatever the busy timeout. On PostgreSQL those that are not alone never wait for each other.
 //! * Inside a transaction nothing but the database is awaited, and no future of this module is to be dropped
 //!   half-way (no `select!`, no timeout around it): the lock it holds stops every other process.
 //! * Reads are single statements. A transaction held open by a reader keeps the write-ahead log from being
-//!   folded back into the database, and it grows without limit.
+//!   folded back into the database, and old rows from being cleared away.
 
-mod alive;
 mod bulk;
 mod cancel;
 mod checkpoint;
@@ -39,23 +43,27 @@ mod clock;
 mod counts;
 mod details;
 mod doctor;
+mod engine;
 mod error;
 mod exchange;
-mod filesystem;
 mod finish;
 mod garbage;
 mod heartbeat;
-mod lock;
+mod location;
 mod made;
 mod open;
+mod owner;
+mod pace;
+#[cfg(feature = "postgres")]
+mod postgres;
 mod process;
 mod remaining;
 mod remove;
 mod retry;
 mod rows;
-mod schema;
 mod scope;
 mod settings;
+mod sqlite;
 mod starts;
 mod state;
 mod studies;
@@ -64,11 +72,11 @@ mod take_back;
 mod timings;
 mod transaction;
 mod worker;
+mod workers;
 
-pub use alive::Alive;
 pub use cancel::Cancelled;
 pub use claim::{Claim, ClaimedJob};
-pub use clock::{Clock, SystemClock};
+pub use clock::Clock;
 pub use counts::Counts;
 pub use details::JobDetails;
 pub use doctor::{Finding, examine};
@@ -76,6 +84,7 @@ pub use error::QueueError;
 pub use exchange::Exchanged;
 pub use finish::{Finished, FinishedOutcome};
 pub use garbage::Garbage;
+pub use location::{Location, Server};
 pub use made::MadeWith;
 pub use remove::Removed;
 pub use retry::{Retried, Retry};
@@ -87,27 +96,25 @@ pub use studies::{StudyDocument, StudySummary};
 pub use submit::{NewJob, NewStudy, Submitted};
 pub use take_back::TakenBack;
 pub use worker::Worker;
+pub use workers::{Alive, WorkerPresence, WorkerStatus};
 
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
-
-use sqlx::{Connection, SqliteConnection};
+use engine::Connection;
 
 /// One connection to the database of studies and jobs.
 #[derive(Debug)]
 pub struct Queue {
-    connection: SqliteConnection,
-    clock: Arc<dyn Clock>,
-    path: PathBuf,
+    connection: Connection,
+    clock: Clock,
+    location: Location,
     settings: Settings,
     /// The worker that owns what is claimed here.
     registration: Option<worker::Registration>,
 }
 
 impl Queue {
-    /// The database file, as an absolute path without symbolic links.
-    pub fn path(&self) -> &Path {
-        &self.path
+    /// Where the database is.
+    pub fn location(&self) -> &Location {
+        &self.location
     }
 
     /// Closes the connection and waits for it, so that the last one out folds the write-ahead log back in.
@@ -117,6 +124,6 @@ impl Queue {
     /// # Errors
     /// If the database cannot be closed, e.g. on a full disk.
     pub async fn close(self) -> Result<(), QueueError> {
-        Ok(self.connection.close().await?)
+        self.connection.close().await
     }
 }

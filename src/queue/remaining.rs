@@ -1,14 +1,22 @@
 //! What is left to do, by cost: jobs differ in it by orders of magnitude, so their number says nothing of the time.
 
+use super::engine::{Statement, query};
 use super::{Queue, QueueError, Scope};
 
 const REMAINING: &str = "SELECT COALESCE(SUM(cost), 0.0) FROM jobs WHERE state IN ('pending', 'running')";
 
-const REMAINING_OF_STUDY: &str = "
-    SELECT (SELECT COALESCE(SUM(cost), 0.0) FROM study_pending WHERE study_id = ?1)
+const REMAINING_OF_STUDY: Statement = Statement::each(
+    "
+    SELECT (SELECT COALESCE(SUM(cost), 0.0) FROM study_pending WHERE study_id = $1)
          + (SELECT COALESCE(SUM(j.cost), 0.0) FROM jobs AS j INDEXED BY jobs_owner
             WHERE j.state = 'running' AND j.owner IS NOT NULL
-              AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = ?1))";
+              AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $1))",
+    "
+    SELECT (SELECT COALESCE(SUM(cost), 0.0) FROM study_pending WHERE study_id = $1)
+         + (SELECT COALESCE(SUM(j.cost), 0.0) FROM jobs AS j
+            WHERE j.state = 'running'
+              AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $1))",
+);
 
 impl Queue {
     /// The cost of all jobs of `scope` that are pending or running.
@@ -18,9 +26,9 @@ impl Queue {
     pub async fn remaining_cost(&mut self, scope: &Scope) -> Result<f64, QueueError> {
         let study_id = scope.study_id(&mut self.connection).await?;
         let remaining = match study_id {
-            None => sqlx::query_scalar(REMAINING),
-            Some(id) => sqlx::query_scalar(REMAINING_OF_STUDY).bind(id),
+            None => query(REMAINING),
+            Some(id) => query(REMAINING_OF_STUDY).bind(id),
         };
-        Ok(remaining.fetch_one(&mut self.connection).await?)
+        remaining.scalar(&mut self.connection).await
     }
 }

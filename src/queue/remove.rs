@@ -1,3 +1,4 @@
+use super::engine::query;
 use super::{Queue, QueueError, studies};
 
 /// What was removed with a study.
@@ -10,11 +11,11 @@ pub struct Removed {
 }
 
 const CANCEL_UNASKED: &str = "
-    UPDATE jobs SET state = 'cancelled', note = ?2
-    WHERE id IN (SELECT job_id FROM study_pending WHERE study_id = ?1)
+    UPDATE jobs SET state = 'cancelled', note = $2
+    WHERE id IN (SELECT job_id FROM study_pending WHERE study_id = $1)
       AND NOT EXISTS (
           SELECT 1 FROM study_jobs AS m JOIN studies AS s ON s.id = m.study_id
-          WHERE m.job_id = jobs.id AND m.study_id <> ?1 AND s.cancelled_ms IS NULL
+          WHERE m.job_id = jobs.id AND m.study_id <> $1 AND s.cancelled_ms IS NULL
       )";
 
 const NOTE: &str = "cancelled: its study was removed";
@@ -25,14 +26,13 @@ impl Queue {
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be written.
     pub async fn remove(&mut self, study: &str) -> Result<Removed, QueueError> {
-        self.write(async |connection| {
+        self.write(async |connection, _| {
             let study_id = studies::require(connection, study).await?;
-            let cancelled =
-                sqlx::query(CANCEL_UNASKED).bind(study_id).bind(NOTE).execute(&mut *connection).await?;
-            let rows = sqlx::query("DELETE FROM study_jobs WHERE study_id = ?1").bind(study_id);
-            let rows = rows.execute(&mut *connection).await?.rows_affected();
-            sqlx::query("DELETE FROM studies WHERE id = ?1").bind(study_id).execute(&mut *connection).await?;
-            Ok(Removed { rows, cancelled: cancelled.rows_affected() })
+            let cancelled = query(CANCEL_UNASKED).bind(study_id).bind(NOTE).run(connection).await?;
+            let rows = query("DELETE FROM study_jobs WHERE study_id = $1").bind(study_id);
+            let rows = rows.run(connection).await?;
+            query("DELETE FROM studies WHERE id = $1").bind(study_id).run(connection).await?;
+            Ok(Removed { rows, cancelled: cancelled })
         })
         .await
     }

@@ -1,8 +1,6 @@
 use std::ops::ControlFlow;
 
-use sqlx::sqlite::SqliteRow;
-use sqlx::{FromRow, Row};
-
+use super::engine::{Statement, query};
 use super::{JobState, Queue, QueueError, studies};
 
 /// One row of a study with what reports show of its job; [`Queue::jobs`] knows more of a single one.
@@ -35,19 +33,31 @@ pub struct StudyRow {
 /// All that is short comes in one column: every value that is handed on costs more than what is in it. (Not the time:
 /// JSON has it to 15 digits.)
 ///
-/// Without ?4, all rows; with it, those whose jobs are in that state, and with ?5 those of them with that label.
-const ROWS: &str = "
+/// Without $4, all rows; with it, those whose jobs are in that state, and with $5 those of them with that label.
+const ROWS: Statement = Statement::each(
+    "
     SELECT json_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note), m.parameters, r.record, r.wall_s
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
-    WHERE m.study_id = ?1 AND m.ordinal >= ?2 AND (?4 IS NULL OR j.state = ?4)
-      AND (?5 IS NULL OR j.label = ?5)
+    WHERE m.study_id = $1 AND m.ordinal >= $2 AND ($4 IS NULL OR j.state = $4)
+      AND ($5 IS NULL OR j.label = $5)
     ORDER BY m.ordinal
-    LIMIT ?3";
+    LIMIT $3",
+    "
+    SELECT json_build_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note)::text,
+           m.parameters, r.record, r.wall_s
+    FROM study_jobs AS m
+    JOIN jobs AS j ON j.id = m.job_id
+    LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
+    WHERE m.study_id = $1 AND m.ordinal >= $2 AND ($4 IS NULL OR j.state = $4)
+      AND ($5 IS NULL OR j.label = $5)
+    ORDER BY m.ordinal
+    LIMIT $3",
+);
 
 const PARAMETERS: &str = "
-    SELECT ordinal, parameters FROM study_jobs WHERE study_id = ?1 AND ordinal >= ?2 ORDER BY ordinal LIMIT ?3";
+    SELECT ordinal, parameters FROM study_jobs WHERE study_id = $1 AND ordinal >= $2 ORDER BY ordinal LIMIT $3";
 
 /// Rows that are read at a time: a reader that takes all at once keeps the write-ahead log from being folded back
 /// meanwhile, and needs the memory for all.
@@ -100,9 +110,10 @@ impl Queue {
         };
         let mut next = 0_i64;
         loop {
-            let page = sqlx::query_as(ROWS).bind(study_id).bind(next).bind(PAGE);
+            let page = query(ROWS).bind(study_id).bind(next).bind(PAGE);
             let page = page.bind(state.map(JobState::as_str)).bind(label);
-            let page: Vec<StudyRow> = page.fetch_all(&mut self.connection).await?;
+            let page: Vec<Columns> = page.all(&mut self.connection).await?;
+            let page = page.into_iter().map(StudyRow::from_columns).collect::<Result<Vec<_>, _>>()?;
             let Some(last) = page.last() else { return Ok(()) };
             next = last.ordinal.cast_signed() + 1;
             if look(page).is_break() {
@@ -124,8 +135,8 @@ impl Queue {
         let study_id = studies::require(&mut self.connection, study).await?;
         let mut next = 0_i64;
         loop {
-            let page = sqlx::query_as(PARAMETERS).bind(study_id).bind(next).bind(PAGE);
-            let page: Vec<(i64, String)> = page.fetch_all(&mut self.connection).await?;
+            let page = query(PARAMETERS).bind(study_id).bind(next).bind(PAGE);
+            let page: Vec<(i64, String)> = page.all(&mut self.connection).await?;
             let Some((last, _)) = page.last() else { return Ok(()) };
             next = last + 1;
             for (_, parameters) in &page {
@@ -135,15 +146,15 @@ impl Queue {
     }
 }
 
-impl FromRow<'_, SqliteRow> for StudyRow {
-    fn from_row(row: &SqliteRow) -> Result<Self, sqlx::Error> {
+/// The short ones, parameters, record and time.
+type Columns = (String, String, Option<String>, Option<f64>);
+
+impl StudyRow {
+    fn from_columns((short, parameters, record, wall_s): Columns) -> Result<Self, QueueError> {
         type Short = (u64, String, String, Option<String>, u32, u32, Option<String>);
-        // By place, not by name: looking names up takes as long as reading.
-        let short: &str = row.try_get(0)?;
         let (ordinal, key, state, error, attempt, crashes, note): Short =
-            serde_json::from_str(short).map_err(|error| sqlx::Error::Decode(error.into()))?;
+            serde_json::from_str(&short).map_err(|error| sqlx::Error::Decode(error.into()))?;
         let state = JobState::from_column(&state);
-        let (parameters, record, wall_s) = (row.try_get(1)?, row.try_get(2)?, row.try_get(3)?);
         Ok(Self { ordinal, key, parameters, state, record, error, wall_s, attempt, crashes, note })
     }
 }

@@ -1,5 +1,4 @@
-use sqlx::SqliteConnection;
-
+use super::engine::Connection;
 use super::{QueueError, studies};
 
 /// Which jobs an operation is about.
@@ -13,10 +12,7 @@ pub enum Scope {
 
 impl Scope {
     /// The study's number, for statements that take none as "all".
-    pub(super) async fn study_id(
-        &self,
-        connection: &mut SqliteConnection,
-    ) -> Result<Option<i64>, QueueError> {
+    pub(super) async fn study_id(&self, connection: &mut Connection) -> Result<Option<i64>, QueueError> {
         match self {
             Self::All => Ok(None),
             Self::Study(name) => studies::require(connection, name).await.map(Some),

@@ -1,8 +1,9 @@
+use super::engine::query;
 use super::{Queue, QueueError, studies};
 
 const STARTS: &str = "
-    SELECT COALESCE(SUM(j.attempt), 0)
-    FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = ?1) AS m
+    SELECT CAST(COALESCE(SUM(j.attempt), 0) AS BIGINT)
+    FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = $1) AS m
     JOIN jobs AS j ON j.id = m.job_id";
 
 impl Queue {
@@ -13,7 +14,7 @@ impl Queue {
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.
     pub async fn starts(&mut self, study: &str) -> Result<u64, QueueError> {
         let study_id = studies::require(&mut self.connection, study).await?;
-        let starts: i64 = sqlx::query_scalar(STARTS).bind(study_id).fetch_one(&mut self.connection).await?;
+        let starts: i64 = query(STARTS).bind(study_id).scalar(&mut self.connection).await?;
         Ok(starts.unsigned_abs())
     }
 }

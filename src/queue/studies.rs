@@ -1,5 +1,4 @@
-use sqlx::SqliteConnection;
-
+use super::engine::{Connection, query};
 use super::{Counts, Queue, QueueError, counts};
 
 /// A study in a list.
@@ -31,9 +30,7 @@ impl Queue {
     /// If the database cannot be read.
     pub async fn studies(&mut self) -> Result<Vec<StudySummary>, QueueError> {
         let studies: Vec<(i64, String, i64)> =
-            sqlx::query_as("SELECT id, name, submitted_ms FROM studies ORDER BY id")
-                .fetch_all(&mut self.connection)
-                .await?;
+            query("SELECT id, name, submitted_ms FROM studies ORDER BY id").all(&mut self.connection).await?;
         let mut summaries = Vec::with_capacity(studies.len());
         for (id, name, submitted_ms) in studies {
             let counts = counts::of_study(&mut self.connection, id).await?;
@@ -48,25 +45,25 @@ impl Queue {
     /// If the database cannot be read.
     pub async fn study(&mut self, name: &str) -> Result<Option<StudyDocument>, QueueError> {
         let found: Option<(String, String, i64)> =
-            sqlx::query_as("SELECT name, document, submitted_ms FROM studies WHERE name = ?1")
+            query("SELECT name, document, submitted_ms FROM studies WHERE name = $1")
                 .bind(name)
-                .fetch_optional(&mut self.connection)
+                .optional(&mut self.connection)
                 .await?;
         Ok(found.map(|(name, document, submitted_ms)| StudyDocument { name, document, submitted_ms }))
     }
 }
 
 /// The study's number in the tables.
-pub(super) async fn find(connection: &mut SqliteConnection, name: &str) -> Result<Option<i64>, QueueError> {
-    let id = sqlx::query_scalar("SELECT id FROM studies WHERE name = ?1").bind(name);
-    Ok(id.fetch_optional(connection).await?)
+pub(super) async fn find(connection: &mut Connection, name: &str) -> Result<Option<i64>, QueueError> {
+    let id = query("SELECT id FROM studies WHERE name = $1").bind(name);
+    Ok(id.optional(connection).await?.map(|(id,)| id))
 }
 
 /// As [`find`], but a missing study is an error that names those there are.
-pub(super) async fn require(connection: &mut SqliteConnection, name: &str) -> Result<i64, QueueError> {
+pub(super) async fn require(connection: &mut Connection, name: &str) -> Result<i64, QueueError> {
     if let Some(id) = find(connection, name).await? {
         return Ok(id);
     }
-    let known = sqlx::query_scalar("SELECT name FROM studies ORDER BY id").fetch_all(connection).await?;
+    let known = query("SELECT name FROM studies ORDER BY id").scalars(connection).await?;
     Err(QueueError::UnknownStudy { name: name.into(), known })
 }

@@ -1,8 +1,7 @@
 use std::collections::HashSet;
 
-use sqlx::SqliteConnection;
-
 use super::bulk::json;
+use super::engine::{Connection, Statement, query};
 use super::{Queue, QueueError, counts, studies};
 
 /// A study to be submitted.
@@ -60,7 +59,7 @@ pub struct Submitted {
 const CHUNK: usize = 10_000;
 
 const UPSERT_STUDY: &str = "
-    INSERT INTO studies (name, document, submitted_ms) VALUES (?1, ?2, ?3)
+    INSERT INTO studies (name, document, submitted_ms) VALUES ($1, $2, $3)
     ON CONFLICT (name) DO UPDATE
     SET document = excluded.document, submitted_ms = excluded.submitted_ms, cancelled_ms = NULL
     RETURNING id";
@@ -69,55 +68,102 @@ const UPSERT_STUDY: &str = "
 /// (`WHERE true` keeps the parser from reading ON CONFLICT as a join's ON.)
 ///
 /// What can be run together is the program's to say, and another version may say it differently.
-const INSERT_JOBS: &str = "
+const INSERT_JOBS: Statement = Statement::each(
+    "
     INSERT INTO jobs (key, cost, batch, priority, created_ms)
-    SELECT e.value ->> 0, e.value ->> 2, e.value ->> 3, COALESCE(e.value ->> 4, 0), ?2
-    FROM json_each(?1) AS e WHERE true
-    ON CONFLICT (key) DO UPDATE SET batch = excluded.batch WHERE batch <> excluded.batch";
+    SELECT e.value ->> 0, e.value ->> 2, e.value ->> 3, COALESCE(e.value ->> 4, 0), $2
+    FROM json_each($1) AS e WHERE true
+    ON CONFLICT (key) DO UPDATE SET batch = excluded.batch WHERE batch <> excluded.batch",
+    "
+    INSERT INTO jobs (key, cost, batch, priority, created_ms)
+    SELECT e.value ->> 0, (e.value ->> 2)::double precision, e.value ->> 3,
+           COALESCE((e.value ->> 4)::bigint, 0), $2
+    FROM (
+        SELECT DISTINCT ON (value ->> 0) value, place
+        FROM json_array_elements($1::json) WITH ORDINALITY AS e (value, place)
+        ORDER BY value ->> 0, place
+    ) AS e
+    ORDER BY e.place
+    ON CONFLICT (key) DO UPDATE SET batch = excluded.batch WHERE jobs.batch <> excluded.batch",
+);
 
 /// CROSS JOIN keeps the order of the loops: a key is looked up for each row, not the rows for each job.
-const INSERT_PAYLOADS: &str = "
+const INSERT_PAYLOADS: Statement = Statement::each(
+    "
     INSERT INTO payloads (job_id, payload)
-    SELECT j.id, e.value ->> 1 FROM json_each(?1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 0 WHERE true
-    ON CONFLICT (job_id) DO NOTHING";
+    SELECT j.id, e.value ->> 1 FROM json_each($1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 0 WHERE true
+    ON CONFLICT (job_id) DO NOTHING",
+    "
+    INSERT INTO payloads (job_id, payload)
+    SELECT j.id, e.value ->> 1 FROM json_array_elements($1::json) AS e (value) JOIN jobs AS j ON j.key = e.value ->> 0
+    ON CONFLICT (job_id) DO NOTHING",
+);
 
 /// As above, the key is looked up for each row.
-const SET_PRIORITY: &str = "
+const SET_PRIORITY: Statement = Statement::each(
+    "
     UPDATE jobs SET priority = e.value ->> 4
-    FROM json_each(?1) AS e
-    WHERE jobs.key = e.value ->> 0 AND e.value ->> 4 IS NOT NULL AND jobs.priority <> e.value ->> 4";
+    FROM json_each($1) AS e
+    WHERE jobs.key = e.value ->> 0 AND e.value ->> 4 IS NOT NULL AND jobs.priority <> e.value ->> 4",
+    "
+    UPDATE jobs SET priority = (e.value ->> 4)::bigint
+    FROM json_array_elements($1::json) AS e (value)
+    WHERE jobs.key = e.value ->> 0 AND jobs.priority <> (e.value ->> 4)::bigint",
+);
 
 /// Who submits a job asks for it, whoever cancelled it before.
 const ASK_AGAIN: &str = "
     UPDATE jobs SET state = 'pending', note = NULL
-    WHERE state = 'cancelled' AND id IN (SELECT job_id FROM study_jobs WHERE study_id = ?1)";
+    WHERE state = 'cancelled' AND id IN (SELECT job_id FROM study_jobs WHERE study_id = $1)";
 
 /// What only the replaced document asked for.
 const CANCEL_UNASKED: &str = "
-    UPDATE jobs SET state = 'cancelled', note = ?1
+    UPDATE jobs SET state = 'cancelled', note = $1
     WHERE state = 'pending' AND NOT EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = jobs.id)";
 
 const NOTE: &str = "cancelled: its study was replaced by one without it";
 
 /// Rows beyond the end of the new document.
-const DELETE_SURPLUS: &str = "DELETE FROM study_jobs WHERE study_id = ?1 AND ordinal >= ?2";
+const DELETE_SURPLUS: &str = "DELETE FROM study_jobs WHERE study_id = $1 AND ordinal >= $2";
 
 /// The places in the array of rows that are not there, or otherwise. A row that is there has its job and its payload.
-const CHANGED: &str = "
+const CHANGED: Statement = Statement::each(
+    "
     SELECT e.key
-    FROM json_each(?1) AS e
-    LEFT JOIN study_jobs AS m ON m.study_id = ?2 AND m.ordinal = e.value ->> 0
+    FROM json_each($1) AS e
+    LEFT JOIN study_jobs AS m ON m.study_id = $2 AND m.ordinal = e.value ->> 0
     LEFT JOIN jobs AS j ON j.id = m.job_id
     WHERE j.key IS NOT e.value ->> 1 OR m.parameters IS NOT e.value ->> 2 OR j.batch IS NOT e.value ->> 3
-    ORDER BY e.key";
+    ORDER BY e.key",
+    "
+    SELECT e.place - 1
+    FROM json_array_elements($1::json) WITH ORDINALITY AS e (value, place)
+    LEFT JOIN study_jobs AS m ON m.study_id = $2 AND m.ordinal = (e.value ->> 0)::bigint
+    LEFT JOIN jobs AS j ON j.id = m.job_id
+    WHERE j.key IS DISTINCT FROM e.value ->> 1 OR m.parameters IS DISTINCT FROM e.value ->> 2
+       OR j.batch IS DISTINCT FROM e.value ->> 3
+    ORDER BY e.place",
+);
 
-const DELETE_ROWS: &str = "
-    DELETE FROM study_jobs WHERE study_id = ?2 AND ordinal IN (SELECT e.value ->> 0 FROM json_each(?1) AS e)";
+const DELETE_ROWS: Statement = Statement::each(
+    "
+    DELETE FROM study_jobs WHERE study_id = $2 AND ordinal IN (SELECT e.value ->> 0 FROM json_each($1) AS e)",
+    "
+    DELETE FROM study_jobs
+    WHERE study_id = $2
+      AND ordinal IN (SELECT (e.value ->> 0)::bigint FROM json_array_elements($1::json) AS e (value))",
+);
 
-const INSERT_ROWS: &str = "
+const INSERT_ROWS: Statement = Statement::each(
+    "
     INSERT INTO study_jobs (study_id, ordinal, job_id, parameters)
-    SELECT ?2, e.value ->> 0, j.id, e.value ->> 2
-    FROM json_each(?1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 1";
+    SELECT $2, e.value ->> 0, j.id, e.value ->> 2
+    FROM json_each($1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 1",
+    "
+    INSERT INTO study_jobs (study_id, ordinal, job_id, parameters)
+    SELECT $2, (e.value ->> 0)::bigint, j.id, e.value ->> 2
+    FROM json_array_elements($1::json) AS e (value) JOIN jobs AS j ON j.key = e.value ->> 1",
+);
 
 impl Queue {
     /// Adds a study, or replaces the document and rows of the one with its name.
@@ -133,18 +179,17 @@ impl Queue {
         if let Some(job) = study.jobs.iter().find(|job| !job.cost.is_finite()) {
             return Err(QueueError::BadCost { key: job.key.clone(), cost: job.cost });
         }
-        let now_ms = self.clock.now_ms();
         let (replaced, added, cancelled, counts) = self
-            .write(async |connection| {
+            .write(async |connection, now_ms| {
                 let replaced = studies::find(connection, &study.name).await?.is_some();
-                let study_id: i64 = sqlx::query_scalar(UPSERT_STUDY)
+                let study_id: i64 = query(UPSERT_STUDY)
                     .bind(&study.name)
                     .bind(&study.document)
                     .bind(now_ms)
-                    .fetch_one(&mut *connection)
+                    .scalar(connection)
                     .await?;
                 let end = i64::try_from(study.jobs.len()).unwrap_or(i64::MAX);
-                sqlx::query(DELETE_SURPLUS).bind(study_id).bind(end).execute(&mut *connection).await?;
+                query(DELETE_SURPLUS).bind(study_id).bind(end).run(connection).await?;
                 let before = count_jobs(connection).await?;
                 let rows: Vec<_> = (0_i64..).zip(&study.jobs).collect();
                 for chunk in rows.chunks(CHUNK) {
@@ -158,12 +203,9 @@ impl Queue {
                     set_priority(connection, chunk).await?;
                 }
                 let added = count_jobs(connection).await? - before;
-                sqlx::query(ASK_AGAIN).bind(study_id).execute(&mut *connection).await?;
-                let cancelled = if replaced {
-                    sqlx::query(CANCEL_UNASKED).bind(NOTE).execute(&mut *connection).await?.rows_affected()
-                } else {
-                    0
-                };
+                query(ASK_AGAIN).bind(study_id).run(connection).await?;
+                let cancelled =
+                    if replaced { query(CANCEL_UNASKED).bind(NOTE).run(connection).await? } else { 0 };
                 let counts = counts::of_study(connection, study_id).await?;
                 Ok((replaced, added, cancelled, counts))
             })
@@ -183,8 +225,8 @@ impl Queue {
     }
 }
 
-async fn count_jobs(connection: &mut SqliteConnection) -> Result<u64, QueueError> {
-    let count: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM jobs").fetch_one(connection).await?;
+async fn count_jobs(connection: &mut Connection) -> Result<u64, QueueError> {
+    let count: i64 = query("SELECT COUNT(*) FROM jobs").scalar(connection).await?;
     Ok(count.unsigned_abs())
 }
 
@@ -193,41 +235,36 @@ type Row<'a> = (i64, &'a NewJob);
 
 /// Those of `rows` that the study does not have as they are: a study that is submitted again unchanged writes none.
 async fn changed<'a>(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     study_id: i64,
     rows: &[Row<'a>],
 ) -> Result<Vec<Row<'a>>, QueueError> {
-    let changed: Vec<i64> =
-        sqlx::query_scalar(CHANGED).bind(as_rows(rows)).bind(study_id).fetch_all(connection).await?;
+    let changed: Vec<i64> = query(CHANGED).bind(as_rows(rows)).bind(study_id).scalars(connection).await?;
     Ok(changed.into_iter().map(|place| rows[place as usize]).collect())
 }
 
-async fn delete_rows(
-    connection: &mut SqliteConnection,
-    study_id: i64,
-    rows: &[Row<'_>],
-) -> Result<(), QueueError> {
-    sqlx::query(DELETE_ROWS).bind(as_rows(rows)).bind(study_id).execute(connection).await?;
+async fn delete_rows(connection: &mut Connection, study_id: i64, rows: &[Row<'_>]) -> Result<(), QueueError> {
+    query(DELETE_ROWS).bind(as_rows(rows)).bind(study_id).run(connection).await?;
     Ok(())
 }
 
 async fn insert(
-    connection: &mut SqliteConnection,
+    connection: &mut Connection,
     study_id: i64,
     rows: &[Row<'_>],
     now_ms: i64,
 ) -> Result<(), QueueError> {
     let jobs = as_jobs(rows);
-    sqlx::query(INSERT_JOBS).bind(&jobs).bind(now_ms).execute(&mut *connection).await?;
-    sqlx::query(INSERT_PAYLOADS).bind(&jobs).execute(&mut *connection).await?;
-    sqlx::query(INSERT_ROWS).bind(as_rows(rows)).bind(study_id).execute(connection).await?;
+    query(INSERT_JOBS).bind(&jobs).bind(now_ms).run(connection).await?;
+    query(INSERT_PAYLOADS).bind(&jobs).run(connection).await?;
+    query(INSERT_ROWS).bind(as_rows(rows)).bind(study_id).run(connection).await?;
     Ok(())
 }
 
-async fn set_priority(connection: &mut SqliteConnection, rows: &[Row<'_>]) -> Result<(), QueueError> {
+async fn set_priority(connection: &mut Connection, rows: &[Row<'_>]) -> Result<(), QueueError> {
     let prioritised: Vec<_> = rows.iter().copied().filter(|(_, job)| job.priority.is_some()).collect();
     if !prioritised.is_empty() {
-        sqlx::query(SET_PRIORITY).bind(as_jobs(&prioritised)).execute(connection).await?;
+        query(SET_PRIORITY).bind(as_jobs(&prioritised)).run(connection).await?;
     }
     Ok(())
 }
@@ -245,14 +282,13 @@ fn as_rows(rows: &[Row<'_>]) -> String {
 #[cfg(test)]
 mod tests {
     use super::{NewJob, NewStudy};
-    use crate::queue::{Queue, SystemClock};
-    use std::sync::Arc;
+    use crate::queue::{Clock, Queue};
 
     /// Protects: a study that is submitted again writes what has changed and nothing else, whatever its size.
     #[tokio::test]
     async fn only_what_changed_is_written() {
         let folder = tempfile::TempDir::new().unwrap();
-        let mut queue = Queue::open(&folder.path().join("db"), Arc::new(SystemClock)).await.unwrap();
+        let mut queue = Queue::open(folder.path().join("db"), Clock::OfDatabase).await.unwrap();
         let job = |number: usize| NewJob {
             key: format!("job {number}"),
             payload: "payload".into(),
@@ -265,9 +301,9 @@ mod tests {
             NewStudy { name: "a".into(), document: String::new(), jobs: (0..500).map(job).collect() };
         let mut written = async |study: &NewStudy| {
             let total = "SELECT total_changes()";
-            let before: i64 = sqlx::query_scalar(total).fetch_one(&mut queue.connection).await.unwrap();
+            let before: i64 = sqlx::query_scalar(total).fetch_one(queue.connection.sqlite()).await.unwrap();
             queue.submit(study).await.unwrap();
-            let after: i64 = sqlx::query_scalar(total).fetch_one(&mut queue.connection).await.unwrap();
+            let after: i64 = sqlx::query_scalar(total).fetch_one(queue.connection.sqlite()).await.unwrap();
             after - before
         };
         assert!(written(&study).await >= 500);

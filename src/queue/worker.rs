@@ -1,3 +1,7 @@
+use std::collections::BTreeMap;
+
+use super::engine::query;
+use super::pace::Pace;
 use super::{Queue, QueueError, process};
 
 /// A process that is going to run jobs.
@@ -38,20 +42,26 @@ impl Worker {
     }
 }
 
-/// What a registered queue writes beside what it does.
+/// What a registered queue knows of its worker.
 #[derive(Debug, Clone)]
 pub(super) struct Registration {
     pub id: i64,
     pub provenance: String,
+    /// The attempts that it has in hand.
+    pub held: BTreeMap<String, u32>,
+    pub pace: Pace,
 }
 
 const REGISTER: &str = "
     INSERT INTO workers (host, boot_id, pid_namespace, pid, process_start, threads, version, started_ms, heartbeat_ms)
-    VALUES (?1, ?2, ?3, ?4, ?5, ?6, ?7, ?8, ?8)";
+    VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $8)
+    RETURNING id";
 
 const RELEASE_ALL: &str = "
-    UPDATE jobs SET state = 'pending', owner = NULL, lease_until_ms = NULL, note = ?2
-    WHERE owner = ?1 AND state = 'running'";
+    UPDATE jobs SET state = 'pending', owner = NULL, lease_until_ms = NULL, note = $2
+    WHERE owner = $1 AND state = 'running'";
+
+const END: &str = "UPDATE workers SET ended_ms = $2, heartbeat_ms = $2, finished = $3 WHERE id = $1";
 
 const ENDED: &str = "released: the process ended in order, but before the job did";
 
@@ -61,7 +71,8 @@ impl Queue {
     /// # Errors
     /// If the database cannot be written.
     pub async fn register(&mut self, worker: &Worker) -> Result<(), QueueError> {
-        let inserted = sqlx::query(REGISTER)
+        let now_ms = self.now_ms().await?;
+        let id = query(REGISTER)
             .bind(&worker.host)
             .bind(&worker.boot_id)
             .bind(&worker.pid_namespace)
@@ -69,11 +80,11 @@ impl Queue {
             .bind(worker.process_start)
             .bind(i64::try_from(worker.threads).unwrap_or(i64::MAX))
             .bind(&worker.version)
-            .bind(self.clock.now_ms())
-            .execute(&mut self.connection)
+            .bind(now_ms)
+            .scalar(&mut self.connection)
             .await?;
-        let provenance = worker.provenance.clone();
-        self.registration = Some(Registration { id: inserted.last_insert_rowid(), provenance });
+        let (provenance, held) = (worker.provenance.clone(), BTreeMap::new());
+        self.registration = Some(Registration { id, provenance, held, pace: Pace::new() });
         Ok(())
     }
 
@@ -85,12 +96,10 @@ impl Queue {
     /// # Errors
     /// If the database cannot be written.
     pub async fn unregister(&mut self) -> Result<(), QueueError> {
-        let Some(Registration { id, .. }) = self.registration.take() else { return Ok(()) };
-        let now_ms = self.clock.now_ms();
-        self.write(async |connection| {
-            sqlx::query(RELEASE_ALL).bind(id).bind(ENDED).execute(&mut *connection).await?;
-            let ended = sqlx::query("UPDATE workers SET ended_ms = ?2, heartbeat_ms = ?2 WHERE id = ?1");
-            ended.bind(id).bind(now_ms).execute(connection).await?;
+        let Some(Registration { id, pace, .. }) = self.registration.take() else { return Ok(()) };
+        self.write_own(async |connection, now_ms| {
+            query(RELEASE_ALL).bind(id).bind(ENDED).run(connection).await?;
+            query(END).bind(id).bind(now_ms).bind(pace.finished()).run(connection).await?;
             Ok(())
         })
         .await
@@ -106,8 +115,9 @@ impl Queue {
     /// If no worker is registered.
     pub async fn stopping(&mut self) -> Result<(), QueueError> {
         let id = self.registration().id;
-        let stopping = sqlx::query("UPDATE workers SET stopping_ms = ?2 WHERE id = ?1");
-        stopping.bind(id).bind(self.clock.now_ms()).execute(&mut self.connection).await?;
+        let stopping = query("UPDATE workers SET stopping_ms = $2 WHERE id = $1");
+        let now_ms = self.now_ms().await?;
+        stopping.bind(id).bind(now_ms).run(&mut self.connection).await?;
         Ok(())
     }
 
@@ -115,5 +125,10 @@ impl Queue {
     /// If no worker is registered: a job without an owner could not be given back when its process dies.
     pub(super) fn registration(&self) -> &Registration {
         self.registration.as_ref().expect("jobs are run by a registered worker")
+    }
+
+    /// As [`Self::registration`].
+    pub(super) fn registration_mut(&mut self) -> &mut Registration {
+        self.registration.as_mut().expect("jobs are run by a registered worker")
     }
 }

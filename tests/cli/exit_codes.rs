@@ -1,9 +1,7 @@
 //! Exit codes: 1 when jobs failed, 2 for bad input or usage. (0 is everywhere, 3 with the interruptions.)
 
-use std::sync::Arc;
-
 use serde_json::{Value, json};
-use tribosweep::queue::{NewJob, NewStudy, Queue, SystemClock};
+use tribosweep::queue::{Clock, NewJob, NewStudy, Queue};
 
 use crate::support::{Folder, rows, small, stderr, stdout};
 
@@ -251,8 +249,7 @@ fn an_unreadable_job() {
     };
     let study = NewStudy { name: "spoilt".into(), document: String::new(), jobs: vec![job] };
     tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap().block_on(async {
-        let clock = Arc::new(SystemClock);
-        let mut queue = Queue::open(&folder.path("tribosweep.db"), clock).await.unwrap();
+        let mut queue = Queue::open(folder.path("tribosweep.db"), Clock::OfDatabase).await.unwrap();
         queue.submit(&study).await.unwrap();
         queue.close().await.unwrap();
     });

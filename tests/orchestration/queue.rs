@@ -1,12 +1,7 @@
 //! The queue on its own: jobs are strings here.
 
-mod claims;
-mod exchange;
+mod in_a_file;
 mod migrate;
+mod on_a_server;
 mod open;
-mod outlook;
-mod read;
-mod recovery;
-mod scale;
-mod submit;
 mod surroundings;

@@ -1,51 +1,97 @@
-//! A database in a folder of its own, with a clock the test moves.
+//! A database of one's own, with a clock the test moves.
 
 use std::future::Future;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicI64, Ordering};
+use std::sync::atomic::{AtomicI64, AtomicU32, Ordering};
 
+use sqlx::postgres::PgConnectOptions;
 use sqlx::sqlite::SqliteConnectOptions;
-use sqlx::{ConnectOptions, SqliteConnection};
+use sqlx::{ConnectOptions, PgConnection, SqliteConnection};
 use tempfile::TempDir;
 use tribosweep::queue::{
-    Claim, ClaimedJob, Clock, Counts, Exchanged, Finished, FinishedOutcome, NewJob, NewStudy, Queue, Scope,
-    Settings, Worker,
+    Claim, ClaimedJob, Clock, Counts, Exchanged, Finished, FinishedOutcome, Location, NewJob, NewStudy,
+    Queue, Scope, Settings, Worker,
 };
 
 /// Runs a future on a runtime of its own, for tests that need several threads.
 pub fn block_on<F: Future>(future: F) -> F::Output {
-    tokio::runtime::Builder::new_current_thread().build().unwrap().block_on(future)
+    tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap().block_on(future)
 }
 
 /// A clock that stands still until it is told otherwise.
-#[derive(Debug, Default)]
-pub struct TestClock(AtomicI64);
+#[derive(Debug, Default, Clone)]
+pub struct TestClock(Arc<AtomicI64>);
 
 impl TestClock {
     pub fn set(&self, now_ms: i64) {
         self.0.store(now_ms, Ordering::Relaxed);
     }
-}
 
-impl Clock for TestClock {
-    fn now_ms(&self) -> i64 {
-        self.0.load(Ordering::Relaxed)
+    pub fn clock(&self) -> Clock {
+        let now_ms = Arc::clone(&self.0);
+        Clock::Given(Arc::new(move || now_ms.load(Ordering::Relaxed)))
     }
 }
+
+/// What a database is kept by.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Engine {
+    /// A file of `SQLite`'s.
+    Sqlite,
+    /// A database on the server that the variable below names.
+    Postgres,
+}
+
+/// The URL of a PostgreSQL server where databases can be created and dropped (`scripts/postgres.sh start FOLDER`
+/// prints one).
+pub const SERVER: &str = "TRIBOSWEEP_TEST_POSTGRES";
 
 pub struct Sandbox {
     pub folder: TempDir,
-    pub clock: Arc<TestClock>,
+    pub clock: TestClock,
+    location: Location,
+    /// To be dropped in the end.
+    server_database: Option<String>,
 }
 
 impl Sandbox {
+    /// A file in a folder of its own.
     pub fn new() -> Self {
-        Self { folder: TempDir::new().unwrap(), clock: Arc::default() }
+        let folder = TempDir::new().unwrap();
+        let location = Location::File(folder.path().join("sweep.db"));
+        Self { folder, clock: TestClock::default(), location, server_database: None }
     }
 
+    /// A database of that engine; none, and a message, where there is no server.
+    pub async fn of(engine: Engine) -> Option<Self> {
+        static NUMBER: AtomicU32 = AtomicU32::new(0);
+        if engine == Engine::Sqlite {
+            return Some(Self::new());
+        }
+        let Ok(url) = std::env::var(SERVER) else {
+            eprintln!(
+                "skipped: {SERVER} does not name a PostgreSQL server (`scripts/postgres.sh start FOLDER` prints one)"
+            );
+            return None;
+        };
+        let name = format!("test_{}_{}", std::process::id(), NUMBER.fetch_add(1, Ordering::Relaxed));
+        run_on_server(&url, format!("CREATE DATABASE {name}")).await;
+        let (server, _) = url.rsplit_once('/').expect("postgres://USER@HOST/DATABASE");
+        let location = Location::parse(format!("{server}/{name}").into()).unwrap();
+        let mut sandbox = Self::new();
+        sandbox.location = location;
+        sandbox.server_database = Some(name);
+        Some(sandbox)
+    }
+
+    pub fn location(&self) -> Location {
+        self.location.clone()
+    }
+
+    /// The file.
     pub fn database(&self) -> PathBuf {
-        self.folder.path().join("sweep.db")
+        self.location.path().expect("the database is a file").to_owned()
     }
 
     /// A queue of a worker that is alive: this process.
@@ -55,14 +101,14 @@ impl Sandbox {
 
     /// A queue of that worker.
     pub async fn open_as(&self, worker: &Worker) -> Queue {
-        let mut queue = Queue::open(&self.database(), self.clock.clone()).await.unwrap();
+        let mut queue = Queue::open(self.location(), self.clock.clock()).await.unwrap();
         queue.register(worker).await.unwrap();
         queue
     }
 
     /// As [`Self::open`], with settings.
     pub async fn open_with(&self, settings: Settings) -> Queue {
-        let mut queue = Queue::open_with(&self.database(), self.clock.clone(), settings).await.unwrap();
+        let mut queue = Queue::open_with(self.location(), self.clock.clock(), settings).await.unwrap();
         queue.register(&Worker::this_process(1, "test", "provenance")).await.unwrap();
         queue
     }
@@ -71,6 +117,51 @@ impl Sandbox {
     pub async fn raw(&self) -> SqliteConnection {
         let options = SqliteConnectOptions::new().filename(self.database()).create_if_missing(true);
         options.connect().await.unwrap()
+    }
+
+    /// Runs a statement past the queue.
+    pub async fn run(&self, statement: &'static str) {
+        match &self.location {
+            Location::File(_) => drop(sqlx::query(statement).execute(&mut self.raw().await).await.unwrap()),
+            Location::Server(_) => {
+                drop(sqlx::query(statement).execute(&mut self.raw_on_server().await).await.unwrap());
+            }
+        }
+    }
+
+    /// The number that a statement past the queue gives.
+    pub async fn number(&self, statement: &'static str) -> i64 {
+        let query = sqlx::query_scalar(statement);
+        match &self.location {
+            Location::File(_) => query.fetch_one(&mut self.raw().await).await.unwrap(),
+            Location::Server(_) => {
+                sqlx::query_scalar(statement).fetch_one(&mut self.raw_on_server().await).await.unwrap()
+            }
+        }
+    }
+
+    async fn raw_on_server(&self) -> PgConnection {
+        let Location::Server(server) = &self.location else { panic!("the database is a file") };
+        let options: PgConnectOptions = server.url().parse().unwrap();
+        options.options([("search_path", "tribosweep")]).connect().await.unwrap()
+    }
+}
+
+async fn run_on_server(url: &str, statement: String) {
+    let options: PgConnectOptions = url.parse().unwrap();
+    let mut connection = options.connect().await.unwrap();
+    sqlx::raw_sql(sqlx::AssertSqlSafe(statement)).execute(&mut connection).await.unwrap();
+}
+
+impl Drop for Sandbox {
+    fn drop(&mut self) {
+        let Some(name) = self.server_database.take() else { return };
+        let url = std::env::var(SERVER).unwrap();
+        // Within a test there is a runtime already.
+        let dropping = std::thread::spawn(move || {
+            block_on(run_on_server(&url, format!("DROP DATABASE {name} WITH (FORCE)")));
+        });
+        let _ = dropping.join();
     }
 }
 

@@ -5,13 +5,14 @@ use std::thread;
 
 use tribosweep::queue::{Claim, Finished, FinishedOutcome, JobState, NewStudy, QueueError, Scope};
 
+use super::ENGINE;
 use crate::support::{Sandbox, block_on, claim, counts, done, failed, finish, job, keys, of, study};
 
 /// Protects: dear jobs come first, jobs of equal cost in the order of submission, and the payload, the
 /// attempt and the cost come with them.
 #[tokio::test]
 async fn the_dearest_job_comes_first() {
-    let sandbox = Sandbox::new();
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
     let mut queue = sandbox.open().await;
     let jobs = [("e", 1.0), ("d", 1.0), ("c", 30.0), ("b", 4.0), ("a", 4.0)];
     let study = NewStudy {
@@ -31,7 +32,7 @@ async fn the_dearest_job_comes_first() {
 /// Protects: work on one study takes nothing from another, however dear.
 #[tokio::test]
 async fn a_claim_keeps_to_its_study() {
-    let sandbox = Sandbox::new();
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
     let mut queue = sandbox.open().await;
     let mut dear = study("dear", &["x", "shared"]);
     dear.jobs[0].cost = 99.0;
@@ -46,7 +47,7 @@ async fn a_claim_keeps_to_its_study() {
 #[test]
 fn every_job_is_claimed_exactly_once() {
     const JOBS: usize = 300;
-    let sandbox = Sandbox::new();
+    let Some(sandbox) = block_on(Sandbox::of(ENGINE)) else { return };
     let names: Vec<String> = (0..JOBS).map(|index| format!("job {index}")).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     block_on(async { sandbox.open().await.submit(&study("a", &names)).await.unwrap() });
@@ -82,7 +83,7 @@ fn every_job_is_claimed_exactly_once() {
 /// attempt ends, and its caller is told.
 #[tokio::test]
 async fn a_late_finish_is_refused() {
-    let sandbox = Sandbox::new();
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
@@ -102,15 +103,13 @@ async fn a_late_finish_is_refused() {
     }
     let row = queue.rows("a").await.unwrap().remove(0);
     assert_eq!((row.state, row.record.as_deref(), row.attempt), (JobState::Done, Some("right"), 2));
-    let results: i64 =
-        sqlx::query_scalar("SELECT COUNT(*) FROM results").fetch_one(&mut sandbox.raw().await).await.unwrap();
-    assert_eq!(results, 1);
+    assert_eq!(sandbox.number("SELECT COUNT(*) FROM results").await, 1);
 }
 
 /// Protects: in a batch, a refused finish is named and stops none of the others.
 #[tokio::test]
 async fn a_refused_finish_stops_no_other() {
-    let sandbox = Sandbox::new();
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     claim(&mut queue, Scope::All, 2).await;
@@ -124,7 +123,7 @@ async fn a_refused_finish_stops_no_other() {
 /// Protects: a failed job keeps its error, is not claimed again, and the rest of the sweep goes on.
 #[tokio::test]
 async fn a_failure_is_kept_and_the_sweep_goes_on() {
-    let sandbox = Sandbox::new();
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
@@ -141,7 +140,7 @@ async fn a_failure_is_kept_and_the_sweep_goes_on() {
 /// Protects: an exchange is all or nothing: a claim that cannot be served leaves the finish to be repeated.
 #[tokio::test]
 async fn an_exchange_is_all_or_nothing() {
-    let sandbox = Sandbox::new();
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;

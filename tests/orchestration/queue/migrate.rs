@@ -31,7 +31,7 @@ const FIRST_SCHEMA_ROWS: &str = "
 async fn first_schema(sandbox: &Sandbox) -> SqliteConnection {
     let mut raw = sandbox.raw().await;
     sqlx::raw_sql("PRAGMA journal_mode = WAL").execute(&mut raw).await.unwrap();
-    let sql = include_str!("../../../migrations/0001_queue.sql").into_sql_str();
+    let sql = include_str!("../../../migrations/sqlite/0001_queue.sql").into_sql_str();
     let first = Migration::new(1, "queue".into(), MigrationType::Simple, sql, false);
     Migrator::with_migrations(vec![first]).run(&mut raw).await.unwrap();
     sqlx::raw_sql(FIRST_SCHEMA_ROWS).execute(&mut raw).await.unwrap();
@@ -120,7 +120,7 @@ async fn an_older_worker_is_waited_for() {
     first_schema(&sandbox).await.close().await.unwrap();
     let lock = File::create(sandbox.folder.path().join("sweep.db.worker")).unwrap();
     lock.lock().unwrap();
-    let error = Queue::open(&sandbox.database(), sandbox.clock.clone()).await.unwrap_err();
+    let error = Queue::open(sandbox.location(), sandbox.clock.clock()).await.unwrap_err();
     assert!(matches!(error, QueueError::OlderWorking { .. }), "{error:?}");
     let mut raw = sandbox.raw().await;
     let running: i64 = sqlx::query_scalar("SELECT COUNT(*) FROM jobs WHERE state = 'running'")
@@ -140,7 +140,7 @@ async fn a_migration_is_made_whole_or_not_at_all() {
     let mut raw = first_schema(&sandbox).await;
     sqlx::raw_sql("BEGIN IMMEDIATE").execute(&mut raw).await.unwrap();
     let settings = Settings { busy_timeout: std::time::Duration::from_millis(50), ..Settings::default() };
-    let opened = Queue::open_with(&sandbox.database(), sandbox.clock.clone(), settings).await;
+    let opened = Queue::open_with(sandbox.location(), sandbox.clock.clock(), settings).await;
     let error = opened.unwrap_err().to_string();
     assert!(error.contains("locked"), "{error}");
     sqlx::raw_sql("ROLLBACK").execute(&mut raw).await.unwrap();

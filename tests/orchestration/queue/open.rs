@@ -2,16 +2,16 @@
 
 use std::fs;
 use std::path::Path;
-use std::sync::{Arc, Barrier};
+use std::sync::Barrier;
 use std::thread;
 
 use sqlx::Connection;
-use tribosweep::queue::{Queue, QueueError, SystemClock};
+use tribosweep::queue::{Clock, Queue, QueueError};
 
 use crate::support::{Sandbox, block_on, counts, of, study};
 
 async fn error_of(path: &Path) -> QueueError {
-    Queue::open(path, Arc::new(SystemClock)).await.expect_err("opening should fail")
+    Queue::open(path, Clock::OfDatabase).await.expect_err("opening should fail")
 }
 
 /// Protects: a database is created where there was none, keeps what it is told, and is in WAL mode.
@@ -22,9 +22,9 @@ async fn a_new_database_is_created_and_kept() {
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     queue.close().await.unwrap();
 
-    let mut again = Queue::open_to_read(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    let mut again = Queue::open_to_read(sandbox.location(), sandbox.clock.clock()).await.unwrap();
     assert_eq!(again.counts(&of("a")).await.unwrap(), counts(2, 0, 0, 0));
-    assert_eq!(again.path(), sandbox.database().canonicalize().unwrap());
+    assert_eq!(again.location(), &sandbox.location());
     let mode: String =
         sqlx::query_scalar("PRAGMA journal_mode").fetch_one(&mut sandbox.raw().await).await.unwrap();
     assert_eq!(mode, "wal");
@@ -35,7 +35,7 @@ async fn a_new_database_is_created_and_kept() {
 #[tokio::test]
 async fn reading_creates_nothing() {
     let sandbox = Sandbox::new();
-    let error = Queue::open_to_read(&sandbox.database(), sandbox.clock.clone()).await.unwrap_err();
+    let error = Queue::open_to_read(sandbox.location(), sandbox.clock.clock()).await.unwrap_err();
     assert!(matches!(error, QueueError::NoDatabase { .. }), "{error:?}");
     assert!(error.to_string().contains("sweep.db; submit a study first with `tribosweep submit STUDY`"));
     assert_eq!(fs::read_dir(sandbox.folder.path()).unwrap().count(), 0);
@@ -118,7 +118,7 @@ async fn a_newer_database_is_refused() {
 
     let error = error_of(&sandbox.database()).await;
     assert!(matches!(error, QueueError::NewerDatabase { found: 9001, .. }), "{error:?}");
-    assert!(error.to_string().contains("newer tribosweep (schema 9001; this one knows up to 2)"), "{error}");
+    assert!(error.to_string().contains("newer tribosweep (schema 9001; this one knows up to 3)"), "{error}");
 }
 
 /// Protects: processes that are started together on a database that does not exist yet all get it. Without

@@ -2,6 +2,7 @@
 
 use tribosweep::queue::{Alive, FinishedOutcome, MadeWith, QueueError, Scope, Worker};
 
+use super::ENGINE;
 use crate::support::{Sandbox, claim, dead_worker, done, failed, finish, foreign_worker, job, of, study};
 
 fn alive(workers: u64, threads: u64) -> Alive {
@@ -12,7 +13,7 @@ fn alive(workers: u64, threads: u64) -> Alive {
 /// waited for; of one that cannot be seen its signs of life decide.
 #[tokio::test]
 async fn the_living_are_counted() {
-    let sandbox = Sandbox::new();
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
     let lease_ms = 120_000;
     sandbox.clock.set(10 * lease_ms);
     let mut own = sandbox.open_as(&Worker { threads: 3, ..Worker::this_process(1, "test", "") }).await;
@@ -30,7 +31,7 @@ async fn the_living_are_counted() {
 /// Protects: an estimate is made of the study's jobs that are done, with what they cost and took.
 #[tokio::test]
 async fn timings_are_those_of_done_jobs() {
-    let sandbox = Sandbox::new();
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
     let mut queue = sandbox.open().await;
     let mut own = study("a", &[]);
     own.jobs = vec![job("x", 8.0), job("y", 4.0), job("z", 2.0)];
@@ -48,7 +49,7 @@ async fn timings_are_those_of_done_jobs() {
 /// Protects: whatever happens to a study's jobs shows in their counts or in how often they were started.
 #[tokio::test]
 async fn starts_show_what_counts_do_not() {
-    let sandbox = Sandbox::new();
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y", "x"])).await.unwrap();
     assert_eq!(queue.starts("a").await.unwrap(), 0);
@@ -65,17 +66,18 @@ async fn starts_show_what_counts_do_not() {
 /// Protects: of a large study an even sample is looked at.
 #[tokio::test]
 async fn timings_of_many_jobs_are_a_sample() {
-    let sandbox = Sandbox::new();
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
     let mut queue = sandbox.open().await;
     let mut own = study("a", &[]);
     own.jobs = (0..2_500).map(|i| job(&format!("job {i}"), f64::from(i))).collect();
     queue.submit(&own).await.unwrap();
-    let mut raw = sandbox.raw().await;
-    sqlx::query("UPDATE jobs SET state = 'done', attempt = 1").execute(&mut raw).await.unwrap();
-    sqlx::query("INSERT INTO results (job_id, attempt, record, wall_s, finished_ms) SELECT id, 1, '', cost, 0 FROM jobs")
-        .execute(&mut raw)
-        .await
-        .unwrap();
+    sandbox.run("UPDATE jobs SET state = 'done', attempt = 1").await;
+    sandbox
+        .run(
+            "INSERT INTO results (job_id, attempt, record, wall_s, finished_ms) \
+             SELECT id, 1, '', cost, 0 FROM jobs",
+        )
+        .await;
     let timings = queue.timings("a").await.unwrap();
     assert_eq!(timings.len(), 834);
     let mean = timings.iter().map(|(cost, _)| cost).sum::<f64>() / timings.len() as f64;
@@ -86,7 +88,7 @@ async fn timings_of_many_jobs_are_a_sample() {
 /// what other studies have is not told.
 #[tokio::test]
 async fn origins_are_told_once() {
-    let sandbox = Sandbox::new();
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
     let worker = |provenance| Worker::this_process(1, "test", provenance);
     let mut first = sandbox.open_as(&worker("first")).await;
     first.submit(&study("a", &["x", "y", "z", "x"])).await.unwrap();

@@ -33,7 +33,7 @@ async fn a_lock_that_is_kept() {
         assert!(matches!(error, QueueError::Locked(_)), "{error:?}");
         assert!(error.to_string().contains("another program holds a lock"), "{error}");
     }
-    let mut reader = Queue::open_with(&sandbox.database(), sandbox.clock.clone(), impatient()).await.unwrap();
+    let mut reader = Queue::open_with(sandbox.location(), sandbox.clock.clock(), impatient()).await.unwrap();
     assert_eq!(reader.counts(&of("a")).await.unwrap(), counts(1, 1, 0, 0));
     sqlx::raw_sql("ROLLBACK").execute(&mut foreign).await.unwrap();
     assert!(finish(&mut queue, "x", 1, done("r")).await);
@@ -75,15 +75,15 @@ async fn a_read_only_folder() {
     queue.close().await.unwrap();
     mount.remount("ro");
 
-    let mut reader = Queue::open_to_read(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    let mut reader = Queue::open_to_read(sandbox.location(), sandbox.clock.clock()).await.unwrap();
     assert_eq!(reader.counts(&of("a")).await.unwrap(), counts(1, 0, 1, 0));
     assert_eq!(reader.rows("a").await.unwrap()[0].record.as_deref(), Some("r"));
     let error = reader.cancel("a").await.unwrap_err();
     assert!(matches!(error, QueueError::ReadOnly(_)), "{error:?}");
-    let findings = examine(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    let findings = examine(&sandbox.location(), sandbox.clock.clock()).await.unwrap();
     let problems: Vec<_> = findings.iter().filter(|finding| finding.is_problem).collect();
     assert_eq!(problems.iter().map(|finding| finding.subject).collect::<Vec<_>>(), ["writable"]);
-    let error = Queue::open(&sandbox.database(), sandbox.clock.clone()).await.unwrap_err();
+    let error = Queue::open(sandbox.location(), sandbox.clock.clock()).await.unwrap_err();
     assert!(error.to_string().contains("Read-only file system"), "{error}");
 }
 
@@ -100,7 +100,7 @@ async fn a_log_in_a_read_only_folder() {
         fs::copy(sandbox.folder.path().join(&name), copy.folder.path().join(&name)).unwrap();
     }
     mount.remount("ro");
-    let error = Queue::open_to_read(&copy.database(), copy.clock.clone()).await.unwrap_err();
+    let error = Queue::open_to_read(copy.location(), copy.clock.clock()).await.unwrap_err();
     assert!(matches!(error, QueueError::UnreadableLog { .. }), "{error:?}");
     assert!(error.to_string().contains("-wal to a folder that can be written"), "{error}");
 }
@@ -113,7 +113,7 @@ async fn a_damaged_file() {
     let keys: Vec<String> = (0..500).map(|index| format!("job {index}")).collect();
     queue.submit(&study("a", &keys.iter().map(String::as_str).collect::<Vec<_>>())).await.unwrap();
     queue.close().await.unwrap();
-    let healthy = examine(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    let healthy = examine(&sandbox.location(), sandbox.clock.clock()).await.unwrap();
     assert!(healthy.iter().all(|finding| !finding.is_problem), "{healthy:#?}");
 
     let mut bytes = fs::read(sandbox.database()).unwrap();
@@ -121,9 +121,9 @@ async fn a_damaged_file() {
     let from = bytes.len() / 2;
     bytes[from..].fill(0x5a);
     fs::write(sandbox.database(), &bytes).unwrap();
-    let findings = examine(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    let findings = examine(&sandbox.location(), sandbox.clock.clock()).await.unwrap();
     assert!(findings.iter().any(|finding| finding.is_problem), "{findings:#?}");
-    let mut queue = Queue::open_to_read(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    let mut queue = Queue::open_to_read(sandbox.location(), sandbox.clock.clock()).await.unwrap();
     let error = queue.rows("a").await.unwrap_err();
     assert!(matches!(error, QueueError::Damaged(_)), "{error:?}");
     assert!(error.to_string().contains("tribosweep doctor"), "{error}");
@@ -139,11 +139,12 @@ async fn the_examination_sees_workers() {
     alive.submit(&study("a", &["x", "y", "z"])).await.unwrap();
     claim(&mut dead, Scope::All, 2).await;
     claim(&mut alive, Scope::All, 1).await;
-    let findings = examine(&sandbox.database(), sandbox.clock.clone()).await.unwrap();
+    let findings = examine(&sandbox.location(), sandbox.clock.clock()).await.unwrap();
     let text: Vec<_> = findings.iter().map(|finding| finding.text.as_str()).collect();
     assert!(text.iter().any(|text| text.starts_with("3 running jobs, 2 of them left")), "{text:#?}");
     assert!(text.iter().any(|text| text.contains("gone, 2 jobs")), "{text:#?}");
     assert!(text.iter().any(|text| text.contains("alive, 1 jobs")), "{text:#?}");
-    let missing = examine(&sandbox.folder.path().join("none.db"), sandbox.clock.clone()).await.unwrap_err();
+    let missing =
+        examine(&sandbox.folder.path().join("none.db").into(), sandbox.clock.clock()).await.unwrap_err();
     assert!(matches!(missing, QueueError::NoDatabase { .. }), "{missing:?}");
 }

@@ -1,4 +1,4 @@
-//! The tables and their versions: the files in `migrations/`, each applied once, in order.
+//! The tables and their versions: the files in `migrations/sqlite`, each applied once, in order.
 
 use std::cmp::Ordering;
 use std::path::Path;
@@ -6,9 +6,9 @@ use std::path::Path;
 use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
 use sqlx::{SqlSafeStr, SqliteConnection};
 
-use super::QueueError;
 use super::lock::FormerWorkerLock;
 use super::open::open_error;
+use crate::queue::QueueError;
 
 /// Set by the first migration: "trib" in ASCII.
 const APPLICATION_ID: i64 = 0x7472_6962;
@@ -45,9 +45,9 @@ pub(super) async fn migrate(connection: &mut SqliteConnection, path: &Path) -> R
     let former = if version(connection).await? == 1 { Some(FormerWorkerLock::take(path)?) } else { None };
     migrator.run(connection).await.map_err(|error| match error {
         MigrateError::VersionMissing(found) if found > known => {
-            QueueError::NewerDatabase { path: path.into(), found, known }
+            QueueError::NewerDatabase { database: path.into(), found, known }
         }
-        source => QueueError::Migrate { path: path.into(), source },
+        source => QueueError::Migrate { database: path.into(), source },
     })?;
     if let Some(former) = former {
         former.remove();
@@ -61,7 +61,7 @@ pub(super) async fn check_version(connection: &mut SqliteConnection, path: &Path
     match found.cmp(&needed) {
         Ordering::Equal => Ok(()),
         Ordering::Less => Err(QueueError::OlderDatabase { path: path.into(), found, needed }),
-        Ordering::Greater => Err(QueueError::NewerDatabase { path: path.into(), found, known: needed }),
+        Ordering::Greater => Err(QueueError::NewerDatabase { database: path.into(), found, known: needed }),
     }
 }
 
@@ -87,7 +87,8 @@ fn migrator() -> Migrator {
         Migration::new(version, name.into(), MigrationType::Simple, sql.into_sql_str(), false)
     };
     Migrator::with_migrations(vec![
-        migration(1, "queue", include_str!("../../migrations/0001_queue.sql")),
-        migration(2, "leases", include_str!("../../migrations/0002_leases.sql")),
+        migration(1, "queue", include_str!("../../../migrations/sqlite/0001_queue.sql")),
+        migration(2, "leases", include_str!("../../../migrations/sqlite/0002_leases.sql")),
+        migration(3, "workers", include_str!("../../../migrations/sqlite/0003_workers.sql")),
     ])
 }

@@ -4,7 +4,7 @@
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
 
-use super::QueueError;
+use crate::queue::QueueError;
 
 /// The lock that a process of the first schema held while it ran jobs; with it, none of them does.
 pub(super) struct FormerWorkerLock {

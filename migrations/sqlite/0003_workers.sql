@@ -1,0 +1,5 @@
+-- What a worker has done and how fast it lately was, as it says itself with its signs of life, and how many of its
+-- jobs others took back.
+ALTER TABLE workers ADD COLUMN finished INTEGER NOT NULL DEFAULT 0;
+ALTER TABLE workers ADD COLUMN jobs_per_s REAL;
+ALTER TABLE workers ADD COLUMN taken_back INTEGER NOT NULL DEFAULT 0;

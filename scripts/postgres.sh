@@ -1,0 +1,71 @@
+#!/usr/bin/env bash
+# A PostgreSQL of one's own on loopback, for tests and for trying things out: no service, no password, gone with its
+# folder. Needs Debian's `postgresql` (or `initdb` and `pg_ctl` in PATH).
+#
+#     scripts/postgres.sh start FOLDER [PORT [ADDRESS [NETWORK]]]   prints the URL for --db
+#     scripts/postgres.sh stop FOLDER                               stops it and removes the folder
+#
+# Without PORT a free one is taken. ADDRESS is listened on beside loopback, and NETWORK (as 10.0.0.0/8) is let in from.
+#
+# It syncs as a real one does: what is measured here holds elsewhere. TRIBOSWEEP_POSTGRES_FSYNC=off makes tests faster.
+set -euo pipefail
+
+usage() {
+    sed -n '2,10s/^# \{0,1\}//p' "$0" >&2
+    exit 2
+}
+
+find_tool() {
+    command -v "$1" || ls -d /usr/lib/postgresql/*/bin/"$1" 2> /dev/null | sort -V | tail -1 | grep . || {
+        echo "no $1: install PostgreSQL (Debian: apt-get install postgresql)" >&2
+        exit 3
+    }
+}
+
+# PostgreSQL refuses to run as root; Debian's package brings a user for it.
+as_owner() {
+    if [ "$(id -u)" = 0 ]; then setpriv --reuid postgres --regid postgres --init-groups -- "$@"; else "$@"; fi
+}
+
+free_port() {
+    python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'
+}
+
+start() {
+    local folder=$1 port=${2:-$(free_port)} address=${3:-} network=${4:-}
+    local initdb pg_ctl
+    initdb=$(find_tool initdb)
+    pg_ctl=$(find_tool pg_ctl)
+    mkdir -p "$folder"
+    folder=$(cd "$folder" && pwd)
+    [ -z "$(ls -A "$folder")" ] || { echo "$folder is not empty" >&2; exit 2; }
+    [ "$(id -u)" != 0 ] || chown postgres "$folder"
+    cd "$folder"
+    as_owner "$initdb" --pgdata data --username tribosweep --auth trust --encoding UTF8 --locale C > initdb.log
+    {
+        echo "port = $port"
+        echo "listen_addresses = '127.0.0.1${address:+,$address}'"
+        echo "unix_socket_directories = ''"
+        echo "max_connections = 200"
+        echo "fsync = ${TRIBOSWEEP_POSTGRES_FSYNC:-on}"
+    } >> data/postgresql.conf
+    [ -z "$network" ] || echo "host all all $network trust" >> data/pg_hba.conf
+    if ! as_owner "$pg_ctl" --pgdata data --log server.log --wait start > pg_ctl.log; then
+        cat pg_ctl.log server.log >&2
+        exit 3
+    fi
+    echo "postgres://tribosweep@127.0.0.1:$port/postgres"
+}
+
+stop() {
+    local folder=$1
+    [ -d "$folder/data" ] || { echo "there is no PostgreSQL in $folder" >&2; exit 2; }
+    as_owner "$(find_tool pg_ctl)" --pgdata "$folder/data" --mode fast --wait stop > /dev/null || true
+    rm -r "$folder"
+}
+
+case "${1:-}" in
+    start) [ $# -ge 2 ] || usage; shift; start "$@" ;;
+    stop) [ $# -eq 2 ] || usage; stop "$2" ;;
+    *) usage ;;
+esac

@@ -1,0 +1,203 @@
+//! A statement with its parameters, and the ways to run it.
+
+use std::borrow::Cow;
+
+use sqlx::FromRow;
+#[cfg(feature = "postgres")]
+use sqlx::postgres::PgRow;
+use sqlx::sqlite::SqliteRow;
+
+use super::{Connection, Statement};
+use crate::queue::QueueError;
+
+/// What rows of either database can be read as: tuples of `i64`, `f64`, `String`, `Vec<u8>` and options of them. (There
+/// are no unsigned numbers in PostgreSQL.)
+#[cfg(feature = "postgres")]
+pub trait Columns: Send + Unpin + for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> {}
+#[cfg(feature = "postgres")]
+impl<T: Send + Unpin + for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow>> Columns for T {}
+
+/// What rows can be read as: tuples of `i64`, `f64`, `String`, `Vec<u8>` and options of them.
+#[cfg(not(feature = "postgres"))]
+pub trait Columns: Send + Unpin + for<'r> FromRow<'r, SqliteRow> {}
+#[cfg(not(feature = "postgres"))]
+impl<T: Send + Unpin + for<'r> FromRow<'r, SqliteRow>> Columns for T {}
+
+/// A parameter.
+#[derive(Debug, Clone)]
+pub enum Value<'q> {
+    Integer(Option<i64>),
+    Real(Option<f64>),
+    Text(Option<Cow<'q, str>>),
+    Bytes(Option<&'q [u8]>),
+}
+
+/// A statement whose parameters are bound one after the other.
+#[derive(Debug, Clone)]
+pub struct Query<'q> {
+    statement: Statement,
+    values: Vec<Value<'q>>,
+}
+
+/// A statement without parameters yet.
+pub fn query<'q>(statement: impl Into<Statement>) -> Query<'q> {
+    Query { statement: statement.into(), values: Vec::new() }
+}
+
+/// The parameters of `$query`, bound to what sqlx makes of it.
+macro_rules! bound {
+    ($query:expr, $values:expr) => {{
+        let mut query = $query;
+        for value in $values {
+            query = match value {
+                Value::Integer(value) => query.bind(value),
+                Value::Real(value) => query.bind(value),
+                Value::Text(value) => query.bind(value),
+                Value::Bytes(value) => query.bind(value),
+            };
+        }
+        query
+    }};
+}
+
+impl<'q> Query<'q> {
+    /// Binds the next parameter.
+    pub fn bind(mut self, value: impl Into<Value<'q>>) -> Self {
+        self.values.push(value.into());
+        self
+    }
+
+    /// Runs it and gives the number of rows that it changed.
+    pub async fn run(self, connection: &mut Connection) -> Result<u64, QueueError> {
+        let Self { statement, values } = self;
+        match connection {
+            Connection::Sqlite(connection) => {
+                let query = bound!(sqlx::query(statement.sqlite()), values);
+                Ok(query.execute(connection).await?.rows_affected())
+            }
+            #[cfg(feature = "postgres")]
+            Connection::Postgres(session) => {
+                let done = session.attempt(async |connection| {
+                    bound!(sqlx::query(statement.postgres()), values).execute(connection).await
+                });
+                Ok(done.await?.rows_affected())
+            }
+        }
+    }
+
+    /// All rows.
+    pub async fn all<T: Columns>(self, connection: &mut Connection) -> Result<Vec<T>, QueueError> {
+        let Self { statement, values } = self;
+        match connection {
+            Connection::Sqlite(connection) => {
+                Ok(bound!(sqlx::query_as(statement.sqlite()), values).fetch_all(connection).await?)
+            }
+            #[cfg(feature = "postgres")]
+            Connection::Postgres(session) => {
+                let rows = session.attempt(async |connection| {
+                    bound!(sqlx::query_as(statement.postgres()), values).fetch_all(connection).await
+                });
+                rows.await
+            }
+        }
+    }
+
+    /// The first row, if there is one.
+    pub async fn optional<T: Columns>(self, connection: &mut Connection) -> Result<Option<T>, QueueError> {
+        let Self { statement, values } = self;
+        match connection {
+            Connection::Sqlite(connection) => {
+                Ok(bound!(sqlx::query_as(statement.sqlite()), values).fetch_optional(connection).await?)
+            }
+            #[cfg(feature = "postgres")]
+            Connection::Postgres(session) => {
+                let row = session.attempt(async |connection| {
+                    bound!(sqlx::query_as(statement.postgres()), values).fetch_optional(connection).await
+                });
+                row.await
+            }
+        }
+    }
+
+    /// The one row.
+    pub async fn one<T: Columns>(self, connection: &mut Connection) -> Result<T, QueueError> {
+        self.optional(connection).await?.ok_or_else(|| sqlx::Error::RowNotFound.into())
+    }
+
+    /// The one value of the one row.
+    pub async fn scalar<T>(self, connection: &mut Connection) -> Result<T, QueueError>
+    where
+        (T,): Columns,
+    {
+        self.one::<(T,)>(connection).await.map(|(value,)| value)
+    }
+
+    /// The one value of each row.
+    pub async fn scalars<T>(self, connection: &mut Connection) -> Result<Vec<T>, QueueError>
+    where
+        (T,): Columns,
+    {
+        let rows: Vec<(T,)> = self.all(connection).await?;
+        Ok(rows.into_iter().map(|(value,)| value).collect())
+    }
+}
+
+impl From<i64> for Value<'_> {
+    fn from(value: i64) -> Self {
+        Self::Integer(Some(value))
+    }
+}
+
+impl From<u32> for Value<'_> {
+    fn from(value: u32) -> Self {
+        Self::Integer(Some(value.into()))
+    }
+}
+
+impl From<Option<i64>> for Value<'_> {
+    fn from(value: Option<i64>) -> Self {
+        Self::Integer(value)
+    }
+}
+
+impl From<Option<f64>> for Value<'_> {
+    fn from(value: Option<f64>) -> Self {
+        Self::Real(value)
+    }
+}
+
+impl<'q> From<&'q str> for Value<'q> {
+    fn from(value: &'q str) -> Self {
+        Self::Text(Some(value.into()))
+    }
+}
+
+impl<'q> From<&'q String> for Value<'q> {
+    fn from(value: &'q String) -> Self {
+        Self::Text(Some(value.into()))
+    }
+}
+
+impl From<String> for Value<'_> {
+    fn from(value: String) -> Self {
+        Self::Text(Some(value.into()))
+    }
+}
+
+impl<'q> From<Option<&'q str>> for Value<'q> {
+    fn from(value: Option<&'q str>) -> Self {
+        Self::Text(value.map(Into::into))
+    }
+}
+
+impl<'q> From<&'q Option<String>> for Value<'q> {
+    fn from(value: &'q Option<String>) -> Self {
+        Self::Text(value.as_deref().map(Into::into))
+    }
+}
+
+impl<'q> From<&'q [u8]> for Value<'q> {
+    fn from(value: &'q [u8]) -> Self {
+        Self::Bytes(Some(value))
+    }
+}

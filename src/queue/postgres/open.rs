@@ -1,0 +1,115 @@
+//! Sessions and their settings.
+
+use std::str::FromStr;
+
+use sqlx::postgres::PgConnectOptions;
+use sqlx::{ConnectOptions, PgConnection};
+
+use super::{SILENCE, Session, schema};
+use crate::queue::location::Server;
+use crate::queue::{Location, QueueError, Settings};
+
+/// The oldest server that has what is used here (13: ending a session and waiting for that is of 14).
+const OLDEST: i32 = 14;
+
+/// How long a connection may take.
+const CONNECTING: std::time::Duration = std::time::Duration::from_secs(10);
+
+/// Opens the database; creates its tables if they are missing.
+pub(in crate::queue) async fn open(server: &Server, settings: Settings) -> Result<Session, QueueError> {
+    let mut session = start(server, settings).await?;
+    let location = Location::Server(server.clone());
+    session.attempt(async |connection| Ok(schema::migrate(connection, &location).await)).await??;
+    Ok(session)
+}
+
+/// Opens the database, which must have tables.
+pub(in crate::queue) async fn open_existing(
+    server: &Server,
+    settings: Settings,
+) -> Result<Session, QueueError> {
+    let mut session = start(server, settings).await?;
+    let location = Location::Server(server.clone());
+    let has_tables = session.attempt(schema::has_tables).await?;
+    if !has_tables {
+        return Err(QueueError::NoDatabase { database: location });
+    }
+    session.attempt(async |connection| Ok(schema::migrate(connection, &location).await)).await??;
+    Ok(session)
+}
+
+async fn start(server: &Server, settings: Settings) -> Result<Session, QueueError> {
+    let refused = |reason: String| QueueError::Server { database: Location::Server(server.clone()), reason };
+    let options = PgConnectOptions::from_str(server.url()).map_err(|error| {
+        refused(format!("the URL cannot be read ({error}); expected postgres://USER@HOST:PORT/DATABASE"))
+    })?;
+    let mut session = Session::start(options.application_name("tribosweep"), settings).await.map_err(
+        |error| match error {
+            QueueError::Unreachable(reason) => refused(format!("no answer from the server ({reason})")),
+            QueueError::Database(error) => refused(format!("the server does not let us in ({error})")),
+            other => other,
+        },
+    )?;
+    let version = "SELECT CAST(current_setting('server_version_num') AS INTEGER) / 10000";
+    let version: i32 =
+        session.attempt(async |connection| sqlx::query_scalar(version).fetch_one(connection).await).await?;
+    if version < OLDEST {
+        return Err(refused(format!("PostgreSQL {version} is too old; {OLDEST} or newer is needed")));
+    }
+    Ok(session)
+}
+
+/// A connection with a session's settings, and what the server calls it.
+pub(super) async fn connect(
+    options: &PgConnectOptions,
+    settings: Settings,
+) -> Result<(PgConnection, (i32, String)), QueueError> {
+    let connecting = async {
+        let mut connection = options.connect().await?;
+        let silence_ms = SILENCE.as_millis();
+        let silence_s = SILENCE.as_secs();
+        // A session whose client is gone must not hold its locks until the system gives the connection up, which
+        // takes a quarter of an hour. What is to be compiled first is slower than what is done here.
+        let set = format!(
+            "SET search_path TO {schema};
+             SET client_min_messages TO warning;
+             SET lock_timeout TO {lock_ms};
+             SET idle_in_transaction_session_timeout TO {silence_ms};
+             SET tcp_user_timeout TO {silence_ms};
+             SET tcp_keepalives_idle TO {silence_s};
+             SET tcp_keepalives_interval TO 5;
+             SET tcp_keepalives_count TO 3;
+             SET jit TO off",
+            schema = schema::NAME,
+            lock_ms = settings.busy_timeout.as_millis(),
+        );
+        sqlx::raw_sql(sqlx::AssertSqlSafe(set)).execute(&mut connection).await?;
+        let backend =
+            "SELECT pid, CAST(backend_start AS TEXT) FROM pg_stat_activity WHERE pid = pg_backend_pid()";
+        let backend = sqlx::query_as(backend).fetch_one(&mut connection).await?;
+        Ok((connection, backend))
+    };
+    match tokio::time::timeout(CONNECTING, connecting).await {
+        Ok(connected) => connected.map_err(|error: sqlx::Error| error.into()),
+        Err(_) => Err(QueueError::Unreachable(format!("no connection within {} s", CONNECTING.as_secs()))),
+    }
+}
+
+/// Ends a session that was lost, if the server still has it, and waits until it has ended.
+pub(super) async fn end_session(
+    connection: &mut PgConnection,
+    process: i32,
+    started: &str,
+) -> Result<(), QueueError> {
+    let end = "SELECT pg_terminate_backend(pid, 10000) FROM pg_stat_activity
+               WHERE pid = $1 AND CAST(backend_start AS TEXT) = $2";
+    let ending = sqlx::query_scalar(end).bind(process).bind(started).fetch_optional(connection);
+    match tokio::time::timeout(CONNECTING + SILENCE, ending).await {
+        Ok(Ok(None | Some(true))) => Ok(()),
+        Ok(Ok(Some(false))) => {
+            Err(QueueError::Unreachable("the session that was lost has not ended yet".into()))
+        }
+        Ok(Err(error)) => Err(error.into()),
+        Err(_) => Err(QueueError::Unreachable("no answer".into())),
+    }
+}

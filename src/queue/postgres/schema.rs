@@ -1,0 +1,61 @@
+//! The tables and their versions: the files in `migrations/postgres`, each applied once, in order.
+
+use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
+use sqlx::{PgConnection, SqlSafeStr};
+
+use crate::queue::{Location, QueueError};
+
+/// The schema with the tables, so that other programs can use the same database.
+pub(super) const NAME: &str = "tribosweep";
+
+/// Held while tables are made, by whoever does.
+const MAKING: i64 = 0x7472_6962_0000_0002;
+
+/// Whether there are tables.
+pub(super) async fn has_tables(connection: &mut PgConnection) -> Result<bool, sqlx::Error> {
+    let exists = "SELECT to_regclass($1) IS NOT NULL";
+    sqlx::query_scalar(exists).bind(format!("{NAME}._sqlx_migrations")).fetch_one(connection).await
+}
+
+/// Brings the tables up to date, if they are not.
+pub(super) async fn migrate(connection: &mut PgConnection, location: &Location) -> Result<(), QueueError> {
+    let migrator = migrator();
+    let known = migrator.iter().map(|migration| migration.version).max().unwrap_or(0);
+    if version(connection).await? == known {
+        return Ok(());
+    }
+    sqlx::query("SELECT pg_advisory_lock($1)").bind(MAKING).execute(&mut *connection).await?;
+    let made = make(connection, &migrator, location, known).await;
+    sqlx::query("SELECT pg_advisory_unlock($1)").bind(MAKING).execute(connection).await?;
+    made
+}
+
+async fn make(
+    connection: &mut PgConnection,
+    migrator: &Migrator,
+    location: &Location,
+    known: i64,
+) -> Result<(), QueueError> {
+    let create = sqlx::AssertSqlSafe(format!("CREATE SCHEMA IF NOT EXISTS {NAME}"));
+    sqlx::raw_sql(create).execute(&mut *connection).await?;
+    migrator.run(connection).await.map_err(|error| match error {
+        MigrateError::VersionMissing(found) if found > known => {
+            QueueError::NewerDatabase { database: location.clone(), found, known }
+        }
+        source => QueueError::Migrate { database: location.clone(), source },
+    })
+}
+
+/// The version of the tables, 0 if there are none.
+async fn version(connection: &mut PgConnection) -> Result<i64, QueueError> {
+    if !has_tables(connection).await? {
+        return Ok(0);
+    }
+    let newest = sqlx::query_scalar("SELECT COALESCE(MAX(version), 0) FROM _sqlx_migrations");
+    Ok(newest.fetch_one(connection).await?)
+}
+
+fn migrator() -> Migrator {
+    let queue = include_str!("../../../migrations/postgres/0001_queue.sql").into_sql_str();
+    Migrator::with_migrations(vec![Migration::new(1, "queue".into(), MigrationType::Simple, queue, false)])
+}

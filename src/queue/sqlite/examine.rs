@@ -1,0 +1,44 @@
+//! What can be wrong with a file.
+
+use sqlx::SqliteConnection;
+
+use crate::queue::{Finding, QueueError};
+
+const SYNCHRONOUS: [&str; 4] = ["off", "normal", "full", "extra"];
+
+/// Looks at library, file and references.
+pub(in crate::queue) async fn examine(
+    connection: &mut SqliteConnection,
+    findings: &mut Vec<Finding>,
+) -> Result<(), QueueError> {
+    let version: String = scalar(connection, "SELECT sqlite_version()").await?;
+    findings.push(Finding::good("SQLite", version));
+    findings.push(Finding::good("file system", "local, or not known to be of the network"));
+    let mode: String = scalar(connection, "PRAGMA journal_mode").await?;
+    // A database that cannot be written is read as if it had no log.
+    findings.push(Finding::good("journal", mode));
+    let level: i64 = scalar(connection, "PRAGMA synchronous").await?;
+    let level = usize::try_from(level).ok().and_then(|level| SYNCHRONOUS.get(level));
+    findings.push(Finding::good("synchronous", *level.unwrap_or(&"unknown")));
+
+    // The first few tell what is wrong.
+    let damage: Vec<String> =
+        sqlx::query_scalar("PRAGMA integrity_check(5)").fetch_all(&mut *connection).await?;
+    let is_whole = damage == ["ok"];
+    let advice = "; copy what can be read with `sqlite3 FILE .recover`, or take a backup";
+    let text = if is_whole { "ok".to_owned() } else { damage.join("; ") + advice };
+    findings.push(Finding::judged("integrity", text, is_whole));
+
+    let orphans: i64 = scalar(connection, "SELECT COUNT(*) FROM pragma_foreign_key_check").await?;
+    let text =
+        if orphans == 0 { "ok".to_owned() } else { format!("{orphans} rows refer to what is not there") };
+    findings.push(Finding::judged("references", text, orphans == 0));
+    Ok(())
+}
+
+async fn scalar<T>(connection: &mut SqliteConnection, statement: &'static str) -> Result<T, QueueError>
+where
+    T: Send + Unpin + for<'r> sqlx::Decode<'r, sqlx::Sqlite> + sqlx::Type<sqlx::Sqlite>,
+{
+    Ok(sqlx::query_scalar(statement).fetch_one(connection).await?)
+}

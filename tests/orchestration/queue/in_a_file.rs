@@ -1,0 +1,18 @@
+//! What must hold of every database, in a file.
+
+const ENGINE: crate::support::Engine = crate::support::Engine::Sqlite;
+
+#[path = "claims.rs"]
+mod claims;
+#[path = "exchange.rs"]
+mod exchange;
+#[path = "outlook.rs"]
+mod outlook;
+#[path = "read.rs"]
+mod read;
+#[path = "recovery.rs"]
+mod recovery;
+#[path = "scale.rs"]
+mod scale;
+#[path = "submit.rs"]
+mod submit;

@@ -1,0 +1,19 @@
+//! What must hold of every database, on a server: the same tests as for a file.
+#![expect(clippy::duplicate_mod)]
+
+const ENGINE: crate::support::Engine = crate::support::Engine::Postgres;
+
+#[path = "claims.rs"]
+mod claims;
+#[path = "exchange.rs"]
+mod exchange;
+#[path = "outlook.rs"]
+mod outlook;
+#[path = "read.rs"]
+mod read;
+#[path = "recovery.rs"]
+mod recovery;
+#[path = "scale.rs"]
+mod scale;
+#[path = "submit.rs"]
+mod submit;
