@@ -12,6 +12,9 @@ pub enum CliError {
     /// The study file.
     #[error(transparent)]
     Study(#[from] StudyError),
+    /// Arguments that do not go together.
+    #[error("{0}")]
+    Usage(String),
     /// The study cannot be simulated as it is.
     #[error("{0}")]
     Plan(String),

@@ -9,6 +9,7 @@ mod export;
 mod foreground;
 mod gc;
 mod inspect;
+mod merge;
 mod origin;
 mod outlook;
 mod output;
@@ -27,6 +28,7 @@ mod status;
 mod submit;
 mod validate;
 mod work;
+mod workers;
 
 use crate::exit;
 use crate::queue::Location;
@@ -77,6 +79,10 @@ enum Command {
     Rm(rm::Args),
     /// Drop jobs that no study refers to, with their results.
     Gc,
+    /// Take over the studies and results of other databases, e.g. of shards, into the one that --db names.
+    Merge(merge::Args),
+    /// Copy one or all studies with their results from one database to another, of whichever kind.
+    Copy(merge::CopyArgs),
     /// Look for what is wrong with the database and its surroundings.
     Doctor,
     /// Solve one job in the foreground.
@@ -109,6 +115,8 @@ pub fn main(cli: Cli) -> u8 {
         Command::Cancel(args) => cancel::run(&args, db),
         Command::Rm(args) => rm::run(&args, db),
         Command::Gc => gc::run(db),
+        Command::Merge(args) => merge::run(&args, db),
+        Command::Copy(args) => merge::copy(&args),
         Command::Doctor => doctor::run(db),
         Command::Solve(args) => solve::run(&args),
         Command::Inspect(args) => inspect::run(&args, db),

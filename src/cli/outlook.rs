@@ -54,7 +54,7 @@ impl Outlook {
             return format!("{}{percent}, {time}\n", self.bar(beside.min(BAR.0)));
         }
         let mut text = format!("{}{percent}\n", self.bar(room.min(BAR.0)));
-        for line in lines(&time, width) {
+        for line in wrapped(&time, width) {
             text.push_str(&line);
             text.push('\n');
         }
@@ -97,7 +97,7 @@ impl Outlook {
 }
 
 /// Words in lines of at most `width` characters, where they are no longer themselves.
-fn lines(text: &str, width: usize) -> Vec<String> {
+pub fn wrapped(text: &str, width: usize) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     for word in text.split(' ') {
         match lines.last_mut() {

@@ -7,7 +7,7 @@ use super::report::{self, OutFolder};
 use super::rows;
 use super::submit::{Priority, submit};
 use super::work::{Checkpoints, Retries, Threads, options, work};
-use crate::queue::{Clock, Location, Queue, Scope};
+use crate::queue::{Clock, Location, Queue, Scope, Shard};
 use crate::report::tables::{Quantity, markdown};
 use std::path::PathBuf;
 
@@ -35,7 +35,7 @@ pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     report::prepare(name, &args.out)?;
     block_on(async {
         let mut queue = Queue::open_with(db.clone(), Clock::OfDatabase, args.retries.settings()).await?;
-        submit(&plan, &args.priority, &mut queue).await?;
+        submit(&plan, &args.priority, Shard::WHOLE, &mut queue).await?;
         let options = options(&args.threads, &args.checkpoints);
         let code = work(&mut queue, &Scope::Study(name.to_owned()), options).await?;
         let rows = rows::read(&mut queue, name).await?;

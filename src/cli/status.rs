@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::outlook::{self, Outlook};
 use super::output::{self, block_on, print};
 use super::planning::RowParameters;
-use super::rows;
+use super::{rows, workers};
 use crate::analysis::Outcome;
 use crate::exit;
 use crate::queue::{Counts, Location, Queue, Rows, Scope};
@@ -56,10 +56,12 @@ async fn all(queue: &mut Queue, as_json: bool) -> Result<String, CliError> {
         return Ok("no studies yet; submit one with `tribosweep submit STUDY`\n".to_owned());
     }
     let width = studies.iter().map(|study| study.name.chars().count()).max().unwrap_or(0);
-    Ok(studies.iter().fold(String::new(), |mut text, study| {
+    let mut text = studies.iter().fold(String::new(), |mut text, study| {
         let _ = writeln!(text, "{:width$}  {}", study.name, counts_text(study.counts));
         text
-    }))
+    });
+    text.push_str(&workers::in_words(&queue.workers().await?, output::width()));
+    Ok(text)
 }
 
 /// The rows of a study that are in trouble. Of all others only the parameters are read: records are most of a study.
@@ -107,14 +109,18 @@ async fn one(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, Cli
     let trouble = find(queue, name).await?;
     let counts = queue.counts(&Scope::Study(name.to_owned())).await?;
     let outlook = outlook::read(queue, name, counts).await?;
+    let workers = queue.workers().await?;
     if as_json {
-        return Ok(format!("{}\n", one_json(name, counts, outlook.as_ref(), &trouble)));
+        let mut found = one_json(name, counts, outlook.as_ref(), &trouble);
+        found["workers"] = workers::as_json(&workers);
+        return Ok(format!("{found}\n"));
     }
     let Trouble { not_periodic, regions, .. } = trouble;
     let mut text = format!("{name}: {}\n", counts_text(counts));
     if let Some(outlook) = &outlook {
         text.push_str(&outlook.in_words(output::width()));
     }
+    text.push_str(&workers::in_words(&workers, output::width()));
     if counts.total() <= SHOWN {
         text.push_str(&overview(&rows::read(queue, name).await?, output::width()));
     }

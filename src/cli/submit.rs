@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::output::{block_on, tell};
 use super::planning::Plan;
 use crate::exit;
-use crate::queue::{Clock, Location, Queue};
+use crate::queue::{Clock, Location, Queue, Shard};
 use std::path::PathBuf;
 
 /// Arguments of `submit`.
@@ -14,6 +14,20 @@ pub struct Args {
     study: PathBuf,
     #[command(flatten)]
     priority: Priority,
+    /// Submit only part I of N equal ones (1/4, 2/4 …), for databases that share a study; `merge` brings them together.
+    #[arg(long, value_name = "I/N", value_parser = parse_shard)]
+    shard: Option<Shard>,
+}
+
+fn parse_shard(text: &str) -> Result<Shard, String> {
+    let number = |text: &str| text.parse::<u64>().ok();
+    let parts = text.split_once('/').and_then(|(index, of)| Some((number(index)?, number(of)?)));
+    match parts {
+        Some((index, of)) if 1 <= index && index <= of && of <= u64::from(u32::MAX) => {
+            Ok(Shard { index: index - 1, of })
+        }
+        _ => Err("expected I/N with I from 1 to N, such as 1/4".to_owned()),
+    }
 }
 
 /// Which jobs go first.
@@ -29,15 +43,20 @@ pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let plan = Plan::load(&args.study)?;
     block_on(async {
         let mut queue = Queue::open(db.clone(), Clock::OfDatabase).await?;
-        submit(&plan, &args.priority, &mut queue).await?;
+        submit(&plan, &args.priority, args.shard.unwrap_or(Shard::WHOLE), &mut queue).await?;
         queue.close().await?;
         Ok(exit::SUCCESS)
     })
 }
 
 /// Submits a study that was read before the database was opened: a bad one leaves no database behind.
-pub async fn submit(plan: &Plan, priority: &Priority, queue: &mut Queue) -> Result<(), CliError> {
-    let submitted = queue.submit(&plan.for_queue(priority.value.map(i64::from))?).await?;
+pub async fn submit(
+    plan: &Plan,
+    priority: &Priority,
+    shard: Shard,
+    queue: &mut Queue,
+) -> Result<(), CliError> {
+    let submitted = queue.submit_shard(&plan.for_queue(priority.value.map(i64::from))?, shard).await?;
     tell(format_args!(
         "{}: {} jobs, {} new, {} already done{}{}",
         plan.study.name(),

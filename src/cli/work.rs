@@ -21,7 +21,23 @@ pub struct Args {
     /// Stay when nothing is left to do, and end when no job has come for so long (60s, 5m, 2h); without it, end at once.
     #[arg(long = "idle-exit", value_name = "DURATION", value_parser = parse_duration)]
     idle_exit: Option<Duration>,
+    /// How long this worker's jobs stay its own without a sign of life, where others cannot see its process (on other
+    /// machines); it gives one eight times as often.
+    #[arg(long, value_name = "DURATION", default_value = "2m", value_parser = parse_lease)]
+    lease: Duration,
 }
+
+fn parse_lease(text: &str) -> Result<Duration, String> {
+    let lease = parse_duration(text)?;
+    if (Settings::SHORTEST_LEASE..=LONGEST_LEASE).contains(&lease) {
+        return Ok(lease);
+    }
+    let [shortest, longest] = [Settings::SHORTEST_LEASE, LONGEST_LEASE].map(humantime::format_duration);
+    Err(format!("a lease is between {shortest} and {longest}"))
+}
+
+/// Nobody waits longer for what was lost.
+const LONGEST_LEASE: Duration = Duration::from_hours(24);
 
 fn parse_duration(text: &str) -> Result<Duration, String> {
     humantime::parse_duration(text)
@@ -66,6 +82,7 @@ pub fn options(threads: &Threads, checkpoints: &Checkpoints) -> WorkOptions {
         threads: threads.threads.map_or_else(all_cores, usize::from),
         checkpoint_interval: Some(Duration::from_secs_f64(checkpoints.seconds))
             .filter(|interval| !interval.is_zero()),
+        idle_exit: None,
     }
 }
 
@@ -88,63 +105,23 @@ impl Retries {
 /// Works through all pending jobs, and stays for more if that is wanted.
 pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     block_on(async {
-        let mut queue = Queue::open_existing(db.clone(), Clock::OfDatabase, args.retries.settings()).await?;
-        let options = options(&args.threads, &args.checkpoints);
-        let code = until_stopped(async |interrupt| {
-            loop {
-                let code = work_through(&mut queue, &Scope::All, options, interrupt).await?;
-                let Some(patience) = args.idle_exit.filter(|_| !interrupt.is_raised()) else {
-                    return Ok(code);
-                };
-                if !jobs_come(&mut queue, patience, interrupt).await? {
-                    return Ok(code);
-                }
-            }
-        })
-        .await?;
+        let settings = args.retries.settings().with_lease(args.lease);
+        let mut queue = Queue::open_existing(db.clone(), Clock::OfDatabase, settings).await?;
+        let options = WorkOptions { idle_exit: args.idle_exit, ..options(&args.threads, &args.checkpoints) };
+        let code = work(&mut queue, &Scope::All, options).await?;
         queue.close().await?;
         Ok(code)
     })
 }
 
-/// How often an idle worker looks for jobs, and how long an interruption may go unnoticed.
-const IDLE_TICK: Duration = Duration::from_millis(250);
-
-/// Waits for jobs; false if none has come for `patience`, or after an interruption.
-async fn jobs_come(queue: &mut Queue, patience: Duration, interrupt: &Interrupt) -> Result<bool, CliError> {
-    let begun = Instant::now();
-    while begun.elapsed() < patience && !interrupt.is_raised() {
-        let counts = queue.counts(&Scope::All).await?;
-        if counts.pending + counts.running > 0 {
-            return Ok(true);
-        }
-        tokio::time::sleep(IDLE_TICK.min(patience)).await;
-    }
-    Ok(false)
-}
-
-/// Does some work that Ctrl-C asks to stop.
-async fn until_stopped<T>(work: impl AsyncFnOnce(&Interrupt) -> Result<T, CliError>) -> Result<T, CliError> {
+/// Works through the pending jobs of `scope` until they are done or Ctrl-C, and says what is to be said of it; returns the
+/// exit code.
+pub async fn work(queue: &mut Queue, scope: &Scope, options: WorkOptions) -> Result<u8, CliError> {
     let interrupt = Interrupt::default();
     let listener = tokio::spawn(listen(interrupt.clone(), "stopping; running jobs go back to the queue"));
-    let done = work(&interrupt).await;
+    let worked = worker::work(queue, scope, options, &interrupt, &mut Display::new()).await;
     listener.abort();
-    done
-}
-
-/// Works through the pending jobs of `scope` until they are done or Ctrl-C; returns the exit code.
-pub async fn work(queue: &mut Queue, scope: &Scope, options: WorkOptions) -> Result<u8, CliError> {
-    until_stopped(async |interrupt| work_through(queue, scope, options, interrupt).await).await
-}
-
-/// Works until no job is left or `interrupt` is raised, and says what is to be said of it.
-async fn work_through(
-    queue: &mut Queue,
-    scope: &Scope,
-    options: WorkOptions,
-    interrupt: &Interrupt,
-) -> Result<u8, CliError> {
-    let summary = worker::work(queue, scope, options, interrupt, &mut Display::new()).await?;
+    let summary = worked?;
     let TakenBack { pending, failed } = summary.taken_back;
     if pending > 0 {
         tell(format_args!("{pending} jobs left running by an interrupted process were taken back"));

@@ -131,6 +131,16 @@ pub enum QueueError {
         known: Vec<String>,
     },
 
+    /// Another study has that name.
+    #[error(
+        "the study `{name}` is another one in the database that is written to; remove one of them (`tribosweep rm`), or \
+         submit one under another name"
+    )]
+    OtherStudy {
+        /// The name.
+        name: String,
+    },
+
     /// A job's cost cannot be ordered or summed.
     #[error("job {key} has the cost {cost}; a cost is a finite number")]
     BadCost {

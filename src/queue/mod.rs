@@ -35,6 +35,7 @@
 //! * Reads are single statements. A transaction held open by a reader keeps the write-ahead log from being
 //!   folded back into the database, and old rows from being cleared away.
 
+mod absorb;
 mod bulk;
 mod cancel;
 mod checkpoint;
@@ -74,6 +75,7 @@ mod transaction;
 mod worker;
 mod workers;
 
+pub use absorb::Absorbed;
 pub use cancel::Cancelled;
 pub use claim::{Claim, ClaimedJob};
 pub use clock::Clock;
@@ -93,7 +95,7 @@ pub use scope::Scope;
 pub use settings::Settings;
 pub use state::JobState;
 pub use studies::{StudyDocument, StudySummary};
-pub use submit::{NewJob, NewStudy, Submitted};
+pub use submit::{NewJob, NewStudy, Shard, Submitted};
 pub use take_back::TakenBack;
 pub use worker::Worker;
 pub use workers::{Alive, WorkerPresence, WorkerStatus};
@@ -115,6 +117,11 @@ impl Queue {
     /// Where the database is.
     pub fn location(&self) -> &Location {
         &self.location
+    }
+
+    /// What it was opened with.
+    pub fn settings(&self) -> Settings {
+        self.settings
     }
 
     /// Closes the connection and waits for it, so that the last one out folds the write-ahead log back in.

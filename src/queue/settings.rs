@@ -11,6 +11,17 @@ pub struct Settings {
     pub crash_limit: u32,
 }
 
+impl Settings {
+    /// A shorter one would leave no time for a database that is busy.
+    pub const SHORTEST_LEASE: Duration = Duration::from_secs(5);
+
+    /// With another lease. Who waits for a lock waits for no more than a part of it, so that the lease lasts.
+    #[must_use]
+    pub fn with_lease(self, lease: Duration) -> Self {
+        Self { lease, busy_timeout: (lease / 4).min(Self::default().busy_timeout), ..self }
+    }
+}
+
 impl Default for Settings {
     fn default() -> Self {
         Self {

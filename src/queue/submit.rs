@@ -33,6 +33,24 @@ pub struct NewJob {
     pub priority: Option<i64>,
 }
 
+/// Every so-manieth row of a study, for databases that share it.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Shard {
+    /// Which one, from 0.
+    pub index: u64,
+    /// Of how many.
+    pub of: u64,
+}
+
+impl Shard {
+    /// All rows.
+    pub const WHOLE: Self = Self { index: 0, of: 1 };
+
+    fn has(self, ordinal: i64) -> bool {
+        ordinal.unsigned_abs() % self.of == self.index
+    }
+}
+
 /// What a submission changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Submitted {
@@ -56,9 +74,9 @@ pub struct Submitted {
 
 /// Rows bound as one JSON text insert twice as fast as row by row; the text of a million jobs would pass
 /// `SQLite`'s limit of 10⁹ bytes.
-const CHUNK: usize = 10_000;
+pub(super) const CHUNK: usize = 10_000;
 
-const UPSERT_STUDY: &str = "
+pub(super) const UPSERT_STUDY: &str = "
     INSERT INTO studies (name, document, submitted_ms) VALUES ($1, $2, $3)
     ON CONFLICT (name) DO UPDATE
     SET document = excluded.document, submitted_ms = excluded.submitted_ms, cancelled_ms = NULL
@@ -123,8 +141,9 @@ const CANCEL_UNASKED: &str = "
 
 const NOTE: &str = "cancelled: its study was replaced by one without it";
 
-/// Rows beyond the end of the new document.
-const DELETE_SURPLUS: &str = "DELETE FROM study_jobs WHERE study_id = $1 AND ordinal >= $2";
+/// Rows beyond the end of the new document, and of other shards.
+const DELETE_SURPLUS: &str =
+    "DELETE FROM study_jobs WHERE study_id = $1 AND (ordinal >= $2 OR ordinal % $3 <> $4)";
 
 /// The places in the array of rows that are not there, or otherwise. A row that is there has its job and its payload.
 const CHANGED: Statement = Statement::each(
@@ -175,10 +194,23 @@ impl Queue {
     /// # Errors
     /// [`QueueError::BadCost`], or if the database cannot be written; then nothing has changed.
     pub async fn submit(&mut self, study: &NewStudy) -> Result<Submitted, QueueError> {
+        self.submit_shard(study, Shard::WHOLE).await
+    }
+
+    /// As [`Queue::submit`], of some rows only, each in its place.
+    ///
+    /// # Errors
+    /// As [`Queue::submit`].
+    ///
+    /// # Panics
+    /// If there are no shards, or fewer than this one's index says.
+    pub async fn submit_shard(&mut self, study: &NewStudy, shard: Shard) -> Result<Submitted, QueueError> {
+        assert!(shard.index < shard.of, "{shard:?}");
         // JSON has no NaN and no infinity: they would arrive as null.
         if let Some(job) = study.jobs.iter().find(|job| !job.cost.is_finite()) {
             return Err(QueueError::BadCost { key: job.key.clone(), cost: job.cost });
         }
+        let rows: Vec<_> = (0_i64..).zip(&study.jobs).filter(|(ordinal, _)| shard.has(*ordinal)).collect();
         let (replaced, added, cancelled, counts) = self
             .write(async |connection, now_ms| {
                 let replaced = studies::find(connection, &study.name).await?.is_some();
@@ -189,9 +221,14 @@ impl Queue {
                     .scalar(connection)
                     .await?;
                 let end = i64::try_from(study.jobs.len()).unwrap_or(i64::MAX);
-                query(DELETE_SURPLUS).bind(study_id).bind(end).run(connection).await?;
+                query(DELETE_SURPLUS)
+                    .bind(study_id)
+                    .bind(end)
+                    .bind(shard.of.cast_signed())
+                    .bind(shard.index.cast_signed())
+                    .run(connection)
+                    .await?;
                 let before = count_jobs(connection).await?;
-                let rows: Vec<_> = (0_i64..).zip(&study.jobs).collect();
                 for chunk in rows.chunks(CHUNK) {
                     if replaced {
                         let changed = changed(connection, study_id, chunk).await?;
@@ -211,10 +248,10 @@ impl Queue {
             })
             .await?;
 
-        let jobs = study.jobs.iter().map(|job| &job.key).collect::<HashSet<_>>().len() as u64;
+        let jobs = rows.iter().map(|(_, job)| &job.key).collect::<HashSet<_>>().len() as u64;
         Ok(Submitted {
             replaced,
-            rows: study.jobs.len() as u64,
+            rows: rows.len() as u64,
             jobs,
             added,
             already_known: jobs - added,
@@ -231,10 +268,10 @@ async fn count_jobs(connection: &mut Connection) -> Result<u64, QueueError> {
 }
 
 /// A row of a study with its place.
-type Row<'a> = (i64, &'a NewJob);
+pub(super) type Row<'a> = (i64, &'a NewJob);
 
 /// Those of `rows` that the study does not have as they are: a study that is submitted again unchanged writes none.
-async fn changed<'a>(
+pub(super) async fn changed<'a>(
     connection: &mut Connection,
     study_id: i64,
     rows: &[Row<'a>],
@@ -243,12 +280,16 @@ async fn changed<'a>(
     Ok(changed.into_iter().map(|place| rows[place as usize]).collect())
 }
 
-async fn delete_rows(connection: &mut Connection, study_id: i64, rows: &[Row<'_>]) -> Result<(), QueueError> {
+pub(super) async fn delete_rows(
+    connection: &mut Connection,
+    study_id: i64,
+    rows: &[Row<'_>],
+) -> Result<(), QueueError> {
     query(DELETE_ROWS).bind(as_rows(rows)).bind(study_id).run(connection).await?;
     Ok(())
 }
 
-async fn insert(
+pub(super) async fn insert(
     connection: &mut Connection,
     study_id: i64,
     rows: &[Row<'_>],

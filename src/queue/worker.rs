@@ -96,13 +96,16 @@ impl Queue {
     /// # Errors
     /// If the database cannot be written.
     pub async fn unregister(&mut self) -> Result<(), QueueError> {
-        let Some(Registration { id, pace, .. }) = self.registration.take() else { return Ok(()) };
+        let Some(Registration { id, pace, .. }) = &self.registration else { return Ok(()) };
+        let (id, finished) = (*id, pace.finished());
         self.write_own(async |connection, now_ms| {
             query(RELEASE_ALL).bind(id).bind(ENDED).run(connection).await?;
-            query(END).bind(id).bind(now_ms).bind(pace.finished()).run(connection).await?;
+            query(END).bind(id).bind(now_ms).bind(finished).run(connection).await?;
             Ok(())
         })
-        .await
+        .await?;
+        self.registration = None;
+        Ok(())
     }
 
     /// Says that the worker has been asked to stop: if its process is ended before it has given its jobs back, that is

@@ -4,6 +4,7 @@ use super::checkpoint::Kept;
 use super::eta::Eta;
 use super::executor::{Assignment, Executor, JobClock, Report, Request};
 use super::heartbeat::Heartbeat;
+use super::idle::Idle;
 use super::interrupt::Interrupt;
 use super::options::WorkOptions;
 use super::progress::{Progress, RunningJob, Snapshot};
@@ -14,13 +15,17 @@ use crate::queue::{
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use thiserror::Error;
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
 /// How often progress is shown when nothing finishes, and other workers' jobs are looked at when there is nothing
 /// else to do.
 const TICK: Duration = Duration::from_millis(250);
+
+/// How long the database is waited for when it cannot be reached, and how long between two attempts.
+const PATIENCE: Duration = Duration::from_hours(1);
+const PAUSE: Duration = Duration::from_secs(1);
 
 /// What a worker left behind.
 #[derive(Debug, Clone, PartialEq)]
@@ -59,14 +64,16 @@ pub async fn work(
     progress: &mut impl Progress,
 ) -> Result<WorkSummary, WorkError> {
     let left = queue.counts(scope).await?;
-    // No more threads than jobs to run on them.
+    // No more threads than jobs to run on them, unless more may come.
     let jobs = usize::try_from(left.pending + left.running).unwrap_or(usize::MAX);
-    let threads = options.threads.min(jobs.max(1));
+    let threads =
+        if options.idle_exit.is_some() { options.threads } else { options.threads.min(jobs.max(1)) };
     let (sender, reports) = unbounded_channel();
     let executor = Executor::new(WorkOptions { threads, ..options }, &sender, interrupt)?;
     queue.register(&provenance::worker(threads)).await?;
     let taken_back = queue.take_back().await?;
     let tally = Tally::new(queue, scope).await?;
+    let lease = queue.settings().lease;
     let mut dispatcher = Dispatcher {
         queue,
         scope,
@@ -78,16 +85,20 @@ pub async fn work(
         checkpoints: Vec::new(),
         running: BTreeMap::new(),
         timings: Vec::new(),
-        heartbeat: Heartbeat::new(),
+        heartbeat: Heartbeat::new(lease),
+        idle: Idle::default(),
+        idle_exit: options.idle_exit,
         is_stopping: false,
         taken_back,
         tally,
     };
     let worked = dispatcher.run(progress).await;
     // After an error too, as far as it goes: what is given back did not crash. The first error is the one to report.
-    let unregistered = dispatcher.queue.unregister().await;
-    worked.and(unregistered)?;
-    dispatcher.tally.ask(dispatcher.queue, scope).await?;
+    if worked.is_err() {
+        let _ = dispatcher.queue.unregister().await;
+    }
+    worked?;
+    dispatcher.end(progress).await?;
     let snapshot = dispatcher.snapshot();
     progress.stopped(&snapshot);
     let (counts, taken_back) = (snapshot.counts, dispatcher.taken_back);
@@ -110,6 +121,8 @@ struct Dispatcher<'a> {
     /// (cost, seconds) of what this worker has finished.
     timings: Vec<(f64, f64)>,
     heartbeat: Heartbeat,
+    idle: Idle,
+    idle_exit: Option<Duration>,
     /// Whether the database knows of the interruption.
     is_stopping: bool,
     taken_back: TakenBack,
@@ -131,9 +144,7 @@ impl Dispatcher<'_> {
             self.tally.refresh(self.queue, self.scope).await?;
             progress.update(&self.snapshot());
             loop {
-                let counts = self.tally.counts;
-                let is_over = self.interrupt.is_raised() || counts.pending + counts.running == 0;
-                if self.running.is_empty() && is_over && self.is_left_with_nothing().await? {
+                if self.running.is_empty() && self.is_over().await? {
                     return Ok(());
                 }
                 // Only the channel is awaited under the timeout; the database never is.
@@ -152,11 +163,43 @@ impl Dispatcher<'_> {
         }
     }
 
-    /// Whether there is nothing to do but stop. What is counted here may be older than what others do.
-    async fn is_left_with_nothing(&mut self) -> Result<bool, QueueError> {
-        self.tally.ask(self.queue, self.scope).await?;
-        let counts = self.tally.counts;
-        Ok(self.interrupt.is_raised() || counts.pending + counts.running == 0)
+    /// Ends the worker in order.
+    async fn end(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
+        let begun = Instant::now();
+        loop {
+            let ended = match self.queue.unregister().await {
+                Ok(()) => self.tally.ask(self.queue, self.scope).await,
+                error => error,
+            };
+            match ended {
+                Err(error) if error.is_transient() && begun.elapsed() < PATIENCE => {
+                    progress.waiting(&error.to_string());
+                    tokio::time::sleep(PAUSE).await;
+                }
+                ended => return ended,
+            }
+        }
+    }
+
+    /// Whether there is nothing to do but stop.
+    async fn is_over(&mut self) -> Result<bool, QueueError> {
+        if self.interrupt.is_raised() {
+            return Ok(true);
+        }
+        if self.is_anything_left() || !self.idle.is_due() {
+            return Ok(false);
+        }
+        // What is counted here may be older than what others do.
+        match self.tally.ask(self.queue, self.scope).await {
+            Err(error) if error.is_transient() => return Ok(false),
+            asked => asked?,
+        }
+        let patience = self.idle_exit.unwrap_or_default();
+        Ok(!self.is_anything_left() && self.idle.lasts() >= patience)
+    }
+
+    fn is_anything_left(&self) -> bool {
+        self.tally.counts.pending + self.tally.counts.running > 0
     }
 
     fn take(&mut self, report: Report, done: &mut Vec<Finished>) {
@@ -196,6 +239,9 @@ impl Dispatcher<'_> {
             self.requests.push(request);
             return;
         }
+        if !jobs.is_empty() {
+            self.idle.end();
+        }
         self.tally.claimed(jobs.len() as u64);
         let assignments = jobs.into_iter().map(|job| {
             let clock = Arc::new(JobClock::default());
@@ -218,7 +264,7 @@ impl Dispatcher<'_> {
                     Err(error) => {
                         progress.waiting(&format!("the state of running jobs cannot be kept: {error}"));
                         // No other one comes for what is released now.
-                        let is_last = self.interrupt.is_raised() && matches!(error, QueueError::Locked(_));
+                        let is_last = self.interrupt.is_raised() && error.is_transient();
                         is_refused = !is_last;
                     }
                 }
@@ -236,6 +282,7 @@ impl Dispatcher<'_> {
         asked: &[Request],
         progress: &mut impl Progress,
     ) -> Result<Exchanged, QueueError> {
+        let begun = Instant::now();
         loop {
             let is_open = !self.interrupt.is_raised();
             let claims: Vec<_> = asked
@@ -249,8 +296,10 @@ impl Dispatcher<'_> {
             self.keep_alive().await?;
             match self.queue.exchange(done, &claims).await {
                 // After an interruption, too: what is finished is not to be thrown away.
-                Err(error @ QueueError::Locked(_)) => {
+                Err(error @ QueueError::Locked(_)) => progress.waiting(&error.to_string()),
+                Err(error @ QueueError::Unreachable(_)) if begun.elapsed() < PATIENCE => {
                     progress.waiting(&error.to_string());
+                    tokio::time::sleep(PAUSE).await;
                 }
                 exchanged => return exchanged,
             }
@@ -271,21 +320,27 @@ impl Dispatcher<'_> {
             // If it is ended at once now, that is no crash. Where it cannot be said, it is taken for one.
             self.is_stopping = self.queue.stopping().await.is_ok();
         }
-        let is_waiting = self.running.is_empty() && self.tally.counts.pending == 0;
         let is_due = self.heartbeat.is_due();
-        if !is_due && !is_waiting {
+        if !is_due && !self.is_to_look() {
             return Ok(());
         }
         match self.beat(is_due).await {
             // A lease outlasts several heartbeats.
-            Err(QueueError::Locked(_)) => Ok(()),
+            Err(error) if error.is_transient() => Ok(()),
             done => done,
         }
+    }
+
+    /// Whether there is nothing to do here, and it is time to look for what died elsewhere.
+    fn is_to_look(&mut self) -> bool {
+        let is_waiting = self.running.is_empty() && self.tally.counts.pending == 0;
+        is_waiting && self.tally.counts.running > 0 && self.idle.is_due()
     }
 
     async fn beat(&mut self, is_due: bool) -> Result<(), QueueError> {
         if is_due {
             self.queue.heartbeat().await?;
+            self.heartbeat.is_given();
         }
         let taken = self.queue.take_back().await?;
         self.taken_back.pending += taken.pending;

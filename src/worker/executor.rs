@@ -102,7 +102,7 @@ impl Executor {
         reports: &UnboundedSender<Report>,
         interrupt: &Interrupt,
     ) -> Result<Self, rayon::ThreadPoolBuildError> {
-        let WorkOptions { threads, checkpoint_interval } = options;
+        let WorkOptions { threads, checkpoint_interval, .. } = options;
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .thread_name(|i| format!("solver-{i}"))

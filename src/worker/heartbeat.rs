@@ -3,27 +3,30 @@
 use std::time::{Duration, Instant};
 
 /// A small part of a lease, so that a few missed ones cost none.
-const INTERVAL: Duration = Duration::from_secs(15);
+const PART_OF_LEASE: u32 = 8;
 
 /// Says when the next heartbeat is due, by a clock that nobody sets.
 #[derive(Debug)]
 pub struct Heartbeat {
-    last: Instant,
+    interval: Duration,
+    due: Instant,
 }
 
 impl Heartbeat {
     /// The first one is due an interval from now.
-    pub fn new() -> Self {
-        Self { last: Instant::now() }
+    pub fn new(lease: Duration) -> Self {
+        let interval = lease / PART_OF_LEASE;
+        Self { interval, due: Instant::now() + interval }
     }
 
-    /// Whether it is time; if so, the next interval begins.
-    pub fn is_due(&mut self) -> bool {
-        let is_due = self.last.elapsed() >= INTERVAL;
-        if is_due {
-            self.last = Instant::now();
-        }
-        is_due
+    /// Whether it is time.
+    pub fn is_due(&self) -> bool {
+        Instant::now() >= self.due
+    }
+
+    /// It was given: the next interval begins. One that could not be given stays due.
+    pub fn is_given(&mut self) {
+        self.due = Instant::now() + self.interval;
     }
 }
 
@@ -35,13 +38,20 @@ mod tests {
     /// Protects: a lease outlasts several heartbeats, with a database that is locked for as long as it may be.
     #[test]
     fn a_lease_outlasts_missed_heartbeats() {
-        let Settings { lease, busy_timeout, .. } = Settings::default();
-        assert!(lease >= 4 * INTERVAL + busy_timeout);
+        for lease in [Settings::default().lease, Settings::SHORTEST_LEASE, Duration::from_hours(1)] {
+            let Settings { lease, busy_timeout, .. } = Settings::default().with_lease(lease);
+            assert!(lease >= 4 * Heartbeat::new(lease).interval + busy_timeout);
+        }
     }
 
-    /// Protects: the first heartbeat is not due at once.
+    /// Protects: the first heartbeat is not due at once, and one that was not given stays due.
     #[test]
-    fn the_first_one_is_not_due() {
-        assert!(!Heartbeat::new().is_due());
+    fn what_is_due_stays_due() {
+        assert!(!Heartbeat::new(Duration::from_mins(2)).is_due());
+        let mut overdue = Heartbeat::new(Duration::ZERO);
+        assert!(overdue.is_due() && overdue.is_due());
+        overdue.interval = Duration::from_mins(1);
+        overdue.is_given();
+        assert!(!overdue.is_due());
     }
 }

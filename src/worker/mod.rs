@@ -22,6 +22,7 @@ mod dispatcher;
 mod eta;
 mod executor;
 mod heartbeat;
+mod idle;
 mod interrupt;
 mod options;
 mod progress;

@@ -8,6 +8,8 @@ pub struct WorkOptions {
     /// How often a running job's state is kept; never if none. Only jobs that are predicted to last two intervals or
     /// more, by their time limit, are kept at all.
     pub checkpoint_interval: Option<Duration>,
+    /// How long to stay when no job is left anywhere, for those that may come; otherwise the end is the end.
+    pub idle_exit: Option<Duration>,
 }
 
 impl WorkOptions {
@@ -16,6 +18,6 @@ impl WorkOptions {
 
     /// So many threads, all else as usual.
     pub fn new(threads: usize) -> Self {
-        Self { threads, checkpoint_interval: Some(Self::CHECKPOINT_INTERVAL) }
+        Self { threads, checkpoint_interval: Some(Self::CHECKPOINT_INTERVAL), idle_exit: None }
     }
 }

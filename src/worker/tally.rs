@@ -8,7 +8,10 @@ use std::time::{Duration, Instant};
 /// Asked no more often than this …
 const INTERVAL: Duration = Duration::from_millis(250);
 
-/// … nor for more than a small part of the time.
+/// … and no more rarely than this, however long it takes …
+const LONGEST: Duration = Duration::from_secs(15);
+
+/// … nor for more than a small part of the time, which all workers share.
 const SHARE: u32 = 20;
 
 /// Jobs by state and the cost of what is left.
@@ -29,13 +32,18 @@ impl Tally {
         Ok(tally)
     }
 
-    /// Asks the database, if that is due; whether it was.
-    pub async fn refresh(&mut self, queue: &mut Queue, scope: &Scope) -> Result<bool, QueueError> {
-        let is_due = Instant::now() >= self.due;
-        if is_due {
-            self.ask(queue, scope).await?;
+    /// Asks the database, if that is due. What is known already stays where it does not answer.
+    pub async fn refresh(&mut self, queue: &mut Queue, scope: &Scope) -> Result<(), QueueError> {
+        if Instant::now() < self.due {
+            return Ok(());
         }
-        Ok(is_due)
+        match self.ask(queue, scope).await {
+            Err(error) if error.is_transient() => {
+                self.due = Instant::now() + INTERVAL;
+                Ok(())
+            }
+            asked => asked,
+        }
     }
 
     /// Asks the database.
@@ -43,7 +51,10 @@ impl Tally {
         let begun = Instant::now();
         self.counts = queue.counts(scope).await?;
         self.remaining_cost = queue.remaining_cost(scope).await?;
-        self.due = Instant::now() + INTERVAL.max(begun.elapsed() * SHARE);
+        let took = begun.elapsed();
+        let workers = u32::try_from(queue.alive().await?.workers).unwrap_or(u32::MAX).max(1);
+        self.due = Instant::now()
+            + took.saturating_mul(SHARE.saturating_mul(workers)).clamp(INTERVAL, LONGEST.max(took * SHARE));
         Ok(())
     }
 

@@ -103,7 +103,7 @@ async fn long_jobs_go_on_where_they_were() {
                 raised.raise();
             }
         });
-        let options = WorkOptions { threads: 1, checkpoint_interval: interval };
+        let options = WorkOptions { checkpoint_interval: interval, ..WorkOptions::new(1) };
         let summary = work(&mut queue, &Scope::All, options, &interrupt, &mut recorder).await.unwrap();
         assert_eq!(summary.counts, counts(3, 0, 0, 0));
         let count: (i64,) =
@@ -116,7 +116,7 @@ async fn long_jobs_go_on_where_they_were() {
             assert!(begun > 0.3 * LIMIT_S, "went on from {begun} s");
         }
     }
-    let options = WorkOptions { threads: 1, checkpoint_interval: often };
+    let options = WorkOptions { checkpoint_interval: often, ..WorkOptions::new(1) };
     let summary =
         work(&mut queue, &Scope::All, options, &Interrupt::default(), &mut SilentProgress).await.unwrap();
     assert_eq!(summary.counts, counts(0, 0, 3, 0));

@@ -1,0 +1,145 @@
+//! Who works: for `status`.
+
+use super::outlook::wrapped;
+use crate::queue::{WorkerPresence, WorkerStatus};
+use serde_json::{Value, json};
+use std::time::Duration;
+
+/// So many of those that were lost are listed, the last ones.
+const LOST: usize = 5;
+
+/// The workers in lines of at most `width` characters; nothing if there are none.
+pub fn in_words(workers: &[WorkerStatus], width: usize) -> String {
+    let (lost, there): (Vec<_>, Vec<_>) =
+        workers.iter().partition(|worker| worker.presence == WorkerPresence::Gone);
+    let mut lines: Vec<String> = there.iter().map(|worker| at_work(worker)).collect();
+    if there.len() > 1 {
+        let per_s: f64 = there.iter().filter_map(|worker| worker.jobs_per_s).sum();
+        let threads: u64 = there.iter().map(|worker| worker.threads).sum();
+        lines.insert(0, format!("{} workers with {threads} threads, {}", there.len(), rate(per_s)));
+    }
+    let taken_back: u64 = lost.iter().map(|worker| worker.taken_back).sum();
+    if lost.len() > LOST {
+        lines.push(format!("{} workers were lost, and {taken_back} jobs taken back from them", lost.len()));
+    } else {
+        lines.extend(
+            lost.iter().filter(|worker| worker.taken_back + worker.running > 0).map(|worker| gone(worker)),
+        );
+    }
+    lines.iter().flat_map(|line| wrapped(line, width)).fold(String::new(), |text, line| text + &line + "\n")
+}
+
+fn at_work(worker: &WorkerStatus) -> String {
+    let WorkerStatus { host, pid, threads, running, finished, taken_back, silent_ms, .. } = worker;
+    let doing = match (worker.presence, running) {
+        (WorkerPresence::Stopping, _) => "stopping".to_owned(),
+        (_, 0) => "idle".to_owned(),
+        (_, running) => format!("{running} running"),
+    };
+    let pace = worker.jobs_per_s.map_or_else(String::new, |per_s| format!(", {}", rate(per_s)));
+    let lost = if *taken_back > 0 { format!(", {taken_back} taken back from it") } else { String::new() };
+    let threads = if *threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") };
+    format!(
+        "worker {pid} on {host}: {threads}, {doing}, {finished} done{pace}{lost}, seen {} ago",
+        ago(*silent_ms)
+    )
+}
+
+fn gone(worker: &WorkerStatus) -> String {
+    let WorkerStatus { host, pid, running, taken_back, silent_ms, .. } = worker;
+    let waiting = if *running > 0 { format!(", {running} still to be taken back") } else { String::new() };
+    format!(
+        "worker {pid} on {host}: lost {} ago, {taken_back} jobs taken back from it{waiting}",
+        ago(*silent_ms)
+    )
+}
+
+/// Jobs in the unit in which there are some.
+fn rate(per_s: f64) -> String {
+    match per_s {
+        0.0 => "none lately".to_owned(),
+        1.0.. => format!("{per_s:.1} jobs/s"),
+        _ if per_s * 60.0 >= 1.0 => format!("{:.1} jobs/min", 60.0 * per_s),
+        _ => format!("{:.1} jobs/h", 3600.0 * per_s),
+    }
+}
+
+/// To the second, and to the minute if it is long.
+fn ago(milliseconds: i64) -> String {
+    let seconds = milliseconds.unsigned_abs() / 1000;
+    let seconds = if seconds < 600 { seconds } else { seconds / 60 * 60 };
+    humantime::format_duration(Duration::from_secs(seconds)).to_string()
+}
+
+/// The same for programs.
+pub fn as_json(workers: &[WorkerStatus]) -> Value {
+    let worker = |worker: &WorkerStatus| {
+        json!({
+            "host": worker.host,
+            "process": worker.pid,
+            "threads": worker.threads,
+            "presence": match worker.presence {
+                WorkerPresence::Working => "working",
+                WorkerPresence::Stopping => "stopping",
+                WorkerPresence::Gone => "lost",
+            },
+            "running": worker.running,
+            "finished": worker.finished,
+            "jobs_per_s": worker.jobs_per_s,
+            "taken_back": worker.taken_back,
+            "started_ms": worker.started_ms,
+            "silent_ms": worker.silent_ms,
+        })
+    };
+    workers.iter().map(worker).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn worker(presence: WorkerPresence, taken_back: u64) -> WorkerStatus {
+        WorkerStatus {
+            host: "node7".into(),
+            pid: 4242,
+            threads: 8,
+            presence,
+            running: if presence == WorkerPresence::Gone { 0 } else { 12 },
+            finished: 340,
+            jobs_per_s: Some(0.25),
+            taken_back,
+            started_ms: 0,
+            silent_ms: 3_200,
+        }
+    }
+
+    /// Protects: one line a worker says where it is and how fast; several are summed up first.
+    #[test]
+    fn workers_are_told_by_host_and_rate() {
+        let one = worker(WorkerPresence::Working, 0);
+        let line = "worker 4242 on node7: 8 threads, 12 running, 340 done, 15.0 jobs/min, seen 3s ago\n";
+        assert_eq!(in_words(std::slice::from_ref(&one), 100), line);
+        let two = in_words(&[one.clone(), one], 100);
+        assert_eq!(two, format!("2 workers with 16 threads, 30.0 jobs/min\n{line}{line}"));
+        assert_eq!(in_words(&[], 100), "");
+    }
+
+    /// Protects: jobs taken back are told with the worker they were taken from; many lost workers do not fill the screen.
+    #[test]
+    fn the_lost_are_told() {
+        let lost = worker(WorkerPresence::Gone, 5);
+        let text = in_words(std::slice::from_ref(&lost), 100);
+        assert_eq!(text, "worker 4242 on node7: lost 3s ago, 5 jobs taken back from it\n");
+        let many = in_words(&vec![lost; 40], 100);
+        assert_eq!(many, "40 workers were lost, and 200 jobs taken back from them\n");
+    }
+
+    /// Protects: no line is wider than the terminal.
+    #[test]
+    fn narrow_terminals_are_kept_to() {
+        for width in [20, 40, 80] {
+            let text = in_words(&[worker(WorkerPresence::Stopping, 2)], width);
+            assert!(text.lines().all(|line| line.chars().count() <= width), "{text}");
+        }
+    }
+}

@@ -1,0 +1,266 @@
+//! Takes over what another database has: to move a study, or to bring shards together.
+
+use std::collections::HashMap;
+
+use super::bulk::json;
+use super::engine::{Connection, Statement, query};
+use super::submit::{self, UPSERT_STUDY};
+use super::{JobState, NewJob, Queue, QueueError, studies};
+
+/// What was taken over.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Absorbed {
+    /// Studies of the other database.
+    pub studies: u64,
+    /// Their rows.
+    pub rows: u64,
+    /// Jobs that are new here.
+    pub added: u64,
+    /// Jobs that have their end from there: those that are new, and those that had none here.
+    pub ended: u64,
+    /// Jobs that were pending, running or cancelled there and have not ended here either.
+    pub open: u64,
+}
+
+/// Rows that are taken over at a time.
+const PAGE: i64 = 1_000;
+
+const STUDIES: &str = "
+    SELECT id, name, document, submitted_ms, cancelled_ms FROM studies
+    WHERE $1 IS NULL OR name = $1 ORDER BY id";
+
+/// Rows of a study with all that is known of their jobs.
+const ROWS: &str = "
+    SELECT m.ordinal, m.parameters, j.id, j.key, j.batch, j.priority, j.cost, p.payload
+    FROM study_jobs AS m
+    JOIN jobs AS j ON j.id = m.job_id
+    JOIN payloads AS p ON p.job_id = j.id
+    WHERE m.study_id = $1 AND m.ordinal >= $2
+    ORDER BY m.ordinal LIMIT $3";
+
+type RowColumns = (i64, String, i64, String, String, i64, f64, String);
+
+/// How far the jobs of the same rows are.
+const STATES: &str = "
+    SELECT j.key, j.state, j.attempt, j.crashes, j.created_ms, j.started_ms, j.note, j.label
+    FROM study_jobs AS m JOIN jobs AS j ON j.id = m.job_id
+    WHERE m.study_id = $1 AND m.ordinal >= $2 AND m.ordinal <= $3";
+
+type StateColumns = (String, String, i64, i64, i64, Option<i64>, Option<String>, Option<String>);
+
+const RESULTS: &str = "
+    SELECT j.key, r.attempt, r.record, r.error, r.wall_s, r.started_ms, r.finished_ms, r.provenance
+    FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = $1 AND ordinal >= $2 AND ordinal <= $3) AS m
+    JOIN jobs AS j ON j.id = m.job_id
+    JOIN results AS r ON r.job_id = j.id";
+
+type ResultColumns =
+    (String, i64, Option<String>, Option<String>, Option<f64>, Option<i64>, i64, Option<String>);
+
+const CHECKPOINTS: &str = "
+    SELECT j.key, c.attempt, c.bytes, c.saved_ms
+    FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = $1 AND ordinal >= $2 AND ordinal <= $3) AS m
+    JOIN jobs AS j ON j.id = m.job_id
+    JOIN checkpoints AS c ON c.job_id = j.id";
+
+/// What is here of the same keys.
+const HERE: Statement = Statement::each(
+    "SELECT j.key, j.state, j.attempt FROM json_each($1) AS e CROSS JOIN jobs AS j ON j.key = e.value",
+    "SELECT j.key, j.state, j.attempt
+     FROM json_array_elements_text($1::json) AS e (key) JOIN jobs AS j ON j.key = e.key",
+);
+
+const SET_STATES: Statement = Statement::each(
+    "
+    UPDATE jobs
+    SET state = e.value ->> 1, attempt = e.value ->> 2, crashes = e.value ->> 3, created_ms = e.value ->> 4,
+        started_ms = e.value ->> 5, note = e.value ->> 6, label = e.value ->> 7
+    FROM json_each($1) AS e
+    WHERE jobs.key = e.value ->> 0",
+    "
+    UPDATE jobs
+    SET state = e.value ->> 1, attempt = (e.value ->> 2)::bigint, crashes = (e.value ->> 3)::bigint,
+        created_ms = (e.value ->> 4)::bigint, started_ms = (e.value ->> 5)::bigint, note = e.value ->> 6,
+        label = e.value ->> 7
+    FROM json_array_elements($1::json) AS e (value)
+    WHERE jobs.key = e.value ->> 0",
+);
+
+/// One by one: JSON has numbers to 15 digits in one of the databases, and a time is to stay what it is.
+const SET_RESULT: &str = "
+    INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)
+    SELECT id, $2, $3, $4, $5, $6, $7, $8 FROM jobs WHERE key = $1
+    ON CONFLICT DO NOTHING";
+
+const SET_CHECKPOINT: &str = "
+    INSERT INTO checkpoints (job_id, attempt, bytes, saved_ms)
+    SELECT id, $2, $3, $4 FROM jobs WHERE key = $1 AND state = 'pending'
+    ON CONFLICT DO NOTHING";
+
+const CANCELLED: &str = "UPDATE studies SET cancelled_ms = $2 WHERE id = $1";
+
+/// A study there.
+type StudyColumns = (i64, String, String, i64, Option<i64>);
+
+/// A part of a study there: its rows, and all that is known of their jobs.
+struct Page {
+    rows: Vec<(i64, NewJob)>,
+    states: Vec<StateColumns>,
+    results: Vec<ResultColumns>,
+    checkpoints: Vec<(String, i64, Vec<u8>, i64)>,
+}
+
+impl Queue {
+    /// Takes over the studies of another database, or one of them: rows, jobs, results of all attempts, checkpoints.
+    ///
+    /// Nothing that is here is lost: a job that is done here stays so, one that has not ended here takes its end from
+    /// there, and one that failed here and is done there is done. What runs there is pending here. Doing it again
+    /// changes nothing. Each part of a study is taken over whole or not at all; after an error, do it again.
+    ///
+    /// # Errors
+    /// [`QueueError::UnknownStudy`] if the other database has no such study, [`QueueError::OtherStudy`] if there is
+    /// another one of its name here; or if one of the databases fails.
+    pub async fn absorb(&mut self, other: &mut Self, study: Option<&str>) -> Result<Absorbed, QueueError> {
+        if let Some(name) = study {
+            studies::require(&mut other.connection, name).await?;
+        }
+        let found: Vec<StudyColumns> = query(STUDIES).bind(study).all(&mut other.connection).await?;
+        // All before the first, so that it is all or nothing.
+        for (_, name, document, ..) in &found {
+            let here = self.study(name).await?;
+            if here.is_some_and(|here| here.document != *document) {
+                return Err(QueueError::OtherStudy { name: name.clone() });
+            }
+        }
+        let mut absorbed = Absorbed::default();
+        for study in &found {
+            self.absorb_study(other, study, &mut absorbed).await?;
+        }
+        Ok(absorbed)
+    }
+
+    async fn absorb_study(
+        &mut self,
+        other: &mut Self,
+        (there_id, name, document, submitted_ms, cancelled_ms): &StudyColumns,
+        absorbed: &mut Absorbed,
+    ) -> Result<(), QueueError> {
+        let here_id = self
+            .write(async |connection, _| {
+                if let Some(id) = studies::find(connection, name).await? {
+                    return Ok(id);
+                }
+                let id: i64 = query(UPSERT_STUDY)
+                    .bind(name)
+                    .bind(document)
+                    .bind(*submitted_ms)
+                    .scalar(connection)
+                    .await?;
+                query(CANCELLED).bind(id).bind(*cancelled_ms).run(connection).await?;
+                Ok(id)
+            })
+            .await?;
+        absorbed.studies += 1;
+        let mut next = 0;
+        while let Some(page) = read(&mut other.connection, *there_id, next).await? {
+            next = page.rows.last().map_or(next, |(ordinal, _)| ordinal + 1);
+            let taken = self
+                .write(async |connection, now_ms| write(connection, here_id, &page, now_ms).await)
+                .await?;
+            absorbed.rows += page.rows.len() as u64;
+            absorbed.added += taken.added;
+            absorbed.ended += taken.ended;
+            absorbed.open += taken.open;
+        }
+        Ok(())
+    }
+}
+
+async fn read(connection: &mut Connection, study_id: i64, from: i64) -> Result<Option<Page>, QueueError> {
+    let rows: Vec<RowColumns> = query(ROWS).bind(study_id).bind(from).bind(PAGE).all(connection).await?;
+    let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Ok(None) };
+    let (first, last) = (first.0, last.0);
+    let about = |statement: &'static str| query(statement).bind(study_id).bind(first).bind(last);
+    let row = |(ordinal, parameters, _, key, batch, priority, cost, payload): RowColumns| {
+        (ordinal, NewJob { key, payload, parameters, cost, batch, priority: Some(priority) })
+    };
+    Ok(Some(Page {
+        rows: rows.into_iter().map(row).collect(),
+        // First of all: what ends meanwhile is taken over as if it had not ended.
+        states: about(STATES).all(connection).await?,
+        results: about(RESULTS).all(connection).await?,
+        checkpoints: about(CHECKPOINTS).all(connection).await?,
+    }))
+}
+
+async fn write(
+    connection: &mut Connection,
+    study_id: i64,
+    page: &Page,
+    now_ms: i64,
+) -> Result<Absorbed, QueueError> {
+    let keys: Vec<&str> = page.states.iter().map(|state| state.0.as_str()).collect();
+    let here: Vec<(String, String, i64)> = query(HERE).bind(json(&keys)).all(connection).await?;
+    let here: HashMap<String, (JobState, i64)> = here
+        .into_iter()
+        .map(|(key, state, attempt)| (key, (JobState::from_column(&state), attempt)))
+        .collect();
+
+    let rows: Vec<submit::Row<'_>> = page.rows.iter().map(|(ordinal, job)| (*ordinal, job)).collect();
+    let changed = submit::changed(connection, study_id, &rows).await?;
+    submit::delete_rows(connection, study_id, &changed).await?;
+    submit::insert(connection, study_id, &changed, now_ms).await?;
+
+    // For each job that is taken over, the attempts here that come before those there.
+    let mut taken: HashMap<&str, i64> = HashMap::new();
+    let mut states = Vec::new();
+    let mut absorbed = Absorbed::default();
+    for (key, state, attempt, crashes, created_ms, started_ms, note, label) in &page.states {
+        let there = match JobState::from_column(state) {
+            // Nobody runs it here.
+            JobState::Running => JobState::Pending,
+            state => state,
+        };
+        let before = match here.get(key.as_str()) {
+            None => 0,
+            Some((state, attempts)) if is_better(there, *state) => *attempts,
+            Some((state, _)) => {
+                absorbed.open += u64::from(!is_end(*state));
+                continue;
+            }
+        };
+        if taken.insert(key, before).is_some() {
+            continue;
+        }
+        absorbed.added += u64::from(!here.contains_key(key.as_str()));
+        absorbed.ended += u64::from(is_end(there));
+        absorbed.open += u64::from(!is_end(there));
+        states.push((key, there.as_str(), before + attempt, crashes, created_ms, started_ms, note, label));
+    }
+    query(SET_STATES).bind(json(&states)).run(connection).await?;
+    for (key, attempt, record, error, wall_s, started_ms, finished_ms, provenance) in &page.results {
+        let Some(before) = taken.get(key.as_str()) else { continue };
+        let result =
+            query(SET_RESULT).bind(key).bind(before + attempt).bind(record).bind(error).bind(*wall_s);
+        result.bind(*started_ms).bind(*finished_ms).bind(provenance).run(connection).await?;
+    }
+    for (key, attempt, bytes, saved_ms) in &page.checkpoints {
+        let Some(before) = taken.get(key.as_str()) else { continue };
+        let checkpoint = query(SET_CHECKPOINT).bind(key).bind(before + attempt).bind(bytes.as_slice());
+        checkpoint.bind(*saved_ms).run(connection).await?;
+    }
+    Ok(absorbed)
+}
+
+fn is_end(state: JobState) -> bool {
+    matches!(state, JobState::Done | JobState::Failed)
+}
+
+/// Whether a job's state there says more than its state here. What runs here is its worker's.
+fn is_better(there: JobState, here: JobState) -> bool {
+    match here {
+        JobState::Pending | JobState::Cancelled => is_end(there),
+        JobState::Failed => there == JobState::Done,
+        JobState::Running | JobState::Done => false,
+    }
+}
