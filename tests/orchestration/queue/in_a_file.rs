@@ -2,6 +2,8 @@
 
 const ENGINE: crate::support::Engine = crate::support::Engine::Sqlite;
 
+#[path = "absorb.rs"]
+mod absorb;
 #[path = "claims.rs"]
 mod claims;
 #[path = "exchange.rs"]

@@ -3,6 +3,8 @@
 
 const ENGINE: crate::support::Engine = crate::support::Engine::Postgres;
 
+#[path = "absorb.rs"]
+mod absorb;
 #[path = "claims.rs"]
 mod claims;
 #[path = "exchange.rs"]

@@ -1,0 +1,264 @@
+#!/usr/bin/env python3
+"""Workers on several hosts with links that are cut: nothing may be lost, and nothing recorded twice.
+
+    cargo build --release
+    sudo python3 scripts/network.py [--program FILE] [--jobs 160] [--keep]
+
+Makes four hosts as network namespaces with names of their own, joined by a switch: one with PostgreSQL, three with a
+worker each. While a study is worked on,
+
+  * the link of the first worker is cut for longer than a lease: its jobs are taken back and done by others, and when the
+    link is back the worker goes on, what it had finished meanwhile being refused or stored, never both,
+  * the link of the second is cut again and again for moments, so that answers are lost in the middle of a transaction,
+  * the link of the third is cut for less than a lease: nothing is taken from it,
+  * the server itself is stopped at once and started again.
+
+Afterwards every job must be done with one result, and the export must be that of an undisturbed run, byte for byte but
+for the run times.
+
+Needs root, iproute2 and PostgreSQL; without them it ends with 77. Only Python's standard library.
+"""
+
+import argparse
+import csv
+import io
+import json
+import os
+import pathlib
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+SKIPPED = 77
+LEASE_S = 8
+PORT = 5432
+SERVER = "10.77.0.1"
+PATIENCE_S = 600.0
+
+
+def tell(text):
+    print(f"{time.strftime('%H:%M:%S')} {text}", flush=True)
+
+
+def check(holds, text):
+    if not holds:
+        raise SystemExit(f"FAILED: {text}")
+
+
+def run(*command, **options):
+    done = subprocess.run(command, capture_output=True, text=True, **options)
+    check(done.returncode == 0, f"{' '.join(map(str, command))} ended with {done.returncode}: {done.stderr}")
+    return done.stdout
+
+
+def timeless(text):
+    """An export without run times."""
+    rows = list(csv.reader(io.StringIO(text)))
+    column = rows[0].index("wall_s")
+    return [row[:column] + row[column + 1 :] for row in rows]
+
+
+class Network:
+    """Hosts on a switch."""
+
+    def __init__(self):
+        self.prefix = f"tribo{os.getpid()}"
+        self.switch = f"{self.prefix}-switch"
+        self.hosts = {}
+
+    def __enter__(self):
+        run("ip", "netns", "add", self.switch)
+        run("ip", "-n", self.switch, "link", "add", "switch", "type", "bridge")
+        run("ip", "-n", self.switch, "link", "set", "switch", "up")
+        return self
+
+    def __exit__(self, *_):
+        for space in [*self.hosts.values(), self.switch]:
+            subprocess.run(["ip", "netns", "delete", space], check=False)
+
+    def add(self, host, address):
+        space = self.hosts[host] = f"{self.prefix}-{host}"
+        run("ip", "netns", "add", space)
+        run("ip", "-n", space, "link", "set", "lo", "up")
+        run("ip", "-n", space, "link", "add", "eth0", "type", "veth", "peer", "name", host, "netns", self.switch)
+        run("ip", "-n", space, "address", "add", f"{address}/24", "dev", "eth0")
+        run("ip", "-n", space, "link", "set", "eth0", "up")
+        run("ip", "-n", self.switch, "link", "set", host, "master", "switch", "up")
+
+    def on(self, host, *command):
+        """A command on a host: in its network, and under its name."""
+        name = 'printf %s "$0" > /proc/sys/kernel/hostname && exec "$@"'
+        return ["ip", "netns", "exec", self.hosts[host], "unshare", "--uts", "sh", "-c", name, host, *command]
+
+    def cut(self, host):
+        # On the side of the switch: the host does not see that its link is gone, and packets vanish.
+        run("ip", "-n", self.switch, "link", "set", host, "nomaster")
+
+    def mend(self, host):
+        run("ip", "-n", self.switch, "link", "set", host, "master", "switch")
+
+
+class Sweep:
+    def __init__(self, network, folder, options):
+        self.network, self.folder = network, folder
+        self.program = str(pathlib.Path(options.program).resolve())
+        self.workers = {}
+        self.url = f"postgres://tribosweep@{SERVER}:{PORT}/postgres"
+        speeds = [round(2.0 + 0.5 * k, 3) for k in range(max(1, options.jobs // 4))]
+        study = {
+            "name": "apart",
+            "scene": {"pin": {"elements": [8, 10, 6]}, "clamp": {"width_m": 0.002}},
+            "run": {"limit_s": 0.5, "stop_early": False},
+            "grid": {"mu": [0.1, 0.2, 0.3, 0.4], "omega_rpm": speeds},
+        }
+        (folder / "study.json").write_text(json.dumps(study))
+
+    def call(self, *arguments):
+        """A command on the server's host."""
+        return run(*self.network.on("server", self.program, *arguments, "--db", self.url), cwd=self.folder)
+
+    def undisturbed(self):
+        run(self.program, "run", "study.json", "--db", "reference.db", cwd=self.folder)
+        return timeless(run(self.program, "export", "apart", "--db", "reference.db", cwd=self.folder))
+
+    def start(self, host):
+        log = open(self.folder / f"{host}.log", "w")
+        command = [self.program, "work", "--db", self.url, "--threads", "1", "--checkpoint-every", "1"]
+        # The other end of the work: nobody waits for more than what is left.
+        command += ["--lease", f"{LEASE_S}s", "--idle-exit", "1s"]
+        self.workers[host] = subprocess.Popen(
+            self.network.on(host, *command), cwd=self.folder, stdout=log, stderr=subprocess.STDOUT
+        )
+
+    def status(self):
+        return json.loads(self.call("status", "apart", "--json"))
+
+    def worker(self, host):
+        return next(worker for worker in self.status()["workers"] if worker["host"] == host)
+
+    def until(self, what, holds, patience_s=PATIENCE_S):
+        begun = time.monotonic()
+        while not holds():
+            check(time.monotonic() - begun < patience_s, f"waited too long for {what}")
+            time.sleep(0.2)
+
+    def sql(self, statement):
+        command = ["psql", "--no-psqlrc", "--tuples-only", "--no-align", self.url, "--command", statement]
+        return run(*self.network.on("server", *command)).strip()
+
+
+def disturb(sweep, server):
+    network = sweep.network
+    sweep.until("all workers to have finished something", lambda: all(
+        sweep.worker(host)["finished"] > 0 for host in sweep.workers
+    ))  # fmt: skip
+
+    network.cut("first")
+    network.cut("third")
+    tell("the links of the first and the third worker are cut")
+    time.sleep(LEASE_S / 2)
+    network.mend("third")
+    tell(f"the third's is back after {LEASE_S / 2} s")
+    sweep.until("jobs of the first worker to be taken back", lambda: sweep.worker("first")["taken_back"] > 0, 60)
+    tell(f"{sweep.worker('first')['taken_back']} jobs of the first worker are taken back")
+    before = sweep.worker("first")["finished"]
+
+    random.seed(7)
+    for _ in range(12):
+        time.sleep(random.uniform(0.2, 1.5))
+        network.cut("second")
+        time.sleep(random.uniform(0.1, 2.0))
+        network.mend("second")
+    tell("the second's was cut twelve times for moments")
+    network.mend("first")
+    sweep.until("the first worker to go on", lambda: sweep.worker("first")["finished"] > before, 120)
+    check(sweep.worker("first")["presence"] == "working", "the first worker goes on and is not seen")
+    tell("the first's is back, and it goes on")
+    for host in ["second", "third"]:
+        check(sweep.worker(host)["taken_back"] == 0, f"jobs were taken from the {host}, which was never away for long")
+
+    # At once: what clients see is a server that is gone in the middle of whatever it did.
+    postgres = ["setpriv", "--reuid", "postgres", "--regid", "postgres", "--init-groups", "--"]
+    tool = shutil.which("pg_ctl") or str(max(pathlib.Path("/usr/lib/postgresql").glob("*/bin/pg_ctl")))
+    control = [*postgres, tool, "--pgdata", str(server / "data"), "--wait"]
+    run(*network.on("server", *control, "--mode", "immediate", "stop"), cwd=server)
+    time.sleep(3)
+    run(*network.on("server", *control, "--log", str(server / "server.log"), "start"), cwd=server)
+    tell("the server crashed and is back")
+
+
+def compare(sweep, reference):
+    for host, worker in sweep.workers.items():
+        worker.wait(PATIENCE_S)
+        log = (sweep.folder / f"{host}.log").read_text()
+        check(worker.returncode == 0, f"the worker on {host} ended with {worker.returncode}: {log}")
+    jobs = len(reference) - 1
+    exported = timeless(sweep.call("export", "apart"))
+    check(exported == reference, "the export is another one than that of an undisturbed run")
+    results = int(sweep.sql("SELECT COUNT(*) FROM tribosweep.results"))
+    attempts, running = sweep.sql(
+        "SELECT SUM(attempt), COUNT(*) FILTER (WHERE state <> 'done') FROM tribosweep.jobs"
+    ).split("|")
+    check((results, int(running)) == (jobs, 0), f"{results} results of {jobs} jobs, {running} not done")
+    left = sweep.sql("SELECT COUNT(*) FROM tribosweep.checkpoints")
+    check(left == "0", f"{left} checkpoints are left")
+    tell(f"{jobs} jobs done in {attempts} attempts, one result each, the same as undisturbed")
+    for host in sweep.workers:
+        log = (sweep.folder / f"{host}.log").read_text()
+        tell(f"{host}: {log.count('cannot be reached')} times without the server")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--program", default=str(ROOT / "target/release/tribosweep"))
+    parser.add_argument("--jobs", type=int, default=160, help="a multiple of four")
+    parser.add_argument("--keep", action="store_true", help="keep the folder with all logs")
+    options = parser.parse_args()
+    os.environ.pop("TRIBOSWEEP_DB", None)
+    missing = [tool for tool in ["ip", "unshare", "setpriv", "psql"] if shutil.which(tool) is None]
+    if missing or os.geteuid() != 0:
+        why = f"no {', '.join(missing)}: apt-get install iproute2 postgresql" if missing else "it needs root"
+        print(f"skipped: {why}", file=sys.stderr)
+        return SKIPPED
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
+    folder = pathlib.Path(tempfile.mkdtemp(prefix="tribosweep-network-"))
+    os.chmod(folder, 0o755)
+    server = folder / "server"
+    try:
+        with Network() as network:
+            network.add("server", SERVER)
+            for number, host in enumerate(["first", "second", "third"]):
+                network.add(host, f"10.77.0.{11 + number}")
+            postgres = str(ROOT / "scripts/postgres.sh")
+            start = [postgres, "start", str(server), str(PORT), SERVER, "10.77.0.0/24"]
+            run(*network.on("server", *start))
+            sweep = Sweep(network, folder, options)
+            try:
+                reference = sweep.undisturbed()
+                tell(f"undisturbed run: {len(reference) - 1} jobs")
+                sweep.call("submit", "study.json")
+                for host in ["first", "second", "third"]:
+                    sweep.start(host)
+                disturb(sweep, server)
+                compare(sweep, reference)
+            finally:
+                for worker in sweep.workers.values():
+                    if worker.poll() is None:
+                        worker.kill()
+                run(*network.on("server", postgres, "stop", str(server)))
+    finally:
+        if options.keep:
+            print(f"kept: {folder}")
+        else:
+            shutil.rmtree(folder, ignore_errors=True)
+    print("all held")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

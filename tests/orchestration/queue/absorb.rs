@@ -1,0 +1,162 @@
+//! From one database into another.
+
+use tribosweep::queue::{Absorbed, JobState, QueueError, Scope, Shard, StudyRow};
+
+use super::ENGINE;
+use crate::support::{Sandbox, claim, counts, done, failed, finish, job, labelled, of, study};
+
+/// What a report shows of rows, without how often their jobs were started.
+fn ends(rows: &[StudyRow]) -> Vec<(u64, &str, JobState, Option<&str>, Option<&str>)> {
+    let end = |row: &StudyRow| (row.ordinal, row.state);
+    rows.iter()
+        .map(|row| (end(row).0, row.key.as_str(), end(row).1, row.record.as_deref(), row.error.as_deref()))
+        .collect()
+}
+
+/// Protects: a study that is copied, into either kind of database and back, is the same: rows, records, errors, times to
+/// the last bit, attempts, notes, priorities, checkpoints. What runs there waits here. Doing it again changes nothing.
+#[tokio::test]
+async fn a_copy_is_the_same() {
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let (source, back) = (Sandbox::new(), Sandbox::new());
+    source.clock.set(1_000);
+    let mut from = source.open().await;
+    let mut own = study("a", &["x", "y", "x", "z", "w", "v"]);
+    own.jobs[1].priority = Some(7);
+    own.jobs[3].batch = "b".into();
+    from.submit(&own).await.unwrap();
+    from.submit(&study("b", &["x", "other"])).await.unwrap();
+    claim(&mut from, Scope::All, 1).await;
+    assert!(finish(&mut from, "y", 1, labelled("record \u{e9} \"quoted\"\n", "periodic")).await);
+    for attempt in [1, 2] {
+        let claimed = claim(&mut from, Scope::All, 1).await;
+        assert_eq!((claimed[0].key.as_str(), claimed[0].attempt), ("x", attempt));
+        let outcome =
+            if attempt == 1 { tribosweep::queue::FinishedOutcome::Released } else { failed("diverged") };
+        assert!(finish(&mut from, "x", attempt, outcome).await);
+    }
+    let running = claim(&mut from, of("a"), 2).await;
+    assert!(from.save_checkpoint(&running[0].key, 1, &[0, 255, 7]).await.unwrap());
+
+    let mut to = sandbox.open().await;
+    let absorbed = to.absorb(&mut from, None).await.unwrap();
+    assert_eq!(absorbed, Absorbed { studies: 2, rows: 8, added: 6, ended: 2, open: 4 });
+    let mut again = back.open().await;
+    again.absorb(&mut to, Some("a")).await.unwrap();
+    for target in [&mut to, &mut again] {
+        for _ in 0..2 {
+            let mut expected = from.rows("a").await.unwrap();
+            for row in expected.iter_mut().filter(|row| row.state == JobState::Running) {
+                row.state = JobState::Pending;
+            }
+            assert_eq!(target.rows("a").await.unwrap(), expected);
+            assert_eq!(target.study("a").await.unwrap(), from.study("a").await.unwrap());
+            for key in ["x", "y", "z"] {
+                let mut there = from.jobs(key, 1).await.unwrap().remove(0);
+                let here = target.jobs(key, 1).await.unwrap().remove(0);
+                (there.state, there.studies) = (here.state, here.studies.clone());
+                assert_eq!(here, there);
+            }
+            // Nothing comes of it a second time.
+            let absorbed = target.absorb(&mut from, Some("a")).await.unwrap();
+            assert_eq!((absorbed.added, absorbed.ended), (0, 0));
+        }
+    }
+    let claimed = claim(&mut to, Scope::All, 9).await;
+    let kept = claimed.iter().find(|job| job.key == running[0].key).unwrap();
+    assert_eq!((kept.attempt, kept.checkpoint.as_deref()), (2, Some(&[0, 255, 7][..])));
+    assert_eq!(kept.payload, format!("payload of {}", kept.key));
+}
+
+/// Protects: shards are disjoint and together the whole study in its order, however many there are; merged, each job has
+/// the end that one of them found.
+#[tokio::test]
+async fn shards_make_up_the_whole() {
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let whole = study("a", &["j0", "j1", "j2", "j3", "j4", "j5", "j6"]);
+    let mut merged = sandbox.open().await;
+    for index in 0..3 {
+        let part = Sandbox::new();
+        let mut queue = part.open().await;
+        let submitted = queue.submit_shard(&whole, Shard { index, of: 3 }).await.unwrap();
+        assert_eq!((submitted.rows, submitted.added), ([3, 2, 2][index as usize], [3, 2, 2][index as usize]));
+        let rows = queue.rows("a").await.unwrap();
+        assert!(rows.iter().all(|row| row.ordinal % 3 == index), "{rows:?}");
+        // Submitted again, it is the same shard.
+        assert_eq!(queue.submit_shard(&whole, Shard { index, of: 3 }).await.unwrap().added, 0);
+        assert_eq!(queue.rows("a").await.unwrap(), rows);
+        for job in claim(&mut queue, Scope::All, 9).await {
+            assert!(finish(&mut queue, &job.key, 1, done(&format!("record of {}", job.key))).await);
+        }
+        merged.absorb(&mut queue, None).await.unwrap();
+    }
+    assert_eq!(merged.counts(&of("a")).await.unwrap(), counts(0, 0, 7, 0));
+    let rows = merged.rows("a").await.unwrap();
+    for (place, row) in (0..).zip(&rows) {
+        let key = format!("j{place}");
+        assert_eq!((row.ordinal, &row.key), (place, &key));
+        assert_eq!(row.record, Some(format!("record of {key}")));
+    }
+}
+
+/// Protects: the better end stays, whichever database it is in, and nothing that runs here is touched.
+#[tokio::test]
+async fn the_better_end_stays() {
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let source = Sandbox::new();
+    let (mut here, mut there) = (sandbox.open().await, source.open().await);
+    let keys =
+        ["done, failed", "failed, done", "pending, failed", "running, done", "done, done", "new, done"];
+    here.submit(&study("a", &keys[..5])).await.unwrap();
+    let mut of_there = study("a", &keys);
+    of_there.document = "document of a".into();
+    there.submit(&of_there).await.unwrap();
+    for (queue, place, record) in [(&mut here, 0, "here"), (&mut there, 1, "there")] {
+        for job in claim(queue, Scope::All, 9).await {
+            match job.key.split(", ").nth(place).unwrap() {
+                _ if job.key.starts_with("new") && place == 0 => {}
+                "done" => assert!(finish(queue, &job.key, 1, done(record)).await),
+                "failed" => assert!(finish(queue, &job.key, 1, failed(record)).await),
+                "pending" => {
+                    let unstarted = tribosweep::queue::FinishedOutcome::Unstarted;
+                    assert!(finish(queue, &job.key, 1, unstarted).await);
+                }
+                _ => {}
+            }
+        }
+    }
+    let absorbed = here.absorb(&mut there, None).await.unwrap();
+    assert_eq!(absorbed, Absorbed { studies: 1, rows: 6, added: 1, ended: 3, open: 1 });
+    let rows = here.rows("a").await.unwrap();
+    let expected = [
+        (0, keys[0], JobState::Done, Some("here"), None),
+        (1, keys[1], JobState::Done, Some("there"), None),
+        (2, keys[2], JobState::Failed, None, Some("there")),
+        (3, keys[3], JobState::Running, None, None),
+        (4, keys[4], JobState::Done, Some("here"), None),
+        (5, keys[5], JobState::Done, Some("there"), None),
+    ];
+    assert_eq!(ends(&rows), expected);
+    assert_eq!(rows[1].attempt, 2, "the failed attempt here came before");
+    assert!(finish(&mut here, keys[3], 1, done("here")).await, "it was this worker's all the time");
+}
+
+/// Protects: a study of the same name that is another one is refused before anything is written.
+#[tokio::test]
+async fn another_study_of_the_name_is_refused() {
+    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let source = Sandbox::new();
+    let (mut here, mut there) = (sandbox.open().await, source.open().await);
+    here.submit(&study("b", &["x"])).await.unwrap();
+    there.submit(&study("a", &["y"])).await.unwrap();
+    let mut other = study("b", &["z"]);
+    other.document = "another one".into();
+    other.jobs.push(job("w", 2.0));
+    there.submit(&other).await.unwrap();
+    let error = here.absorb(&mut there, None).await.unwrap_err();
+    assert!(matches!(&error, QueueError::OtherStudy { name } if name == "b"), "{error:?}");
+    assert_eq!(here.studies().await.unwrap().len(), 1);
+    assert_eq!(here.counts(&Scope::All).await.unwrap(), counts(1, 0, 0, 0));
+    let error = here.absorb(&mut there, Some("c")).await.unwrap_err();
+    assert!(matches!(error, QueueError::UnknownStudy { .. }), "{error:?}");
+}

@@ -1,0 +1,182 @@
+//! Connections that are lost in the middle of an exchange. Between the queue and the server there is a relay that cuts
+//! them where the test says.
+
+use std::io::{Read, Write};
+use std::net::{Shutdown, TcpListener, TcpStream};
+use std::sync::{Arc, Mutex};
+use std::thread;
+
+use tribosweep::queue::{Claim, Clock, Finished, Location, Queue, QueueError, Scope, TakenBack, Worker};
+
+use crate::support::{Engine, Sandbox, counts, done, foreign_worker, keys, study};
+
+/// When the relay cuts, once.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Cut {
+    Never,
+    /// Instead of handing a COMMIT on.
+    BeforeCommit,
+    /// Instead of handing the answer to a COMMIT on.
+    AfterCommit,
+    /// Whatever comes next from the client.
+    Now,
+}
+
+/// A relay to the server; gives its port.
+fn relay(server: String, cut: Arc<Mutex<Cut>>) -> u16 {
+    let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+    let port = listener.local_addr().unwrap().port();
+    thread::spawn(move || {
+        for client in listener.incoming() {
+            let (client, server) = (client.unwrap(), TcpStream::connect(&server).unwrap());
+            let cut = Arc::clone(&cut);
+            thread::spawn(move || hand_on(client, server, &cut));
+        }
+    });
+    port
+}
+
+fn hand_on(mut client: TcpStream, mut server: TcpStream, cut: &Mutex<Cut>) {
+    let (mut answers, mut back) = (server.try_clone().unwrap(), client.try_clone().unwrap());
+    let is_lost = Arc::new(Mutex::new(false));
+    let is_lost_there = Arc::clone(&is_lost);
+    thread::spawn(move || {
+        let mut bytes = [0; 65_536];
+        while let Ok(count @ 1..) = answers.read(&mut bytes) {
+            if *is_lost_there.lock().unwrap() || back.write_all(&bytes[..count]).is_err() {
+                break;
+            }
+        }
+        let _ = back.shutdown(Shutdown::Both);
+    });
+    let mut bytes = [0; 65_536];
+    while let Ok(count @ 1..) = client.read(&mut bytes) {
+        let is_commit = bytes[..count].windows(6).any(|window| window == b"COMMIT");
+        let mut cut = cut.lock().unwrap();
+        match *cut {
+            Cut::Now => {
+                *cut = Cut::Never;
+                break;
+            }
+            Cut::BeforeCommit if is_commit => {
+                *cut = Cut::Never;
+                break;
+            }
+            Cut::AfterCommit if is_commit => {
+                *cut = Cut::Never;
+                *is_lost.lock().unwrap() = true;
+            }
+            _ => {}
+        }
+        server.write_all(&bytes[..count]).unwrap();
+    }
+    let _ = client.shutdown(Shutdown::Both);
+    let _ = server.shutdown(Shutdown::Both);
+}
+
+struct Relayed {
+    sandbox: Sandbox,
+    cut: Arc<Mutex<Cut>>,
+    location: Location,
+}
+
+impl Relayed {
+    async fn new() -> Option<Self> {
+        let sandbox = Sandbox::of(Engine::Postgres).await?;
+        let Location::Server(server) = sandbox.location() else { unreachable!() };
+        let (scheme, rest) = server.url().split_once("://").unwrap();
+        let (authority, database) = rest.rsplit_once('/').unwrap();
+        let (user, address) = authority.rsplit_once('@').unwrap();
+        let cut = Arc::new(Mutex::new(Cut::Never));
+        let port = relay(address.to_owned(), Arc::clone(&cut));
+        let url = format!("{scheme}://{user}@127.0.0.1:{port}/{database}");
+        Some(Self { sandbox, cut, location: Location::parse(url.into()).unwrap() })
+    }
+
+    async fn open(&self) -> Queue {
+        let mut queue = Queue::open(self.location.clone(), self.sandbox.clock.clock()).await.unwrap();
+        queue.register(&Worker::this_process(1, "test", "provenance")).await.unwrap();
+        queue
+    }
+
+    fn cut(&self, when: Cut) {
+        *self.cut.lock().unwrap() = when;
+    }
+}
+
+fn end(key: &str) -> Finished {
+    Finished { key: key.into(), attempt: 1, outcome: done(&format!("record of {key}")), wall_s: 0.1 }
+}
+
+const TWO: [Claim; 1] = [Claim { scope: Scope::All, limit: 2, batch: None }];
+
+/// Protects: whether the transaction whose answer was lost was kept or not, the same exchange done again stores each end
+/// once and refuses none, and the worker has in hand just what it was told: what it was given without hearing of it is
+/// not lost to it, and nobody else has it.
+#[tokio::test]
+async fn an_exchange_in_doubt_is_done_once() {
+    for when in [Cut::BeforeCommit, Cut::AfterCommit, Cut::Now] {
+        let Some(relayed) = Relayed::new().await else { return };
+        let mut queue = relayed.open().await;
+        queue.submit(&study("a", &["p", "q", "r", "s", "t", "u"])).await.unwrap();
+        let first = queue.exchange(&[], &TWO).await.unwrap().claimed.remove(0);
+        assert_eq!(keys(&first), ["p", "q"]);
+
+        relayed.cut(when);
+        let error = queue.exchange(&[end("p")], &TWO).await.unwrap_err();
+        assert!(matches!(error, QueueError::Unreachable(_)), "{when:?}: {error:?}");
+        let mut witness = relayed.sandbox.open_as(&foreign_worker()).await;
+        let kept = if when == Cut::AfterCommit { counts(2, 3, 1, 0) } else { counts(4, 2, 0, 0) };
+        assert_eq!(witness.counts(&Scope::All).await.unwrap(), kept, "{when:?}");
+
+        let again = queue.exchange(&[end("p")], &TWO).await.unwrap();
+        assert!(again.refused.is_empty(), "{when:?}: {:?}", again.refused);
+        assert_eq!(keys(&again.claimed[0]), ["r", "s"]);
+        assert!(again.claimed[0].iter().all(|job| job.attempt == 1), "{when:?}: {:?}", again.claimed);
+        assert_eq!(witness.counts(&Scope::All).await.unwrap(), counts(2, 3, 1, 0), "{when:?}");
+
+        let rest = queue.exchange(&["q", "r", "s"].map(end), &TWO).await.unwrap();
+        assert!(rest.refused.is_empty());
+        assert_eq!(keys(&rest.claimed[0]), ["t", "u"]);
+        assert!(queue.exchange(&["t", "u"].map(end), &[]).await.unwrap().refused.is_empty());
+        assert_eq!(relayed.sandbox.number("SELECT COUNT(*) FROM results").await, 6);
+        assert_eq!(relayed.sandbox.number("SELECT CAST(SUM(attempt) AS BIGINT) FROM jobs").await, 6);
+    }
+}
+
+/// Protects: what a worker finished while it could not be reached for longer than its lease is refused if somebody else
+/// has done it meanwhile, and stored if not; then it works on, and is seen to.
+#[tokio::test]
+async fn who_was_away_too_long_goes_on() {
+    let Some(relayed) = Relayed::new().await else { return };
+    let location = relayed.location.clone();
+    let mut away = Queue::open(location, relayed.sandbox.clock.clock()).await.unwrap();
+    away.register(&foreign_worker()).await.unwrap();
+    away.submit(&study("a", &["p", "q", "r"])).await.unwrap();
+    away.exchange(&[], &TWO).await.unwrap();
+    let mut other = relayed.sandbox.open().await;
+    relayed.sandbox.clock.set(120_000);
+    assert_eq!(other.take_back().await.unwrap(), TakenBack { pending: 2, failed: 0 });
+    let lost = other.workers().await.unwrap();
+    assert!(lost.iter().any(|worker| worker.host == "elsewhere" && worker.taken_back == 2), "{lost:?}");
+    assert_eq!(keys(&other.exchange(&[], &TWO).await.unwrap().claimed[0]), ["p", "q"]);
+
+    relayed.cut(Cut::Now);
+    assert!(away.heartbeat().await.is_err());
+    assert_eq!(away.heartbeat().await.unwrap(), 0);
+    let late = away.exchange(&[end("p"), end("q")], &TWO).await.unwrap();
+    assert_eq!(late.refused, ["p", "q"]);
+    assert_eq!(keys(&late.claimed[0]), ["r"]);
+    assert_eq!(other.take_back().await.unwrap(), TakenBack::default(), "it is there again");
+    assert_eq!(other.alive().await.unwrap().workers, 2);
+}
+
+/// Protects: a server that is not there is an error that says so, at once, with the name and without the password.
+#[tokio::test]
+async fn a_server_that_is_not_there_is_named() {
+    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let location = Location::parse(format!("postgres://ada:secret@127.0.0.1:{port}/x").into()).unwrap();
+    let error = Queue::open(location, Clock::OfDatabase).await.unwrap_err().to_string();
+    assert!(error.contains(&format!("postgres://ada@127.0.0.1:{port}/x")), "{error}");
+    assert!(error.contains("no answer") && !error.contains("secret"), "{error}");
+}
