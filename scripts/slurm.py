@@ -2,7 +2,7 @@
 """Runs the job array of `tribosweep slurm` on a real Slurm cluster and disturbs it in every way that a site does.
 
     cargo build --release
-    sudo python3 scripts/slurm.py [--program FILE] [--db URL] [--jobs 96] [--keep]
+    sudo python3 scripts/slurm.py [--program FILE] [--db URL] [--jobs 128] [--keep]
 
 Starts a cluster of one node with two slots (scripts/slurm_cluster.py), submits a study with four workers, and while it is
 being worked on kills a worker (kill -9), requeues a task, lets a job of a higher priority pre-empt all tasks, lets a
@@ -207,7 +207,9 @@ def preempt(sweep):
         "the urgent job to end", lambda: sweep.cluster.tasks(urgent)[urgent]["JobState"] in ENDED, 120
     )
     after = {task: int(sweep.state(task)["Restarts"]) for task in workers}
-    check(all(after[task] > before[task] for task in workers), f"not requeued: {before} {after}")
+    # Slurm takes its time; whoever finished within the grace had nothing to be requeued for.
+    hit = [task for task, code in zip(workers, codes) if code == "3"]
+    check(hit and all(after[task] > before[task] for task in hit), f"not requeued: {before} {after}, {codes}")
     tell(f"pre-emption of tasks {sorted(workers)}: workers ended with {', '.join(codes)}")
 
 
@@ -283,7 +285,7 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", default=str(ROOT / "target/release/tribosweep"))
     parser.add_argument("--db", metavar="URL", help="an empty PostgreSQL database; without, every worker has its shard")
-    parser.add_argument("--jobs", type=int, default=96, help="a multiple of four")
+    parser.add_argument("--jobs", type=int, default=128, help="a multiple of four")
     parser.add_argument("--keep", action="store_true", help="keep the folder with all logs")
     options = parser.parse_args()
     os.environ.pop("TRIBOSWEEP_DB", None)

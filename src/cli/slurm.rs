@@ -8,7 +8,7 @@ use super::output::{print, tell};
 use super::planning::Plan;
 use crate::exit;
 use scripts::Scripts;
-use settings::{Database, Memory, Names, TimeLimit};
+use settings::Database;
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
@@ -26,16 +26,16 @@ pub struct Args {
     cpus: u16,
     /// Partition (or several, with commas between them); default: the site's.
     #[arg(long, value_name = "P", value_parser = settings::names)]
-    partition: Option<Names>,
+    partition: Option<String>,
     /// Time limit of a task, after which it goes on in another time slot (30, 4:00:00, 1-12); default: the partition's.
     #[arg(long, value_name = "T", value_parser = settings::time_limit)]
-    time: Option<TimeLimit>,
+    time: Option<String>,
     /// Account that the time is charged to; default: yours.
     #[arg(long, value_name = "A", value_parser = settings::names)]
-    account: Option<Names>,
+    account: Option<String>,
     /// Memory of each worker (500M, 2G); default: the site's.
     #[arg(long, value_name = "M", value_parser = settings::memory)]
-    mem: Option<Memory>,
+    mem: Option<String>,
     /// Folder for scripts, logs and results, which all nodes must see; default: STUDY.slurm.
     #[arg(long = "out", value_name = "FOLDER")]
     folder: Option<PathBuf>,

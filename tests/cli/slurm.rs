@@ -88,8 +88,17 @@ fn an_array_of_workers() {
         is_sound(&folder.path("mine.slurm"));
         let workers = folder.read("mine.slurm/workers.sbatch");
         for line in [
-            "--array=0-5", "--cpus-per-task=4", "--ntasks=1", "--partition=a,b", "--time=1-12", "--account=x",
-            "--mem=2G", "--requeue", "--open-mode=append", "--output=%A_%a.log", "--signal=B:USR1@120",
+            "--array=0-5",
+            "--cpus-per-task=4",
+            "--ntasks=1",
+            "--partition=a,b",
+            "--time=1-12",
+            "--account=x",
+            "--mem=2G",
+            "--requeue",
+            "--open-mode=append",
+            "--output=%A_%a.log",
+            "--signal=B:USR1@120",
         ] {
             assert!(workers.contains(&format!("\n#SBATCH {line}\n")), "{line}: {workers}");
         }
@@ -143,7 +152,8 @@ fn odd_paths() {
 fn a_password_is_refused() {
     let folder = Folder::with("mine", &six_jobs());
     for url in ["postgres://me:secret@host/db", "postgresql://host/db?password=secret"] {
-        let told = stderr(&folder.command(&format!("slurm mine.json --workers 2 --db {url}")).assert().code(2));
+        let told =
+            stderr(&folder.command(&format!("slurm mine.json --workers 2 --db {url}")).assert().code(2));
         assert!(told.contains("~/.pgpass") && told.contains("PGPASSWORD"), "{told}");
         assert!(!told.contains("secret"), "{told}");
     }
@@ -192,7 +202,8 @@ fn an_existing_folder() {
 /// whatever folder the command is called from.
 #[test]
 fn submitted() {
-    let cluster = Cluster::new(&[("sbatch", &format!("pwd >> where\n{NUMBERS}")), ("squeue", ""), ("scancel", "")]);
+    let cluster =
+        Cluster::new(&[("sbatch", &format!("pwd >> where\n{NUMBERS}")), ("squeue", ""), ("scancel", "")]);
     let end = cluster.command("slurm mine.json --workers 2 --submit").assert().code(0);
     assert_eq!(
         cluster.calls(),
@@ -227,7 +238,8 @@ fn nothing_half_done() {
     let text = told(&refuses);
     assert!(text.contains("no such partition") && text.contains("nothing is submitted"), "{text}");
 
-    let second = format!("case $* in *report*) {refusal};; *) echo 11;; esac").replace("; exit 1;;", "; exit 1 ;;");
+    let second =
+        format!("case $* in *report*) {refusal};; *) echo 11;; esac").replace("; exit 1;;", "; exit 1 ;;");
     let half = Cluster::new(&[("sbatch", &second), ("squeue", ""), ("scancel", "")]);
     let text = told(&half);
     assert!(text.contains("array 11 was taken back"), "{text}");
@@ -237,7 +249,8 @@ fn nothing_half_done() {
     // No Slurm, but bash.
     std::fs::create_dir(none.path("bin")).unwrap();
     for program in ["bash", "env"] {
-        let found = Command::new("sh").args(["-c", &format!("command -v {program}")]).output().unwrap().stdout;
+        let found =
+            Command::new("sh").args(["-c", &format!("command -v {program}")]).output().unwrap().stdout;
         let found = String::from_utf8(found).unwrap();
         std::os::unix::fs::symlink(found.trim(), none.path("bin").join(program)).unwrap();
     }
@@ -257,7 +270,7 @@ const STAND_IN: &str = r#"
 command=$1
 db=$(while [ $# -gt 0 ]; do if [ "$1" = --db ]; then echo "$2"; fi; shift; done)
 case $command in
-    submit) touch "$db"; if [ -e "$db-wal" ]; then cat "$db-wal" >> "$db"; rm "$db-wal"; fi ;;
+    submit) touch "$db" "$db.lock"; if [ -e "$db-wal" ]; then cat "$db-wal" >> "$db"; rm "$db-wal"; fi ;;
     work)
         echo worked >> "$db"
         trap 'exit 3' TERM
@@ -282,7 +295,10 @@ impl Task {
         let folder = &self.cluster.folder;
         let path = format!("{}:{}", folder.path("bin").display(), std::env::var("PATH").unwrap());
         let mut command = Command::new("bash");
-        command.arg(folder.path("mine.slurm/workers.sbatch")).env("PATH", path).env("TMPDIR", folder.path("node"));
+        command
+            .arg(folder.path("mine.slurm/workers.sbatch"))
+            .env("PATH", path)
+            .env("TMPDIR", folder.path("node"));
         for (name, value) in
             [("ARRAY_TASK_ID", "1"), ("ARRAY_JOB_ID", "11"), ("JOB_ID", "11"), ("CPUS_PER_TASK", "3")]
         {

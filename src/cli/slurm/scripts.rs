@@ -12,6 +12,8 @@ pub const SUBMIT: &str = "submit.sh";
 const WORKERS: &str = "workers.sbatch";
 const REPORT: &str = "report.sbatch";
 
+const BASH: &str = "#!/bin/bash\n";
+
 /// How long before its time limit a task is told [s]: time to keep the states of its jobs and to copy a shard.
 const NOTICE_S: u32 = 120;
 /// How long a worker on a shared database waits for jobs.
@@ -33,56 +35,45 @@ impl Scripts {
     pub fn new(args: &Args, name: &str, database: &Database, folder: &Path) -> Result<Self, CliError> {
         let folder = std::path::absolute(folder).map_err(|source| file_error(folder, source))?;
         let study = std::path::absolute(&args.study).map_err(|source| file_error(&args.study, source))?;
-        let workers = args.workers.to_string();
         let program = program();
-        let (url, merged) = match database {
-            Database::Shared(url) => (url.as_str(), None),
-            Database::Shards(merged) => ("", Some(merged.as_str())),
-        };
-        let mut common = settings(&[
+        let workers = args.workers.to_string();
+        let common = [
             ("tribosweep", utf8(&program)?),
             ("study", utf8(&study)?),
             ("name", name),
             ("folder", utf8(&folder)?),
             ("workers", &workers),
-        ])?;
-        common += &match merged {
-            None => settings(&[("db", url)])?,
-            Some(merged) => settings(&[("merged", merged)])?,
+        ];
+        let mode = Mode::of(database);
+        let script = |head: String, what: &str, own: &[(&str, &str)], body: &[&str]| {
+            let settings = settings(common.iter().chain(own))?;
+            let about = format!("# {what} of the study {name}; written by `tribosweep slurm`.\n");
+            Ok::<_, CliError>(format!("{head}{about}\n{settings}{}", body.concat()))
         };
-        let stop = include_str!("stop.sh");
-        let report = include_str!("report.sh");
-        let (waiting, work, tell) = match merged {
-            None => (
-                settings(&[("idle_exit", IDLE_EXIT)])?,
-                include_str!("workers_shared.sh"),
-                include_str!("report_shared.sh"),
-            ),
-            Some(_) => (
-                settings(&[("keep_every", KEEP_EVERY_S)])?,
-                include_str!("workers_shards.sh"),
-                include_str!("report_shards.sh"),
-            ),
-        };
-        let starts = settings(&[("starts", STARTS)])?;
-        let db = if merged.is_some() { settings(&[("db", "")])? } else { String::new() };
-        let of = |what: &str| format!("# {what} of the study {name}; written by `tribosweep slurm`.\n\n");
+        let array = sbatch(args, name, Some(args.workers));
+        let own = [mode.database, mode.waiting, ("starts", STARTS)];
         let texts = [
+            (WORKERS, script(array, "A worker", &own, &[include_str!("stop.sh"), mode.work])?),
             (
-                WORKERS,
-                sbatch(args, name, Some(args.workers)) + &of("A worker") + &common + &waiting + &starts + stop + work,
+                REPORT,
+                script(
+                    sbatch(args, name, None),
+                    "The report",
+                    &[mode.database],
+                    &[include_str!("report.sh"), mode.report],
+                )?,
             ),
-            (REPORT, sbatch(args, name, None) + &of("The report") + &common + report + tell),
             (
                 SUBMIT,
-                "#!/bin/bash\n".to_owned()
-                    + &of("Submits the workers and the report")
-                    + &common
-                    + &db
-                    + include_str!("submit.sh"),
+                script(
+                    BASH.to_owned(),
+                    "Submits the workers and the report",
+                    &[("db", mode.url)],
+                    &[include_str!("submit.sh")],
+                )?,
             ),
         ];
-        Ok(Self { folder, has_shards: merged.is_some(), texts })
+        Ok(Self { folder, has_shards: mode.url.is_empty(), texts })
     }
 
     /// Writes the scripts; what else is in the folder stays.
@@ -103,35 +94,63 @@ impl Scripts {
     }
 }
 
+/// What differs between workers that share a database and workers with shards.
+struct Mode<'a> {
+    /// The URL that all share; none with shards.
+    url: &'a str,
+    database: (&'static str, &'a str),
+    waiting: (&'static str, &'static str),
+    work: &'static str,
+    report: &'static str,
+}
+
+impl<'a> Mode<'a> {
+    fn of(database: &'a Database) -> Self {
+        match database {
+            Database::Shared(url) => Self {
+                url,
+                database: ("db", url),
+                waiting: ("idle_exit", IDLE_EXIT),
+                work: include_str!("workers_shared.sh"),
+                report: include_str!("report_shared.sh"),
+            },
+            Database::Shards(merged) => Self {
+                url: "",
+                database: ("merged", merged),
+                waiting: ("keep_every", KEEP_EVERY_S),
+                work: include_str!("workers_shards.sh"),
+                report: include_str!("report_shards.sh"),
+            },
+        }
+    }
+}
+
 /// The head of a script for `sbatch`: Slurm reads these lines up to the first command. Paths are relative to the folder
 /// that `submit.sh` is in, so that none has to be quoted in Slurm's way, in which % and \ mean something.
 fn sbatch(args: &Args, name: &str, workers: Option<u32>) -> String {
-    let mut head = "#!/bin/bash\n".to_owned();
+    let mut head = BASH.to_owned();
     let mut line = |option: &str, value: &str| {
         // Writing to a string cannot fail.
         let _ = writeln!(head, "#SBATCH --{option}={value}");
     };
-    match workers {
-        Some(workers) => {
-            line("job-name", name);
-            line("array", &format!("0-{}", workers - 1));
-            line("cpus-per-task", &args.cpus.to_string());
-            line("output", "%A_%a.log");
-            line("signal", &format!("B:USR1@{NOTICE_S}"));
-        }
-        None => {
-            line("job-name", &format!("{name}-report"));
-            line("cpus-per-task", "1");
-            line("output", "report-%j.log");
-        }
+    if let Some(workers) = workers {
+        line("job-name", name);
+        line("array", &format!("0-{}", workers - 1));
+        line("cpus-per-task", &args.cpus.to_string());
+        line("output", "%A_%a.log");
+        line("signal", &format!("B:USR1@{NOTICE_S}"));
+    } else {
+        line("job-name", &format!("{name}-report"));
+        line("cpus-per-task", "1");
+        line("output", "report-%j.log");
     }
     line("ntasks", "1");
     line("open-mode", "append");
     let given = [
-        ("partition", args.partition.as_ref().map(super::Names::text)),
-        ("time", args.time.as_ref().map(super::TimeLimit::text)),
-        ("account", args.account.as_ref().map(super::Names::text)),
-        ("mem", args.mem.as_ref().map(super::Memory::text)),
+        ("partition", &args.partition),
+        ("time", &args.time),
+        ("account", &args.account),
+        ("mem", &args.mem),
     ];
     for (option, value) in given {
         if let Some(value) = value {
@@ -142,8 +161,8 @@ fn sbatch(args: &Args, name: &str, workers: Option<u32>) -> String {
 }
 
 /// Shell variables, with values quoted so that they stay what they are.
-fn settings(values: &[(&str, &str)]) -> Result<String, CliError> {
-    values.iter().try_fold(String::new(), |mut text, (name, value)| {
+fn settings<'a>(values: impl IntoIterator<Item = &'a (&'a str, &'a str)>) -> Result<String, CliError> {
+    values.into_iter().try_fold(String::new(), |mut text, (name, value)| {
         let quoted = shlex::try_quote(value)
             .map_err(|error| CliError::Plan(format!("{name} cannot be written into a script: {error}")))?;
         let _ = writeln!(text, "{name}={quoted}");
@@ -157,7 +176,8 @@ fn program() -> PathBuf {
 }
 
 fn utf8(path: &Path) -> Result<&str, CliError> {
-    path.to_str().ok_or_else(|| CliError::Plan(format!("{}: scripts need a path that is UTF-8", path.display())))
+    path.to_str()
+        .ok_or_else(|| CliError::Plan(format!("{}: scripts need a path that is UTF-8", path.display())))
 }
 
 fn file_error(path: &Path, source: std::io::Error) -> CliError {

@@ -1,55 +1,40 @@
-//! What Slurm and the database are told, refused here if it cannot be meant: Slurm would say so after the study is planned.
+//! What Slurm and the database are told. What cannot be meant is refused here: Slurm would say so when the study is
+//! planned already.
 
 use crate::cli::error::CliError;
 use std::path::Path;
-
-/// Names of partitions or accounts.
-pub type Names = Checked<0>;
-/// A time limit as Slurm writes it.
-pub type TimeLimit = Checked<1>;
-/// An amount of memory as Slurm writes it.
-pub type Memory = Checked<2>;
-
-/// A text that Slurm takes for what it is, and that means nothing to a shell.
-#[derive(Debug, Clone)]
-pub struct Checked<const KIND: u8>(String);
-
-impl<const KIND: u8> Checked<KIND> {
-    /// The text.
-    pub fn text(&self) -> &str {
-        &self.0
-    }
-}
 
 /// Tasks stop two minutes before their time limit, of which Slurm may be a minute early: in less than this they would
 /// be stopped again and again before they get anywhere.
 const SHORTEST_MINUTES: u64 = 5;
 
 /// Reads names with commas between them.
-pub fn names(text: &str) -> Result<Names, String> {
+pub fn names(text: &str) -> Result<String, String> {
     let usable = |name: &str| {
         let allowed = |c: char| c.is_ascii_alphanumeric() || "_-.+@".contains(c);
         !name.is_empty() && !name.starts_with('-') && name.chars().all(allowed)
     };
     if text.split(',').all(usable) {
-        return Ok(Checked(text.to_owned()));
+        return Ok(text.to_owned());
     }
-    Err("expected a name of letters, digits, _, -, . , + and @, or several with commas between them".to_owned())
+    Err("expected a name of letters, digits, _, -, . , + and @, or several with commas between them"
+        .to_owned())
 }
 
 /// Reads an amount of memory.
-pub fn memory(text: &str) -> Result<Memory, String> {
+pub fn memory(text: &str) -> Result<String, String> {
     let number = text.strip_suffix(['K', 'M', 'G', 'T', 'k', 'm', 'g', 't']).unwrap_or(text);
     if !number.is_empty() && number.bytes().all(|c| c.is_ascii_digit()) {
-        return Ok(Checked(text.to_owned()));
+        return Ok(text.to_owned());
     }
-    Err("expected a whole number of megabytes, or one with K, M, G or T behind it, such as 500M or 2G".to_owned())
+    Err("expected a whole number of megabytes, or one with K, M, G or T behind it, such as 500M or 2G"
+        .to_owned())
 }
 
 /// Reads a time limit in one of Slurm's six ways of writing it.
-pub fn time_limit(text: &str) -> Result<TimeLimit, String> {
+pub fn time_limit(text: &str) -> Result<String, String> {
     if ["UNLIMITED", "INFINITE"].iter().any(|word| word.eq_ignore_ascii_case(text)) {
-        return Ok(Checked(text.to_owned()));
+        return Ok(text.to_owned());
     }
     let seconds = seconds(text).ok_or_else(|| {
         "expected a time as Slurm writes it: minutes (30), minutes:seconds (30:00), hours:minutes:seconds (4:00:00), \
@@ -62,7 +47,7 @@ pub fn time_limit(text: &str) -> Result<TimeLimit, String> {
              expected at least {SHORTEST_MINUTES} minutes, and better hours"
         ));
     }
-    Ok(Checked(text.to_owned()))
+    Ok(text.to_owned())
 }
 
 fn seconds(text: &str) -> Option<u64> {
@@ -122,10 +107,14 @@ impl Database {
 /// Whether what follows the scheme (`user:password@host/db?password=…`) has one.
 fn has_password(rest: &str) -> bool {
     let authority = rest.split(['/', '?', '#']).next().unwrap_or(rest);
-    // A password that was not encoded may hold any of these characters, and then ends at the last @.
-    let credentials = rest.rsplit_once('@').map(|(before, _)| before).filter(|before| !before.starts_with('/'));
+    // One that was not encoded may hold these characters, too; what is all digits then is a port.
+    let is_port = |text: &str| {
+        text.split(['/', '?', '#']).next().is_some_and(|it| it.bytes().all(|c| c.is_ascii_digit()))
+    };
+    let of_user =
+        |(before, _): (&str, &str)| before.split_once(':').is_some_and(|(_, after)| !is_port(after));
     let in_front = authority.rsplit_once('@').is_some_and(|(user, _)| user.contains(':'))
-        || credentials.is_some_and(|before| before.contains(':'));
+        || rest.rsplit_once('@').is_some_and(of_user);
     let query = rest.split_once('?').map_or("", |(_, query)| query);
     in_front || query.split('&').any(|field| field.to_ascii_lowercase().starts_with("password="))
 }
@@ -158,7 +147,7 @@ mod tests {
     #[test]
     fn words() {
         for text in ["main", "main,low", "gpu-a100.v2", "user@site"] {
-            assert_eq!(names(text).unwrap().text(), text);
+            assert_eq!(names(text).unwrap(), text);
         }
         for text in ["", "a b", "a,,b", "--x", "$(id)", "a;b", "a\nb", "'"] {
             assert!(names(text).is_err(), "{text}");
@@ -170,10 +159,16 @@ mod tests {
     /// Protects: a password is seen wherever a URL may have it, and nothing else is taken for one.
     #[test]
     fn passwords() {
-        for rest in ["me:secret@host/db", "me:s/e@c?ret@host/db", "me:@host/db", "host/db?a=b&PASSWORD=x"] {
+        for rest in ["me:secret@host/db", "me:s/e@c?ret@host/db", "me:1@host/db", "host/db?a=b&PASSWORD=x"] {
             assert!(has_password(rest), "{rest}");
         }
-        for rest in ["me@host:5432/db", "host:5432/db", "/db?host=/run/postgresql", "host/db?passfile=x", "me@[::1]:1/db"] {
+        for rest in [
+            "me@host:5432/db",
+            "host:5432/db",
+            "/db?host=/run/postgresql",
+            "host/db?passfile=x",
+            "h:1/db?options=a@b",
+        ] {
             assert!(!has_password(rest), "{rest}");
         }
     }

@@ -57,7 +57,7 @@ while [ -z "$reason" ]; do
 done
 say "the worker ended with $code"
 if keep; then
-    rm -f "$db"
+    rm -f "$db" "$db.lock"
     go_on_later
     exit "$code"
 fi
