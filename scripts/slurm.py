@@ -6,12 +6,12 @@
 
 Starts a cluster of one node with two slots (scripts/slurm_cluster.py), submits a study with four workers, and while it is
 being worked on kills a worker (kill -9), requeues a task, lets a job of a higher priority pre-empt all tasks, lets a
-task come to its time limit, and cancels a task. Afterwards every job must be done with exactly one result, the export
-must be that of an undisturbed run, byte for byte but for the run times, the report must have been written after the
-last task, and no process may be left over.
+task come to its time limit, cancels a task, and kills another one with its shell. Afterwards every job must be done with
+exactly one result, the export must be that of an undisturbed run, byte for byte but for the run times, the report must
+have been written after the last task, and no process may be left over.
 
 With --db, the URL of an empty PostgreSQL database, the workers share it. Without, every worker has its shard; then the
-cancelled task leaves its shard unfinished, the first report has to say so, and running submit.sh again has to do the rest.
+last two leave their shards unfinished, the first report has to say so, and running submit.sh again has to do the rest.
 
 Needs root and Debian's packages slurm-wlm and munge; without them it ends with 77. Only Python's standard library.
 """
@@ -236,7 +236,16 @@ def cancel(sweep):
     code = stopped(sweep, task, process, "scancel")
     sweep.cluster.until("the task to be gone", lambda: sweep.state(task)["JobState"] == "CANCELLED", 60)
     tell(f"scancel of task {task}: worker ended with {code}")
-    return code
+
+
+def destroy(sweep):
+    """Kills shell and worker of a task at once, as a node does that loses its power and comes back."""
+    task, process = sorted(sweep.working(1).items())[0]
+    sweep.cluster.ask("scancel", "--signal=KILL", "--full", f"{sweep.array}_{task}")
+    sweep.cluster.until("the worker to be gone", lambda: sweep.workers().get(task) != process, 60)
+    sweep.cluster.until("the task to be gone", lambda: sweep.state(task)["JobState"] in ENDED, 60)
+    tell(f"kill -9 of all processes of task {task}: {sweep.state(task)['JobState']}")
+    return task
 
 
 def finished(sweep, reference):
@@ -267,9 +276,10 @@ def drain(sweep):
     time_limit(sweep)
     requeue(sweep)
     preempt(sweep)
-    code = cancel(sweep)
+    cancel(sweep)
+    destroyed = destroy(sweep)
     exit_code = sweep.until_over()
-    if not sweep.options.db and code == "3":
+    if not sweep.options.db:
         check(exit_code == "3:0", f"the first report ended with {exit_code}, not with work left over")
         page = (sweep.out / "report" / "report.md").read_text()
         check("incomplete" in page, "the report of an unfinished study does not say so")
@@ -277,6 +287,7 @@ def drain(sweep):
         tell(f"the report says that {len(left)} jobs are left; submitting again")
         sweep.submit()
         exit_code = sweep.until_over()
+        check("left on this node" in sweep.log(destroyed), "what the killed task left on the node was not taken up")
     check(exit_code == "0:0", f"the report ended with {exit_code}")
     finished(sweep, reference)
 

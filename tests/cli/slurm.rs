@@ -39,8 +39,8 @@ fn settings(script: &Path) -> BTreeMap<String, String> {
     let lines = text.lines().skip_while(|line| line.starts_with('#') || line.is_empty());
     let head: Vec<_> = lines.take_while(|line| !line.is_empty()).collect();
     let names: Vec<_> = head.iter().filter_map(|line| line.split_once('=')).map(|(name, _)| name).collect();
-    let show: String = names.iter().map(|name| format!("printf '%s\\0' \"${name}\"\n")).collect();
-    let shell = Command::new("bash").arg("-c").arg(format!("{}\n{show}", head.join("\n"))).output().unwrap();
+    let show: Vec<_> = names.iter().map(|name| format!("printf '%s\\0' \"${name}\"\n")).collect();
+    let shell = Command::new("bash").arg("-c").arg(head.join("\n") + "\n" + &show.concat()).output().unwrap();
     assert!(shell.status.success(), "{}", String::from_utf8_lossy(&shell.stderr));
     let values = String::from_utf8(shell.stdout).unwrap();
     names.into_iter().map(str::to_owned).zip(values.split('\0').map(str::to_owned)).collect()
