@@ -16,9 +16,9 @@ import time
 SLOTS = 2
 PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "squeue", "scancel", "scontrol", "sinfo"]
 
-# Processes are told to be of a job by their parents and not by control groups, which a container may not have.
-# Nothing is waited for that a test would have to wait for: KillWait is the time between SIGTERM and SIGKILL, and GraceTime
-# that between a pre-emption's SIGTERM and its SIGKILL.
+# Processes are known to be of a job by their parents and not by control groups, which a container may not have. The
+# times that a test would have to sit through are short: GraceTime, how long a pre-empted job goes on; KillWait, between
+# SIGTERM and SIGKILL; cred_expire, which is also how long a requeued task has to wait.
 CONFIGURATION = """
 ClusterName=test
 SlurmctldHost={host}(127.0.0.1)
@@ -190,7 +190,10 @@ class Cluster:
         if len(self.daemons) > 1:
             self.ask("scancel", "--user=root", "--signal=KILL", "--full", check=False)
             self.ask("scancel", "--user=root", check=False)
-            time.sleep(0.5)
+            # The processes of a job outlive slurmd.
+            give_up = time.monotonic() + 20
+            while self.ask("squeue", "--noheader", check=False).strip() and time.monotonic() < give_up:
+                time.sleep(0.1)
         for process in reversed(self.daemons):
             process.send_signal(signal.SIGTERM)
             try:
