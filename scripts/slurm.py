@@ -241,7 +241,13 @@ def cancel(sweep):
 def destroy(sweep):
     """Kills shell and worker of a task at once, as a node does that loses its power and comes back."""
     task, process = sorted(sweep.working(1).items())[0]
-    sweep.cluster.ask("scancel", "--signal=KILL", "--full", f"{sweep.array}_{task}")
+    # Slurm itself asks first, with scancel --signal=KILL, too.
+    family, parent = [], process
+    while (stat := pathlib.Path(f"/proc/{parent}/stat").read_text()) and "(slurmstepd)" not in stat:
+        family.insert(0, parent)
+        parent = int(stat.rsplit(")", 1)[1].split()[1])
+    for each in family:
+        os.kill(each, signal.SIGKILL)
     sweep.cluster.until("the worker to be gone", lambda: sweep.workers().get(task) != process, 60)
     sweep.cluster.until("the task to be gone", lambda: sweep.state(task)["JobState"] in ENDED, 60)
     tell(f"kill -9 of all processes of task {task}: {sweep.state(task)['JobState']}")
