@@ -23,6 +23,7 @@ mod rows;
 mod run;
 mod schema;
 mod show;
+mod slurm;
 mod solve;
 mod status;
 mod submit;
@@ -61,6 +62,8 @@ enum Command {
     Submit(submit::Args),
     /// Work through all pending jobs of the database.
     Work(work::Args),
+    /// Write the scripts for a job array of a Slurm cluster, and submit them.
+    Slurm(slurm::Args),
     /// Show how far the studies are.
     Status(status::Args),
     /// Write a study's page, tables and figures.
@@ -106,6 +109,7 @@ pub fn main(cli: Cli) -> u8 {
         Command::Run(args) => run::run(&args, db),
         Command::Submit(args) => submit::run(&args, db),
         Command::Work(args) => work::run(&args, db),
+        Command::Slurm(args) => slurm::run(&args, db),
         Command::Status(args) => status::run(&args, db),
         Command::Report(args) => report::run(&args, db),
         Command::Pareto(args) => pareto::run(&args, db),

@@ -13,6 +13,7 @@ mod nightly;
 mod one_job;
 mod several;
 mod sharing;
+mod slurm;
 mod streams;
 mod support;
 mod surroundings;

@@ -1,0 +1,9 @@
+
+say "worker for $name on $(hostname)"
+while [ -z "$reason" ]; do
+    run "$tribosweep" work --db "$db" --threads "$SLURM_CPUS_PER_TASK" --idle-exit "$idle_exit"
+    killed || break
+done
+say "the worker ended with $code"
+go_on_later
+exit "$code"
