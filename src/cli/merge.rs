@@ -53,15 +53,15 @@ fn take_over(sources: &[Location], target: &Location, study: Option<&str>) -> Re
             opened.push(rows::open(source).await?);
         }
         let mut queue = Queue::open(target.clone(), Clock::OfDatabase).await?;
-        let mut text = String::new();
+        let mut lines = Vec::new();
         for mut source in opened {
             let from = source.location().to_string();
             let absorbed = queue.absorb(&mut source, study).await?;
-            text += &format!("{from}: {}\n", in_words(absorbed));
+            lines.push(format!("{from}: {}\n", in_words(absorbed)));
             source.close().await?;
         }
         queue.close().await?;
-        print(&text)
+        print(&lines.concat())
     })?;
     Ok(exit::SUCCESS)
 }

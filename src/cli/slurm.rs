@@ -7,6 +7,7 @@ use super::error::CliError;
 use super::output::{print, tell};
 use super::planning::Plan;
 use crate::exit;
+use crate::queue::Location;
 use scripts::Scripts;
 use settings::Database;
 use std::path::{Path, PathBuf};
@@ -45,12 +46,12 @@ pub struct Args {
 }
 
 /// Writes the scripts, and submits them if that is wanted.
-pub fn run(args: &Args, db: &Path) -> Result<u8, CliError> {
+pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let database = Database::of(db)?;
     let plan = Plan::load(&args.study)?;
     let name = plan.study.name();
     if args.workers as usize > plan.jobs.len() {
-        return Err(CliError::Plan(format!(
+        return Err(CliError::Usage(format!(
             "{} workers are more than the study has jobs; --workers {} is the most that have any",
             args.workers,
             plan.jobs.len()

@@ -23,7 +23,7 @@ fn parse_shard(text: &str) -> Result<Shard, String> {
     let number = |text: &str| text.parse::<u64>().ok();
     let parts = text.split_once('/').and_then(|(index, of)| Some((number(index)?, number(of)?)));
     match parts {
-        Some((index, of)) if 1 <= index && index <= of && of <= u64::from(u32::MAX) => {
+        Some((index, of)) if 1 <= index && index <= of && u32::try_from(of).is_ok() => {
             Ok(Shard { index: index - 1, of })
         }
         _ => Err("expected I/N with I from 1 to N, such as 1/4".to_owned()),

@@ -52,11 +52,7 @@ impl Queue {
             let cancelled = query(CANCEL_JOBS).bind(study_id).bind(NOTE).run(connection).await?;
             let shared: i64 = query(SHARED).bind(study_id).scalar(connection).await?;
             let running: i64 = query(RUNNING).bind(study_id).scalar(connection).await?;
-            Ok(Cancelled {
-                cancelled: cancelled,
-                shared: shared.unsigned_abs(),
-                running: running.unsigned_abs(),
-            })
+            Ok(Cancelled { cancelled, shared: shared.unsigned_abs(), running: running.unsigned_abs() })
         })
         .await
     }

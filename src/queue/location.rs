@@ -17,8 +17,8 @@ pub struct Server {
     url: String,
 }
 
-/// How the URL of a PostgreSQL database begins.
-const SCHEMES: [&str; 2] = ["postgres://", "postgresql://"];
+/// How the URL of a PostgreSQL database begins, before `://`.
+const SCHEMES: [&str; 2] = ["postgres", "postgresql"];
 
 impl Location {
     /// A path, or a URL that begins with `postgres://` or `postgresql://`.
@@ -26,13 +26,12 @@ impl Location {
     /// # Errors
     /// For a URL of anything else, in words.
     pub fn parse(text: OsString) -> Result<Self, String> {
-        let Some(url) = text.to_str().filter(|text| text.contains("://")) else {
+        let Some((scheme, _)) = text.to_str().and_then(|text| text.split_once("://")) else {
             return Ok(Self::File(text.into()));
         };
-        if SCHEMES.iter().any(|scheme| url.starts_with(scheme)) {
-            return Ok(Self::Server(Server { url: url.to_owned() }));
+        if SCHEMES.iter().any(|known| known.eq_ignore_ascii_case(scheme)) {
+            return Ok(Self::Server(Server { url: text.to_string_lossy().into_owned() }));
         }
-        let scheme = url.split("://").next().unwrap_or_default();
         Err(format!(
             "no database is known that `{scheme}://` names; expected a path, or postgres://USER@HOST/DATABASE"
         ))
@@ -55,27 +54,54 @@ impl Server {
 
     /// Whether the URL holds a password.
     pub fn has_password(&self) -> bool {
-        self.without_password() != self.url
+        let (_, rest) = self.parts();
+        has_password_in_front(rest) || pairs(rest).any(is_password)
     }
 
     /// The URL without the password.
     pub fn without_password(&self) -> String {
-        let Some((scheme, rest)) = self.url.split_once("://") else { return self.url.clone() };
-        let (rest, query) = rest.split_once('?').map_or((rest, None), |(rest, query)| (rest, Some(query)));
-        let authority_end = rest.find('/').unwrap_or(rest.len());
-        let (authority, path) = rest.split_at(authority_end);
-        let authority = match authority.rsplit_once('@') {
-            Some((user, host)) => format!("{}@{host}", user.split(':').next().unwrap_or_default()),
-            None => authority.to_owned(),
-        };
-        let mut url = format!("{scheme}://{authority}{path}");
-        let shown = |pair: &&str| !pair.starts_with("password=");
-        let query: Vec<&str> = query.into_iter().flat_map(|query| query.split('&')).filter(shown).collect();
-        if !query.is_empty() {
-            url = format!("{url}?{}", query.join("&"));
+        let (scheme, rest) = self.parts();
+        let mut shown = rest.to_owned();
+        if has_password_in_front(rest)
+            && let (Some((user, _)), Some((_, host))) = (rest.split_once(':'), rest.rsplit_once('@'))
+        {
+            shown = format!("{user}@{host}");
         }
-        url
+        if pairs(&shown).any(is_password) {
+            let others: Vec<&str> = pairs(&shown).filter(|pair| !is_password(pair)).collect();
+            let front = shown.split('?').next().unwrap_or_default();
+            let mark = if others.is_empty() { "" } else { "?" };
+            shown = format!("{front}{mark}{}", others.join("&"));
+        }
+        format!("{scheme}://{shown}")
     }
+
+    /// The scheme, and what follows `://`.
+    fn parts(&self) -> (&str, &str) {
+        self.url.split_once("://").unwrap_or_default()
+    }
+}
+
+/// The settings behind the question mark.
+fn pairs(rest: &str) -> impl Iterator<Item = &str> {
+    rest.split_once('?').map_or("", |(_, query)| query).split('&').filter(|pair| !pair.is_empty())
+}
+
+fn is_password(pair: &str) -> bool {
+    pair.to_ascii_lowercase().starts_with("password=")
+}
+
+/// Whether there is one before the host: `user:password@host`.
+fn has_password_in_front(rest: &str) -> bool {
+    let authority = rest.split(['/', '?', '#']).next().unwrap_or(rest);
+    // One that was not encoded may hold these characters, too; what is all digits then is a port.
+    let is_port = |text: &str| {
+        text.split(['/', '?', '#']).next().is_some_and(|it| it.bytes().all(|c| c.is_ascii_digit()))
+    };
+    authority.rsplit_once('@').is_some_and(|(user, _)| user.contains(':'))
+        || rest
+            .rsplit_once('@')
+            .is_some_and(|(before, _)| before.split_once(':').is_some_and(|(_, after)| !is_port(after)))
 }
 
 impl fmt::Display for Location {
@@ -118,7 +144,7 @@ mod tests {
     /// Protects: what begins like a server's URL is one, another scheme is not taken for a file, and all else is a file.
     #[test]
     fn servers_and_files_are_told_apart() {
-        for url in ["postgres://ada@db/sweeps", "postgresql://db"] {
+        for url in ["postgres://ada@db/sweeps", "postgresql://db", "POSTGRES://db"] {
             assert!(matches!(Location::parse(url.into()), Ok(Location::Server(_))), "{url}");
         }
         for path in ["tribosweep.db", "/data/postgres/x.db", "postgres:x"] {
@@ -134,6 +160,11 @@ mod tests {
         for (url, shown) in [
             ("postgres://ada:secret@db:5433/sweeps", "postgres://ada@db:5433/sweeps"),
             ("postgres://ada:sec@ret@db/sweeps", "postgres://ada@db/sweeps"),
+            ("postgres://ada:s/e@c?secret@db/sweeps", "postgres://ada@db/sweeps"),
+            ("postgres://ada:1@db/sweeps", "postgres://ada@db/sweeps"),
+            ("postgres://db/x?a=b&PASSWORD=secret", "postgres://db/x?a=b"),
+            ("postgres://ada@db:5432/x?options=a@b", "postgres://ada@db:5432/x?options=a@b"),
+            ("postgres://db:5432/x?options=a@b", "postgres://db:5432/x?options=a@b"),
             ("postgres://db/sweeps?user=ada&password=secret", "postgres://db/sweeps?user=ada"),
             ("postgres://db?password=secret", "postgres://db"),
             ("postgres://ada@db/sweeps?sslmode=require", "postgres://ada@db/sweeps?sslmode=require"),

@@ -32,7 +32,7 @@ impl Queue {
             let rows = query("DELETE FROM study_jobs WHERE study_id = $1").bind(study_id);
             let rows = rows.run(connection).await?;
             query("DELETE FROM studies WHERE id = $1").bind(study_id).run(connection).await?;
-            Ok(Removed { rows, cancelled: cancelled })
+            Ok(Removed { rows, cancelled })
         })
         .await
     }

@@ -2,7 +2,7 @@
 //! planned already.
 
 use crate::cli::error::CliError;
-use std::path::Path;
+use crate::queue::Location;
 
 /// Tasks stop two minutes before their time limit, of which Slurm may be a minute early: in less than this they would
 /// be stopped again and again before they get anywhere.
@@ -79,44 +79,25 @@ pub enum Database {
 
 impl Database {
     /// What `--db` asks for.
-    pub fn of(db: &Path) -> Result<Self, CliError> {
-        let text = db.to_str().ok_or_else(|| {
-            CliError::Plan(format!("{}: scripts need a name of the database that is UTF-8", db.display()))
-        })?;
-        if let Some((scheme, rest)) = text.split_once("://")
-            && ["postgres", "postgresql"].iter().any(|known| known.eq_ignore_ascii_case(scheme))
-        {
+    pub fn of(db: &Location) -> Result<Self, CliError> {
+        match db {
             // Not shown: what is refused is a secret.
-            return if has_password(rest) {
-                Err(CliError::Plan(
-                    "the URL of the database has a password, and the scripts are files that others may read; leave it \
-                     out of the URL, and put it into ~/.pgpass (a line host:port:database:user:password, chmod 600) or \
-                     into the environment as PGPASSWORD before you submit"
-                        .to_owned(),
-                ))
-            } else {
-                Ok(Self::Shared(text.to_owned()))
-            };
+            Location::Server(server) if server.has_password() => Err(CliError::Usage(
+                "the URL of the database has a password, and the scripts are files that others may read; leave it \
+                 out of the URL, and put it into ~/.pgpass (a line host:port:database:user:password, chmod 600) or \
+                 into the environment as PGPASSWORD before you submit"
+                    .to_owned(),
+            )),
+            Location::Server(server) => Ok(Self::Shared(server.url().to_owned())),
+            Location::File(path) => {
+                let name = path.file_name().and_then(|name| name.to_str());
+                let name = name.ok_or_else(|| {
+                    CliError::Usage(format!("--db {db}: expected the name of a file, in UTF-8, or a URL"))
+                })?;
+                Ok(Self::Shards(name.to_owned()))
+            }
         }
-        let file = db.file_name().and_then(|name| name.to_str());
-        let file = file.ok_or_else(|| CliError::Plan(format!("--db {text}: expected the name of a file")))?;
-        Ok(Self::Shards(file.to_owned()))
     }
-}
-
-/// Whether what follows the scheme (`user:password@host/db?password=…`) has one.
-fn has_password(rest: &str) -> bool {
-    let authority = rest.split(['/', '?', '#']).next().unwrap_or(rest);
-    // One that was not encoded may hold these characters, too; what is all digits then is a port.
-    let is_port = |text: &str| {
-        text.split(['/', '?', '#']).next().is_some_and(|it| it.bytes().all(|c| c.is_ascii_digit()))
-    };
-    let of_user =
-        |(before, _): (&str, &str)| before.split_once(':').is_some_and(|(_, after)| !is_port(after));
-    let in_front = authority.rsplit_once('@').is_some_and(|(user, _)| user.contains(':'))
-        || rest.rsplit_once('@').is_some_and(of_user);
-    let query = rest.split_once('?').map_or("", |(_, query)| query);
-    in_front || query.split('&').any(|field| field.to_ascii_lowercase().starts_with("password="))
 }
 
 #[cfg(test)]
@@ -154,22 +135,5 @@ mod tests {
         }
         assert!(["0", "500", "2G", "500m"].iter().all(|text| memory(text).is_ok()));
         assert!(["", "G", "2 G", "2GB", "-1", "1.5G"].iter().all(|text| memory(text).is_err()));
-    }
-
-    /// Protects: a password is seen wherever a URL may have it, and nothing else is taken for one.
-    #[test]
-    fn passwords() {
-        for rest in ["me:secret@host/db", "me:s/e@c?ret@host/db", "me:1@host/db", "host/db?a=b&PASSWORD=x"] {
-            assert!(has_password(rest), "{rest}");
-        }
-        for rest in [
-            "me@host:5432/db",
-            "host:5432/db",
-            "/db?host=/run/postgresql",
-            "host/db?passfile=x",
-            "h:1/db?options=a@b",
-        ] {
-            assert!(!has_password(rest), "{rest}");
-        }
     }
 }
