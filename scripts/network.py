@@ -9,7 +9,8 @@ worker each. While a study is worked on,
 
   * the link of the first worker is cut for longer than a lease: its jobs are taken back and done by others, and when the
     link is back the worker goes on, what it had finished meanwhile being refused or stored, never both,
-  * the link of the second is cut again and again for moments, so that answers are lost in the middle of a transaction,
+  * the link of the second is cut again and again for moments, and its sessions are ended on the server whatever they are
+    doing,
   * the link of the third is cut for less than a lease: nothing is taken from it,
   * the server itself is stopped at once and started again.
 
@@ -169,12 +170,17 @@ def disturb(sweep, server):
     before = sweep.worker("first")["finished"]
 
     random.seed(7)
+    sessions = "FROM pg_stat_activity WHERE client_addr = '10.77.0.12'"
+    ended = 0
     for _ in range(12):
-        time.sleep(random.uniform(0.2, 1.5))
+        # Longer cuts without a rest between them add up: each doubles the time after which a packet is sent again.
+        time.sleep(random.uniform(1.0, 1.5))
         network.cut("second")
-        time.sleep(random.uniform(0.1, 2.0))
+        time.sleep(random.uniform(0.1, 0.5))
         network.mend("second")
-    tell("the second's was cut twelve times for moments")
+        time.sleep(random.uniform(0.0, 1.0))
+        ended += int(sweep.sql(f"SELECT COUNT(pg_terminate_backend(pid)) {sessions}"))
+    tell(f"the second's was cut twelve times for moments, and {ended} of its sessions were ended")
     network.mend("first")
     sweep.until("the first worker to go on", lambda: sweep.worker("first")["finished"] > before, 120)
     check(sweep.worker("first")["presence"] == "working", "the first worker goes on and is not seen")

@@ -194,7 +194,9 @@ pub enum QueueError {
     Locked(#[source] sqlx::Error),
 
     /// The server does not answer, or has ended the connection. What was sent last may have been done or not.
-    #[error("the database server cannot be reached: {0}. The same command then goes on, and nothing is lost")]
+    #[error(
+        "the database server cannot be reached ({0}); nothing is lost, and the same command goes on when it can be"
+    )]
     Unreachable(String),
 
     /// There is no room.

@@ -11,7 +11,11 @@ mod interruption;
 mod mount;
 mod nightly;
 mod one_job;
+mod server;
+#[path = "../support/server.rs"]
+mod server_database;
 mod several;
+mod shards;
 mod sharing;
 mod slurm;
 mod streams;

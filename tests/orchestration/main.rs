@@ -3,5 +3,7 @@
 #[path = "../support/mount.rs"]
 mod mount;
 mod queue;
+#[path = "../support/server.rs"]
+mod server;
 mod support;
 mod worker;

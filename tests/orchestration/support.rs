@@ -1,23 +1,19 @@
 //! A database of one's own, with a clock the test moves.
 
-use std::future::Future;
 use std::path::PathBuf;
 use std::sync::Arc;
-use std::sync::atomic::{AtomicI64, AtomicU32, Ordering};
+use std::sync::atomic::{AtomicI64, Ordering};
 
-use sqlx::postgres::PgConnectOptions;
 use sqlx::sqlite::SqliteConnectOptions;
-use sqlx::{ConnectOptions, PgConnection, SqliteConnection};
+use sqlx::{ConnectOptions, SqliteConnection};
 use tempfile::TempDir;
 use tribosweep::queue::{
     Claim, ClaimedJob, Clock, Counts, Exchanged, Finished, FinishedOutcome, Location, NewJob, NewStudy,
     Queue, Scope, Settings, Worker,
 };
 
-/// Runs a future on a runtime of its own, for tests that need several threads.
-pub fn block_on<F: Future>(future: F) -> F::Output {
-    tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap().block_on(future)
-}
+use crate::server::ServerDatabase;
+pub use crate::server::block_on;
 
 /// A clock that stands still until it is told otherwise.
 #[derive(Debug, Default, Clone)]
@@ -39,20 +35,15 @@ impl TestClock {
 pub enum Engine {
     /// A file of `SQLite`'s.
     Sqlite,
-    /// A database on the server that the variable below names.
+    /// A database on a server.
     Postgres,
 }
-
-/// The URL of a PostgreSQL server where databases can be created and dropped (`scripts/postgres.sh start FOLDER`
-/// prints one).
-pub const SERVER: &str = "TRIBOSWEEP_TEST_POSTGRES";
 
 pub struct Sandbox {
     pub folder: TempDir,
     pub clock: TestClock,
     location: Location,
-    /// To be dropped in the end.
-    server_database: Option<String>,
+    server: Option<ServerDatabase>,
 }
 
 impl Sandbox {
@@ -60,28 +51,17 @@ impl Sandbox {
     pub fn new() -> Self {
         let folder = TempDir::new().unwrap();
         let location = Location::File(folder.path().join("sweep.db"));
-        Self { folder, clock: TestClock::default(), location, server_database: None }
+        Self { folder, clock: TestClock::default(), location, server: None }
     }
 
     /// A database of that engine; none, and a message, where there is no server.
-    pub async fn of(engine: Engine) -> Option<Self> {
-        static NUMBER: AtomicU32 = AtomicU32::new(0);
-        if engine == Engine::Sqlite {
-            return Some(Self::new());
-        }
-        let Ok(url) = std::env::var(SERVER) else {
-            eprintln!(
-                "skipped: {SERVER} does not name a PostgreSQL server (`scripts/postgres.sh start FOLDER` prints one)"
-            );
-            return None;
-        };
-        let name = format!("test_{}_{}", std::process::id(), NUMBER.fetch_add(1, Ordering::Relaxed));
-        run_on_server(&url, format!("CREATE DATABASE {name}")).await;
-        let (server, _) = url.rsplit_once('/').expect("postgres://USER@HOST/DATABASE");
-        let location = Location::parse(format!("{server}/{name}").into()).unwrap();
+    pub fn of(engine: Engine) -> Option<Self> {
         let mut sandbox = Self::new();
-        sandbox.location = location;
-        sandbox.server_database = Some(name);
+        if engine == Engine::Postgres {
+            let server = ServerDatabase::new()?;
+            sandbox.location = Location::parse(server.url().into()).unwrap();
+            sandbox.server = Some(server);
+        }
         Some(sandbox)
     }
 
@@ -121,47 +101,18 @@ impl Sandbox {
 
     /// Runs a statement past the queue.
     pub async fn run(&self, statement: &'static str) {
-        match &self.location {
-            Location::File(_) => drop(sqlx::query(statement).execute(&mut self.raw().await).await.unwrap()),
-            Location::Server(_) => {
-                drop(sqlx::query(statement).execute(&mut self.raw_on_server().await).await.unwrap());
-            }
+        match &self.server {
+            None => drop(sqlx::query(statement).execute(&mut self.raw().await).await.unwrap()),
+            Some(server) => drop(sqlx::query(statement).execute(&mut server.raw().await).await.unwrap()),
         }
     }
 
     /// The number that a statement past the queue gives.
     pub async fn number(&self, statement: &'static str) -> i64 {
-        let query = sqlx::query_scalar(statement);
-        match &self.location {
-            Location::File(_) => query.fetch_one(&mut self.raw().await).await.unwrap(),
-            Location::Server(_) => {
-                sqlx::query_scalar(statement).fetch_one(&mut self.raw_on_server().await).await.unwrap()
-            }
+        match &self.server {
+            None => sqlx::query_scalar(statement).fetch_one(&mut self.raw().await).await.unwrap(),
+            Some(server) => sqlx::query_scalar(statement).fetch_one(&mut server.raw().await).await.unwrap(),
         }
-    }
-
-    async fn raw_on_server(&self) -> PgConnection {
-        let Location::Server(server) = &self.location else { panic!("the database is a file") };
-        let options: PgConnectOptions = server.url().parse().unwrap();
-        options.options([("search_path", "tribosweep")]).connect().await.unwrap()
-    }
-}
-
-async fn run_on_server(url: &str, statement: String) {
-    let options: PgConnectOptions = url.parse().unwrap();
-    let mut connection = options.connect().await.unwrap();
-    sqlx::raw_sql(sqlx::AssertSqlSafe(statement)).execute(&mut connection).await.unwrap();
-}
-
-impl Drop for Sandbox {
-    fn drop(&mut self) {
-        let Some(name) = self.server_database.take() else { return };
-        let url = std::env::var(SERVER).unwrap();
-        // Within a test there is a runtime already.
-        let dropping = std::thread::spawn(move || {
-            block_on(run_on_server(&url, format!("DROP DATABASE {name} WITH (FORCE)")));
-        });
-        let _ = dropping.join();
     }
 }
 

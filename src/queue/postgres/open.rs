@@ -3,6 +3,8 @@
 use std::str::FromStr;
 
 use sqlx::postgres::PgConnectOptions;
+#[cfg(not(feature = "tls"))]
+use sqlx::postgres::PgSslMode;
 use sqlx::{ConnectOptions, PgConnection};
 
 use super::{SILENCE, Session, schema};
@@ -43,6 +45,13 @@ async fn start(server: &Server, settings: Settings) -> Result<Session, QueueErro
     let options = PgConnectOptions::from_str(server.url()).map_err(|error| {
         refused(format!("the URL cannot be read ({error}); expected postgres://USER@HOST:PORT/DATABASE"))
     })?;
+    #[cfg(not(feature = "tls"))]
+    if let PgSslMode::Require | PgSslMode::VerifyCa | PgSslMode::VerifyFull = options.get_ssl_mode() {
+        return Err(refused(
+            "encryption is asked for, and this tribosweep was built without; build it with `--features tls`"
+                .to_owned(),
+        ));
+    }
     let mut session = Session::start(options.application_name("tribosweep"), settings).await.map_err(
         |error| match error {
             QueueError::Unreachable(reason) => refused(format!("no answer from the server ({reason})")),

@@ -17,7 +17,7 @@ fn ends(rows: &[StudyRow]) -> Vec<(u64, &str, JobState, Option<&str>, Option<&st
 /// the last bit, attempts, notes, priorities, checkpoints. What runs there waits here. Doing it again changes nothing.
 #[tokio::test]
 async fn a_copy_is_the_same() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let (source, back) = (Sandbox::new(), Sandbox::new());
     source.clock.set(1_000);
     let mut from = source.open().await;
@@ -72,7 +72,7 @@ async fn a_copy_is_the_same() {
 /// the end that one of them found.
 #[tokio::test]
 async fn shards_make_up_the_whole() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let whole = study("a", &["j0", "j1", "j2", "j3", "j4", "j5", "j6"]);
     let mut merged = sandbox.open().await;
     for index in 0..3 {
@@ -102,7 +102,7 @@ async fn shards_make_up_the_whole() {
 /// Protects: the better end stays, whichever database it is in, and nothing that runs here is touched.
 #[tokio::test]
 async fn the_better_end_stays() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let source = Sandbox::new();
     let (mut here, mut there) = (sandbox.open().await, source.open().await);
     let keys =
@@ -144,7 +144,7 @@ async fn the_better_end_stays() {
 /// Protects: a study of the same name that is another one is refused before anything is written.
 #[tokio::test]
 async fn another_study_of_the_name_is_refused() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let source = Sandbox::new();
     let (mut here, mut there) = (sandbox.open().await, source.open().await);
     here.submit(&study("b", &["x"])).await.unwrap();

@@ -35,7 +35,7 @@ fn all(limit: usize, batch: Option<&str>) -> Claim {
 /// one exchange follow each other, each with its answer.
 #[tokio::test]
 async fn a_claim_is_of_one_batch() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let rows = [
         ("a1", 1.0, "a", None),
@@ -59,7 +59,7 @@ async fn a_claim_is_of_one_batch() {
 /// Protects: the same within a study, whose jobs other studies may have in other company.
 #[tokio::test]
 async fn a_claim_of_a_study_is_of_one_batch() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let rows = [("a1", 1.0, "a", None), ("b1", 2.0, "b", None), ("a2", 0.5, "a", None)];
     queue.submit(&study_of("mine", jobs(&rows))).await.unwrap();
@@ -76,7 +76,7 @@ async fn a_claim_of_a_study_is_of_one_batch() {
 /// without leaves it.
 #[tokio::test]
 async fn a_higher_priority_goes_first() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let slow = [("x", 90.0, "", None), ("y", 80.0, "", Some(-1)), ("z", 70.0, "", None)];
     queue.submit(&study_of("slow", jobs(&slow))).await.unwrap();
@@ -96,7 +96,7 @@ async fn a_higher_priority_goes_first() {
 /// not kept waiting until the batch is done.
 #[tokio::test]
 async fn a_higher_priority_ends_a_batch() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study_of("slow", jobs(&[("x", 9.0, "a", None), ("y", 8.0, "a", None)]))).await.unwrap();
     let more = [all(1, Some("a"))];
@@ -110,7 +110,7 @@ async fn a_higher_priority_ends_a_batch() {
 /// Protects: a batch is the program's to name, and another version's name replaces that of pending jobs.
 #[tokio::test]
 async fn a_batch_is_renamed_by_a_submission() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study_of("s", jobs(&[("x", 2.0, "", None), ("y", 1.0, "", None)]))).await.unwrap();
     let submitted =
@@ -123,7 +123,7 @@ async fn a_batch_is_renamed_by_a_submission() {
 /// and are both cancelled do not keep it for each other; submitting or retrying asks again.
 #[tokio::test]
 async fn cancelling_and_asking_again() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["run", "done", "own", "shared"])).await.unwrap();
     queue.submit(&study("b", &["shared"])).await.unwrap();
@@ -148,7 +148,7 @@ async fn cancelling_and_asking_again() {
 /// count begins anew, and its next end is what counts.
 #[tokio::test]
 async fn a_failed_job_is_retried() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     claim(&mut queue, Scope::All, 2).await;
@@ -167,7 +167,7 @@ async fn a_failed_job_is_retried() {
 /// collected, which drops what nobody refers to and nothing else.
 #[tokio::test]
 async fn removing_and_collecting() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["done", "run", "pending", "shared"])).await.unwrap();
     queue.submit(&study("b", &["shared"])).await.unwrap();
@@ -209,7 +209,7 @@ async fn a_studys_pending_jobs_are_kept() {
             FROM study_jobs AS m JOIN jobs AS j ON j.id = m.job_id WHERE j.state = 'pending'
             INTERSECT
             SELECT study_id, job_id, batch, priority, cost FROM study_pending) AS both_have";
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let mut state = 7_u64;
     let mut draw = |below: usize| {

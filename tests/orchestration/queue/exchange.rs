@@ -12,7 +12,7 @@ use crate::support::{Sandbox, block_on, claim, counts, done, failed, finish, job
 /// attempt and the cost come with them.
 #[tokio::test]
 async fn the_dearest_job_comes_first() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let jobs = [("e", 1.0), ("d", 1.0), ("c", 30.0), ("b", 4.0), ("a", 4.0)];
     let study = NewStudy {
@@ -32,7 +32,7 @@ async fn the_dearest_job_comes_first() {
 /// Protects: work on one study takes nothing from another, however dear.
 #[tokio::test]
 async fn a_claim_keeps_to_its_study() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let mut dear = study("dear", &["x", "shared"]);
     dear.jobs[0].cost = 99.0;
@@ -47,7 +47,7 @@ async fn a_claim_keeps_to_its_study() {
 #[test]
 fn every_job_is_claimed_exactly_once() {
     const JOBS: usize = 300;
-    let Some(sandbox) = block_on(Sandbox::of(ENGINE)) else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let names: Vec<String> = (0..JOBS).map(|index| format!("job {index}")).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     block_on(async { sandbox.open().await.submit(&study("a", &names)).await.unwrap() });
@@ -83,7 +83,7 @@ fn every_job_is_claimed_exactly_once() {
 /// attempt ends, and its caller is told.
 #[tokio::test]
 async fn a_late_finish_is_refused() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
@@ -109,7 +109,7 @@ async fn a_late_finish_is_refused() {
 /// Protects: in a batch, a refused finish is named and stops none of the others.
 #[tokio::test]
 async fn a_refused_finish_stops_no_other() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     claim(&mut queue, Scope::All, 2).await;
@@ -123,7 +123,7 @@ async fn a_refused_finish_stops_no_other() {
 /// Protects: a failed job keeps its error, is not claimed again, and the rest of the sweep goes on.
 #[tokio::test]
 async fn a_failure_is_kept_and_the_sweep_goes_on() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
@@ -140,7 +140,7 @@ async fn a_failure_is_kept_and_the_sweep_goes_on() {
 /// Protects: an exchange is all or nothing: a claim that cannot be served leaves the finish to be repeated.
 #[tokio::test]
 async fn an_exchange_is_all_or_nothing() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;

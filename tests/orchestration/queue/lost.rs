@@ -81,8 +81,8 @@ struct Relayed {
 }
 
 impl Relayed {
-    async fn new() -> Option<Self> {
-        let sandbox = Sandbox::of(Engine::Postgres).await?;
+    fn new() -> Option<Self> {
+        let sandbox = Sandbox::of(Engine::Postgres)?;
         let Location::Server(server) = sandbox.location() else { unreachable!() };
         let (scheme, rest) = server.url().split_once("://").unwrap();
         let (authority, database) = rest.rsplit_once('/').unwrap();
@@ -116,7 +116,7 @@ const TWO: [Claim; 1] = [Claim { scope: Scope::All, limit: 2, batch: None }];
 #[tokio::test]
 async fn an_exchange_in_doubt_is_done_once() {
     for when in [Cut::BeforeCommit, Cut::AfterCommit, Cut::Now] {
-        let Some(relayed) = Relayed::new().await else { return };
+        let Some(relayed) = Relayed::new() else { return };
         let mut queue = relayed.open().await;
         queue.submit(&study("a", &["p", "q", "r", "s", "t", "u"])).await.unwrap();
         let first = queue.exchange(&[], &TWO).await.unwrap().claimed.remove(0);
@@ -148,7 +148,7 @@ async fn an_exchange_in_doubt_is_done_once() {
 /// has done it meanwhile, and stored if not; then it works on, and is seen to.
 #[tokio::test]
 async fn who_was_away_too_long_goes_on() {
-    let Some(relayed) = Relayed::new().await else { return };
+    let Some(relayed) = Relayed::new() else { return };
     let location = relayed.location.clone();
     let mut away = Queue::open(location, relayed.sandbox.clock.clock()).await.unwrap();
     away.register(&foreign_worker()).await.unwrap();

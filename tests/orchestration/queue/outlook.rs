@@ -13,7 +13,7 @@ fn alive(workers: u64, threads: u64) -> Alive {
 /// waited for; of one that cannot be seen its signs of life decide.
 #[tokio::test]
 async fn the_living_are_counted() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let lease_ms = 120_000;
     sandbox.clock.set(10 * lease_ms);
     let mut own = sandbox.open_as(&Worker { threads: 3, ..Worker::this_process(1, "test", "") }).await;
@@ -31,7 +31,7 @@ async fn the_living_are_counted() {
 /// Protects: an estimate is made of the study's jobs that are done, with what they cost and took.
 #[tokio::test]
 async fn timings_are_those_of_done_jobs() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let mut own = study("a", &[]);
     own.jobs = vec![job("x", 8.0), job("y", 4.0), job("z", 2.0)];
@@ -49,7 +49,7 @@ async fn timings_are_those_of_done_jobs() {
 /// Protects: whatever happens to a study's jobs shows in their counts or in how often they were started.
 #[tokio::test]
 async fn starts_show_what_counts_do_not() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y", "x"])).await.unwrap();
     assert_eq!(queue.starts("a").await.unwrap(), 0);
@@ -66,7 +66,7 @@ async fn starts_show_what_counts_do_not() {
 /// Protects: of a large study an even sample is looked at.
 #[tokio::test]
 async fn timings_of_many_jobs_are_a_sample() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let mut own = study("a", &[]);
     own.jobs = (0..2_500).map(|i| job(&format!("job {i}"), f64::from(i))).collect();
@@ -88,7 +88,7 @@ async fn timings_of_many_jobs_are_a_sample() {
 /// what other studies have is not told.
 #[tokio::test]
 async fn origins_are_told_once() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let worker = |provenance| Worker::this_process(1, "test", provenance);
     let mut first = sandbox.open_as(&worker("first")).await;
     first.submit(&study("a", &["x", "y", "z", "x"])).await.unwrap();

@@ -12,7 +12,7 @@ use crate::support::{Sandbox, claim, counts, done, failed, finish, labelled, of,
 /// Protects: the list of studies is in the order of submission, each with its own counts.
 #[tokio::test]
 async fn studies_are_listed_with_their_counts() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     assert!(queue.studies().await.unwrap().is_empty());
     sandbox.clock.set(1_000);
@@ -35,7 +35,7 @@ async fn studies_are_listed_with_their_counts() {
 /// Protects: the document of a study is kept as it was written; no such study is no error here.
 #[tokio::test]
 async fn the_document_is_kept() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     sandbox.clock.set(1_000);
     queue.submit(&study("a", &["x"])).await.unwrap();
@@ -47,7 +47,7 @@ async fn the_document_is_kept() {
 /// Protects: rows come in the order of the study, each with all that is known of its job.
 #[tokio::test]
 async fn rows_are_complete_and_in_order() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["z", "y", "x", "w"])).await.unwrap();
     sandbox.clock.set(1_000);
@@ -81,7 +81,7 @@ async fn rows_are_complete_and_in_order() {
 /// Protects: what an estimate of the time left is made of: the cost of what is pending or running.
 #[tokio::test]
 async fn remaining_cost() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let mut a = study("a", &["p", "q", "r", "s", "t"]);
     for (job, cost) in a.jobs.iter_mut().zip([16.0, 8.0, 4.0, 2.0, 1.0]) {
@@ -102,7 +102,7 @@ async fn remaining_cost() {
 /// Protects: a mistyped study name is answered with the names there are, by everything that takes one.
 #[tokio::test]
 async fn an_unknown_study_is_answered_with_those_known() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let error = queue.rows("a").await.unwrap_err();
     assert!(error.to_string().contains("it has none yet"), "{error}");
@@ -138,7 +138,7 @@ async fn ordinals_of(queue: &mut Queue, which: Rows<'_>) -> Vec<u64> {
 /// Protects: rows are found by the word for their end, of done jobs alone.
 #[tokio::test]
 async fn rows_are_found_by_their_label() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let mut a = study("a", &["p", "q", "r", "s", "p"]);
     a.jobs[4].parameters = "p again".into();
@@ -157,7 +157,7 @@ async fn rows_are_found_by_their_label() {
 /// Protects: whoever has seen enough of a study is not shown the rest.
 #[tokio::test]
 async fn reading_can_be_stopped() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let names: Vec<String> = (0..2_500).map(|number| format!("job {number}")).collect();
     queue.submit(&study("a", &names.iter().map(String::as_str).collect::<Vec<_>>())).await.unwrap();

@@ -25,7 +25,7 @@ async fn left_by(sandbox: &Sandbox, worker: &Worker) -> Queue {
 /// start is a new attempt.
 #[tokio::test]
 async fn a_released_job_is_claimed_again() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
@@ -40,7 +40,7 @@ async fn a_released_job_is_claimed_again() {
 /// whoever gave it back cannot give it back or finish it once more.
 #[tokio::test]
 async fn an_unstarted_job_costs_no_attempt() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let (mut queue, mut other) = (sandbox.open().await, sandbox.open().await);
     queue.submit(&study("a", &["x"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
@@ -58,7 +58,7 @@ async fn an_unstarted_job_costs_no_attempt() {
 /// was done or pending stays so, and a result the dead process still sends is refused.
 #[tokio::test]
 async fn jobs_of_a_dead_process_are_taken_back() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut dead = left_by(&sandbox, &dead_worker()).await;
     let mut queue = sandbox.open().await;
     assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 2, failed: 0 });
@@ -86,7 +86,7 @@ async fn a_number_alone_is_no_process() {
     let reused = Worker { process_start: own.process_start.map(|start| start - 1), ..own.clone() };
     let rebooted = Worker { boot_id: Some("an earlier boot".into()), ..own };
     for gone in [reused, rebooted] {
-        let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+        let Some(sandbox) = Sandbox::of(ENGINE) else { return };
         left_by(&sandbox, &gone).await;
         assert_eq!(sandbox.open().await.take_back().await.unwrap().pending, 2, "{gone:?}");
     }
@@ -96,7 +96,7 @@ async fn a_number_alone_is_no_process() {
 /// jumped, forward or back; and its finish counts.
 #[tokio::test]
 async fn a_clock_that_jumps_takes_nothing() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     sandbox.clock.set(1_000 * DAY_MS);
     let mut alive = left_by(&sandbox, &Worker::this_process(1, "test", "")).await;
     for now_ms in [3_000 * DAY_MS, 0] {
@@ -114,7 +114,7 @@ async fn a_clock_that_jumps_takes_nothing() {
 #[tokio::test]
 async fn leases_decide_elsewhere() {
     let lease_ms = i64::try_from(Settings::default().lease.as_millis()).unwrap();
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut far = left_by(&sandbox, &foreign_worker()).await;
     let mut queue = sandbox.open().await;
     sandbox.clock.set(lease_ms - 1);
@@ -136,7 +136,7 @@ async fn leases_decide_elsewhere() {
 /// are counted apart from attempts, and one that fails by itself is not tried again at all.
 #[tokio::test]
 async fn retries_have_a_limit() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open_with(Settings { crash_limit: 2, ..Settings::default() }).await;
     queue.submit(&study("a", &["deadly", "bad"])).await.unwrap();
     // An interruption is an attempt and no crash.
@@ -162,7 +162,7 @@ async fn retries_have_a_limit() {
 /// its processes; who lost the job saves nothing; and nothing is left when the job ends.
 #[tokio::test]
 async fn checkpoints_are_handed_on() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open_with(Settings { crash_limit: 2, ..Settings::default() }).await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     let mut bytes: Option<Vec<u8>> = None;
@@ -189,7 +189,7 @@ async fn checkpoints_are_handed_on() {
 /// they crashed before.
 #[tokio::test]
 async fn who_is_stopped_twice_has_not_crashed() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open_with(Settings { crash_limit: 2, ..Settings::default() }).await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     for (is_stopped, expected) in [
@@ -212,7 +212,7 @@ async fn who_is_stopped_twice_has_not_crashed() {
 /// does one that was cancelled; one that fails by itself begins anew.
 #[tokio::test]
 async fn a_checkpoint_outlasts_crashes() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open_with(Settings { crash_limit: 1, ..Settings::default() }).await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     let mut dead = sandbox.open_as(&dead_worker()).await;
@@ -232,7 +232,7 @@ async fn a_checkpoint_outlasts_crashes() {
 /// crash.
 #[tokio::test]
 async fn an_orderly_end_gives_everything_back() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut ending = left_by(&sandbox, &foreign_worker()).await;
     ending.unregister().await.unwrap();
     let mut queue = sandbox.open().await;

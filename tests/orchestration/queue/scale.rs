@@ -12,7 +12,7 @@ use crate::support::{Sandbox, claim, counts, job, keys, of};
 #[tokio::test]
 async fn a_hundred_thousand_jobs_are_planned() {
     const JOBS: u64 = 100_000;
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let study = NewStudy {
         name: "large".into(),
@@ -70,7 +70,7 @@ async fn claim_time(sandbox: &Sandbox, jobs: usize, scope: &Scope, batch: Option
 #[tokio::test]
 async fn claims_take_no_longer_in_a_long_queue() {
     for (scope, batch) in [(Scope::All, None), (of("mine"), None), (of("mine"), Some("batch 3"))] {
-        let (Some(few), Some(many)) = (Sandbox::of(ENGINE).await, Sandbox::of(ENGINE).await) else { return };
+        let (Some(few), Some(many)) = (Sandbox::of(ENGINE), Sandbox::of(ENGINE)) else { return };
         let short = claim_time(&few, 500, &scope, batch).await;
         let long = claim_time(&many, 50_000, &scope, batch).await;
         assert!(long < 5 * short, "{scope:?} {batch:?}: {short:?} for 1000 jobs, {long:?} for 100 000");
@@ -87,7 +87,7 @@ async fn throughput() {
     let record = "r".repeat(1_500);
     // Costs scattered over the study are the worst case: each claim is on as many pages as it has jobs.
     for (limit, costs) in [(4, 97), (16, 97), (64, 97), (16, 1), (64, 1)] {
-        let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+        let Some(sandbox) = Sandbox::of(ENGINE) else { return };
         let mut queue = sandbox.open().await;
         let jobs = (0..JOBS)
             .map(|index| NewJob {

@@ -8,7 +8,7 @@ use crate::support::{Sandbox, claim, counts, done, failed, finish, job, of, stud
 /// Protects: a repeated submission costs no simulation and loses no result.
 #[tokio::test]
 async fn submitting_twice_adds_nothing() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let study = study("a", &["x", "y", "z"]);
     let first = queue.submit(&study).await.unwrap();
@@ -44,7 +44,7 @@ async fn submitting_twice_adds_nothing() {
 /// Protects: two studies that ask for the same job share it, its result too, each with its own parameters.
 #[tokio::test]
 async fn studies_share_jobs() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     let mut other = study("b", &["y", "z"]);
@@ -66,7 +66,7 @@ async fn studies_share_jobs() {
 /// result, and is there again when the next edit names it.
 #[tokio::test]
 async fn an_edited_study_is_replaced() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     sandbox.clock.set(1_000);
     queue.submit(&study("a", &["x", "y", "z"])).await.unwrap();
@@ -95,7 +95,7 @@ async fn an_edited_study_is_replaced() {
 /// Protects: two grid points with the identical job are two rows and one simulation.
 #[tokio::test]
 async fn a_job_may_repeat_in_a_study() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let mut repeated = study("a", &["x", "y", "x"]);
     repeated.jobs[2].parameters = "x again".into();
@@ -114,7 +114,7 @@ async fn a_job_may_repeat_in_a_study() {
 /// Protects: strings come back as they were given, whatever they hold.
 #[tokio::test]
 async fn strings_are_opaque() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let odd = "{\"a\": [1, 'b''\", \"\\u0041 \\\\ \"]}\n\t– μ* ≥ 0 ☃ 1e3";
     let mut odd_study = study(odd, &[odd]);
@@ -133,7 +133,7 @@ async fn strings_are_opaque() {
 /// Protects: a cost that cannot be ordered is reported with its job, and nothing of the study is stored.
 #[tokio::test]
 async fn a_cost_is_a_finite_number() {
-    let Some(sandbox) = Sandbox::of(ENGINE).await else { return };
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     for cost in [f64::NAN, f64::INFINITY] {
         let mut bad = study("a", &["x"]);

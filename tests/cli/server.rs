@@ -1,0 +1,113 @@
+//! The commands on a PostgreSQL server, where there is one.
+#![cfg(unix)]
+
+use serde_json::{Value, json};
+
+use crate::server_database::{ServerDatabase, block_on};
+use crate::support::{Folder, LONG_JOBS, long, rows, small, stderr, wait, without_wall_times};
+
+/// A folder with a study, and what an undisturbed run in a file makes of it.
+fn prepared(study: &Value) -> (Folder, String) {
+    let folder = Folder::with("study", study);
+    folder.ok("run study.json --db file.db --out file");
+    let export = folder.ok("export study --db file.db");
+    (folder, export)
+}
+
+/// Protects: whatever a command does with a file it does with a server: the same results, tables, figures and export
+/// byte for byte but for run times, and copies either way are the same to the last byte.
+#[test]
+fn every_command_works_on_a_server() {
+    let Some(database) = ServerDatabase::new() else { return };
+    let url = database.url();
+    // One of them fails.
+    let study = small(&json!({ "mu": [0.2, 0.3, 0.4], "omega_rpm": [5, 20] }));
+    let (folder, in_a_file) = prepared(&study);
+    folder.ok(&format!("submit study.json --db {url}"));
+    assert!(folder.ok(&format!("status --db {url}")).contains("6 pending"));
+    folder.ok(&format!("work --db {url} --threads 2"));
+    folder.ok(&format!("run study.json --db {url} --out server"));
+    let on_a_server = folder.ok(&format!("export study --db {url}"));
+    assert_eq!(without_wall_times(&on_a_server), without_wall_times(&in_a_file));
+    for file in ["mu_star.csv", "figure7.svg", "report.md"] {
+        let read = |out: &str| std::fs::read(folder.path(out).join(file)).ok();
+        if file != "report.md" {
+            assert_eq!(read("server"), read("file"), "{file}");
+        }
+    }
+
+    folder.ok(&format!("copy --from {url} --to copied.db"));
+    assert_eq!(folder.ok("export study --db copied.db"), on_a_server);
+    folder.ok(&format!("rm study --db {url}"));
+    assert!(folder.ok(&format!("gc --db {url}")).contains("dropped 6 jobs, 6 results"));
+    folder.ok(&format!("copy study --from copied.db --to {url}"));
+    assert_eq!(folder.ok(&format!("export study --db {url}")), on_a_server);
+
+    let key = rows(&on_a_server)[0]["job"].clone();
+    assert!(folder.ok(&format!("show {key} --db {url}")).contains("done"));
+    folder.ok(&format!("report study --db {url} --out again"));
+    folder.ok(&format!("retry study --failed --db {url}"));
+    assert!(folder.ok(&format!("cancel study --db {url}")).contains('0'));
+    let doctor = folder.ok(&format!("doctor --db {url}"));
+    assert!(doctor.contains("PostgreSQL") && doctor.contains("connections"), "{doctor}");
+}
+
+/// Protects: several workers share a server's jobs; one that is killed loses none of them, and everything is done once,
+/// with the bytes of an undisturbed run; status says who works, where, and what was taken back.
+#[test]
+fn a_killed_worker_loses_nothing() {
+    let Some(database) = ServerDatabase::new() else { return };
+    let url = database.url();
+    let (folder, in_a_file) = prepared(&long());
+    folder.ok(&format!("submit study.json --db {url}"));
+    let status =
+        || -> Value { serde_json::from_str(&folder.ok(&format!("status study --json --db {url}"))).unwrap() };
+    let work = format!("work --db {url} --threads 1 --lease 10s");
+    let killed = folder.start(&work);
+    wait("the first to have jobs", || status()["jobs"]["running"].as_u64() > Some(0));
+    let at_work = status()["workers"][0].clone();
+    let host = std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap();
+    assert_eq!((&at_work["host"], &at_work["presence"]), (&json!(host.trim()), &json!("working")));
+    assert_eq!((&at_work["threads"], &at_work["process"]), (&json!(1), &json!(killed.id())));
+    killed.signal("KILL");
+    killed.end();
+    let second = folder.start(&work);
+    let third = folder.start(&work);
+    assert_eq!((second.end().0, third.end().0), (Some(0), Some(0)));
+    let lost = status()["workers"].as_array().unwrap().clone();
+    assert_eq!(lost.len(), 1, "{lost:?}");
+    assert_eq!((&lost[0]["presence"], &lost[0]["process"]), (&json!("lost"), &at_work["process"]));
+    assert!(lost[0]["taken_back"].as_u64() > Some(0), "{lost:?}");
+    assert!(folder.ok(&format!("status study --db {url}")).contains("jobs taken back from it"));
+    let export = folder.ok(&format!("export study --db {url}"));
+    assert_eq!(without_wall_times(&export), without_wall_times(&in_a_file));
+    let results: i64 = block_on(async {
+        let count = sqlx::query_scalar("SELECT COUNT(*) FROM results");
+        count.fetch_one(&mut database.raw().await).await.unwrap()
+    });
+    assert_eq!(results.unsigned_abs(), LONG_JOBS);
+}
+
+/// Protects: a server that is not there, a database that has nothing, a URL of something else and one that says too
+/// little are told apart, with the advice that fits, and no password in it.
+#[test]
+fn bad_urls_are_explained() {
+    let folder = Folder::with("study", &small(&json!({ "mu": [0.3] })));
+    let told = |arguments: &str| {
+        let text = stderr(&folder.command(arguments).assert().code(2));
+        assert!(!text.contains("secret"), "{text}");
+        text
+    };
+    let nobody = told("submit study.json --db postgres://ada:secret@127.0.0.1:1/x");
+    assert!(nobody.contains("postgres://ada@127.0.0.1:1/x") && nobody.contains("no answer"), "{nobody}");
+    let other = told("status --db mysql://localhost/x");
+    assert!(other.contains("mysql") && other.contains("postgres://"), "{other}");
+    let port = told("status --db postgres://ada:secret@localhost:port/x");
+    assert!(port.contains("postgres://USER@HOST"), "{port}");
+    let Some(database) = ServerDatabase::new() else { return };
+    let url = database.url();
+    let empty = told(&format!("status --db {url}"));
+    assert!(empty.contains("no database at") && empty.contains("submit"), "{empty}");
+    let missing = told(&format!("submit study.json --db {url}_missing"));
+    assert!(missing.contains("does not exist"), "{missing}");
+}

@@ -1,0 +1,53 @@
+//! A study in parts, and what brings databases together.
+
+use serde_json::json;
+
+use crate::support::{Folder, rows, small, stderr, without_wall_times};
+
+/// Protects: a study that is submitted, worked on and merged in shards is the whole study, byte for byte but for run
+/// times; merging again changes nothing, and what no shard has done is still to be done.
+#[test]
+fn shards_are_the_whole_study() {
+    let study = small(&json!({ "mu": [0.2, 0.3, 0.4], "omega_rpm": [5, 20] }));
+    let folder = Folder::with("study", &study);
+    folder.ok("run study.json --db whole.db");
+    let whole = folder.ok("export study --db whole.db");
+    for shard in 1..=4 {
+        folder.ok(&format!("submit study.json --shard {shard}/4 --db {shard}.db"));
+        if shard < 4 {
+            folder.ok(&format!("work --db {shard}.db"));
+        }
+    }
+    let merged = folder.ok("merge 1.db 2.db 3.db 4.db --db merged.db");
+    assert!(merged.lines().last().unwrap().contains("1 are still to be run"), "{merged}");
+    let partly = folder.ok("export study --db merged.db");
+    assert_eq!(rows(&partly).iter().filter(|row| row["status"] == "pending").count(), 1);
+    folder.ok("work --db merged.db");
+    let done = folder.ok("export study --db merged.db");
+    assert_eq!(without_wall_times(&done), without_wall_times(&whole));
+    folder.ok("merge 1.db 4.db --db merged.db");
+    assert_eq!(folder.ok("export study --db merged.db"), done);
+    folder.ok("report study --db 1.db --out part");
+}
+
+/// Protects: what cannot be merged or split is refused before anything is written.
+#[test]
+fn bad_parts_are_refused() {
+    let folder = Folder::with("study", &small(&json!({ "mu": [0.2, 0.3] })));
+    for shard in ["0/2", "3/2", "1", "1/0", "a/b", "1/2/3", "-1/2"] {
+        let told = stderr(&folder.command(&format!("submit study.json --shard={shard}")).assert().code(2));
+        assert!(told.contains("1/4"), "{shard}: {told}");
+    }
+    assert!(!folder.path("tribosweep.db").exists());
+    folder.ok("submit study.json --db a.db");
+    let told = stderr(&folder.command("merge a.db missing.db --db b.db").assert().code(2));
+    assert!(told.contains("missing.db") && !folder.path("b.db").exists(), "{told}");
+    let told = stderr(&folder.command("copy --from a.db --to ./a.db").assert().code(2));
+    assert!(told.contains("both"), "{told}");
+    let told = stderr(&folder.command("copy other --from a.db --to b.db").assert().code(2));
+    assert!(told.contains("no study `other`"), "{told}");
+    folder.add("study", &small(&json!({ "mu": [0.5] })));
+    folder.ok("submit study.json --db b.db");
+    let told = stderr(&folder.command("copy --from a.db --to b.db").assert().code(2));
+    assert!(told.contains("another one"), "{told}");
+}
