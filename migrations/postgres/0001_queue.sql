@@ -138,7 +138,8 @@ BEGIN
     INSERT INTO study_pending (study_id, priority, cost, job_id, batch)
     SELECT DISTINCT a.study_id, j.priority, j.cost, j.id, j.batch
     FROM added AS a JOIN jobs AS j ON j.id = a.job_id
-    WHERE j.state = 'pending'
+    -- Looked up by its number, not among all that are pending.
+    WHERE j.state || '' = 'pending'
     ON CONFLICT DO NOTHING;
     RETURN NULL;
 END $$;

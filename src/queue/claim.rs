@@ -77,6 +77,9 @@ const TAKE: Statement = Statement::each(
 );
 
 /// As above, of the study named $6.
+///
+/// PostgreSQL: LATERAL keeps the order of the loops, a job is looked up for each row; a plain join of tables that it has
+/// no statistics of may look through all pending jobs for each.
 const TAKE_OF_STUDY: Statement = Statement::each(
     "
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3
@@ -96,18 +99,20 @@ const TAKE_OF_STUDY: Statement = Statement::each(
               (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)",
     "
     WITH first AS MATERIALIZED (
-        SELECT p.batch, p.priority FROM study_pending AS p JOIN jobs AS j ON j.id = p.job_id
-        WHERE p.study_id = (SELECT id FROM studies WHERE name = $6) AND j.state = 'pending'
+        SELECT p.batch, p.priority
+        FROM study_pending AS p CROSS JOIN LATERAL (
+            SELECT id FROM jobs WHERE id = p.job_id AND state = 'pending' FOR UPDATE SKIP LOCKED) AS j
+        WHERE p.study_id = (SELECT id FROM studies WHERE name = $6)
         ORDER BY p.priority DESC, p.cost DESC, p.job_id LIMIT 1
-        FOR UPDATE OF j SKIP LOCKED
     ), next AS MATERIALIZED (
-        SELECT j.id FROM study_pending AS p JOIN jobs AS j ON j.id = p.job_id
-        WHERE p.study_id = (SELECT id FROM studies WHERE name = $6) AND j.state = 'pending'
+        SELECT j.id
+        FROM study_pending AS p CROSS JOIN LATERAL (
+            SELECT id FROM jobs WHERE id = p.job_id AND state = 'pending' FOR UPDATE SKIP LOCKED) AS j
+        WHERE p.study_id = (SELECT id FROM studies WHERE name = $6)
           AND p.batch = COALESCE($5, (SELECT batch FROM first))
           AND p.priority >= (
               SELECT CASE WHEN $5 IS NULL THEN -9223372036854775808 ELSE priority END FROM first)
         ORDER BY p.priority DESC, p.cost DESC, p.job_id LIMIT $4
-        FOR UPDATE OF j SKIP LOCKED
     )
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3
     FROM next WHERE jobs.id = next.id

@@ -53,8 +53,8 @@ const RELEASED: &str = "released: the work was interrupted before the job ended"
 /// The fence, `state = 'running' AND owner = … AND attempt = …`, is in every statement that speaks for an attempt:
 /// whoever lost the job in the meantime changes nothing.
 ///
-/// `SQLite`: CROSS JOIN, so that a key is looked up for each end; the plus signs leave only the key to look jobs up by,
-/// and so keep the loops in this order.
+/// A key is looked up for each end. `SQLite`: CROSS JOIN, and plus signs that leave only the key to look jobs up by, and so
+/// keep the loops in this order. PostgreSQL: the same by what is added to the other columns.
 const STORE: Statement = Statement::each(
     "
     INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)
@@ -78,7 +78,7 @@ const STORE: Statement = Statement::each(
             owner = NULL, lease_until_ms = NULL
         FROM json_array_elements($5::json) AS e (value)
         WHERE jobs.key = e.value ->> 0
-          AND jobs.state = 'running' AND jobs.owner = $2 AND jobs.attempt = (e.value ->> 1)::bigint
+          AND jobs.state || '' = 'running' AND jobs.owner + 0 = $2 AND jobs.attempt = (e.value ->> 1)::bigint
         RETURNING jobs.id, jobs.key, jobs.attempt, jobs.started_ms
     ), stored AS (
         INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)

@@ -11,8 +11,9 @@ const GONE: [&str; 5] = ["57P01", "57P02", "57P03", "57P05", "25P03"];
 /// There are as many connections as the server allows.
 const TOO_MANY: &str = "53300";
 
-/// A lock that was not to be had in time, a deadlock that was resolved at our cost, and a conflict.
-const LOCKED: [&str; 3] = ["55P03", "40P01", "40001"];
+/// A lock that was not to be had in time, a deadlock that was resolved at our cost, a conflict, and a statement that took
+/// too long.
+const LOCKED: [&str; 4] = ["55P03", "40P01", "40001", "57014"];
 
 const DISK_FULL: &str = "53100";
 

@@ -103,7 +103,9 @@ impl Session {
             Access::Shared => ("pg_advisory_xact_lock_shared", self.settings.busy_timeout + PATIENCE),
         };
         // In one message. A statement sees what was there when it began: the lock is to be had first.
-        let begin = format!("BEGIN; SELECT {lock}({WRITING}); {NOW}");
+        let patience_ms = patience.as_millis();
+        let begin =
+            format!("BEGIN; SET LOCAL statement_timeout TO {patience_ms}; SELECT {lock}({WRITING}); {NOW}");
         self.is_in_transaction = false;
         self.patience = patience;
         let begun = self.attempt(async |connection| time(connection, begin).await).await;

@@ -7,7 +7,7 @@ use sqlx::postgres::PgConnectOptions;
 use sqlx::postgres::PgSslMode;
 use sqlx::{ConnectOptions, PgConnection};
 
-use super::{SILENCE, Session, schema};
+use super::{PATIENCE, SILENCE, Session, schema};
 use crate::queue::location::Server;
 use crate::queue::{Location, QueueError, Settings};
 
@@ -88,6 +88,8 @@ pub(super) async fn connect(
             "SET search_path TO {schema};
              SET client_min_messages TO warning;
              SET lock_timeout TO {lock_ms};
+             SET statement_timeout TO {statement_ms};
+             SET client_connection_check_interval TO {silence_ms};
              SET idle_in_transaction_session_timeout TO {silence_ms};
              SET tcp_user_timeout TO {silence_ms};
              SET tcp_keepalives_idle TO {silence_s};
@@ -100,6 +102,8 @@ pub(super) async fn connect(
              SET enable_sort TO off;
              SET jit TO off",
             schema = schema::NAME,
+            // What nobody waits for any more is not to be worked on either.
+            statement_ms = (settings.busy_timeout + PATIENCE).as_millis(),
             lock_ms = settings.busy_timeout.as_millis(),
         );
         sqlx::raw_sql(sqlx::AssertSqlSafe(set)).execute(&mut connection).await?;
