@@ -67,7 +67,7 @@ fn block_on<F: Future>(future: F) -> F::Output {
 }
 
 async fn open(args: &Args) -> Queue {
-    let location = Location::parse(args.db.clone().into()).unwrap();
+    let location = Location::parse(args.db.clone().into());
     Queue::open(location, Clock::OfDatabase).await.unwrap()
 }
 

@@ -216,7 +216,7 @@ def compare(sweep, reference):
     tell(f"{jobs} jobs done in {attempts} attempts, one result each, the same as undisturbed")
     for host in sweep.workers:
         log = (sweep.folder / f"{host}.log").read_text()
-        tell(f"{host}: {log.count('cannot be reached')} times without the server")
+        tell(f"{host}: {log.count('does not answer')} times without the server")
 
 
 def main():

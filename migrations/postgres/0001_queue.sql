@@ -25,7 +25,8 @@ CREATE TABLE workers (
     ended_ms      BIGINT,
     finished      BIGINT NOT NULL DEFAULT 0,
     jobs_per_s    DOUBLE PRECISION,
-    taken_back    BIGINT NOT NULL DEFAULT 0
+    taken_back    BIGINT NOT NULL DEFAULT 0,
+    lease_ms      BIGINT NOT NULL
 );
 
 CREATE INDEX workers_there ON workers (id) WHERE ended_ms IS NULL;

@@ -3,3 +3,6 @@
 ALTER TABLE workers ADD COLUMN finished INTEGER NOT NULL DEFAULT 0;
 ALTER TABLE workers ADD COLUMN jobs_per_s REAL;
 ALTER TABLE workers ADD COLUMN taken_back INTEGER NOT NULL DEFAULT 0;
+
+-- How long it may be silent, as it says itself. Those of before had two minutes.
+ALTER TABLE workers ADD COLUMN lease_ms INTEGER NOT NULL DEFAULT 120000;

@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::output::{block_on, print};
 use super::rows;
 use crate::exit;
-use crate::queue::{Absorbed, Clock, Location, Queue};
+use crate::queue::{Absorbed, Clock, Location, Queue, Scope};
 use clap::builder::{OsStringValueParser, TypedValueParser};
 
 /// Arguments of `merge`.
@@ -12,7 +12,7 @@ use clap::builder::{OsStringValueParser, TypedValueParser};
 pub struct Args {
     /// The databases whose studies, jobs and results are taken over into the one that --db names.
     #[arg(required = true, value_name = "PATH|URL",
-          value_parser = OsStringValueParser::new().try_map(Location::parse))]
+          value_parser = OsStringValueParser::new().map(Location::parse))]
     sources: Vec<Location>,
 }
 
@@ -21,11 +21,11 @@ pub struct Args {
 pub struct CopyArgs {
     /// The name or file of the study to copy; all of them when left out.
     study: Option<String>,
-    /// The database to copy from.
-    #[arg(long, value_name = "PATH|URL", value_parser = OsStringValueParser::new().try_map(Location::parse))]
-    from: Location,
+    /// The database to copy from; default: the one that --db names.
+    #[arg(long, value_name = "PATH|URL", value_parser = OsStringValueParser::new().map(Location::parse))]
+    from: Option<Location>,
     /// The database to copy to; it is created if it is not there.
-    #[arg(long, value_name = "PATH|URL", value_parser = OsStringValueParser::new().try_map(Location::parse))]
+    #[arg(long, value_name = "PATH|URL", value_parser = OsStringValueParser::new().map(Location::parse))]
     to: Location,
 }
 
@@ -35,9 +35,9 @@ pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
 }
 
 /// Copies one or all studies.
-pub fn copy(args: &CopyArgs) -> Result<u8, CliError> {
+pub fn copy(args: &CopyArgs, db: &Location) -> Result<u8, CliError> {
     let study = args.study.as_deref().map(rows::study_name).transpose()?;
-    take_over(std::slice::from_ref(&args.from), &args.to, study.as_deref())
+    take_over(std::slice::from_ref(args.from.as_ref().unwrap_or(db)), &args.to, study.as_deref())
 }
 
 fn take_over(sources: &[Location], target: &Location, study: Option<&str>) -> Result<u8, CliError> {
@@ -50,7 +50,9 @@ fn take_over(sources: &[Location], target: &Location, study: Option<&str>) -> Re
         // All of them are opened before anything is written: a wrong name leaves no half behind.
         let mut opened = Vec::new();
         for source in sources {
-            opened.push(rows::open(source).await?);
+            let mut source = rows::open(source).await?;
+            source.counts(&study.map_or(Scope::All, |name| Scope::Study(name.to_owned()))).await?;
+            opened.push(source);
         }
         let mut queue = Queue::open(target.clone(), Clock::OfDatabase).await?;
         let mut lines = Vec::new();

@@ -50,7 +50,7 @@ pub struct Cli {
     command: Command,
     /// The database of studies, jobs and results: a file, or postgres://USER@HOST/DATABASE.
     #[arg(long, global = true, value_name = "PATH|URL", env = "TRIBOSWEEP_DB", hide_env_values = true,
-          default_value = "tribosweep.db", value_parser = OsStringValueParser::new().try_map(Location::parse))]
+          default_value = "tribosweep.db", value_parser = OsStringValueParser::new().map(Location::parse))]
     db: Location,
 }
 
@@ -120,7 +120,7 @@ pub fn main(cli: Cli) -> u8 {
         Command::Rm(args) => rm::run(&args, db),
         Command::Gc => gc::run(db),
         Command::Merge(args) => merge::run(&args, db),
-        Command::Copy(args) => merge::copy(&args),
+        Command::Copy(args) => merge::copy(&args, db),
         Command::Doctor => doctor::run(db),
         Command::Solve(args) => solve::run(&args),
         Command::Inspect(args) => inspect::run(&args, db),

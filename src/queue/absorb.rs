@@ -259,7 +259,9 @@ fn is_end(state: JobState) -> bool {
 /// Whether a job's state there says more than its state here. What runs here is its worker's.
 fn is_better(there: JobState, here: JobState) -> bool {
     match here {
-        JobState::Pending | JobState::Cancelled => is_end(there),
+        JobState::Pending => is_end(there),
+        // Whoever copies a study asks for its jobs.
+        JobState::Cancelled => there != JobState::Cancelled,
         JobState::Failed => there == JobState::Done,
         JobState::Running | JobState::Done => false,
     }

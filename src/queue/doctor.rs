@@ -93,13 +93,13 @@ async fn inspect(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), Q
 }
 
 async fn workers(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), QueueError> {
-    let window = queue.window().await?;
+    let now_ms = queue.now_ms().await?;
     let owners = queue.owners().await?;
     let (mut running, mut stale) = (0, 0);
     for owner in &owners {
         let connection = &mut queue.connection;
         let own: i64 = query(RUNNING_OF).bind(owner.id).scalar(connection).await?;
-        let expired = query(EXPIRED_OF).bind(owner.id).bind(window.now_ms).bind(window.far_ms());
+        let expired = query(EXPIRED_OF).bind(owner.id).bind(now_ms).bind(owner.far_ms(now_ms));
         let (word, left) = match owner.verdict() {
             Verdict::Alive => ("alive", 0),
             Verdict::Gone => ("gone", own),
@@ -107,7 +107,7 @@ async fn workers(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), Q
         };
         running += own;
         stale += left;
-        let ago_s = (window.now_ms - owner.heartbeat_ms) / 1000;
+        let ago_s = (now_ms - owner.heartbeat_ms) / 1000;
         let Owner { id, host, pid, version, .. } = owner;
         let text = format!(
             "{id}: process {pid} on {host}, version {version}, {word}, {own} jobs, last seen {ago_s} s ago"

@@ -195,7 +195,7 @@ pub enum QueueError {
 
     /// The server does not answer, or has ended the connection. What was sent last may have been done or not.
     #[error(
-        "the database server cannot be reached ({0}); nothing is lost, and the same command goes on when it can be"
+        "the database server does not answer ({0}); nothing is lost, and the same command goes on when it does"
     )]
     Unreachable(String),
 

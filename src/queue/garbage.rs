@@ -17,11 +17,15 @@ pub struct Garbage {
 /// A running job is its worker's; it is dropped next time.
 const UNREFERENCED: &str = "
     CREATE TEMP TABLE garbage AS
-    SELECT id FROM jobs WHERE state <> 'running' AND id NOT IN (SELECT job_id FROM study_jobs)";
+    SELECT id FROM jobs WHERE state <> 'running' AND NOT EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = jobs.id)";
 
+/// One that was taken for dead ($1) may be cut off and come back; after a day it does not.
 const WORKERS: &str = "
     DELETE FROM workers
-    WHERE ended_ms IS NOT NULL AND id NOT IN (SELECT owner FROM jobs WHERE owner IS NOT NULL)";
+    WHERE ended_ms IS NOT NULL AND (ended_ms = heartbeat_ms OR heartbeat_ms < $1)
+      AND NOT EXISTS (SELECT 1 FROM jobs AS j WHERE j.owner = workers.id AND j.state = 'running')";
+
+const DAY_MS: i64 = 24 * 3600 * 1000;
 
 impl Queue {
     /// Drops jobs that no study refers to, with their results, and gives their space back.
@@ -31,7 +35,8 @@ impl Queue {
     pub async fn collect_garbage(&mut self) -> Result<Garbage, QueueError> {
         let before = self.connection.size().await?;
         let mut garbage = self
-            .write(async |connection, _| {
+            .write(async |connection, now_ms| {
+                let workers = query(WORKERS).bind(now_ms - DAY_MS).run(connection).await?;
                 query(UNREFERENCED).run(connection).await?;
                 let mut deleted = async |statement: &'static str| query(statement).run(connection).await;
                 deleted("DELETE FROM checkpoints WHERE job_id IN (SELECT id FROM garbage)").await?;
@@ -39,7 +44,7 @@ impl Queue {
                 let garbage = Garbage {
                     results: deleted("DELETE FROM results WHERE job_id IN (SELECT id FROM garbage)").await?,
                     jobs: deleted("DELETE FROM jobs WHERE id IN (SELECT id FROM garbage)").await?,
-                    workers: deleted(WORKERS).await?,
+                    workers,
                     bytes: 0,
                 };
                 deleted("DROP TABLE garbage").await?;

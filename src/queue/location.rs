@@ -21,20 +21,13 @@ pub struct Server {
 const SCHEMES: [&str; 2] = ["postgres", "postgresql"];
 
 impl Location {
-    /// A path, or a URL that begins with `postgres://` or `postgresql://`.
-    ///
-    /// # Errors
-    /// For a URL of anything else, in words.
-    pub fn parse(text: OsString) -> Result<Self, String> {
-        let Some((scheme, _)) = text.to_str().and_then(|text| text.split_once("://")) else {
-            return Ok(Self::File(text.into()));
-        };
-        if SCHEMES.iter().any(|known| known.eq_ignore_ascii_case(scheme)) {
-            return Ok(Self::Server(Server { url: text.to_string_lossy().into_owned() }));
+    /// What a user wrote: a URL where there is a `://` in it, or else a path.
+    pub fn parse(text: OsString) -> Self {
+        match text.to_str() {
+            // Also of an unknown kind: who refuses it must not show its password, and does so when it is opened.
+            Some(url) if url.contains("://") => Self::Server(Server { url: url.to_owned() }),
+            _ => Self::File(text.into()),
         }
-        Err(format!(
-            "no database is known that `{scheme}://` names; expected a path, or postgres://USER@HOST/DATABASE"
-        ))
     }
 
     /// The path, where it is a file's.
@@ -50,6 +43,20 @@ impl Server {
     /// The whole URL.
     pub fn url(&self) -> &str {
         &self.url
+    }
+
+    /// Whether it is PostgreSQL's.
+    ///
+    /// # Errors
+    /// If it is not, what would be right.
+    pub fn check(&self) -> Result<(), String> {
+        let (scheme, _) = self.parts();
+        if SCHEMES.iter().any(|known| known.eq_ignore_ascii_case(scheme)) {
+            return Ok(());
+        }
+        Err(format!(
+            "no database is known that `{scheme}://` names; expected a path, or postgres://USER@HOST/DATABASE"
+        ))
     }
 
     /// Whether the URL holds a password.
@@ -145,13 +152,16 @@ mod tests {
     #[test]
     fn servers_and_files_are_told_apart() {
         for url in ["postgres://ada@db/sweeps", "postgresql://db", "POSTGRES://db"] {
-            assert!(matches!(Location::parse(url.into()), Ok(Location::Server(_))), "{url}");
+            let Location::Server(server) = Location::parse(url.into()) else { panic!("{url}") };
+            assert_eq!(server.check(), Ok(()));
         }
         for path in ["tribosweep.db", "/data/postgres/x.db", "postgres:x"] {
-            assert_eq!(Location::parse(path.into()), Ok(Location::File(path.into())));
+            assert_eq!(Location::parse(path.into()), Location::File(path.into()));
         }
-        let error = Location::parse("mysql://db/x".into()).unwrap_err();
+        let Location::Server(server) = Location::parse("mysql://ada:secret@db/x".into()) else { panic!() };
+        let error = server.check().unwrap_err();
         assert!(error.contains("mysql://") && error.contains("postgres://"), "{error}");
+        assert!(!error.contains("secret"), "{error}");
     }
 
     /// Protects: no message shows a password, wherever in a URL it is.
@@ -169,7 +179,7 @@ mod tests {
             ("postgres://db?password=secret", "postgres://db"),
             ("postgres://ada@db/sweeps?sslmode=require", "postgres://ada@db/sweeps?sslmode=require"),
         ] {
-            let Ok(Location::Server(server)) = Location::parse(url.into()) else { panic!("{url}") };
+            let Location::Server(server) = Location::parse(url.into()) else { panic!("{url}") };
             assert_eq!(server.to_string(), shown);
             assert_eq!(server.has_password(), url != shown);
             assert!(!format!("{server:?}").contains("secret"));

@@ -53,6 +53,7 @@ mod heartbeat;
 mod location;
 mod made;
 mod open;
+mod open_jobs;
 mod owner;
 mod pace;
 #[cfg(feature = "postgres")]
@@ -88,6 +89,7 @@ pub use finish::{Finished, FinishedOutcome};
 pub use garbage::Garbage;
 pub use location::{Location, Server};
 pub use made::MadeWith;
+pub use open_jobs::OpenJobs;
 pub use remove::Removed;
 pub use retry::{Retried, Retry};
 pub use rows::{Rows, StudyRow};

@@ -21,6 +21,7 @@ impl Queue {
         settings: Settings,
     ) -> Result<Self, QueueError> {
         let location = location.into();
+        check(&location)?;
         let connection = match &location {
             Location::File(path) => Connection::Sqlite(sqlite::open(path, settings).await?),
             #[cfg(feature = "postgres")]
@@ -43,6 +44,7 @@ impl Queue {
         settings: Settings,
     ) -> Result<Self, QueueError> {
         let location = location.into();
+        check(&location)?;
         let connection = match &location {
             Location::File(path) if !path.exists() => {
                 return Err(QueueError::NoDatabase { database: location });
@@ -75,6 +77,11 @@ impl Queue {
     fn of(connection: Connection, location: Location, clock: Clock, settings: Settings) -> Self {
         Self { connection, clock, location, settings, registration: None }
     }
+}
+
+fn check(location: &Location) -> Result<(), QueueError> {
+    let Location::Server(server) = location else { return Ok(()) };
+    server.check().map_err(|reason| QueueError::Server { database: location.clone(), reason })
 }
 
 #[cfg(not(feature = "postgres"))]

@@ -18,6 +18,9 @@ pub(super) struct Owner {
     pub threads: u64,
     stopping_ms: Option<i64>,
     ended_ms: Option<i64>,
+    lease_ms: i64,
+    /// Whether the database is on a server: machines that know nothing of each other may have the same name.
+    is_on_server: bool,
 }
 
 /// What is known of an owner.
@@ -29,26 +32,19 @@ pub(super) enum Verdict {
     Elsewhere,
 }
 
-/// The times between which a sign of life is neither too old nor ahead of any clock.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Window {
-    pub now_ms: i64,
-    lease_ms: i64,
-}
-
 /// No clock that anybody works with is wrong by more.
 const FAR_AHEAD_MS: i64 = 24 * 3600 * 1000;
 
 const OWNERS: Statement = Statement::each(
     "
     SELECT id, host, boot_id, pid_namespace, pid, process_start, version, heartbeat_ms, threads, stopping_ms,
-           ended_ms
+           ended_ms, lease_ms
     FROM workers
     WHERE ended_ms IS NULL OR id IN (SELECT owner FROM jobs INDEXED BY jobs_owner WHERE state = 'running')
     ORDER BY id",
     "
     SELECT id, host, boot_id, pid_namespace, pid, process_start, version, heartbeat_ms, threads, stopping_ms,
-           ended_ms
+           ended_ms, lease_ms
     FROM workers
     WHERE ended_ms IS NULL OR id IN (SELECT owner FROM jobs WHERE state = 'running')
     ORDER BY id",
@@ -66,38 +62,22 @@ type Columns = (
     i64,
     Option<i64>,
     Option<i64>,
+    i64,
 );
 
 impl Queue {
     /// All who may own running jobs.
     pub(super) async fn owners(&mut self) -> Result<Vec<Owner>, QueueError> {
         let owners: Vec<Columns> = query(OWNERS).all(&mut self.connection).await?;
-        Ok(owners.into_iter().map(Owner::from_columns).collect())
-    }
-
-    /// The window of now.
-    pub(super) async fn window(&mut self) -> Result<Window, QueueError> {
-        Ok(Window { now_ms: self.now_ms().await?, lease_ms: self.lease_ms() })
-    }
-}
-
-impl Window {
-    /// Leases that end later are wrong: they were written by a clock that had jumped, and would never end.
-    pub fn far_ms(self) -> i64 {
-        self.now_ms.saturating_add(self.lease_ms).saturating_add(FAR_AHEAD_MS)
-    }
-
-    /// Whether a worker that gave this sign of life has been silent since, for as long as a lease.
-    pub fn is_silent(self, heartbeat_ms: i64) -> bool {
-        let until_ms = heartbeat_ms.saturating_add(self.lease_ms);
-        until_ms <= self.now_ms || until_ms > self.far_ms()
+        let is_on_server = self.location.path().is_none();
+        Ok(owners.into_iter().map(|columns| Owner::from_columns(columns, is_on_server)).collect())
     }
 }
 
 impl Owner {
-    fn from_columns(columns: Columns) -> Self {
+    fn from_columns(columns: Columns, is_on_server: bool) -> Self {
         let (id, host, boot_id, pid_namespace, pid, process_start, version, ..) = columns;
-        let (.., heartbeat_ms, threads, stopping_ms, ended_ms) = columns;
+        let (.., heartbeat_ms, threads, stopping_ms, ended_ms, lease_ms) = columns;
         let (pid, threads) = (pid as u32, threads.unsigned_abs());
         Self {
             id,
@@ -111,7 +91,20 @@ impl Owner {
             threads,
             stopping_ms,
             ended_ms,
+            lease_ms,
+            is_on_server,
         }
+    }
+
+    /// Leases that end later are wrong: they were written by a clock that had jumped, and would never end.
+    pub fn far_ms(&self, now_ms: i64) -> i64 {
+        now_ms.saturating_add(self.lease_ms).saturating_add(FAR_AHEAD_MS)
+    }
+
+    /// Whether it has ended, or has given no sign of life for as long as its own lease.
+    pub fn is_silent(&self, now_ms: i64) -> bool {
+        let until_ms = self.heartbeat_ms.saturating_add(self.lease_ms);
+        self.ended_ms.is_some() || until_ms <= now_ms || until_ms > self.far_ms(now_ms)
     }
 
     /// Whether it has been asked to stop.
@@ -121,19 +114,18 @@ impl Owner {
 
     pub fn verdict(&self) -> Verdict {
         let here = (process::host(), process::boot_id(), process::pid_namespace());
-        if self.ended_ms.is_some() {
-            return Verdict::Gone;
-        }
         let (Some(start), true) = (self.process_start, self.boot_id.is_some() && self.host == here.0) else {
             return Verdict::Elsewhere;
         };
         if self.boot_id != here.1 {
-            return Verdict::Gone;
+            return if self.is_on_server { Verdict::Elsewhere } else { Verdict::Gone };
         }
         if self.pid_namespace != here.2 {
             return Verdict::Elsewhere;
         }
         match process::presence(self.pid, start) {
+            // Whoever has ended in order has nothing in hand any more.
+            Presence::Alive if self.ended_ms.is_some() => Verdict::Gone,
             Presence::Alive => Verdict::Alive,
             Presence::Gone => Verdict::Gone,
             Presence::Unknown => Verdict::Elsewhere,

@@ -4,15 +4,17 @@
 //! 1. An owner on this boot of this machine is asked for in the table of processes. If it is there, its jobs stay
 //!    its own however old its lease is: a process that was stopped or a machine that slept comes back, and a clock
 //!    that jumps takes nothing from anybody. If it is not, they are pending at once.
-//! 2. An owner on an earlier boot of this machine is gone.
-//! 3. Of any other owner nothing is known but its signs of life and its leases, by the database's clock. One that ends
+//! 2. An owner on an earlier boot of this machine is gone. (Of a file's machine: of those that share a server two may have
+//!    the same name, and another boot is another machine.)
+//! 3. Of any other owner nothing is known but its signs of life, which come before the end of its own lease, and the
+//!    leases of its jobs, by the database's clock. One that ends
 //!    further ahead than any clock is wrong counts as over too: it was written by a clock that had jumped, and would
 //!    never end.
 //!
 //! Whatever is decided, nothing is lost by a mistake: a job that is run twice is recorded once, by the fence.
 
 use super::engine::query;
-use super::owner::{Owner, Verdict, Window};
+use super::owner::{Owner, Verdict};
 use super::{Queue, QueueError};
 
 /// What was taken back.
@@ -64,17 +66,17 @@ impl Queue {
         if others.is_empty() {
             return Ok(taken);
         }
-        let window = self.window().await?;
+        let now_ms = self.now_ms().await?;
         for owner in others {
             let verdict = owner.verdict();
             let is_suspect = match verdict {
                 Verdict::Alive => false,
                 Verdict::Gone => true,
                 // Many workers look at each other all the time: the tables are locked only for one that is silent.
-                Verdict::Elsewhere => window.is_silent(owner.heartbeat_ms),
+                Verdict::Elsewhere => owner.is_silent(now_ms),
             };
             if is_suspect {
-                self.take_from(owner, verdict, window, &mut taken).await?;
+                self.take_from(owner, verdict, &mut taken).await?;
             }
         }
         Ok(taken)
@@ -84,7 +86,6 @@ impl Queue {
         &mut self,
         owner: &Owner,
         verdict: Verdict,
-        window: Window,
         taken: &mut TakenBack,
     ) -> Result<(), QueueError> {
         let crash_limit = self.settings.crash_limit;
@@ -96,7 +97,7 @@ impl Queue {
                     .bind(crash_limit)
                     .bind(TAKEN_BACK)
                     .bind((verdict == Verdict::Elsewhere).then_some(now_ms))
-                    .bind(window.far_ms())
+                    .bind(owner.far_ms(now_ms))
                     .bind(i64::from(!owner.is_stopping()))
                     .all(connection)
                     .await?;

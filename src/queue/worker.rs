@@ -53,8 +53,9 @@ pub(super) struct Registration {
 }
 
 const REGISTER: &str = "
-    INSERT INTO workers (host, boot_id, pid_namespace, pid, process_start, threads, version, started_ms, heartbeat_ms)
-    VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $8)
+    INSERT INTO workers (host, boot_id, pid_namespace, pid, process_start, threads, version, started_ms,
+                         heartbeat_ms, lease_ms)
+    VALUES ($1, $2, $3, $4, $5, $6, $7, $8, $8, $9)
     RETURNING id";
 
 const RELEASE_ALL: &str = "
@@ -81,6 +82,7 @@ impl Queue {
             .bind(i64::try_from(worker.threads).unwrap_or(i64::MAX))
             .bind(&worker.version)
             .bind(now_ms)
+            .bind(self.lease_ms())
             .scalar(&mut self.connection)
             .await?;
         let (provenance, held) = (worker.provenance.clone(), BTreeMap::new());

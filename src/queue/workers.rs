@@ -1,5 +1,5 @@
 use super::engine::query;
-use super::owner::{Owner, Verdict, Window};
+use super::owner::{Owner, Verdict};
 use super::{Queue, QueueError};
 
 /// A worker that is there, or that was lost with jobs in hand.
@@ -63,7 +63,7 @@ impl Queue {
     /// If the database cannot be read.
     pub async fn workers(&mut self) -> Result<Vec<WorkerStatus>, QueueError> {
         let owners = self.owners().await?;
-        let window = self.window().await?;
+        let now_ms = self.now_ms().await?;
         let running: Vec<(i64, i64)> = query(RUNNING).all(&mut self.connection).await?;
         let rows: Vec<Columns> = query(LOST).all(&mut self.connection).await?;
         let status =
@@ -73,7 +73,7 @@ impl Queue {
                     host,
                     pid: i64::unsigned_abs(pid) as u32,
                     threads: i64::unsigned_abs(threads),
-                    presence: owner.map_or(WorkerPresence::Gone, |owner| owner.presence(window)),
+                    presence: owner.map_or(WorkerPresence::Gone, |owner| owner.presence(now_ms)),
                     running: running
                         .iter()
                         .find(|(owner, _)| *owner == id)
@@ -82,7 +82,7 @@ impl Queue {
                     jobs_per_s,
                     taken_back: i64::unsigned_abs(taken_back),
                     started_ms,
-                    silent_ms: window.now_ms - heartbeat_ms,
+                    silent_ms: now_ms - heartbeat_ms,
                 }
             };
         Ok(rows.into_iter().map(status).collect())
@@ -95,8 +95,8 @@ impl Queue {
     /// If the database cannot be read.
     pub async fn alive(&mut self) -> Result<Alive, QueueError> {
         let owners = self.owners().await?;
-        let window = self.window().await?;
-        let there = owners.iter().filter(|owner| owner.presence(window) == WorkerPresence::Working);
+        let now_ms = self.now_ms().await?;
+        let there = owners.iter().filter(|owner| owner.presence(now_ms) == WorkerPresence::Working);
         Ok(there.fold(Alive::default(), |alive, owner| Alive {
             workers: alive.workers + 1,
             threads: alive.threads + owner.threads,
@@ -105,11 +105,11 @@ impl Queue {
 }
 
 impl Owner {
-    fn presence(&self, window: Window) -> WorkerPresence {
+    fn presence(&self, now_ms: i64) -> WorkerPresence {
         let is_there = match self.verdict() {
             Verdict::Alive => true,
             Verdict::Gone => false,
-            Verdict::Elsewhere => !window.is_silent(self.heartbeat_ms),
+            Verdict::Elsewhere => !self.is_silent(now_ms),
         };
         match (is_there, self.is_stopping()) {
             (false, _) => WorkerPresence::Gone,

@@ -63,6 +63,7 @@ pub async fn work(
     interrupt: &Interrupt,
     progress: &mut impl Progress,
 ) -> Result<WorkSummary, WorkError> {
+    wait_for(queue, scope, progress).await?;
     let left = queue.counts(scope).await?;
     // No more threads than jobs to run on them, unless more may come.
     let jobs = usize::try_from(left.pending + left.running).unwrap_or(usize::MAX);
@@ -103,6 +104,20 @@ pub async fn work(
     progress.stopped(&snapshot);
     let (counts, taken_back) = (snapshot.counts, dispatcher.taken_back);
     Ok(WorkSummary { counts, taken_back, interrupted: interrupt.is_raised() })
+}
+
+/// Waits until the database can be reached: a worker among many is not lost for a server that is just being restarted.
+async fn wait_for(queue: &mut Queue, scope: &Scope, progress: &mut impl Progress) -> Result<(), QueueError> {
+    let begun = Instant::now();
+    loop {
+        match queue.open_jobs(scope).await {
+            Err(error @ QueueError::Unreachable(_)) if begun.elapsed() < PATIENCE => {
+                progress.waiting(&error.to_string());
+                tokio::time::sleep(PAUSE).await;
+            }
+            reached => return reached.map(drop),
+        }
+    }
 }
 
 struct Dispatcher<'a> {
@@ -190,12 +205,15 @@ impl Dispatcher<'_> {
             return Ok(false);
         }
         // What is counted here may be older than what others do.
-        match self.tally.ask(self.queue, self.scope).await {
+        let open = match self.queue.open_jobs(self.scope).await {
             Err(error) if error.is_transient() => return Ok(false),
-            asked => asked?,
+            open => open?,
+        };
+        if open.has_pending || open.has_running {
+            self.tally.is_outdated();
+            return Ok(false);
         }
-        let patience = self.idle_exit.unwrap_or_default();
-        Ok(!self.is_anything_left() && self.idle.lasts() >= patience)
+        Ok(self.idle.lasts() >= self.idle_exit.unwrap_or_default())
     }
 
     fn is_anything_left(&self) -> bool {
@@ -257,6 +275,7 @@ impl Dispatcher<'_> {
     /// A checkpoint is a help and not a result: where it cannot be kept, the work goes on, and the one before is there.
     async fn keep_checkpoints(&mut self, progress: &mut impl Progress) {
         let mut is_refused = false;
+        let begun = Instant::now();
         for Kept { key, attempt, bytes } in std::mem::take(&mut self.checkpoints) {
             while !is_refused {
                 match self.queue.save_checkpoint(&key, attempt, &bytes).await {
@@ -265,7 +284,10 @@ impl Dispatcher<'_> {
                         progress.waiting(&format!("the state of running jobs cannot be kept: {error}"));
                         // No other one comes for what is released now.
                         let is_last = self.interrupt.is_raised() && error.is_transient();
-                        is_refused = !is_last;
+                        is_refused = !is_last || begun.elapsed() > PATIENCE;
+                        if is_last {
+                            tokio::time::sleep(PAUSE).await;
+                        }
                     }
                 }
             }
@@ -343,6 +365,9 @@ impl Dispatcher<'_> {
             self.heartbeat.is_given();
         }
         let taken = self.queue.take_back().await?;
+        if self.running.is_empty() && self.queue.open_jobs(self.scope).await?.has_pending {
+            self.tally.is_outdated();
+        }
         self.taken_back.pending += taken.pending;
         self.taken_back.failed += taken.failed;
         Ok(())

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 const INTERVAL: Duration = Duration::from_millis(250);
 
 /// … and no more rarely than this, however long it takes …
-const LONGEST: Duration = Duration::from_secs(15);
+const LONGEST: Duration = Duration::from_mins(1);
 
 /// … nor for more than a small part of the time, which all workers share.
 const SHARE: u32 = 20;
@@ -56,6 +56,11 @@ impl Tally {
         self.due = Instant::now()
             + took.saturating_mul(SHARE.saturating_mul(workers)).clamp(INTERVAL, LONGEST.max(took * SHARE));
         Ok(())
+    }
+
+    /// Something has changed: the next refresh asks.
+    pub fn is_outdated(&mut self) {
+        self.due = Instant::now();
     }
 
     /// Jobs were claimed.

@@ -59,7 +59,7 @@ impl Sandbox {
         let mut sandbox = Self::new();
         if engine == Engine::Postgres {
             let server = ServerDatabase::new()?;
-            sandbox.location = Location::parse(server.url().into()).unwrap();
+            sandbox.location = Location::parse(server.url().into());
             sandbox.server = Some(server);
         }
         Some(sandbox)

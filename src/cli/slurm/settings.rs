@@ -88,7 +88,10 @@ impl Database {
                  into the environment as PGPASSWORD before you submit"
                     .to_owned(),
             )),
-            Location::Server(server) => Ok(Self::Shared(server.url().to_owned())),
+            Location::Server(server) => {
+                server.check().map_err(|reason| CliError::Usage(format!("{db}: {reason}")))?;
+                Ok(Self::Shared(server.url().to_owned()))
+            }
             Location::File(path) => {
                 let name = path.file_name().and_then(|name| name.to_str());
                 let name = name.ok_or_else(|| {

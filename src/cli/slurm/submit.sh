@@ -13,8 +13,12 @@ cd -- "$folder" || fail "$folder is not there"
 # An earlier array of these shards would work on the same files on other nodes, and the last one to end would win.
 if [ -z "$db" ] && [ -e jobs ]; then
     read -r earlier _ < jobs
-    [ -z "$(squeue --noheader --jobs="$earlier" 2> /dev/null)" ] \
-        || fail "array $earlier of this folder has not ended: wait for it, or scancel $earlier"
+    # Slurm forgets jobs that ended some minutes ago; any other error is no proof that this one has.
+    if ! alive=$(squeue --noheader --jobs="$earlier" 2>&1); then
+        [[ "$alive" == *"Invalid job id"* ]] || fail "squeue does not tell whether array $earlier has ended: $alive"
+        alive=
+    fi
+    [ -z "$alive" ] || fail "array $earlier of this folder has not ended: wait for it, or scancel $earlier"
 fi
 if [ -n "$db" ]; then
     "$tribosweep" submit --db "$db" -- "$study" || fail "the study was not planned, and nothing was submitted to Slurm"

@@ -11,9 +11,11 @@ const GONE: [&str; 5] = ["57P01", "57P02", "57P03", "57P05", "25P03"];
 /// There are as many connections as the server allows.
 const TOO_MANY: &str = "53300";
 
-/// A lock that was not to be had in time, a deadlock that was resolved at our cost, a conflict, and a statement that took
-/// too long.
-const LOCKED: [&str; 4] = ["55P03", "40P01", "40001", "57014"];
+/// A lock that was not to be had in time, a deadlock that was resolved at our cost, and a conflict.
+const LOCKED: [&str; 3] = ["55P03", "40P01", "40001"];
+
+/// A statement took longer than it may.
+const TOO_LONG: &str = "57014";
 
 const DISK_FULL: &str = "53100";
 
@@ -34,7 +36,7 @@ pub(in crate::queue) fn known(source: sqlx::Error) -> Result<QueueError, sqlx::E
     };
     let code = error.code();
     // Class 08 are the errors of connections.
-    Ok(if GONE.contains(&code) || code == TOO_MANY || code.starts_with("08") {
+    Ok(if GONE.contains(&code) || code == TOO_MANY || code == TOO_LONG || code.starts_with("08") {
         QueueError::Unreachable(error.to_string())
     } else if LOCKED.contains(&code) {
         QueueError::Locked(source)

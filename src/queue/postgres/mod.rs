@@ -144,10 +144,21 @@ impl Session {
     /// The server's own housekeeping would do it, some time.
     pub async fn compact(&mut self) -> Result<(), QueueError> {
         self.patience = LONG_PATIENCE;
-        let vacuum = "VACUUM jobs, payloads, results, checkpoints, workers, study_jobs, study_pending";
-        let done = self.attempt(async |connection| sqlx::raw_sql(vacuum).execute(connection).await).await;
+        let statement_ms = (self.settings.busy_timeout + PATIENCE).as_millis();
+        let vacuum = [
+            format!("SET statement_timeout TO {}", LONG_PATIENCE.as_millis()),
+            "VACUUM jobs, payloads, results, checkpoints, workers, study_jobs, study_pending".to_owned(),
+            format!("SET statement_timeout TO {statement_ms}"),
+        ];
+        let mut done = Ok(());
+        // One by one: several in one message are a transaction, in which nothing can be vacuumed.
+        for statement in vacuum {
+            let statement = sqlx::AssertSqlSafe(statement);
+            let ran = self.attempt(async |connection| sqlx::raw_sql(statement).execute(connection).await);
+            done = done.and(ran.await.map(drop));
+        }
         self.end();
-        done.map(drop)
+        done
     }
 
     pub async fn size(&mut self) -> Result<u64, QueueError> {

@@ -89,7 +89,6 @@ pub(super) async fn connect(
              SET client_min_messages TO warning;
              SET lock_timeout TO {lock_ms};
              SET statement_timeout TO {statement_ms};
-             SET client_connection_check_interval TO {silence_ms};
              SET idle_in_transaction_session_timeout TO {silence_ms};
              SET tcp_user_timeout TO {silence_ms};
              SET tcp_keepalives_idle TO {silence_s};
@@ -107,6 +106,9 @@ pub(super) async fn connect(
             lock_ms = settings.busy_timeout.as_millis(),
         );
         sqlx::raw_sql(sqlx::AssertSqlSafe(set)).execute(&mut connection).await?;
+        // Not on every system; without it, what nobody waits for is worked on until its own limit.
+        let check = format!("SET client_connection_check_interval TO {silence_ms}");
+        let _ = sqlx::raw_sql(sqlx::AssertSqlSafe(check)).execute(&mut connection).await;
         let backend =
             "SELECT pid, CAST(backend_start AS TEXT) FROM pg_stat_activity WHERE pid = pg_backend_pid()";
         let backend = sqlx::query_as(backend).fetch_one(&mut connection).await?;

@@ -141,6 +141,20 @@ async fn the_better_end_stays() {
     assert!(finish(&mut here, keys[3], 1, done("here")).await, "it was this worker's all the time");
 }
 
+/// Protects: whoever copies a study asks for its jobs: those that were cancelled here are to be run again.
+#[tokio::test]
+async fn a_copy_asks_for_its_jobs() {
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+    let source = Sandbox::new();
+    let (mut here, mut there) = (sandbox.open().await, source.open().await);
+    here.submit(&study("a", &["x", "y"])).await.unwrap();
+    here.remove("a").await.unwrap();
+    there.submit(&study("a", &["x", "y"])).await.unwrap();
+    assert_eq!(here.absorb(&mut there, None).await.unwrap().open, 2);
+    assert_eq!(here.counts(&of("a")).await.unwrap(), counts(2, 0, 0, 0));
+    assert_eq!(claim(&mut here, of("a"), 9).await.len(), 2);
+}
+
 /// Protects: a study of the same name that is another one is refused before anything is written.
 #[tokio::test]
 async fn another_study_of_the_name_is_refused() {

@@ -1,0 +1,39 @@
+use super::engine::query;
+use super::{Queue, QueueError, Scope};
+
+const ALL: &str = "
+    SELECT (SELECT COUNT(*) FROM (SELECT 1 FROM jobs WHERE state = 'pending' LIMIT 1) AS p),
+           (SELECT COUNT(*) FROM (SELECT 1 FROM jobs WHERE state = 'running' LIMIT 1) AS r)";
+
+const OF_STUDY: &str = "
+    SELECT (SELECT COUNT(*) FROM (SELECT 1 FROM study_pending WHERE study_id = $1 LIMIT 1) AS p),
+           (SELECT COUNT(*) FROM (
+                SELECT 1 FROM jobs AS j
+                WHERE j.state = 'running'
+                  AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $1)
+                LIMIT 1) AS r)";
+
+/// Whether there is anything left to do.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct OpenJobs {
+    /// There are jobs that wait to be claimed.
+    pub has_pending: bool,
+    /// There are jobs that run somewhere.
+    pub has_running: bool,
+}
+
+impl Queue {
+    /// Whether jobs of `scope` are left: for those who wait, and ask so often that counting would keep the database
+    /// busy.
+    ///
+    /// # Errors
+    /// [`QueueError::UnknownStudy`], or if the database cannot be read.
+    pub async fn open_jobs(&mut self, scope: &Scope) -> Result<OpenJobs, QueueError> {
+        let open = match scope.study_id(&mut self.connection).await? {
+            None => query(ALL),
+            Some(id) => query(OF_STUDY).bind(id),
+        };
+        let (pending, running): (i64, i64) = open.one(&mut self.connection).await?;
+        Ok(OpenJobs { has_pending: pending > 0, has_running: running > 0 })
+    }
+}
