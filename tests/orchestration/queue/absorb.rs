@@ -6,11 +6,14 @@ use super::ENGINE;
 use crate::support::{Sandbox, claim, counts, done, failed, finish, job, labelled, of, study};
 
 /// What a report shows of rows, without how often their jobs were started.
-fn ends(rows: &[StudyRow]) -> Vec<(u64, &str, JobState, Option<&str>, Option<&str>)> {
-    let end = |row: &StudyRow| (row.ordinal, row.state);
-    rows.iter()
-        .map(|row| (end(row).0, row.key.as_str(), end(row).1, row.record.as_deref(), row.error.as_deref()))
-        .collect()
+type End<'a> = (u64, &'a str, JobState, Option<&'a str>, Option<&'a str>);
+
+fn ends(rows: &[StudyRow]) -> Vec<End<'_>> {
+    let end = |row| {
+        let StudyRow { ordinal, key, state, record, error, .. } = row;
+        (*ordinal, key.as_str(), *state, record.as_deref(), error.as_deref())
+    };
+    rows.iter().map(end).collect()
 }
 
 /// Protects: a study that is copied, into either kind of database and back, is the same: rows, records, errors, times to

@@ -41,7 +41,7 @@ fn hand_on(mut client: TcpStream, mut server: TcpStream, cut: &Mutex<Cut>) {
     let is_lost = Arc::new(Mutex::new(false));
     let is_lost_there = Arc::clone(&is_lost);
     thread::spawn(move || {
-        let mut bytes = [0; 65_536];
+        let mut bytes = vec![0; 65_536];
         while let Ok(count @ 1..) = answers.read(&mut bytes) {
             if *is_lost_there.lock().unwrap() || back.write_all(&bytes[..count]).is_err() {
                 break;
@@ -49,7 +49,7 @@ fn hand_on(mut client: TcpStream, mut server: TcpStream, cut: &Mutex<Cut>) {
         }
         let _ = back.shutdown(Shutdown::Both);
     });
-    let mut bytes = [0; 65_536];
+    let mut bytes = vec![0; 65_536];
     while let Ok(count @ 1..) = client.read(&mut bytes) {
         let is_commit = bytes[..count].windows(6).any(|window| window == b"COMMIT");
         let mut cut = cut.lock().unwrap();
