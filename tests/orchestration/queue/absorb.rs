@@ -9,9 +9,9 @@ use crate::support::{Sandbox, claim, counts, done, failed, finish, job, labelled
 type End<'a> = (u64, &'a str, JobState, Option<&'a str>, Option<&'a str>);
 
 fn ends(rows: &[StudyRow]) -> Vec<End<'_>> {
-    let end = |row| {
-        let StudyRow { ordinal, key, state, record, error, .. } = row;
-        (*ordinal, key.as_str(), *state, record.as_deref(), error.as_deref())
+    let end = |row| -> End<'_> {
+        let &StudyRow { ordinal, ref key, state, ref record, ref error, .. } = row;
+        (ordinal, key.as_str(), state, record.as_deref(), error.as_deref())
     };
     rows.iter().map(end).collect()
 }
