@@ -63,7 +63,7 @@ pub async fn work(
     interrupt: &Interrupt,
     progress: &mut impl Progress,
 ) -> Result<WorkSummary, WorkError> {
-    wait_for(queue, scope, progress).await?;
+    wait_for(queue, scope, interrupt, progress).await?;
     let left = queue.counts(scope).await?;
     // No more threads than jobs to run on them, unless more may come.
     let jobs = usize::try_from(left.pending + left.running).unwrap_or(usize::MAX);
@@ -107,11 +107,17 @@ pub async fn work(
 }
 
 /// Waits until the database can be reached: a worker among many is not lost for a server that is just being restarted.
-async fn wait_for(queue: &mut Queue, scope: &Scope, progress: &mut impl Progress) -> Result<(), QueueError> {
+async fn wait_for(
+    queue: &mut Queue,
+    scope: &Scope,
+    interrupt: &Interrupt,
+    progress: &mut impl Progress,
+) -> Result<(), QueueError> {
     let begun = Instant::now();
     loop {
+        let is_patient = begun.elapsed() < PATIENCE && !interrupt.is_raised();
         match queue.open_jobs(scope).await {
-            Err(error @ QueueError::Unreachable(_)) if begun.elapsed() < PATIENCE => {
+            Err(error @ QueueError::Unreachable(_)) if is_patient => {
                 progress.waiting(&error.to_string());
                 tokio::time::sleep(PAUSE).await;
             }
