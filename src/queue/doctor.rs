@@ -4,7 +4,7 @@ use std::path::Path;
 
 use super::engine::{Connection, query};
 use super::owner::{Owner, Verdict};
-use super::{Clock, Location, Queue, QueueError, clock, sqlite};
+use super::{Clock, Location, Queue, QueueError, sqlite};
 
 /// One thing that was looked at.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -83,7 +83,7 @@ async fn inspect(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), Q
         #[cfg(feature = "postgres")]
         Connection::Postgres(session) => {
             session.examine(findings).await?;
-            let ahead_ms = queue.now_ms().await? - clock::machine_ms();
+            let ahead_ms = queue.now_ms().await? - super::clock::machine_ms();
             // Leases are by the server's clock alone.
             let text = format!("the server's is {} s ahead of this machine's", ahead_ms as f64 / 1e3);
             findings.push(Finding::good("clock", text));

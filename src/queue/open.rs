@@ -45,17 +45,15 @@ impl Queue {
     ) -> Result<Self, QueueError> {
         let location = location.into();
         check(&location)?;
-        let connection = match &location {
-            Location::File(path) if !path.exists() => {
-                return Err(QueueError::NoDatabase { database: location });
-            }
+        match &location {
+            Location::File(path) if !path.exists() => Err(QueueError::NoDatabase { database: location }),
             #[cfg(feature = "postgres")]
             Location::Server(server) => {
-                Connection::Postgres(Box::new(super::postgres::open_existing(server, settings).await?))
+                let session = super::postgres::open_existing(server, settings).await?;
+                Ok(Self::of(Connection::Postgres(Box::new(session)), location, clock, settings))
             }
-            _ => return Self::open_with(location, clock, settings).await,
-        };
-        Ok(Self::of(connection, location, clock, settings))
+            _ => Self::open_with(location, clock, settings).await,
+        }
     }
 
     /// Opens the database at `location`, which must exist, for what only reads: also where nothing can be written.
