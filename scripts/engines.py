@@ -10,8 +10,6 @@ times included. Starts a PostgreSQL of its own (scripts/postgres.sh). Only Pytho
 """
 
 import argparse
-import csv
-import io
 import json
 import os
 import pathlib
@@ -20,19 +18,9 @@ import sys
 import tempfile
 import time
 
+from comparing import check, timeless
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-
-
-def check(holds, text):
-    if not holds:
-        raise SystemExit(f"FAILED: {text}")
-
-
-def timeless(text):
-    """An export without run times."""
-    rows = list(csv.reader(io.StringIO(text)))
-    column = rows[0].index("wall_s")
-    return [row[:column] + row[column + 1 :] for row in rows]
 
 
 def main():
@@ -40,6 +28,8 @@ def main():
     parser.add_argument("--program", default=str(ROOT / "target/release/tribosweep"))
     parser.add_argument("--study", default=str(ROOT / "studies/figure7.json"))
     options = parser.parse_args()
+    # Commands run in a folder of their own.
+    options.study, options.program = (str(pathlib.Path(path).resolve()) for path in (options.study, options.program))
     os.environ.pop("TRIBOSWEEP_DB", None)
     name = json.loads(pathlib.Path(options.study).read_text())["name"]
     with tempfile.TemporaryDirectory() as folder:

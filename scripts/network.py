@@ -21,8 +21,6 @@ Needs root, iproute2 and PostgreSQL; without them it ends with 77. Only Python's
 """
 
 import argparse
-import csv
-import io
 import json
 import os
 import pathlib
@@ -34,6 +32,8 @@ import sys
 import tempfile
 import time
 
+from comparing import check, tell, timeless
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SKIPPED = 77
 LEASE_S = 8
@@ -42,26 +42,10 @@ SERVER = "10.77.0.1"
 PATIENCE_S = 600.0
 
 
-def tell(text):
-    print(f"{time.strftime('%H:%M:%S')} {text}", flush=True)
-
-
-def check(holds, text):
-    if not holds:
-        raise SystemExit(f"FAILED: {text}")
-
-
 def run(*command, **options):
     done = subprocess.run(command, capture_output=True, text=True, **options)
     check(done.returncode == 0, f"{' '.join(map(str, command))} ended with {done.returncode}: {done.stderr}")
     return done.stdout
-
-
-def timeless(text):
-    """An export without run times."""
-    rows = list(csv.reader(io.StringIO(text)))
-    column = rows[0].index("wall_s")
-    return [row[:column] + row[column + 1 :] for row in rows]
 
 
 class Network:

@@ -17,8 +17,6 @@ Needs root and Debian's packages slurm-wlm and munge; without them it ends with 
 """
 
 import argparse
-import csv
-import io
 import json
 import os
 import pathlib
@@ -31,6 +29,7 @@ import tempfile
 import time
 
 import slurm_cluster
+from comparing import check, tell, timeless
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SKIPPED = 77
@@ -49,22 +48,6 @@ def study(jobs):
         "run": {"limit_s": 0.5, "stop_early": False},
         "grid": {"mu": [0.1, 0.2, 0.3, 0.4], "omega_rpm": speeds},
     }
-
-
-def tell(text):
-    print(f"{time.strftime('%H:%M:%S')} {text}", flush=True)
-
-
-def check(holds, text):
-    if not holds:
-        raise SystemExit(f"FAILED: {text}")
-
-
-def timeless(text):
-    """An export without run times."""
-    rows = list(csv.reader(io.StringIO(text)))
-    column = rows[0].index("wall_s")
-    return [row[:column] + row[column + 1 :] for row in rows]
 
 
 class Sweep:

@@ -1,0 +1,21 @@
+"""What the scripts that set a sweep beside an undisturbed one have in common."""
+
+import csv
+import io
+import time
+
+
+def tell(text):
+    print(f"{time.strftime('%H:%M:%S')} {text}", flush=True)
+
+
+def check(holds, text):
+    if not holds:
+        raise SystemExit(f"FAILED: {text}")
+
+
+def timeless(text):
+    """An export without run times."""
+    rows = list(csv.reader(io.StringIO(text)))
+    column = rows[0].index("wall_s")
+    return [row[:column] + row[column + 1 :] for row in rows]
