@@ -12,8 +12,17 @@ const KEY_LENGTH: usize = 8;
 /// How often a plain line is written at most.
 const LINE_INTERVAL: Duration = Duration::from_secs(10);
 
+/// How often the same reason for waiting is told at most: waiting may last an hour.
+const WAITING_INTERVAL: Duration = Duration::from_mins(1);
+
 /// The display that suits stderr.
-pub enum Display {
+pub struct Display {
+    form: Form,
+    /// What was waited for last, and when that was told.
+    waiting: Option<(String, Instant)>,
+}
+
+enum Form {
     /// A bar that is redrawn.
     Bar(ProgressBar),
     /// A line now and then.
@@ -26,21 +35,22 @@ pub enum Display {
 impl Display {
     /// The display that suits stderr.
     pub fn new() -> Self {
-        if std::io::stderr().is_terminal() {
+        let form = if std::io::stderr().is_terminal() {
             let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr_with_hz(4));
             if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} jobs  {wide_msg}") {
                 bar.set_style(style);
             }
-            Self::Bar(bar)
+            Form::Bar(bar)
         } else {
-            Self::Lines { last: Instant::now() }
-        }
+            Form::Lines { last: Instant::now() }
+        };
+        Self { form, waiting: None }
     }
 
     fn note(&self, line: &str) {
-        match self {
-            Self::Bar(bar) => bar.suspend(|| tell(line)),
-            Self::Lines { .. } => tell(line),
+        match &self.form {
+            Form::Bar(bar) => bar.suspend(|| tell(line)),
+            Form::Lines { .. } => tell(line),
         }
     }
 }
@@ -69,8 +79,8 @@ fn running(snapshot: &Snapshot) -> String {
 
 impl Progress for Display {
     fn update(&mut self, snapshot: &Snapshot) {
-        match self {
-            Self::Bar(bar) => {
+        match &mut self.form {
+            Form::Bar(bar) => {
                 bar.set_length(snapshot.counts.total());
                 bar.set_position(snapshot.counts.done + snapshot.counts.failed);
                 bar.set_message(format!(
@@ -80,7 +90,7 @@ impl Progress for Display {
                     running(snapshot)
                 ));
             }
-            Self::Lines { last } => {
+            Form::Lines { last } => {
                 if last.elapsed() >= LINE_INTERVAL {
                     *last = Instant::now();
                     tell(format_args!("{}, {}", counters(snapshot), remaining(snapshot)));
@@ -94,11 +104,15 @@ impl Progress for Display {
     }
 
     fn waiting(&mut self, reason: &str) {
-        self.note(&format!("waiting: {reason}"));
+        let is_told = |(told, when): &(String, Instant)| told == reason && when.elapsed() < WAITING_INTERVAL;
+        if !self.waiting.as_ref().is_some_and(is_told) {
+            self.note(&format!("waiting: {reason}"));
+            self.waiting = Some((reason.to_owned(), Instant::now()));
+        }
     }
 
     fn stopped(&mut self, snapshot: &Snapshot) {
-        if let Self::Bar(bar) = self {
+        if let Form::Bar(bar) = &self.form {
             bar.finish_and_clear();
         }
         tell(counters(snapshot));

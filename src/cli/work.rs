@@ -18,7 +18,8 @@ pub struct Args {
     checkpoints: Checkpoints,
     #[command(flatten)]
     retries: Retries,
-    /// Stay when nothing is left to do, and end when no job has come for so long (60s, 5m, 2h); without it, end at once.
+    /// Stay when nothing is left to do, and end when no job has come for so long (60s, 5m, 2h); a server that does not
+    /// answer is waited for from the start. Without it, end when all jobs have ended, those of other workers, too.
     #[arg(long = "idle-exit", value_name = "DURATION", value_parser = parse_duration)]
     idle_exit: Option<Duration>,
     /// How long this worker's jobs stay its own without a sign of life, where others cannot see its process (on other
@@ -106,22 +107,44 @@ impl Retries {
 pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     block_on(async {
         let settings = args.retries.settings().with_lease(args.lease);
-        let mut queue = Queue::open_existing(db.clone(), Clock::OfDatabase, settings).await?;
         let options = WorkOptions { idle_exit: args.idle_exit, ..options(&args.threads, &args.checkpoints) };
-        let code = work(&mut queue, &Scope::All, options).await?;
-        queue.close().await?;
-        Ok(code)
+        interruptible(async |interrupt| {
+            let mut queue = if options.idle_exit.is_none() {
+                Queue::open_existing(db.clone(), Clock::OfDatabase, settings).await?
+            } else if let Some(queue) = worker::open(db, settings, interrupt, &mut Display::new()).await? {
+                queue
+            } else {
+                return Ok(exit::WORK_LEFT);
+            };
+            let code = work_until(interrupt, &mut queue, &Scope::All, options).await?;
+            queue.close().await?;
+            Ok(code)
+        })
+        .await
     })
 }
 
 /// Works through the pending jobs of `scope` until they are done or Ctrl-C, and says what is to be said of it; returns the
 /// exit code.
 pub async fn work(queue: &mut Queue, scope: &Scope, options: WorkOptions) -> Result<u8, CliError> {
+    interruptible(async |interrupt| work_until(interrupt, queue, scope, options).await).await
+}
+
+async fn interruptible(work: impl AsyncFnOnce(&Interrupt) -> Result<u8, CliError>) -> Result<u8, CliError> {
     let interrupt = Interrupt::default();
     let listener = tokio::spawn(listen(interrupt.clone(), "stopping; running jobs go back to the queue"));
-    let worked = worker::work(queue, scope, options, &interrupt, &mut Display::new()).await;
+    let worked = work(&interrupt).await;
     listener.abort();
-    let summary = worked?;
+    worked
+}
+
+async fn work_until(
+    interrupt: &Interrupt,
+    queue: &mut Queue,
+    scope: &Scope,
+    options: WorkOptions,
+) -> Result<u8, CliError> {
+    let summary = worker::work(queue, scope, options, interrupt, &mut Display::new()).await?;
     let TakenBack { pending, failed } = summary.taken_back;
     if pending > 0 {
         tell(format_args!("{pending} jobs left running by an interrupted process were taken back"));
@@ -134,7 +157,9 @@ pub async fn work(queue: &mut Queue, scope: &Scope, options: WorkOptions) -> Res
     if is_cancelled {
         tell(format_args!("{} jobs were cancelled meanwhile", counts.cancelled));
     }
-    if counts.pending + counts.running > 0 || is_cancelled {
+    if counts.running > 0 && !summary.interrupted && counts.pending == 0 {
+        tell(format_args!("nothing is left to do here; other workers run {} jobs", counts.running));
+    } else if counts.pending + counts.running > 0 || is_cancelled {
         tell("interrupted; the same command continues where it stopped");
         return Ok(exit::WORK_LEFT);
     }

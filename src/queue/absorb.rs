@@ -31,14 +31,14 @@ const STUDIES: &str = "
 
 /// Rows of a study with all that is known of their jobs.
 const ROWS: &str = "
-    SELECT m.ordinal, m.parameters, j.id, j.key, j.batch, j.priority, j.cost, p.payload
+    SELECT m.ordinal, m.parameters, j.key, j.batch, j.priority, j.cost, p.payload
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     JOIN payloads AS p ON p.job_id = j.id
     WHERE m.study_id = $1 AND m.ordinal >= $2
     ORDER BY m.ordinal LIMIT $3";
 
-type RowColumns = (i64, String, i64, String, String, i64, f64, String);
+type RowColumns = (i64, String, String, String, i64, f64, String);
 
 /// How far the jobs of the same rows are.
 const STATES: &str = "
@@ -181,7 +181,7 @@ async fn read(connection: &mut Connection, study_id: i64, from: i64) -> Result<O
     let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Ok(None) };
     let (first, last) = (first.0, last.0);
     let about = |statement: &'static str| query(statement).bind(study_id).bind(first).bind(last);
-    let row = |(ordinal, parameters, _, key, batch, priority, cost, payload): RowColumns| {
+    let row = |(ordinal, parameters, key, batch, priority, cost, payload): RowColumns| {
         (ordinal, NewJob { key, payload, parameters, cost, batch, priority: Some(priority) })
     };
     Ok(Some(Page {

@@ -186,6 +186,15 @@ pub enum QueueError {
         reason: String,
     },
 
+    /// The server could not be reached to open the database.
+    #[error("{database}: no answer from the server ({reason})")]
+    NoAnswer {
+        /// The database.
+        database: Location,
+        /// What came instead of an answer.
+        reason: String,
+    },
+
     /// Somebody else holds a lock longer than the busy timeout.
     #[error(
         "the database is locked: another program holds a lock on it for longer than anything here takes. Close what \
@@ -227,7 +236,7 @@ pub enum QueueError {
 impl QueueError {
     /// Whether the same may well succeed a while later.
     pub fn is_transient(&self) -> bool {
-        matches!(self, Self::Locked(_) | Self::Unreachable(_))
+        matches!(self, Self::Locked(_) | Self::Unreachable(_) | Self::NoAnswer { .. })
     }
 }
 

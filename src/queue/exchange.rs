@@ -40,7 +40,8 @@ impl Queue {
     ) -> Result<Exchanged, QueueError> {
         let lease_ms = self.lease_ms();
         let registration = self.registration.as_mut().expect("jobs are run by a registered worker");
-        let (owner, provenance, held) = (registration.id, &registration.provenance, &registration.held);
+        let (owner, provenance, held) =
+            (registration.id, &registration.worker.provenance, &registration.held);
         let exchanged =
             transact(&mut self.connection, &self.clock, Access::Shared, async |connection, now_ms| {
                 let is_in_doubt = connection.is_in_doubt();

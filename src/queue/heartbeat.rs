@@ -26,7 +26,10 @@ impl Queue {
         // would seem to be dead.
         let now_ms = self.now_ms().await?;
         let alive = query(ALIVE).bind(owner).bind(now_ms).bind(finished).bind(Some(jobs_per_s));
-        alive.run(&mut self.connection).await?;
+        if alive.run(&mut self.connection).await? == 0 {
+            self.register_again().await?;
+            return Ok(0);
+        }
         let extended = query(EXTEND).bind(owner).bind(now_ms.saturating_add(lease_ms));
         extended.run(&mut self.connection).await
     }

@@ -107,6 +107,11 @@ impl Owner {
         self.ended_ms.is_some() || until_ms <= now_ms || until_ms > self.far_ms(now_ms)
     }
 
+    /// Whether signs of life are missing, of those that come eight times in a lease.
+    pub fn is_missed(&self, now_ms: i64) -> bool {
+        self.is_silent(now_ms) || self.heartbeat_ms.saturating_add(self.lease_ms / 4) <= now_ms
+    }
+
     /// Whether it has been asked to stop.
     pub fn is_stopping(&self) -> bool {
         self.stopping_ms.is_some()

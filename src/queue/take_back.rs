@@ -82,6 +82,23 @@ impl Queue {
         Ok(taken)
     }
 
+    /// Whether jobs may soon be taken back: somebody who may own some is gone, or has not given the signs of life that
+    /// were due.
+    ///
+    /// # Errors
+    /// If the database cannot be read.
+    pub async fn misses_somebody(&mut self) -> Result<bool, QueueError> {
+        let owners = self.owners().await?;
+        let now_ms = self.now_ms().await?;
+        let own = self.registration.as_ref().map(|own| own.id);
+        let mut others = owners.iter().filter(|owner| Some(owner.id) != own);
+        Ok(others.any(|owner| match owner.verdict() {
+            Verdict::Alive => false,
+            Verdict::Gone => true,
+            Verdict::Elsewhere => owner.is_missed(now_ms),
+        }))
+    }
+
     async fn take_from(
         &mut self,
         owner: &Owner,

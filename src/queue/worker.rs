@@ -46,7 +46,7 @@ impl Worker {
 #[derive(Debug, Clone)]
 pub(super) struct Registration {
     pub id: i64,
-    pub provenance: String,
+    pub worker: Worker,
     /// The attempts that it has in hand.
     pub held: BTreeMap<String, u32>,
     pub pace: Pace,
@@ -72,8 +72,23 @@ impl Queue {
     /// # Errors
     /// If the database cannot be written.
     pub async fn register(&mut self, worker: &Worker) -> Result<(), QueueError> {
+        let id = self.insert(worker).await?;
+        let (worker, held) = (worker.clone(), BTreeMap::new());
+        self.registration = Some(Registration { id, worker, held, pace: Pace::new() });
+        Ok(())
+    }
+
+    /// One that was cut off for so long that it was forgotten comes back, as a new owner: it has lost what it had in
+    /// hand.
+    pub(super) async fn register_again(&mut self) -> Result<(), QueueError> {
+        let worker = self.registration().worker.clone();
+        self.registration_mut().id = self.insert(&worker).await?;
+        Ok(())
+    }
+
+    async fn insert(&mut self, worker: &Worker) -> Result<i64, QueueError> {
         let now_ms = self.now_ms().await?;
-        let id = query(REGISTER)
+        query(REGISTER)
             .bind(&worker.host)
             .bind(&worker.boot_id)
             .bind(&worker.pid_namespace)
@@ -84,10 +99,7 @@ impl Queue {
             .bind(now_ms)
             .bind(self.lease_ms())
             .scalar(&mut self.connection)
-            .await?;
-        let (provenance, held) = (worker.provenance.clone(), BTreeMap::new());
-        self.registration = Some(Registration { id, provenance, held, pace: Pace::new() });
-        Ok(())
+            .await
     }
 
     /// The end of the work: whatever is still claimed is pending again.

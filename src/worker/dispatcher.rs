@@ -7,6 +7,7 @@ use super::heartbeat::Heartbeat;
 use super::idle::Idle;
 use super::interrupt::Interrupt;
 use super::options::WorkOptions;
+use super::patience::Patience;
 use super::progress::{Progress, RunningJob, Snapshot};
 use super::provenance;
 use super::tally::Tally;
@@ -15,17 +16,13 @@ use crate::queue::{
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use thiserror::Error;
 use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
 
 /// How often progress is shown when nothing finishes, and other workers' jobs are looked at when there is nothing
 /// else to do.
 const TICK: Duration = Duration::from_millis(250);
-
-/// How long the database is waited for when it cannot be reached, and how long between two attempts.
-const PATIENCE: Duration = Duration::from_hours(1);
-const PAUSE: Duration = Duration::from_secs(1);
 
 /// What a worker left behind.
 #[derive(Debug, Clone, PartialEq)]
@@ -63,7 +60,14 @@ pub async fn work(
     interrupt: &Interrupt,
     progress: &mut impl Progress,
 ) -> Result<WorkSummary, WorkError> {
-    wait_for(queue, scope, interrupt, progress).await?;
+    let patience = Patience::new();
+    // A worker among many is not lost for a server that is just being restarted.
+    while let Err(error) = queue.open_jobs(scope).await {
+        if interrupt.is_raised() {
+            return Err(error.into());
+        }
+        patience.wait(error, progress).await?;
+    }
     let left = queue.counts(scope).await?;
     // No more threads than jobs to run on them, unless more may come.
     let jobs = usize::try_from(left.pending + left.running).unwrap_or(usize::MAX);
@@ -104,26 +108,6 @@ pub async fn work(
     progress.stopped(&snapshot);
     let (counts, taken_back) = (snapshot.counts, dispatcher.taken_back);
     Ok(WorkSummary { counts, taken_back, interrupted: interrupt.is_raised() })
-}
-
-/// Waits until the database can be reached: a worker among many is not lost for a server that is just being restarted.
-async fn wait_for(
-    queue: &mut Queue,
-    scope: &Scope,
-    interrupt: &Interrupt,
-    progress: &mut impl Progress,
-) -> Result<(), QueueError> {
-    let begun = Instant::now();
-    loop {
-        let is_patient = begun.elapsed() < PATIENCE && !interrupt.is_raised();
-        match queue.open_jobs(scope).await {
-            Err(error @ QueueError::Unreachable(_)) if is_patient => {
-                progress.waiting(&error.to_string());
-                tokio::time::sleep(PAUSE).await;
-            }
-            reached => return reached.map(drop),
-        }
-    }
 }
 
 struct Dispatcher<'a> {
@@ -186,18 +170,15 @@ impl Dispatcher<'_> {
 
     /// Ends the worker in order.
     async fn end(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
-        let begun = Instant::now();
+        let patience = Patience::new();
         loop {
             let ended = match self.queue.unregister().await {
                 Ok(()) => self.tally.ask(self.queue, self.scope).await,
                 error => error,
             };
             match ended {
-                Err(error) if error.is_transient() && begun.elapsed() < PATIENCE => {
-                    progress.waiting(&error.to_string());
-                    tokio::time::sleep(PAUSE).await;
-                }
-                ended => return ended,
+                Ok(()) => return Ok(()),
+                Err(error) => patience.wait(error, progress).await?,
             }
         }
     }
@@ -207,23 +188,29 @@ impl Dispatcher<'_> {
         if self.interrupt.is_raised() {
             return Ok(true);
         }
-        if self.is_anything_left() || !self.idle.is_due() {
+        if self.tally.counts.pending > 0 || !self.idle.is_due() {
             return Ok(false);
         }
+        match self.look().await {
+            Err(error) if error.is_transient() => Ok(false),
+            looked => looked,
+        }
+    }
+
+    /// Looks for what is new and for what died elsewhere; returns whether there is nothing more to wait for.
+    async fn look(&mut self) -> Result<bool, QueueError> {
+        self.take_back().await?;
         // What is counted here may be older than what others do.
-        let open = match self.queue.open_jobs(self.scope).await {
-            Err(error) if error.is_transient() => return Ok(false),
-            open => open?,
-        };
-        if open.has_pending || open.has_running {
+        let open = self.queue.open_jobs(self.scope).await?;
+        if open.has_pending {
             self.tally.is_outdated();
             return Ok(false);
         }
+        // Who was told how long to stay does not wait for what runs elsewhere, unless it may be about to come back.
+        if open.has_running && (self.idle_exit.is_none() || self.queue.misses_somebody().await?) {
+            return Ok(false);
+        }
         Ok(self.idle.lasts() >= self.idle_exit.unwrap_or_default())
-    }
-
-    fn is_anything_left(&self) -> bool {
-        self.tally.counts.pending + self.tally.counts.running > 0
     }
 
     fn take(&mut self, report: Report, done: &mut Vec<Finished>) {
@@ -281,7 +268,7 @@ impl Dispatcher<'_> {
     /// A checkpoint is a help and not a result: where it cannot be kept, the work goes on, and the one before is there.
     async fn keep_checkpoints(&mut self, progress: &mut impl Progress) {
         let mut is_refused = false;
-        let begun = Instant::now();
+        let patience = Patience::new();
         for Kept { key, attempt, bytes } in std::mem::take(&mut self.checkpoints) {
             while !is_refused {
                 match self.queue.save_checkpoint(&key, attempt, &bytes).await {
@@ -289,11 +276,8 @@ impl Dispatcher<'_> {
                     Err(error) => {
                         progress.waiting(&format!("the state of running jobs cannot be kept: {error}"));
                         // No other one comes for what is released now.
-                        let is_last = self.interrupt.is_raised() && error.is_transient();
-                        is_refused = !is_last || begun.elapsed() > PATIENCE;
-                        if is_last {
-                            tokio::time::sleep(PAUSE).await;
-                        }
+                        let is_last = self.interrupt.is_raised();
+                        is_refused = !is_last || patience.wait(error, progress).await.is_err();
                     }
                 }
             }
@@ -310,7 +294,7 @@ impl Dispatcher<'_> {
         asked: &[Request],
         progress: &mut impl Progress,
     ) -> Result<Exchanged, QueueError> {
-        let begun = Instant::now();
+        let patience = Patience::new();
         loop {
             let is_open = !self.interrupt.is_raised();
             let claims: Vec<_> = asked
@@ -324,12 +308,9 @@ impl Dispatcher<'_> {
             self.keep_alive().await?;
             match self.queue.exchange(done, &claims).await {
                 // After an interruption, too: what is finished is not to be thrown away.
+                Ok(exchanged) => return Ok(exchanged),
                 Err(error @ QueueError::Locked(_)) => progress.waiting(&error.to_string()),
-                Err(error @ QueueError::Unreachable(_)) if begun.elapsed() < PATIENCE => {
-                    progress.waiting(&error.to_string());
-                    tokio::time::sleep(PAUSE).await;
-                }
-                exchanged => return exchanged,
+                Err(error) => patience.wait(error, progress).await?,
             }
         }
     }
@@ -348,32 +329,24 @@ impl Dispatcher<'_> {
             // If it is ended at once now, that is no crash. Where it cannot be said, it is taken for one.
             self.is_stopping = self.queue.stopping().await.is_ok();
         }
-        let is_due = self.heartbeat.is_due();
-        if !is_due && !self.is_to_look() {
+        if !self.heartbeat.is_due() {
             return Ok(());
         }
-        match self.beat(is_due).await {
+        match self.beat().await {
             // A lease outlasts several heartbeats.
             Err(error) if error.is_transient() => Ok(()),
             done => done,
         }
     }
 
-    /// Whether there is nothing to do here, and it is time to look for what died elsewhere.
-    fn is_to_look(&mut self) -> bool {
-        let is_waiting = self.running.is_empty() && self.tally.counts.pending == 0;
-        is_waiting && self.tally.counts.running > 0 && self.idle.is_due()
+    async fn beat(&mut self) -> Result<(), QueueError> {
+        self.queue.heartbeat().await?;
+        self.heartbeat.is_given();
+        self.take_back().await
     }
 
-    async fn beat(&mut self, is_due: bool) -> Result<(), QueueError> {
-        if is_due {
-            self.queue.heartbeat().await?;
-            self.heartbeat.is_given();
-        }
+    async fn take_back(&mut self) -> Result<(), QueueError> {
         let taken = self.queue.take_back().await?;
-        if self.running.is_empty() && self.queue.open_jobs(self.scope).await?.has_pending {
-            self.tally.is_outdated();
-        }
         self.taken_back.pending += taken.pending;
         self.taken_back.failed += taken.failed;
         Ok(())

@@ -163,8 +163,21 @@ fn a_killed_long_job_goes_on() {
 /// leaves them, in whatever order they are copied, opens whole and holds every result that was finished by then.
 #[test]
 fn a_copy_at_any_instant_is_whole() {
-    let folder = Folder::with("study", &many());
     let mut draw = Draw(11);
+    let mut instants = BTreeSet::new();
+    // Jobs that are computed together end together, and a sweep is as fast as the machine: not every one has as many.
+    for _ in 0..10 {
+        instants.extend(copy_at_instants(&mut draw));
+        if instants.len() > 5 {
+            return;
+        }
+    }
+    panic!("copies at different instants: {instants:?}");
+}
+
+/// Copies the database of a sweep again and again, looks at the copies, and returns how many jobs they had finished.
+fn copy_at_instants(draw: &mut Draw) -> Vec<usize> {
+    let folder = Folder::with("study", &many());
     let run = folder.start("run study.json --threads 2");
     folder.wait_for("study", |counts| counts["done"] > 0);
     let finished = || {
@@ -212,8 +225,7 @@ fn a_copy_at_any_instant_is_whole() {
         let finished = then.iter().all(|(job, wall_s)| after.get(job) == Some(wall_s));
         assert!(finished, "the copy has what was never finished: {then:?}, {after:?}");
     }
-    let instants: BTreeSet<usize> = copies.iter().map(BTreeMap::len).collect();
-    assert!(instants.len() > 3, "copies at different instants: {instants:?}");
+    copies.iter().map(BTreeMap::len).collect()
 }
 
 /// Waits until every thread of the process stands still.

@@ -41,7 +41,8 @@ pub(in crate::queue) async fn open_existing(
 }
 
 async fn start(server: &Server, settings: Settings) -> Result<Session, QueueError> {
-    let refused = |reason: String| QueueError::Server { database: Location::Server(server.clone()), reason };
+    let database = || Location::Server(server.clone());
+    let refused = |reason: String| QueueError::Server { database: database(), reason };
     let options = PgConnectOptions::from_str(server.url()).map_err(|error| {
         refused(format!("the URL cannot be read ({error}); expected postgres://USER@HOST:PORT/DATABASE"))
     })?;
@@ -54,7 +55,7 @@ async fn start(server: &Server, settings: Settings) -> Result<Session, QueueErro
     }
     let mut session = Session::start(options.application_name("tribosweep"), settings).await.map_err(
         |error| match error {
-            QueueError::Unreachable(reason) => refused(format!("no answer from the server ({reason})")),
+            QueueError::Unreachable(reason) => QueueError::NoAnswer { database: database(), reason },
             QueueError::Database(error) => refused(format!("the server does not let us in ({error})")),
             other => other,
         },
