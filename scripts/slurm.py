@@ -12,6 +12,7 @@ have been written after the last task, and no process may be left over.
 
 With --db, the URL of an empty PostgreSQL database, the workers share it. Without, every worker has its shard; then the
 last two leave their shards unfinished, the first report has to say so, and running submit.sh again has to do the rest.
+A second, smaller study then loses its node with all that is on its disk: it has to go on from the copy that was kept last.
 
 Needs root and Debian's packages slurm-wlm and munge; without them it ends with 77. Only Python's standard library.
 """
@@ -39,13 +40,19 @@ PATIENCE_S = 900.0
 ENDED = {"COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_MEMORY", "PREEMPTED"}
 
 
-def study(jobs):
+# How often a shard is kept in the study that loses its node, and how much of a job of `study` its jobs are: several eights
+# of them fit in between.
+KEEP_EVERY_S = 15
+PART = 0.1
+
+
+def study(jobs, part):
     """A grid of jobs of some seconds, of which a thread advances eight together."""
     speeds = [round(2.0 + 0.5 * k, 3) for k in range(max(1, jobs // 4))]
     return {
         "name": "drain",
         "scene": {"pin": {"elements": [8, 10, 6]}, "clamp": {"width_m": 0.002}},
-        "run": {"limit_s": 0.5, "stop_early": False},
+        "run": {"limit_s": 0.5 * part, "stop_early": False},
         "grid": {"mu": [0.1, 0.2, 0.3, 0.4], "omega_rpm": speeds},
     }
 
@@ -53,13 +60,14 @@ def study(jobs):
 class Sweep:
     """A study, the scripts made for it, and the array that they became."""
 
-    def __init__(self, cluster, folder, options):
+    def __init__(self, cluster, folder, options, jobs, workers=WORKERS, part=1.0):
         self.cluster, self.folder, self.options = cluster, pathlib.Path(folder), options
+        self.tasks = workers
         self.program = str(pathlib.Path(options.program).resolve())
         # A path as users have them.
         self.out = self.folder / "a user's folder" / "drain.slurm"
         self.out.parent.mkdir()
-        (self.folder / "drain.json").write_text(json.dumps(study(options.jobs)))
+        (self.folder / "drain.json").write_text(json.dumps(study(jobs, part)))
         self.array = self.report = None
         # How often the worker of each task has said that it ended.
         self.ends = {}
@@ -77,7 +85,7 @@ class Sweep:
 
     def generate(self):
         self.call(
-            "slurm", "drain.json", "--workers", str(WORKERS), "--partition", "low", "--time", "1-0",
+            "slurm", "drain.json", "--workers", str(self.tasks), "--partition", "low", "--time", "1-0",
             "--out", str(self.out), "--db", self.options.db or "drain.db",
         )  # fmt: skip
 
@@ -141,7 +149,7 @@ class Sweep:
         tasks = self.cluster.tasks(self.array)
         (report,) = self.cluster.tasks(self.report).values()
         check(
-            len(tasks) == WORKERS and all(values["EndTime"] <= report["StartTime"] for values in tasks.values()),
+            len(tasks) == self.tasks and all(values["EndTime"] <= report["StartTime"] for values in tasks.values()),
             "the report did not wait for all tasks",
         )
         for name, values in sorted(tasks.items()):
@@ -281,6 +289,41 @@ def drain(sweep):
     finished(sweep, reference)
 
 
+def kept_jobs(database):
+    """How many jobs a kept shard has done."""
+    connection = sqlite3.connect(f"file:{database}?mode=ro&immutable=1", uri=True)
+    (jobs,) = connection.execute("SELECT COUNT(*) FROM jobs WHERE state = 'done'").fetchone()
+    connection.close()
+    return jobs
+
+
+def lose_node(sweep, node_folder):
+    """A node that is lost with its disk costs what was not kept, and no more."""
+    reference = sweep.undisturbed()
+    sweep.generate()
+    script = sweep.out / "workers.sbatch"
+    text = script.read_text()
+    setting = next(line for line in text.splitlines() if line.startswith("keep_every="))
+    script.write_text(text.replace(setting, f"keep_every={KEEP_EVERY_S}"))
+    sweep.submit()
+    shard = sweep.out / "shards" / "shard-0.db"
+    sweep.cluster.until("finished jobs to be kept", lambda: shard.exists() and kept_jobs(shard) > 0, 300)
+    sweep.working(1)
+    check("the worker ended" not in sweep.log(0), "the shard was kept at the end, not in between")
+    destroy(sweep)
+    for path in node_folder.rglob("*"):
+        if path.is_file():
+            path.unlink()
+    kept = kept_jobs(shard)
+    tell(f"the node is lost with its disk; {kept} jobs were kept")
+    check(0 < kept < len(reference) - 1, f"{kept} jobs were kept")
+    check(sweep.until_over() == "3:0", "the report of an unfinished study does not say so")
+    sweep.submit()
+    check(sweep.until_over() == "0:0", "the rest was not done")
+    check(f"going on with {shard}" in sweep.log(0), "the copy that was kept was not taken up")
+    finished(sweep, reference)
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", default=str(ROOT / "target/release/tribosweep"))
@@ -306,7 +349,11 @@ def main():
             each.mkdir()
         os.environ["TMPDIR"] = str(node_folder)
         with slurm_cluster.Cluster(cluster_folder) as cluster:
-            drain(Sweep(cluster, work_folder, options))
+            drain(Sweep(cluster, work_folder, options, options.jobs))
+            if not options.db:
+                work_folder = pathlib.Path(folder, "lost")
+                work_folder.mkdir()
+                lose_node(Sweep(cluster, work_folder, options, jobs=64, workers=1, part=PART), node_folder)
             left = [str(path) for path in node_folder.rglob("*") if path.is_file()]
             check(not left, f"left on the node: {left}")
     finally:

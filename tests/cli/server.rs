@@ -1,6 +1,9 @@
 //! The commands on a PostgreSQL server, where there is one.
 #![cfg(unix)]
 
+use std::net::{Shutdown, TcpListener, TcpStream};
+use std::time::Duration;
+
 use serde_json::{Value, json};
 
 use crate::server_database::{ServerDatabase, block_on};
@@ -90,6 +93,53 @@ fn a_killed_worker_loses_nothing() {
         count.fetch_one(&mut database.raw().await).await.unwrap()
     });
     assert_eq!(results.unsigned_abs(), LONG_JOBS);
+}
+
+/// Passes what comes to a port on to a server, from now on.
+fn relay(listener: TcpListener, server: String) {
+    std::thread::spawn(move || {
+        for client in listener.incoming() {
+            let client = client.unwrap();
+            let server = TcpStream::connect(&server).unwrap();
+            let ends = [(&client, &server), (&server, &client)];
+            for (mut from, mut to) in ends.map(|(a, b)| (a.try_clone().unwrap(), b.try_clone().unwrap())) {
+                std::thread::spawn(move || {
+                    let _ = std::io::copy(&mut from, &mut to);
+                    let _ = to.shutdown(Shutdown::Both);
+                });
+            }
+        }
+    });
+}
+
+/// Protects: a worker that was told to stay and finds no server at its start waits for it, says why, works when it is
+/// there, and can be stopped before; one that was not told ends at once.
+#[test]
+fn a_worker_waits_for_its_server() {
+    let Some(database) = ServerDatabase::new() else { return };
+    let url = database.url();
+    let folder = Folder::with("study", &small(&json!({ "mu": [0.2, 0.3] })));
+    folder.ok(&format!("submit study.json --db {url}"));
+    // A port that is ours and does not listen yet.
+    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let (start, database_name) = url.rsplit_once('/').unwrap();
+    let (user, address) = start.rsplit_once('@').unwrap();
+    let relayed = format!("{user}@127.0.0.1:{port}/{database_name}");
+
+    let told = stderr(&folder.command(&format!("work --db {relayed}")).assert().code(2));
+    assert!(told.contains("no answer from the server"), "{told}");
+    let work = format!("work --idle-exit 1s --db {relayed}");
+    let [stopped, patient] = [(); 2].map(|()| folder.start(&work));
+    std::thread::sleep(Duration::from_millis(1500));
+    stopped.signal("TERM");
+    let (code, _, messages) = stopped.end();
+    assert_eq!(code, Some(3), "{messages}");
+    relay(TcpListener::bind(("127.0.0.1", port)).unwrap(), address.to_owned());
+    let (code, _, messages) = patient.end();
+    assert_eq!(code, Some(0), "{messages}");
+    // Once, however often it was tried.
+    assert_eq!(messages.matches("no answer from the server").count(), 1, "{messages}");
+    assert!(folder.ok(&format!("status study --db {url}")).contains("2 done"));
 }
 
 /// Protects: a server that is not there, a database that has nothing, a URL of something else and one that says too

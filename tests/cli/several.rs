@@ -304,6 +304,28 @@ fn an_idle_worker_takes_up_what_comes() {
     assert!(stderr(&assert).contains("expected a duration such as 60s"), "{}", stderr(&assert));
 }
 
+/// Protects: a worker that was told how long to stay does not wait for what others run while they are there, says so,
+/// and takes over from one that died.
+#[test]
+fn an_idle_worker_waits_for_no_straggler() {
+    let mut study = long();
+    study["grid"] = json!({ "mu": [0.2, 0.4] });
+    let folder = Folder::with("study", &study);
+    folder.ok("submit study.json");
+    let straggler = folder.start("work --threads 1");
+    folder.wait_for("study", |jobs| jobs["running"] == 2);
+    straggler.signal("STOP");
+    stopped(&straggler);
+    let (code, _, messages) = folder.start("work --idle-exit 1s").end();
+    assert_eq!(code, Some(0), "{messages}");
+    assert!(messages.contains("other workers run 2 jobs"), "{messages}");
+    straggler.signal("KILL");
+    straggler.end();
+    let (code, _, messages) = folder.start("work --idle-exit 1s").end();
+    assert_eq!(code, Some(0), "{messages}");
+    assert!(folder.ok("status study").contains("2 done"));
+}
+
 /// Protects: an idle worker is stopped by Ctrl-C at once, and nothing is left over.
 #[cfg(target_os = "linux")]
 #[test]

@@ -159,6 +159,46 @@ async fn leases_decide_elsewhere() {
     assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 1, failed: 0 });
 }
 
+/// Protects: somebody is missed when two of the signs of life that come eight times in a lease are overdue, or its
+/// process is gone, and not any more when it is back: who waits for what may come back knows how long.
+#[tokio::test]
+async fn who_is_late_is_missed() {
+    let lease_ms = i64::try_from(Settings::default().lease.as_millis()).unwrap();
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+    let mut queue = sandbox.open().await;
+    assert!(!queue.misses_somebody().await.unwrap(), "nobody misses himself");
+    let mut far = left_by(&sandbox, &foreign_worker()).await;
+    sandbox.clock.set(lease_ms / 4 - 1);
+    assert!(!queue.misses_somebody().await.unwrap());
+    sandbox.clock.set(lease_ms / 4);
+    assert!(queue.misses_somebody().await.unwrap());
+    far.heartbeat().await.unwrap();
+    assert!(!queue.misses_somebody().await.unwrap());
+    sandbox.open_as(&dead_worker()).await;
+    assert!(queue.misses_somebody().await.unwrap());
+}
+
+/// Protects: a worker that was cut off until its row was swept has lost its jobs, says so by its next sign of life, and
+/// works on.
+#[tokio::test]
+async fn a_forgotten_worker_comes_back() {
+    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+    let mut far = left_by(&sandbox, &foreign_worker()).await;
+    sandbox.clock.set(2 * DAY_MS);
+    let mut queue = sandbox.open().await;
+    assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 2, failed: 0 });
+    assert_eq!(queue.collect_garbage().await.unwrap().workers, 1);
+    assert_eq!(claim(&mut queue, Scope::All, 1).await.len(), 1);
+    assert_eq!(far.heartbeat().await.unwrap(), 0);
+    assert!(!finish(&mut far, "y", 1, done("a late record of y")).await);
+    assert!(!finish(&mut far, "z", 1, done("a late record of z")).await);
+    assert_eq!(keys(&claim(&mut far, Scope::All, 1).await), ["z"]);
+    assert!(finish(&mut far, "z", 2, done("record of z")).await);
+    assert_eq!(queue.alive().await.unwrap().workers, 2);
+    assert_eq!(queue.take_back().await.unwrap(), NOTHING);
+    assert_eq!(sandbox.number("SELECT COUNT(*) FROM results").await, 2);
+}
+
 /// Protects: a job whose processes die is tried so often and not more, then it has failed with that reason; crashes
 /// are counted apart from attempts, and one that fails by itself is not tried again at all.
 #[tokio::test]
