@@ -42,8 +42,8 @@ ENDED = {"COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_MEM
 
 # How often a shard is kept in the study that loses its node, and how much of a job of `study` its jobs are: several eights
 # of them fit in between.
-KEEP_EVERY_S = 15
-PART = 0.1
+KEEP_EVERY_S = 8
+PART = 0.3
 
 
 def study(jobs, part):
@@ -353,7 +353,7 @@ def main():
             if not options.db:
                 work_folder = pathlib.Path(folder, "lost")
                 work_folder.mkdir()
-                lose_node(Sweep(cluster, work_folder, options, jobs=64, workers=1, part=PART), node_folder)
+                lose_node(Sweep(cluster, work_folder, options, jobs=96, workers=1, part=PART), node_folder)
             left = [str(path) for path in node_folder.rglob("*") if path.is_file()]
             check(not left, f"left on the node: {left}")
     finally:
