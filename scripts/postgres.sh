@@ -7,11 +7,12 @@
 #
 # Without PORT a free one is taken. ADDRESS is listened on beside loopback, and NETWORK (as 10.0.0.0/8) is let in from.
 #
-# It syncs as a real one does: what is measured here holds elsewhere. TRIBOSWEEP_POSTGRES_FSYNC=off makes tests faster.
+# It syncs and encrypts as a real one does: what is measured here holds elsewhere. TRIBOSWEEP_POSTGRES_FSYNC=off makes
+# tests faster. Without `openssl` it does not encrypt.
 set -euo pipefail
 
 usage() {
-    sed -n '2,10s/^# \{0,1\}//p' "$0" >&2
+    sed -n '2,11s/^# \{0,1\}//p' "$0" >&2
     exit 2
 }
 
@@ -29,6 +30,24 @@ as_owner() {
 
 free_port() {
     python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'
+}
+
+# A certificate of the server's own, which `sslrootcert` can name.
+certificate() {
+    command -v openssl > /dev/null || return 0
+    as_owner openssl req -x509 -days 3650 -noenc -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 \
+        -keyout data/server.key -out data/server.crt -config - 2> /dev/null << 'END'
+[req]
+distinguished_name = name
+x509_extensions = extensions
+prompt = no
+[name]
+CN = localhost
+[extensions]
+subjectAltName = DNS:localhost, IP:127.0.0.1
+basicConstraints = critical, CA:FALSE
+END
+    echo "ssl = on" >> data/postgresql.conf
 }
 
 start() {
@@ -49,6 +68,7 @@ start() {
         echo "max_connections = 200"
         echo "fsync = ${TRIBOSWEEP_POSTGRES_FSYNC:-on}"
     } >> data/postgresql.conf
+    certificate
     [ -z "$network" ] || echo "host all all $network trust" >> data/pg_hba.conf
     if ! as_owner "$pg_ctl" --pgdata data --log server.log --wait start > pg_ctl.log; then
         cat pg_ctl.log server.log >&2

@@ -142,6 +142,45 @@ fn a_worker_waits_for_its_server() {
     assert!(folder.ok(&format!("status study --db {url}")).contains("2 done"));
 }
 
+/// Protects: what goes to a server that can encrypt is encrypted without asking for it. A certificate that nobody
+/// vouches for is refused where it is to be checked, at once and with the advice that helps, also by a worker that would
+/// wait for its server; the file that vouches for it can be named.
+#[test]
+fn connections_are_encrypted() {
+    let Some(database) = ServerDatabase::new() else { return };
+    let url = database.url();
+    let certificate: Option<String> = block_on(async {
+        let certificate = "SELECT CASE current_setting('ssl') WHEN 'on'
+                           THEN pg_read_file(current_setting('ssl_cert_file')) END";
+        sqlx::query_scalar(certificate).fetch_one(&mut database.raw().await).await.unwrap()
+    });
+    let Some(certificate) = certificate else {
+        eprintln!("skipped: the server does not encrypt");
+        return;
+    };
+    let folder = Folder::with("study", &small(&json!({ "mu": [0.2] })));
+    folder.ok(&format!("submit study.json --db {url}"));
+    let worker = folder.start(&format!("work --idle-exit 1h --db {url}"));
+    let is_encrypted = || -> Option<bool> {
+        let sessions = "SELECT bool_and(ssl) FROM pg_stat_ssl JOIN pg_stat_activity USING (pid)
+                        WHERE datname = current_database() AND application_name = 'tribosweep'";
+        block_on(async { sqlx::query_scalar(sessions).fetch_one(&mut database.raw().await).await.unwrap() })
+    };
+    wait("the worker to be there", || is_encrypted().is_some());
+    assert_eq!(is_encrypted(), Some(true));
+    worker.signal("INT");
+    worker.end();
+
+    let checked = format!("--db {url}?sslmode=verify-full");
+    for command in ["status", "work --idle-exit 1h"] {
+        let told = stderr(&folder.command(&format!("{command} {checked}")).assert().code(2));
+        assert!(told.contains("certificate is not trusted") && told.contains("sslrootcert"), "{told}");
+    }
+    std::fs::write(folder.path("site.crt"), certificate).unwrap();
+    let vouched = format!("{checked}&sslrootcert={}", folder.path("site.crt").display());
+    assert!(folder.ok(&format!("status study {vouched}")).contains("study"));
+}
+
 /// Protects: a server that is not there, a database that has nothing, a URL of something else and one that says too
 /// little are told apart, with the advice that fits, and no password in it.
 #[test]

@@ -3,8 +3,6 @@
 use std::str::FromStr;
 
 use sqlx::postgres::PgConnectOptions;
-#[cfg(not(feature = "tls"))]
-use sqlx::postgres::PgSslMode;
 use sqlx::{ConnectOptions, PgConnection};
 
 use super::{PATIENCE, SILENCE, Session, schema};
@@ -46,16 +44,12 @@ async fn start(server: &Server, settings: Settings) -> Result<Session, QueueErro
     let options = PgConnectOptions::from_str(server.url()).map_err(|error| {
         refused(format!("the URL cannot be read ({error}); expected postgres://USER@HOST:PORT/DATABASE"))
     })?;
-    #[cfg(not(feature = "tls"))]
-    if let PgSslMode::Require | PgSslMode::VerifyCa | PgSslMode::VerifyFull = options.get_ssl_mode() {
-        return Err(refused(
-            "encryption is asked for, and this tribosweep was built without; build it with `--features tls`"
-                .to_owned(),
-        ));
-    }
     let mut session = Session::start(options.application_name("tribosweep"), settings).await.map_err(
         |error| match error {
             QueueError::Unreachable(reason) => QueueError::NoAnswer { database: database(), reason },
+            QueueError::Database(error @ sqlx::Error::Io(_)) => refused(format!(
+                "the server's certificate is not trusted ({error}); name the file with the site's own by                  `?sslmode=verify-full&sslrootcert=FILE`, or encrypt without looking at it by `?sslmode=require`"
+            )),
             QueueError::Database(error) => refused(format!("the server does not let us in ({error})")),
             other => other,
         },
@@ -116,8 +110,18 @@ pub(super) async fn connect(
         Ok((connection, backend))
     };
     match tokio::time::timeout(CONNECTING, connecting).await {
-        Ok(connected) => connected.map_err(|error: sqlx::Error| error.into()),
+        Ok(connected) => connected.map_err(connection_error),
         Err(_) => Err(QueueError::Unreachable(format!("no connection within {} s", CONNECTING.as_secs()))),
+    }
+}
+
+/// What the library that encrypts says of a certificate comes as an error of the connection, which waiting does not help.
+fn connection_error(error: sqlx::Error) -> QueueError {
+    match &error {
+        sqlx::Error::Io(source) if source.kind() == std::io::ErrorKind::InvalidData => {
+            QueueError::Database(error)
+        }
+        _ => error.into(),
     }
 }
 
