@@ -148,7 +148,7 @@ fn a_worker_waits_for_its_server() {
 #[test]
 fn connections_are_encrypted() {
     let Some(database) = ServerDatabase::new() else { return };
-    let url = database.url();
+    let url = database.encrypted_url();
     let certificate: Option<String> = block_on(async {
         let certificate = "SELECT CASE current_setting('ssl') WHEN 'on'
                            THEN pg_read_file(current_setting('ssl_cert_file')) END";
@@ -201,6 +201,6 @@ fn bad_urls_are_explained() {
     let url = database.url();
     let empty = told(&format!("status --db {url}"));
     assert!(empty.contains("no database at") && empty.contains("submit"), "{empty}");
-    let missing = told(&format!("submit study.json --db {url}_missing"));
+    let missing = told(&format!("submit study.json --db {}", url.replace('?', "_missing?")));
     assert!(missing.contains("does not exist"), "{missing}");
 }

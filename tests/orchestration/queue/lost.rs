@@ -89,8 +89,7 @@ impl Relayed {
         let (user, address) = authority.rsplit_once('@').unwrap();
         let cut = Arc::new(Mutex::new(Cut::Never));
         let port = relay(address.to_owned(), Arc::clone(&cut));
-        // What is encrypted cannot be looked into.
-        let url = format!("{scheme}://{user}@127.0.0.1:{port}/{database}?sslmode=disable");
+        let url = format!("{scheme}://{user}@127.0.0.1:{port}/{database}");
         Some(Self { sandbox, cut, location: Location::parse(url.into()) })
     }
 
