@@ -35,8 +35,8 @@ free_port() {
 # A certificate of the server's own, which `sslrootcert` can name.
 certificate() {
     command -v openssl > /dev/null || return 0
-    as_owner openssl req -x509 -days 3650 -noenc -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 \
-        -keyout data/server.key -out data/server.crt -config - 2> /dev/null << 'END'
+    as_owner openssl req -x509 -days 3650 -nodes -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 \
+        -keyout data/server.key -out data/server.crt -config - 2> openssl.log << 'END' || return 0
 [req]
 distinguished_name = name
 x509_extensions = extensions

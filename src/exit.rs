@@ -1,6 +1,6 @@
 //! Exit codes of the `tribosweep` command; part of its interface.
 
-/// Everything asked for was done, and all jobs succeeded.
+/// Everything asked for was done, and all jobs succeeded that do not still run elsewhere.
 pub const SUCCESS: u8 = 0;
 /// Some jobs failed; the others have results.
 pub const SOME_FAILED: u8 = 1;

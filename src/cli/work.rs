@@ -5,7 +5,7 @@ use super::error::CliError;
 use super::output::{block_on, tell};
 use crate::exit;
 use crate::queue::{Clock, Location, Queue, Scope, Settings, TakenBack};
-use crate::worker::{self, Interrupt, WorkOptions};
+use crate::worker::{self, Interrupt, WorkError, WorkOptions};
 use std::num::NonZeroUsize;
 use std::time::{Duration, Instant};
 
@@ -18,8 +18,9 @@ pub struct Args {
     checkpoints: Checkpoints,
     #[command(flatten)]
     retries: Retries,
-    /// Stay when nothing is left to do, and end when no job has come for so long (60s, 5m, 2h); a server that does not
-    /// answer is waited for from the start. Without it, end when all jobs have ended, those of other workers, too.
+    /// Stay when nothing is left to do, and end when no job has come for so long (60s, 5m, 2h), whatever others run,
+    /// unless signs of life of one of them are missing; a server that does not answer is waited for from the start.
+    /// Without it, end when all jobs have ended, those of other workers, too.
     #[arg(long = "idle-exit", value_name = "DURATION", value_parser = parse_duration)]
     idle_exit: Option<Duration>,
     /// How long this worker's jobs stay its own without a sign of life, where others cannot see its process (on other
@@ -144,7 +145,13 @@ async fn work_until(
     scope: &Scope,
     options: WorkOptions,
 ) -> Result<u8, CliError> {
-    let summary = worker::work(queue, scope, options, interrupt, &mut Display::new()).await?;
+    let summary = match worker::work(queue, scope, options, interrupt, &mut Display::new()).await {
+        Err(WorkError::Queue(error)) if interrupt.is_raised() && error.is_transient() => {
+            tell(error);
+            return Ok(exit::WORK_LEFT);
+        }
+        worked => worked?,
+    };
     let TakenBack { pending, failed } = summary.taken_back;
     if pending > 0 {
         tell(format_args!("{pending} jobs left running by an interrupted process were taken back"));

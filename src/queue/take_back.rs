@@ -82,8 +82,8 @@ impl Queue {
         Ok(taken)
     }
 
-    /// Whether jobs may soon be taken back: somebody who may own some is gone, or has not given the signs of life that
-    /// were due.
+    /// Whether jobs may soon be pending again: somebody who may own some is gone or about to go, or has not given the
+    /// signs of life that were due.
     ///
     /// # Errors
     /// If the database cannot be read.
@@ -93,9 +93,9 @@ impl Queue {
         let own = self.registration.as_ref().map(|own| own.id);
         let mut others = owners.iter().filter(|owner| Some(owner.id) != own);
         Ok(others.any(|owner| match owner.verdict() {
-            Verdict::Alive => false,
+            Verdict::Alive => owner.is_stopping(),
             Verdict::Gone => true,
-            Verdict::Elsewhere => owner.is_missed(now_ms),
+            Verdict::Elsewhere => owner.is_stopping() || owner.is_missed(now_ms),
         }))
     }
 

@@ -48,7 +48,8 @@ pub enum WorkError {
 
 /// Works through the pending jobs of `scope` until none is left or `interrupt` is raised.
 ///
-/// Other processes may work on the same database. Their running jobs are waited for, and done here if they die.
+/// Other processes may work on the same database, and their jobs are done here if they die. Running ones are waited for;
+/// with [`WorkOptions::idle_exit`] only while somebody's signs of life are missing.
 /// Interrupted jobs go back to the queue, long ones with where they are.
 ///
 /// # Errors
@@ -66,7 +67,7 @@ pub async fn work(
         if interrupt.is_raised() {
             return Err(error.into());
         }
-        patience.wait(error, progress).await?;
+        patience.wait(error, interrupt, progress).await?;
     }
     let left = queue.counts(scope).await?;
     // No more threads than jobs to run on them, unless more may come.
@@ -149,7 +150,7 @@ impl Dispatcher<'_> {
             self.tally.refresh(self.queue, self.scope).await?;
             progress.update(&self.snapshot());
             loop {
-                if self.running.is_empty() && self.is_over().await? {
+                if self.running.is_empty() && self.is_over(progress).await? {
                     return Ok(());
                 }
                 // Only the channel is awaited under the timeout; the database never is.
@@ -178,22 +179,26 @@ impl Dispatcher<'_> {
             };
             match ended {
                 Ok(()) => return Ok(()),
-                Err(error) => patience.wait(error, progress).await?,
+                Err(error) => patience.wait(error, self.interrupt, progress).await?,
             }
         }
     }
 
     /// Whether there is nothing to do but stop.
-    async fn is_over(&mut self) -> Result<bool, QueueError> {
+    async fn is_over(&mut self, progress: &mut impl Progress) -> Result<bool, QueueError> {
         if self.interrupt.is_raised() {
             return Ok(true);
         }
         if self.tally.counts.pending > 0 || !self.idle.is_due() {
             return Ok(false);
         }
-        match self.look().await {
-            Err(error) if error.is_transient() => Ok(false),
-            looked => looked,
+        let patience = Patience::new();
+        loop {
+            match self.look().await {
+                Ok(is_over) => return Ok(is_over),
+                Err(_) if self.interrupt.is_raised() => return Ok(true),
+                Err(error) => patience.wait(error, self.interrupt, progress).await?,
+            }
         }
     }
 
@@ -206,11 +211,9 @@ impl Dispatcher<'_> {
             self.tally.is_outdated();
             return Ok(false);
         }
+        let Some(limit) = self.idle_exit else { return Ok(!open.has_running) };
         // Who was told how long to stay does not wait for what runs elsewhere, unless it may be about to come back.
-        if open.has_running && (self.idle_exit.is_none() || self.queue.misses_somebody().await?) {
-            return Ok(false);
-        }
-        Ok(self.idle.lasts() >= self.idle_exit.unwrap_or_default())
+        Ok(self.idle.lasts() >= limit && !(open.has_running && self.queue.misses_somebody().await?))
     }
 
     fn take(&mut self, report: Report, done: &mut Vec<Finished>) {
@@ -274,10 +277,13 @@ impl Dispatcher<'_> {
                 match self.queue.save_checkpoint(&key, attempt, &bytes).await {
                     Ok(_) => break,
                     Err(error) => {
-                        progress.waiting(&format!("the state of running jobs cannot be kept: {error}"));
                         // No other one comes for what is released now.
                         let is_last = self.interrupt.is_raised();
-                        is_refused = !is_last || patience.wait(error, progress).await.is_err();
+                        if !is_last {
+                            progress.waiting(&format!("the state of running jobs cannot be kept: {error}"));
+                        }
+                        is_refused =
+                            !is_last || patience.wait(error, self.interrupt, progress).await.is_err();
                     }
                 }
             }
@@ -305,19 +311,27 @@ impl Dispatcher<'_> {
                     batch: request.batch.clone(),
                 })
                 .collect();
-            self.keep_alive().await?;
-            match self.queue.exchange(done, &claims).await {
+            let exchanged = match self.keep_alive().await {
+                Ok(()) => self.queue.exchange(done, &claims).await,
+                // Who cannot give a sign of life may have been forgotten, and must not claim.
+                Err(error) => Err(error),
+            };
+            match exchanged {
                 // After an interruption, too: what is finished is not to be thrown away.
                 Ok(exchanged) => return Ok(exchanged),
                 Err(error @ QueueError::Locked(_)) => progress.waiting(&error.to_string()),
-                Err(error) => patience.wait(error, progress).await?,
+                Err(error) => patience.wait(error, self.interrupt, progress).await?,
             }
         }
     }
 
     /// What a quarter of a second without news brings.
     async fn tick(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
-        self.keep_alive().await?;
+        match self.keep_alive().await {
+            // A lease outlasts several heartbeats.
+            Err(error) if error.is_transient() => {}
+            kept => kept?,
+        }
         self.tally.refresh(self.queue, self.scope).await?;
         progress.update(&self.snapshot());
         Ok(())
@@ -332,17 +346,13 @@ impl Dispatcher<'_> {
         if !self.heartbeat.is_due() {
             return Ok(());
         }
-        match self.beat().await {
-            // A lease outlasts several heartbeats.
-            Err(error) if error.is_transient() => Ok(()),
-            done => done,
-        }
-    }
-
-    async fn beat(&mut self) -> Result<(), QueueError> {
         self.queue.heartbeat().await?;
         self.heartbeat.is_given();
-        self.take_back().await
+        match self.take_back().await {
+            // Next time.
+            Err(error) if error.is_transient() => Ok(()),
+            taken => taken,
+        }
     }
 
     async fn take_back(&mut self) -> Result<(), QueueError> {

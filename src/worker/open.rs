@@ -22,7 +22,7 @@ pub async fn open(
             Ok(queue) => return Ok(Some(queue)),
             Err(error) => error,
         };
-        patience.wait(error, progress).await?;
+        patience.wait(error, interrupt, progress).await?;
         if interrupt.is_raised() {
             return Ok(None);
         }

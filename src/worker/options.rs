@@ -8,7 +8,8 @@ pub struct WorkOptions {
     /// How often a running job's state is kept; never if none. Only jobs that are predicted to last two intervals or
     /// more, by their time limit, are kept at all.
     pub checkpoint_interval: Option<Duration>,
-    /// How long to stay when no job is left anywhere, for those that may come; otherwise the end is the end.
+    /// How long to stay when there is nothing to do here, for jobs that may come; then what others run is left to them.
+    /// Without, the end of all jobs is the end.
     pub idle_exit: Option<Duration>,
 }
 

@@ -2,7 +2,8 @@
 #![cfg(unix)]
 
 use std::net::{Shutdown, TcpListener, TcpStream};
-use std::time::Duration;
+use std::sync::atomic::{AtomicU32, Ordering};
+use std::sync::{Arc, OnceLock};
 
 use serde_json::{Value, json};
 
@@ -95,21 +96,45 @@ fn a_killed_worker_loses_nothing() {
     assert_eq!(results.unsigned_abs(), LONG_JOBS);
 }
 
-/// Passes what comes to a port on to a server, from now on.
-fn relay(listener: TcpListener, server: String) {
-    std::thread::spawn(move || {
-        for client in listener.incoming() {
-            let client = client.unwrap();
-            let server = TcpStream::connect(&server).unwrap();
-            let ends = [(&client, &server), (&server, &client)];
-            for (mut from, mut to) in ends.map(|(a, b)| (a.try_clone().unwrap(), b.try_clone().unwrap())) {
-                std::thread::spawn(move || {
-                    let _ = std::io::copy(&mut from, &mut to);
-                    let _ = to.shutdown(Shutdown::Both);
-                });
+/// A port that turns everybody away until it is told what server is behind it.
+struct Relay {
+    port: u16,
+    refused: Arc<AtomicU32>,
+    server: Arc<OnceLock<String>>,
+}
+
+impl Relay {
+    fn new() -> Self {
+        let listener = TcpListener::bind("127.0.0.1:0").unwrap();
+        let port = listener.local_addr().unwrap().port();
+        let (refused, server) = (Arc::new(AtomicU32::new(0)), Arc::new(OnceLock::new()));
+        let relay = Self { port, refused: Arc::clone(&refused), server: Arc::clone(&server) };
+        std::thread::spawn(move || {
+            for client in listener.incoming() {
+                let client = client.unwrap();
+                let Some(server) = server.get() else {
+                    refused.fetch_add(1, Ordering::Relaxed);
+                    continue;
+                };
+                pass_on(&client, &TcpStream::connect(server).unwrap());
             }
-        }
-    });
+        });
+        relay
+    }
+
+    fn refused(&self) -> u32 {
+        self.refused.load(Ordering::Relaxed)
+    }
+}
+
+fn pass_on(client: &TcpStream, server: &TcpStream) {
+    for (from, to) in [(client, server), (server, client)] {
+        let (mut from, mut to) = (from.try_clone().unwrap(), to.try_clone().unwrap());
+        std::thread::spawn(move || {
+            let _ = std::io::copy(&mut from, &mut to);
+            let _ = to.shutdown(Shutdown::Both);
+        });
+    }
 }
 
 /// Protects: a worker that was told to stay and finds no server at its start waits for it, says why, works when it is
@@ -120,25 +145,28 @@ fn a_worker_waits_for_its_server() {
     let url = database.url();
     let folder = Folder::with("study", &small(&json!({ "mu": [0.2, 0.3] })));
     folder.ok(&format!("submit study.json --db {url}"));
-    // A port that is ours and does not listen yet.
-    let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
+    let relay = Relay::new();
     let (start, database_name) = url.rsplit_once('/').unwrap();
     let (user, address) = start.rsplit_once('@').unwrap();
-    let relayed = format!("{user}@127.0.0.1:{port}/{database_name}");
+    let relayed = format!("{user}@127.0.0.1:{}/{database_name}", relay.port);
 
     let told = stderr(&folder.command(&format!("work --db {relayed}")).assert().code(2));
     assert!(told.contains("no answer from the server"), "{told}");
     let work = format!("work --idle-exit 1s --db {relayed}");
-    let [stopped, patient] = [(); 2].map(|()| folder.start(&work));
-    std::thread::sleep(Duration::from_millis(1500));
+    let stopped = folder.start(&work);
+    let before = relay.refused();
+    wait("a worker to try twice", || relay.refused() >= before + 2);
     stopped.signal("TERM");
     let (code, _, messages) = stopped.end();
     assert_eq!(code, Some(3), "{messages}");
-    relay(TcpListener::bind(("127.0.0.1", port)).unwrap(), address.to_owned());
+
+    let patient = folder.start(&work);
+    let before = relay.refused();
+    wait("another worker to try twice", || relay.refused() >= before + 2);
+    relay.server.set(address.to_owned()).unwrap();
     let (code, _, messages) = patient.end();
     assert_eq!(code, Some(0), "{messages}");
-    // Once, however often it was tried.
-    assert_eq!(messages.matches("no answer from the server").count(), 1, "{messages}");
+    assert!(messages.contains("waiting: ") && messages.contains("no answer from the server"), "{messages}");
     assert!(folder.ok(&format!("status study --db {url}")).contains("2 done"));
 }
 
@@ -171,18 +199,22 @@ fn connections_are_encrypted() {
     worker.signal("INT");
     worker.end();
 
-    let checked = format!("--db {url}?sslmode=verify-full");
+    // By whom and not for whom: that is the server's own affair.
+    let checked = format!("--db {url}?sslmode=verify-ca");
     for command in ["status", "work --idle-exit 1h"] {
         let told = stderr(&folder.command(&format!("{command} {checked}")).assert().code(2));
         assert!(told.contains("certificate is not trusted") && told.contains("sslrootcert"), "{told}");
     }
-    std::fs::write(folder.path("site.crt"), certificate).unwrap();
     let vouched = format!("{checked}&sslrootcert={}", folder.path("site.crt").display());
+    let told = stderr(&folder.command(&format!("work --idle-exit 1h {vouched}")).assert().code(2));
+    assert!(told.contains("No such file") && told.contains("sslrootcert"), "{told}");
+    std::fs::write(folder.path("site.crt"), certificate).unwrap();
     assert!(folder.ok(&format!("status study {vouched}")).contains("study"));
 }
 
 /// Protects: a server that is not there, a database that has nothing, a URL of something else and one that says too
 /// little are told apart, with the advice that fits, and no password in it.
+#[cfg(feature = "postgres")]
 #[test]
 fn bad_urls_are_explained() {
     let folder = Folder::with("study", &small(&json!({ "mu": [0.3] })));

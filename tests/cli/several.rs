@@ -304,12 +304,13 @@ fn an_idle_worker_takes_up_what_comes() {
     assert!(stderr(&assert).contains("expected a duration such as 60s"), "{}", stderr(&assert));
 }
 
-/// Protects: a worker that was told how long to stay does not wait for what others run while they are there, says so,
-/// and takes over from one that died.
+/// Protects: a worker that was told how long to stay does not wait for what others run while they are there, and says
+/// so; one that is still there takes over from one that died.
 #[test]
 fn an_idle_worker_waits_for_no_straggler() {
     let mut study = long();
     study["grid"] = json!({ "mu": [0.2, 0.4] });
+    study["run"]["limit_s"] = json!(2.0);
     let folder = Folder::with("study", &study);
     folder.ok("submit study.json");
     let straggler = folder.start("work --threads 1");
@@ -319,10 +320,16 @@ fn an_idle_worker_waits_for_no_straggler() {
     let (code, _, messages) = folder.start("work --idle-exit 1s").end();
     assert_eq!(code, Some(0), "{messages}");
     assert!(messages.contains("other workers run 2 jobs"), "{messages}");
+
+    let staying = folder.start("work --idle-exit 5s");
+    wait("a worker to stay", || {
+        read::<(i64,)>(&folder, "SELECT COUNT(*) FROM workers WHERE ended_ms IS NULL") == [(2,)]
+    });
     straggler.signal("KILL");
     straggler.end();
-    let (code, _, messages) = folder.start("work --idle-exit 1s").end();
+    let (code, _, messages) = staying.end();
     assert_eq!(code, Some(0), "{messages}");
+    assert!(messages.contains("2 jobs left running by an interrupted process were taken back"), "{messages}");
     assert!(folder.ok("status study").contains("2 done"));
 }
 

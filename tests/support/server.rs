@@ -20,6 +20,10 @@ impl ServerDatabase {
     /// None, and a message, where there is no server.
     pub fn new() -> Option<Self> {
         static NUMBER: AtomicU32 = AtomicU32::new(0);
+        if cfg!(not(feature = "postgres")) {
+            eprintln!("skipped: this tribosweep is built without PostgreSQL");
+            return None;
+        }
         let Ok(server) = std::env::var(SERVER) else {
             eprintln!(
                 "skipped: {SERVER} does not name a PostgreSQL server (`scripts/postgres.sh start FOLDER` prints one)"

@@ -89,7 +89,7 @@ impl Session {
     }
 
     async fn connect_again(&mut self) -> Result<PgConnection, QueueError> {
-        let (mut connection, backend) = open::connect(&self.options, self.settings).await?;
+        let (mut connection, backend) = open::connect_again(&self.options, self.settings).await?;
         let (process, started) = &self.backend;
         open::end_session(&mut connection, *process, started).await?;
         self.backend = backend;

@@ -47,9 +47,9 @@ async fn start(server: &Server, settings: Settings) -> Result<Session, QueueErro
     let mut session = Session::start(options.application_name("tribosweep"), settings).await.map_err(
         |error| match error {
             QueueError::Unreachable(reason) => QueueError::NoAnswer { database: database(), reason },
-            QueueError::Database(error @ sqlx::Error::Io(_)) => refused(format!(
-                "the server's certificate is not trusted ({error}); name the file with the site's own by                  `?sslmode=verify-full&sslrootcert=FILE`, or encrypt without looking at it by `?sslmode=require`"
-            )),
+            QueueError::Database(error @ (sqlx::Error::Io(_) | sqlx::Error::Tls(_))) => {
+                refused(unencrypted(&error))
+            }
             QueueError::Database(error) => refused(format!("the server does not let us in ({error})")),
             other => other,
         },
@@ -110,19 +110,54 @@ pub(super) async fn connect(
         Ok((connection, backend))
     };
     match tokio::time::timeout(CONNECTING, connecting).await {
-        Ok(connected) => connected.map_err(connection_error),
+        Ok(connected) => connected.map_err(|error| connection_error(options, error)),
         Err(_) => Err(QueueError::Unreachable(format!("no connection within {} s", CONNECTING.as_secs()))),
     }
 }
 
-/// What the library that encrypts says of a certificate comes as an error of the connection, which waiting does not help.
-fn connection_error(error: sqlx::Error) -> QueueError {
+/// What is wrong with certificates and their files comes as an error of the connection, and waiting does not help.
+fn connection_error(options: &PgConnectOptions, error: sqlx::Error) -> QueueError {
+    use std::io::ErrorKind;
+    // Of a socket in the file system it would mean that the server is not there.
+    let has_files = options.get_socket().is_none() && !options.get_host().starts_with('/');
     match &error {
-        sqlx::Error::Io(source) if source.kind() == std::io::ErrorKind::InvalidData => {
+        sqlx::Error::Tls(_) => QueueError::Database(error),
+        sqlx::Error::Io(source) if source.kind() == ErrorKind::InvalidData => QueueError::Database(error),
+        sqlx::Error::Io(source)
+            if has_files && matches!(source.kind(), ErrorKind::NotFound | ErrorKind::PermissionDenied) =>
+        {
             QueueError::Database(error)
         }
         _ => error.into(),
     }
+}
+
+/// Why a connection cannot be encrypted, and what would help.
+fn unencrypted(error: &sqlx::Error) -> String {
+    let told = error.to_string();
+    if told.contains("invalid peer certificate") {
+        return format!(
+            "the server's certificate is not trusted ({error}); name the file with the site's own by \
+             `?sslmode=verify-full&sslrootcert=FILE`, or encrypt without looking at it by `?sslmode=require`"
+        );
+    }
+    format!(
+        "the connection cannot be encrypted as it is asked for ({error}); look at the files that `sslrootcert`, `sslcert` \
+         and `sslkey` in the URL or PGSSLROOTCERT, PGSSLCERT and PGSSLKEY name, or do without by `?sslmode=disable`"
+    )
+}
+
+/// What was trusted before will be again: a worker has results in hand, and waits.
+pub(super) async fn connect_again(
+    options: &PgConnectOptions,
+    settings: Settings,
+) -> Result<(PgConnection, (i32, String)), QueueError> {
+    connect(options, settings).await.map_err(|error| match error {
+        QueueError::Database(error @ (sqlx::Error::Io(_) | sqlx::Error::Tls(_))) => {
+            QueueError::Unreachable(error.to_string())
+        }
+        other => other,
+    })
 }
 
 /// Ends a session that was lost, if the server still has it, and waits until it has ended.

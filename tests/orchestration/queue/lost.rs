@@ -172,6 +172,7 @@ async fn who_was_away_too_long_goes_on() {
 }
 
 /// Protects: a server that is not there is an error that says so, at once, with the name and without the password.
+#[cfg(feature = "postgres")]
 #[tokio::test]
 async fn a_server_that_is_not_there_is_named() {
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();

@@ -159,8 +159,9 @@ async fn leases_decide_elsewhere() {
     assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 1, failed: 0 });
 }
 
-/// Protects: somebody is missed when two of the signs of life that come eight times in a lease are overdue, or its
-/// process is gone, and not any more when it is back: who waits for what may come back knows how long.
+/// Protects: somebody is missed when two of the signs of life that come eight times in a lease are overdue, when it is
+/// stopping, or when its process is gone, and not any more when it is back: who waits for what may come back knows how
+/// long.
 #[tokio::test]
 async fn who_is_late_is_missed() {
     let lease_ms = i64::try_from(Settings::default().lease.as_millis()).unwrap();
@@ -173,6 +174,10 @@ async fn who_is_late_is_missed() {
     sandbox.clock.set(lease_ms / 4);
     assert!(queue.misses_somebody().await.unwrap());
     far.heartbeat().await.unwrap();
+    assert!(!queue.misses_somebody().await.unwrap());
+    far.stopping().await.unwrap();
+    assert!(queue.misses_somebody().await.unwrap(), "it gives its jobs back");
+    far.unregister().await.unwrap();
     assert!(!queue.misses_somebody().await.unwrap());
     sandbox.open_as(&dead_worker()).await;
     assert!(queue.misses_somebody().await.unwrap());
