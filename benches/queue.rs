@@ -57,8 +57,8 @@ fn main() {
     }
     println!("workers  jobs/s  claims/s  claim ms: median   95 %   99 %    max  server cores  server ms/job");
     let begun = std::process::id();
-    for &workers in &args.workers {
-        round(&args, workers, &format!("load of {workers} by {begun}"));
+    for (number, &workers) in args.workers.iter().enumerate() {
+        round(&args, workers, &format!("load {number} of {workers} by {begun}"));
     }
 }
 

@@ -170,3 +170,20 @@ END $$;
 CREATE TRIGGER jobs_ended AFTER UPDATE OF state ON jobs
 FOR EACH ROW WHEN (new.state = 'done' OR new.state = 'failed' AND new.crashes = 0)
 EXECUTE FUNCTION jobs_ended();
+
+-- Statistics of a queue are wrong a moment later: they are made when nothing is pending, and then a hundred thousand jobs
+-- come. Without any the planner takes what the indexes are for, now and later.
+DO $$
+DECLARE
+    of_queue RECORD;
+BEGIN
+    FOR of_queue IN
+        SELECT c.oid::regclass AS relation, a.attname AS attribute
+        FROM pg_class AS c JOIN pg_attribute AS a ON a.attrelid = c.oid
+        WHERE c.relnamespace = current_schema()::regnamespace AND c.relkind = 'r'
+          AND c.relname IN ('jobs', 'payloads', 'studies', 'study_jobs', 'study_pending', 'results', 'checkpoints')
+          AND a.attnum > 0 AND NOT a.attisdropped
+    LOOP
+        EXECUTE format('ALTER TABLE %s ALTER COLUMN %I SET STATISTICS 0', of_queue.relation, of_queue.attribute);
+    END LOOP;
+END $$;

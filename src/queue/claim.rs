@@ -78,8 +78,9 @@ const TAKE: Statement = Statement::each(
 
 /// As above, of the study named $6.
 ///
-/// PostgreSQL: LATERAL keeps the order of the loops, a job is looked up for each row; a plain join of tables that it has
-/// no statistics of may look through all pending jobs for each.
+/// PostgreSQL: LATERAL keeps the order of the loops, and what is added to the state leaves only the number to look a job
+/// up by; otherwise all pending jobs may be looked through for each row, where none was pending when they were last
+/// counted.
 const TAKE_OF_STUDY: Statement = Statement::each(
     "
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3
@@ -101,13 +102,13 @@ const TAKE_OF_STUDY: Statement = Statement::each(
     WITH first AS MATERIALIZED (
         SELECT p.batch, p.priority
         FROM study_pending AS p CROSS JOIN LATERAL (
-            SELECT id FROM jobs WHERE id = p.job_id AND state = 'pending' FOR UPDATE SKIP LOCKED) AS j
+            SELECT id FROM jobs WHERE id = p.job_id AND state || '' = 'pending' FOR UPDATE SKIP LOCKED) AS j
         WHERE p.study_id = (SELECT id FROM studies WHERE name = $6)
         ORDER BY p.priority DESC, p.cost DESC, p.job_id LIMIT 1
     ), next AS MATERIALIZED (
         SELECT j.id
         FROM study_pending AS p CROSS JOIN LATERAL (
-            SELECT id FROM jobs WHERE id = p.job_id AND state = 'pending' FOR UPDATE SKIP LOCKED) AS j
+            SELECT id FROM jobs WHERE id = p.job_id AND state || '' = 'pending' FOR UPDATE SKIP LOCKED) AS j
         WHERE p.study_id = (SELECT id FROM studies WHERE name = $6)
           AND p.batch = COALESCE($5, (SELECT batch FROM first))
           AND p.priority >= (

@@ -99,22 +99,40 @@ pub(super) async fn store(
     provenance: &str,
     now_ms: i64,
 ) -> Result<Vec<String>, QueueError> {
-    if finished.is_empty() {
-        return Ok(Vec::new());
+    let mut ended: HashSet<String> = HashSet::new();
+    for part in parts(finished, connection.message_bytes().saturating_sub(provenance.len())) {
+        let results: Vec<_> = part.iter().filter_map(result).collect();
+        let ends: Vec<_> = part.iter().map(end).collect();
+        let keys: Vec<String> = query(STORE)
+            .bind(json(&results))
+            .bind(owner)
+            .bind(now_ms)
+            .bind(provenance)
+            .bind(json(&ends))
+            .scalars(connection)
+            .await?;
+        ended.extend(keys);
     }
-    let results: Vec<_> = finished.iter().filter_map(result).collect();
-    let ends: Vec<_> = finished.iter().map(end).collect();
-    let ended: Vec<String> = query(STORE)
-        .bind(json(&results))
-        .bind(owner)
-        .bind(now_ms)
-        .bind(provenance)
-        .bind(json(&ends))
-        .scalars(connection)
-        .await?;
-    let ended: HashSet<String> = ended.into_iter().collect();
     let keys = finished.iter().map(|job| &job.key);
     Ok(keys.filter(|key| !ended.contains(*key)).cloned().collect())
+}
+
+/// Parts that are no longer than `most_bytes` each in the form that they are sent in, or of one end.
+fn parts(mut finished: &[Finished], most_bytes: usize) -> Vec<&[Finished]> {
+    let mut parts = Vec::new();
+    while !finished.is_empty() {
+        let mut bytes = 0;
+        let fits = |job: &&Finished| {
+            bytes += json(&result(job)).len() + json(&end(job)).len() + 2;
+            bytes <= most_bytes
+        };
+        let count =
+            if most_bytes == usize::MAX { finished.len() } else { finished.iter().take_while(fits).count() };
+        let (part, rest) = finished.split_at(count.max(1));
+        parts.push(part);
+        finished = rest;
+    }
+    parts
 }
 
 /// Key, attempt, record, error and time.
@@ -144,8 +162,35 @@ fn end(job: &Finished) -> EndRow<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::STORE;
+    use super::{Finished, FinishedOutcome, STORE, parts};
     use crate::queue::{Clock, Queue};
+
+    /// Protects: what is sent in one message is no longer than it may be, in the form that it is sent in, unless it is a
+    /// single end; and nothing is left out or sent twice.
+    #[test]
+    fn parts_are_as_long_as_they_may_be() {
+        let done = |index: usize| {
+            let outcome = FinishedOutcome::Done {
+                record: "\"".repeat(100 * (index % 7)),
+                label: "periodic".to_owned(),
+            };
+            Finished { key: format!("job {index}"), attempt: 1, outcome, wall_s: 0.25 }
+        };
+        let finished: Vec<_> = (0..40).map(done).collect();
+        let sent = |part: &[Finished]| {
+            let results: Vec<_> = part.iter().filter_map(super::result).collect();
+            super::json(&results).len() + super::json(&part.iter().map(super::end).collect::<Vec<_>>()).len()
+        };
+        for most_bytes in [1, 1000, 3000, usize::MAX] {
+            let parts = parts(&finished, most_bytes);
+            assert_eq!(parts.concat(), finished);
+            assert!(parts.iter().all(|part| part.len() == 1 || sent(part) <= most_bytes + 2), "{most_bytes}");
+        }
+        assert_eq!(parts(&finished, usize::MAX).len(), 1);
+        assert_eq!(parts(&finished, 1).len(), 40);
+        assert!(parts(&finished, 3000).len() < 20);
+        assert!(parts(&[], 1000).is_empty());
+    }
 
     /// Protects: ends are looked up by their keys, and not every job is looked at for each turn.
     #[tokio::test]

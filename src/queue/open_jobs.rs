@@ -5,12 +5,13 @@ const ALL: &str = "
     SELECT (SELECT COUNT(*) FROM (SELECT 1 FROM jobs WHERE state = 'pending' LIMIT 1) AS p),
            (SELECT COUNT(*) FROM (SELECT 1 FROM jobs WHERE state = 'running' LIMIT 1) AS r)";
 
+/// With what is added, a running job is asked for its studies, and not a study for all of its jobs.
 const OF_STUDY: &str = "
     SELECT (SELECT COUNT(*) FROM (SELECT 1 FROM study_pending WHERE study_id = $1 LIMIT 1) AS p),
            (SELECT COUNT(*) FROM (
                 SELECT 1 FROM jobs AS j
                 WHERE j.state = 'running'
-                  AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $1)
+                  AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id + 0 = $1)
                 LIMIT 1) AS r)";
 
 /// Whether there is anything left to do.

@@ -83,6 +83,15 @@ impl Connection {
         }
     }
 
+    /// Up to which length a message is not delayed.
+    pub fn message_bytes(&self) -> usize {
+        match self {
+            Self::Sqlite(_) => usize::MAX,
+            #[cfg(feature = "postgres")]
+            Self::Postgres(session) => session.message_bytes(),
+        }
+    }
+
     /// What was in doubt has been settled.
     pub fn is_settled(&mut self) {
         #[cfg(feature = "postgres")]

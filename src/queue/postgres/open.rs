@@ -5,7 +5,7 @@ use std::str::FromStr;
 use sqlx::postgres::PgConnectOptions;
 use sqlx::{ConnectOptions, PgConnection};
 
-use super::{PATIENCE, SILENCE, Session, schema};
+use super::{Backend, PATIENCE, SILENCE, Session, schema};
 use crate::queue::location::Server;
 use crate::queue::{Location, QueueError, Settings};
 
@@ -67,7 +67,7 @@ async fn start(server: &Server, settings: Settings) -> Result<Session, QueueErro
 pub(super) async fn connect(
     options: &PgConnectOptions,
     settings: Settings,
-) -> Result<(PgConnection, (i32, String)), QueueError> {
+) -> Result<(PgConnection, Backend), QueueError> {
     let connecting = async {
         let mut connection = options.connect().await?;
         let silence_ms = SILENCE.as_millis();
@@ -104,10 +104,11 @@ pub(super) async fn connect(
         // Not on every system; without it, what nobody waits for is worked on until its own limit.
         let check = format!("SET client_connection_check_interval TO {silence_ms}");
         let _ = sqlx::raw_sql(sqlx::AssertSqlSafe(check)).execute(&mut connection).await;
-        let backend =
-            "SELECT pid, CAST(backend_start AS TEXT) FROM pg_stat_activity WHERE pid = pg_backend_pid()";
-        let backend = sqlx::query_as(backend).fetch_one(&mut connection).await?;
-        Ok((connection, backend))
+        let backend = "SELECT a.pid, CAST(a.backend_start AS TEXT), COALESCE(s.ssl, FALSE)
+                       FROM pg_stat_activity AS a LEFT JOIN pg_stat_ssl AS s ON s.pid = a.pid
+                       WHERE a.pid = pg_backend_pid()";
+        let (pid, started, is_encrypted) = sqlx::query_as(backend).fetch_one(&mut connection).await?;
+        Ok((connection, Backend { pid, started, is_encrypted }))
     };
     match tokio::time::timeout(CONNECTING, connecting).await {
         Ok(connected) => connected.map_err(|error| connection_error(options, error)),
@@ -151,7 +152,7 @@ fn unencrypted(error: &sqlx::Error) -> String {
 pub(super) async fn connect_again(
     options: &PgConnectOptions,
     settings: Settings,
-) -> Result<(PgConnection, (i32, String)), QueueError> {
+) -> Result<(PgConnection, Backend), QueueError> {
     connect(options, settings).await.map_err(|error| match error {
         QueueError::Database(error @ (sqlx::Error::Io(_) | sqlx::Error::Tls(_))) => {
             QueueError::Unreachable(error.to_string())
@@ -161,14 +162,10 @@ pub(super) async fn connect_again(
 }
 
 /// Ends a session that was lost, if the server still has it, and waits until it has ended.
-pub(super) async fn end_session(
-    connection: &mut PgConnection,
-    process: i32,
-    started: &str,
-) -> Result<(), QueueError> {
+pub(super) async fn end_session(connection: &mut PgConnection, lost: &Backend) -> Result<(), QueueError> {
     let end = "SELECT pg_terminate_backend(pid, 10000) FROM pg_stat_activity
                WHERE pid = $1 AND CAST(backend_start AS TEXT) = $2";
-    let ending = sqlx::query_scalar(end).bind(process).bind(started).fetch_optional(connection);
+    let ending = sqlx::query_scalar(end).bind(lost.pid).bind(&lost.started).fetch_optional(connection);
     match tokio::time::timeout(CONNECTING + SILENCE, ending).await {
         Ok(Ok(None | Some(true))) => Ok(()),
         Ok(Ok(Some(false))) => {
