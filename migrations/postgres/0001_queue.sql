@@ -100,7 +100,7 @@ CREATE TABLE study_pending (
     cost     DOUBLE PRECISION NOT NULL,
     job_id   BIGINT           NOT NULL,
     batch    TEXT COLLATE "C" NOT NULL,
-    PRIMARY KEY (study_id, job_id)
+    PRIMARY KEY (job_id, study_id)
 ) WITH (autovacuum_vacuum_scale_factor = 0.05);
 
 CREATE INDEX study_pending_order ON study_pending (study_id, priority DESC, cost DESC, job_id);
@@ -110,8 +110,7 @@ CREATE INDEX study_pending_batch ON study_pending (study_id, batch, priority DES
 -- functions see of other transactions is over.
 CREATE FUNCTION jobs_pending_no_more() RETURNS trigger LANGUAGE plpgsql AS $$
 BEGIN
-    DELETE FROM study_pending
-    WHERE job_id = old.id AND study_id IN (SELECT m.study_id FROM study_jobs AS m WHERE m.job_id = old.id);
+    DELETE FROM study_pending WHERE job_id = old.id;
     RETURN NULL;
 END $$;
 
@@ -125,7 +124,7 @@ BEGIN
     SELECT DISTINCT m.study_id, new.priority, new.cost, new.id, new.batch
     FROM study_jobs AS m
     WHERE m.job_id = new.id
-    ON CONFLICT (study_id, job_id) DO UPDATE
+    ON CONFLICT (job_id, study_id) DO UPDATE
     SET priority = excluded.priority, cost = excluded.cost, batch = excluded.batch;
     RETURN NULL;
 END $$;
