@@ -104,7 +104,7 @@ const TAKE_OF_STUDY: Statement = Statement::each(
         FROM study_pending AS p CROSS JOIN LATERAL (
             SELECT id FROM jobs WHERE id = p.job_id AND state || '' = 'pending' FOR UPDATE SKIP LOCKED) AS j
         WHERE p.study_id = (SELECT id FROM studies WHERE name = $6)
-        ORDER BY p.priority DESC, p.cost DESC, p.job_id LIMIT 1
+        ORDER BY p.priority DESC, p.cost DESC, p.job_id + 0 LIMIT 1
     ), next AS MATERIALIZED (
         SELECT j.id
         FROM study_pending AS p CROSS JOIN LATERAL (
@@ -113,7 +113,7 @@ const TAKE_OF_STUDY: Statement = Statement::each(
           AND p.batch = COALESCE($5, (SELECT batch FROM first))
           AND p.priority >= (
               SELECT CASE WHEN $5 IS NULL THEN -9223372036854775808 ELSE priority END FROM first)
-        ORDER BY p.priority DESC, p.cost DESC, p.job_id LIMIT $4
+        ORDER BY p.priority DESC, p.cost DESC, p.job_id + 0 LIMIT $4
     )
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3
     FROM next WHERE jobs.id = next.id

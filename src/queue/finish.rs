@@ -126,8 +126,7 @@ fn parts(mut finished: &[Finished], most_bytes: usize) -> Vec<&[Finished]> {
             bytes += json(&result(job)).len() + json(&end(job)).len() + 2;
             bytes <= most_bytes
         };
-        let count =
-            if most_bytes == usize::MAX { finished.len() } else { finished.iter().take_while(fits).count() };
+        let count = finished.iter().take_while(fits).count();
         let (part, rest) = finished.split_at(count.max(1));
         parts.push(part);
         finished = rest;
