@@ -6,9 +6,11 @@ use serde::Serialize;
 use std::sync::Arc;
 use tribosweep::analysis::batch::Batch;
 use tribosweep::analysis::lanes::{AUDIT_INTERVAL, Lanes};
+use tribosweep::solver::body::block::operator::{AssembledOperator, Operator, Scratch, TensorOperator};
+use tribosweep::solver::body::hexahedron;
 use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::operator::{Operator, Scratch, TensorOperator};
-use tribosweep::solver::{Drive, Model, State, element, operator::AssembledOperator, step};
+use tribosweep::solver::interface::law::Law;
+use tribosweep::solver::{Drive, Model, State, step};
 use tribosweep::spec::{JobSpec, TopFace};
 
 /// Additions and multiplications of an inner node in a step, counted in `operator::tensor::pass` (100) and
@@ -93,7 +95,7 @@ fn mesh<const L: usize>(elements: [usize; 3], machine: &Machine) -> MeshCase {
         format!("mesh_{nx}x{ny}x{nz}_{what}_{L}")
     };
     let drives: [Drive; L] = std::array::from_fn(|lane| Drive {
-        mu: 0.4,
+        law: Law::Coulomb { mu: 0.4 },
         rate: 0.5 + 0.1 * lane as f64,
         force_n: 30.0,
         ramp_s: 5e-4,
@@ -103,7 +105,7 @@ fn mesh<const L: usize>(elements: [usize; 3], machine: &Machine) -> MeshCase {
     let x = state.u.clone();
     let mut y = state.u.clone();
     let mut scratch = Scratch::new(model.mesh());
-    let product_s = seconds(&name("product"), || model.operator().product(&x, &mut y, &mut scratch));
+    let product_s = seconds(&name("product"), || model.pin().operator().product(&x, &mut y, &mut scratch));
     let step_s = seconds(&name("step"), || step(&model, &drives, &mut state));
     let mut lanes = lanes::<L>(&spec, L);
     let job_s = seconds(&name("job"), || _ = lanes.advance(&mut |_| {}));
@@ -190,7 +192,7 @@ impl Pair {
 /// Steps of one scene with eight lanes.
 fn stepping(name: &str, spec: &JobSpec, mu: f64) -> f64 {
     let model = model(spec);
-    let drives = [Drive { mu, rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
+    let drives = [Drive { law: Law::Coulomb { mu }, rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
     let mut state = State::<8>::at_rest(&model);
     settle(spec, || (0..STEPS).for_each(|_| step(&model, &drives, &mut state)));
     per_node(&model, 8, 1, seconds(name, || step(&model, &drives, &mut state)))
@@ -217,7 +219,7 @@ fn round_of_pairs() -> Vec<Pair> {
     let mut free = base.clone();
     free.scene.top = TopFace::FreeInZ;
     let model = model(&base);
-    let drives = [Drive { mu: 0.4, rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
+    let drives = [Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
     let mut state = State::<8>::at_rest(&model);
     let mut ledger = EnergyLedger::new(&model, AUDIT_INTERVAL);
     let audited_s = seconds("pair_energies", || {
@@ -236,10 +238,10 @@ fn round_of_pairs() -> Vec<Pair> {
         history.clear();
         analysed.advance(&mut |moment| history.push(*moment.sample));
     });
-    let element = element::stiffness(model.material(), model.mesh().element_size_m());
+    let element = hexahedron::stiffness(model.pin().material(), model.mesh().element_size_m());
     let forms = [
         ("pair_assembled", Operator::Assembled(AssembledOperator::of_block(model.mesh(), &element))),
-        ("pair_tensor", Operator::Tensor(TensorOperator::new(model.mesh(), model.material()))),
+        ("pair_tensor", Operator::Tensor(TensorOperator::new(model.mesh(), model.pin().material()))),
     ];
     let x = state.u.clone();
     let mut y = state.u.clone();

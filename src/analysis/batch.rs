@@ -1,7 +1,7 @@
 //! Jobs of one model in as many lanes as they need.
 
 use super::checkpoint::Unreadable;
-use super::job::JobError;
+use super::error::JobError;
 use super::lanes::{Ended, Lanes};
 use crate::solver::Model;
 use crate::spec::JobSpec;

@@ -63,7 +63,7 @@ pub struct CycleCutter {
 impl CycleCutter {
     /// A cutter that starts after the load's ramp.
     pub fn new(model: &Model, ramp_s: f64) -> Self {
-        let transit_s = model.mesh().size_m()[2] / model.material().shear_wave_speed_m_s();
+        let transit_s = model.pin().shear_transit_s();
         Self {
             gain: smoothing_gain(model.time_step_s(), SECTION_SMOOTHING * transit_s),
             memory: 1.0 - smoothing_gain(model.time_step_s(), AMPLITUDE_MEMORY * transit_s),

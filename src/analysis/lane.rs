@@ -9,9 +9,9 @@ use super::sample::{OBSERVED_NAMES, Sample};
 use super::steady::{self, SteadyState};
 use super::window::{LateWindow, Trailing, Window};
 use crate::solver::Model;
-use crate::solver::contact::Solves;
-use crate::solver::disk::DiskBody;
+use crate::solver::body::ring::RingBody;
 use crate::solver::energy::Energies;
+use crate::solver::interface::solve::Solves;
 use crate::spec::JobSpec;
 use serde::{Deserialize, Serialize};
 
@@ -127,7 +127,7 @@ impl LaneAnalysis {
             growth_rate_per_s: self.monitor.as_ref().and_then(DecayMonitor::growth_rate_per_s),
             obstacle: (outcome == Outcome::NotPeriodic)
                 .then(|| steady::obstacle(&self.cycles, &self.spec.detection)),
-            disk: model.disk().zip(solves).map(|(body, solves)| elastic_disk(body, solves, steps)),
+            disk: model.ring().zip(solves).map(|(body, solves)| elastic_disk(body, solves, steps)),
             energy: totals(energies),
             nodes: observed_nodes(figures),
         }
@@ -187,7 +187,7 @@ impl LaneAnalysis {
 
 /// Amplitude, over F, below which there is nothing to be seen of growth or decay.
 fn decay_floor(model: &Model) -> f64 {
-    if model.disk().is_some() { decay::ELASTIC_FLOOR } else { lines::ROUNDING }
+    if model.ring().is_some() { decay::ELASTIC_FLOOR } else { lines::ROUNDING }
 }
 
 /// Names the regime from the outcome and the shares of stick and separation.
@@ -216,7 +216,7 @@ fn contact_loss_share(start: &Energies, end: &Energies) -> f64 {
     if drive_j == 0.0 { 0.0 } else { (end.contact_loss_j - start.contact_loss_j) / drive_j }
 }
 
-fn elastic_disk(body: &DiskBody, solves: &Solves, steps: u64) -> ElasticDisk {
+fn elastic_disk(body: &RingBody, solves: &Solves, steps: u64) -> ElasticDisk {
     let made = body.mesh().report();
     ElasticDisk {
         elements: made.elements,

@@ -5,11 +5,13 @@
 //! slots in the vectors cost anyway, and can be given another job whenever the lanes are between two audits.
 
 use super::checkpoint::{self, Unreadable};
-use super::job::{self, JobError};
+use super::drive::{IDLE, drive};
+use super::error::{JobError, step_count};
 use super::lane::LaneAnalysis;
 use super::record::JobRecord;
 use super::sample::{Sample, Sampler};
 use crate::solver::energy::EnergyLedger;
+use crate::solver::lane::LaneState;
 use crate::solver::{Drive, Model, State, guard, step};
 use crate::spec::JobSpec;
 use std::sync::Arc;
@@ -20,9 +22,6 @@ use std::sync::Arc;
 /// An evaluation costs two products with K; at 16 that is an eighth of a run. The damping's work is
 /// sampled as often: about four times per period of the fastest mode that damping leaves alive.
 pub const AUDIT_INTERVAL: u64 = 16;
-
-/// A lane without a job: nothing moves, nothing presses.
-const IDLE: Drive = Drive { mu: 0.0, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
 
 /// Up to `L` jobs of one model.
 pub struct Lanes<const L: usize> {
@@ -118,10 +117,10 @@ impl<const L: usize> Lanes<L> {
     /// If the lane has a job.
     pub fn begin(&mut self, lane: usize, ticket: u64, spec: JobSpec) -> Result<(), JobError> {
         assert!(self.runs[lane].is_none(), "lane {lane} has a job");
-        let steps = job::step_count(spec.run.limit_s, self.model.time_step_s())?;
+        let steps = step_count(spec.run.limit_s, self.model.time_step_s())?;
         // A free lane is at rest.
         self.state.begun[lane] = self.state.step;
-        self.drives[lane] = job::drive(&spec);
+        self.drives[lane] = drive(&spec);
         let stop_early = spec.run.stop_early;
         self.runs[lane] =
             Some(Run { ticket, steps, stop_early, analysis: Box::new(LaneAnalysis::new(&self.model, spec)) });
@@ -242,7 +241,7 @@ impl<const L: usize> Lanes<L> {
         if let Err(error) = guard::check_finite(&self.model, &self.state, lane) {
             return Some(Err(error.into()));
         }
-        let record = run.analysis.record(&self.model, steps, energies, self.state.contacts.solves_of(lane));
+        let record = run.analysis.record(&self.model, steps, energies, self.state.target.solves_of(lane));
         Some(match record.non_finite_figure() {
             None => Ok(record),
             Some(figure) => Err(JobError::NotFinite { figure }),

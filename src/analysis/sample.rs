@@ -2,11 +2,11 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use crate::solver::Model;
-use crate::solver::contact::{ContactState, Contacts, Status};
-use crate::solver::field::{Field, WIDTH, add_slots, in_slots, next};
-use crate::solver::operator::load_all;
-use crate::solver::state::{Drive, State};
+use crate::solver::body::block::operator::load_all;
+use crate::solver::field::{Field, WIDTH, add_slots};
+use crate::solver::interface::{ContactState, Contacts, LIMIT, Status};
+use crate::solver::lane::{LaneState, next};
+use crate::solver::{Drive, Model, State};
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use serde::{Deserialize, Serialize};
 
@@ -171,40 +171,26 @@ const SLIPS: usize = 2;
 impl<const L: usize> Sampler<L> {
     /// A sampler of jobs that begin at rest.
     pub fn new(model: &Model) -> Self {
-        let mesh = model.mesh();
-        let [nx, ny, _] = mesh.elements();
-        let transit_s = mesh.size_m()[2] / model.material().pressure_wave_speed_m_s();
-        let nodes = model.on_slaves(|node| {
-            let [x, y, _] = mesh.coordinates_m(node.node);
-            [1.0 / node.area_m2, x / mesh.size_m()[0], y / mesh.size_m()[1]]
+        let interface = model.interface();
+        let transit_s = model.pin().pressure_transit_s();
+        let [width_m, length_m] = interface.extent_m();
+        let nodes = interface.field(|node| {
+            let [x, y] = node.position_m;
+            [1.0 / node.area_m2, x / width_m, y / length_m]
         });
-        let observed = [mesh.node(nx / 2, 0, 0), mesh.node(nx / 2, ny, 0)];
         Self {
             gain: smoothing_gain(model.time_step_s(), STRESS_SMOOTHING * transit_s),
             nodes,
-            last: Field::on_face(mesh),
+            last: Field::zeros(interface.layout()),
             normal: [Smoother::default(); L],
-            observed,
+            observed: interface.edge_centres(),
         }
-    }
-
-    /// Appends a lane.
-    pub fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
-        self.last.save_lane(lane, saved);
-        saved.push(self.normal[lane].value);
-    }
-
-    /// Sets a lane to a saved one; all zeros forget it.
-    pub fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
-        self.last.load_lane(lane, saved);
-        [self.normal[lane].value] = next(saved);
     }
 
     /// The samples of the step that `state` has just done.
     pub fn sample(&mut self, model: &Model, drives: &[Drive; L], state: &State<L>) -> [Sample; L] {
         let dt = model.time_step_s();
-        let Totals { sums, maxima } =
-            dispatch!(Level::new(), simd => self.add_up(simd, drives, &state.contacts));
+        let Totals { sums, maxima } = dispatch!(Level::new(), simd => self.add_up(simd, &state.contacts));
         std::array::from_fn(|l| Sample {
             time_s: (state.steps_done(l) - 1) as f64 * dt,
             load_n: state.load_n[l],
@@ -249,10 +235,10 @@ impl<const L: usize> Sampler<L> {
         let contact_state = contacts.state_of(slave, lane);
         let [x, y, _] = contacts.increment_of(slave, lane);
         let slips = contact_state == ContactState::Slip;
-        let yielding = contacts.elastic.as_ref().map_or(0.0, |elastic| elastic.yielding_m.at(place, 1)[lane]);
+        let [_, of_target, _] = state.target.increment_of(slave, lane);
         NodeSample {
             u_m: std::array::from_fn(|c| state.u.at(place, c)[lane]),
-            y_velocity_m_s: (y + yielding) / dt + model.slaves()[slave].surface_motion[1] * drive.rate,
+            y_velocity_m_s: (y + of_target) / dt + model.slaves()[slave].surface_motion[1] * drive.rate,
             gap_m: contacts.gap_of(slave, lane),
             force_n: contacts.force_of(slave, lane),
             sigma_n_pa: self.last.at(place, SIGMA_N)[lane],
@@ -262,10 +248,9 @@ impl<const L: usize> Sampler<L> {
     }
 
     #[inline(always)]
-    fn add_up<S: Simd>(&mut self, simd: S, drives: &[Drive; L], contacts: &Contacts<L>) -> Totals<L> {
+    fn add_up<S: Simd>(&mut self, simd: S, contacts: &Contacts<L>) -> Totals<L> {
         let zero = f64x8::splat(simd, 0.0);
         let one = f64x8::splat(simd, 1.0);
-        let mu = f64x8::from_slice(simd, &in_slots(&drives.map(|drive| drive.mu)));
         let gain = f64x8::splat(simd, self.gain);
         let stride = self.nodes.blocks_per_line();
         let mut totals = Totals { sums: [[0.0; L]; SUMS], maxima: [[0.0; L]; MAXIMA] };
@@ -292,7 +277,7 @@ impl<const L: usize> Sampler<L> {
                 let (x, y) = (f64x8::from_slice(simd, &increment[0]), f64x8::from_slice(simd, &increment[1]));
                 let slipping = slips.simd_gt(zero);
                 let slipped = slipping.select((x * x + y * y).sqrt(), zero);
-                let limit = mu * force[2];
+                let limit = f64x8::from_slice(simd, &contacts.friction.blocks()[at].0[LIMIT]);
                 // Friction points along −slip, so cos φ = −s_y/|s|.
                 let misaligned = limit * (one + y / slipped);
                 sums[NORMAL] += force[2];
@@ -323,5 +308,18 @@ impl<const L: usize> Sampler<L> {
             }
         }
         totals
+    }
+}
+
+/// Zeros forget the lane.
+impl<const L: usize> LaneState for Sampler<L> {
+    fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
+        self.last.save_lane(lane, saved);
+        saved.push(self.normal[lane].value);
+    }
+
+    fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
+        self.last.load_lane(lane, saved);
+        [self.normal[lane].value] = next(saved);
     }
 }

@@ -4,9 +4,9 @@ use super::capture::{Capture, Frame};
 use super::vtu::{self, PointData, Values};
 use crate::analysis::sample::NodeSample;
 use crate::publish::{Folder, PublishError};
-use crate::solver::contact::ContactState;
-use crate::solver::mesh::BlockMesh;
-use crate::solver::stress;
+use crate::solver::body::block::BlockMesh;
+use crate::solver::body::block::stress;
+use crate::solver::interface::ContactState;
 
 /// The corners of a mesh's element in VTK's order, which goes around.
 const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
@@ -58,7 +58,7 @@ fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointDa
     };
     let mut codes: Vec<i8> = frame.face.iter().map(|node| code(node.state)).collect();
     codes.resize(mesh.node_count(), -1);
-    let stress = stress::nodal_pa(mesh, capture.model.material(), &frame.u_m);
+    let stress = stress::nodal_pa(mesh, capture.model.pin().material(), &frame.u_m);
     vec![
         numbers("displacement_m", 3, &[], frame.u_m.clone()),
         numbers("velocity_m_s", 3, &[], frame.velocity_m_s.clone()),

@@ -6,7 +6,7 @@ use super::place::{ObservedNode, Place};
 use super::spectrum::Spectrum;
 use super::survey::{FEWEST_CYCLES, Survey, survey};
 use crate::analysis::JobError;
-use crate::solver::mesh::BlockMesh;
+use crate::solver::body::block::BlockMesh;
 use crate::spec::JobSpec;
 use crate::units::rad_per_s_from_rpm;
 use std::ops::ControlFlow;

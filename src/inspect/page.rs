@@ -74,7 +74,7 @@ fn head(look: &Look, summary: &Summary) -> Markup {
 fn numerics(look: &Look) -> String {
     let [nx, ny, nz] = look.mesh().elements();
     let record = &look.survey.record;
-    let disk = if look.capture.model.disk().is_some() { "an elastic disk" } else { "a rigid disk" };
+    let disk = if look.capture.model.ring().is_some() { "an elastic disk" } else { "a rigid disk" };
     format!(
         "{nx} × {ny} × {nz} elements on {disk}, {} steps of {} s; {} cycles are shown.",
         record.steps,

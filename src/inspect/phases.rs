@@ -1,6 +1,6 @@
 //! The phases of a node's contact, and the instants at which they change.
 
-use crate::solver::contact::ContactState;
+use crate::solver::interface::ContactState;
 
 /// A stretch of time in one state.
 #[derive(Debug, Clone, Copy, PartialEq)]

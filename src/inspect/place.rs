@@ -1,7 +1,7 @@
 //! Nodes of the contact face by name or by coordinates.
 
 use crate::publish::value::rounded;
-use crate::solver::mesh::BlockMesh;
+use crate::solver::body::block::BlockMesh;
 
 /// Names of the nodes that have one, with where they are across the sliding direction (x) and along it (y), from −1 to
 /// 1: the disk moves towards +y, so the front is at −1.

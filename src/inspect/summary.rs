@@ -4,7 +4,7 @@ use super::look::{Look, Observed, area_m2, loop_of};
 use super::phases::Phase;
 use super::waves::{Wave, stations, waves};
 use crate::analysis::JobRecord;
-use crate::solver::contact::ContactState;
+use crate::solver::interface::ContactState;
 use crate::spec::JobSpec;
 use serde::Serialize;
 

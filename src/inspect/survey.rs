@@ -137,5 +137,5 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Surveyor<'_, G> {
 
 /// 4h/c_s: the period of a block that shears between a held and a free face.
 fn quarter_wave_s(model: &Model) -> f64 {
-    4.0 * model.mesh().size_m()[2] / model.material().shear_wave_speed_m_s()
+    4.0 * model.pin().shear_transit_s()
 }

@@ -5,7 +5,7 @@
 //! Neighbours in x are `L` numbers away, neighbours in y and z whole lines, so every operation on
 //! lines is the same for any lane count and its results have the same bits.
 
-use super::mesh::BlockMesh;
+use super::lane::{LaneState, next};
 use std::ops::{Index, IndexMut};
 
 /// Numbers in a vector.
@@ -20,6 +20,22 @@ pub struct Block(pub [[f64; WIDTH]; 3]);
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 #[repr(align(64))]
 pub struct Row(pub [f64; WIDTH]);
+
+/// How many lines a field has, and how many nodes a line.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Layout {
+    /// Nodes of a line.
+    pub nodes_per_line: usize,
+    /// Number of lines.
+    pub lines: usize,
+}
+
+impl Layout {
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.nodes_per_line * self.lines
+    }
+}
 
 /// Where the lanes of a node are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -44,14 +60,6 @@ pub fn in_slots<const L: usize>(lanes: &[f64; L]) -> [f64; WIDTH] {
     std::array::from_fn(|slot| lanes[slot % L])
 }
 
-/// The next numbers of a lane that was saved.
-///
-/// # Panics
-/// If there are too few.
-pub fn next<const N: usize>(saved: &mut dyn Iterator<Item = f64>) -> [f64; N] {
-    std::array::from_fn(|_| saved.next().expect("as many numbers as were saved"))
-}
-
 /// Adds the numbers of a block to those of their lanes, node after node.
 ///
 /// All sums over nodes are made like this: first across the lines of a column of blocks, slot by slot, then
@@ -72,32 +80,21 @@ pub fn blocks_per_line<const L: usize>(nodes: usize) -> usize {
 impl<const L: usize> Field<L> {
     const LANES_FILL_BLOCKS: () = assert!(L == 1 || L == 2 || L == 4 || L == 8, "1, 2, 4 or 8 lanes");
 
-    /// All zero, on the nodes of `mesh`.
-    pub fn zeros(mesh: &BlockMesh) -> Self {
-        let [mx, my, mz] = mesh.nodes_per_axis();
-        Self::with_lines(mx, my * mz)
-    }
-
-    /// All zero, on so many lines of so many nodes.
-    pub fn with_lines(nodes_per_line: usize, lines: usize) -> Self {
+    /// All zero.
+    pub fn zeros(layout: Layout) -> Self {
         let () = Self::LANES_FILL_BLOCKS;
+        let Layout { nodes_per_line, lines } = layout;
         let blocks_per_line = blocks_per_line::<L>(nodes_per_line);
         Self { nodes_per_line, blocks_per_line, blocks: vec![Block::default(); blocks_per_line * lines] }
-    }
-
-    /// All zero, on the nodes of the contact face (or of any other plane in z) of `mesh`.
-    pub fn on_face(mesh: &BlockMesh) -> Self {
-        let [mx, my, _] = mesh.nodes_per_axis();
-        Self::with_lines(mx, my)
     }
 
     /// From values in the order node → component → lane.
     ///
     /// # Panics
     /// If there is not one value per node, component and lane.
-    pub fn from_values(mesh: &BlockMesh, values: &[f64]) -> Self {
-        assert_eq!(values.len(), 3 * L * mesh.node_count(), "3 components of {L} lanes per node");
-        let mut field = Self::zeros(mesh);
+    pub fn from_values(layout: Layout, values: &[f64]) -> Self {
+        assert_eq!(values.len(), 3 * L * layout.nodes(), "3 components of {L} lanes per node");
+        let mut field = Self::zeros(layout);
         for (index, value) in values.iter().enumerate() {
             field[index] = *value;
         }
@@ -117,26 +114,6 @@ impl<const L: usize> Field<L> {
     /// Whether there is no value; a mesh has nodes, so never.
     pub fn is_empty(&self) -> bool {
         self.blocks.is_empty()
-    }
-
-    /// Appends the values of one lane.
-    pub fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
-        saved.extend((0..self.len() / L).map(|dof| self[dof * L + lane]));
-    }
-
-    /// Sets one lane to saved values, and its padding to zero: a lane that has overflowed has left its mark there, too.
-    ///
-    /// # Panics
-    /// If there are too few values.
-    pub fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
-        for row in self.blocks.iter_mut().flat_map(|block| &mut block.0) {
-            for value in row.iter_mut().skip(lane).step_by(L) {
-                *value = 0.0;
-            }
-        }
-        for dof in 0..self.len() / L {
-            [self[dof * L + lane]] = next(saved);
-        }
     }
 
     /// Σ over all nodes and components of this times another field of the same nodes.
@@ -195,6 +172,24 @@ impl<const L: usize> Field<L> {
         self.blocks[place.block].0[component][place.slot..]
             .first_chunk_mut()
             .expect("lanes do not straddle blocks")
+    }
+}
+
+impl<const L: usize> LaneState for Field<L> {
+    fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
+        saved.extend((0..self.len() / L).map(|dof| self[dof * L + lane]));
+    }
+
+    /// The padding of the lane becomes zero: a lane that has overflowed has left its mark there, too.
+    fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
+        for row in self.blocks.iter_mut().flat_map(|block| &mut block.0) {
+            for value in row.iter_mut().skip(lane).step_by(L) {
+                *value = 0.0;
+            }
+        }
+        for dof in 0..self.len() / L {
+            [self[dof * L + lane]] = next(saved);
+        }
     }
 }
 

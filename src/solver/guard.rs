@@ -1,11 +1,12 @@
 //! Stops a run that diverges.
 
-use super::contact::sweeps::{MAX_SWEEPS, TOLERANCE};
+use super::drive::Drive;
 use super::energy::Energies;
 use super::error::SolverError;
 use super::field::Field;
+use super::interface::solve::sweeps::{MAX_SWEEPS, TOLERANCE};
 use super::model::Model;
-use super::state::{Drive, State};
+use super::state::State;
 
 /// The scheme's stored energy may exceed all energy put in by this factor before a run counts as diverged.
 ///
@@ -22,13 +23,6 @@ const STORED_FACTOR: f64 = 2.0;
 /// that only when all the energy is in the highest mode. A run beyond twice that is noise of the mesh.
 const MAGNITUDE_FACTOR: f64 = 100.0;
 
-/// Energy [J] that is in proportion when the energy put in happens to be zero: the pin's static compression
-/// under the full load, F²h/(2EA). Motion with the target needs no room: the drive puts it in.
-fn scene_scale_j(model: &Model, drive: &Drive) -> f64 {
-    let [lx, ly, lz] = model.mesh().size_m();
-    drive.force_n.powi(2) * lz / (2.0 * model.material().young_modulus_pa * lx * ly)
-}
-
 /// Checks a lane of `state` against its `energies` at the last audit.
 ///
 /// # Errors
@@ -43,7 +37,8 @@ pub fn check<const L: usize>(
     let stored = energies.kinetic_j + energies.elastic_j;
     let magnitude = energies.kinetic_j.abs() + energies.elastic_j.abs();
     let input = energies.input_j();
-    let scale = input + scene_scale_j(model, drive);
+    // The energy put in may happen to be zero. Motion with the target needs no room: the drive puts it in.
+    let scale = input + model.pin().compression_energy_j(drive.force_n);
     // `<=` is false for NaN: a non-finite energy is caught, too.
     if stored <= STORED_FACTOR * scale && magnitude <= MAGNITUDE_FACTOR * scale && scale.is_finite() {
         return Ok(());
@@ -65,8 +60,7 @@ pub fn check<const L: usize>(
 /// [`SolverError::Diverged`] if one is not.
 pub fn check_finite<const L: usize>(model: &Model, state: &State<L>, lane: usize) -> Result<(), SolverError> {
     let finite = |field: &Field<L>| field.values().skip(lane).step_by(L).all(f64::is_finite);
-    let disk_is_finite = state.disk.as_ref().is_none_or(|disk| disk.is_finite(lane));
-    if finite(&state.u) && finite(&state.p) && disk_is_finite {
+    if finite(&state.u) && finite(&state.p) && state.target.is_finite(lane) {
         Ok(())
     } else {
         Err(diverged(model, state, lane, NOT_FINITE.to_owned()))
@@ -82,8 +76,7 @@ pub fn check_contact<const L: usize>(
     state: &State<L>,
     lane: usize,
 ) -> Result<(), SolverError> {
-    let Some(elastic) = &state.contacts.elastic else { return Ok(()) };
-    let solves = &elastic.solves[lane];
+    let Some(solves) = state.target.solves_of(lane) else { return Ok(()) };
     if solves.failed_step == 0.0 {
         return Ok(());
     }

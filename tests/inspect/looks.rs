@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use tribosweep::analysis::{JobError, Outcome, Regime, Unobserved, solve};
 use tribosweep::inspect::{Change, Look, LookError, Options, Origin, Place, Summary, write};
-use tribosweep::solver::contact::ContactState;
+use tribosweep::solver::interface::ContactState;
 use tribosweep::spec::DiskKind;
 
 /// Protects: what is shown is the job: both runs of a look have the record of the job solved alone, to the last bit,

@@ -6,8 +6,8 @@ use std::path::Path;
 use std::process::Command;
 use tribosweep::analysis::sample::NodeSample;
 use tribosweep::inspect::{Frame, Look, Options, Origin, write};
-use tribosweep::solver::contact::ContactState;
-use tribosweep::solver::stress;
+use tribosweep::solver::body::block::stress;
+use tribosweep::solver::interface::ContactState;
 
 /// Begins both scripts.
 const HEAD: &str = r"
@@ -140,7 +140,9 @@ fn assert_is_the_look(read: &Value, look: &Look) {
     };
     compare("displacement_m", &|frame| frame.u_m.clone());
     compare("velocity_m_s", &|frame| frame.velocity_m_s.clone());
-    compare("stress_pa", &|frame| stress::nodal_pa(mesh, look.capture.model.material(), &frame.u_m).concat());
+    compare("stress_pa", &|frame| {
+        stress::nodal_pa(mesh, look.capture.model.pin().material(), &frame.u_m).concat()
+    });
     compare("contact_force_n", &on_face(nodes, 0.0, |node| node.force_n.to_vec()));
     compare("normal_contact_stress_pa", &|frame| {
         let slaves = look.capture.model.slaves();

@@ -19,10 +19,10 @@
 //!
 //! Terms in ε² are left out: nothing here takes 10¹³ steps.
 
+use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::body::block::operator::AssembledOperator;
 use tribosweep::solver::energy::{Energies, EnergyLedger};
 use tribosweep::solver::material::Material;
-use tribosweep::solver::mesh::BlockMesh;
-use tribosweep::solver::operator::AssembledOperator;
 use tribosweep::solver::{Drive, Model, State, step};
 
 /// Roundings that a force goes through, in the step and in the ledger.
@@ -60,7 +60,7 @@ impl<'a> Audited<'a> {
             drive,
             every: EnergyLedger::new(model, 1),
             sampled: EnergyLedger::new(model, JOB_INTERVAL),
-            magnitudes: magnitudes(mesh, model.material()),
+            magnitudes: magnitudes(mesh, model.pin().material()),
             before: field(),
             forces: field(),
             increments: std::array::from_fn(|_| field()),
@@ -120,7 +120,7 @@ impl<'a> Audited<'a> {
 
     fn find_highest(&mut self) {
         let [lx, ly, lz] = self.model.mesh().size_m();
-        let modulus_pa = self.model.material().young_modulus_pa;
+        let modulus_pa = self.model.pin().material().young_modulus_pa;
         let e = self.every.energies(0);
         let scale_j = e.input_j() + self.drive.force_n.powi(2) * lz / (2.0 * modulus_pa * lx * ly);
         self.highest_stored = self.highest_stored.max((e.kinetic_j + e.elastic_j) / scale_j);
@@ -135,12 +135,12 @@ impl<'a> Audited<'a> {
 
     /// w without the contact forces, which the step has yet to find.
     fn find_magnitudes(&mut self) {
-        let (dt, beta_r) = (self.model.time_step_s(), self.model.beta_r_s());
+        let (dt, beta_r) = (self.model.time_step_s(), self.model.scheme().beta_r_s);
         let strained = self.state.u.values().zip(self.state.p.values());
         let strained: Vec<f64> = strained.map(|(u, p)| u.abs() + beta_r * p.abs()).collect();
         self.forces = times(&self.magnitudes, &strained);
         for (i, force) in self.forces.iter_mut().enumerate() {
-            let mass = self.model.masses_kg()[i / 3];
+            let mass = self.model.pin().masses_kg()[i / 3];
             *force += mass * (self.state.u[i].abs() + dt * self.state.p[i].abs()) / (dt * dt);
         }
     }
@@ -175,7 +175,7 @@ impl<'a> Audited<'a> {
         let mut sum_j = 0.0;
         for i in 0..magnitude.len() {
             let speed = self.state.p[i].abs() + (self.increments[0][i] + self.increments[1][i]) / dt;
-            let mass = self.model.masses_kg()[i / 3];
+            let mass = self.model.pin().masses_kg()[i / 3];
             sum_j += 0.5 * magnitude[i] * product[i] + mass * speed * (speed + magnitude[i] / dt);
         }
         sum_j

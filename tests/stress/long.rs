@@ -8,6 +8,8 @@ use crate::random::Random;
 use crate::scenes::{IDLE, in_the_air, pin};
 use crate::summary;
 use serde_json::json;
+use tribosweep::solver::interface::law::Law;
+use tribosweep::solver::support::Support;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State};
 
 const FRACTION: f64 = 0.99;
@@ -67,8 +69,8 @@ fn shaken(model: &Model) -> State<1> {
     for dof in 0..state.p.len() {
         state.p[dof] = random.between(-1.0e-3, 1.0e-3);
         if dof % 3 == 2 {
-            momentum += state.p[dof] * model.masses_kg()[dof / 3];
-            total += model.masses_kg()[dof / 3];
+            momentum += state.p[dof] * model.pin().masses_kg()[dof / 3];
+            total += model.pin().masses_kg()[dof / 3];
         }
     }
     let nodes = model.mesh().node_count();
@@ -80,16 +82,19 @@ fn shaken(model: &Model) -> State<1> {
     state
 }
 
-/// Clamped and tied degrees of freedom start as the constraints say.
+/// Clamped and tied degrees of freedom start as the supports say.
 fn admissible(definition: &ModelDefinition, model: &Model, state: &mut State<1>) {
-    for &dof in &definition.constraints.fixed {
-        state.p[dof] = 0.0;
-    }
-    for tie in &definition.constraints.ties {
-        let mass = |node: &usize| model.masses_kg()[*node];
-        let total: f64 = tie.nodes.iter().map(mass).sum();
-        let momentum: f64 = tie.nodes.iter().map(|n| mass(n) * state.p[3 * n + tie.component]).sum();
-        tie.nodes.iter().for_each(|n| state.p[3 * n + tie.component] = momentum / total);
+    for support in &definition.supports {
+        match support {
+            Support::Fixed(fixed) => fixed.dofs.iter().for_each(|&dof| state.p[dof] = 0.0),
+            Support::Tied(tied) => {
+                let mass = |node: &usize| model.pin().masses_kg()[*node];
+                let total: f64 = tied.nodes.iter().map(mass).sum();
+                let momentum: f64 =
+                    tied.nodes.iter().map(|n| mass(n) * state.p[3 * n + tied.component]).sum();
+                tied.dofs().for_each(|dof| state.p[dof] = momentum / total);
+            }
+        }
     }
 }
 
@@ -130,7 +135,7 @@ fn pressed_course(elements: [usize; 3], steps: u64) -> Course {
     let model = at_the_limit(&definition);
     let drive = Drive { force_n: 30.0, ..IDLE };
     let [lx, ly, lz] = model.mesh().size_m();
-    let most_j = 2.0 * 30.0_f64.powi(2) * lz / (model.material().young_modulus_pa * lx * ly);
+    let most_j = 2.0 * 30.0_f64.powi(2) * lz / (model.pin().material().young_modulus_pa * lx * ly);
     let run = Audited::new(&model, drive, State::at_rest(&model));
     follow("sudden load, no friction", run, steps, |run| {
         (run.energies().kinetic_j + run.energies().elastic_j) / (most_j + run.rounding_bound_j())
@@ -141,7 +146,7 @@ fn pressed_course(elements: [usize; 3], steps: u64) -> Course {
 fn sliding_course(scene: &'static str, elements: [usize; 3], mu: f64, steps: u64) -> Course {
     let definition = ModelDefinition { beta_r_s: 5.0e-8, ..pin(elements) };
     let model = at_the_limit(&definition);
-    let drive = Drive { mu, rate: 0.733, force_n: 30.0, ramp_s: 1.0e-4 };
+    let drive = Drive { law: Law::Coulomb { mu }, rate: 0.733, force_n: 30.0, ramp_s: 1.0e-4 };
     let run = Audited::new(&model, drive, State::at_rest(&model));
     follow(scene, run, steps, |run| {
         let e = run.energies();

@@ -1,8 +1,9 @@
 //! The true highest mode of a constrained block, from the program's own operator, by dense eigenvalues.
 
 use nalgebra::DMatrix;
-use tribosweep::solver::constraints::{Constraints, Freedom};
-use tribosweep::solver::{Model, ModelDefinition, SolverError, TimeStep, stability};
+use tribosweep::solver::body::Freedom;
+use tribosweep::solver::support::{self, Support};
+use tribosweep::solver::{Model, ModelDefinition, SolverError, TimeStep, scheme};
 
 /// The highest mode.
 pub struct Mode {
@@ -17,15 +18,15 @@ pub struct Mode {
 /// The highest mode of `definition`'s block under its constraints; with `closed`, the contact face is held in z.
 pub fn highest(definition: &ModelDefinition, closed: bool) -> Mode {
     let mesh = &definition.mesh;
-    let mut constraints: Constraints = definition.constraints.clone();
+    let mut supports = definition.supports.clone();
     if closed {
-        constraints.fixed.extend(mesh.bottom_nodes().map(|node| 3 * node + 2));
+        supports.push(Support::fixed(mesh.bottom_nodes().map(|node| 3 * node + 2)));
     }
-    let freedoms = constraints.freedoms(mesh).expect("the block's own constraints");
+    let freedoms = support::freedoms(&supports, mesh).expect("the block's own supports");
     let model =
         Model::new(ModelDefinition { time_step: TimeStep::FractionOfLimit(0.5), ..definition.clone() })
             .expect("a model below its limit");
-    let masses = model.masses_kg();
+    let masses = model.pin().masses_kg();
 
     // Column by column: the number of the independent motion of each degree of freedom.
     let mut motions: Vec<Vec<usize>> = Vec::new();
@@ -51,7 +52,7 @@ pub fn highest(definition: &ModelDefinition, closed: bool) -> Mode {
         for &dof in dofs {
             x[dof] = 1.0;
         }
-        let y = model.stiffness_times(&x);
+        let y = model.pin().stiffness_times(&x);
         for (row, others) in motions.iter().enumerate() {
             let force: f64 = others.iter().map(|&dof| y[dof]).sum();
             matrix[(row, column)] = force / (mass[row] * mass[column]).sqrt();
@@ -75,17 +76,17 @@ pub fn highest(definition: &ModelDefinition, closed: bool) -> Mode {
 
 /// `definition` at a fraction of its **true** stability limit, which is above the program's bound.
 pub fn at_fraction(definition: &ModelDefinition, mode: &Mode, fraction: f64) -> Result<Model, SolverError> {
-    let limit_s = stability::time_step_limit_s(mode.omega, definition.beta2, definition.beta_r_s);
+    let limit_s = scheme::time_step_limit_s(mode.omega, definition.beta2, definition.beta_r_s);
     let time_step = TimeStep::Unchecked(fraction * limit_s);
     Model::new(ModelDefinition { time_step, ..definition.clone() })
 }
 
-/// Largest |λ| of the amplification matrix (`solver::stability`) of a mode of frequency `omega`.
+/// Largest |λ| of the amplification matrix (`solver::scheme`) of a mode of frequency `omega`.
 pub fn growth_per_step(omega: f64, model: &Model) -> f64 {
     let w2 = (omega * model.time_step_s()).powi(2);
-    let b = model.beta_r_s() / model.time_step_s();
-    let determinant = 1.0 - (model.beta2() - 0.5 + b) * w2;
-    let trace = 2.0 - (0.5 + model.beta2() + b) * w2;
+    let b = model.scheme().beta_r_s / model.time_step_s();
+    let determinant = 1.0 - (model.scheme().beta2 - 0.5 + b) * w2;
+    let trace = 2.0 - (0.5 + model.scheme().beta2 + b) * w2;
     let discriminant = trace * trace - 4.0 * determinant;
     if discriminant < 0.0 { determinant.sqrt() } else { (trace.abs() + discriminant.sqrt()) / 2.0 }
 }

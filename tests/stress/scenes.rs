@@ -1,8 +1,13 @@
 //! Small scenes on both sides of the limit.
 
-use tribosweep::solver::boundary::{self, LoadShare};
-use tribosweep::solver::mesh::BlockMesh;
-use tribosweep::solver::{Drive, ModelDefinition, State, Stiffness, TimeStep, disk, material::Material};
+use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::body::block::Stiffness;
+use tribosweep::solver::interface::law::Law;
+use tribosweep::solver::interface::target;
+use tribosweep::solver::interface::target::TargetDefinition;
+use tribosweep::solver::support::clamp;
+use tribosweep::solver::support::load::{self, LoadShare};
+use tribosweep::solver::{Drive, ModelDefinition, State, TimeStep, material::Material};
 use tribosweep::spec::{Clamp, ClampSide, TopFace};
 
 /// The reference pin's material.
@@ -10,19 +15,19 @@ pub const MATERIAL: Material =
     Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
 
 /// No load, no friction, target at rest.
-pub const IDLE: Drive = Drive { mu: 0.0, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
+pub const IDLE: Drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
 
 /// The reference pin on a coarse mesh: one node row of its inner side clamped, the top tied in z.
 pub fn pin(elements: [usize; 3]) -> ModelDefinition {
     let mesh = BlockMesh::new([0.012, 0.015, 0.010], elements);
     let clamp = Clamp { side: ClampSide::InnerSide, width_m: 0.0 };
-    let strip = boundary::clamped_strip(&mesh, &clamp).expect("a row at the edge");
+    let strip = clamp::clamped_strip(&mesh, &clamp).expect("a row at the edge");
     ModelDefinition {
         material: MATERIAL,
         stiffness: Stiffness::Elastic,
-        constraints: boundary::constraints(&mesh, &strip, TopFace::TiedInZ),
-        load: boundary::normal_load(&mesh),
-        surface_motion: disk::rotating_disk(&mesh, 0.0914),
+        supports: clamp::supports(&mesh, &strip, TopFace::TiedInZ),
+        load: load::normal_load(&mesh),
+        target: TargetDefinition::Rigid(target::rotating_disk(&mesh, 0.0914)),
         beta2: 0.5,
         beta_r_s: 0.0,
         time_step: TimeStep::FractionOfLimit(0.7),

@@ -40,7 +40,7 @@ const LOSS: &str = "work of the scheme's two closing forces, see the topic's hea
 const FRONT: &str = "the dispersed front and the whole steps of contact shift single values";
 
 fn wave_speed(model: &Model) -> f64 {
-    model.material().pressure_wave_speed_m_s()
+    model.pin().material().pressure_wave_speed_m_s()
 }
 
 fn bar(layers: usize, cfl: f64, beta2: f64) -> Model {
@@ -53,13 +53,13 @@ fn area_m2(model: &Model) -> f64 {
 }
 
 fn mass_kg(model: &Model) -> f64 {
-    model.masses_kg().iter().sum()
+    model.pin().masses_kg().iter().sum()
 }
 
 /// Velocity of the centre of mass over the initial speed.
 fn rebound(model: &Model, state: &State<1>) -> f64 {
     let nodes = 0..model.mesh().node_count();
-    let momentum: f64 = nodes.map(|node| model.masses_kg()[node] * state.p[3 * node + 2]).sum();
+    let momentum: f64 = nodes.map(|node| model.pin().masses_kg()[node] * state.p[3 * node + 2]).sum();
     momentum / (mass_kg(model) * SPEED_M_S)
 }
 
@@ -144,7 +144,7 @@ fn wall_impact_is_exact_at_unit_cfl() {
             // one resting node: exact in between, too.
             let tau = (n as f64 + 0.5) / layers as f64;
             let twice: f64 = (0..model.mesh().node_count())
-                .map(|node| model.masses_kg()[node] * state.p[3 * node + 2].powi(2))
+                .map(|node| model.pin().masses_kg()[node] * state.p[3 * node + 2].powi(2))
                 .sum();
             let pair = (twice / (mass_kg(&model) * SPEED_M_S * SPEED_M_S), (1.0 - tau).abs());
             if (pair.0 - pair.1).abs() > (worst_kinetic.0 - worst_kinetic.1).abs() {

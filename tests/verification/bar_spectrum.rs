@@ -35,7 +35,7 @@ fn discrete_modes_are_eigenvectors() {
     for poisson_ratio in [0.0, 0.3] {
         let model = Model::new(bar(layers, pin_material(poisson_ratio))).unwrap();
         let mesh = model.mesh();
-        let top_rate = 2.0 * model.material().pressure_wave_speed_m_s() / mesh.element_size_m()[2];
+        let top_rate = 2.0 * model.pin().material().pressure_wave_speed_m_s() / mesh.element_size_m()[2];
         let mut worst: f64 = 0.0;
         for mode in 0..=layers {
             let phase = mode as f64 * PI / layers as f64;
@@ -44,9 +44,9 @@ fn discrete_modes_are_eigenvectors() {
             for node in 0..mesh.node_count() {
                 phi[3 * node + 2] = (phase * mesh.grid_position(node)[2] as f64).cos();
             }
-            let force = model.stiffness_times(&phi);
+            let force = model.pin().stiffness_times(&phi);
             for node in 0..mesh.node_count() {
-                let acceleration = force[3 * node + 2] / model.masses_kg()[node];
+                let acceleration = force[3 * node + 2] / model.pin().masses_kg()[node];
                 worst = worst.max((acceleration - omega * omega * phi[3 * node + 2]).abs());
             }
         }
@@ -61,13 +61,13 @@ fn frequencies_hz(model: &Model, top_fixed: bool) -> Vec<f64> {
     let mesh = model.mesh();
     let levels = mesh.elements()[2] + usize::from(!top_fixed);
     let mut k = DMatrix::<f64>::zeros(levels, levels);
-    let mass = |l: usize| level(mesh, l).iter().map(|&node| model.masses_kg()[node]).sum::<f64>();
+    let mass = |l: usize| level(mesh, l).iter().map(|&node| model.pin().masses_kg()[node]).sum::<f64>();
     for column in 0..levels {
         let mut u = vec![0.0; 3 * mesh.node_count()];
         for node in level(mesh, column) {
             u[3 * node + 2] = 1.0;
         }
-        let force = model.stiffness_times(&u);
+        let force = model.pin().stiffness_times(&u);
         for row in 0..levels {
             let sum: f64 = level(mesh, row).iter().map(|node| force[3 * node + 2]).sum();
             k[(row, column)] = sum / (mass(row) * mass(column)).sqrt();

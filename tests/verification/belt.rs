@@ -32,8 +32,9 @@ use crate::common::advance;
 use crate::evidence::Evidence;
 use crate::particles::{Particles, Y, Z, audited_step};
 use std::f64::consts::PI;
-use tribosweep::solver::contact::ContactState;
 use tribosweep::solver::energy::EnergyLedger;
+use tribosweep::solver::interface::ContactState;
+use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, State, TimeStep};
 
 const MASS_KG: f64 = 2.0;
@@ -51,7 +52,7 @@ fn oscillator(w: f64) -> Model {
 }
 
 fn drive(belt_speed_m_s: f64) -> Drive {
-    Drive { mu: MU, rate: belt_speed_m_s, force_n: NORMAL_N, ramp_s: 0.0 }
+    Drive { law: Law::Coulomb { mu: MU }, rate: belt_speed_m_s, force_n: NORMAL_N, ramp_s: 0.0 }
 }
 
 fn theta(w: f64) -> f64 {

@@ -21,10 +21,11 @@
 use crate::common::{COLUMN_AREA_M2, COLUMN_HEIGHT_M, advance, all_of, column_mesh, definition, level_ties};
 use crate::evidence::Evidence;
 use crate::particles::{Particles, Y, Z};
-use tribosweep::solver::boundary::LoadShare;
-use tribosweep::solver::constraints::Constraints;
-use tribosweep::solver::contact::ContactState;
+use tribosweep::solver::interface::ContactState;
+use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::material::Material;
+use tribosweep::solver::support::Support;
+use tribosweep::solver::support::load::LoadShare;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
 
 const MU: f64 = 0.3;
@@ -34,7 +35,7 @@ const SPEED_M_S: f64 = 0.2;
 const DECELERATION_M_S2: f64 = MU * LOAD_N / MASS_KG;
 const STOP_TIME_S: f64 = SPEED_M_S / DECELERATION_M_S2;
 const STOP_DISTANCE_M: f64 = 0.5 * SPEED_M_S * STOP_TIME_S;
-const DRIVE: Drive = Drive { mu: MU, rate: 0.0, force_n: LOAD_N, ramp_s: 0.0 };
+const DRIVE: Drive = Drive { law: Law::Coulomb { mu: MU }, rate: 0.0, force_n: LOAD_N, ramp_s: 0.0 };
 const NEWTON: &str = "uniform deceleration μF/m (Newton, Coulomb)";
 
 /// A point mass pressed with the load and pulled in y by `pull` times it.
@@ -148,8 +149,8 @@ fn sticks_on_an_incline_up_to_the_friction_angle() {
 /// One elastic element, its two levels tied in y and z.
 fn elastic_block(young_modulus_pa: f64, pull: f64, beta_r_s: f64, time_step: TimeStep) -> Model {
     let mesh = column_mesh(1);
-    let constraints =
-        Constraints { fixed: all_of(&mesh, 0), ties: [level_ties(&mesh, 1), level_ties(&mesh, 2)].concat() };
+    let ties = [level_ties(&mesh, 1), level_ties(&mesh, 2)].concat();
+    let supports = [vec![Support::fixed(all_of(&mesh, 0))], ties].concat();
     let load = mesh
         .top_nodes()
         .flat_map(|node| {
@@ -161,8 +162,7 @@ fn elastic_block(young_modulus_pa: f64, pull: f64, beta_r_s: f64, time_step: Tim
         .collect();
     let density_kg_m3 = MASS_KG / (COLUMN_AREA_M2 * COLUMN_HEIGHT_M);
     let material = Material { young_modulus_pa, poisson_ratio: 0.0, density_kg_m3 };
-    Model::new(ModelDefinition { load, beta_r_s, time_step, ..definition(mesh, material, constraints) })
-        .unwrap()
+    Model::new(ModelDefinition { load, beta_r_s, time_step, ..definition(mesh, material, supports) }).unwrap()
 }
 
 fn shear_stiffness_n_m(young_modulus_pa: f64) -> f64 {

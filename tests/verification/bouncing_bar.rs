@@ -30,9 +30,9 @@ use crate::common::{
     FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, axial_bar, normal_force_n, step_at_cfl,
 };
 use crate::evidence::Evidence;
-use tribosweep::solver::boundary::LoadShare;
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::material::Material;
+use tribosweep::solver::support::load::LoadShare;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State};
 
 const DOYEN: &str = "bouncing bar of Doyen, Ern, Piperno (2011), d'Alembert";

@@ -1,7 +1,7 @@
 //! R4 Two clocks: energy and accuracy of the disk's stages.
 //!
 //! With m stages the disk is a body of the same stiffness and the mass M B⁻¹ in the central difference of the pin's
-//! step (`solver::disk::stages`), so the energies of both bodies balance exactly; and its error is of second order in
+//! step (`solver::body::ring::stages`), so the energies of both bodies balance exactly; and its error is of second order in
 //! the step, while the contact's is of first order.
 
 use crate::common::{ROUNDINGS_PER_FORCE, advance};
@@ -9,6 +9,7 @@ use crate::elastic::{coarse_scene, drive};
 use crate::evidence::Evidence;
 use tribosweep::analysis::{JobError, Unobserved, solve};
 use tribosweep::solver::energy::EnergyLedger;
+use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, SolverError, State};
 use tribosweep::spec::{Clock, DiskKind, JobSpec, TargetSurface};
 
@@ -30,7 +31,7 @@ fn energies_close_with_stages() {
         let mut spec = coarse_scene();
         spec.scene.disk.ring.target = target;
         let model = model(&spec);
-        assert!(model.disk().unwrap().stages().count() > 1);
+        assert!(model.ring().unwrap().stages().count() > 1);
         let drive = drive(0.4, 7.0);
         let mut state = State::<1>::at_rest(&model);
         let mut ledger = EnergyLedger::new(&model, 1);
@@ -64,7 +65,7 @@ fn stages_change_less_than_the_step_does() {
         let model = model(&spec);
         let mut state = State::<1>::at_rest(&model);
         advance(&model, &drive(0.4, 7.0), &mut state, (SPAN_S / time_step_s).round() as usize);
-        let stages = model.disk().map_or(0, |disk| disk.stages().count());
+        let stages = model.ring().map_or(0, |disk| disk.stages().count());
         (state.u.values().collect::<Vec<_>>(), stages)
     };
     let distance = |a: &[f64], b: &[f64]| {
@@ -108,9 +109,9 @@ fn nothing_grows_without_damping() {
         spec.scene.disk.ring.young_modulus_pa = young_modulus_pa;
         spec.scene.disk.ring.density_kg_m3 = density_kg_m3;
         let model = model(&spec);
-        let stages = model.disk().unwrap().stages().count();
+        let stages = model.ring().unwrap().stages().count();
         seen.insert(stages);
-        let drive = Drive { mu: 0.0, rate: 0.7, force_n: 30.0, ramp_s: 0.0 };
+        let drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.7, force_n: 30.0, ramp_s: 0.0 };
         let mut state = State::<1>::at_rest(&model);
         for dof in 0..state.p.len() {
             // Any rough pattern; its size is that of the squeal's velocities.
@@ -147,7 +148,8 @@ fn nothing_grows_without_damping() {
 
 /// Degrees of freedom that the scene holds or ties, whose velocities are not free to be chosen.
 fn clamped(spec: &JobSpec) -> Vec<usize> {
-    let mesh = tribosweep::solver::mesh::BlockMesh::new(spec.scene.pin.size_m, spec.scene.pin.elements);
+    let mesh =
+        tribosweep::solver::body::block::BlockMesh::new(spec.scene.pin.size_m, spec.scene.pin.elements);
     mesh.top_nodes().flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2]).collect()
 }
 
@@ -182,7 +184,7 @@ fn several_turns_strain_nothing() {
         state.u[3 * node + 2] = 1.0e-6;
     }
     advance(&model, &Drive { force_n: 0.0, ..turns }, &mut state, steps);
-    let disk = state.disk.as_ref().unwrap();
+    let disk = state.target.ring().unwrap().1;
     assert!(disk.u.values().chain(disk.p.values()).all(|value| value == 0.0), "the disk turns rigidly");
 
     let mut evidence = Evidence::new("R4", "three turns under load, imbalance over the energy put in", KRENK);

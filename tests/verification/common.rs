@@ -1,11 +1,12 @@
 //! One-dimensional columns and small helpers shared by the topics.
 
-use tribosweep::solver::boundary::LoadShare;
-use tribosweep::solver::constraints::{Constraints, Tie};
-use tribosweep::solver::disk;
+use tribosweep::solver::body::block::{BlockMesh, Stiffness};
+use tribosweep::solver::interface::law::Law;
+use tribosweep::solver::interface::target::{self, TargetDefinition};
 use tribosweep::solver::material::Material;
-use tribosweep::solver::mesh::BlockMesh;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State, Stiffness, TimeStep, step};
+use tribosweep::solver::support::Support;
+use tribosweep::solver::support::load::LoadShare;
+use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep, step};
 
 /// The reference pin's material with another Poisson's ratio.
 pub fn pin_material(poisson_ratio: f64) -> Material {
@@ -32,8 +33,8 @@ pub fn level(mesh: &BlockMesh, k: usize) -> Vec<usize> {
 }
 
 /// Every level of the column moves as one in `component`.
-pub fn level_ties(mesh: &BlockMesh, component: usize) -> Vec<Tie> {
-    (0..=mesh.elements()[2]).map(|k| Tie { component, nodes: level(mesh, k) }).collect()
+pub fn level_ties(mesh: &BlockMesh, component: usize) -> Vec<Support> {
+    (0..=mesh.elements()[2]).map(|k| Support::tied(component, level(mesh, k))).collect()
 }
 
 /// All degrees of freedom of `component`.
@@ -42,13 +43,13 @@ pub fn all_of(mesh: &BlockMesh, component: usize) -> Vec<usize> {
 }
 
 /// A definition with the parts that most columns share; no load, central difference, undamped.
-pub fn definition(mesh: BlockMesh, material: Material, constraints: Constraints) -> ModelDefinition {
+pub fn definition(mesh: BlockMesh, material: Material, supports: Vec<Support>) -> ModelDefinition {
     ModelDefinition {
-        surface_motion: disk::straight_plane(&mesh),
+        target: TargetDefinition::Rigid(target::straight_plane(&mesh)),
         mesh,
         material,
         stiffness: Stiffness::Elastic,
-        constraints,
+        supports,
         load: Vec::<LoadShare>::new(),
         beta2: 0.5,
         beta_r_s: 0.0,
@@ -60,11 +61,11 @@ pub fn definition(mesh: BlockMesh, material: Material, constraints: Constraints)
 pub fn bar(layers: usize) -> ModelDefinition {
     let mesh = column_mesh(layers);
     let fixed = [all_of(&mesh, 0), all_of(&mesh, 1)].concat();
-    definition(mesh, pin_material(0.0), Constraints { fixed, ties: Vec::new() })
+    definition(mesh, pin_material(0.0), vec![Support::fixed(fixed)])
 }
 
 /// No friction, no load, target at rest.
-pub const IDLE: Drive = Drive { mu: 0.0, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
+pub const IDLE: Drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
 
 /// Advances one lane by `steps`.
 pub fn advance(model: &Model, drive: &Drive, state: &mut State<1>, steps: usize) {
@@ -89,7 +90,7 @@ pub fn axial_bar(length_m: f64, layers: usize, material: Material, top_fixed: bo
     if top_fixed {
         fixed.extend(mesh.top_nodes().map(|node| 3 * node + 2));
     }
-    definition(mesh, material, Constraints { fixed, ties: Vec::new() })
+    definition(mesh, material, vec![Support::fixed(fixed)])
 }
 
 /// The step of a column at a given cΔt/h, c the speed of pressure waves.

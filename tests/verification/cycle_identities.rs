@@ -21,8 +21,9 @@ use crate::evidence::Evidence;
 use crate::modes::stiffness_rows;
 use tribosweep::analysis::figures::Figures;
 use tribosweep::analysis::sample::Sampler;
-use tribosweep::solver::contact::ContactState;
 use tribosweep::solver::energy::{Energies, EnergyLedger};
+use tribosweep::solver::interface::ContactState;
+use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, State, step};
 use tribosweep::spec::JobSpec;
 
@@ -41,7 +42,7 @@ fn model() -> Model {
 
 fn momentum_ns(model: &Model, state: &State<1>) -> [f64; 3] {
     std::array::from_fn(|c| {
-        (0..model.mesh().node_count()).map(|node| model.masses_kg()[node] * state.p[3 * node + c]).sum()
+        (0..model.mesh().node_count()).map(|node| model.pin().masses_kg()[node] * state.p[3 * node + c]).sum()
     })
 }
 
@@ -71,7 +72,7 @@ fn drive_excess_j(from: &Energies, to: &Energies) -> f64 {
 #[test]
 fn identities_hold_in_every_window() {
     let model = model();
-    let drive = Drive { mu: MU, rate: 0.733, force_n: LOAD_N, ramp_s: 5.0e-4 };
+    let drive = Drive { law: Law::Coulomb { mu: MU }, rate: 0.733, force_n: LOAD_N, ramp_s: 5.0e-4 };
     let dt = model.time_step_s();
     let rows = stiffness_rows(&model);
     let row_sums = rows.iter().map(|row| row.iter().map(|(_, k)| k.abs()).sum::<f64>()).sum::<f64>();
@@ -102,7 +103,8 @@ fn identities_hold_in_every_window() {
     let mut next_window = 0;
     for n in 0..(total_s / dt) as usize + 2 {
         let before = momentum_ns(&model, &state);
-        let strained = state.u.values().zip(state.p.values()).map(|(u, p)| (u + model.beta_r_s() * p).abs());
+        let strained =
+            state.u.values().zip(state.p.values()).map(|(u, p)| (u + model.scheme().beta_r_s * p).abs());
         largest_u = strained.fold(largest_u, f64::max);
         ledger.before_step(&model, &state);
         step(&model, &[drive], &mut state);
@@ -156,7 +158,7 @@ fn identities_hold_in_every_window() {
     assert!(shares.iter().all(|&share| share > 0.01), "stick, slip and separation all take part: {shares:?}");
     for (c, worst) in worst_newton.into_iter().enumerate() {
         // Each momentum is a sum over all nodes, and its change is Δt times a force.
-        let size = model.masses_kg().iter().sum::<f64>() * largest_speed(&state) / dt;
+        let size = model.pin().masses_kg().iter().sum::<f64>() * largest_speed(&state) / dt;
         let sums = 2.0 * rows.len() as f64 * f64::EPSILON * size;
         let bound = newton_rounding_n(row_sums, largest_u) + sums;
         newton.bounded(["x", "y", "z"][c], worst, 0.0, 1.0, bound);

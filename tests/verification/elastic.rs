@@ -3,10 +3,11 @@
 //! The lower block is a sector of a ring of so large a radius that it is straight but for 10⁻⁷ of its width.
 
 use std::f64::consts::TAU;
-use tribosweep::solver::constraints::Constraints;
-use tribosweep::solver::disk::{self, DiskDefinition, RingMesh};
+use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::body::ring::{RingDefinition, RingMesh};
+use tribosweep::solver::interface::law::Law;
+use tribosweep::solver::interface::target::TargetDefinition;
 use tribosweep::solver::material::Material;
-use tribosweep::solver::mesh::BlockMesh;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State};
 use tribosweep::spec::{Clock, TargetSurface};
 
@@ -36,17 +37,22 @@ pub fn on_block(base: ModelDefinition, below: &Below) -> Model {
     } else {
         Vec::new()
     };
-    let disk =
-        DiskDefinition { mesh, material: below.material, held, target: below.target, clock: below.clock };
-    let surface_motion = disk::rotating_disk(&base.mesh, radius);
-    Model::on_elastic_disk(ModelDefinition { surface_motion, ..base }, disk).unwrap()
+    let disk = RingDefinition {
+        mesh,
+        material: below.material,
+        held,
+        target: below.target,
+        clock: below.clock,
+        track_radius_m: radius,
+    };
+    Model::new(ModelDefinition { target: TargetDefinition::Ring(disk), ..base }).unwrap()
 }
 
 /// Σ m v of both bodies in z [kg m/s], with the velocities half a step before t_n.
 pub fn momentum(model: &Model, state: &State<1>) -> [f64; 2] {
-    let body = model.disk().expect("an elastic disk");
-    let disk = state.disk.as_ref().expect("an elastic disk").momentum_velocity();
-    let pin = model.masses_kg().iter().enumerate().map(|(node, mass)| mass * state.p[3 * node + 2]);
+    let body = model.ring().expect("an elastic disk");
+    let disk = state.target.ring().expect("an elastic disk").1.momentum_velocity();
+    let pin = model.pin().masses_kg().iter().enumerate().map(|(node, mass)| mass * state.p[3 * node + 2]);
     let below = body.masses_kg().iter().enumerate().map(|(node, mass)| mass * disk[3 * node + 2]);
     [pin.sum(), below.sum()]
 }
@@ -64,10 +70,10 @@ pub fn coarse_scene() -> tribosweep::spec::JobSpec {
 
 /// A block that is free but for its contact.
 pub fn free_block(size_m: [f64; 3], elements: [usize; 3], material: Material) -> ModelDefinition {
-    crate::common::definition(BlockMesh::new(size_m, elements), material, Constraints::default())
+    crate::common::definition(BlockMesh::new(size_m, elements), material, Vec::new())
 }
 
 /// ω of a job's disk and the rest of what drives it.
 pub fn drive(mu: f64, omega_rpm: f64) -> Drive {
-    Drive { mu, rate: omega_rpm * TAU / 60.0, force_n: 30.0, ramp_s: 5.0e-4 }
+    Drive { law: Law::Coulomb { mu }, rate: omega_rpm * TAU / 60.0, force_n: 30.0, ramp_s: 5.0e-4 }
 }

@@ -4,10 +4,16 @@
 
 use crate::common::ROUNDINGS_PER_FORCE;
 use crate::evidence::Evidence;
+use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::body::block::Stiffness;
 use tribosweep::solver::energy::EnergyLedger;
+use tribosweep::solver::interface::law::Law;
+use tribosweep::solver::interface::target;
+use tribosweep::solver::interface::target::TargetDefinition;
+use tribosweep::solver::support::clamp;
+use tribosweep::solver::support::load;
 use tribosweep::solver::{
-    Drive, Model, ModelDefinition, SolverError, State, Stiffness, TimeStep, boundary, disk, guard,
-    material::Material, mesh::BlockMesh, step,
+    Drive, Model, ModelDefinition, SolverError, State, TimeStep, guard, material::Material, step,
 };
 use tribosweep::spec::{Clamp, JobSpec, TopFace};
 
@@ -22,7 +28,8 @@ fn spec() -> JobSpec {
 
 fn run(spec: &JobSpec, interval: u64) -> (EnergyLedger<1>, u64) {
     let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
-    let drives = [Drive { mu: 0.5, rate: 1.2, force_n: 30.0, ramp_s: spec.scene.load.ramp_s }];
+    let drives =
+        [Drive { law: Law::Coulomb { mu: 0.5 }, rate: 1.2, force_n: 30.0, ramp_s: spec.scene.load.ramp_s }];
     let mut state = State::at_rest(&model);
     let mut ledger = EnergyLedger::new(&model, interval);
     let steps = 3000;
@@ -88,13 +95,13 @@ fn sampling_touches_only_the_damping() {
 /// The reference pin on a coarse mesh at a fraction of the stability limit, unchecked.
 fn beyond_the_limit(fraction: f64) -> Model {
     let mesh = BlockMesh::new([0.012, 0.015, 0.010], [6, 8, 5]);
-    let strip = boundary::clamped_strip(&mesh, &Clamp { width_m: 0.002, ..Clamp::default() }).unwrap();
+    let strip = clamp::clamped_strip(&mesh, &Clamp { width_m: 0.002, ..Clamp::default() }).unwrap();
     let definition = ModelDefinition {
         material: Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 },
         stiffness: Stiffness::Elastic,
-        constraints: boundary::constraints(&mesh, &strip, TopFace::TiedInZ),
-        load: boundary::normal_load(&mesh),
-        surface_motion: disk::rotating_disk(&mesh, 0.0914),
+        supports: clamp::supports(&mesh, &strip, TopFace::TiedInZ),
+        load: load::normal_load(&mesh),
+        target: TargetDefinition::Rigid(target::rotating_disk(&mesh, 0.0914)),
         beta2: 0.5,
         beta_r_s: 5.0e-8,
         time_step: TimeStep::FractionOfLimit(1.0),
@@ -107,7 +114,7 @@ fn beyond_the_limit(fraction: f64) -> Model {
 
 /// Runs with the guard as a job does; the step at which it struck, if it did.
 fn guarded(model: &Model, steps: u64) -> Result<(), SolverError> {
-    let drive = Drive { mu: 0.4, rate: 0.733, force_n: 30.0, ramp_s: 5.0e-4 };
+    let drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.733, force_n: 30.0, ramp_s: 5.0e-4 };
     let mut state = State::<1>::at_rest(model);
     let mut ledger = EnergyLedger::new(model, 16);
     for n in 0..steps {

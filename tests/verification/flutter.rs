@@ -26,8 +26,9 @@
 use crate::evidence::Evidence;
 use nalgebra::{Complex, DMatrix, DVector};
 use tribosweep::analysis::{Outcome, Unobserved, drive, solve};
-use tribosweep::solver::contact::ContactState;
 use tribosweep::solver::field::Field;
+use tribosweep::solver::interface::ContactState;
+use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, State, step};
 use tribosweep::spec::JobSpec;
 
@@ -74,8 +75,10 @@ impl Sliding {
         }
         let size = moved.len();
         let t = DMatrix::from_fn(n, size, |dof, q| f64::from(u8::from(moved[q].contains(&dof))));
-        let mass =
-            DVector::from_fn(size, |q, _| moved[q].iter().map(|dof| model.masses_kg()[dof / 3]).sum::<f64>());
+        let mass = DVector::from_fn(size, |q, _| {
+            moved[q].iter().map(|dof| model.pin().masses_kg()[dof / 3]).sum::<f64>()
+        });
+        let Law::Coulomb { mu } = drive.law;
         // Friction μ N_i d_i on the slave nodes, N = K_z u.
         let mut sliding = k.clone();
         for slave in model.slaves() {
@@ -83,7 +86,7 @@ impl Sliding {
             for c in 0..2 {
                 let d = slave.surface_motion[c] / speed;
                 for column in 0..n {
-                    sliding[(3 * slave.node + c, column)] -= drive.mu * d * k[(3 * slave.node + 2, column)];
+                    sliding[(3 * slave.node + c, column)] -= mu * d * k[(3 * slave.node + 2, column)];
                 }
             }
         }
@@ -95,7 +98,7 @@ impl Sliding {
         let mut turning = DMatrix::zeros(n, n);
         for slave in model.slaves() {
             let speed = slave.surface_motion[0].hypot(slave.surface_motion[1]);
-            let rate = drive.mu * normal_n[3 * slave.node + 2] / (speed * drive.rate);
+            let rate = mu * normal_n[3 * slave.node + 2] / (speed * drive.rate);
             assert!(rate > 0.0, "every node of the steady state is pressed on the disk");
             for (r, c) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
                 let along = slave.surface_motion[r] * slave.surface_motion[c] / (speed * speed);
@@ -104,7 +107,7 @@ impl Sliding {
             }
         }
         let turning = t.transpose() * turning * &t;
-        Self { moved, mass, stiffness: sliding, turning, beta_r_s: model.beta_r_s(), steady }
+        Self { moved, mass, stiffness: sliding, turning, beta_r_s: model.scheme().beta_r_s, steady }
     }
 
     /// The matrix of d/dt (q, q̇/ω₀), which has the eigenvalues λ; ω₀ balances its rows.
@@ -176,7 +179,7 @@ fn stiffness(model: &Model) -> DMatrix<f64> {
     for column in 0..n {
         let mut unit = vec![0.0; n];
         unit[column] = 1.0;
-        k.column_mut(column).copy_from_slice(&model.stiffness_times(&unit));
+        k.column_mut(column).copy_from_slice(&model.pin().stiffness_times(&unit));
     }
     k
 }

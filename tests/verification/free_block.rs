@@ -29,8 +29,8 @@ use crate::evidence::Evidence;
 use crate::modes::{CLASSES, MirrorClass, Mode, lowest_modes, stiffness_rows};
 use crate::ritz;
 use tribosweep::solver::Model;
-use tribosweep::solver::constraints::Constraints;
-use tribosweep::solver::mesh::BlockMesh;
+use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::support::Support;
 
 const PIN_M: [f64; 3] = [0.012, 0.015, 0.010];
 const SIDE_M: f64 = 0.010;
@@ -49,8 +49,8 @@ struct Block {
 impl Block {
     fn new(size_m: [f64; 3], poisson_ratio: f64, elements: [usize; 3], held: Vec<usize>) -> Self {
         let mesh = BlockMesh::new(size_m, elements);
-        let constraints = Constraints { fixed: held, ties: Vec::new() };
-        let model = Model::new(definition(mesh, pin_material(poisson_ratio), constraints)).unwrap();
+        let supports = vec![Support::fixed(held)];
+        let model = Model::new(definition(mesh, pin_material(poisson_ratio), supports)).unwrap();
         let rows = stiffness_rows(&model);
         Self { model, rows }
     }
@@ -178,7 +178,7 @@ fn lame_frequency_hz(model: &Model, modes: &[Mode], plane: [usize; 2], side_m: f
         shape[3 * node + plane[1]] = -a.cos() * b.sin();
     }
     let product = |x: &[f64], y: &[f64]| -> f64 {
-        (0..x.len()).map(|dof| x[dof] * y[dof] * model.masses_kg()[dof / 3]).sum()
+        (0..x.len()).map(|dof| x[dof] * y[dof] * model.pin().masses_kg()[dof / 3]).sum()
     };
     let norm = product(&shape, &shape);
     // Shares of the shape's square in orthonormal modes add up to at most 1, so only one can have a half.
@@ -256,7 +256,7 @@ fn rayleigh_ritz_finds_the_lame_mode() {
 
 /// Largest component of K u, relative to the sum of magnitudes that cancels in it.
 fn relative_force(model: &Model, rows: &[Vec<(usize, f64)>], u: &[f64]) -> f64 {
-    let force = model.stiffness_times(u);
+    let force = model.pin().stiffness_times(u);
     let cancels = |row: &Vec<(usize, f64)>| row.iter().map(|(c, k)| (k * u[*c]).abs()).sum::<f64>();
     force.iter().zip(rows).map(|(f, row)| f.abs() / cancels(row)).fold(0.0, f64::max)
 }

@@ -10,7 +10,8 @@
 //! carry is μN = qh at most; a bar of n_slip nodes slips over 2F/q under a sudden, F/q under a slow load.
 
 use crate::particles::{Particles, Y, Z};
-use tribosweep::solver::mesh::BlockMesh;
+use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, State, TimeStep};
 
 pub const YOUNG_MODULUS_PA: f64 = 1.0e9;
@@ -61,7 +62,7 @@ impl Chain {
 
     /// A plane at rest and a push [N] on the first node.
     pub fn push(force_n: f64) -> Drive {
-        Drive { mu: MU, rate: 0.0, force_n, ramp_s: 0.0 }
+        Drive { law: Law::Coulomb { mu: MU }, rate: 0.0, force_n, ramp_s: 0.0 }
     }
 
     /// Displacement [m] of a node along the bar.

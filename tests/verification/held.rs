@@ -16,8 +16,9 @@
 use crate::evidence::Evidence;
 use crate::particles::{Particles, X, Y, Z, audited_step};
 use std::f64::consts::PI;
-use tribosweep::solver::contact::ContactState;
 use tribosweep::solver::energy::EnergyLedger;
+use tribosweep::solver::interface::ContactState;
+use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, State, TimeStep};
 
 const MASS_KG: f64 = 2.0;
@@ -26,7 +27,7 @@ const BELT_M_S: f64 = 0.5;
 const NORMAL_N: f64 = 10.0;
 /// c/(2m) = 0.4 1/s: 8 % of critical.
 const MU: f64 = 0.08;
-const DRIVE: Drive = Drive { mu: MU, rate: BELT_M_S, force_n: NORMAL_N, ramp_s: 0.0 };
+const DRIVE: Drive = Drive { law: Law::Coulomb { mu: MU }, rate: BELT_M_S, force_n: NORMAL_N, ramp_s: 0.0 };
 const DECAY: f64 = MU * NORMAL_N / BELT_M_S / (2.0 * MASS_KG);
 /// (ẋ/V)² = 10⁻¹⁴ at the start.
 const AMPLITUDE_M: f64 = 1.0e-7 * BELT_M_S / OMEGA;

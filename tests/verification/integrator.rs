@@ -28,7 +28,8 @@ fn in_mode(model: &Model, mode: usize) -> State<1> {
 
 fn omega(model: &Model, mode: usize) -> f64 {
     let h = model.mesh().element_size_m()[2];
-    2.0 * model.material().pressure_wave_speed_m_s() / h * (mode as f64 * PI / (2 * LAYERS) as f64).sin()
+    2.0 * model.pin().material().pressure_wave_speed_m_s() / h
+        * (mode as f64 * PI / (2 * LAYERS) as f64).sin()
 }
 
 /// Rounding of a displacement after n steps: each step rounds Δt²M⁻¹K(u + β_R p), of size
@@ -36,7 +37,7 @@ fn omega(model: &Model, mode: usize) -> f64 {
 fn rounding(model: &Model, n: usize) -> f64 {
     let dt = model.time_step_s();
     let w2 = (omega(model, LAYERS) * dt).powi(2);
-    let size = 1.5 * w2 * (1.0 + model.beta_r_s() / dt) * 3.0;
+    let size = 1.5 * w2 * (1.0 + model.scheme().beta_r_s / dt) * 3.0;
     ROUNDINGS_PER_FORCE * size * f64::EPSILON * (n * n) as f64 / 2.0
 }
 

@@ -8,12 +8,15 @@
 
 use crate::common::{IDLE, ROUNDINGS_PER_FORCE, advance, definition, pin_material};
 use crate::evidence::Evidence;
-use tribosweep::solver::boundary;
-use tribosweep::solver::constraints::Constraints;
+use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::body::block::Stiffness;
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::field::Field;
-use tribosweep::solver::mesh::BlockMesh;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State, Stiffness, TimeStep, step};
+use tribosweep::solver::interface::law::Law;
+use tribosweep::solver::interface::target::TargetDefinition;
+use tribosweep::solver::support::clamp;
+use tribosweep::solver::support::load;
+use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep, step};
 use tribosweep::spec::{Clamp, ClampSide, JobSpec, TopFace};
 
 fn small_model() -> Model {
@@ -23,7 +26,7 @@ fn small_model() -> Model {
     Model::from_scene(&spec.scene, &spec.numerics).unwrap()
 }
 
-const DRIVE: Drive = Drive { mu: 0.4, rate: 0.733, force_n: 30.0, ramp_s: 5.0e-4 };
+const DRIVE: Drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.733, force_n: 30.0, ramp_s: 5.0e-4 };
 
 /// Homogeneity: (F, V) → s(F, V) scales displacements, velocities and contact forces by s. Scaling by
 /// a power of two is exact in binary, so the whole trajectory, through stick, slip and separation,
@@ -65,13 +68,13 @@ fn scaling_load_and_speed_by_powers_of_two_scales_the_bits() {
 /// The pin of `size_m` on a plane that moves straight in `direction`.
 fn straight(size_m: [f64; 3], elements: [usize; 3], side: ClampSide, direction: [f64; 2]) -> Model {
     let mesh = BlockMesh::new(size_m, elements);
-    let strip = boundary::clamped_strip(&mesh, &Clamp { side, width_m: 0.002 }).unwrap();
+    let strip = clamp::clamped_strip(&mesh, &Clamp { side, width_m: 0.002 }).unwrap();
     Model::new(ModelDefinition {
         material: pin_material(0.3),
         stiffness: Stiffness::Elastic,
-        constraints: boundary::constraints(&mesh, &strip, TopFace::TiedInZ),
-        load: boundary::normal_load(&mesh),
-        surface_motion: vec![direction; mesh.bottom_nodes().len()],
+        supports: clamp::supports(&mesh, &strip, TopFace::TiedInZ),
+        load: load::normal_load(&mesh),
+        target: TargetDefinition::Rigid(vec![direction; mesh.bottom_nodes().len()]),
         beta2: 0.5,
         beta_r_s: 5.0e-8,
         // 0.7 of the limit, the same to the last bit in every direction.
@@ -81,7 +84,7 @@ fn straight(size_m: [f64; 3], elements: [usize; 3], side: ClampSide, direction: 
     .unwrap()
 }
 
-const STRAIGHT: Drive = Drive { mu: 0.4, rate: 0.067, force_n: 30.0, ramp_s: 1.0e-4 };
+const STRAIGHT: Drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.067, force_n: 30.0, ramp_s: 1.0e-4 };
 
 /// Largest deviation of the displacements of `b` from those of `a` over the largest, after 1 ms: node
 /// (i, j, k) and component c of `a` are the node `image(i, j, k)` and `turned(c)` (component, sign) of `b`.
@@ -154,7 +157,7 @@ const HEIGHT_M: f64 = 0.01;
 #[test]
 fn free_flight_is_rigid() {
     let mesh = BlockMesh::new(SIZE_M, ELEMENTS);
-    let model = Model::new(definition(mesh, pin_material(0.3), Constraints::default())).unwrap();
+    let model = Model::new(definition(mesh, pin_material(0.3), Vec::new())).unwrap();
     let mesh = model.mesh();
     let steps = 500;
     let mut evidence = Evidence::new(
@@ -201,7 +204,7 @@ fn free_flight_is_rigid() {
 fn lanes_are_independent_to_the_last_bit() {
     let model = small_model();
     let drives: [Drive; 4] = std::array::from_fn(|l| Drive {
-        mu: 0.2 + 0.15 * l as f64,
+        law: Law::Coulomb { mu: 0.2 + 0.15 * l as f64 },
         rate: DRIVE.rate * (1.0 + 3.0 * l as f64),
         force_n: DRIVE.force_n / (1.0 + l as f64),
         ramp_s: DRIVE.ramp_s * l as f64,

@@ -33,7 +33,8 @@
 use crate::evidence::Evidence;
 use crate::particles::{Particles, Y, Z};
 use std::f64::consts::PI;
-use tribosweep::solver::contact::ContactState;
+use tribosweep::solver::interface::ContactState;
+use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, State, TimeStep, step};
 
 const TIME_STEPS_S: [f64; 3] = [0.1, 0.05, 0.025];
@@ -134,7 +135,7 @@ const DISTURBANCE_M: f64 = 0.05;
 /// Slides from a disturbance for `duration_s`: the displacements of C in y and of B in z.
 fn slide(mu: f64, time_step_s: f64, duration_s: f64) -> (Vec<f64>, Vec<f64>) {
     let model = oscillator(time_step_s);
-    let drive = Drive { mu, rate: 10.0, force_n: NORMAL_N, ramp_s: 0.0 };
+    let drive = Drive { law: Law::Coulomb { mu }, rate: 10.0, force_n: NORMAL_N, ramp_s: 0.0 };
     let mut state = steady(&model, mu);
     state.u[Y] += DISTURBANCE_M;
     let (mut y, mut z) = (Vec::new(), Vec::new());

@@ -7,7 +7,7 @@
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 use tribosweep::solver::Model;
-use tribosweep::solver::mesh::BlockMesh;
+use tribosweep::solver::body::block::BlockMesh;
 
 /// Per direction +1 where the displacement field is its own mirror image and −1 where it is the
 /// reverse of it: u_c(−x_a) = class_a · (−1 if c = a, else 1) · u_c(x_a).
@@ -49,7 +49,7 @@ pub fn stiffness_rows(model: &Model) -> Vec<Vec<(usize, f64)>> {
         for c in 0..3 {
             unit.fill(0.0);
             (0..mesh.node_count()).filter(coloured).for_each(|node| unit[3 * node + c] = 1.0);
-            let force = model.stiffness_times(&unit);
+            let force = model.pin().stiffness_times(&unit);
             for node in 0..mesh.node_count() {
                 let grid = mesh.grid_position(node);
                 // The one node of this colour within reach, if the block has it.
@@ -175,7 +175,7 @@ pub fn lowest_modes(
     let mut band = 0;
     for (dof, follow) in follows.iter().enumerate() {
         let Some((r, sign)) = *follow else { continue };
-        mass[r] += model.masses_kg()[dof / 3];
+        mass[r] += model.pin().masses_kg()[dof / 3];
         for &(column, value) in &rows[dof] {
             let Some((c, other)) = follows[column] else { continue };
             stiffness[r].push((c, sign * other * value));

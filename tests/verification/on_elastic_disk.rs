@@ -10,8 +10,9 @@
 use crate::common::advance;
 use crate::elastic::{Below, coarse_scene, drive, free_block, on_block};
 use crate::evidence::Evidence;
-use tribosweep::solver::boundary;
+use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::material::Material;
+use tribosweep::solver::support::load;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
 use tribosweep::spec::{Clock, DiskKind, JobSpec, TargetSurface};
 
@@ -47,7 +48,7 @@ fn sliding(target: TargetSurface) -> (Vec<[f64; 2]>, f64) {
         found.push([t / n, n]);
     }
     let swept_rad = state.step as f64 * model.time_step_s() * drive.rate - begin_rad;
-    (found, swept_rad / model.disk().unwrap().mesh().track().sector_rad)
+    (found, swept_rad / model.ring().unwrap().mesh().track().sector_rad)
 }
 
 /// Protects: a pin rides over several edges with T = μN to 10⁻⁶, on bilinear and on smooth patches; and what the smooth
@@ -83,11 +84,11 @@ fn action_is_reaction() {
     let mut spec = coarse_scene();
     spec.numerics.beta_r_s = 0.0;
     let model = model(&spec);
-    let body = model.disk().unwrap();
+    let body = model.ring().unwrap();
     let mut state = State::<1>::at_rest(&model);
     let drive = drive(0.4, 20.0);
     let momentum = |state: &State<1>| -> f64 {
-        let field = state.disk.as_ref().unwrap().momentum_velocity();
+        let field = state.target.ring().unwrap().1.momentum_velocity();
         let free = (0..body.mesh().node_count()).filter(|&node| body.inverse_mass()[node] > 0.0);
         free.map(|node| body.masses_kg()[node] * field[3 * node + 2]).sum()
     };
@@ -98,9 +99,9 @@ fn action_is_reaction() {
         let before = momentum(&state);
         let elastic: f64 = {
             // −Σ K u over the free nodes: all else that acts on them.
-            let u = &state.disk.as_ref().unwrap().u;
+            let u = &state.target.ring().unwrap().1.u;
             let mut product = u.clone();
-            let mut scratch = tribosweep::solver::disk::operator::RingScratch::new(body.operator());
+            let mut scratch = tribosweep::solver::body::ring::operator::RingScratch::new(body.operator());
             body.operator().product(u, &mut product, &mut scratch);
             (0..body.mesh().node_count())
                 .filter(|&node| body.inverse_mass()[node] > 0.0)
@@ -166,7 +167,7 @@ fn pressed(upper: usize, lower: usize, target: TargetSurface) -> Pressed {
     let (size, pressure) = ([0.012, 0.012, 0.006], 1.0e6);
     let material = Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.0, density_kg_m3: 2500.0 };
     let base = free_block(size, [upper, upper, upper], material);
-    let load = boundary::normal_load(&base.mesh);
+    let load = load::normal_load(&base.mesh);
     // Half of critical for the slowest mode, both blocks on the ground: the motion dies within some of its periods.
     let slowest = 0.5 * std::f64::consts::PI * material.pressure_wave_speed_m_s() / (2.0 * size[2]);
     let definition =
@@ -181,11 +182,11 @@ fn pressed(upper: usize, lower: usize, target: TargetSurface) -> Pressed {
     };
     let model = on_block(definition, &below);
     let force_n = pressure * size[0] * size[1];
-    let drive = Drive { mu: 0.0, rate: 0.0, force_n, ramp_s: 0.0 };
+    let drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n, ramp_s: 0.0 };
     let mut state = State::<1>::at_rest(&model);
     advance(&model, &drive, &mut state, (80.0 / slowest / model.time_step_s()) as usize);
-    let body = model.disk().unwrap();
-    let disk = state.disk.as_ref().unwrap();
+    let body = model.ring().unwrap();
+    let disk = state.target.ring().unwrap().1;
     let worst = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
     let slave = worst(
         &mut model
@@ -196,7 +197,7 @@ fn pressed(upper: usize, lower: usize, target: TargetSurface) -> Pressed {
     );
     // At rest the top nodes receive what K u gives.
     let mut product = disk.u.clone();
-    let mut scratch = tribosweep::solver::disk::operator::RingScratch::new(body.operator());
+    let mut scratch = tribosweep::solver::body::ring::operator::RingScratch::new(body.operator());
     body.operator().product(&disk.u, &mut product, &mut scratch);
     let nodes = body.mesh().nodes_per_axis();
     let top = nodes[0] * nodes[1];

@@ -5,13 +5,16 @@
 //! a released node of the contact face whose z is released too is a contact node.
 
 use std::collections::BTreeSet;
-use tribosweep::solver::boundary::LoadShare;
-use tribosweep::solver::constraints::Constraints;
+use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::body::block::Stiffness;
+use tribosweep::solver::body::block::operator::AssembledOperator;
 use tribosweep::solver::energy::EnergyLedger;
+use tribosweep::solver::interface::target;
+use tribosweep::solver::interface::target::TargetDefinition;
 use tribosweep::solver::material::Material;
-use tribosweep::solver::mesh::BlockMesh;
-use tribosweep::solver::operator::AssembledOperator;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State, Stiffness, TimeStep, disk, step};
+use tribosweep::solver::support::Support;
+use tribosweep::solver::support::load::LoadShare;
+use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep, step};
 
 /// Components of a node.
 pub const X: usize = 0;
@@ -76,9 +79,9 @@ impl Particles {
     pub fn definition(&self, beta_r_s: f64, time_step: TimeStep) -> ModelDefinition {
         let dofs = 3 * self.mesh.node_count();
         let springs = AssembledOperator::from_entries(dofs, self.entries.iter().copied()).unwrap();
-        let fixed = (0..dofs).filter(|dof| !self.released.contains(dof)).collect();
+        let fixed = (0..dofs).filter(|dof| !self.released.contains(dof));
         ModelDefinition {
-            surface_motion: disk::straight_plane(&self.mesh),
+            target: TargetDefinition::Rigid(target::straight_plane(&self.mesh)),
             mesh: self.mesh.clone(),
             material: Material {
                 young_modulus_pa: 1.0,
@@ -86,7 +89,7 @@ impl Particles {
                 density_kg_m3: self.density_kg_m3,
             },
             stiffness: Stiffness::Springs(springs),
-            constraints: Constraints { fixed, ties: Vec::new() },
+            supports: vec![Support::fixed(fixed)],
             load: self.load.clone(),
             beta2: 0.5,
             beta_r_s,

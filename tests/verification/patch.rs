@@ -15,30 +15,31 @@
 use crate::common::{ROUNDINGS_PER_FORCE, advance, all_of, definition, pin_material};
 use crate::evidence::Evidence;
 use crate::modes::stiffness_rows;
-use tribosweep::solver::boundary;
-use tribosweep::solver::constraints::Constraints;
+use tribosweep::solver::body::block::BlockMesh;
 use tribosweep::solver::field::Field;
-use tribosweep::solver::mesh::BlockMesh;
+use tribosweep::solver::interface::law::Law;
+use tribosweep::solver::support::Support;
+use tribosweep::solver::support::load;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
 
 const SIZE_M: [f64; 3] = [0.012, 0.015, 0.010];
 const LOAD_N: f64 = 30.0;
 const PRESSURE_PA: f64 = LOAD_N / (SIZE_M[0] * SIZE_M[1]);
-const DRIVE: Drive = Drive { mu: 0.0, rate: 0.0, force_n: LOAD_N, ramp_s: 0.0 };
+const DRIVE: Drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n: LOAD_N, ramp_s: 0.0 };
 const SOURCE: &str = "uniform stress (Hooke)";
 
 fn model(elements: [usize; 3], confined: bool, beta_r_s: f64) -> Model {
     let mesh = BlockMesh::new(SIZE_M, elements);
     let fixed = if confined { [all_of(&mesh, 0), all_of(&mesh, 1)].concat() } else { Vec::new() };
-    let base = definition(mesh, pin_material(0.3), Constraints { fixed, ties: Vec::new() });
-    let load = boundary::normal_load(&base.mesh);
+    let base = definition(mesh, pin_material(0.3), vec![Support::fixed(fixed)]);
+    let load = load::normal_load(&base.mesh);
     let time_step = TimeStep::FractionOfLimit(0.7);
     Model::new(ModelDefinition { load, beta_r_s, time_step, ..base }).unwrap()
 }
 
 /// Shortening of the block [m].
 fn shortening_m(model: &Model, confined: bool) -> f64 {
-    let material = model.material();
+    let material = model.pin().material();
     let confined_modulus = material.lame_lambda_pa() + 2.0 * material.shear_modulus_pa();
     PRESSURE_PA * SIZE_M[2] / if confined { confined_modulus } else { material.young_modulus_pa }
 }
@@ -46,7 +47,7 @@ fn shortening_m(model: &Model, confined: bool) -> f64 {
 /// Exact static displacement of all degrees of freedom.
 fn exact_m(model: &Model, confined: bool) -> Vec<f64> {
     let strain = shortening_m(model, confined) / SIZE_M[2];
-    let sideways = if confined { 0.0 } else { model.material().poisson_ratio * strain };
+    let sideways = if confined { 0.0 } else { model.pin().material().poisson_ratio * strain };
     (0..model.mesh().node_count())
         .flat_map(|node| {
             let [x, y, z] = model.mesh().coordinates_m(node);
@@ -60,11 +61,12 @@ fn rounding(model: &Model, confined: bool, steps: usize) -> [f64; 2] {
     let u = exact_m(model, confined);
     let rows = stiffness_rows(model);
     let size = |dof: usize| rows[dof].iter().map(|(c, k)| (k * u[*c]).abs()).sum::<f64>();
-    let relative = |slave: &tribosweep::solver::model::SlaveNode| {
+    let relative = |slave: &tribosweep::solver::interface::SlaveNode| {
         size(3 * slave.node + 2) / (PRESSURE_PA * slave.area_m2)
     };
     let force = model.slaves().iter().map(relative).fold(0.0, f64::max);
-    let acceleration = (0..u.len()).map(|dof| size(dof) / model.masses_kg()[dof / 3]).fold(0.0, f64::max);
+    let acceleration =
+        (0..u.len()).map(|dof| size(dof) / model.pin().masses_kg()[dof / 3]).fold(0.0, f64::max);
     let (n, dt, unit) = (steps as f64, model.time_step_s(), ROUNDINGS_PER_FORCE * f64::EPSILON);
     let drift = n * n / 2.0 * dt * dt * acceleration / shortening_m(model, confined);
     [2.0 * n * unit * force, unit * drift]
@@ -119,7 +121,7 @@ fn uniform_pressure_stays_uniform() {
         for confined in [false, true] {
             let model = model(elements, confined, 0.0);
             let mut state = State::at_rest(&model);
-            state.u = Field::from_values(model.mesh(), &exact_m(&model, confined));
+            state.u = Field::from_values(model.mesh().layout(), &exact_m(&model, confined));
             advance(&model, &DRIVE, &mut state, 200);
             record(&mut evidence, &name(elements, confined), &model, &state, confined);
         }

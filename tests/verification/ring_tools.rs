@@ -2,8 +2,8 @@
 //! topics.
 
 use std::f64::consts::PI;
-use tribosweep::solver::disk::RingMesh;
-use tribosweep::solver::disk::operator::{RingOperator, RingScratch};
+use tribosweep::solver::body::ring::RingMesh;
+use tribosweep::solver::body::ring::operator::{RingOperator, RingScratch};
 use tribosweep::solver::field::Field;
 use tribosweep::solver::material::Material;
 use tribosweep::spec::{Clock, Pin, Ring, TargetSurface};
@@ -57,8 +57,7 @@ impl RingBody {
 
     /// No displacement.
     pub fn zeros(&self) -> Nodal {
-        let [columns, rows, planes] = self.mesh.nodes_per_axis();
-        Field::with_lines(columns, rows * planes)
+        Field::zeros(self.mesh.layout())
     }
 
     /// Cartesian position [m] of a node.

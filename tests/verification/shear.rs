@@ -24,9 +24,10 @@ use crate::common::{
     pin_material,
 };
 use crate::evidence::Evidence;
-use tribosweep::solver::constraints::Constraints;
-use tribosweep::solver::contact::ContactState;
+use tribosweep::solver::interface::ContactState;
+use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::material::Material;
+use tribosweep::solver::support::Support;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
 
 const MU: f64 = 0.4;
@@ -47,7 +48,7 @@ fn column(layers: usize, cfl: f64) -> (Model, State<1>) {
     ties.push(level_ties(&mesh, 2).swap_remove(0));
     let material = shear_material();
     let time_step = TimeStep::FractionOfLimit(cfl);
-    let definition = definition(mesh, material, Constraints { fixed, ties });
+    let definition = definition(mesh, material, [vec![Support::fixed(fixed)], ties].concat());
     let model = Model::new(ModelDefinition { time_step, ..definition }).unwrap();
     let found_cfl = material.shear_wave_speed_m_s() * model.time_step_s() / model.mesh().element_size_m()[2];
     assert!((found_cfl / cfl - 1.0).abs() < 1e-12, "the limit is c_sΔt/h_e = 1: {found_cfl}");
@@ -64,7 +65,7 @@ fn column(layers: usize, cfl: f64) -> (Model, State<1>) {
     (model, state)
 }
 
-const DRIVE: Drive = Drive { mu: MU, rate: PLANE_SPEED_M_S, force_n: 0.0, ramp_s: 0.0 };
+const DRIVE: Drive = Drive { law: Law::Coulomb { mu: MU }, rate: PLANE_SPEED_M_S, force_n: 0.0, ramp_s: 0.0 };
 const INTERVALS: usize = 8;
 const SOURCE: &str = "d'Alembert's solution, τ = ρc_s (v − v_r) at the base";
 

@@ -12,7 +12,8 @@
 use crate::common::advance;
 use crate::evidence::Evidence;
 use crate::particles::{Particles, X, Y, Z};
-use tribosweep::solver::contact::ContactState;
+use tribosweep::solver::interface::ContactState;
+use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, State, TimeStep};
 
 const DECELERATION_M_S2: f64 = 3.0;
@@ -41,7 +42,12 @@ fn is_carried_from_where_its_slip_ends() {
         block.release(0, X).release(0, Y).release(0, Z).load(0, Z, -1.0);
         let model = block.model(0.0, TimeStep::Given(STOP_S / steps));
         let mu = 0.25;
-        let drive = Drive { mu, rate: PLANE_M_S, force_n: 2.0 * DECELERATION_M_S2 / mu, ramp_s: 0.0 };
+        let drive = Drive {
+            law: Law::Coulomb { mu },
+            rate: PLANE_M_S,
+            force_n: 2.0 * DECELERATION_M_S2 / mu,
+            ramp_s: 0.0,
+        };
         let mut state = State::at_rest(&model);
         state.p[X] = ACROSS_M_S;
         let mut stopped_s = None;

@@ -80,7 +80,7 @@ fn run(layers: usize, young_modulus_pa: f64, clock: Clock, spans: [[f64; 2]; 2],
     Impact {
         stress: [0, 1].map(|span| stress[span] / counts[span]),
         momentum: momentum(&model, &state).map(|m| m / start),
-        stages: model.disk().unwrap().stages().count(),
+        stages: model.ring().unwrap().stages().count(),
         drift,
         imbalance: ledger.energies(0).relative_residual(),
         steps,

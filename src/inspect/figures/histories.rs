@@ -6,7 +6,7 @@ use crate::inspect::look::{Look, Observed};
 use crate::inspect::phases::Phase;
 use crate::publish::plot::palette;
 use crate::publish::plot::panel::{Band, Level, Mark, Panel, Scale, Series, Stroke};
-use crate::solver::contact::ContactState;
+use crate::solver::interface::ContactState;
 
 /// Every observed node with its steps.
 fn each<'a>(look: &'a Look, panel: impl Fn(&'a Observed, &'a [NodeStep]) -> Panel) -> Vec<Panel> {

@@ -13,7 +13,7 @@ use crate::publish::plot::FigureError;
 use crate::publish::plot::palette::{SEPARATED, SLIP, STICK};
 use crate::publish::plot::panel::stack;
 use crate::publish::{Folder, PublishError};
-use crate::solver::contact::ContactState;
+use crate::solver::interface::ContactState;
 use plotters::style::RGBColor;
 
 /// A figure of a look.

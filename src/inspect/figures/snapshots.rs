@@ -5,7 +5,7 @@ use crate::inspect::capture::Frame;
 use crate::inspect::look::Look;
 use crate::publish::plot::canvas::{Area, WIDTH, sheet, write};
 use crate::publish::plot::{FigureError, MARGIN, TEXT};
-use crate::solver::contact::ContactState;
+use crate::solver::interface::ContactState;
 use plotters::element::{Circle, PathElement, Polygon};
 use plotters::style::text_anchor::HPos;
 use plotters::style::{BLACK, Color, RGBColor};

@@ -1,0 +1,54 @@
+//! Why a job has no record.
+
+use crate::solver::SolverError;
+use crate::spec::Violations;
+use thiserror::Error;
+
+/// Largest number of steps of a run: a thousand times those of the reference scene's longest jobs.
+const MAX_STEPS: f64 = 5.0e7;
+
+/// Why a job has no record.
+#[derive(Debug, Error)]
+pub enum JobError {
+    /// The specification is not physical.
+    #[error(transparent)]
+    Spec(#[from] Violations),
+    /// The solver refused the scene or the run diverged.
+    #[error(transparent)]
+    Solver(#[from] SolverError),
+    /// The time step is out of all proportion to the run.
+    #[error(
+        "run.limit_s = {limit_s:e} s takes {steps:.1e} steps of {time_step_s:.3e} s, more than the {MAX_STEPS:.0e} \
+         that a run may have: look for extreme material or damping values, or give a shorter limit"
+    )]
+    TooManySteps {
+        /// The run's time limit [s].
+        limit_s: f64,
+        /// The time step [s].
+        time_step_s: f64,
+        /// Their ratio.
+        steps: f64,
+    },
+    /// The run ended, but a figure overflowed.
+    #[error(
+        "the run ended, but {figure} is not finite: look for extreme material, load or friction values in this job"
+    )]
+    NotFinite {
+        /// Path of the figure in the record.
+        figure: String,
+    },
+    /// The observer asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+/// Steps of a run. Buffers are sized and loops end by this number, so it must be within reason.
+pub(super) fn step_count(limit_s: f64, time_step_s: f64) -> Result<u64, JobError> {
+    let steps = (limit_s / time_step_s).ceil();
+    // `<=` is false for NaN.
+    if steps <= MAX_STEPS {
+        Ok(steps as u64)
+    } else {
+        Err(JobError::TooManySteps { limit_s, time_step_s, steps })
+    }
+}

@@ -1,0 +1,202 @@
+//! Moves the nodes: u_{n+1} and p_{n+1} from the internal forces at t_n.
+//!
+//! ```text
+//! a_n = −K (u_n + β_R p_n)/m       u_{n+1} = u_n + Δt p_n + c Δt² a_n       p_{n+1} = p_n + d Δt a_n
+//! ```
+//!
+//! Planes without constraints are moved as soon as the product with K has passed them, so that a step reads and writes
+//! their fields once. For the other planes the product is kept as the residual. Load and supports change the residual,
+//! and then these planes are moved. The contact solve moves the contact face.
+
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+
+use super::BlockBody;
+use super::line_table::LineTable;
+use super::operator::{AssembledOperator, BlockIndex, Operator, Pass, Scratch, TensorOperator, load_all};
+use crate::solver::body::Freedom;
+use crate::solver::field::{Block, Field};
+use crate::solver::scheme::StepFactors;
+use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+
+/// The slave nodes at t_n, which a contact solve takes to t_{n+1}.
+pub(in crate::solver) struct Face<'a, const L: usize> {
+    pub u: &'a mut Field<L>,
+    pub p: &'a mut Field<L>,
+    /// K (u + β_R p) − external forces [N].
+    pub residual: &'a Field<L>,
+    /// 1/m of every degree of freedom, 0 where it is fixed.
+    pub inverse_mass: &'a [Block],
+}
+
+/// Moves the nodes of a block in every lane. Nothing in it is carried from step to step.
+#[derive(Debug, Clone)]
+pub(in crate::solver) struct BlockMotion<const L: usize> {
+    inverse_masses: InverseMasses<L>,
+    /// Scratch of the product with K.
+    scratch: Scratch<L>,
+    /// K (u + β_R p) − external forces [N] on the constrained planes.
+    residual: Field<L>,
+}
+
+/// What is fixed during a run.
+#[derive(Debug, Clone)]
+struct InverseMasses<const L: usize> {
+    free: LineTable<L>,
+    /// 1/m of every degree of freedom of a constrained plane. It is 0 where the degree of freedom is fixed, and 1
+    /// where it is tied: there the support replaces the residual by the acceleration of the group.
+    constrained: Vec<Vec<Block>>,
+    constrained_planes: Vec<bool>,
+    blocks_per_plane: usize,
+}
+
+impl<const L: usize> BlockMotion<L> {
+    pub fn new(block: &BlockBody) -> Self {
+        let mesh = block.mesh();
+        let mut per_dof = Field::<L>::zeros(mesh.layout());
+        for (dof, freedom) in block.freedoms().iter().enumerate() {
+            let value = match freedom {
+                Freedom::Free => 1.0 / block.masses_kg()[dof / 3],
+                Freedom::Fixed => 0.0,
+                Freedom::Tied(_) => 1.0,
+            };
+            *per_dof.at_mut(per_dof.place(dof / 3), dof % 3) = [value; L];
+        }
+        let blocks_per_plane = per_dof.blocks_per_line() * mesh.nodes_per_axis()[1];
+        let planes = per_dof.blocks().chunks_exact(blocks_per_plane).zip(block.constrained_planes());
+        Self {
+            inverse_masses: InverseMasses {
+                free: LineTable::new(mesh, |node| 1.0 / block.masses_kg()[node]),
+                constrained: planes
+                    .map(|(plane, constrained)| if *constrained { plane.to_vec() } else { Vec::new() })
+                    .collect(),
+                constrained_planes: block.constrained_planes().to_vec(),
+                blocks_per_plane,
+            },
+            scratch: Scratch::new(mesh),
+            residual: Field::zeros(mesh.layout()),
+        }
+    }
+
+    /// The internal forces on the constrained planes, which load and supports add to.
+    pub fn residual_mut(&mut self) -> &mut Field<L> {
+        &mut self.residual
+    }
+
+    /// What the contact solve is given.
+    pub fn face<'a>(&'a self, u: &'a mut Field<L>, p: &'a mut Field<L>) -> Face<'a, L> {
+        Face { u, p, residual: &self.residual, inverse_mass: &self.inverse_masses.constrained[0] }
+    }
+
+    /// Forms K (u + β_R p), moves the planes without constraints, and keeps the product on the others.
+    pub fn advance_free_planes(
+        &mut self,
+        block: &BlockBody,
+        factors: &StepFactors,
+        u: &mut Field<L>,
+        p: &mut Field<L>,
+    ) {
+        match block.operator() {
+            Operator::Tensor(operator) => self.pass(operator, factors, u, p),
+            Operator::Assembled(operator) => self.assembled_forces(operator, factors, u, p),
+        }
+    }
+
+    fn pass(&mut self, operator: &TensorOperator, factors: &StepFactors, u: &mut Field<L>, p: &mut Field<L>) {
+        let mut advance = Advance {
+            inverse_masses: &self.inverse_masses,
+            factors,
+            u: u.blocks_mut(),
+            p: p.blocks_mut(),
+            residual: self.residual.blocks_mut(),
+        };
+        dispatch!(Level::new(), simd => operator.pass(simd, &mut advance, &mut self.scratch));
+    }
+
+    fn assembled_forces(
+        &mut self,
+        operator: &AssembledOperator,
+        factors: &StepFactors,
+        u: &Field<L>,
+        p: &Field<L>,
+    ) {
+        let mut strained = u.clone();
+        for (s, p) in strained.blocks_mut().iter_mut().zip(p.blocks()) {
+            for (s, p) in s.0.as_flattened_mut().iter_mut().zip(p.0.as_flattened()) {
+                *s += factors.beta_r_s * p;
+            }
+        }
+        operator.product(&strained, &mut self.residual);
+    }
+
+    /// Moves the constrained planes above the contact face by their residual.
+    pub fn advance_constrained_planes(&self, factors: &StepFactors, u: &mut Field<L>, p: &mut Field<L>) {
+        dispatch!(Level::new(), simd => self.advance_constrained(simd, factors, u, p));
+    }
+
+    #[inline(always)]
+    fn advance_constrained<S: Simd>(
+        &self,
+        simd: S,
+        factors: &StepFactors,
+        u: &mut Field<L>,
+        p: &mut Field<L>,
+    ) {
+        let InverseMasses { constrained, blocks_per_plane, .. } = &self.inverse_masses;
+        for (plane, inverse) in constrained.iter().enumerate().skip(1) {
+            if inverse.is_empty() {
+                continue;
+            }
+            let range = plane * blocks_per_plane..(plane + 1) * blocks_per_plane;
+            let residual = &self.residual.blocks()[range.clone()];
+            let moved = u.blocks_mut()[range.clone()].iter_mut().zip(&mut p.blocks_mut()[range]);
+            for (((u, p), residual), inverse) in moved.zip(residual).zip(inverse) {
+                for c in 0..3 {
+                    let force = f64x8::from_slice(simd, &residual.0[c]);
+                    let [next_u, next_p] = factors.moved(simd, force, &inverse.0[c], &u.0[c], &p.0[c]);
+                    next_u.store_slice(&mut u.0[c]);
+                    next_p.store_slice(&mut p.0[c]);
+                }
+            }
+        }
+    }
+}
+
+struct Advance<'a, const L: usize> {
+    inverse_masses: &'a InverseMasses<L>,
+    factors: &'a StepFactors,
+    u: &'a mut [Block],
+    p: &'a mut [Block],
+    residual: &'a mut [Block],
+}
+
+impl<S: Simd, const L: usize> Pass<S> for Advance<'_, L> {
+    #[inline(always)]
+    fn input(&self, simd: S, at: usize) -> [f64x8<S>; 3] {
+        let mut strained = load_all(simd, &self.u[at].0);
+        if self.factors.beta_r_s != 0.0 {
+            let beta_r = f64x8::splat(simd, self.factors.beta_r_s);
+            let p = load_all(simd, &self.p[at].0);
+            for c in 0..3 {
+                strained[c] += beta_r * p[c];
+            }
+        }
+        strained
+    }
+
+    #[inline(always)]
+    fn output(&mut self, simd: S, index: BlockIndex, kx: [f64x8<S>; 3]) {
+        if self.inverse_masses.constrained_planes[index.plane] {
+            for c in 0..3 {
+                kx[c].store_slice(&mut self.residual[index.at].0[c]);
+            }
+            return;
+        }
+        let inverse_mass = self.inverse_masses.free.row(index.line, index.along);
+        let (u, p) = (&mut self.u[index.at].0, &mut self.p[index.at].0);
+        for c in 0..3 {
+            let [next_u, next_p] = self.factors.moved(simd, kx[c], inverse_mass, &u[c], &p[c]);
+            next_u.store_slice(&mut u[c]);
+            next_p.store_slice(&mut p[c]);
+        }
+    }
+}

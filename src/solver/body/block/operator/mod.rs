@@ -1,0 +1,40 @@
+//! The stiffness operator: y = K x.
+//!
+//! * [`TensorOperator`] – K of a uniform elastic block, the form that runs.
+//! * [`AssembledOperator`] – any symmetric K, row by row: discrete springs and masses, and the
+//!   reference that the other form is tested against.
+
+mod assembled;
+mod tensor;
+
+pub use assembled::AssembledOperator;
+pub use tensor::{BlockIndex, Pass, Scratch, TensorOperator, load_all};
+
+use crate::solver::field::Field;
+
+/// K in one of its forms.
+#[derive(Debug, Clone)]
+pub enum Operator {
+    /// Of a uniform elastic block.
+    Tensor(TensorOperator),
+    /// Given row by row.
+    Assembled(AssembledOperator),
+}
+
+impl Operator {
+    /// Computes `y = K x` for `L` lanes and returns x·y.
+    pub fn product<const L: usize>(
+        &self,
+        x: &Field<L>,
+        y: &mut Field<L>,
+        scratch: &mut Scratch<L>,
+    ) -> [f64; L] {
+        match self {
+            Self::Tensor(operator) => operator.product(x, y, scratch),
+            Self::Assembled(operator) => {
+                operator.product(x, y);
+                x.dot(y)
+            }
+        }
+    }
+}

@@ -1,0 +1,114 @@
+//! K of a uniform block as a sum of tensor products of one-dimensional matrices.
+//!
+//! On a uniform block of trilinear, fully integrated hexahedra every term of the elastic energy is a product of
+//! one-dimensional integrals, boundaries included: with the mass M = ∫NᵢNⱼ, the stiffness S = ∫Nᵢ′Nⱼ′ and the
+//! derivative D = ∫Nᵢ′Nⱼ of linear elements in each direction,
+//!
+//! ```text
+//! K_xx = (λ+2G) Sx My Mz + G Mx Sy Mz + G Mx My Sz          (and cyclic)
+//! K_xy = λ Dx Dyᵀ Mz + G Dxᵀ Dy Mz                          (and so on)
+//! ```
+//!
+//! M = h/6 M̂ and S = Ŝ/h have the rows M̂ = (1, 4, 1), Ŝ = (−1, 2, −1), with 2 and 1 in the centre at the two
+//! ends. D = (Â + B̂)/2 and Dᵀ = (−Â + B̂)/2 with Â = (1, 0, −1) and B̂ = −1, 0, …, 0, 1 on the diagonal, so
+//!
+//! ```text
+//! K_xy = Mz/4 { Ây [−(λ+G)Âx − (λ−G)B̂x] + B̂y [(λ−G)Âx + (λ+G)B̂x] }
+//! ```
+//!
+//! About 100 operations a node, against 486 of the assembled rows. [`pass`] does them in one sweep over the mesh.
+
+mod pass;
+#[cfg(test)]
+mod tests;
+
+pub use pass::{BlockIndex, Pass, Scratch, load_all};
+
+use crate::solver::body::block::BlockMesh;
+use crate::solver::field::{Block, Field, Row, add_slots};
+use crate::solver::material::Material;
+use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+
+/// K of a block of equal elements.
+#[derive(Debug, Clone)]
+pub struct TensorOperator {
+    nodes: [usize; 3],
+    /// Of K_cc: [Sx My Mz, Mx Sy Mz, Mx My Sz] for each component c.
+    own: [[f64; 3]; 3],
+    /// −(λ+G) of the coupling xy, xz, yz, with the third direction's scale.
+    skew: [f64; 3],
+    /// (λ−G) of the same.
+    edge: [f64; 3],
+    /// (λ−G)/(λ+G): a centre term B̂[…] is this share of the neighbour term Â[…], but for …
+    share: f64,
+    /// … 4λG/(λ+G) B̂B̂ where two faces meet, of the same.
+    corner: [f64; 3],
+    /// 1, 2 and 4, the factors of the centre. As constants they would be compiled to additions (2x = x + x), and
+    /// additions are what the product waits for.
+    powers: [f64; 3],
+}
+
+impl TensorOperator {
+    /// K of `mesh` for a material.
+    pub fn new(mesh: &BlockMesh, material: &Material) -> Self {
+        let [hx, hy, hz] = mesh.element_size_m();
+        let (lambda, g) = (material.lame_lambda_pa(), material.shear_modulus_pa());
+        let directions = [hy * hz / (36.0 * hx), hx * hz / (36.0 * hy), hx * hy / (36.0 * hz)];
+        let across = [hz / 24.0, hy / 24.0, hx / 24.0];
+        Self {
+            nodes: mesh.nodes_per_axis(),
+            own: std::array::from_fn(|c| {
+                std::array::from_fn(|d| directions[d] * if c == d { lambda + 2.0 * g } else { g })
+            }),
+            skew: across.map(|scale| -(lambda + g) * scale),
+            edge: across.map(|scale| (lambda - g) * scale),
+            share: (lambda - g) / (lambda + g),
+            corner: across.map(|scale| 4.0 * lambda * g / (lambda + g) * scale),
+            powers: [1.0, 2.0, 4.0],
+        }
+    }
+
+    /// Computes `y = K x` for `L` lanes and returns x·y.
+    pub fn product<const L: usize>(
+        &self,
+        x: &Field<L>,
+        y: &mut Field<L>,
+        scratch: &mut Scratch<L>,
+    ) -> [f64; L] {
+        let mut forms = scratch.take_forms();
+        let mut product = Product { x: x.blocks(), y: y.blocks_mut(), forms: &mut forms };
+        dispatch!(Level::new(), simd => self.pass(simd, &mut product, scratch));
+        let mut total = [0.0; L];
+        for slots in &forms {
+            add_slots(&mut total, &slots.0);
+        }
+        scratch.give_forms(forms);
+        total
+    }
+}
+
+struct Product<'a> {
+    x: &'a [Block],
+    y: &'a mut [Block],
+    /// x·y by columns.
+    forms: &'a mut [Row],
+}
+
+#[expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+impl<S: Simd> Pass<S> for Product<'_> {
+    #[inline(always)]
+    fn input(&self, simd: S, at: usize) -> [f64x8<S>; 3] {
+        load_all(simd, &self.x[at].0)
+    }
+
+    #[inline(always)]
+    fn output(&mut self, simd: S, index: BlockIndex, kx: [f64x8<S>; 3]) {
+        let x = load_all(simd, &self.x[index.at].0);
+        let form = x[0] * kx[0] + x[1] * kx[1] + x[2] * kx[2];
+        let total = &mut self.forms[index.along].0;
+        (f64x8::from_slice(simd, total) + form).store_slice(total);
+        for c in 0..3 {
+            kx[c].store_slice(&mut self.y[index.at].0[c]);
+        }
+    }
+}

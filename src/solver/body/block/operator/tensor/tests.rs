@@ -1,0 +1,124 @@
+use super::super::AssembledOperator;
+use super::*;
+use crate::solver::body::hexahedron::stiffness;
+
+/// A deterministic, structureless field.
+fn values(n: usize, seed: u64) -> Vec<f64> {
+    let mut s = seed;
+    (0..n)
+        .map(|_| {
+            s = s.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (s >> 11) as f64 / (1_u64 << 53) as f64 - 0.5
+        })
+        .collect()
+}
+
+fn product<const L: usize>(mesh: &BlockMesh, material: &Material, x: &[f64]) -> Field<L> {
+    let mut y = Field::zeros(mesh.layout());
+    let x = Field::from_values(mesh.layout(), x);
+    TensorOperator::new(mesh, material).product(&x, &mut y, &mut Scratch::new(mesh));
+    y
+}
+
+/// Protects: the tensor form is the assembled K on every kind of node, down to one-element meshes,
+/// for every sign of λ − G.
+#[test]
+fn equals_element_by_element_assembly() {
+    for poisson_ratio in [0.3, 0.0, 0.25, 0.45, -0.4] {
+        let material = Material { young_modulus_pa: 1e9, poisson_ratio, density_kg_m3: 2500.0 };
+        for elements in [[1, 1, 1], [1, 2, 3], [3, 1, 2], [2, 3, 1], [4, 3, 3], [8, 2, 5], [17, 3, 2]] {
+            let mesh = BlockMesh::new([0.012, 0.015, 0.010], elements);
+            let ke = stiffness(&material, mesh.element_size_m());
+            let n = 3 * mesh.node_count();
+            let x = values(n, 1);
+            let mut reference = Field::<1>::zeros(mesh.layout());
+            AssembledOperator::of_block(&mesh, &ke)
+                .product(&Field::from_values(mesh.layout(), &x), &mut reference);
+            let y = product::<1>(&mesh, &material, &x);
+            // At most 8·24 terms of size |ke|·½ in the one form, 110 sums of such in the other.
+            let bound = 400.0 * f64::EPSILON * ke.amax();
+            for (i, b) in reference.values().enumerate() {
+                assert!(
+                    (y[i] - b).abs() < bound,
+                    "{elements:?} ν {poisson_ratio}: {i}: {} instead of {b}",
+                    y[i]
+                );
+            }
+        }
+    }
+}
+
+/// Protects: the same bits on every vector width that this machine has.
+#[test]
+fn vector_widths_agree_to_the_last_bit() {
+    let material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
+    let mesh = BlockMesh::new([0.012, 0.015, 0.010], [9, 4, 3]);
+    let operator = TensorOperator::new(&mesh, &material);
+    let x = Field::<1>::from_values(mesh.layout(), &values(3 * mesh.node_count(), 5));
+    let at = |level: Level| {
+        let mut y = Field::<1>::zeros(mesh.layout());
+        let mut forms = vec![Row::default(); x.blocks_per_line()];
+        let mut product = Product { x: x.blocks(), y: y.blocks_mut(), forms: &mut forms };
+        let mut scratch = Scratch::<1>::new(&mesh);
+        dispatch!(level, simd => operator.pass(simd, &mut product, &mut scratch));
+        y.values().map(f64::to_bits).collect::<Vec<_>>()
+    };
+    let best = at(Level::new());
+    assert_eq!(at(Level::baseline()), best, "{:?} against {:?}", Level::baseline(), Level::new());
+    #[cfg(any(target_arch = "x86", target_arch = "x86_64"))]
+    if let Some(avx2) = Level::new().as_avx2() {
+        assert_eq!(at(avx2.level()), best, "AVX2 against {:?}", Level::new());
+    }
+}
+
+/// Protects: a lane's bits do not depend on the lane count or on its companions.
+#[test]
+fn lanes_do_not_see_each_other() {
+    fn compare<const L: usize>(mesh: &BlockMesh, material: &Material) {
+        let n = 3 * mesh.node_count();
+        let mut x = vec![0.0; L * n];
+        for lane in 0..L {
+            for (i, v) in values(n, lane as u64).into_iter().enumerate() {
+                x[L * i + lane] = v;
+            }
+        }
+        let together = product::<L>(mesh, material, &x);
+        for lane in 0..L {
+            let alone = product::<1>(mesh, material, &values(n, lane as u64));
+            assert!((0..n).all(|i| alone[i].to_bits() == together[L * i + lane].to_bits()), "{lane} of {L}");
+        }
+    }
+    let material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
+    for elements in [[4, 5, 3], [12, 3, 2]] {
+        let mesh = BlockMesh::new([0.012, 0.015, 0.010], elements);
+        compare::<2>(&mesh, &material);
+        compare::<4>(&mesh, &material);
+        compare::<8>(&mesh, &material);
+    }
+}
+
+/// Protects: scratch that has been used and copied serves as well as new scratch, wherever the copy lies in memory.
+#[test]
+fn copied_scratch_is_as_good_as_new() {
+    let material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
+    let mesh = BlockMesh::new([0.012, 0.015, 0.010], [4, 3, 3]);
+    let operator = TensorOperator::new(&mesh, &material);
+    let x = Field::<1>::from_values(mesh.layout(), &values(3 * mesh.node_count(), 7));
+    let product = |scratch: &mut Scratch<1>| {
+        let mut y = Field::<1>::zeros(mesh.layout());
+        operator.product(&x, &mut y, scratch);
+        y.values().map(f64::to_bits).collect::<Vec<_>>()
+    };
+    let mut used = Scratch::<1>::new(&mesh);
+    let expected = product(&mut used);
+    // Kept, so that every copy lies elsewhere.
+    let copies: Vec<Scratch<1>> = (0..50)
+        .map(|odd| {
+            let _shift = vec![0_u8; 16 * odd + 1];
+            let mut copy = used.clone();
+            assert_eq!(product(&mut copy), expected, "copy {odd}");
+            copy
+        })
+        .collect();
+    assert_eq!(copies.len(), 50);
+}

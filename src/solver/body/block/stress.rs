@@ -1,0 +1,82 @@
+//! Stress at the nodes of a block, for looking at it; no step needs it.
+
+use super::BlockMesh;
+use crate::solver::material::Material;
+
+/// Components of a stress: xx, yy, zz, xy, yz, xz.
+pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
+
+/// Stress [Pa] at every node, from displacements [m] in the order node → component.
+///
+/// Strains are differences of nodal displacements along the mesh lines: central ones inside, which are the mean of what
+/// the elements on both sides have there, and one-sided ones of the second order on the faces, where the elements' own
+/// are of the first. So they are exact for displacements that are quadratic in the coordinates, on meshes with two
+/// elements or more in each direction.
+///
+/// # Panics
+/// If there are not three displacements per node.
+pub fn nodal_pa(mesh: &BlockMesh, material: &Material, u_m: &[f64]) -> Vec<[f64; 6]> {
+    assert_eq!(u_m.len(), 3 * mesh.node_count(), "three displacements per node");
+    let (lambda, shear) = (material.lame_lambda_pa(), material.shear_modulus_pa());
+    let h = mesh.element_size_m();
+    let elements = mesh.elements();
+    let stress_at = |node: usize| {
+        let at = mesh.grid_position(node);
+        // ∂u_c/∂x_axis
+        let derivative = |c: usize, axis: usize| {
+            let value = |offset: isize| {
+                let mut there = at;
+                there[axis] = there[axis].wrapping_add_signed(offset);
+                u_m[3 * mesh.node(there[0], there[1], there[2]) + c]
+            };
+            let difference = match (at[axis], elements[axis]) {
+                (0, 1) => value(1) - value(0),
+                (_, 1) => value(0) - value(-1),
+                (0, _) => -1.5 * value(0) + 2.0 * value(1) - 0.5 * value(2),
+                (i, n) if i == n => 1.5 * value(0) - 2.0 * value(-1) + 0.5 * value(-2),
+                _ => 0.5 * (value(1) - value(-1)),
+            };
+            difference / h[axis]
+        };
+        let normal: [f64; 3] = std::array::from_fn(|axis| derivative(axis, axis));
+        let dilation = lambda * normal.iter().sum::<f64>();
+        let sheared = |a: usize, b: usize| shear * (derivative(a, b) + derivative(b, a));
+        let [xx, yy, zz] = normal.map(|strain| dilation + 2.0 * shear * strain);
+        [xx, yy, zz, sheared(0, 1), sheared(1, 2), sheared(0, 2)]
+    };
+    (0..mesh.node_count()).map(stress_at).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const MATERIAL: Material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
+
+    /// Protects: the law, the order of the components and the faces: a displacement that is quadratic in the
+    /// coordinates has its exact stress at every node.
+    #[test]
+    fn quadratic_displacements_have_their_exact_stress() {
+        let mesh = BlockMesh::new([0.012, 0.015, 0.010], [2, 5, 3]);
+        let field = |[x, y, z]: [f64; 3]| [x * x + 2.0 * y * z, 3.0 * y - x * z, z * z + 0.5 * x * y];
+        let u: Vec<f64> = (0..mesh.node_count()).flat_map(|node| field(mesh.coordinates_m(node))).collect();
+        let (lambda, shear) = (MATERIAL.lame_lambda_pa(), MATERIAL.shear_modulus_pa());
+        for (node, found) in nodal_pa(&mesh, &MATERIAL, &u).into_iter().enumerate() {
+            let [x, y, z] = mesh.coordinates_m(node);
+            let dilation = lambda * (2.0 * x + 3.0 + 2.0 * z);
+            let exact = [
+                dilation + 2.0 * shear * 2.0 * x,
+                dilation + 2.0 * shear * 3.0,
+                dilation + 2.0 * shear * 2.0 * z,
+                shear * (2.0 * z - z),
+                shear * (-x + 0.5 * x),
+                shear * (2.0 * y + 0.5 * y),
+            ];
+            for (f, e) in found.iter().zip(exact) {
+                // Differences of numbers up to 0.05 over edges of 3 mm, times a modulus: some roundings of each.
+                let rounding = 16.0 * f64::EPSILON * 0.05 / 0.003 * (lambda + 2.0 * shear);
+                assert!((f - e).abs() <= rounding, "node {node}: {found:?} instead of {exact:?}");
+            }
+        }
+    }
+}

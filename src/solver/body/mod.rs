@@ -1,0 +1,56 @@
+//! Bodies: what deforms.
+//!
+//! A body has nodes with lumped masses, internal forces K (u + β_R p), stored energies with the work of its damping, and
+//! an upper bound of its largest frequency.
+//!
+//! * [`block`] – the pin: a uniform block, moved in the same pass that forms the product with K.
+//! * [`ring`] – the elastic disk.
+//! * [`hexahedron`] – the element of both.
+//!
+//! Bodies know nothing of supports, contact or each other.
+
+pub mod block;
+pub mod hexahedron;
+pub mod ring;
+
+/// How one degree of freedom of a body may move.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Freedom {
+    /// By itself.
+    Free,
+    /// Not at all.
+    Fixed,
+    /// With the others of the group of this number.
+    Tied(usize),
+}
+
+/// Stored energies \[J\] at t_n, and the work of damping in one step: sums over bodies and supports.
+#[derive(Debug, Clone, Copy)]
+#[expect(clippy::struct_field_names, reason = "units are part of the names")]
+pub(in crate::solver) struct EnergySums<const L: usize> {
+    pub kinetic_j: [f64; L],
+    pub elastic_j: [f64; L],
+    /// Work of the damping forces at t_n over the increment after t_n.
+    pub damping_after_j: [f64; L],
+    /// Work of the damping forces at t_n over the increment before t_n.
+    pub damping_before_j: [f64; L],
+    /// What β₂ > ½ dissipates in the step before t_n.
+    pub numerical_j: [f64; L],
+}
+
+impl<const L: usize> EnergySums<L> {
+    pub const ZERO: Self = Self {
+        kinetic_j: [0.0; L],
+        elastic_j: [0.0; L],
+        damping_after_j: [0.0; L],
+        damping_before_j: [0.0; L],
+        numerical_j: [0.0; L],
+    };
+}
+
+/// Adds lane by lane.
+pub(in crate::solver) fn add_lanes<const L: usize>(total: &mut [f64; L], part: &[f64; L]) {
+    for (total, part) in total.iter_mut().zip(part) {
+        *total += part;
+    }
+}

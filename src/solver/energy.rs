@@ -1,0 +1,276 @@
+//! Energy bookkeeping of a run.
+//!
+//! For Newmark's method with β = 0, γ = β₂ and nodal forces f (load, contact, damping) the scheme
+//! satisfies, to rounding (Krenk, *Energy conservation in Newmark based time integration
+//! algorithms*, CMAME 195, 2006, with β = 0),
+//!
+//! ```text
+//! E_n = ½ vMv + ½ uKu − (γ/4) Δt² aMa
+//! E_{n+1} − E_n = Δu·[(1−γ) f_n + γ f_{n+1}] − (γ−½) [ΔuKΔu − (γ/2) Δt² ΔaMΔa]
+//! ```
+//!
+//! For γ = ½ the kinetic part is ½ v_{n−½} M v_{n+½}. So a force f_n does the work
+//! f_n·[(1−γ)Δu_n + γΔu_{n−1}]. For contact forces this splits into
+//! * the drive's work f_t·VΔt (and N times the rise of an elastic disk's surface along the node's way),
+//! * friction: −f_t·[(1−γ)s_n + γs_{n−1}] of the slipping nodes, s the increment relative to the target,
+//! * contact loss: the same product for the tangential forces of sticking nodes, and −N·[(1−γ)Δz_n +
+//!   γΔz_{n−1}] of all nodes: what a velocity jump costs when a node sticks or closes.
+//!
+//! The energies are a sum over bodies, supports and the interface. The interface and the load give their works in every
+//! step (they act on boundary nodes only). The stored energies and the damping of bodies need products with K. They are
+//! evaluated in an audit every `interval` steps, and the work of damping is the sample times `interval`. With `interval` =
+//! 1 the balance closes to rounding.
+//!
+//! On an elastic disk the contact forces work on both bodies, and increments are relative to the deformed target.
+
+use super::body::EnergySums;
+use super::body::block::BlockAudit;
+use super::body::ring::RingAudit;
+use super::drive::Drive;
+use super::interface::InterfaceWork;
+use super::lane::{LaneState, next};
+use super::model::Model;
+use super::state::State;
+use serde::{Deserialize, Serialize};
+
+/// Energies [J] of one lane: stored now, done and lost since the start.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Energies {
+    /// Kinetic, ½vMv − (γ/4)Δt²aMa.
+    pub kinetic_j: f64,
+    /// Elastic, ½uKu.
+    pub elastic_j: f64,
+    /// Stored at the start.
+    pub initial_j: f64,
+    /// Work of the load.
+    pub load_work_j: f64,
+    /// Work of the moving target on the pin.
+    pub drive_work_j: f64,
+    /// Dissipated by friction.
+    pub friction_j: f64,
+    /// Dissipated by `β_R` and by β₂ > ½.
+    pub damping_j: f64,
+    /// Lost in contact impacts.
+    pub contact_loss_j: f64,
+}
+
+impl Energies {
+    /// What was put in minus what is stored and lost [J]; zero but for rounding and sampling.
+    pub fn imbalance_j(&self) -> f64 {
+        self.initial_j + self.load_work_j + self.drive_work_j
+            - self.kinetic_j
+            - self.elastic_j
+            - self.friction_j
+            - self.damping_j
+            - self.contact_loss_j
+    }
+
+    /// Energy put in [J], the scale of the balance.
+    pub fn input_j(&self) -> f64 {
+        self.initial_j.abs() + self.load_work_j.abs() + self.drive_work_j.abs()
+    }
+
+    /// |imbalance| over the energy put in; 0 when nothing was put in.
+    pub fn relative_residual(&self) -> f64 {
+        let input = self.input_j();
+        if input > 0.0 { self.imbalance_j().abs() / input } else { 0.0 }
+    }
+}
+
+/// A sum of works weighted as the scheme does: increments before and after the force's time.
+#[derive(Debug, Clone, Copy, Default)]
+struct Work {
+    after_j: f64,
+    before_j: f64,
+}
+
+impl Work {
+    fn done(&self, gamma: f64) -> f64 {
+        (1.0 - gamma) * self.after_j + gamma * self.before_j
+    }
+}
+
+#[derive(Debug, Clone, Copy, Default)]
+struct LaneSums {
+    load: Work,
+    drive: Work,
+    friction: Work,
+    contact_loss: Work,
+    damping: Work,
+    numerical_j: f64,
+}
+
+/// Follows the energies of all lanes; call [`EnergyLedger::before_step`] and
+/// [`EnergyLedger::after_step`] around every step from the first one on.
+#[derive(Debug, Clone)]
+pub struct EnergyLedger<const L: usize> {
+    interval: u64,
+    sums: [LaneSums; L],
+    energies: [Energies; L],
+    interface: InterfaceWork<L>,
+    pin: BlockAudit<L>,
+    ring: Option<RingAudit<L>>,
+}
+
+impl<const L: usize> EnergyLedger<L> {
+    /// A ledger that evaluates stored energies and damping every `interval` steps, from step 0 on.
+    ///
+    /// # Panics
+    /// If `interval` is zero.
+    pub fn new(model: &Model, interval: u64) -> Self {
+        assert!(interval > 0, "an interval of at least one step");
+        Self {
+            interval,
+            sums: [LaneSums::default(); L],
+            energies: [Energies::default(); L],
+            interface: InterfaceWork::new(model.interface()),
+            pin: BlockAudit::new(model.pin(), model.scheme().beta2),
+            ring: model.ring().map(RingAudit::new),
+        }
+    }
+
+    /// Whether the energies are evaluated at this step.
+    pub fn audits(&self, step: u64) -> bool {
+        step.is_multiple_of(self.interval)
+    }
+
+    /// The energies of a lane at its last audit.
+    pub fn energies(&self, lane: usize) -> &Energies {
+        &self.energies[lane]
+    }
+
+    /// Keeps what the audit of the coming step needs of the state at `t_n`.
+    ///
+    /// Steps are counted together for all lanes, so that jobs have to begin at an audit.
+    pub fn before_step(&mut self, model: &Model, state: &State<L>) {
+        let (scheme, steps_done) = (model.scheme(), state.steps_of_lanes());
+        let before = state.motion(&steps_done);
+        if self.keeps(model, state.step) {
+            self.pin.keep(&before);
+        }
+        if self.audits(state.step) {
+            self.pin.begin(model.pin(), scheme, &before);
+            if let (Some(audit), Some((body, ring))) = (&mut self.ring, state.target.ring()) {
+                audit.begin(body, scheme, ring);
+            }
+        }
+    }
+
+    /// Adds up the works of the step just done and, at an audit, evaluates the energies at its `t_n`.
+    pub fn after_step(&mut self, model: &Model, drives: &[Drive; L], state: &State<L>) {
+        let done = state.step - 1;
+        let works = self.interface.of_step(model.time_step_s(), drives, &state.contacts, &state.target);
+        let [before_last, last, next] = &state.load_stroke_m;
+        for l in 0..L {
+            let sums = &mut self.sums[l];
+            sums.load.before_j += state.load_n[l] * (last[l] - before_last[l]);
+            sums.friction.before_j += works.friction_before_j[l];
+            sums.contact_loss.before_j += works.contact_loss_before_j[l];
+            if state.steps_done(l) > 1 {
+                sums.drive.before_j += works.drive_j[l];
+            }
+            sums.drive.before_j += works.slope_before_j[l];
+        }
+        let mut damping_after_j = [0.0; L];
+        if self.keeps(model, done) {
+            self.pin.find_acceleration(model.scheme(), &state.motion(&state.steps_of_lanes()));
+            if self.audits(done) {
+                damping_after_j = self.evaluate(model, state);
+            }
+            self.pin.end();
+        }
+        for l in 0..L {
+            let sums = &mut self.sums[l];
+            sums.load.after_j += state.load_n[l] * (next[l] - last[l]);
+            sums.friction.after_j += works.friction_after_j[l];
+            sums.contact_loss.after_j += works.contact_loss_after_j[l];
+            sums.drive.after_j += works.drive_j[l] + works.slope_after_j[l];
+            sums.damping.after_j += damping_after_j[l];
+        }
+    }
+
+    /// β₂ > ½ needs the acceleration of the step before the audited one, too.
+    fn keeps(&self, model: &Model, step: u64) -> bool {
+        self.audits(step) || (model.scheme().beta2 > 0.5 && self.audits(step + 1))
+    }
+
+    /// Evaluates the energies at `t_n` and returns this step's damping work over the increment after `t_n`.
+    fn evaluate(&mut self, model: &Model, state: &State<L>) -> [f64; L] {
+        let (scheme, steps_done) = (model.scheme(), state.steps_of_lanes());
+        let gamma = scheme.beta2;
+        let samples = self.interval as f64;
+        let mut found = EnergySums::ZERO;
+        self.pin.add_to(&mut found, model.pin(), scheme, &state.motion(&steps_done));
+        if let (Some(audit), Some((_, ring))) = (&self.ring, state.target.ring()) {
+            audit.add_to(&mut found, scheme, ring, &steps_done.map(|steps| steps == 1));
+        }
+        state.workspace.supports.add_energies(scheme, &state.u, &mut found);
+        for l in 0..L {
+            let sums = &mut self.sums[l];
+            let begins = state.steps_done(l) == 1;
+            if !begins {
+                sums.numerical_j += samples * found.numerical_j[l];
+                sums.damping.before_j += samples * found.damping_before_j[l];
+            }
+            let (kinetic_j, elastic_j) = (found.kinetic_j[l], found.elastic_j[l]);
+            self.energies[l] = Energies {
+                kinetic_j,
+                elastic_j,
+                initial_j: if begins { kinetic_j + elastic_j } else { self.energies[l].initial_j },
+                load_work_j: sums.load.done(gamma),
+                drive_work_j: sums.drive.done(gamma),
+                friction_j: sums.friction.done(gamma),
+                damping_j: sums.damping.done(gamma) + sums.numerical_j,
+                contact_loss_j: sums.contact_loss.done(gamma),
+            };
+        }
+        found.damping_after_j.map(|work_j| samples * work_j)
+    }
+}
+
+/// A lane is saved just before an audit, and loaded just before an audit of another ledger. Zeros forget it.
+impl<const L: usize> LaneState for EnergyLedger<L> {
+    fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
+        let LaneSums { load, drive, friction, contact_loss, damping, numerical_j } = self.sums[lane];
+        for work in [load, drive, friction, contact_loss, damping] {
+            saved.extend([work.after_j, work.before_j]);
+        }
+        saved.push(numerical_j);
+        let Energies {
+            kinetic_j,
+            elastic_j,
+            initial_j,
+            load_work_j,
+            drive_work_j,
+            friction_j,
+            damping_j,
+            contact_loss_j,
+        } = self.energies[lane];
+        saved.extend([kinetic_j, elastic_j, initial_j, load_work_j]);
+        saved.extend([drive_work_j, friction_j, damping_j, contact_loss_j]);
+        self.pin.save_lane(lane, saved);
+    }
+
+    fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
+        let mut work = || {
+            let [after_j, before_j] = next(saved);
+            Work { after_j, before_j }
+        };
+        let [load, drive, friction, contact_loss, damping] = std::array::from_fn(|_| work());
+        let [numerical_j] = next(saved);
+        self.sums[lane] = LaneSums { load, drive, friction, contact_loss, damping, numerical_j };
+        let [kinetic_j, elastic_j, initial_j, load_work_j] = next(saved);
+        let [drive_work_j, friction_j, damping_j, contact_loss_j] = next(saved);
+        self.energies[lane] = Energies {
+            kinetic_j,
+            elastic_j,
+            initial_j,
+            load_work_j,
+            drive_work_j,
+            friction_j,
+            damping_j,
+            contact_loss_j,
+        };
+        self.pin.load_lane(lane, saved);
+    }
+}

@@ -1,0 +1,31 @@
+//! Coulomb's law without regularisation: the limit is μN.
+
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+
+use super::{FrictionLaw, Real};
+
+/// Coulomb's law with the friction coefficient μ of one lane, or of the lanes of eight nodes.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::solver) struct Coulomb<R> {
+    pub mu: R,
+}
+
+impl<R: Real> FrictionLaw<R> for Coulomb<R> {
+    #[inline(always)]
+    fn limit_n(&self, normal_n: R, _increment_m: [R; 2], _slipped: R) -> R {
+        self.mu * normal_n
+    }
+}
+
+/// μ = 0 in all lanes.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::solver) struct Frictionless;
+
+impl<R: Real> FrictionLaw<R> for Frictionless {
+    const TRANSMITS: bool = false;
+
+    #[inline(always)]
+    fn limit_n(&self, normal_n: R, _increment_m: [R; 2], _slipped: R) -> R {
+        normal_n.zero()
+    }
+}

@@ -1,0 +1,70 @@
+//! Friction laws.
+//!
+//! A law gives the largest friction force of a slave node, its limit. [`project`] does the rest for every law: a node
+//! whose trial force is within the limit sticks, any other slips with the limit against its slip.
+//!
+//! Another law is a file with [`FrictionLaw`] for it, a variant of [`Law`], and an arm in its functions.
+
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+
+mod cone;
+mod coulomb;
+mod real;
+
+pub(in crate::solver) use cone::project;
+pub(in crate::solver) use coulomb::{Coulomb, Frictionless};
+pub(in crate::solver) use real::Real;
+
+/// A friction law with the coefficients of one lane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Law {
+    /// Coulomb's law with a constant coefficient.
+    Coulomb {
+        /// Friction coefficient μ ≥ 0.
+        mu: f64,
+    },
+}
+
+/// A law for one node (`R` = `f64`) or for eight.
+pub(in crate::solver) trait FrictionLaw<R: Real>: Copy {
+    /// False if the limit is always zero. Then no trial force is computed.
+    const TRANSMITS: bool = true;
+
+    /// The largest friction force \[N\] under the normal force `normal_n` ≥ 0 \[N\].
+    ///
+    /// Of the step before a law may use the increment \[m\] of the node relative to the target, x and y, and whether the
+    /// node slipped (1) or not (0).
+    fn limit_n(&self, normal_n: R, increment_m: [R; 2], slipped: R) -> R;
+}
+
+impl Law {
+    /// The largest friction force \[N\] of one node, as of [`FrictionLaw::limit_n`].
+    #[inline(always)]
+    pub(in crate::solver) fn limit_n(&self, normal_n: f64, increment_m: [f64; 2], slipped: f64) -> f64 {
+        match *self {
+            Self::Coulomb { mu } => Coulomb { mu }.limit_n(normal_n, increment_m, slipped),
+        }
+    }
+}
+
+/// Calls vector code with the law of all lanes, compiled for the law and for the vectors of this machine.
+macro_rules! with_law_of_lanes {
+    ($drives:expr, $simd:ident, $law:ident => $call:expr) => {{
+        let coefficients = $drives.map(|drive| match drive.law {
+            $crate::solver::interface::law::Law::Coulomb { mu } => mu,
+        });
+        if coefficients.iter().all(|mu| *mu == 0.0) {
+            let $law = $crate::solver::interface::law::Frictionless;
+            fearless_simd::dispatch!(fearless_simd::Level::new(), $simd => $call)
+        } else {
+            let mu = $crate::solver::field::in_slots(&coefficients);
+            fearless_simd::dispatch!(fearless_simd::Level::new(), $simd => {
+                let $law = $crate::solver::interface::law::Coulomb {
+                    mu: fearless_simd::f64x8::from_slice($simd, &mu),
+                };
+                $call
+            })
+        }
+    }};
+}
+pub(in crate::solver) use with_law_of_lanes;

@@ -1,0 +1,30 @@
+//! The interface: where the pin touches its target.
+//!
+//! A contact force comes about in this order:
+//!
+//! ```text
+//! pair (slave node, initial gap) ─► gap and slip of the prediction ─► solve: normal force, then friction
+//!                                       ▲ target (how it moves)                └► law: limit, projection
+//! ```
+//!
+//! Contact is by forward increment Lagrange multipliers (Carpenter, Taylor and Katona, 1991): u* is predicted without
+//! contact. Every slave node that would be below its target at t_{n+1} gets a constraint, and the multipliers that put it
+//! back act at t_n.
+//!
+//! * [`Interface`] – the slave nodes with their initial gaps and the velocity of the target under them.
+//! * [`law`] – friction laws, and the projection that all of them share.
+//! * [`target`] – rigid surfaces, and the surface of an elastic disk between its nodes.
+//! * [`solve`] – the two ways of solving: node by node on a rigid target, by sweeps on an elastic one.
+//! * [`Contacts`] – what is found: forces, friction limits, increments, gaps and states.
+
+mod contacts;
+pub mod law;
+mod pair;
+pub mod solve;
+pub mod target;
+mod work;
+
+pub(crate) use contacts::LIMIT;
+pub use contacts::{ContactState, Contacts, Status};
+pub use pair::{Interface, SlaveNode};
+pub(in crate::solver) use work::InterfaceWork;

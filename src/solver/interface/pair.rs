@@ -1,0 +1,101 @@
+//! The slave nodes, and what is under them.
+
+use super::target::SurfaceMotion;
+use crate::solver::body::Freedom;
+use crate::solver::body::block::{BlockBody, BlockMesh};
+use crate::solver::field::{Field, Layout};
+
+/// A node of the contact face.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlaveNode {
+    /// Its index in the mesh of the pin.
+    pub node: usize,
+    /// Lumped mass \[kg\].
+    pub mass_kg: f64,
+    /// Tributary area \[m²\].
+    pub area_m2: f64,
+    /// Place in the contact face \[m\], x and y from the pin's axis.
+    pub position_m: [f64; 2],
+    /// Gap \[m\] between the undeformed pin and the undeformed target. The gap of a node is this plus its displacement
+    /// in z, less that of the target.
+    pub initial_gap_m: f64,
+    /// Velocity of the target under it per unit of the drive's rate, x and y.
+    pub surface_motion: [f64; 2],
+    /// Which components are not fixed.
+    pub mobile: [bool; 3],
+}
+
+/// The slave nodes of a pin, numbered as the nodes of its contact face.
+#[derive(Debug, Clone)]
+pub struct Interface {
+    slaves: Vec<SlaveNode>,
+    layout: Layout,
+    extent_m: [f64; 2],
+    edge_centres: [usize; 2],
+}
+
+impl Interface {
+    /// The contact face of a pin on a target that moves like this.
+    ///
+    /// # Panics
+    /// If there is not one surface velocity per node of the contact face.
+    pub fn new(pin: &BlockBody, surface_motion: &SurfaceMotion) -> Self {
+        let mesh: &BlockMesh = pin.mesh();
+        assert_eq!(surface_motion.len(), mesh.bottom_nodes().len(), "one surface velocity per slave node");
+        let slaves = mesh
+            .bottom_nodes()
+            .zip(surface_motion)
+            .map(|(node, surface_motion)| {
+                let [x, y, _] = mesh.coordinates_m(node);
+                SlaveNode {
+                    node,
+                    mass_kg: pin.masses_kg()[node],
+                    area_m2: mesh.tributary_area_m2(node),
+                    position_m: [x, y],
+                    initial_gap_m: 0.0,
+                    surface_motion: *surface_motion,
+                    mobile: std::array::from_fn(|c| pin.freedoms()[3 * node + c] != Freedom::Fixed),
+                }
+            })
+            .collect();
+        let ([lx, ly, _], [nx, ny, _]) = (mesh.size_m(), mesh.elements());
+        Self {
+            slaves,
+            layout: mesh.face_layout(),
+            extent_m: [lx, ly],
+            edge_centres: [mesh.node(nx / 2, 0, 0), mesh.node(nx / 2, ny, 0)],
+        }
+    }
+
+    /// The slave nodes.
+    pub fn slaves(&self) -> &[SlaveNode] {
+        &self.slaves
+    }
+
+    /// Width of the contact face \[m\] in x and in y.
+    pub fn extent_m(&self) -> [f64; 2] {
+        self.extent_m
+    }
+
+    /// The slave nodes in the centre of the leading edge (−y) and of the trailing edge (+y).
+    pub fn edge_centres(&self) -> [usize; 2] {
+        self.edge_centres
+    }
+
+    /// The layout of a field on the slave nodes.
+    pub fn layout(&self) -> Layout {
+        self.layout
+    }
+
+    /// Three numbers of every slave node, the same in all lanes.
+    pub fn field<const L: usize>(&self, values: impl Fn(&SlaveNode) -> [f64; 3]) -> Field<L> {
+        let mut field = Field::zeros(self.layout);
+        for (slave, node) in self.slaves.iter().enumerate() {
+            let place = field.place(slave);
+            for (component, value) in values(node).into_iter().enumerate() {
+                *field.at_mut(place, component) = [value; L];
+            }
+        }
+        field
+    }
+}

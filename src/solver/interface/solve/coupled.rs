@@ -1,0 +1,373 @@
+//! The forward-increment solve on an elastic disk.
+//!
+//! Pin and disk are predicted to t_{n+1} without contact. A slave node s carries the row G_s = (1, −N_1, …, −N_k) of
+//! the shape functions of the patch under it at t_{n+1}, and multipliers f (force on the pin; its negative, spread
+//! by the same shape functions, acts on the disk) are found such that
+//!
+//! ```text
+//! g = g* + cΔt² (1/m_s + N C Nᵀ) f     g ≥ 0, N ≥ 0, g N = 0     |t| ≤ μN, slip opposes t
+//! ```
+//!
+//! C = B M⁻¹ is the disk's response (`Response` in [`ring`](crate::solver::body::ring)); it couples slave nodes
+//! that share target nodes, by Gauss–Seidel ([`sweeps`](super::sweeps)). The solve begins with the forces of the step
+//! before and ends when no force changes by more than [`TOLERANCE`](super::sweeps::TOLERANCE) of the largest.
+//!
+//! The gap is measured to the deformed target; slip is the pin's motion past the material point of the disk that
+//! is under the node at t_{n+1}, and so has no jump where a node passes from one patch to the next. The normal
+//! is that of the undeformed top: slopes are 10⁻⁶.
+
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+
+use super::Given;
+use super::sweeps::{ContactRow, Solves, TargetNode, TargetNodes};
+use crate::solver::body::block::Face;
+use crate::solver::body::ring::{RingBody, RingState};
+use crate::solver::field::{Field, Place, WIDTH, add_slots};
+use crate::solver::interface::LIMIT;
+use crate::solver::interface::target::patch::{Grid, PatchCoord, Share};
+use crate::solver::interface::{Contacts, Interface, Status};
+use crate::solver::lane::LaneState;
+use crate::solver::scheme::StepFactors;
+use crate::spec::TargetSurface;
+use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use std::sync::Arc;
+
+/// The elastic disk under the pin, in every lane.
+#[derive(Debug, Clone)]
+pub(super) struct RingTarget<const L: usize> {
+    body: Arc<RingBody>,
+    state: RingState<L>,
+    /// Increments of the disk's surface under each slave node over the step [m]: x, y, and in z by how much the surface at
+    /// t_n is higher where the node will be than where it is.
+    increment_m: Field<L>,
+    /// The same over the step before; in z by the patches of this step, as [`Contacts::previous_increment_m`] is.
+    previous_increment_m: Field<L>,
+    solves: [Solves; L],
+    solve: CoupledSolve<L>,
+}
+
+impl<const L: usize> RingTarget<L> {
+    pub fn new(interface: &Interface, body: &Arc<RingBody>) -> Self {
+        Self {
+            state: RingState::at_rest(body),
+            increment_m: Field::zeros(interface.layout()),
+            previous_increment_m: Field::zeros(interface.layout()),
+            solves: [Solves::default(); L],
+            solve: CoupledSolve::new(interface, body),
+            body: Arc::clone(body),
+        }
+    }
+
+    pub fn body(&self) -> &RingBody {
+        &self.body
+    }
+
+    pub fn state(&self) -> &RingState<L> {
+        &self.state
+    }
+
+    pub fn increment_of(&self, slave: usize, lane: usize) -> [f64; 3] {
+        let place = self.increment_m.place(slave);
+        std::array::from_fn(|c| self.increment_m.at(place, c)[lane])
+    }
+
+    pub fn solves_of(&self, lane: usize) -> &Solves {
+        &self.solves[lane]
+    }
+
+    pub fn slope_works_j(&self, contacts: &Contacts<L>) -> [[f64; L]; 2] {
+        [&self.increment_m, &self.previous_increment_m].map(|increment| normal_work(contacts, increment))
+    }
+}
+
+impl<const L: usize> LaneState for RingTarget<L> {
+    fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
+        self.increment_m.save_lane(lane, saved);
+        self.previous_increment_m.save_lane(lane, saved);
+        self.solves[lane].save(saved);
+        self.state.save_lane(lane, saved);
+    }
+
+    fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
+        self.increment_m.load_lane(lane, saved);
+        self.previous_increment_m.load_lane(lane, saved);
+        self.solves[lane] = Solves::load(saved);
+        self.state.load_lane(lane, saved);
+    }
+}
+
+/// What the solve needs of the model, and scratch. Nothing in it is carried from step to step.
+#[derive(Debug, Clone)]
+struct CoupledSolve<const L: usize> {
+    grid: Grid,
+    slaves: Vec<Slave>,
+    /// Smallest and largest angle [rad] of a slave node.
+    angles_rad: [f64; 2],
+    /// Sine and cosine of the angles of the mesh's columns.
+    directions: Vec<(f64, f64)>,
+    /// The pin's face and the disk's top at t_n.
+    face_before: Before<L>,
+    top_before: Before<L>,
+    rows: Vec<ContactRow>,
+    targets: TargetNodes,
+}
+
+/// Displacements [m] at t_n and, as p_n, over the step before [m/s].
+#[derive(Debug, Clone)]
+struct Before<const L: usize> {
+    u: Field<L>,
+    p: Field<L>,
+}
+
+impl<const L: usize> Before<L> {
+    fn new(field: Field<L>) -> Self {
+        Self { u: field.clone(), p: field }
+    }
+
+    /// Keeps the first blocks of these.
+    fn keep(&mut self, u: &Field<L>, p: &Field<L>) {
+        let count = self.u.blocks().len();
+        self.u.blocks_mut().copy_from_slice(&u.blocks()[..count]);
+        self.p.blocks_mut().copy_from_slice(&p.blocks()[..count]);
+    }
+}
+
+/// A slave node.
+#[derive(Debug, Clone, Copy)]
+struct Slave {
+    place: Place,
+    angle_rad: f64,
+    across: PatchCoord,
+    inverse_mass: f64,
+    initial_gap_m: f64,
+    motion: [f64; 2],
+}
+
+impl<const L: usize> CoupledSolve<L> {
+    fn new(interface: &Interface, body: &RingBody) -> Self {
+        let grid = Grid::new(body.mesh(), body.target());
+        let face = Field::<L>::zeros(interface.layout());
+        let slaves: Vec<Slave> = interface
+            .slaves()
+            .iter()
+            .enumerate()
+            .map(|(index, slave)| {
+                // The lever arms (−Y, X) say where a node is.
+                let [minus_y, x] = slave.surface_motion;
+                Slave {
+                    place: face.place(index),
+                    angle_rad: libm::atan2(-minus_y, x),
+                    across: grid.across(libm::hypot(x, minus_y)),
+                    inverse_mass: 1.0 / slave.mass_kg,
+                    initial_gap_m: slave.initial_gap_m,
+                    motion: slave.surface_motion,
+                }
+            })
+            .collect();
+        let angles = || slaves.iter().map(|slave| slave.angle_rad);
+        let angles_rad = [angles().fold(f64::INFINITY, f64::min), angles().fold(f64::NEG_INFINITY, f64::max)];
+        Self {
+            angles_rad,
+            directions: body.mesh().angles_rad().iter().map(|angle| libm::sincos(*angle)).collect(),
+            face_before: Before::new(face),
+            top_before: Before::new(Field::zeros(body.mesh().top_layout())),
+            rows: vec![ContactRow::default(); slaves.len()],
+            targets: TargetNodes { rows: grid.rows(), first: 0, nodes: Vec::new() },
+            slaves,
+            grid,
+        }
+    }
+
+    /// Where the slave nodes of a lane are on the track at t_{n+1}.
+    fn patch_coords(&self, turned_rad: f64) -> impl Iterator<Item = (PatchCoord, PatchCoord)> + '_ {
+        self.slaves.iter().map(move |slave| (self.grid.along(slave.angle_rad - turned_rad), slave.across))
+    }
+
+    /// Collects the target nodes of a lane.
+    fn gather(&mut self, body: &RingBody, lane: usize, turned_rad: f64, dt: f64, disk: &RingState<L>) {
+        let [low, high] = self.angles_rad.map(|angle| self.grid.along(angle - turned_rad).cell);
+        let (first, last) = (low - self.grid.margin(), high + 1 + self.grid.margin());
+        let (sin, cos) = libm::sincos(turned_rad);
+        let mesh = body.mesh();
+        self.targets.first = first;
+        self.targets.nodes.clear();
+        for column in first..=last {
+            let column = self.grid.track_column(column);
+            let (sin_there, cos_there) = self.directions[column];
+            for row in 0..self.targets.rows {
+                let node = mesh.node(column, mesh.track().first_row + row, 0);
+                let place = disk.u.place(node);
+                let before: [f64; 3] = std::array::from_fn(|c| self.top_before.u.at(place, c)[lane]);
+                let last_increment_m = std::array::from_fn(|c| dt * self.top_before.p.at(place, c)[lane]);
+                let mut target = TargetNode {
+                    node,
+                    column,
+                    row,
+                    cos: cos_there * cos - sin_there * sin,
+                    sin: sin_there * cos + cos_there * sin,
+                    height_m: before[2],
+                    inverse_mass: body.inverse_mass()[node],
+                    ..TargetNode::default()
+                };
+                let increment_m = std::array::from_fn(|c| disk.u.at(place, c)[lane] - before[c]);
+                target.increment_m = target.in_pin(increment_m);
+                target.last_increment_m = target.in_pin(last_increment_m);
+                self.targets.nodes.push(target);
+            }
+        }
+    }
+}
+
+impl<const L: usize> RingTarget<L> {
+    /// Moves the slave nodes and the disk.
+    pub fn solve(&mut self, given: &Given<'_, L>, face: &mut Face<'_, L>, contacts: &mut Contacts<L>) {
+        std::mem::swap(&mut self.increment_m, &mut self.previous_increment_m);
+        self.solve.face_before.keep(face.u, face.p);
+        self.solve.top_before.keep(&self.state.u, &self.state.p);
+        let count = self.solve.face_before.u.blocks().len();
+        self.state.predict(&self.body, given.factors);
+        dispatch!(Level::new(), simd => predict(simd, given.factors, face, count));
+        let dt = given.factors.time_step_s;
+        for lane in 0..L {
+            let turned_rad = given.drives[lane].rate * ((given.steps_done[lane] + 1) as f64 * dt);
+            self.solve.gather(&self.body, lane, turned_rad, dt, &self.state);
+            let (first, grid) = (self.solve.targets.first, self.solve.grid);
+            let coords = self.solve.patch_coords(turned_rad);
+            match self.body.target() {
+                TargetSurface::Bilinear => {
+                    let shares: Vec<_> = coords.map(|(a, b)| grid.bilinear(a, b, first)).collect();
+                    self.solve_lane(given, lane, &shares, face, contacts);
+                }
+                TargetSurface::Ferguson => {
+                    let shares: Vec<_> = coords.map(|(a, b)| grid.ferguson(a, b, first)).collect();
+                    self.solve_lane(given, lane, &shares, face, contacts);
+                }
+            }
+        }
+    }
+
+    fn solve_lane<const K: usize>(
+        &mut self,
+        given: &Given<'_, L>,
+        lane: usize,
+        shares: &[[Share; K]],
+        face: &mut Face<'_, L>,
+        contacts: &mut Contacts<L>,
+    ) {
+        let CoupledSolve { slaves, face_before, rows, targets, .. } = &mut self.solve;
+        let (body, step) = (&*self.body, given.steps_done[lane] + 1);
+        let (u_scale, p_scale) = (given.factors.u_scale[lane], given.factors.p_scale[lane]);
+        let drive = &given.drives[lane];
+        let travel_m = drive.rate * given.factors.time_step_s;
+        for ((slave, row), shares) in slaves.iter().zip(&mut *rows).zip(shares) {
+            let end: [f64; 3] = std::array::from_fn(|c| face.u.at(slave.place, c)[lane]);
+            let before = [0, 1].map(|c| face_before.u.at(slave.place, c)[lane]);
+            let slip = [0, 1].map(|c| end[c] - before[c] - slave.motion[c] * travel_m);
+            *row = ContactRow {
+                free_m: [slip[0], slip[1], end[2] + slave.initial_gap_m],
+                force_n: std::array::from_fn(|c| contacts.force_n.at(slave.place, c)[lane]),
+                own: u_scale * slave.inverse_mass,
+                compliance: u_scale * slave.inverse_mass,
+                sticks: false,
+                limit_n: 0.0,
+                last_increment_m: [0, 1].map(|c| contacts.previous_increment_m.at(slave.place, c)[lane]),
+                slipped: contacts.status.at(slave.place, Status::Slips as usize)[lane],
+            };
+            for share in shares {
+                let node = targets.node(share);
+                row.free_m[0] -= share.weight * node.increment_m[0];
+                row.free_m[1] -= share.weight * node.increment_m[1];
+                row.free_m[2] -= share.weight * (node.height_m + node.increment_m[2]);
+                row.compliance += share.weight * share.weight * (u_scale * node.inverse_mass);
+            }
+        }
+        let sweeps = targets.sweep(body, u_scale, drive.law, rows, shares);
+        targets.spread(rows, shares);
+        targets.respond(body, u_scale);
+        let residual = targets.residual(drive.law, rows, shares);
+        self.solves[lane].add(step, sweeps, residual);
+        for ((slave, row), shares) in slaves.iter().zip(&*rows).zip(shares) {
+            let place = slave.place;
+            let relative = targets.relative_m(row, shares);
+            let closed = row.force_n[2] > 0.0;
+            let gap_before = contacts.status.at(place, Status::Gap as usize)[lane];
+            let gap = if closed { 0.0 } else { relative[2] };
+            for c in 0..3 {
+                let force = row.force_n[c];
+                face.u.at_mut(place, c)[lane] += row.own * force;
+                face.p.at_mut(place, c)[lane] += (p_scale * slave.inverse_mass) * force;
+                contacts.force_n.at_mut(place, c)[lane] = force;
+            }
+            contacts.friction.at_mut(place, LIMIT)[lane] = row.limit_n;
+            let increment = [relative[0], relative[1], gap - gap_before];
+            let status = [gap, f64::from(u8::from(closed)), f64::from(u8::from(closed && !row.sticks))];
+            // The surface under the node at t_n, and what is then under its place at t_{n+1}.
+            let under = (face_before.u.at(place, 2)[lane] + slave.initial_gap_m) - gap_before;
+            let mut ahead = 0.0;
+            // What the constraint of this step says of the step before: its forces do work over that, too.
+            let mut last: [f64; 3] =
+                std::array::from_fn(|c| given.factors.time_step_s * face_before.p.at(place, c)[lane]);
+            for share in shares {
+                let node = targets.node(share);
+                ahead += share.weight * node.height_m;
+                for c in 0..3 {
+                    last[c] -= share.weight * node.last_increment_m[c];
+                }
+            }
+            if step > 1 {
+                for c in 0..2 {
+                    contacts.previous_increment_m.at_mut(place, c)[lane] =
+                        last[c] - slave.motion[c] * travel_m;
+                }
+                let closing = contacts.previous_increment_m.at(place, 2)[lane];
+                self.previous_increment_m.at_mut(place, 2)[lane] = last[2] - closing;
+            }
+            let moved = [0, 1].map(|c| face.u.at(place, c)[lane] - face_before.u.at(place, c)[lane]);
+            let of_target = [
+                moved[0] - increment[0] - slave.motion[0] * travel_m,
+                moved[1] - increment[1] - slave.motion[1] * travel_m,
+                ahead - under,
+            ];
+            for c in 0..3 {
+                contacts.increment_m.at_mut(place, c)[lane] = increment[c];
+                contacts.status.at_mut(place, c)[lane] = status[c];
+                self.increment_m.at_mut(place, c)[lane] = of_target[c];
+            }
+        }
+        for source in targets.reactions() {
+            self.state.add_force(body, lane, &source, u_scale, p_scale);
+        }
+    }
+}
+
+/// Moves the slave nodes as if there were no contact.
+#[inline(always)]
+fn predict<S: Simd, const L: usize>(simd: S, factors: &StepFactors, face: &mut Face<'_, L>, count: usize) {
+    let moving = face.u.blocks_mut()[..count].iter_mut().zip(&mut face.p.blocks_mut()[..count]);
+    for ((u, p), (residual, inverse)) in moving.zip(face.residual.blocks().iter().zip(face.inverse_mass)) {
+        for c in 0..3 {
+            let force = f64x8::from_slice(simd, &residual.0[c]);
+            let [next_u, next_p] = factors.moved(simd, force, &inverse.0[c], &u.0[c], &p.0[c]);
+            next_u.store_slice(&mut u.0[c]);
+            next_p.store_slice(&mut p.0[c]);
+        }
+    }
+}
+
+/// Normal forces times an increment.
+fn normal_work<const L: usize>(contacts: &Contacts<L>, increment_m: &Field<L>) -> [f64; L] {
+    let stride = increment_m.blocks_per_line();
+    let mut total = [0.0; L];
+    for along in 0..stride {
+        let mut slots = [0.0; WIDTH];
+        let column =
+            contacts.force_n.blocks()[along..].iter().zip(&increment_m.blocks()[along..]).step_by(stride);
+        for (force, increment) in column {
+            for i in 0..WIDTH {
+                slots[i] += force.0[2][i] * increment.0[2][i];
+            }
+        }
+        add_slots(&mut total, &slots);
+    }
+    total
+}

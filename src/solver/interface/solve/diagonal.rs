@@ -1,0 +1,157 @@
+//! The forward-increment solve on a rigid target, in closed form.
+//!
+//! On a rigid target c Δt² G M⁻¹ Gᵀ is diagonal (c is the scheme's factor of Δt²a in u_{n+1}). So each slave node is solved
+//! by itself, and one pass is exact. With the gap g* of the prediction and the initial gap g₀:
+//!
+//! ```text
+//! g* = g₀ + z*        N = −m g*/(cΔt²)  if g* < 0       t_trial = −m δ*/(cΔt²),  δ* = u*_t − u_t − VΔt
+//! ```
+//!
+//! The pass predicts a block of slave nodes and corrects it at once. So a step reads and writes their displacements once,
+//! as it does those of other nodes. Nodes that are held in some direction are solved one by one
+//! ([`held`](super::held)).
+
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+
+use super::Given;
+use super::held::HeldNode;
+use crate::solver::body::block::Face;
+use crate::solver::field::{Field, in_slots};
+use crate::solver::interface::LIMIT;
+use crate::solver::interface::law::{FrictionLaw, project, with_law_of_lanes};
+use crate::solver::interface::{Contacts, Interface, SlaveNode, Status};
+use fearless_simd::{Simd, f64x8, prelude::*};
+
+/// What is fixed during a run.
+#[derive(Debug, Clone)]
+pub(super) struct DiagonalSolve<const L: usize> {
+    /// Per slave node: velocity of the target per unit of the drive's rate, x and y, and the mass; that of a node
+    /// that the pass does not solve is zero.
+    nodes: Field<L>,
+    /// Initial gap [m] of every slave node, in the first component.
+    initial_gap_m: Field<L>,
+    held: Vec<HeldNode<L>>,
+}
+
+impl<const L: usize> DiagonalSolve<L> {
+    pub fn new(interface: &Interface) -> Self {
+        let is_free = |node: &SlaveNode| node.mobile == [true; 3];
+        let nodes: Field<L> = interface.field(|node| {
+            let [x, y] = node.surface_motion;
+            [x, y, if is_free(node) { node.mass_kg } else { 0.0 }]
+        });
+        let held = interface.slaves().iter().enumerate().filter(|(_, node)| !is_free(node));
+        let held = held.map(|(slave, node)| HeldNode::new(nodes.place(slave), *node)).collect();
+        let initial_gap_m = interface.field(|node| [node.initial_gap_m, 0.0, 0.0]);
+        Self { nodes, initial_gap_m, held }
+    }
+
+    /// Moves the slave nodes; returns what supports carry of the contact forces on held ones \[N\].
+    pub fn solve(
+        &mut self,
+        given: &Given<'_, L>,
+        face: &mut Face<'_, L>,
+        contacts: &mut Contacts<L>,
+    ) -> [[f64; L]; 3] {
+        for held in &mut self.held {
+            held.keep(face, contacts);
+        }
+        with_law_of_lanes!(given.drives, simd, law => self.pass(simd, law, given, face, contacts));
+        let mut carried_n = [[0.0; L]; 3];
+        for held in &self.held {
+            held.solve(given, face, contacts, &mut carried_n);
+        }
+        carried_n
+    }
+
+    /// Predicts and corrects all nodes that are free to move. Where the law transmits nothing, the square root and the
+    /// quotient of the projection are left out.
+    #[inline(always)]
+    fn pass<S: Simd, W: FrictionLaw<f64x8<S>>>(
+        &self,
+        simd: S,
+        law: W,
+        given: &Given<'_, L>,
+        face: &mut Face<'_, L>,
+        contacts: &mut Contacts<L>,
+    ) {
+        let (factors, drives) = (given.factors, given.drives);
+        let zero = f64x8::splat(simd, 0.0);
+        let one = f64x8::splat(simd, 1.0);
+        let travel = in_slots(&drives.map(|drive| drive.rate * factors.time_step_s));
+        let travel = f64x8::from_slice(simd, &travel);
+        let u_scale = f64x8::from_slice(simd, &factors.u_scale);
+        let p_scale = f64x8::from_slice(simd, &factors.p_scale);
+        let per_mass = one / u_scale;
+        let count = self.nodes.blocks().len();
+        let moving = face.u.blocks_mut()[..count].iter_mut().zip(&mut face.p.blocks_mut()[..count]);
+        let nodes = self.nodes.blocks().iter().zip(self.initial_gap_m.blocks());
+        let fixed = nodes.zip(&face.residual.blocks()[..count]).zip(face.inverse_mass);
+        let found = (contacts.force_n.blocks_mut().iter_mut())
+            .zip(contacts.increment_m.blocks_mut())
+            .zip(contacts.previous_increment_m.blocks())
+            .zip(contacts.status.blocks_mut())
+            .zip(contacts.friction.blocks_mut());
+        for (((u, p), (((node, initial_gap), residual), inverse_mass)), found) in moving.zip(fixed).zip(found)
+        {
+            let ((((force, increment), previous_increment), status), friction) = found;
+            let mut before = [zero; 3];
+            let mut next_u = [zero; 3];
+            let mut next_p = [zero; 3];
+            for c in 0..3 {
+                before[c] = f64x8::from_slice(simd, &u.0[c]);
+                let residual = f64x8::from_slice(simd, &residual.0[c]);
+                [next_u[c], next_p[c]] = factors.moved(simd, residual, &inverse_mass.0[c], &u.0[c], &p.0[c]);
+            }
+            let carried =
+                [f64x8::from_slice(simd, &node.0[0]) * travel, f64x8::from_slice(simd, &node.0[1]) * travel];
+            let mass = f64x8::from_slice(simd, &node.0[2]);
+            let stiffness = mass * per_mass;
+            let initial_gap = f64x8::from_slice(simd, &initial_gap.0[0]);
+            let gap = next_u[2] + initial_gap;
+            let closed = gap.simd_lt(zero) & mass.simd_gt(zero);
+            let normal = closed.select(zero - gap * stiffness, zero);
+            let slip = [(next_u[0] - before[0]) - carried[0], (next_u[1] - before[1]) - carried[1]];
+            let last_increment = [
+                f64x8::from_slice(simd, &previous_increment.0[0]),
+                f64x8::from_slice(simd, &previous_increment.0[1]),
+            ];
+            let slipped = f64x8::from_slice(simd, &status.0[Status::Slips as usize]);
+            let limit = law.limit_n(normal, last_increment, slipped);
+            let (mut tangential, sticks) = if W::TRANSMITS {
+                let trial = [zero - stiffness * slip[0], zero - stiffness * slip[1]];
+                let projected = project(trial, limit);
+                (projected.force_n, projected.sticks & closed)
+            } else {
+                ([zero; 2], slip[0].simd_eq(zero) & slip[1].simd_eq(zero) & closed)
+            };
+            let inverse = f64x8::from_slice(simd, &inverse_mass.0[2]);
+            // Constrained displacements are set, not corrected: a sticking node must not creep, nor a
+            // closed one sink, by the rounding of its correction.
+            for c in 0..2 {
+                tangential[c] = closed.select(tangential[c], zero);
+                let corrected =
+                    if W::TRANSMITS { next_u[c] + (u_scale * inverse) * tangential[c] } else { next_u[c] };
+                next_u[c] = sticks.select(before[c] + carried[c], corrected);
+                if W::TRANSMITS {
+                    next_p[c] += (p_scale * inverse) * tangential[c];
+                }
+                tangential[c].store_slice(&mut force.0[c]);
+                ((next_u[c] - before[c]) - carried[c]).store_slice(&mut increment.0[c]);
+            }
+            next_u[2] = closed.select(zero - initial_gap, next_u[2]);
+            next_p[2] += (p_scale * inverse) * normal;
+            normal.store_slice(&mut force.0[2]);
+            (next_u[2] - before[2]).store_slice(&mut increment.0[2]);
+            for c in 0..3 {
+                next_u[c].store_slice(&mut u.0[c]);
+                next_p[c].store_slice(&mut p.0[c]);
+            }
+            let is_closed = closed.select(one, zero);
+            closed.select(zero, gap).store_slice(&mut status.0[Status::Gap as usize]);
+            limit.store_slice(&mut friction.0[LIMIT]);
+            is_closed.store_slice(&mut status.0[Status::Closed as usize]);
+            sticks.select(zero, is_closed).store_slice(&mut status.0[Status::Slips as usize]);
+        }
+    }
+}

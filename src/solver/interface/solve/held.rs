@@ -1,0 +1,183 @@
+//! Slave nodes that are held in some direction, one by one.
+//!
+//! A node that is held in a tangential direction in which the target moves slips there in any case. Friction opposes the
+//! whole slip, and the free direction is left with its part of the cone ([`partially_held_friction`]). Such nodes are
+//! rare.
+
+use super::Given;
+use crate::solver::body::block::Face;
+use crate::solver::field::Place;
+use crate::solver::interface::LIMIT;
+use crate::solver::interface::law::project;
+use crate::solver::interface::{Contacts, SlaveNode, Status};
+
+/// A slave node with a fixed component.
+#[derive(Debug, Clone)]
+pub(super) struct HeldNode<const L: usize> {
+    place: Place,
+    node: SlaveNode,
+    /// Its displacements [m] at t_n.
+    u_m: [[f64; L]; 3],
+    /// Whether it slipped in the step before (0 or 1).
+    slipped: [f64; L],
+}
+
+impl<const L: usize> HeldNode<L> {
+    pub fn new(place: Place, node: SlaveNode) -> Self {
+        Self { place, node, u_m: [[0.0; L]; 3], slipped: [0.0; L] }
+    }
+
+    /// Keeps what the pass will overwrite.
+    pub fn keep(&mut self, face: &Face<'_, L>, contacts: &Contacts<L>) {
+        for c in 0..3 {
+            self.u_m[c] = *face.u.at(self.place, c);
+        }
+        self.slipped = *contacts.status.at(self.place, Status::Slips as usize);
+    }
+
+    /// Corrects the node, which the pass has predicted, in all lanes; adds what its support carries of the contact forces
+    /// \[N\] to `carried_n`.
+    pub fn solve(
+        &self,
+        given: &Given<'_, L>,
+        face: &mut Face<'_, L>,
+        contacts: &mut Contacts<L>,
+        carried_n: &mut [[f64; L]; 3],
+    ) {
+        for lane in 0..L {
+            self.solve_lane(lane, given, face, contacts);
+            for c in 0..2 {
+                if !self.node.mobile[c] {
+                    carried_n[c][lane] += contacts.force_n.at(self.place, c)[lane];
+                }
+            }
+        }
+    }
+
+    fn solve_lane(
+        &self,
+        lane: usize,
+        given: &Given<'_, L>,
+        face: &mut Face<'_, L>,
+        contacts: &mut Contacts<L>,
+    ) {
+        let (factors, drive) = (given.factors, &given.drives[lane]);
+        let place = self.place;
+        // A slot's scales are those of its lane.
+        let (u_scale, p_scale) = (factors.u_scale[lane], factors.p_scale[lane]);
+        let stiffness = self.node.mass_kg * (1.0 / u_scale);
+        let carried = self.node.surface_motion.map(|motion| motion * (drive.rate * factors.time_step_s));
+        let initial_gap = self.node.initial_gap_m;
+        let gap = face.u.at(place, 2)[lane] + initial_gap;
+        let mut force = [0.0; 3];
+        let mut limit = 0.0;
+        let (mut closed, mut slips) = (false, false);
+        if gap < 0.0 && self.node.mobile[2] {
+            closed = true;
+            force[2] = -gap * stiffness;
+            let increment_m = [0, 1].map(|c| contacts.previous_increment_m.at(place, c)[lane]);
+            limit = drive.law.limit_n(force[2], increment_m, self.slipped[lane]);
+            let slip = [0, 1].map(|c| (face.u.at(place, c)[lane] - self.u_m[c][lane]) - carried[c]);
+            ([force[0], force[1]], slips) = tangential(self.node.mobile, slip, stiffness, limit);
+            for c in (0..3).filter(|&c| self.node.mobile[c]) {
+                let inverse = 1.0 / self.node.mass_kg;
+                let u = &mut face.u.at_mut(place, c)[lane];
+                *u = match c {
+                    2 => -initial_gap,
+                    _ if slips => *u + (u_scale * inverse) * force[c],
+                    _ => self.u_m[c][lane] + carried[c],
+                };
+                face.p.at_mut(place, c)[lane] += (p_scale * inverse) * force[c];
+            }
+        }
+        let end = [0, 1, 2].map(|c| face.u.at(place, c)[lane]);
+        let target = [carried[0], carried[1], 0.0];
+        for c in 0..3 {
+            contacts.force_n.at_mut(place, c)[lane] = force[c];
+            contacts.increment_m.at_mut(place, c)[lane] = (end[c] - self.u_m[c][lane]) - target[c];
+        }
+        contacts.friction.at_mut(place, LIMIT)[lane] = limit;
+        let gap = if closed { 0.0 } else { gap };
+        let status = [gap, f64::from(u8::from(closed)), f64::from(u8::from(slips))];
+        for c in 0..3 {
+            contacts.status.at_mut(place, c)[lane] = status[c];
+        }
+    }
+}
+
+/// Friction \[N\] on a closed node with the predicted `slip` \[m\], and whether it slips.
+fn tangential(mobile: [bool; 3], slip: [f64; 2], stiffness: f64, limit_n: f64) -> ([f64; 2], bool) {
+    let held_slip = |c: usize| !mobile[c] && slip[c] != 0.0;
+    match (held_slip(0), held_slip(1)) {
+        (false, false) => {
+            let trial = [0, 1].map(|c| if mobile[c] { -stiffness * slip[c] } else { 0.0 });
+            let friction = project(trial, limit_n);
+            (friction.force_n, !friction.sticks)
+        }
+        (true, false) if mobile[1] => (partially_held_friction(slip[0], slip[1], stiffness, limit_n), true),
+        (false, true) if mobile[0] => {
+            let [y, x] = partially_held_friction(slip[1], slip[0], stiffness, limit_n);
+            ([x, y], true)
+        }
+        // Held in both: nothing to solve.
+        _ => {
+            let length = (slip[0] * slip[0] + slip[1] * slip[1]).sqrt();
+            (slip.map(|s| -limit_n * s / length), true)
+        }
+    }
+}
+
+/// Friction \[N\] on a node that slips by `given_m` ≠ 0 in a direction in which it is held, and that would slip by `free_m`
+/// in the other direction without friction. There a force t changes the slip by t/`stiffness_n_m`. Friction has the size
+/// of the limit R and opposes the whole slip, t = −R s/|s|: components in the held and in the free direction.
+///
+/// The free slip δ is the root of g(δ) = δ + (R/k) δ/√(given² + δ²) − free. On the side of `free_m` g
+/// increases and is concave, so Newton's method from a point between 0 and the root climbs to it without
+/// overshooting.
+fn partially_held_friction(given_m: f64, free_m: f64, stiffness_n_m: f64, limit_n: f64) -> [f64; 2] {
+    let (reach, aim) = (limit_n / stiffness_n_m, free_m.abs());
+    // Two lower bounds of the root: δ/√(given² + δ²) is at most δ/|given| and at most 1.
+    let mut slip = (aim / (1.0 + reach / given_m.abs())).max(aim - reach);
+    loop {
+        let length = (given_m * given_m + slip * slip).sqrt();
+        let residual = slip + reach * slip / length - aim;
+        let slope = 1.0 + reach * given_m * given_m / (length * length * length);
+        let next = slip - residual / slope;
+        // Rounding ends the climb, and so does a number that is not finite.
+        if next > slip {
+            slip = next;
+        } else {
+            let scale = -limit_n / length;
+            return [scale * given_m, scale * slip.copysign(free_m)];
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects: the force on a partially held node lies on the cone, opposes the slip that it leaves, and is
+    /// found from any side and at any ratio of the slips.
+    #[test]
+    fn the_friction_of_a_partially_held_node_opposes_its_slip() {
+        for given in [1e-9, -0.5, 1.0, 1e6_f64] {
+            for free in [0.0, 1e-7, -0.3, 2.0, -1e5_f64] {
+                for limit in [0.0, 0.4, 100.0] {
+                    let stiffness = 3.0;
+                    let force = partially_held_friction(given, free, stiffness, limit);
+                    let slip: f64 = free + force[1] / stiffness;
+                    let length = given.hypot(slip);
+                    // The slip cancels in free + t/k: rounded at the size of these.
+                    let rounding =
+                        8.0 * f64::EPSILON * (limit + limit * (free.abs() + limit / stiffness) / length);
+                    let exact = [-limit * given / length, -limit * slip / length];
+                    for c in 0..2 {
+                        let error = (force[c] - exact[c]).abs();
+                        assert!(error <= rounding, "{given}, {free}, {limit}: {force:?}, not {exact:?}");
+                    }
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,120 @@
+//! The two ways of solving for the contact forces of a step.
+//!
+//! * [`diagonal`] – on a rigid target: node by node, in closed form.
+//! * [`coupled`] – on an elastic disk: constraints that share target nodes, by Gauss–Seidel ([`sweeps`]).
+
+mod coupled;
+mod diagonal;
+mod held;
+pub mod sweeps;
+
+pub use sweeps::Solves;
+
+use super::target::Target;
+use super::{Contacts, Interface};
+use crate::solver::body::block::Face;
+use crate::solver::body::ring::{RingBody, RingState};
+use crate::solver::drive::Drive;
+use crate::solver::lane::LaneState;
+use crate::solver::scheme::StepFactors;
+use coupled::RingTarget;
+use diagonal::DiagonalSolve;
+
+/// What a contact solve is given of a step.
+pub(in crate::solver) struct Given<'a, const L: usize> {
+    pub factors: &'a StepFactors,
+    pub drives: &'a [Drive; L],
+    /// Number n of steps that the lanes have done before this one.
+    pub steps_done: &'a [u64; L],
+}
+
+/// The target in every lane, with the solve that it needs.
+#[derive(Debug, Clone)]
+pub struct TargetState<const L: usize>(Kind<L>);
+
+#[derive(Debug, Clone)]
+enum Kind<const L: usize> {
+    Rigid(DiagonalSolve<L>),
+    Ring(Box<RingTarget<L>>),
+}
+
+impl<const L: usize> TargetState<L> {
+    /// At rest under the pin.
+    pub(in crate::solver) fn at_rest(interface: &Interface, target: &Target) -> Self {
+        Self(match target {
+            Target::Rigid => Kind::Rigid(DiagonalSolve::new(interface)),
+            Target::Ring(ring) => Kind::Ring(Box::new(RingTarget::new(interface, ring))),
+        })
+    }
+
+    /// Moves the slave nodes and the target to t_{n+1}; returns what supports of the pin carry of the contact forces \[N\].
+    pub(in crate::solver) fn solve(
+        &mut self,
+        given: &Given<'_, L>,
+        face: &mut Face<'_, L>,
+        contacts: &mut Contacts<L>,
+    ) -> [[f64; L]; 3] {
+        contacts.swap_increments();
+        match &mut self.0 {
+            Kind::Rigid(solve) => solve.solve(given, face, contacts),
+            Kind::Ring(ring) => {
+                ring.solve(given, face, contacts);
+                // No slave node of a pin on a ring is held.
+                [[0.0; L]; 3]
+            }
+        }
+    }
+
+    /// The elastic disk and its state, if the target is one.
+    pub fn ring(&self) -> Option<(&RingBody, &RingState<L>)> {
+        match &self.0 {
+            Kind::Rigid(_) => None,
+            Kind::Ring(ring) => Some((ring.body(), ring.state())),
+        }
+    }
+
+    /// Displacement increment \[m\] of the target itself under a slave node of a lane over the last step, beyond the
+    /// motion that is prescribed; zero on a rigid target.
+    pub fn increment_of(&self, slave: usize, lane: usize) -> [f64; 3] {
+        match &self.0 {
+            Kind::Rigid(_) => [0.0; 3],
+            Kind::Ring(ring) => ring.increment_of(slave, lane),
+        }
+    }
+
+    /// How the contact solves of a lane went, on an elastic target.
+    pub fn solves_of(&self, lane: usize) -> Option<&Solves> {
+        match &self.0 {
+            Kind::Rigid(_) => None,
+            Kind::Ring(ring) => Some(ring.solves_of(lane)),
+        }
+    }
+
+    /// Works \[J\] of the drive over the slopes of the target, over the increments after and before the forces' time. A
+    /// rigid target has no slopes.
+    pub(in crate::solver) fn slope_works_j(&self, contacts: &Contacts<L>) -> [[f64; L]; 2] {
+        match &self.0 {
+            Kind::Rigid(_) => [[0.0; L]; 2],
+            Kind::Ring(ring) => ring.slope_works_j(contacts),
+        }
+    }
+
+    /// Whether all numbers of a lane are finite.
+    pub fn is_finite(&self, lane: usize) -> bool {
+        self.ring().is_none_or(|(_, ring)| ring.is_finite(lane))
+    }
+}
+
+impl<const L: usize> LaneState for TargetState<L> {
+    fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
+        if let Kind::Ring(ring) = &self.0 {
+            ring.save_lane(lane, saved);
+        }
+    }
+
+    fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
+        if let Kind::Ring(ring) = &mut self.0 {
+            ring.load_lane(lane, saved);
+        }
+    }
+}

@@ -1,0 +1,184 @@
+//! The β₂ method (Newmark with β = 0, γ = β₂; the paper's equation \[2\]).
+//!
+//! It is written for the displacements u_n and for p_n = v_{n−1} + (1−β₂)Δt a_{n−1}. The damping β_R K acts on p_n:
+//!
+//! ```text
+//! M a_n   = r_n − K (u_n + β_R p_n) + contact forces
+//! u_{n+1} = u_n + Δt p_n + (½+β₂) Δt² a_n
+//! p_{n+1} = p_n + Δt a_n
+//! ```
+//!
+//! At n = 0, p_0 is the initial velocity v_0, and the factors are ½ and 1−β₂: the first step is half a step.
+//!
+//! # Stability
+//! For one mode, with W = ωΔt and b = β_R/Δt, the amplification matrix of the recursion has
+//! det = 1 − (β₂ − ½ + b)W² and trace = 2 − (½ + β₂ + b)W². The recursion is stable while 1 + trace + det ≥ 0, that is
+//! **W² (β₂ + b) ≤ 2**, a quadratic in Δt.
+
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+
+use super::field::{WIDTH, in_slots};
+use fearless_simd::{Simd, f64x8, prelude::*};
+
+/// How the time step is chosen.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum TimeStep {
+    /// A fraction of the stability limit.
+    FractionOfLimit(f64),
+    /// A step [s], which is refused when it is above the limit.
+    Given(f64),
+    /// A step [s] that is taken without a check, to study what happens above the limit.
+    Unchecked(f64),
+}
+
+/// The numbers of the method, which all bodies share.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Scheme {
+    /// β₂.
+    pub beta2: f64,
+    /// Stiffness-proportional damping `β_R` \[s\].
+    pub beta_r_s: f64,
+    /// Time step Δt \[s\].
+    pub time_step_s: f64,
+}
+
+/// What multiplies accelerations in a step of all lanes; a lane may be at its first step.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::solver) struct StepFactors {
+    pub time_step_s: f64,
+    pub beta_r_s: f64,
+    /// Factor of a in `u_{n+1}` \[s²\], slot by slot.
+    pub u_scale: [f64; WIDTH],
+    /// Factor of a in `p_{n+1}` \[s\].
+    pub p_scale: [f64; WIDTH],
+}
+
+impl Scheme {
+    /// Factors of Δt² a in `u_{n+1}` and of Δt a in `p_{n+1}`; the first step (n = 0) has its own.
+    pub(in crate::solver) fn factors(&self, is_first: bool) -> (f64, f64) {
+        if is_first { (0.5, 1.0 - self.beta2) } else { (0.5 + self.beta2, 1.0) }
+    }
+
+    /// The factors of a step in which every lane has done so many steps before.
+    pub(in crate::solver) fn step_factors<const L: usize>(&self, steps_done: &[u64; L]) -> StepFactors {
+        let dt = self.time_step_s;
+        let (mut u_scale, mut p_scale) = ([0.0; L], [0.0; L]);
+        for lane in 0..L {
+            let (u_factor, p_factor) = self.factors(steps_done[lane] == 0);
+            (u_scale[lane], p_scale[lane]) = (u_factor * dt * dt, p_factor * dt);
+        }
+        StepFactors {
+            time_step_s: dt,
+            beta_r_s: self.beta_r_s,
+            u_scale: in_slots(&u_scale),
+            p_scale: in_slots(&p_scale),
+        }
+    }
+}
+
+impl StepFactors {
+    /// u + Δt p + cΔt² a and p + dΔt a for a = −force/m.
+    #[inline(always)]
+    pub fn moved<S: Simd>(
+        &self,
+        simd: S,
+        force: f64x8<S>,
+        inverse_mass: &[f64; WIDTH],
+        u: &[f64; WIDTH],
+        p: &[f64; WIDTH],
+    ) -> [f64x8<S>; 2] {
+        let a = force * f64x8::from_slice(simd, inverse_mass);
+        let before = f64x8::from_slice(simd, p);
+        let stroke =
+            before * f64x8::splat(simd, self.time_step_s) - a * f64x8::from_slice(simd, &self.u_scale);
+        [f64x8::from_slice(simd, u) + stroke, before - a * f64x8::from_slice(simd, &self.p_scale)]
+    }
+}
+
+/// What the parts of a model contribute to the stability limit.
+///
+/// By Rayleigh's quotient the largest ω² of a sum of parts is at most the sum of their largest ω².
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Bound {
+    /// Upper bound of the angular frequency ω \[rad/s\].
+    pub omega_max_rad_s: f64,
+    /// Upper bound of the damping c/m \[1/s\] that is not `β_R` K.
+    pub damping_per_s: f64,
+}
+
+impl Bound {
+    /// The bound of both parts together.
+    #[must_use]
+    pub fn and(self, other: Self) -> Self {
+        Self {
+            omega_max_rad_s: libm::hypot(self.omega_max_rad_s, other.omega_max_rad_s),
+            damping_per_s: self.damping_per_s + other.damping_per_s,
+        }
+    }
+
+    /// Largest stable time step \[s\]: the positive root of β₂ω²Δt² + (β_Rω² + c/m)Δt = 2.
+    pub fn time_step_limit_s(&self, beta2: f64, beta_r_s: f64) -> f64 {
+        let omega = self.omega_max_rad_s;
+        let mut damping = beta_r_s * omega;
+        if self.damping_per_s > 0.0 {
+            damping += self.damping_per_s / omega;
+        }
+        // The form 2c/(b+√(b²+4ac)) keeps its digits when damping is strong.
+        4.0 / (omega * (damping + (damping * damping + 8.0 * beta2).sqrt()))
+    }
+}
+
+/// Largest stable time step \[s\] for modes up to `omega_max` \[rad/s\] without other damping than `β_R`.
+pub fn time_step_limit_s(omega_max: f64, beta2: f64, beta_r_s: f64) -> f64 {
+    Bound { omega_max_rad_s: omega_max, damping_per_s: 0.0 }.time_step_limit_s(beta2, beta_r_s)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects: the closed form is the limit of the recursion itself, for every β₂ and damping:
+    /// just below it a mode stays bounded, just above it grows.
+    #[test]
+    fn limit_is_that_of_the_recursion() {
+        for beta2 in [0.5, 0.6, 0.8, 1.0] {
+            for damping in [0.0, 0.1, 1.0, 10.0] {
+                let omega = 3.0e5;
+                let beta_r = damping / omega;
+                let limit = time_step_limit_s(omega, beta2, beta_r);
+                for (factor, bounded) in [(0.999, true), (1.001, false)] {
+                    let dt = factor * limit;
+                    let (mut u, mut p) = (1.0_f64, 0.0_f64);
+                    for _ in 0..100_000 {
+                        let a = -omega * omega * (u + beta_r * p);
+                        u += dt * p + (0.5 + beta2) * dt * dt * a;
+                        p += dt * a;
+                        if u.abs() > 1e6 {
+                            break;
+                        }
+                    }
+                    assert_eq!(
+                        u.abs() < 1e6,
+                        bounded,
+                        "β₂ = {beta2}, β_R ω = {damping}, {factor} of the limit"
+                    );
+                }
+            }
+        }
+    }
+
+    /// Protects: the published limits: √(2/β₂) undamped, and (2/ω)(√(1+ξ²) − ξ) for the damped central difference.
+    #[test]
+    fn agrees_with_the_published_limits() {
+        let omega = 2.0e5;
+        for beta2 in [0.5, 0.75, 1.0] {
+            let w = omega * time_step_limit_s(omega, beta2, 0.0);
+            assert!((w - (2.0 / beta2).sqrt()).abs() < 1e-15 * 4.0);
+        }
+        for xi in [0.01, 0.5, 3.0_f64] {
+            let exact = 2.0 / omega * ((1.0 + xi * xi).sqrt() - xi);
+            let limit = time_step_limit_s(omega, 0.5, 2.0 * xi / omega);
+            assert!((limit / exact - 1.0).abs() < 1e-14);
+        }
+    }
+}

@@ -1,0 +1,116 @@
+//! The clamp and the top face of a scene as supports on a mesh.
+
+use super::Support;
+use crate::solver::body::block::BlockMesh;
+use crate::solver::error::SolverError;
+use crate::spec::{Clamp, ClampSide, TopFace};
+
+/// How far the nearest node row may be from the clamp's width, as a fraction of that width.
+const WIDTH_TOLERANCE: f64 = 0.25;
+
+/// The clamp's nodes and the width that the mesh gives it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ClampedStrip {
+    /// Clamped nodes of the top face.
+    pub nodes: Vec<usize>,
+    /// Distance [m] from the edge to the last held row.
+    pub width_m: f64,
+}
+
+/// Finds the clamp's nodes on the top face of `mesh`.
+///
+/// # Errors
+/// If no node row is near the clamp's width.
+pub fn clamped_strip(mesh: &BlockMesh, clamp: &Clamp) -> Result<ClampedStrip, SolverError> {
+    let (axis, low, high) = match clamp.side {
+        ClampSide::InnerSide => (0, true, false),
+        ClampSide::OuterSide => (0, false, true),
+        ClampSide::BothSides => (0, true, true),
+        ClampSide::LeadingEnd => (1, true, false),
+        ClampSide::TrailingEnd => (1, false, true),
+        ClampSide::BothEnds => (1, true, true),
+        ClampSide::WholeTop => {
+            return Ok(ClampedStrip { nodes: mesh.top_nodes().collect(), width_m: mesh.size_m()[0] });
+        }
+    };
+    let elements = mesh.elements()[axis];
+    let h = mesh.element_size_m()[axis];
+    let last_row = ((clamp.width_m / h).round() as usize).min(elements);
+    let width_m = last_row as f64 * h;
+    // The relative slack of 1e-12 forgives the rounding of decimal widths.
+    if (width_m - clamp.width_m).abs() > WIDTH_TOLERANCE * clamp.width_m * (1.0 + 1e-12) {
+        let below = ((clamp.width_m / h).floor() as usize).min(elements);
+        return Err(SolverError::ClampOffMesh {
+            width_m: clamp.width_m,
+            elements,
+            length_m: mesh.size_m()[axis],
+            below_m: below as f64 * h,
+            above_m: (below + 1).min(elements) as f64 * h,
+        });
+    }
+    let held = |node: &usize| {
+        let row = mesh.grid_position(*node)[axis];
+        (low && row <= last_row) || (high && elements - row <= last_row)
+    };
+    Ok(ClampedStrip { nodes: mesh.top_nodes().filter(held).collect(), width_m })
+}
+
+/// The supports of a clamp (x and y of its nodes) and of the top face.
+pub fn supports(mesh: &BlockMesh, strip: &ClampedStrip, top: TopFace) -> Vec<Support> {
+    let mut supports = vec![Support::fixed(strip.nodes.iter().flat_map(|&node| [3 * node, 3 * node + 1]))];
+    match top {
+        TopFace::TiedInZ => supports.push(Support::tied(2, mesh.top_nodes())),
+        TopFace::FreeInZ => {}
+    }
+    supports
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const SIZE_M: [f64; 3] = [0.012, 0.015, 0.010];
+
+    fn strip(elements: [usize; 3], side: ClampSide, width_m: f64) -> Result<ClampedStrip, SolverError> {
+        clamped_strip(&BlockMesh::new(SIZE_M, elements), &Clamp { side, width_m })
+    }
+
+    /// Protects: a width in metres means the same strip on every mesh that can show it.
+    #[test]
+    fn width_means_the_same_on_every_mesh() {
+        for elements in [[6, 8, 5], [12, 15, 10], [18, 22, 15], [24, 30, 20]] {
+            let found = strip(elements, ClampSide::InnerSide, 0.002).unwrap();
+            assert!((found.width_m - 0.002).abs() < 1e-15);
+            assert_eq!(found.nodes.len(), (elements[0] / 6 + 1) * (elements[1] + 1));
+        }
+    }
+
+    type Held = fn([f64; 3]) -> bool;
+
+    /// Protects: each named side holds the nodes that its name says.
+    #[test]
+    fn sides_are_where_their_names_say() {
+        let mesh = BlockMesh::new(SIZE_M, [12, 15, 10]);
+        let cases: [(ClampSide, Held); 7] = [
+            (ClampSide::InnerSide, |x| x[0] < -0.00499),
+            (ClampSide::OuterSide, |x| x[0] > 0.00499),
+            (ClampSide::BothSides, |x| x[0].abs() > 0.00499),
+            (ClampSide::LeadingEnd, |x| x[1] < -0.00649),
+            (ClampSide::TrailingEnd, |x| x[1] > 0.00649),
+            (ClampSide::BothEnds, |x| x[1].abs() > 0.00649),
+            (ClampSide::WholeTop, |_| true),
+        ];
+        for (side, held) in cases {
+            let expected: Vec<_> = mesh.top_nodes().filter(|&n| held(mesh.coordinates_m(n))).collect();
+            assert_eq!(strip([12, 15, 10], side, 0.001).unwrap().nodes, expected, "{}", side.name());
+        }
+    }
+
+    /// Protects: a mesh that cannot show the width is refused with the widths that it can show.
+    #[test]
+    fn a_width_between_rows_is_refused() {
+        let error = strip([6, 8, 5], ClampSide::InnerSide, 0.001).unwrap_err();
+        let SolverError::ClampOffMesh { below_m, above_m, .. } = error else { panic!("{error}") };
+        assert_eq!((below_m, above_m), (0.0, 0.002));
+    }
+}

@@ -1,0 +1,173 @@
+//! Supports: what holds the pin besides contact.
+//!
+//! * [`Fixed`] – degrees of freedom that never move. Their residual is what the frame carries: T comes from it.
+//! * [`Tied`] – nodes that share one displacement in one component.
+//! * [`clamp`] – which of these a scene's clamp and top face are.
+//! * [`load`] – the normal load, which acts on the same planes.
+//!
+//! A support gives four things: a force on the residual, stored energy, the work of its damping, and its share of the
+//! stability limit ([`Bound`]). A rigid support does the first alone. Another kind of support is a file with
+//! [`AppliedSupport`] for it, and a variant of [`Support`].
+
+pub mod clamp;
+mod fixed;
+pub mod load;
+mod tied;
+mod weights;
+
+pub use fixed::Fixed;
+pub use tied::Tied;
+
+use super::body::block::BlockMesh;
+use super::body::{EnergySums, Freedom};
+use super::error::SolverError;
+use super::field::Field;
+use super::scheme::{Bound, Scheme};
+use fixed::AppliedFixed;
+use std::fmt::Debug;
+use tied::AppliedTie;
+
+/// A support, as a model is defined with it.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum Support {
+    /// Degrees of freedom that never move.
+    Fixed(Fixed),
+    /// Nodes that share a displacement.
+    Tied(Tied),
+}
+
+impl Support {
+    /// Fixes degrees of freedom (3·node + component).
+    pub fn fixed(dofs: impl IntoIterator<Item = usize>) -> Self {
+        Self::Fixed(Fixed { dofs: dofs.into_iter().collect() })
+    }
+
+    /// Ties nodes in one component.
+    pub fn tied(component: usize, nodes: impl IntoIterator<Item = usize>) -> Self {
+        Self::Tied(Tied { component, nodes: nodes.into_iter().collect() })
+    }
+
+    /// The degrees of freedom (3·node + component) on which it acts.
+    pub fn dofs(&self) -> Vec<usize> {
+        match self {
+            Self::Fixed(fixed) => fixed.dofs.clone(),
+            Self::Tied(tied) => tied.dofs().collect(),
+        }
+    }
+
+    /// What it adds to the pin's share of the stability limit, for the lumped masses of the pin \[kg\]. A rigid support
+    /// adds nothing: it can only lower frequencies.
+    pub fn bound(&self, _masses_kg: &[f64]) -> Bound {
+        match self {
+            Self::Fixed(_) | Self::Tied(_) => Bound::default(),
+        }
+    }
+
+    fn applied<const L: usize>(&self, mesh: &BlockMesh, masses_kg: &[f64]) -> Box<dyn AppliedSupport<L>> {
+        match self {
+            Self::Fixed(fixed) => Box::new(AppliedFixed::new(fixed, mesh)),
+            Self::Tied(tied) => Box::new(AppliedTie::new(tied, mesh, masses_kg)),
+        }
+    }
+}
+
+/// How every degree of freedom of `mesh` may move with these supports.
+///
+/// # Errors
+/// If a support is out of range, if a degree of freedom is supported twice, or if a tie mixes nodes of the contact face
+/// with others: the contact solve treats each slave node by its own mass, which is right for a tied group only when
+/// the whole group is in contact alike.
+pub fn freedoms(supports: &[Support], mesh: &BlockMesh) -> Result<Vec<Freedom>, SolverError> {
+    let mut freedoms = vec![Freedom::Free; 3 * mesh.node_count()];
+    let mut set = |dof: usize, freedom| match freedoms.get_mut(dof) {
+        Some(slot @ Freedom::Free) => {
+            *slot = freedom;
+            Ok(())
+        }
+        Some(_) => Err(SolverError::Constraints(format!("degree of freedom {dof} is constrained twice"))),
+        None => Err(SolverError::Constraints(format!("degree of freedom {dof} does not exist"))),
+    };
+    let mut groups = 0;
+    for support in supports {
+        match support {
+            Support::Fixed(fixed) => {
+                for &dof in &fixed.dofs {
+                    set(dof, Freedom::Fixed)?;
+                }
+            }
+            Support::Tied(tied) => {
+                for dof in tied.dofs() {
+                    set(dof, Freedom::Tied(groups))?;
+                }
+                let on_contact_face =
+                    tied.nodes.iter().filter(|node| mesh.bottom_nodes().contains(node)).count();
+                if tied.nodes.is_empty() || (on_contact_face > 0 && on_contact_face < tied.nodes.len()) {
+                    return Err(SolverError::Constraints(format!(
+                        "tie {groups} must hold at least one node, all or none of them on the contact face"
+                    )));
+                }
+                groups += 1;
+            }
+        }
+    }
+    Ok(freedoms)
+}
+
+/// A support in every lane. It may remember within a step what [`AppliedSupport::add_energies`] needs; nothing is
+/// carried from step to step.
+pub(in crate::solver) trait AppliedSupport<const L: usize>: Debug + Send + Sync {
+    /// Acts on the pin at t_n: adds the support's force to the residual, and what the frame carries \[N\] to
+    /// `reaction_n`.
+    fn act(&mut self, pin: &mut Supported<'_, L>, reaction_n: &mut [[f64; L]; 3]);
+
+    /// Adds the energy that is stored at t_n, and the work of damping in the step that led from there to `u_after`.
+    /// A rigid support stores nothing and has no damping.
+    fn add_energies(&self, _scheme: &Scheme, _u_after: &Field<L>, _total: &mut EnergySums<L>) {}
+
+    /// A copy.
+    fn boxed(&self) -> Box<dyn AppliedSupport<L>>;
+}
+
+/// The pin at t_n, on which supports act.
+pub(in crate::solver) struct Supported<'a, const L: usize> {
+    /// Displacements [m] and p_n [m/s]. Rigid supports do not need them.
+    #[expect(dead_code, reason = "for supports whose force depends on the motion")]
+    pub u: &'a Field<L>,
+    #[expect(dead_code, reason = "for supports whose force depends on the motion")]
+    pub p: &'a Field<L>,
+    /// K (u + β_R p) − external forces [N].
+    pub residual: &'a mut Field<L>,
+}
+
+/// All supports in every lane, in the order of the definition.
+#[derive(Debug)]
+pub(in crate::solver) struct AppliedSupports<const L: usize>(Vec<Box<dyn AppliedSupport<L>>>);
+
+impl<const L: usize> AppliedSupports<L> {
+    /// The supports of a pin with these lumped masses \[kg\].
+    pub fn new(supports: &[Support], mesh: &BlockMesh, masses_kg: &[f64]) -> Self {
+        Self(supports.iter().map(|support| support.applied(mesh, masses_kg)).collect())
+    }
+
+    /// Lets all supports act on the pin; returns what the frame carries \[N\].
+    pub fn act(&mut self, pin: &mut Supported<'_, L>) -> [[f64; L]; 3] {
+        let mut reaction_n = [[0.0; L]; 3];
+        for support in &mut self.0 {
+            support.act(pin, &mut reaction_n);
+        }
+        reaction_n
+    }
+
+    /// Adds the energies of all supports to those of the bodies.
+    pub fn add_energies(&self, scheme: &Scheme, u_after: &Field<L>, total: &mut EnergySums<L>) {
+        for support in &self.0 {
+            support.add_energies(scheme, u_after, total);
+        }
+    }
+}
+
+impl<const L: usize> Clone for AppliedSupports<L> {
+    fn clone(&self) -> Self {
+        Self(self.0.iter().map(|support| support.boxed()).collect())
+    }
+}
