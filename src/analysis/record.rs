@@ -58,9 +58,9 @@ impl Regime {
 /// Energies [J] of a run: the state at its end and the work done and lost since its start.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct EnergyTotals {
-    /// Kinetic energy of the pin.
+    /// Kinetic energy of the pin and of an elastic disk.
     pub kinetic_j: f64,
-    /// Elastic energy of the pin.
+    /// Elastic energy of the pin and of an elastic disk.
     pub elastic_j: f64,
     /// Work of the normal load.
     pub load_work_j: f64,
@@ -197,12 +197,210 @@ impl JobRecord {
     ///
     /// JSON has no such number: it would be stored as null, and nobody could read the record again.
     pub fn non_finite_figure(&self) -> Option<String> {
-        let text = serde_json::to_string(self).ok()?;
-        let mut reader = serde_json::Deserializer::from_str(&text);
-        match serde_path_to_error::deserialize::<_, Self>(&mut reader) {
-            Ok(read) if read == *self => None,
-            Ok(_) => Some("a figure".to_owned()),
-            Err(error) => Some(error.path().to_string()),
+        self.figures().into_iter().find(|(_, value)| !value.is_finite()).map(|(path, _)| path)
+    }
+
+    /// Every real number of the record with its path. All fields are named here, so that none can be forgotten.
+    fn figures(&self) -> Vec<(String, f64)> {
+        let Self {
+            outcome: _,
+            regime: _,
+            mu_star,
+            mu_star_se,
+            mu_star_contact,
+            frequency_hz,
+            stick_share,
+            slip_share,
+            separated_share,
+            n_over_f_min,
+            n_over_f_max,
+            sigma_n_max_pa,
+            slip_speed_max_m_s,
+            lift_max_m,
+            cycles: _,
+            crossings_per_cycle: _,
+            simulated_s,
+            window_start_s,
+            steps: _,
+            time_step_s,
+            time_step_limit_s,
+            clamp_width_m,
+            energy_residual,
+            macroscopic_identity_residual,
+            energy_identity_residual,
+            contact_loss_share,
+            mu_reduction_stick,
+            mu_reduction_slip,
+            growth_rate_per_s,
+            obstacle,
+            disk,
+            energy,
+            nodes,
+        } = self;
+        let mut figures = vec![
+            ("mu_star".to_owned(), *mu_star),
+            ("mu_star_se".to_owned(), *mu_star_se),
+            ("mu_star_contact".to_owned(), *mu_star_contact),
+            ("stick_share".to_owned(), *stick_share),
+            ("slip_share".to_owned(), *slip_share),
+            ("separated_share".to_owned(), *separated_share),
+            ("n_over_f_min".to_owned(), *n_over_f_min),
+            ("n_over_f_max".to_owned(), *n_over_f_max),
+            ("sigma_n_max_pa".to_owned(), *sigma_n_max_pa),
+            ("slip_speed_max_m_s".to_owned(), *slip_speed_max_m_s),
+            ("lift_max_m".to_owned(), *lift_max_m),
+            ("simulated_s".to_owned(), *simulated_s),
+            ("window_start_s".to_owned(), *window_start_s),
+            ("time_step_s".to_owned(), *time_step_s),
+            ("time_step_limit_s".to_owned(), *time_step_limit_s),
+            ("clamp_width_m".to_owned(), *clamp_width_m),
+            ("energy_residual".to_owned(), *energy_residual),
+            ("macroscopic_identity_residual".to_owned(), *macroscopic_identity_residual),
+            ("energy_identity_residual".to_owned(), *energy_identity_residual),
+            ("contact_loss_share".to_owned(), *contact_loss_share),
+            ("mu_reduction_stick".to_owned(), *mu_reduction_stick),
+            ("mu_reduction_slip".to_owned(), *mu_reduction_slip),
+        ];
+        figures.extend(frequency_hz.map(|value| ("frequency_hz".to_owned(), value)));
+        figures.extend(growth_rate_per_s.map(|value| ("growth_rate_per_s".to_owned(), value)));
+        if let Some(Obstacle::Unsteady { figure: _, spread, drift }) = obstacle {
+            figures.push(("obstacle.spread".to_owned(), *spread));
+            figures.push(("obstacle.drift".to_owned(), *drift));
         }
+        if let Some(disk) = disk {
+            let ElasticDisk {
+                elements: _,
+                track_element_m,
+                longest_edge_m,
+                stages: _,
+                sweeps_mean,
+                sweeps_max,
+                residual_max,
+            } = disk;
+            let edges = track_element_m.iter().enumerate();
+            figures.extend(edges.map(|(i, value)| (format!("disk.track_element_m[{i}]"), *value)));
+            figures.extend([
+                ("disk.longest_edge_m".to_owned(), *longest_edge_m),
+                ("disk.sweeps_mean".to_owned(), *sweeps_mean),
+                ("disk.sweeps_max".to_owned(), *sweeps_max),
+                ("disk.residual_max".to_owned(), *residual_max),
+            ]);
+        }
+        let EnergyTotals {
+            kinetic_j,
+            elastic_j,
+            load_work_j,
+            drive_work_j,
+            friction_j,
+            damping_j,
+            contact_loss_j,
+        } = energy;
+        figures.extend([
+            ("energy.kinetic_j".to_owned(), *kinetic_j),
+            ("energy.elastic_j".to_owned(), *elastic_j),
+            ("energy.load_work_j".to_owned(), *load_work_j),
+            ("energy.drive_work_j".to_owned(), *drive_work_j),
+            ("energy.friction_j".to_owned(), *friction_j),
+            ("energy.damping_j".to_owned(), *damping_j),
+            ("energy.contact_loss_j".to_owned(), *contact_loss_j),
+        ]);
+        for (i, node) in nodes.iter().enumerate() {
+            let ObservedNode { name: _, y_peak_to_peak_m, lift_max_m, sigma_n_max_pa, slip_speed_max_m_s } =
+                node;
+            figures.extend([
+                (format!("nodes[{i}].y_peak_to_peak_m"), *y_peak_to_peak_m),
+                (format!("nodes[{i}].lift_max_m"), *lift_max_m),
+                (format!("nodes[{i}].sigma_n_max_pa"), *sigma_n_max_pa),
+                (format!("nodes[{i}].slip_speed_max_m_s"), *slip_speed_max_m_s),
+            ]);
+        }
+        figures
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use serde_json::Value;
+
+    /// A record in which nothing is missing.
+    fn full() -> JobRecord {
+        let disk = ElasticDisk {
+            elements: [1, 2, 3],
+            track_element_m: [0.1, 0.2, 0.3],
+            longest_edge_m: 0.5,
+            stages: 2,
+            sweeps_mean: 4.5,
+            sweeps_max: 7.0,
+            residual_max: 1e-12,
+        };
+        let node = ObservedNode {
+            name: "front_centre".to_owned(),
+            y_peak_to_peak_m: 1e-6,
+            lift_max_m: 1e-7,
+            sigma_n_max_pa: 1e6,
+            slip_speed_max_m_s: 0.1,
+        };
+        JobRecord {
+            outcome: Outcome::NotPeriodic,
+            regime: Regime::Undecided,
+            mu_star: 0.3,
+            mu_star_se: 0.001,
+            mu_star_contact: 0.3,
+            frequency_hz: Some(15e3),
+            stick_share: 0.25,
+            slip_share: 0.5,
+            separated_share: 0.25,
+            n_over_f_min: 0.5,
+            n_over_f_max: 1.5,
+            sigma_n_max_pa: 1e6,
+            slip_speed_max_m_s: 0.1,
+            lift_max_m: 1e-7,
+            cycles: 20,
+            crossings_per_cycle: 1,
+            simulated_s: 0.01,
+            window_start_s: 0.005,
+            steps: 40_000,
+            time_step_s: 2.5e-7,
+            time_step_limit_s: 5e-7,
+            clamp_width_m: 0.001,
+            energy_residual: 1e-9,
+            macroscopic_identity_residual: 1e-4,
+            energy_identity_residual: 1e-4,
+            contact_loss_share: 0.01,
+            mu_reduction_stick: 0.05,
+            mu_reduction_slip: 0.02,
+            growth_rate_per_s: Some(-200.0),
+            obstacle: Some(Obstacle::Unsteady { figure: "period".to_owned(), spread: 0.1, drift: 0.2 }),
+            disk: Some(disk),
+            energy: EnergyTotals::default(),
+            nodes: vec![node.clone(), node],
+        }
+    }
+
+    fn real_numbers(value: &Value) -> usize {
+        match value {
+            Value::Number(number) => usize::from(number.is_f64()),
+            Value::Array(values) => values.iter().map(real_numbers).sum(),
+            Value::Object(fields) => fields.values().map(real_numbers).sum(),
+            _ => 0,
+        }
+    }
+
+    /// Protects: every real number that a record stores is looked at, each once, and one that is not finite is named.
+    #[test]
+    fn every_number_is_looked_at() {
+        let record = full();
+        assert_eq!(record.non_finite_figure(), None);
+        let figures = record.figures();
+        assert_eq!(figures.len(), real_numbers(&serde_json::to_value(&record).unwrap()));
+        let paths: std::collections::BTreeSet<_> = figures.iter().map(|(path, _)| path).collect();
+        assert_eq!(paths.len(), figures.len(), "{figures:?}");
+
+        let mut record = full();
+        record.nodes[1].sigma_n_max_pa = f64::INFINITY;
+        assert_eq!(record.non_finite_figure().as_deref(), Some("nodes[1].sigma_n_max_pa"));
+        record.frequency_hz = Some(f64::NAN);
+        assert_eq!(record.non_finite_figure().as_deref(), Some("frequency_hz"));
     }
 }

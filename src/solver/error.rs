@@ -35,7 +35,7 @@ pub enum SolverError {
         /// Nearest width above [m].
         above_m: f64,
     },
-    /// The pin is not held in a direction in which it is driven.
+    /// The supports contradict each other, or the target does not allow them.
     #[error("inconsistent constraints: {0}")]
     Constraints(String),
     /// The stiffness matrix that was given is none.

@@ -104,6 +104,12 @@ impl Model {
         Self { clamp_width_m, ..self }
     }
 
+    /// The same model with other initial gaps \[m\].
+    #[cfg(test)]
+    pub(super) fn with_initial_gaps(self, gap_m: impl Fn(&SlaveNode) -> f64) -> Self {
+        Self { interface: self.interface.with_initial_gaps(gap_m), ..self }
+    }
+
     /// The pin.
     pub fn pin(&self) -> &BlockBody {
         &self.pin

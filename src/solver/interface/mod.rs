@@ -22,6 +22,8 @@ pub mod law;
 mod pair;
 pub mod solve;
 pub mod target;
+#[cfg(test)]
+mod tests;
 mod work;
 
 pub(crate) use contacts::LIMIT;

@@ -67,7 +67,7 @@ impl<const L: usize> DiagonalSolve<L> {
     /// Predicts and corrects all nodes that are free to move. Where the law transmits nothing, the square root and the
     /// quotient of the projection are left out.
     #[inline(always)]
-    fn pass<S: Simd, W: FrictionLaw<f64x8<S>>>(
+    pub(super) fn pass<S: Simd, W: FrictionLaw<f64x8<S>>>(
         &self,
         simd: S,
         law: W,

@@ -65,6 +65,20 @@ impl<const L: usize> TargetState<L> {
         }
     }
 
+    /// [`TargetState::solve`] on a rigid target with a law of the tests.
+    #[cfg(test)]
+    pub(super) fn solve_with(
+        &mut self,
+        law: super::tests::Telltale,
+        given: &Given<'_, L>,
+        face: &mut Face<'_, L>,
+        contacts: &mut Contacts<L>,
+    ) {
+        contacts.swap_increments();
+        let Kind::Rigid(solve) = &self.0 else { panic!("a rigid target") };
+        fearless_simd::dispatch!(fearless_simd::Level::new(), simd => solve.pass(simd, law, given, face, contacts));
+    }
+
     /// The elastic disk and its state, if the target is one.
     pub fn ring(&self) -> Option<(&RingBody, &RingState<L>)> {
         match &self.0 {

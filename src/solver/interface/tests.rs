@@ -1,0 +1,124 @@
+//! Initial gaps, and what a law is told.
+
+use super::law::{FrictionLaw, Law};
+use super::solve::{Given, TargetState};
+use super::{Contacts, LIMIT, Status};
+use crate::solver::body::block::BlockMotion;
+use crate::solver::{Drive, Model, State, step};
+use crate::spec::{DiskKind, JobSpec};
+use fearless_simd::{Simd, f64x8, prelude::*};
+
+const STEPS: usize = 400;
+const SHIFT_M: f64 = 1.0 / 4096.0;
+const DRIVE: Drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.7, force_n: 30.0, ramp_s: 2.0e-5 };
+
+fn model(disk: DiskKind) -> Model {
+    let mut spec = JobSpec::default();
+    spec.scene.pin.elements = [6, 8, 5];
+    spec.scene.clamp.width_m = 0.002;
+    spec.scene.disk.kind = disk;
+    spec.scene.disk.ring.element_size_m = 0.006;
+    spec.scene.disk.ring.coarse_element_size_m = 0.03;
+    Model::from_scene(&spec.scene, &spec.numerics).unwrap()
+}
+
+/// Protects: a gap is the initial gap plus the displacement, on both kinds of target. A pin that begins lower by its
+/// initial gap moves as one that begins on the target: contact forces, gaps and states are the same.
+#[test]
+fn a_pin_that_begins_lower_by_its_gap_moves_alike() {
+    for disk in [DiskKind::Rigid, DiskKind::Elastic] {
+        let flat = model(disk);
+        let raised = model(disk).with_initial_gaps(|_| SHIFT_M);
+        let mut on_target = State::<1>::at_rest(&flat);
+        let mut lowered = State::<1>::at_rest(&raised);
+        for node in 0..raised.mesh().node_count() {
+            lowered.u[3 * node + 2] = -SHIFT_M;
+        }
+        let mut closed = 0;
+        for n in 0..STEPS {
+            step(&flat, &[DRIVE], &mut on_target);
+            step(&raised, &[DRIVE], &mut lowered);
+            for slave in 0..flat.slaves().len() {
+                let [found, exact] = [&lowered, &on_target].map(|state| state.contacts.force_of(slave, 0));
+                // The displacements round at the size of the shift, which a stiffness m/Δt² of 10⁷ N/m and the steps
+                // since then turn into forces.
+                let stiffness = flat.slaves()[slave].mass_kg / flat.time_step_s().powi(2);
+                let rounding = 8.0 * (n + 1) as f64 * f64::EPSILON * SHIFT_M * stiffness;
+                for c in 0..3 {
+                    assert!(
+                        (found[c] - exact[c]).abs() <= rounding,
+                        "{disk:?}, step {n}: {found:?}, {exact:?}"
+                    );
+                }
+                let gap_error = lowered.contacts.gap_of(slave, 0) - on_target.contacts.gap_of(slave, 0);
+                assert!(
+                    gap_error.abs() <= 8.0 * (n + 1) as f64 * f64::EPSILON * SHIFT_M,
+                    "{disk:?}, step {n}"
+                );
+                closed += usize::from(exact[2] > 0.0);
+            }
+        }
+        assert!(closed > STEPS, "there is contact: {closed}");
+    }
+}
+
+/// Protects: a node touches only when it has closed its own gap.
+#[test]
+fn only_nodes_that_have_closed_their_gap_touch() {
+    let model =
+        model(DiskKind::Rigid).with_initial_gaps(|node| if node.position_m[0] > 0.0 { 1.0 } else { 0.0 });
+    let mut state = State::<1>::at_rest(&model);
+    for _ in 0..STEPS {
+        step(&model, &[DRIVE], &mut state);
+    }
+    let touches = |slave: usize| state.contacts.force_of(slave, 0)[2] > 0.0;
+    assert!((0..model.slaves().len()).any(touches));
+    for (slave, node) in model.slaves().iter().enumerate().filter(|(_, node)| node.position_m[0] > 0.0) {
+        assert!(!touches(slave), "{node:?}");
+        assert!(state.contacts.gap_of(slave, 0) > 0.9, "{node:?}");
+    }
+}
+
+/// A law that shows what it is told.
+#[derive(Clone, Copy)]
+pub(super) struct Telltale;
+
+impl<S: Simd> FrictionLaw<f64x8<S>> for Telltale {
+    fn limit_n(&self, normal_n: f64x8<S>, increment_m: [f64x8<S>; 2], slipped: f64x8<S>) -> f64x8<S> {
+        let simd = normal_n.simd;
+        normal_n
+            + f64x8::splat(simd, 1.0e3) * slipped
+            + f64x8::splat(simd, 1.0e9) * (increment_m[0] + increment_m[1])
+    }
+}
+
+/// Protects: a law is told the normal force of this step, and of the step before the increment and whether the node
+/// slipped. The limit is stored beside the force.
+#[test]
+fn a_law_is_told_of_the_step_before() {
+    let model = model(DiskKind::Rigid);
+    let mut state = State::<1>::at_rest(&model);
+    for _ in 0..STEPS {
+        step(&model, &[DRIVE], &mut state);
+    }
+    let before: Contacts<1> = state.contacts.clone();
+    let steps_done = [state.steps_done(0)];
+    let factors = model.scheme().step_factors(&steps_done);
+    let given = Given { factors: &factors, drives: &[DRIVE], steps_done: &steps_done };
+    let motion = BlockMotion::<1>::new(model.pin());
+    let mut target = TargetState::<1>::at_rest(model.interface(), model.target());
+    let (mut u, mut p) = (state.u.clone(), state.p.clone());
+    target.solve_with(Telltale, &given, &mut motion.face(&mut u, &mut p), &mut state.contacts);
+    let mut slipped_nodes = 0;
+    for slave in 0..model.slaves().len() {
+        let place = before.status.place(slave);
+        let slipped = before.status.at(place, Status::Slips as usize)[0];
+        let [x, y, _] = before.increment_of(slave, 0);
+        let normal = state.contacts.force_of(slave, 0)[2];
+        let limit = state.contacts.friction.at(place, LIMIT)[0];
+        assert_eq!(limit, (normal + 1.0e3 * slipped) + 1.0e9 * (x + y), "slave node {slave}");
+        assert_eq!(limit, state.contacts.friction_limit_of(slave, 0));
+        slipped_nodes += usize::from(slipped > 0.0);
+    }
+    assert!(slipped_nodes > 0 && slipped_nodes < model.slaves().len(), "{slipped_nodes}");
+}
