@@ -2,8 +2,8 @@
 """Writes docs/accuracy.md, docs/work_precision.svg and src/study/presets.json: how accurate the results are.
 
 Runs the work_precision studies one job at a time (their run times are part of the result), the mesh
-convergence, the scans of step and damping and the presets. Every verdict follows from a criterion that
-is stated beside it.
+convergence, the scans of step and damping, and the presets. Every verdict follows from a criterion that
+the page states.
 """
 
 import csv
@@ -15,11 +15,11 @@ import runs
 
 # Largest relative error of mu* that is asked for.
 WANTED = 0.01
-# Relative change of the frequency between neighbours of a scan beyond which they are on different limit cycles; the
-# mesh and step errors of the frequency on one limit cycle are below it.
+# Two neighbours of a scan are on different limit cycles if their frequencies differ by more than this (relative). The
+# mesh and step errors of the frequency on one limit cycle are smaller.
 SUDDEN = 0.01
 SPEEDS = [2, 7, 12, 35]
-# What the presets are measured by: a third finer than the finest preset.
+# The presets are compared with this mesh, which is a third finer than the finest preset.
 MEASURE = {"elements": [48, 60, 40], "safety_factor": 0.8}
 COARSER = [36, 45, 30]
 TIMED = ["work_precision", "work_precision_damping", "work_precision_detection"]
@@ -97,7 +97,7 @@ def measure_presets():
     rows = runs.sweep("studies/mesh_convergence_reference.json", "convergence.db")
     true = cases([row for row in rows if row["elements"] == MEASURE["elements"]])
     coarser = cases([row for row in rows if row["elements"] == COARSER])
-    # What first order leaves beyond the finest mesh, speed by speed.
+    # The error of the finest mesh at each speed, if it falls with first order.
     ratio = MEASURE["elements"][0] / COARSER[0]
     for finest, case in zip(true, coarser):
         finest["mu_star_uncertainty"] = mu_star_error(case, finest) / (ratio - 1)
@@ -172,7 +172,7 @@ def figure7_page(evidence):
     true = evidence["reference"]["cases"]
 
     def within(p):
-        """Speeds at which the error, with what may lie beyond the finest mesh, is within WANTED."""
+        """Speeds at which the error plus that of the finest mesh is within WANTED."""
         return [a["omega_rpm"] for a, b in zip(p["cases"], true)
                 if mu_star_error(a, b) + b["mu_star_uncertainty"] <= WANTED]
 
@@ -224,7 +224,7 @@ def work_page():
 
 
 def early_page(jobs):
-    """What stopping early costs and saves, over the pairs of the product study."""
+    """What stopping early changes and saves, over the pairs of the product study."""
     def settings(job):
         return job["elements"], job["safety_factor"], job["time_step_s"], job["beta2"], job["beta_r_s"]
 
@@ -280,7 +280,7 @@ def mesh_table(study):
 
 
 def beyond(change, sizes):
-    """What a last change of mu* leaves to the limit, if the error falls with first or second order."""
+    """The error of the finest mesh for a last change of mu*, if the error falls with first or second order."""
     first, second = (change / ((sizes[-2] / sizes[-1]) ** order - 1) for order in (1, 2))
     return ("Where the order is not clean, only the size of\nthe error of the finest mesh is known: "
             f"{percent(first, 1)} if the error falls with first order, {percent(second, 1)} if with second.\n"
@@ -302,7 +302,7 @@ def mesh_page():
 
 
 def damping_page(worst, by_damping):
-    """Whether more damping makes the mesh converge: then it is short waves, and not the code, that hinder it."""
+    """Whether mu* converges with more damping; then short waves hinder convergence, and not the code."""
     little, much = worst[5e-8], worst[2e-7]
     if much <= WANTED / 2 < little:
         return (
@@ -329,7 +329,7 @@ def scans_page():
     second = [row for row in steps if row["ramp_s"] == 1e-3]
 
     def jump(rows, value):
-        """The neighbours with the largest change of mu*, in words, and whether it is a sudden one."""
+        """The neighbours with the largest change of mu*, in words, and whether the change is sudden."""
         pairs = [(abs(b["mu_star"] / a["mu_star"] - 1), a, b) for a, b in zip(rows, rows[1:])]
         size, a, b = max(pairs, key=lambda pair: pair[0])
         others = sorted(pair[0] for pair in pairs)[-2]

@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/reproduction.md: the figures of the paper beside ours, for its reference job, with our pictures.
+"""Writes docs/reproduction.md: compares the figures of the paper with ours, for its reference job, with our pictures.
 
 Runs `inspect` at mu = 0.4, 7 rpm of studies/figure7.json, on the mesh of that study and on the draft's, and its overlay
 over the speeds of the paper's Figure 8. What the paper shows and the words of the comparison are written here; every number
@@ -13,11 +13,11 @@ import shutil
 import runs
 
 STUDY = str(runs.ROOT / "studies" / "figure7.json")
-# Behind the front edge, where no mesh makes a stress of its own; the paper's node 1 is not exactly located.
+# Behind the front edge, where the stress does not grow with the mesh. The paper does not say exactly where its node 1 is.
 INSIDE = "0,-6"
 SPEEDS = [2, 4, 6, 7, 15, 35]
 PICTURES = runs.ROOT / "docs" / "reproduction"
-# The trajectories of all nodes are a large drawing: `inspect` draws them for whoever wants to see them.
+# figure3a, the trajectories of all nodes, is left out because it is large; `inspect` draws it.
 SHOWN = ["figure2a", "figure2b", "figure3b", "figure4", "figure5", "wave"]
 UM, US, MM_S, MPA = 1e6, 1e6, 1e3, 1e-6
 
