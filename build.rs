@@ -1,5 +1,5 @@
-//! Tells the program what it was built from: the commit, which is stored with every result, and a hash of the sources,
-//! which tells two builds of a modified commit apart.
+//! Gives the program two facts about its own build: the commit, which is stored with every result, and a hash of the
+//! sources, which differs between two builds of a modified commit.
 
 use std::hash::{DefaultHasher, Hasher};
 use std::path::Path;
@@ -8,7 +8,7 @@ use std::process::Command;
 const SOURCES: [&str; 5] = ["build.rs", "Cargo.toml", "Cargo.lock", "migrations", "src"];
 
 fn main() {
-    // The commit changes with HEAD or with the branch it names, what is modified with the sources.
+    // The commit changes when HEAD changes, or the branch that HEAD names. Modifications change the sources below.
     for name in ["HEAD", "packed-refs"] {
         watch(&["rev-parse", "--git-path", name]);
     }
@@ -27,7 +27,7 @@ fn main() {
     println!("cargo::rustc-env=TRIBOSWEEP_COMMIT={commit}{suffix}");
 }
 
-/// Adds a file, or all files below a folder in the order of their names.
+/// Adds a file to the hash, or all files below a folder in the order of their names.
 fn hash(path: &Path, hasher: &mut DefaultHasher) {
     hasher.write(path.to_string_lossy().as_bytes());
     if let Ok(entries) = std::fs::read_dir(path) {
@@ -41,13 +41,13 @@ fn hash(path: &Path, hasher: &mut DefaultHasher) {
     }
 }
 
-/// What git answers; nothing if there is no git, or the sources are not in a repository.
+/// The output of a git command; `None` if there is no git, or the sources are not in a repository.
 fn git(arguments: &[&str]) -> Option<String> {
     let output = Command::new("git").args(arguments).output().ok()?;
     output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().to_owned())
 }
 
-/// A file that is not there would make every build a new one.
+/// Rebuilds when the file that git names changes. A path that does not exist would make cargo rebuild every time.
 fn watch(arguments: &[&str]) {
     if let Some(path) = git(arguments).filter(|path| Path::new(path).exists()) {
         println!("cargo::rerun-if-changed={path}");

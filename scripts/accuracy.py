@@ -2,8 +2,8 @@
 """Writes docs/accuracy.md, docs/work_precision.svg and src/study/presets.json: how accurate the results are.
 
 Runs the work_precision studies one job at a time (their run times are part of the result), the mesh
-convergence, the scans of step and damping and the presets. Every verdict follows from a criterion that
-is stated beside it.
+convergence, the scans of step and damping, and the presets. Every verdict follows from a criterion that
+the page states.
 """
 
 import csv
@@ -15,11 +15,11 @@ import runs
 
 # Largest relative error of mu* that is asked for.
 WANTED = 0.01
-# Relative change of the frequency between neighbours of a scan beyond which they are on different limit cycles; the
-# mesh and step errors of the frequency on one limit cycle are below it.
+# Two neighbours of a scan are on different limit cycles if their frequencies differ by more than this (relative). The
+# mesh and step errors of the frequency on one limit cycle are smaller.
 SUDDEN = 0.01
 SPEEDS = [2, 7, 12, 35]
-# What the presets are measured by: a third finer than the finest preset.
+# The presets are compared with this mesh, which is a third finer than the finest preset.
 MEASURE = {"elements": [48, 60, 40], "safety_factor": 0.8}
 COARSER = [36, 45, 30]
 TIMED = ["work_precision", "work_precision_damping", "work_precision_detection"]
@@ -97,7 +97,7 @@ def measure_presets():
     rows = runs.sweep("studies/mesh_convergence_reference.json", "convergence.db")
     true = cases([row for row in rows if row["elements"] == MEASURE["elements"]])
     coarser = cases([row for row in rows if row["elements"] == COARSER])
-    # What first order leaves beyond the finest mesh, speed by speed.
+    # The error of the finest mesh at each speed, if it falls with first order.
     ratio = MEASURE["elements"][0] / COARSER[0]
     for finest, case in zip(true, coarser):
         finest["mu_star_uncertainty"] = mu_star_error(case, finest) / (ratio - 1)
@@ -172,7 +172,7 @@ def figure7_page(evidence):
     true = evidence["reference"]["cases"]
 
     def within(p):
-        """Speeds at which the error, with what may lie beyond the finest mesh, is within WANTED."""
+        """Speeds at which the error plus that of the finest mesh is within WANTED."""
         return [a["omega_rpm"] for a, b in zip(p["cases"], true)
                 if mu_star_error(a, b) + b["mu_star_uncertainty"] <= WANTED]
 
@@ -183,19 +183,19 @@ def figure7_page(evidence):
     if own:
         text += (f"Its largest error of μ\\* over the four speeds is {percent(own['mu_star_error'])}: "
                  + ("within" if own["mu_star_error"] <= WANTED else "**not** within")
-                 + f" the {percent(WANTED, 0)} that is wanted. What may lie beyond the finest mesh comes on top, see the last column above;\n"
-                 "with it:\n\n")
+                 + f" the {percent(WANTED, 0)} that is wanted. The error of the finest mesh itself comes on top (last column above).\n"
+                 "With both together:\n\n")
     if good:
-        text += (f"* the cheapest preset within it at all speeds is `{good[0]['name']}`, at {good[0]['relative_cost']:.0f} times the cost;\n")
+        text += (f"* the cheapest preset within the wanted error at all speeds is `{good[0]['name']}`, at {good[0]['relative_cost']:.0f} times the cost;\n")
     else:
-        text += "* no preset is within it at all speeds for certain;\n"
+        text += "* no preset is certainly within the wanted error at all speeds;\n"
     for p in evidence["presets"]:
         speeds = [f"{speed:g}" for speed in within(p)]
         text += f"* `{p['name']}` is within it at {len(speeds)} of {len(true)} speeds" + (
             f" ({', '.join(speeds)} rpm).\n" if speeds else ".\n")
     text += "\n"
-    text += ("A finer mesh for the whole sweep costs the fourth power of its refinement; the sweep takes the finest that still\n"
-             "gives the figure in minutes on two cores.\n" if own and own["mu_star_error"] > WANTED else "")
+    text += ("The cost of the whole sweep grows with the fourth power of the mesh's refinement. The sweep takes the finest mesh that\n"
+             "still gives the figure in minutes on two cores.\n" if own and own["mu_star_error"] > WANTED else "")
     return text
 
 
@@ -215,7 +215,7 @@ def work_page():
              + percent(max(abs(float(job["mu_star_error"])), float(job["mu_star_resolution"]))),
              f"{float(job['wall_s']):.2f}"] for job in front]
     return (
-        "![relative error of μ* against solver time](work_precision.svg)\n\nThe front:\n\n"
+        "![relative error of μ* against solver time](work_precision.svg)\n\nThe Pareto front:\n\n"
         + runs.table(["mesh", "Δt [µs]", "stopped early", "tolerance, drift", "error of μ\\*", "time [s]"], rows)
         + "\nAll jobs, as `tribosweep pareto " + " ".join(TIMED) + "` prints them:\n\n"
         + "#" + printed,
@@ -224,7 +224,7 @@ def work_page():
 
 
 def early_page(jobs):
-    """What stopping early costs and saves, over the pairs of the product study."""
+    """What stopping early changes and saves, over the pairs of the product study."""
     def settings(job):
         return job["elements"], job["safety_factor"], job["time_step_s"], job["beta2"], job["beta_r_s"]
 
@@ -280,11 +280,11 @@ def mesh_table(study):
 
 
 def beyond(change, sizes):
-    """What a last change of mu* leaves to the limit, if the error falls with first or second order."""
+    """The error of the finest mesh for a last change of mu*, if the error falls with first or second order."""
     first, second = (change / ((sizes[-2] / sizes[-1]) ** order - 1) for order in (1, 2))
-    return ("Where the order is not clean, what lies beyond\nthe finest mesh is known only by its size: "
+    return ("Where the order is not clean, only the size of\nthe error of the finest mesh is known: "
             f"{percent(first, 1)} if the error falls with first order, {percent(second, 1)} if with second.\n"
-            "The errors of the presets, which are against that mesh, have to be read with it.")
+            "This error comes on top of the errors of the presets, which are measured against that mesh.")
 
 
 def mesh_page():
@@ -302,16 +302,16 @@ def mesh_page():
 
 
 def damping_page(worst, by_damping):
-    """Whether more damping makes the mesh converge: then it is short waves, and not the code, that hinder it."""
+    """Whether mu* converges with more damping; then short waves hinder convergence, and not the code."""
     little, much = worst[5e-8], worst[2e-7]
     if much <= WANTED / 2 < little:
         return (
             "At the reference damping the short waves are hardly damped (β_R ω/2 is 0.2 % of critical at 14.5 kHz, 1.4 % at\n"
-            "90 kHz), and each finer mesh brings shorter ones, which the contact's opening and closing excites. With four times\n"
-            f"the damping the same code settles within {percent(much)} at every speed, which speaks for lightly damped short waves of\n"
-            "the model, rather than the code, as what keeps μ\\* from settling there; no spectrum was taken to show it. The line of\n"
-            f"{percent(WANTED / 2, 1)} is a choice: half of the accuracy that is wanted. The damping itself, which the paper does not give,\n"
-            f"moves μ\\* by up to {percent(by_damping)} on the finest mesh.\n"
+            "90 kHz), and each finer mesh adds shorter ones, which the contact's opening and closing excites. With four times\n"
+            f"the damping the same code settles within {percent(much)} at every speed. This suggests that lightly damped short waves of\n"
+            "the model, and not the code, keep μ\\* from settling at the reference damping; no spectrum was taken to show it.\n"
+            f"The limit of {percent(WANTED / 2, 1)} is a choice: half of the accuracy that is wanted. The damping itself, which the paper does\n"
+            f"not give, changes μ\\* by up to {percent(by_damping)} on the finest mesh.\n"
         )
     return (f"The largest last change is {percent(little)} at the reference damping and {percent(much)} at four times it: "
             + ("both are settled.\n" if little <= WANTED / 2 else
@@ -329,7 +329,7 @@ def scans_page():
     second = [row for row in steps if row["ramp_s"] == 1e-3]
 
     def jump(rows, value):
-        """The neighbours with the largest change of mu*, in words, and whether it is a sudden one."""
+        """The neighbours with the largest change of mu*, in words, and whether the change is sudden."""
         pairs = [(abs(b["mu_star"] / a["mu_star"] - 1), a, b) for a, b in zip(rows, rows[1:])]
         size, a, b = max(pairs, key=lambda pair: pair[0])
         others = sorted(pair[0] for pair in pairs)[-2]
@@ -360,9 +360,10 @@ def scans_page():
     if step_jumps and damping_jumps:
         text += (
             "\nStep and damping each move the contact across a sudden change between two limit cycles, which differ in μ\\*, in\n"
-            "frequency and in separation. So near it a coarse step or mesh has not a small error but another limit cycle:\n"
-            "this, and not the order of the scheme, is what limits μ\\* at this speed. It happens at a fixed small step with the\n"
-            "damping alone, so it belongs to the equations on this mesh and is not made by the time integration.\n"
+            "frequency and in separation. Near this change, a coarse step or mesh does not cause a small error: it leads to another\n"
+            "limit cycle. This, and not the order of the scheme, limits the accuracy of μ\\* at this speed. The change also happens at a\n"
+            "fixed small step when only the damping varies, so it is a property of the equations on this mesh and not of the time\n"
+            "integration.\n"
         )
     return text
 
@@ -383,26 +384,27 @@ def main():
 def page(evidence, work, early, convergence, scans):
     return f"""# Accuracy
 
-Written by `scripts/accuracy.py`; do not edit. μ = 0.4 and the reference scene throughout, with a clamp of 2 mm instead of
-1 mm where a 6 × 8 × 5 mesh takes part: a clamp is a whole number of elements wide.
+Written by `scripts/accuracy.py`; do not edit. All jobs use μ = 0.4 and the reference scene. Where a 6 × 8 × 5 mesh takes
+part, the clamp is 2 mm wide instead of 1 mm, because a clamp must be a whole number of elements wide.
 
 ## Presets
 
-`"preset": "draft"` in a study sets mesh, time step and detection; fields that the study gives itself go before it.
-`--preset draft` with `solve` goes before the study, and only `--set` before it. `tribosweep presets` prints this table.
+`"preset": "draft"` in a study sets mesh, time step and detection; fields that the study itself gives take precedence over it.
+`--preset draft` with `solve` takes precedence over the study, and `--set` over both. `tribosweep presets` prints this table.
 
 {presets_page(evidence)}
 The errors are against {mesh(MEASURE['elements'])} elements (safety factor {MEASURE['safety_factor']}, the last 40 % of 9 ms), which is not the limit
 itself: if the error falls with first order from {mesh(COARSER)} elements, up to {percent(evidence['reference']['mu_star_uncertainty'])} lies beyond it (last column;
-with second order less than half of that).
+less than half of that if it falls with second order).
 
 ## The settings of figure7
 
 {figure7_page(evidence)}
 ## Error against run time
 
-12 rpm, clamp 2 mm, solver time of single jobs one after another. β₂ > ½ is damping by the integrator, which vanishes
-with the step; it is measured against the model's β_R = 5·10⁻⁸ s, so what its rows show is mostly the difference of the models.
+12 rpm, clamp 2 mm. The time is the solver time of single jobs that ran one after another. β₂ > ½ is damping by the
+integrator, which vanishes with the time step. Its rows are compared with the model's damping β_R = 5·10⁻⁸ s, so they show
+mostly the difference between the two models.
 
 {work}
 ## What stopping early changes
@@ -421,17 +423,18 @@ frequency changes by more than {percent(SUDDEN, 0)} between them.
 
 Three levels of refinement give an order when the differences of the figure have one sign, exceed twice their standard
 error over cycles, and the order is within 0.5 … 3; with a fourth level the order of the three coarser must be within 0.5 of it.
-Then the figure is extrapolated (Richardson) and the size of the correction is its uncertainty; otherwise the finest
-level stands, with the last difference. Errors below the uncertainty of the reference and the standard errors are not resolved (`≤`).
+Then the figure is extrapolated (Richardson), and the size of the correction is its uncertainty. Otherwise the value of the
+finest level is used, and the last difference is its uncertainty. Errors below the uncertainty of the reference and the
+standard errors are not resolved (`≤`).
 
 ## Not verified
 
 * Errors at other friction coefficients, loads, materials and clamps. The presets are measured at μ = 0.4 on one scene.
-* The state at β_R → 0: what an undamped pin does on a fine mesh.
+* The state at β_R → 0, that is, an undamped pin on a fine mesh.
 * Uniqueness of the periodic state beyond the load ramps above: other initial states could reach other limit cycles.
 * The normal stress at the edges of the contact and at the clamp: both are singular and grow with refinement.
 * Aperiodic states (on 12 × 15 × 10 elements μ = 0.6 at 75 and 100 rpm): their averages have a standard error over cycles but no limit in the sense above.
-* The shares of stick, slip and separation have no standard error over cycles; their resolution is that of the reference alone.
+* The shares of stick, slip and separation have no standard error over cycles; their resolution follows from the reference alone.
 """
 
 

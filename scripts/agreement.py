@@ -91,8 +91,8 @@ def time_steps():
         runs.table(["Δt [s]", "μ*, independent", "μ*", "difference"], lines)
         + f"\nThe first three steps alone give the observed order {math.log2(first / second):.2f} and (Aitken) the limit "
         f"{limit:.4f}; the step of 5.5·10⁻⁸ s gives {finest:.4f}, first-order Richardson from the second and third "
-        f"{2 * fine - middle:.4f}. The order is between first and second: the contact closes and sticks within a "
-        "step (first order), the integrator in between is of second order.\n"
+        f"{2 * fine - middle:.4f}. The order is between one and two: nodes close and stick "
+        "within a step, which is of first order, and the integrator in between is of second order.\n"
     )
 
 
@@ -137,8 +137,8 @@ def early_stop():
               f"{row['mu_star']:.4f}", f"{change:.5f}"] for change, row in changes[:6]]
     median = changes[len(changes) // 2][0]
     return (
-        f"The points of `figure7` on 12 × 15 × 10 elements: all {len(changes)} jobs that stopped early, against the mean over the last 40 % of 20 ms of "
-        f"the same job: the median change of μ* is {median:.5f}, the largest {changes[0][0]:.5f}. Simulated time: "
+        f"The points of `figure7` on 12 × 15 × 10 elements. Each of the {len(changes)} jobs that stopped early is compared with the mean over the last "
+        f"40 % of 20 ms of the same job. The median change of μ* is {median:.5f}, the largest {changes[0][0]:.5f}. Simulated time: "
         f"{simulated[0]:.2f} s instead of {simulated[1]:.2f} s. The largest changes:\n\n"
         + runs.table(["μ", "ω [rpm]", "status", "stopped at [ms]", "μ*", "change"], worst)
     )
@@ -149,14 +149,15 @@ def main():
     runs.write(
         "agreement.md",
         "# Agreement with an independent solver\n\n"
-        "Written by `scripts/agreement.py`; do not edit. The independent values come from a separate throw-away\n"
-        "implementation of the same model, made before this program. Scene: the reference scene with a 2 mm clamp on\n"
+        "Written by `scripts/agreement.py`; do not edit. The independent values come from a separate\n"
+        "implementation of the same model, which was written before this program and then thrown away. Scene: the reference\n"
+        "scene with a 2 mm clamp on\n"
         "6 × 8 × 5 elements, F ramped over 1 ms, β_R = 2·10⁻⁸ s, central difference, Δt = 1.75·10⁻⁶ s, statistics over\n"
         "the last 40 % of 20 ms.\n\n"
         "## Speeds\n\n" + speeds()
-        + "\nThe last column stops at the periodic state instead: status, simulated time and change of μ*.\n\n"
+        + "\nThe last column is for runs that stop at the periodic state: status, simulated time and change of μ*.\n\n"
         "At 0.5 rpm this lightly damped case does not become periodic in 20 ms: the amplitude of N beats over about\n"
-        "five cycles, which is reported as `not_periodic`, with the same averages.\n\n"
+        "five cycles. The program reports it as `not_periodic`, with the same averages.\n\n"
         "## Time step (7 rpm)\n\n" + time_steps()
         + "\n## Mesh (7 rpm, clamp 2 mm, β_R = 5·10⁻⁸ s, 10 ms) and the reference clamp\n\n" + meshes()
         + "\n## What stopping early changes\n\n" + early_stop(),

@@ -1,4 +1,4 @@
-"""What the scripts that set a sweep beside an undisturbed one have in common."""
+"""Shared by the scripts that compare a disturbed sweep with an undisturbed one."""
 
 import csv
 import io

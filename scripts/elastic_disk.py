@@ -77,9 +77,9 @@ under the track in the disk).
 
 {table}
 **The steel disk lowers the frequency by {min(down):.2f} to {max(down):.2f} %** and changes μ* by {min(change):+.4f} to
-{max(change):+.4f}. At 7 rpm the rigid disk's frequency is {gap:.1f} % above the paper's {PAPER_HZ} Hz; the elastic disk takes
-{closed:.2f} of these percent away. **It does not explain the difference from the paper.** That is what to expect: per area, steel
-is 26 times the pin's impedance and 210 times its modulus.
+{max(change):+.4f}. At 7 rpm the rigid disk's frequency is {gap:.1f} % above the paper's {PAPER_HZ} Hz; the elastic disk removes
+{closed:.2f} percentage points of this. **It does not explain the difference from the paper.** This is to be expected: per area, steel
+has 26 times the pin's impedance and 210 times its modulus.
 
 The twelve jobs took {seconds:.0f} s of thread time.
 """
@@ -96,16 +96,16 @@ def stiffness():
     away = [[abs(a - b) for a, b in zip(figures(row), figures(rigid))] for row in rows]
     return f"""## The limit of a rigid disk
 
-(At 7 rpm this pin's mesh has two limit cycles beside each other, on the rigid disk, too; which of them a run finds depends
-on its time step. So the comparisons from here on are made at 12 rpm, where there is one.)
+At 7 rpm two limit cycles exist side by side on this mesh of the pin, also with a rigid disk. Which of them a run finds
+depends on its time step. So the comparisons from here on are made at 12 rpm, where there is only one.
 
-12 rpm, μ = 0.4, 12 × 15 × 10 elements, disk elements of 5 mm, ρ of steel, all with the step 2·10⁻⁷ s: as E grows, every
-figure tends to the rigid disk's.
+12 rpm, μ = 0.4, 12 × 15 × 10 elements, disk elements of 5 mm, ρ of steel, all with the step 2·10⁻⁷ s. As E grows, every
+value tends to that of the rigid disk.
 
 {runs.table(["E disk [Pa]", *HEADER], lines)}
-From E of steel to forty times that the distance of μ* from the rigid disk's falls from {away[1][0]:.5f} to {away[3][0]:.5f}, of f from
-{away[1][1]:.1f} to {away[3][1]:.1f} Hz. (Cycles are averaged over whole runs of 14 ms; how far such averages repeat is in
-docs/accuracy.md.)
+If E grows from that of steel to forty times as much, the distance of μ* from the rigid disk's falls from {away[1][0]:.5f} to
+{away[3][0]:.5f}, and that of f from {away[1][1]:.1f} to {away[3][1]:.1f} Hz. (The averages are over the last 40 % of runs of 14 ms. [accuracy.md](accuracy.md)
+says how well such averages repeat.)
 """
 
 
@@ -144,10 +144,10 @@ def mesh():
 {runs.table(header, lines)}
 From 2.5 mm, the default, to half of that μ* changes by {step[0]:.4f} and f by {step[1]:.0f} Hz.
 
-**What bounds the run time**: a step on a rigid disk takes {rigid_us:.0f} µs here. What the elastic one adds grows with its nodes
-times its stages, that is with the products K x, but for the coarsest meshes, where the contact solve (one per step,
-whatever the disk) shows. The rows of K are general: 126 multiplications and as many additions a node between equal
-sectors, twice that elsewhere, against some 100 in all for a node of the pin.
+**What determines the run time**: a step on a rigid disk takes {rigid_us:.0f} µs here. The time that an elastic disk adds grows with its
+nodes times its stages, that is, with the products K x. Only on the coarsest meshes the contact solve matters as well (one per
+step, whatever the disk). The rows of K are general: a node between equal sectors takes 126 multiplications and as many
+additions, and a node elsewhere twice that. A node of the pin takes some 100 operations in all.
 """
 
 
@@ -167,9 +167,9 @@ The disk's own clock makes up to four stages in a step of the pin; the common cl
 2.5·10⁻⁷ s at most. 12 rpm, μ = 0.4, 12 × 15 × 10 elements, disk elements of 2.5 mm.
 
 {runs.table(["disk", "step [s]", *HEADER], rows)}
-What the stages change is to be read against what the step itself changes, for the rigid disk as for the elastic one. Ferguson
-patches change hardly anything here, because steel deflects by nanometres; what they do for the normal force on a
-soft disk is in docs/verification.md, R5.
+Compare the effect of the stages with the effect of the time step itself, for the rigid disk as for the elastic one. Ferguson
+patches change hardly anything here, because steel deflects by nanometres. [verification.md](verification.md), R5, shows what
+they do for the normal force on a soft disk.
 """
 
 
@@ -178,9 +178,9 @@ def main():
     text = f"""# The elastic disk
 
 Written by `scripts/elastic_disk.py`; do not edit. The paper's disk is a steel ring (radii 70 and 120 mm, 85 mm thick) that
-turns under the pin; `figure7` takes it for rigid. Here it is the body that it is (`"disk": {{"kind": "elastic"}}`): what
-that changes, and how far it is converged. What the solver does is in ARCHITECTURE.md, its verification in
-docs/verification.md.
+turns under the pin; `figure7` treats it as rigid. This page shows what changes if it is elastic
+(`"disk": {{"kind": "elastic"}}`), and how far the results are converged. [ARCHITECTURE.md](../ARCHITECTURE.md) describes the
+solver, [verification.md](verification.md) its verification.
 
 {column()}
 {stiffness()}
@@ -189,12 +189,12 @@ docs/verification.md.
 ## What is neglected
 
 * **Rotation.** The disk is formulated in the frame that turns with it, without Coriolis and centrifugal forces: at 100 rpm
-  2Ω/ω = 2·10⁻⁴ of the inertia forces at 15 kHz and (Ω/ω)² = 10⁻⁸. The constant centrifugal stretch, some nm, is left out
-  as well.
-* **Small displacements.** A slave node is placed on the target where it is undeformed, on the disk turned by ωt, and the
-  contact's normal is that of the undeformed top; slopes of the steel's surface are some 10⁻⁶.
-* **Damping** is the pin's β_R in both bodies. Steel has less of it.
-* **β₂ = ½ only.**
+  2Ω/ω = 2·10⁻⁴ of the inertia forces at 15 kHz and (Ω/ω)² = 10⁻⁸. The constant centrifugal stretch of some nm is
+  neglected as well.
+* **Small displacements.** The position of a slave node on the target is that of the undeformed bodies, with the disk turned
+  by ωt. The contact's normal is that of the undeformed top; slopes of the steel's surface are some 10⁻⁶.
+* **Damping** is the pin's β_R in both bodies. Steel is damped less.
+* **β₂** can only be ½ with an elastic disk.
 """
     runs.write("elastic_disk.md", text)
 

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """Compares an export of the mini study with its reference values.
 
-    scripts/nightly.py JOBS.csv FOLDER      compare; writes FOLDER/summary.md and FOLDER/nightly.csv
-    scripts/nightly.py JOBS.csv --accept    make these the reference values
+    python3 scripts/nightly.py JOBS.csv FOLDER      compare; writes FOLDER/summary.md and FOLDER/nightly.csv
+    python3 scripts/nightly.py JOBS.csv --accept    make these the reference values
 
-The reference is scripts/nightly_reference.csv. It is not the truth (the mesh is coarse) but what this program computes;
-whoever accepts another one says why in the commit. Only Python's standard library.
+The reference is scripts/nightly_reference.csv. It is not the truth, because the mesh is coarse: it is what this program
+computed when it was accepted. Whoever accepts new values says why in the commit. Needs only Python's standard library.
 """
 
 import csv
@@ -14,9 +14,9 @@ from pathlib import Path
 
 REFERENCE = Path(__file__).resolve().parent / "nightly_reference.csv"
 
-# What may differ without the physics being another one is the moment at which a run is found periodic and stops. What
-# that changes is measured in docs/accuracy.md ("What stopping early changes"), at the study's own detection settings;
-# these are the largest changes there, over all meshes and steps.
+# The moment at which a run is found periodic and stops may differ although the physics is the same. docs/accuracy.md
+# ("What stopping early changes") has what this changes with the study's own detection settings. These are the largest
+# changes there, over all meshes and steps.
 MU_STAR = 0.124e-2
 FREQUENCY = 0.016e-2
 SHARE = 0.0005
@@ -38,7 +38,7 @@ COLUMNS = POINT + SAME + list(TOLERANCES)
 
 
 def broken(why):
-    """Ends with a code that is not that of a drift."""
+    """Ends with another code than a drift does."""
     print(why, file=sys.stderr)
     sys.exit(2)
 
@@ -69,7 +69,7 @@ def compare_figure(name, found, expected):
 
 
 def compare(found, reference):
-    """A line a figure: point, figure, reference, found, difference, tolerance, verdict."""
+    """One line per value: point, figure, reference, found, difference, tolerance, verdict."""
     lines = []
     for point in sorted(set(found) | set(reference)):
         if point not in found or point not in reference:

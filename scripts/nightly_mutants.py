@@ -3,9 +3,9 @@
 
     python3 scripts/nightly_mutants.py [--keep]
 
-Copies the sources into target/mutants, runs scripts/nightly.sh there on the unchanged copy, which must pass, and on
-each mutant, which must be reported as drift. Compiles the library once a mutant: some minutes. Only Python's standard
-library; the copy is removed unless it is to be kept.
+Copies the sources into target/mutants and runs scripts/nightly.sh there: on the unchanged copy, which must pass, and on
+each mutant, which must be reported as a drift. Compiles the library once per mutant, which takes some minutes. Needs only
+Python's standard library. Removes the copy unless --keep is given.
 """
 
 import argparse
@@ -20,7 +20,7 @@ ROOT = Path(__file__).resolve().parent.parent
 COPY = ROOT / "target" / "mutants"
 COPIED = ["Cargo.toml", "Cargo.lock", "build.rs", "src", "benches", "tests", "migrations", "studies", "scripts"]
 
-# Name, file, text that occurs there once, and what stands in its place.
+# Name, file, text that must occur exactly once in the file, and its replacement.
 MUTANTS = [
     ("friction cone 1 % too wide", "src/solver/contact/coulomb.rs",
      "    let limit = mu * normal_n;\n    let trial =",
@@ -52,7 +52,7 @@ def copy():
 
 
 def nightly():
-    """The exit code, and the figures that drifted with how often they did."""
+    """The exit code, and how often each figure drifted."""
     environment = dict(os.environ, CARGO_TARGET_DIR=str(COPY / "target"))
     done = subprocess.run(["scripts/nightly.sh"], cwd=COPY, env=environment, capture_output=True, text=True)
     table = COPY / "target" / "nightly" / "nightly.csv"

@@ -217,12 +217,12 @@ def leading_end():
         for change in ({}, {"time_step_s": 2e-7}, {"elements": "24x30x20"})
     )
     return (
-        f"The leading end stands out: at 2 rpm its μ* is {plain['mu_star']:.3f}. It hardly depends on the numerics: with "
+        f"The leading end stands out: at 2 rpm its μ* is {plain['mu_star']:.3f}. This value hardly depends on the numerics: with "
         f"Δt = 2·10⁻⁷ s it is {small['mu_star']:.3f}, on 24 × 30 × 20 elements {fine['mu_star']:.3f}, and the identities' residuals "
         f"are {plain['macroscopic_identity_residual']:.0e} and {plain['energy_identity_residual']:.0e}. "
-        f"{100 * plain['stick_share']:.0f} % of the node-time sticks, and sticking takes off "
-        f"{plain['mu_reduction_stick']:.3f} of the {0.4 - plain['mu_star']:.3f}: N/F swings from {plain['n_over_f_min']:.2f} to "
-        f"{plain['n_over_f_max']:.2f} already at 2 rpm, where the reference clamp's goes from "
+        f"The nodes stick for {100 * plain['stick_share']:.0f} % of the node-time, and sticking causes "
+        f"{plain['mu_reduction_stick']:.3f} of the reduction of {0.4 - plain['mu_star']:.3f}. N/F swings from {plain['n_over_f_min']:.2f} to "
+        f"{plain['n_over_f_max']:.2f} already at 2 rpm; with the reference clamp it goes from "
         f"{reference['n_over_f_min']:.2f} to {reference['n_over_f_max']:.2f}.\n"
     )
 
@@ -242,9 +242,11 @@ def main():
         "2 µs, because the one-step force of a closing node is a property of the time step.\n\n"
         + table
         + "\n## Where the reduction of μ* comes from (μ = 0.4)\n\n"
-        "The macroscopic identity splits μ − μ* into what sticking nodes and what misaligned or reversed slip take off;\n"
-        "separation by itself takes nothing. The residuals are those of the identity and of the energy balance of the\n"
-        "window (drive + load = friction + damping + contact loss + change of stored energy); the contact loss is what closing\nand sticking nodes lose on a finite mesh and step, so the paper's ⟨T⟩V = friction + damping misses that share.\n\n"
+        "The macroscopic identity splits μ − μ* into two parts: the reduction by sticking nodes and the reduction by\n"
+        "misaligned or reversed slip. Separation by itself reduces nothing. The residuals are those of the identity and of the\n"
+        "energy balance of the window (drive + load = friction + damping + contact loss + change of stored energy). The contact\n"
+        "loss is the energy that closing and sticking nodes lose on a finite mesh with a finite step. The paper's identity\n"
+        "⟨T⟩V = friction + damping does not contain this share.\n\n"
         + reduction
         + "\n## Clamps\n\nμ* and frequency at μ = 0.4 for every named clamp, 1 mm wide (`studies/clamps.json`, 12 × 15 × 10 elements; `~` not periodic).\n\n"
         + clamps()

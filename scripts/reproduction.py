@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/reproduction.md: the figures of the paper beside ours, for its reference job, with our pictures.
+"""Writes docs/reproduction.md: compares the figures of the paper with ours, for its reference job, with our pictures.
 
 Runs `inspect` at mu = 0.4, 7 rpm of studies/figure7.json, on the mesh of that study and on the draft's, and its overlay
 over the speeds of the paper's Figure 8. What the paper shows and the words of the comparison are written here; every number
@@ -13,11 +13,11 @@ import shutil
 import runs
 
 STUDY = str(runs.ROOT / "studies" / "figure7.json")
-# Behind the front edge, where no mesh makes a stress of its own; the paper's node 1 is not exactly located.
+# Behind the front edge, where the stress does not grow with the mesh. The paper does not say exactly where its node 1 is.
 INSIDE = "0,-6"
 SPEEDS = [2, 4, 6, 7, 15, 35]
 PICTURES = runs.ROOT / "docs" / "reproduction"
-# The trajectories of all nodes are a large drawing: `inspect` draws them for whoever wants to see them.
+# figure3a, the trajectories of all nodes, is left out because it is large; `inspect` draws it.
 SHOWN = ["figure2a", "figure2b", "figure3b", "figure4", "figure5", "wave"]
 UM, US, MM_S, MPA = 1e6, 1e6, 1e3, 1e-6
 
@@ -176,28 +176,28 @@ def page():
         "contact local dynamics on macroscopic friction coefficient variation*, Revue européenne des éléments finis 14\n"
         "(2005) 305–321. Its reference job is μ = 0.4, 7 rpm, 30 N. Ours is\n\n"
         "```sh\ntribosweep inspect studies/figure7.json omega_rpm=7 mu=0.4 --node front_centre --node rear_centre --node 0,-6\n```\n\n"
-        f"on {elements} elements and a rigid disk; where the mesh matters the same on {draft_elements} (`--preset draft`) is\n"
-        "told. Times are those of the pictures: microseconds since the begin of what is shown. The paper's node 1 is at the\n"
-        "front of the contact and node 2 at the rear; ours are the centres of the front and the rear edge. Claims about\n"
-        "many jobs are in [physics.md](physics.md). Where numbers are compared the verdict is computed; what is said of\n"
-        "pictures is by eye.\n\n"
+        f"on {elements} elements and a rigid disk. Where the mesh matters, the value on {draft_elements} elements (`--preset draft`)\n"
+        "is given as well. Times are those of the pictures: microseconds since the beginning of the time that is shown. The\n"
+        "paper's node 1 is at the front of the contact and node 2 at the rear; ours are the centres of the front and the rear\n"
+        "edge. Claims about many jobs are in [physics.md](physics.md). Where numbers are compared, the verdict is computed;\n"
+        "pictures are compared by eye.\n\n"
         "**Where is node 1?** At the edge itself the stress grows with refinement, as under the edge of a punch. The nodes 1 to\n"
         f"2 mm behind it, on the middle line, have a largest σ_n of {sigma_range} MPa, a lift of {lift_range} µm and move in y over\n"
-        f"{y_range} µm: the paper's 0.5 MPa, 0.15 µm and 2 µm, all three. So a node 1.5 mm behind the edge (`0,-6`) is shown,\n"
-        "too.\n\n"
+        f"{y_range} µm. These are close to all three values of the paper: 0.5 MPa, 0.15 µm and 2 µm. So a node 1.5 mm behind the edge\n"
+        "(`0,-6`) is shown as well.\n\n"
 
         "## Figure 1: the model\n\n"
-        "The same pin, disk, material and load. Which two lines of the top are held the paper does not say: here 1 mm at the\n"
-        "inner side, and the top stays plane. The paper's disk is elastic with a time step of 5.5·10⁻⁸ s; ours is rigid, with\n"
+        "Pin, disk, material and load are the same. The paper does not say which two lines of the top are held: here a strip of\n"
+        "1 mm at the inner side is held, and the top stays plane. The paper's disk is elastic with a time step of 5.5·10⁻⁸ s; ours is rigid, with\n"
         f"{record['time_step_s']:.1e} s, which [elastic_disk.md](elastic_disk.md) shows to change the frequency by 0.6 % and μ*\n"
         "by 1.5 % at most.\n\n"
 
         "## Figure 2a: displacements and velocity of node 1\n\n" + picture("figure2a", "Displacements and velocity")
-        + f"{judge(near(front['peak_to_peak_m'][1] * UM, 2, 0.15))} the y displacement is a saw-tooth of {front['peak_to_peak_m'][1] * UM:.1f} µm (paper: 2 µm): slow with the\n"
-        f"disk while the node sticks, and back faster. The node leaves the disk once a cycle, by {front['lift_max_m'] * UM:.2f} µm\n"
+        + f"{judge(near(front['peak_to_peak_m'][1] * UM, 2, 0.15))} the y displacement is a saw-tooth of {front['peak_to_peak_m'][1] * UM:.1f} µm (paper: 2 µm). The node\n"
+        f"moves slowly with the disk while it sticks, and returns faster. The node leaves the disk once a cycle, by {front['lift_max_m'] * UM:.2f} µm\n"
         f"({coarse_front['lift_max_m'] * UM:.2f} µm on the draft's mesh; paper: 0.15 µm); behind the edge it is {inside['lift_max_m'] * UM:.2f} µm, at the rear {rear['lift_max_m'] * UM:.2f} µm.\n"
         f"**Differs:** the frequency is {front['frequency_hz']:.0f} Hz instead of about 14 500 Hz, 1.08 times the paper's. In contact\n"
-        "the paper's node is at z ≤ −1 µm, ours at 0, the surface of a rigid disk that begins where the pin does.\n\n"
+        "the paper's node is at z ≤ −1 µm, ours at z = 0, the surface of the rigid disk, where the base of the pin starts.\n\n"
 
         "## Figure 2b: the equivalent friction coefficient\n\n" + picture("figure2b", "Equivalent friction coefficient")
         + f"{judge(min(front['shares']) > 0 and list(at) == ['t_A', 't_B', 't_C', 't_D', 't_E', 't_F'])} node 1 goes through slip, stick, slip and "
@@ -209,21 +209,21 @@ def page():
         f"{rear['frequency_hz']:.0f} Hz. The front sticks in two parts, with a short slip in between that the paper does not show.\n\n"
 
         "## Figure 3a: trajectories in the y–z plane\n\n"
-        f"**Agrees in part** (`figure3a.svg`): the paper's loops all go in the trigonometric direction. Of ours {face['counter_clockwise']} of the\n"
-        f"{face['separating']} nodes that separate do (y to the right, z upwards); {face['nodes'] - face['separating']} of {face['nodes']} "
-        f"nodes never leave the disk\nand have no loop on a rigid one. On the draft's mesh it is {draft['face']['counter_clockwise']} of "
-        f"{draft['face']['separating']}. The others are narrow: they have\n"
-        f"{100 * loops(folder):.0f} % of the area of all.\n"
+        f"**Agrees in part** (`figure3a.svg`): all loops of the paper go counter-clockwise (y to the right, z upwards). Of our\n"
+        f"{face['separating']} nodes that separate, {face['counter_clockwise']} do; {face['nodes'] - face['separating']} of {face['nodes']} "
+        f"nodes never leave the disk\nand have no loop, because the disk is rigid. On the draft's mesh it is {draft['face']['counter_clockwise']} of "
+        f"{draft['face']['separating']}. The clockwise loops are narrow: they have\n"
+        f"{100 * loops(folder):.0f} % of the area of all loops.\n"
         f"**Differs:** the largest separation is {face['lift_max_m'] * UM:.2f} µm ({draft['face']['lift_max_m'] * UM:.2f} µm on the draft's "
         "mesh; paper: about 0.3 µm), at a corner.\n\n"
 
         "## Figure 3b: phase planes\n\n" + picture("figure3b", "Phase planes")
         + f"{judge(rear['relative_speed_max_m_s'] > 2 * disk / MM_S and abs(behind['t_A'][2]) > 2 * abs(before_contact(folder, front)))} the horizontal part at {disk:.0f} mm/s is stick, and slip and separation are below it. Relative speeds are\n"
         f"several times the disk's: up to {front['relative_speed_max_m_s'] * MM_S:.0f} mm/s at the front and "
-        f"{rear['relative_speed_max_m_s'] * MM_S:.0f} mm/s at the rear. When contact occurs the rear\ncomes with "
+        f"{rear['relative_speed_max_m_s'] * MM_S:.0f} mm/s at the rear. When contact begins the rear\nnode has "
         f"{abs(behind['t_A'][2]) * MM_S:.0f} mm/s (paper: about 210), much faster than the front.\n"
-        f"**Differs:** in the last step before contact our front comes with {abs(before_contact(folder, front)) * MM_S:.0f} mm/s and the node behind\n"
-        f"the edge with {abs(before_contact(folder, inside)) * MM_S:.0f} mm/s (paper: about 70).\n\n"
+        f"**Differs:** in the last step before contact our front node has {abs(before_contact(folder, front)) * MM_S:.0f} mm/s and the node behind\n"
+        f"the edge {abs(before_contact(folder, inside)) * MM_S:.0f} mm/s (paper: about 70).\n\n"
 
         "## Figure 4: one cycle of node 1\n\n" + picture("figure4", "One cycle")
         + f"{judge(within['t_B'][0] <= within['t_C'][0] <= within['t_D'][0] and at['t_B'][0] <= at['t_C'][0] <= at['t_D'][0])} the order. "
@@ -233,31 +233,32 @@ def page():
         f"{front['instants']['slip_before_separation_m_s'] * MM_S:.0f} mm/s (paper: about 180).\n"
         f"**Differs:** the stress at t_C is {front['instants']['peak_pa'] * MPA:.2f} MPa "
         f"({coarse_front['instants']['peak_pa'] * MPA:.2f} MPa on the draft's mesh; paper: 0.5 MPa). At an edge it\ngrows with "
-        "refinement, as under the edge of a punch; a value at this node says as much of the mesh as of the contact. Behind\n"
+        "refinement, as under the edge of a punch, so a value at this node depends on the mesh as much as on the contact. Behind\n"
         f"the edge it is {inside['sigma_n_max_pa'] * MPA:.2f} and {coarse_inside['sigma_n_max_pa'] * MPA:.2f} MPa on the two meshes, and at the rear "
         f"{rear['sigma_n_max_pa'] * MPA:.2f} and {coarse_rear['sigma_n_max_pa'] * MPA:.2f} MPa.\n"
-        f"There, as in the paper, stick is what the largest stress comes with: t_C is {(within['t_C'][0] - within['t_B'][0]) * US:.1f} µs after t_B and\n"
+        f"There, as in the paper, the node sticks when the stress is largest: t_C is {(within['t_C'][0] - within['t_B'][0]) * US:.1f} µs after t_B and\n"
         f"{(within['t_D'][0] - within['t_C'][0]) * US:.1f} µs before t_D.\n\n"
 
         "## Figure 5: four snapshots\n\n" + picture("figure5", "Snapshots")
-        + "By eye it is the coupling that the paper describes. As node 1 comes into contact the front moves down, opposed to z;\n"
-        "after the largest stress the field turns, the face slips from the rear on, and separation reaches the front last.\n\n"
+        + "By eye, the snapshots show the coupling that the paper describes. When node 1 comes into contact the front moves\n"
+        "down, against z. After the largest stress the velocity field turns, slip spreads from the rear, and separation reaches the\n"
+        "front last.\n\n"
         + picture("wave", "Waves along the middle of the contact face")
         + wave_table(fine)
-        + "\nTimes are since the begin of the cycle; every run of neighbouring nodes that have a change is a wave of its own.\n"
+        + "\nTimes are since the beginning of the cycle. Each row of neighbouring nodes with the same change counts as one wave.\n"
         f"{judge(min(towards_front(fine, 'stick'), towards_front(fine, 'slip')) > 0.99, 'Agrees in part')} stick begins and ends later towards the "
         f"front over {100 * towards_front(fine, 'stick'):.0f} % and {100 * towards_front(fine, 'slip'):.0f} % of the length of these waves.\n"
-        f"{judge(min(towards_front(fine, 'separation'), towards_front(fine, 'contact')) > 0.99, 'Agrees in part')} the paper lets contact and separation run from "
+        f"{judge(min(towards_front(fine, 'separation'), towards_front(fine, 'contact')) > 0.99, 'Agrees in part')} in the paper contact and separation run from "
         f"the rear to the front, too. Ours do so over {100 * towards_front(fine, 'contact'):.0f} % and\n"
         f"{100 * towards_front(fine, 'separation'):.0f} % of the length: the nodes in the middle of the face do not separate, and on either side of them "
-        "separation runs inwards\nfrom the edge. What goes from the rear to the front is the turn of the two sides.\n\n"
+        "separation runs inwards\nfrom the edge. Only the order of the two sides is from the rear to the front.\n\n"
 
         "## Figure 6: forces far from the contact\n\n"
         f"T at the clamp and N of the contact over cycles and over the run are in `totals.svg`. μ* = ⟨T⟩/⟨F⟩ = {record['mu_star']:.4f} at the\n"
         f"clamp and {record['mu_star_contact']:.4f} from the contact forces, at a local coefficient of 0.4.\n\n"
 
         "## Figure 7: μ* against the disk's speed\n\n"
-        "The picture of the README; [physics.md](physics.md) holds it against the paper claim by claim.\n\n"
+        "The README shows this figure; [physics.md](physics.md) compares it with the paper claim by claim.\n\n"
 
         "## Figure 8: stresses at node 1 and the disk's speed\n\n"
         "```sh\ntribosweep inspect studies/figure7.json --overlay omega_rpm=2,4,6,7,15,35 --node front_centre\n```\n\n"

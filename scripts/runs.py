@@ -1,6 +1,6 @@
-"""What the documentation scripts share: build the program, run studies, read their results.
+"""Shared by the documentation scripts: build the program, run studies, read their results.
 
-Only Python's standard library. Results are kept in target/docs/docs.db, so that a script that is
+Needs only Python's standard library. Results are kept in target/docs/docs.db, so a script that is
 run again computes only what is new.
 """
 

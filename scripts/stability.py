@@ -26,7 +26,7 @@ def stress(*arguments, **settings):
     environment = dict(os.environ, TRIBOSWEEP_STRESS_SUMMARY=str(SUMMARY))
     environment.update({f"TRIBOSWEEP_STRESS_{name.upper()}": str(value) for name, value in settings.items()})
     command = ["cargo", "test", "--release", "--quiet", "--test", "stress", "--", *arguments]
-    # A case that ends as none may makes the test fail and is a line all the same: the page must say so.
+    # A case that ends in a wrong way makes the test fail and still writes its line, so that the page can say so.
     done = subprocess.run(command, cwd=runs.ROOT, env=environment, stdout=subprocess.PIPE, text=True)
     if done.returncode != 0:
         print(done.stdout)
@@ -78,7 +78,7 @@ def cases_section(ends):
     sampled = sum(1 for end in results if (end["sampled_residual"] or 0) > 0.1)
     text = runs.table(["ending", "", "cases"], rows)
     text += (
-        f"\nAll {len(results)} results close: the largest imbalance is {worst:.2g} of the bound of its own rounding. "
+        f"\nThe energies of all {len(results)} results close: the largest imbalance is {worst:.2g} of its rounding bound. "
         f"The bound itself is above 10⁻³ of the energy put in for {loose} of them. Cases per decade, each figure by itself:\n\n"
     )
     text += runs.table(
@@ -97,7 +97,7 @@ def cases_section(ends):
     for end in ends:
         if end["ending"] == "refused" and end["by"] == "JobSpec::check":
             fields[end["message"].split(" = ")[0]] += 1
-    text += "\nRefusals by what refused, and of `JobSpec::check` by the first field it names:\n\n"
+    text += "\nThe refused cases by the check that refused them, and those of `JobSpec::check` by the first field that it names:\n\n"
     text += runs.table(["refused by", "cases"], sorted(reasons.items(), key=lambda item: -item[1]))
     text += "\n" + runs.table(["field", "cases"], sorted(fields.items(), key=lambda item: -item[1]))
     stops = [end for end in ends if end["ending"] == "diverged"]
@@ -175,16 +175,16 @@ Written by `scripts/stability.py`; do not edit. {verdict}
 {total} scenes, seed {seed}: one to 64 elements, edges 1 : 1 to 1 : 50, E from 10⁶ to 10¹² Pa, ν from −0.95 to 0.499, μ from 0 to 2,
 speeds from 1 mm/s to 100 m/s, loads from 10⁻¹² to 10⁵ N, ramps from 0 to nearly the whole run, all clamps, tied and free
 top, β₂ from ½ to 1, damping from none to 30 times critical, time steps up to the limit and given above it, one step to
-tens of thousands. One case in seventeen is spoiled with an illegal value, one in twenty-six has a value from 10⁻³⁰⁸ to 10³⁰⁸
-where none belongs. Each is solved as the queue does, its record is stored and read as the queue does, and a result is run
-again with every step audited.
+tens of thousands. One case in seventeen has an illegal value, and one in twenty-six has a value from 10⁻³⁰⁸ to 10³⁰⁸ in a field
+where it makes no sense. Each scene is solved, and its record is stored and read back, as in the queue. Each job with a
+result is run again with its energies audited at every step.
 
-A result may be off by the rounding of its own operations and no more. That bound is computed with each run (the standard
-model of floating point; `tests/stress/audited.rs` derives it): 200 ε Σ w·|Δu|, where w is the sum of the magnitudes that
+The energy balance of a result may be off by the rounding of its own operations, but by no more. This bound is computed in
+each run (with the standard model of floating point; `tests/stress` derives it): 200 ε Σ w·|Δu|, where w is the sum of the magnitudes that
 make up a nodal force, plus the rounding of the sums of works.
 
 {cases}
-Repeat a case, here number 4711, with its job printed:
+This command repeats one case, here number 4711, and prints its job:
 
 ```sh
 {repeat}
@@ -192,50 +192,52 @@ Repeat a case, here number 4711, with its job printed:
 
 ## Above the limit
 
-The program's limit is a bound, a few percent below the true one, and a job above it is refused. To see what would happen, these
-runs take 1.02 of the **true** limit (dense eigenvalues of the constrained block, 2 × 3 × 2 elements) unchecked. In the
-air the pin starts with the velocities of its highest mode, and the amplification matrix says at which audit (every 16 steps) the guard must
-stop it. Pressed and dragged at μ = 0.4, the limit is that of a base held in z, and the mode grows out of at least the
-rounding of the load's deformation, which gives the most steps that it can take.
+The program's limit is a bound, a few percent below the true limit, and a job above it is refused. To see what would happen,
+these runs take 1.02 of the **true** limit (from the dense eigenvalues of the constrained block, 2 × 3 × 2 elements) and are
+not checked. *In the air*, the pin starts with the velocities of its highest mode, and the amplification matrix says at which
+audit (every 16 steps) the guard must stop it. *Pressed*, the pin is pressed and dragged at μ = 0.4. Then the limit is that of
+a base held in z. The mode grows at least from the rounding of the deformation under the load, which gives the largest
+possible number of steps.
 
 {beyond}
-Undamped at β₂ = ½ the scheme conserves its own energy even while it diverges, so that the balance closes and the stored
-energy stays what it was. The guard therefore compares the magnitudes of its parts. At 0.99 of the true limit the same
+Undamped at β₂ = ½ the scheme conserves its own energy even while it diverges, so the balance closes and the stored
+energy does not change. Therefore the guard also compares the magnitudes of its parts. At 0.99 of the true limit the same
 runs are not stopped.
 
 ## Long runs
 
-At 0.99 of the true limit. In the air and undamped, ½uKu never exceeds E/(1 − 0.99²), E the scheme's energy at the start; damped,
-the energy never exceeds that at the start. Under a sudden load without friction the stored energy never exceeds 2F²h/(EA). Sliding,
-what is stored never exceeds the work put in. Each is compared at every step.
+These runs take 0.99 of the true limit. In the air and undamped, ½uKu never exceeds E/(1 − 0.99²), where E is the scheme's energy at the start. In the
+air and damped, the energy never exceeds that at the start. Under a sudden load without friction the stored energy never
+exceeds 2F²h/(EA). In sliding, the stored energy never exceeds the work put in. All of this is checked at every step.
 
 {long}
 ## Fuzzing of study files and overrides
 
-libFuzzer with the address sanitizer, from the seeds in `tests/fuzz/seeds`, texts of up to 4 kB (`scripts/fuzz.sh`). A text must be
-refused with a message, or accepted as a study whose jobs are physical, have distinct keys, and are stored and read
-back as they are.
+`scripts/fuzz.sh` runs libFuzzer with the address sanitizer on texts of up to 4 kB, from the seeds in `tests/fuzz/seeds`. A
+text must be refused with a message, or it must be accepted as a study whose jobs are physical, have distinct keys, and are
+the same after they were stored and read back.
 
 {fuzz}
 ## What is not verified
 
 * **At exactly the limit** (`safety_factor` 1 where the bound is exact: one element, columns) the highest mode grows linearly and
   friction can feed it. The guard stops a run when more is stored than twice what was put in, or when the parts of its energy
-  exceed it a hundredfold; below that, a result at the limit may hold noise of the mesh. The default is 0.7.
+  exceed it a hundredfold. Below that, a result at the limit may contain mesh noise. The default is 0.7.
 * Scenes are small (at most 125 nodes) and short (at most 150 000 node-steps); meshes of thousands of nodes are only in the
   other pages. Long runs are of 8 and 27 nodes.
-* That energies close says that the scheme was followed, not that the mesh or the time step resolve the physics:
-  see [agreement.md](agreement.md) and [physics.md](physics.md). For μ > 1 the continuous problem itself may be ill-posed.
-* β₂ > ½ with contact: no bound of the energy is proved. It is measured, above.
+* A closed energy balance shows that the program follows the scheme. It does not show that the mesh or the time step resolves
+  the physics: see [agreement.md](agreement.md) and [physics.md](physics.md). For μ > 1 the continuous problem itself may be ill-posed.
+* β₂ > ½ with contact: no bound of the energy is proved, it is only measured (above).
 * A run that ends before the first audit after its start (16 steps) has no energies in its record.
-* A stop needs a growth that the guard can see: from rounding, a mode at 1.02 of the limit takes up to a few hundred steps.
-  Within the last 15 steps of a run only overflow is looked for. Neither can happen at a step that the program accepts.
+* The guard stops a run only after a growth that it can see. From rounding, a mode at 1.02 of the limit takes up to a few
+  hundred steps to get there. In the last 15 steps of a run the guard looks for overflow only. Neither can happen at a time
+  step that the program accepts.
 * Combinations of values near the ends of what is accepted (10⁻²⁰ to 10²⁰ in SI units) are tried one at a time.
 * A load of zero is refused; the smallest is 10⁻¹² N.
-* The guard compares with all that was put in so far, which grows along a sliding run: what feeds energy slowly is noticed later
-  in a long run than in a short one.
-* Fuzzing covers texts, not the database file; grids of more than 2000 points are passed over. `detection.cycles` in the
-  thousands makes the search for a limit cycle slow (it compares all of them after every cycle), though not endless.
+* The guard compares with all the energy that was put in so far, which grows during a sliding run. So a slow feed of energy is
+  noticed later in a long run than in a short one.
+* Fuzzing covers texts, not the database file; it skips grids of more than 2000 points. `detection.cycles` in the
+  thousands makes the search for a limit cycle slow, because it compares all of them after every cycle, but not endless.
 """
 
 

@@ -30,8 +30,8 @@ CLAMP_M = 0.001
 # Farther than the pin slides in any run of a reasonable length.
 OVERHANG_M = 0.002
 SAFETY = 0.7
-# A machine that others use, too, changes its speed for seconds at a time: all cases are timed in turn, several times
-# over, so that each has a chance to see the machine at its best.
+# The speed of a shared machine changes for seconds at a time. So all cases are timed in turn in several rounds, and each
+# has a chance to run while the machine is fast.
 ROUNDS = 3
 CHUNKS = 5
 CASES = {
@@ -39,9 +39,9 @@ CASES = {
     "frictionless": "sliding contact without friction",
     "elastic": "no contact, the elastic pin alone (a lower bound)",
 }
-# Akantu allocates its fields of a megabyte anew in every step, and by default glibc gives them back to the system at
-# once: a large part of the time is then the kernel's, for clearing pages. That is not the library's arithmetic, so it
-# is timed without that as well. (Other C libraries ignore these.)
+# Akantu allocates its fields of a megabyte again in every step, and by default glibc returns them to the system at once.
+# Then the kernel takes a large part of the time to clear pages. This is not the library's arithmetic, so the cases are also
+# timed without it. (Other C libraries ignore these variables.)
 ALLOCATORS = {
     "as installed": {},
     "freed memory kept": {"MALLOC_MMAP_THRESHOLD_": str(32 << 20), "MALLOC_TRIM_THRESHOLD_": str(1 << 30)},
@@ -155,7 +155,7 @@ def measure(case, options):
         model = solid = aka.SolidMechanicsModel(mesh)
     model.initFull(_analysis_method=aka._explicit_lumped_mass)
     if contact_wanted:
-        # Kept in a name: the detector does not own it.
+        # The variable keeps the selector alive: the detector does not own it.
         selector = aka.PhysicalSurfaceSelector(mesh)
         contact.getContactDetector().setSurfaceSelector(selector)
     step_s = SAFETY * solid.getStableTimeStep()
@@ -179,7 +179,7 @@ def measure(case, options):
         # Without a disk nothing else holds the pin in z.
         blocked[pin[:, :, 0].ravel(), 2] = True
 
-    # Within the warm-up: what is timed is then all under the full load.
+    # The ramp ends within the warm-up, so all timed steps are under the full load.
     ramp_s = 0.8 * options.warm_up * step_s
 
     def advance(first, count):
@@ -223,7 +223,7 @@ def measure(case, options):
 
 
 def in_own_process(case, allocator, options):
-    """Akantu parses its parameters into a global, and a crash of it must not take the other cases along."""
+    """Runs a case in a process of its own: Akantu keeps its parameters in a global, and may crash."""
     command = [sys.executable, __file__, "--only", case, "--elements", *map(str, options.elements),
                "--steps", str(options.steps), "--warm-up", str(options.warm_up), "--disk", str(options.disk)]
     threads = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
@@ -237,7 +237,7 @@ def in_own_process(case, allocator, options):
 
 
 def describe(case, memory, found):
-    """One line that shows that what was timed is the contact that was meant."""
+    """One line as evidence that the intended contact was timed."""
     line = f"{case}, {memory}: {statistics.median(found['ns']):.0f} ns, step {found['step_s']:.3g} s"
     if "ratio" in found:
         line += (f", normal force {min(found['normal_n']):.1f} … {max(found['normal_n']):.1f} N,"
@@ -251,7 +251,7 @@ def report(options):
     chunks, version, failed = {run: [] for run in runs}, "?", set()
     for _ in range(ROUNDS):
         for case, memory in runs:
-            # What failed once would fail again.
+            # A case that failed once would fail again.
             if (case, memory) in failed:
                 continue
             found = in_own_process(case, ALLOCATORS[memory], options)
