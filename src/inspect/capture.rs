@@ -1,7 +1,7 @@
 //! The second of the two runs, the same to the last bit: everything of the time that is looked at.
 
-use super::place::ObservedNode;
-use super::smooth::without_delay;
+use super::low_pass::zero_phase_low_pass;
+use super::nodes::ObservedNode;
 use super::survey::Windows;
 use crate::analysis::sample::{NodeSample, Sample};
 use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment};
@@ -11,7 +11,7 @@ use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
 /// No more steps than this are kept of the totals: the last ones.
-const MOST_TOTALS: usize = 1 << 20;
+const MAX_TOTALS: usize = 1 << 20;
 
 /// What was seen.
 #[derive(Debug, Clone)]
@@ -77,7 +77,7 @@ pub fn capture(
     windows: &Windows,
     nodes: &[ObservedNode],
     frames: usize,
-    go_on: &mut impl FnMut(f64) -> ControlFlow<()>,
+    on_progress: &mut impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Capture, JobError> {
     let mut recorder = Recorder {
         windows,
@@ -90,7 +90,7 @@ pub fn capture(
         histories: vec![Vec::new(); nodes.len()],
         face: Vec::new(),
         frames: Vec::new(),
-        go_on,
+        on_progress,
     };
     let record = analysis::solve(spec, &mut recorder)?;
     let model = recorder.model.expect("a run has a step");
@@ -113,7 +113,7 @@ pub fn capture(
 fn node_steps(steps: Vec<(f64, NodeSample)>, area_m2: f64, gain: f64) -> Vec<NodeStep> {
     let [x, y, n] = [0, 1, 2].map(|c| {
         let raw: Vec<f64> = steps.iter().map(|(_, node)| node.force_n[c] / area_m2).collect();
-        without_delay(&raw, gain)
+        zero_phase_low_pass(&raw, gain)
     });
     let steps = steps.into_iter().enumerate();
     steps.map(|(i, (time_s, node))| NodeStep { time_s, node, stress_pa: [x[i], y[i], n[i]] }).collect()
@@ -136,7 +136,7 @@ struct Recorder<'a, G> {
     histories: Vec<Vec<(f64, NodeSample)>>,
     face: Vec<FaceStep>,
     frames: Vec<Frame>,
-    go_on: &'a mut G,
+    on_progress: &'a mut G,
 }
 
 impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
@@ -148,7 +148,7 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
             self.gain = moment.sampler.gain();
         }
         if time_s >= self.windows.totals_from_s {
-            if self.totals.len() == MOST_TOTALS {
+            if self.totals.len() == MAX_TOTALS {
                 self.totals.pop_front();
             }
             self.totals.push_back(*moment.sample);
@@ -178,7 +178,7 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
     }
 
     fn progress(&mut self, simulated_s: f64) -> ControlFlow<()> {
-        (self.go_on)(simulated_s)
+        (self.on_progress)(simulated_s)
     }
 }
 

@@ -9,10 +9,10 @@ use crate::solver::mesh::BlockMesh;
 use crate::solver::stress;
 
 /// The corners of a mesh's element in VTK's order, which goes around.
-const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+const VTK_CORNERS: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
 /// The folder of the files that `fields.pvd` names.
-pub(super) const PARTS: &str = "fields";
+pub(super) const FRAMES_FOLDER: &str = "fields";
 
 /// Writes `fields.pvd` and a folder with a file for each frame.
 ///
@@ -25,21 +25,22 @@ pub fn write(capture: &Capture, folder: &mut Folder) -> Result<(), PublishError>
         .element_positions()
         .map(|[i, j, k]| {
             let corners = mesh.element_nodes(i, j, k);
-            AROUND.map(|corner| corners[corner])
+            VTK_CORNERS.map(|corner| corners[corner])
         })
         .collect();
-    let path = folder.path_of(PARTS);
+    let path = folder.path_of(FRAMES_FOLDER);
     let mut parts = Folder::create(&path)?;
     let mut names = Vec::new();
     for (number, frame) in capture.frames.iter().enumerate() {
         let name = format!("pin_{number:04}.vtu");
         let data = point_data(capture, mesh, frame);
-        parts.with(&name, |out| vtu::write_grid(&points_m, &cells, &data, out))?;
-        names.push(format!("{PARTS}/{name}"));
+        parts.write_with(&name, |out| vtu::write_grid(&points_m, &cells, &data, out))?;
+        names.push(format!("{FRAMES_FOLDER}/{name}"));
     }
     folder.written.append(&mut parts.written);
     let times_s = capture.frames.iter().map(|frame| frame.time_s);
-    folder.with("fields.pvd", |out| vtu::write_series(times_s.zip(names.iter().map(String::as_str)), out))
+    folder
+        .write_with("fields.pvd", |out| vtu::write_series(times_s.zip(names.iter().map(String::as_str)), out))
 }
 
 fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointData> {

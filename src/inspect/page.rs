@@ -1,27 +1,35 @@
-//! The page of a look: all of it in one file, but for the tables that are too large.
+//! The page of a inspection: all of it in one file, but for the tables that are too large.
 
-use super::figures::LookFigure;
-use super::look::Look;
+use super::figures::InspectionFigure;
+use super::inspection::Inspection;
 use super::summary::{NodeSummary, Summary};
-use super::write::Origin;
 use crate::publish::html::{self, download, figure, navigation, section, table, tiles, warning};
-use crate::publish::value::{MISSING, digits, fixed, number};
+use crate::publish::value::{MISSING, fixed, number, significant};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 
+/// The title of the page and what made it.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct PageHeader {
+    /// The study and the job's parameters.
+    pub title: String,
+    /// The program that ran the job.
+    pub made_with: String,
+}
+
 /// The page; `tables` are the CSV files that it holds, by their names.
 pub fn of(
-    look: &Look,
+    inspection: &Inspection,
     summary: &Summary,
-    figures: &[LookFigure],
+    figures: &[InspectionFigure],
     tables: &BTreeMap<String, String>,
-    origin: &Origin,
+    header: &PageHeader,
 ) -> String {
     let links = figures.iter().map(|figure| (figure.stem, figure.heading));
     let last = [("nodes", "Nodes in numbers"), ("files", "Files")];
     let sections: Vec<(&str, &str)> = links.chain(last).collect();
     let body = html! {
-        (head(look, summary))
+        (head(inspection, summary))
         (navigation(sections))
         @for drawn in figures {
             (section(drawn.stem, drawn.heading, &html! {
@@ -31,12 +39,12 @@ pub fn of(
             }))
         }
         (section("nodes", last[0].1, &nodes(summary)))
-        (section("files", last[1].1, &html! { (files()) p { "Made with " (origin.made_with) "." } }))
+        (section("files", last[1].1, &html! { (files()) p { "Made with " (header.made_with) "." } }))
     };
-    html::page(&origin.title, None, &body)
+    html::page(&header.title, None, &body)
 }
 
-fn head(look: &Look, summary: &Summary) -> Markup {
+fn head(inspection: &Inspection, summary: &Summary) -> Markup {
     let record = &summary.record;
     let frequency = record.frequency_hz.map_or_else(|| "none".to_owned(), |f| format!("{f:.0} Hz"));
     let numbers = [
@@ -65,21 +73,21 @@ fn head(look: &Look, summary: &Summary) -> Markup {
             (warning(&html! { "This job has no limit cycle: the end of its run is shown, over periods of 4h/c_s, "
                 "the pin's as a quarter-wave resonator in shear." }))
         }
-        p { (numerics(look)) }
+        p { (numerics(inspection)) }
         (tiles(&numbers))
     }
 }
 
 /// Mesh, step and disk in a line.
-fn numerics(look: &Look) -> String {
-    let [nx, ny, nz] = look.mesh().elements();
-    let record = &look.survey.record;
-    let disk = if look.capture.model.disk().is_some() { "an elastic disk" } else { "a rigid disk" };
+fn numerics(inspection: &Inspection) -> String {
+    let [nx, ny, nz] = inspection.mesh().elements();
+    let record = &inspection.survey.record;
+    let disk = if inspection.capture.model.disk().is_some() { "an elastic disk" } else { "a rigid disk" };
     format!(
         "{nx} × {ny} × {nz} elements on {disk}, {} steps of {} s; {} cycles are shown.",
         record.steps,
-        digits(record.time_step_s, 3),
-        look.survey.windows.count
+        significant(record.time_step_s, 3),
+        inspection.survey.windows.cycle_count
     )
 }
 

@@ -1,6 +1,6 @@
 //! The numbers that a look finds, as one JSON document.
 
-use super::look::{Look, Observed, area_m2, loop_of};
+use super::inspection::{Inspection, NodeFindings, loop_area_m2, node_loop};
 use super::phases::Phase;
 use super::waves::{Wave, stations, waves};
 use crate::analysis::JobRecord;
@@ -99,20 +99,20 @@ pub struct FaceSummary {
 }
 
 impl Summary {
-    /// The numbers of a look.
-    pub fn of(look: &Look) -> Self {
-        let windows = &look.survey.windows;
+    /// The numbers of a inspection.
+    pub fn of(inspection: &Inspection) -> Self {
+        let windows = &inspection.survey.windows;
         Self {
-            job: look.spec.clone(),
-            record: look.survey.record.clone(),
-            cycles: windows.cycles,
+            job: inspection.spec.clone(),
+            record: inspection.survey.record.clone(),
+            cycles: windows.has_cycles,
             period_s: windows.period_s,
             shown_s: windows.shown_s,
             cycle_s: windows.cycle_s,
-            nodes: (0..look.observed.len()).map(|number| node(look, number)).collect(),
-            face: face(look),
-            waves: waves(&stations(look), windows.cycle_s[0], windows.period_s),
-            spectrum_peaks: look.spectrum.peaks(5),
+            nodes: (0..inspection.observed.len()).map(|number| node(inspection, number)).collect(),
+            face: face(inspection),
+            waves: waves(&stations(inspection), windows.cycle_s[0], windows.period_s),
+            spectrum_peaks: inspection.spectrum.peaks(5),
         }
     }
 }
@@ -121,10 +121,10 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, f64::max)
 }
 
-fn node(look: &Look, number: usize) -> NodeSummary {
-    let Observed { node, target_velocity_m_s, phases, instants } = &look.observed[number];
-    let steps = &look.capture.nodes[number];
-    let mu = look.spec.scene.contact.mu;
+fn node(inspection: &Inspection, number: usize) -> NodeSummary {
+    let NodeFindings { node, target_velocity_m_s, phases, instants } = &inspection.observed[number];
+    let steps = &inspection.capture.nodes[number];
+    let mu = inspection.spec.scene.contact.mu;
     let relative = |velocity_m_s: f64| velocity_m_s - target_velocity_m_s;
     let in_state = |state: ContactState| steps.iter().filter(move |step| step.node.state == state);
     let share = |state| in_state(state).count() as f64 / steps.len().max(1) as f64;
@@ -151,7 +151,7 @@ fn node(look: &Look, number: usize) -> NodeSummary {
             in_state(ContactState::Slip).map(|step| (step.node.equivalent_friction() - mu).abs()),
         ),
         shares: [ContactState::Stick, ContactState::Slip, ContactState::Separated].map(share),
-        frequency_hz: own_frequency_hz(look, phases),
+        frequency_hz: own_frequency_hz(inspection, phases),
         instants: instants.as_ref().map(|instants| {
             let nearest = |time_s: f64| {
                 let distance = |at: &f64| (at - time_s).abs();
@@ -178,8 +178,8 @@ fn node(look: &Look, number: usize) -> NodeSummary {
 
 /// The first and the last phase are cut by the begin and the end of the cycles that are shown. They are one phase if they
 /// are of one state: what is shown are whole cycles.
-fn own_frequency_hz(look: &Look, phases: &[Phase]) -> Option<f64> {
-    let windows = &look.survey.windows;
+fn own_frequency_hz(inspection: &Inspection, phases: &[Phase]) -> Option<f64> {
+    let windows = &inspection.survey.windows;
     let count = |state: ContactState| {
         let mut durations_s: Vec<f64> = Vec::new();
         for (number, phase) in phases.iter().enumerate().filter(|(_, phase)| phase.state == state) {
@@ -195,12 +195,12 @@ fn own_frequency_hz(look: &Look, phases: &[Phase]) -> Option<f64> {
     let separations = count(ContactState::Separated);
     let times = if separations > 0 { separations } else { count(ContactState::Stick) };
     let duration_s = windows.shown_s[1] - windows.shown_s[0];
-    (windows.cycles && times > 0).then(|| times as f64 / duration_s)
+    (windows.has_cycles && times > 0).then(|| times as f64 / duration_s)
 }
 
-fn face(look: &Look) -> FaceSummary {
-    let face = &look.capture.face;
-    let nodes = look.capture.model.slaves().len();
+fn face(inspection: &Inspection) -> FaceSummary {
+    let face = &inspection.capture.face;
+    let nodes = inspection.capture.model.slaves().len();
     let all = || face.iter().flat_map(|step| &step.nodes);
     let separates =
         |slave: &usize| face.iter().any(|step| step.nodes[*slave].state == ContactState::Separated);
@@ -209,7 +209,7 @@ fn face(look: &Look) -> FaceSummary {
         separating: (0..nodes).filter(separates).count(),
         counter_clockwise: (0..nodes)
             .filter(separates)
-            .filter(|&slave| area_m2(&loop_of(face, slave)) > 0.0)
+            .filter(|&slave| loop_area_m2(&node_loop(face, slave)) > 0.0)
             .count(),
         lift_max_m: largest(all().map(|node| node.gap_m)),
         slip_speed_max_m_s: largest(all().map(|node| node.slip_speed_m_s)),

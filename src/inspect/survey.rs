@@ -27,11 +27,11 @@ pub struct Survey {
 /// What of a run is looked at, all at its end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Windows {
-    /// Number of cycles, or of such periods, that are shown.
-    pub count: usize,
-    /// Whether there are limit cycles (or cycles of a state that is not periodic); otherwise the period is that of the
-    /// pin as a quarter-wave resonator in shear, 4h/c_s.
-    pub cycles: bool,
+    /// Number of cycles that are shown, or of periods of a job without cycles.
+    pub cycle_count: usize,
+    /// Whether there are limit cycles, or cycles of a state that is not periodic. Otherwise the period is that of the pin
+    /// as a quarter-wave resonator in shear, 4h/c_s.
+    pub has_cycles: bool,
     /// Duration [s] of a cycle: the mean over those that are shown.
     pub period_s: f64,
     /// Over which the observed nodes are shown [s].
@@ -49,7 +49,7 @@ pub struct Windows {
 pub fn survey(
     spec: &JobSpec,
     cycles: usize,
-    go_on: &mut impl FnMut(f64) -> ControlFlow<()>,
+    on_progress: &mut impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Survey, JobError> {
     let mut surveyor = Surveyor {
         cutter: None,
@@ -57,7 +57,7 @@ pub fn survey(
         envelope: Envelope::default(),
         quarter_wave_s: 0.0,
         spec,
-        go_on,
+        on_progress,
     };
     let record = analysis::solve(spec, &mut surveyor)?;
     let Surveyor { passages_s, envelope, quarter_wave_s, .. } = surveyor;
@@ -76,7 +76,7 @@ impl Windows {
         let cycles = if there >= FEWEST_CYCLES { cycles.min(there) } else { cycles };
         let needed = cycles * crossings;
         let end_s = record.simulated_s;
-        let (cycles_found, period_s, shown_s, cycle_s) = match passages_s.len().checked_sub(needed) {
+        let (has_cycles, period_s, shown_s, cycle_s) = match passages_s.len().checked_sub(needed) {
             // What is left of an oscillation that decays is no cycle.
             Some(first) if record.outcome != Outcome::Decayed => {
                 let shown = &passages_s[first..];
@@ -98,8 +98,8 @@ impl Windows {
             }
         };
         Self {
-            count: cycles,
-            cycles: cycles_found,
+            cycle_count: cycles,
+            has_cycles,
             period_s,
             shown_s,
             cycle_s,
@@ -115,7 +115,7 @@ struct Surveyor<'a, G> {
     passages_s: Vec<[f64; 2]>,
     envelope: Envelope,
     quarter_wave_s: f64,
-    go_on: &'a mut G,
+    on_progress: &'a mut G,
 }
 
 impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Surveyor<'_, G> {
@@ -131,7 +131,7 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Surveyor<'_, G> {
     }
 
     fn progress(&mut self, simulated_s: f64) -> ControlFlow<()> {
-        (self.go_on)(simulated_s)
+        (self.on_progress)(simulated_s)
     }
 }
 

@@ -1,8 +1,8 @@
 //! How state changes travel along the middle of the contact face.
 
-use super::look::Look;
+use super::inspection::Inspection;
+use super::low_pass::zero_phase_low_pass;
 use super::phases::{Instants, phases};
-use super::smooth::without_delay;
 use serde::Serialize;
 
 /// The instants of a node on the line through the middle of the contact face along the sliding direction.
@@ -78,12 +78,12 @@ impl Wave {
 }
 
 /// The instants along that line, from front to rear, from one cycle that is taken for one of many.
-pub fn stations(look: &Look) -> Vec<Station> {
-    let mesh = look.mesh();
+pub fn stations(inspection: &Inspection) -> Vec<Station> {
+    let mesh = inspection.mesh();
     let [nx, ny, _] = mesh.elements();
-    let [start_s, end_s] = look.survey.windows.cycle_s;
+    let [start_s, end_s] = inspection.survey.windows.cycle_s;
     let period_s = end_s - start_s;
-    let face = &look.capture.face;
+    let face = &inspection.capture.face;
     let station = |j: usize| {
         let slave = mesh.node(nx / 2, j, 0);
         let thrice = || {
@@ -92,10 +92,12 @@ pub fn stations(look: &Look) -> Vec<Station> {
             })
         };
         let phases = phases(thrice().map(|(time_s, node)| (time_s, node.state)), start_s + 3.0 * period_s);
-        let area_m2 = look.capture.model.slaves()[slave].area_m2;
+        let area_m2 = inspection.capture.model.slaves()[slave].area_m2;
         let raw: Vec<f64> = thrice().map(|(_, node)| node.force_n[2] / area_m2).collect();
-        let stress: Vec<(f64, f64)> =
-            thrice().map(|(time_s, _)| time_s).zip(without_delay(&raw, look.capture.stress_gain)).collect();
+        let stress: Vec<(f64, f64)> = thrice()
+            .map(|(time_s, _)| time_s)
+            .zip(zero_phase_low_pass(&raw, inspection.capture.stress_gain))
+            .collect();
         let instants = Instants::find(&phases, &stress, start_s, period_s);
         Station { y_m: mesh.coordinates_m(slave)[1], instants }
     };

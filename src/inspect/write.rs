@@ -1,6 +1,7 @@
 //! A look as a folder of files.
 
-use super::look::Look;
+use super::inspection::Inspection;
+use super::page::PageHeader;
 use super::summary::Summary;
 use super::{fields, figures, page, tables};
 use crate::publish::{Folder, PublishError};
@@ -8,15 +9,6 @@ use std::path::{Path, PathBuf};
 
 /// All numbers of it.
 const SUMMARY: &str = "inspection.json";
-
-/// Where a look comes from.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Origin {
-    /// The study and the job's parameters.
-    pub title: String,
-    /// The program that ran it.
-    pub made_with: String,
-}
 
 /// The page that holds everything together.
 pub const PAGE: &str = "index.html";
@@ -28,30 +20,34 @@ pub const PAGE: &str = "index.html";
 ///
 /// # Errors
 /// The first file that could not be written. Files before it are complete.
-pub fn write(look: &Look, out_dir: &Path, origin: &Origin) -> Result<Vec<PathBuf>, PublishError> {
+pub fn write(
+    inspection: &Inspection,
+    out_dir: &Path,
+    header: &PageHeader,
+) -> Result<Vec<PathBuf>, PublishError> {
     let mut folder = Folder::create(out_dir)?;
-    remove_former(out_dir);
-    let tables = tables::write(look, &mut folder)?;
-    let figures = figures::write(look, &mut folder)?;
-    fields::write(&look.capture, &mut folder)?;
-    let summary = Summary::of(look);
-    folder.with(SUMMARY, |out| {
+    remove_stale_files(out_dir);
+    let tables = tables::write(inspection, &mut folder)?;
+    let figures = figures::write(inspection, &mut folder)?;
+    fields::write(&inspection.capture, &mut folder)?;
+    let summary = Summary::of(inspection);
+    folder.write_with(SUMMARY, |out| {
         serde_json::to_writer_pretty(&mut *out, &summary)?;
         out.push(b'\n');
         Ok(())
     })?;
-    folder.text(PAGE, &page::of(look, &summary, &figures, &tables, origin))?;
+    folder.write_text(PAGE, &page::of(inspection, &summary, &figures, &tables, header))?;
     Ok(folder.written)
 }
 
 /// Removes what an earlier look left whose files go by nodes and frames: those of others would pass for this one's.
 /// What cannot be removed stays; a file of this look that cannot be written says so itself.
-fn remove_former(out_dir: &Path) {
+fn remove_stale_files(out_dir: &Path) {
     if !out_dir.join(SUMMARY).is_file() {
         return;
     }
     for (folder, begin, end) in
-        [(out_dir.to_owned(), "node_", ".csv"), (out_dir.join(fields::PARTS), "pin_", ".vtu")]
+        [(out_dir.to_owned(), "node_", ".csv"), (out_dir.join(fields::FRAMES_FOLDER), "pin_", ".vtu")]
     {
         let files = std::fs::read_dir(folder).into_iter().flatten().flatten();
         for file in files.filter(|file| {

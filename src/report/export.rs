@@ -1,6 +1,7 @@
 //! One line a job, for other programs: CSV and JSON lines with the same fields.
 
-use super::row::{Row, RowState, is_further};
+use super::parameters::is_further;
+use super::row::{JobRow, RowState};
 use crate::analysis::JobRecord;
 use crate::publish::value;
 use serde::Serializer;
@@ -44,7 +45,7 @@ const RECORD_FIELDS: usize = 18;
 ///
 /// # Errors
 /// Those of the writer.
-pub fn csv<W: Write>(rows: &[Row], out: W) -> io::Result<()> {
+pub fn csv<W: Write>(rows: &[JobRow], out: W) -> io::Result<()> {
     let mut export = Export::csv(owned(further_names(rows)), out)?;
     rows.iter().try_for_each(|row| export.write(row))?;
     export.finish()
@@ -54,7 +55,7 @@ pub fn csv<W: Write>(rows: &[Row], out: W) -> io::Result<()> {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn json_lines<W: Write>(rows: &[Row], out: W) -> io::Result<()> {
+pub fn json_lines<W: Write>(rows: &[JobRow], out: W) -> io::Result<()> {
     let mut export = Export::json_lines(owned(further_names(rows)), out);
     rows.iter().try_for_each(|row| export.write(row))?;
     export.finish()
@@ -92,7 +93,7 @@ impl<W: Write> Export<W> {
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn write(&mut self, row: &Row) -> io::Result<()> {
+    pub fn write(&mut self, row: &JobRow) -> io::Result<()> {
         let fields = fields(row, &self.further);
         match &mut self.lines {
             Lines::Csv(writer) => writer.write_record(fields.iter().map(value::text)).map_err(io_error),
@@ -123,7 +124,7 @@ impl<W: Write> Export<W> {
 /// The data behind a figure: for each of the rows its key, ω, μ and further parameters, some fields of the export, and how
 /// it ended.
 pub(super) fn selection<'a>(
-    rows: impl IntoIterator<Item = &'a Row>,
+    rows: impl IntoIterator<Item = &'a JobRow>,
     further: &[&str],
     columns: &[&str],
 ) -> io::Result<Vec<u8>> {
@@ -152,7 +153,7 @@ pub(super) fn io_error(error: ::csv::Error) -> io::Error {
 }
 
 /// Names of the parameters other than ω and μ, in the order in which they first appear.
-pub(super) fn further_names(rows: &[Row]) -> Vec<&str> {
+pub(super) fn further_names(rows: &[JobRow]) -> Vec<&str> {
     let mut names = Vec::new();
     for row in rows {
         add_further_names(&mut names, &row.parameters);
@@ -184,7 +185,7 @@ fn field_names(further: &[String]) -> Vec<String> {
     HEADER.iter().map(|&name| name.to_owned()).chain(further.iter().map(unique)).collect()
 }
 
-fn fields(row: &Row, further: &[String]) -> Vec<Value> {
+fn fields(row: &JobRow, further: &[String]) -> Vec<Value> {
     let error = match &row.state {
         RowState::Failed { error } => Value::from(error.as_str()),
         _ => Value::Null,

@@ -1,6 +1,6 @@
 //! Tables, figures and CSV from the records of a study's jobs.
 //!
-//! Everything here reads [`Row`]s: one job with its grid parameters and what is known of it. A
+//! Everything here reads [`JobRow`]s: one job with its grid parameters and what is known of it. A
 //! study that is still running reports like a finished one; what is missing is named.
 //!
 //! * [`export`] – one line a job, for other programs.
@@ -14,21 +14,25 @@
 pub mod export;
 pub mod figure;
 mod files;
+mod glyph;
 mod html;
+mod input;
 mod layout;
 mod markdown;
-mod origin;
 pub mod overview;
 mod page;
+mod parameters;
 pub mod pareto;
+mod provenance;
 mod row;
-mod sign;
 mod summary;
 pub mod tables;
 mod times;
-mod tip;
+mod tooltip;
 pub mod trouble;
 
-pub use files::{Report, write};
-pub use origin::{Made, Maker, Origin};
-pub use row::{JobNumerics, Row, RowState};
+pub use files::write;
+pub use input::Report;
+pub use parameters::assignment;
+pub use provenance::{BuildInfo, Provenance, ResultGroup};
+pub use row::{JobNumerics, JobRow, RowState};

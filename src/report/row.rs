@@ -1,18 +1,13 @@
 //! One job as a report sees it.
 
+use super::parameters::{MU, OMEGA, is_further};
 use crate::analysis::JobRecord;
-use crate::publish::value::{MU, OMEGA};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Whether a parameter is one of those that have no place of their own everywhere, as ω and μ have.
-pub(super) fn is_further(name: &str) -> bool {
-    name != OMEGA && name != MU
-}
-
 /// One job of a study: its parameters and what is known of it.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct JobRow {
     /// Name of the study.
     pub study: String,
     /// Key of the job.
@@ -80,7 +75,7 @@ pub enum RowState {
     Done(Box<JobRecord>),
 }
 
-impl Row {
+impl JobRow {
     /// The name of the job's state in CSV: `pending`, `running`, `cancelled`, `failed` or the outcome of its run.
     pub fn status(&self) -> &'static str {
         match &self.state {

@@ -1,6 +1,6 @@
 //! A study in a few numbers.
 
-use super::row::{Row, RowState};
+use super::row::{JobRow, RowState};
 use crate::analysis::{JobRecord, Outcome};
 
 /// How many jobs there are of each kind.
@@ -17,7 +17,7 @@ pub(super) struct Summary {
 }
 
 impl Summary {
-    pub fn of(rows: &[Row]) -> Self {
+    pub fn of(rows: &[JobRow]) -> Self {
         let mut summary = Self { total: rows.len(), ..Self::default() };
         for row in rows {
             *match &row.state {
@@ -58,7 +58,7 @@ impl Summary {
 }
 
 /// The job that fits worst: the first to look at if a figure is in doubt.
-pub(super) fn worst(rows: &[Row], residual: impl Fn(&JobRecord) -> f64) -> Option<(f64, &Row)> {
+pub(super) fn worst(rows: &[JobRow], residual: impl Fn(&JobRecord) -> f64) -> Option<(f64, &JobRow)> {
     rows.iter()
         .filter_map(|row| Some((residual(row.record()?), row)))
         .filter(|(residual, _)| residual.is_finite())

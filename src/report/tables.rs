@@ -3,7 +3,7 @@
 use super::export::io_error;
 use super::layout::{Group, Layout};
 use super::markdown;
-use super::row::{Row, RowState};
+use super::row::{JobRow, RowState};
 use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::publish::value;
 use crate::publish::value::MISSING;
@@ -64,7 +64,7 @@ impl Quantity {
         if record.outcome == Outcome::NotPeriodic { text + "~" } else { text }
     }
 
-    fn cell(self, row: &Row) -> String {
+    fn cell(self, row: &JobRow) -> String {
         match &row.state {
             RowState::Pending | RowState::Running | RowState::Cancelled => MISSING.to_owned(),
             RowState::Failed { .. } => "failed".to_owned(),
@@ -74,7 +74,7 @@ impl Quantity {
 }
 
 /// The tables of one quantity as Markdown: one per combination of further parameters, and a legend.
-pub fn markdown(rows: &[Row], quantity: Quantity) -> String {
+pub fn markdown(rows: &[JobRow], quantity: Quantity) -> String {
     markdown_of(&Layout::new(rows), quantity)
 }
 
@@ -104,7 +104,7 @@ pub(super) fn markdown_of(layout: &Layout, quantity: Quantity) -> String {
 ///
 /// # Errors
 /// Those of the writer.
-pub fn csv<W: Write>(rows: &[Row], quantity: Quantity, out: W) -> io::Result<()> {
+pub fn csv<W: Write>(rows: &[JobRow], quantity: Quantity, out: W) -> io::Result<()> {
     csv_of(&Layout::new(rows), quantity, out)
 }
 
@@ -142,14 +142,14 @@ pub(super) fn lines<'a>(
     let mut cells: Vec<Vec<Option<String>>> = vec![vec![None; layout.mus.len()]; group.axis_values.len()];
     for job in &group.jobs {
         let here = quantity.cell(job.row);
-        match &mut cells[job.at][job.mu] {
+        match &mut cells[job.axis_index][job.mu_index] {
             Some(others) => others.extend([" / ", &here]),
             free => *free = Some(here),
         }
     }
     group.axis_values.iter().zip(cells).map(|(at, cells)| {
         let line = cells.into_iter().map(|cell| cell.unwrap_or_else(|| MISSING.to_owned())).collect();
-        (value::shown(at), line)
+        (value::rounded_text(at), line)
     })
 }
 

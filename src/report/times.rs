@@ -1,6 +1,6 @@
 //! How long jobs took. A job's time is its share of its thread's.
 
-use super::row::Row;
+use super::row::JobRow;
 
 /// So many jobs that took longest are named.
 const SLOWEST: usize = 8;
@@ -18,14 +18,14 @@ pub(super) struct Times<'a> {
     /// Time steps of one job in a second of a thread, over all jobs with a result.
     pub steps_per_s: Option<f64>,
     /// Those that took longest, with their times.
-    pub slowest: Vec<(&'a Row, f64)>,
+    pub slowest: Vec<(&'a JobRow, f64)>,
 }
 
 impl<'a> Times<'a> {
     /// None if no time is known.
-    pub fn of(rows: &'a [Row]) -> Option<Self> {
-        let known = |row: &'a Row| Some((row, row.wall_s.filter(|s| s.is_finite())?));
-        let mut times: Vec<(&Row, f64)> = rows.iter().filter_map(known).collect();
+    pub fn of(rows: &'a [JobRow]) -> Option<Self> {
+        let known = |row: &'a JobRow| Some((row, row.wall_s.filter(|s| s.is_finite())?));
+        let mut times: Vec<(&JobRow, f64)> = rows.iter().filter_map(known).collect();
         times.sort_by(|a, b| b.1.total_cmp(&a.1));
         let (jobs, &(_, max_s)) = (times.len(), times.first()?);
         let total_s: f64 = times.iter().map(|(_, s)| s).sum();
@@ -49,8 +49,8 @@ mod tests {
     use super::*;
     use crate::report::RowState;
 
-    fn row(wall_s: Option<f64>) -> Row {
-        Row {
+    fn row(wall_s: Option<f64>) -> JobRow {
+        JobRow {
             study: String::new(),
             job: String::new(),
             parameters: Vec::new(),

@@ -3,12 +3,12 @@
 #[path = "../support/browser.rs"]
 #[expect(dead_code, reason = "reports are tested with more of it")]
 mod chromium;
-mod looks;
+mod inspections;
 mod page;
 mod readers;
 
 use std::ops::ControlFlow;
-use tribosweep::inspect::{Look, Options};
+use tribosweep::inspect::{Inspection, Options};
 use tribosweep::spec::JobSpec;
 
 /// 6 × 8 × 5 elements, 2 mm strip, 7 rpm, μ = 0.4: a stick–slip–separation cycle in half a second.
@@ -23,6 +23,6 @@ pub fn coarse() -> JobSpec {
 ///
 /// # Panics
 /// If it cannot be done.
-pub fn look_into(spec: &JobSpec, options: &Options) -> Look {
-    Look::into(spec, options, &mut |_| ControlFlow::Continue(())).unwrap()
+pub fn inspect(spec: &JobSpec, options: &Options) -> Inspection {
+    Inspection::run(spec, options, &mut |_| ControlFlow::Continue(())).unwrap()
 }

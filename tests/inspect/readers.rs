@@ -1,11 +1,11 @@
 //! The fields in the eyes of others' readers: VTK, which ParaView is made of, and meshio.
 
-use crate::{coarse, look_into};
+use crate::{coarse, inspect};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 use tribosweep::analysis::sample::NodeSample;
-use tribosweep::inspect::{Frame, Look, Options, Origin, write};
+use tribosweep::inspect::{Frame, Inspection, Options, PageHeader, write};
 use tribosweep::solver::contact::ContactState;
 use tribosweep::solver::stress;
 
@@ -117,9 +117,9 @@ fn code(state: ContactState) -> f64 {
     }
 }
 
-fn assert_is_the_look(read: &Value, look: &Look) {
-    let mesh = look.mesh();
-    let frames = &look.capture.frames;
+fn assert_is_the_look(read: &Value, inspection: &Inspection) {
+    let mesh = inspection.mesh();
+    let frames = &inspection.capture.frames;
     assert_eq!(numbers(&read["times"]), frames.iter().map(|frame| frame.time_s).collect::<Vec<_>>());
     let files = read["files"].as_array().unwrap();
     assert_eq!(files.len(), frames.len());
@@ -140,10 +140,12 @@ fn assert_is_the_look(read: &Value, look: &Look) {
     };
     compare("displacement_m", &|frame| frame.u_m.clone());
     compare("velocity_m_s", &|frame| frame.velocity_m_s.clone());
-    compare("stress_pa", &|frame| stress::nodal_pa(mesh, look.capture.model.material(), &frame.u_m).concat());
+    compare("stress_pa", &|frame| {
+        stress::nodal_pa(mesh, inspection.capture.model.material(), &frame.u_m).concat()
+    });
     compare("contact_force_n", &on_face(nodes, 0.0, |node| node.force_n.to_vec()));
     compare("normal_contact_stress_pa", &|frame| {
-        let slaves = look.capture.model.slaves();
+        let slaves = inspection.capture.model.slaves();
         let mut all: Vec<f64> =
             frame.face.iter().zip(slaves).map(|(node, slave)| node.force_n[2] / slave.area_m2).collect();
         all.resize(nodes, 0.0);
@@ -156,13 +158,13 @@ fn assert_is_the_look(read: &Value, look: &Look) {
 /// Protects: VTK and meshio read every number that was written, at its point and its time.
 #[test]
 fn readers_find_what_was_written() {
-    let look = look_into(&coarse(), &Options { frames: 16, ..Options::default() });
+    let inspection = inspect(&coarse(), &Options { frames: 16, ..Options::default() });
     let folder = tempfile::tempdir().unwrap();
-    write(&look, folder.path(), &Origin::default()).unwrap();
+    write(&inspection, folder.path(), &PageHeader::default()).unwrap();
     let series = folder.path().join("fields.pvd");
     for (module, script) in [("vtk", WITH_VTK), ("meshio", WITH_MESHIO)] {
         if let Some(read) = read_with(module, script, &series) {
-            assert_is_the_look(&read, &look);
+            assert_is_the_look(&read, &inspection);
         }
     }
 }

@@ -6,19 +6,19 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use tempfile::TempDir;
-use tribosweep::report::{Row, write};
+use tribosweep::report::{JobRow, write};
 
 use crate::chromium::Browser;
 use crate::synthetic::{failed, partial_study, report, row};
 
 /// A partial study with a message that must stay text.
-fn study() -> Vec<Row> {
+fn study() -> Vec<JobRow> {
     let mut rows = partial_study();
     rows.push(row(75.0, 0.4, failed("<script>window.taken = true</script><img src=x onerror=alert(1)>")));
     rows
 }
 
-fn written(rows: &[Row]) -> (TempDir, PathBuf) {
+fn written(rows: &[JobRow]) -> (TempDir, PathBuf) {
     let folder = TempDir::new().unwrap();
     write(&report(rows), folder.path()).unwrap();
     let page = folder.path().canonicalize().unwrap().join("report.html");

@@ -4,20 +4,20 @@ use crate::synthetic::{failed, partial_study, periodic, record, row, with};
 use serde_json::{Value, json};
 use std::io;
 use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::report::{Row, RowState, export};
+use tribosweep::report::{JobRow, RowState, export};
 
 const HEADER: &str = "study,job,omega_rpm,mu,status,regime,mu_star,mu_star_se,mu_star_contact,frequency_hz,\
                       stick_share,slip_share,separated_share,n_over_f_min,n_over_f_max,sigma_n_max_pa,\
                       slip_speed_max_m_s,cycles,simulated_s,steps,time_step_s,energy_residual,\
                       identity_residual,wall_s,error";
 
-fn csv(rows: &[Row]) -> String {
+fn csv(rows: &[JobRow]) -> String {
     let mut out = Vec::new();
     export::csv(rows, &mut out).expect("a vector takes everything");
     String::from_utf8(out).expect("the export is UTF-8")
 }
 
-fn json_lines(rows: &[Row]) -> Vec<Value> {
+fn json_lines(rows: &[JobRow]) -> Vec<Value> {
     let mut out = Vec::new();
     export::json_lines(rows, &mut out).expect("a vector takes everything");
     let text = String::from_utf8(out).expect("the export is UTF-8");
@@ -25,7 +25,7 @@ fn json_lines(rows: &[Row]) -> Vec<Value> {
 }
 
 /// Header and cells of the first job as the csv reader sees them.
-fn first_cells(rows: &[Row]) -> Vec<(String, String)> {
+fn first_cells(rows: &[JobRow]) -> Vec<(String, String)> {
     let text = csv(rows);
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers().expect("a header").clone();

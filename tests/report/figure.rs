@@ -5,13 +5,13 @@ use crate::synthetic::{done, partial_study, periodic, record, row, with};
 use std::collections::HashSet;
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::figure::{Figure, Plot, figures};
-use tribosweep::report::{Row, RowState};
+use tribosweep::report::{JobRow, RowState};
 
 /// The first colours of the palette, in the order of ascending μ.
 const COLOURS: [&str; 3] = ["#0072B2", "#D55E00", "#009E73"];
 const CURVE_WIDTH: &str = "4";
 
-fn only(rows: &[Row], plot: Plot) -> Vec<Element> {
+fn only(rows: &[JobRow], plot: Plot) -> Vec<Element> {
     let mut all = figures(rows, plot).expect("a string takes everything");
     assert_eq!(all.len(), 1);
     svg::parse(&all.remove(0).svg)
@@ -223,7 +223,7 @@ fn a_result_that_is_not_finite_is_not_drawn() {
 /// Protects one figure per combination, each with a file name and a caption of its own.
 #[test]
 fn each_combination_has_its_figure() {
-    let rows: Vec<Row> = ["a/b", "a b", "<&\u{1}\">"]
+    let rows: Vec<JobRow> = ["a/b", "a b", "<&\u{1}\">"]
         .into_iter()
         .flat_map(|name| partial_study().into_iter().map(move |row| with(row, "note", name)))
         .collect();
@@ -249,7 +249,7 @@ fn a_named_parameter_makes_a_named_axis() {
 /// Protects studies with more coefficients than there are distinct colours: all curves differ.
 #[test]
 fn many_coefficients_have_many_colours() {
-    let rows: Vec<Row> = (1..=20)
+    let rows: Vec<JobRow> = (1..=20)
         .flat_map(|k| [5.0, 7.0].map(|omega| row(omega, f64::from(k) * 0.05, periodic(f64::from(k) * 0.04))))
         .collect();
     let elements = only(&rows, Plot::MuStar);

@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use tribosweep::publish::PublishError;
-use tribosweep::report::{Row, RowState, write};
+use tribosweep::report::{JobRow, RowState, write};
 
 const FILES: [&str; 21] = [
     "figure7.csv",
@@ -36,7 +36,7 @@ fn names(folder: &Path) -> BTreeSet<String> {
     entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
 }
 
-fn page(rows: &[Row]) -> String {
+fn page(rows: &[JobRow]) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
     write(&report(rows), folder.path()).expect("the report is written");
     fs::read_to_string(folder.path().join("report.md")).expect("the page is there")
@@ -97,7 +97,7 @@ fn the_page_says_what_is_missing_and_why() {
 /// Protects the links: every file of the report can be reached from its page.
 #[test]
 fn the_page_links_every_file() {
-    let rows: Vec<Row> = ["inner_side", "outer_side"]
+    let rows: Vec<JobRow> = ["inner_side", "outer_side"]
         .into_iter()
         .flat_map(|side| partial_study().into_iter().map(move |row| with(row, "clamp_side", side)))
         .collect();
@@ -131,7 +131,7 @@ fn an_error_stays_on_its_line() {
 /// Protects a large study's page from thousands of lines about waiting jobs.
 #[test]
 fn many_missing_jobs_are_summed_up() {
-    let rows: Vec<Row> = (1..=100).map(|k| row(f64::from(k), 0.4, RowState::Pending)).collect();
+    let rows: Vec<JobRow> = (1..=100).map(|k| row(f64::from(k), 0.4, RowState::Pending)).collect();
     let page = page(&rows);
     assert!(page.contains("## Missing jobs (100)"));
     assert_eq!(page.matches("– pending (job").count(), 20);

@@ -2,7 +2,7 @@
 
 use crate::synthetic::{failed, partial_study, periodic, report, row, with};
 use std::fs;
-use tribosweep::report::{Made, Maker, Origin, Report, Row, RowState, write};
+use tribosweep::report::{BuildInfo, JobRow, Provenance, Report, ResultGroup, RowState, write};
 
 fn page_of(report: &Report) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -10,7 +10,7 @@ fn page_of(report: &Report) -> String {
     fs::read_to_string(folder.path().join("report.html")).expect("the page is there")
 }
 
-fn page(rows: &[Row]) -> String {
+fn page(rows: &[JobRow]) -> String {
     page_of(&report(rows))
 }
 
@@ -88,9 +88,9 @@ fn what_a_study_says_is_text() {
     let evil = "</title></svg><script>alert(1)</script>\"'&";
     let mut rows = partial_study();
     rows.push(row(20.0, 0.4, failed(evil)));
-    let rows: Vec<Row> = rows.into_iter().map(|row| with(row, evil, evil)).collect();
-    let origin = Origin { document: evil.to_owned(), ..Origin::default() };
-    let page = page_of(&Report { title: evil, origin: Some(&origin), ..report(&rows) });
+    let rows: Vec<JobRow> = rows.into_iter().map(|row| with(row, evil, evil)).collect();
+    let provenance = Provenance { document: evil.to_owned(), ..Provenance::default() };
+    let page = page_of(&Report { title: evil, provenance: Some(&provenance), ..report(&rows) });
     assert_eq!(page.matches("<script").count(), 1, "the page's own");
     assert_eq!(page.matches("</svg>").count(), page.matches("<svg ").count());
     assert!(text(&page).matches("alert(1)").count() > 5);
@@ -105,8 +105,8 @@ fn only_a_page_that_changes_refreshes() {
     assert!(refreshed.contains("<meta http-equiv=\"refresh\" content=\"7\">"));
 }
 
-fn made(commit: &str, host: &str, jobs: u64, first_ms: i64, last_ms: i64) -> Made {
-    let maker = Maker {
+fn made(commit: &str, host: &str, jobs: u64, first_ms: i64, last_ms: i64) -> ResultGroup {
+    let build = BuildInfo {
         version: "0.1.0".to_owned(),
         commit: commit.to_owned(),
         host: host.to_owned(),
@@ -115,7 +115,7 @@ fn made(commit: &str, host: &str, jobs: u64, first_ms: i64, last_ms: i64) -> Mad
         vectors: "Avx2".to_owned(),
         threads: 4,
     };
-    Made { with: Some(maker), jobs, first_ms, last_ms }
+    ResultGroup { build: Some(build), jobs, first_ms, last_ms }
 }
 
 /// Protects: where results come from is told once for each program and machine, with a word where there are several.
@@ -123,11 +123,12 @@ fn made(commit: &str, host: &str, jobs: u64, first_ms: i64, last_ms: i64) -> Mad
 fn results_have_their_origin() {
     let day = 86_400_000;
     let alike = [made("aaaa", "one", 2, 2 * day, 3 * day), made("aaaa", "one", 3, day, 2 * day)];
-    let origin = Origin::grouped("{ \"name\": \"mine\" }".to_owned(), 0, alike.clone());
-    assert_eq!(origin.made, [made("aaaa", "one", 5, day, 3 * day)]);
+    let provenance = Provenance::grouped("{ \"name\": \"mine\" }".to_owned(), 0, alike.clone());
+    assert_eq!(provenance.groups, [made("aaaa", "one", 5, day, 3 * day)]);
     let rows = partial_study();
-    let page = |origin: &Origin| text(&page_of(&Report { origin: Some(origin), ..report(&rows) }));
-    let told = page(&origin);
+    let page =
+        |provenance: &Provenance| text(&page_of(&Report { provenance: Some(provenance), ..report(&rows) }));
+    let told = page(&provenance);
     for part in [
         "Submitted 1970-01-01 00:00 UTC",
         "1970-01-02 00:00 UTCto 1970-01-04 00:00 UTC",
@@ -140,8 +141,9 @@ fn results_have_their_origin() {
     }
     assert!(!told.contains("The results come from"));
 
-    let several = [made("bbbb+modified", "one", 1, 0, 0), made("aaaa", "two", 1, 0, 0), Made::default()];
-    let told = page(&Origin::grouped(String::new(), 0, alike.into_iter().chain(several)));
+    let several =
+        [made("bbbb+modified", "one", 1, 0, 0), made("aaaa", "two", 1, 0, 0), ResultGroup::default()];
+    let told = page(&Provenance::grouped(String::new(), 0, alike.into_iter().chain(several)));
     for part in ["come from 2 builds", "come from 2 machines", "changes that are in no commit", "unknown"] {
         assert!(told.contains(part), "{part} in {told}");
     }
@@ -151,7 +153,7 @@ fn results_have_their_origin() {
 /// them all.
 #[test]
 fn many_combinations_are_left_out() {
-    let rows: Vec<Row> = (0..40)
+    let rows: Vec<JobRow> = (0..40)
         .flat_map(|load| partial_study().into_iter().map(move |row| with(row, "load_n", load)))
         .collect();
     let page = page(&rows);
@@ -164,7 +166,7 @@ fn many_combinations_are_left_out() {
 /// saying so.
 #[test]
 fn a_huge_study_has_a_small_page() {
-    let rows: Vec<Row> = (0..100_000)
+    let rows: Vec<JobRow> = (0..100_000)
         .map(|i| row(f64::from(i % 1000), 0.1 + f64::from(i / 1000) * 0.005, RowState::Pending))
         .collect();
     let page = page(&rows);
@@ -176,7 +178,7 @@ fn a_huge_study_has_a_small_page() {
 /// Protects: a study of some thousand jobs is drawn, though not every job can be pointed at.
 #[test]
 fn a_large_study_is_drawn() {
-    let rows: Vec<Row> =
+    let rows: Vec<JobRow> =
         (0..5_000).map(|i| row(f64::from(i % 100), 0.1 + f64::from(i / 100) * 0.01, periodic(0.3))).collect();
     let page = page(&rows);
     assert!(page.len() < 12_000_000, "{} bytes", page.len());

@@ -4,9 +4,9 @@ use crate::svg::{self, Element};
 use crate::synthetic::{done, failed, partial_study, periodic, row, with};
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::figure::{Plot, figures};
-use tribosweep::report::{Row, RowState};
+use tribosweep::report::{JobRow, RowState};
 
-fn only(rows: &[Row], plot: Plot) -> Vec<Element> {
+fn only(rows: &[JobRow], plot: Plot) -> Vec<Element> {
     let mut all = figures(rows, plot).expect("a string takes everything");
     assert_eq!(all.len(), 1);
     svg::parse(&all.remove(0).svg)

@@ -3,14 +3,14 @@
 use crate::synthetic::{done, failed, periodic, row};
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::overview::overview;
-use tribosweep::report::{Row, RowState};
+use tribosweep::report::{JobRow, RowState};
 
 /// Without colours.
-fn plain(rows: &[Row], width: usize) -> String {
+fn plain(rows: &[JobRow], width: usize) -> String {
     anstream::adapter::strip_str(&overview(rows, width)).to_string()
 }
 
-fn study() -> Vec<Row> {
+fn study() -> Vec<JobRow> {
     vec![
         row(0.5, 0.2, done(Outcome::Decayed, Regime::Stable, 0.2)),
         row(0.5, 0.4, periodic(0.38)),

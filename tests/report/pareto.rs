@@ -6,7 +6,7 @@ use std::fs;
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::pareto::refinement::{Level, Unclean, limit, observed_order};
 use tribosweep::report::pareto::{Direction, ParetoError, compare, markdown, on_front, write};
-use tribosweep::report::{JobNumerics, Row, RowState};
+use tribosweep::report::{JobNumerics, JobRow, RowState};
 
 /// A cube of n × n × n elements of 1/n mm; the step is in proportion.
 fn numerics(n: usize, safety_factor: f64) -> JobNumerics {
@@ -28,7 +28,7 @@ fn numerics(n: usize, safety_factor: f64) -> JobNumerics {
 }
 
 /// A finished job; its time step follows from mesh and safety factor.
-fn job(numerics: JobNumerics, mu_star: f64, wall_s: f64) -> Row {
+fn job(numerics: JobNumerics, mu_star: f64, wall_s: f64) -> JobRow {
     let mut record = record(Outcome::Periodic, Regime::StickSlip, mu_star);
     record.mu_star_se = 1.0e-6;
     record.time_step_s = 1.0e-6 * numerics.safety_factor.unwrap_or(1.0) / numerics.elements[0] as f64;
@@ -46,7 +46,7 @@ fn manufactured(n: usize, safety_factor: f64) -> f64 {
 }
 
 /// Meshes 4, 8, 16 at three steps each; dearer with both.
-fn product() -> Vec<Row> {
+fn product() -> Vec<JobRow> {
     let mut rows = Vec::new();
     for n in [4, 8, 16] {
         for safety in [0.8, 0.4, 0.2] {
@@ -203,7 +203,7 @@ fn physical_cases_are_kept_apart() {
         }
         row
     }));
-    let cases = |rows: &[Row]| {
+    let cases = |rows: &[JobRow]| {
         let comparison = compare(rows).unwrap();
         comparison.cases.iter().map(|case| (case.caption.clone(), case.jobs.len())).collect::<Vec<_>>()
     };
@@ -262,11 +262,11 @@ fn nothing_to_compare_is_an_error() {
     let rows = product();
     assert_eq!(compare(&[]).unwrap_err(), ParetoError::TooFewDone { done: 0, jobs: 0 });
     assert_eq!(compare(&rows[..1]).unwrap_err(), ParetoError::TooFewDone { done: 1, jobs: 1 });
-    let old: Vec<Row> = rows.iter().cloned().map(|row| Row { numerics: None, ..row }).collect();
+    let old: Vec<JobRow> = rows.iter().cloned().map(|row| JobRow { numerics: None, ..row }).collect();
     assert_eq!(compare(&old).unwrap_err(), ParetoError::NoNumerics);
-    let untimed: Vec<Row> = rows.iter().cloned().map(|row| Row { wall_s: None, ..row }).collect();
+    let untimed: Vec<JobRow> = rows.iter().cloned().map(|row| JobRow { wall_s: None, ..row }).collect();
     assert_eq!(compare(&untimed).unwrap_err(), ParetoError::NoRunTimes { done: 9 });
-    let apart: Vec<Row> = rows
+    let apart: Vec<JobRow> = rows
         .iter()
         .cloned()
         .map(|mut row| {
@@ -296,7 +296,7 @@ fn a_partial_study_says_so() {
     assert_eq!(case.reference.chains.len(), 1, "one step on the finest mesh is no chain");
 
     let lone = with(row(9.0, 0.4, RowState::Pending), "elements", "x");
-    rows.push(Row { numerics: Some(JobNumerics { case: "lone".into(), ..numerics(4, 0.8) }), ..lone });
+    rows.push(JobRow { numerics: Some(JobNumerics { case: "lone".into(), ..numerics(4, 0.8) }), ..lone });
     let text = markdown(&compare(&rows).unwrap());
     assert!(
         text.contains("Left out") && text.contains("ω = 9 rpm") && text.contains("0 of 1 jobs done"),

@@ -4,10 +4,10 @@ use crate::synthetic::{done, failed, partial_study, periodic, row, with};
 use serde_json::json;
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::tables::{self, Quantity};
-use tribosweep::report::{Row, RowState};
+use tribosweep::report::{JobRow, RowState};
 
 /// The lines of the Markdown tables as cells without padding, rules left out.
-fn cells(rows: &[Row], quantity: Quantity) -> Vec<Vec<String>> {
+fn cells(rows: &[JobRow], quantity: Quantity) -> Vec<Vec<String>> {
     tables::markdown(rows, quantity)
         .lines()
         .filter(|line| line.starts_with('|') && !line.contains("---"))
@@ -15,7 +15,7 @@ fn cells(rows: &[Row], quantity: Quantity) -> Vec<Vec<String>> {
         .collect()
 }
 
-fn csv(rows: &[Row], quantity: Quantity) -> Vec<String> {
+fn csv(rows: &[JobRow], quantity: Quantity) -> Vec<String> {
     let mut out = Vec::new();
     tables::csv(rows, quantity, &mut out).expect("a vector takes everything");
     String::from_utf8(out).expect("the table is UTF-8").lines().map(str::to_owned).collect()

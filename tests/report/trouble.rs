@@ -3,7 +3,7 @@
 use crate::synthetic::{failed, periodic, record, row, with};
 use tribosweep::analysis::{Obstacle, Outcome, Regime};
 use tribosweep::report::trouble::{Grid, LISTED, Region, cause, regions, sentences};
-use tribosweep::report::{Row, RowState};
+use tribosweep::report::{JobRow, RowState};
 
 fn unsteady(figure: &str, spread: f64) -> RowState {
     let mut record = record(Outcome::NotPeriodic, Regime::StickSlip, 0.3);
@@ -12,7 +12,7 @@ fn unsteady(figure: &str, spread: f64) -> RowState {
 }
 
 /// A grid of 4 × 6 jobs that are well but for `state`.
-fn study(state: impl Fn(usize, usize) -> Option<RowState>) -> Vec<Row> {
+fn study(state: impl Fn(usize, usize) -> Option<RowState>) -> Vec<JobRow> {
     let (mus, omegas) = ([0.1, 0.2, 0.3, 0.4], [100.0, 1.0, 2.0, 5.0, 10.0, 50.0]);
     let at = |m: usize, o: usize| row(omegas[o], mus[m], state(m, o).unwrap_or_else(|| periodic(0.3)));
     (0..4).flat_map(|m| (0..6).map(move |o| (m, o))).map(|(m, o)| at(m, o)).collect()
@@ -94,7 +94,7 @@ fn words_are_places_of_their_own() {
 /// Protects: a study full of scattered failures is told in a bounded number of lines, and none is forgotten.
 #[test]
 fn many_regions_are_counted() {
-    let rows: Vec<Row> = (0..100)
+    let rows: Vec<JobRow> = (0..100)
         .map(|i| {
             let state = if i % 2 == 0 { failed("no") } else { periodic(0.3) };
             row(f64::from(i), 0.4, state)

@@ -1,10 +1,11 @@
 //! Figure 8: stresses at a node in several jobs, one over the other.
 
-use super::{MEGA, MICRO};
+use super::style::{MEGA, MICRO};
 use crate::inspect::capture::NodeStep;
-use crate::inspect::overlay::Trace;
+use crate::inspect::trace::Trace;
+use crate::publish::FigureError;
+use crate::publish::plot::palette;
 use crate::publish::plot::panel::{Panel, Scale, Series, stack};
-use crate::publish::plot::{FigureError, palette};
 
 /// Draws, under what the jobs have in common, normal and tangential stress over the time since the begin of a cycle.
 ///

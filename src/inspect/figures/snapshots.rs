@@ -1,10 +1,11 @@
 //! Four instants of a cycle: the middle plane of the pin and its contact face.
 
-use super::{MICRO, STATES, colour_of};
+use super::style::{MICRO, STATES, colour_of};
 use crate::inspect::capture::Frame;
-use crate::inspect::look::Look;
+use crate::inspect::inspection::Inspection;
+use crate::publish::FigureError;
 use crate::publish::plot::canvas::{Area, WIDTH, sheet, write};
-use crate::publish::plot::{FigureError, MARGIN, TEXT};
+use crate::publish::plot::{DrawError, MARGIN, TEXT};
 use crate::solver::contact::ContactState;
 use plotters::element::{Circle, PathElement, Polygon};
 use plotters::style::text_anchor::HPos;
@@ -30,14 +31,14 @@ struct Snapshot<'a> {
 ///
 /// # Errors
 /// The drawing library's.
-pub fn draw(look: &Look) -> Result<String, FigureError> {
-    let snapshots = snapshots(look);
-    let scales = Scales::of(look, &snapshots);
+pub fn draw(inspection: &Inspection) -> Result<String, FigureError> {
+    let snapshots = snapshots(inspection);
+    let scales = Scales::of(inspection, &snapshots);
     sheet((WIDTH, ROW * snapshots.len() as u32 + FOOT), |root| {
         let mut rest = root.clone();
         for snapshot in &snapshots {
             let (row, below) = rest.split_vertically(ROW);
-            draw_row(&row, look, snapshot, &scales)?;
+            draw_row(&row, inspection, snapshot, &scales)?;
             rest = below;
         }
         draw_legend(&rest, &scales)?;
@@ -46,9 +47,9 @@ pub fn draw(look: &Look) -> Result<String, FigureError> {
 }
 
 /// In the paper's phases of the first observed node that has all of them; otherwise four quarters of the cycle.
-fn snapshots(look: &Look) -> Vec<Snapshot<'_>> {
-    let windows = &look.survey.windows;
-    let complete = look.observed.iter().zip(&look.capture.nodes).find_map(|(observed, steps)| {
+fn snapshots(inspection: &Inspection) -> Vec<Snapshot<'_>> {
+    let windows = &inspection.survey.windows;
+    let complete = inspection.observed.iter().zip(&inspection.capture.nodes).find_map(|(observed, steps)| {
         let instants = observed.instants?;
         let (a, b, d) = (instants.contact_s?, instants.stick_s?, instants.slip_s?);
         let (c, e, f) = (instants.peak_s, instants.separation_s?, instants.end_s?);
@@ -75,7 +76,7 @@ fn snapshots(look: &Look) -> Vec<Snapshot<'_>> {
             let apart = (frame.time_s - time_s) / windows.period_s;
             (apart - apart.round()).abs()
         };
-        let frame = look.capture.frames.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        let frame = inspection.capture.frames.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
         Some(Snapshot { label, frame })
     };
     times.into_iter().filter_map(snapshot).collect()
@@ -104,9 +105,9 @@ struct Scales {
 }
 
 impl Scales {
-    fn of(look: &Look, snapshots: &[Snapshot]) -> Self {
-        let [lx, ly, lz] = look.mesh().size_m();
-        let ([hx, hy, _], [_, ny, _]) = (look.mesh().element_size_m(), look.mesh().elements());
+    fn of(inspection: &Inspection, snapshots: &[Snapshot]) -> Self {
+        let [lx, ly, lz] = inspection.mesh().size_m();
+        let ([hx, hy, _], [_, ny, _]) = (inspection.mesh().element_size_m(), inspection.mesh().elements());
         let stride = ny.div_ceil(ARROWS);
         let room = f64::from(WIDTH) / 2.0 - 3.0 * f64::from(MARGIN);
         let high = f64::from(ROW) - f64::from(TITLE) - f64::from(MARGIN);
@@ -142,16 +143,21 @@ impl Scales {
     }
 }
 
-fn draw_row(area: &Area, look: &Look, snapshot: &Snapshot, scales: &Scales) -> Result<(), FigureError> {
+fn draw_row(
+    area: &Area,
+    inspection: &Inspection,
+    snapshot: &Snapshot,
+    scales: &Scales,
+) -> Result<(), DrawError> {
     write(area, &snapshot.label, (MARGIN, 34), TEXT, HPos::Left)?;
     let (left, right) = area.split_horizontally(WIDTH / 2);
-    draw_side(&left, look, snapshot.frame, scales)?;
-    draw_face(&right, look, snapshot.frame, scales)
+    draw_side(&left, inspection, snapshot.frame, scales)?;
+    draw_face(&right, inspection, snapshot.frame, scales)
 }
 
 /// The middle plane: velocities at its nodes, forces under it.
-fn draw_side(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result<(), FigureError> {
-    let mesh = look.mesh();
+fn draw_side(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scales) -> Result<(), DrawError> {
+    let mesh = inspection.mesh();
     let [nx, ny, nz] = mesh.elements();
     let [_, ly, lz] = mesh.size_m();
     let middle = i64::from(WIDTH / 4) as f64;
@@ -187,8 +193,8 @@ fn draw_side(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result
 }
 
 /// The contact face from above: states and friction forces.
-fn draw_face(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result<(), FigureError> {
-    let mesh = look.mesh();
+fn draw_face(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scales) -> Result<(), DrawError> {
+    let mesh = inspection.mesh();
     let [lx, ly, _] = mesh.size_m();
     let middle = f64::from(WIDTH / 4);
     let centre = f64::from(TITLE) + lx / 2.0 * scales.px_per_m;
@@ -218,7 +224,7 @@ fn draw_face(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result
 }
 
 /// A node: the shape says its state, too.
-fn dot(area: &Area, at: (i32, i32), state: ContactState, radius: i32) -> Result<(), FigureError> {
+fn dot(area: &Area, at: (i32, i32), state: ContactState, radius: i32) -> Result<(), DrawError> {
     let colour = colour_of(state);
     match state {
         ContactState::Stick => area.draw(&Circle::new(at, radius, colour.filled())),
@@ -240,7 +246,7 @@ fn arrow(
     to: (f64, f64),
     colour: RGBColor,
     width: u32,
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let length = dx.hypot(dy);
     if length < SHORTEST {
@@ -255,7 +261,7 @@ fn arrow(
     area.draw(&Polygon::new([rounded(to), corner(1.0), corner(-1.0)], colour))
 }
 
-fn draw_legend(area: &Area, scales: &Scales) -> Result<(), FigureError> {
+fn draw_legend(area: &Area, scales: &Scales) -> Result<(), DrawError> {
     let mut x = MARGIN + DOT;
     for state in STATES {
         dot(area, (x, 30), state, DOT)?;

@@ -1,15 +1,21 @@
 //! The points of a figure.
 
-use super::Ordinate;
 use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::publish::plot::axis::Axis;
 use crate::report::layout::{Group, Layout};
-use crate::report::row::Row;
+use crate::report::row::JobRow;
 use serde_json::Value;
+
+/// What curves show over the disk speed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ordinate {
+    MuStar,
+    Frequency,
+}
 
 /// One job's result in a figure.
 pub(super) struct Point<'a> {
-    pub row: &'a Row,
+    pub row: &'a JobRow,
     /// The value along the axis, and where that is.
     pub at: &'a Value,
     pub x: f64,
@@ -32,11 +38,16 @@ pub(super) struct Curve<'a> {
 /// One curve per μ of the study, also where this group has no results: colours and legend stay the
 /// same in all its figures.
 pub(super) fn curves<'a>(layout: &Layout, group: &'a Group, plot: Ordinate, x_axis: &Axis) -> Vec<Curve<'a>> {
-    let at: Vec<Option<f64>> = group.axis_values.iter().map(|value| x_axis.place(value)).collect();
-    let mut results: Vec<Vec<Found>> = vec![Vec::new(); layout.mus.len()];
+    let at: Vec<Option<f64>> = group.axis_values.iter().map(|value| x_axis.position(value)).collect();
+    let mut results: Vec<Vec<LocatedResult>> = vec![Vec::new(); layout.mus.len()];
     for job in &group.jobs {
-        if let (Some(x), Some(record)) = (at[job.at], job.row.record()) {
-            results[job.mu].push(Found { x, at: &group.axis_values[job.at], row: job.row, record });
+        if let (Some(x), Some(record)) = (at[job.axis_index], job.row.record()) {
+            results[job.mu_index].push(LocatedResult {
+                x,
+                at: &group.axis_values[job.axis_index],
+                row: job.row,
+                record,
+            });
         }
     }
     layout
@@ -53,15 +64,15 @@ pub(super) fn curves<'a>(layout: &Layout, group: &'a Group, plot: Ordinate, x_ax
 
 /// A job with a result, and where it is.
 #[derive(Clone, Copy)]
-struct Found<'a> {
+struct LocatedResult<'a> {
     x: f64,
     at: &'a Value,
-    row: &'a Row,
+    row: &'a JobRow,
     record: &'a JobRecord,
 }
 
-fn point<'a>(plot: Ordinate, found: &Found<'a>) -> Option<Point<'a>> {
-    let Found { x, at, row, record } = *found;
+fn point<'a>(plot: Ordinate, found: &LocatedResult<'a>) -> Option<Point<'a>> {
+    let LocatedResult { x, at, row, record } = *found;
     let (y, error) = match plot {
         Ordinate::MuStar => (record.mu_star, record.mu_star_se),
         Ordinate::Frequency => (record.frequency_hz?, 0.0),
@@ -73,7 +84,7 @@ fn point<'a>(plot: Ordinate, found: &Found<'a>) -> Option<Point<'a>> {
 
 /// Joins neighbours; jobs at the same place by their mean. A job that is done but has no value (no
 /// oscillation, hence no frequency) ends a stretch: a line across it would claim one.
-fn stretches(plot: Ordinate, results: &[Found]) -> Vec<Vec<(f64, f64)>> {
+fn stretches(plot: Ordinate, results: &[LocatedResult]) -> Vec<Vec<(f64, f64)>> {
     let mut stretches = vec![Vec::new()];
     for here in results.chunk_by(|a, b| a.x == b.x) {
         let values: Vec<f64> = here.iter().filter_map(|found| Some(point(plot, found)?.y)).collect();

@@ -1,13 +1,12 @@
 //! The legend in the strip beside the plot: friction coefficients by colour, regimes by shape.
 
-use super::Ordinate;
-use super::data::Curve;
+use super::data::{Curve, Ordinate};
 use super::marker;
 use crate::analysis::Regime;
 use crate::publish::plot::canvas::{self, Area};
-use crate::publish::plot::{self, FigureError, palette};
+use crate::publish::plot::{self, DrawError, palette};
 use crate::publish::value;
-use crate::report::sign::regime_label;
+use crate::report::glyph::regime_label;
 use plotters::prelude::{BLACK, PathElement, RGBColor};
 use plotters::style::Color;
 use plotters::style::text_anchor::HPos;
@@ -32,7 +31,7 @@ enum Entry {
 }
 
 /// Draws the legend into its strip.
-pub(super) fn draw(area: &Area, curves: &[Curve], plot: Ordinate) -> Result<(), FigureError> {
+pub(super) fn draw(area: &Area, curves: &[Curve], plot: Ordinate) -> Result<(), DrawError> {
     let entries = entries(curves, plot);
     let room = area.dim_in_pixel().1 as i32 - 2 * plot::MARGIN;
     let pitch = (room / entries.len().max(1) as i32).min(46);
@@ -68,7 +67,7 @@ fn entries(curves: &[Curve], plot: Ordinate) -> Vec<Entry> {
     entries
 }
 
-fn draw_entry(area: &Area, entry: &Entry, y: i32, size: i32) -> Result<(), FigureError> {
+fn draw_entry(area: &Area, entry: &Entry, y: i32, size: i32) -> Result<(), DrawError> {
     let text = |text: &str, x: i32| canvas::write(area, text, (x, y), size, HPos::Left);
     let beside = SAMPLE + 18;
     match *entry {

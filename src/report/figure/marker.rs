@@ -1,7 +1,7 @@
 //! Markers: the shape is the contact regime, hollow is without a periodic state.
 
 use crate::analysis::Regime;
-use crate::publish::plot::FigureError;
+use crate::publish::plot::DrawError;
 use crate::publish::plot::canvas::Area;
 use plotters::prelude::{Circle, Polygon, RGBColor, WHITE};
 
@@ -17,7 +17,7 @@ pub(super) fn draw(
     regime: Regime,
     periodic: bool,
     colour: RGBColor,
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     shape(area, at, regime, 1.0, colour)?;
     if periodic && regime != Regime::Undecided {
         return Ok(());
@@ -41,7 +41,7 @@ fn shape(
     regime: Regime,
     scale: f64,
     colour: RGBColor,
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let pixels = |offset: f64| (offset * scale * f64::from(RADIUS)).round() as i32;
     let corners: Vec<(i32, i32)> =
         corners(regime).iter().map(|&(dx, dy)| (x + pixels(dx), y + pixels(dy))).collect();

@@ -3,8 +3,8 @@
 #![expect(clippy::cast_possible_wrap, reason = "pixels and legend lines: thousands, not billions")]
 
 mod chart;
+mod colour_key;
 mod data;
-mod key;
 mod legend;
 mod map;
 mod marker;
@@ -12,9 +12,10 @@ pub(super) mod residuals;
 mod shares;
 
 use super::layout::{Group, Layout};
-use super::row::Row;
-use crate::publish::plot::FigureError;
+use super::row::JobRow;
+use crate::publish::FigureError;
 use crate::publish::value;
+use data::Ordinate;
 use std::collections::HashSet;
 
 /// What a figure shows.
@@ -34,7 +35,7 @@ pub enum Plot {
 
 /// What is behind figures, as a file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Data {
+pub(super) struct DataFile {
     /// What the file is called.
     pub stem: &'static str,
     /// Which fields of the export are in it besides the parameters and how a job ended.
@@ -42,18 +43,11 @@ pub(super) struct Data {
 }
 
 /// What is behind the figure of residuals.
-pub(super) const RESIDUALS: Data =
-    Data { stem: "residuals", columns: &["energy_residual", "identity_residual"] };
+pub(super) const RESIDUALS: DataFile =
+    DataFile { stem: "residuals", columns: &["energy_residual", "identity_residual"] };
 /// What is behind the statistics of run times.
-pub(super) const RUN_TIMES: Data =
-    Data { stem: "run_times", columns: &["wall_s", "steps", "simulated_s", "time_step_s"] };
-
-/// What curves show over the disk speed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Ordinate {
-    MuStar,
-    Frequency,
-}
+pub(super) const RUN_TIMES: DataFile =
+    DataFile { stem: "run_times", columns: &["wall_s", "steps", "simulated_s", "time_step_s"] };
 
 impl Plot {
     /// All of them.
@@ -72,18 +66,19 @@ impl Plot {
     }
 
     /// The file with the data behind it and the fields of the export that are in it.
-    pub(super) fn data(self) -> Data {
+    pub(super) fn data(self) -> DataFile {
         match self {
             Self::MuStar => {
-                Data { stem: "figure7", columns: &["mu_star", "mu_star_se", "mu_star_contact", "regime"] }
+                DataFile { stem: "figure7", columns: &["mu_star", "mu_star_se", "mu_star_contact", "regime"] }
             }
             Self::Frequency | Self::FrequencyMap => {
-                Data { stem: "frequency_map", columns: &["frequency_hz", "regime"] }
+                DataFile { stem: "frequency_map", columns: &["frequency_hz", "regime"] }
             }
-            Self::RegimeMap => Data { stem: "regime_map", columns: &["regime", "error"] },
-            Self::Shares => {
-                Data { stem: "shares", columns: &["stick_share", "slip_share", "separated_share", "regime"] }
-            }
+            Self::RegimeMap => DataFile { stem: "regime_map", columns: &["regime", "error"] },
+            Self::Shares => DataFile {
+                stem: "shares",
+                columns: &["stick_share", "slip_share", "separated_share", "regime"],
+            },
         }
     }
 
@@ -114,7 +109,7 @@ pub struct Figure {
 ///
 /// # Errors
 /// The drawing library's; drawing into a string gives it no reason to fail.
-pub fn figures(rows: &[Row], plot: Plot) -> Result<Vec<Figure>, FigureError> {
+pub fn figures(rows: &[JobRow], plot: Plot) -> Result<Vec<Figure>, FigureError> {
     figures_of(&Layout::new(rows), plot)
 }
 
@@ -140,7 +135,7 @@ const MAX_SUFFIX: usize = 120;
 fn free_suffix(group: &Group, taken: &mut HashSet<String>) -> String {
     let words: Vec<String> =
         group.key.iter().map(|(name, value)| format!("-{name}-{}", value::text(value))).collect();
-    let slug: String = value::in_file_name(&words.concat()).chars().take(MAX_SUFFIX).collect();
+    let slug: String = value::file_name_part(&words.concat()).chars().take(MAX_SUFFIX).collect();
     let numbered = (2..).map(|n| format!("{slug}-{n}"));
     std::iter::once(slug.clone())
         .chain(numbered)

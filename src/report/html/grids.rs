@@ -1,14 +1,14 @@
 //! Sections that show the grid of a study: figures with the data behind them, and tables.
 
-use super::Parts;
+use super::parts::Parts;
 use crate::publish::{html, value};
 use crate::report::export;
-use crate::report::figure::{Data, Plot, RESIDUALS, RUN_TIMES};
-use crate::report::layout::{Group, MOST_TOLD, parameters_in_words};
-use crate::report::row::Row;
+use crate::report::figure::{DataFile, Plot, RESIDUALS, RUN_TIMES};
+use crate::report::layout::{Group, MAX_TOOLTIPS, parameters_in_words};
+use crate::report::row::JobRow;
 use crate::report::tables::{self, Quantity};
 use crate::report::times::Times;
-use crate::report::tip::short_key;
+use crate::report::tooltip::short_key;
 use maud::{Markup, html};
 
 /// No more combinations of further parameters than this are shown.
@@ -64,7 +64,7 @@ pub(super) fn shares(parts: &Parts) -> Markup {
 
 pub(super) fn residuals(parts: &Parts) -> Markup {
     let rows = parts.report.rows;
-    let told = rows.len() <= MOST_TOLD;
+    let told = rows.len() <= MAX_TOOLTIPS;
     let caption = "How well energies and identities close in every job: the energy balance of the whole run over the \
                    energy put in, and the larger residual of two identities of the averaging window.";
     let data = told.then(|| csv(parts, rows.iter(), RESIDUALS));
@@ -98,7 +98,7 @@ pub(super) fn times(parts: &Parts) -> Markup {
     );
     let header = ["parameters", "thread time", "steps", "steps per second", "job"].map(str::to_owned);
     let lines: Vec<Vec<Markup>> = times.slowest.iter().map(|(row, seconds)| slow(row, *seconds)).collect();
-    let data = (rows.len() <= MOST_TOLD).then(|| csv(parts, rows.iter(), RUN_TIMES));
+    let data = (rows.len() <= MAX_TOOLTIPS).then(|| csv(parts, rows.iter(), RUN_TIMES));
     html! {
         p {
             "A job's time is its share of its thread's: jobs that are advanced together share it equally."
@@ -110,7 +110,7 @@ pub(super) fn times(parts: &Parts) -> Markup {
     }
 }
 
-fn slow(row: &Row, seconds: f64) -> Vec<Markup> {
+fn slow(row: &JobRow, seconds: f64) -> Vec<Markup> {
     let steps = row.record().map(|record| record.steps);
     let cell = |text: Option<String>| html! { (text.as_deref().unwrap_or(value::MISSING)) };
     vec![
@@ -140,7 +140,7 @@ fn figures(parts: &Parts, plot: Plot, caption: &str) -> Markup {
     html! {
         @for (group, figure) in groups.iter().zip(figures).take(shown) {
             @if !figure.caption.is_empty() { h3 { (figure.caption) } }
-            @let csv = group.is_told().then(|| csv(parts, group.jobs.iter().map(|job| job.row), data));
+            @let csv = group.has_tooltips().then(|| csv(parts, group.jobs.iter().map(|job| job.row), data));
             @let file = format!("{}{}.csv", data.stem, figure.suffix);
             (html::figure(&figure.svg, caption, csv.as_deref().map(|csv| (file.as_str(), csv))))
             @if csv.is_none() {
@@ -171,7 +171,7 @@ fn left_out(what: &str, files: &str) -> Markup {
     html! { p.note { "… " (what) ": see " code { (files) } " in its folder." } }
 }
 
-fn csv<'a>(parts: &Parts, rows: impl Iterator<Item = &'a Row>, data: Data) -> String {
+fn csv<'a>(parts: &Parts, rows: impl Iterator<Item = &'a JobRow>, data: DataFile) -> String {
     // Text that is made of strings is text.
     export::selection(rows, &parts.layout.further, data.columns)
         .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())

@@ -2,11 +2,11 @@
 
 use crate::analysis::JobRecord;
 use crate::publish::{html, value};
-use crate::report::Report;
+use crate::report::input::Report;
 use crate::report::layout::parameters_in_words;
-use crate::report::row::Row;
+use crate::report::row::JobRow;
 use crate::report::summary::{self, Summary};
-use crate::report::tip::short;
+use crate::report::tooltip::short;
 use maud::{Markup, html};
 
 /// Numbers to begin with, and what is missing before them.
@@ -47,14 +47,14 @@ pub(super) fn summary(report: &Report) -> Markup {
 type Tile = (&'static str, String, String);
 
 /// Where the macroscopic coefficient is farthest below the local one.
-fn drop_of_friction(rows: &[Row]) -> Option<Tile> {
-    let ratio = |row: &Row| Some(row.record()?.mu_star / row.mu).filter(|ratio| ratio.is_finite());
+fn drop_of_friction(rows: &[JobRow]) -> Option<Tile> {
+    let ratio = |row: &JobRow| Some(row.record()?.mu_star / row.mu).filter(|ratio| ratio.is_finite());
     let ratios = rows.iter().filter_map(|row| Some((ratio(row)?, row)));
     let (ratio, row) = ratios.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(("lowest μ*/μ", value::fixed(ratio, 3), parameters_in_words(row)))
 }
 
-fn frequencies(rows: &[Row]) -> Option<Tile> {
+fn frequencies(rows: &[JobRow]) -> Option<Tile> {
     let found = rows.iter().filter_map(|row| row.record()?.frequency_hz).filter(|f| f.is_finite());
     let (low, high) =
         found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), f| (low.min(f), high.max(f)));
@@ -64,7 +64,7 @@ fn frequencies(rows: &[Row]) -> Option<Tile> {
     (low <= high).then_some(("frequencies", told, String::new()))
 }
 
-fn residuals(rows: &[Row]) -> Option<Tile> {
+fn residuals(rows: &[JobRow]) -> Option<Tile> {
     let (energy, one) = summary::worst(rows, |record| record.energy_residual.abs())?;
     let (identity, other) = summary::worst(rows, JobRecord::identity_residual)?;
     let note = if one.job == other.job {
@@ -80,7 +80,7 @@ pub(super) fn foot(report: &Report) -> Markup {
     html! {
         footer {
             p.note {
-                "Written " (value::moment(report.written_ms)) " by tribosweep. "
+                "Written " (value::utc_minute(report.written_ms)) " by tribosweep. "
                 @if let Some(seconds) = report.refresh_s {
                     "The study is not finished: this page loads itself anew every " (seconds) " s. "
                 }

@@ -5,24 +5,14 @@
 
 mod grids;
 mod head;
-mod origin;
+mod parts;
+mod provenance;
 mod trouble;
 
-use super::Report;
-use super::figure::{Figure, Plot};
-use super::layout::Layout;
+pub(super) use parts::Parts;
+
 use crate::publish::html;
 use maud::{Markup, html};
-
-/// What the page is made of, besides the rows.
-pub(super) struct Parts<'a> {
-    pub report: &'a Report<'a>,
-    pub layout: &'a Layout<'a>,
-    /// The figures of every kind, one for each group.
-    pub figures: &'a [(Plot, Vec<Figure>)],
-    /// The figure of residuals.
-    pub residuals: &'a str,
-}
 
 /// The page.
 pub(super) fn page(parts: &Parts) -> String {
@@ -36,7 +26,7 @@ pub(super) fn page(parts: &Parts) -> String {
     ];
     sections.extend(trouble::section(report.rows).map(|content| ("trouble", "Trouble", content)));
     sections.push(("times", "Run times", grids::times(parts)));
-    sections.extend(report.origin.map(|own| ("provenance", "Provenance", origin::section(own))));
+    sections.extend(report.provenance.map(|own| ("provenance", "Provenance", provenance::section(own))));
     let body = html! {
         (head::summary(report))
         (html::navigation(sections.iter().map(|(id, heading, _)| (*id, *heading))))

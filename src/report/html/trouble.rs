@@ -3,8 +3,8 @@
 use crate::analysis::Outcome;
 use crate::publish::{html, value};
 use crate::report::layout::parameters_in_words;
-use crate::report::row::{Row, RowState};
-use crate::report::tip::short_key;
+use crate::report::row::{JobRow, RowState};
+use crate::report::tooltip::short_key;
 use crate::report::trouble;
 use maud::{Markup, html};
 
@@ -12,7 +12,7 @@ use maud::{Markup, html};
 const NAMED: usize = 100;
 
 /// Nothing, if no job is in trouble or missing.
-pub(super) fn section(rows: &[Row]) -> Option<Markup> {
+pub(super) fn section(rows: &[JobRow]) -> Option<Markup> {
     let regions = trouble::sentences(&trouble::regions(rows));
     let failed = list("Failed jobs", rows, failed);
     let not_periodic = list("Not periodic", rows, not_periodic);
@@ -31,9 +31,9 @@ pub(super) fn section(rows: &[Row]) -> Option<Markup> {
 }
 
 /// The rows of which there is something to say, the first of them in a table.
-fn list(heading: &str, rows: &[Row], why: fn(&Row) -> Option<Markup>) -> Option<Markup> {
+fn list(heading: &str, rows: &[JobRow], why: fn(&JobRow) -> Option<Markup>) -> Option<Markup> {
     let mut entries = rows.iter().filter_map(|row| Some((row, why(row)?)));
-    let line = |(row, why): (&Row, Markup)| {
+    let line = |(row, why): (&JobRow, Markup)| {
         vec![html! { (parameters_in_words(row)) }, why, html! { code { (short_key(row)) } }]
     };
     let lines: Vec<Vec<Markup>> = entries.by_ref().take(NAMED).map(line).collect();
@@ -49,25 +49,25 @@ fn list(heading: &str, rows: &[Row], why: fn(&Row) -> Option<Markup>) -> Option<
     })
 }
 
-fn failed(row: &Row) -> Option<Markup> {
+fn failed(row: &JobRow) -> Option<Markup> {
     match &row.state {
         RowState::Failed { error } => Some(html! { span.words { (error) } }),
         _ => None,
     }
 }
 
-fn not_periodic(row: &Row) -> Option<Markup> {
+fn not_periodic(row: &JobRow) -> Option<Markup> {
     let record = row.record().filter(|record| record.outcome == Outcome::NotPeriodic)?;
     let why = trouble::cause(row)?.why;
     Some(html! {
         span.words {
-            (why) "; after " (value::digits(record.simulated_s, 4)) " s μ* = " (value::fixed(record.mu_star, 4)) " ± "
+            (why) "; after " (value::significant(record.simulated_s, 4)) " s μ* = " (value::fixed(record.mu_star, 4)) " ± "
             (value::fixed(record.mu_star_se, 4)) " over " (record.cycles) " cycles"
         }
     })
 }
 
-fn missing(row: &Row) -> Option<Markup> {
+fn missing(row: &JobRow) -> Option<Markup> {
     let is_missing = matches!(row.state, RowState::Pending | RowState::Running | RowState::Cancelled);
     is_missing.then(|| html! { (row.status()) })
 }

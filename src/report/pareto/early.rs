@@ -1,6 +1,6 @@
 //! What stopping early changes: pairs of jobs that differ in nothing else.
 
-use super::case::DoneJob;
+use super::done::DoneJob;
 use super::reference::{self, FIGURES, FREQUENCY};
 use crate::report::row::JobNumerics;
 

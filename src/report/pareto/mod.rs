@@ -24,6 +24,7 @@
 mod case;
 mod compare;
 mod csv;
+mod done;
 mod early;
 mod error;
 mod front;
@@ -36,6 +37,7 @@ mod settings;
 
 pub use case::Case;
 pub use compare::{Comparison, compare};
+pub use done::DoneJob;
 pub use early::EarlyStop;
 pub use error::ParetoError;
 pub use front::on_front;
@@ -59,11 +61,11 @@ pub fn write(comparison: &Comparison, out_dir: &Path, title: &str) -> Result<Vec
         let name = if index == 0 { "pareto.svg".to_owned() } else { format!("pareto-{}.svg", index + 1) };
         let svg =
             plot::draw(case).map_err(|source| PublishError::Figure { path: out_dir.join(&name), source })?;
-        folder.text(&name, &svg)?;
+        folder.write_text(&name, &svg)?;
         figures.push(name);
     }
-    folder.with("pareto.csv", |out| csv::write(comparison, out))?;
-    folder.with("refinement.csv", |out| csv::write_refinement(comparison, out))?;
-    folder.text("pareto.md", &page::page(comparison, &figures, title))?;
+    folder.write_with("pareto.csv", |out| csv::write(comparison, out))?;
+    folder.write_with("refinement.csv", |out| csv::write_refinement(comparison, out))?;
+    folder.write_text("pareto.md", &page::page(comparison, &figures, title))?;
     Ok(folder.written)
 }

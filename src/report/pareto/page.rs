@@ -1,7 +1,8 @@
 //! The comparison as Markdown that reads as plain text too.
 
-use super::case::{Case, DoneJob};
+use super::case::Case;
 use super::compare::Comparison;
+use super::done::DoneJob;
 use super::early::EarlyStop;
 use super::reference::{Chain, Direction, FIGURE_NAMES, FIGURES, FREQUENCY, MU_STAR, Reference};
 use super::refinement::{Limit, Unclean};

@@ -4,9 +4,10 @@
 
 use super::case::Case;
 use super::page::figure_title;
+use crate::publish::FigureError;
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area, X_LABELS, write};
-use crate::publish::plot::{DASH, FigureError, MARGIN, TEXT, palette};
+use crate::publish::plot::{DASH, DrawError, MARGIN, TEXT, palette};
 use plotters::chart::ChartBuilder;
 use plotters::prelude::{BLACK, Circle, DashedLineSeries, PathElement, Polygon, RGBColor, WHITE};
 use plotters::style::Color;
@@ -71,10 +72,10 @@ fn points(case: &Case, meshes: &[[usize; 3]]) -> Vec<Point> {
 
 fn axis(values: impl Iterator<Item = f64>) -> Axis {
     let values: Vec<Value> = values.map(Value::from).collect();
-    Axis::across(&values, true)
+    Axis::for_values(&values, true)
 }
 
-fn draw_plot(area: &Area, points: &[Point]) -> Result<(), FigureError> {
+fn draw_plot(area: &Area, points: &[Point]) -> Result<(), DrawError> {
     if points.is_empty() {
         let (width, height) = area.dim_in_pixel();
         let note = "no job has both a run time and an error above zero";
@@ -102,7 +103,7 @@ fn draw_plot(area: &Area, points: &[Point]) -> Result<(), FigureError> {
 }
 
 /// A circle for a whole run, a triangle for one that stopped early; hollow if not resolved; ringed on the front.
-fn draw_marker(area: &Area, at: (i32, i32), point: &Point) -> Result<(), FigureError> {
+fn draw_marker(area: &Area, at: (i32, i32), point: &Point) -> Result<(), DrawError> {
     if point.on_front {
         area.draw(&Circle::new(at, RADIUS + 9, BLACK.stroke_width(3)))?;
     }
@@ -116,7 +117,7 @@ fn shape(
     triangle: bool,
     radius: f64,
     colour: RGBColor,
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let pixels = |offset: f64| (offset * radius).round() as i32;
     if triangle {
         let corners = [(0.0, -1.35), (1.2, 0.8), (-1.2, 0.8)];
@@ -126,7 +127,7 @@ fn shape(
     }
 }
 
-fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(), FigureError> {
+fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(), DrawError> {
     let sample = |early, resolved, on_front| Point {
         time_s: 0.0,
         error: 0.0,

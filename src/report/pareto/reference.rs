@@ -1,6 +1,6 @@
 //! What the jobs of a case are measured by: its finest job, extrapolated where the order is clean.
 
-use super::case::DoneJob;
+use super::done::DoneJob;
 use super::refinement::{self, Level, Limit};
 use crate::report::row::JobNumerics;
 use std::cmp::Ordering;

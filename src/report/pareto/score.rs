@@ -1,6 +1,6 @@
 //! Errors and costs of the jobs of a case.
 
-use super::case::DoneJob;
+use super::done::DoneJob;
 use super::front::on_front;
 use super::reference::{self, FREQUENCY, MU_STAR, Reference};
 

@@ -2,7 +2,7 @@
 
 use crate::analysis::{JobRecord, Obstacle, Outcome};
 use crate::publish::value;
-use crate::report::row::{JobNumerics, Row, RowState};
+use crate::report::row::{JobNumerics, JobRow, RowState};
 
 /// What is wrong with a job.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -16,7 +16,7 @@ pub struct Cause {
 }
 
 /// What is wrong with a row's job, if anything is.
-pub fn cause(row: &Row) -> Option<Cause> {
+pub fn cause(row: &JobRow) -> Option<Cause> {
     match &row.state {
         RowState::Failed { error } => {
             Some(Cause { what: "failed", class: without_numbers(error), why: error.clone() })
@@ -61,7 +61,7 @@ fn tolerated(numerics: &JobNumerics) -> String {
 
 /// Three digits are enough to compare with a tolerance.
 fn significant(x: f64) -> String {
-    value::digits(x, 3)
+    value::significant(x, 3)
 }
 
 /// A message whose numbers do not count: the step at which a run diverged is not why it did.

@@ -2,7 +2,7 @@
 
 use super::cause::Cause;
 use crate::publish::value;
-use crate::publish::value::{MU, OMEGA};
+use crate::report::parameters::{MU, OMEGA, assignment, is_further};
 use serde_json::Value;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
@@ -60,7 +60,7 @@ impl Grid {
     pub fn add(&mut self, omega_rpm: f64, mu: f64, parameters: &[(String, Value)]) {
         let own = [(OMEGA, Value::from(omega_rpm)), (MU, Value::from(mu))];
         let further = parameters.iter().map(|(name, value)| (name.as_str(), value));
-        let further = further.filter(|(name, _)| *name != OMEGA && *name != MU);
+        let further = further.filter(|(name, _)| is_further(name));
         let mut point = vec![ABSENT; self.axes.len()];
         for (name, value) in own.iter().map(|(name, value)| (*name, value)).chain(further) {
             let axis = self.axis(name);
@@ -128,7 +128,7 @@ impl Grid {
             for point in self.points.iter_mut().filter(|point| point[number] == ABSENT) {
                 point[number] = axis.number(&Value::Null);
             }
-            let rank = value::sort(&mut axis.values);
+            let rank = value::sort_numbers(&mut axis.values);
             for point in &mut self.points {
                 point[number] = rank[point[number]];
             }
@@ -201,10 +201,10 @@ impl Grid {
         let words = varying.map(|(axis, &(low, high))| {
             let [first, last] = [&axis.values[low], &axis.values[high]];
             match axis.name.as_str() {
-                _ if low == high => value::assignment(&axis.name, first),
-                OMEGA => format!("ω = {} … {} rpm", value::shown(first), value::shown(last)),
-                MU => format!("μ = {} … {}", value::shown(first), value::shown(last)),
-                name => format!("{name} = {} … {}", value::shown(first), value::shown(last)),
+                _ if low == high => assignment(&axis.name, first),
+                OMEGA => format!("ω = {} … {} rpm", value::rounded_text(first), value::rounded_text(last)),
+                MU => format!("μ = {} … {}", value::rounded_text(first), value::rounded_text(last)),
+                name => format!("{name} = {} … {}", value::rounded_text(first), value::rounded_text(last)),
             }
         });
         words.collect::<Vec<_>>().join(", ")

@@ -9,14 +9,14 @@ mod grid;
 pub use cause::{Cause, cause};
 pub use grid::{Grid, Region, Regions};
 
-use super::row::Row;
+use super::row::JobRow;
 use std::fmt::Write;
 
 /// So many regions are told one by one.
 pub const LISTED: usize = 12;
 
 /// The regions of a study's rows.
-pub fn regions(rows: &[Row]) -> Regions {
+pub fn regions(rows: &[JobRow]) -> Regions {
     let mut grid = Grid::default();
     for row in rows {
         grid.add(row.omega_rpm, row.mu, &row.parameters);

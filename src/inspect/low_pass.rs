@@ -6,7 +6,7 @@ use crate::analysis::sample::Smoother;
 ///
 /// `gain` is that of the job's own smoother, 1 − exp(−Δt/τ), which goes forwards alone. Each direction has the time
 /// constant τ/√2, so that slow oscillations lose as much of their amplitude as behind the job's: ω²τ²/2.
-pub fn without_delay(values: &[f64], gain: f64) -> Vec<f64> {
+pub fn zero_phase_low_pass(values: &[f64], gain: f64) -> Vec<f64> {
     let each_way = 1.0 - (1.0 - gain).powf(std::f64::consts::SQRT_2);
     let pass = |values: &mut dyn Iterator<Item = f64>, first: f64| -> Vec<f64> {
         let mut smoother = Smoother::at(first);
@@ -31,7 +31,7 @@ mod tests {
         let gain = 1.0 - (-0.1_f64).exp();
         let mut spike = vec![0.0; 401];
         spike[200] = 1.0;
-        let smooth = without_delay(&spike, gain);
+        let smooth = zero_phase_low_pass(&spike, gain);
         let largest = (0..401).max_by(|a, b| smooth[*a].total_cmp(&smooth[*b])).unwrap();
         assert_eq!(largest, 200);
         for k in 1..100 {
@@ -42,7 +42,7 @@ mod tests {
         // ωτ = 0.2: a forwards low-pass takes 2 % off and is late by τ, ten steps.
         let omega = 0.2 / 10.0;
         let wave: Vec<f64> = (0..2000).map(|i| (omega * f64::from(i)).sin()).collect();
-        let smooth = without_delay(&wave, gain);
+        let smooth = zero_phase_low_pass(&wave, gain);
         let amplitude = 1.0 / (1.0 + 0.2 * 0.2 / 2.0);
         for i in 800..1200 {
             // Of the second order in Δt/τ, a tenth, and of the steps' ωΔt.
@@ -54,6 +54,6 @@ mod tests {
             );
         }
         assert!((TAU / omega) as usize * 2 < 800, "away from the ends");
-        assert!(without_delay(&[], gain).is_empty());
+        assert!(zero_phase_low_pass(&[], gain).is_empty());
     }
 }

@@ -1,8 +1,8 @@
 //! A job looked into: both runs and what is found in what they kept.
 
 use super::capture::{Capture, FaceStep, capture};
+use super::nodes::{NodeSelector, ObservedNode};
 use super::phases::{Instants, Phase, phases};
-use super::place::{ObservedNode, Place};
 use super::spectrum::Spectrum;
 use super::survey::{FEWEST_CYCLES, Survey, survey};
 use crate::analysis::JobError;
@@ -15,7 +15,7 @@ use std::ops::ControlFlow;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
     /// The nodes whose histories are shown.
-    pub places: Vec<Place>,
+    pub nodes: Vec<NodeSelector>,
     /// Number of cycles that are shown, at least [`Options::FEWEST_CYCLES`].
     pub cycles: usize,
     /// Number of times of a cycle at which the whole pin is kept, at least [`Options::FEWEST_FRAMES`].
@@ -31,16 +31,16 @@ impl Options {
 
 impl Default for Options {
     fn default() -> Self {
-        Self { places: Place::USUAL.to_vec(), cycles: 4, frames: 48 }
+        Self { nodes: NodeSelector::DEFAULT.to_vec(), cycles: 4, frames: 48 }
     }
 }
 
 /// Why a job cannot be looked into.
 #[derive(Debug, thiserror::Error)]
-pub enum LookError {
+pub enum InspectionError {
     /// A node is not there.
     #[error("{0}")]
-    Place(String),
+    Node(String),
     /// The job has no record.
     #[error(transparent)]
     Job(#[from] JobError),
@@ -48,7 +48,7 @@ pub enum LookError {
 
 /// One job looked into.
 #[derive(Debug, Clone)]
-pub struct Look {
+pub struct Inspection {
     /// The job.
     pub spec: JobSpec,
     /// The first run.
@@ -56,14 +56,14 @@ pub struct Look {
     /// The second run.
     pub capture: Capture,
     /// The observed nodes, in the order of [`Capture::nodes`].
-    pub observed: Vec<Observed>,
+    pub observed: Vec<NodeFindings>,
     /// The spectrum of the total normal force over [`Capture::totals`].
     pub spectrum: Spectrum,
 }
 
 /// What is found in the history of an observed node.
 #[derive(Debug, Clone)]
-pub struct Observed {
+pub struct NodeFindings {
     /// The node.
     pub node: ObservedNode,
     /// Velocity [m/s] of the undeformed target under it, in y.
@@ -74,22 +74,23 @@ pub struct Observed {
     pub instants: Option<Instants>,
 }
 
-impl Look {
+impl Inspection {
     /// Runs the job twice and looks.
     ///
-    /// `go_on` hears the simulated time [s] of the run that goes on and may end it.
+    /// `on_progress` hears the simulated time [s] of the run that goes on and may end it.
     ///
     /// # Errors
-    /// [`LookError`].
-    pub fn into(
+    /// [`InspectionError`].
+    pub fn run(
         spec: &JobSpec,
         options: &Options,
-        go_on: &mut impl FnMut(f64) -> ControlFlow<()>,
-    ) -> Result<Self, LookError> {
-        let nodes = nodes_of(spec, &options.places)?;
-        let survey = survey(spec, options.cycles.max(Options::FEWEST_CYCLES), go_on)?;
+        on_progress: &mut impl FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Self, InspectionError> {
+        let nodes = nodes_of(spec, &options.nodes)?;
+        let survey = survey(spec, options.cycles.max(Options::FEWEST_CYCLES), on_progress)?;
         let windows = &survey.windows;
-        let capture = capture(spec, windows, &nodes, options.frames.max(Options::FEWEST_FRAMES), go_on)?;
+        let capture =
+            capture(spec, windows, &nodes, options.frames.max(Options::FEWEST_FRAMES), on_progress)?;
         let rate = rad_per_s_from_rpm(spec.scene.disk.omega_rpm);
         let observed = nodes
             .into_iter()
@@ -100,7 +101,7 @@ impl Look {
                 let stress: Vec<_> = steps.iter().map(|step| (step.time_s, step.stress_pa[2])).collect();
                 let instants = Instants::find(&phases, &stress, windows.shown_s[0], windows.period_s);
                 let target_velocity_m_s = rate * capture.model.slaves()[node.slave].surface_motion[1];
-                Observed { node, target_velocity_m_s, phases, instants }
+                NodeFindings { node, target_velocity_m_s, phases, instants }
             })
             .collect();
         let normal: Vec<f64> = capture.totals.iter().map(|sample| sample.normal_n).collect();
@@ -114,15 +115,19 @@ impl Look {
     }
 }
 
-/// The nodes at these places of a job that has been checked.
-pub fn nodes_of(spec: &JobSpec, places: &[Place]) -> Result<Vec<ObservedNode>, LookError> {
+/// The nodes that are selected, after a check of the job.
+pub fn nodes_of(spec: &JobSpec, nodes: &[NodeSelector]) -> Result<Vec<ObservedNode>, InspectionError> {
     spec.check().map_err(JobError::from)?;
     let mesh = BlockMesh::new(spec.scene.pin.size_m, spec.scene.pin.elements);
-    places.iter().map(|place| place.find(&mesh)).collect::<Result<_, _>>().map_err(LookError::Place)
+    nodes
+        .iter()
+        .map(|selector| selector.resolve(&mesh))
+        .collect::<Result<_, _>>()
+        .map_err(InspectionError::Node)
 }
 
 /// A node's trajectory over the cycle in the y–z plane: y, z displacements [m].
-pub fn loop_of(face: &[FaceStep], slave: usize) -> Vec<(f64, f64)> {
+pub fn node_loop(face: &[FaceStep], slave: usize) -> Vec<(f64, f64)> {
     face.iter()
         .map(|step| {
             let [_, y, z] = step.nodes[slave].u_m;
@@ -132,7 +137,7 @@ pub fn loop_of(face: &[FaceStep], slave: usize) -> Vec<(f64, f64)> {
 }
 
 /// Area [m²] that a closed loop goes around: positive counter-clockwise, seen with y to the right and z upwards.
-pub fn area_m2(path: &[(f64, f64)]) -> f64 {
+pub fn loop_area_m2(path: &[(f64, f64)]) -> f64 {
     let next = path.iter().cycle().skip(1);
     path.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f64>() / 2.0
 }
@@ -155,7 +160,7 @@ mod tests {
         // A polygon of n corners in a circle of radius 2.
         let exact = 0.5 * 400.0 * 4.0 * (std::f64::consts::TAU / 400.0).sin();
         for sense in [1.0, -1.0] {
-            assert!((area_m2(&circle(sense)) - sense * exact).abs() < 1e-11);
+            assert!((loop_area_m2(&circle(sense)) - sense * exact).abs() < 1e-11);
         }
     }
 }

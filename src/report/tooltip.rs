@@ -1,8 +1,8 @@
 //! What a point of a figure tells about its job.
 
+use super::glyph::regime_label;
 use super::layout::parameters_in_words;
-use super::row::{Row, RowState};
-use super::sign::regime_label;
+use super::row::{JobRow, RowState};
 use crate::analysis::{JobRecord, Outcome};
 use crate::publish::value::{fixed, number};
 
@@ -12,7 +12,7 @@ const KEY_LENGTH: usize = 12;
 const REASON_LENGTH: usize = 240;
 
 /// A job in a few lines, its parameters first.
-pub(super) fn tip(row: &Row) -> String {
+pub(super) fn tooltip_text(row: &JobRow) -> String {
     let mut lines = vec![parameters_in_words(row)];
     match &row.state {
         RowState::Done(record) => lines.extend(results(record)),
@@ -27,7 +27,7 @@ pub(super) fn tip(row: &Row) -> String {
 }
 
 /// The beginning of a job's key.
-pub(super) fn short_key(row: &Row) -> String {
+pub(super) fn short_key(row: &JobRow) -> String {
     row.job.chars().take(KEY_LENGTH).collect()
 }
 

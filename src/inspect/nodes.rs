@@ -19,16 +19,16 @@ const NAMED: [(&str, [i8; 2]); 9] = [
 
 /// A node of the contact face as its user asks for it.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Place {
+pub enum NodeSelector {
     /// One that has a name.
     Named(&'static str),
     /// The nearest to coordinates x and y [m] from the pin's axis.
     At([f64; 2]),
 }
 
-impl Place {
+impl NodeSelector {
     /// The paper's node 1 and node 2.
-    pub const USUAL: [Self; 2] = [Self::Named("front_centre"), Self::Named("rear_centre")];
+    pub const DEFAULT: [Self; 2] = [Self::Named("front_centre"), Self::Named("rear_centre")];
 
     /// Reads a name, or `X,Y` in millimetres from the pin's axis.
     ///
@@ -54,7 +54,7 @@ impl Place {
     ///
     /// # Errors
     /// If the coordinates are beyond the face.
-    pub fn find(&self, mesh: &BlockMesh) -> Result<ObservedNode, String> {
+    pub fn resolve(&self, mesh: &BlockMesh) -> Result<ObservedNode, String> {
         let [lx, ly, _] = mesh.size_m();
         let [x, y] = match self {
             Self::At(at) => *at,
@@ -119,21 +119,22 @@ mod tests {
     #[test]
     fn names_mean_what_records_mean() {
         let mesh = mesh();
-        let found: Vec<_> = Place::USUAL.iter().map(|place| place.find(&mesh).unwrap().slave).collect();
+        let found: Vec<_> =
+            NodeSelector::DEFAULT.iter().map(|selector| selector.resolve(&mesh).unwrap().slave).collect();
         assert_eq!(found, [mesh.node(6, 0, 0), mesh.node(6, 15, 0)]);
-        let centre = Place::parse("centre").unwrap().find(&mesh).unwrap();
+        let centre = NodeSelector::parse("centre").unwrap().resolve(&mesh).unwrap();
         assert_eq!(centre.slave, mesh.node(6, 7, 0));
-        let corner = Place::parse("rear_outer").unwrap().find(&mesh).unwrap();
+        let corner = NodeSelector::parse("rear_outer").unwrap().resolve(&mesh).unwrap();
         assert_eq!((corner.slave, corner.at_m), (mesh.node(12, 15, 0), [0.006, 0.0075]));
     }
 
     /// Protects: coordinates give the nearest node, and its own coordinates in its name.
     #[test]
     fn coordinates_give_the_nearest_node() {
-        let node = Place::parse("-2.4,3.1").unwrap().find(&mesh()).unwrap();
+        let node = NodeSelector::parse("-2.4,3.1").unwrap().resolve(&mesh()).unwrap();
         assert_eq!(node.slave, mesh().node(4, 11, 0));
         assert_eq!(node.name, "x-2.000_y+3.500mm");
-        let edge = Place::parse("6,-7.5").unwrap().find(&mesh()).unwrap();
+        let edge = NodeSelector::parse("6,-7.5").unwrap().resolve(&mesh()).unwrap();
         assert_eq!(edge.slave, mesh().node(12, 0, 0));
     }
 
@@ -141,10 +142,10 @@ mod tests {
     #[test]
     fn other_texts_are_refused() {
         for text in ["front", "1;2", "1,inf", ""] {
-            let error = Place::parse(text).unwrap_err();
+            let error = NodeSelector::parse(text).unwrap_err();
             assert!(error.contains("front_centre") && error.contains("millimetres"), "{error}");
         }
-        let error = Place::parse("7,0").unwrap().find(&mesh()).unwrap_err();
+        let error = NodeSelector::parse("7,0").unwrap().resolve(&mesh()).unwrap_err();
         assert!(error.contains("7,0 mm") && error.contains("x from -6 to 6"), "{error}");
     }
 }

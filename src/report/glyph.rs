@@ -1,6 +1,6 @@
 //! What kind of job it is in a letter, in words and in colours.
 
-use super::row::{Row, RowState};
+use super::row::{JobRow, RowState};
 use crate::analysis::{Outcome, Regime};
 use crate::publish::plot::palette;
 use anstyle::AnsiColor;
@@ -8,7 +8,7 @@ use plotters::style::{RGBColor, WHITE};
 
 /// A kind of job: its letter, what that means, and its colours, which say nothing that the letter does not.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Sign {
+pub(super) struct StatusGlyph {
     pub letter: char,
     pub meaning: &'static str,
     /// On a terminal.
@@ -21,8 +21,8 @@ const GREY: RGBColor = RGBColor(0xDD, 0xDD, 0xDD);
 const LIGHT: RGBColor = RGBColor(0xF2, 0xF2, 0xF2);
 
 /// In place of a job's sign where there are several.
-pub(super) const SEVERAL: Sign =
-    Sign { letter: '+', meaning: "several jobs", colour: AnsiColor::White, fill: GREY };
+pub(super) const SEVERAL_JOBS: StatusGlyph =
+    StatusGlyph { letter: '+', meaning: "several jobs", colour: AnsiColor::White, fill: GREY };
 
 /// The regime as a reader's text.
 pub(super) fn regime_label(regime: Regime) -> &'static str {
@@ -36,8 +36,8 @@ pub(super) fn regime_label(regime: Regime) -> &'static str {
 }
 
 /// The sign of a row's job.
-pub(super) fn sign(row: &Row) -> Sign {
-    let sign = |letter, meaning, colour, fill| Sign { letter, meaning, colour, fill };
+pub(super) fn status_glyph(row: &JobRow) -> StatusGlyph {
+    let sign = |letter, meaning, colour, fill| StatusGlyph { letter, meaning, colour, fill };
     let record = match &row.state {
         RowState::Pending => return sign('.', "pending", AnsiColor::BrightBlack, LIGHT),
         RowState::Running => return sign('>', "running", AnsiColor::Cyan, GREY),
@@ -64,7 +64,7 @@ pub(super) fn sign(row: &Row) -> Sign {
                 Regime::StickSlipSeparation => "stick–slip–separation, not periodic",
                 _ => "slip–separation, not periodic",
             };
-            sign(letter.to_ascii_lowercase(), meaning, colour, palette::mixed(fill, WHITE, 0.5))
+            sign(letter.to_ascii_lowercase(), meaning, colour, palette::mix(fill, WHITE, 0.5))
         }
     }
 }
