@@ -9,7 +9,7 @@ use crate::analysis::Outcome;
 use crate::exit;
 use crate::queue::{Counts, Location, Queue, Rows, Scope};
 use crate::report::overview::overview;
-use crate::report::trouble::{Grid, LISTED, Region, Regions, cause, sentences};
+use crate::report::trouble::{Grid, MAX_LISTED, Region, Regions, cause, sentences};
 use crate::report::{JobRow, RowState};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -102,7 +102,7 @@ async fn find(queue: &mut Queue, name: &str) -> Result<Trouble, CliError> {
     })
     .await?;
     let not_periodic = troubled.len() - failed.len();
-    Ok(Trouble { failed, not_periodic, regions: grid.regions(troubled, LISTED) })
+    Ok(Trouble { failed, not_periodic, regions: grid.regions(troubled, MAX_LISTED) })
 }
 
 async fn one(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, CliError> {

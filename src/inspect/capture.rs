@@ -1,4 +1,4 @@
-//! The second of the two runs, the same to the last bit: everything of the time that is looked at.
+//! The second of the two runs, which is the same to the last bit. It records everything in the time that is shown.
 
 use super::low_pass::zero_phase_low_pass;
 use super::nodes::ObservedNode;
@@ -10,21 +10,21 @@ use crate::spec::JobSpec;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
-/// No more steps than this are kept of the totals: the last ones.
+/// Largest number of steps whose totals are recorded: the last ones.
 const MAX_TOTALS: usize = 1 << 20;
 
-/// What was seen.
+/// What the second run recorded.
 #[derive(Debug, Clone)]
 pub struct Capture {
-    /// The record: the same as the first run's.
+    /// The record, which is that of the first run.
     pub record: JobRecord,
-    /// What the job was solved on.
+    /// The model of the job.
     pub model: Model,
-    /// The gain of the job's smoother of stresses, 1 − exp(−Δt/τ).
+    /// The gain of the low-pass filter that the job applies to stresses, 1 − exp(−Δt/τ).
     pub stress_gain: f64,
     /// Totals of every step from [`Windows::totals_from_s`] on, or of the last million.
     pub totals: Vec<Sample>,
-    /// For every observed node its steps in [`Windows::shown_s`].
+    /// For every observed node, its steps in [`Windows::shown_s`].
     pub nodes: Vec<Vec<NodeStep>>,
     /// The contact face at every step of [`Windows::cycle_s`].
     pub face: Vec<FaceStep>,
@@ -39,7 +39,7 @@ pub struct NodeStep {
     pub time_s: f64,
     /// Displacement, velocity, force and state.
     pub node: NodeSample,
-    /// Contact stress [Pa]: friction in x and y, and normal, behind a low-pass that does not delay them.
+    /// Contact stress [Pa]: friction in x and y, and normal stress, after a zero-phase low-pass filter.
     pub stress_pa: [f64; 3],
 }
 
@@ -59,19 +59,19 @@ pub struct Frame {
     pub time_s: f64,
     /// Displacements [m] after the step, in the order node → component.
     pub u_m: Vec<f64>,
-    /// Velocities [m/s] over the step, likewise.
+    /// Velocities [m/s] over the step, in the same order.
     pub velocity_m_s: Vec<f64>,
     /// The contact face during the step.
     pub face: Vec<NodeSample>,
 }
 
-/// Runs the job again and looks at `nodes`, at the contact face and, `frames` times, at the pin.
+/// Runs the job again and records `nodes`, the contact face and, at `frames` times, the whole pin.
 ///
 /// # Errors
 /// Those of [`analysis::solve`].
 ///
 /// # Panics
-/// If the run has no step: no job is that short.
+/// If the run has no step, which no job can be short enough for.
 pub fn capture(
     spec: &JobSpec,
     windows: &Windows,
@@ -109,7 +109,7 @@ pub fn capture(
     })
 }
 
-/// A node's history with its stresses.
+/// Adds the stresses to the history of a node.
 fn node_steps(steps: Vec<(f64, NodeSample)>, area_m2: f64, gain: f64) -> Vec<NodeStep> {
     let [x, y, n] = [0, 1, 2].map(|c| {
         let raw: Vec<f64> = steps.iter().map(|(_, node)| node.force_n[c] / area_m2).collect();
@@ -119,7 +119,7 @@ fn node_steps(steps: Vec<(f64, NodeSample)>, area_m2: f64, gain: f64) -> Vec<Nod
     steps.map(|(i, (time_s, node))| NodeStep { time_s, node, stress_pa: [x[i], y[i], n[i]] }).collect()
 }
 
-/// Latest first.
+/// The times of the frames [s], latest first.
 fn frame_times_s(windows: &Windows, frames: usize) -> Vec<f64> {
     let [start_s, end_s] = windows.cycle_s;
     (0..frames).rev().map(|k| start_s + (end_s - start_s) * k as f64 / frames as f64).collect()
@@ -166,7 +166,7 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
         self.face.push(FaceStep { time_s, nodes: self.face_of(moment) });
         let due = |next_s: &mut f64| time_s >= *next_s;
         if self.frame_times_s.pop_if(due).is_some() {
-            // There may be fewer steps in a cycle than frames.
+            // A cycle may have fewer steps than frames.
             while self.frame_times_s.pop_if(due).is_some() {}
             self.frames.push(Frame {
                 time_s,

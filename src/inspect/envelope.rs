@@ -2,10 +2,10 @@
 
 use crate::analysis::sample::Sample;
 
-/// No more bins than this: as many as a picture has columns of pixels, and some.
+/// Largest number of bins: more than the columns of pixels in a figure.
 const MAX_BINS: usize = 4000;
 
-/// Extremes of a run's totals over some consecutive steps.
+/// Extremes of a run's totals over consecutive steps.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Bin {
     /// Time [s] of its first step.
@@ -16,7 +16,7 @@ pub struct Bin {
     pub tangential_n: [f64; 2],
 }
 
-/// The bins of a run of any length, equally long but for the last one.
+/// The bins of a run of any length. All bins but the last one are equally long.
 #[derive(Debug, Clone, Default)]
 pub struct Envelope {
     bins: Vec<Bin>,
@@ -69,14 +69,14 @@ fn joined(a: &Bin, b: &Bin) -> Bin {
 mod tests {
     use super::*;
 
-    /// Protects: whatever the length of a run, no step is lost and the bins stay few: the extremes are those of all
-    /// steps, and bins begin in equal distances.
+    /// Protects: for any length of a run, no step is lost and the number of bins is bounded: the extremes are those of all
+    /// steps, and bins start at equal distances.
     #[test]
     fn nothing_is_lost() {
         for steps in [1, 3, MAX_BINS, MAX_BINS + 1, 5 * MAX_BINS + 17] {
             let mut envelope = Envelope::default();
             for step in 0..steps {
-                // A single spike, which a stride would step over.
+                // A single spike, which subsampling would miss.
                 let spike = if step == steps / 2 { 7.0 } else { 0.0 };
                 envelope.push(&Sample {
                     time_s: step as f64,

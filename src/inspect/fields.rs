@@ -1,4 +1,4 @@
-//! The pin over a cycle, for ParaView.
+//! The fields of the pin over a cycle as VTK files, which ParaView reads.
 
 use super::capture::{Capture, Frame};
 use super::vtu::{self, PointData, Values};
@@ -8,10 +8,10 @@ use crate::solver::contact::ContactState;
 use crate::solver::mesh::BlockMesh;
 use crate::solver::stress;
 
-/// The corners of a mesh's element in VTK's order, which goes around.
+/// The corners of an element in the order of VTK, which goes around each face.
 const VTK_CORNERS: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
-/// The folder of the files that `fields.pvd` names.
+/// The folder of the files that `fields.pvd` lists.
 pub(super) const FRAMES_FOLDER: &str = "fields";
 
 /// Writes `fields.pvd` and a folder with a file for each frame.
@@ -49,7 +49,7 @@ fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointDa
         components,
         values: Values::Numbers(count, values.into_iter().map(|x| x as f32).collect()),
     };
-    // Slave nodes have the first numbers.
+    // Slave nodes are numbered first.
     let of_face = |count: usize, value: &dyn Fn(&NodeSample, f64) -> Vec<f64>| {
         let areas = capture.model.slaves().iter().map(|slave| slave.area_m2);
         let mut all: Vec<f64> =
@@ -76,7 +76,7 @@ fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointDa
     ]
 }
 
-/// Contact states as numbers: 0 separated, 1 stick, 2 slip; −1 is no contact node.
+/// The number of a contact state in the files: 0 separated, 1 stick, 2 slip. Other nodes have −1.
 fn code(state: ContactState) -> i8 {
     match state {
         ContactState::Separated => 0,

@@ -1,4 +1,4 @@
-//! A job looked into: both runs and what is found in what they kept.
+//! The inspection of a job: both runs, and what their data show.
 
 use super::capture::{Capture, FaceStep, capture};
 use super::nodes::{NodeSelector, ObservedNode};
@@ -11,21 +11,21 @@ use crate::spec::JobSpec;
 use crate::units::rad_per_s_from_rpm;
 use std::ops::ControlFlow;
 
-/// What to look at.
+/// What to record of a job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// The nodes whose histories are shown.
+    /// The nodes whose histories are recorded.
     pub nodes: Vec<NodeSelector>,
     /// Number of cycles that are shown, at least [`Options::FEWEST_CYCLES`].
     pub cycles: usize,
-    /// Number of times of a cycle at which the whole pin is kept, at least [`Options::FEWEST_FRAMES`].
+    /// Number of times in a cycle at which the whole pin is recorded, at least [`Options::FEWEST_FRAMES`].
     pub frames: usize,
 }
 
 impl Options {
-    /// With fewer a node's cycle is not found.
+    /// With fewer cycles, the cycle of a node cannot be found.
     pub const FEWEST_CYCLES: usize = FEWEST_CYCLES;
-    /// Snapshots are taken from the frames: with fewer they would not be where they are said to be.
+    /// Snapshots are taken from the frames. With fewer frames they would be too far from the instants that they are for.
     pub const FEWEST_FRAMES: usize = 16;
 }
 
@@ -35,10 +35,10 @@ impl Default for Options {
     }
 }
 
-/// Why a job cannot be looked into.
+/// A job cannot be inspected.
 #[derive(Debug, thiserror::Error)]
 pub enum InspectionError {
-    /// A node is not there.
+    /// A node does not exist.
     #[error("{0}")]
     Node(String),
     /// The job has no record.
@@ -46,7 +46,7 @@ pub enum InspectionError {
     Job(#[from] JobError),
 }
 
-/// One job looked into.
+/// One job in detail.
 #[derive(Debug, Clone)]
 pub struct Inspection {
     /// The job.
@@ -61,23 +61,23 @@ pub struct Inspection {
     pub spectrum: Spectrum,
 }
 
-/// What is found in the history of an observed node.
+/// What the history of an observed node shows.
 #[derive(Debug, Clone)]
 pub struct NodeFindings {
     /// The node.
     pub node: ObservedNode,
     /// Velocity [m/s] of the undeformed target under it, in y.
     pub target_velocity_m_s: f64,
-    /// Its phases in the time that is shown.
+    /// Its contact phases in the time that is shown.
     pub phases: Vec<Phase>,
     /// The instants of a cycle.
     pub instants: Option<Instants>,
 }
 
 impl Inspection {
-    /// Runs the job twice and looks.
+    /// Runs the job twice, and evaluates what the second run recorded.
     ///
-    /// `on_progress` hears the simulated time [s] of the run that goes on and may end it.
+    /// `on_progress` gets the simulated time [s] of the current run, and can end the run.
     ///
     /// # Errors
     /// [`InspectionError`].
@@ -136,7 +136,7 @@ pub fn node_loop(face: &[FaceStep], slave: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Area [m²] that a closed loop goes around: positive counter-clockwise, seen with y to the right and z upwards.
+/// Area [m²] inside a closed loop: positive if it is counter-clockwise, seen with y to the right and z upwards.
 pub fn loop_area_m2(path: &[(f64, f64)]) -> f64 {
     let next = path.iter().cycle().skip(1);
     path.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f64>() / 2.0
@@ -146,7 +146,7 @@ pub fn loop_area_m2(path: &[(f64, f64)]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Protects: the sense of a loop: counter-clockwise is positive, and the area is that of the loop wherever it is.
+    /// Protects: the area of a counter-clockwise loop is positive, and it does not depend on the position of the loop.
     #[test]
     fn loops_have_a_sense() {
         let circle = |sense: f64| -> Vec<(f64, f64)> {

@@ -7,7 +7,8 @@ use crate::publish::value::number;
 use crate::publish::{Folder, PublishError};
 use std::path::{Path, PathBuf};
 
-/// Writes the figure of one node and its numbers; returns the files. `title` is what the jobs have in common.
+/// Writes the figure and the CSV of one node in several jobs; returns the files. `title` names what the jobs have in
+/// common.
 ///
 /// # Errors
 /// The first file that could not be written.

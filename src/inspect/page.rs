@@ -1,4 +1,4 @@
-//! The page of a inspection: all of it in one file, but for the tables that are too large.
+//! The page of an inspection: one file with all of it except for the tables that are too large.
 
 use super::figures::InspectionFigure;
 use super::inspection::Inspection;
@@ -17,7 +17,7 @@ pub struct PageHeader {
     pub made_with: String,
 }
 
-/// The page; `tables` are the CSV files that it holds, by their names.
+/// The page. `tables` are the CSV files that it contains, by name.
 pub fn of(
     inspection: &Inspection,
     summary: &Summary,
@@ -70,8 +70,8 @@ fn head(inspection: &Inspection, summary: &Summary) -> Markup {
     ];
     html! {
         @if !summary.cycles {
-            (warning(&html! { "This job has no limit cycle: the end of its run is shown, over periods of 4h/c_s, "
-                "the pin's as a quarter-wave resonator in shear." }))
+            (warning(&html! { "This job has no limit cycle. The end of its run is shown instead, in periods of 4h/c_s: those "
+                "of the pin as a quarter-wave resonator in shear." }))
         }
         p { (numerics(inspection)) }
         (tiles(&numbers))
@@ -91,7 +91,7 @@ fn numerics(inspection: &Inspection) -> String {
     )
 }
 
-/// The waves, one in a line.
+/// The table of waves.
 fn waves(summary: &Summary) -> Markup {
     let header = ["change", "y from … to [mm]", "begins [µs]", "takes [µs]", "speed [m/s], towards"]
         .map(str::to_owned);
@@ -114,25 +114,25 @@ fn waves(summary: &Summary) -> Markup {
         })
         .collect();
     html! {
-        @if lines.is_empty() { p { "No change of state runs over neighbouring nodes of this line." } }
+        @if lines.is_empty() { p { "No change of state travels over neighbouring nodes of this line." } }
         @else {
             (table(&header, &lines))
-            p { "Each run of neighbouring nodes that have a change is a wave of its own; \"begins\" is at its first "
-                "node, from the front, since the begin of the cycle." }
+            p { "A wave is a run of neighbouring nodes that all have the change; \"begins\" is the time at its foremost "
+                "node since the start of the cycle." }
         }
     }
 }
 
-/// A table to download, or where it is.
+/// A table to download, or the name of its file.
 fn data(name: &str, tables: &BTreeMap<String, String>) -> Markup {
     if let Some(text) = tables.get(name) {
         download(name, text)
     } else {
-        html! { code { (name) } " (beside this page)" }
+        html! { code { (name) } " (in the folder of this page)" }
     }
 }
 
-/// A line of the table of nodes: its name and the value of a node.
+/// A line of the table of nodes: its heading, and the value of a node.
 type NodeLine = (&'static str, fn(&NodeSummary) -> String);
 
 fn nodes(summary: &Summary) -> Markup {
@@ -147,7 +147,7 @@ fn nodes(summary: &Summary) -> Markup {
         ("largest slip speed [mm/s]", |node| fixed(node.slip_speed_max_m_s * 1e3, 0)),
         ("largest speed relative to the disk [mm/s]", |node| fixed(node.relative_speed_max_m_s * 1e3, 0)),
         ("stick, slip, separated", |node| node.shares.map(|share| fixed(share, 2)).join(", ")),
-        ("separates, or sticks, with [Hz]", |node| {
+        ("frequency of separation, or of stick [Hz]", |node| {
             node.frequency_hz.map_or_else(|| MISSING.to_owned(), |f| fixed(f, 0))
         }),
     ];
@@ -167,7 +167,7 @@ fn nodes(summary: &Summary) -> Markup {
     }
 }
 
-/// The instants of a node, one in a line.
+/// The lines of the table of instants.
 fn instants(node: &NodeSummary, from_s: f64) -> Vec<Vec<Markup>> {
     let at = node.instants.iter().flat_map(|instants| &instants.at);
     at.map(|(name, time_s, stress_pa, velocity_m_s, state)| {

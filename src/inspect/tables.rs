@@ -1,4 +1,4 @@
-//! What the figures show, as CSV.
+//! The data of the figures as CSV.
 
 use super::capture::NodeStep;
 use super::inspection::Inspection;
@@ -10,10 +10,10 @@ use crate::publish::{Folder, PublishError};
 use std::collections::BTreeMap;
 use std::io;
 
-/// Larger tables [bytes] are beside the page, not in it.
+/// Largest table that the page contains [bytes]. Larger ones are in the folder only.
 const MAX_EMBEDDED_BYTES: usize = 400_000;
 
-/// Writes all tables; returns the texts of those that are not too large for a page by their names.
+/// Writes all tables; returns those that are not too large for the page, by name.
 ///
 /// # Errors
 /// The first file that could not be written.
@@ -44,14 +44,14 @@ pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<BTreeMap<St
     add("instants.csv", &INSTANTS, &mut instant_lines(inspection))?;
     let mut header = vec!["time_s", "node", "x_m", "y_m"];
     header.extend(NODE);
-    // As the record has it, behind a low-pass that delays.
+    // As in the record: after a causal low-pass filter, which delays.
     header.push("sigma_n_delayed_pa");
     add("face.csv", &header, &mut face_lines(inspection))?;
     add("wave.csv", &WAVE, &mut wave_lines(inspection))?;
     Ok(tables)
 }
 
-/// Writes a header and lines.
+/// Writes a header and lines as CSV.
 pub fn csv(header: &[&str], lines: impl Iterator<Item = Vec<String>>, out: &mut Vec<u8>) -> io::Result<()> {
     let mut writer = ::csv::Writer::from_writer(out);
     writer.write_record(header).map_err(io::Error::other)?;
@@ -115,7 +115,7 @@ fn totals_line(sample: &Sample) -> Vec<String> {
     line
 }
 
-/// What is told of a contact node during a step.
+/// Columns for a contact node during a step.
 const NODE: [&str; 11] = [
     "ux_m",
     "uy_m",

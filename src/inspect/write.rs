@@ -1,4 +1,4 @@
-//! A look as a folder of files.
+//! An inspection as a folder of files.
 
 use super::inspection::Inspection;
 use super::page::PageHeader;
@@ -7,16 +7,16 @@ use super::{fields, figures, page, tables};
 use crate::publish::{Folder, PublishError};
 use std::path::{Path, PathBuf};
 
-/// All numbers of it.
+/// The file with all numbers.
 const SUMMARY: &str = "inspection.json";
 
-/// The page that holds everything together.
+/// The file name of the page, which links the other files.
 pub const PAGE: &str = "index.html";
 
 /// Writes figures, tables, fields, the summary `inspection.json` and the page `index.html` into `out_dir`; returns the
 /// files.
 ///
-/// Files appear whole; files of the same name are replaced, others are left alone.
+/// Each file is replaced as a whole. Files of the same name are replaced, and others are left alone.
 ///
 /// # Errors
 /// The first file that could not be written. Files before it are complete.
@@ -40,8 +40,8 @@ pub fn write(
     Ok(folder.written)
 }
 
-/// Removes what an earlier look left whose files go by nodes and frames: those of others would pass for this one's.
-/// What cannot be removed stays; a file of this look that cannot be written says so itself.
+/// Removes the files of single nodes and frames that an earlier inspection left. Their number may differ, and the rest
+/// would look like files of this inspection. Errors are ignored: a file that has to be replaced fails when it is written.
 fn remove_stale_files(out_dir: &Path) {
     if !out_dir.join(SUMMARY).is_file() {
         return;

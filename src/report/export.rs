@@ -1,4 +1,4 @@
-//! One line a job, for other programs: CSV and JSON lines with the same fields.
+//! One line per job, for other programs: CSV and JSON lines with the same fields.
 
 use super::parameters::is_further;
 use super::row::{JobRow, RowState};
@@ -9,7 +9,7 @@ use serde::ser::SerializeMap;
 use serde_json::Value;
 use std::io::{self, Write};
 
-/// The fields every study has. Grid parameters other than ω and μ follow.
+/// The fields that every study has. Grid parameters other than ω and μ follow them.
 pub const HEADER: [&str; 25] = [
     "study",
     "job",
@@ -38,7 +38,7 @@ pub const HEADER: [&str; 25] = [
     "error",
 ];
 
-/// Number of fields that come from the record, `regime` to `identity_residual`.
+/// Number of the fields that come from the record: `regime` to `identity_residual`.
 const RECORD_FIELDS: usize = 18;
 
 /// Writes one CSV line per job below a header. A cell without a value is empty.
@@ -51,7 +51,7 @@ pub fn csv<W: Write>(rows: &[JobRow], out: W) -> io::Result<()> {
     export.finish()
 }
 
-/// Writes one JSON object per job and line, with the fields of [`csv()`]; null where it has an empty cell.
+/// Writes one JSON object per job and line, with the fields of [`csv()`]. Empty cells of the CSV are null.
 ///
 /// # Errors
 /// Those of the writer.
@@ -61,7 +61,7 @@ pub fn json_lines<W: Write>(rows: &[JobRow], out: W) -> io::Result<()> {
     export.finish()
 }
 
-/// An export that is written row by row, for studies whose rows nobody wants to hold all at once.
+/// An export that is written row by row, so that the rows of a large study need not be in memory all at once.
 pub struct Export<W: Write> {
     further: Vec<String>,
     lines: Lines<W>,
@@ -109,7 +109,7 @@ impl<W: Write> Export<W> {
         }
     }
 
-    /// Writes what is left.
+    /// Writes what is still buffered.
     ///
     /// # Errors
     /// Those of the writer.
@@ -121,8 +121,8 @@ impl<W: Write> Export<W> {
     }
 }
 
-/// The data behind a figure: for each of the rows its key, ω, μ and further parameters, some fields of the export, and how
-/// it ended.
+/// The data behind a figure as CSV: for each of the rows its key, ω, μ, the given `columns` of the export, the status,
+/// and further parameters.
 pub(super) fn selection<'a>(
     rows: impl IntoIterator<Item = &'a JobRow>,
     further: &[&str],
@@ -131,20 +131,20 @@ pub(super) fn selection<'a>(
     let further: Vec<String> = further.iter().map(|&name| name.to_owned()).collect();
     let names = field_names(&further);
     let selected = ["job", "omega_rpm", "mu"].iter().chain(columns).chain(&["status"]);
-    let places: Vec<usize> = selected
+    let indices: Vec<usize> = selected
         .filter_map(|name| HEADER.iter().position(|own| own == name))
         .chain(HEADER.len()..names.len())
         .collect();
     let mut writer = ::csv::Writer::from_writer(Vec::new());
-    writer.write_record(places.iter().map(|&place| &names[place])).map_err(io_error)?;
+    writer.write_record(indices.iter().map(|&index| &names[index])).map_err(io_error)?;
     for row in rows {
         let fields = fields(row, &further);
-        writer.write_record(places.iter().map(|&place| value::text(&fields[place]))).map_err(io_error)?;
+        writer.write_record(indices.iter().map(|&index| value::text(&fields[index]))).map_err(io_error)?;
     }
     writer.into_inner().map_err(|error| io::Error::other(error.to_string()))
 }
 
-/// A CSV error as the I/O error it comes from, so that a caller can tell a closed pipe.
+/// The I/O error behind a CSV error, so that a caller can recognise a closed pipe.
 pub(super) fn io_error(error: ::csv::Error) -> io::Error {
     match error.into_kind() {
         ::csv::ErrorKind::Io(source) => source,
@@ -161,7 +161,7 @@ pub(super) fn further_names(rows: &[JobRow]) -> Vec<&str> {
     names
 }
 
-/// Adds those of a job's parameters that `names` does not have.
+/// Adds to `names` the parameters of a job other than ω and μ, each name once.
 pub fn add_further_names<'a, N>(names: &mut Vec<N>, parameters: &'a [(String, Value)])
 where
     N: AsRef<str> + From<&'a str>,
@@ -178,7 +178,7 @@ fn owned(names: Vec<&str>) -> Vec<String> {
 }
 
 fn field_names(further: &[String]) -> Vec<String> {
-    // A parameter may share its name with a result: both keep a column of their own.
+    // A parameter may have the name of a result. Then both have a column.
     let unique = |name: &String| {
         if HEADER.contains(&name.as_str()) { format!("parameter_{name}") } else { name.clone() }
     };
@@ -203,7 +203,7 @@ fn fields(row: &JobRow, further: &[String]) -> Vec<Value> {
     fields
 }
 
-/// A float that is not finite becomes null: `Value` has no other way to hold it.
+/// A number that is not finite becomes null, because JSON has no such numbers.
 fn record_fields(record: &JobRecord) -> [Value; RECORD_FIELDS] {
     [
         record.regime.name().into(),

@@ -17,8 +17,8 @@ const QUANTITIES: [(Quantity, &str); 3] =
 /// Writes the page `report.html`, tables, figures with the data behind them, the export and `report.md` into `out_dir`;
 /// returns the files.
 ///
-/// Every file appears whole: it is written beside its place and then renamed. A folder that exists
-/// is fine; files of the same name are replaced, others are left alone.
+/// Each file is replaced as a whole. The folder may exist: files of the same name are replaced, and others are left
+/// alone.
 ///
 /// # Errors
 /// The first file that could not be written. Files before it are complete.
@@ -47,7 +47,7 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
     let mut links = Vec::new();
     let mut drawn: Vec<(Plot, Vec<Figure>)> = Vec::new();
     for (plot, figures) in figures {
-        let figures = figures.map_err(|source| undrawn(out_dir, plot.stem(), source))?;
+        let figures = figures.map_err(|source| cannot_draw(out_dir, plot.stem(), source))?;
         for figure in &figures {
             let file = format!("{}{}.svg", plot.stem(), figure.suffix);
             folder.write_text(&file, &figure.svg)?;
@@ -55,13 +55,13 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         }
         drawn.push((plot, figures));
     }
-    let residuals = residuals.map_err(|source| undrawn(out_dir, RESIDUALS.stem, source))?;
+    let residuals = residuals.map_err(|source| cannot_draw(out_dir, RESIDUALS.stem, source))?;
     folder.write_text(&format!("{}.svg", RESIDUALS.stem), &residuals)?;
 
     let mut data_files = Vec::new();
     for DataFile { stem, columns } in Plot::ALL.map(Plot::data).into_iter().chain([RESIDUALS, RUN_TIMES]) {
         let file = format!("{stem}.csv");
-        // Two figures may show the same.
+        // Two figures may share a file of data.
         if data_files.contains(&file) {
             continue;
         }
@@ -81,7 +81,7 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
     Ok(folder.written)
 }
 
-fn undrawn(out_dir: &Path, stem: &str, source: FigureError) -> PublishError {
+fn cannot_draw(out_dir: &Path, stem: &str, source: FigureError) -> PublishError {
     PublishError::Figure { path: out_dir.join(format!("{stem}.svg")), source }
 }
 

@@ -1,4 +1,5 @@
-//! How the parameters of a study are laid out: one along the rows, μ over the columns, the others apart.
+//! How tables and figures lay out the parameters of a study: one parameter along the rows, μ over the columns, and a
+//! table or figure for each combination of the others.
 
 use super::export::further_names;
 use super::parameters::{MU, OMEGA, assignments};
@@ -9,9 +10,9 @@ use std::collections::HashMap;
 
 /// A study laid out in two dimensions, once per combination of its further parameters.
 pub(super) struct Layout<'a> {
-    /// The parameter along the rows of a table and the abscissa of a figure: ω wherever it varies.
+    /// The parameter along the rows of a table and the abscissa of a figure: ω if it varies, or if nothing else does.
     pub axis: &'a str,
-    /// The further parameters that vary.
+    /// The other parameters that vary, without μ.
     pub further: Vec<&'a str>,
     /// The parameters that are the same in every job.
     pub constants: Vec<(&'a str, Value)>,
@@ -31,7 +32,7 @@ pub(super) struct Group<'a> {
     pub axis_values: Vec<Value>,
 }
 
-/// A job with its place.
+/// A job with its position in the layout.
 pub(super) struct PlacedJob<'a> {
     pub row: &'a JobRow,
     /// Index of its value in [`Group::axis_values`].
@@ -41,8 +42,8 @@ pub(super) struct PlacedJob<'a> {
 }
 
 impl<'a> Layout<'a> {
-    /// Looks at every job's values as text, which takes longer than anything that is done with the layout afterwards:
-    /// a report has one for all its tables and figures.
+    /// Lays out a study. This compares the values of all jobs as text, which is slow: a report shares one layout between
+    /// all its tables and figures.
     pub fn new(rows: &'a [JobRow]) -> Self {
         let varies = |name: &str| {
             let mut texts = rows.iter().map(|row| value::text(&row.parameter(name)));
@@ -67,22 +68,22 @@ impl<'a> Layout<'a> {
         assignments(self.constants.iter().cloned())
     }
 
-    /// The axis with its name and unit.
+    /// Name and unit of the axis.
     pub fn axis_name(&self) -> &'a str {
         if self.axis == OMEGA { "disk speed ω [rpm]" } else { self.axis }
     }
 
-    /// The axis as a label, with its unit.
+    /// Symbol and unit of the axis.
     pub fn axis_label(&self) -> &'a str {
         if self.axis == OMEGA { "ω [rpm]" } else { self.axis }
     }
 }
 
-/// Figures with more jobs do not tell of each of them: the files would be larger than anybody wants to look at.
+/// Figures with more jobs have no tooltips, because the files would become too large.
 pub(super) const MAX_TOOLTIPS: usize = 2_000;
 
 impl Group<'_> {
-    /// Whether figures tell of each job.
+    /// Whether figures have a tooltip for each job.
     pub fn has_tooltips(&self) -> bool {
         self.jobs.len() <= MAX_TOOLTIPS
     }
@@ -102,7 +103,7 @@ impl Group<'_> {
 
 fn groups<'a>(rows: &'a [JobRow], axis: &str, further: &[&'a str], mus: &[f64]) -> Vec<Group<'a>> {
     let mut groups: Vec<Group<'a>> = Vec::new();
-    // By what is shown: 1 and 1.0 are the same value.
+    // Values are compared as they are shown: 1 and 1.0 are equal.
     let mut known: HashMap<Vec<String>, usize> = HashMap::new();
     let mut axis_indices: Vec<HashMap<String, usize>> = Vec::new();
     for row in rows {
@@ -123,7 +124,7 @@ fn groups<'a>(rows: &'a [JobRow], axis: &str, further: &[&'a str], mus: &[f64]) 
         group.jobs.push(PlacedJob { row, axis_index, mu_index });
     }
     if groups.is_empty() {
-        // A study without jobs still has tables and figures to look at: empty ones.
+        // A study without jobs has empty tables and figures.
         groups.push(Group { key: Vec::new(), jobs: Vec::new(), axis_values: Vec::new() });
     }
     groups.iter_mut().for_each(Group::sort_axis);

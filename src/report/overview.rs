@@ -1,4 +1,5 @@
-//! A study at a glance, for a terminal: a letter for every job, friction coefficients down, speeds across.
+//! A study at a glance, for a terminal: a letter for every job, a row for each friction coefficient, a column for each
+//! speed.
 
 use super::glyph::{SEVERAL_JOBS, StatusGlyph, status_glyph};
 use super::layout::{Group, Layout};
@@ -7,11 +8,11 @@ use crate::publish::value;
 use anstyle::Style;
 use std::fmt::Write;
 
-/// No more combinations of further parameters than this are shown.
-const GROUPS: usize = 6;
+/// Largest number of combinations of further parameters that are shown.
+const MAX_GROUPS: usize = 6;
 
-/// The grid, in lines of at most `width` characters where its labels leave room; with colours, for the caller to strip
-/// where they are not wanted. Nothing if there are no jobs.
+/// The grid in lines of at most `width` characters, as far as its labels leave room. The text has colours in ANSI codes,
+/// which the caller can strip. It is empty if there are no jobs.
 pub fn overview(rows: &[JobRow], width: usize) -> String {
     if rows.is_empty() {
         return String::new();
@@ -19,14 +20,14 @@ pub fn overview(rows: &[JobRow], width: usize) -> String {
     let layout = Layout::new(rows);
     let mut text = String::new();
     let mut used: Vec<StatusGlyph> = Vec::new();
-    for group in layout.groups.iter().take(GROUPS) {
+    for group in layout.groups.iter().take(MAX_GROUPS) {
         if !group.key.is_empty() {
             let _ = writeln!(text, "{}:", group.caption());
         }
         grid(&layout, group, width, &mut used, &mut text);
     }
-    if layout.groups.len() > GROUPS {
-        let _ = writeln!(text, "… and {} more combinations of parameters", layout.groups.len() - GROUPS);
+    if layout.groups.len() > MAX_GROUPS {
+        let _ = writeln!(text, "… and {} more combinations of parameters", layout.groups.len() - MAX_GROUPS);
     }
     let legend: Vec<String> =
         used.iter().map(|glyph| format!("{} {}", painted(*glyph), glyph.meaning)).collect();
@@ -74,7 +75,7 @@ fn grid(
             let _ = write!(text, "{label:>cell_width$}");
         }
         text.push('\n');
-        // The highest friction on top, as its curve is in a figure's legend.
+        // The highest friction is on top, as in the maps.
         for (label, line) in labels.iter().zip(&glyphs).rev() {
             let _ = write!(text, "{label:>label_width$}");
             for cell in &line[part.clone()] {
@@ -90,6 +91,6 @@ fn grid(
 }
 
 fn painted(glyph: StatusGlyph) -> String {
-    let style = Style::new().fg_color(Some(glyph.colour.into()));
+    let style = Style::new().fg_color(Some(glyph.terminal_colour.into()));
     format!("{style}{}{style:#}", glyph.letter)
 }

@@ -1,4 +1,4 @@
-//! The pages: one per table, and `report.md` that holds everything together.
+//! The Markdown pages: one per table, and `report.md` for the whole report.
 
 use super::figure::Plot;
 use super::layout::parameters_in_words;
@@ -9,17 +9,17 @@ use super::{markdown, trouble};
 use crate::analysis::{JobRecord, Outcome};
 use crate::publish::value;
 
-/// Jobs in a list are named up to this number: the rest are in the export.
-const NAMED: usize = 20;
+/// Largest number of jobs in a list. The others are in the export.
+const MAX_LISTED: usize = 20;
 
-/// A figure's file and what it shows.
+/// The file of a figure and what it shows.
 pub(super) struct FigureLink {
     pub plot: Plot,
     pub caption: String,
     pub file: String,
 }
 
-/// A table and what its files are called.
+/// A table and the name of its files, without the ending.
 pub(super) struct Table {
     pub quantity: Quantity,
     pub stem: &'static str,
@@ -114,17 +114,17 @@ fn trouble(rows: &[JobRow]) -> String {
     format!("\n## Where it fails\n\n{}", lines.collect::<String>())
 }
 
-/// The rows that have an entry, the first of them with it.
+/// A list of the rows for which `entry` returns a line. Rows beyond [`MAX_LISTED`] are counted only.
 fn list(heading: &str, rows: &[JobRow], entry: fn(&JobRow) -> Option<String>) -> String {
     let mut entries = rows.iter().filter_map(entry);
-    let named: Vec<String> = entries.by_ref().take(NAMED).collect();
-    if named.is_empty() {
+    let listed: Vec<String> = entries.by_ref().take(MAX_LISTED).collect();
+    if listed.is_empty() {
         return String::new();
     }
     let more = entries.count();
     let rest =
         if more > 0 { format!("- and {more} more: see [jobs.csv](jobs.csv)\n") } else { String::new() };
-    format!("\n## {heading} ({})\n\n{}{rest}", named.len() + more, named.concat())
+    format!("\n## {heading} ({})\n\n{}{rest}", listed.len() + more, listed.concat())
 }
 
 fn entry(row: &JobRow, what: &str) -> String {

@@ -1,4 +1,4 @@
-//! Tables in the manner of Figure 7: speed by friction coefficient, one cell a job.
+//! Tables of the same layout as Figure 7: speed by friction coefficient, one cell per job.
 
 use super::export::io_error;
 use super::layout::{Group, Layout};
@@ -30,7 +30,7 @@ impl Quantity {
         }
     }
 
-    /// What the marks in its cells mean.
+    /// The marks in its cells with their meaning.
     pub(super) fn legend(self) -> impl Iterator<Item = (&'static str, &'static str)> {
         let own: &[_] = match self {
             Self::MuStar => &[("~", "not periodic: an average over the last part of the run")],
@@ -98,9 +98,10 @@ pub(super) fn markdown_of(layout: &Layout, quantity: Quantity) -> String {
     parts.concat()
 }
 
-/// The tables of one quantity as one CSV: further parameters first, then the row's, then a column per μ.
+/// The tables of one quantity as one CSV: columns for further parameters, one for the parameter along the rows, and one
+/// for each μ.
 ///
-/// The cells are those of [`markdown`], empty where a result is missing.
+/// The cells are those of [`markdown`]. A missing result is an empty cell.
 ///
 /// # Errors
 /// Those of the writer.
@@ -127,13 +128,13 @@ pub(super) fn csv_of<W: Write>(layout: &Layout, quantity: Quantity, out: W) -> i
     writer.flush()
 }
 
-/// The heads of all columns.
+/// The headings of all columns.
 pub(super) fn header(layout: &Layout) -> Vec<String> {
     let mus = layout.mus.iter().map(|&mu| format!("μ = {}", value::rounded(mu)));
     std::iter::once(layout.axis_label().to_owned()).chain(mus).collect()
 }
 
-/// Each value along the axis with its cells, one per μ.
+/// Each value along the axis with its cells, one for each μ.
 pub(super) fn lines<'a>(
     layout: &'a Layout,
     group: &'a Group,
@@ -144,7 +145,7 @@ pub(super) fn lines<'a>(
         let here = quantity.cell(job.row);
         match &mut cells[job.axis_index][job.mu_index] {
             Some(others) => others.extend([" / ", &here]),
-            free => *free = Some(here),
+            empty => *empty = Some(here),
         }
     }
     group.axis_values.iter().zip(cells).map(|(at, cells)| {

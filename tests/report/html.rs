@@ -183,5 +183,5 @@ fn a_large_study_is_drawn() {
     let page = page(&rows);
     assert!(page.len() < 12_000_000, "{} bytes", page.len());
     assert!(page.matches("<svg ").count() == 6 && !page.contains("data-job"));
-    assert!(text(&page).contains("Too many jobs to point at each of them"));
+    assert!(text(&page).contains("There are too many jobs for tooltips"));
 }

@@ -7,10 +7,10 @@ use crate::inspect::waves::stations;
 use crate::publish::plot::palette;
 use crate::publish::plot::panel::{Panel, Scale, Series, Stroke, Tile};
 
-/// So much of the distance of two nodes a loop may be wide.
+/// Largest width of a loop, relative to the distance of two nodes.
 const LOOP_WIDTH: f64 = 0.8;
 
-/// Figure 3a: the loops of all nodes about their means, and those along three lines where the nodes are.
+/// Figure 3a: the loops of all nodes about their means, and the loops along three lines at the positions of the nodes.
 pub fn trajectories(inspection: &Inspection) -> Vec<Panel> {
     let [nx, _, _] = inspection.mesh().elements();
     let lines = [("inner side (−x)", 0), ("middle", nx / 2), ("outer side (+x)", nx)];
@@ -22,7 +22,7 @@ fn mean(path: &[(f64, f64)]) -> f64 {
     path.iter().map(|point| point.0).sum::<f64>() / path.len().max(1) as f64
 }
 
-/// A path in micrometres, closed and ended.
+/// A closed path, followed by a point that ends the line. The ordinate is in micrometres.
 fn drawn_loop(path: &[(f64, f64)], place: impl Fn(f64) -> f64) -> impl Iterator<Item = (f64, f64)> {
     let closed = path.iter().chain(path.first()).map(move |(y, z)| (place(*y), z * MICRO));
     closed.chain([(f64::NAN, f64::NAN)])
@@ -31,7 +31,7 @@ fn drawn_loop(path: &[(f64, f64)], place: impl Fn(f64) -> f64) -> impl Iterator<
 fn all_loops(inspection: &Inspection) -> Panel {
     let mesh = inspection.mesh();
     let [nx, ny, _] = mesh.elements();
-    // The lines across the sliding direction from front to rear have the colours of a sequence.
+    // The colour goes from front to rear in a sequence.
     let across = |j: usize| {
         let mut points = Vec::new();
         for i in 0..=nx {
@@ -55,7 +55,7 @@ fn all_loops(inspection: &Inspection) -> Panel {
 fn along_line(inspection: &Inspection, name: &str, i: usize) -> Panel {
     let mesh = inspection.mesh();
     let [_, ny, _] = mesh.elements();
-    // As many loops as can be told apart.
+    // Fewer loops than nodes, so that a reader can tell them apart.
     let stride = ny.div_ceil(15);
     let loops: Vec<(f64, Vec<(f64, f64)>)> = (0..=ny)
         .step_by(stride)
@@ -90,7 +90,7 @@ fn extent(path: &[(f64, f64)]) -> f64 {
     ends[1] - ends[0]
 }
 
-/// The next number below with one digit.
+/// Rounds down to one significant digit.
 fn round_down(x: f64) -> f64 {
     let decade = 10f64.powf(x.log10().floor());
     (x / decade).floor() * decade
@@ -102,7 +102,7 @@ pub fn waves(inspection: &Inspection) -> Panel {
     let [nx, ny, _] = mesh.elements();
     let [start_s, end_s] = inspection.survey.windows.cycle_s;
     let since = |time_s: f64| (time_s - start_s) * MICRO;
-    // A little more than half an element: pixels are whole, and nothing is to show between the rows.
+    // A little more than half an element, so that rounding to pixels leaves no gap between the rows.
     let half_m = 0.55 * mesh.element_size_m()[1];
     let [_, ly, _] = mesh.size_m();
     let x = Scale::from_to("time [µs]", 0.0, since(end_s));

@@ -8,7 +8,7 @@ use crate::publish::plot::palette;
 use crate::publish::plot::panel::{Band, Level, Mark, Panel, Scale, Series, Stroke};
 use crate::solver::contact::ContactState;
 
-/// Every observed node with its steps.
+/// A panel for every observed node.
 fn for_each_node<'a>(
     inspection: &'a Inspection,
     panel: impl Fn(&'a NodeFindings, &'a [NodeStep]) -> Panel,
@@ -21,7 +21,7 @@ fn for_each_node<'a>(
         .collect()
 }
 
-/// Time in microseconds since the begin of what is shown.
+/// Time in microseconds since the start of the time that is shown.
 fn time_scale(inspection: &Inspection) -> (impl Fn(f64) -> f64 + use<>, Scale) {
     let [start_s, end_s] = inspection.survey.windows.shown_s;
     let since = move |time_s: f64| (time_s - start_s) * MICRO;
@@ -107,7 +107,7 @@ pub fn phase_planes(inspection: &Inspection) -> Vec<Panel> {
     })
 }
 
-/// The parts of a path that a node makes in a state, each up to the point where the next begins.
+/// The parts of a path in which a node is in a state, each up to the first point of the next part.
 fn path_in(
     state: ContactState,
     steps: &[NodeStep],

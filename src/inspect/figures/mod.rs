@@ -1,4 +1,4 @@
-//! The drawings: the paper's figures 2 to 5 of one job, its figure 8 of several, and what goes with them.
+//! The drawings: the paper's figures 2 to 5 for one job, its figure 8 for several jobs, and others.
 
 mod face;
 mod histories;
@@ -13,18 +13,18 @@ use super::inspection::Inspection;
 use crate::publish::plot::panel::stack;
 use crate::publish::{FigureError, Folder, PublishError};
 
-/// A figure of a inspection.
+/// A figure of an inspection.
 #[derive(Debug, Clone, PartialEq)]
 pub struct InspectionFigure {
-    /// Its file, without the ending.
+    /// The name of its file without the ending.
     pub stem: &'static str,
-    /// What it shows, in a word or two.
+    /// Its heading.
     pub heading: &'static str,
-    /// What it shows, for a reader.
+    /// Its caption.
     pub caption: String,
-    /// The tables that hold its numbers.
+    /// The names of the tables with its data.
     pub data: Vec<String>,
-    /// The drawing.
+    /// The drawing as SVG.
     pub svg: String,
 }
 
@@ -79,7 +79,7 @@ pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<Vec<Inspect
         (
             "figure4",
             "One cycle",
-            "Normal contact stress (behind a low-pass without delay) and velocity in y over one cycle (Figure 4). Contact \
+            "Normal contact stress (after a zero-phase low-pass filter) and velocity in y over one cycle (Figure 4). Contact \
              begins at t_A, stick at t_B, the stress is largest at t_C, stick ends at t_D, contact at t_E, and the \
              separation at t_F."
                 .to_owned(),
@@ -108,7 +108,7 @@ pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<Vec<Inspect
             "totals",
             "Total forces",
             "Total normal contact force N and tangential force T at the clamp: the whole run, and the last cycles \
-             with their begins, where the filtered N rises through F (the filter delays by a constant time)."
+             with their starts, where the filtered N rises through F (the filter delays by a constant time)."
                 .to_owned(),
             only(&["run.csv", "totals.csv", "cycles.csv"]),
             Box::new(|| stack(&totals::forces(inspection))),

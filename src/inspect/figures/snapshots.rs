@@ -12,16 +12,16 @@ use plotters::style::text_anchor::HPos;
 use plotters::style::{BLACK, Color, RGBColor};
 
 const ROW: u32 = 720;
-/// Room for the title, and for arrows that point out of the pin.
+/// Height of the title, with space for arrows that point out of the pin.
 const TITLE: i32 = 110;
 const FOOT: u32 = 150;
 const GREY: RGBColor = RGBColor(0xB0, 0xB0, 0xB0);
 /// Largest radius [px] of a contact node's dot.
 const DOT: i32 = 10;
-/// Arrows are drawn at so many nodes of a line, or a few more: they are to be told apart.
+/// Approximate number of arrows along a line, so that a reader can tell them apart.
 const ARROWS: usize = 15;
 
-/// An instant: what it is and which frame is nearest.
+/// An instant with the frame that is nearest to it.
 struct Snapshot<'a> {
     label: String,
     frame: &'a Frame,
@@ -30,7 +30,7 @@ struct Snapshot<'a> {
 /// Draws the snapshots, one below the other.
 ///
 /// # Errors
-/// The drawing library's.
+/// [`FigureError`].
 pub fn draw(inspection: &Inspection) -> Result<String, FigureError> {
     let snapshots = snapshots(inspection);
     let scales = Scales::of(inspection, &snapshots);
@@ -46,7 +46,8 @@ pub fn draw(inspection: &Inspection) -> Result<String, FigureError> {
     })
 }
 
-/// In the paper's phases of the first observed node that has all of them; otherwise four quarters of the cycle.
+/// The snapshots in the paper's phases of the first observed node that has all of them, or else at the four quarters of
+/// the cycle.
 fn snapshots(inspection: &Inspection) -> Vec<Snapshot<'_>> {
     let windows = &inspection.survey.windows;
     let complete = inspection.observed.iter().zip(&inspection.capture.nodes).find_map(|(observed, steps)| {
@@ -82,13 +83,13 @@ fn snapshots(inspection: &Inspection) -> Vec<Snapshot<'_>> {
     times.into_iter().filter_map(snapshot).collect()
 }
 
-/// How long arrows are, the same in all snapshots.
+/// The scales, which are the same in all snapshots.
 struct Scales {
     /// Pixels per metre.
     px_per_m: f64,
     /// Radius [px] of a node's dot.
     dot: i32,
-    /// Arrows are at every so many nodes.
+    /// Distance of the arrows, in nodes.
     stride: usize,
     /// Pixels per m/s.
     px_per_m_s: f64,
@@ -111,7 +112,7 @@ impl Scales {
         let stride = ny.div_ceil(ARROWS);
         let room = f64::from(WIDTH) / 2.0 - 3.0 * f64::from(MARGIN);
         let high = f64::from(ROW) - f64::from(TITLE) - f64::from(MARGIN);
-        // The side view has the forces below, as much room as a third of the pin.
+        // Below the side view there is space for the forces.
         let px_per_m = (room / ly).min(high / (lz * 1.4)).min(high / lx);
         let plane = || {
             snapshots
@@ -126,7 +127,7 @@ impl Scales {
         };
         let force_n = largest(|[x, y, n]| x.hypot(y).hypot(n));
         let friction_n = largest(|[x, y, _]| x.hypot(y));
-        // The longest arrows reach over one and a half of their distances.
+        // The longest arrow is one and a half times as long as the distance of the arrows.
         let longest = 1.5 * stride as f64 * hy * px_per_m;
         let dot = ((0.4 * hx.min(hy) * px_per_m) as i32).clamp(2, DOT);
         Self {
@@ -181,7 +182,7 @@ fn draw_side(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scale
         let [_, y, _] = mesh.coordinates_m(slave);
         let (node, tip) = (&frame.face[slave], pixel(y, 0.0));
         let [_, friction, normal] = node.force_n;
-        // Forces on the pin end where they act.
+        // The arrow of a force on the pin ends at the node on which it acts.
         let from = (tip.0 - friction * scales.px_per_n, tip.1 + normal * scales.px_per_n);
         if node.state != ContactState::Separated && j % scales.stride == 0 {
             arrow(area, from, tip, colour_of(node.state), 3)?;
@@ -209,7 +210,7 @@ fn draw_face(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scale
     for (slave, node) in frame.face.iter().enumerate() {
         dot(area, rounded(place(slave)), node.state, scales.dot)?;
     }
-    // On the dots, which would hide them.
+    // The arrows are drawn after the dots, which would hide them.
     for (slave, node) in frame.face.iter().enumerate() {
         let [i, j, _] = mesh.grid_position(slave);
         if node.state != ContactState::Separated && i % scales.stride == 0 && j % scales.stride == 0 {
@@ -223,7 +224,7 @@ fn draw_face(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scale
     Ok(())
 }
 
-/// A node: the shape says its state, too.
+/// Draws a node. Its shape shows the state as well.
 fn dot(area: &Area, at: (i32, i32), state: ContactState, radius: i32) -> Result<(), DrawError> {
     let colour = colour_of(state);
     match state {
@@ -237,7 +238,7 @@ fn dot(area: &Area, at: (i32, i32), state: ContactState, radius: i32) -> Result<
     }
 }
 
-/// Shorter ones [px] have no direction to show.
+/// Shorter arrows [px] are not drawn, because their direction could not be seen.
 const SHORTEST: f64 = 3.0;
 
 fn arrow(

@@ -6,7 +6,7 @@ use crate::inspect::inspection::Inspection;
 use crate::publish::plot::palette;
 use crate::publish::plot::panel::{Level, Mark, Panel, Scale, Series, Stroke};
 
-/// So many times the fundamental the spectrum is shown.
+/// The spectrum is shown up to this multiple of the fundamental frequency.
 const HARMONICS: f64 = 8.0;
 
 /// N and T of the whole run, and of the last cycles.
@@ -16,7 +16,7 @@ pub fn forces(inspection: &Inspection) -> Vec<Panel> {
 
 fn whole_run(inspection: &Inspection) -> Panel {
     let bins = inspection.survey.envelope.bins();
-    // Up and down through every bin: its extremes as they would be seen if all steps were drawn.
+    // A line between the extremes of every bin looks like a drawing of all steps.
     let band = |range: fn(&Bin) -> [f64; 2]| -> Vec<(f64, f64)> {
         let ends = |bin| range(bin).map(|force| (bin.start_s * MILLI, force));
         bins.iter().flat_map(ends).collect()
@@ -52,10 +52,10 @@ fn last_cycles(inspection: &Inspection) -> Panel {
     ];
     panel.levels =
         vec![Level { label: "load F".to_owned(), at: inspection.spec.scene.load.force_n, right: false }];
-    let begins = inspection.survey.passages_s.iter().map(|passage| passage[0]);
-    // A begin at the very edge would be drawn on the axis.
-    let begins = begins.filter(|&begin_s| begin_s > start_s && begin_s < end_s);
-    panel.marks = begins.map(|begin_s| Mark { label: String::new(), at: since(begin_s) }).collect();
+    let starts = inspection.survey.passages_s.iter().map(|passage| passage[0]);
+    // A mark at the edge would be drawn on the axis.
+    let starts = starts.filter(|&at_s| at_s > start_s && at_s < end_s);
+    panel.marks = starts.map(|at_s| Mark { label: String::new(), at: since(at_s) }).collect();
     panel
 }
 

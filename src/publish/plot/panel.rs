@@ -99,23 +99,23 @@ pub struct Tile {
     pub colour: RGBColor,
     /// Start and end on the abscissa.
     pub across: (f64, f64),
-    /// From where to where along the ordinate.
+    /// Start and end on the ordinate.
     pub up: (f64, f64),
 }
 
-/// A place on the abscissa.
+/// A vertical line at a position on the abscissa.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
     /// Its name, written on top; may be empty.
     pub label: String,
-    /// Where it is.
+    /// The position.
     pub at: f64,
 }
 
-/// A value of the ordinate to compare with.
+/// A horizontal line at a value of the ordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
-    /// What it is, in the legend.
+    /// Its name in the legend.
     pub label: String,
     /// The value.
     pub at: f64,
@@ -126,9 +126,9 @@ pub struct Level {
 /// One of the drawings of a figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// What it shows, written above.
+    /// The title above it.
     pub title: String,
-    /// Height [px] without title, twice what it is shown at.
+    /// Height [px] without the title.
     pub height: u32,
     /// The abscissa.
     pub x: Scale,
@@ -136,9 +136,9 @@ pub struct Panel {
     pub y: Scale,
     /// A second ordinate.
     pub right: Option<Scale>,
-    /// What is behind everything else.
+    /// Backgrounds.
     pub bands: Vec<Band>,
-    /// What is on the bands.
+    /// Rectangles in front of the backgrounds.
     pub tiles: Vec<Tile>,
     /// Vertical lines.
     pub marks: Vec<Mark>,
@@ -149,7 +149,7 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// A panel with nothing in it, of the usual height.
+    /// An empty panel of the usual height.
     pub fn new(title: &str, x: Scale, y: Scale) -> Self {
         Self {
             title: title.to_owned(),

@@ -1,4 +1,4 @@
-//! The drawing: axes, guides, curves, error bars, markers.
+//! The drawing of curves: axes, guide lines, curves, error bars, markers.
 
 use super::data::{self, Curve, Ordinate, Point};
 use super::{legend, marker};
@@ -18,8 +18,8 @@ use plotters::style::text_anchor::HPos;
 
 const LEGEND_WIDTH: u32 = 420;
 const Y_LABELS: u32 = 150;
-/// How far from a marker's centre it can be pointed at [px].
-const REACH: i32 = 20;
+/// Radius of the tooltip area around a marker [px].
+const TOOLTIP_RADIUS: i32 = 20;
 
 /// Draws the figure of one group as SVG.
 pub(super) fn draw(layout: &Layout, group: &Group, plot: Ordinate) -> Result<String, FigureError> {
@@ -58,7 +58,7 @@ fn draw_plot(
         Ordinate::Frequency => "frequency [Hz]",
     });
     if plot == Ordinate::MuStar {
-        // The guides are the horizontal lines here; a grid would run along some of them.
+        // The guide lines are horizontal; lines of a grid could cover them.
         mesh.disable_y_mesh();
     }
     mesh.draw()?;
@@ -82,7 +82,7 @@ fn draw_plot(
 
 fn target(chart: &Chart, point: &Point) -> TooltipTarget {
     TooltipTarget {
-        shape: Shape::Around { at: chart.backend_coord(&(point.x, point.y)), radius: REACH },
+        shape: Shape::Around { at: chart.backend_coord(&(point.x, point.y)), radius: TOOLTIP_RADIUS },
         title: tooltip_text(point.row),
         data: vec![
             ("job", point.row.job.clone()),
@@ -100,15 +100,15 @@ fn y_axis(curves: &[Curve], plot: Ordinate) -> Axis {
         .chain(guides)
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
     if low > high {
-        // Nothing to measure: no ticks that would suggest a scale.
+        // Without values there are no ticks, because they would suggest a scale.
         return Axis::Names(Vec::new());
     }
-    // Differences smaller than this are not to fill the height.
-    let least = match plot {
+    // Smaller differences must not fill the height of the figure.
+    let min_range = match plot {
         Ordinate::MuStar => 0.02,
         Ordinate::Frequency => (0.05 * high).max(1.0),
     };
-    Axis::spanning(low, high, least)
+    Axis::spanning(low, high, min_range)
 }
 
 fn draw_lines(chart: &mut Chart, curve: &Curve, plot: Ordinate, colour: RGBColor) -> Result<(), DrawError> {

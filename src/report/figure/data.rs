@@ -16,11 +16,12 @@ pub(super) enum Ordinate {
 /// One job's result in a figure.
 pub(super) struct Point<'a> {
     pub row: &'a JobRow,
-    /// The value along the axis, and where that is.
+    /// The value of the parameter along the axis.
     pub at: &'a Value,
+    /// Its position on the axis.
     pub x: f64,
     pub y: f64,
-    /// Standard error of `y`; 0 where none is known.
+    /// Standard error of `y`; 0 if it is not known.
     pub error: f64,
     pub regime: Regime,
     pub periodic: bool,
@@ -31,12 +32,12 @@ pub(super) struct Curve<'a> {
     pub mu: f64,
     /// Results from left to right.
     pub points: Vec<Point<'a>>,
-    /// Stretches to be joined by a line.
+    /// Runs of points that a line joins.
     pub stretches: Vec<Vec<(f64, f64)>>,
 }
 
-/// One curve per μ of the study, also where this group has no results: colours and legend stay the
-/// same in all its figures.
+/// One curve for each μ of the study, even if this group has no results for it, so that all figures of a study have the
+/// same colours and legend.
 pub(super) fn curves<'a>(layout: &Layout, group: &'a Group, plot: Ordinate, x_axis: &Axis) -> Vec<Curve<'a>> {
     let at: Vec<Option<f64>> = group.axis_values.iter().map(|value| x_axis.position(value)).collect();
     let mut results: Vec<Vec<LocatedResult>> = vec![Vec::new(); layout.mus.len()];
@@ -62,7 +63,7 @@ pub(super) fn curves<'a>(layout: &Layout, group: &'a Group, plot: Ordinate, x_ax
         .collect()
 }
 
-/// A job with a result, and where it is.
+/// A job with a result, and its position on the axis.
 #[derive(Clone, Copy)]
 struct LocatedResult<'a> {
     x: f64,
@@ -82,8 +83,8 @@ fn point<'a>(plot: Ordinate, found: &LocatedResult<'a>) -> Option<Point<'a>> {
     y.is_finite().then_some(Point { row, at, x, y, error, regime: record.regime, periodic })
 }
 
-/// Joins neighbours; jobs at the same place by their mean. A job that is done but has no value (no
-/// oscillation, hence no frequency) ends a stretch: a line across it would claim one.
+/// The lines of a curve. Jobs at the same position are represented by their mean. A job that is done but has no value (no
+/// frequency, because nothing oscillates) interrupts the line, which would otherwise claim a value there.
 fn stretches(plot: Ordinate, results: &[LocatedResult]) -> Vec<Vec<(f64, f64)>> {
     let mut stretches = vec![Vec::new()];
     for here in results.chunk_by(|a, b| a.x == b.x) {

@@ -33,19 +33,19 @@ pub enum Plot {
     Shares,
 }
 
-/// What is behind figures, as a file.
+/// A file with the data behind a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct DataFile {
-    /// What the file is called.
+    /// Its name without the ending.
     pub stem: &'static str,
-    /// Which fields of the export are in it besides the parameters and how a job ended.
+    /// The fields of the export that it has, besides the parameters and the status.
     pub columns: &'static [&'static str],
 }
 
-/// What is behind the figure of residuals.
+/// The data behind the figure of residuals.
 pub(super) const RESIDUALS: DataFile =
     DataFile { stem: "residuals", columns: &["energy_residual", "identity_residual"] };
-/// What is behind the statistics of run times.
+/// The data behind the statistics of run times.
 pub(super) const RUN_TIMES: DataFile =
     DataFile { stem: "run_times", columns: &["wall_s", "steps", "simulated_s", "time_step_s"] };
 
@@ -54,7 +54,7 @@ impl Plot {
     pub const ALL: [Self; 5] =
         [Self::MuStar, Self::Frequency, Self::RegimeMap, Self::FrequencyMap, Self::Shares];
 
-    /// What its files are called.
+    /// The name of its files without the ending.
     pub fn stem(self) -> &'static str {
         match self {
             Self::MuStar => "figure7",
@@ -65,7 +65,7 @@ impl Plot {
         }
     }
 
-    /// The file with the data behind it and the fields of the export that are in it.
+    /// The file with the data behind it.
     pub(super) fn data(self) -> DataFile {
         match self {
             Self::MuStar => {
@@ -97,18 +97,18 @@ impl Plot {
 /// One figure: the jobs with one combination of the further parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// What tells its file from those of the other combinations, e.g. `-clamp_side-inner_side`; may be empty.
+    /// The part of its file name that is unique to this combination, e.g. `-clamp_side-inner_side`; may be empty.
     pub suffix: String,
     /// The combination in words; may be empty.
     pub caption: String,
-    /// The drawing.
+    /// The drawing as SVG.
     pub svg: String,
 }
 
 /// Draws one figure per combination of the further parameters.
 ///
 /// # Errors
-/// The drawing library's; drawing into a string gives it no reason to fail.
+/// [`FigureError`].
 pub fn figures(rows: &[JobRow], plot: Plot) -> Result<Vec<Figure>, FigureError> {
     figures_of(&Layout::new(rows), plot)
 }
@@ -123,16 +123,16 @@ pub(super) fn figures_of(layout: &Layout, plot: Plot) -> Result<Vec<Figure>, Fig
             Plot::FrequencyMap => map::frequencies(layout, group),
             Plot::Shares => shares::draw(layout, group),
         }?;
-        Ok(Figure { suffix: free_suffix(group, &mut taken), caption: group.caption(), svg })
+        Ok(Figure { suffix: unique_suffix(group, &mut taken), caption: group.caption(), svg })
     };
     layout.groups.iter().map(draw).collect()
 }
 
-/// Longest part of a file name that comes from parameters; file systems end at 255 bytes.
+/// Largest length of the part of a file name that comes from parameters. File systems allow 255 bytes in all.
 const MAX_SUFFIX: usize = 120;
 
-/// The combination as a part of a file name that no other combination has.
-fn free_suffix(group: &Group, taken: &mut HashSet<String>) -> String {
+/// The combination as a part of a file name that is unique.
+fn unique_suffix(group: &Group, taken: &mut HashSet<String>) -> String {
     let words: Vec<String> =
         group.key.iter().map(|(name, value)| format!("-{name}-{}", value::text(value))).collect();
     let slug: String = value::file_name_part(&words.concat()).chars().take(MAX_SUFFIX).collect();

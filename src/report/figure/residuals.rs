@@ -1,4 +1,4 @@
-//! How well energies and identities close, for every job of a study.
+//! The residuals of the energy balance and of the identities, for every job of a study.
 
 use super::colour_key::{self, KeyEntry, Swatch};
 use crate::analysis::JobRecord;
@@ -22,7 +22,7 @@ const LEGEND_WIDTH: u32 = 400;
 const Y_LABELS: u32 = 170;
 const RADIUS: i32 = 9;
 
-/// A kind of residual: its name, its colour, whether its marker is round, and its value.
+/// A kind of residual and its marker.
 struct Kind {
     name: &'static str,
     label: &'static str,
@@ -48,16 +48,16 @@ const KINDS: [Kind; 2] = [
     },
 ];
 
-/// Draws the residuals of all rows in their order. What is exactly zero has no place on a logarithmic axis.
+/// Draws the residuals of all rows in their order. A residual of exactly zero is left out, because the axis is logarithmic.
 pub(in crate::report) fn draw(rows: &[JobRow]) -> Result<String, FigureError> {
     canvas::sheet(SIZE, |root| {
         let (left, right) = root.split_horizontally(SIZE.0 - LEGEND_WIDTH);
         let targets = draw_plot(&left, rows)?;
         let entry = |kind: &Kind| KeyEntry {
-            swatch: Swatch::ink(kind.colour, if kind.round { '●' } else { '◆' }),
+            swatch: Swatch::coloured(kind.colour, if kind.round { '●' } else { '◆' }),
             label: kind.label.to_owned(),
         };
-        colour_key::below(&right, MARGIN, &KINDS.map(|kind| entry(&kind)))?;
+        colour_key::draw_column(&right, MARGIN, &KINDS.map(|kind| entry(&kind)))?;
         Ok(if rows.len() <= MAX_TOOLTIPS { targets } else { Vec::new() })
     })
 }

@@ -1,4 +1,4 @@
-//! How the contact divides its time between stick, slip and separation: a panel for every friction coefficient.
+//! The shares of stick, slip and separation in the time of all contact nodes: a panel for every friction coefficient.
 
 use super::colour_key::{self, KeyEntry, Swatch};
 use crate::analysis::JobRecord;
@@ -18,7 +18,8 @@ use plotters::style::text_anchor::HPos;
 use plotters::style::{Color, TRANSPARENT};
 use serde_json::Value;
 
-/// From the bottom to the top; the lightest in the middle, so that the three differ without colours.
+/// The layers from bottom to top. The lightest one is in the middle, so that a reader can tell them apart without
+/// colours.
 const LAYERS: [(&str, RGBColor); 3] =
     [("stick", palette::BLUE), ("slip", RGBColor(0xE0, 0xE0, 0xE0)), ("separated", palette::VERMILLION)];
 /// Height of a panel [px].
@@ -27,12 +28,13 @@ const HEAD: u32 = 72;
 const TITLE: u32 = 54;
 const SMALL: i32 = 28;
 
-/// A job in a panel: along the axis, and where the layers end [%].
+/// A job in a panel.
 struct Column<'a> {
     row: &'a JobRow,
     at: usize,
     value: &'a Value,
     x: f64,
+    /// Boundaries of the layers [%], from bottom to top.
     ends: [f64; 4],
 }
 
@@ -48,10 +50,10 @@ pub(super) fn draw(layout: &Layout, group: &Group) -> Result<String, FigureError
         let (head, below) = below.split_vertically(HEAD);
         let (below, foot) = below.split_vertically(rows as u32 * PANEL);
         let entries = LAYERS.map(|(label, colour)| KeyEntry {
-            swatch: Swatch::ground(colour, ' '),
+            swatch: Swatch::filled(colour, ' '),
             label: format!("{label} [% of node-time]"),
         });
-        colour_key::beside(&head, MARGIN + 90, 520, &entries)?;
+        colour_key::draw_row(&head, MARGIN + 90, 520, &entries)?;
         let parts = below.split_evenly((rows, columns));
         let mut targets = Vec::new();
         for ((index, mu), part) in layout.mus.iter().enumerate().zip(&parts) {
@@ -125,7 +127,7 @@ fn ends(record: &JobRecord) -> Option<[f64; 4]> {
     ends.iter().all(|end| end.is_finite()).then_some(ends.map(|end| (100.0 * end).clamp(0.0, 100.0)))
 }
 
-/// Areas between neighbours in the grid, where they are along numbers; what stands alone is a bar.
+/// Draws areas between neighbours in the grid if the axis has numbers, and a bar for a job without neighbours.
 fn draw_layers(chart: &mut Chart, columns: &[Column], x_axis: &Axis) -> Result<(), DrawError> {
     let are_joined = |a: &Column, b: &Column| !matches!(x_axis, Axis::Names(_)) && b.at <= a.at + 1;
     for stretch in columns.chunk_by(are_joined) {
@@ -140,7 +142,7 @@ fn draw_layers(chart: &mut Chart, columns: &[Column], x_axis: &Axis) -> Result<(
             chart.draw_series(std::iter::once(Polygon::new(outline, colour.filled())))?;
         }
         if stretch.len() > 1 {
-            // Where there is a job: between them is a guess.
+            // White lines mark the jobs; the areas between them are interpolated.
             for column in stretch {
                 let line = [(column.x, 0.0), (column.x, 100.0)];
                 chart
@@ -168,7 +170,7 @@ fn draw_bar(chart: &Chart, column: &Column, layer: usize, colour: RGBColor) -> R
     ))
 }
 
-/// A column's target reaches half-way to its neighbours.
+/// Tooltips of the columns. Their areas reach half-way to the neighbours, and no farther than 40 px.
 fn targets(chart: &Chart, columns: &[Column]) -> Vec<TooltipTarget> {
     let inside = chart.plotting_area().strip_coord_spec();
     let left = inside.get_base_pixel().0;

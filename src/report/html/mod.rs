@@ -1,7 +1,7 @@
 //! The report as one page for a browser.
 //!
-//! It is whole: all drawings, tables and the data behind them are in it. A study that is too large for that is shown as
-//! far as it goes, and the page says what is left out, which is in the files beside it.
+//! The page contains all drawings, tables and the data behind them. If a study is too large for that, the page shows a
+//! part of it, says what is left out, and names the files that have it.
 
 mod grids;
 mod head;
@@ -26,7 +26,7 @@ pub(super) fn page(parts: &Parts) -> String {
     ];
     sections.extend(trouble::section(report.rows).map(|content| ("trouble", "Trouble", content)));
     sections.push(("times", "Run times", grids::times(parts)));
-    sections.extend(report.provenance.map(|own| ("provenance", "Provenance", provenance::section(own))));
+    sections.extend(report.provenance.map(|from| ("provenance", "Provenance", provenance::section(from))));
     let body = html! {
         (head::summary(report))
         (html::navigation(sections.iter().map(|(id, heading, _)| (*id, *heading))))

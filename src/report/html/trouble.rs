@@ -1,4 +1,4 @@
-//! What failed and what did not become periodic, where and why; and what is missing.
+//! Jobs that failed, that did not become periodic, or that are missing: where they are in the grid, and why.
 
 use crate::analysis::Outcome;
 use crate::publish::{html, value};
@@ -8,10 +8,10 @@ use crate::report::tooltip::short_key;
 use crate::report::trouble;
 use maud::{Markup, html};
 
-/// Jobs in a list are named up to this number.
-const NAMED: usize = 100;
+/// Largest number of jobs in a list.
+const MAX_LISTED: usize = 100;
 
-/// Nothing, if no job is in trouble or missing.
+/// None if there is no such job.
 pub(super) fn section(rows: &[JobRow]) -> Option<Markup> {
     let regions = trouble::sentences(&trouble::regions(rows));
     let failed = list("Failed jobs", rows, failed);
@@ -23,20 +23,20 @@ pub(super) fn section(rows: &[JobRow]) -> Option<Markup> {
     }
     Some(html! {
         @if !regions.is_empty() {
-            p { "Neighbours in the grid with the same cause are one region:" }
+            p { "Neighbouring jobs of the grid with the same cause form a region:" }
             ul { @for sentence in &regions { li { (sentence) } } }
         }
         @for part in &parts { (part) }
     })
 }
 
-/// The rows of which there is something to say, the first of them in a table.
+/// A table of the rows for which `why` returns a reason. Rows beyond [`MAX_LISTED`] are counted only.
 fn list(heading: &str, rows: &[JobRow], why: fn(&JobRow) -> Option<Markup>) -> Option<Markup> {
     let mut entries = rows.iter().filter_map(|row| Some((row, why(row)?)));
     let line = |(row, why): (&JobRow, Markup)| {
         vec![html! { (parameters_in_words(row)) }, why, html! { code { (short_key(row)) } }]
     };
-    let lines: Vec<Vec<Markup>> = entries.by_ref().take(NAMED).map(line).collect();
+    let lines: Vec<Vec<Markup>> = entries.by_ref().take(MAX_LISTED).map(line).collect();
     if lines.is_empty() {
         return None;
     }

@@ -15,20 +15,20 @@ pub struct Case<'a> {
     pub caption: String,
     /// Its finished jobs, in the order of the study.
     pub jobs: Vec<DoneJob<'a>>,
-    /// What they are measured by.
+    /// The figures that they are compared with.
     pub reference: Reference,
-    /// One score a job.
+    /// One score for each job.
     pub scores: Vec<Score>,
     /// What stopping early changes, for each pair of jobs that differ in nothing else.
     pub early: Vec<EarlyStop>,
-    /// Jobs that wait or run.
+    /// Number of jobs that are pending, running or cancelled.
     pub waiting: usize,
-    /// Jobs that failed.
+    /// Number of jobs that failed.
     pub failed: usize,
 }
 
 impl<'a> Case<'a> {
-    /// The case of at least two finished `jobs`; `all` are its rows, finished or not.
+    /// The case of `jobs`, which are two or more. `all` are all of its rows, finished or not.
     pub(super) fn new(jobs: Vec<DoneJob<'a>>, all: &[&JobRow], names_damping: bool) -> Self {
         let physics = settings::physics_in_words(jobs[0].row);
         let damping = value::rounded(jobs[0].numerics.beta_r_s);

@@ -1,4 +1,4 @@
-//! The comparison as one line a job, for other programs.
+//! The comparison as CSV, one line per job.
 
 use super::case::Case;
 use super::compare::Comparison;
@@ -11,7 +11,7 @@ use crate::report::export::{further_names, io_error};
 use crate::report::row::JobRow;
 use std::io::{self, Write};
 
-/// The fields of every line; grid parameters that are not among them follow.
+/// The fields of every line. Grid parameters that are not among them follow.
 const HEADER: [&str; 38] = [
     "case",
     "study",
@@ -53,7 +53,7 @@ const HEADER: [&str; 38] = [
     "on_node_step_front",
 ];
 
-/// Writes the comparison. Errors are signed where they are relative; cells without a value are empty.
+/// Writes the comparison. Relative errors have a sign, and cells without a value are empty.
 pub(super) fn write<W: Write>(comparison: &Comparison, out: W) -> io::Result<()> {
     let rows: Vec<JobRow> =
         comparison.cases.iter().flat_map(|case| &case.jobs).map(|job| job.row.clone()).collect();

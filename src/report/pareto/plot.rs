@@ -28,8 +28,8 @@ struct Point {
     on_front: bool,
 }
 
-/// Draws a case. Jobs without a run time, and those whose error and resolution are both zero, are not on a
-/// logarithmic scale and left out.
+/// Draws a case. Jobs without a run time and jobs whose error and resolution are both zero are left out, because the axes
+/// are logarithmic.
 pub(super) fn draw(case: &Case) -> Result<String, FigureError> {
     let meshes = meshes(case);
     let points = points(case, &meshes);
@@ -102,7 +102,8 @@ fn draw_plot(area: &Area, points: &[Point]) -> Result<(), DrawError> {
     Ok(())
 }
 
-/// A circle for a whole run, a triangle for one that stopped early; hollow if not resolved; ringed on the front.
+/// A circle for a whole run and a triangle for one that stopped early. The marker is hollow if the error is not resolved,
+/// and has a ring if the job is on the front.
 fn draw_marker(area: &Area, at: (i32, i32), point: &Point) -> Result<(), DrawError> {
     if point.on_front {
         area.draw(&Circle::new(at, RADIUS + 9, BLACK.stroke_width(3)))?;
@@ -156,7 +157,7 @@ fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(
     }
     let room = area.dim_in_pixel().1 as i32 - 2 * MARGIN;
     let pitch = (room / entries.len() as i32).min(50);
-    // A long legend is set smaller rather than cut.
+    // A long legend gets smaller text, so that all of it is on the sheet.
     let size = TEXT.min(pitch * 5 / 6);
     for (line, (marker, label)) in entries.iter().enumerate() {
         let y = MARGIN + pitch / 2 + line as i32 * pitch;
@@ -166,7 +167,7 @@ fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(
         let x = if marker.is_some() { 3 * RADIUS + 24 } else { 0 };
         write(area, label, (x, y), size, HPos::Left)?;
     }
-    // The front is a line, too.
+    // The front is also drawn as a line.
     if any(|p| p.on_front) {
         let y = MARGIN + pitch / 2 + entries.len() as i32 * pitch - pitch;
         area.draw(&PathElement::new([(0, y), (2 * (RADIUS + 12), y)], BLACK.stroke_width(3)))?;

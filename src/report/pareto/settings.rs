@@ -1,4 +1,4 @@
-//! The numerics of a job in words, and which of a grid's parameters they are.
+//! The numerics of a job in words, and the parameters of a grid that belong to them.
 
 use crate::publish::value;
 use crate::report::parameters::{MU, OMEGA, assignments};
