@@ -1,4 +1,4 @@
-//! A look is the job's own run.
+//! An inspection shows the job's own run.
 
 use crate::{coarse, inspect};
 use std::collections::BTreeSet;
@@ -10,8 +10,8 @@ use tribosweep::inspect::{
 use tribosweep::solver::contact::ContactState;
 use tribosweep::spec::DiskKind;
 
-/// Protects: what is shown is the job: both runs of a look have the record of the job solved alone, to the last bit,
-/// and the cycles that are shown are those of its frequency.
+/// Protects: both runs of an inspection have the same record as the job solved alone, to the last bit, and the cycles that
+/// are shown have its frequency.
 #[test]
 fn both_runs_are_the_job() {
     let spec = coarse();
@@ -27,15 +27,15 @@ fn both_runs_are_the_job() {
     let duration_s = window.last().unwrap()[1] - window[0][0];
     let frequency_hz = window.len() as f64 / duration_s;
     assert!((frequency_hz / record.frequency_hz.unwrap() - 1.0).abs() < 1e-12);
-    // Over the cycles that are shown the period is that of the window within what the job tolerates of it.
+    // The period of the cycles that are shown differs from that of the window by less than the tolerance of the job.
     let tolerated = spec.detection.tolerance;
     assert!((inspection.survey.windows.period_s * frequency_hz - 1.0).abs() < tolerated);
 }
 
-/// Protects: totals, face and nodes tell of the same steps: sums of the face are the totals, and a node's history is
-/// the face's.
+/// Protects: totals, face and nodes have the same steps: the totals are the sums over the face, and the history of a node
+/// agrees with the face.
 #[test]
-fn what_is_shown_adds_up() {
+fn totals_face_and_nodes_agree() {
     let inspection = inspect(&coarse(), &Options::default());
     let slaves = inspection.capture.model.slaves().len();
     let [start_s, end_s] = inspection.survey.windows.cycle_s;
@@ -44,7 +44,7 @@ fn what_is_shown_adds_up() {
     for step in &inspection.capture.face {
         let total = inspection.capture.totals.iter().find(|total| total.time_s == step.time_s).unwrap();
         let normal: f64 = step.nodes.iter().map(|node| node.force_n[2]).sum();
-        // Sums in another order.
+        // The order of the sums differs.
         assert!((normal - total.normal_n).abs() <= slaves as f64 * f64::EPSILON * total.normal_n);
         let count = |state| step.nodes.iter().filter(|node| node.state == state).count();
         let counts = [ContactState::Stick, ContactState::Slip, ContactState::Separated].map(count);
@@ -56,8 +56,8 @@ fn what_is_shown_adds_up() {
     }
 }
 
-/// Protects: the instants are where the paper's figure 4 has them, at nodes that separate and at nodes that do not: in
-/// their order, within one period, at the steps at which the states change, and the largest stress at t_C.
+/// Protects: the instants are those of the paper's figure 4, at nodes that separate and at nodes that do not: they are in
+/// order, within one period, at the steps at which the states change, and the largest stress is at t_C.
 #[test]
 fn the_instants_are_those_of_the_states() {
     let mut kinds = BTreeSet::new();
@@ -103,12 +103,11 @@ fn the_instants_are_those_of_the_states() {
             kinds.insert(letters);
         }
     }
-    // With and without separation: the loop above has seen both.
+    // The loop above had nodes with separation and nodes without.
     assert!(kinds.contains("ABCDEF") && kinds.contains("BCD"), "{kinds:?}");
 }
 
-/// Protects: waves are told of neighbours that have the change and of no others: contact begins and ends at the nodes
-/// that separate, and every wave's delay is that of its nodes.
+/// Protects: the waves of contact and separation are exactly the runs of neighbouring nodes that separate.
 #[test]
 fn waves_are_those_of_the_face() {
     let inspection = inspect(&coarse(), &Options::default());
@@ -136,7 +135,7 @@ fn waves_are_those_of_the_face() {
     }
 }
 
-/// Protects: no more cycles are shown than repeat: the way there is not passed off for limit cycles.
+/// Protects: no more cycles are shown than those that repeat, so that the transient is never shown as limit cycles.
 #[test]
 fn no_more_cycles_than_there_are() {
     let inspection = inspect(&coarse(), &Options { cycles: 1000, ..Options::default() });
@@ -146,23 +145,22 @@ fn no_more_cycles_than_there_are() {
     assert!((windows.shown_s[0] / record.window_start_s - 1.0).abs() < 1e-12, "{windows:?}");
 }
 
-/// Protects: what the figures claim of stick and slip: a node that sticks has the velocity of the disk and one that
-/// slips has |τ| = μ σ_n, to rounding.
+/// Protects: up to rounding, a node that sticks has the velocity of the disk, and a node that slips has |τ| = μ σ_n.
 #[test]
 fn stick_and_slip_are_exact() {
     let spec = coarse();
     let summary = Summary::of(&inspect(&spec, &Options::default()));
     for node in &summary.nodes {
         assert!(node.shares.iter().all(|share| *share > 0.0), "{node:?}");
-        // Positions of some µm, whose differences over a step round to its parts.
+        // The velocity is a difference of positions of some µm over a step, which has their rounding errors.
         let rounding_m_s = 4.0 * f64::EPSILON * 1e-5 / summary.record.time_step_s;
         assert!(node.stick_speed_error_m_s <= rounding_m_s, "{node:?}");
         assert!(node.slip_friction_error <= 4.0 * f64::EPSILON, "{node:?}");
     }
 }
 
-/// Protects: displacements and velocities of the frames belong together: with a frame for every step, the difference of
-/// two is the velocity between them, at every node of the pin.
+/// Protects: displacements and velocities of the frames agree: with a frame for every step, the difference quotient of two
+/// frames is the velocity, at every node of the pin.
 #[test]
 fn frames_are_of_the_same_motion() {
     let inspection = inspect(&coarse(), &Options { frames: 1000, ..Options::default() });
@@ -174,7 +172,7 @@ fn frames_are_of_the_same_motion() {
     for pair in frames.windows(2) {
         assert!((pair[1].time_s - pair[0].time_s - dt).abs() < 1e-3 * dt);
         for ((before, after), velocity) in pair[0].u_m.iter().zip(&pair[1].u_m).zip(&pair[1].velocity_m_s) {
-            // Displacements of some µm round, and their difference is over a step.
+            // The displacements of some µm have rounding errors, which are divided by the time step.
             let rounding = 4.0 * f64::EPSILON * before.abs().max(after.abs()) / dt + 1e-12 * fastest;
             let difference = (after - before) / dt - velocity;
             assert!(
@@ -185,7 +183,7 @@ fn frames_are_of_the_same_motion() {
     }
 }
 
-/// Protects: a job without cycles can be looked into as well, and is said to have none; all its files are there.
+/// Protects: a job without cycles can be inspected too. The page says that it has none, and all files exist.
 #[test]
 fn stable_sliding_has_no_cycles() {
     let mut spec = coarse();
@@ -202,7 +200,7 @@ fn stable_sliding_has_no_cycles() {
     assert!(page.contains("no limit cycle"), "the page says so");
 }
 
-/// Protects: nodes by name and by coordinates, and the job's own figures of the two that it always observes.
+/// Protects: nodes can be selected by name and by coordinates, and the numbers of a node agree with the job's record.
 #[test]
 fn any_node_can_be_observed() {
     let nodes = ["centre", "-6,7.5", "front_centre"].map(|text| NodeSelector::parse(text).unwrap()).to_vec();
@@ -212,7 +210,7 @@ fn any_node_can_be_observed() {
     let found = Summary::of(&inspection).nodes[2].clone();
     let recorded = &inspection.survey.record.nodes[0];
     assert_eq!(recorded.name, "front_centre");
-    // Extremes of four cycles are within those of twenty, which repeat within what the job tolerates.
+    // The extremes of four cycles are within those of twenty, and differ by less than the tolerance of the job.
     let tolerated = coarse().detection.tolerance;
     for (shown, all) in [
         (found.peak_to_peak_m[1], recorded.y_peak_to_peak_m),
@@ -227,9 +225,9 @@ fn any_node_can_be_observed() {
     assert!(matches!(&error, InspectionError::Node(text) if text.contains("0,8 mm")), "{error}");
 }
 
-/// Protects: a look can be stopped in either run.
+/// Protects: an inspection can be stopped in either run.
 #[test]
-fn a_look_can_be_interrupted() {
+fn an_inspection_can_be_interrupted() {
     for run_to_stop in [1, 2] {
         let (mut run, mut last_s) = (1, 0.0);
         let found = Inspection::run(&coarse(), &Options::default(), &mut |simulated_s| {
@@ -246,8 +244,8 @@ fn a_look_can_be_interrupted() {
     }
 }
 
-/// Protects: jobs on an elastic disk, where a node that sticks moves with a surface that itself moves: not by nothing,
-/// and as much slower than the pin as the disk is stiffer.
+/// Protects: jobs on an elastic disk can be inspected. A node that sticks moves with the surface of the disk, whose own
+/// velocity is not zero, but smaller than that of the pin by the ratio of the stiffnesses.
 #[test]
 fn an_elastic_disk_moves_under_sticking_nodes() {
     let mut spec = coarse();
@@ -256,8 +254,8 @@ fn an_elastic_disk_moves_under_sticking_nodes() {
     let inspection = inspect(&spec, &Options { frames: 16, ..Options::default() });
     assert_eq!(inspection.survey.record, inspection.capture.record);
     let node = &Summary::of(&inspection).nodes[0];
-    // The same forces move two half-spaces in the ratio of their stiffness, here 1 : 210; the pin, a block with free
-    // sides, moves by several times what a half-space would.
+    // The same forces move two half-spaces in the ratio of their stiffnesses, here 1 : 210. The pin is a block with free
+    // sides, which moves several times as much as a half-space.
     let ratio = spec.scene.pin.young_modulus_pa / spec.scene.disk.ring.young_modulus_pa;
     let bound_m_s = 10.0 * ratio * node.relative_speed_max_m_s;
     assert!(node.stick_speed_error_m_s > 0.0 && node.stick_speed_error_m_s < bound_m_s, "{node:?}");

@@ -1,4 +1,4 @@
-//! What a look into a job shows: that it is the job's own run, and that what is written can be read.
+//! The inspection of a job: it shows the job's own run, and other programs can read its files.
 
 #[path = "../support/browser.rs"]
 #[expect(dead_code, reason = "reports are tested with more of it")]
@@ -19,10 +19,10 @@ pub fn coarse() -> JobSpec {
     spec
 }
 
-/// Looks into a job.
+/// Inspects a job.
 ///
 /// # Panics
-/// If it cannot be done.
+/// If the inspection fails.
 pub fn inspect(spec: &JobSpec, options: &Options) -> Inspection {
     Inspection::run(spec, options, &mut |_| ControlFlow::Continue(())).unwrap()
 }

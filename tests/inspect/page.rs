@@ -1,13 +1,13 @@
-//! The page of a look in a browser.
+//! The page of an inspection in a browser.
 
 use crate::chromium::Browser;
 use crate::{coarse, inspect};
 use tribosweep::inspect::{Options, PAGE, PageHeader, write};
 
-/// Protects: the page needs nothing but itself, nothing in it is an error, it has all drawings, and neither on a desk nor
-/// on a phone is it wider than its window; on a desk its tables need no scrolling either.
+/// Protects: the page loads nothing but itself, has no errors, and has all drawings. It is not wider than its window on a
+/// desktop and on a phone, and on a desktop its tables do not scroll.
 #[test]
-fn the_page_is_whole() {
+fn the_page_is_complete() {
     let Some(mut browser) = Browser::start() else { return };
     let inspection = inspect(&coarse(), &Options::default());
     let folder = tempfile::tempdir().unwrap();

@@ -1,10 +1,10 @@
-//! ResultGroup-up jobs: plausible figures without a simulation.
+//! Synthetic jobs: plausible results without a simulation.
 
 use serde_json::Value;
 use tribosweep::analysis::{EnergyTotals, JobRecord, Outcome, Regime};
 use tribosweep::report::{JobRow, Report, RowState};
 
-/// The report of these rows, of which nothing else is known.
+/// The report of these rows, without provenance.
 pub fn report(rows: &[JobRow]) -> Report<'_> {
     Report { title: "Reference", rows, provenance: None, written_ms: 0, refresh_s: None }
 }
@@ -79,8 +79,8 @@ pub fn with(mut row: JobRow, name: &str, value: impl Into<Value>) -> JobRow {
     row
 }
 
-/// Three friction coefficients over six speeds, with every outcome: 14 results, one job failed, one
-/// runs, two wait.
+/// Three friction coefficients over six speeds, with every outcome: 14 jobs have results, one has
+/// failed, one is running, and two are pending.
 pub fn partial_study() -> Vec<JobRow> {
     let mut rows = Vec::new();
     for mu in [0.2, 0.3, 0.4] {
