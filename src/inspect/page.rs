@@ -8,7 +8,7 @@ use crate::publish::value::{MISSING, fixed, number, significant};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 
-/// The title of the page and what made it.
+/// The title of the page, and the program that made it.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct PageHeader {
     /// The study and the job's parameters.

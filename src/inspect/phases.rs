@@ -48,7 +48,7 @@ pub struct Instants {
     pub peak_s: f64,
     /// t_D [s]: stick ends.
     pub slip_s: Option<f64>,
-    /// t_E [s]: contact ends, at the begin of the next longest separation.
+    /// t_E [s]: contact ends, at the start of the next longest separation.
     pub separation_s: Option<f64>,
     /// t_F [s]: that separation ends.
     pub end_s: Option<f64>,
@@ -77,7 +77,7 @@ impl Instants {
         }
     }
 
-    /// Finds the instants of the cycle that begins in the period from `from_s` on.
+    /// Finds the instants of the cycle that starts in the period from `from_s` on.
     ///
     /// The cycle lasts from the end of a separation to the end of the next one. At a node that does not separate, it lasts
     /// from the start of a slip phase to the start of the next one. Phases of a few steps (a node that touches before it

@@ -17,7 +17,7 @@ pub struct Trace {
     pub label: String,
     /// The node.
     pub node: ObservedNode,
-    /// Time [s] at which a cycle begins.
+    /// Time [s] at which a cycle starts.
     pub from_s: f64,
     /// Duration [s] that is shown from there.
     pub duration_s: f64,

@@ -46,13 +46,13 @@ fn remove_stale_files(out_dir: &Path) {
     if !out_dir.join(SUMMARY).is_file() {
         return;
     }
-    for (folder, begin, end) in
+    for (folder, prefix, suffix) in
         [(out_dir.to_owned(), "node_", ".csv"), (out_dir.join(fields::FRAMES_FOLDER), "pin_", ".vtu")]
     {
         let files = std::fs::read_dir(folder).into_iter().flatten().flatten();
         for file in files.filter(|file| {
             let name = file.file_name();
-            name.to_str().is_some_and(|name| name.starts_with(begin) && name.ends_with(end))
+            name.to_str().is_some_and(|name| name.starts_with(prefix) && name.ends_with(suffix))
         }) {
             let _ = std::fs::remove_file(file.path());
         }

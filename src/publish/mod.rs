@@ -1,18 +1,18 @@
 //! What reports are made of: values as text, drawings, pages, and folders of files. Nothing here knows of mechanics.
 //!
-//! * [`value`] – numbers as text, the same in CSV, tables, legends and axes.
+//! * `value` – numbers as text, the same in CSV, tables, legends and axes.
 //! * `plot` – axes, colours and tooltips, drawn as SVG.
 //! * `html` – pages that are one file.
 //! * [`Folder`], [`write_atomically`] – files that readers never see half-written.
 //!
-//! `plot` and `html` are for this crate only, because their signatures have types of plotters and maud. What they make
-//! are strings: SVG and HTML.
+//! `value`, `plot` and `html` are for this crate only. The signatures of the last two have types of plotters and maud, but
+//! what they make are strings: SVG and HTML.
 
 mod error;
 mod folder;
 pub(crate) mod html;
 pub(crate) mod plot;
-pub mod value;
+pub(crate) mod value;
 
 pub use error::{FigureError, PublishError};
 pub use folder::{Folder, write_atomically};

@@ -162,7 +162,7 @@ pub(super) fn further_names(rows: &[JobRow]) -> Vec<&str> {
 }
 
 /// Adds to `names` the parameters of a job other than ω and μ, each name once.
-pub fn add_further_names<'a, N>(names: &mut Vec<N>, parameters: &'a [(String, Value)])
+pub(crate) fn add_further_names<'a, N>(names: &mut Vec<N>, parameters: &'a [(String, Value)])
 where
     N: AsRef<str> + From<&'a str>,
 {

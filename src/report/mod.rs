@@ -33,6 +33,6 @@ pub mod trouble;
 
 pub use files::write;
 pub use input::Report;
-pub use parameters::assignment;
+pub(crate) use parameters::assignment;
 pub use provenance::{BuildInfo, Provenance, ResultGroup};
 pub use row::{JobNumerics, JobRow, RowState};

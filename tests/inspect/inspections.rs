@@ -69,36 +69,36 @@ fn the_instants_are_those_of_the_states() {
         for (observed, steps) in inspection.observed.iter().zip(&inspection.capture.nodes) {
             let instants = observed.instants.unwrap();
             let letters: String = instants.named().iter().map(|(letter, _)| *letter).collect();
-            let told = format!("{omega_rpm} rpm, {}: {:?}", observed.node.name, instants.named());
+            let context = format!("{omega_rpm} rpm, {}: {:?}", observed.node.name, instants.named());
             let place = |time_s: f64| steps.iter().position(|step| step.time_s >= time_s).unwrap();
             let state = |time_s: f64| steps[place(time_s)].node.state;
             let before = |time_s: f64| steps[place(time_s) - 1].node.state;
             if let (Some(b), Some(d)) = (instants.stick_s, instants.slip_s) {
-                assert!(b < d && d - b < period_s, "{told}");
-                assert!(state(b) == ContactState::Stick && before(b) != ContactState::Stick, "{told}");
-                assert!(state(d) != ContactState::Stick && before(d) == ContactState::Stick, "{told}");
+                assert!(b < d && d - b < period_s, "{context}");
+                assert!(state(b) == ContactState::Stick && before(b) != ContactState::Stick, "{context}");
+                assert!(state(d) != ContactState::Stick && before(d) == ContactState::Stick, "{context}");
             }
             if let (Some(a), Some(e), Some(f)) = (instants.contact_s, instants.separation_s, instants.end_s) {
                 assert!(
                     state(a) != ContactState::Separated && before(a) == ContactState::Separated,
-                    "{told}"
+                    "{context}"
                 );
                 let apart = &steps[place(e)..place(f)];
-                assert!(apart.iter().all(|step| step.node.state == ContactState::Separated), "{told}");
+                assert!(apart.iter().all(|step| step.node.state == ContactState::Separated), "{context}");
                 assert!(
                     before(e) != ContactState::Separated && state(f) != ContactState::Separated,
-                    "{told}"
+                    "{context}"
                 );
-                assert!((f - a - period_s).abs() < 0.1 * period_s, "one cycle, not two: {told}");
-                assert!(instants.peak_s >= a && instants.peak_s < e, "{told}");
+                assert!((f - a - period_s).abs() < 0.1 * period_s, "one cycle, not two: {context}");
+                assert!(instants.peak_s >= a && instants.peak_s < e, "{context}");
                 let between = &steps[place(a)..place(e)];
                 let largest = between.iter().map(|step| step.stress_pa[2]).fold(0.0, f64::max);
-                assert_eq!(steps[place(instants.peak_s)].stress_pa[2], largest, "{told}");
+                assert_eq!(steps[place(instants.peak_s)].stress_pa[2], largest, "{context}");
                 if let (Some(b), Some(d)) = (instants.stick_s, instants.slip_s) {
-                    assert!(a <= b && d <= e, "{told}");
+                    assert!(a <= b && d <= e, "{context}");
                 }
             } else {
-                assert!(!letters.contains(['A', 'E', 'F']), "all of a separation or none of it: {told}");
+                assert!(!letters.contains(['A', 'E', 'F']), "all of a separation or none of it: {context}");
             }
             kinds.insert(letters);
         }

@@ -105,7 +105,7 @@ fn only_a_page_that_changes_refreshes() {
     assert!(refreshed.contains("<meta http-equiv=\"refresh\" content=\"7\">"));
 }
 
-fn made(commit: &str, host: &str, jobs: u64, first_ms: i64, last_ms: i64) -> ResultGroup {
+fn group(commit: &str, host: &str, jobs: u64, first_ms: i64, last_ms: i64) -> ResultGroup {
     let build = BuildInfo {
         version: "0.1.0".to_owned(),
         commit: commit.to_owned(),
@@ -122,9 +122,9 @@ fn made(commit: &str, host: &str, jobs: u64, first_ms: i64, last_ms: i64) -> Res
 #[test]
 fn results_have_their_provenance() {
     let day = 86_400_000;
-    let alike = [made("aaaa", "one", 2, 2 * day, 3 * day), made("aaaa", "one", 3, day, 2 * day)];
+    let alike = [group("aaaa", "one", 2, 2 * day, 3 * day), group("aaaa", "one", 3, day, 2 * day)];
     let provenance = Provenance::grouped("{ \"name\": \"mine\" }".to_owned(), 0, alike.clone());
-    assert_eq!(provenance.groups, [made("aaaa", "one", 5, day, 3 * day)]);
+    assert_eq!(provenance.groups, [group("aaaa", "one", 5, day, 3 * day)]);
     let rows = partial_study();
     let page =
         |provenance: &Provenance| text(&page_of(&Report { provenance: Some(provenance), ..report(&rows) }));
@@ -142,7 +142,7 @@ fn results_have_their_provenance() {
     assert!(!text.contains("The results come from"));
 
     let several =
-        [made("bbbb+modified", "one", 1, 0, 0), made("aaaa", "two", 1, 0, 0), ResultGroup::default()];
+        [group("bbbb+modified", "one", 1, 0, 0), group("aaaa", "two", 1, 0, 0), ResultGroup::default()];
     let text = page(&Provenance::grouped(String::new(), 0, alike.into_iter().chain(several)));
     for part in ["come from 2 builds", "come from 2 machines", "changes that are in no commit", "unknown"] {
         assert!(text.contains(part), "{part} in {text}");
