@@ -2,7 +2,7 @@
 
 use super::low_pass::zero_phase_low_pass;
 use super::nodes::ObservedNode;
-use super::survey::Windows;
+use super::survey::TimeWindows;
 use crate::analysis::sample::{NodeSample, Sample};
 use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment};
 use crate::solver::{Drive, Model};
@@ -22,11 +22,11 @@ pub struct Capture {
     pub model: Model,
     /// The gain of the low-pass filter that the job applies to stresses, 1 − exp(−Δt/τ).
     pub stress_gain: f64,
-    /// Totals of every step from [`Windows::totals_from_s`] on, or of the last million.
+    /// Totals of every step from [`TimeWindows::totals_from_s`] on, or of the last million.
     pub totals: Vec<Sample>,
-    /// For every observed node, its steps in [`Windows::shown_s`].
+    /// For every observed node, its steps in [`TimeWindows::shown_s`].
     pub nodes: Vec<Vec<NodeStep>>,
-    /// The contact face at every step of [`Windows::cycle_s`].
+    /// The contact face at every step of [`TimeWindows::cycle_s`].
     pub face: Vec<FaceStep>,
     /// The pin at equally spaced times of that cycle.
     pub frames: Vec<Frame>,
@@ -74,7 +74,7 @@ pub struct Frame {
 /// If the run has no step, which no job can be short enough for.
 pub fn capture(
     spec: &JobSpec,
-    windows: &Windows,
+    windows: &TimeWindows,
     nodes: &[ObservedNode],
     frames: usize,
     on_progress: &mut impl FnMut(f64) -> ControlFlow<()>,
@@ -120,13 +120,13 @@ fn node_steps(steps: Vec<(f64, NodeSample)>, area_m2: f64, gain: f64) -> Vec<Nod
 }
 
 /// The times of the frames [s], latest first.
-fn frame_times_s(windows: &Windows, frames: usize) -> Vec<f64> {
+fn frame_times_s(windows: &TimeWindows, frames: usize) -> Vec<f64> {
     let [start_s, end_s] = windows.cycle_s;
     (0..frames).rev().map(|k| start_s + (end_s - start_s) * k as f64 / frames as f64).collect()
 }
 
 struct Recorder<'a, G> {
-    windows: &'a Windows,
+    windows: &'a TimeWindows,
     nodes: &'a [ObservedNode],
     drive: Drive,
     frame_times_s: Vec<f64>,

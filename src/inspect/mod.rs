@@ -39,7 +39,7 @@ pub use page::PageHeader;
 pub use phases::{Instants, Phase};
 pub use spectrum::Spectrum;
 pub use summary::Summary;
-pub use survey::{Survey, Windows};
+pub use survey::{Survey, TimeWindows};
 pub use trace::Trace;
 pub use waves::{Change, Wave};
 pub use write::{PAGE, write};

@@ -21,12 +21,12 @@ pub struct Survey {
     /// Extremes of the totals over the whole run.
     pub envelope: Envelope,
     /// The time windows of the second run.
-    pub windows: Windows,
+    pub windows: TimeWindows,
 }
 
 /// The time windows that are shown, all at the end of the run.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Windows {
+pub struct TimeWindows {
     /// Number of cycles that are shown, or of periods of a job without cycles.
     pub cycle_count: usize,
     /// Whether there are limit cycles, or cycles of a state that is not periodic. Otherwise the period is that of the pin
@@ -61,11 +61,11 @@ pub fn survey(
     };
     let record = analysis::solve(spec, &mut surveyor)?;
     let Surveyor { passages_s, envelope, quarter_wave_s, .. } = surveyor;
-    let windows = Windows::of(&record, &passages_s, cycles, quarter_wave_s);
+    let windows = TimeWindows::of(&record, &passages_s, cycles, quarter_wave_s);
     Ok(Survey { record, passages_s, envelope, windows })
 }
 
-impl Windows {
+impl TimeWindows {
     fn of(record: &JobRecord, passages_s: &[[f64; 2]], cycles: usize, quarter_wave_s: f64) -> Self {
         let crossings = record.crossings_per_cycle;
         // No more cycles than those that repeat, because the transient comes before the averaging window.

@@ -36,13 +36,13 @@ pub struct Regions {
 /// The grid of a study: the values of its parameters, and a point for each row.
 #[derive(Debug, Default)]
 pub struct Grid {
-    axes: Vec<Axis>,
+    axes: Vec<GridAxis>,
     points: Vec<Vec<usize>>,
 }
 
 /// A parameter.
 #[derive(Debug)]
-struct Axis {
+struct GridAxis {
     name: String,
     values: Vec<Value>,
     numbers: HashMap<String, usize>,
@@ -72,7 +72,7 @@ impl Grid {
 
     fn axis(&mut self, name: &str) -> usize {
         self.axes.iter().position(|axis| axis.name == name).unwrap_or_else(|| {
-            self.axes.push(Axis { name: name.to_owned(), values: Vec::new(), numbers: HashMap::new() });
+            self.axes.push(GridAxis { name: name.to_owned(), values: Vec::new(), numbers: HashMap::new() });
             self.axes.len() - 1
         })
     }
@@ -217,7 +217,7 @@ const WITH_CORNERS: usize = 3;
 /// Stands for the number of a value that a point does not have.
 const ABSENT: usize = usize::MAX;
 
-impl Axis {
+impl GridAxis {
     /// The number of a value. The values 1 and 1.0 have the same number.
     fn number(&mut self, value: &Value) -> usize {
         let next = self.values.len();
