@@ -12,7 +12,7 @@ const MAY_USE: [(&str, &[&str]); 13] = [
     ("solver", &["spec", "units"]),
     ("analysis", &["solver", "spec", "units"]),
     ("study", &["spec"]),
-    ("publish", &[]),
+    ("publish", &["units"]),
     ("inspect", &["analysis", "publish", "solver", "spec", "units"]),
     ("report", &["analysis", "publish"]),
     ("worker", &["analysis", "queue", "spec"]),
@@ -210,4 +210,14 @@ fn no_file_is_long() {
         .filter(|(lines, _)| *lines > LONGEST)
         .collect();
     assert!(long.is_empty(), "longer than {LONGEST} lines: {long:?}");
+}
+
+/// Protects: other programs can use `publish` too, because nothing of it speaks of mechanics or of jobs.
+#[test]
+fn publish_speaks_of_no_mechanics() {
+    for (file, text) in sources().iter().filter(|(file, _)| top_module(file) == "publish") {
+        for word in ["friction", "omega", "\"mu\"", "rpm", "stick", "slip", "JobSpec", "JobRecord"] {
+            assert!(!text.contains(word), "src/{file} speaks of {word}");
+        }
+    }
 }

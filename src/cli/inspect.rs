@@ -4,9 +4,10 @@ use super::error::CliError;
 use super::output::{block_on, print, tell};
 use super::{foreground, rows, solve};
 use crate::exit;
-use crate::inspect::{self, Look, LookError, Options, Origin, Place, Trace};
+use crate::inspect::{self, Inspection, InspectionError, NodeSelector, Options, PageHeader, Trace};
 use crate::publish::value;
 use crate::queue::Location;
+use crate::report::assignment;
 use crate::solver;
 use crate::spec::JobSpec;
 use crate::study::{Parameter, Preset, Study};
@@ -31,8 +32,8 @@ pub struct Args {
     /// A node of the contact face to follow, by its name (front_centre, rear_centre, centre, inner_centre, outer_centre,
     /// front_inner, front_outer, rear_inner, rear_outer) or as X,Y in mm from the pin's axis; may be repeated. Default:
     /// front_centre and rear_centre.
-    #[arg(long = "node", value_name = "NODE", value_parser = Place::parse, allow_hyphen_values = true)]
-    nodes: Vec<Place>,
+    #[arg(long = "node", value_name = "NODE", value_parser = NodeSelector::parse, allow_hyphen_values = true)]
+    nodes: Vec<NodeSelector>,
     /// Lay several jobs over each other that differ in a parameter: normal and tangential stress at the nodes.
     #[arg(long, value_name = "NAME=VALUE,VALUE,…", value_parser = foreground::parse_setting)]
     overlay: Option<(String, String)>,
@@ -64,7 +65,7 @@ impl Picked {
     /// Says which values are those of the study's scene.
     fn tell_own(&self) {
         let own = self.parameters.iter().filter(|(name, _)| self.own.contains(&name.as_str()));
-        let words: Vec<String> = own.map(|(name, value)| value::assignment(name, value)).collect();
+        let words: Vec<String> = own.map(|(name, value)| assignment(name, value)).collect();
         if !words.is_empty() {
             tell(format_args!("from the study's scene: {}", words.join(", ")));
         }
@@ -73,14 +74,14 @@ impl Picked {
 
 /// A study with parameters in words.
 fn title(study: &Study, parameters: &[(String, Value)]) -> String {
-    let words: Vec<String> = parameters.iter().map(|(name, value)| value::assignment(name, value)).collect();
+    let words: Vec<String> = parameters.iter().map(|(name, value)| assignment(name, value)).collect();
     if words.is_empty() { study.name().to_owned() } else { format!("{}: {}", study.name(), words.join(", ")) }
 }
 
 /// Parameters as a file's name, which may be empty.
 fn slug(parameters: &[(String, Value)]) -> String {
     let parts = parameters.iter().map(|(name, value)| format!("{name}-{}", value::text(value)));
-    value::in_file_name(&parts.collect::<Vec<_>>().join("_"))
+    value::file_name_part(&parts.collect::<Vec<_>>().join("_"))
 }
 
 /// Runs the job twice and writes what is found.
@@ -91,27 +92,27 @@ pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     }
     let picked = pick(args, &study, &args.job)?;
     picked.tell_own();
-    let places = args.places(&Place::USUAL);
-    let options = Options { places, cycles: args.cycles.into(), frames: args.frames.into() };
+    let places = args.places(&NodeSelector::DEFAULT);
+    let options = Options { nodes: places, cycles: args.cycles.into(), frames: args.frames.into() };
     let preset = args.preset.map(Preset::name);
     let folder = args.out(&study, &[&slug(&picked.parameters), preset.unwrap_or("")]);
     let mut pace = Pace::new(&picked, foreground::interrupt());
-    let look = match in_folder(&folder, || {
-        Look::into(&picked.spec, &options, &mut |simulated_s| pace.go_on(simulated_s))
+    let inspection = match in_folder(&folder, || {
+        Inspection::run(&picked.spec, &options, &mut |simulated_s| pace.go_on(simulated_s))
     })? {
-        Ok(look) => look,
+        Ok(inspection) => inspection,
         Err(error) => return ended(error),
     };
     pace.bar.finish_and_clear();
-    let shown = &look.survey.windows;
-    if shown.cycles && shown.count < options.cycles {
-        tell(format_args!("{} cycles are shown: there are no more like them", shown.count));
+    let shown = &inspection.survey.windows;
+    if shown.has_cycles && shown.cycle_count < options.cycles {
+        tell(format_args!("{} cycles are shown: there are no more like them", shown.cycle_count));
     }
     let of_preset = preset.map_or_else(String::new, |name| format!(", preset {name}"));
     let title = title(&study, &picked.parameters) + &of_preset;
-    let origin = Origin { title, made_with: worker::program() };
-    inspect::write(&look, &folder, &origin)?;
-    tell(solve::as_text(&look.survey.record).trim_end());
+    let header = PageHeader { title, made_with: worker::program() };
+    inspect::write(&inspection, &folder, &header)?;
+    tell(solve::as_text(&inspection.survey.record).trim_end());
     print(&format!("{}\n", folder.join(inspect::PAGE).display()))?;
     Ok(exit::SUCCESS)
 }
@@ -120,8 +121,8 @@ pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
 /// results it is gone again, unless something is in it.
 fn in_folder<T>(
     folder: &Path,
-    work: impl FnOnce() -> Result<T, LookError>,
-) -> Result<Result<T, LookError>, CliError> {
+    work: impl FnOnce() -> Result<T, InspectionError>,
+) -> Result<Result<T, InspectionError>, CliError> {
     let missing: Vec<&Path> = folder.ancestors().take_while(|ancestor| !ancestor.exists()).collect();
     let failed = |source| CliError::File { path: folder.display().to_string(), source };
     std::fs::create_dir_all(folder).map_err(failed)?;
@@ -231,10 +232,10 @@ fn values(spec: &JobSpec, names: &[&str]) -> Result<Vec<(String, Value)>, CliErr
     Ok(values)
 }
 
-fn ended(error: LookError) -> Result<u8, CliError> {
+fn ended(error: InspectionError) -> Result<u8, CliError> {
     match error {
-        LookError::Place(problem) => Err(CliError::Plan(format!("--node: {problem}"))),
-        LookError::Job(error) => foreground::ended(error),
+        InspectionError::Node(problem) => Err(CliError::Plan(format!("--node: {problem}"))),
+        InspectionError::Job(error) => foreground::ended(error),
     }
 }
 
@@ -291,7 +292,7 @@ fn overlay(args: &Args, study: &Study) -> Result<u8, CliError> {
         })
         .collect::<Result<_, _>>()?;
     picked[0].tell_own();
-    let places = args.places(&Place::USUAL[..1]);
+    let places = args.places(&NodeSelector::DEFAULT[..1]);
     let common: Vec<(String, Value)> =
         picked[0].parameters.iter().filter(|(own, _)| own != name).cloned().collect();
     let preset = args.preset.map_or("", Preset::name);
@@ -299,7 +300,7 @@ fn overlay(args: &Args, study: &Study) -> Result<u8, CliError> {
     let interrupt = foreground::interrupt();
     let run = |picked: &Picked| {
         let label = picked.parameters.iter().find(|(own, _)| own == name);
-        let label = label.map_or_else(String::new, |(name, value)| value::assignment(name, value));
+        let label = label.map_or_else(String::new, |(name, value)| assignment(name, value));
         Trace::of_job(&label, &picked.spec, &places, &mut |_| {
             if interrupt.is_raised() { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         })
@@ -321,8 +322,8 @@ fn overlay(args: &Args, study: &Study) -> Result<u8, CliError> {
 
 impl Args {
     /// The nodes that are asked for, each once.
-    fn places(&self, usual: &[Place]) -> Vec<Place> {
-        let mut places: Vec<Place> = Vec::new();
+    fn places(&self, usual: &[NodeSelector]) -> Vec<NodeSelector> {
+        let mut places: Vec<NodeSelector> = Vec::new();
         for place in if self.nodes.is_empty() { usual } else { &self.nodes } {
             if !places.contains(place) {
                 places.push(place.clone());
@@ -334,7 +335,7 @@ impl Args {
     /// The folder that is asked for, or one of the study's with a name of these parts.
     fn out(&self, study: &Study, parts: &[&str]) -> PathBuf {
         let parts: Vec<&str> = parts.iter().copied().filter(|part| !part.is_empty()).collect();
-        let name = if parts.is_empty() { "job".to_owned() } else { value::in_file_name(&parts.join("_")) };
+        let name = if parts.is_empty() { "job".to_owned() } else { value::file_name_part(&parts.join("_")) };
         self.folder.clone().unwrap_or_else(|| Path::new("reports").join(study.name()).join(name))
     }
 }

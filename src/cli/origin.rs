@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use crate::queue::{MadeWith, Queue};
-use crate::report::{Made, Maker, Origin};
+use crate::report::{BuildInfo, Provenance, ResultGroup};
 use serde::Deserialize;
 
 /// What a worker tells of itself, as far as a reader cares. Another version may have told less.
@@ -20,16 +20,16 @@ struct Told {
 }
 
 /// The study's document and what its results were made with; nothing if the study has been removed meanwhile.
-pub async fn read(queue: &mut Queue, study: &str) -> Result<Option<Origin>, CliError> {
+pub async fn read(queue: &mut Queue, study: &str) -> Result<Option<Provenance>, CliError> {
     let Some(document) = queue.study(study).await? else { return Ok(None) };
     let made = queue.made_with(study).await?;
-    Ok(Some(Origin::grouped(document.document, document.submitted_ms, made.iter().map(convert))))
+    Ok(Some(Provenance::grouped(document.document, document.submitted_ms, made.iter().map(convert))))
 }
 
-fn convert(made: &MadeWith) -> Made {
+fn convert(made: &MadeWith) -> ResultGroup {
     // What cannot be read is not known.
     let told: Option<Told> = made.provenance.as_deref().and_then(|text| serde_json::from_str(text).ok());
-    let with = told.map(|told| Maker {
+    let build = told.map(|told| BuildInfo {
         version: told.version,
         commit: told.commit,
         host: told.host,
@@ -38,5 +38,5 @@ fn convert(made: &MadeWith) -> Made {
         vectors: told.vectors,
         threads: told.threads,
     });
-    Made { with, jobs: made.jobs, first_ms: made.first_finished_ms, last_ms: made.last_finished_ms }
+    ResultGroup { build, jobs: made.jobs, first_ms: made.first_finished_ms, last_ms: made.last_finished_ms }
 }

@@ -74,7 +74,7 @@ async fn write(
 /// Writes the report of a study's rows.
 pub async fn write_rows(
     queue: &mut Queue,
-    rows: &[report::Row],
+    rows: &[report::JobRow],
     name: &str,
     out: &OutFolder,
     refresh_s: Option<u32>,
@@ -82,7 +82,7 @@ pub async fn write_rows(
     let origin = origin::read(queue, name).await?;
     let folder = out.of(name);
     let written_ms = queue.now_ms().await?;
-    let report = Report { title: name, rows, origin: origin.as_ref(), written_ms, refresh_s };
+    let report = Report { title: name, rows, provenance: origin.as_ref(), written_ms, refresh_s };
     report::write(&report, &folder)?;
     tell(format_args!("report written to {}", folder.display()));
     Ok(())

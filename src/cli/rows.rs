@@ -3,7 +3,7 @@
 use super::error::CliError;
 use super::planning::RowParameters;
 use crate::queue::{Clock, JobState, Location, Queue, Rows, Settings, StudyRow};
-use crate::report::{Row, RowState, export};
+use crate::report::{JobRow, RowState, export};
 use crate::study::Study;
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use std::ops::ControlFlow;
@@ -29,7 +29,7 @@ pub async fn open_to_change(db: &Location) -> Result<Queue, CliError> {
 }
 
 /// All rows of a study.
-pub async fn read(queue: &mut Queue, study: &str) -> Result<Vec<Row>, CliError> {
+pub async fn read(queue: &mut Queue, study: &str) -> Result<Vec<JobRow>, CliError> {
     let mut rows = Vec::new();
     each(queue, study, Rows::All, |_, row| {
         rows.push(row);
@@ -45,7 +45,7 @@ pub async fn each(
     queue: &mut Queue,
     study: &str,
     which: Rows<'_>,
-    mut look: impl FnMut(u64, Row) -> Result<(), CliError>,
+    mut look: impl FnMut(u64, JobRow) -> Result<(), CliError>,
 ) -> Result<(), CliError> {
     let mut shown = Ok(());
     let read = queue.each_page(study, which, |page| {
@@ -71,7 +71,7 @@ pub async fn further_names(queue: &mut Queue, study: &str) -> Result<Vec<String>
 }
 
 /// What the report makes of a row.
-pub fn convert(study: &str, row: &StudyRow) -> Result<Row, CliError> {
+pub fn convert(study: &str, row: &StudyRow) -> Result<JobRow, CliError> {
     let unreadable = |what: &str, error: serde_json::Error| {
         CliError::Unreadable(format!(
             "job {} of {study}: its {what} was written by another version of tribosweep ({error}); \
@@ -91,7 +91,7 @@ pub fn convert(study: &str, row: &StudyRow) -> Result<Row, CliError> {
         (JobState::Cancelled, _) => RowState::Cancelled,
         (JobState::Failed, _) => RowState::Failed { error: row.error.clone().unwrap_or_default() },
     };
-    Ok(Row {
+    Ok(JobRow {
         study: study.to_owned(),
         job: row.key.clone(),
         parameters: parameters.grid,

@@ -9,8 +9,8 @@ use crate::analysis::Outcome;
 use crate::exit;
 use crate::queue::{Counts, Location, Queue, Rows, Scope};
 use crate::report::overview::overview;
-use crate::report::trouble::{Grid, LISTED, Region, Regions, cause, sentences};
-use crate::report::{Row, RowState};
+use crate::report::trouble::{Grid, MAX_LISTED, Region, Regions, cause, sentences};
+use crate::report::{JobRow, RowState};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -66,7 +66,7 @@ async fn all(queue: &mut Queue, as_json: bool) -> Result<String, CliError> {
 
 /// The rows of a study that are in trouble. Of all others only the parameters are read: records are most of a study.
 struct Trouble {
-    failed: Vec<Row>,
+    failed: Vec<JobRow>,
     not_periodic: usize,
     regions: Regions,
 }
@@ -86,7 +86,7 @@ async fn find(queue: &mut Queue, name: &str) -> Result<Trouble, CliError> {
         )));
     }
     let (mut troubled, mut failed) = (Vec::new(), Vec::new());
-    let mut note = |place: u64, row: &Row| {
+    let mut note = |place: u64, row: &JobRow| {
         troubled.extend(cause(row).map(|cause| (place as usize, row.job.clone(), cause)));
     };
     rows::each(queue, name, Rows::Failed, |place, row| {
@@ -102,7 +102,7 @@ async fn find(queue: &mut Queue, name: &str) -> Result<Trouble, CliError> {
     })
     .await?;
     let not_periodic = troubled.len() - failed.len();
-    Ok(Trouble { failed, not_periodic, regions: grid.regions(troubled, LISTED) })
+    Ok(Trouble { failed, not_periodic, regions: grid.regions(troubled, MAX_LISTED) })
 }
 
 async fn one(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, CliError> {
@@ -166,7 +166,7 @@ fn one_json(name: &str, counts: Counts, outlook: Option<&Outlook>, trouble: &Tro
     })
 }
 
-fn parameters(row: &Row) -> String {
+fn parameters(row: &JobRow) -> String {
     let list: Vec<String> = row.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     list.join(", ")
 }

@@ -1,8 +1,8 @@
-//! The second of the two runs, the same to the last bit: everything of the time that is looked at.
+//! The second of the two runs, which is the same to the last bit. It records everything in the time that is shown.
 
-use super::place::ObservedNode;
-use super::smooth::without_delay;
-use super::survey::Windows;
+use super::low_pass::zero_phase_low_pass;
+use super::nodes::ObservedNode;
+use super::survey::TimeWindows;
 use crate::analysis::sample::{NodeSample, Sample};
 use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment};
 use crate::solver::{Drive, Model};
@@ -10,23 +10,23 @@ use crate::spec::JobSpec;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
-/// No more steps than this are kept of the totals: the last ones.
-const MOST_TOTALS: usize = 1 << 20;
+/// Largest number of steps whose totals are recorded: the last ones.
+const MAX_TOTALS: usize = 1 << 20;
 
-/// What was seen.
+/// What the second run recorded.
 #[derive(Debug, Clone)]
 pub struct Capture {
-    /// The record: the same as the first run's.
+    /// The record, which is that of the first run.
     pub record: JobRecord,
-    /// What the job was solved on.
+    /// The model of the job.
     pub model: Model,
-    /// The gain of the job's smoother of stresses, 1 − exp(−Δt/τ).
+    /// The gain of the low-pass filter that the job applies to stresses, 1 − exp(−Δt/τ).
     pub stress_gain: f64,
-    /// Totals of every step from [`Windows::totals_from_s`] on, or of the last million.
+    /// Totals of every step from [`TimeWindows::totals_from_s`] on, or of the last million.
     pub totals: Vec<Sample>,
-    /// For every observed node its steps in [`Windows::shown_s`].
+    /// For every observed node, its steps in [`TimeWindows::shown_s`].
     pub nodes: Vec<Vec<NodeStep>>,
-    /// The contact face at every step of [`Windows::cycle_s`].
+    /// The contact face at every step of [`TimeWindows::cycle_s`].
     pub face: Vec<FaceStep>,
     /// The pin at equally spaced times of that cycle.
     pub frames: Vec<Frame>,
@@ -39,7 +39,7 @@ pub struct NodeStep {
     pub time_s: f64,
     /// Displacement, velocity, force and state.
     pub node: NodeSample,
-    /// Contact stress [Pa]: friction in x and y, and normal, behind a low-pass that does not delay them.
+    /// Contact stress [Pa]: friction in x and y, and normal stress, after a zero-phase low-pass filter.
     pub stress_pa: [f64; 3],
 }
 
@@ -59,25 +59,25 @@ pub struct Frame {
     pub time_s: f64,
     /// Displacements [m] after the step, in the order node → component.
     pub u_m: Vec<f64>,
-    /// Velocities [m/s] over the step, likewise.
+    /// Velocities [m/s] over the step, in the same order.
     pub velocity_m_s: Vec<f64>,
     /// The contact face during the step.
     pub face: Vec<NodeSample>,
 }
 
-/// Runs the job again and looks at `nodes`, at the contact face and, `frames` times, at the pin.
+/// Runs the job again and records `nodes`, the contact face and, at `frames` times, the whole pin.
 ///
 /// # Errors
 /// Those of [`analysis::solve`].
 ///
 /// # Panics
-/// If the run has no step: no job is that short.
+/// If the run has no step, which no job can be short enough for.
 pub fn capture(
     spec: &JobSpec,
-    windows: &Windows,
+    windows: &TimeWindows,
     nodes: &[ObservedNode],
     frames: usize,
-    go_on: &mut impl FnMut(f64) -> ControlFlow<()>,
+    on_progress: &mut impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Capture, JobError> {
     let mut recorder = Recorder {
         windows,
@@ -90,7 +90,7 @@ pub fn capture(
         histories: vec![Vec::new(); nodes.len()],
         face: Vec::new(),
         frames: Vec::new(),
-        go_on,
+        on_progress,
     };
     let record = analysis::solve(spec, &mut recorder)?;
     let model = recorder.model.expect("a run has a step");
@@ -109,24 +109,24 @@ pub fn capture(
     })
 }
 
-/// A node's history with its stresses.
+/// Adds the stresses to the history of a node.
 fn node_steps(steps: Vec<(f64, NodeSample)>, area_m2: f64, gain: f64) -> Vec<NodeStep> {
     let [x, y, n] = [0, 1, 2].map(|c| {
         let raw: Vec<f64> = steps.iter().map(|(_, node)| node.force_n[c] / area_m2).collect();
-        without_delay(&raw, gain)
+        zero_phase_low_pass(&raw, gain)
     });
     let steps = steps.into_iter().enumerate();
     steps.map(|(i, (time_s, node))| NodeStep { time_s, node, stress_pa: [x[i], y[i], n[i]] }).collect()
 }
 
-/// Latest first.
-fn frame_times_s(windows: &Windows, frames: usize) -> Vec<f64> {
+/// The times of the frames [s], latest first.
+fn frame_times_s(windows: &TimeWindows, frames: usize) -> Vec<f64> {
     let [start_s, end_s] = windows.cycle_s;
     (0..frames).rev().map(|k| start_s + (end_s - start_s) * k as f64 / frames as f64).collect()
 }
 
 struct Recorder<'a, G> {
-    windows: &'a Windows,
+    windows: &'a TimeWindows,
     nodes: &'a [ObservedNode],
     drive: Drive,
     frame_times_s: Vec<f64>,
@@ -136,7 +136,7 @@ struct Recorder<'a, G> {
     histories: Vec<Vec<(f64, NodeSample)>>,
     face: Vec<FaceStep>,
     frames: Vec<Frame>,
-    go_on: &'a mut G,
+    on_progress: &'a mut G,
 }
 
 impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
@@ -148,7 +148,7 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
             self.gain = moment.sampler.gain();
         }
         if time_s >= self.windows.totals_from_s {
-            if self.totals.len() == MOST_TOTALS {
+            if self.totals.len() == MAX_TOTALS {
                 self.totals.pop_front();
             }
             self.totals.push_back(*moment.sample);
@@ -166,7 +166,7 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
         self.face.push(FaceStep { time_s, nodes: self.face_of(moment) });
         let due = |next_s: &mut f64| time_s >= *next_s;
         if self.frame_times_s.pop_if(due).is_some() {
-            // There may be fewer steps in a cycle than frames.
+            // A cycle may have fewer steps than frames.
             while self.frame_times_s.pop_if(due).is_some() {}
             self.frames.push(Frame {
                 time_s,
@@ -178,7 +178,7 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
     }
 
     fn progress(&mut self, simulated_s: f64) -> ControlFlow<()> {
-        (self.go_on)(simulated_s)
+        (self.on_progress)(simulated_s)
     }
 }
 

@@ -1,4 +1,4 @@
-//! The pin over a cycle, for ParaView.
+//! The fields of the pin over a cycle as VTK files, which ParaView reads.
 
 use super::capture::{Capture, Frame};
 use super::vtu::{self, PointData, Values};
@@ -8,11 +8,11 @@ use crate::solver::body::block::BlockMesh;
 use crate::solver::body::block::stress;
 use crate::solver::interface::ContactState;
 
-/// The corners of a mesh's element in VTK's order, which goes around.
-const AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+/// The corners of an element in the order of VTK, which goes around each face.
+const VTK_CORNERS: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
-/// The folder of the files that `fields.pvd` names.
-pub(super) const PARTS: &str = "fields";
+/// The folder of the files that `fields.pvd` lists.
+pub(super) const FRAMES_FOLDER: &str = "fields";
 
 /// Writes `fields.pvd` and a folder with a file for each frame.
 ///
@@ -25,21 +25,22 @@ pub fn write(capture: &Capture, folder: &mut Folder) -> Result<(), PublishError>
         .element_positions()
         .map(|[i, j, k]| {
             let corners = mesh.element_nodes(i, j, k);
-            AROUND.map(|corner| corners[corner])
+            VTK_CORNERS.map(|corner| corners[corner])
         })
         .collect();
-    let path = folder.path_of(PARTS);
+    let path = folder.path_of(FRAMES_FOLDER);
     let mut parts = Folder::create(&path)?;
     let mut names = Vec::new();
     for (number, frame) in capture.frames.iter().enumerate() {
         let name = format!("pin_{number:04}.vtu");
         let data = point_data(capture, mesh, frame);
-        parts.with(&name, |out| vtu::write_grid(&points_m, &cells, &data, out))?;
-        names.push(format!("{PARTS}/{name}"));
+        parts.write_with(&name, |out| vtu::write_grid(&points_m, &cells, &data, out))?;
+        names.push(format!("{FRAMES_FOLDER}/{name}"));
     }
     folder.written.append(&mut parts.written);
     let times_s = capture.frames.iter().map(|frame| frame.time_s);
-    folder.with("fields.pvd", |out| vtu::write_series(times_s.zip(names.iter().map(String::as_str)), out))
+    folder
+        .write_with("fields.pvd", |out| vtu::write_series(times_s.zip(names.iter().map(String::as_str)), out))
 }
 
 fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointData> {
@@ -48,7 +49,7 @@ fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointDa
         components,
         values: Values::Numbers(count, values.into_iter().map(|x| x as f32).collect()),
     };
-    // Slave nodes have the first numbers.
+    // Slave nodes are numbered first.
     let of_face = |count: usize, value: &dyn Fn(&NodeSample, f64) -> Vec<f64>| {
         let areas = capture.model.slaves().iter().map(|slave| slave.area_m2);
         let mut all: Vec<f64> =
@@ -75,7 +76,7 @@ fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointDa
     ]
 }
 
-/// Contact states as numbers: 0 separated, 1 stick, 2 slip; −1 is no contact node.
+/// The number of a contact state in the files: 0 separated, 1 stick, 2 slip. Other nodes have −1.
 fn code(state: ContactState) -> i8 {
     match state {
         ContactState::Separated => 0,

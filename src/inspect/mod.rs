@@ -1,4 +1,4 @@
-//! One job looked into: what the paper's figures 2 to 5 and 8 show, of any job.
+//! One job in detail: what the paper's figures 2 to 5 and 8 show, for any job.
 //!
 //! ```text
 //! spec ─► survey (first run: record, cycles) ─► capture (the same run again, watched) ─┬─► tables (CSV)
@@ -7,36 +7,39 @@
 //!                                                                                      └─► fields (VTK)
 //! ```
 //!
-//! A job's run is the same to the last bit whenever it is made. So it is made twice: the first time to learn when its
-//! last limit cycles are, the second time to keep everything of just these. No state of a run has to be kept on the
-//! chance that it belongs to them, and nothing that solves jobs knows of being watched.
+//! Every run of a job has the same result to the last bit. So the job is run twice: the first run finds the times of the
+//! last limit cycles, and the second run records everything within them. No run has to record states that may turn out
+//! to be useless, and the code that solves jobs does not know that it is observed.
 
 mod capture;
 mod envelope;
 mod fields;
 mod figures;
-mod look;
+mod inspection;
+mod low_pass;
+mod nodes;
 mod overlay;
 mod page;
 mod phases;
-mod place;
-mod smooth;
 mod spectrum;
 mod summary;
 mod survey;
 mod tables;
+mod trace;
 mod vtu;
 mod waves;
 mod write;
 
 pub use capture::{Capture, FaceStep, Frame, NodeStep};
-pub use figures::LookFigure;
-pub use look::{Look, LookError, Observed, Options};
-pub use overlay::{Trace, write_overlay};
+pub use figures::InspectionFigure;
+pub use inspection::{Inspection, InspectionError, NodeFindings, Options};
+pub use nodes::{NodeSelector, ObservedNode};
+pub use overlay::write_overlay;
+pub use page::PageHeader;
 pub use phases::{Instants, Phase};
-pub use place::{ObservedNode, Place};
 pub use spectrum::Spectrum;
 pub use summary::Summary;
-pub use survey::{Survey, Windows};
+pub use survey::{Survey, TimeWindows};
+pub use trace::Trace;
 pub use waves::{Change, Wave};
-pub use write::{Origin, PAGE, write};
+pub use write::{PAGE, write};

@@ -1,27 +1,35 @@
-//! The page of a look: all of it in one file, but for the tables that are too large.
+//! The page of an inspection: one file with all of it except for the tables that are too large.
 
-use super::figures::LookFigure;
-use super::look::Look;
+use super::figures::InspectionFigure;
+use super::inspection::Inspection;
 use super::summary::{NodeSummary, Summary};
-use super::write::Origin;
 use crate::publish::html::{self, download, figure, navigation, section, table, tiles, warning};
-use crate::publish::value::{MISSING, digits, fixed, number};
+use crate::publish::value::{MISSING, fixed, number, significant};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 
-/// The page; `tables` are the CSV files that it holds, by their names.
+/// The title of the page, and the program that made it.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct PageHeader {
+    /// The study and the job's parameters.
+    pub title: String,
+    /// The program that ran the job.
+    pub made_with: String,
+}
+
+/// The page. `tables` are the CSV files that it contains, by name.
 pub fn of(
-    look: &Look,
+    inspection: &Inspection,
     summary: &Summary,
-    figures: &[LookFigure],
+    figures: &[InspectionFigure],
     tables: &BTreeMap<String, String>,
-    origin: &Origin,
+    header: &PageHeader,
 ) -> String {
     let links = figures.iter().map(|figure| (figure.stem, figure.heading));
     let last = [("nodes", "Nodes in numbers"), ("files", "Files")];
     let sections: Vec<(&str, &str)> = links.chain(last).collect();
     let body = html! {
-        (head(look, summary))
+        (head(inspection, summary))
         (navigation(sections))
         @for drawn in figures {
             (section(drawn.stem, drawn.heading, &html! {
@@ -31,12 +39,12 @@ pub fn of(
             }))
         }
         (section("nodes", last[0].1, &nodes(summary)))
-        (section("files", last[1].1, &html! { (files()) p { "Made with " (origin.made_with) "." } }))
+        (section("files", last[1].1, &html! { (files()) p { "Made with " (header.made_with) "." } }))
     };
-    html::page(&origin.title, None, &body)
+    html::page(&header.title, None, &body)
 }
 
-fn head(look: &Look, summary: &Summary) -> Markup {
+fn head(inspection: &Inspection, summary: &Summary) -> Markup {
     let record = &summary.record;
     let frequency = record.frequency_hz.map_or_else(|| "none".to_owned(), |f| format!("{f:.0} Hz"));
     let numbers = [
@@ -62,28 +70,28 @@ fn head(look: &Look, summary: &Summary) -> Markup {
     ];
     html! {
         @if !summary.cycles {
-            (warning(&html! { "This job has no limit cycle: the end of its run is shown, over periods of 4h/c_s, "
-                "the pin's as a quarter-wave resonator in shear." }))
+            (warning(&html! { "This job has no limit cycle. The end of its run is shown instead, in periods of 4h/c_s: those "
+                "of the pin as a quarter-wave resonator in shear." }))
         }
-        p { (numerics(look)) }
+        p { (numerics(inspection)) }
         (tiles(&numbers))
     }
 }
 
 /// Mesh, step and disk in a line.
-fn numerics(look: &Look) -> String {
-    let [nx, ny, nz] = look.mesh().elements();
-    let record = &look.survey.record;
-    let disk = if look.capture.model.ring().is_some() { "an elastic disk" } else { "a rigid disk" };
+fn numerics(inspection: &Inspection) -> String {
+    let [nx, ny, nz] = inspection.mesh().elements();
+    let record = &inspection.survey.record;
+    let disk = if inspection.capture.model.ring().is_some() { "an elastic disk" } else { "a rigid disk" };
     format!(
         "{nx} × {ny} × {nz} elements on {disk}, {} steps of {} s; {} cycles are shown.",
         record.steps,
-        digits(record.time_step_s, 3),
-        look.survey.windows.count
+        significant(record.time_step_s, 3),
+        inspection.survey.windows.cycle_count
     )
 }
 
-/// The waves, one in a line.
+/// The table of waves.
 fn waves(summary: &Summary) -> Markup {
     let header = ["change", "y from … to [mm]", "begins [µs]", "takes [µs]", "speed [m/s], towards"]
         .map(str::to_owned);
@@ -106,25 +114,25 @@ fn waves(summary: &Summary) -> Markup {
         })
         .collect();
     html! {
-        @if lines.is_empty() { p { "No change of state runs over neighbouring nodes of this line." } }
+        @if lines.is_empty() { p { "No change of state travels over neighbouring nodes of this line." } }
         @else {
             (table(&header, &lines))
-            p { "Each run of neighbouring nodes that have a change is a wave of its own; \"begins\" is at its first "
-                "node, from the front, since the begin of the cycle." }
+            p { "A wave is a run of neighbouring nodes that all have the change; \"begins\" is the time at its foremost "
+                "node since the start of the cycle." }
         }
     }
 }
 
-/// A table to download, or where it is.
+/// A table to download, or the name of its file.
 fn data(name: &str, tables: &BTreeMap<String, String>) -> Markup {
     if let Some(text) = tables.get(name) {
         download(name, text)
     } else {
-        html! { code { (name) } " (beside this page)" }
+        html! { code { (name) } " (in the folder of this page)" }
     }
 }
 
-/// A line of the table of nodes: its name and the value of a node.
+/// A line of the table of nodes: its heading, and the value of a node.
 type NodeLine = (&'static str, fn(&NodeSummary) -> String);
 
 fn nodes(summary: &Summary) -> Markup {
@@ -139,7 +147,7 @@ fn nodes(summary: &Summary) -> Markup {
         ("largest slip speed [mm/s]", |node| fixed(node.slip_speed_max_m_s * 1e3, 0)),
         ("largest speed relative to the disk [mm/s]", |node| fixed(node.relative_speed_max_m_s * 1e3, 0)),
         ("stick, slip, separated", |node| node.shares.map(|share| fixed(share, 2)).join(", ")),
-        ("separates, or sticks, with [Hz]", |node| {
+        ("frequency of separation, or of stick [Hz]", |node| {
             node.frequency_hz.map_or_else(|| MISSING.to_owned(), |f| fixed(f, 0))
         }),
     ];
@@ -159,7 +167,7 @@ fn nodes(summary: &Summary) -> Markup {
     }
 }
 
-/// The instants of a node, one in a line.
+/// The lines of the table of instants.
 fn instants(node: &NodeSummary, from_s: f64) -> Vec<Vec<Markup>> {
     let at = node.instants.iter().flat_map(|instants| &instants.at);
     at.map(|(name, time_s, stress_pa, velocity_m_s, state)| {

@@ -1,8 +1,8 @@
-//! The phases of a node's contact, and the instants at which they change.
+//! The contact phases of a node, and the instants at which they change.
 
 use crate::solver::interface::ContactState;
 
-/// A stretch of time in one state.
+/// An interval of time in one contact state.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Phase {
     /// The state.
@@ -20,7 +20,7 @@ impl Phase {
     }
 }
 
-/// The phases of consecutive steps (time of t_n [s], state), the last one up to `end_s`.
+/// The phases of consecutive steps, given as time t_n [s] and state. The last phase ends at `end_s` [s].
 pub fn phases(steps: impl Iterator<Item = (f64, ContactState)>, end_s: f64) -> Vec<Phase> {
     let mut phases: Vec<Phase> = Vec::new();
     for (time_s, state) in steps {
@@ -37,8 +37,7 @@ pub fn phases(steps: impl Iterator<Item = (f64, ContactState)>, end_s: f64) -> V
     phases
 }
 
-/// The instants of a cycle of a node, as in the paper's Figure 4; those of phases that a node does not have are not
-/// there.
+/// The instants of a cycle of a node, as in the paper's Figure 4. An instant is none if the node does not have its phase.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Instants {
     /// t_A [s]: contact begins, at the end of the longest separation.
@@ -49,14 +48,14 @@ pub struct Instants {
     pub peak_s: f64,
     /// t_D [s]: stick ends.
     pub slip_s: Option<f64>,
-    /// t_E [s]: contact ends, at the begin of the next longest separation.
+    /// t_E [s]: contact ends, at the start of the next longest separation.
     pub separation_s: Option<f64>,
     /// t_F [s]: that separation ends.
     pub end_s: Option<f64>,
 }
 
 impl Instants {
-    /// Letter and time [s] of those that are there, in the order of the letters.
+    /// Letter and time [s] of the instants that exist, in the order of the letters.
     pub fn named(&self) -> Vec<(char, f64)> {
         let all = [
             ('A', self.contact_s),
@@ -69,8 +68,8 @@ impl Instants {
         all.into_iter().filter_map(|(letter, time_s)| Some((letter, time_s?))).collect()
     }
 
-    /// The time [s] that is shown for them: all of them, and a twentieth of a period before and after; a period around
-    /// the peak for a node that does not separate.
+    /// Start and end [s] of the time in which they are shown: from a twentieth of a period before the first to a twentieth
+    /// after the last. For a node that does not separate, it is the period around the peak.
     pub fn span_s(&self, period_s: f64) -> [f64; 2] {
         match (self.contact_s, self.end_s) {
             (Some(from_s), Some(to_s)) => [from_s - period_s / 20.0, to_s + period_s / 20.0],
@@ -78,23 +77,23 @@ impl Instants {
         }
     }
 
-    /// Finds the instants of the cycle that begins in the period from `from_s` on.
+    /// Finds the instants of the cycle that starts in the period from `from_s` on.
     ///
-    /// The cycle goes from the end of a separation to that of the next; at a node that does not separate, from the begin
-    /// of a slip to that of the next. Phases of a few steps (a node that touches before it closes, or slips in between
-    /// while it sticks) are not the cycle's: of the separations, or slips, that begin in a period the longest counts, and
-    /// stick is from the begin of the first to the end of the last phase in which the node sticks for a twentieth of a
-    /// period or more. The first of `phases` may have begun before it was looked at, and is not taken for one that
-    /// begins. `stress` are times [s] and normal stresses [Pa] of the steps.
+    /// The cycle lasts from the end of a separation to the end of the next one. At a node that does not separate, it lasts
+    /// from the start of a slip phase to the start of the next one. Phases of a few steps (a node that touches before it
+    /// closes, or that slips for a moment while it sticks) are ignored: of the separations, or slip phases, that start in
+    /// a period, the longest one is taken. Stick lasts from the start of the first to the end of the last phase in which
+    /// the node sticks for at least a twentieth of a period. The first of `phases` is not taken as a start, because it
+    /// may have started before the recording. `stress` has the time [s] and the normal stress [Pa] of every step.
     ///
-    /// None if there is no step in the cycle.
+    /// Returns none if there is no step in the cycle.
     pub fn find(phases: &[Phase], stress: &[(f64, f64)], from_s: f64, period_s: f64) -> Option<Self> {
-        let begun = |state: ContactState, [from_s, to_s]: [f64; 2]| {
+        let starting = |state: ContactState, [from_s, to_s]: [f64; 2]| {
             let of_state = phases.iter().skip(1).filter(move |phase| phase.state == state);
             of_state.filter(move |phase| phase.start_s >= from_s && phase.start_s < to_s)
         };
         let longest = |state: ContactState, span_s: [f64; 2]| {
-            begun(state, span_s).max_by(|a, b| a.duration_s().total_cmp(&b.duration_s()))
+            starting(state, span_s).max_by(|a, b| a.duration_s().total_cmp(&b.duration_s()))
         };
         let period = [from_s, from_s + period_s];
         let before = longest(ContactState::Separated, period);
@@ -111,7 +110,7 @@ impl Instants {
         let within = stress.iter().filter(|(time_s, _)| *time_s >= cycle[0] && *time_s < cycle[1]);
         let (peak_s, _) = within.max_by(|a, b| a.1.total_cmp(&b.1))?;
         let mut sticks =
-            begun(ContactState::Stick, cycle).filter(|phase| phase.duration_s() >= period_s / 20.0);
+            starting(ContactState::Stick, cycle).filter(|phase| phase.duration_s() >= period_s / 20.0);
         let first = sticks.next();
         let last = sticks.next_back().or(first);
         let separates = before.is_some() && after.is_some();
@@ -148,7 +147,7 @@ mod tests {
         Instants::find(&phases, &stress, 0.0, period as f64).unwrap()
     }
 
-    /// Protects: phases begin and end where the state changes, and none is lost.
+    /// Protects: phases start and end where the state changes, and none is lost.
     #[test]
     fn phases_follow_each_other() {
         let found = phases(steps(&[(Slip, 2), (Stick, 3), (Separated, 1)], 2).into_iter(), 12.0);
@@ -166,8 +165,8 @@ mod tests {
         assert_eq!(found, expected);
     }
 
-    /// Protects: the instants of the paper's cycle in their order, wherever in it the search begins, and though the
-    /// node touches for a step before it closes and slips for one while it sticks.
+    /// Protects: the instants of the paper's cycle are found in their order, for any start of the search, even if the node
+    /// touches for a step before it closes and slips for a step while it sticks.
     #[test]
     fn the_papers_cycle_has_six_instants() {
         let cycle = [
@@ -187,12 +186,12 @@ mod tests {
         assert!(times.windows(2).all(|pair| pair[0].1 < pair[1].1));
     }
 
-    /// Protects: phases that are not there are not made up.
+    /// Protects: there are no instants of phases that do not exist.
     #[test]
     fn other_regimes_have_fewer_instants() {
         let stick_slip = found(&[(Slip, 5), (Stick, 9)], 7);
         assert_eq!(stick_slip.named(), [('B', 5.0), ('C', 7.0), ('D', 14.0)]);
-        // Wherever in the cycle the look begins: here within a stick.
+        // The recording may start anywhere in the cycle: here it starts in a stick phase.
         let from_stick = found(&[(Stick, 4), (Slip, 5), (Stick, 5)], 11);
         assert_eq!(from_stick.named(), [('B', 9.0), ('C', 11.0), ('D', 18.0)]);
         let slip_separation = found(&[(Slip, 5), (Separated, 9)], 2);

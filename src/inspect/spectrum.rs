@@ -3,20 +3,20 @@
 use realfft::RealFftPlanner;
 use std::f64::consts::PI;
 
-/// Amplitudes of a signal's frequencies.
+/// The amplitude spectrum of a signal.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Spectrum {
-    /// Distance [Hz] of the frequencies, which begin at 0.
+    /// Distance [Hz] of the frequencies. The first one is 0.
     pub resolution_hz: f64,
-    /// Amplitude of each: of a sine at one of them that goes on for all of the signal, its own.
+    /// Amplitude at each frequency. A sine over the whole signal with one of these frequencies has its own amplitude.
     pub amplitudes: Vec<f64>,
 }
 
 impl Spectrum {
-    /// The spectrum of samples `time_step_s` apart, less their mean, under a Hann window.
+    /// The spectrum of samples at a distance of `time_step_s` [s], without their mean, with a Hann window.
     ///
     /// # Panics
-    /// Never: the transform's buffers are its own.
+    /// Never, because the buffers are those of the transform.
     pub fn of(samples: &[f64], time_step_s: f64) -> Self {
         let n = samples.len();
         if n < 4 {
@@ -55,7 +55,7 @@ impl Spectrum {
 mod tests {
     use super::*;
 
-    /// Protects: frequencies and amplitudes mean what they say: two sines on a mean that is not of interest.
+    /// Protects: frequencies and amplitudes are those of the signal: two sines with an offset.
     #[test]
     fn sines_have_their_own_amplitudes() {
         let dt = 1e-6;

@@ -1,6 +1,6 @@
-//! The numbers that a look finds, as one JSON document.
+//! The numbers of an inspection, as one JSON document.
 
-use super::look::{Look, Observed, area_m2, loop_of};
+use super::inspection::{Inspection, NodeFindings, loop_area_m2, node_loop};
 use super::phases::Phase;
 use super::waves::{Wave, stations, waves};
 use crate::analysis::JobRecord;
@@ -8,27 +8,27 @@ use crate::solver::interface::ContactState;
 use crate::spec::JobSpec;
 use serde::Serialize;
 
-/// What a look finds, in numbers.
+/// The numbers of an inspection.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
     /// Everything that determines the run.
     pub job: JobSpec,
     /// The job's record.
     pub record: JobRecord,
-    /// Whether there are cycles; otherwise the period below is that of the pin as a quarter-wave resonator in shear.
+    /// Whether there are cycles. Otherwise the period is that of the pin as a quarter-wave resonator in shear.
     pub cycles: bool,
     /// Duration [s] of a cycle.
     pub period_s: f64,
-    /// What is shown of the observed nodes, from and to [s].
+    /// Start and end [s] of the time in which the observed nodes are shown.
     pub shown_s: [f64; 2],
-    /// The cycle of which the contact face and the pin are shown, from and to [s].
+    /// Start and end [s] of the cycle in which the contact face and the pin are shown.
     pub cycle_s: [f64; 2],
-    /// The observed nodes over what is shown of them.
+    /// The observed nodes in the time in which they are shown.
     pub nodes: Vec<NodeSummary>,
     /// All nodes of the contact face over the cycle.
     pub face: FaceSummary,
-    /// How the state changes travel along the middle of the contact face, over each run of neighbouring nodes that have
-    /// them.
+    /// The waves of state changes along the middle of the contact face, one for each run of neighbouring nodes with the
+    /// change.
     pub waves: Vec<Wave>,
     /// The largest lines of the total normal force, frequency [Hz] and amplitude [N].
     pub spectrum_peaks: Vec<(f64, f64)>,
@@ -39,7 +39,7 @@ pub struct Summary {
 pub struct NodeSummary {
     /// Its name.
     pub name: String,
-    /// Its name and place for a reader.
+    /// Its name and coordinates for a reader.
     pub title: String,
     /// Its x and y [m] from the pin's axis.
     pub at_m: [f64; 2],
@@ -55,24 +55,24 @@ pub struct NodeSummary {
     pub relative_speed_max_m_s: f64,
     /// Largest slip speed [m/s] in contact.
     pub slip_speed_max_m_s: f64,
-    /// Largest |v_y − target| [m/s] while it sticks: 0 but for rounding on a rigid disk.
+    /// Largest |v_y − target| [m/s] while it sticks: 0 up to rounding on a rigid disk.
     pub stick_speed_error_m_s: f64,
-    /// Largest |μ_eq − μ| while it slips: 0 but for rounding.
+    /// Largest |μ_eq − μ| while it slips: 0 up to rounding.
     pub slip_friction_error: f64,
     /// Shares of the time in stick, slip and separation.
     pub shares: [f64; 3],
-    /// How often it separates, or sticks if it does not separate [Hz]: the number of such phases, at least half as long as
-    /// the longest, in the cycles that are shown, over their duration. In a limit cycle of several humps it is a multiple
-    /// of the cycle's frequency.
+    /// Frequency [Hz] of its separations, or of its stick phases if it does not separate: the number of phases that are at
+    /// least half as long as the longest one, over the duration of the cycles that are shown. It is a multiple of the
+    /// cycle's frequency if the limit cycle has several such phases.
     pub frequency_hz: Option<f64>,
     /// The instants of a cycle [s].
     pub instants: Option<InstantsSummary>,
 }
 
-/// The instants of a cycle of a node, each where there is one, and what the node does then.
+/// The instants of a cycle of a node that exist, and the state of the node at each of them.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct InstantsSummary {
-    /// Name (`t_A` … `t_F`), time [s], normal stress [Pa] behind a low-pass without delay, velocity [m/s] relative to the
+    /// Name (`t_A` … `t_F`), time [s], normal stress [Pa] after a zero-phase low-pass filter, velocity [m/s] relative to the
     /// target in y, and state.
     pub at: Vec<(String, f64, f64, f64, String)>,
     /// Normal stress [Pa] at its maximum, t_C.
@@ -86,7 +86,7 @@ pub struct InstantsSummary {
 pub struct FaceSummary {
     /// Number of nodes.
     pub nodes: usize,
-    /// Number of nodes that separate: the others stay in the plane of a rigid disk, and have no loop.
+    /// Number of nodes that separate. The others stay in the plane of a rigid disk, and have no loop.
     pub separating: usize,
     /// Number of these whose loop in the y–z plane goes counter-clockwise, seen with y to the right and z upwards.
     pub counter_clockwise: usize,
@@ -99,20 +99,20 @@ pub struct FaceSummary {
 }
 
 impl Summary {
-    /// The numbers of a look.
-    pub fn of(look: &Look) -> Self {
-        let windows = &look.survey.windows;
+    /// The numbers of an inspection.
+    pub fn of(inspection: &Inspection) -> Self {
+        let windows = &inspection.survey.windows;
         Self {
-            job: look.spec.clone(),
-            record: look.survey.record.clone(),
-            cycles: windows.cycles,
+            job: inspection.spec.clone(),
+            record: inspection.survey.record.clone(),
+            cycles: windows.has_cycles,
             period_s: windows.period_s,
             shown_s: windows.shown_s,
             cycle_s: windows.cycle_s,
-            nodes: (0..look.observed.len()).map(|number| node(look, number)).collect(),
-            face: face(look),
-            waves: waves(&stations(look), windows.cycle_s[0], windows.period_s),
-            spectrum_peaks: look.spectrum.peaks(5),
+            nodes: (0..inspection.observed.len()).map(|number| node(inspection, number)).collect(),
+            face: face(inspection),
+            waves: waves(&stations(inspection), windows.cycle_s[0], windows.period_s),
+            spectrum_peaks: inspection.spectrum.peaks(5),
         }
     }
 }
@@ -121,10 +121,10 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
     values.fold(0.0, f64::max)
 }
 
-fn node(look: &Look, number: usize) -> NodeSummary {
-    let Observed { node, target_velocity_m_s, phases, instants } = &look.observed[number];
-    let steps = &look.capture.nodes[number];
-    let mu = look.spec.scene.contact.mu;
+fn node(inspection: &Inspection, number: usize) -> NodeSummary {
+    let NodeFindings { node, target_velocity_m_s, phases, instants } = &inspection.observed[number];
+    let steps = &inspection.capture.nodes[number];
+    let mu = inspection.spec.scene.contact.mu;
     let relative = |velocity_m_s: f64| velocity_m_s - target_velocity_m_s;
     let in_state = |state: ContactState| steps.iter().filter(move |step| step.node.state == state);
     let share = |state| in_state(state).count() as f64 / steps.len().max(1) as f64;
@@ -151,7 +151,7 @@ fn node(look: &Look, number: usize) -> NodeSummary {
             in_state(ContactState::Slip).map(|step| (step.node.equivalent_friction() - mu).abs()),
         ),
         shares: [ContactState::Stick, ContactState::Slip, ContactState::Separated].map(share),
-        frequency_hz: own_frequency_hz(look, phases),
+        frequency_hz: own_frequency_hz(inspection, phases),
         instants: instants.as_ref().map(|instants| {
             let nearest = |time_s: f64| {
                 let distance = |at: &f64| (at - time_s).abs();
@@ -176,10 +176,10 @@ fn node(look: &Look, number: usize) -> NodeSummary {
     }
 }
 
-/// The first and the last phase are cut by the begin and the end of the cycles that are shown. They are one phase if they
-/// are of one state: what is shown are whole cycles.
-fn own_frequency_hz(look: &Look, phases: &[Phase]) -> Option<f64> {
-    let windows = &look.survey.windows;
+/// Frequency of the separations, or of the stick phases, of a node. The start and the end of the recording cut a phase in
+/// two. The two parts count as one phase if they have the same state, because the recording has whole cycles.
+fn own_frequency_hz(inspection: &Inspection, phases: &[Phase]) -> Option<f64> {
+    let windows = &inspection.survey.windows;
     let count = |state: ContactState| {
         let mut durations_s: Vec<f64> = Vec::new();
         for (number, phase) in phases.iter().enumerate().filter(|(_, phase)| phase.state == state) {
@@ -195,12 +195,12 @@ fn own_frequency_hz(look: &Look, phases: &[Phase]) -> Option<f64> {
     let separations = count(ContactState::Separated);
     let times = if separations > 0 { separations } else { count(ContactState::Stick) };
     let duration_s = windows.shown_s[1] - windows.shown_s[0];
-    (windows.cycles && times > 0).then(|| times as f64 / duration_s)
+    (windows.has_cycles && times > 0).then(|| times as f64 / duration_s)
 }
 
-fn face(look: &Look) -> FaceSummary {
-    let face = &look.capture.face;
-    let nodes = look.capture.model.slaves().len();
+fn face(inspection: &Inspection) -> FaceSummary {
+    let face = &inspection.capture.face;
+    let nodes = inspection.capture.model.slaves().len();
     let all = || face.iter().flat_map(|step| &step.nodes);
     let separates =
         |slave: &usize| face.iter().any(|step| step.nodes[*slave].state == ContactState::Separated);
@@ -209,7 +209,7 @@ fn face(look: &Look) -> FaceSummary {
         separating: (0..nodes).filter(separates).count(),
         counter_clockwise: (0..nodes)
             .filter(separates)
-            .filter(|&slave| area_m2(&loop_of(face, slave)) > 0.0)
+            .filter(|&slave| loop_area_m2(&node_loop(face, slave)) > 0.0)
             .count(),
         lift_max_m: largest(all().map(|node| node.gap_m)),
         slip_speed_max_m_s: largest(all().map(|node| node.slip_speed_m_s)),

@@ -1,4 +1,4 @@
-//! The first of the two runs: what is found in the job, and when its last limit cycles are.
+//! The first of the two runs: the record of the job, and the times of its last limit cycles.
 
 use super::envelope::Envelope;
 use crate::analysis::cycles::CycleCutter;
@@ -8,37 +8,37 @@ use crate::solver::energy::Energies;
 use crate::spec::JobSpec;
 use std::ops::ControlFlow;
 
-/// A node's cycle, which begins and ends anywhere, is found in so many of the job's.
+/// The cycle of a node may start anywhere in a cycle of the job. So many cycles of the job contain it with certainty.
 pub const FEWEST_CYCLES: usize = 3;
 
-/// What the first run of a job tells the second.
+/// The results of the first run, which the second run needs.
 #[derive(Debug, Clone)]
 pub struct Survey {
     /// The job's record.
     pub record: JobRecord,
-    /// All passages between upward crossings of N = F, from start to end [s].
+    /// Start and end [s] of all passages between upward crossings of N = F.
     pub passages_s: Vec<[f64; 2]>,
-    /// The whole run.
+    /// Extremes of the totals over the whole run.
     pub envelope: Envelope,
-    /// The time that is looked at.
-    pub windows: Windows,
+    /// The time windows of the second run.
+    pub windows: TimeWindows,
 }
 
-/// What of a run is looked at, all at its end.
+/// The time windows that are shown, all at the end of the run.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Windows {
-    /// Number of cycles, or of such periods, that are shown.
-    pub count: usize,
-    /// Whether there are limit cycles (or cycles of a state that is not periodic); otherwise the period is that of the
-    /// pin as a quarter-wave resonator in shear, 4h/c_s.
-    pub cycles: bool,
-    /// Duration [s] of a cycle: the mean over those that are shown.
+pub struct TimeWindows {
+    /// Number of cycles that are shown, or of periods of a job without cycles.
+    pub cycle_count: usize,
+    /// Whether there are limit cycles, or cycles of a state that is not periodic. Otherwise the period is that of the pin
+    /// as a quarter-wave resonator in shear, 4h/c_s.
+    pub has_cycles: bool,
+    /// Mean duration [s] of the cycles that are shown.
     pub period_s: f64,
-    /// Over which the observed nodes are shown [s].
+    /// Start and end [s] of the time in which the observed nodes are shown.
     pub shown_s: [f64; 2],
-    /// One cycle of these, of which the whole contact face and the pin are shown [s].
+    /// Start and end [s] of the cycle in which the whole contact face and the pin are shown.
     pub cycle_s: [f64; 2],
-    /// Where the window of the job's averages begins [s], over which the totals are kept.
+    /// Time [s] from which the totals are recorded: the start of the averaging window, or of `shown_s` if that is earlier.
     pub totals_from_s: f64,
 }
 
@@ -49,7 +49,7 @@ pub struct Windows {
 pub fn survey(
     spec: &JobSpec,
     cycles: usize,
-    go_on: &mut impl FnMut(f64) -> ControlFlow<()>,
+    on_progress: &mut impl FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Survey, JobError> {
     let mut surveyor = Surveyor {
         cutter: None,
@@ -57,32 +57,32 @@ pub fn survey(
         envelope: Envelope::default(),
         quarter_wave_s: 0.0,
         spec,
-        go_on,
+        on_progress,
     };
     let record = analysis::solve(spec, &mut surveyor)?;
     let Surveyor { passages_s, envelope, quarter_wave_s, .. } = surveyor;
-    let windows = Windows::of(&record, &passages_s, cycles, quarter_wave_s);
+    let windows = TimeWindows::of(&record, &passages_s, cycles, quarter_wave_s);
     Ok(Survey { record, passages_s, envelope, windows })
 }
 
-impl Windows {
+impl TimeWindows {
     fn of(record: &JobRecord, passages_s: &[[f64; 2]], cycles: usize, quarter_wave_s: f64) -> Self {
         let crossings = record.crossings_per_cycle;
-        // No more than repeat: what is before the averaging window is the way there.
-        let there = match record.outcome {
+        // No more cycles than those that repeat, because the transient comes before the averaging window.
+        let available = match record.outcome {
             Outcome::Periodic => record.cycles.min(passages_s.len() / crossings),
             _ => passages_s.len() / crossings,
         };
-        let cycles = if there >= FEWEST_CYCLES { cycles.min(there) } else { cycles };
+        let cycles = if available >= FEWEST_CYCLES { cycles.min(available) } else { cycles };
         let needed = cycles * crossings;
         let end_s = record.simulated_s;
-        let (cycles_found, period_s, shown_s, cycle_s) = match passages_s.len().checked_sub(needed) {
-            // What is left of an oscillation that decays is no cycle.
+        let (has_cycles, period_s, shown_s, cycle_s) = match passages_s.len().checked_sub(needed) {
+            // The remains of a decaying oscillation are no cycles.
             Some(first) if record.outcome != Outcome::Decayed => {
                 let shown = &passages_s[first..];
                 let start_s = shown[0][0];
                 let period_s = (shown[needed - 1][1] - start_s) / cycles as f64;
-                // The last but one: what begins in it ends in what is shown.
+                // The last cycle but one, so that phases that start in it end in the time that is shown.
                 let at = cycles.saturating_sub(2) * crossings;
                 (
                     true,
@@ -98,8 +98,8 @@ impl Windows {
             }
         };
         Self {
-            count: cycles,
-            cycles: cycles_found,
+            cycle_count: cycles,
+            has_cycles,
             period_s,
             shown_s,
             cycle_s,
@@ -110,12 +110,12 @@ impl Windows {
 
 struct Surveyor<'a, G> {
     spec: &'a JobSpec,
-    /// The same as the analysis has, so that it finds the same cycles.
+    /// As in the analysis, so that it finds the same cycles.
     cutter: Option<CycleCutter>,
     passages_s: Vec<[f64; 2]>,
     envelope: Envelope,
     quarter_wave_s: f64,
-    go_on: &'a mut G,
+    on_progress: &'a mut G,
 }
 
 impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Surveyor<'_, G> {
@@ -131,11 +131,11 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Surveyor<'_, G> {
     }
 
     fn progress(&mut self, simulated_s: f64) -> ControlFlow<()> {
-        (self.go_on)(simulated_s)
+        (self.on_progress)(simulated_s)
     }
 }
 
-/// 4h/c_s: the period of a block that shears between a held and a free face.
+/// 4h/c_s: the period [s] of a block in shear between a fixed and a free face.
 fn quarter_wave_s(model: &Model) -> f64 {
     4.0 * model.pin().shear_transit_s()
 }

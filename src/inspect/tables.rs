@@ -1,7 +1,7 @@
-//! What the figures show, as CSV.
+//! The data of the figures as CSV.
 
 use super::capture::NodeStep;
-use super::look::Look;
+use super::inspection::Inspection;
 use super::phases::Instants;
 use super::waves::{Change, stations};
 use crate::analysis::sample::{NodeSample, Sample};
@@ -10,44 +10,48 @@ use crate::publish::{Folder, PublishError};
 use std::collections::BTreeMap;
 use std::io;
 
-/// Larger tables [bytes] are beside the page, not in it.
-const LARGEST: usize = 400_000;
+/// Largest table that the page contains [bytes]. Larger ones are in the folder only.
+const MAX_EMBEDDED_BYTES: usize = 400_000;
 
-/// Writes all tables; returns the texts of those that are not too large for a page by their names.
+/// Writes all tables; returns those that are not too large for the page, by name.
 ///
 /// # Errors
 /// The first file that could not be written.
-pub fn write(look: &Look, folder: &mut Folder) -> Result<BTreeMap<String, String>, PublishError> {
+pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<BTreeMap<String, String>, PublishError> {
     let mut tables = BTreeMap::new();
     let mut add = |name: &str, header: &[&str], lines: &mut dyn Iterator<Item = Vec<String>>| {
-        folder.with(name, |out| {
+        folder.write_with(name, |out| {
             csv(header, lines, out)?;
-            if out.len() <= LARGEST {
+            if out.len() <= MAX_EMBEDDED_BYTES {
                 tables.insert(name.to_owned(), String::from_utf8_lossy(out).into_owned());
             }
             Ok(())
         })
     };
-    add("run.csv", &RUN, &mut run_lines(look))?;
-    add("cycles.csv", &CYCLES, &mut cycle_lines(look))?;
-    add("totals.csv", &TOTALS, &mut look.capture.totals.iter().map(totals_line))?;
-    add("spectrum.csv", &SPECTRUM, &mut look.spectrum.lines().map(|(f, a)| vec![number(f), number(a)]))?;
-    for (observed, steps) in look.observed.iter().zip(&look.capture.nodes) {
+    add("run.csv", &RUN, &mut run_lines(inspection))?;
+    add("cycles.csv", &CYCLES, &mut cycle_lines(inspection))?;
+    add("totals.csv", &TOTALS, &mut inspection.capture.totals.iter().map(totals_line))?;
+    add(
+        "spectrum.csv",
+        &SPECTRUM,
+        &mut inspection.spectrum.lines().map(|(f, a)| vec![number(f), number(a)]),
+    )?;
+    for (observed, steps) in inspection.observed.iter().zip(&inspection.capture.nodes) {
         let name = format!("node_{}.csv", observed.node.name);
         add(&name, &history_header(), &mut steps.iter().map(history_line))?;
     }
-    add("phases.csv", &PHASES, &mut phase_lines(look))?;
-    add("instants.csv", &INSTANTS, &mut instant_lines(look))?;
+    add("phases.csv", &PHASES, &mut phase_lines(inspection))?;
+    add("instants.csv", &INSTANTS, &mut instant_lines(inspection))?;
     let mut header = vec!["time_s", "node", "x_m", "y_m"];
     header.extend(NODE);
-    // As the record has it, behind a low-pass that delays.
+    // As in the record: after a causal low-pass filter, which delays.
     header.push("sigma_n_delayed_pa");
-    add("face.csv", &header, &mut face_lines(look))?;
-    add("wave.csv", &WAVE, &mut wave_lines(look))?;
+    add("face.csv", &header, &mut face_lines(inspection))?;
+    add("wave.csv", &WAVE, &mut wave_lines(inspection))?;
     Ok(tables)
 }
 
-/// Writes a header and lines.
+/// Writes a header and lines as CSV.
 pub fn csv(header: &[&str], lines: impl Iterator<Item = Vec<String>>, out: &mut Vec<u8>) -> io::Result<()> {
     let mut writer = ::csv::Writer::from_writer(out);
     writer.write_record(header).map_err(io::Error::other)?;
@@ -64,17 +68,17 @@ fn optional(value: Option<f64>) -> String {
 const RUN: [&str; 5] =
     ["start_s", "normal_min_n", "normal_max_n", "clamp_tangential_min_n", "clamp_tangential_max_n"];
 
-fn run_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
-    look.survey.envelope.pieces().iter().map(|piece| {
-        let [[low, high], [left, right]] = [piece.normal_n, piece.tangential_n];
-        [piece.start_s, low, high, left, right].map(number).to_vec()
+fn run_lines(inspection: &Inspection) -> impl Iterator<Item = Vec<String>> {
+    inspection.survey.envelope.bins().iter().map(|bin| {
+        let [[low, high], [left, right]] = [bin.normal_n, bin.tangential_n];
+        [bin.start_s, low, high, left, right].map(number).to_vec()
     })
 }
 
 const CYCLES: [&str; 3] = ["passage", "start_s", "end_s"];
 
-fn cycle_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
-    let passages = look.survey.passages_s.iter().enumerate();
+fn cycle_lines(inspection: &Inspection) -> impl Iterator<Item = Vec<String>> {
+    let passages = inspection.survey.passages_s.iter().enumerate();
     passages.map(|(at, [start_s, end_s])| vec![at.to_string(), number(*start_s), number(*end_s)])
 }
 
@@ -111,7 +115,7 @@ fn totals_line(sample: &Sample) -> Vec<String> {
     line
 }
 
-/// What is told of a contact node during a step.
+/// Columns for a contact node during a step.
 const NODE: [&str; 11] = [
     "ux_m",
     "uy_m",
@@ -165,8 +169,8 @@ pub fn history_line(step: &NodeStep) -> Vec<String> {
 
 const PHASES: [&str; 4] = ["node", "state", "start_s", "end_s"];
 
-fn phase_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
-    look.observed.iter().flat_map(|observed| {
+fn phase_lines(inspection: &Inspection) -> impl Iterator<Item = Vec<String>> {
+    inspection.observed.iter().flat_map(|observed| {
         observed.phases.iter().map(|phase| {
             let (start, end) = (number(phase.start_s), number(phase.end_s));
             vec![observed.node.name.clone(), phase.state.name().to_owned(), start, end]
@@ -176,8 +180,8 @@ fn phase_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
 
 const INSTANTS: [&str; 3] = ["node", "instant", "time_s"];
 
-fn instant_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
-    look.observed.iter().flat_map(|observed| {
+fn instant_lines(inspection: &Inspection) -> impl Iterator<Item = Vec<String>> {
+    inspection.observed.iter().flat_map(|observed| {
         let named = observed.instants.as_ref().map_or_else(Vec::new, Instants::named);
         let name = observed.node.name.clone();
         named
@@ -186,10 +190,10 @@ fn instant_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
     })
 }
 
-fn face_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
-    look.capture.face.iter().flat_map(|step| {
+fn face_lines(inspection: &Inspection) -> impl Iterator<Item = Vec<String>> {
+    inspection.capture.face.iter().flat_map(|step| {
         step.nodes.iter().enumerate().map(|(slave, node)| {
-            let [x, y, _] = look.mesh().coordinates_m(slave);
+            let [x, y, _] = inspection.mesh().coordinates_m(slave);
             let mut line = vec![number(step.time_s), slave.to_string(), number(x), number(y)];
             line.extend(node_cells(node));
             line.push(number(node.sigma_n_pa));
@@ -200,8 +204,8 @@ fn face_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
 
 const WAVE: [&str; 6] = ["y_m", "contact_s", "stick_s", "peak_s", "slip_s", "separation_s"];
 
-fn wave_lines(look: &Look) -> impl Iterator<Item = Vec<String>> {
-    stations(look).into_iter().map(|station| {
+fn wave_lines(inspection: &Inspection) -> impl Iterator<Item = Vec<String>> {
+    stations(inspection).into_iter().map(|station| {
         let of = |change: Change| optional(station.at(change));
         let peak = optional(station.instants.map(|instants| instants.peak_s));
         let [contact, stick, slip, separation] = Change::ALL.map(of);

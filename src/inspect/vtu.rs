@@ -1,6 +1,7 @@
 //! VTK's XML files of unstructured grids (`.vtu`) and of series of them (`.pvd`), as ParaView reads them.
 //!
-//! Format: VTK File Formats, "XML File Formats"; data appended raw, little-endian, each array behind its number of bytes.
+//! Format: VTK File Formats, "XML File Formats". The data are appended in raw form, little-endian, and each array follows
+//! its number of bytes.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -10,9 +11,9 @@ const HEXAHEDRON: u8 = 12;
 
 /// Values at the points.
 pub enum Values {
-    /// Numbers, so many to a point.
+    /// Numbers, with the number of components of a point.
     Numbers(usize, Vec<f32>),
-    /// Small integers, one to a point.
+    /// Small integers, one for each point.
     Codes(Vec<i8>),
 }
 
@@ -20,13 +21,13 @@ pub enum Values {
 pub struct PointData {
     /// Its name.
     pub name: &'static str,
-    /// Names of its components, where they have some.
+    /// Names of its components; may be empty.
     pub components: &'static [&'static str],
     /// The values.
     pub values: Values,
 }
 
-/// Writes a grid of hexahedra: points [m], eight points to a cell in VTK's order, and values at the points.
+/// Writes a grid of hexahedra: points [m], cells of eight points in the order of VTK, and values at the points.
 ///
 /// # Errors
 /// Those of the writer.
@@ -40,7 +41,7 @@ pub fn write_grid(
     let mut header = format!(
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-         <UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
+         <UnstructuredGrid>\n<Bin NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
         points_m.len(),
         cells.len()
     );
@@ -65,13 +66,13 @@ pub fn write_grid(
     header += &arrays.add("Int64", "connectivity", 1, &[], connectivity);
     header += &arrays.add("Int64", "offsets", 1, &[], offsets);
     header += &arrays.add("UInt8", "types", 1, &[], vec![HEXAHEDRON; cells.len()]);
-    header += "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+    header += "</Cells>\n</Bin>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
     out.write_all(header.as_bytes())?;
     out.write_all(&arrays.bytes)?;
     out.write_all(b"\n</AppendedData>\n</VTKFile>\n")
 }
 
-/// Writes a series of files, each with its time.
+/// Writes the list of the files of a series, each with its time [s].
 ///
 /// # Errors
 /// Those of the writer.
@@ -92,7 +93,7 @@ struct Arrays {
 }
 
 impl Arrays {
-    /// Appends an array and gives the element that refers to it.
+    /// Appends an array and returns the XML element that refers to it.
     fn add(&mut self, kind: &str, name: &str, count: usize, components: &[&str], bytes: Vec<u8>) -> String {
         let mut element =
             format!("<DataArray type=\"{kind}\" Name=\"{name}\" NumberOfComponents=\"{count}\"");

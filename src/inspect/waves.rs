@@ -1,8 +1,8 @@
 //! How state changes travel along the middle of the contact face.
 
-use super::look::Look;
+use super::inspection::Inspection;
+use super::low_pass::zero_phase_low_pass;
 use super::phases::{Instants, phases};
-use super::smooth::without_delay;
 use serde::Serialize;
 
 /// The instants of a node on the line through the middle of the contact face along the sliding direction.
@@ -10,11 +10,11 @@ use serde::Serialize;
 pub struct Station {
     /// Its y [m] from the pin's axis.
     pub y_m: f64,
-    /// Its instants, if the contact face was kept for any step.
+    /// Its instants; none if no step of the contact face was recorded.
     pub instants: Option<Instants>,
 }
 
-/// A change of state that can travel.
+/// A change of the contact state that can travel along the face.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Change {
@@ -29,10 +29,10 @@ pub enum Change {
 }
 
 impl Change {
-    /// All of them, in the order of their instants.
+    /// All changes in the order of their instants.
     pub const ALL: [Self; 4] = [Self::Contact, Self::Stick, Self::Slip, Self::Separation];
 
-    /// What happens, for a reader.
+    /// The change in words.
     pub fn name(self) -> &'static str {
         match self {
             Self::Contact => "contact begins",
@@ -44,7 +44,7 @@ impl Change {
 }
 
 impl Station {
-    /// When a change happens here [s], if it does.
+    /// Time [s] of a change at this node, if it happens.
     pub fn at(&self, change: Change) -> Option<f64> {
         let instants = self.instants.as_ref()?;
         match change {
@@ -56,54 +56,58 @@ impl Station {
     }
 }
 
-/// A change that runs over neighbouring stations.
+/// A change that travels over neighbouring stations.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Wave {
     /// What changes.
     pub change: Change,
-    /// y [m] of the first and the last of the stations, from front to rear.
+    /// y [m] of the first and the last station, from front to rear.
     pub from_to_m: [f64; 2],
-    /// When it is at the first of them [s] after the begin of the cycle, within one period.
+    /// Time [s] of the change at the first station after the start of the cycle, within one period.
     pub start_s: f64,
-    /// How much later [s] it is at the last; negative if it runs towards the front.
+    /// Delay [s] from the first to the last station; negative if the wave travels towards the front.
     pub delay_s: f64,
 }
 
 impl Wave {
-    /// Its speed [m/s] along y, positive towards the rear; none if it is everywhere at once.
+    /// Its speed [m/s] along y, positive towards the rear; none if it is at all stations at the same time.
     pub fn speed_m_s(&self) -> Option<f64> {
         let [from_m, to_m] = self.from_to_m;
         (self.delay_s != 0.0).then(|| (to_m - from_m) / self.delay_s)
     }
 }
 
-/// The instants along that line, from front to rear, from one cycle that is taken for one of many.
-pub fn stations(look: &Look) -> Vec<Station> {
-    let mesh = look.mesh();
+/// The instants along that line, from front to rear. They are found in the recorded cycle, repeated three times.
+pub fn stations(inspection: &Inspection) -> Vec<Station> {
+    let mesh = inspection.mesh();
     let [nx, ny, _] = mesh.elements();
-    let [start_s, end_s] = look.survey.windows.cycle_s;
+    let [start_s, end_s] = inspection.survey.windows.cycle_s;
     let period_s = end_s - start_s;
-    let face = &look.capture.face;
+    let face = &inspection.capture.face;
     let station = |j: usize| {
         let slave = mesh.node(nx / 2, j, 0);
-        let thrice = || {
-            (0..3).flat_map(|turn| {
-                face.iter().map(move |step| (step.time_s + f64::from(turn) * period_s, &step.nodes[slave]))
+        let three_cycles = || {
+            (0..3).flat_map(|cycle| {
+                face.iter().map(move |step| (step.time_s + f64::from(cycle) * period_s, &step.nodes[slave]))
             })
         };
-        let phases = phases(thrice().map(|(time_s, node)| (time_s, node.state)), start_s + 3.0 * period_s);
-        let area_m2 = look.capture.model.slaves()[slave].area_m2;
-        let raw: Vec<f64> = thrice().map(|(_, node)| node.force_n[2] / area_m2).collect();
-        let stress: Vec<(f64, f64)> =
-            thrice().map(|(time_s, _)| time_s).zip(without_delay(&raw, look.capture.stress_gain)).collect();
+        let phases =
+            phases(three_cycles().map(|(time_s, node)| (time_s, node.state)), start_s + 3.0 * period_s);
+        let area_m2 = inspection.capture.model.slaves()[slave].area_m2;
+        let raw: Vec<f64> = three_cycles().map(|(_, node)| node.force_n[2] / area_m2).collect();
+        let stress: Vec<(f64, f64)> = three_cycles()
+            .map(|(time_s, _)| time_s)
+            .zip(zero_phase_low_pass(&raw, inspection.capture.stress_gain))
+            .collect();
         let instants = Instants::find(&phases, &stress, start_s, period_s);
         Station { y_m: mesh.coordinates_m(slave)[1], instants }
     };
     (0..=ny).map(station).collect()
 }
 
-/// The waves of a cycle that begins at `start_s`: every change over every run of two or more neighbouring stations that
-/// have it, with times from station to station by the shorter way around the period. Between runs nothing is said.
+/// The waves of a cycle that starts at `start_s`: every change over every run of two or more neighbouring stations that
+/// have it. The delay between two neighbours is the one of least magnitude modulo the period. Delays between runs are not
+/// known.
 pub fn waves(stations: &[Station], start_s: f64, period_s: f64) -> Vec<Wave> {
     let mut waves = Vec::new();
     for change in Change::ALL {
@@ -131,8 +135,8 @@ mod tests {
         Station { y_m, instants: Some(Instants { slip_s, ..Instants::default() }) }
     }
 
-    /// Protects: a wave goes the shorter way around the period from node to node, over neighbours only: where nodes in
-    /// between do not have the change there are two waves and no time between them.
+    /// Protects: the delay between neighbours is the one of least magnitude modulo the period. If nodes in between do not
+    /// have the change, there are two waves, and no delay between them.
     #[test]
     fn waves_run_over_neighbours() {
         let line = [
@@ -148,7 +152,7 @@ mod tests {
         let found = waves(&line, 10.0, 1.0);
         let [first, second] = found.as_slice() else { panic!("{found:?}") };
         assert_eq!((first.change, first.from_to_m), (Change::Slip, [-2.0, 0.0]));
-        // 0.9 to 1.1 and 1.3, the shorter way.
+        // From 0.9 to 1.1 and to 1.3.
         assert!((first.delay_s - 0.4).abs() < 1e-12 && (first.start_s - 0.9).abs() < 1e-12, "{first:?}");
         assert!((first.speed_m_s().unwrap() - 5.0).abs() < 1e-9);
         assert_eq!(second.from_to_m, [4.0, 5.0]);

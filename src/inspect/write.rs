@@ -1,62 +1,58 @@
-//! A look as a folder of files.
+//! An inspection as a folder of files.
 
-use super::look::Look;
+use super::inspection::Inspection;
+use super::page::PageHeader;
 use super::summary::Summary;
 use super::{fields, figures, page, tables};
 use crate::publish::{Folder, PublishError};
 use std::path::{Path, PathBuf};
 
-/// All numbers of it.
+/// The file with all numbers.
 const SUMMARY: &str = "inspection.json";
 
-/// Where a look comes from.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
-pub struct Origin {
-    /// The study and the job's parameters.
-    pub title: String,
-    /// The program that ran it.
-    pub made_with: String,
-}
-
-/// The page that holds everything together.
+/// The file name of the page, which links the other files.
 pub const PAGE: &str = "index.html";
 
 /// Writes figures, tables, fields, the summary `inspection.json` and the page `index.html` into `out_dir`; returns the
 /// files.
 ///
-/// Files appear whole; files of the same name are replaced, others are left alone.
+/// Each file is replaced as a whole. Files of the same name are replaced, and others are left alone.
 ///
 /// # Errors
 /// The first file that could not be written. Files before it are complete.
-pub fn write(look: &Look, out_dir: &Path, origin: &Origin) -> Result<Vec<PathBuf>, PublishError> {
+pub fn write(
+    inspection: &Inspection,
+    out_dir: &Path,
+    header: &PageHeader,
+) -> Result<Vec<PathBuf>, PublishError> {
     let mut folder = Folder::create(out_dir)?;
-    remove_former(out_dir);
-    let tables = tables::write(look, &mut folder)?;
-    let figures = figures::write(look, &mut folder)?;
-    fields::write(&look.capture, &mut folder)?;
-    let summary = Summary::of(look);
-    folder.with(SUMMARY, |out| {
+    remove_stale_files(out_dir);
+    let tables = tables::write(inspection, &mut folder)?;
+    let figures = figures::write(inspection, &mut folder)?;
+    fields::write(&inspection.capture, &mut folder)?;
+    let summary = Summary::of(inspection);
+    folder.write_with(SUMMARY, |out| {
         serde_json::to_writer_pretty(&mut *out, &summary)?;
         out.push(b'\n');
         Ok(())
     })?;
-    folder.text(PAGE, &page::of(look, &summary, &figures, &tables, origin))?;
+    folder.write_text(PAGE, &page::of(inspection, &summary, &figures, &tables, header))?;
     Ok(folder.written)
 }
 
-/// Removes what an earlier look left whose files go by nodes and frames: those of others would pass for this one's.
-/// What cannot be removed stays; a file of this look that cannot be written says so itself.
-fn remove_former(out_dir: &Path) {
+/// Removes the files of single nodes and frames that an earlier inspection left. Their number may differ, and the rest
+/// would look like files of this inspection. Errors are ignored: a file that has to be replaced fails when it is written.
+fn remove_stale_files(out_dir: &Path) {
     if !out_dir.join(SUMMARY).is_file() {
         return;
     }
-    for (folder, begin, end) in
-        [(out_dir.to_owned(), "node_", ".csv"), (out_dir.join(fields::PARTS), "pin_", ".vtu")]
+    for (folder, prefix, suffix) in
+        [(out_dir.to_owned(), "node_", ".csv"), (out_dir.join(fields::FRAMES_FOLDER), "pin_", ".vtu")]
     {
         let files = std::fs::read_dir(folder).into_iter().flatten().flatten();
         for file in files.filter(|file| {
             let name = file.file_name();
-            name.to_str().is_some_and(|name| name.starts_with(begin) && name.ends_with(end))
+            name.to_str().is_some_and(|name| name.starts_with(prefix) && name.ends_with(suffix))
         }) {
             let _ = std::fs::remove_file(file.path());
         }

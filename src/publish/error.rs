@@ -1,12 +1,11 @@
-//! What can go wrong while results are published.
+//! Errors of writing results.
 
-use super::plot::FigureError;
 use std::path::PathBuf;
 
-/// A folder of results, or a part of it, could not be written.
+/// A folder of results, or a file in it, could not be written.
 #[derive(Debug, thiserror::Error)]
 pub enum PublishError {
-    /// The folder could not be made.
+    /// The folder could not be created.
     #[error("cannot create the folder {}: {source}", path.display())]
     Folder {
         /// The folder.
@@ -25,9 +24,23 @@ pub enum PublishError {
     /// A figure could not be drawn.
     #[error("cannot draw {}: {source}", path.display())]
     Figure {
-        /// The file it was meant for.
+        /// The file that was to hold it.
         path: PathBuf,
         /// Why not.
         source: FigureError,
     },
+}
+
+/// A figure could not be drawn.
+///
+/// Drawings are made in memory, so the drawing library has no reason to fail.
+#[derive(Debug, thiserror::Error)]
+#[error(transparent)]
+pub struct FigureError(Box<dyn std::error::Error + Send + Sync>);
+
+impl FigureError {
+    /// Wraps an error of the drawing library.
+    pub(crate) fn new(error: impl std::error::Error + Send + Sync + 'static) -> Self {
+        Self(Box::new(error))
+    }
 }

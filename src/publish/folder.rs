@@ -1,11 +1,11 @@
-//! A folder whose files appear whole.
+//! Files that are replaced as a whole, alone and in a folder.
 
 use super::error::PublishError;
 use std::fs;
-use std::io;
+use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
-/// A folder that files are written into.
+/// A folder that files are written into, each with [`write_atomically`].
 pub struct Folder<'a> {
     path: &'a Path,
     /// The files written so far.
@@ -13,16 +13,16 @@ pub struct Folder<'a> {
 }
 
 impl<'a> Folder<'a> {
-    /// Creates the folder unless it is there.
+    /// Creates the folder and its parents if they do not exist.
     ///
     /// # Errors
-    /// If it cannot be made.
+    /// If it cannot be created.
     pub fn create(path: &'a Path) -> Result<Self, PublishError> {
         fs::create_dir_all(path).map_err(|source| PublishError::Folder { path: path.to_owned(), source })?;
         Ok(Self { path, written: Vec::new() })
     }
 
-    /// Where a file of this name is.
+    /// The path of the file with this name, which need not exist.
     pub fn path_of(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
@@ -30,26 +30,26 @@ impl<'a> Folder<'a> {
     /// Writes a file of text.
     ///
     /// # Errors
-    /// If it cannot be written; an earlier version of it is unchanged.
-    pub fn text(&mut self, name: &str, text: &str) -> Result<(), PublishError> {
-        self.with(name, |out| {
-            out.extend_from_slice(text.as_bytes());
+    /// If it cannot be written. An earlier version of it is then unchanged.
+    pub fn write_text(&mut self, name: &str, text: &str) -> Result<(), PublishError> {
+        self.write_with(name, |contents| {
+            contents.extend_from_slice(text.as_bytes());
             Ok(())
         })
     }
 
-    /// Writes a file that `fill` gives the contents of.
+    /// Writes a file whose contents `fill` gives.
     ///
     /// # Errors
-    /// As [`Folder::text`], and those of `fill`.
-    pub fn with(
+    /// As [`Folder::write_text`], and those of `fill`.
+    pub fn write_with(
         &mut self,
         name: &str,
         fill: impl FnOnce(&mut Vec<u8>) -> io::Result<()>,
     ) -> Result<(), PublishError> {
         let path = self.path_of(name);
         let mut contents = Vec::new();
-        match fill(&mut contents).and_then(|()| replace(self.path, name, &contents)) {
+        match fill(&mut contents).and_then(|()| write_atomically(&path, |out| out.write_all(&contents))) {
             Ok(()) => {
                 self.written.push(path);
                 Ok(())
@@ -59,14 +59,99 @@ impl<'a> Folder<'a> {
     }
 }
 
-/// Replaces a file as a whole: readers see the old one or the new one.
-fn replace(folder: &Path, name: &str, contents: &[u8]) -> io::Result<()> {
-    // The process id keeps two reports into one folder apart.
-    let temporary = folder.join(format!(".{name}.{}.tmp", std::process::id()));
-    let result = fs::write(&temporary, contents).and_then(|()| fs::rename(&temporary, folder.join(name)));
-    if result.is_err() {
-        // The first error is the one to report; that of the clean-up adds nothing.
-        let _ = fs::remove_file(&temporary);
+/// Writes a file so that readers see the old contents or the new ones, and never a part of them.
+///
+/// `write` fills a temporary file in the same folder, which then takes the place of `path`. Its name is unique, so
+/// several processes may write the same path. The new file has the permissions of any newly created file: those that
+/// the umask leaves. If `path` is a symbolic link, the file it points to is replaced. What is no regular file
+/// (`/dev/null`, a pipe) is written to directly.
+///
+/// # Errors
+/// Those of `write` and of the file system. An earlier version of the file is then unchanged, and no temporary file is
+/// left.
+pub fn write_atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    if path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
+        return fill(fs::File::create(path)?, write);
     }
-    result
+    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    // A bare file name has the empty path as its parent.
+    let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let mut temporary = temporary_file().tempfile_in(parent)?;
+    fill(temporary.as_file_mut(), write)?;
+    temporary.persist(&target).map_err(|error| error.error)?;
+    Ok(())
+}
+
+/// Temporary files are private by default, but this one becomes an ordinary file.
+fn temporary_file() -> tempfile::Builder<'static, 'static> {
+    let mut builder = tempfile::Builder::new();
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::PermissionsExt;
+        // The system call that creates the file takes the umask away from this.
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.suffix(".tmp");
+    builder
+}
+
+fn fill(file: impl Write, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
+    let mut out = BufWriter::new(file);
+    write(&mut out)?;
+    out.flush()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The names in a folder, sorted.
+    fn names(folder: &Path) -> Vec<String> {
+        let entries = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().file_name());
+        let mut names: Vec<String> = entries.map(|name| name.into_string().unwrap()).collect();
+        names.sort();
+        names
+    }
+
+    /// Protects: if writing fails half-way, the old file stays as it was and no temporary file is left.
+    #[test]
+    fn a_failed_write_changes_nothing() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("file");
+        write_atomically(&path, |out| out.write_all(b"old")).unwrap();
+        let failed = write_atomically(&path, |out| {
+            out.write_all(b"new")?;
+            Err(io::Error::other("no more"))
+        });
+        assert_eq!(failed.unwrap_err().to_string(), "no more");
+        assert_eq!(fs::read_to_string(&path).unwrap(), "old");
+        assert_eq!(names(folder.path()), ["file"]);
+    }
+
+    /// Protects: the file has the permissions of an ordinary new file, so that others can read a report where the umask
+    /// lets them.
+    #[cfg(unix)]
+    #[test]
+    fn permissions_are_those_of_a_new_file() {
+        use std::os::unix::fs::PermissionsExt;
+        let folder = tempfile::tempdir().unwrap();
+        let mode = |path: &Path| path.metadata().unwrap().permissions().mode();
+        let (ordinary, atomic) = (folder.path().join("ordinary"), folder.path().join("atomic"));
+        fs::write(&ordinary, "").unwrap();
+        write_atomically(&atomic, |_| Ok(())).unwrap();
+        assert_eq!(mode(&atomic), mode(&ordinary));
+    }
+
+    /// Protects: a symbolic link stays a link, and the file it points to is replaced.
+    #[cfg(unix)]
+    #[test]
+    fn links_are_followed() {
+        let folder = tempfile::tempdir().unwrap();
+        let (file, link) = (folder.path().join("file"), folder.path().join("link"));
+        fs::write(&file, "old").unwrap();
+        std::os::unix::fs::symlink(&file, &link).unwrap();
+        write_atomically(&link, |out| out.write_all(b"new")).unwrap();
+        assert!(link.is_symlink());
+        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+    }
 }

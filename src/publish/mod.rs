@@ -1,15 +1,18 @@
-//! What reports and inspections are made of: values as text, drawings, pages, folders whose files appear whole.
+//! What reports are made of: values as text, drawings, pages, and folders of files. Nothing here knows of mechanics.
 //!
-//! * [`value`] – numbers and parameters as text, the same in CSV, tables, legends and axes.
-//! * [`plot`] – axes, colours and what points tell, drawn as SVG.
-//! * [`html`] – pages that are one file.
-//! * [`Folder`] – a folder of files that are replaced as a whole.
+//! * `value` – numbers as text, the same in CSV, tables, legends and axes.
+//! * `plot` – axes, colours and tooltips, drawn as SVG.
+//! * `html` – pages that are one file.
+//! * [`Folder`], [`write_atomically`] – files that readers never see half-written.
+//!
+//! `value`, `plot` and `html` are for this crate only. The signatures of the last two have types of plotters and maud, but
+//! what they make are strings: SVG and HTML.
 
 mod error;
 mod folder;
-pub mod html;
-pub mod plot;
-pub mod value;
+pub(crate) mod html;
+pub(crate) mod plot;
+pub(crate) mod value;
 
-pub use error::PublishError;
-pub use folder::Folder;
+pub use error::{FigureError, PublishError};
+pub use folder::{Folder, write_atomically};

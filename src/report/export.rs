@@ -1,6 +1,7 @@
-//! One line a job, for other programs: CSV and JSON lines with the same fields.
+//! One line per job, for other programs: CSV and JSON lines with the same fields.
 
-use super::row::{Row, RowState, is_further};
+use super::parameters::is_further;
+use super::row::{JobRow, RowState};
 use crate::analysis::JobRecord;
 use crate::publish::value;
 use serde::Serializer;
@@ -8,7 +9,7 @@ use serde::ser::SerializeMap;
 use serde_json::Value;
 use std::io::{self, Write};
 
-/// The fields every study has. Grid parameters other than ω and μ follow.
+/// The fields that every study has. Grid parameters other than ω and μ follow them.
 pub const HEADER: [&str; 25] = [
     "study",
     "job",
@@ -37,30 +38,30 @@ pub const HEADER: [&str; 25] = [
     "error",
 ];
 
-/// Number of fields that come from the record, `regime` to `identity_residual`.
+/// Number of the fields that come from the record: `regime` to `identity_residual`.
 const RECORD_FIELDS: usize = 18;
 
 /// Writes one CSV line per job below a header. A cell without a value is empty.
 ///
 /// # Errors
 /// Those of the writer.
-pub fn csv<W: Write>(rows: &[Row], out: W) -> io::Result<()> {
+pub fn csv<W: Write>(rows: &[JobRow], out: W) -> io::Result<()> {
     let mut export = Export::csv(owned(further_names(rows)), out)?;
     rows.iter().try_for_each(|row| export.write(row))?;
     export.finish()
 }
 
-/// Writes one JSON object per job and line, with the fields of [`csv()`]; null where it has an empty cell.
+/// Writes one JSON object per job and line, with the fields of [`csv()`]. Empty cells of the CSV are null.
 ///
 /// # Errors
 /// Those of the writer.
-pub fn json_lines<W: Write>(rows: &[Row], out: W) -> io::Result<()> {
+pub fn json_lines<W: Write>(rows: &[JobRow], out: W) -> io::Result<()> {
     let mut export = Export::json_lines(owned(further_names(rows)), out);
     rows.iter().try_for_each(|row| export.write(row))?;
     export.finish()
 }
 
-/// An export that is written row by row, for studies whose rows nobody wants to hold all at once.
+/// An export that is written row by row, so that the rows of a large study need not be in memory all at once.
 pub struct Export<W: Write> {
     further: Vec<String>,
     lines: Lines<W>,
@@ -92,7 +93,7 @@ impl<W: Write> Export<W> {
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn write(&mut self, row: &Row) -> io::Result<()> {
+    pub fn write(&mut self, row: &JobRow) -> io::Result<()> {
         let fields = fields(row, &self.further);
         match &mut self.lines {
             Lines::Csv(writer) => writer.write_record(fields.iter().map(value::text)).map_err(io_error),
@@ -108,7 +109,7 @@ impl<W: Write> Export<W> {
         }
     }
 
-    /// Writes what is left.
+    /// Writes what is still buffered.
     ///
     /// # Errors
     /// Those of the writer.
@@ -120,30 +121,30 @@ impl<W: Write> Export<W> {
     }
 }
 
-/// The data behind a figure: for each of the rows its key, ω, μ and further parameters, some fields of the export, and how
-/// it ended.
+/// The data behind a figure as CSV: for each of the rows its key, ω, μ, the given `columns` of the export, the status,
+/// and further parameters.
 pub(super) fn selection<'a>(
-    rows: impl IntoIterator<Item = &'a Row>,
+    rows: impl IntoIterator<Item = &'a JobRow>,
     further: &[&str],
     columns: &[&str],
 ) -> io::Result<Vec<u8>> {
     let further: Vec<String> = further.iter().map(|&name| name.to_owned()).collect();
     let names = field_names(&further);
     let selected = ["job", "omega_rpm", "mu"].iter().chain(columns).chain(&["status"]);
-    let places: Vec<usize> = selected
+    let indices: Vec<usize> = selected
         .filter_map(|name| HEADER.iter().position(|own| own == name))
         .chain(HEADER.len()..names.len())
         .collect();
     let mut writer = ::csv::Writer::from_writer(Vec::new());
-    writer.write_record(places.iter().map(|&place| &names[place])).map_err(io_error)?;
+    writer.write_record(indices.iter().map(|&index| &names[index])).map_err(io_error)?;
     for row in rows {
         let fields = fields(row, &further);
-        writer.write_record(places.iter().map(|&place| value::text(&fields[place]))).map_err(io_error)?;
+        writer.write_record(indices.iter().map(|&index| value::text(&fields[index]))).map_err(io_error)?;
     }
     writer.into_inner().map_err(|error| io::Error::other(error.to_string()))
 }
 
-/// A CSV error as the I/O error it comes from, so that a caller can tell a closed pipe.
+/// The I/O error behind a CSV error, so that a caller can recognise a closed pipe.
 pub(super) fn io_error(error: ::csv::Error) -> io::Error {
     match error.into_kind() {
         ::csv::ErrorKind::Io(source) => source,
@@ -152,7 +153,7 @@ pub(super) fn io_error(error: ::csv::Error) -> io::Error {
 }
 
 /// Names of the parameters other than ω and μ, in the order in which they first appear.
-pub(super) fn further_names(rows: &[Row]) -> Vec<&str> {
+pub(super) fn further_names(rows: &[JobRow]) -> Vec<&str> {
     let mut names = Vec::new();
     for row in rows {
         add_further_names(&mut names, &row.parameters);
@@ -160,8 +161,8 @@ pub(super) fn further_names(rows: &[Row]) -> Vec<&str> {
     names
 }
 
-/// Adds those of a job's parameters that `names` does not have.
-pub fn add_further_names<'a, N>(names: &mut Vec<N>, parameters: &'a [(String, Value)])
+/// Adds to `names` the parameters of a job other than ω and μ, each name once.
+pub(crate) fn add_further_names<'a, N>(names: &mut Vec<N>, parameters: &'a [(String, Value)])
 where
     N: AsRef<str> + From<&'a str>,
 {
@@ -177,14 +178,14 @@ fn owned(names: Vec<&str>) -> Vec<String> {
 }
 
 fn field_names(further: &[String]) -> Vec<String> {
-    // A parameter may share its name with a result: both keep a column of their own.
+    // A parameter may have the name of a result. Then both have a column.
     let unique = |name: &String| {
         if HEADER.contains(&name.as_str()) { format!("parameter_{name}") } else { name.clone() }
     };
     HEADER.iter().map(|&name| name.to_owned()).chain(further.iter().map(unique)).collect()
 }
 
-fn fields(row: &Row, further: &[String]) -> Vec<Value> {
+fn fields(row: &JobRow, further: &[String]) -> Vec<Value> {
     let error = match &row.state {
         RowState::Failed { error } => Value::from(error.as_str()),
         _ => Value::Null,
@@ -202,7 +203,7 @@ fn fields(row: &Row, further: &[String]) -> Vec<Value> {
     fields
 }
 
-/// A float that is not finite becomes null: `Value` has no other way to hold it.
+/// A number that is not finite becomes null, because JSON has no such numbers.
 fn record_fields(record: &JobRecord) -> [Value; RECORD_FIELDS] {
     [
         record.regime.name().into(),

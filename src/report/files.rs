@@ -1,40 +1,24 @@
 //! The report as a folder of files.
 
-use super::figure::{self, Data, Figure, Plot, RESIDUALS, RUN_TIMES};
+use super::export;
+use super::figure::{self, DataFile, Figure, Plot, RESIDUALS, RUN_TIMES};
 use super::html::{self, Parts};
+use super::input::Report;
 use super::layout::Layout;
-use super::origin::Origin;
 use super::page::{self, FigureLink, Table};
 use super::tables::{self, Quantity};
-use super::{export, row::Row};
-use crate::publish::plot::FigureError;
-use crate::publish::{Folder, PublishError};
+use crate::publish::{FigureError, Folder, PublishError};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
 
 const QUANTITIES: [(Quantity, &str); 3] =
     [(Quantity::MuStar, "mu_star"), (Quantity::Frequency, "frequency"), (Quantity::Regime, "regime")];
 
-/// What a report is about.
-#[derive(Debug, Clone, Copy)]
-pub struct Report<'a> {
-    /// Its title: the study's name.
-    pub title: &'a str,
-    /// The study's jobs.
-    pub rows: &'a [Row],
-    /// Where they come from, if that is known.
-    pub origin: Option<&'a Origin>,
-    /// When it is written, in milliseconds since 1970-01-01 UTC.
-    pub written_ms: i64,
-    /// How often the page loads itself anew, if it is going to be written again.
-    pub refresh_s: Option<u32>,
-}
-
 /// Writes the page `report.html`, tables, figures with the data behind them, the export and `report.md` into `out_dir`;
 /// returns the files.
 ///
-/// Every file appears whole: it is written beside its place and then renamed. A folder that exists
-/// is fine; files of the same name are replaced, others are left alone.
+/// Each file is replaced as a whole. The folder may exist: files of the same name are replaced, and others are left
+/// alone.
 ///
 /// # Errors
 /// The first file that could not be written. Files before it are complete.
@@ -55,48 +39,49 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         || rayon::join(jobs, residuals),
     );
     for table in &tables {
-        folder.text(&format!("{}.md", table.stem), &page::of_table(table, title))?;
-        folder.with(&format!("{}.csv", table.stem), |out| tables::csv_of(&layout, table.quantity, out))?;
+        folder.write_text(&format!("{}.md", table.stem), &page::of_table(table, title))?;
+        folder
+            .write_with(&format!("{}.csv", table.stem), |out| tables::csv_of(&layout, table.quantity, out))?;
     }
 
     let mut links = Vec::new();
     let mut drawn: Vec<(Plot, Vec<Figure>)> = Vec::new();
     for (plot, figures) in figures {
-        let figures = figures.map_err(|source| undrawn(out_dir, plot.stem(), source))?;
+        let figures = figures.map_err(|source| cannot_draw(out_dir, plot.stem(), source))?;
         for figure in &figures {
             let file = format!("{}{}.svg", plot.stem(), figure.suffix);
-            folder.text(&file, &figure.svg)?;
+            folder.write_text(&file, &figure.svg)?;
             links.push(FigureLink { plot, caption: figure.caption.clone(), file });
         }
         drawn.push((plot, figures));
     }
-    let residuals = residuals.map_err(|source| undrawn(out_dir, RESIDUALS.stem, source))?;
-    folder.text(&format!("{}.svg", RESIDUALS.stem), &residuals)?;
+    let residuals = residuals.map_err(|source| cannot_draw(out_dir, RESIDUALS.stem, source))?;
+    folder.write_text(&format!("{}.svg", RESIDUALS.stem), &residuals)?;
 
     let mut data_files = Vec::new();
-    for Data { stem, columns } in Plot::ALL.map(Plot::data).into_iter().chain([RESIDUALS, RUN_TIMES]) {
+    for DataFile { stem, columns } in Plot::ALL.map(Plot::data).into_iter().chain([RESIDUALS, RUN_TIMES]) {
         let file = format!("{stem}.csv");
-        // Two figures may show the same.
+        // Two figures may share a file of data.
         if data_files.contains(&file) {
             continue;
         }
-        folder.with(&file, |out| {
+        folder.write_with(&file, |out| {
             *out = export::selection(rows, &layout.further, columns)?;
             Ok(())
         })?;
         data_files.push(file);
     }
-    folder.with("jobs.csv", |out| {
+    folder.write_with("jobs.csv", |out| {
         *out = jobs?;
         Ok(())
     })?;
-    folder.text("report.md", &page::of_report(rows, &tables, &links, &data_files, title))?;
+    folder.write_text("report.md", &page::of_report(rows, &tables, &links, &data_files, title))?;
     let parts = Parts { report, layout: &layout, figures: &drawn, residuals: &residuals };
-    folder.text("report.html", &html::page(&parts))?;
+    folder.write_text("report.html", &html::page(&parts))?;
     Ok(folder.written)
 }
 
-fn undrawn(out_dir: &Path, stem: &str, source: FigureError) -> PublishError {
+fn cannot_draw(out_dir: &Path, stem: &str, source: FigureError) -> PublishError {
     PublishError::Figure { path: out_dir.join(format!("{stem}.svg")), source }
 }
 

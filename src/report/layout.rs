@@ -1,17 +1,18 @@
-//! How the parameters of a study are laid out: one along the rows, μ over the columns, the others apart.
+//! How tables and figures lay out the parameters of a study: one parameter along the rows, μ over the columns, and a
+//! table or figure for each combination of the others.
 
 use super::export::further_names;
-use super::row::Row;
+use super::parameters::{MU, OMEGA, assignments};
+use super::row::JobRow;
 use crate::publish::value;
-use crate::publish::value::{MU, OMEGA};
 use serde_json::Value;
 use std::collections::HashMap;
 
 /// A study laid out in two dimensions, once per combination of its further parameters.
 pub(super) struct Layout<'a> {
-    /// The parameter along the rows of a table and the abscissa of a figure: ω wherever it varies.
+    /// The parameter along the rows of a table and the abscissa of a figure: ω if it varies, or if nothing else does.
     pub axis: &'a str,
-    /// The further parameters that vary.
+    /// The other parameters that vary, without μ.
     pub further: Vec<&'a str>,
     /// The parameters that are the same in every job.
     pub constants: Vec<(&'a str, Value)>,
@@ -26,24 +27,24 @@ pub(super) struct Group<'a> {
     /// The combination, in the order of [`Layout::further`].
     pub key: Vec<(&'a str, Value)>,
     /// Its jobs.
-    pub jobs: Vec<Placed<'a>>,
+    pub jobs: Vec<PlacedJob<'a>>,
     /// The values along the axis: ascending if they are numbers, otherwise in the order of the study.
     pub axis_values: Vec<Value>,
 }
 
-/// A job with its place.
-pub(super) struct Placed<'a> {
-    pub row: &'a Row,
-    /// Which of [`Group::axis_values`] it has.
-    pub at: usize,
-    /// Which of [`Layout::mus`] it has.
-    pub mu: usize,
+/// A job with its position in the layout.
+pub(super) struct PlacedJob<'a> {
+    pub row: &'a JobRow,
+    /// Index of its value in [`Group::axis_values`].
+    pub axis_index: usize,
+    /// Index of its friction coefficient in [`Layout::mus`].
+    pub mu_index: usize,
 }
 
 impl<'a> Layout<'a> {
-    /// Looks at every job's values as text, which takes longer than anything that is done with the layout afterwards:
-    /// a report has one for all its tables and figures.
-    pub fn new(rows: &'a [Row]) -> Self {
+    /// Lays out a study. This compares the values of all jobs as text, which is slow: a report shares one layout between
+    /// all its tables and figures.
+    pub fn new(rows: &'a [JobRow]) -> Self {
         let varies = |name: &str| {
             let mut texts = rows.iter().map(|row| value::text(&row.parameter(name)));
             let first = texts.next();
@@ -64,66 +65,66 @@ impl<'a> Layout<'a> {
 
     /// What is the same in all jobs, in words; may be empty.
     pub fn constants_in_words(&self) -> String {
-        let words = self.constants.iter().map(|(name, value)| value::assignment(name, value));
-        words.collect::<Vec<_>>().join(", ")
+        assignments(self.constants.iter().cloned())
     }
 
-    /// The axis with its name and unit.
+    /// Name and unit of the axis.
     pub fn axis_name(&self) -> &'a str {
         if self.axis == OMEGA { "disk speed ω [rpm]" } else { self.axis }
     }
 
-    /// The axis as a label, with its unit.
+    /// Symbol and unit of the axis.
     pub fn axis_label(&self) -> &'a str {
         if self.axis == OMEGA { "ω [rpm]" } else { self.axis }
     }
 }
 
-/// Figures with more jobs do not tell of each of them: the files would be larger than anybody wants to look at.
-pub(super) const MOST_TOLD: usize = 2_000;
+/// Figures with more jobs have no tooltips, because the files would become too large.
+pub(super) const MAX_TOOLTIPS: usize = 2_000;
 
 impl Group<'_> {
-    /// Whether figures tell of each job.
-    pub fn is_told(&self) -> bool {
-        self.jobs.len() <= MOST_TOLD
+    /// Whether figures have a tooltip for each job.
+    pub fn has_tooltips(&self) -> bool {
+        self.jobs.len() <= MAX_TOOLTIPS
     }
 
     /// The combination in words; empty if there are no further parameters.
     pub fn caption(&self) -> String {
-        self.key.iter().map(|(name, value)| value::assignment(name, value)).collect::<Vec<_>>().join(", ")
+        assignments(self.key.iter().cloned())
     }
 
     fn sort_axis(&mut self) {
-        let rank = value::sort(&mut self.axis_values);
+        let rank = value::sort_numbers(&mut self.axis_values);
         for job in &mut self.jobs {
-            job.at = rank[job.at];
+            job.axis_index = rank[job.axis_index];
         }
     }
 }
 
-fn groups<'a>(rows: &'a [Row], axis: &str, further: &[&'a str], mus: &[f64]) -> Vec<Group<'a>> {
+fn groups<'a>(rows: &'a [JobRow], axis: &str, further: &[&'a str], mus: &[f64]) -> Vec<Group<'a>> {
     let mut groups: Vec<Group<'a>> = Vec::new();
-    // By what is shown: 1 and 1.0 are the same value.
+    // Values are compared as they are shown: 1 and 1.0 are equal.
     let mut known: HashMap<Vec<String>, usize> = HashMap::new();
-    let mut places: Vec<HashMap<String, usize>> = Vec::new();
+    let mut axis_indices: Vec<HashMap<String, usize>> = Vec::new();
     for row in rows {
         let key: Vec<_> = further.iter().map(|&name| (name, row.parameter(name))).collect();
         let texts = key.iter().map(|(_, value)| value::text(value)).collect();
         let number = *known.entry(texts).or_insert(groups.len());
         if number == groups.len() {
             groups.push(Group { key, jobs: Vec::new(), axis_values: Vec::new() });
-            places.push(HashMap::new());
+            axis_indices.push(HashMap::new());
         }
-        let (group, places) = (&mut groups[number], &mut places[number]);
+        let (group, indices) = (&mut groups[number], &mut axis_indices[number]);
         let value = row.parameter(axis);
-        let at = *places.entry(value::text(&value)).or_insert(group.axis_values.len());
-        if at == group.axis_values.len() {
+        let axis_index = *indices.entry(value::text(&value)).or_insert(group.axis_values.len());
+        if axis_index == group.axis_values.len() {
             group.axis_values.push(value);
         }
-        group.jobs.push(Placed { row, at, mu: mus.partition_point(|&mu| mu < row.mu) });
+        let mu_index = mus.partition_point(|&mu| mu < row.mu);
+        group.jobs.push(PlacedJob { row, axis_index, mu_index });
     }
     if groups.is_empty() {
-        // A study without jobs still has tables and figures to look at: empty ones.
+        // A study without jobs has empty tables and figures.
         groups.push(Group { key: Vec::new(), jobs: Vec::new(), axis_values: Vec::new() });
     }
     groups.iter_mut().for_each(Group::sort_axis);
@@ -131,11 +132,7 @@ fn groups<'a>(rows: &'a [Row], axis: &str, further: &[&'a str], mus: &[f64]) -> 
 }
 
 /// All parameters of a job in words, ω and μ first.
-pub(super) fn parameters_in_words(row: &Row) -> String {
-    [(OMEGA, row.parameter(OMEGA)), (MU, row.parameter(MU))]
-        .into_iter()
-        .chain(row.further().map(|(name, value)| (name, value.clone())))
-        .map(|(name, value)| value::assignment(name, &value))
-        .collect::<Vec<_>>()
-        .join(", ")
+pub(super) fn parameters_in_words(row: &JobRow) -> String {
+    let further = row.further().map(|(name, value)| (name, value.clone()));
+    assignments([OMEGA, MU].map(|name| (name, row.parameter(name))).into_iter().chain(further))
 }

@@ -1,6 +1,6 @@
-//! Markdown that reads as plain text too.
+//! Markdown that is readable as plain text too.
 
-/// A table with columns padded to equal width.
+/// A table whose columns are padded to equal width.
 pub(super) fn table(header: &[String], lines: &[Vec<String>], right_aligned: bool) -> String {
     let header: Vec<String> = header.iter().map(|cell| escape(cell)).collect();
     let lines: Vec<Vec<String>> =
@@ -8,7 +8,7 @@ pub(super) fn table(header: &[String], lines: &[Vec<String>], right_aligned: boo
     let widths: Vec<usize> = (0..header.len())
         .map(|column| {
             let cells = std::iter::once(&header).chain(&lines).map(|line| line[column].chars().count());
-            // `---:` is the narrowest rule with an alignment.
+            // `---:` is the shortest rule that states an alignment.
             cells.max().unwrap_or(0).max(4)
         })
         .collect();
@@ -30,9 +30,9 @@ pub(super) fn table(header: &[String], lines: &[Vec<String>], right_aligned: boo
     format!("{}|{rule}\n{body}", write_line(&header))
 }
 
-/// Text on one line that a table or a heading holds as it is.
+/// Text on one line, escaped for a table or a heading.
 pub(super) fn escape(text: &str) -> String {
-    // Most cells are numbers, and there are very many of them.
+    // Large tables consist of numbers mostly: this is the fast path for them.
     if text.bytes().all(|c| c.is_ascii_alphanumeric() || matches!(c, b'.' | b'_' | b'~' | b'-')) {
         return text.to_owned();
     }

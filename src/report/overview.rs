@@ -1,38 +1,39 @@
-//! A study at a glance, for a terminal: a letter for every job, friction coefficients down, speeds across.
+//! A study at a glance, for a terminal: a letter for every job, a row for each friction coefficient, a column for each
+//! speed.
 
+use super::glyph::{SEVERAL_JOBS, StatusGlyph, status_glyph};
 use super::layout::{Group, Layout};
-use super::row::Row;
-use super::sign::{SEVERAL, Sign, sign};
+use super::row::JobRow;
 use crate::publish::value;
 use anstyle::Style;
 use std::fmt::Write;
 
-/// No more combinations of further parameters than this are shown.
-const GROUPS: usize = 6;
+/// Largest number of combinations of further parameters that are shown.
+const MAX_GROUPS: usize = 6;
 
-/// The grid, in lines of at most `width` characters where its labels leave room; with colours, for the caller to strip
-/// where they are not wanted. Nothing if there are no jobs.
-pub fn overview(rows: &[Row], width: usize) -> String {
+/// The grid in lines of at most `width` characters, as far as its labels leave room. The text has colours in ANSI codes,
+/// which the caller can strip. It is empty if there are no jobs.
+pub fn overview(rows: &[JobRow], width: usize) -> String {
     if rows.is_empty() {
         return String::new();
     }
     let layout = Layout::new(rows);
     let mut text = String::new();
-    let mut used: Vec<Sign> = Vec::new();
-    for group in layout.groups.iter().take(GROUPS) {
+    let mut used: Vec<StatusGlyph> = Vec::new();
+    for group in layout.groups.iter().take(MAX_GROUPS) {
         if !group.key.is_empty() {
             let _ = writeln!(text, "{}:", group.caption());
         }
         grid(&layout, group, width, &mut used, &mut text);
     }
-    if layout.groups.len() > GROUPS {
-        let _ = writeln!(text, "… and {} more combinations of parameters", layout.groups.len() - GROUPS);
+    if layout.groups.len() > MAX_GROUPS {
+        let _ = writeln!(text, "… and {} more combinations of parameters", layout.groups.len() - MAX_GROUPS);
     }
     let legend: Vec<String> =
-        used.iter().map(|sign| format!("{} {}", painted(*sign), sign.meaning)).collect();
+        used.iter().map(|glyph| format!("{} {}", painted(*glyph), glyph.meaning)).collect();
     let mut line = 0;
-    for (entry, sign) in legend.iter().zip(&used) {
-        let length = sign.meaning.chars().count() + 4;
+    for (entry, glyph) in legend.iter().zip(&used) {
+        let length = glyph.meaning.chars().count() + 4;
         if line > 0 && line + length > width {
             text.push('\n');
             line = 0;
@@ -44,20 +45,26 @@ pub fn overview(rows: &[Row], width: usize) -> String {
     text
 }
 
-fn grid(layout: &Layout<'_>, group: &Group<'_>, width: usize, used: &mut Vec<Sign>, text: &mut String) {
+fn grid(
+    layout: &Layout<'_>,
+    group: &Group<'_>,
+    width: usize,
+    used: &mut Vec<StatusGlyph>,
+    text: &mut String,
+) {
     let columns: Vec<String> = group.axis_values.iter().map(value::text).collect();
     let corner = format!("μ \\ {}", layout.axis_label());
     let labels: Vec<String> = layout.mus.iter().map(|mu| value::number(*mu)).collect();
     let label_width = labels.iter().chain([&corner]).map(|label| label.chars().count()).max().unwrap_or(0);
     let cell_width = columns.iter().map(|label| label.chars().count()).max().unwrap_or(0) + 1;
-    let mut signs: Vec<Vec<Option<Sign>>> = vec![vec![None; columns.len()]; labels.len()];
+    let mut glyphs: Vec<Vec<Option<StatusGlyph>>> = vec![vec![None; columns.len()]; labels.len()];
     for job in &group.jobs {
-        let cell = &mut signs[job.mu][job.at];
-        *cell = Some(if cell.is_some() { SEVERAL } else { sign(job.row) });
+        let cell = &mut glyphs[job.mu_index][job.axis_index];
+        *cell = Some(if cell.is_some() { SEVERAL_JOBS } else { status_glyph(job.row) });
     }
-    for sign in signs.iter().flatten().flatten() {
-        if !used.contains(sign) {
-            used.push(*sign);
+    for glyph in glyphs.iter().flatten().flatten() {
+        if !used.contains(glyph) {
+            used.push(*glyph);
         }
     }
     let across = (width.saturating_sub(label_width) / cell_width).max(1);
@@ -68,13 +75,13 @@ fn grid(layout: &Layout<'_>, group: &Group<'_>, width: usize, used: &mut Vec<Sig
             let _ = write!(text, "{label:>cell_width$}");
         }
         text.push('\n');
-        // The highest friction on top, as its curve is in a figure's legend.
-        for (label, line) in labels.iter().zip(&signs).rev() {
+        // The highest friction is on top, as in the maps.
+        for (label, line) in labels.iter().zip(&glyphs).rev() {
             let _ = write!(text, "{label:>label_width$}");
             for cell in &line[part.clone()] {
                 let _ = write!(text, "{:1$}", "", cell_width - 1);
                 match cell {
-                    Some(sign) => text.push_str(&painted(*sign)),
+                    Some(glyph) => text.push_str(&painted(*glyph)),
                     None => text.push(' '),
                 }
             }
@@ -83,7 +90,7 @@ fn grid(layout: &Layout<'_>, group: &Group<'_>, width: usize, used: &mut Vec<Sig
     }
 }
 
-fn painted(sign: Sign) -> String {
-    let style = Style::new().fg_color(Some(sign.colour.into()));
-    format!("{style}{}{style:#}", sign.letter)
+fn painted(glyph: StatusGlyph) -> String {
+    let style = Style::new().fg_color(Some(glyph.terminal_colour.into()));
+    format!("{style}{}{style:#}", glyph.letter)
 }

@@ -1,25 +1,25 @@
-//! The pages: one per table, and `report.md` that holds everything together.
+//! The Markdown pages: one per table, and `report.md` for the whole report.
 
 use super::figure::Plot;
 use super::layout::parameters_in_words;
-use super::row::{Row, RowState};
+use super::row::{JobRow, RowState};
 use super::summary::{self, Summary};
 use super::tables::Quantity;
 use super::{markdown, trouble};
 use crate::analysis::{JobRecord, Outcome};
 use crate::publish::value;
 
-/// Jobs in a list are named up to this number: the rest are in the export.
-const NAMED: usize = 20;
+/// Largest number of jobs in a list. The others are in the export.
+const MAX_LISTED: usize = 20;
 
-/// A figure's file and what it shows.
+/// The file of a figure and what it shows.
 pub(super) struct FigureLink {
     pub plot: Plot,
     pub caption: String,
     pub file: String,
 }
 
-/// A table and what its files are called.
+/// A table and the name of its files, without the ending.
 pub(super) struct Table {
     pub quantity: Quantity,
     pub stem: &'static str,
@@ -33,7 +33,7 @@ pub(super) fn of_table(table: &Table, title: &str) -> String {
 
 /// The page of the whole report.
 pub(super) fn of_report(
-    rows: &[Row],
+    rows: &[JobRow],
     tables: &[Table],
     figures: &[FigureLink],
     data: &[String],
@@ -59,7 +59,7 @@ pub(super) fn of_report(
     )
 }
 
-fn summary(rows: &[Row]) -> String {
+fn summary(rows: &[JobRow]) -> String {
     let summary = Summary::of(rows);
     let mut text = format!(
         "{} of {} jobs done ({}), {} failed, {} missing ({}).\n",
@@ -77,7 +77,7 @@ fn summary(rows: &[Row]) -> String {
     text + &worst("identity residual", rows, JobRecord::identity_residual)
 }
 
-fn worst(name: &str, rows: &[Row], residual: impl Fn(&JobRecord) -> f64) -> String {
+fn worst(name: &str, rows: &[JobRow], residual: impl Fn(&JobRecord) -> f64) -> String {
     summary::worst(rows, residual)
         .map(|(residual, row)| {
             format!("\nLargest {name}: {residual:.1e} ({}).\n", markdown::escape(&parameters_in_words(row)))
@@ -105,7 +105,7 @@ fn section(table: &Table, figures: &[FigureLink]) -> String {
 }
 
 /// Where jobs fail or do not become periodic.
-fn trouble(rows: &[Row]) -> String {
+fn trouble(rows: &[JobRow]) -> String {
     let sentences = trouble::sentences(&trouble::regions(rows));
     if sentences.is_empty() {
         return String::new();
@@ -114,35 +114,35 @@ fn trouble(rows: &[Row]) -> String {
     format!("\n## Where it fails\n\n{}", lines.collect::<String>())
 }
 
-/// The rows that have an entry, the first of them with it.
-fn list(heading: &str, rows: &[Row], entry: fn(&Row) -> Option<String>) -> String {
+/// A list of the rows for which `entry` returns a line. Rows beyond [`MAX_LISTED`] are counted only.
+fn list(heading: &str, rows: &[JobRow], entry: fn(&JobRow) -> Option<String>) -> String {
     let mut entries = rows.iter().filter_map(entry);
-    let named: Vec<String> = entries.by_ref().take(NAMED).collect();
-    if named.is_empty() {
+    let listed: Vec<String> = entries.by_ref().take(MAX_LISTED).collect();
+    if listed.is_empty() {
         return String::new();
     }
     let more = entries.count();
     let rest =
         if more > 0 { format!("- and {more} more: see [jobs.csv](jobs.csv)\n") } else { String::new() };
-    format!("\n## {heading} ({})\n\n{}{rest}", named.len() + more, named.concat())
+    format!("\n## {heading} ({})\n\n{}{rest}", listed.len() + more, listed.concat())
 }
 
-fn entry(row: &Row, what: &str) -> String {
+fn entry(row: &JobRow, what: &str) -> String {
     format!("- {} – {what} (job {})\n", markdown::escape(&parameters_in_words(row)), markdown::code(&row.job))
 }
 
-fn failed(row: &Row) -> Option<String> {
+fn failed(row: &JobRow) -> Option<String> {
     match &row.state {
         RowState::Failed { error } => Some(entry(row, &markdown::code(error))),
         _ => None,
     }
 }
 
-fn not_periodic(row: &Row) -> Option<String> {
+fn not_periodic(row: &JobRow) -> Option<String> {
     let record = row.record().filter(|record| record.outcome == Outcome::NotPeriodic)?;
     let reason = format!(
         "time limit reached after {} s without a periodic state; {}, μ\\* = {} ± {} over {} cycles",
-        value::digits(record.simulated_s, 4),
+        value::significant(record.simulated_s, 4),
         record.regime.name(),
         value::fixed(record.mu_star, 4),
         value::fixed(record.mu_star_se, 4),
@@ -151,7 +151,7 @@ fn not_periodic(row: &Row) -> Option<String> {
     Some(entry(row, &reason))
 }
 
-fn missing(row: &Row) -> Option<String> {
+fn missing(row: &JobRow) -> Option<String> {
     let is_missing = matches!(row.state, RowState::Pending | RowState::Running | RowState::Cancelled);
     is_missing.then(|| entry(row, row.status()))
 }

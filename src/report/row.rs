@@ -1,40 +1,35 @@
 //! One job as a report sees it.
 
+use super::parameters::{MU, OMEGA, is_further};
 use crate::analysis::JobRecord;
-use crate::publish::value::{MU, OMEGA};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// Whether a parameter is one of those that have no place of their own everywhere, as ω and μ have.
-pub(super) fn is_further(name: &str) -> bool {
-    name != OMEGA && name != MU
-}
-
-/// One job of a study: its parameters and what is known of it.
+/// One job of a study: its parameters and its state.
 #[derive(Debug, Clone, PartialEq)]
-pub struct Row {
+pub struct JobRow {
     /// Name of the study.
     pub study: String,
     /// Key of the job.
     pub job: String,
     /// The grid parameters by name, in the order of the study.
     pub parameters: Vec<(String, Value)>,
-    /// Disk speed ω of the job in revolutions per minute, in the grid or not.
+    /// Disk speed ω of the job in revolutions per minute, whether or not it is a parameter of the grid.
     pub omega_rpm: f64,
-    /// Local friction coefficient μ of the job, in the grid or not.
+    /// Local friction coefficient μ of the job, whether or not it is a parameter of the grid.
     pub mu: f64,
-    /// What is known of the job.
+    /// The state of the job.
     pub state: RowState,
-    /// The job's share of its thread's time, in seconds: jobs that are advanced together share it equally.
+    /// The job's share of the time of its thread [s]. Jobs that are advanced together have equal shares.
     pub wall_s: Option<f64>,
-    /// The job's numerics, in the grid or not; absent in studies submitted by a version that did not keep them.
+    /// The job's numerics; none in studies submitted by a version that did not store them.
     pub numerics: Option<JobNumerics>,
 }
 
 /// What a job's accuracy and cost depend on besides the physics.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobNumerics {
-    /// Names the physical case: equal for jobs that differ in nothing but the fields below.
+    /// Key of the physical case: equal for jobs that differ only in the fields below.
     pub case: String,
     /// Number of elements in x, y and z.
     pub elements: [usize; 3],
@@ -46,30 +41,30 @@ pub struct JobNumerics {
     pub beta2: f64,
     /// Stiffness-proportional damping β_R [s].
     pub beta_r_s: f64,
-    /// Time step as a fraction of the stability limit; absent where the time step itself is given.
+    /// Time step as a fraction of the stability limit; none where the time step itself is given.
     pub safety_factor: Option<f64>,
-    /// Simulated time [s] after which the run ends in any case.
+    /// Largest simulated time [s] of the run.
     pub limit_s: f64,
-    /// Whether it stops once the state is periodic or has decayed.
+    /// Whether the run stops once the state is periodic or has decayed.
     pub stop_early: bool,
-    /// Last fraction of a whole run that is averaged.
+    /// The last fraction of a run up to its time limit that is averaged.
     pub average_last_fraction: f64,
-    /// Limit cycles that must repeat.
+    /// Number of limit cycles that must repeat.
     pub cycles: usize,
-    /// Largest spread of a per-cycle figure over them.
+    /// Largest spread of a per-cycle figure over these cycles.
     pub tolerance: f64,
-    /// Largest drift of its mean between their halves.
+    /// Largest drift of its mean between their first and second half.
     pub drift_tolerance: f64,
 }
 
-/// What is known of a job.
+/// The state of a job.
 #[derive(Debug, Clone, PartialEq)]
 pub enum RowState {
-    /// It waits.
+    /// It waits for a worker.
     Pending,
     /// It runs.
     Running,
-    /// It is not wanted any more.
+    /// No study needs it any more.
     Cancelled,
     /// It ended without a result.
     Failed {
@@ -80,7 +75,7 @@ pub enum RowState {
     Done(Box<JobRecord>),
 }
 
-impl Row {
+impl JobRow {
     /// The name of the job's state in CSV: `pending`, `running`, `cancelled`, `failed` or the outcome of its run.
     pub fn status(&self) -> &'static str {
         match &self.state {

@@ -1,9 +1,9 @@
-//! A study in a few numbers.
+//! Counts of a study's jobs.
 
-use super::row::{Row, RowState};
+use super::row::{JobRow, RowState};
 use crate::analysis::{JobRecord, Outcome};
 
-/// How many jobs there are of each kind.
+/// The number of jobs with each status.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(super) struct Summary {
     pub total: usize,
@@ -17,7 +17,7 @@ pub(super) struct Summary {
 }
 
 impl Summary {
-    pub fn of(rows: &[Row]) -> Self {
+    pub fn of(rows: &[JobRow]) -> Self {
         let mut summary = Self { total: rows.len(), ..Self::default() };
         for row in rows {
             *match &row.state {
@@ -43,22 +43,22 @@ impl Summary {
         self.running + self.pending + self.cancelled
     }
 
-    /// What is missing, in words.
+    /// The missing jobs by status, in words.
     pub fn missing_in_words(&self) -> String {
         let cancelled =
             if self.cancelled > 0 { format!(", {} cancelled", self.cancelled) } else { String::new() };
         format!("{} running, {} pending{cancelled}", self.running, self.pending)
     }
 
-    /// How those that are done ended, in words.
+    /// The jobs that are done by outcome, in words.
     pub fn done_in_words(&self) -> String {
         let Self { periodic, decayed, not_periodic, .. } = self;
         format!("{periodic} periodic, {decayed} decayed, {not_periodic} not periodic")
     }
 }
 
-/// The job that fits worst: the first to look at if a figure is in doubt.
-pub(super) fn worst(rows: &[Row], residual: impl Fn(&JobRecord) -> f64) -> Option<(f64, &Row)> {
+/// The job with the largest residual, which is the first to check if a result is in doubt.
+pub(super) fn worst(rows: &[JobRow], residual: impl Fn(&JobRecord) -> f64) -> Option<(f64, &JobRow)> {
     rows.iter()
         .filter_map(|row| Some((residual(row.record()?), row)))
         .filter(|(residual, _)| residual.is_finite())

@@ -1,9 +1,9 @@
-//! Tables in the manner of Figure 7: speed by friction coefficient, one cell a job.
+//! Tables of the same layout as Figure 7: speed by friction coefficient, one cell per job.
 
 use super::export::io_error;
 use super::layout::{Group, Layout};
 use super::markdown;
-use super::row::{Row, RowState};
+use super::row::{JobRow, RowState};
 use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::publish::value;
 use crate::publish::value::MISSING;
@@ -30,7 +30,7 @@ impl Quantity {
         }
     }
 
-    /// What the marks in its cells mean.
+    /// The marks in its cells with their meaning.
     pub(super) fn legend(self) -> impl Iterator<Item = (&'static str, &'static str)> {
         let own: &[_] = match self {
             Self::MuStar => &[("~", "not periodic: an average over the last part of the run")],
@@ -64,7 +64,7 @@ impl Quantity {
         if record.outcome == Outcome::NotPeriodic { text + "~" } else { text }
     }
 
-    fn cell(self, row: &Row) -> String {
+    fn cell(self, row: &JobRow) -> String {
         match &row.state {
             RowState::Pending | RowState::Running | RowState::Cancelled => MISSING.to_owned(),
             RowState::Failed { .. } => "failed".to_owned(),
@@ -74,7 +74,7 @@ impl Quantity {
 }
 
 /// The tables of one quantity as Markdown: one per combination of further parameters, and a legend.
-pub fn markdown(rows: &[Row], quantity: Quantity) -> String {
+pub fn markdown(rows: &[JobRow], quantity: Quantity) -> String {
     markdown_of(&Layout::new(rows), quantity)
 }
 
@@ -98,13 +98,14 @@ pub(super) fn markdown_of(layout: &Layout, quantity: Quantity) -> String {
     parts.concat()
 }
 
-/// The tables of one quantity as one CSV: further parameters first, then the row's, then a column per μ.
+/// The tables of one quantity as one CSV: columns for further parameters, one for the parameter along the rows, and one
+/// for each μ.
 ///
-/// The cells are those of [`markdown`], empty where a result is missing.
+/// The cells are those of [`markdown`]. A missing result is an empty cell.
 ///
 /// # Errors
 /// Those of the writer.
-pub fn csv<W: Write>(rows: &[Row], quantity: Quantity, out: W) -> io::Result<()> {
+pub fn csv<W: Write>(rows: &[JobRow], quantity: Quantity, out: W) -> io::Result<()> {
     csv_of(&Layout::new(rows), quantity, out)
 }
 
@@ -127,13 +128,13 @@ pub(super) fn csv_of<W: Write>(layout: &Layout, quantity: Quantity, out: W) -> i
     writer.flush()
 }
 
-/// The heads of all columns.
+/// The headings of all columns.
 pub(super) fn header(layout: &Layout) -> Vec<String> {
     let mus = layout.mus.iter().map(|&mu| format!("μ = {}", value::rounded(mu)));
     std::iter::once(layout.axis_label().to_owned()).chain(mus).collect()
 }
 
-/// Each value along the axis with its cells, one per μ.
+/// Each value along the axis with its cells, one for each μ.
 pub(super) fn lines<'a>(
     layout: &'a Layout,
     group: &'a Group,
@@ -142,14 +143,14 @@ pub(super) fn lines<'a>(
     let mut cells: Vec<Vec<Option<String>>> = vec![vec![None; layout.mus.len()]; group.axis_values.len()];
     for job in &group.jobs {
         let here = quantity.cell(job.row);
-        match &mut cells[job.at][job.mu] {
+        match &mut cells[job.axis_index][job.mu_index] {
             Some(others) => others.extend([" / ", &here]),
-            free => *free = Some(here),
+            empty => *empty = Some(here),
         }
     }
     group.axis_values.iter().zip(cells).map(|(at, cells)| {
         let line = cells.into_iter().map(|cell| cell.unwrap_or_else(|| MISSING.to_owned())).collect();
-        (value::shown(at), line)
+        (value::rounded_text(at), line)
     })
 }
 

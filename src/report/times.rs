@@ -1,31 +1,31 @@
-//! How long jobs took. A job's time is its share of its thread's.
+//! Run times of jobs. The time of a job is its share of the time of its thread.
 
-use super::row::Row;
+use super::row::JobRow;
 
-/// So many jobs that took longest are named.
+/// Number of the slowest jobs that are listed.
 const SLOWEST: usize = 8;
 
-/// The times of a study's jobs.
+/// Statistics of the run times of a study's jobs.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Times<'a> {
-    /// Of so many jobs the time is known.
+    /// Number of jobs whose time is known.
     pub jobs: usize,
     pub total_s: f64,
     pub min_s: f64,
     pub median_s: f64,
     pub mean_s: f64,
     pub max_s: f64,
-    /// Time steps of one job in a second of a thread, over all jobs with a result.
+    /// Time steps per second of thread time, over all jobs with a result.
     pub steps_per_s: Option<f64>,
-    /// Those that took longest, with their times.
-    pub slowest: Vec<(&'a Row, f64)>,
+    /// The slowest jobs with their times [s], slowest first.
+    pub slowest: Vec<(&'a JobRow, f64)>,
 }
 
 impl<'a> Times<'a> {
-    /// None if no time is known.
-    pub fn of(rows: &'a [Row]) -> Option<Self> {
-        let known = |row: &'a Row| Some((row, row.wall_s.filter(|s| s.is_finite())?));
-        let mut times: Vec<(&Row, f64)> = rows.iter().filter_map(known).collect();
+    /// The statistics; none if no time is known.
+    pub fn of(rows: &'a [JobRow]) -> Option<Self> {
+        let known = |row: &'a JobRow| Some((row, row.wall_s.filter(|s| s.is_finite())?));
+        let mut times: Vec<(&JobRow, f64)> = rows.iter().filter_map(known).collect();
         times.sort_by(|a, b| b.1.total_cmp(&a.1));
         let (jobs, &(_, max_s)) = (times.len(), times.first()?);
         let total_s: f64 = times.iter().map(|(_, s)| s).sum();
@@ -49,8 +49,8 @@ mod tests {
     use super::*;
     use crate::report::RowState;
 
-    fn row(wall_s: Option<f64>) -> Row {
-        Row {
+    fn row(wall_s: Option<f64>) -> JobRow {
+        JobRow {
             study: String::new(),
             job: String::new(),
             parameters: Vec::new(),
@@ -62,7 +62,7 @@ mod tests {
         }
     }
 
-    /// Protects: the statistics of times that are known, in any order, with an even number of them.
+    /// Protects: the statistics are those of the known times, in any order and for an even number of them.
     #[test]
     fn times_are_summed_up() {
         let rows = [Some(4.0), None, Some(1.0), Some(10.0), Some(2.0)].map(row);

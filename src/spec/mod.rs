@@ -13,6 +13,7 @@
 
 mod check;
 mod detection;
+pub mod elasticity;
 mod numerics;
 mod ring;
 mod scene;

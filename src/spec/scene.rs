@@ -1,6 +1,7 @@
 //! The scene: pin, disk, contact law, boundary conditions and load.
 
 use super::check::Violations;
+use super::elasticity;
 use super::ring::Ring;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -54,8 +55,8 @@ impl Default for Pin {
 impl Pin {
     /// Time [s] in which a shear wave crosses the pin's height; NaN for an unphysical material.
     pub(super) fn shear_transit_s(&self) -> f64 {
-        let shear_modulus_pa = self.young_modulus_pa / (2.0 * (1.0 + self.poisson_ratio));
-        self.size_m[2] / (shear_modulus_pa / self.density_kg_m3).sqrt()
+        self.size_m[2]
+            / elasticity::shear_wave_speed_m_s(self.young_modulus_pa, self.poisson_ratio, self.density_kg_m3)
     }
 }
 

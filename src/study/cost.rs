@@ -1,6 +1,6 @@
 //! A rough cost of a job, to order jobs and to estimate what remains.
 
-use crate::spec::{DiskKind, JobSpec};
+use crate::spec::{DiskKind, JobSpec, elasticity};
 
 /// What a node of an elastic disk costs in a step, in nodes of the pin: its rows are general, and it makes about two
 /// stages.
@@ -8,14 +8,14 @@ const DISK_NODE: f64 = 8.0;
 
 /// Nodes × time steps up to the time limit.
 ///
-/// The step is `safety_factor` × h / `c_p` with the shortest element edge h and the dilatational wave
-/// speed `c_p` = √(E (1 − ν) / (ρ (1 + ν) (1 − 2 ν))). A run that stops early costs less, and damping
-/// shortens the step: good for comparison, not for a promise.
+/// The step is `safety_factor` × h / `c_p` with the shortest element edge h and the speed `c_p` of
+/// pressure waves. A run that stops early costs less, and damping shortens the step: good for
+/// comparison, not for a promise.
 pub(super) fn node_steps(spec: &JobSpec) -> f64 {
     let pin = &spec.scene.pin;
     let nodes: f64 = pin.elements.iter().map(|&n| n as f64 + 1.0).product();
-    let (e, nu, rho) = (pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
-    let wave_speed = (e * (1.0 - nu) / (rho * (1.0 + nu) * (1.0 - 2.0 * nu))).sqrt();
+    let wave_speed =
+        elasticity::pressure_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
     let edges = pin.size_m.iter().zip(pin.elements).map(|(size, n)| size / n as f64);
     let shortest = edges.fold(f64::INFINITY, f64::min);
     let step = spec.numerics.time_step_s.unwrap_or(spec.numerics.safety_factor * shortest / wave_speed);

@@ -1,14 +1,14 @@
-//! What a look into a job shows: that it is the job's own run, and that what is written can be read.
+//! The inspection of a job: it shows the job's own run, and other programs can read its files.
 
 #[path = "../support/browser.rs"]
 #[expect(dead_code, reason = "reports are tested with more of it")]
 mod chromium;
-mod looks;
+mod inspections;
 mod page;
 mod readers;
 
 use std::ops::ControlFlow;
-use tribosweep::inspect::{Look, Options};
+use tribosweep::inspect::{Inspection, Options};
 use tribosweep::spec::JobSpec;
 
 /// 6 × 8 × 5 elements, 2 mm strip, 7 rpm, μ = 0.4: a stick–slip–separation cycle in half a second.
@@ -19,10 +19,10 @@ pub fn coarse() -> JobSpec {
     spec
 }
 
-/// Looks into a job.
+/// Inspects a job.
 ///
 /// # Panics
-/// If it cannot be done.
-pub fn look_into(spec: &JobSpec, options: &Options) -> Look {
-    Look::into(spec, options, &mut |_| ControlFlow::Continue(())).unwrap()
+/// If the inspection fails.
+pub fn inspect(spec: &JobSpec, options: &Options) -> Inspection {
+    Inspection::run(spec, options, &mut |_| ControlFlow::Continue(())).unwrap()
 }

@@ -1,18 +1,22 @@
-//! The page of a look in a browser.
+//! The page of an inspection in a browser.
 
 use crate::chromium::Browser;
-use crate::{coarse, look_into};
-use tribosweep::inspect::{Options, Origin, PAGE, write};
+use crate::{coarse, inspect};
+use tribosweep::inspect::{Options, PAGE, PageHeader, write};
 
-/// Protects: the page needs nothing but itself, nothing in it is an error, it has all drawings, and neither on a desk nor
-/// on a phone is it wider than its window; on a desk its tables need no scrolling either.
+/// Protects: the page loads nothing but itself, has no errors, and has all drawings. It is not wider than its window on a
+/// desktop and on a phone, and on a desktop its tables do not scroll.
 #[test]
-fn the_page_is_whole() {
+fn the_page_is_complete() {
     let Some(mut browser) = Browser::start() else { return };
-    let look = look_into(&coarse(), &Options::default());
+    let inspection = inspect(&coarse(), &Options::default());
     let folder = tempfile::tempdir().unwrap();
-    write(&look, folder.path(), &Origin { title: "<b>mine</b>".to_owned(), made_with: String::new() })
-        .unwrap();
+    write(
+        &inspection,
+        folder.path(),
+        &PageHeader { title: "<b>mine</b>".to_owned(), made_with: String::new() },
+    )
+    .unwrap();
     let page = folder.path().canonicalize().unwrap().join(PAGE);
     for (width, is_phone) in [(390, true), (1200, false)] {
         browser.resize(width, 900, is_phone);

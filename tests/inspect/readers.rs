@@ -1,21 +1,21 @@
-//! The fields in the eyes of others' readers: VTK, which ParaView is made of, and meshio.
+//! The fields as other programs read them: VTK, on which ParaView is based, and meshio.
 
-use crate::{coarse, look_into};
+use crate::{coarse, inspect};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
 use tribosweep::analysis::sample::NodeSample;
-use tribosweep::inspect::{Frame, Look, Options, Origin, write};
+use tribosweep::inspect::{Frame, Inspection, Options, PageHeader, write};
 use tribosweep::solver::body::block::stress;
 use tribosweep::solver::interface::ContactState;
 
-/// Begins both scripts.
+/// The start of both scripts.
 const HEAD: &str = r"
 import json, os, sys
 import xml.etree.ElementTree as tree
 ";
 
-/// Ends both: reads a series and prints all times and what is in its files, as JSON.
+/// The end of both scripts: reads a series, and prints all times and the contents of its files as JSON.
 const TAIL: &str = r#"
 series = sys.argv[1]
 parts = list(tree.parse(series).getroot().iter("DataSet"))
@@ -24,7 +24,7 @@ json.dump({"times": [float(part.get("timestep")) for part in parts], "files": [r
           sys.stdout)
 "#;
 
-/// How VTK reads a file.
+/// Reads a file with VTK.
 const WITH_VTK: &str = r#"
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
@@ -44,7 +44,7 @@ def read(path):
     return {"points": points, "volumes": volumes, "arrays": arrays}
 "#;
 
-/// How meshio does.
+/// Reads a file with meshio.
 const WITH_MESHIO: &str = r#"
 import numpy
 import meshio
@@ -63,7 +63,7 @@ fn python() -> String {
     std::env::var("TRIBOSWEEP_PYTHON").unwrap_or_else(|_| "python3".to_owned())
 }
 
-/// What a reader finds; none where it is not installed.
+/// The contents as a program reads them; none if it is not installed.
 fn read_with(module: &str, script: &str, series: &Path) -> Option<Value> {
     let has = Command::new(python()).args(["-c", &format!("import {module}")]).output();
     if !has.is_ok_and(|output| output.status.success()) {
@@ -86,13 +86,13 @@ fn numbers(value: &Value) -> Vec<f64> {
     }
 }
 
-/// What comes through of one array of all frames.
-fn assert_came_through(name: &str, frames: &[(&Value, Vec<f64>)]) {
+/// Checks one array in all frames.
+fn assert_read_back(name: &str, frames: &[(&Value, Vec<f64>)]) {
     for (read, written) in frames {
         let read = numbers(read);
         assert_eq!(read.len(), written.len(), "{name}");
         for (r, w) in read.iter().zip(written) {
-            // They are stored with 24 bits.
+            // The files have single precision.
             assert!((r - w).abs() <= w.abs() * f64::from(f32::EPSILON), "{name}: {r} instead of {w}");
         }
     }
@@ -100,7 +100,7 @@ fn assert_came_through(name: &str, frames: &[(&Value, Vec<f64>)]) {
     assert!(varies, "{name} is the same in all frames: it could be anything");
 }
 
-/// Values of the contact nodes, which have the first numbers, and `elsewhere` at all others.
+/// Values of the contact nodes, which are numbered first, and `elsewhere` at all other nodes.
 fn on_face(nodes: usize, elsewhere: f64, value: fn(&NodeSample) -> Vec<f64>) -> impl Fn(&Frame) -> Vec<f64> {
     move |frame| {
         let mut all: Vec<f64> = frame.face.iter().flat_map(value).collect();
@@ -117,9 +117,9 @@ fn code(state: ContactState) -> f64 {
     }
 }
 
-fn assert_is_the_look(read: &Value, look: &Look) {
-    let mesh = look.mesh();
-    let frames = &look.capture.frames;
+fn assert_is_the_inspection(read: &Value, inspection: &Inspection) {
+    let mesh = inspection.mesh();
+    let frames = &inspection.capture.frames;
     assert_eq!(numbers(&read["times"]), frames.iter().map(|frame| frame.time_s).collect::<Vec<_>>());
     let files = read["files"].as_array().unwrap();
     assert_eq!(files.len(), frames.len());
@@ -127,7 +127,7 @@ fn assert_is_the_look(read: &Value, look: &Look) {
     let points: Vec<f64> = (0..mesh.node_count()).flat_map(|node| mesh.coordinates_m(node)).collect();
     for file in files {
         assert_eq!(numbers(&file["points"]), points);
-        // Positive and whole: corners in another order would make twisted cells.
+        // With the corners in another order, the cells would be twisted and have other volumes.
         let volumes = numbers(&file["volumes"]);
         assert_eq!(volumes.len(), mesh.element_positions().count());
         assert!(volumes.iter().all(|volume| (volume / (hx * hy * hz) - 1.0).abs() < 1e-9), "{volumes:?}");
@@ -136,16 +136,16 @@ fn assert_is_the_look(read: &Value, look: &Look) {
     let compare = |name: &str, written: &dyn Fn(&Frame) -> Vec<f64>| {
         let both: Vec<_> =
             files.iter().zip(frames).map(|(file, frame)| (&file["arrays"][name], written(frame))).collect();
-        assert_came_through(name, &both);
+        assert_read_back(name, &both);
     };
     compare("displacement_m", &|frame| frame.u_m.clone());
     compare("velocity_m_s", &|frame| frame.velocity_m_s.clone());
     compare("stress_pa", &|frame| {
-        stress::nodal_pa(mesh, look.capture.model.pin().material(), &frame.u_m).concat()
+        stress::nodal_pa(mesh, inspection.capture.model.pin().material(), &frame.u_m).concat()
     });
     compare("contact_force_n", &on_face(nodes, 0.0, |node| node.force_n.to_vec()));
     compare("normal_contact_stress_pa", &|frame| {
-        let slaves = look.capture.model.slaves();
+        let slaves = inspection.capture.model.slaves();
         let mut all: Vec<f64> =
             frame.face.iter().zip(slaves).map(|(node, slave)| node.force_n[2] / slave.area_m2).collect();
         all.resize(nodes, 0.0);
@@ -155,16 +155,16 @@ fn assert_is_the_look(read: &Value, look: &Look) {
     compare("contact_state", &on_face(nodes, -1.0, |node| vec![code(node.state)]));
 }
 
-/// Protects: VTK and meshio read every number that was written, at its point and its time.
+/// Protects: VTK and meshio read every number at its point and its time.
 #[test]
 fn readers_find_what_was_written() {
-    let look = look_into(&coarse(), &Options { frames: 16, ..Options::default() });
+    let inspection = inspect(&coarse(), &Options { frames: 16, ..Options::default() });
     let folder = tempfile::tempdir().unwrap();
-    write(&look, folder.path(), &Origin::default()).unwrap();
+    write(&inspection, folder.path(), &PageHeader::default()).unwrap();
     let series = folder.path().join("fields.pvd");
     for (module, script) in [("vtk", WITH_VTK), ("meshio", WITH_MESHIO)] {
         if let Some(read) = read_with(module, script, &series) {
-            assert_is_the_look(&read, &look);
+            assert_is_the_inspection(&read, &inspection);
         }
     }
 }

@@ -1,23 +1,23 @@
-//! The export: other programs rely on its names, its order and its empty cells.
+//! The export: other programs rely on its field names, their order and the empty cells.
 
 use crate::synthetic::{failed, partial_study, periodic, record, row, with};
 use serde_json::{Value, json};
 use std::io;
 use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::report::{Row, RowState, export};
+use tribosweep::report::{JobRow, RowState, export};
 
 const HEADER: &str = "study,job,omega_rpm,mu,status,regime,mu_star,mu_star_se,mu_star_contact,frequency_hz,\
                       stick_share,slip_share,separated_share,n_over_f_min,n_over_f_max,sigma_n_max_pa,\
                       slip_speed_max_m_s,cycles,simulated_s,steps,time_step_s,energy_residual,\
                       identity_residual,wall_s,error";
 
-fn csv(rows: &[Row]) -> String {
+fn csv(rows: &[JobRow]) -> String {
     let mut out = Vec::new();
     export::csv(rows, &mut out).expect("a vector takes everything");
     String::from_utf8(out).expect("the export is UTF-8")
 }
 
-fn json_lines(rows: &[Row]) -> Vec<Value> {
+fn json_lines(rows: &[JobRow]) -> Vec<Value> {
     let mut out = Vec::new();
     export::json_lines(rows, &mut out).expect("a vector takes everything");
     let text = String::from_utf8(out).expect("the export is UTF-8");
@@ -25,7 +25,7 @@ fn json_lines(rows: &[Row]) -> Vec<Value> {
 }
 
 /// Header and cells of the first job as the csv reader sees them.
-fn first_cells(rows: &[Row]) -> Vec<(String, String)> {
+fn first_cells(rows: &[JobRow]) -> Vec<(String, String)> {
     let text = csv(rows);
     let mut reader = csv::Reader::from_reader(text.as_bytes());
     let header = reader.headers().expect("a header").clone();
@@ -37,14 +37,14 @@ fn cell(cells: &[(String, String)], name: &str) -> String {
     cells.iter().find(|(own, _)| own == name).unwrap_or_else(|| panic!("no column {name}")).1.clone()
 }
 
-/// Protects the names and the order of the fields: scripts address them.
+/// Protects: the names and the order of the fields are the documented ones, because scripts use them.
 #[test]
 fn header_is_exactly_the_documented_one() {
     assert_eq!(csv(&partial_study()).lines().next(), Some(HEADER));
     assert_eq!(csv(&[]).trim_end(), HEADER);
 }
 
-/// Protects every field from landing in its neighbour's column.
+/// Protects: every value is in its own column.
 #[test]
 fn each_figure_is_in_its_own_column() {
     let state = RowState::Done(Box::new(record(Outcome::Periodic, Regime::StickSlip, 0.3512)));
@@ -56,7 +56,7 @@ fn each_figure_is_in_its_own_column() {
     );
 }
 
-/// Protects pending and running jobs from figures that do not exist.
+/// Protects: pending and running jobs have no results.
 #[test]
 fn a_job_without_result_has_empty_cells() {
     for (state, status) in [(RowState::Pending, "pending"), (RowState::Running, "running")] {
@@ -75,7 +75,7 @@ fn a_job_without_result_has_empty_cells() {
     }
 }
 
-/// Protects the statuses: the outcomes of done jobs, `failed`, `pending`, `running`.
+/// Protects: the status is the outcome of a job that is done, or `failed`, `pending`, `running`.
 #[test]
 fn status_tells_the_outcomes_apart() {
     let statuses: Vec<Value> =
@@ -85,8 +85,8 @@ fn status_tells_the_outcomes_apart() {
     assert_eq!(counts, [7, 6, 1, 1, 1, 2]);
 }
 
-/// Protects further grid parameters: behind the fixed fields, ω and μ not twice, arrays readable,
-/// absent ones empty.
+/// Protects: further grid parameters are the last columns. ω and μ are not among them, arrays are
+/// readable, and parameters that a job does not have are empty.
 #[test]
 fn further_parameters_are_the_last_columns() {
     let rows = [
@@ -105,7 +105,7 @@ fn further_parameters_are_the_last_columns() {
     assert_eq!(objects[1]["elements"], Value::Null);
 }
 
-/// Protects a result from a parameter of the same name (and a JSON object from two equal keys).
+/// Protects: a parameter with the name of a result has its own column, and no JSON object has two equal keys.
 #[test]
 fn a_parameter_named_like_a_result_gets_a_column_of_its_own() {
     let cells = first_cells(&[with(row(7.0, 0.4, periodic(0.35)), "time_step_s", 1e-7)]);
@@ -113,7 +113,7 @@ fn a_parameter_named_like_a_result_gets_a_column_of_its_own() {
     assert_eq!(cell(&cells, "parameter_time_step_s"), "1e-7");
 }
 
-/// Protects the CSV from text that has a meaning in CSV.
+/// Protects: text with special characters of CSV is read back unchanged.
 #[test]
 fn error_text_survives_the_csv_reader() {
     let error = "first line, with \"quotes\"\nsecond line; a comma, and a\r\nthird";
@@ -124,7 +124,7 @@ fn error_text_survives_the_csv_reader() {
     assert_eq!(json_lines(&[row(7.0, 0.4, failed(error))])[0]["error"], error);
 }
 
-/// Protects readers from NaN and infinities: such a figure is no figure.
+/// Protects: numbers that are not finite are empty cells.
 #[test]
 fn figures_that_are_not_finite_are_empty() {
     let mut broken = record(Outcome::NotPeriodic, Regime::Undecided, f64::NAN);
@@ -141,7 +141,7 @@ fn figures_that_are_not_finite_are_empty() {
     assert_eq!(cell(&cells, "cycles"), "40");
 }
 
-/// Protects exactness: what is written reads back as the same double.
+/// Protects: every number is read back as the same double.
 #[test]
 fn floats_read_back_exactly() {
     for x in [0.1 + 0.2, 1.0 / 3.0, 2.5e-7, 1.234_567_890_123_456_7e-300, 6.02e23, -1e-5, 0.0] {
@@ -152,7 +152,7 @@ fn floats_read_back_exactly() {
     }
 }
 
-/// Protects `tribosweep … | head`: a closed pipe must be recognisable as one.
+/// Protects: a closed pipe, as in `tribosweep … | head`, is recognisable by its error kind.
 #[test]
 fn a_closed_pipe_keeps_its_kind() {
     struct Closed;

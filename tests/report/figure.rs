@@ -1,17 +1,17 @@
-//! The figures: every result has its marker, every μ its curve and its name.
+//! The figures: every result has a marker, and every μ has a curve and an entry in the legend.
 
 use crate::svg::{self, Element};
 use crate::synthetic::{done, partial_study, periodic, record, row, with};
 use std::collections::HashSet;
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::figure::{Figure, Plot, figures};
-use tribosweep::report::{Row, RowState};
+use tribosweep::report::{JobRow, RowState};
 
 /// The first colours of the palette, in the order of ascending μ.
 const COLOURS: [&str; 3] = ["#0072B2", "#D55E00", "#009E73"];
 const CURVE_WIDTH: &str = "4";
 
-fn only(rows: &[Row], plot: Plot) -> Vec<Element> {
+fn only(rows: &[JobRow], plot: Plot) -> Vec<Element> {
     let mut all = figures(rows, plot).expect("a string takes everything");
     assert_eq!(all.len(), 1);
     svg::parse(&all.remove(0).svg)
@@ -67,7 +67,7 @@ fn each_mu_has_a_curve_and_each_result_a_marker() {
     assert!(!texts.contains(&"undecided"), "a regime that does not occur is not in the legend");
 }
 
-/// Protects the labels: quantity, symbol and unit on both axes of both figures.
+/// Protects: both axes of both figures have quantity, symbol and unit.
 #[test]
 fn axes_carry_quantity_and_unit() {
     let mu_star = only(&partial_study(), Plot::MuStar);
@@ -93,7 +93,7 @@ fn x_ticks(elements: &[Element]) -> Vec<(String, i32)> {
     ticks
 }
 
-/// Protects the logarithmic axis: its ticks read 0.5 1 2 5 … 100, and doublings are equally long.
+/// Protects: the ticks of the logarithmic axis are 0.5 1 2 5 … 100, and every doubling has the same length.
 #[test]
 fn speed_is_on_a_logarithmic_axis() {
     let rows = [0.5, 6.0, 35.0, 100.0].map(|omega| row(omega, 0.4, periodic(0.3)));
@@ -106,7 +106,7 @@ fn speed_is_on_a_logarithmic_axis() {
     assert!((ticks[7].1 - ticks[6].1 - doubling).abs() <= 1, "{ticks:?}");
 }
 
-/// Protects a disk at rest from being left out: with ω = 0 the axis is linear.
+/// Protects: a disk at rest is drawn too, because the axis is linear if there is ω = 0.
 #[test]
 fn zero_speed_makes_the_axis_linear() {
     let rows = [0.0, 5.0, 10.0, 20.0].map(|omega| row(omega, 0.4, periodic(0.3)));
@@ -118,7 +118,7 @@ fn zero_speed_makes_the_axis_linear() {
     assert!(steps.iter().all(|step| (step - steps[0]).abs() <= 1), "{ticks:?}");
 }
 
-/// Protects the meaning of the markers: shapes by regime, hollow without a periodic state.
+/// Protects: the shape of a marker is the regime, and a hollow marker means that the state is not periodic.
 #[test]
 fn shape_is_the_regime_and_hollow_is_not_periodic() {
     let shape = |outcome, regime| {
@@ -138,7 +138,7 @@ fn shape_is_the_regime_and_hollow_is_not_periodic() {
             (4, 3) => "diamond",
             other => panic!("{other:?} corners and heights"),
         };
-        // The background is a rectangle: white circles and polygons are holes, in the plot and in the legend.
+        // White circles and polygons are holes, in the plot and in the legend. The background is a rectangle.
         (name.to_owned(), all_markers(&elements, "#FFFFFF"))
     };
     let expected = [
@@ -154,7 +154,7 @@ fn shape_is_the_regime_and_hollow_is_not_periodic() {
     }
 }
 
-/// Protects the curve from the order of the jobs, which is that of the study and not of the speeds.
+/// Protects: a curve goes from left to right in any order of the jobs.
 #[test]
 fn a_curve_runs_from_left_to_right() {
     let rows = [50.0, 1.0, 20.0, 5.0].map(|omega| row(omega, 0.4, periodic(0.3)));
@@ -163,7 +163,7 @@ fn a_curve_runs_from_left_to_right() {
     assert!(curve.windows(2).all(|pair| pair[0].0 < pair[1].0), "{curve:?}");
 }
 
-/// Protects two jobs at one point: both are drawn, and the curve passes once between them.
+/// Protects: of two jobs at one point both are drawn, and the curve goes through their mean.
 #[test]
 fn duplicates_are_both_drawn() {
     let rows = [
@@ -179,7 +179,7 @@ fn duplicates_are_both_drawn() {
     assert!((curve[1].1 - curve[2].1).abs() <= 1, "the mean of 0.32 and 0.36 is as high as 0.34: {curve:?}");
 }
 
-/// Protects the frequency figure from a line across a speed at which nothing oscillates.
+/// Protects: the frequency curve is interrupted at a speed at which nothing oscillates.
 #[test]
 fn a_stable_job_interrupts_the_frequency_curve() {
     let state = |omega: f64| {
@@ -192,7 +192,7 @@ fn a_stable_job_interrupts_the_frequency_curve() {
     assert_eq!(all_markers(&elements, COLOURS[0]), 4);
 }
 
-/// Protects error bars: drawn where they reach beyond the marker, and only there.
+/// Protects: error bars are drawn if they are longer than the marker, and only then.
 #[test]
 fn error_bars_show_where_they_are_visible() {
     let bars = |error: f64| {
@@ -209,7 +209,7 @@ fn error_bars_show_where_they_are_visible() {
     assert_eq!(bars(f64::NAN), 0);
 }
 
-/// Protects figures from NaN: such a result has no marker and leaves no trace in the drawing.
+/// Protects: a result that is NaN has no marker, and the drawing has no NaN.
 #[test]
 fn a_result_that_is_not_finite_is_not_drawn() {
     let mut rows = partial_study();
@@ -220,10 +220,10 @@ fn a_result_that_is_not_finite_is_not_drawn() {
     assert_eq!(all_markers(&svg::parse(&all[0].svg), COLOURS[1]), before - 1);
 }
 
-/// Protects one figure per combination, each with a file name and a caption of its own.
+/// Protects: every combination has a figure with a unique file name and its own caption.
 #[test]
 fn each_combination_has_its_figure() {
-    let rows: Vec<Row> = ["a/b", "a b", "<&\u{1}\">"]
+    let rows: Vec<JobRow> = ["a/b", "a b", "<&\u{1}\">"]
         .into_iter()
         .flat_map(|name| partial_study().into_iter().map(move |row| with(row, "note", name)))
         .collect();
@@ -235,7 +235,7 @@ fn each_combination_has_its_figure() {
     }
 }
 
-/// Protects studies over something else than speed: names on the axis, in the order of the study.
+/// Protects: a study without speeds has the names of another parameter on the axis, in the order of the study.
 #[test]
 fn a_named_parameter_makes_a_named_axis() {
     let rows = ["whole_top", "inner_side", "both_ends"]
@@ -246,10 +246,10 @@ fn a_named_parameter_makes_a_named_axis() {
     assert!(texts(&elements).contains(&"clamp_side"));
 }
 
-/// Protects studies with more coefficients than there are distinct colours: all curves differ.
+/// Protects: all curves have different colours, even if there are more of them than the palette has.
 #[test]
 fn many_coefficients_have_many_colours() {
-    let rows: Vec<Row> = (1..=20)
+    let rows: Vec<JobRow> = (1..=20)
         .flat_map(|k| [5.0, 7.0].map(|omega| row(omega, f64::from(k) * 0.05, periodic(f64::from(k) * 0.04))))
         .collect();
     let elements = only(&rows, Plot::MuStar);
@@ -263,7 +263,7 @@ fn many_coefficients_have_many_colours() {
     assert!(lowest.is_some_and(|y| y <= 1120), "the legend stays on the page");
 }
 
-/// Protects reports from before the first result: the figure says so.
+/// Protects: a figure without results says that there are none.
 #[test]
 fn a_study_without_results_says_so() {
     for plot in [Plot::MuStar, Plot::Frequency] {

@@ -1,11 +1,11 @@
-//! The report as a folder: all files, whole, and a page that says what is missing.
+//! The report as a folder: it has all files, and a page that says what is missing.
 
 use crate::synthetic::{failed, partial_study, periodic, report, row, with};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use tribosweep::publish::PublishError;
-use tribosweep::report::{Row, RowState, write};
+use tribosweep::report::{JobRow, RowState, write};
 
 const FILES: [&str; 21] = [
     "figure7.csv",
@@ -36,13 +36,13 @@ fn names(folder: &Path) -> BTreeSet<String> {
     entries.map(|entry| entry.expect("an entry").file_name().to_string_lossy().into_owned()).collect()
 }
 
-fn page(rows: &[Row]) -> String {
+fn page(rows: &[JobRow]) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
     write(&report(rows), folder.path()).expect("the report is written");
     fs::read_to_string(folder.path().join("report.md")).expect("the page is there")
 }
 
-/// Protects the set of files: all there, all named in the return value, no temporary ones left.
+/// Protects: all files exist, the return value names all of them, and there are no temporary files.
 #[test]
 fn writes_exactly_the_documented_files() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -58,7 +58,7 @@ fn writes_exactly_the_documented_files() {
     assert_eq!(written.len(), FILES.len());
 }
 
-/// Protects a second report into the same folder: replaced files, and a stranger's file untouched.
+/// Protects: a second report in the same folder replaces the files of the first one, and leaves other files alone.
 #[test]
 fn an_existing_folder_is_updated() {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -71,7 +71,7 @@ fn an_existing_folder_is_updated() {
     assert_eq!(names(folder.path()).len(), FILES.len() + 1);
 }
 
-/// Protects the page of a running study: counts, reasons and what is missing.
+/// Protects: the page of a running study has counts, reasons and the missing jobs.
 #[test]
 fn the_page_says_what_is_missing_and_why() {
     let page = page(&partial_study());
@@ -94,10 +94,10 @@ fn the_page_says_what_is_missing_and_why() {
     assert_eq!(missing.matches("pending").count(), 2, "{missing}");
 }
 
-/// Protects the links: every file of the report can be reached from its page.
+/// Protects: the page links every file of the report.
 #[test]
 fn the_page_links_every_file() {
-    let rows: Vec<Row> = ["inner_side", "outer_side"]
+    let rows: Vec<JobRow> = ["inner_side", "outer_side"]
         .into_iter()
         .flat_map(|side| partial_study().into_iter().map(move |row| with(row, "clamp_side", side)))
         .collect();
@@ -111,7 +111,7 @@ fn the_page_links_every_file() {
     }
 }
 
-/// Protects a complete study from a false alarm.
+/// Protects: the report of a complete study has no warning.
 #[test]
 fn a_complete_study_has_nothing_missing() {
     let page = page(&[row(7.0, 0.4, periodic(0.35))]);
@@ -121,28 +121,28 @@ fn a_complete_study_has_nothing_missing() {
     }
 }
 
-/// Protects the page's lines from an error of several lines with Markdown in it.
+/// Protects: an error message of several lines with Markdown in it becomes one line of text.
 #[test]
 fn an_error_stays_on_its_line() {
     let page = page(&[row(7.0, 0.4, failed("bad\n## not a heading `x`"))]);
     assert!(page.contains("`bad ## not a heading 'x'`"), "{page}");
 }
 
-/// Protects a large study's page from thousands of lines about waiting jobs.
+/// Protects: the page of a large study does not list thousands of pending jobs.
 #[test]
 fn many_missing_jobs_are_summed_up() {
-    let rows: Vec<Row> = (1..=100).map(|k| row(f64::from(k), 0.4, RowState::Pending)).collect();
+    let rows: Vec<JobRow> = (1..=100).map(|k| row(f64::from(k), 0.4, RowState::Pending)).collect();
     let page = page(&rows);
     assert!(page.contains("## Missing jobs (100)"));
     assert_eq!(page.matches("– pending (job").count(), 20);
     assert!(page.contains("and 80 more"));
 }
 
-/// Protects an unfinished write: the error names the file, and no temporary file stays behind.
+/// Protects: if a file cannot be written, the error names it, and no temporary file is left.
 #[test]
 fn an_error_names_the_path() {
     let folder = tempfile::tempdir().expect("a temporary folder");
-    // A folder in the place of a file cannot be replaced by a file.
+    // A file cannot replace a folder of the same name.
     let blocked = folder.path().join("jobs.csv");
     fs::create_dir(&blocked).expect("a folder");
     let error = write(&report(&partial_study()), folder.path()).expect_err("jobs.csv is a folder");

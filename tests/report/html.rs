@@ -1,8 +1,8 @@
-//! The page for a browser: what is in it, what is left out, and that nothing in it is taken for markup.
+//! The page for a browser: its contents, what it leaves out, and that texts of a study are never markup.
 
 use crate::synthetic::{failed, partial_study, periodic, report, row, with};
 use std::fs;
-use tribosweep::report::{Made, Maker, Origin, Report, Row, RowState, write};
+use tribosweep::report::{BuildInfo, JobRow, Provenance, Report, ResultGroup, RowState, write};
 
 fn page_of(report: &Report) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -10,11 +10,11 @@ fn page_of(report: &Report) -> String {
     fs::read_to_string(folder.path().join("report.html")).expect("the page is there")
 }
 
-fn page(rows: &[Row]) -> String {
+fn page(rows: &[JobRow]) -> String {
     page_of(&report(rows))
 }
 
-/// What a reader sees of a page, without the markup.
+/// The text of a page without the markup.
 fn text(page: &str) -> String {
     let body = page.split_once("<main>").expect("a body").1.split("<script>").next().expect("its end");
     let mut text = String::new();
@@ -24,7 +24,7 @@ fn text(page: &str) -> String {
     text.replace("&lt;", "<").replace("&gt;", ">").replace("&amp;", "&").replace("&quot;", "\"")
 }
 
-/// Protects: all that a reader asks of a report is on its page, and what is missing is said before everything else.
+/// Protects: the page has all sections, and it starts with what is missing.
 #[test]
 fn a_partial_study_says_what_is_missing() {
     let page = page(&partial_study());
@@ -58,7 +58,7 @@ fn a_partial_study_says_what_is_missing() {
     }
 }
 
-/// Protects: a complete study has no alarm and no empty sections.
+/// Protects: the page of a complete study has no warning and no empty sections.
 #[test]
 fn a_complete_study_has_nothing_to_warn_of() {
     let page = page(&[row(7.0, 0.4, periodic(0.35)), row(9.0, 0.4, periodic(0.35))]);
@@ -68,7 +68,7 @@ fn a_complete_study_has_nothing_to_warn_of() {
     }
 }
 
-/// Protects: the page is one file: nothing in it is loaded from anywhere.
+/// Protects: the page is one file, which loads nothing.
 #[test]
 fn nothing_is_loaded() {
     let page = page(&partial_study());
@@ -77,26 +77,26 @@ fn nothing_is_loaded() {
     }
     let is_own = |address: &str| address.starts_with('#') || address.starts_with("data:");
     assert!(page.split("href=\"").skip(1).all(is_own));
-    // The name of a namespace is no address that is loaded.
+    // The name of the SVG namespace is not loaded.
     let others = page.matches("http").count() - page.matches("http://www.w3.org/2000/svg").count();
     assert_eq!(others, page.matches("http-equiv").count());
 }
 
-/// Protects: names and messages of a study are text, wherever they are shown.
+/// Protects: names and messages of a study are shown as text everywhere.
 #[test]
 fn what_a_study_says_is_text() {
-    let evil = "</title></svg><script>alert(1)</script>\"'&";
+    let markup = "</title></svg><script>alert(1)</script>\"'&";
     let mut rows = partial_study();
-    rows.push(row(20.0, 0.4, failed(evil)));
-    let rows: Vec<Row> = rows.into_iter().map(|row| with(row, evil, evil)).collect();
-    let origin = Origin { document: evil.to_owned(), ..Origin::default() };
-    let page = page_of(&Report { title: evil, origin: Some(&origin), ..report(&rows) });
+    rows.push(row(20.0, 0.4, failed(markup)));
+    let rows: Vec<JobRow> = rows.into_iter().map(|row| with(row, markup, markup)).collect();
+    let provenance = Provenance { document: markup.to_owned(), ..Provenance::default() };
+    let page = page_of(&Report { title: markup, provenance: Some(&provenance), ..report(&rows) });
     assert_eq!(page.matches("<script").count(), 1, "the page's own");
     assert_eq!(page.matches("</svg>").count(), page.matches("<svg ").count());
     assert!(text(&page).matches("alert(1)").count() > 5);
 }
 
-/// Protects: a page that is going to be written again loads itself anew, the last one does not.
+/// Protects: a page that is going to be written again reloads itself, and the last one does not.
 #[test]
 fn only_a_page_that_changes_refreshes() {
     let rows = partial_study();
@@ -105,8 +105,8 @@ fn only_a_page_that_changes_refreshes() {
     assert!(refreshed.contains("<meta http-equiv=\"refresh\" content=\"7\">"));
 }
 
-fn made(commit: &str, host: &str, jobs: u64, first_ms: i64, last_ms: i64) -> Made {
-    let maker = Maker {
+fn group(commit: &str, host: &str, jobs: u64, first_ms: i64, last_ms: i64) -> ResultGroup {
+    let build = BuildInfo {
         version: "0.1.0".to_owned(),
         commit: commit.to_owned(),
         host: host.to_owned(),
@@ -115,19 +115,20 @@ fn made(commit: &str, host: &str, jobs: u64, first_ms: i64, last_ms: i64) -> Mad
         vectors: "Avx2".to_owned(),
         threads: 4,
     };
-    Made { with: Some(maker), jobs, first_ms, last_ms }
+    ResultGroup { build: Some(build), jobs, first_ms, last_ms }
 }
 
-/// Protects: where results come from is told once for each program and machine, with a word where there are several.
+/// Protects: the provenance has one line for each program and machine, and a warning if there are several.
 #[test]
-fn results_have_their_origin() {
+fn results_have_their_provenance() {
     let day = 86_400_000;
-    let alike = [made("aaaa", "one", 2, 2 * day, 3 * day), made("aaaa", "one", 3, day, 2 * day)];
-    let origin = Origin::grouped("{ \"name\": \"mine\" }".to_owned(), 0, alike.clone());
-    assert_eq!(origin.made, [made("aaaa", "one", 5, day, 3 * day)]);
+    let alike = [group("aaaa", "one", 2, 2 * day, 3 * day), group("aaaa", "one", 3, day, 2 * day)];
+    let provenance = Provenance::grouped("{ \"name\": \"mine\" }".to_owned(), 0, alike.clone());
+    assert_eq!(provenance.groups, [group("aaaa", "one", 5, day, 3 * day)]);
     let rows = partial_study();
-    let page = |origin: &Origin| text(&page_of(&Report { origin: Some(origin), ..report(&rows) }));
-    let told = page(&origin);
+    let page =
+        |provenance: &Provenance| text(&page_of(&Report { provenance: Some(provenance), ..report(&rows) }));
+    let text = page(&provenance);
     for part in [
         "Submitted 1970-01-01 00:00 UTC",
         "1970-01-02 00:00 UTCto 1970-01-04 00:00 UTC",
@@ -136,22 +137,22 @@ fn results_have_their_origin() {
         "Avx2",
         "{ \"name\": \"mine\" }",
     ] {
-        assert!(told.contains(part), "{part} in {told}");
+        assert!(text.contains(part), "{part} in {text}");
     }
-    assert!(!told.contains("The results come from"));
+    assert!(!text.contains("The results come from"));
 
-    let several = [made("bbbb+modified", "one", 1, 0, 0), made("aaaa", "two", 1, 0, 0), Made::default()];
-    let told = page(&Origin::grouped(String::new(), 0, alike.into_iter().chain(several)));
+    let several =
+        [group("bbbb+modified", "one", 1, 0, 0), group("aaaa", "two", 1, 0, 0), ResultGroup::default()];
+    let text = page(&Provenance::grouped(String::new(), 0, alike.into_iter().chain(several)));
     for part in ["come from 2 builds", "come from 2 machines", "changes that are in no commit", "unknown"] {
-        assert!(told.contains(part), "{part} in {told}");
+        assert!(text.contains(part), "{part} in {text}");
     }
 }
 
-/// Protects: of many combinations the page shows the first, says how many are left out, and stays small; the files have
-/// them all.
+/// Protects: of many combinations the page shows the first ones, says how many are left out, and stays small.
 #[test]
 fn many_combinations_are_left_out() {
-    let rows: Vec<Row> = (0..40)
+    let rows: Vec<JobRow> = (0..40)
         .flat_map(|load| partial_study().into_iter().map(move |row| with(row, "load_n", load)))
         .collect();
     let page = page(&rows);
@@ -160,11 +161,11 @@ fn many_combinations_are_left_out() {
     assert!(page.contains("<h3>load_n = 5</h3>") && !page.contains("<h3>load_n = 6</h3>"));
 }
 
-/// Protects: a study of a hundred thousand jobs has a page that a browser opens: without figures of all jobs, and
-/// saying so.
+/// Protects: the page of a study of a hundred thousand jobs is small enough for a browser. It has no figures, and says
+/// so.
 #[test]
 fn a_huge_study_has_a_small_page() {
-    let rows: Vec<Row> = (0..100_000)
+    let rows: Vec<JobRow> = (0..100_000)
         .map(|i| row(f64::from(i % 1000), 0.1 + f64::from(i / 1000) * 0.005, RowState::Pending))
         .collect();
     let page = page(&rows);
@@ -173,13 +174,13 @@ fn a_huge_study_has_a_small_page() {
     assert!(text(&page).contains("99900 more"), "missing jobs are summed up");
 }
 
-/// Protects: a study of some thousand jobs is drawn, though not every job can be pointed at.
+/// Protects: a study of some thousand jobs is drawn, but without tooltips.
 #[test]
 fn a_large_study_is_drawn() {
-    let rows: Vec<Row> =
+    let rows: Vec<JobRow> =
         (0..5_000).map(|i| row(f64::from(i % 100), 0.1 + f64::from(i / 100) * 0.01, periodic(0.3))).collect();
     let page = page(&rows);
     assert!(page.len() < 12_000_000, "{} bytes", page.len());
     assert!(page.matches("<svg ").count() == 6 && !page.contains("data-job"));
-    assert!(text(&page).contains("Too many jobs to point at each of them"));
+    assert!(text(&page).contains("There are too many jobs for tooltips"));
 }

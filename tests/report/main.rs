@@ -1,4 +1,4 @@
-//! Reports from made-up records: what a reader or a program finds in the files.
+//! Reports from synthetic records: what a reader or a program finds in the files.
 
 mod browser;
 #[path = "../support/browser.rs"]

@@ -1,12 +1,12 @@
-//! Maps, shares and residuals: every job is in them, with its values.
+//! Maps and shares: every job is in them with its values.
 
 use crate::svg::{self, Element};
 use crate::synthetic::{done, failed, partial_study, periodic, row, with};
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::figure::{Plot, figures};
-use tribosweep::report::{Row, RowState};
+use tribosweep::report::{JobRow, RowState};
 
-fn only(rows: &[Row], plot: Plot) -> Vec<Element> {
+fn only(rows: &[JobRow], plot: Plot) -> Vec<Element> {
     let mut all = figures(rows, plot).expect("a string takes everything");
     assert_eq!(all.len(), 1);
     svg::parse(&all.remove(0).svg)
@@ -16,31 +16,34 @@ fn number(element: &Element, name: &str) -> f64 {
     element.attribute(name).expect(name).parse().expect("a number")
 }
 
-/// The shapes that tell of jobs.
-fn hits(elements: &[Element]) -> Vec<&Element> {
+/// The shapes that have tooltips of jobs.
+fn targets(elements: &[Element]) -> Vec<&Element> {
     elements.iter().filter(|element| element.attribute("data-job").is_some()).collect()
 }
 
-fn hit<'a>(elements: &'a [Element], job: &str) -> &'a Element {
-    hits(elements).into_iter().find(|hit| hit.is("data-job", job)).unwrap_or_else(|| panic!("no {job}"))
+fn target<'a>(elements: &'a [Element], job: &str) -> &'a Element {
+    targets(elements)
+        .into_iter()
+        .find(|target| target.is("data-job", job))
+        .unwrap_or_else(|| panic!("no {job}"))
 }
 
 /// The text in the middle of a shape.
-fn text_in<'a>(elements: &'a [Element], hit: &Element) -> &'a str {
+fn text_in<'a>(elements: &'a [Element], target: &Element) -> &'a str {
     let inside = |text: &&Element| {
-        let (x, y) = (number(text, "x") - number(hit, "x"), number(text, "y") - number(hit, "y"));
-        x > 0.0 && x < number(hit, "width") && y > 0.0 && y < number(hit, "height")
+        let (x, y) = (number(text, "x") - number(target, "x"), number(text, "y") - number(target, "y"));
+        x > 0.0 && x < number(target, "width") && y > 0.0 && y < number(target, "height")
     };
     elements.iter().filter(|element| element.name == "text").find(inside).map_or("", |text| &text.text)
 }
 
-/// Protects: the regime map has a cell for every job, done or not, at its place and with the letter of `status`; letters
-/// that occur are explained, and faster is to the right, more friction above.
+/// Protects: the regime map has a cell for every job, done or not, at the right position and with the letter of `status`.
+/// The letters that occur are explained. Speed increases to the right, and friction upwards.
 #[test]
 fn every_job_has_its_cell() {
     let rows = partial_study();
     let elements = only(&rows, Plot::RegimeMap);
-    assert_eq!(hits(&elements).len(), rows.len());
+    assert_eq!(targets(&elements).len(), rows.len());
     for (job, letter) in [
         ("job-1-0.2", "S"),
         ("job-1-0.3", "K"),
@@ -51,10 +54,10 @@ fn every_job_has_its_cell() {
         ("job-1-0.4", ">"),
         ("job-50-0.4", "."),
     ] {
-        let cell = hit(&elements, job);
+        let cell = target(&elements, job);
         assert_eq!((text_in(&elements, cell), cell.attribute("data-value")), (letter, Some(letter)), "{job}");
     }
-    let place = |job| (number(hit(&elements, job), "x"), number(hit(&elements, job), "y"));
+    let place = |job| (number(target(&elements, job), "x"), number(target(&elements, job), "y"));
     let (slow, fast, rough) = (place("job-2-0.2"), place("job-50-0.2"), place("job-2-0.4"));
     assert!(slow.0 < fast.0 && slow.1 == fast.1 && rough.0 == slow.0 && rough.1 < slow.1);
     let texts: Vec<&str> =
@@ -66,7 +69,7 @@ fn every_job_has_its_cell() {
     }
 }
 
-/// Protects: several jobs at one point share its cell, none hides another.
+/// Protects: several jobs at one point share a cell, and none hides another one.
 #[test]
 fn several_jobs_share_a_cell() {
     let mut rows =
@@ -74,16 +77,16 @@ fn several_jobs_share_a_cell() {
     rows[1].job = "other".to_owned();
     let elements = only(&rows, Plot::RegimeMap);
     let (first, other, alone) =
-        (hit(&elements, "job-7-0.4"), hit(&elements, "other"), hit(&elements, "job-9-0.4"));
+        (target(&elements, "job-7-0.4"), target(&elements, "other"), target(&elements, "job-9-0.4"));
     assert!(number(first, "x") + number(first, "width") <= number(other, "x"));
     assert!(number(other, "x") + number(other, "width") <= number(alone, "x"));
     assert_eq!((text_in(&elements, first), text_in(&elements, other)), ("K", "!"));
 }
 
-/// Protects: the map of frequencies has the number in the cell and in full in the data, and a letter where there is none;
-/// colours follow the numbers.
+/// Protects: the map of frequencies has rounded numbers in the cells and exact ones in the attributes, and a letter for a
+/// job without a frequency. The colours follow the numbers.
 #[test]
-fn frequencies_are_told_twice() {
+fn frequencies_are_numbers_and_colours() {
     let at = |omega: f64, frequency| {
         let mut row = row(omega, 0.4, periodic(0.3));
         if let RowState::Done(record) = &mut row.state {
@@ -99,16 +102,17 @@ fn frequencies_are_told_twice() {
         row(9.0, 0.4, done(Outcome::NotPeriodic, Regime::StickSlip, 0.4)),
     ];
     let elements = only(&rows, Plot::FrequencyMap);
-    let told =
-        |job: &str| (text_in(&elements, hit(&elements, job)), hit(&elements, job).attribute("data-value"));
-    assert_eq!(told("job-1-0.4"), ("9.9", Some("9876.5")));
-    assert_eq!(told("job-2-0.4"), ("15.4", Some("15432.1")));
-    assert_eq!(told("job-7-0.4"), ("S", Some("")));
-    assert_eq!(told("job-9-0.4"), ("14.5~", Some("14512.4")));
+    let shown = |job: &str| {
+        (text_in(&elements, target(&elements, job)), target(&elements, job).attribute("data-value"))
+    };
+    assert_eq!(shown("job-1-0.4"), ("9.9", Some("9876.5")));
+    assert_eq!(shown("job-2-0.4"), ("15.4", Some("15432.1")));
+    assert_eq!(shown("job-7-0.4"), ("S", Some("")));
+    assert_eq!(shown("job-9-0.4"), ("14.5~", Some("14512.4")));
     let fill = |job: &str| {
-        let hit = hit(&elements, job);
+        let target = target(&elements, job);
         let same = |e: &&Element| {
-            e.name == "rect" && e.is("x", hit.attribute("x").unwrap()) && e.attribute("fill").is_some()
+            e.name == "rect" && e.is("x", target.attribute("x").unwrap()) && e.attribute("fill").is_some()
         };
         elements.iter().find(same).and_then(|cell| cell.attribute("fill")).unwrap()
     };
@@ -116,24 +120,25 @@ fn frequencies_are_told_twice() {
     assert_eq!((fill("job-1-0.4"), fill("job-2-0.4")), ("#440154", "#B5DE2B"), "the ends of the scale");
 }
 
-/// Protects: shares are a panel for every friction coefficient, areas between neighbours in the grid and not across a job
-/// without a result, which is no point to point at.
+/// Protects: the figure of shares has a panel for every friction coefficient. Areas connect neighbours in the grid, but
+/// not across a job without a result, which has no tooltip either.
 #[test]
 fn shares_have_a_panel_for_each_mu() {
     let elements = only(&partial_study(), Plot::Shares);
     let titles = elements.iter().filter(|e| e.name == "text" && e.text.starts_with("μ = ")).count();
-    assert_eq!((titles, hits(&elements).len()), (3, 14));
+    assert_eq!((titles, targets(&elements).len()), (3, 14));
     let stick = |e: &&Element| e.name == "polygon" && e.is("fill", "#0072B2");
     // μ = 0.3 lacks 50 rpm: an area up to 10 rpm and a bar at 100. μ = 0.4 has 2 to 10 rpm.
     assert_eq!(elements.iter().filter(stick).count(), 3);
-    let hit = hit(&elements, "job-5-0.3");
+    let target = target(&elements, "job-5-0.3");
     assert_eq!(
-        ["stick", "slip", "separated"].map(|name| number(hit, &format!("data-{name}"))),
+        ["stick", "slip", "separated"].map(|name| number(target, &format!("data-{name}"))),
         [25.0, 50.0, 25.0]
     );
 }
 
-/// Protects: maps of a study without speeds have its names, and one without results or jobs is no failure.
+/// Protects: the maps of a study without speeds have the names of its parameter, and a study without results or jobs is
+/// no error.
 #[test]
 fn odd_studies_have_maps() {
     let rows =
@@ -141,13 +146,13 @@ fn odd_studies_have_maps() {
     for plot in [Plot::RegimeMap, Plot::FrequencyMap, Plot::Shares] {
         let elements = only(&rows, plot);
         assert!(elements.iter().any(|e| e.text == "inner_side"), "{plot:?}");
-        assert_eq!(hits(&elements).len(), 2, "{plot:?}");
+        assert_eq!(targets(&elements).len(), 2, "{plot:?}");
         only(&[], plot);
         only(&[row(7.0, 0.4, RowState::Pending)], plot);
     }
 }
 
-/// Protects: a title is told with every shape, and text that looks like markup is text.
+/// Protects: every shape has a title, and text that looks like markup is text.
 #[test]
 fn titles_are_text() {
     let rows = [with(row(7.0, 0.4, failed("<script>alert(1)</script> & more")), "note", "<b>\"")];

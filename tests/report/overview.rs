@@ -3,14 +3,14 @@
 use crate::synthetic::{done, failed, periodic, row};
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::overview::overview;
-use tribosweep::report::{Row, RowState};
+use tribosweep::report::{JobRow, RowState};
 
 /// Without colours.
-fn plain(rows: &[Row], width: usize) -> String {
+fn plain(rows: &[JobRow], width: usize) -> String {
     anstream::adapter::strip_str(&overview(rows, width)).to_string()
 }
 
-fn study() -> Vec<Row> {
+fn study() -> Vec<JobRow> {
     vec![
         row(0.5, 0.2, done(Outcome::Decayed, Regime::Stable, 0.2)),
         row(0.5, 0.4, periodic(0.38)),
@@ -21,7 +21,7 @@ fn study() -> Vec<Row> {
     ]
 }
 
-/// Protects: every job has its letter at its place, the highest friction on top, and what the letters mean is said.
+/// Protects: every job has its letter at the right position, the highest friction is on top, and the letters are explained.
 #[test]
 fn every_job_has_its_letter() {
     let text = plain(&study(), 80);
@@ -43,9 +43,9 @@ fn every_job_has_its_letter() {
     }
 }
 
-/// Protects: a narrow terminal gets the same letters in several pieces, no line longer than it is wide.
+/// Protects: a narrow terminal gets the same letters in several parts, and no line is longer than its width.
 #[test]
-fn narrow_terminals_get_pieces() {
+fn narrow_terminals_get_several_parts() {
     let text = plain(&study(), 20);
     assert!(text.lines().take(6).all(|line| line.chars().count() <= 20), "{text}");
     let lines = text.lines().take(6).filter(|line| line.starts_with("  "));
@@ -53,7 +53,7 @@ fn narrow_terminals_get_pieces() {
     assert_eq!(letters.chars().filter(|c| "KxS!.>".contains(*c)).count(), 6, "{text}");
 }
 
-/// Protects: no jobs, no grid.
+/// Protects: a study without jobs has no grid.
 #[test]
 fn without_jobs_there_is_nothing_to_show() {
     assert_eq!(overview(&[], 80), "");

@@ -1,4 +1,4 @@
-//! Error against run time, on made-up jobs whose errors are known.
+//! Error against run time, with synthetic jobs whose errors are known.
 
 use crate::svg;
 use crate::synthetic::{failed, record, row, with};
@@ -6,7 +6,7 @@ use std::fs;
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::pareto::refinement::{Level, Unclean, limit, observed_order};
 use tribosweep::report::pareto::{Direction, ParetoError, compare, markdown, on_front, write};
-use tribosweep::report::{JobNumerics, Row, RowState};
+use tribosweep::report::{JobNumerics, JobRow, RowState};
 
 /// A cube of n × n × n elements of 1/n mm; the step is in proportion.
 fn numerics(n: usize, safety_factor: f64) -> JobNumerics {
@@ -28,7 +28,7 @@ fn numerics(n: usize, safety_factor: f64) -> JobNumerics {
 }
 
 /// A finished job; its time step follows from mesh and safety factor.
-fn job(numerics: JobNumerics, mu_star: f64, wall_s: f64) -> Row {
+fn job(numerics: JobNumerics, mu_star: f64, wall_s: f64) -> JobRow {
     let mut record = record(Outcome::Periodic, Regime::StickSlip, mu_star);
     record.mu_star_se = 1.0e-6;
     record.time_step_s = 1.0e-6 * numerics.safety_factor.unwrap_or(1.0) / numerics.elements[0] as f64;
@@ -45,8 +45,8 @@ fn manufactured(n: usize, safety_factor: f64) -> f64 {
     0.3 + 0.02 * (4.0 / n as f64).powi(2) + 0.004 * safety_factor
 }
 
-/// Meshes 4, 8, 16 at three steps each; dearer with both.
-fn product() -> Vec<Row> {
+/// Meshes 4, 8, 16 at three steps each; the run time increases with both.
+fn product() -> Vec<JobRow> {
     let mut rows = Vec::new();
     for n in [4, 8, 16] {
         for safety in [0.8, 0.4, 0.2] {
@@ -80,7 +80,7 @@ fn richardson_recovers_a_manufactured_limit() {
     }
 }
 
-/// Protects: where the order is not clean nothing is extrapolated, and it is said why.
+/// Protects: if the order is not clean, nothing is extrapolated, and the reason is given.
 #[test]
 fn an_unclean_order_is_refused() {
     let of = |values: &[(f64, f64)]| limit(&levels(values)).unwrap();
@@ -101,12 +101,12 @@ fn an_unclean_order_is_refused() {
         matches!(unstable.order, Err(Unclean::OrderNotStable(a, b)) if a < 1.1 && b > 1.9),
         "{unstable:?}"
     );
-    // The finest figure stands, with what first order would leave: the last difference at a ratio of 2.
+    // The finest figure is taken, with the remaining error at first order: the last difference, at a ratio of 2.
     assert_eq!(unstable.value, 0.355);
     assert!((unstable.uncertainty - 0.005).abs() < 1.0e-12);
-    // Up and down: a small last difference is no evidence, the spread of the last three levels is.
-    let restless = of(&[(4.0, 0.319), (2.0, 0.312), (1.0, 0.313)]);
-    assert!((restless.uncertainty - 0.007).abs() < 1.0e-12, "{restless:?}");
+    // Not monotone: the uncertainty is the spread of the last three levels, however small the last difference is.
+    let not_monotone = of(&[(4.0, 0.319), (2.0, 0.312), (1.0, 0.313)]);
+    assert!((not_monotone.uncertainty - 0.007).abs() < 1.0e-12, "{not_monotone:?}");
     let noisy: Vec<Level> = [(4.0, 0.34), (2.0, 0.31), (1.0, 0.3099)]
         .map(|(size, value)| Level { size, value, standard_error: 1.0e-4 })
         .to_vec();
@@ -115,9 +115,9 @@ fn an_unclean_order_is_refused() {
     assert!(observed_order([coarse, middle, fine]).is_some());
 }
 
-/// Protects: the front is what its definition says, on points with ties in cost, error and both.
+/// Protects: the front agrees with its definition, for points with equal costs, equal errors or both.
 #[test]
-fn the_front_is_that_of_brute_force() {
+fn the_front_agrees_with_a_brute_force_search() {
     let mut state = 12345_u64;
     let mut next = |n: u64| {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -133,10 +133,10 @@ fn the_front_is_that_of_brute_force() {
     assert_eq!(on_front(&[(f64::NAN, 0.0), (1.0, f64::NAN), (2.0, 3.0)]), [false, false, true]);
 }
 
-/// Protects: the finest job is the reference, extrapolated along the step once and the mesh once, and errors are
-/// the differences from that.
+/// Protects: the finest job is the reference. It is extrapolated along mesh and step without counting the step twice, and
+/// errors are the differences from it.
 #[test]
-fn errors_are_those_that_were_put_in() {
+fn errors_are_the_manufactured_ones() {
     let rows = product();
     let comparison = compare(&rows).unwrap();
     let [case] = comparison.cases.as_slice() else { panic!("one case") };
@@ -144,8 +144,8 @@ fn errors_are_those_that_were_put_in() {
     assert_eq!((finest.numerics.elements, finest.numerics.safety_factor), ([16; 3], Some(0.2)));
     let directions: Vec<_> = case.reference.chains.iter().map(|chain| chain.direction).collect();
     assert_eq!(directions, [Direction::MeshAndStep, Direction::Step]);
-    // At a constant fraction 0.2 of the limit the mesh goes to 0.3008 and leaves the rest of the step's term
-    // alone; the chain of steps is not added to it.
+    // At a constant fraction 0.2 of the stability limit, the chain of meshes has the limit 0.3008. The chain of steps is
+    // not added to it.
     let target = case.reference.targets[0].unwrap();
     assert!((target.value - (0.3 + 0.004 * 0.2)).abs() < 1.0e-9, "{target:?}");
     for (job, score) in case.jobs.iter().zip(&case.scores) {
@@ -156,20 +156,20 @@ fn errors_are_those_that_were_put_in() {
         let claimed = score.claimed_error();
         assert!(claimed >= score.mu_star_resolution && claimed >= score.mu_star_error.abs());
     }
-    // The uncertainty: corrections of the mesh (0.02/16) and, not applied but there, none of the step.
+    // The uncertainty is the correction of the mesh, 0.02/16; the step adds none.
     let uncertainty = target.uncertainty.unwrap();
     assert!((uncertainty - 0.02 / 16.0).abs() < 1.0e-9, "{uncertainty}");
-    // The reference itself is off by its correction: at most resolved to rounding, and its claim is the resolution.
+    // The error of the reference itself is its correction. It is not resolved, so the resolution is claimed.
     let own = &case.scores[case.reference.job];
     assert!(!own.is_resolved());
     let rounded_up = own.claimed_error() / own.mu_star_resolution;
     assert!((1.0..=1.1).contains(&rounded_up), "two digits, rounded up: {rounded_up}");
-    // Brute force says the same about the front.
+    // The front agrees with that of the claimed errors.
     let points: Vec<_> = case.scores.iter().map(|s| (s.wall_s.unwrap(), s.claimed_error())).collect();
     assert_eq!(case.scores.iter().map(|s| s.on_wall_front).collect::<Vec<_>>(), on_front(&points));
 }
 
-/// Protects: at a given time step the mesh chain says nothing of the step, and both corrections are made.
+/// Protects: at a given time step, the chain of meshes does not extrapolate the step, so both corrections are made.
 #[test]
 fn given_steps_are_extrapolated_in_both_directions() {
     let mut rows = Vec::new();
@@ -190,8 +190,8 @@ fn given_steps_are_extrapolated_in_both_directions() {
     assert!((reference.targets[0].unwrap().value - 0.3).abs() < 1.0e-9, "{reference:?}");
 }
 
-/// Protects: only jobs of the same physics are compared, and damping is physics exactly when the finest mesh has
-/// several values of it.
+/// Protects: only jobs with the same physics are compared. Damping belongs to the physics if the finest mesh has several
+/// values of it, and to the numerics otherwise.
 #[test]
 fn physical_cases_are_kept_apart() {
     let mut rows = product();
@@ -203,7 +203,7 @@ fn physical_cases_are_kept_apart() {
         }
         row
     }));
-    let cases = |rows: &[Row]| {
+    let cases = |rows: &[JobRow]| {
         let comparison = compare(rows).unwrap();
         comparison.cases.iter().map(|case| (case.caption.clone(), case.jobs.len())).collect::<Vec<_>>()
     };
@@ -221,19 +221,19 @@ fn physical_cases_are_kept_apart() {
     assert!(split[0].0.ends_with("β_R = 5e-8 s") && split[1].0.ends_with("β_R = 0 s"), "{split:?}");
 }
 
-/// Protects: a mesh refined in one direction only is no level of the chain.
+/// Protects: a mesh that is refined in one direction only is no level of the chain.
 #[test]
-fn lopsided_meshes_are_no_levels() {
+fn meshes_refined_in_one_direction_are_no_levels() {
     let mut rows = product();
-    let lopsided = JobNumerics { elements: [8, 16, 16], element_size_m: 0.8e-4, ..numerics(8, 0.2) };
-    rows.push(job(lopsided, 0.5, 1.0));
+    let one_direction = JobNumerics { elements: [8, 16, 16], element_size_m: 0.8e-4, ..numerics(8, 0.2) };
+    rows.push(job(one_direction, 0.5, 1.0));
     let comparison = compare(&rows).unwrap();
     for chain in &comparison.cases[0].reference.chains {
         assert_eq!(chain.sizes.len(), 3, "{chain:?}");
     }
 }
 
-/// Protects: what stopping early costs and saves, against the whole run of any tolerance.
+/// Protects: errors and savings of stopping early are those relative to the whole run, for any tolerance.
 #[test]
 fn early_stops_are_paired_with_whole_runs() {
     let mut rows = product();
@@ -256,17 +256,17 @@ fn early_stops_are_paired_with_whole_runs() {
     assert_eq!(pair.wall_saved, Some(1.0 - 2.0 / b.row.wall_s.unwrap()));
 }
 
-/// Protects: what cannot be compared is refused with what would be right.
+/// Protects: if nothing can be compared, the error says what is expected.
 #[test]
 fn nothing_to_compare_is_an_error() {
     let rows = product();
     assert_eq!(compare(&[]).unwrap_err(), ParetoError::TooFewDone { done: 0, jobs: 0 });
     assert_eq!(compare(&rows[..1]).unwrap_err(), ParetoError::TooFewDone { done: 1, jobs: 1 });
-    let old: Vec<Row> = rows.iter().cloned().map(|row| Row { numerics: None, ..row }).collect();
+    let old: Vec<JobRow> = rows.iter().cloned().map(|row| JobRow { numerics: None, ..row }).collect();
     assert_eq!(compare(&old).unwrap_err(), ParetoError::NoNumerics);
-    let untimed: Vec<Row> = rows.iter().cloned().map(|row| Row { wall_s: None, ..row }).collect();
+    let untimed: Vec<JobRow> = rows.iter().cloned().map(|row| JobRow { wall_s: None, ..row }).collect();
     assert_eq!(compare(&untimed).unwrap_err(), ParetoError::NoRunTimes { done: 9 });
-    let apart: Vec<Row> = rows
+    let apart: Vec<JobRow> = rows
         .iter()
         .cloned()
         .map(|mut row| {
@@ -277,12 +277,12 @@ fn nothing_to_compare_is_an_error() {
         .collect();
     assert_eq!(compare(&apart).unwrap_err(), ParetoError::OneJobACase { done: 9 });
     assert!(ParetoError::OneJobACase { done: 9 }.to_string().contains("safety_factor"));
-    // The same job of two studies is one.
+    // A job that two studies share counts once.
     let twice = [rows[0].clone(), rows[0].clone()];
     assert_eq!(compare(&twice).unwrap_err(), ParetoError::TooFewDone { done: 1, jobs: 1 });
 }
 
-/// Protects: a study in progress is compared by what is there, and says what is not.
+/// Protects: a study in progress is compared by its finished jobs, and the page says what is missing.
 #[test]
 fn a_partial_study_says_so() {
     let mut rows = product();
@@ -296,7 +296,7 @@ fn a_partial_study_says_so() {
     assert_eq!(case.reference.chains.len(), 1, "one step on the finest mesh is no chain");
 
     let lone = with(row(9.0, 0.4, RowState::Pending), "elements", "x");
-    rows.push(Row { numerics: Some(JobNumerics { case: "lone".into(), ..numerics(4, 0.8) }), ..lone });
+    rows.push(JobRow { numerics: Some(JobNumerics { case: "lone".into(), ..numerics(4, 0.8) }), ..lone });
     let text = markdown(&compare(&rows).unwrap());
     assert!(
         text.contains("Left out") && text.contains("ω = 9 rpm") && text.contains("0 of 1 jobs done"),
@@ -304,8 +304,8 @@ fn a_partial_study_says_so() {
     );
 }
 
-/// Protects the files: the table of the page is that of the command, the CSV has one line a job with the errors, and
-/// the figure one marker a job, rings on the front and labels that a reader understands.
+/// Protects: the page has the same table as the command, the CSV has one line per job with the errors, and the figure has
+/// one marker per job, rings on the front and readable labels.
 #[test]
 fn the_files_hold_the_comparison() {
     let rows = product();
@@ -342,7 +342,7 @@ fn the_files_hold_the_comparison() {
         |test: fn(&svg::Element) -> bool| elements.iter().filter(|e| e.name == "circle" && test(e)).count();
     let hollow = case.scores.iter().filter(|score| !score.is_resolved()).count();
     let front = case.scores.iter().filter(|score| score.on_wall_front).count();
-    // The legend adds one ring and, for three meshes and three kinds, markers of its own.
+    // The legend has one ring, and markers for three meshes and three kinds.
     let rings = circles(|e| e.is("fill", "none"));
     assert_eq!(rings, front + 1);
     assert_eq!(circles(|e| e.is("fill", "#FFFFFF")), hollow + usize::from(hollow > 0));

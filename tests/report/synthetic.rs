@@ -1,12 +1,12 @@
-//! Made-up jobs: plausible figures without a simulation.
+//! Synthetic jobs: plausible results without a simulation.
 
 use serde_json::Value;
 use tribosweep::analysis::{EnergyTotals, JobRecord, Outcome, Regime};
-use tribosweep::report::{Report, Row, RowState};
+use tribosweep::report::{JobRow, Report, RowState};
 
-/// The report of these rows, of which nothing else is known.
-pub fn report(rows: &[Row]) -> Report<'_> {
-    Report { title: "Reference", rows, origin: None, written_ms: 0, refresh_s: None }
+/// The report of these rows, without provenance.
+pub fn report(rows: &[JobRow]) -> Report<'_> {
+    Report { title: "Reference", rows, provenance: None, written_ms: 0, refresh_s: None }
 }
 
 pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
@@ -59,8 +59,8 @@ pub fn failed(error: &str) -> RowState {
     RowState::Failed { error: error.to_owned() }
 }
 
-pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> Row {
-    Row {
+pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> JobRow {
+    JobRow {
         study: "reference".to_owned(),
         job: format!("job-{omega_rpm}-{mu}"),
         parameters: vec![("omega_rpm".to_owned(), omega_rpm.into()), ("mu".to_owned(), mu.into())],
@@ -72,16 +72,16 @@ pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> Row {
     }
 }
 
-pub fn with(mut row: Row, name: &str, value: impl Into<Value>) -> Row {
+pub fn with(mut row: JobRow, name: &str, value: impl Into<Value>) -> JobRow {
     let value = value.into();
     row.job = format!("{}-{value}", row.job);
     row.parameters.push((name.to_owned(), value));
     row
 }
 
-/// Three friction coefficients over six speeds, with every outcome: 14 results, one job failed, one
-/// runs, two wait.
-pub fn partial_study() -> Vec<Row> {
+/// Three friction coefficients over six speeds, with every outcome: 14 jobs have results, one has
+/// failed, one is running, and two are pending.
+pub fn partial_study() -> Vec<JobRow> {
     let mut rows = Vec::new();
     for mu in [0.2, 0.3, 0.4] {
         for omega in [1.0, 2.0, 5.0, 10.0, 50.0, 100.0] {

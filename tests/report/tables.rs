@@ -1,13 +1,13 @@
-//! The tables: every job in its cell, every absence named.
+//! The tables: every job is in its cell, and missing results are marked.
 
 use crate::synthetic::{done, failed, partial_study, periodic, row, with};
 use serde_json::json;
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::tables::{self, Quantity};
-use tribosweep::report::{Row, RowState};
+use tribosweep::report::{JobRow, RowState};
 
 /// The lines of the Markdown tables as cells without padding, rules left out.
-fn cells(rows: &[Row], quantity: Quantity) -> Vec<Vec<String>> {
+fn cells(rows: &[JobRow], quantity: Quantity) -> Vec<Vec<String>> {
     tables::markdown(rows, quantity)
         .lines()
         .filter(|line| line.starts_with('|') && !line.contains("---"))
@@ -15,13 +15,13 @@ fn cells(rows: &[Row], quantity: Quantity) -> Vec<Vec<String>> {
         .collect()
 }
 
-fn csv(rows: &[Row], quantity: Quantity) -> Vec<String> {
+fn csv(rows: &[JobRow], quantity: Quantity) -> Vec<String> {
     let mut out = Vec::new();
     tables::csv(rows, quantity, &mut out).expect("a vector takes everything");
     String::from_utf8(out).expect("the table is UTF-8").lines().map(str::to_owned).collect()
 }
 
-/// Protects the place and the form of each cell in a study with every kind of job.
+/// Protects: in a study with every kind of job, each cell has the right position and format.
 #[test]
 fn mu_star_of_a_partial_study() {
     let table = cells(&partial_study(), Quantity::MuStar);
@@ -37,7 +37,7 @@ fn mu_star_of_a_partial_study() {
     assert_eq!(table, expected);
 }
 
-/// Protects the CSV twin: the same cells, nothing where nothing is known.
+/// Protects: the CSV has the same cells, and missing results are empty.
 #[test]
 fn csv_has_the_same_cells() {
     let table = csv(&partial_study(), Quantity::MuStar);
@@ -48,7 +48,7 @@ fn csv_has_the_same_cells() {
     assert_eq!(table.len(), 7);
 }
 
-/// Protects the other two quantities: whole hertz, `stable` where nothing oscillates, regimes by name.
+/// Protects: frequencies are in whole hertz, `stable` if nothing oscillates, and regimes are names.
 #[test]
 fn frequency_and_regime_cells() {
     let frequency = cells(&partial_study(), Quantity::Frequency);
@@ -59,7 +59,7 @@ fn frequency_and_regime_cells() {
     assert_eq!(regime[5], ["50", "stable", "failed", "–"]);
 }
 
-/// Protects the legend: every mark in a cell is explained below the table.
+/// Protects: the legend below a table explains every mark.
 #[test]
 fn every_mark_is_explained() {
     for quantity in [Quantity::MuStar, Quantity::Frequency, Quantity::Regime] {
@@ -71,7 +71,7 @@ fn every_mark_is_explained() {
     }
 }
 
-/// Protects readability in a terminal: all lines of a table are equally wide.
+/// Protects: all lines of a table have the same width, so that it is readable in a terminal.
 #[test]
 fn columns_are_aligned() {
     for quantity in [Quantity::MuStar, Quantity::Regime] {
@@ -83,7 +83,7 @@ fn columns_are_aligned() {
     }
 }
 
-/// Protects numeric order: 10 after 2, whatever the order of the jobs.
+/// Protects: values are in numerical order, 10 after 2, in any order of the jobs.
 #[test]
 fn speeds_and_coefficients_ascend() {
     let rows = [(10.0, 0.4), (2.0, 0.1), (0.5, 0.4)].map(|(omega, mu)| row(omega, mu, periodic(0.3)));
@@ -93,7 +93,7 @@ fn speeds_and_coefficients_ascend() {
     assert_eq!(speeds, ["0.5", "2", "10"]);
 }
 
-/// Protects two jobs at the same point from hiding each other.
+/// Protects: two jobs at the same point are both in the cell.
 #[test]
 fn duplicates_share_a_cell() {
     let rows =
@@ -102,7 +102,7 @@ fn duplicates_share_a_cell() {
     assert_eq!(csv(&rows, Quantity::MuStar)[1], "7,0.3500 / 0.3600 / –");
 }
 
-/// Protects combinations of further parameters from being mixed in one table.
+/// Protects: every combination of further parameters has its own table.
 #[test]
 fn one_table_per_combination() {
     let mut rows = Vec::new();
@@ -132,7 +132,7 @@ fn one_table_per_combination() {
     assert_eq!(table[8], "outer_side,1e-7,7,0.3100");
 }
 
-/// Protects studies at one speed: the first parameter that varies takes the rows.
+/// Protects: in a study at one speed, the first parameter that varies is along the rows.
 #[test]
 fn without_speeds_the_first_varying_parameter_makes_the_rows() {
     let rows = [json!([8, 10, 6]), json!([12, 15, 10])].map(|elements| {
@@ -147,7 +147,7 @@ fn without_speeds_the_first_varying_parameter_makes_the_rows() {
     assert!(text.contains("### beta_r_s = 12\n"), "{text}");
 }
 
-/// Protects the smallest studies: one job, and none.
+/// Protects: studies with one job and with none have tables.
 #[test]
 fn one_job_and_none() {
     let one = cells(&[row(7.0, 0.4, failed("no"))], Quantity::MuStar);
@@ -155,21 +155,21 @@ fn one_job_and_none() {
     assert_eq!(cells(&[], Quantity::MuStar), [["ω [rpm]"]]);
 }
 
-/// Protects headings from the rounding of a computed grid, and cells from being lost by it.
+/// Protects: rounding errors of a computed grid are not in the headings, and no cell is lost because of them.
 #[test]
 fn computed_coefficients_have_short_headings() {
     let rows = [row(7.0, 0.1 + 0.2, periodic(0.25)), row(8.0, 0.1 + 0.2, periodic(0.26))];
     assert_eq!(cells(&rows, Quantity::MuStar), [["ω [rpm]", "μ = 0.3"], ["7", "0.2500"], ["8", "0.2600"]]);
 }
 
-/// Protects tables from NaN.
+/// Protects: a result that is NaN is marked as missing.
 #[test]
 fn a_figure_that_is_not_finite_is_missing() {
     let rows = [row(7.0, 0.4, done(Outcome::NotPeriodic, Regime::Undecided, f64::NAN))];
     assert_eq!(cells(&rows, Quantity::MuStar)[1], ["7", "–"]);
 }
 
-/// Protects the table from a value that looks like its own syntax.
+/// Protects: a `|` in a value does not split its cell.
 #[test]
 fn a_bar_in_a_value_does_not_split_a_cell() {
     let rows = ["a|b", "c"].map(|name| with(row(7.0, 0.4, periodic(0.35)), "note", name));

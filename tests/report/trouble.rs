@@ -2,8 +2,8 @@
 
 use crate::synthetic::{failed, periodic, record, row, with};
 use tribosweep::analysis::{Obstacle, Outcome, Regime};
-use tribosweep::report::trouble::{Grid, LISTED, Region, cause, regions, sentences};
-use tribosweep::report::{Row, RowState};
+use tribosweep::report::trouble::{Grid, MAX_LISTED, Region, cause, regions, sentences};
+use tribosweep::report::{JobRow, RowState};
 
 fn unsteady(figure: &str, spread: f64) -> RowState {
     let mut record = record(Outcome::NotPeriodic, Regime::StickSlip, 0.3);
@@ -11,8 +11,8 @@ fn unsteady(figure: &str, spread: f64) -> RowState {
     RowState::Done(Box::new(record))
 }
 
-/// A grid of 4 × 6 jobs that are well but for `state`.
-fn study(state: impl Fn(usize, usize) -> Option<RowState>) -> Vec<Row> {
+/// A grid of 4 × 6 jobs, which are periodic except where `state` returns something else.
+fn study(state: impl Fn(usize, usize) -> Option<RowState>) -> Vec<JobRow> {
     let (mus, omegas) = ([0.1, 0.2, 0.3, 0.4], [100.0, 1.0, 2.0, 5.0, 10.0, 50.0]);
     let at = |m: usize, o: usize| row(omegas[o], mus[m], state(m, o).unwrap_or_else(|| periodic(0.3)));
     (0..4).flat_map(|m| (0..6).map(move |o| (m, o))).map(|(m, o)| at(m, o)).collect()
@@ -22,10 +22,11 @@ fn in_short(region: &Region) -> (usize, usize, &str, &str) {
     (region.jobs, region.of, &region.place, region.cause.what)
 }
 
-/// Protects: neighbours in the grid are one region, diagonals and the order of the values' sizes (not of the document)
-/// included; what is apart or has another cause is another one; the numbers in a message are no other cause.
+/// Protects: neighbours in the grid form a region, also diagonally, and in the numerical order of the values, not in that of
+/// the document. Jobs that are not connected or have another cause form another region. Messages that differ only in
+/// their numbers are the same cause.
 #[test]
-fn regions_are_what_hangs_together() {
+fn regions_are_connected() {
     // Speeds in the document: 100, 1, 2, 5, 10, 50; by size 100 is a neighbour of 50 and not of 1.
     let rows = study(|m, o| match (m, o) {
         (3, 0) => Some(failed("diverged at step 17 (t = 3.2e-5 s)")),
@@ -50,9 +51,9 @@ fn regions_are_what_hangs_together() {
     );
 }
 
-/// Protects: a sentence says what, how many of how many, where, why and which job.
+/// Protects: the sentence of a region has the status, the number of jobs, the ranges, the cause and a job.
 #[test]
-fn a_region_is_told_in_a_sentence() {
+fn a_region_is_described_in_a_sentence() {
     let rows = study(|m, o| (m == 3 && o < 3 && o != 1).then(|| unsteady("mu_star", 0.034)));
     assert_eq!(
         sentences(&regions(&rows)),
@@ -68,10 +69,10 @@ fn a_region_is_told_in_a_sentence() {
     assert!(sentences(&regions(&study(|_, _| None))).is_empty());
 }
 
-/// Protects: values that are no numbers have no neighbours, a parameter that some jobs lack is a value too, and what is
-/// the same in all jobs is not told.
+/// Protects: values that are not numbers have no neighbours, a missing parameter counts as a value, and parameters that are
+/// equal in all jobs are not mentioned.
 #[test]
-fn words_are_places_of_their_own() {
+fn names_have_no_neighbours() {
     let mut rows = Vec::new();
     for side in ["inner_side", "outer_side"] {
         for mu in [0.2, 0.4] {
@@ -91,24 +92,27 @@ fn words_are_places_of_their_own() {
     );
 }
 
-/// Protects: a study full of scattered failures is told in a bounded number of lines, and none is forgotten.
+/// Protects: a study with many scattered failures is described in a bounded number of lines that count all of them.
 #[test]
 fn many_regions_are_counted() {
-    let rows: Vec<Row> = (0..100)
+    let rows: Vec<JobRow> = (0..100)
         .map(|i| {
             let state = if i % 2 == 0 { failed("no") } else { periodic(0.3) };
             row(f64::from(i), 0.4, state)
         })
         .collect();
     let found = regions(&rows);
-    assert_eq!((found.largest.len(), found.more, found.jobs_in_more), (LISTED, 50 - LISTED, 50 - LISTED));
-    assert_eq!(sentences(&found)[LISTED], "and 38 more jobs in 38 smaller regions");
+    assert_eq!(
+        (found.largest.len(), found.omitted, found.jobs_in_omitted),
+        (MAX_LISTED, 50 - MAX_LISTED, 50 - MAX_LISTED)
+    );
+    assert_eq!(sentences(&found)[MAX_LISTED], "and 38 more jobs in 38 smaller regions");
 }
 
-/// Protects: with many parameters the neighbours are those along one of them, so that looking for them takes no longer
-/// than there are jobs; a row that is not in the grid, because the study was replaced meanwhile, is left out.
+/// Protects: with many parameters, neighbours differ in one of them only, so that the search stays fast. A row that is not
+/// in the grid, because the study was replaced in the meantime, is left out.
 #[test]
-fn many_parameters_are_no_burden() {
+fn many_parameters_are_fast() {
     let mut rows = Vec::new();
     for corner in 0..1 << 10 {
         let bits = (0..10).map(|bit| ((corner >> bit) & 1_i32, format!("p{bit}")));
@@ -119,6 +123,7 @@ fn many_parameters_are_no_burden() {
     let mut grid = Grid::default();
     grid.add(7.0, 0.4, &[]);
     let trouble = cause(&rows[0]).unwrap();
-    let found = grid.regions([(0, "a".to_owned(), trouble.clone()), (1, "b".to_owned(), trouble)], LISTED);
-    assert_eq!((found.largest.len(), found.largest[0].jobs, found.more), (1, 1, 0));
+    let found =
+        grid.regions([(0, "a".to_owned(), trouble.clone()), (1, "b".to_owned(), trouble)], MAX_LISTED);
+    assert_eq!((found.largest.len(), found.largest[0].jobs, found.omitted), (1, 1, 0));
 }

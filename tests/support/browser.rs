@@ -9,8 +9,8 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 use tungstenite::{Message, WebSocket};
 
-/// Waiting longer than this for an answer means that there will be none.
-const PATIENCE: Duration = Duration::from_mins(1);
+/// An answer that takes longer than this is an error.
+const TIMEOUT: Duration = Duration::from_mins(1);
 
 /// A browser with one page.
 pub struct Browser {
@@ -18,13 +18,13 @@ pub struct Browser {
     socket: WebSocket<TcpStream>,
     session: String,
     last_id: u64,
-    /// What it told of itself: notifications of the page.
+    /// Notifications of the page.
     pub events: Vec<Value>,
     _profile: TempDir,
 }
 
 impl Browser {
-    /// Starts the browser that `CHROMIUM` names, or `chromium`; none, with a message, where there is no such program.
+    /// Starts the browser that `CHROMIUM` names, or `chromium`. Returns none, with a message, if there is no such program.
     pub fn start() -> Option<Self> {
         let program = std::env::var("CHROMIUM").unwrap_or_else(|_| "chromium".to_owned());
         let profile = TempDir::new().unwrap();
@@ -69,14 +69,14 @@ impl Browser {
     pub fn open(&mut self, page: &Path) {
         self.events.clear();
         self.call("Page.navigate", &json!({ "url": format!("file://{}", page.display()) }));
-        let begun = Instant::now();
+        let start = Instant::now();
         while !self.events.iter().any(|event| event["method"] == "Page.loadEventFired") {
-            assert!(begun.elapsed() < PATIENCE, "the page does not load");
+            assert!(start.elapsed() < TIMEOUT, "the page does not load");
             self.call("Runtime.evaluate", &json!({ "expression": "0" }));
         }
     }
 
-    /// The window in CSS pixels; with touch as on a phone, if asked for.
+    /// Sets the size of the window in CSS pixels. A phone has touch input.
     pub fn resize(&mut self, width: u32, height: u32, is_phone: bool) {
         let scale = if is_phone { 2 } else { 1 };
         let metrics =
@@ -87,32 +87,32 @@ impl Browser {
 
     /// The value of an expression.
     pub fn evaluate(&mut self, expression: &str) -> Value {
-        let asked = json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
-        let mut answer = self.call("Runtime.evaluate", &asked);
+        let request = json!({ "expression": expression, "returnByValue": true, "awaitPromise": true });
+        let mut answer = self.call("Runtime.evaluate", &request);
         assert!(answer["exceptionDetails"].is_null(), "{expression}: {answer}");
         answer["result"]["value"].take()
     }
 
-    /// Moves the mouse, in CSS pixels of the window.
+    /// Moves the mouse to a position in CSS pixels of the window.
     pub fn move_mouse(&mut self, x: f64, y: f64) {
         self.call("Input.dispatchMouseEvent", &json!({ "type": "mouseMoved", "x": x, "y": y }));
     }
 
-    /// A finger on the screen and off it again.
+    /// Touches the screen for a moment.
     pub fn tap(&mut self, x: f64, y: f64) {
         let touch = |kind, points| json!({ "type": kind, "touchPoints": points });
         self.call("Input.dispatchTouchEvent", &touch("touchStart", json!([{ "x": x, "y": y }])));
         self.call("Input.dispatchTouchEvent", &touch("touchEnd", json!([])));
     }
 
-    /// A key by its name.
+    /// Presses and releases a key, given by name.
     pub fn press(&mut self, key: &str) {
         for kind in ["keyDown", "keyUp"] {
             self.call("Input.dispatchKeyEvent", &json!({ "type": kind, "key": key, "code": key }));
         }
     }
 
-    /// The page as it is printed.
+    /// The printed page as PDF.
     pub fn print(&mut self) -> Vec<u8> {
         from_base64(
             self.call("Page.printToPDF", &json!({ "printBackground": true }))["data"].as_str().unwrap(),
@@ -121,11 +121,11 @@ impl Browser {
 
     /// A picture of the whole page as PNG.
     pub fn screenshot(&mut self) -> Vec<u8> {
-        let asked = json!({ "format": "png", "captureBeyondViewport": true });
-        from_base64(self.call("Page.captureScreenshot", &asked)["data"].as_str().unwrap())
+        let request = json!({ "format": "png", "captureBeyondViewport": true });
+        from_base64(self.call("Page.captureScreenshot", &request)["data"].as_str().unwrap())
     }
 
-    /// What the page complained about: exceptions, errors and warnings.
+    /// Exceptions, errors and warnings of the page.
     pub fn complaints(&self) -> Vec<&Value> {
         let complains = |event: &&Value| match event["method"].as_str() {
             Some("Runtime.exceptionThrown") => true,
@@ -136,13 +136,13 @@ impl Browser {
         self.events.iter().filter(complains).collect()
     }
 
-    /// What the page asked for, by address.
+    /// The addresses that the page requested.
     pub fn requests(&self) -> Vec<&str> {
-        let asked = self.events.iter().filter(|event| event["method"] == "Network.requestWillBeSent");
-        asked.filter_map(|event| event["params"]["request"]["url"].as_str()).collect()
+        let requests = self.events.iter().filter(|event| event["method"] == "Network.requestWillBeSent");
+        requests.filter_map(|event| event["params"]["request"]["url"].as_str()).collect()
     }
 
-    /// Calls a method of the protocol and gives its result; notifications in between are kept.
+    /// Calls a method of the protocol and returns its result. Notifications that arrive in between are stored.
     pub fn call(&mut self, method: &str, params: &Value) -> Value {
         self.last_id += 1;
         let mut message = json!({ "id": self.last_id, "method": method, "params": params });
@@ -166,8 +166,8 @@ impl Drop for Browser {
     fn drop(&mut self) {
         let close = json!({ "id": 0, "method": "Browser.close" });
         let _ = self.socket.send(Message::text(close.to_string()));
-        let begun = Instant::now();
-        while begun.elapsed() < Duration::from_secs(5) {
+        let start = Instant::now();
+        while start.elapsed() < Duration::from_secs(5) {
             if self.process.try_wait().is_ok_and(|status| status.is_some()) {
                 return;
             }
@@ -178,16 +178,16 @@ impl Drop for Browser {
     }
 }
 
-/// The browser writes where it listens into its profile.
+/// Connects to the browser, which writes its port into its profile.
 fn connect(profile: &Path) -> WebSocket<TcpStream> {
-    let begun = Instant::now();
+    let start = Instant::now();
     loop {
-        assert!(begun.elapsed() < PATIENCE, "the browser does not listen");
-        let told = std::fs::read_to_string(profile.join("DevToolsActivePort")).unwrap_or_default();
-        if let Some((port, path)) = told.split_once('\n')
+        assert!(start.elapsed() < TIMEOUT, "the browser does not listen");
+        let text = std::fs::read_to_string(profile.join("DevToolsActivePort")).unwrap_or_default();
+        if let Some((port, path)) = text.split_once('\n')
             && let Ok(stream) = TcpStream::connect(format!("127.0.0.1:{port}"))
         {
-            stream.set_read_timeout(Some(PATIENCE)).unwrap();
+            stream.set_read_timeout(Some(TIMEOUT)).unwrap();
             let address = format!("ws://127.0.0.1:{port}{}", path.trim());
             return tungstenite::client(address, stream).unwrap().0;
         }

@@ -1,41 +1,41 @@
 //! The whole contact face over a cycle.
 
-use super::{MICRO, MILLI, colour_of, place_in_legend};
-use crate::inspect::look::{Look, loop_of};
+use super::style::{MICRO, MILLI, colour_of, legend_position};
+use crate::inspect::inspection::{Inspection, node_loop};
 use crate::inspect::phases::{Instants, phases};
 use crate::inspect::waves::stations;
 use crate::publish::plot::palette;
 use crate::publish::plot::panel::{Panel, Scale, Series, Stroke, Tile};
 
-/// So much of the distance of two nodes a loop may be wide.
+/// Largest width of a loop, relative to the distance of two nodes.
 const LOOP_WIDTH: f64 = 0.8;
 
-/// Figure 3a: the loops of all nodes about their means, and those along three lines where the nodes are.
-pub fn trajectories(look: &Look) -> Vec<Panel> {
-    let [nx, _, _] = look.mesh().elements();
+/// Figure 3a: the loops of all nodes about their means, and the loops along three lines at the positions of the nodes.
+pub fn trajectories(inspection: &Inspection) -> Vec<Panel> {
+    let [nx, _, _] = inspection.mesh().elements();
     let lines = [("inner side (−x)", 0), ("middle", nx / 2), ("outer side (+x)", nx)];
-    let along = lines.map(|(name, i)| along_line(look, name, i));
-    std::iter::once(all_loops(look)).chain(along).collect()
+    let along = lines.map(|(name, i)| along_line(inspection, name, i));
+    std::iter::once(all_loops(inspection)).chain(along).collect()
 }
 
 fn mean(path: &[(f64, f64)]) -> f64 {
     path.iter().map(|point| point.0).sum::<f64>() / path.len().max(1) as f64
 }
 
-/// A path in micrometres, closed and ended.
+/// A closed path, followed by a point that ends the line. The ordinate is in micrometres.
 fn drawn_loop(path: &[(f64, f64)], place: impl Fn(f64) -> f64) -> impl Iterator<Item = (f64, f64)> {
     let closed = path.iter().chain(path.first()).map(move |(y, z)| (place(*y), z * MICRO));
     closed.chain([(f64::NAN, f64::NAN)])
 }
 
-fn all_loops(look: &Look) -> Panel {
-    let mesh = look.mesh();
+fn all_loops(inspection: &Inspection) -> Panel {
+    let mesh = inspection.mesh();
     let [nx, ny, _] = mesh.elements();
-    // The lines across the sliding direction from front to rear have the colours of a sequence.
+    // The colour goes from front to rear in a sequence.
     let across = |j: usize| {
         let mut points = Vec::new();
         for i in 0..=nx {
-            let path = loop_of(&look.capture.face, mesh.node(i, j, 0));
+            let path = node_loop(&inspection.capture.face, mesh.node(i, j, 0));
             let mean = mean(&path);
             points.extend(drawn_loop(&path, |y| (y - mean) * MICRO));
         }
@@ -52,16 +52,16 @@ fn all_loops(look: &Look) -> Panel {
     panel_of("All contact nodes, each about its mean", "displacement in y less its mean [µm]", series)
 }
 
-fn along_line(look: &Look, name: &str, i: usize) -> Panel {
-    let mesh = look.mesh();
+fn along_line(inspection: &Inspection, name: &str, i: usize) -> Panel {
+    let mesh = inspection.mesh();
     let [_, ny, _] = mesh.elements();
-    // As many loops as can be told apart.
+    // Fewer loops than nodes, so that a reader can tell them apart.
     let stride = ny.div_ceil(15);
     let loops: Vec<(f64, Vec<(f64, f64)>)> = (0..=ny)
         .step_by(stride)
         .map(|j| {
             let slave = mesh.node(i, j, 0);
-            (mesh.coordinates_m(slave)[1], loop_of(&look.capture.face, slave))
+            (mesh.coordinates_m(slave)[1], node_loop(&inspection.capture.face, slave))
         })
         .collect();
     let widest_m = loops.iter().map(|(_, path)| extent(path)).fold(f64::MIN_POSITIVE, f64::max);
@@ -90,19 +90,19 @@ fn extent(path: &[(f64, f64)]) -> f64 {
     ends[1] - ends[0]
 }
 
-/// The next number below with one digit.
+/// Rounds down to one significant digit.
 fn round_down(x: f64) -> f64 {
     let decade = 10f64.powf(x.log10().floor());
     (x / decade).floor() * decade
 }
 
 /// The states along the middle of the face over a cycle.
-pub fn waves(look: &Look) -> Panel {
-    let mesh = look.mesh();
+pub fn waves(inspection: &Inspection) -> Panel {
+    let mesh = inspection.mesh();
     let [nx, ny, _] = mesh.elements();
-    let [start_s, end_s] = look.survey.windows.cycle_s;
+    let [start_s, end_s] = inspection.survey.windows.cycle_s;
     let since = |time_s: f64| (time_s - start_s) * MICRO;
-    // A little more than half an element: pixels are whole, and nothing is to show between the rows.
+    // A little more than half an element, so that rounding to pixels leaves no gap between the rows.
     let half_m = 0.55 * mesh.element_size_m()[1];
     let [_, ly, _] = mesh.size_m();
     let x = Scale::from_to("time [µs]", 0.0, since(end_s));
@@ -113,7 +113,7 @@ pub fn waves(look: &Look) -> Panel {
         let slave = mesh.node(nx / 2, j, 0);
         let at_m = mesh.coordinates_m(slave)[1];
         let rows = ((at_m - half_m).max(-ly / 2.0) * MILLI, (at_m + half_m).min(ly / 2.0) * MILLI);
-        let steps = look.capture.face.iter().map(|step| (step.time_s, step.nodes[slave].state));
+        let steps = inspection.capture.face.iter().map(|step| (step.time_s, step.nodes[slave].state));
         for phase in phases(steps, end_s) {
             let (label, colour) = (phase.state.name(), colour_of(phase.state));
             panel.tiles.push(Tile {
@@ -124,9 +124,9 @@ pub fn waves(look: &Look) -> Panel {
             });
         }
     }
-    panel.tiles.sort_by_key(|tile| place_in_legend(tile.label));
+    panel.tiles.sort_by_key(|tile| legend_position(tile.label));
     let period_s = end_s - start_s;
-    let peaks = stations(look).into_iter().filter_map(|station| {
+    let peaks = stations(inspection).into_iter().filter_map(|station| {
         let Instants { peak_s, .. } = station.instants?;
         let within_s = (peak_s - start_s).rem_euclid(period_s);
         Some((within_s * MICRO, station.y_m * MILLI))

@@ -1,21 +1,29 @@
 //! Histories of the observed nodes.
 
-use super::{MEGA, MICRO, MILLI, STATES, colour_of, place_in_legend};
+use super::style::{MEGA, MICRO, MILLI, STATES, colour_of, legend_position};
 use crate::inspect::capture::NodeStep;
-use crate::inspect::look::{Look, Observed};
+use crate::inspect::inspection::{Inspection, NodeFindings};
 use crate::inspect::phases::Phase;
 use crate::publish::plot::palette;
 use crate::publish::plot::panel::{Band, Level, Mark, Panel, Scale, Series, Stroke};
 use crate::solver::interface::ContactState;
 
-/// Every observed node with its steps.
-fn each<'a>(look: &'a Look, panel: impl Fn(&'a Observed, &'a [NodeStep]) -> Panel) -> Vec<Panel> {
-    look.observed.iter().zip(&look.capture.nodes).map(|(observed, steps)| panel(observed, steps)).collect()
+/// A panel for every observed node.
+fn for_each_node<'a>(
+    inspection: &'a Inspection,
+    panel: impl Fn(&'a NodeFindings, &'a [NodeStep]) -> Panel,
+) -> Vec<Panel> {
+    inspection
+        .observed
+        .iter()
+        .zip(&inspection.capture.nodes)
+        .map(|(observed, steps)| panel(observed, steps))
+        .collect()
 }
 
-/// Time in microseconds since the begin of what is shown.
-fn time_scale(look: &Look) -> (impl Fn(f64) -> f64 + use<>, Scale) {
-    let [start_s, end_s] = look.survey.windows.shown_s;
+/// Time in microseconds since the start of the time that is shown.
+fn time_scale(inspection: &Inspection) -> (impl Fn(f64) -> f64 + use<>, Scale) {
+    let [start_s, end_s] = inspection.survey.windows.shown_s;
     let since = move |time_s: f64| (time_s - start_s) * MICRO;
     (since, Scale::from_to("time [µs]", 0.0, (end_s - start_s) * MICRO))
 }
@@ -28,7 +36,7 @@ fn velocity(steps: &[NodeStep], since: impl Fn(f64) -> f64) -> (Series, Scale) {
     (Series { label, colour: plotters::style::BLACK, stroke: Stroke::Fine, right: true, points }, scale)
 }
 
-fn disk(observed: &Observed, right: bool) -> Level {
+fn disk(observed: &NodeFindings, right: bool) -> Level {
     Level { label: "disk".to_owned(), at: observed.target_velocity_m_s * MILLI, right }
 }
 
@@ -38,14 +46,14 @@ fn bands(phases: &[Phase], since: impl Fn(f64) -> f64) -> Vec<Band> {
         Band { label, colour, span: (since(phase.start_s), since(phase.end_s)) }
     };
     let mut bands: Vec<Band> = phases.iter().map(band).collect();
-    bands.sort_by_key(|band| place_in_legend(band.label));
+    bands.sort_by_key(|band| legend_position(band.label));
     bands
 }
 
 /// Figure 2a.
-pub fn displacements(look: &Look) -> Vec<Panel> {
-    each(look, |observed, steps| {
-        let (since, x) = time_scale(look);
+pub fn displacements(inspection: &Inspection) -> Vec<Panel> {
+    for_each_node(inspection, |observed, steps| {
+        let (since, x) = time_scale(inspection);
         let of = |c: usize| -> Vec<(f64, f64)> {
             steps.iter().map(|step| (since(step.time_s), step.node.u_m[c] * MICRO)).collect()
         };
@@ -68,10 +76,10 @@ pub fn displacements(look: &Look) -> Vec<Panel> {
 }
 
 /// Figure 2b.
-pub fn friction(look: &Look) -> Vec<Panel> {
-    each(look, |observed, steps| {
-        let (since, x) = time_scale(look);
-        let mu = look.spec.scene.contact.mu;
+pub fn friction(inspection: &Inspection) -> Vec<Panel> {
+    for_each_node(inspection, |observed, steps| {
+        let (since, x) = time_scale(inspection);
+        let mu = inspection.spec.scene.contact.mu;
         let points: Vec<_> =
             steps.iter().map(|step| (since(step.time_s), step.node.equivalent_friction())).collect();
         let y = Scale::from_to("μ_eq", -0.05 * mu.max(0.02), 1.2 * mu.max(0.02));
@@ -85,8 +93,8 @@ pub fn friction(look: &Look) -> Vec<Panel> {
 }
 
 /// Figure 3b.
-pub fn phase_planes(look: &Look) -> Vec<Panel> {
-    each(look, |observed, steps| {
+pub fn phase_planes(inspection: &Inspection) -> Vec<Panel> {
+    for_each_node(inspection, |observed, steps| {
         let point = |step: &NodeStep| (step.node.u_m[1] * MICRO, step.node.y_velocity_m_s * MILLI);
         let x = Scale::spanning("displacement in y [µm]", steps.iter().map(|step| point(step).0), 0.01);
         let y = Scale::spanning("velocity in y [mm/s]", steps.iter().map(|step| point(step).1), 1.0);
@@ -99,7 +107,7 @@ pub fn phase_planes(look: &Look) -> Vec<Panel> {
     })
 }
 
-/// The parts of a path that a node makes in a state, each up to the point where the next begins.
+/// The parts of a path in which a node is in a state, each up to the first point of the next part.
 fn path_in(
     state: ContactState,
     steps: &[NodeStep],
@@ -117,12 +125,12 @@ fn path_in(
 }
 
 /// Figure 4.
-pub fn cycles(look: &Look) -> Vec<Panel> {
-    each(look, |observed, steps| {
-        let [shown_start_s, shown_end_s] = look.survey.windows.shown_s;
-        let wanted = observed
-            .instants
-            .map_or([shown_start_s, shown_end_s], |instants| instants.span_s(look.survey.windows.period_s));
+pub fn cycles(inspection: &Inspection) -> Vec<Panel> {
+    for_each_node(inspection, |observed, steps| {
+        let [shown_start_s, shown_end_s] = inspection.survey.windows.shown_s;
+        let wanted = observed.instants.map_or([shown_start_s, shown_end_s], |instants| {
+            instants.span_s(inspection.survey.windows.period_s)
+        });
         let (start_s, end_s) = (wanted[0].max(shown_start_s), wanted[1].min(shown_end_s));
         let since = |time_s: f64| (time_s - start_s) * MICRO;
         let x = Scale::from_to("time [µs]", 0.0, since(end_s));

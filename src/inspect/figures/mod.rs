@@ -1,33 +1,30 @@
-//! The drawings: the paper's figures 2 to 5 of one job, its figure 8 of several, and what goes with them.
+//! The drawings: the paper's figures 2 to 5 for one job, its figure 8 for several jobs, and others.
 
 mod face;
 mod histories;
 mod overlay;
 mod snapshots;
+mod style;
 mod totals;
 
 pub use overlay::overlay;
 
-use super::look::Look;
-use crate::publish::plot::FigureError;
-use crate::publish::plot::palette::{SEPARATED, SLIP, STICK};
+use super::inspection::Inspection;
 use crate::publish::plot::panel::stack;
-use crate::publish::{Folder, PublishError};
-use crate::solver::interface::ContactState;
-use plotters::style::RGBColor;
+use crate::publish::{FigureError, Folder, PublishError};
 
-/// A figure of a look.
+/// A figure of an inspection.
 #[derive(Debug, Clone, PartialEq)]
-pub struct LookFigure {
-    /// Its file, without the ending.
+pub struct InspectionFigure {
+    /// The name of its file without the ending.
     pub stem: &'static str,
-    /// What it shows, in a word or two.
+    /// Its heading.
     pub heading: &'static str,
-    /// What it shows, for a reader.
+    /// Its caption.
     pub caption: String,
-    /// The tables that hold its numbers.
+    /// The names of the tables with its data.
     pub data: Vec<String>,
-    /// The drawing.
+    /// The drawing as SVG.
     pub svg: String,
 }
 
@@ -35,14 +32,14 @@ pub struct LookFigure {
 ///
 /// # Errors
 /// The first figure that could not be drawn or written.
-pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, PublishError> {
+pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<Vec<InspectionFigure>, PublishError> {
     let histories: Vec<String> =
-        look.observed.iter().map(|observed| format!("node_{}.csv", observed.node.name)).collect();
+        inspection.observed.iter().map(|observed| format!("node_{}.csv", observed.node.name)).collect();
     let with = |more: &[&str]| -> Vec<String> {
         histories.iter().cloned().chain(more.iter().map(|&name| name.to_owned())).collect()
     };
     let only = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
-    let mu = look.spec.scene.contact.mu;
+    let mu = inspection.spec.scene.contact.mu;
     let parts: [(&'static str, &'static str, String, Vec<String>, Drawing); 9] = [
         (
             "figure2a",
@@ -50,7 +47,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
             "Displacements in the three directions and velocity in y of the observed nodes (the paper's Figure 2a)."
                 .to_owned(),
             histories.clone(),
-            Box::new(|| stack(&histories::displacements(look))),
+            Box::new(|| stack(&histories::displacements(inspection))),
         ),
         (
             "figure2b",
@@ -60,7 +57,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
                  0 is separation."
             ),
             with(&["phases.csv"]),
-            Box::new(|| stack(&histories::friction(look))),
+            Box::new(|| stack(&histories::friction(inspection))),
         ),
         (
             "figure3a",
@@ -69,7 +66,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
              means, and those on three lines where the nodes are, displacements in y enlarged."
                 .to_owned(),
             only(&["face.csv"]),
-            Box::new(|| stack(&face::trajectories(look))),
+            Box::new(|| stack(&face::trajectories(inspection))),
         ),
         (
             "figure3b",
@@ -77,17 +74,17 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
             "Phase plane of the observed nodes (Figure 3b): the level is the velocity of the disk under the node."
                 .to_owned(),
             histories.clone(),
-            Box::new(|| stack(&histories::phase_planes(look))),
+            Box::new(|| stack(&histories::phase_planes(inspection))),
         ),
         (
             "figure4",
             "One cycle",
-            "Normal contact stress (behind a low-pass without delay) and velocity in y over one cycle (Figure 4). Contact \
+            "Normal contact stress (after a zero-phase low-pass filter) and velocity in y over one cycle (Figure 4). Contact \
              begins at t_A, stick at t_B, the stress is largest at t_C, stick ends at t_D, contact at t_E, and the \
              separation at t_F."
                 .to_owned(),
             with(&["instants.csv"]),
-            Box::new(|| stack(&histories::cycles(look))),
+            Box::new(|| stack(&histories::cycles(inspection))),
         ),
         (
             "figure5",
@@ -96,7 +93,7 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
              under it, and the contact face from above with the states and friction forces of its nodes."
                 .to_owned(),
             only(&["face.csv", "fields.pvd"]),
-            Box::new(|| snapshots::draw(look)),
+            Box::new(|| snapshots::draw(inspection)),
         ),
         (
             "wave",
@@ -105,57 +102,33 @@ pub fn write(look: &Look, folder: &mut Folder) -> Result<Vec<LookFigure>, Publis
              above."
                 .to_owned(),
             only(&["face.csv", "wave.csv"]),
-            Box::new(|| stack(&[face::waves(look)])),
+            Box::new(|| stack(&[face::waves(inspection)])),
         ),
         (
             "totals",
             "Total forces",
             "Total normal contact force N and tangential force T at the clamp: the whole run, and the last cycles \
-             with their begins, where the filtered N rises through F (the filter delays by a constant time)."
+             with their starts, where the filtered N rises through F (the filter delays by a constant time)."
                 .to_owned(),
             only(&["run.csv", "totals.csv", "cycles.csv"]),
-            Box::new(|| stack(&totals::forces(look))),
+            Box::new(|| stack(&totals::forces(inspection))),
         ),
         (
             "spectrum",
             "Spectrum",
             "Spectrum of the total normal contact force over the averaging window.".to_owned(),
             only(&["spectrum.csv"]),
-            Box::new(|| stack(&[totals::spectrum(look)])),
+            Box::new(|| stack(&[totals::spectrum(inspection)])),
         ),
     ];
     let mut figures = Vec::new();
     for (stem, heading, caption, data, draw) in parts {
         let name = format!("{stem}.svg");
         let svg = draw().map_err(|source| PublishError::Figure { path: folder.path_of(&name), source })?;
-        folder.text(&name, &svg)?;
-        figures.push(LookFigure { stem, heading, caption, data, svg });
+        folder.write_text(&name, &svg)?;
+        figures.push(InspectionFigure { stem, heading, caption, data, svg });
     }
     Ok(figures)
 }
 
 type Drawing<'a> = Box<dyn Fn() -> Result<String, FigureError> + 'a>;
-
-/// Contact states in the order of legends.
-const STATES: [ContactState; 3] = [ContactState::Stick, ContactState::Slip, ContactState::Separated];
-
-/// The place in legends of what is called like a state.
-fn place_in_legend(label: &str) -> Option<usize> {
-    STATES.iter().position(|state| state.name() == label)
-}
-
-/// The colour of a contact state.
-fn colour_of(state: ContactState) -> RGBColor {
-    match state {
-        ContactState::Stick => STICK,
-        ContactState::Slip => SLIP,
-        ContactState::Separated => SEPARATED,
-    }
-}
-
-/// Micrometres, microseconds.
-const MICRO: f64 = 1e6;
-/// Millimetres, and millimetres per second.
-const MILLI: f64 = 1e3;
-/// Megapascals.
-const MEGA: f64 = 1e-6;

@@ -1,15 +1,17 @@
-//! Figure 8: stresses at a node in several jobs, one over the other.
+//! Figure 8: the stresses at a node in several jobs.
 
-use super::{MEGA, MICRO};
+use super::style::{MEGA, MICRO};
 use crate::inspect::capture::NodeStep;
-use crate::inspect::overlay::Trace;
+use crate::inspect::trace::Trace;
+use crate::publish::FigureError;
+use crate::publish::plot::palette;
 use crate::publish::plot::panel::{Panel, Scale, Series, stack};
-use crate::publish::plot::{FigureError, palette};
 
-/// Draws, under what the jobs have in common, normal and tangential stress over the time since the begin of a cycle.
+/// Draws normal and tangential stress over the time since the start of a cycle. `title` names what the jobs have in
+/// common.
 ///
 /// # Errors
-/// The drawing library's.
+/// [`FigureError`].
 pub fn overlay(title: &str, traces: &[Trace]) -> Result<String, FigureError> {
     let longest_s = traces.iter().map(|trace| trace.duration_s).fold(f64::MIN_POSITIVE, f64::max);
     let panel = |title: &str, label: &str, value: &dyn Fn(&NodeStep) -> f64| {

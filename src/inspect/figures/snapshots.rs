@@ -1,26 +1,27 @@
 //! Four instants of a cycle: the middle plane of the pin and its contact face.
 
-use super::{MICRO, STATES, colour_of};
+use super::style::{MICRO, STATES, colour_of};
 use crate::inspect::capture::Frame;
-use crate::inspect::look::Look;
+use crate::inspect::inspection::Inspection;
+use crate::publish::FigureError;
 use crate::publish::plot::canvas::{Area, WIDTH, sheet, write};
-use crate::publish::plot::{FigureError, MARGIN, TEXT};
+use crate::publish::plot::{DrawError, MARGIN, TEXT};
 use crate::solver::interface::ContactState;
 use plotters::element::{Circle, PathElement, Polygon};
 use plotters::style::text_anchor::HPos;
 use plotters::style::{BLACK, Color, RGBColor};
 
 const ROW: u32 = 720;
-/// Room for the title, and for arrows that point out of the pin.
+/// Height of the title, with space for arrows that point out of the pin.
 const TITLE: i32 = 110;
 const FOOT: u32 = 150;
 const GREY: RGBColor = RGBColor(0xB0, 0xB0, 0xB0);
 /// Largest radius [px] of a contact node's dot.
 const DOT: i32 = 10;
-/// Arrows are drawn at so many nodes of a line, or a few more: they are to be told apart.
+/// Approximate number of arrows along a line, so that a reader can tell them apart.
 const ARROWS: usize = 15;
 
-/// An instant: what it is and which frame is nearest.
+/// An instant with the frame that is nearest to it.
 struct Snapshot<'a> {
     label: String,
     frame: &'a Frame,
@@ -29,15 +30,15 @@ struct Snapshot<'a> {
 /// Draws the snapshots, one below the other.
 ///
 /// # Errors
-/// The drawing library's.
-pub fn draw(look: &Look) -> Result<String, FigureError> {
-    let snapshots = snapshots(look);
-    let scales = Scales::of(look, &snapshots);
+/// [`FigureError`].
+pub fn draw(inspection: &Inspection) -> Result<String, FigureError> {
+    let snapshots = snapshots(inspection);
+    let scales = Scales::of(inspection, &snapshots);
     sheet((WIDTH, ROW * snapshots.len() as u32 + FOOT), |root| {
         let mut rest = root.clone();
         for snapshot in &snapshots {
             let (row, below) = rest.split_vertically(ROW);
-            draw_row(&row, look, snapshot, &scales)?;
+            draw_row(&row, inspection, snapshot, &scales)?;
             rest = below;
         }
         draw_legend(&rest, &scales)?;
@@ -45,10 +46,11 @@ pub fn draw(look: &Look) -> Result<String, FigureError> {
     })
 }
 
-/// In the paper's phases of the first observed node that has all of them; otherwise four quarters of the cycle.
-fn snapshots(look: &Look) -> Vec<Snapshot<'_>> {
-    let windows = &look.survey.windows;
-    let complete = look.observed.iter().zip(&look.capture.nodes).find_map(|(observed, steps)| {
+/// The snapshots in the paper's phases of the first observed node that has all of them, or else at the four quarters of
+/// the cycle.
+fn snapshots(inspection: &Inspection) -> Vec<Snapshot<'_>> {
+    let windows = &inspection.survey.windows;
+    let complete = inspection.observed.iter().zip(&inspection.capture.nodes).find_map(|(observed, steps)| {
         let instants = observed.instants?;
         let (a, b, d) = (instants.contact_s?, instants.stick_s?, instants.slip_s?);
         let (c, e, f) = (instants.peak_s, instants.separation_s?, instants.end_s?);
@@ -75,19 +77,19 @@ fn snapshots(look: &Look) -> Vec<Snapshot<'_>> {
             let apart = (frame.time_s - time_s) / windows.period_s;
             (apart - apart.round()).abs()
         };
-        let frame = look.capture.frames.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
+        let frame = inspection.capture.frames.iter().min_by(|a, b| distance(a).total_cmp(&distance(b)))?;
         Some(Snapshot { label, frame })
     };
     times.into_iter().filter_map(snapshot).collect()
 }
 
-/// How long arrows are, the same in all snapshots.
+/// The scales, which are the same in all snapshots.
 struct Scales {
     /// Pixels per metre.
     px_per_m: f64,
     /// Radius [px] of a node's dot.
     dot: i32,
-    /// Arrows are at every so many nodes.
+    /// Distance of the arrows, in nodes.
     stride: usize,
     /// Pixels per m/s.
     px_per_m_s: f64,
@@ -104,13 +106,13 @@ struct Scales {
 }
 
 impl Scales {
-    fn of(look: &Look, snapshots: &[Snapshot]) -> Self {
-        let [lx, ly, lz] = look.mesh().size_m();
-        let ([hx, hy, _], [_, ny, _]) = (look.mesh().element_size_m(), look.mesh().elements());
+    fn of(inspection: &Inspection, snapshots: &[Snapshot]) -> Self {
+        let [lx, ly, lz] = inspection.mesh().size_m();
+        let ([hx, hy, _], [_, ny, _]) = (inspection.mesh().element_size_m(), inspection.mesh().elements());
         let stride = ny.div_ceil(ARROWS);
         let room = f64::from(WIDTH) / 2.0 - 3.0 * f64::from(MARGIN);
         let high = f64::from(ROW) - f64::from(TITLE) - f64::from(MARGIN);
-        // The side view has the forces below, as much room as a third of the pin.
+        // Below the side view there is space for the forces.
         let px_per_m = (room / ly).min(high / (lz * 1.4)).min(high / lx);
         let plane = || {
             snapshots
@@ -125,7 +127,7 @@ impl Scales {
         };
         let force_n = largest(|[x, y, n]| x.hypot(y).hypot(n));
         let friction_n = largest(|[x, y, _]| x.hypot(y));
-        // The longest arrows reach over one and a half of their distances.
+        // The longest arrow is one and a half times as long as the distance of the arrows.
         let longest = 1.5 * stride as f64 * hy * px_per_m;
         let dot = ((0.4 * hx.min(hy) * px_per_m) as i32).clamp(2, DOT);
         Self {
@@ -142,16 +144,21 @@ impl Scales {
     }
 }
 
-fn draw_row(area: &Area, look: &Look, snapshot: &Snapshot, scales: &Scales) -> Result<(), FigureError> {
+fn draw_row(
+    area: &Area,
+    inspection: &Inspection,
+    snapshot: &Snapshot,
+    scales: &Scales,
+) -> Result<(), DrawError> {
     write(area, &snapshot.label, (MARGIN, 34), TEXT, HPos::Left)?;
     let (left, right) = area.split_horizontally(WIDTH / 2);
-    draw_side(&left, look, snapshot.frame, scales)?;
-    draw_face(&right, look, snapshot.frame, scales)
+    draw_side(&left, inspection, snapshot.frame, scales)?;
+    draw_face(&right, inspection, snapshot.frame, scales)
 }
 
 /// The middle plane: velocities at its nodes, forces under it.
-fn draw_side(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result<(), FigureError> {
-    let mesh = look.mesh();
+fn draw_side(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scales) -> Result<(), DrawError> {
+    let mesh = inspection.mesh();
     let [nx, ny, nz] = mesh.elements();
     let [_, ly, lz] = mesh.size_m();
     let middle = i64::from(WIDTH / 4) as f64;
@@ -175,7 +182,7 @@ fn draw_side(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result
         let [_, y, _] = mesh.coordinates_m(slave);
         let (node, tip) = (&frame.face[slave], pixel(y, 0.0));
         let [_, friction, normal] = node.force_n;
-        // Forces on the pin end where they act.
+        // The arrow of a force on the pin ends at the node on which it acts.
         let from = (tip.0 - friction * scales.px_per_n, tip.1 + normal * scales.px_per_n);
         if node.state != ContactState::Separated && j % scales.stride == 0 {
             arrow(area, from, tip, colour_of(node.state), 3)?;
@@ -187,8 +194,8 @@ fn draw_side(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result
 }
 
 /// The contact face from above: states and friction forces.
-fn draw_face(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result<(), FigureError> {
-    let mesh = look.mesh();
+fn draw_face(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scales) -> Result<(), DrawError> {
+    let mesh = inspection.mesh();
     let [lx, ly, _] = mesh.size_m();
     let middle = f64::from(WIDTH / 4);
     let centre = f64::from(TITLE) + lx / 2.0 * scales.px_per_m;
@@ -203,7 +210,7 @@ fn draw_face(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result
     for (slave, node) in frame.face.iter().enumerate() {
         dot(area, rounded(place(slave)), node.state, scales.dot)?;
     }
-    // On the dots, which would hide them.
+    // The arrows are drawn after the dots, which would hide them.
     for (slave, node) in frame.face.iter().enumerate() {
         let [i, j, _] = mesh.grid_position(slave);
         if node.state != ContactState::Separated && i % scales.stride == 0 && j % scales.stride == 0 {
@@ -217,8 +224,8 @@ fn draw_face(area: &Area, look: &Look, frame: &Frame, scales: &Scales) -> Result
     Ok(())
 }
 
-/// A node: the shape says its state, too.
-fn dot(area: &Area, at: (i32, i32), state: ContactState, radius: i32) -> Result<(), FigureError> {
+/// Draws a node. Its shape shows the state as well.
+fn dot(area: &Area, at: (i32, i32), state: ContactState, radius: i32) -> Result<(), DrawError> {
     let colour = colour_of(state);
     match state {
         ContactState::Stick => area.draw(&Circle::new(at, radius, colour.filled())),
@@ -231,7 +238,7 @@ fn dot(area: &Area, at: (i32, i32), state: ContactState, radius: i32) -> Result<
     }
 }
 
-/// Shorter ones [px] have no direction to show.
+/// Shorter arrows [px] are not drawn, because their direction could not be seen.
 const SHORTEST: f64 = 3.0;
 
 fn arrow(
@@ -240,7 +247,7 @@ fn arrow(
     to: (f64, f64),
     colour: RGBColor,
     width: u32,
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let (dx, dy) = (to.0 - from.0, to.1 - from.1);
     let length = dx.hypot(dy);
     if length < SHORTEST {
@@ -255,7 +262,7 @@ fn arrow(
     area.draw(&Polygon::new([rounded(to), corner(1.0), corner(-1.0)], colour))
 }
 
-fn draw_legend(area: &Area, scales: &Scales) -> Result<(), FigureError> {
+fn draw_legend(area: &Area, scales: &Scales) -> Result<(), DrawError> {
     let mut x = MARGIN + DOT;
     for state in STATES {
         dot(area, (x, 30), state, DOT)?;

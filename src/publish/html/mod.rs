@@ -1,11 +1,12 @@
-//! A page that is one file: no network, no other files, readable on a phone and on paper.
+//! A page that is one file. It loads nothing from the network or from other files, and is readable on a phone and on
+//! paper.
 //!
 //! ```text
 //! body (sections of figures, tables, lists) ──► page: shell + style.css + script.js ──► one text
 //! ```
 //!
-//! Everything that comes from outside goes through the template, which escapes it; what does not is drawn here.
-//! Without the script nothing is lost but the tooltip that is there at once: the browser's own shows the same text.
+//! All text goes through the template, which escapes it. Only drawings of this crate, the style sheet and the script are
+//! inserted as they are. Without the script the browser shows the same tooltips after a delay.
 
 mod data_uri;
 
@@ -13,11 +14,11 @@ use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("style.css");
 const SCRIPT: &str = include_str!("script.js");
-/// What the page may load: nothing. A favicon is asked for unless there is one.
+/// The page may load nothing. The empty icon below keeps browsers from requesting one.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
 
-/// The whole page. The body begins with what is below the title; with `refresh_s` it loads itself anew that often.
+/// The whole page. `body` follows the title. The page reloads itself every `refresh_s` seconds, if that is given.
 pub fn page(title: &str, refresh_s: Option<u32>, body: &Markup) -> String {
     let markup = html! {
         (DOCTYPE)
@@ -45,7 +46,7 @@ pub fn page(title: &str, refresh_s: Option<u32>, body: &Markup) -> String {
     markup.into_string()
 }
 
-/// Links to the sections below, by their ids.
+/// Links to sections, given by id and heading.
 pub fn navigation<'a>(sections: impl IntoIterator<Item = (&'a str, &'a str)>) -> Markup {
     html! {
         nav aria-label="Sections" {
@@ -54,7 +55,7 @@ pub fn navigation<'a>(sections: impl IntoIterator<Item = (&'a str, &'a str)>) ->
     }
 }
 
-/// A section that can be linked to.
+/// A section with an id, which links can use.
 pub fn section(id: &str, heading: &str, content: &Markup) -> Markup {
     html! {
         section id=(id) {
@@ -64,9 +65,9 @@ pub fn section(id: &str, heading: &str, content: &Markup) -> Markup {
     }
 }
 
-/// A drawing with its caption and the data behind it, as a file of that name to download.
+/// A drawing with its caption and the data behind it: file name and contents of a CSV to download.
 ///
-/// The drawing is SVG made here: it goes into the page as it is.
+/// `svg` is inserted without escaping, so it must be a drawing of this crate.
 pub fn figure(svg: &str, caption: &str, data: Option<(&str, &str)>) -> Markup {
     html! {
         figure {
@@ -79,18 +80,18 @@ pub fn figure(svg: &str, caption: &str, data: Option<(&str, &str)>) -> Markup {
     }
 }
 
-/// The drawing as one image with a name.
+/// The drawing with a name for screen readers.
 fn labelled(svg: &str, caption: &str) -> String {
     let label = html! { (caption) }.into_string().replace('"', "&quot;");
     svg.replacen("<svg ", &format!("<svg role=\"graphics-document\" aria-label=\"{label}\" "), 1)
 }
 
-/// A link that holds a CSV file.
+/// A link that contains a CSV file.
 pub fn download(file: &str, csv: &str) -> Markup {
     html! { a.download download=(file) href=(data_uri::csv(csv)) { (file) } }
 }
 
-/// A table in a box of its own, in which it scrolls where the page is narrow. The first cell of a line is its heading.
+/// A table in a box, in which it scrolls if the page is narrow. The first cell of a line is its heading.
 pub fn table(header: &[String], lines: &[Vec<Markup>]) -> Markup {
     html! {
         div.scroll tabindex="0" role="group" aria-label="table" {
@@ -110,7 +111,7 @@ pub fn table(header: &[String], lines: &[Vec<Markup>]) -> Markup {
     }
 }
 
-/// A few numbers to begin with: what it is, the value, and a word about it that may be empty.
+/// The main numbers: name, value, and a note that may be empty.
 pub fn tiles(tiles: &[(&str, String, String)]) -> Markup {
     html! {
         dl.tiles {
@@ -124,12 +125,12 @@ pub fn tiles(tiles: &[(&str, String, String)]) -> Markup {
     }
 }
 
-/// What must not be overlooked.
+/// A warning.
 pub fn warning(content: &Markup) -> Markup {
     html! { div.warning role="note" { (content) } }
 }
 
-/// What is shown when it is asked for, and on paper.
+/// Content that the reader can unfold. Paper shows it unfolded.
 pub fn details(summary: &str, content: &Markup) -> Markup {
     html! { details { summary { (summary) } (content) } }
 }

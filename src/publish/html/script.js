@@ -1,6 +1,6 @@
-// Boxes that scroll show whether there is more to the right, and figures have a tooltip. What it says is what the
-// browser would show by itself, later: the titles of the shapes in every drawing's group "hits". Arrow keys go from one
-// to the next.
+// Figures have a tooltip, and boxes that scroll show whether there is more to the right. The tooltip shows the title of a
+// shape in the group "hits" of a drawing, as the browser itself would after a delay. Arrow keys go from one shape to the
+// next.
 "use strict";
 (() => {
   const tip = document.createElement("div");
@@ -17,7 +17,7 @@
   };
 
   // Above the shape if there is room, below it otherwise.
-  const place = () => {
+  const moveTip = () => {
     if (!chosen) return;
     const at = chosen.getBoundingClientRect();
     const own = tip.getBoundingClientRect();
@@ -35,13 +35,13 @@
     hit.classList.add("chosen");
     tip.textContent = hit.getAttribute("aria-label");
     tip.hidden = false;
-    place();
+    moveTip();
   };
 
   for (const group of document.querySelectorAll("svg .hits")) {
     const hits = [...group.children];
     hits.forEach((hit, index) => {
-      // The browser's tooltip would be a second one.
+      // With the title, the browser would show a second tooltip.
       const title = hit.querySelector("title");
       hit.setAttribute("aria-label", title.textContent);
       hit.setAttribute("role", "img");
@@ -69,12 +69,12 @@
     });
   }
   for (const box of document.querySelectorAll(".scroll")) {
-    const look = () => box.classList.toggle("more", box.scrollLeft + box.clientWidth < box.scrollWidth - 2);
-    box.addEventListener("scroll", look, { passive: true });
-    new ResizeObserver(look).observe(box);
+    const markOverflow = () => box.classList.toggle("more", box.scrollLeft + box.clientWidth < box.scrollWidth - 2);
+    box.addEventListener("scroll", markOverflow, { passive: true });
+    new ResizeObserver(markOverflow).observe(box);
   }
 
-  // Paper cannot be unfolded.
+  // Details are unfolded for printing.
   const folded = [];
   window.addEventListener("beforeprint", () => {
     for (const part of document.querySelectorAll("details:not([open])")) {
@@ -85,7 +85,7 @@
   window.addEventListener("afterprint", () => { for (const part of folded.splice(0)) part.open = false; });
 
   document.addEventListener("pointerdown", (event) => { if (!event.target.closest(".hits")) hide(); });
-  // What is focused is scrolled into sight.
-  document.addEventListener("scroll", place, { capture: true, passive: true });
-  window.addEventListener("resize", place);
+  // A shape that gets the focus is scrolled into view, and the tooltip has to follow.
+  document.addEventListener("scroll", moveTip, { capture: true, passive: true });
+  window.addEventListener("resize", moveTip);
 })();

@@ -1,4 +1,4 @@
-//! Axes with ticks where a reader expects them.
+//! Axes with ticks at round numbers.
 
 use crate::publish::value;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
@@ -12,18 +12,19 @@ pub enum Axis {
     Log(Range<f64>),
     /// Linear.
     Linear(Range<f64>),
-    /// Equally spaced names at 0, 1, 2 …
+    /// Names, equally spaced at 0, 1, 2 …
     Names(Vec<String>),
 }
 
-/// Widest range in which every 1, 2 and 5 is labelled; beyond it only the decades are.
+/// Up to so many decades, ticks are at 1, 2 and 5 of each; beyond, they are at whole decades.
 const FINE_DECADES: f64 = 5.0;
-/// Ticks a linear axis aims at.
+/// Number of ticks that a linear axis should have.
 const LINEAR_TICKS: f64 = 6.0;
 
 impl Axis {
-    /// The abscissa for these values. `logarithmic` is a wish: zero cannot be on such an axis.
-    pub fn across(values: &[Value], logarithmic: bool) -> Self {
+    /// The axis for these values: names if some are not numbers. It is logarithmic if that is asked for or if the values
+    /// span a factor of 20, but only if all of them are positive.
+    pub fn for_values(values: &[Value], logarithmic: bool) -> Self {
         let numbers: Option<Vec<f64>> =
             values.iter().map(|value| value.as_f64().filter(|x| x.is_finite())).collect();
         let Some(numbers) = numbers.filter(|numbers| !numbers.is_empty()) else {
@@ -33,22 +34,22 @@ impl Axis {
         let high = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
         if low > 0.0 && (logarithmic || high / low >= 20.0) {
             let margin = (high / low).powf(0.04).clamp(1.12, 10.0);
-            // An end at zero or infinity has no decade: looking for its ticks would not end.
+            // The search for ticks would not end at zero or infinity.
             Self::Log((low / margin).max(f64::MIN_POSITIVE)..(high * margin).min(f64::MAX))
         } else {
             Self::spanning(low, high, if low == 0.0 { 1.0 } else { low.abs() })
         }
     }
 
-    /// A linear axis with some room around the values, at least `least` wide.
+    /// A linear axis with a margin around the values. The range without the margin is at least `least` wide.
     pub fn spanning(low: f64, high: f64, least: f64) -> Self {
         let widen = ((least - (high - low)) / 2.0).max(0.0);
         let margin = 0.05 * (high - low).max(least);
         Self::Linear(low - widen - margin..high + widen + margin)
     }
 
-    /// Where a value of a job is on this axis.
-    pub fn place(&self, value: &Value) -> Option<f64> {
+    /// The position of a value on this axis, in the units of the axis; none if it is not on it.
+    pub fn position(&self, value: &Value) -> Option<f64> {
         match self {
             Self::Names(names) => names.iter().position(|name| *name == value::text(value)).map(|i| i as f64),
             _ => value.as_f64(),
@@ -73,19 +74,19 @@ impl Axis {
                     let decimals = (-step.log10().floor()).max(0.0) as usize;
                     format!("{tick:.decimals$}")
                 } else {
-                    // Four digits: what follows is rounding of the multiplication.
+                    // Four digits, because the multiplication in `linear_ticks` rounds.
                     format!("{tick:.3e}").parse().map_or_else(|_| format!("{tick:e}"), value::number)
                 }
             }
         }
     }
 
-    /// Where its ticks are, and what is written at them.
-    pub fn marks(&self) -> Vec<(f64, String)> {
+    /// The positions of the ticks with their labels.
+    pub fn labelled_ticks(&self) -> Vec<(f64, String)> {
         self.ticks().into_iter().map(|tick| (tick, self.label(tick))).collect()
     }
 
-    /// The longest tick label, in characters.
+    /// Length of the longest tick label, in characters.
     pub fn longest_label(&self) -> usize {
         self.ticks().into_iter().map(|tick| self.label(tick).chars().count()).max().unwrap_or(0)
     }
@@ -96,7 +97,7 @@ fn log_ticks(range: &Range<f64>) -> Vec<f64> {
     let multiples = |digits: &[u8]| -> Vec<f64> {
         decades
             .clone()
-            // Parsed, not multiplied: 2e-7 is to be exactly that when it is printed.
+            // Parsing gives the number nearest to 2e-7; a product would be printed as 1.9999999999999998e-7.
             .flat_map(|exponent| digits.iter().filter_map(move |d| format!("{d}e{exponent}").parse().ok()))
             .filter(|tick| range.contains(tick))
             .collect()

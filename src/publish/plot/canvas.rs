@@ -1,10 +1,11 @@
-//! What all drawings have in common: the sheet, text on it, a caption, a frame.
+//! The parts that all drawings share: the sheet, text, a caption, a frame.
 
 #![expect(clippy::cast_possible_wrap, reason = "pixels and characters: thousands, not billions")]
 
 use super::axis::Axis;
-use super::hits::{self, Hit};
-use super::{FONT, FigureError, GRID, MARGIN, TEXT};
+use super::tooltip::{self, TooltipTarget};
+use super::{DrawError, FONT, GRID, MARGIN, TEXT};
+use crate::publish::error::FigureError;
 use plotters::chart::{ChartContext, MeshStyle};
 use plotters::coord::Shift;
 use plotters::coord::cartesian::Cartesian2d;
@@ -28,79 +29,85 @@ const CAPTION_HEIGHT: u32 = 64;
 /// Height of the labels below an abscissa, with its name [px].
 pub const X_LABELS: u32 = 104;
 
-/// Draws on a white sheet of so many pixels, shown at half that size, and adds the points that `draw` tells of.
+/// Draws on a white sheet of `size` [px], which is shown at half that size, and adds the tooltips that `draw` returns.
 ///
 /// # Errors
-/// The drawing library's; drawing into a string gives it no reason to fail.
+/// Those of `draw`.
 pub fn sheet(
     size: (u32, u32),
-    draw: impl FnOnce(&Area) -> Result<Vec<Hit>, FigureError>,
+    draw: impl FnOnce(&Area) -> Result<Vec<TooltipTarget>, DrawError>,
 ) -> Result<String, FigureError> {
     let mut svg = String::new();
-    let points = {
-        let root = SVGBackend::with_string(&mut svg, size).into_drawing_area();
-        root.fill(&WHITE)?;
-        let points = draw(&root)?;
-        root.present()?;
-        points
-    };
+    let targets = draw_into(&mut svg, size, draw).map_err(FigureError::new)?;
     let as_text = |width: u32, height: u32| format!("width=\"{width}\" height=\"{height}\"");
     let svg = svg.replacen(&as_text(size.0, size.1), &as_text(size.0 / 2, size.1 / 2), 1);
-    Ok(hits::append(&svg, &points))
+    Ok(tooltip::append(&svg, &targets))
 }
 
-/// Height of the caption of these words [px]: none if there are no words.
-pub fn caption_height(words: &str) -> u32 {
-    if words.is_empty() { 0 } else { CAPTION_HEIGHT }
+fn draw_into(
+    svg: &mut String,
+    size: (u32, u32),
+    draw: impl FnOnce(&Area) -> Result<Vec<TooltipTarget>, DrawError>,
+) -> Result<Vec<TooltipTarget>, DrawError> {
+    let root = SVGBackend::with_string(svg, size).into_drawing_area();
+    root.fill(&WHITE)?;
+    let targets = draw(&root)?;
+    root.present()?;
+    Ok(targets)
 }
 
-/// Draws the caption on top, if there are words for it, and returns what is left below.
+/// Height of a caption [px]: 0 if it is empty.
+pub fn caption_height(caption: &str) -> u32 {
+    if caption.is_empty() { 0 } else { CAPTION_HEIGHT }
+}
+
+/// Draws a caption at the top unless it is empty, and returns the area below it.
 ///
 /// # Errors
-/// As [`sheet`].
-pub fn caption<'a>(root: &Area<'a>, words: &str) -> Result<Area<'a>, FigureError> {
+/// Those of the drawing library.
+pub fn caption<'a>(root: &Area<'a>, words: &str) -> Result<Area<'a>, DrawError> {
     if words.is_empty() {
         return Ok(root.clone());
     }
     let (top, below) = root.split_vertically(CAPTION_HEIGHT);
     let width = root.dim_in_pixel().0 as i32;
-    let size = fitting(words.chars().count(), width - 2 * MARGIN);
+    let size = fitting_size(words.chars().count(), width - 2 * MARGIN);
     write(&top, words, (width / 2, CAPTION_HEIGHT as i32 * 2 / 3), size, HPos::Center)?;
     Ok(below)
 }
 
-/// Writes one line of black text at the height of `at`.
+/// Writes one line of black text, vertically centred at `at`.
 ///
 /// # Errors
-/// As [`sheet`].
-pub fn write(area: &Area, text: &str, at: (i32, i32), size: i32, anchor: HPos) -> Result<(), FigureError> {
-    write_in(area, text, at, size, anchor, BLACK)
+/// Those of the drawing library.
+pub fn write(area: &Area, text: &str, at: (i32, i32), size: i32, anchor: HPos) -> Result<(), DrawError> {
+    write_coloured(area, text, at, size, anchor, BLACK)
 }
 
 /// As [`write`], in a colour.
 ///
 /// # Errors
-/// As [`sheet`].
-pub fn write_in(
+/// Those of the drawing library.
+pub fn write_coloured(
     area: &Area,
     text: &str,
     at: (i32, i32),
     size: i32,
     anchor: HPos,
     colour: RGBColor,
-) -> Result<(), FigureError> {
-    // XML has no place for control characters.
+) -> Result<(), DrawError> {
+    // XML does not allow control characters.
     let text: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let style = (FONT, size).into_font().color(&colour).pos(Pos::new(anchor, VPos::Center));
     area.draw(&Text::new(text, at, style))
 }
 
-/// The size at which text of this length stays within `room`: a character is about half as wide as high.
-pub fn fitting(characters: usize, room: i32) -> i32 {
+/// The text size at which so many characters are not wider than `room` [px]. A character is about half as wide as high.
+pub fn fitting_size(characters: usize, room: i32) -> i32 {
     (room * 2 / characters.max(1) as i32).clamp(8, TEXT)
 }
 
-/// The mesh and the axes of a chart in the style of all, to be given names and drawn.
+/// The grid and the axes of a chart in the common style. The caller adds the names of the axes and draws it.
 pub fn mesh<'a, 'b, 'c>(chart: &'b mut Chart<'a, 'c>) -> MeshStyle<'a, 'b, Axis, Axis, SVGBackend<'c>> {
     let mut mesh = chart.configure_mesh();
     mesh.bold_line_style(GRID.stroke_width(2))
@@ -113,20 +120,25 @@ pub fn mesh<'a, 'b, 'c>(chart: &'b mut Chart<'a, 'c>) -> MeshStyle<'a, 'b, Axis,
     mesh
 }
 
-/// Closes the frame that the two axes of a chart begin.
+/// Draws the upper and the right side of the frame around a chart; the axes are the other two.
 ///
 /// # Errors
-/// As [`sheet`].
-pub fn frame(chart: &Chart) -> Result<(), FigureError> {
+/// Those of the drawing library.
+pub fn frame(chart: &Chart) -> Result<(), DrawError> {
     let area = chart.plotting_area().strip_coord_spec();
     let (right, bottom) = (area.dim_in_pixel().0 as i32 - 1, area.dim_in_pixel().1 as i32 - 1);
     area.draw(&PathElement::new([(0, 0), (right, 0), (right, bottom)], BLACK.stroke_width(2)))
 }
 
-/// Fills a cell from its upper left to its lower right corner.
+/// Fills a rectangle from its upper left to its lower right corner.
 ///
 /// # Errors
-/// As [`sheet`].
-pub fn cell(area: &Area, from: (i32, i32), to: (i32, i32), colour: RGBColor) -> Result<(), FigureError> {
+/// Those of the drawing library.
+pub fn fill_rectangle(
+    area: &Area,
+    from: (i32, i32),
+    to: (i32, i32),
+    colour: RGBColor,
+) -> Result<(), DrawError> {
     area.draw(&Rectangle::new([from, to], colour.filled()))
 }

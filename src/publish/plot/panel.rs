@@ -2,7 +2,8 @@
 
 use super::axis::Axis;
 use super::canvas::{self, Area, Chart, WIDTH, write};
-use super::{CURVE_WIDTH, DASH, FONT, FigureError, GUIDE_WIDTH, MARGIN, TEXT};
+use super::{CURVE_WIDTH, DASH, DrawError, FONT, GUIDE_WIDTH, MARGIN, TEXT};
+use crate::publish::error::FigureError;
 use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::prelude::{BLACK, Circle, DashedLineSeries, PathElement, RGBColor, Rectangle};
 use plotters::style::text_anchor::HPos;
@@ -12,12 +13,12 @@ const LEGEND_WIDTH: u32 = 400;
 const TITLE_HEIGHT: u32 = 60;
 const X_LABELS: u32 = 100;
 const Y_LABELS: u32 = 140;
-/// Lines of a legend are so far apart [px].
+/// Distance of the lines of a legend [px].
 const PITCH: i32 = 42;
-/// Length of a sample of a line in a legend [px].
+/// Length of the line in an entry of a legend [px].
 const SAMPLE: i32 = 48;
 const DOT: i32 = 7;
-/// Height of a row of labels of marks [px]; there are two, because marks may be close to each other.
+/// Height of a row of mark labels [px]. There are two rows, because marks may be close to each other.
 const MARK_ROW: i32 = 38;
 
 /// An axis with its label.
@@ -30,7 +31,7 @@ pub struct Scale {
 }
 
 impl Scale {
-    /// A linear scale that spans the numbers that are finite, and at least `least`.
+    /// A linear scale around the finite ones of the values, at least `least` wide.
     pub fn spanning(label: &str, values: impl Iterator<Item = f64>, least: f64) -> Self {
         let (low, high) = values
             .filter(|x| x.is_finite())
@@ -39,7 +40,7 @@ impl Scale {
         Self { label: label.to_owned(), axis }
     }
 
-    /// A linear scale from `low` to `high` without any room beyond.
+    /// A linear scale from `low` to `high` without a margin.
     pub fn from_to(label: &str, low: f64, high: f64) -> Self {
         Self { label: label.to_owned(), axis: Axis::Linear(low..high) }
     }
@@ -48,24 +49,24 @@ impl Scale {
 /// How a series is drawn.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stroke {
-    /// Its points joined; a number that is not finite ends a stretch.
+    /// Joined points. A number that is not finite interrupts the line.
     Line,
-    /// The same, thin.
+    /// As `Line`, but thin.
     Fine,
-    /// Its points alone.
+    /// Points that are not joined.
     Dots,
 }
 
-/// Numbers to draw.
+/// A curve or a set of points.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Series {
-    /// Its name in the legend; none where another one has it.
+    /// Its name in the legend; none if it has no entry there.
     pub label: Option<String>,
     /// Its colour.
     pub colour: RGBColor,
     /// How it is drawn.
     pub stroke: Stroke,
-    /// Whether it belongs to the scale on the right.
+    /// Whether it belongs to the scale on the right side.
     pub right: bool,
     /// Its points.
     pub points: Vec<(f64, f64)>,
@@ -78,56 +79,56 @@ impl Series {
     }
 }
 
-/// A stretch of the abscissa.
+/// An interval of the abscissa with a coloured background.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Band {
-    /// What it is, in the legend; once per name.
+    /// Its name in the legend; equal names have one entry.
     pub label: &'static str,
-    /// Its colour, which is lightened.
+    /// Its colour; the background is a lighter one.
     pub colour: RGBColor,
-    /// From where to where.
+    /// Start and end on the abscissa.
     pub span: (f64, f64),
 }
 
 /// A rectangle, drawn in its full colour.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tile {
-    /// What it is, in the legend; once per name.
+    /// Its name in the legend; equal names have one entry.
     pub label: &'static str,
     /// Its colour.
     pub colour: RGBColor,
-    /// From where to where along the abscissa.
+    /// Start and end on the abscissa.
     pub across: (f64, f64),
-    /// From where to where along the ordinate.
+    /// Start and end on the ordinate.
     pub up: (f64, f64),
 }
 
-/// A place on the abscissa.
+/// A vertical line at a position on the abscissa.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Mark {
     /// Its name, written on top; may be empty.
     pub label: String,
-    /// Where it is.
+    /// The position.
     pub at: f64,
 }
 
-/// A value of the ordinate to compare with.
+/// A horizontal line at a value of the ordinate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Level {
-    /// What it is, in the legend.
+    /// Its name in the legend.
     pub label: String,
     /// The value.
     pub at: f64,
-    /// Whether it belongs to the scale on the right.
+    /// Whether it belongs to the scale on the right side.
     pub right: bool,
 }
 
 /// One of the drawings of a figure.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Panel {
-    /// What it shows, written above.
+    /// The title above it.
     pub title: String,
-    /// Height [px] without title, twice what it is shown at.
+    /// Height [px] without the title.
     pub height: u32,
     /// The abscissa.
     pub x: Scale,
@@ -135,9 +136,9 @@ pub struct Panel {
     pub y: Scale,
     /// A second ordinate.
     pub right: Option<Scale>,
-    /// What is behind everything else.
+    /// Backgrounds.
     pub bands: Vec<Band>,
-    /// What is on the bands.
+    /// Rectangles in front of the backgrounds.
     pub tiles: Vec<Tile>,
     /// Vertical lines.
     pub marks: Vec<Mark>,
@@ -148,7 +149,7 @@ pub struct Panel {
 }
 
 impl Panel {
-    /// A panel with nothing in it, of the usual height.
+    /// An empty panel of the usual height.
     pub fn new(title: &str, x: Scale, y: Scale) -> Self {
         Self {
             title: title.to_owned(),
@@ -168,7 +169,7 @@ impl Panel {
 /// Draws panels one above the other as SVG.
 ///
 /// # Errors
-/// The drawing library's; drawing into a string gives it no reason to fail.
+/// Those of the drawing library.
 pub fn stack(panels: &[Panel]) -> Result<String, FigureError> {
     let height = panels.iter().map(|panel| panel.height + TITLE_HEIGHT).sum();
     canvas::sheet((WIDTH, height), |root| {
@@ -182,7 +183,7 @@ pub fn stack(panels: &[Panel]) -> Result<String, FigureError> {
     })
 }
 
-fn draw(area: &Area, panel: &Panel) -> Result<(), FigureError> {
+fn draw(area: &Area, panel: &Panel) -> Result<(), DrawError> {
     let (title, below) = area.split_vertically(TITLE_HEIGHT);
     write(&title, &panel.title, (MARGIN, TITLE_HEIGHT as i32 * 2 / 3), TEXT + 2, HPos::Left)?;
     let (left, legend) = below.split_horizontally(WIDTH - LEGEND_WIDTH);
@@ -207,7 +208,7 @@ fn axes<'a, 'b>(
     top: i32,
     both: bool,
     right: bool,
-) -> Result<Chart<'a, 'b>, FigureError> {
+) -> Result<Chart<'a, 'b>, DrawError> {
     let room = if both { Y_LABELS as i32 } else { 0 };
     let mut builder = ChartBuilder::on(area);
     builder.margin(MARGIN).margin_top(top).set_label_area_size(LabelAreaPosition::Bottom, X_LABELS);
@@ -228,7 +229,7 @@ fn axes<'a, 'b>(
     Ok(chart)
 }
 
-fn draw_bands(chart: &mut Chart, panel: &Panel) -> Result<(), FigureError> {
+fn draw_bands(chart: &mut Chart, panel: &Panel) -> Result<(), DrawError> {
     let (across, up) = (chart.x_range(), chart.y_range());
     for band in &panel.bands {
         let (from, to) = (band.span.0.max(across.start), band.span.1.min(across.end));
@@ -243,13 +244,13 @@ fn draw_bands(chart: &mut Chart, panel: &Panel) -> Result<(), FigureError> {
     Ok(())
 }
 
-/// A colour that curves can be read on.
+/// A colour light enough to be the background of curves.
 fn lightened(RGBColor(r, g, b): RGBColor) -> RGBColor {
     let mix = |c: u8| (0.25 * f64::from(c) + 0.75 * 255.0).round() as u8;
     RGBColor(mix(r), mix(g), mix(b))
 }
 
-fn draw_curves(chart: &mut Chart, panel: &Panel, right: bool) -> Result<(), FigureError> {
+fn draw_curves(chart: &mut Chart, panel: &Panel, right: bool) -> Result<(), DrawError> {
     let across = chart.x_range();
     for level in panel.levels.iter().filter(|level| level.right == right) {
         let ends = [(across.start, level.at), (across.end, level.at)];
@@ -274,7 +275,7 @@ fn draw_curves(chart: &mut Chart, panel: &Panel, right: bool) -> Result<(), Figu
     Ok(())
 }
 
-/// The points of a stretch without those within a pixel, as shown, of the one that is drawn before them.
+/// The points of a line without those that are less than a shown pixel from the one before.
 fn visible(chart: &Chart, stretch: &[(f64, f64)]) -> Vec<(f64, f64)> {
     let pixel = |point: &(f64, f64)| chart.backend_coord(point);
     let near = |a: (i32, i32), b: (i32, i32)| (a.0 - b.0).abs() <= 2 && (a.1 - b.1).abs() <= 2;
@@ -288,12 +289,12 @@ fn visible(chart: &Chart, stretch: &[(f64, f64)]) -> Vec<(f64, f64)> {
     points
 }
 
-/// Points between those that are not finite.
+/// The runs of finite points.
 fn stretches(points: &[(f64, f64)]) -> impl Iterator<Item = &[(f64, f64)]> {
     points.split(|(x, y)| !x.is_finite() || !y.is_finite()).filter(|stretch| stretch.len() > 1)
 }
 
-fn draw_marks(area: &Area, chart: &Chart, panel: &Panel) -> Result<(), FigureError> {
+fn draw_marks(area: &Area, chart: &Chart, panel: &Panel) -> Result<(), DrawError> {
     let (left, top) = area.get_base_pixel();
     let (across, up) = (chart.x_range(), chart.y_range());
     let (_, high) = chart.backend_coord(&(across.start, up.end));
@@ -315,14 +316,14 @@ fn draw_marks(area: &Area, chart: &Chart, panel: &Panel) -> Result<(), FigureErr
     Ok(())
 }
 
-fn draw_legend(area: &Area, panel: &Panel) -> Result<(), FigureError> {
+fn draw_legend(area: &Area, panel: &Panel) -> Result<(), DrawError> {
     let mut y = MARGIN;
     let beside = SAMPLE + 16;
-    let mut line = |area: &Area, label: &str, sample: &dyn Fn(i32) -> Result<(), FigureError>| {
+    let mut line = |area: &Area, label: &str, sample: &dyn Fn(i32) -> Result<(), DrawError>| {
         sample(y)?;
         write(area, label, (beside, y), TEXT - 2, HPos::Left)?;
         y += PITCH;
-        Ok::<(), FigureError>(())
+        Ok::<(), DrawError>(())
     };
     for series in &panel.series {
         let Some(label) = &series.label else { continue };

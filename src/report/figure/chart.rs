@@ -1,14 +1,16 @@
-//! The drawing: axes, guides, curves, error bars, markers.
+//! The drawing of curves: axes, guide lines, curves, error bars, markers.
 
-use super::data::{self, Curve, Point};
-use super::{Ordinate, legend, marker};
+use super::data::{self, Curve, Ordinate, Point};
+use super::{legend, marker};
+use crate::publish::FigureError;
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area, Chart, X_LABELS};
-use crate::publish::plot::hits::{Hit, Shape};
-use crate::publish::plot::{CURVE_WIDTH, DASH, FONT, FigureError, GUIDE_WIDTH, MARGIN, TEXT, palette};
-use crate::publish::value::{self, OMEGA};
+use crate::publish::plot::tooltip::{Shape, TooltipTarget};
+use crate::publish::plot::{CURVE_WIDTH, DASH, DrawError, FONT, GUIDE_WIDTH, MARGIN, TEXT, palette};
+use crate::publish::value;
 use crate::report::layout::{Group, Layout};
-use crate::report::tip::tip;
+use crate::report::parameters::OMEGA;
+use crate::report::tooltip::tooltip_text;
 use plotters::chart::ChartBuilder;
 use plotters::prelude::{DashedLineSeries, LineSeries, PathElement, RGBColor};
 use plotters::style::Color;
@@ -16,19 +18,19 @@ use plotters::style::text_anchor::HPos;
 
 const LEGEND_WIDTH: u32 = 420;
 const Y_LABELS: u32 = 150;
-/// How far from a marker's centre it can be pointed at [px].
-const REACH: i32 = 20;
+/// Radius of the tooltip area around a marker [px].
+const TOOLTIP_RADIUS: i32 = 20;
 
 /// Draws the figure of one group as SVG.
 pub(super) fn draw(layout: &Layout, group: &Group, plot: Ordinate) -> Result<String, FigureError> {
-    let x_axis = Axis::across(&group.axis_values, layout.axis == OMEGA);
+    let x_axis = Axis::for_values(&group.axis_values, layout.axis == OMEGA);
     let curves = data::curves(layout, group, plot, &x_axis);
     canvas::sheet((canvas::WIDTH, canvas::HEIGHT), |root| {
         let below = canvas::caption(root, &group.caption())?;
         let (left, right) = below.split_horizontally(canvas::WIDTH - LEGEND_WIDTH);
-        let hits = draw_plot(&left, x_axis, layout.axis_name(), &curves, plot)?;
+        let targets = draw_plot(&left, x_axis, layout.axis_name(), &curves, plot)?;
         legend::draw(&right, &curves, plot)?;
-        Ok(if group.is_told() { hits } else { Vec::new() })
+        Ok(if group.has_tooltips() { targets } else { Vec::new() })
     })
 }
 
@@ -38,12 +40,12 @@ fn draw_plot(
     x_label: &str,
     curves: &[Curve],
     plot: Ordinate,
-) -> Result<Vec<Hit>, FigureError> {
+) -> Result<Vec<TooltipTarget>, DrawError> {
     let y_axis = y_axis(curves, plot);
     let empty = curves.iter().all(|curve| curve.points.is_empty());
     let tick_room = (canvas::WIDTH - LEGEND_WIDTH - Y_LABELS) as i32
         / if let Axis::Names(names) = &x_axis { names.len().max(1) as i32 } else { 1 };
-    let x_text = canvas::fitting(x_axis.longest_label() + 1, tick_room);
+    let x_text = canvas::fitting_size(x_axis.longest_label() + 1, tick_room);
 
     let mut chart = ChartBuilder::on(area)
         .margin(MARGIN)
@@ -56,7 +58,7 @@ fn draw_plot(
         Ordinate::Frequency => "frequency [Hz]",
     });
     if plot == Ordinate::MuStar {
-        // The guides are the horizontal lines here; a grid would run along some of them.
+        // The guide lines are horizontal; lines of a grid could cover them.
         mesh.disable_y_mesh();
     }
     mesh.draw()?;
@@ -65,23 +67,23 @@ fn draw_plot(
     for (index, curve) in curves.iter().enumerate() {
         draw_lines(&mut chart, curve, plot, palette::colour(index, curves.len()))?;
     }
-    let mut hits = Vec::new();
+    let mut targets = Vec::new();
     for (index, curve) in curves.iter().enumerate() {
         for point in &curve.points {
             draw_point(area, &chart, point, palette::colour(index, curves.len()))?;
-            hits.push(hit(&chart, point));
+            targets.push(target(&chart, point));
         }
     }
     if empty {
         draw_note(&chart, plot)?;
     }
-    Ok(hits)
+    Ok(targets)
 }
 
-fn hit(chart: &Chart, point: &Point) -> Hit {
-    Hit {
-        shape: Shape::Around { at: chart.backend_coord(&(point.x, point.y)), radius: REACH },
-        title: tip(point.row),
+fn target(chart: &Chart, point: &Point) -> TooltipTarget {
+    TooltipTarget {
+        shape: Shape::Around { at: chart.backend_coord(&(point.x, point.y)), radius: TOOLTIP_RADIUS },
+        title: tooltip_text(point.row),
         data: vec![
             ("job", point.row.job.clone()),
             ("x", value::text(point.at)),
@@ -98,18 +100,18 @@ fn y_axis(curves: &[Curve], plot: Ordinate) -> Axis {
         .chain(guides)
         .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), y| (low.min(y), high.max(y)));
     if low > high {
-        // Nothing to measure: no ticks that would suggest a scale.
+        // Without values there are no ticks, because they would suggest a scale.
         return Axis::Names(Vec::new());
     }
-    // Differences smaller than this are not to fill the height.
-    let least = match plot {
+    // Smaller differences must not fill the height of the figure.
+    let min_range = match plot {
         Ordinate::MuStar => 0.02,
         Ordinate::Frequency => (0.05 * high).max(1.0),
     };
-    Axis::spanning(low, high, least)
+    Axis::spanning(low, high, min_range)
 }
 
-fn draw_lines(chart: &mut Chart, curve: &Curve, plot: Ordinate, colour: RGBColor) -> Result<(), FigureError> {
+fn draw_lines(chart: &mut Chart, curve: &Curve, plot: Ordinate, colour: RGBColor) -> Result<(), DrawError> {
     if plot == Ordinate::MuStar {
         let across = chart.x_range();
         let ends = [(across.start, curve.mu), (across.end, curve.mu)];
@@ -123,7 +125,7 @@ fn draw_lines(chart: &mut Chart, curve: &Curve, plot: Ordinate, colour: RGBColor
     Ok(())
 }
 
-fn draw_point(area: &Area, chart: &Chart, point: &Point, colour: RGBColor) -> Result<(), FigureError> {
+fn draw_point(area: &Area, chart: &Chart, point: &Point, colour: RGBColor) -> Result<(), DrawError> {
     let (left, top) = area.get_base_pixel();
     let pixel = |y: f64| {
         let (x, y) = chart.backend_coord(&(point.x, y));
@@ -141,7 +143,7 @@ fn draw_point(area: &Area, chart: &Chart, point: &Point, colour: RGBColor) -> Re
     marker::draw(area, at, point.regime, point.periodic, colour)
 }
 
-fn draw_note(chart: &Chart, plot: Ordinate) -> Result<(), FigureError> {
+fn draw_note(chart: &Chart, plot: Ordinate) -> Result<(), DrawError> {
     let area = chart.plotting_area().strip_coord_spec();
     let (width, height) = area.dim_in_pixel();
     let note = match plot {

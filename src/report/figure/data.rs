@@ -1,20 +1,27 @@
 //! The points of a figure.
 
-use super::Ordinate;
 use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::publish::plot::axis::Axis;
 use crate::report::layout::{Group, Layout};
-use crate::report::row::Row;
+use crate::report::row::JobRow;
 use serde_json::Value;
+
+/// What curves show over the disk speed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Ordinate {
+    MuStar,
+    Frequency,
+}
 
 /// One job's result in a figure.
 pub(super) struct Point<'a> {
-    pub row: &'a Row,
-    /// The value along the axis, and where that is.
+    pub row: &'a JobRow,
+    /// The value of the parameter along the axis.
     pub at: &'a Value,
+    /// Its position on the axis.
     pub x: f64,
     pub y: f64,
-    /// Standard error of `y`; 0 where none is known.
+    /// Standard error of `y`; 0 if it is not known.
     pub error: f64,
     pub regime: Regime,
     pub periodic: bool,
@@ -25,18 +32,23 @@ pub(super) struct Curve<'a> {
     pub mu: f64,
     /// Results from left to right.
     pub points: Vec<Point<'a>>,
-    /// Stretches to be joined by a line.
+    /// Runs of points that a line joins.
     pub stretches: Vec<Vec<(f64, f64)>>,
 }
 
-/// One curve per μ of the study, also where this group has no results: colours and legend stay the
-/// same in all its figures.
+/// One curve for each μ of the study, even if this group has no results for it, so that all figures of a study have the
+/// same colours and legend.
 pub(super) fn curves<'a>(layout: &Layout, group: &'a Group, plot: Ordinate, x_axis: &Axis) -> Vec<Curve<'a>> {
-    let at: Vec<Option<f64>> = group.axis_values.iter().map(|value| x_axis.place(value)).collect();
-    let mut results: Vec<Vec<Found>> = vec![Vec::new(); layout.mus.len()];
+    let at: Vec<Option<f64>> = group.axis_values.iter().map(|value| x_axis.position(value)).collect();
+    let mut results: Vec<Vec<LocatedResult>> = vec![Vec::new(); layout.mus.len()];
     for job in &group.jobs {
-        if let (Some(x), Some(record)) = (at[job.at], job.row.record()) {
-            results[job.mu].push(Found { x, at: &group.axis_values[job.at], row: job.row, record });
+        if let (Some(x), Some(record)) = (at[job.axis_index], job.row.record()) {
+            results[job.mu_index].push(LocatedResult {
+                x,
+                at: &group.axis_values[job.axis_index],
+                row: job.row,
+                record,
+            });
         }
     }
     layout
@@ -51,17 +63,17 @@ pub(super) fn curves<'a>(layout: &Layout, group: &'a Group, plot: Ordinate, x_ax
         .collect()
 }
 
-/// A job with a result, and where it is.
+/// A job with a result, and its position on the axis.
 #[derive(Clone, Copy)]
-struct Found<'a> {
+struct LocatedResult<'a> {
     x: f64,
     at: &'a Value,
-    row: &'a Row,
+    row: &'a JobRow,
     record: &'a JobRecord,
 }
 
-fn point<'a>(plot: Ordinate, found: &Found<'a>) -> Option<Point<'a>> {
-    let Found { x, at, row, record } = *found;
+fn point<'a>(plot: Ordinate, found: &LocatedResult<'a>) -> Option<Point<'a>> {
+    let LocatedResult { x, at, row, record } = *found;
     let (y, error) = match plot {
         Ordinate::MuStar => (record.mu_star, record.mu_star_se),
         Ordinate::Frequency => (record.frequency_hz?, 0.0),
@@ -71,9 +83,9 @@ fn point<'a>(plot: Ordinate, found: &Found<'a>) -> Option<Point<'a>> {
     y.is_finite().then_some(Point { row, at, x, y, error, regime: record.regime, periodic })
 }
 
-/// Joins neighbours; jobs at the same place by their mean. A job that is done but has no value (no
-/// oscillation, hence no frequency) ends a stretch: a line across it would claim one.
-fn stretches(plot: Ordinate, results: &[Found]) -> Vec<Vec<(f64, f64)>> {
+/// The lines of a curve. Jobs at the same position are represented by their mean. A job that is done but has no value (no
+/// frequency, because nothing oscillates) interrupts the line, which would otherwise claim a value there.
+fn stretches(plot: Ordinate, results: &[LocatedResult]) -> Vec<Vec<(f64, f64)>> {
     let mut stretches = vec![Vec::new()];
     for here in results.chunk_by(|a, b| a.x == b.x) {
         let values: Vec<f64> = here.iter().filter_map(|found| Some(point(plot, found)?.y)).collect();

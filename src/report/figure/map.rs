@@ -1,132 +1,138 @@
-//! Maps of a group's grid: a cell for every job, speeds across, friction coefficients up.
+//! Maps of the grid: a cell for every job, a column for each speed, a row for each friction coefficient.
 
-use super::key::{self, Entry, Sample};
+use super::colour_key::{self, KeyEntry, Swatch};
 use crate::analysis::Outcome;
+use crate::publish::FigureError;
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area};
-use crate::publish::plot::hits::{Hit, Shape};
-use crate::publish::plot::{FigureError, MARGIN, TEXT, palette};
+use crate::publish::plot::tooltip::{Shape, TooltipTarget};
+use crate::publish::plot::{DrawError, MARGIN, TEXT, palette};
 use crate::publish::value;
-use crate::report::layout::{Group, Layout, Placed};
-use crate::report::row::Row;
-use crate::report::sign::{Sign, sign};
-use crate::report::tip::tip;
+use crate::report::glyph::{StatusGlyph, status_glyph};
+use crate::report::layout::{Group, Layout, PlacedJob};
+use crate::report::row::JobRow;
+use crate::report::tooltip::tooltip_text;
 use plotters::prelude::RGBColor;
 use plotters::style::text_anchor::HPos;
 
-/// Room for the names of friction coefficients [px].
+/// Width of the labels of the rows [px].
 const Y_LABELS: i32 = 130;
-/// Room above the cells, for the name of what is named beside them [px].
+/// Height above the cells, where the symbol μ is [px].
 const HEAD: i32 = 72;
 const LEGEND_WIDTH: i32 = 500;
-/// Height of a row of cells, where there are few and where there are many [px].
-const ROW: (i32, i32) = (86, 12);
-/// What all rows should fit in, as long as that leaves them the least height [px].
-const ROWS: i32 = 1000;
-/// No text is set smaller [px].
-const LEAST_TEXT: i32 = 16;
-/// Between cells [px].
+/// Smallest and largest height of a row of cells [px].
+const ROW_HEIGHT: (i32, i32) = (12, 86);
+/// Height of all rows, if that leaves each of them the smallest height or more [px].
+const ROWS_HEIGHT: i32 = 1000;
+/// Smallest size of text [px].
+const MIN_TEXT: i32 = 16;
+/// Distance between cells [px].
 const GAP: i32 = 2;
 
-/// What a cell looks like.
-struct Face {
+/// Colour and text of a cell.
+struct CellStyle {
     fill: RGBColor,
     text: String,
-    /// Full precision, for the data.
+    /// The value in full precision, for the attribute `data-value`.
     value: String,
 }
 
 /// The contact regimes.
 pub(super) fn regimes(layout: &Layout, group: &Group) -> Result<String, FigureError> {
-    let face = |row: &Row| {
-        let sign = sign(row);
-        Face { fill: sign.fill, text: sign.letter.to_string(), value: sign.letter.to_string() }
+    let style = |row: &JobRow| {
+        let glyph = status_glyph(row);
+        CellStyle { fill: glyph.fill, text: glyph.letter.to_string(), value: glyph.letter.to_string() }
     };
-    let entries = signs(group.jobs.iter().map(|job| job.row));
-    draw(layout, group, face, 60 * entries.len() as i32, |area| key::below(area, HEAD, &entries))
+    let entries = glyph_key(group.jobs.iter().map(|job| job.row));
+    draw(layout, group, style, 60 * entries.len() as i32, |area| {
+        colour_key::draw_column(area, HEAD, &entries)
+    })
 }
 
-/// The frequencies, as colours and as numbers.
+/// The frequencies as colours and numbers.
 pub(super) fn frequencies(layout: &Layout, group: &Group) -> Result<String, FigureError> {
-    let frequency = |row: &Row| row.record()?.frequency_hz.filter(|f| f.is_finite());
+    let frequency = |row: &JobRow| row.record()?.frequency_hz.filter(|f| f.is_finite());
     let found = group.jobs.iter().filter_map(|job| frequency(job.row));
     let (low, high) =
         found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), f| (low.min(f), high.max(f)));
     let share = |f: f64| if high > low { (f - low) / (high - low) } else { 0.5 };
     let (unit, per_unit) = if high >= 1000.0 { ("kHz", 1000.0) } else { ("Hz", 1.0) };
-    let face = |row: &Row| match frequency(row) {
-        Some(f) => Face {
+    let style = |row: &JobRow| match frequency(row) {
+        Some(f) => CellStyle {
             fill: palette::sequential(share(f)),
             text: value::fixed(f / per_unit, 1) + not_periodic(row),
             value: value::number(f),
         },
-        None => Face { fill: NO_VALUE, text: sign(row).letter.to_string(), value: String::new() },
+        None => {
+            CellStyle { fill: NO_VALUE, text: status_glyph(row).letter.to_string(), value: String::new() }
+        }
     };
-    let mut entries = signs(group.jobs.iter().map(|job| job.row).filter(|row| frequency(row).is_none()));
+    let mut entries = glyph_key(group.jobs.iter().map(|job| job.row).filter(|row| frequency(row).is_none()));
     for entry in &mut entries {
-        entry.sample.ground = NO_VALUE;
+        entry.swatch.fill = NO_VALUE;
     }
     let scale = if low <= high { SCALE } else { 0 };
-    draw(layout, group, face, scale + 60 * entries.len() as i32 + 40, |area| {
+    draw(layout, group, style, scale + 60 * entries.len() as i32 + 40, |area| {
         if low <= high {
             draw_scale(area, (low / per_unit, high / per_unit), unit)?;
         }
-        key::below(area, HEAD + scale, &entries)
+        colour_key::draw_column(area, HEAD + scale, &entries)
     })
 }
 
-/// The mark of tables, too.
-fn not_periodic(row: &Row) -> &'static str {
+/// The mark for a job that is not periodic, as in tables.
+fn not_periodic(row: &JobRow) -> &'static str {
     if row.record().is_some_and(|record| record.outcome == Outcome::NotPeriodic) { "~" } else { "" }
 }
 
 const NO_VALUE: RGBColor = RGBColor(0xEC, 0xEC, 0xEC);
 /// Height of the colour scale with its heading [px].
 const SCALE: i32 = 360;
-/// Of so many colours.
+/// Number of colours in it.
 const STEPS: i32 = 60;
 
-/// The letters of signs, in the order in which they are explained.
+/// The letters of all glyphs in the order of the colour key.
 const ORDER: &str = "SKkXxPp?!>.-";
 
-/// The signs that occur, each once.
-fn signs<'a>(rows: impl Iterator<Item = &'a Row>) -> Vec<Entry> {
-    let mut used: Vec<Sign> = Vec::new();
-    for sign in rows.map(sign) {
-        if !used.contains(&sign) {
-            used.push(sign);
+/// A colour key of the glyphs that occur, each once.
+fn glyph_key<'a>(rows: impl Iterator<Item = &'a JobRow>) -> Vec<KeyEntry> {
+    let mut used: Vec<StatusGlyph> = Vec::new();
+    for glyph in rows.map(status_glyph) {
+        if !used.contains(&glyph) {
+            used.push(glyph);
         }
     }
-    used.sort_by_key(|sign| ORDER.find(sign.letter));
-    let entry = |sign: &Sign| Entry {
-        sample: Sample::ground(sign.fill, sign.letter),
-        label: sign.meaning.to_owned(),
+    used.sort_by_key(|glyph| ORDER.find(glyph.letter));
+    let entry = |glyph: &StatusGlyph| KeyEntry {
+        swatch: Swatch::filled(glyph.fill, glyph.letter),
+        label: glyph.meaning.to_owned(),
     };
     used.iter().map(entry).collect()
 }
 
-fn draw_scale(area: &Area, (low, high): (f64, f64), unit: &str) -> Result<(), FigureError> {
+fn draw_scale(area: &Area, (low, high): (f64, f64), unit: &str) -> Result<(), DrawError> {
     canvas::write(area, &format!("frequency [{unit}]"), (0, HEAD / 2), TEXT, HPos::Left)?;
     let (top, bottom, width) = (HEAD, HEAD + SCALE - 90, 56);
     let y = |share: f64| bottom - (share * f64::from(bottom - top)).round() as i32;
     for step in 0..STEPS {
         let share = |step: i32| f64::from(step) / f64::from(STEPS);
-        // A single value has the colour of its cells.
+        // If all values are equal, the scale has the one colour of the cells.
         let middle = if high > low { share(step) + 0.5 / f64::from(STEPS) } else { 0.5 };
         let colour = palette::sequential(middle);
-        canvas::cell(area, (0, y(share(step + 1))), (width, y(share(step))), colour)?;
+        canvas::fill_rectangle(area, (0, y(share(step + 1))), (width, y(share(step))), colour)?;
     }
-    let marks = if high > low { Axis::Linear(low..high).marks() } else { vec![(low, value::fixed(low, 1))] };
+    let marks =
+        if high > low { Axis::Linear(low..high).labelled_ticks() } else { vec![(low, value::fixed(low, 1))] };
     for (at, label) in marks {
         let share = if high > low { (at - low) / (high - low) } else { 0.5 };
-        canvas::cell(area, (width, y(share) - 1), (width + 10, y(share) + 1), RGBColor(0, 0, 0))?;
+        canvas::fill_rectangle(area, (width, y(share) - 1), (width + 10, y(share) + 1), RGBColor(0, 0, 0))?;
         canvas::write(area, &label, (width + 20, y(share)), TEXT, HPos::Left)?;
     }
     Ok(())
 }
 
-/// Where the cells are.
-struct Cells {
+/// Positions of the cells [px].
+struct CellGrid {
     columns: usize,
     rows: usize,
     left: i32,
@@ -135,13 +141,13 @@ struct Cells {
     row: i32,
 }
 
-impl Cells {
-    /// Between columns `at` and `at + 1` …
+impl CellGrid {
+    /// Left edge of column `at`; fractions are positions within a column.
     fn x(&self, at: f64) -> i32 {
         self.left + (f64::from(self.right - self.left) * at / self.columns.max(1) as f64).round() as i32
     }
 
-    /// The largest friction is on top.
+    /// Upper edge of the row of a friction coefficient. The largest one is on top.
     fn y(&self, mu: usize) -> i32 {
         self.top + (self.rows - 1 - mu) as i32 * self.row
     }
@@ -154,29 +160,29 @@ impl Cells {
 fn draw(
     layout: &Layout,
     group: &Group,
-    face: impl Fn(&Row) -> Face,
+    style: impl Fn(&JobRow) -> CellStyle,
     legend_height: i32,
-    legend: impl FnOnce(&Area) -> Result<(), FigureError>,
+    legend: impl FnOnce(&Area) -> Result<(), DrawError>,
 ) -> Result<String, FigureError> {
     let (columns, rows) = (group.axis_values.len(), layout.mus.len());
     let caption = group.caption();
     let offset = canvas::caption_height(&caption) as i32;
-    let cells = Cells {
+    let cells = CellGrid {
         columns,
         rows,
         left: MARGIN + Y_LABELS,
         right: canvas::WIDTH as i32 - LEGEND_WIDTH - MARGIN,
         top: HEAD,
-        row: (ROWS / rows.max(1) as i32).clamp(ROW.1, ROW.0),
+        row: (ROWS_HEIGHT / rows.max(1) as i32).clamp(ROW_HEIGHT.0, ROW_HEIGHT.1),
     };
     let height = (cells.bottom() + canvas::X_LABELS as i32 + MARGIN / 2).max(HEAD + legend_height + MARGIN);
     canvas::sheet((canvas::WIDTH, (height + offset) as u32), |root| {
         let below = canvas::caption(root, &caption)?;
         let (left, right) = below.split_horizontally(canvas::WIDTH as i32 - LEGEND_WIDTH);
         draw_labels(&left, layout, group, &cells)?;
-        let hits = draw_cells(&left, layout, group, &cells, face, offset)?;
+        let targets = draw_cells(&left, layout, group, &cells, style, offset)?;
         legend(&right)?;
-        Ok(if group.is_told() { hits } else { Vec::new() })
+        Ok(if group.has_tooltips() { targets } else { Vec::new() })
     })
 }
 
@@ -184,61 +190,61 @@ fn draw_cells(
     area: &Area,
     layout: &Layout,
     group: &Group,
-    cells: &Cells,
-    face: impl Fn(&Row) -> Face,
+    cells: &CellGrid,
+    style: impl Fn(&JobRow) -> CellStyle,
     offset: i32,
-) -> Result<Vec<Hit>, FigureError> {
-    let mut jobs: Vec<&Placed> = group.jobs.iter().collect();
-    jobs.sort_by_key(|job| (job.mu, job.at));
-    let mut hits = Vec::with_capacity(jobs.len());
-    for here in jobs.chunk_by(|a, b| (a.mu, a.at) == (b.mu, b.at)) {
-        // Several jobs at one place share its cell.
+) -> Result<Vec<TooltipTarget>, DrawError> {
+    let mut jobs: Vec<&PlacedJob> = group.jobs.iter().collect();
+    jobs.sort_by_key(|job| (job.mu_index, job.axis_index));
+    let mut targets = Vec::with_capacity(jobs.len());
+    for here in jobs.chunk_by(|a, b| (a.mu_index, a.axis_index) == (b.mu_index, b.axis_index)) {
+        // Several jobs at one point of the grid share a cell.
         let part = 1.0 / here.len() as f64;
         for (number, job) in here.iter().enumerate() {
-            let start = job.at as f64 + number as f64 * part;
-            let from = (cells.x(start), cells.y(job.mu));
-            let to = (cells.x(start + part) - GAP, cells.y(job.mu) + cells.row - GAP);
-            let Face { fill, text, value } = face(job.row);
-            canvas::cell(area, from, to, fill)?;
-            // Columns differ by a pixel; their texts do not.
+            let start = job.axis_index as f64 + number as f64 * part;
+            let from = (cells.x(start), cells.y(job.mu_index));
+            let to = (cells.x(start + part) - GAP, cells.y(job.mu_index) + cells.row - GAP);
+            let CellStyle { fill, text, value } = style(job.row);
+            canvas::fill_rectangle(area, from, to, fill)?;
+            // The widths of columns differ by a pixel because of rounding; the text size is the same in all of them.
             let room =
                 (((cells.right - cells.left) as f64 * part) as i32 / cells.columns as i32 - GAP - 6).max(0);
-            // A digit is somewhat more than half as wide as high.
+            // The width of a digit is a little more than half of its height.
             let fitting = room * 19 / (10 * text.chars().count().max(1) as i32);
             let size = fitting.min((to.1 - from.1) * 2 / 3).min(TEXT + 4);
-            if size >= LEAST_TEXT {
+            if size >= MIN_TEXT {
                 let at = ((from.0 + to.0) / 2, (from.1 + to.1) / 2);
-                canvas::write_in(area, &text, at, size, HPos::Center, palette::ink_on(fill))?;
+                canvas::write_coloured(area, &text, at, size, HPos::Center, palette::contrasting(fill))?;
             }
-            let x = value::text(&group.axis_values[job.at]);
-            hits.push(Hit {
+            let x = value::text(&group.axis_values[job.axis_index]);
+            targets.push(TooltipTarget {
                 shape: Shape::Cell { from: (from.0, from.1 + offset), to: (to.0, to.1 + offset) },
-                title: tip(job.row),
+                title: tooltip_text(job.row),
                 data: vec![
                     ("job", job.row.job.clone()),
                     ("x", x),
-                    ("y", value::number(layout.mus[job.mu])),
+                    ("y", value::number(layout.mus[job.mu_index])),
                     ("value", value),
                 ],
             });
         }
     }
-    Ok(hits)
+    Ok(targets)
 }
 
-fn draw_labels(area: &Area, layout: &Layout, group: &Group, cells: &Cells) -> Result<(), FigureError> {
+fn draw_labels(area: &Area, layout: &Layout, group: &Group, cells: &CellGrid) -> Result<(), DrawError> {
     let beside = cells.left - 16;
     canvas::write(area, "μ", (beside, HEAD / 2), TEXT + 4, HPos::Right)?;
-    let size = (cells.row - 2).clamp(LEAST_TEXT, TEXT);
+    let size = (cells.row - 2).clamp(MIN_TEXT, TEXT);
     let every = (size as usize).div_ceil(cells.row as usize);
     for (index, mu) in layout.mus.iter().enumerate().step_by(every) {
         let at = (beside, cells.y(index) + (cells.row - GAP) / 2);
         canvas::write(area, &value::rounded(*mu), at, size, HPos::Right)?;
     }
-    let labels: Vec<String> = group.axis_values.iter().map(value::shown).collect();
+    let labels: Vec<String> = group.axis_values.iter().map(value::rounded_text).collect();
     let longest = labels.iter().map(|label| label.chars().count()).max().unwrap_or(0) as i32 + 1;
     let room = (cells.right - cells.left) / cells.columns.max(1) as i32;
-    let size = canvas::fitting(longest as usize, room).max(LEAST_TEXT);
+    let size = canvas::fitting_size(longest as usize, room).max(MIN_TEXT);
     let every = (longest * size / 2).div_euclid(room.max(1)) as usize + 1;
     let every = if longest * size / 2 <= room { 1 } else { every };
     for (index, label) in labels.iter().enumerate().step_by(every) {

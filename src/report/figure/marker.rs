@@ -1,23 +1,23 @@
-//! Markers: the shape is the contact regime, hollow is without a periodic state.
+//! Markers: the shape shows the contact regime, and a hollow marker shows that the state is not periodic.
 
 use crate::analysis::Regime;
-use crate::publish::plot::FigureError;
+use crate::publish::plot::DrawError;
 use crate::publish::plot::canvas::Area;
 use plotters::prelude::{Circle, Polygon, RGBColor, WHITE};
 
 /// Radius of a circle marker [px].
 pub(super) const RADIUS: i32 = 11;
-/// What is cut out of a hollow marker, as a share of it.
+/// Size of the hole in a hollow marker, relative to the marker.
 const HOLE: f64 = 0.58;
 
-/// Draws one marker: one shape in `colour`, and a white one on it if hollow.
+/// Draws one marker: a shape in `colour`, and a smaller white one on it if it is hollow.
 pub(super) fn draw(
     area: &Area,
     at: (i32, i32),
     regime: Regime,
     periodic: bool,
     colour: RGBColor,
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     shape(area, at, regime, 1.0, colour)?;
     if periodic && regime != Regime::Undecided {
         return Ok(());
@@ -25,7 +25,7 @@ pub(super) fn draw(
     shape(area, at, regime, HOLE, WHITE)
 }
 
-/// Corners of the shapes for a radius of 1, of about the area of the circle; y points down.
+/// Corners of the shapes for a radius of 1, with y downwards; none for a circle. All shapes have about the same area.
 fn corners(regime: Regime) -> &'static [(f64, f64)] {
     match regime {
         Regime::Stable | Regime::Undecided => &[],
@@ -41,7 +41,7 @@ fn shape(
     regime: Regime,
     scale: f64,
     colour: RGBColor,
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let pixels = |offset: f64| (offset * scale * f64::from(RADIUS)).round() as i32;
     let corners: Vec<(i32, i32)> =
         corners(regime).iter().map(|&(dx, dy)| (x + pixels(dx), y + pixels(dy))).collect();

@@ -3,8 +3,8 @@
 #![expect(clippy::cast_possible_wrap, reason = "pixels and legend lines: thousands, not billions")]
 
 mod chart;
+mod colour_key;
 mod data;
-mod key;
 mod legend;
 mod map;
 mod marker;
@@ -12,9 +12,10 @@ pub(super) mod residuals;
 mod shares;
 
 use super::layout::{Group, Layout};
-use super::row::Row;
-use crate::publish::plot::FigureError;
+use super::row::JobRow;
+use crate::publish::FigureError;
 use crate::publish::value;
+use data::Ordinate;
 use std::collections::HashSet;
 
 /// What a figure shows.
@@ -32,35 +33,28 @@ pub enum Plot {
     Shares,
 }
 
-/// What is behind figures, as a file.
+/// A file with the data behind a figure.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Data {
-    /// What the file is called.
+pub(super) struct DataFile {
+    /// Its name without the ending.
     pub stem: &'static str,
-    /// Which fields of the export are in it besides the parameters and how a job ended.
+    /// The fields of the export that it has, besides the parameters and the status.
     pub columns: &'static [&'static str],
 }
 
-/// What is behind the figure of residuals.
-pub(super) const RESIDUALS: Data =
-    Data { stem: "residuals", columns: &["energy_residual", "identity_residual"] };
-/// What is behind the statistics of run times.
-pub(super) const RUN_TIMES: Data =
-    Data { stem: "run_times", columns: &["wall_s", "steps", "simulated_s", "time_step_s"] };
-
-/// What curves show over the disk speed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Ordinate {
-    MuStar,
-    Frequency,
-}
+/// The data behind the figure of residuals.
+pub(super) const RESIDUALS: DataFile =
+    DataFile { stem: "residuals", columns: &["energy_residual", "identity_residual"] };
+/// The data behind the statistics of run times.
+pub(super) const RUN_TIMES: DataFile =
+    DataFile { stem: "run_times", columns: &["wall_s", "steps", "simulated_s", "time_step_s"] };
 
 impl Plot {
     /// All of them.
     pub const ALL: [Self; 5] =
         [Self::MuStar, Self::Frequency, Self::RegimeMap, Self::FrequencyMap, Self::Shares];
 
-    /// What its files are called.
+    /// The name of its files without the ending.
     pub fn stem(self) -> &'static str {
         match self {
             Self::MuStar => "figure7",
@@ -71,19 +65,20 @@ impl Plot {
         }
     }
 
-    /// The file with the data behind it and the fields of the export that are in it.
-    pub(super) fn data(self) -> Data {
+    /// The file with the data behind it.
+    pub(super) fn data(self) -> DataFile {
         match self {
             Self::MuStar => {
-                Data { stem: "figure7", columns: &["mu_star", "mu_star_se", "mu_star_contact", "regime"] }
+                DataFile { stem: "figure7", columns: &["mu_star", "mu_star_se", "mu_star_contact", "regime"] }
             }
             Self::Frequency | Self::FrequencyMap => {
-                Data { stem: "frequency_map", columns: &["frequency_hz", "regime"] }
+                DataFile { stem: "frequency_map", columns: &["frequency_hz", "regime"] }
             }
-            Self::RegimeMap => Data { stem: "regime_map", columns: &["regime", "error"] },
-            Self::Shares => {
-                Data { stem: "shares", columns: &["stick_share", "slip_share", "separated_share", "regime"] }
-            }
+            Self::RegimeMap => DataFile { stem: "regime_map", columns: &["regime", "error"] },
+            Self::Shares => DataFile {
+                stem: "shares",
+                columns: &["stick_share", "slip_share", "separated_share", "regime"],
+            },
         }
     }
 
@@ -102,19 +97,19 @@ impl Plot {
 /// One figure: the jobs with one combination of the further parameters.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
-    /// What tells its file from those of the other combinations, e.g. `-clamp_side-inner_side`; may be empty.
+    /// The part of its file name that is unique to this combination, e.g. `-clamp_side-inner_side`; may be empty.
     pub suffix: String,
     /// The combination in words; may be empty.
     pub caption: String,
-    /// The drawing.
+    /// The drawing as SVG.
     pub svg: String,
 }
 
 /// Draws one figure per combination of the further parameters.
 ///
 /// # Errors
-/// The drawing library's; drawing into a string gives it no reason to fail.
-pub fn figures(rows: &[Row], plot: Plot) -> Result<Vec<Figure>, FigureError> {
+/// [`FigureError`].
+pub fn figures(rows: &[JobRow], plot: Plot) -> Result<Vec<Figure>, FigureError> {
     figures_of(&Layout::new(rows), plot)
 }
 
@@ -128,19 +123,19 @@ pub(super) fn figures_of(layout: &Layout, plot: Plot) -> Result<Vec<Figure>, Fig
             Plot::FrequencyMap => map::frequencies(layout, group),
             Plot::Shares => shares::draw(layout, group),
         }?;
-        Ok(Figure { suffix: free_suffix(group, &mut taken), caption: group.caption(), svg })
+        Ok(Figure { suffix: unique_suffix(group, &mut taken), caption: group.caption(), svg })
     };
     layout.groups.iter().map(draw).collect()
 }
 
-/// Longest part of a file name that comes from parameters; file systems end at 255 bytes.
+/// Largest length of the part of a file name that comes from parameters. File systems allow 255 bytes in all.
 const MAX_SUFFIX: usize = 120;
 
-/// The combination as a part of a file name that no other combination has.
-fn free_suffix(group: &Group, taken: &mut HashSet<String>) -> String {
+/// The combination as a part of a file name that is unique.
+fn unique_suffix(group: &Group, taken: &mut HashSet<String>) -> String {
     let words: Vec<String> =
         group.key.iter().map(|(name, value)| format!("-{name}-{}", value::text(value))).collect();
-    let slug: String = value::in_file_name(&words.concat()).chars().take(MAX_SUFFIX).collect();
+    let slug: String = value::file_name_part(&words.concat()).chars().take(MAX_SUFFIX).collect();
     let numbered = (2..).map(|n| format!("{slug}-{n}"));
     std::iter::once(slug.clone())
         .chain(numbered)

@@ -1,15 +1,16 @@
-//! How well energies and identities close, for every job of a study.
+//! The residuals of the energy balance and of the identities, for every job of a study.
 
-use super::key::{self, Entry, Sample};
+use super::colour_key::{self, KeyEntry, Swatch};
 use crate::analysis::JobRecord;
+use crate::publish::FigureError;
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area, Chart, X_LABELS};
-use crate::publish::plot::hits::{Hit, Shape};
-use crate::publish::plot::{FigureError, MARGIN, TEXT, palette};
+use crate::publish::plot::tooltip::{Shape, TooltipTarget};
+use crate::publish::plot::{DrawError, MARGIN, TEXT, palette};
 use crate::publish::value;
-use crate::report::layout::MOST_TOLD;
-use crate::report::row::Row;
-use crate::report::tip::tip;
+use crate::report::layout::MAX_TOOLTIPS;
+use crate::report::row::JobRow;
+use crate::report::tooltip::tooltip_text;
 use plotters::chart::ChartBuilder;
 use plotters::prelude::{Circle, Polygon, RGBColor};
 use plotters::style::Color;
@@ -21,7 +22,7 @@ const LEGEND_WIDTH: u32 = 400;
 const Y_LABELS: u32 = 170;
 const RADIUS: i32 = 9;
 
-/// A kind of residual: its name, its colour, whether its marker is round, and its value.
+/// A kind of residual and its marker.
 struct Kind {
     name: &'static str,
     label: &'static str,
@@ -47,21 +48,21 @@ const KINDS: [Kind; 2] = [
     },
 ];
 
-/// Draws the residuals of all rows in their order. What is exactly zero has no place on a logarithmic axis.
-pub(in crate::report) fn draw(rows: &[Row]) -> Result<String, FigureError> {
+/// Draws the residuals of all rows in their order. A residual of exactly zero is left out, because the axis is logarithmic.
+pub(in crate::report) fn draw(rows: &[JobRow]) -> Result<String, FigureError> {
     canvas::sheet(SIZE, |root| {
         let (left, right) = root.split_horizontally(SIZE.0 - LEGEND_WIDTH);
-        let hits = draw_plot(&left, rows)?;
-        let entry = |kind: &Kind| Entry {
-            sample: Sample::ink(kind.colour, if kind.round { '●' } else { '◆' }),
+        let targets = draw_plot(&left, rows)?;
+        let entry = |kind: &Kind| KeyEntry {
+            swatch: Swatch::coloured(kind.colour, if kind.round { '●' } else { '◆' }),
             label: kind.label.to_owned(),
         };
-        key::below(&right, MARGIN, &KINDS.map(|kind| entry(&kind)))?;
-        Ok(if rows.len() <= MOST_TOLD { hits } else { Vec::new() })
+        colour_key::draw_column(&right, MARGIN, &KINDS.map(|kind| entry(&kind)))?;
+        Ok(if rows.len() <= MAX_TOOLTIPS { targets } else { Vec::new() })
     })
 }
 
-fn draw_plot(area: &Area, rows: &[Row]) -> Result<Vec<Hit>, FigureError> {
+fn draw_plot(area: &Area, rows: &[JobRow]) -> Result<Vec<TooltipTarget>, DrawError> {
     let points = |kind: &'static Kind| {
         rows.iter().enumerate().filter_map(move |(place, row)| {
             let residual = (kind.of)(row.record()?);
@@ -78,17 +79,17 @@ fn draw_plot(area: &Area, rows: &[Row]) -> Result<Vec<Hit>, FigureError> {
         .margin(MARGIN)
         .x_label_area_size(X_LABELS)
         .y_label_area_size(Y_LABELS)
-        .build_cartesian_2d(Axis::spanning(1.0, rows.len() as f64, 1.0), Axis::across(&all, true))?;
+        .build_cartesian_2d(Axis::spanning(1.0, rows.len() as f64, 1.0), Axis::for_values(&all, true))?;
     canvas::mesh(&mut chart).x_desc("job, in the order of the study").y_desc("residual").draw()?;
     canvas::frame(&chart)?;
-    let mut hits = Vec::new();
+    let mut targets = Vec::new();
     for kind in &KINDS {
         for (place, row, residual) in points(kind) {
             let at = (place as f64 + 1.0, residual);
             draw_marker(area, &chart, at, kind)?;
-            hits.push(Hit {
+            targets.push(TooltipTarget {
                 shape: Shape::Around { at: chart.backend_coord(&at), radius: 2 * RADIUS },
-                title: tip(row),
+                title: tooltip_text(row),
                 data: vec![
                     ("job", row.job.clone()),
                     ("x", (place + 1).to_string()),
@@ -98,10 +99,10 @@ fn draw_plot(area: &Area, rows: &[Row]) -> Result<Vec<Hit>, FigureError> {
             });
         }
     }
-    Ok(hits)
+    Ok(targets)
 }
 
-fn draw_marker(area: &Area, chart: &Chart, at: (f64, f64), kind: &Kind) -> Result<(), FigureError> {
+fn draw_marker(area: &Area, chart: &Chart, at: (f64, f64), kind: &Kind) -> Result<(), DrawError> {
     let (left, top) = area.get_base_pixel();
     let (x, y) = chart.backend_coord(&at);
     let (x, y) = (x - left, y - top);

@@ -1,36 +1,40 @@
-//! How the contact divides its time between stick, slip and separation: a panel for every friction coefficient.
+//! The shares of stick, slip and separation in the time of all contact nodes: a panel for every friction coefficient.
 
-use super::key::{self, Entry, Sample};
+use super::colour_key::{self, KeyEntry, Swatch};
 use crate::analysis::JobRecord;
+use crate::publish::FigureError;
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area, Chart};
-use crate::publish::plot::hits::{Hit, Shape};
-use crate::publish::plot::{FONT, FigureError, MARGIN, TEXT, palette};
-use crate::publish::value::{self, OMEGA};
+use crate::publish::plot::tooltip::{Shape, TooltipTarget};
+use crate::publish::plot::{DrawError, FONT, MARGIN, TEXT, palette};
+use crate::publish::value;
 use crate::report::layout::{Group, Layout};
-use crate::report::row::Row;
-use crate::report::tip::tip;
+use crate::report::parameters::OMEGA;
+use crate::report::row::JobRow;
+use crate::report::tooltip::tooltip_text;
 use plotters::chart::ChartBuilder;
 use plotters::prelude::{BLACK, PathElement, Polygon, RGBColor, Rectangle, WHITE};
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color, TRANSPARENT};
 use serde_json::Value;
 
-/// From the bottom to the top; the lightest in the middle, so that the three differ without colours.
+/// The layers from bottom to top. The lightest one is in the middle, so that a reader can tell them apart without
+/// colours.
 const LAYERS: [(&str, RGBColor); 3] =
-    [("stick", palette::STICK), ("slip", RGBColor(0xE0, 0xE0, 0xE0)), ("separated", palette::SEPARATED)];
+    [("stick", palette::BLUE), ("slip", RGBColor(0xE0, 0xE0, 0xE0)), ("separated", palette::VERMILLION)];
 /// Height of a panel [px].
 const PANEL: u32 = 400;
 const HEAD: u32 = 72;
 const TITLE: u32 = 54;
 const SMALL: i32 = 28;
 
-/// A job in a panel: along the axis, and where the layers end [%].
+/// A job in a panel.
 struct Column<'a> {
-    row: &'a Row,
+    row: &'a JobRow,
     at: usize,
     value: &'a Value,
     x: f64,
+    /// Boundaries of the layers [%], from bottom to top.
     ends: [f64; 4],
 }
 
@@ -45,18 +49,18 @@ pub(super) fn draw(layout: &Layout, group: &Group) -> Result<String, FigureError
         let below = canvas::caption(root, &caption)?;
         let (head, below) = below.split_vertically(HEAD);
         let (below, foot) = below.split_vertically(rows as u32 * PANEL);
-        let entries = LAYERS.map(|(label, colour)| Entry {
-            sample: Sample::ground(colour, ' '),
+        let entries = LAYERS.map(|(label, colour)| KeyEntry {
+            swatch: Swatch::filled(colour, ' '),
             label: format!("{label} [% of node-time]"),
         });
-        key::beside(&head, MARGIN + 90, 520, &entries)?;
+        colour_key::draw_row(&head, MARGIN + 90, 520, &entries)?;
         let parts = below.split_evenly((rows, columns));
-        let mut hits = Vec::new();
+        let mut targets = Vec::new();
         for ((index, mu), part) in layout.mus.iter().enumerate().zip(&parts) {
-            hits.extend(draw_panel(part, layout, group, index, *mu)?);
+            targets.extend(draw_panel(part, layout, group, index, *mu)?);
         }
         canvas::write(&foot, layout.axis_name(), (canvas::WIDTH as i32 / 2, 24), TEXT, HPos::Center)?;
-        Ok(if group.is_told() { hits } else { Vec::new() })
+        Ok(if group.has_tooltips() { targets } else { Vec::new() })
     })
 }
 
@@ -66,12 +70,13 @@ fn draw_panel(
     group: &Group,
     index: usize,
     mu: f64,
-) -> Result<Vec<Hit>, FigureError> {
-    let x_axis = Axis::across(&group.axis_values, layout.axis == OMEGA);
+) -> Result<Vec<TooltipTarget>, DrawError> {
+    let x_axis = Axis::for_values(&group.axis_values, layout.axis == OMEGA);
     let columns = columns(group, index, &x_axis);
     let width = area.dim_in_pixel().0 as i32;
     let names = if let Axis::Names(names) = &x_axis { names.len() } else { 1 };
-    let x_text = canvas::fitting(x_axis.longest_label() + 1, (width - 120) / names.max(1) as i32).min(SMALL);
+    let x_text =
+        canvas::fitting_size(x_axis.longest_label() + 1, (width - 120) / names.max(1) as i32).min(SMALL);
     let (top, below) = area.split_vertically(TITLE);
     canvas::write(&top, &format!("μ = {}", value::rounded(mu)), (width / 2 + 30, 30), TEXT, HPos::Center)?;
     let mut chart = ChartBuilder::on(&below)
@@ -98,18 +103,18 @@ fn draw_panel(
         let at = (width as i32 / 2, height as i32 / 2);
         canvas::write(&inside, "no results yet", at, SMALL, HPos::Center)?;
     }
-    Ok(hits(&chart, &columns))
+    Ok(targets(&chart, &columns))
 }
 
 fn columns<'a>(group: &'a Group, mu: usize, x_axis: &Axis) -> Vec<Column<'a>> {
     let mut columns: Vec<Column> = group
         .jobs
         .iter()
-        .filter(|job| job.mu == mu)
+        .filter(|job| job.mu_index == mu)
         .filter_map(|job| {
-            let value = &group.axis_values[job.at];
+            let value = &group.axis_values[job.axis_index];
             let ends = ends(job.row.record()?)?;
-            Some(Column { row: job.row, at: job.at, value, x: x_axis.place(value)?, ends })
+            Some(Column { row: job.row, at: job.axis_index, value, x: x_axis.position(value)?, ends })
         })
         .collect();
     columns.sort_by_key(|column| column.at);
@@ -122,8 +127,8 @@ fn ends(record: &JobRecord) -> Option<[f64; 4]> {
     ends.iter().all(|end| end.is_finite()).then_some(ends.map(|end| (100.0 * end).clamp(0.0, 100.0)))
 }
 
-/// Areas between neighbours in the grid, where they are along numbers; what stands alone is a bar.
-fn draw_layers(chart: &mut Chart, columns: &[Column], x_axis: &Axis) -> Result<(), FigureError> {
+/// Draws areas between neighbours in the grid if the axis has numbers, and a bar for a job without neighbours.
+fn draw_layers(chart: &mut Chart, columns: &[Column], x_axis: &Axis) -> Result<(), DrawError> {
     let are_joined = |a: &Column, b: &Column| !matches!(x_axis, Axis::Names(_)) && b.at <= a.at + 1;
     for stretch in columns.chunk_by(are_joined) {
         for (layer, (_, colour)) in LAYERS.iter().enumerate() {
@@ -137,7 +142,7 @@ fn draw_layers(chart: &mut Chart, columns: &[Column], x_axis: &Axis) -> Result<(
             chart.draw_series(std::iter::once(Polygon::new(outline, colour.filled())))?;
         }
         if stretch.len() > 1 {
-            // Where there is a job: between them is a guess.
+            // White lines mark the jobs; the areas between them are interpolated.
             for column in stretch {
                 let line = [(column.x, 0.0), (column.x, 100.0)];
                 chart
@@ -151,7 +156,7 @@ fn draw_layers(chart: &mut Chart, columns: &[Column], x_axis: &Axis) -> Result<(
 /// Half the width of a bar [px].
 const HALF_BAR: i32 = 14;
 
-fn draw_bar(chart: &Chart, column: &Column, layer: usize, colour: RGBColor) -> Result<(), FigureError> {
+fn draw_bar(chart: &Chart, column: &Column, layer: usize, colour: RGBColor) -> Result<(), DrawError> {
     let area = chart.plotting_area().strip_coord_spec();
     let (left, top) = area.get_base_pixel();
     let pixel = |end: f64| {
@@ -165,25 +170,25 @@ fn draw_bar(chart: &Chart, column: &Column, layer: usize, colour: RGBColor) -> R
     ))
 }
 
-/// A column's hit reaches half-way to its neighbours.
-fn hits(chart: &Chart, columns: &[Column]) -> Vec<Hit> {
+/// Tooltips of the columns. Their areas reach half-way to the neighbours, and no farther than 40 px.
+fn targets(chart: &Chart, columns: &[Column]) -> Vec<TooltipTarget> {
     let inside = chart.plotting_area().strip_coord_spec();
     let left = inside.get_base_pixel().0;
     let right = left + inside.dim_in_pixel().0 as i32;
     let pixel = |column: &Column, end: f64| chart.backend_coord(&(column.x, end));
     let x: Vec<i32> = columns.iter().map(|column| pixel(column, 0.0).0).collect();
     let between = |a: i32, b: i32| (a + b) / 2;
-    let hit = |(index, column): (usize, &Column)| {
+    let target = |(index, column): (usize, &Column)| {
         let from = index.checked_sub(1).map_or(left, |before| between(x[before], x[index]));
         let to = x.get(index + 1).map_or(right, |after| between(x[index], *after));
         let reach = |edge: i32| edge.clamp(x[index] - 40, x[index] + 40);
         let percent = |layer: usize| value::number(column.ends[layer + 1] - column.ends[layer]);
-        Hit {
+        TooltipTarget {
             shape: Shape::Cell {
                 from: (reach(from), pixel(column, 100.0).1),
                 to: (reach(to).max(reach(from) + 1), pixel(column, 0.0).1),
             },
-            title: tip(column.row),
+            title: tooltip_text(column.row),
             data: vec![
                 ("job", column.row.job.clone()),
                 ("x", value::text(column.value)),
@@ -194,5 +199,5 @@ fn hits(chart: &Chart, columns: &[Column]) -> Vec<Hit> {
             ],
         }
     };
-    columns.iter().enumerate().map(hit).collect()
+    columns.iter().enumerate().map(target).collect()
 }

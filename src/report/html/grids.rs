@@ -1,22 +1,22 @@
-//! Sections that show the grid of a study: figures with the data behind them, and tables.
+//! Sections with figures, the data behind them, and tables.
 
-use super::Parts;
+use super::parts::Parts;
 use crate::publish::{html, value};
 use crate::report::export;
-use crate::report::figure::{Data, Plot, RESIDUALS, RUN_TIMES};
-use crate::report::layout::{Group, MOST_TOLD, parameters_in_words};
-use crate::report::row::Row;
+use crate::report::figure::{DataFile, Plot, RESIDUALS, RUN_TIMES};
+use crate::report::layout::{Group, MAX_TOOLTIPS, parameters_in_words};
+use crate::report::row::JobRow;
 use crate::report::tables::{self, Quantity};
 use crate::report::times::Times;
-use crate::report::tip::short_key;
+use crate::report::tooltip::short_key;
 use maud::{Markup, html};
 
-/// No more combinations of further parameters than this are shown.
-const MOST_GROUPS: usize = 6;
-/// Beyond so many jobs, no further combination is shown …
-const MOST_JOBS: usize = 4_000;
-/// … and a single one that has more is not drawn.
-const MOST_DRAWN: usize = 20_000;
+/// Largest number of combinations of further parameters that are shown.
+const MAX_GROUPS: usize = 6;
+/// Largest number of jobs in all of these together …
+const MAX_JOBS: usize = 4_000;
+/// … unless only the first combination is shown, which may have more. Beyond this number it is not drawn either.
+const MAX_DRAWN: usize = 20_000;
 
 pub(super) fn friction(parts: &Parts) -> Markup {
     let axis = parts.layout.axis_label();
@@ -33,8 +33,9 @@ pub(super) fn friction(parts: &Parts) -> Markup {
 pub(super) fn frequency(parts: &Parts) -> Markup {
     let axis = parts.layout.axis_label();
     let curves = format!("Fundamental frequency of the total normal contact force against {axis}.");
-    let map =
-        format!("The same frequencies over {axis} and μ. Letters: jobs without a frequency; ~ not periodic.");
+    let map = format!(
+        "The same frequencies over {axis} and μ. A letter: the job has no frequency. ~: not periodic."
+    );
     html! {
         (figures(parts, Plot::Frequency, &curves))
         (figures(parts, Plot::FrequencyMap, &map))
@@ -44,7 +45,7 @@ pub(super) fn frequency(parts: &Parts) -> Markup {
 
 pub(super) fn regimes(parts: &Parts) -> Markup {
     let caption = format!(
-        "Contact regime of every job over {} and μ. Small letters on a pale ground: the run did not become periodic.",
+        "Contact regime of every job over {} and μ. A small letter on a pale colour: the run did not become periodic.",
         parts.layout.axis_label()
     );
     html! {
@@ -55,8 +56,7 @@ pub(super) fn regimes(parts: &Parts) -> Markup {
 
 pub(super) fn shares(parts: &Parts) -> Markup {
     let caption = format!(
-        "How the contact nodes' time divides between stick, slip and separation, against {}. White lines: where there is a \
-         job.",
+        "Shares of stick, slip and separation in the time of all contact nodes, against {}. White lines mark the jobs.",
         parts.layout.axis_label()
     );
     figures(parts, Plot::Shares, &caption)
@@ -64,16 +64,16 @@ pub(super) fn shares(parts: &Parts) -> Markup {
 
 pub(super) fn residuals(parts: &Parts) -> Markup {
     let rows = parts.report.rows;
-    let told = rows.len() <= MOST_TOLD;
-    let caption = "How well energies and identities close in every job: the energy balance of the whole run over the \
-                   energy put in, and the larger residual of two identities of the averaging window.";
-    let data = told.then(|| csv(parts, rows.iter(), RESIDUALS));
+    let has_tooltips = rows.len() <= MAX_TOOLTIPS;
+    let caption = "Residuals of every job: of the energy balance over the whole run, relative to the energy put in, and \
+                   the larger one of two identities over the averaging window.";
+    let data = has_tooltips.then(|| csv(parts, rows.iter(), RESIDUALS));
     let file = format!("{}.csv", RESIDUALS.stem);
     html! {
-        @if rows.len() <= MOST_DRAWN {
+        @if rows.len() <= MAX_DRAWN {
             (html::figure(parts.residuals, caption, data.as_deref().map(|csv| (file.as_str(), csv))))
         } @else {
-            (left_out(&format!("{} jobs are too many for this page", rows.len()), "residuals.svg"))
+            (see_files(&format!("{} jobs are too many for this page", rows.len()), "residuals.svg"))
         }
     }
 }
@@ -83,13 +83,12 @@ pub(super) fn times(parts: &Parts) -> Markup {
     let Some(times) = Times::of(rows) else {
         return html! { p { "No job has ended yet." } };
     };
-    let told = |seconds: f64| value::duration(seconds);
     let mut tiles = vec![
-        ("thread time, all jobs", told(times.total_s), format!("{} jobs", times.jobs)),
-        ("shortest", told(times.min_s), String::new()),
-        ("median", told(times.median_s), String::new()),
-        ("mean", told(times.mean_s), String::new()),
-        ("longest", told(times.max_s), String::new()),
+        ("thread time, all jobs", value::duration(times.total_s), format!("{} jobs", times.jobs)),
+        ("shortest", value::duration(times.min_s), String::new()),
+        ("median", value::duration(times.median_s), String::new()),
+        ("mean", value::duration(times.mean_s), String::new()),
+        ("longest", value::duration(times.max_s), String::new()),
     ];
     tiles.extend(
         times
@@ -98,10 +97,10 @@ pub(super) fn times(parts: &Parts) -> Markup {
     );
     let header = ["parameters", "thread time", "steps", "steps per second", "job"].map(str::to_owned);
     let lines: Vec<Vec<Markup>> = times.slowest.iter().map(|(row, seconds)| slow(row, *seconds)).collect();
-    let data = (rows.len() <= MOST_TOLD).then(|| csv(parts, rows.iter(), RUN_TIMES));
+    let data = (rows.len() <= MAX_TOOLTIPS).then(|| csv(parts, rows.iter(), RUN_TIMES));
     html! {
         p {
-            "A job's time is its share of its thread's: jobs that are advanced together share it equally."
+            "The time of a job is its share of the time of its thread. Jobs that are advanced together have equal shares."
             @if let Some(csv) = data { " " (html::download(&format!("{}.csv", RUN_TIMES.stem), &csv)) }
         }
         (html::tiles(&tiles))
@@ -110,7 +109,7 @@ pub(super) fn times(parts: &Parts) -> Markup {
     }
 }
 
-fn slow(row: &Row, seconds: f64) -> Vec<Markup> {
+fn slow(row: &JobRow, seconds: f64) -> Vec<Markup> {
     let steps = row.record().map(|record| record.steps);
     let cell = |text: Option<String>| html! { (text.as_deref().unwrap_or(value::MISSING)) };
     vec![
@@ -122,12 +121,12 @@ fn slow(row: &Row, seconds: f64) -> Vec<Markup> {
     ]
 }
 
-/// How many groups are shown.
+/// Number of groups that are shown.
 fn shown(parts: &Parts) -> usize {
     let mut jobs = 0;
     let fits = |(index, group): (usize, &Group)| {
         jobs += group.jobs.len();
-        if index == 0 { jobs <= MOST_DRAWN } else { index < MOST_GROUPS && jobs <= MOST_JOBS }
+        if index == 0 { jobs <= MAX_DRAWN } else { index < MAX_GROUPS && jobs <= MAX_JOBS }
     };
     parts.layout.groups.iter().enumerate().map(fits).take_while(|fits| *fits).count()
 }
@@ -140,16 +139,16 @@ fn figures(parts: &Parts, plot: Plot, caption: &str) -> Markup {
     html! {
         @for (group, figure) in groups.iter().zip(figures).take(shown) {
             @if !figure.caption.is_empty() { h3 { (figure.caption) } }
-            @let csv = group.is_told().then(|| csv(parts, group.jobs.iter().map(|job| job.row), data));
+            @let csv = group.has_tooltips().then(|| csv(parts, group.jobs.iter().map(|job| job.row), data));
             @let file = format!("{}{}.csv", data.stem, figure.suffix);
             (html::figure(&figure.svg, caption, csv.as_deref().map(|csv| (file.as_str(), csv))))
             @if csv.is_none() {
-                p.note { "Too many jobs to point at each of them; the data are in " code { (data.stem) ".csv" } "." }
+                p.note { "There are too many jobs for tooltips; the data are in " code { (data.stem) ".csv" } "." }
             }
         }
         @if shown < groups.len() {
             @let files = format!("{}*.svg", plot.stem());
-            (left_out(&what_is_left_out(parts, shown), &files))
+            (see_files(&what_is_left_out(parts, shown), &files))
         }
     }
 }
@@ -167,12 +166,12 @@ fn what_is_left_out(parts: &Parts, shown: usize) -> String {
     )
 }
 
-fn left_out(what: &str, files: &str) -> Markup {
+fn see_files(what: &str, files: &str) -> Markup {
     html! { p.note { "… " (what) ": see " code { (files) } " in its folder." } }
 }
 
-fn csv<'a>(parts: &Parts, rows: impl Iterator<Item = &'a Row>, data: Data) -> String {
-    // Text that is made of strings is text.
+fn csv<'a>(parts: &Parts, rows: impl Iterator<Item = &'a JobRow>, data: DataFile) -> String {
+    // The CSV consists of strings, so it is valid UTF-8; writing to memory cannot fail.
     export::selection(rows, &parts.layout.further, data.columns)
         .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
         .unwrap_or_default()
@@ -185,7 +184,7 @@ fn table(parts: &Parts, quantity: Quantity) -> Markup {
     let shown = shown(parts);
     let word_cells = quantity == Quantity::Regime;
     let cell = |text: &str| {
-        // Names of regimes break at their parts.
+        // Names of regimes may break at a hyphen.
         if word_cells {
             html! { (text.replace('_', "-")) }
         } else {
@@ -207,7 +206,7 @@ fn table(parts: &Parts, quantity: Quantity) -> Markup {
             (table(group))
         }
         @if shown < layout.groups.len() {
-            (left_out(&what_is_left_out(parts, shown), "the tables"))
+            (see_files(&what_is_left_out(parts, shown), "the tables"))
         }
         ul.note {
             @for (mark, meaning) in quantity.legend() {

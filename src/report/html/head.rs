@@ -1,15 +1,15 @@
-//! The page's beginning and its end: what is there, what is missing, what was found.
+//! The beginning and the end of the page: counts of jobs, what is missing, and the main results.
 
 use crate::analysis::JobRecord;
 use crate::publish::{html, value};
-use crate::report::Report;
+use crate::report::input::Report;
 use crate::report::layout::parameters_in_words;
-use crate::report::row::Row;
+use crate::report::row::JobRow;
 use crate::report::summary::{self, Summary};
-use crate::report::tip::short;
+use crate::report::tooltip::residual_text;
 use maud::{Markup, html};
 
-/// Numbers to begin with, and what is missing before them.
+/// Warnings about missing and failed jobs, and the main numbers below them.
 pub(super) fn summary(report: &Report) -> Markup {
     let rows = report.rows;
     let summary = Summary::of(rows);
@@ -46,25 +46,25 @@ pub(super) fn summary(report: &Report) -> Markup {
 
 type Tile = (&'static str, String, String);
 
-/// Where the macroscopic coefficient is farthest below the local one.
-fn drop_of_friction(rows: &[Row]) -> Option<Tile> {
-    let ratio = |row: &Row| Some(row.record()?.mu_star / row.mu).filter(|ratio| ratio.is_finite());
+/// The job whose macroscopic coefficient is the smallest in relation to the local one.
+fn drop_of_friction(rows: &[JobRow]) -> Option<Tile> {
+    let ratio = |row: &JobRow| Some(row.record()?.mu_star / row.mu).filter(|ratio| ratio.is_finite());
     let ratios = rows.iter().filter_map(|row| Some((ratio(row)?, row)));
     let (ratio, row) = ratios.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some(("lowest μ*/μ", value::fixed(ratio, 3), parameters_in_words(row)))
 }
 
-fn frequencies(rows: &[Row]) -> Option<Tile> {
+fn frequencies(rows: &[JobRow]) -> Option<Tile> {
     let found = rows.iter().filter_map(|row| row.record()?.frequency_hz).filter(|f| f.is_finite());
     let (low, high) =
         found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), f| (low.min(f), high.max(f)));
     let [low_khz, high_khz] = [low, high].map(|f| value::fixed(f / 1e3, 1));
-    let told =
+    let range =
         if low_khz == high_khz { format!("{low_khz} kHz") } else { format!("{low_khz}–{high_khz} kHz") };
-    (low <= high).then_some(("frequencies", told, String::new()))
+    (low <= high).then_some(("frequencies", range, String::new()))
 }
 
-fn residuals(rows: &[Row]) -> Option<Tile> {
+fn residuals(rows: &[JobRow]) -> Option<Tile> {
     let (energy, one) = summary::worst(rows, |record| record.energy_residual.abs())?;
     let (identity, other) = summary::worst(rows, JobRecord::identity_residual)?;
     let note = if one.job == other.job {
@@ -72,20 +72,20 @@ fn residuals(rows: &[Row]) -> Option<Tile> {
     } else {
         format!("energy at {}; identities at {}", parameters_in_words(one), parameters_in_words(other))
     };
-    Some(("largest residuals", format!("{}, {}", short(energy), short(identity)), note))
+    Some(("largest residuals", format!("{}, {}", residual_text(energy), residual_text(identity)), note))
 }
 
-/// When it was written, and what else there is.
+/// When the page was written, and which other files there are.
 pub(super) fn foot(report: &Report) -> Markup {
     html! {
         footer {
             p.note {
-                "Written " (value::moment(report.written_ms)) " by tribosweep. "
+                "Written " (value::utc_minute(report.written_ms)) " by tribosweep. "
                 @if let Some(seconds) = report.refresh_s {
-                    "The study is not finished: this page loads itself anew every " (seconds) " s. "
+                    "The study is not finished: this page reloads every " (seconds) " s. "
                 }
-                "In the folder it was written to are the figures as SVG, the tables and the data behind the figures as "
-                "CSV, and " code { "jobs.csv" } ", one line per job with everything."
+                "The folder of this page has the figures as SVG, the tables and the data behind the figures as CSV, "
+                "and " code { "jobs.csv" } " with all results, one line per job."
             }
         }
     }

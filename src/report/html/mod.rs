@@ -1,28 +1,18 @@
 //! The report as one page for a browser.
 //!
-//! It is whole: all drawings, tables and the data behind them are in it. A study that is too large for that is shown as
-//! far as it goes, and the page says what is left out, which is in the files beside it.
+//! The page contains all drawings, tables and the data behind them. If a study is too large for that, the page shows a
+//! part of it, says what is left out, and names the files that have it.
 
 mod grids;
 mod head;
-mod origin;
+mod parts;
+mod provenance;
 mod trouble;
 
-use super::Report;
-use super::figure::{Figure, Plot};
-use super::layout::Layout;
+pub(super) use parts::Parts;
+
 use crate::publish::html;
 use maud::{Markup, html};
-
-/// What the page is made of, besides the rows.
-pub(super) struct Parts<'a> {
-    pub report: &'a Report<'a>,
-    pub layout: &'a Layout<'a>,
-    /// The figures of every kind, one for each group.
-    pub figures: &'a [(Plot, Vec<Figure>)],
-    /// The figure of residuals.
-    pub residuals: &'a str,
-}
 
 /// The page.
 pub(super) fn page(parts: &Parts) -> String {
@@ -36,7 +26,7 @@ pub(super) fn page(parts: &Parts) -> String {
     ];
     sections.extend(trouble::section(report.rows).map(|content| ("trouble", "Trouble", content)));
     sections.push(("times", "Run times", grids::times(parts)));
-    sections.extend(report.origin.map(|own| ("provenance", "Provenance", origin::section(own))));
+    sections.extend(report.provenance.map(|from| ("provenance", "Provenance", provenance::section(from))));
     let body = html! {
         (head::summary(report))
         (html::navigation(sections.iter().map(|(id, heading, _)| (*id, *heading))))

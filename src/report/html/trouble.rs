@@ -1,18 +1,18 @@
-//! What failed and what did not become periodic, where and why; and what is missing.
+//! Jobs that failed, that did not become periodic, or that are missing: where they are in the grid, and why.
 
 use crate::analysis::Outcome;
 use crate::publish::{html, value};
 use crate::report::layout::parameters_in_words;
-use crate::report::row::{Row, RowState};
-use crate::report::tip::short_key;
+use crate::report::row::{JobRow, RowState};
+use crate::report::tooltip::short_key;
 use crate::report::trouble;
 use maud::{Markup, html};
 
-/// Jobs in a list are named up to this number.
-const NAMED: usize = 100;
+/// Largest number of jobs in a list.
+const MAX_LISTED: usize = 100;
 
-/// Nothing, if no job is in trouble or missing.
-pub(super) fn section(rows: &[Row]) -> Option<Markup> {
+/// None if there is no such job.
+pub(super) fn section(rows: &[JobRow]) -> Option<Markup> {
     let regions = trouble::sentences(&trouble::regions(rows));
     let failed = list("Failed jobs", rows, failed);
     let not_periodic = list("Not periodic", rows, not_periodic);
@@ -23,20 +23,20 @@ pub(super) fn section(rows: &[Row]) -> Option<Markup> {
     }
     Some(html! {
         @if !regions.is_empty() {
-            p { "Neighbours in the grid with the same cause are one region:" }
+            p { "Neighbouring jobs of the grid with the same cause form a region:" }
             ul { @for sentence in &regions { li { (sentence) } } }
         }
         @for part in &parts { (part) }
     })
 }
 
-/// The rows of which there is something to say, the first of them in a table.
-fn list(heading: &str, rows: &[Row], why: fn(&Row) -> Option<Markup>) -> Option<Markup> {
+/// A table of the rows for which `why` returns a reason. Rows beyond [`MAX_LISTED`] are counted only.
+fn list(heading: &str, rows: &[JobRow], why: fn(&JobRow) -> Option<Markup>) -> Option<Markup> {
     let mut entries = rows.iter().filter_map(|row| Some((row, why(row)?)));
-    let line = |(row, why): (&Row, Markup)| {
+    let line = |(row, why): (&JobRow, Markup)| {
         vec![html! { (parameters_in_words(row)) }, why, html! { code { (short_key(row)) } }]
     };
-    let lines: Vec<Vec<Markup>> = entries.by_ref().take(NAMED).map(line).collect();
+    let lines: Vec<Vec<Markup>> = entries.by_ref().take(MAX_LISTED).map(line).collect();
     if lines.is_empty() {
         return None;
     }
@@ -49,25 +49,25 @@ fn list(heading: &str, rows: &[Row], why: fn(&Row) -> Option<Markup>) -> Option<
     })
 }
 
-fn failed(row: &Row) -> Option<Markup> {
+fn failed(row: &JobRow) -> Option<Markup> {
     match &row.state {
         RowState::Failed { error } => Some(html! { span.words { (error) } }),
         _ => None,
     }
 }
 
-fn not_periodic(row: &Row) -> Option<Markup> {
+fn not_periodic(row: &JobRow) -> Option<Markup> {
     let record = row.record().filter(|record| record.outcome == Outcome::NotPeriodic)?;
     let why = trouble::cause(row)?.why;
     Some(html! {
         span.words {
-            (why) "; after " (value::digits(record.simulated_s, 4)) " s μ* = " (value::fixed(record.mu_star, 4)) " ± "
+            (why) "; after " (value::significant(record.simulated_s, 4)) " s μ* = " (value::fixed(record.mu_star, 4)) " ± "
             (value::fixed(record.mu_star_se, 4)) " over " (record.cycles) " cycles"
         }
     })
 }
 
-fn missing(row: &Row) -> Option<Markup> {
+fn missing(row: &JobRow) -> Option<Markup> {
     let is_missing = matches!(row.state, RowState::Pending | RowState::Running | RowState::Cancelled);
     is_missing.then(|| html! { (row.status()) })
 }

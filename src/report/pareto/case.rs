@@ -1,35 +1,12 @@
 //! One physical case: its finished jobs, their reference and their scores.
 
+use super::done::DoneJob;
 use super::early::{self, EarlyStop};
 use super::reference::{self, Reference};
 use super::score::{self, Score};
 use super::settings;
-use crate::analysis::JobRecord;
 use crate::publish::value;
-use crate::report::row::{JobNumerics, Row, RowState};
-
-/// A finished job with everything that the comparison needs.
-#[derive(Debug, Clone, Copy)]
-pub struct DoneJob<'a> {
-    /// Its row.
-    pub row: &'a Row,
-    /// Its numerics.
-    pub numerics: &'a JobNumerics,
-    /// What it found.
-    pub record: &'a JobRecord,
-}
-
-impl<'a> DoneJob<'a> {
-    /// The job of a row, if it is done and its numerics are known.
-    pub(super) fn of(row: &'a Row) -> Option<Self> {
-        Some(Self { row, numerics: row.numerics.as_ref()?, record: row.record()? })
-    }
-
-    /// Nodes × time steps done: a cost that is the same on every machine.
-    pub fn node_steps(&self) -> f64 {
-        self.numerics.nodes as f64 * self.record.steps as f64
-    }
-}
+use crate::report::row::{JobRow, RowState};
 
 /// The jobs of one physical case.
 #[derive(Debug)]
@@ -38,21 +15,21 @@ pub struct Case<'a> {
     pub caption: String,
     /// Its finished jobs, in the order of the study.
     pub jobs: Vec<DoneJob<'a>>,
-    /// What they are measured by.
+    /// The figures that they are compared with.
     pub reference: Reference,
-    /// One score a job.
+    /// One score for each job.
     pub scores: Vec<Score>,
     /// What stopping early changes, for each pair of jobs that differ in nothing else.
     pub early: Vec<EarlyStop>,
-    /// Jobs that wait or run.
+    /// Number of jobs that are pending, running or cancelled.
     pub waiting: usize,
-    /// Jobs that failed.
+    /// Number of jobs that failed.
     pub failed: usize,
 }
 
 impl<'a> Case<'a> {
-    /// The case of at least two finished `jobs`; `all` are its rows, finished or not.
-    pub(super) fn new(jobs: Vec<DoneJob<'a>>, all: &[&Row], names_damping: bool) -> Self {
+    /// The case of `jobs`, which are two or more. `all` are all of its rows, finished or not.
+    pub(super) fn new(jobs: Vec<DoneJob<'a>>, all: &[&JobRow], names_damping: bool) -> Self {
         let physics = settings::physics_in_words(jobs[0].row);
         let damping = value::rounded(jobs[0].numerics.beta_r_s);
         let caption = if names_damping { format!("{physics}, β_R = {damping} s") } else { physics };

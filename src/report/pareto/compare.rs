@@ -1,8 +1,9 @@
 //! From rows to physical cases.
 
-use super::case::{Case, DoneJob};
+use super::case::Case;
+use super::done::DoneJob;
 use super::error::ParetoError;
-use crate::report::row::Row;
+use crate::report::row::JobRow;
 
 /// All physical cases with at least two finished jobs.
 #[derive(Debug)]
@@ -20,7 +21,7 @@ pub struct Comparison<'a> {
 /// # Errors
 /// If there is nothing to compare: fewer than two jobs are done, none of them are of the same physical case,
 /// or their numerics or run times are not known.
-pub fn compare(rows: &[Row]) -> Result<Comparison<'_>, ParetoError> {
+pub fn compare(rows: &[JobRow]) -> Result<Comparison<'_>, ParetoError> {
     let rows = distinct(rows);
     let done = rows.iter().filter(|row| row.record().is_some()).count();
     if done < 2 {
@@ -56,14 +57,17 @@ pub fn compare(rows: &[Row]) -> Result<Comparison<'_>, ParetoError> {
     Ok(comparison)
 }
 
-fn distinct(rows: &[Row]) -> Vec<&Row> {
+fn distinct(rows: &[JobRow]) -> Vec<&JobRow> {
     let mut seen = std::collections::HashSet::new();
     rows.iter().filter(|row| seen.insert(row.job.as_str())).collect()
 }
 
 /// Groups in the order of their first rows; rows without a key are left out.
-fn grouped<'a, K: PartialEq>(rows: &[&'a Row], key: impl Fn(&Row) -> Option<K>) -> Vec<Vec<&'a Row>> {
-    let mut groups: Vec<(K, Vec<&Row>)> = Vec::new();
+fn grouped<'a, K: PartialEq>(
+    rows: &[&'a JobRow],
+    key: impl Fn(&JobRow) -> Option<K>,
+) -> Vec<Vec<&'a JobRow>> {
+    let mut groups: Vec<(K, Vec<&JobRow>)> = Vec::new();
     for &row in rows {
         let Some(key) = key(row) else { continue };
         match groups.iter_mut().find(|(own, _)| *own == key) {
@@ -75,7 +79,7 @@ fn grouped<'a, K: PartialEq>(rows: &[&'a Row], key: impl Fn(&Row) -> Option<K>) 
 }
 
 /// Whether β_R was swept as physics: the finest mesh of the group, done or not, has several values of it.
-fn damping_is_physics(group: &[&Row]) -> bool {
+fn damping_is_physics(group: &[&JobRow]) -> bool {
     let numerics = || group.iter().filter_map(|row| row.numerics.as_ref());
     let finest = numerics().map(|n| n.element_size_m).fold(f64::INFINITY, f64::min);
     let mut damping = numerics().filter(|n| n.element_size_m == finest).map(|n| n.beta_r_s);

@@ -1,16 +1,17 @@
-//! The comparison as one line a job, for other programs.
+//! The comparison as CSV, one line per job.
 
-use super::case::{Case, DoneJob};
+use super::case::Case;
 use super::compare::Comparison;
+use super::done::DoneJob;
 use super::reference::{FIGURES, figures};
 use super::refinement::Unclean;
 use super::score::Score;
 use crate::publish::value::{number, text};
 use crate::report::export::{further_names, io_error};
-use crate::report::row::Row;
+use crate::report::row::JobRow;
 use std::io::{self, Write};
 
-/// The fields of every line; grid parameters that are not among them follow.
+/// The fields of every line. Grid parameters that are not among them follow.
 const HEADER: [&str; 38] = [
     "case",
     "study",
@@ -52,9 +53,9 @@ const HEADER: [&str; 38] = [
     "on_node_step_front",
 ];
 
-/// Writes the comparison. Errors are signed where they are relative; cells without a value are empty.
+/// Writes the comparison. Relative errors have a sign, and cells without a value are empty.
 pub(super) fn write<W: Write>(comparison: &Comparison, out: W) -> io::Result<()> {
-    let rows: Vec<Row> =
+    let rows: Vec<JobRow> =
         comparison.cases.iter().flat_map(|case| &case.jobs).map(|job| job.row.clone()).collect();
     let further: Vec<&str> = further_names(&rows).into_iter().filter(|name| !HEADER.contains(name)).collect();
     let mut writer = ::csv::Writer::from_writer(out);

@@ -1,10 +1,10 @@
-//! What stopping early changes: pairs of jobs that differ in nothing else.
+//! The effect of stopping early: pairs of jobs that differ in nothing else.
 
-use super::case::DoneJob;
+use super::done::DoneJob;
 use super::reference::{self, FIGURES, FREQUENCY};
 use crate::report::row::JobNumerics;
 
-/// A job that stopped early beside the same job run to its limit.
+/// A job that stopped early, compared with the same job that ran to its time limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct EarlyStop {
     /// Index of the job that stopped early among the case's jobs.
@@ -13,7 +13,7 @@ pub struct EarlyStop {
     pub whole: usize,
     /// Relative change of μ* by stopping early.
     pub mu_star_change: f64,
-    /// Smallest relative change that can be told from none: √(se² + se²) over μ*.
+    /// Smallest relative change that can be distinguished from 0: √(se² + se²) over μ*.
     pub mu_star_resolution: f64,
     /// Relative change of the frequency.
     pub frequency_change: Option<f64>,
@@ -25,7 +25,8 @@ pub struct EarlyStop {
     pub wall_saved: Option<f64>,
 }
 
-/// All pairs, in the order of the jobs that stop early. A whole run serves all tolerances: it does not depend on them.
+/// All pairs, in the order of the jobs that stop early. A whole run is compared with jobs of any tolerance, because it
+/// does not depend on the tolerance.
 pub(super) fn pairs(jobs: &[DoneJob]) -> Vec<EarlyStop> {
     let alike = |early: &JobNumerics, whole: &JobNumerics| {
         let as_whole = JobNumerics {
@@ -37,14 +38,14 @@ pub(super) fn pairs(jobs: &[DoneJob]) -> Vec<EarlyStop> {
             drift_tolerance: whole.drift_tolerance,
             ..early.clone()
         };
-        // The step is a field of its own only where it is a fraction; where it is given, the records have it.
+        // A time step that is given is not among the numerics: the caller compares those of the records.
         !whole.stop_early && as_whole == *whole
     };
     let same_step = |a: &DoneJob, b: &DoneJob| a.record.time_step_s == b.record.time_step_s;
     (0..jobs.len())
         .filter(|&early| jobs[early].numerics.stop_early)
         .filter_map(|early| {
-            // The longest of them, should there be several.
+            // If there are several whole runs, the longest one is taken.
             let whole = (0..jobs.len())
                 .filter(|&i| {
                     alike(jobs[early].numerics, jobs[i].numerics) && same_step(&jobs[early], &jobs[i])

@@ -1,6 +1,6 @@
 //! Why jobs cannot be compared.
 
-/// There is nothing to compare.
+/// There are no jobs that can be compared.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ParetoError {
     /// Too few results.

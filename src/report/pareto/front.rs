@@ -1,7 +1,7 @@
 //! The Pareto front of points with a cost and an error.
 
-/// For each point (cost, error) whether it is on the front: no other point is at most as dear and at
-/// most as wrong, and better in one of the two. Points with a number that is not finite are never on it.
+/// For each point (cost, error) whether it is on the front: no other point has at most the same cost and at most the same
+/// error, and less of one of them. Points with a number that is not finite are never on it.
 pub fn on_front(points: &[(f64, f64)]) -> Vec<bool> {
     let mut order: Vec<usize> =
         (0..points.len()).filter(|&i| points[i].0.is_finite() && points[i].1.is_finite()).collect();

@@ -1,7 +1,7 @@
-//! Error against run time: jobs that differ in their numerics only, measured by the finest of them.
+//! Error against run time: a comparison of jobs that differ in their numerics only with the finest of them.
 //!
 //! ```text
-//! rows ──► case (one physical case each) ──► reference (finest job, extrapolated: refinement)
+//! rows ──► case (one per physical case) ───► reference (finest job, extrapolated: refinement)
 //!                                                 │
 //!          front ◄── score (errors, costs) ◄──────┘──► early (what stopping early changes)
 //!            └────────► page, csv, plot
@@ -9,21 +9,22 @@
 //!
 //! # Definitions
 //! * A **physical case** is everything but mesh, integrator, time step, run control and detection.
-//!   The damping β_R is part of the model, β₂ > ½ of the integrator. When all jobs on a case's finest mesh
-//!   have one β_R, that is the case's, and jobs with another damping are measured against it: their error
-//!   contains the difference of the models. When they have several, each β_R is a case of its own.
+//!   The damping β_R belongs to the model, and β₂ > ½ belongs to the integrator. If all jobs on the finest mesh of a case
+//!   have the same β_R, the case has this β_R, and jobs with another one are compared with it: their error contains the
+//!   difference of the models. If they have several β_R, each of them is a case.
 //! * The **reference** is the finest finished job with the case's damping: finest mesh, then smallest β₂,
-//!   smallest step, not stopped early, longest run, tightest tolerance. Its figures are extrapolated
-//!   along the refinements of mesh and step where the order is clean ([`refinement`]).
+//!   smallest step, not stopped early, longest run, smallest tolerance. Its figures are extrapolated
+//!   along the refinements of mesh and step if the order is clean ([`refinement`]).
 //! * The **error** of μ* and of the frequency is relative to the reference, that of the shares the largest
 //!   absolute difference of the three.
 //! * An error is **resolved** when it exceeds √(se² + se_ref²) + u, the standard errors over cycles and the
-//!   uncertainty u of the reference. What can be claimed for a job is its error, or the resolution
-//!   (rounded up to two digits) where the error is not resolved; front and figure are made of that.
+//!   uncertainty u of the reference. The error that can be claimed for a job is its error, or the resolution
+//!   (rounded up to two digits) if the error is not resolved. The Pareto front and the figure show this error.
 
 mod case;
 mod compare;
 mod csv;
+mod done;
 mod early;
 mod error;
 mod front;
@@ -36,6 +37,7 @@ mod settings;
 
 pub use case::Case;
 pub use compare::{Comparison, compare};
+pub use done::DoneJob;
 pub use early::EarlyStop;
 pub use error::ParetoError;
 pub use front::on_front;
@@ -47,7 +49,7 @@ use crate::publish::Folder;
 use crate::publish::PublishError;
 use std::path::{Path, PathBuf};
 
-/// Writes `pareto.md`, `pareto.csv`, `refinement.csv` and one figure a case (`pareto.svg`, `pareto-2.svg`, …) into `out_dir`;
+/// Writes `pareto.md`, `pareto.csv`, `refinement.csv` and one figure per case (`pareto.svg`, `pareto-2.svg`, …) into `out_dir`;
 /// returns the files.
 ///
 /// # Errors
@@ -59,11 +61,11 @@ pub fn write(comparison: &Comparison, out_dir: &Path, title: &str) -> Result<Vec
         let name = if index == 0 { "pareto.svg".to_owned() } else { format!("pareto-{}.svg", index + 1) };
         let svg =
             plot::draw(case).map_err(|source| PublishError::Figure { path: out_dir.join(&name), source })?;
-        folder.text(&name, &svg)?;
+        folder.write_text(&name, &svg)?;
         figures.push(name);
     }
-    folder.with("pareto.csv", |out| csv::write(comparison, out))?;
-    folder.with("refinement.csv", |out| csv::write_refinement(comparison, out))?;
-    folder.text("pareto.md", &page::page(comparison, &figures, title))?;
+    folder.write_with("pareto.csv", |out| csv::write(comparison, out))?;
+    folder.write_with("refinement.csv", |out| csv::write_refinement(comparison, out))?;
+    folder.write_text("pareto.md", &page::page(comparison, &figures, title))?;
     Ok(folder.written)
 }

@@ -1,7 +1,8 @@
-//! The comparison as Markdown that reads as plain text too.
+//! The comparison as Markdown that is readable as plain text too.
 
-use super::case::{Case, DoneJob};
+use super::case::Case;
 use super::compare::Comparison;
+use super::done::DoneJob;
 use super::early::EarlyStop;
 use super::reference::{Chain, Direction, FIGURE_NAMES, FIGURES, FREQUENCY, MU_STAR, Reference};
 use super::refinement::{Limit, Unclean};
@@ -115,7 +116,7 @@ fn limit_in_words(limit: &Limit) -> String {
     }
 }
 
-/// Columns of the settings that vary within the case.
+/// Indices of the settings that vary within the case.
 fn varying(case: &Case) -> Vec<usize> {
     let texts: Vec<_> = case.jobs.iter().map(|job| settings::texts(job.numerics)).collect();
     (0..settings::NAMES.len()).filter(|&i| texts.iter().any(|text| text[i] != texts[0][i])).collect()
@@ -176,7 +177,7 @@ fn results(job: &DoneJob, score: &Score, is_reference: bool) -> [String; 8] {
     ]
 }
 
-/// A signed relative error in percent, or the smallest one that would show.
+/// A signed relative error in percent, or the resolution if the error is not resolved.
 fn percent(error: f64, resolution: f64) -> String {
     if exceeds(error, resolution) {
         format!("{:+.3} %", 100.0 * error)
@@ -232,7 +233,7 @@ fn changes(case: &Case, pair: &EarlyStop) -> [String; 6] {
     ]
 }
 
-/// μ* is what the figure shows; its name is used where only one figure is spoken of.
+/// The name of the ordinate of the figure.
 pub(super) fn figure_title() -> String {
     format!("relative error of {}", FIGURE_NAMES[MU_STAR])
 }

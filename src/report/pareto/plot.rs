@@ -4,9 +4,10 @@
 
 use super::case::Case;
 use super::page::figure_title;
+use crate::publish::FigureError;
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area, X_LABELS, write};
-use crate::publish::plot::{DASH, FigureError, MARGIN, TEXT, palette};
+use crate::publish::plot::{DASH, DrawError, MARGIN, TEXT, palette};
 use plotters::chart::ChartBuilder;
 use plotters::prelude::{BLACK, Circle, DashedLineSeries, PathElement, Polygon, RGBColor, WHITE};
 use plotters::style::Color;
@@ -27,8 +28,8 @@ struct Point {
     on_front: bool,
 }
 
-/// Draws a case. Jobs without a run time, and those whose error and resolution are both zero, are not on a
-/// logarithmic scale and left out.
+/// Draws a case. Jobs without a run time and jobs whose error and resolution are both zero are left out, because the axes
+/// are logarithmic.
 pub(super) fn draw(case: &Case) -> Result<String, FigureError> {
     let meshes = meshes(case);
     let points = points(case, &meshes);
@@ -71,10 +72,10 @@ fn points(case: &Case, meshes: &[[usize; 3]]) -> Vec<Point> {
 
 fn axis(values: impl Iterator<Item = f64>) -> Axis {
     let values: Vec<Value> = values.map(Value::from).collect();
-    Axis::across(&values, true)
+    Axis::for_values(&values, true)
 }
 
-fn draw_plot(area: &Area, points: &[Point]) -> Result<(), FigureError> {
+fn draw_plot(area: &Area, points: &[Point]) -> Result<(), DrawError> {
     if points.is_empty() {
         let (width, height) = area.dim_in_pixel();
         let note = "no job has both a run time and an error above zero";
@@ -101,8 +102,9 @@ fn draw_plot(area: &Area, points: &[Point]) -> Result<(), FigureError> {
     Ok(())
 }
 
-/// A circle for a whole run, a triangle for one that stopped early; hollow if not resolved; ringed on the front.
-fn draw_marker(area: &Area, at: (i32, i32), point: &Point) -> Result<(), FigureError> {
+/// A circle for a whole run and a triangle for one that stopped early. The marker is hollow if the error is not resolved,
+/// and has a ring if the job is on the front.
+fn draw_marker(area: &Area, at: (i32, i32), point: &Point) -> Result<(), DrawError> {
     if point.on_front {
         area.draw(&Circle::new(at, RADIUS + 9, BLACK.stroke_width(3)))?;
     }
@@ -116,7 +118,7 @@ fn shape(
     triangle: bool,
     radius: f64,
     colour: RGBColor,
-) -> Result<(), FigureError> {
+) -> Result<(), DrawError> {
     let pixels = |offset: f64| (offset * radius).round() as i32;
     if triangle {
         let corners = [(0.0, -1.35), (1.2, 0.8), (-1.2, 0.8)];
@@ -126,7 +128,7 @@ fn shape(
     }
 }
 
-fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(), FigureError> {
+fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(), DrawError> {
     let sample = |early, resolved, on_front| Point {
         time_s: 0.0,
         error: 0.0,
@@ -155,7 +157,7 @@ fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(
     }
     let room = area.dim_in_pixel().1 as i32 - 2 * MARGIN;
     let pitch = (room / entries.len() as i32).min(50);
-    // A long legend is set smaller rather than cut.
+    // A long legend gets smaller text, so that all of it is on the sheet.
     let size = TEXT.min(pitch * 5 / 6);
     for (line, (marker, label)) in entries.iter().enumerate() {
         let y = MARGIN + pitch / 2 + line as i32 * pitch;
@@ -165,7 +167,7 @@ fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(
         let x = if marker.is_some() { 3 * RADIUS + 24 } else { 0 };
         write(area, label, (x, y), size, HPos::Left)?;
     }
-    // The front is a line, too.
+    // The front is also drawn as a line.
     if any(|p| p.on_front) {
         let y = MARGIN + pitch / 2 + entries.len() as i32 * pitch - pitch;
         area.draw(&PathElement::new([(0, y), (2 * (RADIUS + 12), y)], BLACK.stroke_width(3)))?;

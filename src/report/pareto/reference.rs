@@ -1,11 +1,11 @@
-//! What the jobs of a case are measured by: its finest job, extrapolated where the order is clean.
+//! The figures that the jobs of a case are compared with: those of its finest job, extrapolated if the order is clean.
 
-use super::case::DoneJob;
+use super::done::DoneJob;
 use super::refinement::{self, Level, Limit};
 use crate::report::row::JobNumerics;
 use std::cmp::Ordering;
 
-/// The figures compared: μ*, frequency and the shares of stick, slip and separation.
+/// Number of the figures that are compared: μ*, frequency and the shares of stick, slip and separation.
 pub(super) const FIGURES: usize = 5;
 /// Index of μ*.
 pub(super) const MU_STAR: usize = 0;
@@ -18,11 +18,11 @@ pub(super) const FIGURE_NAMES: [&str; FIGURES] = ["μ*", "frequency", "stick", "
 /// What is refined along a chain of jobs that differ in nothing else.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
-    /// The mesh at a given time step.
+    /// The mesh is refined, and the time step is given.
     Mesh,
-    /// The mesh at a given fraction of the stability limit: the step shrinks with it.
+    /// The mesh is refined at a constant fraction of the stability limit, so that the time step shrinks with it.
     MeshAndStep,
-    /// The time step on the finest mesh.
+    /// The time step is refined on the finest mesh.
     Step,
 }
 
@@ -37,7 +37,7 @@ impl Direction {
     }
 }
 
-/// Refinement that ends at the reference job.
+/// A sequence of refined jobs that ends at the reference job.
 #[derive(Debug, Clone)]
 pub struct Chain {
     /// What is refined.
@@ -46,33 +46,33 @@ pub struct Chain {
     pub jobs: Vec<usize>,
     /// Their element sizes or time steps [m or s].
     pub sizes: Vec<f64>,
-    /// The limit of each figure; none where a job has no such figure.
+    /// The limit of each figure; none if one of the jobs does not have the figure.
     pub limits: [Option<Limit>; FIGURES],
 }
 
 /// One figure of the reference.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Target {
-    /// The value that errors are taken from.
+    /// The value that other jobs are compared with.
     pub value: f64,
-    /// Its standard error over cycles; known for μ* only.
+    /// Its standard error over cycles; 0 for all figures but μ*.
     pub standard_error: f64,
-    /// How far it may be from the truth by the chains; none without a chain.
+    /// Its uncertainty according to the chains; none without a chain.
     pub uncertainty: Option<f64>,
 }
 
-/// What the jobs of a case are measured by.
+/// The figures that the jobs of a case are compared with.
 #[derive(Debug, Clone)]
 pub struct Reference {
     /// Index of the finest job among the case's jobs.
     pub job: usize,
     /// The chains that end at it.
     pub chains: Vec<Chain>,
-    /// The figures; none where the finest job has no such figure (no frequency without a limit cycle).
+    /// The figures; none if the finest job does not have the figure (there is no frequency without a limit cycle).
     pub targets: [Option<Target>; FIGURES],
 }
 
-/// The figures of a job with their standard errors.
+/// The figures of a job.
 pub(super) fn figures(job: &DoneJob) -> [Option<f64>; FIGURES] {
     let record = job.record;
     let finite = |value: f64| value.is_finite().then_some(value);
@@ -85,7 +85,7 @@ pub(super) fn figures(job: &DoneJob) -> [Option<f64>; FIGURES] {
     ]
 }
 
-/// Standard error of a figure; known for μ* only.
+/// Standard error of a figure; 0 for all figures but μ*.
 pub(super) fn standard_error(job: &DoneJob, figure: usize) -> f64 {
     let known = figure == MU_STAR && job.record.mu_star_se.is_finite();
     if known { job.record.mu_star_se } else { 0.0 }
@@ -94,7 +94,7 @@ pub(super) fn standard_error(job: &DoneJob, figure: usize) -> f64 {
 /// The reference of a case.
 ///
 /// # Panics
-/// Without jobs.
+/// If there are no jobs.
 pub(super) fn of(jobs: &[DoneJob]) -> Reference {
     let finest_mesh = jobs.iter().map(|job| job.numerics.element_size_m).fold(f64::INFINITY, f64::min);
     let damping =
@@ -127,7 +127,8 @@ fn target(finest: &DoneJob, chains: &[Chain], figure: usize) -> Option<Target> {
     let mut step_is_covered = false;
     for chain in chains {
         let Some(limit) = chain.limits[figure] else { continue };
-        // A mesh chain at a fraction of the limit has gone to Δt = 0 with the mesh; twice would be too far.
+        // A chain of meshes at a fraction of the stability limit extrapolates the time step to 0 as well. A chain of
+        // steps must not correct for that a second time.
         if !(chain.direction == Direction::Step && step_is_covered) {
             target.value += limit.value - value;
             *target.uncertainty.get_or_insert(0.0) += limit.uncertainty;
@@ -177,8 +178,8 @@ fn limit(levels: &[&DoneJob], size: fn(&DoneJob) -> f64, figure: usize) -> Optio
     refinement::limit(&levels?)
 }
 
-/// Largest ratio of the refinement in one direction to that in another: counts are whole numbers, and a block
-/// of 12 × 15 × 10 mm does not divide evenly into every size.
+/// Largest ratio of the refinement in one direction to that in another. It is not 1, because numbers of elements are
+/// integers, and a block of 12 × 15 × 10 mm cannot be divided into cubes of every size.
 const ALIKE: f64 = 1.15;
 
 /// Whether both meshes are refined by about the same factor in x, y and z, all else equal.

@@ -6,11 +6,11 @@
 //! The order is **clean** when there are at least three levels; the differences between the finest three have
 //! one sign and the last exceeds twice its standard error; the order is within 0.5 … 3; and, with a fourth level, the
 //! order of the three coarser of the last four differs by at most 0.5. Then the uncertainty of the limit is the
-//! size of the correction. Otherwise the finest figure stands, and its uncertainty is
-//! * of figures that fall or rise steadily with an order that is not stable: what first order would leave,
-//!   |q₂ − q₃|/(s₂/s₃ − 1), and no less than the last difference;
-//! * of figures without an order: the spread of the last three levels, because a small last difference
-//!   between figures that go up and down says nothing;
+//! size of the correction. Otherwise the figure of the finest level is taken, and its uncertainty is
+//! * if the figures are monotone but their order is not stable: the remaining error at first order,
+//!   |q₂ − q₃|/(s₂/s₃ − 1), or the last difference if that is larger;
+//! * if the figures have no order: the spread of the last three levels, because a small last difference of figures that
+//!   are not monotone says nothing;
 //! * otherwise the last difference.
 
 /// A figure at one level of refinement.
@@ -24,25 +24,25 @@ pub struct Level {
     pub standard_error: f64,
 }
 
-/// What refinement says about a figure.
+/// The limit of a figure under refinement.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Limit {
     /// The extrapolated figure, or that of the finest level.
     pub value: f64,
-    /// How far the truth may be from it.
+    /// Its uncertainty.
     pub uncertainty: f64,
-    /// The order, or why there is none.
+    /// The order, or the reason why it is not clean.
     pub order: Result<f64, Unclean>,
 }
 
-/// Why a sequence is not extrapolated.
+/// The reason why a sequence is not extrapolated.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Unclean {
     /// Fewer than three levels.
     TooFewLevels,
-    /// The last difference is within twice its standard error: converged as far as can be seen.
+    /// The last difference is at most twice its standard error: the figures have converged within their noise.
     WithinNoise,
-    /// The figure goes up and down.
+    /// The figures are not monotone.
     NotMonotone,
     /// The differences do not shrink, or shrink at an order outside of 0.5 … 3.
     OrderOutOfRange(Option<f64>),
@@ -65,10 +65,10 @@ impl Unclean {
 
 /// Orders that a scheme of second order with events of first order can have.
 const ORDERS: std::ops::RangeInclusive<f64> = 0.5..=3.0;
-/// Largest difference of two orders that count as one.
+/// Largest difference of two orders that count as equal.
 const STABLE: f64 = 0.5;
 
-/// The limit of `levels`, coarsest first; `None` without two of them.
+/// The limit of `levels`, coarsest first; `None` for fewer than two.
 pub fn limit(levels: &[Level]) -> Option<Limit> {
     let [.., before, finest] = levels else { return None };
     let last = before.value - finest.value;
@@ -107,13 +107,13 @@ pub fn limit(levels: &[Level]) -> Option<Limit> {
 pub fn observed_order([coarse, middle, fine]: [&Level; 3]) -> Option<f64> {
     let ratio = (coarse.value - middle.value) / (middle.value - fine.value);
     let (a, b) = (coarse.size / fine.size, middle.size / fine.size);
-    // Grows with p from ln(a/b)/ln b at p = 0.
+    // This increases with p, from ln(a/b)/ln b at p = 0.
     let expected = |p: f64| (a.powf(p) - b.powf(p)) / (b.powf(p) - 1.0);
     let (mut low, mut high) = (1.0e-3, 20.0);
     if !(ratio > expected(low) && ratio < expected(high)) {
         return None;
     }
-    // 60 halvings: the interval is then a unit in the last place.
+    // After 60 halvings the interval is a unit in the last place.
     for _ in 0..60 {
         let p = 0.5 * (low + high);
         if expected(p) < ratio { low = p } else { high = p }

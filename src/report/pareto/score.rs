@@ -1,23 +1,24 @@
 //! Errors and costs of the jobs of a case.
 
-use super::case::DoneJob;
+use super::done::DoneJob;
 use super::front::on_front;
 use super::reference::{self, FREQUENCY, MU_STAR, Reference};
 
-/// How wrong a job is and what it costs.
+/// The errors and costs of a job.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Score {
     /// (μ* − reference) / reference.
     pub mu_star_error: f64,
-    /// Smallest relative error of μ* that can be told from none: √(se² + se_ref²) + u over the reference.
+    /// Smallest relative error of μ* that can be distinguished from 0: √(se² + se_ref²) + u over the reference.
     pub mu_star_resolution: f64,
-    /// (f − reference) / reference; none where one of them has no frequency.
+    /// (f − reference) / reference; none if one of them has no frequency.
     pub frequency_error: Option<f64>,
-    /// Smallest relative error of the frequency that can be told from none.
+    /// Smallest relative error of the frequency that can be distinguished from 0.
     pub frequency_resolution: Option<f64>,
-    /// Largest resolved absolute difference of the three shares; of the least resolved share where none is.
+    /// Largest resolved absolute difference of the three shares; if none is resolved, that of the share with the largest
+    /// resolution.
     pub shares_error: f64,
-    /// Smallest difference of that share that can be told from none.
+    /// Smallest difference of that share that can be distinguished from 0.
     pub shares_resolution: f64,
     /// Nodes × steps.
     pub node_steps: f64,
@@ -30,22 +31,22 @@ pub struct Score {
 }
 
 impl Score {
-    /// Whether the error of μ* can be told from none.
+    /// Whether the error of μ* can be distinguished from 0.
     pub fn is_resolved(&self) -> bool {
         exceeds(self.mu_star_error, self.mu_star_resolution)
     }
 
-    /// The error of μ* that can be claimed: the error, or the resolution where the error is not resolved.
+    /// The error of μ* that can be claimed: the error, or the resolution if the error is not resolved.
     ///
-    /// A resolution is rounded up to two digits: two jobs of which neither can be told from the reference are
-    /// not better than each other in the third.
+    /// A resolution is rounded up to two digits, because a difference in the third digit does not make one of two
+    /// unresolved jobs better than the other.
     pub fn claimed_error(&self) -> f64 {
         if self.is_resolved() { self.mu_star_error.abs() } else { two_digits_up(self.mu_star_resolution) }
     }
 }
 
-/// Whether an error can be told from none. The reference's own error is the size of its correction and so is
-/// its resolution: equal but for rounding, and not resolved.
+/// Whether an error can be distinguished from 0. For the reference itself, error and resolution are both the size of its
+/// correction: they are equal up to rounding, and the error is not resolved.
 pub(super) fn exceeds(error: f64, resolution: f64) -> bool {
     error.abs() > resolution * (1.0 + 1.0e-9)
 }
@@ -55,7 +56,7 @@ fn two_digits_up(value: f64) -> f64 {
         return value;
     }
     let unit = 10.0_f64.powf(value.log10().floor() - 1.0);
-    // The tolerance keeps a number of two digits what it is.
+    // The tolerance keeps a number that has two digits already.
     (value / unit - 1.0e-9).ceil() * unit
 }
 
@@ -76,7 +77,7 @@ pub(super) fn scores(jobs: &[DoneJob], reference: &Reference) -> Vec<Score> {
 
 fn score(job: &DoneJob, reference: &Reference) -> Score {
     let found = reference::figures(job);
-    // Signed difference and the smallest one that can be told from none.
+    // Signed difference, its resolution, and the value of the reference.
     let difference = |figure: usize| {
         let target = reference.targets[figure]?;
         let noise = reference::standard_error(job, figure).hypot(target.standard_error);
@@ -86,7 +87,7 @@ fn score(job: &DoneJob, reference: &Reference) -> Score {
         difference(figure).map(|(error, resolution, value)| (error / value, (resolution / value).abs()))
     };
     let shares: Vec<_> = (FREQUENCY + 1..reference::FIGURES).filter_map(difference).collect();
-    // Share by share: the largest error that is resolved, or else the largest that there can be.
+    // The largest resolved error of a share, or else the share with the largest resolution.
     let resolved = shares.iter().filter(|(error, resolution, _)| exceeds(*error, *resolution));
     let shown = resolved.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()));
     let shown = shown.or_else(|| shares.iter().max_by(|a, b| a.1.total_cmp(&b.1)));

@@ -1,7 +1,8 @@
-//! The numerics of a job in words, and which of a grid's parameters they are.
+//! The numerics of a job in words, and the parameters of a grid that belong to them.
 
 use crate::publish::value;
-use crate::report::row::{JobNumerics, Row};
+use crate::report::parameters::{MU, OMEGA, assignments};
+use crate::report::row::{JobNumerics, JobRow};
 
 /// Grid parameters that change the numerics and not the physical case.
 const NUMERICS: [&str; 16] = [
@@ -24,17 +25,11 @@ const NUMERICS: [&str; 16] = [
 ];
 
 /// The physical parameters of a job in words, ω and μ first.
-pub(super) fn physics_in_words(row: &Row) -> String {
-    [("omega_rpm", row.parameter("omega_rpm")), ("mu", row.parameter("mu"))]
-        .into_iter()
-        .chain(
-            row.further()
-                .filter(|(name, _)| !NUMERICS.contains(name))
-                .map(|(name, value)| (name, value.clone())),
-        )
-        .map(|(name, value)| value::assignment(name, &value))
-        .collect::<Vec<_>>()
-        .join(", ")
+pub(super) fn physics_in_words(row: &JobRow) -> String {
+    let further = row.further().filter(|(name, _)| !NUMERICS.contains(name));
+    let further = further.map(|(name, value)| (name, value.clone()));
+    let own = [OMEGA, MU].map(|name| (name, row.parameter(name)));
+    assignments(own.into_iter().chain(further))
 }
 
 /// Names of the settings, in the order of [`texts`].

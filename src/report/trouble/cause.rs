@@ -2,21 +2,21 @@
 
 use crate::analysis::{JobRecord, Obstacle, Outcome};
 use crate::publish::value;
-use crate::report::row::{JobNumerics, Row, RowState};
+use crate::report::row::{JobNumerics, JobRow, RowState};
 
 /// What is wrong with a job.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cause {
     /// `failed` or `not periodic`.
     pub what: &'static str,
-    /// Equal for jobs with the same cause, whatever the numbers in it.
+    /// Equal for jobs with the same cause, even if the numbers in the message differ.
     pub class: String,
-    /// In words, with the numbers of one job.
+    /// The cause in words, with the numbers of one job.
     pub why: String,
 }
 
-/// What is wrong with a row's job, if anything is.
-pub fn cause(row: &Row) -> Option<Cause> {
+/// What is wrong with a job; none if nothing is.
+pub fn cause(row: &JobRow) -> Option<Cause> {
     match &row.state {
         RowState::Failed { error } => {
             Some(Cause { what: "failed", class: without_numbers(error), why: error.clone() })
@@ -59,12 +59,12 @@ fn tolerated(numerics: &JobNumerics) -> String {
     format!(" (tolerated: {} and {})", value::number(*tolerance), value::number(*drift_tolerance))
 }
 
-/// Three digits are enough to compare with a tolerance.
+/// A number with three digits, which are enough to compare it with a tolerance.
 fn significant(x: f64) -> String {
-    value::digits(x, 3)
+    value::significant(x, 3)
 }
 
-/// A message whose numbers do not count: the step at which a run diverged is not why it did.
+/// A message with its numbers replaced, so that jobs that failed alike at different steps have the same class.
 fn without_numbers(text: &str) -> String {
     let is_number = |word: &str| word.chars().any(|c| c.is_ascii_digit());
     text.split_whitespace().map(|word| if is_number(word) { "#" } else { word }).collect::<Vec<_>>().join(" ")

@@ -1,48 +1,48 @@
-//! Regions of the grid of a study.
+//! Regions of a study's grid in which jobs are in trouble.
 
 use super::cause::Cause;
 use crate::publish::value;
-use crate::publish::value::{MU, OMEGA};
+use crate::report::parameters::{MU, OMEGA, assignment, is_further};
 use serde_json::Value;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
 
-/// Jobs that are neighbours in the grid and in trouble for the same cause.
+/// Jobs that are connected in the grid and in trouble for the same cause.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Region {
-    /// How many they are.
+    /// Number of these jobs.
     pub jobs: usize,
-    /// How many jobs there are between the smallest and the largest values of their parameters.
+    /// Number of all jobs within the ranges of their parameters.
     pub of: usize,
-    /// These values in words, of the parameters that are not the same in all jobs; empty if it is everywhere.
+    /// These ranges in words, without parameters that are equal in all jobs; empty if they cover the whole grid.
     pub place: String,
-    /// What is wrong, in the words of the first of them.
+    /// The cause, with the numbers of the first of these jobs.
     pub cause: Cause,
-    /// The first of them.
+    /// Key of the first of these jobs.
     pub example: String,
 }
 
 /// All regions of a study.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Regions {
-    /// The largest ones, the largest first.
+    /// The largest regions, the largest first.
     pub largest: Vec<Region>,
-    /// How many more there are.
-    pub more: usize,
-    /// How many jobs are in these.
-    pub jobs_in_more: usize,
+    /// Number of the other regions.
+    pub omitted: usize,
+    /// Number of jobs in the other regions.
+    pub jobs_in_omitted: usize,
 }
 
-/// The points of a study, one a row, and the values of its parameters.
+/// The grid of a study: the values of its parameters, and a point for each row.
 #[derive(Debug, Default)]
 pub struct Grid {
-    axes: Vec<Axis>,
+    axes: Vec<GridAxis>,
     points: Vec<Vec<usize>>,
 }
 
 /// A parameter.
 #[derive(Debug)]
-struct Axis {
+struct GridAxis {
     name: String,
     values: Vec<Value>,
     numbers: HashMap<String, usize>,
@@ -56,11 +56,11 @@ struct Troubled<'a> {
 }
 
 impl Grid {
-    /// Adds the next row. ω and μ may be among the parameters as well.
+    /// Adds the next row. ω and μ may be among `parameters` too.
     pub fn add(&mut self, omega_rpm: f64, mu: f64, parameters: &[(String, Value)]) {
         let own = [(OMEGA, Value::from(omega_rpm)), (MU, Value::from(mu))];
         let further = parameters.iter().map(|(name, value)| (name.as_str(), value));
-        let further = further.filter(|(name, _)| *name != OMEGA && *name != MU);
+        let further = further.filter(|(name, _)| is_further(name));
         let mut point = vec![ABSENT; self.axes.len()];
         for (name, value) in own.iter().map(|(name, value)| (*name, value)).chain(further) {
             let axis = self.axis(name);
@@ -72,13 +72,13 @@ impl Grid {
 
     fn axis(&mut self, name: &str) -> usize {
         self.axes.iter().position(|axis| axis.name == name).unwrap_or_else(|| {
-            self.axes.push(Axis { name: name.to_owned(), values: Vec::new(), numbers: HashMap::new() });
+            self.axes.push(GridAxis { name: name.to_owned(), values: Vec::new(), numbers: HashMap::new() });
             self.axes.len() - 1
         })
     }
 
-    /// The regions of those rows that are in trouble (by place, with job and cause), the largest first, of which so many
-    /// are looked at closely.
+    /// The regions of the rows in trouble, which are given by index, job key and cause. The `limit` largest ones are
+    /// described.
     pub fn regions(
         mut self,
         troubled: impl IntoIterator<Item = (usize, String, Cause)>,
@@ -86,20 +86,20 @@ impl Grid {
     ) -> Regions {
         self.sort();
         let mut causes: BTreeMap<(&'static str, String), Vec<Troubled>> = BTreeMap::new();
-        for (place, job, cause) in troubled {
-            // A study that is replaced while it is read may have more rows than it had.
-            let Some(point) = self.points.get(place) else { continue };
+        for (index, job, cause) in troubled {
+            // A study that is replaced while it is read may have more rows than before.
+            let Some(point) = self.points.get(index) else { continue };
             let same = causes.entry((cause.what, cause.class.clone())).or_default();
             same.push(Troubled { point, job, cause });
         }
         let mut parts: Vec<Vec<&Troubled>> = causes.values().flat_map(|same| self.connected(same)).collect();
-        // Stable: equal studies have equal regions.
+        // The sort is stable, so that equal studies have equal regions.
         parts.sort_by_key(|part| Reverse(part.len()));
         let rest = parts.split_off(limit.min(parts.len()));
         Regions {
             largest: parts.iter().map(|part| self.region(part)).collect(),
-            more: rest.len(),
-            jobs_in_more: rest.iter().map(Vec::len).sum(),
+            omitted: rest.len(),
+            jobs_in_omitted: rest.iter().map(Vec::len).sum(),
         }
     }
 
@@ -119,7 +119,7 @@ impl Grid {
         }
     }
 
-    /// Puts the values of every parameter into an order in which neighbours are near.
+    /// Sorts the values of every parameter, so that neighbours have consecutive numbers.
     fn sort(&mut self) {
         for point in &mut self.points {
             point.resize(self.axes.len(), ABSENT);
@@ -128,14 +128,14 @@ impl Grid {
             for point in self.points.iter_mut().filter(|point| point[number] == ABSENT) {
                 point[number] = axis.number(&Value::Null);
             }
-            let rank = value::sort(&mut axis.values);
+            let rank = value::sort_numbers(&mut axis.values);
             for point in &mut self.points {
                 point[number] = rank[point[number]];
             }
         }
     }
 
-    /// The troubled in connected parts, each in the order of the rows.
+    /// The connected parts of the jobs in trouble, each in the order of the rows.
     fn connected<'a, 'b>(&self, troubled: &'b [Troubled<'a>]) -> Vec<Vec<&'b Troubled<'a>>> {
         let mut at: HashMap<&[usize], Vec<usize>> = HashMap::new();
         for (index, job) in troubled.iter().enumerate() {
@@ -157,7 +157,7 @@ impl Grid {
                 next += 1;
                 for step in &steps {
                     neighbour.clear();
-                    // A place before the first is none.
+                    // A step below 0 wraps around to an index that no point has.
                     neighbour.extend(point.iter().zip(step).map(|(at, by)| at.wrapping_add_signed(*by)));
                     for &index in at.get(neighbour.as_slice()).into_iter().flatten() {
                         if !std::mem::replace(&mut is_taken[index], true) {
@@ -172,8 +172,8 @@ impl Grid {
         parts
     }
 
-    /// From a point to its neighbours, itself included: a place further along any of the ordered parameters, or along one
-    /// of them where there are so many that the corners between them are too many to look at.
+    /// The steps from a point to its neighbours and to itself: by one value along any of the ordered parameters. With more
+    /// than [`WITH_CORNERS`] of them, a step changes one parameter only, because the diagonals would be too many.
     fn steps(&self) -> Vec<Vec<isize>> {
         let ordered: Vec<usize> = (0..self.axes.len())
             .filter(|&axis| self.axes[axis].is_ordered() && self.axes[axis].values.len() > 1)
@@ -201,24 +201,24 @@ impl Grid {
         let words = varying.map(|(axis, &(low, high))| {
             let [first, last] = [&axis.values[low], &axis.values[high]];
             match axis.name.as_str() {
-                _ if low == high => value::assignment(&axis.name, first),
-                OMEGA => format!("ω = {} … {} rpm", value::shown(first), value::shown(last)),
-                MU => format!("μ = {} … {}", value::shown(first), value::shown(last)),
-                name => format!("{name} = {} … {}", value::shown(first), value::shown(last)),
+                _ if low == high => assignment(&axis.name, first),
+                OMEGA => format!("ω = {} … {} rpm", value::rounded_text(first), value::rounded_text(last)),
+                MU => format!("μ = {} … {}", value::rounded_text(first), value::rounded_text(last)),
+                name => format!("{name} = {} … {}", value::rounded_text(first), value::rounded_text(last)),
             }
         });
         words.collect::<Vec<_>>().join(", ")
     }
 }
 
-/// Up to so many parameters, neighbours across corners are neighbours: 3³ places around a point.
+/// Up to so many ordered parameters, diagonal neighbours count: there are 3³ of them at most.
 const WITH_CORNERS: usize = 3;
 
-/// In place of a value's number where a point has none.
+/// Stands for the number of a value that a point does not have.
 const ABSENT: usize = usize::MAX;
 
-impl Axis {
-    /// The number of a value; 1 and 1.0 are the same.
+impl GridAxis {
+    /// The number of a value. The values 1 and 1.0 have the same number.
     fn number(&mut self, value: &Value) -> usize {
         let next = self.values.len();
         let number = *self.numbers.entry(value::text(value)).or_insert(next);
@@ -228,7 +228,7 @@ impl Axis {
         number
     }
 
-    /// Whether the values are numbers, and so have neighbours.
+    /// Whether the values are numbers. Only numbers have neighbours.
     fn is_ordered(&self) -> bool {
         self.values.iter().all(Value::is_number)
     }

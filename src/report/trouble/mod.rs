@@ -1,7 +1,7 @@
 //! Where in the grid jobs fail or do not become periodic, and why.
 //!
-//! Jobs in trouble for the same cause that are neighbours in the grid are one region, which is told by the values that
-//! its parameters take, with how many of the jobs there are in it.
+//! Jobs that are in trouble for the same cause and that are neighbours in the grid form a region. A region is described
+//! by the ranges of its parameters, and by how many of the jobs within these ranges are in trouble.
 
 mod cause;
 mod grid;
@@ -9,32 +9,35 @@ mod grid;
 pub use cause::{Cause, cause};
 pub use grid::{Grid, Region, Regions};
 
-use super::row::Row;
+use super::row::JobRow;
 use std::fmt::Write;
 
-/// So many regions are told one by one.
-pub const LISTED: usize = 12;
+/// Largest number of regions that are described one by one.
+pub const MAX_LISTED: usize = 12;
 
-/// The regions of a study's rows.
-pub fn regions(rows: &[Row]) -> Regions {
+/// The regions of a study.
+pub fn regions(rows: &[JobRow]) -> Regions {
     let mut grid = Grid::default();
     for row in rows {
         grid.add(row.omega_rpm, row.mu, &row.parameters);
     }
     let troubled = rows.iter().enumerate();
-    grid.regions(troubled.filter_map(|(place, row)| Some((place, row.job.clone(), cause(row)?))), LISTED)
+    grid.regions(troubled.filter_map(|(index, row)| Some((index, row.job.clone(), cause(row)?))), MAX_LISTED)
 }
 
-/// All regions in sentences.
+/// One sentence for each region that is described, and one for the others.
 pub fn sentences(regions: &Regions) -> Vec<String> {
     let mut sentences: Vec<String> = regions.largest.iter().map(sentence).collect();
-    if regions.more > 0 {
-        sentences.push(format!("and {} more jobs in {} smaller regions", regions.jobs_in_more, regions.more));
+    if regions.omitted > 0 {
+        sentences.push(format!(
+            "and {} more jobs in {} smaller regions",
+            regions.jobs_in_omitted, regions.omitted
+        ));
     }
     sentences
 }
 
-/// A region in a sentence.
+/// A region in a sentence of one line.
 fn sentence(region: &Region) -> String {
     let Region { jobs, of, place, cause, example } = region;
     let mut text = format!("{}: {jobs}", cause.what);
@@ -45,7 +48,6 @@ fn sentence(region: &Region) -> String {
     if !place.is_empty() {
         let _ = write!(text, " at {place}");
     }
-    // On one line.
     let _ = write!(text, ": {}", cause.why.split_whitespace().collect::<Vec<_>>().join(" "));
     if *jobs > 1 {
         let _ = write!(text, " (job {example}, for example)");

@@ -1,23 +1,23 @@
-//! What a point of a figure tells about its job.
+//! The text of the tooltip of a job.
 
+use super::glyph::regime_label;
 use super::layout::parameters_in_words;
-use super::row::{Row, RowState};
-use super::sign::regime_label;
+use super::row::{JobRow, RowState};
 use crate::analysis::{JobRecord, Outcome};
 use crate::publish::value::{fixed, number};
 
-/// So many characters of a job's key tell it apart, and are enough for `show`.
+/// Number of characters of a job's key that are shown. They are unique in practice, and `show` accepts them.
 const KEY_LENGTH: usize = 12;
-/// So much is told of why a job failed.
-const REASON_LENGTH: usize = 240;
+/// Largest number of characters of an error message.
+const MAX_ERROR_LENGTH: usize = 240;
 
 /// A job in a few lines, its parameters first.
-pub(super) fn tip(row: &Row) -> String {
+pub(super) fn tooltip_text(row: &JobRow) -> String {
     let mut lines = vec![parameters_in_words(row)];
     match &row.state {
         RowState::Done(record) => lines.extend(results(record)),
         RowState::Failed { error } => {
-            let reason: String = error.chars().take(REASON_LENGTH).collect();
+            let reason: String = error.chars().take(MAX_ERROR_LENGTH).collect();
             lines.push(format!("failed: {reason}"));
         }
         RowState::Pending | RowState::Running | RowState::Cancelled => lines.push(row.status().to_owned()),
@@ -27,11 +27,11 @@ pub(super) fn tip(row: &Row) -> String {
 }
 
 /// The beginning of a job's key.
-pub(super) fn short_key(row: &Row) -> String {
+pub(super) fn short_key(row: &JobRow) -> String {
     row.job.chars().take(KEY_LENGTH).collect()
 }
 
-/// How a run ended, for a reader.
+/// The name of an outcome for a reader.
 pub(super) fn outcome_label(outcome: Outcome) -> &'static str {
     match outcome {
         Outcome::Periodic => "periodic",
@@ -57,14 +57,14 @@ fn results(record: &JobRecord) -> Vec<String> {
     }
     lines.push(format!(
         "residuals: energy {}, identities {}",
-        short(record.energy_residual),
-        short(record.identity_residual())
+        residual_text(record.energy_residual),
+        residual_text(record.identity_residual())
     ));
     lines
 }
 
-/// Two digits are enough for what should be zero.
-pub(super) fn short(residual: f64) -> String {
+/// A residual with two digits. More digits say nothing about a number that should be zero.
+pub(super) fn residual_text(residual: f64) -> String {
     format!("{residual:.1e}").parse().map_or_else(
         |_| number(residual),
         |rounded: f64| {

@@ -1,8 +1,8 @@
-//! A job looked into: both runs and what is found in what they kept.
+//! The inspection of a job: both runs, and what their data show.
 
 use super::capture::{Capture, FaceStep, capture};
+use super::nodes::{NodeSelector, ObservedNode};
 use super::phases::{Instants, Phase, phases};
-use super::place::{ObservedNode, Place};
 use super::spectrum::Spectrum;
 use super::survey::{FEWEST_CYCLES, Survey, survey};
 use crate::analysis::JobError;
@@ -11,44 +11,44 @@ use crate::spec::JobSpec;
 use crate::units::rad_per_s_from_rpm;
 use std::ops::ControlFlow;
 
-/// What to look at.
+/// What to record of a job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Options {
-    /// The nodes whose histories are shown.
-    pub places: Vec<Place>,
+    /// The nodes whose histories are recorded.
+    pub nodes: Vec<NodeSelector>,
     /// Number of cycles that are shown, at least [`Options::FEWEST_CYCLES`].
     pub cycles: usize,
-    /// Number of times of a cycle at which the whole pin is kept, at least [`Options::FEWEST_FRAMES`].
+    /// Number of times in a cycle at which the whole pin is recorded, at least [`Options::FEWEST_FRAMES`].
     pub frames: usize,
 }
 
 impl Options {
-    /// With fewer a node's cycle is not found.
+    /// With fewer cycles, the cycle of a node cannot be found.
     pub const FEWEST_CYCLES: usize = FEWEST_CYCLES;
-    /// Snapshots are taken from the frames: with fewer they would not be where they are said to be.
+    /// Snapshots are taken from the frames. With fewer frames they would be too far from the instants that they are for.
     pub const FEWEST_FRAMES: usize = 16;
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Self { places: Place::USUAL.to_vec(), cycles: 4, frames: 48 }
+        Self { nodes: NodeSelector::DEFAULT.to_vec(), cycles: 4, frames: 48 }
     }
 }
 
-/// Why a job cannot be looked into.
+/// A job cannot be inspected.
 #[derive(Debug, thiserror::Error)]
-pub enum LookError {
-    /// A node is not there.
+pub enum InspectionError {
+    /// A node does not exist.
     #[error("{0}")]
-    Place(String),
+    Node(String),
     /// The job has no record.
     #[error(transparent)]
     Job(#[from] JobError),
 }
 
-/// One job looked into.
+/// One job in detail.
 #[derive(Debug, Clone)]
-pub struct Look {
+pub struct Inspection {
     /// The job.
     pub spec: JobSpec,
     /// The first run.
@@ -56,40 +56,41 @@ pub struct Look {
     /// The second run.
     pub capture: Capture,
     /// The observed nodes, in the order of [`Capture::nodes`].
-    pub observed: Vec<Observed>,
+    pub observed: Vec<NodeFindings>,
     /// The spectrum of the total normal force over [`Capture::totals`].
     pub spectrum: Spectrum,
 }
 
-/// What is found in the history of an observed node.
+/// What the history of an observed node shows.
 #[derive(Debug, Clone)]
-pub struct Observed {
+pub struct NodeFindings {
     /// The node.
     pub node: ObservedNode,
     /// Velocity [m/s] of the undeformed target under it, in y.
     pub target_velocity_m_s: f64,
-    /// Its phases in the time that is shown.
+    /// Its contact phases in the time that is shown.
     pub phases: Vec<Phase>,
     /// The instants of a cycle.
     pub instants: Option<Instants>,
 }
 
-impl Look {
-    /// Runs the job twice and looks.
+impl Inspection {
+    /// Runs the job twice, and evaluates what the second run recorded.
     ///
-    /// `go_on` hears the simulated time [s] of the run that goes on and may end it.
+    /// `on_progress` gets the simulated time [s] of the current run, and can end the run.
     ///
     /// # Errors
-    /// [`LookError`].
-    pub fn into(
+    /// [`InspectionError`].
+    pub fn run(
         spec: &JobSpec,
         options: &Options,
-        go_on: &mut impl FnMut(f64) -> ControlFlow<()>,
-    ) -> Result<Self, LookError> {
-        let nodes = nodes_of(spec, &options.places)?;
-        let survey = survey(spec, options.cycles.max(Options::FEWEST_CYCLES), go_on)?;
+        on_progress: &mut impl FnMut(f64) -> ControlFlow<()>,
+    ) -> Result<Self, InspectionError> {
+        let nodes = nodes_of(spec, &options.nodes)?;
+        let survey = survey(spec, options.cycles.max(Options::FEWEST_CYCLES), on_progress)?;
         let windows = &survey.windows;
-        let capture = capture(spec, windows, &nodes, options.frames.max(Options::FEWEST_FRAMES), go_on)?;
+        let capture =
+            capture(spec, windows, &nodes, options.frames.max(Options::FEWEST_FRAMES), on_progress)?;
         let rate = rad_per_s_from_rpm(spec.scene.disk.omega_rpm);
         let observed = nodes
             .into_iter()
@@ -100,7 +101,7 @@ impl Look {
                 let stress: Vec<_> = steps.iter().map(|step| (step.time_s, step.stress_pa[2])).collect();
                 let instants = Instants::find(&phases, &stress, windows.shown_s[0], windows.period_s);
                 let target_velocity_m_s = rate * capture.model.slaves()[node.slave].surface_motion[1];
-                Observed { node, target_velocity_m_s, phases, instants }
+                NodeFindings { node, target_velocity_m_s, phases, instants }
             })
             .collect();
         let normal: Vec<f64> = capture.totals.iter().map(|sample| sample.normal_n).collect();
@@ -114,15 +115,19 @@ impl Look {
     }
 }
 
-/// The nodes at these places of a job that has been checked.
-pub fn nodes_of(spec: &JobSpec, places: &[Place]) -> Result<Vec<ObservedNode>, LookError> {
+/// The nodes that are selected, after a check of the job.
+pub fn nodes_of(spec: &JobSpec, nodes: &[NodeSelector]) -> Result<Vec<ObservedNode>, InspectionError> {
     spec.check().map_err(JobError::from)?;
     let mesh = BlockMesh::new(spec.scene.pin.size_m, spec.scene.pin.elements);
-    places.iter().map(|place| place.find(&mesh)).collect::<Result<_, _>>().map_err(LookError::Place)
+    nodes
+        .iter()
+        .map(|selector| selector.resolve(&mesh))
+        .collect::<Result<_, _>>()
+        .map_err(InspectionError::Node)
 }
 
 /// A node's trajectory over the cycle in the y–z plane: y, z displacements [m].
-pub fn loop_of(face: &[FaceStep], slave: usize) -> Vec<(f64, f64)> {
+pub fn node_loop(face: &[FaceStep], slave: usize) -> Vec<(f64, f64)> {
     face.iter()
         .map(|step| {
             let [_, y, z] = step.nodes[slave].u_m;
@@ -131,8 +136,8 @@ pub fn loop_of(face: &[FaceStep], slave: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Area [m²] that a closed loop goes around: positive counter-clockwise, seen with y to the right and z upwards.
-pub fn area_m2(path: &[(f64, f64)]) -> f64 {
+/// Area [m²] inside a closed loop: positive if it is counter-clockwise, seen with y to the right and z upwards.
+pub fn loop_area_m2(path: &[(f64, f64)]) -> f64 {
     let next = path.iter().cycle().skip(1);
     path.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f64>() / 2.0
 }
@@ -141,7 +146,7 @@ pub fn area_m2(path: &[(f64, f64)]) -> f64 {
 mod tests {
     use super::*;
 
-    /// Protects: the sense of a loop: counter-clockwise is positive, and the area is that of the loop wherever it is.
+    /// Protects: the area of a counter-clockwise loop is positive, and it does not depend on the position of the loop.
     #[test]
     fn loops_have_a_sense() {
         let circle = |sense: f64| -> Vec<(f64, f64)> {
@@ -155,7 +160,7 @@ mod tests {
         // A polygon of n corners in a circle of radius 2.
         let exact = 0.5 * 400.0 * 4.0 * (std::f64::consts::TAU / 400.0).sin();
         for sense in [1.0, -1.0] {
-            assert!((area_m2(&circle(sense)) - sense * exact).abs() < 1e-11);
+            assert!((loop_area_m2(&circle(sense)) - sense * exact).abs() < 1e-11);
         }
     }
 }

@@ -1,30 +1,30 @@
-//! What kind of job it is in a letter, in words and in colours.
+//! The status of a job as a letter, as text and as colours.
 
-use super::row::{Row, RowState};
+use super::row::{JobRow, RowState};
 use crate::analysis::{Outcome, Regime};
 use crate::publish::plot::palette;
 use anstyle::AnsiColor;
 use plotters::style::{RGBColor, WHITE};
 
-/// A kind of job: its letter, what that means, and its colours, which say nothing that the letter does not.
+/// The status of a job as a letter, its meaning, and colours. The colours say nothing that the letter does not say.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub(super) struct Sign {
+pub(super) struct StatusGlyph {
     pub letter: char,
     pub meaning: &'static str,
-    /// On a terminal.
-    pub colour: AnsiColor,
-    /// On paper, as a ground.
+    /// Colour of the letter on a terminal.
+    pub terminal_colour: AnsiColor,
+    /// Colour of a cell in a figure.
     pub fill: RGBColor,
 }
 
 const GREY: RGBColor = RGBColor(0xDD, 0xDD, 0xDD);
 const LIGHT: RGBColor = RGBColor(0xF2, 0xF2, 0xF2);
 
-/// In place of a job's sign where there are several.
-pub(super) const SEVERAL: Sign =
-    Sign { letter: '+', meaning: "several jobs", colour: AnsiColor::White, fill: GREY };
+/// Stands for several jobs.
+pub(super) const SEVERAL_JOBS: StatusGlyph =
+    StatusGlyph { letter: '+', meaning: "several jobs", terminal_colour: AnsiColor::White, fill: GREY };
 
-/// The regime as a reader's text.
+/// The name of a regime for a reader.
 pub(super) fn regime_label(regime: Regime) -> &'static str {
     match regime {
         Regime::Stable => "stable",
@@ -35,17 +35,18 @@ pub(super) fn regime_label(regime: Regime) -> &'static str {
     }
 }
 
-/// The sign of a row's job.
-pub(super) fn sign(row: &Row) -> Sign {
-    let sign = |letter, meaning, colour, fill| Sign { letter, meaning, colour, fill };
+/// The glyph of a job.
+pub(super) fn status_glyph(row: &JobRow) -> StatusGlyph {
+    let glyph =
+        |letter, meaning, terminal_colour, fill| StatusGlyph { letter, meaning, terminal_colour, fill };
     let record = match &row.state {
-        RowState::Pending => return sign('.', "pending", AnsiColor::BrightBlack, LIGHT),
-        RowState::Running => return sign('>', "running", AnsiColor::Cyan, GREY),
-        RowState::Cancelled => return sign('-', "cancelled", AnsiColor::BrightBlack, LIGHT),
-        RowState::Failed { .. } => return sign('!', "failed", AnsiColor::Red, palette::VERMILLION),
+        RowState::Pending => return glyph('.', "pending", AnsiColor::BrightBlack, LIGHT),
+        RowState::Running => return glyph('>', "running", AnsiColor::Cyan, GREY),
+        RowState::Cancelled => return glyph('-', "cancelled", AnsiColor::BrightBlack, LIGHT),
+        RowState::Failed { .. } => return glyph('!', "failed", AnsiColor::Red, palette::VERMILLION),
         RowState::Done(record) => record,
     };
-    let settled = record.outcome != Outcome::NotPeriodic;
+    let is_settled = record.outcome != Outcome::NotPeriodic;
     let (letter, colour, fill) = match record.regime {
         Regime::Stable => ('S', AnsiColor::Blue, palette::SKY),
         Regime::StickSlip => ('K', AnsiColor::Yellow, palette::ORANGE),
@@ -53,18 +54,18 @@ pub(super) fn sign(row: &Row) -> Sign {
         Regime::SlipSeparation => ('P', AnsiColor::Green, palette::GREEN),
         Regime::Undecided => ('?', AnsiColor::Red, palette::YELLOW),
     };
-    match (record.regime, settled) {
+    match (record.regime, is_settled) {
         (regime @ (Regime::Stable | Regime::Undecided), _) => {
-            sign(letter, regime_label(regime), colour, fill)
+            glyph(letter, regime_label(regime), colour, fill)
         }
-        (regime, true) => sign(letter, regime_label(regime), colour, fill),
+        (regime, true) => glyph(letter, regime_label(regime), colour, fill),
         (regime, false) => {
             let meaning = match regime {
                 Regime::StickSlip => "stick–slip, not periodic",
                 Regime::StickSlipSeparation => "stick–slip–separation, not periodic",
                 _ => "slip–separation, not periodic",
             };
-            sign(letter.to_ascii_lowercase(), meaning, colour, palette::mixed(fill, WHITE, 0.5))
+            glyph(letter.to_ascii_lowercase(), meaning, colour, palette::mix(fill, WHITE, 0.5))
         }
     }
 }

@@ -1,10 +1,10 @@
-//! Nodes of the contact face by name or by coordinates.
+//! Nodes of the contact face, selected by name or by coordinates.
 
 use crate::publish::value::rounded;
 use crate::solver::body::block::BlockMesh;
 
-/// Names of the nodes that have one, with where they are across the sliding direction (x) and along it (y), from −1 to
-/// 1: the disk moves towards +y, so the front is at −1.
+/// The nodes that have names, with their positions across the sliding direction (x) and along it (y), from −1 to 1. The
+/// disk moves towards +y, so the front is at −1.
 const NAMED: [(&str, [i8; 2]); 9] = [
     ("front_centre", [0, -1]),
     ("rear_centre", [0, 1]),
@@ -17,23 +17,23 @@ const NAMED: [(&str, [i8; 2]); 9] = [
     ("rear_outer", [1, 1]),
 ];
 
-/// A node of the contact face as its user asks for it.
+/// A node of the contact face, selected by a user.
 #[derive(Debug, Clone, PartialEq)]
-pub enum Place {
-    /// One that has a name.
+pub enum NodeSelector {
+    /// A node with a name.
     Named(&'static str),
-    /// The nearest to coordinates x and y [m] from the pin's axis.
+    /// The node nearest to the coordinates x and y [m] from the pin's axis.
     At([f64; 2]),
 }
 
-impl Place {
+impl NodeSelector {
     /// The paper's node 1 and node 2.
-    pub const USUAL: [Self; 2] = [Self::Named("front_centre"), Self::Named("rear_centre")];
+    pub const DEFAULT: [Self; 2] = [Self::Named("front_centre"), Self::Named("rear_centre")];
 
     /// Reads a name, or `X,Y` in millimetres from the pin's axis.
     ///
     /// # Errors
-    /// What would be right, if it is neither.
+    /// A message that says what is expected.
     pub fn parse(text: &str) -> Result<Self, String> {
         if let Some((name, _)) = NAMED.iter().find(|(name, _)| *name == text) {
             return Ok(Self::Named(name));
@@ -53,8 +53,8 @@ impl Place {
     /// The slave node.
     ///
     /// # Errors
-    /// If the coordinates are beyond the face.
-    pub fn find(&self, mesh: &BlockMesh) -> Result<ObservedNode, String> {
+    /// A message if the coordinates are outside of the contact face.
+    pub fn resolve(&self, mesh: &BlockMesh) -> Result<ObservedNode, String> {
         let [lx, ly, _] = mesh.size_m();
         let [x, y] = match self {
             Self::At(at) => *at,
@@ -64,7 +64,7 @@ impl Place {
                 [f64::from(across) * lx / 2.0, f64::from(along) * ly / 2.0]
             }
         };
-        // Half a micrometre of forgiveness for decimal millimetres.
+        // A tolerance of half a micrometre, because coordinates are read as decimal millimetres.
         if x.abs() > lx / 2.0 + 5e-7 || y.abs() > ly / 2.0 + 5e-7 {
             return Err(format!(
                 "{},{} mm is not on the contact face; expected x from {} to {} and y from {} to {}",
@@ -77,7 +77,7 @@ impl Place {
             ));
         }
         let [nx, ny, _] = mesh.elements();
-        // With an odd number of elements no node is in the middle: the lower one is taken, as everywhere.
+        // With an odd number of elements no node is in the middle. The lower one is taken, as in the record.
         let index = |at: f64, length: f64, n: usize| {
             let exact = (at / length + 0.5) * n as f64;
             ((exact - 0.5 - 1e-9).ceil().max(0.0) as usize).min(n)
@@ -93,12 +93,12 @@ impl Place {
     }
 }
 
-/// A node of the contact face to look at.
+/// A node of the contact face whose history is recorded.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ObservedNode {
-    /// Its name, which can be part of a file's.
+    /// Its name, which may be a part of a file name.
     pub name: String,
-    /// Its name and place for a reader.
+    /// Its name and coordinates for a reader.
     pub title: String,
     /// Its number among the slave nodes.
     pub slave: usize,
@@ -114,37 +114,38 @@ mod tests {
         BlockMesh::new([0.012, 0.015, 0.010], [12, 15, 10])
     }
 
-    /// Protects: the names that a job's record uses mean the same nodes here: the middle of the leading and of the
-    /// trailing edge, also where no node is in the middle of a side.
+    /// Protects: the names in a job's record mean the same nodes here: the middle of the leading and of the trailing edge,
+    /// even if no node is exactly in the middle of a side.
     #[test]
     fn names_mean_what_records_mean() {
         let mesh = mesh();
-        let found: Vec<_> = Place::USUAL.iter().map(|place| place.find(&mesh).unwrap().slave).collect();
+        let found: Vec<_> =
+            NodeSelector::DEFAULT.iter().map(|selector| selector.resolve(&mesh).unwrap().slave).collect();
         assert_eq!(found, [mesh.node(6, 0, 0), mesh.node(6, 15, 0)]);
-        let centre = Place::parse("centre").unwrap().find(&mesh).unwrap();
+        let centre = NodeSelector::parse("centre").unwrap().resolve(&mesh).unwrap();
         assert_eq!(centre.slave, mesh.node(6, 7, 0));
-        let corner = Place::parse("rear_outer").unwrap().find(&mesh).unwrap();
+        let corner = NodeSelector::parse("rear_outer").unwrap().resolve(&mesh).unwrap();
         assert_eq!((corner.slave, corner.at_m), (mesh.node(12, 15, 0), [0.006, 0.0075]));
     }
 
-    /// Protects: coordinates give the nearest node, and its own coordinates in its name.
+    /// Protects: coordinates select the nearest node, and the name of the node has its own coordinates.
     #[test]
     fn coordinates_give_the_nearest_node() {
-        let node = Place::parse("-2.4,3.1").unwrap().find(&mesh()).unwrap();
+        let node = NodeSelector::parse("-2.4,3.1").unwrap().resolve(&mesh()).unwrap();
         assert_eq!(node.slave, mesh().node(4, 11, 0));
         assert_eq!(node.name, "x-2.000_y+3.500mm");
-        let edge = Place::parse("6,-7.5").unwrap().find(&mesh()).unwrap();
+        let edge = NodeSelector::parse("6,-7.5").unwrap().resolve(&mesh()).unwrap();
         assert_eq!(edge.slave, mesh().node(12, 0, 0));
     }
 
-    /// Protects: what is no node is refused with what would be right.
+    /// Protects: an invalid selection is refused, and the message says what is expected.
     #[test]
     fn other_texts_are_refused() {
         for text in ["front", "1;2", "1,inf", ""] {
-            let error = Place::parse(text).unwrap_err();
+            let error = NodeSelector::parse(text).unwrap_err();
             assert!(error.contains("front_centre") && error.contains("millimetres"), "{error}");
         }
-        let error = Place::parse("7,0").unwrap().find(&mesh()).unwrap_err();
+        let error = NodeSelector::parse("7,0").unwrap().resolve(&mesh()).unwrap_err();
         assert!(error.contains("7,0 mm") && error.contains("x from -6 to 6"), "{error}");
     }
 }

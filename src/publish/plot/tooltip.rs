@@ -1,46 +1,46 @@
-//! What a drawing tells about its points: invisible shapes over them, with a title that browsers show and with the
-//! values as attributes for programs.
+//! Tooltips in a drawing: invisible shapes with a title, which browsers show, and with values as attributes, which
+//! programs read.
 
 use std::fmt::Write;
 
-/// Where a point can be pointed at, in the drawing's pixels.
+/// The area that has a tooltip, in pixels of the drawing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Shape {
-    /// Around a marker.
+    /// A circle around a marker.
     Around {
-        /// Its centre.
+        /// Centre.
         at: (i32, i32),
-        /// How far from it.
+        /// Radius.
         radius: i32,
     },
-    /// A cell, from its upper left to its lower right corner.
+    /// A rectangle.
     Cell {
-        /// Upper left.
+        /// Upper left corner.
         from: (i32, i32),
-        /// Lower right.
+        /// Lower right corner.
         to: (i32, i32),
     },
 }
 
-/// A point of a drawing.
+/// A shape with a tooltip.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Hit {
-    /// Where it is.
+pub struct TooltipTarget {
+    /// Where the pointer shows the tooltip.
     pub shape: Shape,
-    /// What is told about it, in lines; the first is the heading.
+    /// The text in lines; the first is the heading.
     pub title: String,
-    /// Names and values of the attributes `data-NAME`; names are plain words.
+    /// Names and values of the attributes `data-NAME`; names are lower-case ASCII letters.
     pub data: Vec<(&'static str, String)>,
 }
 
-/// Adds the points to a drawing, on top of everything, the last of them uppermost.
-pub fn append(svg: &str, hits: &[Hit]) -> String {
-    let Some(end) = svg.rfind("</svg>").filter(|_| !hits.is_empty()) else { return svg.to_owned() };
-    let mut text = String::with_capacity(svg.len() + 256 * hits.len());
+/// Adds shapes with tooltips to a drawing, on top of everything, the last of them uppermost.
+pub fn append(svg: &str, targets: &[TooltipTarget]) -> String {
+    let Some(end) = svg.rfind("</svg>").filter(|_| !targets.is_empty()) else { return svg.to_owned() };
+    let mut text = String::with_capacity(svg.len() + 256 * targets.len());
     text.push_str(&svg[..end]);
     text.push_str("<g class=\"hits\" fill=\"none\" pointer-events=\"all\">\n");
-    for hit in hits {
-        let name = match hit.shape {
+    for target in targets {
+        let name = match target.shape {
             Shape::Around { at: (x, y), radius } => {
                 let _ = write!(text, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"");
                 "circle"
@@ -51,10 +51,10 @@ pub fn append(svg: &str, hits: &[Hit]) -> String {
                 "rect"
             }
         };
-        for (attribute, value) in &hit.data {
+        for (attribute, value) in &target.data {
             let _ = write!(text, " data-{attribute}=\"{}\"", escape(value));
         }
-        let _ = writeln!(text, "><title>{}</title></{name}>", escape(&hit.title));
+        let _ = writeln!(text, "><title>{}</title></{name}>", escape(&target.title));
     }
     text.push_str("</g>\n");
     text.push_str(&svg[end..]);
@@ -71,7 +71,7 @@ fn escape(text: &str) -> String {
             '&' => escaped.push_str("&amp;"),
             '"' => escaped.push_str("&quot;"),
             '\n' => escaped.push('\n'),
-            // XML has no place for control characters.
+            // XML does not allow control characters.
             c if c.is_control() => escaped.push(' '),
             c => escaped.push(c),
         }
@@ -83,12 +83,16 @@ fn escape(text: &str) -> String {
 mod tests {
     use super::*;
 
-    /// Protects: what a study names cannot become markup, and a drawing without points stays as it is.
+    /// Protects: a name or message of a study cannot become markup, and a drawing without tooltips is unchanged.
     #[test]
     fn text_stays_text() {
         let shape = Shape::Around { at: (3, 4), radius: 5 };
-        let hit = Hit { shape, title: "<script>\u{1}".to_owned(), data: vec![("job", "\"><b>".to_owned())] };
-        let svg = append("<svg>\n</svg>\n", &[hit]);
+        let target = TooltipTarget {
+            shape,
+            title: "<script>\u{1}".to_owned(),
+            data: vec![("job", "\"><b>".to_owned())],
+        };
+        let svg = append("<svg>\n</svg>\n", &[target]);
         let expected = "<circle cx=\"3\" cy=\"4\" r=\"5\" data-job=\"&quot;&gt;&lt;b&gt;\"><title>&lt;script&gt; </title></circle>";
         assert!(svg.contains(expected) && svg.ends_with("</g>\n</svg>\n"), "{svg}");
         assert_eq!(append("<svg></svg>", &[]), "<svg></svg>");

@@ -1,120 +1,121 @@
-//! A look is the job's own run.
+//! An inspection shows the job's own run.
 
-use crate::{coarse, look_into};
+use crate::{coarse, inspect};
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use tribosweep::analysis::{JobError, Outcome, Regime, Unobserved, solve};
-use tribosweep::inspect::{Change, Look, LookError, Options, Origin, Place, Summary, write};
+use tribosweep::inspect::{
+    Change, Inspection, InspectionError, NodeSelector, Options, PageHeader, Summary, write,
+};
 use tribosweep::solver::interface::ContactState;
 use tribosweep::spec::DiskKind;
 
-/// Protects: what is shown is the job: both runs of a look have the record of the job solved alone, to the last bit,
-/// and the cycles that are shown are those of its frequency.
+/// Protects: both runs of an inspection have the same record as the job solved alone, to the last bit, and the cycles that
+/// are shown have its frequency.
 #[test]
 fn both_runs_are_the_job() {
     let spec = coarse();
-    let look = look_into(&spec, &Options::default());
+    let inspection = inspect(&spec, &Options::default());
     let record = solve(&spec, &mut Unobserved).unwrap();
     assert_eq!((record.outcome, record.regime), (Outcome::Periodic, Regime::StickSlipSeparation));
-    assert_eq!(look.survey.record, record);
-    assert_eq!(look.capture.record, record);
+    assert_eq!(inspection.survey.record, record);
+    assert_eq!(inspection.capture.record, record);
     // The averaging window is the last whole cycles of the run.
-    let passages = &look.survey.passages_s;
+    let passages = &inspection.survey.passages_s;
     let window = &passages[passages.len() - record.cycles * record.crossings_per_cycle..];
     assert_eq!(window[0][0], record.window_start_s);
     let duration_s = window.last().unwrap()[1] - window[0][0];
     let frequency_hz = window.len() as f64 / duration_s;
     assert!((frequency_hz / record.frequency_hz.unwrap() - 1.0).abs() < 1e-12);
-    // Over the cycles that are shown the period is that of the window within what the job tolerates of it.
+    // The period of the cycles that are shown differs from that of the window by less than the tolerance of the job.
     let tolerated = spec.detection.tolerance;
-    assert!((look.survey.windows.period_s * frequency_hz - 1.0).abs() < tolerated);
+    assert!((inspection.survey.windows.period_s * frequency_hz - 1.0).abs() < tolerated);
 }
 
-/// Protects: totals, face and nodes tell of the same steps: sums of the face are the totals, and a node's history is
-/// the face's.
+/// Protects: totals, face and nodes have the same steps: the totals are the sums over the face, and the history of a node
+/// agrees with the face.
 #[test]
-fn what_is_shown_adds_up() {
-    let look = look_into(&coarse(), &Options::default());
-    let slaves = look.capture.model.slaves().len();
-    let [start_s, end_s] = look.survey.windows.cycle_s;
-    let steps = (end_s - start_s) / look.survey.record.time_step_s;
-    assert!((look.capture.face.len() as f64 - steps).abs() <= 1.0, "every step of the cycle");
-    for step in &look.capture.face {
-        let total = look.capture.totals.iter().find(|total| total.time_s == step.time_s).unwrap();
+fn totals_face_and_nodes_agree() {
+    let inspection = inspect(&coarse(), &Options::default());
+    let slaves = inspection.capture.model.slaves().len();
+    let [start_s, end_s] = inspection.survey.windows.cycle_s;
+    let steps = (end_s - start_s) / inspection.survey.record.time_step_s;
+    assert!((inspection.capture.face.len() as f64 - steps).abs() <= 1.0, "every step of the cycle");
+    for step in &inspection.capture.face {
+        let total = inspection.capture.totals.iter().find(|total| total.time_s == step.time_s).unwrap();
         let normal: f64 = step.nodes.iter().map(|node| node.force_n[2]).sum();
-        // Sums in another order.
+        // The order of the sums differs.
         assert!((normal - total.normal_n).abs() <= slaves as f64 * f64::EPSILON * total.normal_n);
         let count = |state| step.nodes.iter().filter(|node| node.state == state).count();
         let counts = [ContactState::Stick, ContactState::Slip, ContactState::Separated].map(count);
         assert_eq!(counts, [total.stick, total.slip, total.separated]);
-        for (observed, history) in look.observed.iter().zip(&look.capture.nodes) {
+        for (observed, history) in inspection.observed.iter().zip(&inspection.capture.nodes) {
             let same = history.iter().find(|own| own.time_s == step.time_s).unwrap();
             assert_eq!(same.node, step.nodes[observed.node.slave]);
         }
     }
 }
 
-/// Protects: the instants are where the paper's figure 4 has them, at nodes that separate and at nodes that do not: in
-/// their order, within one period, at the steps at which the states change, and the largest stress at t_C.
+/// Protects: the instants are those of the paper's figure 4, at nodes that separate and at nodes that do not: they are in
+/// order, within one period, at the steps at which the states change, and the largest stress is at t_C.
 #[test]
 fn the_instants_are_those_of_the_states() {
     let mut kinds = BTreeSet::new();
     for omega_rpm in [1.0, 2.0, 4.0, 7.0, 20.0] {
         let mut spec = coarse();
         spec.scene.disk.omega_rpm = omega_rpm;
-        let look = look_into(&spec, &Options::default());
-        let period_s = look.survey.windows.period_s;
-        for (observed, steps) in look.observed.iter().zip(&look.capture.nodes) {
+        let inspection = inspect(&spec, &Options::default());
+        let period_s = inspection.survey.windows.period_s;
+        for (observed, steps) in inspection.observed.iter().zip(&inspection.capture.nodes) {
             let instants = observed.instants.unwrap();
             let letters: String = instants.named().iter().map(|(letter, _)| *letter).collect();
-            let told = format!("{omega_rpm} rpm, {}: {:?}", observed.node.name, instants.named());
+            let context = format!("{omega_rpm} rpm, {}: {:?}", observed.node.name, instants.named());
             let place = |time_s: f64| steps.iter().position(|step| step.time_s >= time_s).unwrap();
             let state = |time_s: f64| steps[place(time_s)].node.state;
             let before = |time_s: f64| steps[place(time_s) - 1].node.state;
             if let (Some(b), Some(d)) = (instants.stick_s, instants.slip_s) {
-                assert!(b < d && d - b < period_s, "{told}");
-                assert!(state(b) == ContactState::Stick && before(b) != ContactState::Stick, "{told}");
-                assert!(state(d) != ContactState::Stick && before(d) == ContactState::Stick, "{told}");
+                assert!(b < d && d - b < period_s, "{context}");
+                assert!(state(b) == ContactState::Stick && before(b) != ContactState::Stick, "{context}");
+                assert!(state(d) != ContactState::Stick && before(d) == ContactState::Stick, "{context}");
             }
             if let (Some(a), Some(e), Some(f)) = (instants.contact_s, instants.separation_s, instants.end_s) {
                 assert!(
                     state(a) != ContactState::Separated && before(a) == ContactState::Separated,
-                    "{told}"
+                    "{context}"
                 );
                 let apart = &steps[place(e)..place(f)];
-                assert!(apart.iter().all(|step| step.node.state == ContactState::Separated), "{told}");
+                assert!(apart.iter().all(|step| step.node.state == ContactState::Separated), "{context}");
                 assert!(
                     before(e) != ContactState::Separated && state(f) != ContactState::Separated,
-                    "{told}"
+                    "{context}"
                 );
-                assert!((f - a - period_s).abs() < 0.1 * period_s, "one cycle, not two: {told}");
-                assert!(instants.peak_s >= a && instants.peak_s < e, "{told}");
+                assert!((f - a - period_s).abs() < 0.1 * period_s, "one cycle, not two: {context}");
+                assert!(instants.peak_s >= a && instants.peak_s < e, "{context}");
                 let between = &steps[place(a)..place(e)];
                 let largest = between.iter().map(|step| step.stress_pa[2]).fold(0.0, f64::max);
-                assert_eq!(steps[place(instants.peak_s)].stress_pa[2], largest, "{told}");
+                assert_eq!(steps[place(instants.peak_s)].stress_pa[2], largest, "{context}");
                 if let (Some(b), Some(d)) = (instants.stick_s, instants.slip_s) {
-                    assert!(a <= b && d <= e, "{told}");
+                    assert!(a <= b && d <= e, "{context}");
                 }
             } else {
-                assert!(!letters.contains(['A', 'E', 'F']), "all of a separation or none of it: {told}");
+                assert!(!letters.contains(['A', 'E', 'F']), "all of a separation or none of it: {context}");
             }
             kinds.insert(letters);
         }
     }
-    // With and without separation: the loop above has seen both.
+    // The loop above had nodes with separation and nodes without.
     assert!(kinds.contains("ABCDEF") && kinds.contains("BCD"), "{kinds:?}");
 }
 
-/// Protects: waves are told of neighbours that have the change and of no others: contact begins and ends at the nodes
-/// that separate, and every wave's delay is that of its nodes.
+/// Protects: the waves of contact and separation are exactly the runs of neighbouring nodes that separate.
 #[test]
 fn waves_are_those_of_the_face() {
-    let look = look_into(&coarse(), &Options::default());
-    let mesh = look.mesh();
+    let inspection = inspect(&coarse(), &Options::default());
+    let mesh = inspection.mesh();
     let [nx, ny, _] = mesh.elements();
     let separates: Vec<bool> = (0..=ny)
         .map(|j| {
-            let states = look.capture.face.iter().map(|step| step.nodes[mesh.node(nx / 2, j, 0)].state);
+            let states = inspection.capture.face.iter().map(|step| step.nodes[mesh.node(nx / 2, j, 0)].state);
             states.into_iter().any(|state| state == ContactState::Separated)
         })
         .collect();
@@ -126,7 +127,7 @@ fn waves_are_those_of_the_face() {
     let y = |j: usize| mesh.coordinates_m(mesh.node(0, j, 0))[1];
     let expected: Vec<_> = runs.iter().map(|&[first, last]| [y(first), y(last)]).collect();
     assert!(!expected.is_empty());
-    let summary = Summary::of(&look);
+    let summary = Summary::of(&inspection);
     for change in [Change::Contact, Change::Separation] {
         let found: Vec<_> =
             summary.waves.iter().filter(|wave| wave.change == change).map(|wave| wave.from_to_m).collect();
@@ -134,45 +135,44 @@ fn waves_are_those_of_the_face() {
     }
 }
 
-/// Protects: no more cycles are shown than repeat: the way there is not passed off for limit cycles.
+/// Protects: no more cycles are shown than those that repeat, so that the transient is never shown as limit cycles.
 #[test]
 fn no_more_cycles_than_there_are() {
-    let look = look_into(&coarse(), &Options { cycles: 1000, ..Options::default() });
-    let (windows, record) = (&look.survey.windows, &look.survey.record);
-    assert!(windows.cycles);
-    assert_eq!(windows.count, record.cycles);
+    let inspection = inspect(&coarse(), &Options { cycles: 1000, ..Options::default() });
+    let (windows, record) = (&inspection.survey.windows, &inspection.survey.record);
+    assert!(windows.has_cycles);
+    assert_eq!(windows.cycle_count, record.cycles);
     assert!((windows.shown_s[0] / record.window_start_s - 1.0).abs() < 1e-12, "{windows:?}");
 }
 
-/// Protects: what the figures claim of stick and slip: a node that sticks has the velocity of the disk and one that
-/// slips has |τ| = μ σ_n, to rounding.
+/// Protects: up to rounding, a node that sticks has the velocity of the disk, and a node that slips has |τ| = μ σ_n.
 #[test]
 fn stick_and_slip_are_exact() {
     let spec = coarse();
-    let summary = Summary::of(&look_into(&spec, &Options::default()));
+    let summary = Summary::of(&inspect(&spec, &Options::default()));
     for node in &summary.nodes {
         assert!(node.shares.iter().all(|share| *share > 0.0), "{node:?}");
-        // Positions of some µm, whose differences over a step round to its parts.
+        // The velocity is a difference of positions of some µm over a step, which has their rounding errors.
         let rounding_m_s = 4.0 * f64::EPSILON * 1e-5 / summary.record.time_step_s;
         assert!(node.stick_speed_error_m_s <= rounding_m_s, "{node:?}");
         assert!(node.slip_friction_error <= 4.0 * f64::EPSILON, "{node:?}");
     }
 }
 
-/// Protects: displacements and velocities of the frames belong together: with a frame for every step, the difference of
-/// two is the velocity between them, at every node of the pin.
+/// Protects: displacements and velocities of the frames agree: with a frame for every step, the difference quotient of two
+/// frames is the velocity, at every node of the pin.
 #[test]
 fn frames_are_of_the_same_motion() {
-    let look = look_into(&coarse(), &Options { frames: 1000, ..Options::default() });
-    let dt = look.survey.record.time_step_s;
-    let frames = &look.capture.frames;
-    assert_eq!(frames.len(), look.capture.face.len(), "no more frames than steps");
+    let inspection = inspect(&coarse(), &Options { frames: 1000, ..Options::default() });
+    let dt = inspection.survey.record.time_step_s;
+    let frames = &inspection.capture.frames;
+    assert_eq!(frames.len(), inspection.capture.face.len(), "no more frames than steps");
     let fastest = frames.iter().flat_map(|frame| &frame.velocity_m_s).map(|v| v.abs()).fold(0.0, f64::max);
     assert!(fastest > 0.1, "{fastest} m/s");
     for pair in frames.windows(2) {
         assert!((pair[1].time_s - pair[0].time_s - dt).abs() < 1e-3 * dt);
         for ((before, after), velocity) in pair[0].u_m.iter().zip(&pair[1].u_m).zip(&pair[1].velocity_m_s) {
-            // Displacements of some µm round, and their difference is over a step.
+            // The displacements of some µm have rounding errors, which are divided by the time step.
             let rounding = 4.0 * f64::EPSILON * before.abs().max(after.abs()) / dt + 1e-12 * fastest;
             let difference = (after - before) / dt - velocity;
             assert!(
@@ -183,34 +183,34 @@ fn frames_are_of_the_same_motion() {
     }
 }
 
-/// Protects: a job without cycles can be looked into as well, and is said to have none; all its files are there.
+/// Protects: a job without cycles can be inspected too. The page says that it has none, and all files exist.
 #[test]
 fn stable_sliding_has_no_cycles() {
     let mut spec = coarse();
     spec.scene.contact.mu = 0.1;
-    let look = look_into(&spec, &Options::default());
-    assert_eq!(look.survey.record.regime, Regime::Stable);
-    let summary = Summary::of(&look);
+    let inspection = inspect(&spec, &Options::default());
+    assert_eq!(inspection.survey.record.regime, Regime::Stable);
+    let summary = Summary::of(&inspection);
     assert!(!summary.cycles && summary.waves.is_empty() && summary.nodes[0].frequency_hz.is_none());
     assert_eq!(summary.nodes[0].shares, [0.0, 1.0, 0.0]);
     let folder = tempfile::tempdir().unwrap();
-    let files = write(&look, folder.path(), &Origin::default()).unwrap();
+    let files = write(&inspection, folder.path(), &PageHeader::default()).unwrap();
     assert!(files.iter().all(|file| file.is_file()));
     let page = std::fs::read_to_string(folder.path().join("index.html")).unwrap();
     assert!(page.contains("no limit cycle"), "the page says so");
 }
 
-/// Protects: nodes by name and by coordinates, and the job's own figures of the two that it always observes.
+/// Protects: nodes can be selected by name and by coordinates, and the numbers of a node agree with the job's record.
 #[test]
 fn any_node_can_be_observed() {
-    let places = ["centre", "-6,7.5", "front_centre"].map(|text| Place::parse(text).unwrap()).to_vec();
-    let look = look_into(&coarse(), &Options { places, ..Options::default() });
-    let names: Vec<_> = look.observed.iter().map(|observed| observed.node.name.as_str()).collect();
+    let nodes = ["centre", "-6,7.5", "front_centre"].map(|text| NodeSelector::parse(text).unwrap()).to_vec();
+    let inspection = inspect(&coarse(), &Options { nodes, ..Options::default() });
+    let names: Vec<_> = inspection.observed.iter().map(|observed| observed.node.name.as_str()).collect();
     assert_eq!(names, ["centre", "x-6.000_y+7.500mm", "front_centre"]);
-    let found = Summary::of(&look).nodes[2].clone();
-    let recorded = &look.survey.record.nodes[0];
+    let found = Summary::of(&inspection).nodes[2].clone();
+    let recorded = &inspection.survey.record.nodes[0];
     assert_eq!(recorded.name, "front_centre");
-    // Extremes of four cycles are within those of twenty, which repeat within what the job tolerates.
+    // The extremes of four cycles are within those of twenty, and differ by less than the tolerance of the job.
     let tolerated = coarse().detection.tolerance;
     for (shown, all) in [
         (found.peak_to_peak_m[1], recorded.y_peak_to_peak_m),
@@ -220,17 +220,17 @@ fn any_node_can_be_observed() {
     ] {
         assert!(shown <= all && shown > (1.0 - 2.0 * tolerated) * all, "{shown} of {all}");
     }
-    let off = Options { places: vec![Place::parse("0,8").unwrap()], ..Options::default() };
-    let error = Look::into(&coarse(), &off, &mut |_| ControlFlow::Continue(())).unwrap_err();
-    assert!(matches!(&error, LookError::Place(text) if text.contains("0,8 mm")), "{error}");
+    let off = Options { nodes: vec![NodeSelector::parse("0,8").unwrap()], ..Options::default() };
+    let error = Inspection::run(&coarse(), &off, &mut |_| ControlFlow::Continue(())).unwrap_err();
+    assert!(matches!(&error, InspectionError::Node(text) if text.contains("0,8 mm")), "{error}");
 }
 
-/// Protects: a look can be stopped in either run.
+/// Protects: an inspection can be stopped in either run.
 #[test]
-fn a_look_can_be_interrupted() {
+fn an_inspection_can_be_interrupted() {
     for run_to_stop in [1, 2] {
         let (mut run, mut last_s) = (1, 0.0);
-        let found = Look::into(&coarse(), &Options::default(), &mut |simulated_s| {
+        let found = Inspection::run(&coarse(), &Options::default(), &mut |simulated_s| {
             run += u32::from(simulated_s < last_s);
             last_s = simulated_s;
             if run == run_to_stop && simulated_s > 1e-3 {
@@ -239,23 +239,23 @@ fn a_look_can_be_interrupted() {
                 ControlFlow::Continue(())
             }
         });
-        assert!(matches!(found, Err(LookError::Job(JobError::Interrupted))));
+        assert!(matches!(found, Err(InspectionError::Job(JobError::Interrupted))));
         assert_eq!(run, run_to_stop);
     }
 }
 
-/// Protects: jobs on an elastic disk, where a node that sticks moves with a surface that itself moves: not by nothing,
-/// and as much slower than the pin as the disk is stiffer.
+/// Protects: jobs on an elastic disk can be inspected. A node that sticks moves with the surface of the disk, whose own
+/// velocity is not zero, but smaller than that of the pin by the ratio of the stiffnesses.
 #[test]
 fn an_elastic_disk_moves_under_sticking_nodes() {
     let mut spec = coarse();
     spec.scene.disk.kind = DiskKind::Elastic;
     spec.scene.disk.ring.element_size_m = 0.005;
-    let look = look_into(&spec, &Options { frames: 16, ..Options::default() });
-    assert_eq!(look.survey.record, look.capture.record);
-    let node = &Summary::of(&look).nodes[0];
-    // The same forces move two half-spaces in the ratio of their stiffness, here 1 : 210; the pin, a block with free
-    // sides, moves by several times what a half-space would.
+    let inspection = inspect(&spec, &Options { frames: 16, ..Options::default() });
+    assert_eq!(inspection.survey.record, inspection.capture.record);
+    let node = &Summary::of(&inspection).nodes[0];
+    // The same forces move two half-spaces in the ratio of their stiffnesses, here 1 : 210. The pin is a block with free
+    // sides, which moves several times as much as a half-space.
     let ratio = spec.scene.pin.young_modulus_pa / spec.scene.disk.ring.young_modulus_pa;
     let bound_m_s = 10.0 * ratio * node.relative_speed_max_m_s;
     assert!(node.stick_speed_error_m_s > 0.0 && node.stick_speed_error_m_s < bound_m_s, "{node:?}");
