@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// What each module at the top may use besides itself. `cli` and `main` join the rest together.
-const MAY_USE: [(&str, &[&str]); 13] = [
+const MAY_USE: [(&str, &[&str]); 14] = [
     ("spec", &[]),
     ("units", &[]),
     ("exit", &[]),
@@ -16,10 +16,12 @@ const MAY_USE: [(&str, &[&str]); 13] = [
     ("inspect", &["analysis", "publish", "solver", "spec", "units"]),
     ("report", &["analysis", "publish"]),
     ("worker", &["analysis", "queue", "spec"]),
+    // Of `publish` it uses the error of `report`.
+    ("sweep", &["analysis", "publish", "queue", "report", "solver", "spec", "study", "worker"]),
     (
         "cli",
         &[
-            "analysis", "exit", "inspect", "publish", "queue", "report", "solver", "spec", "study", "units",
+            "analysis", "exit", "inspect", "publish", "queue", "report", "solver", "spec", "study", "sweep",
             "worker",
         ],
     ),
@@ -150,13 +152,17 @@ fn modules_use_only_what_they_may() {
     // The arrows of the map are there: a scanner that sees nothing would pass the above.
     for (from, to) in [
         ("analysis", "solver"),
-        ("cli", "report"),
-        ("cli", "study"),
+        ("cli", "inspect"),
+        ("cli", "sweep"),
         ("cli", "worker"),
         ("main", "cli"),
         ("report", "analysis"),
         ("solver", "spec"),
         ("study", "spec"),
+        ("sweep", "queue"),
+        ("sweep", "report"),
+        ("sweep", "study"),
+        ("sweep", "worker"),
         ("worker", "analysis"),
         ("worker", "queue"),
     ] {
