@@ -20,7 +20,7 @@ pub enum SweepError {
         /// The study's file as given.
         source_name: String,
         /// Why the solver refuses the job.
-        reason: SolverError,
+        reason: Box<SolverError>,
         /// Grid parameters of the job as `name = value`, with commas between them; empty without a grid.
         point: String,
     },

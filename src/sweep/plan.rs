@@ -130,7 +130,11 @@ fn preflight(source_name: &str, jobs: &[Job], batches: &[String]) -> Result<(), 
         Model::preflight(&job.spec.scene, &job.spec.numerics).map_err(|reason| {
             let point: Vec<String> =
                 job.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-            SweepError::RefusedJob { source_name: source_name.to_owned(), reason, point: point.join(", ") }
+            SweepError::RefusedJob {
+                source_name: source_name.to_owned(),
+                reason: Box::new(reason),
+                point: point.join(", "),
+            }
         })?;
     }
     Ok(())
