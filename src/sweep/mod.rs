@@ -35,7 +35,7 @@ pub use history::History;
 pub use outlook::{Outlook, available_threads};
 pub use plan::Plan;
 pub use report::{Revision, write_refreshing_report, write_report};
-pub use rows::{RowParameters, for_each_row, read_rows};
+pub use rows::{for_each_row, read_rows};
 pub use selection::{SelectedJob, StoredJob, find_job, select_by_key, select_by_parameters};
 pub use transfer::{Transfer, transfer};
 pub use trouble::Trouble;

@@ -9,7 +9,7 @@ use std::ops::ControlFlow;
 
 /// The parameters of a job that are stored with its row, so that tables need not read the payload.
 #[derive(Debug, Serialize, Deserialize)]
-pub struct RowParameters {
+pub(super) struct RowParameters {
     /// Disk speed ω of the job in revolutions per minute.
     pub omega_rpm: f64,
     /// Local friction coefficient μ of the job.
