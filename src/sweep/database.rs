@@ -10,6 +10,9 @@ use std::path::Path;
 ///
 /// # Errors
 /// Those of the future, and [`SweepError::Runtime`].
+///
+/// # Panics
+/// Inside an asynchronous runtime, which can await the future itself.
 pub fn block_on<T, E: From<SweepError>>(future: impl Future<Output = Result<T, E>>) -> Result<T, E> {
     let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
     runtime.map_err(SweepError::Runtime)?.block_on(future)
