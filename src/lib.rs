@@ -1,6 +1,6 @@
 //! **tribosweep**: what friction coefficient does a tribometer measure, and how does its contact squeal?
 //!
-//! A Rust program can do all that the command does. This runs a small sweep from the study to the report:
+//! Other Rust programs can run sweeps too. This example runs a small one from the study to the report:
 //!
 //! ```
 //! # #[cfg(feature = "sweep")] {
