@@ -1,10 +1,12 @@
-//! Exit codes of the `tribosweep` command; part of its interface.
+//! Exit codes of the `tribosweep` command; they are part of its interface.
 
-/// Everything asked for was done, and all jobs succeeded that do not still run elsewhere.
-pub const SUCCESS: u8 = 0;
+/// The command did its work, and no job failed. Other workers may still be running jobs.
+pub(crate) const SUCCESS: u8 = 0;
 /// Some jobs failed; the others have results.
-pub const SOME_FAILED: u8 = 1;
-/// Bad input or usage; nothing was done.
-pub const BAD_INPUT: u8 = 2;
-/// Work is left over: the sweep was interrupted. The same command continues it.
-pub const WORK_LEFT: u8 = 3;
+pub(crate) const SOME_FAILED: u8 = 1;
+/// The command could not do its work, or not all of it: bad input or usage, a database or file that cannot be used, or a
+/// problem that `doctor` found. Work that was done before the error is kept.
+pub(crate) const ERROR: u8 = 2;
+/// Jobs are left because the work was interrupted or jobs were cancelled. The same command continues an interrupted
+/// sweep.
+pub(crate) const WORK_LEFT: u8 = 3;

@@ -1,4 +1,4 @@
-//! The `tribosweep` command: parse, dispatch, exit code.
+//! The `tribosweep` command: parses the arguments, runs the command and returns its exit code.
 
 use clap::Parser;
 use std::process::ExitCode;

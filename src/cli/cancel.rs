@@ -1,37 +1,40 @@
-//! `tribosweep cancel`: pending jobs of a study are not wanted any more.
+//! `tribosweep cancel`: cancel the pending jobs of a study.
 
 use super::error::CliError;
-use super::output::{block_on, tell};
-use super::rows;
+use super::output::log;
 use crate::exit;
 use crate::queue::Location;
+use crate::sweep;
 
 /// Arguments of `cancel`.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The study's name or file.
     study: String,
 }
 
 /// Cancels the jobs.
-pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let name = rows::study_name(&args.study)?;
-    let cancelled = block_on(async {
-        let mut queue = rows::open_to_change(db).await?;
+pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
+    let name = sweep::study_name(&args.study)?;
+    let cancelled = sweep::block_on(async {
+        let mut queue = sweep::open_to_change(db.clone()).await?;
         let cancelled = queue.cancel(&name).await?;
         queue.close().await?;
-        Ok(cancelled)
+        Ok::<_, CliError>(cancelled)
     })?;
-    tell(format_args!(
-        "{name}: {} pending jobs cancelled; `tribosweep retry {name}` brings them back",
+    log(format_args!(
+        "{name}: {} pending jobs cancelled; `tribosweep retry {name}` makes them pending again",
         cancelled.cancelled
     ));
     if cancelled.shared > 0 {
-        tell(format_args!("{} pending jobs stay: other studies ask for them", cancelled.shared));
+        log(format_args!(
+            "{} pending jobs are not cancelled because other studies need them",
+            cancelled.shared
+        ));
     }
     if cancelled.running > 0 {
-        tell(format_args!(
-            "{} jobs are running and go on to their end; stop their worker with Ctrl-C to stop them",
+        log(format_args!(
+            "{} jobs are running and will be finished; press Ctrl-C in their worker to stop them",
             cancelled.running
         ));
     }

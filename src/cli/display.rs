@@ -1,31 +1,31 @@
-//! Progress on stderr: bars on a terminal, plain lines elsewhere.
+//! Progress on standard error: a bar on a terminal, plain lines elsewhere.
 
-use super::output::tell;
+use super::output::log;
 use crate::worker::{Progress, Snapshot};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
 use std::time::{Duration, Instant};
 
-/// So many characters of a job's key tell it apart in a display.
+/// Number of characters of a job's key that the display shows.
 const KEY_LENGTH: usize = 8;
 
-/// How often a plain line is written at most.
+/// The shortest time between two plain lines.
 const LINE_INTERVAL: Duration = Duration::from_secs(10);
 
-/// How often the same reason for waiting is told at most: waiting may last an hour.
+/// The shortest time between two lines with the same reason for waiting: waiting may last an hour.
 const WAITING_INTERVAL: Duration = Duration::from_mins(1);
 
-/// The display that suits stderr.
-pub struct Display {
+/// Shows the progress of a worker.
+pub(crate) struct Display {
     form: Form,
-    /// What was waited for last, and when that was told.
+    /// The last reason for waiting, and when it was shown.
     waiting: Option<(String, Instant)>,
 }
 
 enum Form {
     /// A bar that is redrawn.
     Bar(ProgressBar),
-    /// A line now and then.
+    /// A line every [`LINE_INTERVAL`].
     Lines {
         /// When the last line was written.
         last: Instant,
@@ -33,8 +33,8 @@ enum Form {
 }
 
 impl Display {
-    /// The display that suits stderr.
-    pub fn new() -> Self {
+    /// A bar if standard error is a terminal, otherwise lines.
+    pub(crate) fn new() -> Self {
         let form = if std::io::stderr().is_terminal() {
             let bar = ProgressBar::with_draw_target(Some(0), ProgressDrawTarget::stderr_with_hz(4));
             if let Ok(style) = ProgressStyle::with_template("{bar:30} {pos}/{len} jobs  {wide_msg}") {
@@ -47,10 +47,11 @@ impl Display {
         Self { form, waiting: None }
     }
 
+    /// Writes a line above the bar.
     fn note(&self, line: &str) {
         match &self.form {
-            Form::Bar(bar) => bar.suspend(|| tell(line)),
-            Form::Lines { .. } => tell(line),
+            Form::Bar(bar) => bar.suspend(|| log(line)),
+            Form::Lines { .. } => log(line),
         }
     }
 }
@@ -62,7 +63,7 @@ fn counters(snapshot: &Snapshot) -> String {
 }
 
 fn remaining(snapshot: &Snapshot) -> String {
-    snapshot.eta.map_or_else(|| "time left unknown yet".to_owned(), |eta| format!("{eta} left"))
+    snapshot.eta.map_or_else(|| "remaining time not known yet".to_owned(), |eta| format!("{eta} left"))
 }
 
 fn running(snapshot: &Snapshot) -> String {
@@ -93,7 +94,7 @@ impl Progress for Display {
             Form::Lines { last } => {
                 if last.elapsed() >= LINE_INTERVAL {
                     *last = Instant::now();
-                    tell(format_args!("{}, {}", counters(snapshot), remaining(snapshot)));
+                    log(format_args!("{}, {}", counters(snapshot), remaining(snapshot)));
                 }
             }
         }
@@ -104,8 +105,9 @@ impl Progress for Display {
     }
 
     fn waiting(&mut self, reason: &str) {
-        let is_told = |(told, when): &(String, Instant)| told == reason && when.elapsed() < WAITING_INTERVAL;
-        if !self.waiting.as_ref().is_some_and(is_told) {
+        let is_recent =
+            |(last, when): &(String, Instant)| last == reason && when.elapsed() < WAITING_INTERVAL;
+        if !self.waiting.as_ref().is_some_and(is_recent) {
             self.note(&format!("waiting: {reason}"));
             self.waiting = Some((reason.to_owned(), Instant::now()));
         }
@@ -115,6 +117,6 @@ impl Progress for Display {
         if let Form::Bar(bar) = &self.form {
             bar.finish_and_clear();
         }
-        tell(counters(snapshot));
+        log(counters(snapshot));
     }
 }

@@ -1,58 +1,54 @@
-//! `tribosweep export`: one row a job.
+//! `tribosweep export`: one row per job.
 
 use super::error::CliError;
-use super::output::{block_on, fill_file, stream};
-use super::rows;
+use super::output::{fill_file, stream};
 use crate::exit;
-use crate::queue::{Location, Rows};
-use crate::report::export::Export;
+use crate::queue::Location;
+use crate::sweep::{self, ExportFormat};
 use std::io::Write;
 use std::path::PathBuf;
 
 /// Arguments of `export`.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The study's name or file.
     study: String,
     /// Write to this file instead of standard output.
     #[arg(long = "csv", value_name = "FILE")]
     file: Option<PathBuf>,
-    /// How rows are written.
+    /// The format of the rows.
     #[arg(long, value_enum, default_value_t)]
     format: Format,
 }
 
-/// How rows are written.
+/// The format of the rows.
 #[derive(Debug, Clone, Copy, Default, clap::ValueEnum)]
 enum Format {
     /// Comma-separated values with a header.
     #[default]
     Csv,
-    /// One JSON object a line.
+    /// One JSON object per line.
     Json,
 }
 
 /// Exports the study.
-pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let name = rows::study_name(&args.study)?;
-    let fill = |out: &mut dyn Write| block_on(write(&name, args.format, db, out));
+pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
+    let name = sweep::study_name(&args.study)?;
+    let format = match args.format {
+        Format::Csv => ExportFormat::Csv,
+        Format::Json => ExportFormat::JsonLines,
+    };
+    let fill = |out: &mut dyn Write| {
+        sweep::block_on(async {
+            let mut queue = sweep::open_to_read(db.clone()).await?;
+            sweep::export(&mut queue, &name, format, out).await?;
+            queue.close().await?;
+            Ok(())
+        })
+    };
     match &args.file {
         Some(path) => fill_file(path, fill)?,
         None => stream(fill)?,
     }
     Ok(exit::SUCCESS)
-}
-
-/// Reads the study twice, first for the names of its parameters, so as not to hold its rows.
-async fn write(study: &str, format: Format, db: &Location, out: &mut dyn Write) -> Result<(), CliError> {
-    let mut queue = rows::open(db).await?;
-    let further = rows::further_names(&mut queue, study).await?;
-    let mut export = match format {
-        Format::Csv => Export::csv(further, out)?,
-        Format::Json => Export::json_lines(further, out),
-    };
-    rows::each(&mut queue, study, Rows::All, |_, row| Ok(export.write(&row)?)).await?;
-    export.finish()?;
-    queue.close().await?;
-    Ok(())
 }

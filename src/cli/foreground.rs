@@ -1,8 +1,8 @@
-//! What the commands have in common that solve jobs in the foreground.
+//! The common part of the commands that solve jobs in the foreground.
 
 use super::error::CliError;
-use super::output::tell;
-use super::work::listen;
+use super::output::log;
+use super::signals::raise_on_signal;
 use crate::analysis::JobError;
 use crate::exit;
 use crate::solver::SolverError;
@@ -10,7 +10,7 @@ use crate::study::Preset;
 use crate::worker::Interrupt;
 
 /// Reads `NAME=VALUE`.
-pub fn parse_setting(text: &str) -> Result<(String, String), String> {
+pub(crate) fn parse_setting(text: &str) -> Result<(String, String), String> {
     match text.split_once('=') {
         Some((name, value)) if !name.is_empty() => Ok((name.to_owned(), value.to_owned())),
         _ => Err("expected NAME=VALUE, for example omega_rpm=7".to_owned()),
@@ -18,37 +18,38 @@ pub fn parse_setting(text: &str) -> Result<(String, String), String> {
 }
 
 /// Reads the name of a preset.
-pub fn parse_preset(text: &str) -> Result<Preset, String> {
+pub(crate) fn parse_preset(text: &str) -> Result<Preset, String> {
     let names = || Preset::ALL.map(Preset::name).join(", ");
     Preset::find(text).ok_or_else(|| format!("expected one of {}", names()))
 }
 
-/// What Ctrl-C raises from now on.
-pub fn interrupt() -> Interrupt {
+/// An interrupt that Ctrl-C raises from now on.
+pub(crate) fn interrupt() -> Interrupt {
     let interrupt = Interrupt::default();
     let raised = interrupt.clone();
     std::thread::spawn(move || {
         let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
         if let Ok(runtime) = runtime {
-            runtime.block_on(listen(raised, "stopping"));
+            runtime.block_on(raise_on_signal(raised, "stopping"));
         }
     });
     interrupt
 }
 
-/// The exit code of a job that ended without a record: the job's failure, an interruption, or bad input.
-pub fn ended(error: JobError) -> Result<u8, CliError> {
+/// The exit code of a job that ended without a record: for a failure of the job or an interruption. A job that was
+/// refused is an error of the command.
+pub(crate) fn exit_code(error: JobError) -> Result<u8, CliError> {
     match error {
         JobError::Interrupted => {
-            tell("interrupted");
+            log("interrupted");
             Ok(exit::WORK_LEFT)
         }
-        JobError::Spec(violations) => Err(CliError::Plan(violations.to_string())),
+        JobError::Spec(violations) => Err(CliError::Refused(violations.to_string())),
         JobError::Solver(SolverError::Diverged { .. } | SolverError::ContactNotSolved { .. })
         | JobError::NotFinite { .. } => {
-            tell(format_args!("error: {error}"));
+            log(format_args!("error: {error}"));
             Ok(exit::SOME_FAILED)
         }
-        error => Err(CliError::Plan(error.to_string())),
+        error => Err(CliError::Refused(error.to_string())),
     }
 }

@@ -1,18 +1,18 @@
-//! `tribosweep gc`: drop what no study refers to.
+//! `tribosweep gc`: delete the jobs that no study needs.
 
 use super::error::CliError;
-use super::output::{block_on, print};
-use super::rows;
+use super::output::print;
 use crate::exit;
 use crate::queue::Location;
+use crate::sweep;
 
-/// Drops jobs that no study refers to, with their results, and says how many.
-pub fn run(db: &Location) -> Result<u8, CliError> {
-    let garbage = block_on(async {
-        let mut queue = rows::open_to_change(db).await?;
+/// Deletes the jobs that no study needs, with their results, and prints how many they were.
+pub(crate) fn run(db: &Location) -> Result<u8, CliError> {
+    let garbage = sweep::block_on(async {
+        let mut queue = sweep::open_to_change(db.clone()).await?;
         let garbage = queue.collect_garbage().await?;
         queue.close().await?;
-        Ok(garbage)
+        Ok::<_, CliError>(garbage)
     })?;
     print(&format!(
         "dropped {} jobs, {} results and {} ended workers; the database is {:.1} MB smaller\n",

@@ -1,4 +1,5 @@
-//! The command line: one file a subcommand. Results go to stdout, everything else to stderr.
+//! The command line: arguments, messages and exit codes. Each subcommand has a file. Results go to standard output,
+//! everything else to standard error. The work is done by [`sweep`](crate::sweep).
 
 mod cancel;
 mod completions;
@@ -10,19 +11,17 @@ mod foreground;
 mod gc;
 mod inspect;
 mod merge;
-mod origin;
 mod outlook;
 mod output;
 mod pareto;
-mod planning;
 mod presets;
 mod report;
 mod retry;
 mod rm;
-mod rows;
 mod run;
 mod schema;
 mod show;
+mod signals;
 mod slurm;
 mod solve;
 mod status;
@@ -38,12 +37,12 @@ use clap::{Parser, Subcommand};
 
 /// Sweeps of explicit dynamic contact simulations of a pin-on-disk tribometer.
 ///
-/// A study file describes a scene and a grid of parameters; `run` plans, solves and reports it.
+/// A study file describes a scene and a grid of parameters. `run` plans the jobs, solves them and writes a report.
 #[derive(Debug, Parser)]
 #[command(
     version,
     max_term_width = 100,
-    after_help = "Exit codes: 0 all jobs succeeded, 1 some failed, 2 bad input or usage, 3 work left over."
+    after_help = "Exit codes: 0 all jobs succeeded, 1 some jobs failed, 2 error (bad input, usage or environment), 3 jobs are left."
 )]
 pub struct Cli {
     #[command(subcommand)]
@@ -56,41 +55,41 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    /// Submit a study, work through its jobs and report: the whole sweep in one command.
+    /// Submit a study, run its jobs and write a report: the whole sweep in one command.
     Run(run::Args),
     /// Plan a study's jobs without running them.
     Submit(submit::Args),
-    /// Work through all pending jobs of the database.
+    /// Run all pending jobs of the database.
     Work(work::Args),
     /// Write the scripts for a job array of a Slurm cluster, and submit them.
     Slurm(slurm::Args),
-    /// Show how far the studies are.
+    /// Show the progress of the studies.
     Status(status::Args),
     /// Write a study's page, tables and figures.
     Report(report::Args),
     /// Compare jobs that differ in their numerics: error against run time.
     Pareto(pareto::Args),
-    /// Write one row a job as CSV or JSON lines.
+    /// Write one row per job as CSV or JSON lines.
     Export(export::Args),
-    /// Show all that is known of a job, with what its result was made with.
+    /// Show the state of a job and how its result was obtained.
     Show(show::Args),
-    /// Try failed and cancelled jobs of a study again.
+    /// Make failed and cancelled jobs of a study pending again.
     Retry(retry::Args),
     /// Cancel the pending jobs of a study.
     Cancel(cancel::Args),
-    /// Remove a study; its results stay until `gc`.
+    /// Remove a study; its results stay in the database until `gc`.
     Rm(rm::Args),
-    /// Drop jobs that no study refers to, with their results.
+    /// Delete jobs that no study needs, with their results.
     Gc,
-    /// Take over the studies and results of other databases, e.g. of shards, into the one that --db names.
+    /// Add the studies and results of other databases, for example shards, to the one that --db names.
     Merge(merge::Args),
-    /// Copy one or all studies with their results from one database to another, of whichever kind.
+    /// Copy one or all studies with their results from one database to another; each is a file or on a server.
     Copy(merge::CopyArgs),
-    /// Look for what is wrong with the database and its surroundings.
+    /// Check the database and its environment for problems.
     Doctor,
     /// Solve one job in the foreground.
     Solve(solve::Args),
-    /// Run one job again and look into it: histories, cycles, snapshots, fields for ParaView.
+    /// Run one job again and show it in detail: histories, cycles, snapshots, fields for ParaView.
     Inspect(inspect::Args),
     /// Check a study file without running it.
     Validate(validate::Args),
@@ -102,7 +101,7 @@ enum Command {
     Completions(completions::Args),
 }
 
-/// Runs the command and gives its exit code.
+/// Runs the command and returns its exit code (see [`exit`]).
 pub fn main(cli: Cli) -> u8 {
     let db = &cli.db;
     let result = match cli.command {
@@ -132,8 +131,8 @@ pub fn main(cli: Cli) -> u8 {
     match result {
         Ok(code) => code,
         Err(error) => {
-            output::tell(format_args!("error: {error}"));
-            exit::BAD_INPUT
+            output::log(format_args!("error: {error}"));
+            exit::ERROR
         }
     }
 }

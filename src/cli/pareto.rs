@@ -1,16 +1,16 @@
 //! `tribosweep pareto`: error against run time.
 
 use super::error::CliError;
-use super::output::{block_on, print, tell};
+use super::output::{log, print};
 use super::report::OutFolder;
-use super::rows;
 use crate::exit;
 use crate::queue::Location;
 use crate::report::pareto;
+use crate::sweep;
 
 /// Arguments of `pareto`.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// Names or files of the studies; several are compared as one.
     #[arg(required = true)]
     studies: Vec<String>,
@@ -19,22 +19,23 @@ pub struct Args {
 }
 
 /// Compares the finished jobs, prints the tables and writes the files.
-pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let names = args.studies.iter().map(|study| rows::study_name(study)).collect::<Result<Vec<_>, _>>()?;
-    let rows = block_on(async {
-        let mut queue = rows::open(db).await?;
+pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
+    let names = args.studies.iter().map(|study| sweep::study_name(study)).collect::<Result<Vec<_>, _>>()?;
+    let rows = sweep::block_on(async {
+        let mut queue = sweep::open_to_read(db.clone()).await?;
         let mut all = Vec::new();
         for name in &names {
-            all.extend(rows::read(&mut queue, name).await?);
+            all.extend(sweep::read_rows(&mut queue, name).await?);
         }
         queue.close().await?;
-        Ok(all)
+        Ok::<_, CliError>(all)
     })?;
     let title = names.join(", ");
-    let comparison = pareto::compare(&rows).map_err(|error| CliError::Plan(format!("{title}: {error}")))?;
+    let comparison =
+        pareto::compare(&rows).map_err(|error| CliError::Refused(format!("{title}: {error}")))?;
     print(&pareto::markdown(&comparison))?;
     let folder = args.out.of(&names[0]);
     pareto::write(&comparison, &folder, &title)?;
-    tell(format_args!("comparison written to {}", folder.display()));
+    log(format_args!("comparison written to {}", folder.display()));
     Ok(exit::SUCCESS)
 }

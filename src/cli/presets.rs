@@ -1,4 +1,4 @@
-//! `tribosweep presets`: the named accuracies with their measured errors.
+//! `tribosweep presets`: the accuracy presets with their measured errors.
 
 use super::error::CliError;
 use super::output::print;
@@ -10,14 +10,14 @@ use std::fmt::Write;
 
 /// Arguments of `presets`.
 #[derive(Debug, clap::Args)]
-pub struct Args {
-    /// Print settings and everything that was measured as JSON.
+pub(crate) struct Args {
+    /// Print the settings and all measurements as JSON.
     #[arg(long)]
     json: bool,
 }
 
 /// Prints the presets.
-pub fn run(args: &Args) -> Result<u8, CliError> {
+pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
     let evidence = Evidence::measured();
     let text = if args.json {
         format!("{:#}\n", json!({ "presets": Preset::ALL.map(settings), "evidence": evidence }))
@@ -28,7 +28,7 @@ pub fn run(args: &Args) -> Result<u8, CliError> {
     Ok(exit::SUCCESS)
 }
 
-/// The settings of a preset, with the mesh that it gives the reference scene.
+/// The settings of a preset, with its mesh for the reference scene.
 fn settings(preset: Preset) -> Value {
     let scene = Scene::default();
     json!({
@@ -55,7 +55,7 @@ fn as_text(evidence: &Evidence) -> String {
             preset.tolerance(),
             preset.drift_tolerance(),
         );
-        // A preset without evidence is shown as that; a test keeps it from being shipped.
+        // A test ensures that every shipped preset has evidence.
         let _ = match evidence.of(preset) {
             Some(measured) => writeln!(
                 text,

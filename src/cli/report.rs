@@ -1,33 +1,33 @@
-//! `tribosweep report`: a study's page, tables and figures, once or again and again.
+//! `tribosweep report`: the page, tables and figures of a study, once or whenever the study changes.
 
 use super::error::CliError;
-use super::output::{block_on, print, tell};
-use super::work::listen;
-use super::{origin, rows};
+use super::output::{log, print};
+use super::signals::raise_on_signal;
 use crate::exit;
-use crate::queue::{Counts, Location, Queue, Scope};
-use crate::report::{self, Report};
+use crate::queue::{Location, Queue};
+use crate::report;
+use crate::sweep::{self, Revision};
 use crate::worker::Interrupt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The study's name or file.
     study: String,
     #[command(flatten)]
     out: OutFolder,
-    /// Look every so many seconds whether the study has changed, and write the report anew, until nothing is pending or
-    /// running; until then the page loads itself anew.
+    /// Check every so many seconds whether the study has changed, and then write the report again, until no job is
+    /// pending or running. Until then an open page reloads itself.
     #[arg(long, value_name = "SECONDS", num_args = 0..=1, default_missing_value = "5",
           value_parser = clap::value_parser!(u32).range(1..=86_400))]
     watch: Option<u32>,
 }
 
-/// Where a report goes.
+/// The folder of a report.
 #[derive(Debug, clap::Args)]
-pub struct OutFolder {
+pub(crate) struct OutFolder {
     /// Folder for the report; default: reports/STUDY.
     #[arg(long = "out", value_name = "DIR")]
     folder: Option<PathBuf>,
@@ -35,20 +35,20 @@ pub struct OutFolder {
 
 impl OutFolder {
     /// The folder for the study called `name`.
-    pub fn of(&self, name: &str) -> PathBuf {
+    pub(crate) fn of(&self, name: &str) -> PathBuf {
         self.folder.clone().unwrap_or_else(|| Path::new("reports").join(name))
     }
 }
 
 /// Writes the report and prints the path of its page.
-pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let name = rows::study_name(&args.study)?;
-    block_on(async {
-        let mut queue = rows::open(db).await?;
+pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
+    let name = sweep::study_name(&args.study)?;
+    sweep::block_on(async {
+        let mut queue = sweep::open_to_read(db.clone()).await?;
         if let Some(interval_s) = args.watch {
             watch(&mut queue, &name, &args.out, interval_s).await?;
         } else {
-            write(&mut queue, &name, &args.out, None).await?;
+            read_and_write(&mut queue, &name, &args.out, None).await?;
             print_page(&name, &args.out)?;
         }
         queue.close().await?;
@@ -60,70 +60,45 @@ fn print_page(name: &str, out: &OutFolder) -> Result<(), CliError> {
     print(&format!("{}\n", out.of(name).join("report.html").display()))
 }
 
-/// Reads a study and writes its report.
-async fn write(
+async fn read_and_write(
     queue: &mut Queue,
     name: &str,
     out: &OutFolder,
     refresh_s: Option<u32>,
 ) -> Result<(), CliError> {
-    let rows = rows::read(queue, name).await?;
-    write_rows(queue, &rows, name, out, refresh_s).await
+    let rows = sweep::read_rows(queue, name).await?;
+    write(queue, &rows, name, out, refresh_s).await
 }
 
-/// Writes the report of a study's rows.
-pub async fn write_rows(
+/// Writes the report of a study's rows and logs where it is.
+pub(crate) async fn write(
     queue: &mut Queue,
     rows: &[report::JobRow],
     name: &str,
     out: &OutFolder,
     refresh_s: Option<u32>,
 ) -> Result<(), CliError> {
-    let origin = origin::read(queue, name).await?;
     let folder = out.of(name);
-    let written_ms = queue.now_ms().await?;
-    let report = Report { title: name, rows, provenance: origin.as_ref(), written_ms, refresh_s };
-    report::write(&report, &folder)?;
-    tell(format_args!("report written to {}", folder.display()));
+    sweep::write_refreshing_report(queue, name, rows, &folder, refresh_s).await?;
+    log(format_args!("report written to {}", folder.display()));
     Ok(())
 }
 
-/// What is looked at to see whether a study has changed: reading its rows takes far longer.
-#[derive(PartialEq)]
-struct Seen {
-    counts: Counts,
-    starts: u64,
-    submitted_ms: Option<i64>,
-}
-
-impl Seen {
-    async fn now(queue: &mut Queue, name: &str) -> Result<Self, CliError> {
-        Ok(Self {
-            counts: queue.counts(&Scope::Study(name.to_owned())).await?,
-            starts: queue.starts(name).await?,
-            submitted_ms: queue.study(name).await?.map(|study| study.submitted_ms),
-        })
-    }
-
-    fn is_over(&self) -> bool {
-        self.counts.pending + self.counts.running == 0
-    }
-}
-
-/// How long an interruption may go unnoticed.
+/// The longest time between a signal and the reaction to it.
 const TICK: Duration = Duration::from_millis(100);
 
-/// Writes the report whenever the study has changed, until it is finished or Ctrl-C.
+/// Writes the report whenever the study has changed, until the study is finished or a signal asks to stop.
 async fn watch(queue: &mut Queue, name: &str, out: &OutFolder, interval_s: u32) -> Result<(), CliError> {
     let interrupt = Interrupt::default();
-    let listener = tokio::spawn(listen(interrupt.clone(), "the report is not going to be written any more"));
-    let mut last: Option<Seen> = None;
+    let listener =
+        tokio::spawn(raise_on_signal(interrupt.clone(), "the report will not be updated any more"));
+    let mut last: Option<Revision> = None;
     loop {
-        // Before the rows: what changes while they are read is seen the next time.
-        let seen = Seen::now(queue, name).await?;
-        let is_last = seen.is_over() || interrupt.is_raised();
-        if is_last || last.as_ref() != Some(&seen) {
-            write(queue, name, out, Some(interval_s).filter(|_| !is_last)).await?;
+        // The revision is read before the rows: a change in between leads to another report.
+        let revision = Revision::read(queue, name).await?;
+        let is_last = revision.is_finished() || interrupt.is_raised();
+        if is_last || last.as_ref() != Some(&revision) {
+            read_and_write(queue, name, out, Some(interval_s).filter(|_| !is_last)).await?;
         }
         if last.is_none() {
             print_page(name, out)?;
@@ -131,8 +106,8 @@ async fn watch(queue: &mut Queue, name: &str, out: &OutFolder, interval_s: u32) 
         if is_last {
             break;
         }
-        last = Some(seen);
-        // No future of the queue is dropped half-way: nothing but this wait ends early.
+        last = Some(revision);
+        // Only this wait ends early: a future of the queue must not be dropped before it is complete.
         let mut left = Duration::from_secs(interval_s.into());
         while !left.is_zero() && !interrupt.is_raised() {
             tokio::time::sleep(left.min(TICK)).await;
@@ -143,9 +118,8 @@ async fn watch(queue: &mut Queue, name: &str, out: &OutFolder, interval_s: u32) 
     Ok(())
 }
 
-/// Creates the folder of a report, so that one that cannot be written is noticed before the work.
-pub fn prepare(name: &str, out: &OutFolder) -> Result<(), CliError> {
+/// Creates the folder of a report, so that an error is noticed before the work.
+pub(crate) fn create_folder(name: &str, out: &OutFolder) -> Result<(), CliError> {
     let folder = out.of(name);
-    std::fs::create_dir_all(&folder)
-        .map_err(|source| CliError::File { path: folder.display().to_string(), source })
+    std::fs::create_dir_all(&folder).map_err(|source| CliError::file(&folder, source))
 }

@@ -1,30 +1,30 @@
 //! `tribosweep rm`: remove a study.
 
 use super::error::CliError;
-use super::output::{block_on, tell};
-use super::rows;
+use super::output::log;
 use crate::exit;
 use crate::queue::Location;
+use crate::sweep;
 
 /// Arguments of `rm`.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The study's name or file.
     study: String,
 }
 
 /// Removes the study.
-pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let name = rows::study_name(&args.study)?;
-    let removed = block_on(async {
-        let mut queue = rows::open_to_change(db).await?;
+pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
+    let name = sweep::study_name(&args.study)?;
+    let removed = sweep::block_on(async {
+        let mut queue = sweep::open_to_change(db.clone()).await?;
         let removed = queue.remove(&name).await?;
         queue.close().await?;
-        Ok(removed)
+        Ok::<_, CliError>(removed)
     })?;
-    tell(format_args!(
-        "{name}: removed, {} rows; {} pending jobs that nobody else asks for cancelled; results stay until \
-         `tribosweep gc`",
+    log(format_args!(
+        "{name}: removed with {} rows; {} pending jobs that no other study needs are cancelled; results stay in the \
+         database until `tribosweep gc`",
         removed.rows, removed.cancelled
     ));
     Ok(exit::SUCCESS)

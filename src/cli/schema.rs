@@ -6,10 +6,10 @@ use crate::{exit, study};
 
 /// Arguments of `schema`.
 #[derive(Debug, clap::Args)]
-pub struct Args {}
+pub(crate) struct Args {}
 
 /// Prints the schema.
-pub fn run(_: &Args) -> Result<u8, CliError> {
+pub(crate) fn run(_: &Args) -> Result<u8, CliError> {
     print(&format!("{:#}\n", study::schema()))?;
     Ok(exit::SUCCESS)
 }

@@ -1,75 +1,58 @@
-//! `tribosweep show`: all that is known of a job, and what its result was made with.
+//! `tribosweep show`: one job with its state and the provenance of its result.
 
 use super::error::CliError;
-use super::output::{block_on, print};
-use super::rows;
+use super::output::print;
 use crate::exit;
-use crate::queue::{JobDetails, Location, StudyDocument};
+use crate::queue::{Location, StudyDocument};
+use crate::sweep::{self, StoredJob};
 use serde_json::{Value, json};
 
 /// Arguments of `show`.
 #[derive(Debug, clap::Args)]
-pub struct Args {
-    /// The job's key, as in the export, or the first characters of it.
+pub(crate) struct Args {
+    /// The job's key as in the export, or its first characters.
     job: String,
 }
 
 /// Prints the job as JSON.
-pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let (jobs, studies) = block_on(async {
-        let mut queue = rows::open(db).await?;
-        // Two are enough to know that there are several.
-        let jobs = queue.jobs(&args.job, 2).await?;
-        let mut studies = Vec::new();
-        for name in jobs.first().map_or(&[][..], |job| &job.studies) {
-            // It may have been removed in between.
-            studies.extend(queue.study(name).await?);
-        }
+pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
+    let job = sweep::block_on(async {
+        let mut queue = sweep::open_to_read(db.clone()).await?;
+        let job = sweep::find_job(&mut queue, &args.job).await?;
         queue.close().await?;
-        Ok((jobs, studies))
+        Ok::<_, CliError>(job)
     })?;
-    let job = match jobs.as_slice() {
-        [job] => job,
-        // A key may be the beginning of another.
-        [job, _] if job.key == args.job => job,
-        [] => {
-            let job = &args.job;
-            return Err(CliError::Plan(format!(
-                "no job's key begins with `{job}`; `tribosweep export` lists keys"
-            )));
-        }
-        [one, other, ..] => {
-            return Err(CliError::Plan(format!(
-                "several jobs begin with `{}`: {}, {}, …; give more of the key",
-                args.job, one.key, other.key
-            )));
-        }
-    };
-    print(&format!("{:#}\n", describe(job, &studies)))?;
+    print(&format!("{:#}\n", as_json(&job)))?;
     Ok(exit::SUCCESS)
 }
 
-fn describe(job: &JobDetails, studies: &[StudyDocument]) -> Value {
-    let study = |study: &StudyDocument| json!({ "name": study.name, "submitted_ms": study.submitted_ms, "document": as_json(&study.document) });
+fn as_json(StoredJob { details, studies }: &StoredJob) -> Value {
+    let study = |study: &StudyDocument| {
+        json!({
+            "name": study.name,
+            "submitted_ms": study.submitted_ms,
+            "document": parsed(&study.document),
+        })
+    };
     json!({
-        "job": job.key,
+        "job": details.key,
         "studies": studies.iter().map(study).collect::<Vec<_>>(),
-        "state": job.state.as_str(),
-        "attempt": job.attempt,
-        "crashes": job.crashes,
-        "priority": job.priority,
-        "cost": job.cost,
-        "batch": job.batch,
-        "note": job.note,
-        "error": job.error,
-        "wall_s": job.wall_s,
-        "started_ms": job.started_ms,
-        "finished_ms": job.finished_ms,
-        "provenance": job.provenance.as_deref().map(as_json),
+        "state": details.state.as_str(),
+        "attempt": details.attempt,
+        "crashes": details.crashes,
+        "priority": details.priority,
+        "cost": details.cost,
+        "batch": details.batch,
+        "note": details.note,
+        "error": details.error,
+        "wall_s": details.wall_s,
+        "started_ms": details.started_ms,
+        "finished_ms": details.finished_ms,
+        "provenance": details.provenance.as_deref().map(parsed),
     })
 }
 
-/// What is not JSON, or what another version wrote in another form, is shown as it is.
-fn as_json(text: &str) -> Value {
+/// A text as JSON, or as a string if it is not JSON.
+fn parsed(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|_| Value::from(text))
 }

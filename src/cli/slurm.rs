@@ -4,10 +4,10 @@ mod scripts;
 mod settings;
 
 use super::error::CliError;
-use super::output::{print, tell};
-use super::planning::Plan;
+use super::output::{log, print};
 use crate::exit;
 use crate::queue::Location;
+use crate::sweep::Plan;
 use scripts::Scripts;
 use settings::Database;
 use std::path::{Path, PathBuf};
@@ -15,7 +15,7 @@ use std::process::Command;
 
 /// Arguments of `slurm`.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The study file.
     study: PathBuf,
     /// Number of workers, each of which is a task of the job array.
@@ -28,7 +28,7 @@ pub struct Args {
     /// Partition (or several, with commas between them); default: the site's.
     #[arg(long, value_name = "P", value_parser = settings::names)]
     partition: Option<String>,
-    /// Time limit of a task, after which it goes on in another time slot (30, 4:00:00, 1-12); default: the partition's.
+    /// Time limit of a task, which then continues in another time slot (30, 4:00:00, 1-12); default: the partition's.
     #[arg(long, value_name = "T", value_parser = settings::time_limit)]
     time: Option<String>,
     /// Account that the time is charged to; default: yours.
@@ -40,21 +40,21 @@ pub struct Args {
     /// Folder for scripts, logs and results, which all nodes must see; default: STUDY.slurm.
     #[arg(long = "out", value_name = "FOLDER")]
     folder: Option<PathBuf>,
-    /// Submit the job array at once, by running the folder's submit.sh.
+    /// Also submit the job array, by running the folder's submit.sh.
     #[arg(long)]
     submit: bool,
 }
 
-/// Writes the scripts, and submits them if that is wanted.
-pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
+/// Writes the scripts, and submits them with `--submit`.
+pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let database = Database::of(db)?;
     let plan = Plan::load(&args.study)?;
-    let name = plan.study.name();
-    if args.workers as usize > plan.jobs.len() {
+    let name = plan.name();
+    if args.workers as usize > plan.jobs().len() {
         return Err(CliError::Usage(format!(
-            "{} workers are more than the study has jobs; --workers {} is the most that have any",
+            "the study has fewer jobs than {} workers; give at most --workers {}",
             args.workers,
-            plan.jobs.len()
+            plan.jobs().len()
         )));
     }
     let folder = args.folder.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.slurm")));
@@ -63,19 +63,19 @@ pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     if args.submit {
         return submit(&scripts.submit());
     }
-    tell(format_args!("scripts written to {}; submit them with", folder.display()));
+    log(format_args!("scripts written to {}; submit them with", folder.display()));
     print(&format!("{}\n", folder.join(scripts::SUBMIT).display()))?;
     Ok(exit::SUCCESS)
 }
 
-/// Runs the script, which shows what it does and leaves nothing half done.
+/// Runs the script, which prints what it does and submits everything or nothing.
 fn submit(script: &Path) -> Result<u8, CliError> {
-    let failed = |source| CliError::File { path: script.display().to_string(), source };
+    let failed = |source| CliError::file(script, source);
     let status = Command::new("bash").arg(script).status().map_err(failed)?;
     if status.success() {
         return Ok(exit::SUCCESS);
     }
-    Err(CliError::Plan(format!(
+    Err(CliError::Refused(format!(
         "{} ended with {}; the lines above say why",
         script.display(),
         status.code().map_or_else(|| status.to_string(), |code| format!("code {code}"))

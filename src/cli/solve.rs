@@ -2,25 +2,24 @@
 
 use super::error::CliError;
 use super::foreground;
-use super::output::{print, tell, write_file};
-use crate::analysis::sample::{OBSERVED_NAMES, Sample};
+use super::output::{log, print, write_file};
 use crate::analysis::{self, ElasticDisk, JobObserver, JobRecord, Moment};
 use crate::exit;
 use crate::study::{Preset, Study};
+use crate::sweep::History;
 use crate::worker::Interrupt;
-use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::path::PathBuf;
 
 /// Arguments of `solve`.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The study file that gives the scene.
     study: PathBuf,
-    /// Fix a parameter of the grid, or change any other one; may be repeated.
+    /// Set a parameter of the grid or any other parameter; may be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = foreground::parse_setting)]
     settings: Vec<(String, String)>,
-    /// Take mesh, time step and detection from a preset instead of the study; `--set` goes before it.
+    /// Take mesh, time step and detection from a preset instead of the study; `--set` overrides the preset.
     #[arg(long, value_name = "NAME", value_parser = foreground::parse_preset)]
     preset: Option<Preset>,
     /// Write the time history as CSV: load, total normal and tangential forces (tangential_n at the clamp,
@@ -36,28 +35,29 @@ pub struct Args {
     json: bool,
 }
 
-/// Solves the job and prints what was found; nothing is stored.
-pub fn run(args: &Args) -> Result<u8, CliError> {
+/// Solves the job and prints its figures; nothing is stored.
+pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
     let spec = Study::load(&args.study)?.single_with_preset(args.preset, &args.settings)?;
     let interrupt = foreground::interrupt();
     let mut recorder =
-        Recorder { interrupt, history: args.history.as_ref().map(|_| History::new(args.every.get())) };
+        Recorder { interrupt, history: args.history.as_ref().map(|_| History::new(args.every)) };
     let solved = analysis::solve(&spec, &mut recorder);
-    // The history of a run that failed is what explains it, so it is written either way.
-    if let (Some(path), Some(history)) = (&args.history, &recorder.history) {
-        write_file(path, history.text.as_bytes())?;
-        tell(format_args!("history written to {}", path.display()));
+    // The history is also written if the run failed: it explains the failure.
+    if let (Some(path), Some(history)) = (&args.history, recorder.history) {
+        let text = history.into_csv().map_err(|source| CliError::file(path, source))?;
+        write_file(path, &text)?;
+        log(format_args!("history written to {}", path.display()));
     }
     match solved {
         Ok(record) => {
             print(&if args.json { as_json(&record)? } else { as_text(&record) })?;
             Ok(exit::SUCCESS)
         }
-        Err(error) => foreground::ended(error),
+        Err(error) => foreground::exit_code(error),
     }
 }
 
-/// Collects the history and hears the request to stop.
+/// Collects the history and checks for a request to stop.
 struct Recorder {
     interrupt: Interrupt,
     history: Option<History>,
@@ -75,71 +75,12 @@ impl JobObserver for Recorder {
     }
 }
 
-/// The history as CSV text.
-struct History {
-    text: String,
-    every: u64,
-    steps: u64,
-}
-
-impl History {
-    fn new(every: u64) -> Self {
-        let mut text = String::from(
-            "time_s,load_n,normal_n,tangential_n,contact_tangential_n,mu_eq,stick_nodes,slip_nodes,separated_nodes",
-        );
-        for name in OBSERVED_NAMES {
-            for column in
-                ["ux_m", "uy_m", "uz_m", "y_velocity_m_s", "sigma_n_pa", "slip_speed_m_s", "mu_eq", "state"]
-            {
-                let _ = write!(text, ",{name}_{column}");
-            }
-        }
-        text.push('\n');
-        Self { text, every, steps: 0 }
-    }
-
-    fn add(&mut self, sample: &Sample) {
-        self.steps += 1;
-        if !(self.steps - 1).is_multiple_of(self.every) {
-            return;
-        }
-        let _ = write!(
-            self.text,
-            "{:e},{},{},{},{},{},{},{},{}",
-            sample.time_s,
-            sample.load_n,
-            sample.normal_n,
-            sample.clamp_tangential_n,
-            sample.contact_tangential_n,
-            sample.equivalent_friction(),
-            sample.stick,
-            sample.slip,
-            sample.separated
-        );
-        for node in &sample.nodes {
-            let [x, y, z] = node.u_m;
-            let _ = write!(
-                self.text,
-                ",{x:e},{y:e},{z:e},{},{},{},{},{}",
-                node.y_velocity_m_s,
-                node.sigma_n_pa,
-                node.slip_speed_m_s,
-                node.equivalent_friction(),
-                node.state.name()
-            );
-        }
-        self.text.push('\n');
-    }
-}
-
 fn as_json(record: &JobRecord) -> Result<String, CliError> {
-    serde_json::to_string_pretty(record)
-        .map(|text| text + "\n")
-        .map_err(|error| CliError::Unreadable(error.to_string()))
+    Ok(serde_json::to_string_pretty(record)? + "\n")
 }
 
-/// The figures that people look for first.
-pub fn as_text(record: &JobRecord) -> String {
+/// The most important figures of a record.
+pub(crate) fn as_text(record: &JobRecord) -> String {
     let frequency =
         record.frequency_hz.map_or_else(|| "none".to_owned(), |frequency| format!("{frequency:.1} Hz"));
     let growth = record
@@ -178,7 +119,7 @@ pub fn as_text(record: &JobRecord) -> String {
     )
 }
 
-/// What the mesh generator made of the elastic disk, and how its contact solves went.
+/// The mesh of the elastic disk and the convergence of its contact solves.
 fn disk_lines(disk: &ElasticDisk) -> String {
     let [columns, rows, layers] = disk.elements;
     let [along, across, down] = disk.track_element_m.map(|edge| edge * 1e3);

@@ -1,20 +1,21 @@
-//! `tribosweep submit`: plan a study's jobs.
+//! `tribosweep submit`: plan the jobs of a study and store them.
 
 use super::error::CliError;
-use super::output::{block_on, tell};
-use super::planning::Plan;
+use super::output::log;
 use crate::exit;
-use crate::queue::{Clock, Location, Queue, Shard};
+use crate::queue::{Location, Queue, Shard};
+use crate::sweep::{self, Plan};
 use std::path::PathBuf;
 
 /// Arguments of `submit`.
 #[derive(Debug, clap::Args)]
-pub struct Args {
+pub(crate) struct Args {
     /// The study file.
     study: PathBuf,
     #[command(flatten)]
     priority: Priority,
-    /// Submit only part I of N equal ones (1/4, 2/4 …), for databases that share a study; `merge` brings them together.
+    /// Submit only shard I of N equal ones (1/4, 2/4 …), for a study that is split between several databases; `merge`
+    /// combines them.
     #[arg(long, value_name = "I/N", value_parser = parse_shard)]
     shard: Option<Shard>,
 }
@@ -30,36 +31,37 @@ fn parse_shard(text: &str) -> Result<Shard, String> {
     }
 }
 
-/// Which jobs go first.
+/// The order of jobs.
 #[derive(Debug, clap::Args)]
-pub struct Priority {
-    /// Jobs of a higher priority go first, whatever study they belong to; default: 0, or what they have.
+pub(crate) struct Priority {
+    /// Run jobs of a higher priority before others, of whatever study. The default is 0; jobs that exist keep theirs.
     #[arg(long = "priority", value_name = "N", allow_negative_numbers = true)]
     value: Option<i32>,
 }
 
-/// Plans the study.
-pub fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
+/// Submits the study.
+pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
+    // The study is read before the database is opened: an invalid study creates no database.
     let plan = Plan::load(&args.study)?;
-    block_on(async {
-        let mut queue = Queue::open(db.clone(), Clock::OfDatabase).await?;
+    sweep::block_on(async {
+        let mut queue = sweep::open(db.clone()).await?;
         submit(&plan, &args.priority, args.shard.unwrap_or(Shard::WHOLE), &mut queue).await?;
         queue.close().await?;
         Ok(exit::SUCCESS)
     })
 }
 
-/// Submits a study that was read before the database was opened: a bad one leaves no database behind.
-pub async fn submit(
+/// Submits a study and logs what has changed.
+pub(crate) async fn submit(
     plan: &Plan,
     priority: &Priority,
     shard: Shard,
     queue: &mut Queue,
 ) -> Result<(), CliError> {
-    let submitted = queue.submit_shard(&plan.for_queue(priority.value.map(i64::from))?, shard).await?;
-    tell(format_args!(
+    let submitted = plan.submit_shard(queue, shard, priority.value.map(i64::from)).await?;
+    log(format_args!(
         "{}: {} jobs, {} new, {} already done{}{}",
-        plan.study.name(),
+        plan.name(),
         submitted.jobs,
         submitted.added,
         submitted.already_done,

@@ -1,35 +1,37 @@
-//! Who works: for `status`.
+//! The workers of a database as text and JSON, for `status`.
 
 use super::outlook::wrapped;
 use crate::queue::{WorkerPresence, WorkerStatus};
 use serde_json::{Value, json};
 use std::time::Duration;
 
-/// So many of those that were lost are listed, the last ones.
-const LOST: usize = 5;
+/// If more workers were lost, only their number is shown.
+const MOST_LOST_LISTED: usize = 5;
 
-/// The workers in lines of at most `width` characters; nothing if there are none.
-pub fn in_words(workers: &[WorkerStatus], width: usize) -> String {
-    let (lost, there): (Vec<_>, Vec<_>) =
+/// The workers in lines of at most `width` characters; empty without workers.
+pub(crate) fn as_text(workers: &[WorkerStatus], width: usize) -> String {
+    let (lost, present): (Vec<_>, Vec<_>) =
         workers.iter().partition(|worker| worker.presence == WorkerPresence::Gone);
-    let mut lines: Vec<String> = there.iter().map(|worker| at_work(worker)).collect();
-    if there.len() > 1 {
-        let per_s: f64 = there.iter().filter_map(|worker| worker.jobs_per_s).sum();
-        let threads: u64 = there.iter().map(|worker| worker.threads).sum();
-        lines.insert(0, format!("{} workers with {threads} threads, {}", there.len(), rate(per_s)));
+    let mut lines: Vec<String> = present.iter().map(|worker| present_line(worker)).collect();
+    if present.len() > 1 {
+        let per_s: f64 = present.iter().filter_map(|worker| worker.jobs_per_s).sum();
+        let threads: u64 = present.iter().map(|worker| worker.threads).sum();
+        lines.insert(0, format!("{} workers with {threads} threads, {}", present.len(), rate(per_s)));
     }
     let taken_back: u64 = lost.iter().map(|worker| worker.taken_back).sum();
-    if lost.len() > LOST {
+    if lost.len() > MOST_LOST_LISTED {
         lines.push(format!("{} workers were lost, and {taken_back} jobs taken back from them", lost.len()));
     } else {
         lines.extend(
-            lost.iter().filter(|worker| worker.taken_back + worker.running > 0).map(|worker| gone(worker)),
+            lost.iter()
+                .filter(|worker| worker.taken_back + worker.running > 0)
+                .map(|worker| lost_line(worker)),
         );
     }
     lines.iter().flat_map(|line| wrapped(line, width)).fold(String::new(), |text, line| text + &line + "\n")
 }
 
-fn at_work(worker: &WorkerStatus) -> String {
+fn present_line(worker: &WorkerStatus) -> String {
     let WorkerStatus { host, pid, threads, running, finished, taken_back, silent_ms, .. } = worker;
     let doing = match (worker.presence, running) {
         (WorkerPresence::Stopping, _) => "stopping".to_owned(),
@@ -45,7 +47,7 @@ fn at_work(worker: &WorkerStatus) -> String {
     )
 }
 
-fn gone(worker: &WorkerStatus) -> String {
+fn lost_line(worker: &WorkerStatus) -> String {
     let WorkerStatus { host, pid, running, taken_back, silent_ms, .. } = worker;
     let waiting = if *running > 0 { format!(", {running} still to be taken back") } else { String::new() };
     format!(
@@ -54,7 +56,7 @@ fn gone(worker: &WorkerStatus) -> String {
     )
 }
 
-/// Jobs in the unit in which there are some.
+/// Jobs per second, minute or hour: the shortest of these in which at least one job ends.
 fn rate(per_s: f64) -> String {
     match per_s {
         0.0 => "none lately".to_owned(),
@@ -64,15 +66,15 @@ fn rate(per_s: f64) -> String {
     }
 }
 
-/// To the second, and to the minute if it is long.
+/// A duration to the second, from ten minutes on to the minute.
 fn ago(milliseconds: i64) -> String {
     let seconds = milliseconds.unsigned_abs() / 1000;
     let seconds = if seconds < 600 { seconds } else { seconds / 60 * 60 };
     humantime::format_duration(Duration::from_secs(seconds)).to_string()
 }
 
-/// The same for programs.
-pub fn as_json(workers: &[WorkerStatus]) -> Value {
+/// The workers for programs.
+pub(crate) fn as_json(workers: &[WorkerStatus]) -> Value {
     let worker = |worker: &WorkerStatus| {
         json!({
             "host": worker.host,
@@ -113,32 +115,33 @@ mod tests {
         }
     }
 
-    /// Protects: one line a worker says where it is and how fast; several are summed up first.
+    /// Protects: each worker has a line with its host and its rate; several workers have a line with their sum first.
     #[test]
-    fn workers_are_told_by_host_and_rate() {
+    fn workers_are_listed_with_host_and_rate() {
         let one = worker(WorkerPresence::Working, 0);
         let line = "worker 4242 on node7: 8 threads, 12 running, 340 done, 15.0 jobs/min, seen 3s ago\n";
-        assert_eq!(in_words(std::slice::from_ref(&one), 100), line);
-        let two = in_words(&[one.clone(), one], 100);
+        assert_eq!(as_text(std::slice::from_ref(&one), 100), line);
+        let two = as_text(&[one.clone(), one], 100);
         assert_eq!(two, format!("2 workers with 16 threads, 30.0 jobs/min\n{line}{line}"));
-        assert_eq!(in_words(&[], 100), "");
+        assert_eq!(as_text(&[], 100), "");
     }
 
-    /// Protects: jobs taken back are told with the worker they were taken from; many lost workers do not fill the screen.
+    /// Protects: the line of a lost worker has the number of jobs taken back from it; many lost workers do not fill the
+    /// screen.
     #[test]
-    fn the_lost_are_told() {
+    fn lost_workers_are_listed() {
         let lost = worker(WorkerPresence::Gone, 5);
-        let text = in_words(std::slice::from_ref(&lost), 100);
+        let text = as_text(std::slice::from_ref(&lost), 100);
         assert_eq!(text, "worker 4242 on node7: lost 3s ago, 5 jobs taken back from it\n");
-        let many = in_words(&vec![lost; 40], 100);
+        let many = as_text(&vec![lost; 40], 100);
         assert_eq!(many, "40 workers were lost, and 200 jobs taken back from them\n");
     }
 
     /// Protects: no line is wider than the terminal.
     #[test]
-    fn narrow_terminals_are_kept_to() {
+    fn lines_fit_narrow_terminals() {
         for width in [20, 40, 80] {
-            let text = in_words(&[worker(WorkerPresence::Stopping, 2)], width);
+            let text = as_text(&[worker(WorkerPresence::Stopping, 2)], width);
             assert!(text.lines().all(|line| line.chars().count() <= width), "{text}");
         }
     }

@@ -4,10 +4,10 @@ use serde_json::{Value, json};
 
 use crate::support::{Folder, rows, small, stderr, stdout};
 
-/// Protects: a study over numerics becomes a table on standard output and files in the report's folder, for a study
-/// by name or by file and for several at once.
+/// Protects: `pareto` prints a table and writes files into the report's folder, for a study by name or by file and for
+/// several studies at once.
 #[test]
-fn a_study_of_errors_becomes_a_comparison() {
+fn pareto_prints_a_table_and_writes_files() {
     let grid = json!({ "elements": [[3, 4, 3], [6, 8, 6]], "safety_factor": [0.8, 0.4] });
     let folder = Folder::with("mine", &small(&grid));
     folder.ok("run mine.json");
@@ -34,16 +34,16 @@ fn a_study_of_errors_becomes_a_comparison() {
     assert_eq!(lines.iter().filter(|line| line["reference"] == "true").count(), 1);
     assert_eq!(lines[3]["reference"], "true", "the finest mesh and step");
 
-    // A second study of the same scene joins the first, elsewhere.
+    // A second study of the same scene is compared with the first, in another folder.
     folder.add("more", &small(&json!({ "elements": [[3, 4, 3]], "safety_factor": [0.6, 0.4] })));
     folder.ok("run more.json");
     folder.ok("pareto mine more --out both");
     assert_eq!(rows(&folder.read("both/pareto.csv")).len(), 5);
 }
 
-/// Protects: what cannot be compared is refused as bad input, with what would be right.
+/// Protects: a study without comparable jobs is refused with exit code 2 and advice.
 #[test]
-fn nothing_to_compare_is_bad_input() {
+fn nothing_to_compare_is_refused() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
     folder.ok("submit mine.json");
     let refused = |arguments: &str| {
@@ -75,7 +75,8 @@ fn presets_are_shown_with_their_errors() {
     }
 }
 
-/// Protects: `solve --preset` is the job of a study with that preset, and a wrong name is refused with the right ones.
+/// Protects: `solve --preset` solves the job of a study with that preset, and an unknown name is refused with a list of the
+/// presets.
 #[test]
 fn one_job_with_a_preset() {
     let study = json!({ "scene": { "clamp": { "width_m": 0.002 } }, "run": { "limit_s": 0.002 },

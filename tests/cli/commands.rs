@@ -1,4 +1,4 @@
-//! Commands that show, check and write.
+//! Commands that show, check and write: status, report, export, validate, schema, completions.
 
 use std::path::Path;
 
@@ -12,7 +12,7 @@ fn status_counts_jobs() {
     let folder = Folder::with("first", &small(&json!({ "mu": [0.2, 0.4] })));
     folder.add("second", &small(&json!({ "omega_rpm": [20] })));
     folder.ok("submit first.json");
-    // No terminal, no colours.
+    // There are no colours without a terminal.
     assert_eq!(
         folder.ok("status first"),
         "first: 2 jobs: 0 done, 0 failed, 0 running, 2 pending\n\
@@ -37,30 +37,30 @@ fn status_counts_jobs() {
     assert_eq!(one["study"], "first");
     assert_eq!(one["jobs"], jobs(2, 2, 0));
     assert_eq!(one["failures"], json!([]));
-    assert_eq!(one["outlook"], json!(null), "nothing is left to wait for");
+    assert_eq!(one["outlook"], json!(null), "no job is left");
 }
 
-/// Protects: the time that is left is that of the workers that are there, and without one it is said that there is none;
-/// text and JSON have the same.
+/// Protects: the remaining time is estimated for the workers that are running, and the status says if none is. Text and
+/// JSON agree.
 #[test]
-fn status_looks_ahead() {
+fn status_estimates_the_remaining_time() {
     let folder = Folder::with("long", &long());
     let working = folder.start("run long.json --threads 1");
-    // Some jobs are evidence enough.
+    // An estimate needs some finished jobs.
     folder.wait_for("long", |jobs| jobs["done"] >= 4);
-    let look = || -> Value { serde_json::from_str(&folder.ok("status long --json")).unwrap() };
+    let read_status = || -> Value { serde_json::from_str(&folder.ok("status long --json")).unwrap() };
     let text = folder.ok("status long");
-    let status = look();
+    let status = read_status();
     assert_eq!((&status["outlook"]["workers"], &status["outlook"]["worker_threads"]), (&json!(1), &json!(1)));
     let remaining = &status["outlook"]["remaining_s"];
     let (low, high) = (remaining["low"].as_f64().unwrap(), remaining["high"].as_f64().unwrap());
     assert!(low >= 0.0 && low <= high && high > 0.0, "{status}");
     assert!(text.contains("█") && text.contains(" left with 1 thread\n"), "{text}");
-    assert!(!text.contains('\u{1b}'), "no terminal, no colours");
+    assert!(!text.contains('\u{1b}'), "there are no colours without a terminal");
 
     working.signal("KILL");
     working.end();
-    let status = look();
+    let status = read_status();
     assert_eq!((&status["outlook"]["workers"], &status["outlook"]["worker_threads"]), (&json!(0), &json!(0)));
     assert!(status["outlook"]["remaining_s"]["high"].as_f64().unwrap() > 0.0, "{status}");
     let text = folder.ok("status long");
@@ -69,10 +69,9 @@ fn status_looks_ahead() {
     assert!(text.contains(&format!(" {:.0} %", (100.0 * share).floor())), "{text}");
 }
 
-/// Protects: jobs that were stopped by their time limit are named as such, because their figures are
-/// averages of something else.
+/// Protects: the status names jobs that reached their time limit: their figures are not averages over limit cycles.
 #[test]
-fn status_tells_of_jobs_that_did_not_become_periodic() {
+fn status_names_jobs_that_did_not_become_periodic() {
     let mut study = small(&json!({ "mu": [0.4] }));
     study["run"]["limit_s"] = json!(0.002);
     let folder = Folder::with("short", &study);
@@ -93,7 +92,7 @@ fn status_tells_of_jobs_that_did_not_become_periodic() {
     );
 }
 
-/// Protects: a database without studies is no error, and says what to do.
+/// Protects: the status of a database without studies is not an error and says what to do.
 #[test]
 fn status_of_an_empty_database() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
@@ -104,8 +103,8 @@ fn status_of_an_empty_database() {
     assert_eq!(folder.ok("status --db empty.db --json"), "[]\n");
 }
 
-/// Protects: the flag names the database, else the variable, else the default; each is a database of its
-/// own.
+/// Protects: the database is that of the flag, otherwise that of the variable, otherwise the default. The three databases
+/// are independent.
 #[test]
 fn the_database_is_the_users_choice() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
@@ -125,7 +124,7 @@ fn the_database_is_the_users_choice() {
     }
 }
 
-/// Protects: a report goes where it is asked to go, and its page is named on standard output.
+/// Protects: a report is written into the requested folder, and the path of its page is printed.
 #[test]
 fn report_writes_a_folder() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2], "omega_rpm": [2, 7] })));
@@ -164,13 +163,13 @@ fn further_parameters_follow_the_header() {
     assert!(rows.iter().all(|row| row["omega_rpm"] == "7" && row["mu"] == "0.2"));
 }
 
-/// Protects: a good study is called valid with the size of its grid, and checking leaves no trace.
+/// Protects: `validate` prints the size of the grid of a valid study and writes no file.
 #[test]
-fn validate_only_looks() {
+fn validate_writes_no_file() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.3, 0.4], "omega_rpm": [2, 7] })));
-    let said = folder.ok("validate mine.json");
-    assert!(said.starts_with("mine.json: valid, 6 jobs ("), "{said}");
-    assert!(said.contains("mu 3") && said.contains("omega_rpm 2"), "{said}");
+    let printed = folder.ok("validate mine.json");
+    assert!(printed.starts_with("mine.json: valid, 6 jobs ("), "{printed}");
+    assert!(printed.contains("mu 3") && printed.contains("omega_rpm 2"), "{printed}");
     assert_eq!(folder.files(), ["mine.json"]);
 }
 

@@ -1,10 +1,10 @@
-//! A result depends on nothing but the job: not on threads, order or company.
+//! A result depends only on the job, not on the number of threads, the order, or the other jobs.
 
 use serde_json::{Value, json};
 
 use crate::support::{Folder, rows, small, without_wall_times};
 
-/// Protects: the export is the same byte for byte, wall times aside, on one thread and on several.
+/// Protects: except for wall times the export on several threads is the same as on one, byte for byte.
 #[test]
 fn threads_change_no_byte() {
     let export = |threads: usize| {
@@ -22,7 +22,7 @@ fn threads_change_no_byte() {
 
 /// Protects: a job's figures do not depend on which other jobs are in the study, nor in which order.
 #[test]
-fn company_changes_no_byte() {
+fn other_jobs_change_no_byte() {
     let lines = |grid: &Value| {
         let folder = Folder::with("mine", &small(grid));
         folder.ok("run mine.json");

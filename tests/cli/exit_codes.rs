@@ -1,11 +1,11 @@
-//! Exit codes: 1 when jobs failed, 2 for bad input or usage. (0 is everywhere, 3 with the interruptions.)
+//! Exit codes: 1 when jobs failed, 2 for bad input or usage. (Code 0 is in all files, code 3 in `interruption`.)
 
 use serde_json::{Value, json};
 use tribosweep::queue::{Clock, NewJob, NewStudy, Queue};
 
 use crate::support::{Folder, rows, small, stderr, stdout};
 
-/// The command must end with code 2, print no result and say each of `expected`.
+/// Asserts that the command ends with code 2, prints no result, and that its message contains each of `expected`.
 fn refuses(folder: &Folder, arguments: &str, expected: &[&str]) {
     let end = folder.command(arguments).assert().code(2);
     assert_eq!(stdout(&end), "", "{arguments}");
@@ -14,7 +14,7 @@ fn refuses(folder: &Folder, arguments: &str, expected: &[&str]) {
     }
 }
 
-/// A study that is refused by every command that reads one, which leaves nothing behind.
+/// Asserts that every command that reads a study refuses this one and writes no file.
 fn refuses_study(text: &str, expected: &[&str]) {
     let folder = Folder::new();
     folder.write("bad.json", text);
@@ -31,7 +31,7 @@ fn with(pointer: &str, value: Value) -> String {
     study.to_string()
 }
 
-/// Protects: a missing study file is named.
+/// Protects: the message names a missing study file.
 #[test]
 fn a_missing_file() {
     let folder = Folder::new();
@@ -41,13 +41,13 @@ fn a_missing_file() {
     assert_eq!(folder.files(), Vec::<String>::new());
 }
 
-/// Protects: broken JSON is located.
+/// Protects: the message has the position of invalid JSON.
 #[test]
 fn bad_json() {
     refuses_study("{\n  \"grid\": {\n", &["error: bad.json:3:1: not valid JSON"]);
 }
 
-/// Protects: a misspelt field is refused, not ignored.
+/// Protects: a misspelt field is refused and not ignored.
 #[test]
 fn an_unknown_field() {
     refuses_study(
@@ -67,15 +67,15 @@ fn values_that_are_not_physical() {
     refuses_study(&with("/grid/omega_rpm", json!([0])), &["scene.disk.omega_rpm = 0"]);
 }
 
-/// Protects: a grid without points is no sweep of nothing that succeeds.
+/// Protects: a grid without points is refused. A sweep without jobs must not succeed.
 #[test]
 fn an_empty_grid() {
     refuses_study("{ \"grid\": {} }", &["grid = {}: expected at least one parameter"]);
     refuses_study("{ \"grid\": { \"mu\": [] } }", &["grid.mu"]);
 }
 
-/// Protects: a clamp that the mesh cannot give is refused before the first job, with the widths it can,
-/// also when only one job of the grid cannot be had.
+/// Protects: a clamp whose edge is not on a node row is refused before the first job, with possible widths, even if only one
+/// job of the grid has it.
 #[test]
 fn a_clamp_off_the_mesh() {
     let clamp = with("/scene/clamp/width_m", json!(0.0025));
@@ -84,14 +84,13 @@ fn a_clamp_off_the_mesh() {
     refuses_study(&grid, &["scene.clamp.width_m = 0.006 m", "(at ", "clamp_width_m = 0.006"]);
 }
 
-/// Protects: a time step above the stability limit is refused before the first job, and the message holds
-/// both numbers.
+/// Protects: a time step above the stability limit is refused before the first job, and the message has both numbers.
 #[test]
 fn a_time_step_above_the_limit() {
     let study = with("/numerics", json!({ "time_step_s": 1e-5 }));
     refuses_study(&study, &["numerics.time_step_s = 1e-5 s is above the stability limit"]);
 
-    // The limit named is the one that is used: the default step is the safety factor times it.
+    // The default step is the safety factor times the limit in the message.
     let folder = Folder::new();
     folder.write("bad.json", &study);
     let refused = folder.command("solve bad.json").assert().code(2);
@@ -103,7 +102,7 @@ fn a_time_step_above_the_limit() {
     assert!((record["time_step_s"].as_f64().unwrap() / (0.7 * limit) - 1.0).abs() < 1e-9, "{message}");
 }
 
-/// Protects: commands that read want a database, and do not create one.
+/// Protects: commands that read need an existing database and do not create one.
 #[test]
 fn no_database() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
@@ -117,7 +116,7 @@ fn no_database() {
     assert_eq!(folder.read("text.db"), "this is no database ".repeat(100));
 }
 
-/// Protects: an unknown study is answered with those there are.
+/// Protects: the message about an unknown study lists the studies of the database.
 #[test]
 fn an_unknown_study() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
@@ -128,7 +127,7 @@ fn an_unknown_study() {
     }
 }
 
-/// Protects: usage errors have the code of bad input, and asking for help is none.
+/// Protects: usage errors end with code 2; `--help` is not an error.
 #[test]
 fn usage() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
@@ -153,8 +152,7 @@ fn usage() {
     assert!(folder.ok("--version").starts_with("tribosweep "));
 }
 
-/// Protects: a single job needs a value for every parameter of the grid, and settings are checked like the
-/// study.
+/// Protects: a single job needs a value for every parameter of the grid, and settings are checked as the study is.
 #[test]
 fn settings_of_a_single_job() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4], "omega_rpm": [7] })));
@@ -172,11 +170,11 @@ fn settings_of_a_single_job() {
     );
 }
 
-/// Protects: jobs that diverge fail, the others do not, and everybody is told: code 1 now and again, the
-/// status, the export, the report.
+/// Protects: jobs that diverge fail and the others do not. The exit code is 1, also when the command is repeated, and
+/// status, export and report name the failed jobs.
 #[test]
 fn failed_jobs() {
-    // The second load overflows; the second damping takes more steps than a run may have.
+    // The second load overflows. The second damping needs more steps than a run may have.
     let folder = Folder::with("bad", &small(&json!({ "load_n": [30, 1e200], "beta_r_s": [5e-8, 1] })));
     let run = folder.command("run bad.json").assert().code(1);
     assert!(stdout(&run).contains("failed"), "{}", stdout(&run));
@@ -197,7 +195,7 @@ fn failed_jobs() {
 
     let status: Value = serde_json::from_str(&folder.ok("status bad --json")).unwrap();
     assert_eq!(status["failures"].as_array().unwrap().len(), 3);
-    // One that diverged, and two neighbours with too many steps.
+    // One job diverged, and two neighbours have too many steps.
     let text = folder.ok("status bad");
     let [diverged, endless] = [
         "1 job at beta_r_s = 5e-8, load_n = 1e200: diverged",
@@ -215,12 +213,12 @@ fn failed_jobs() {
     folder.command("work").assert().code(1);
 }
 
-/// Protects: a single job that diverges ends with 1 and leaves the history that explains it; one that
-/// would take too many steps is bad input, refused with 2 before it begins.
+/// Protects: a single job that diverges ends with code 1 and its history is written. A job with too many steps is refused
+/// with code 2 before it starts.
 #[test]
 fn a_single_job_that_fails() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
-    // One element at the very limit, where friction feeds the highest mode (see docs/stability.md).
+    // One element at the stability limit, where friction excites the highest mode (see docs/stability.md).
     let at_the_limit = "--set elements=1x1x1 --set size_x_m=0.01 --set size_y_m=0.01 --set poisson_ratio=0.499 --set mu=2 \
         --set clamp_side=trailing_end --set clamp_width_m=0 --set ramp_s=0 --set beta_r_s=0 --set safety_factor=1 \
         --set stop_early=false";
@@ -234,7 +232,7 @@ fn a_single_job_that_fails() {
     assert_eq!(stdout(&endless), "");
 }
 
-/// Protects: a job that this version cannot read fails alone.
+/// Protects: a job that this version cannot read fails, and the others are run.
 #[test]
 fn an_unreadable_job() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));

@@ -1,4 +1,4 @@
-//! `inspect`: a job run again and looked into.
+//! `inspect`: one job run again and shown in detail.
 
 use serde_json::{Value, json};
 
@@ -12,10 +12,10 @@ fn summary(folder: &Folder, out: &str) -> Value {
     serde_json::from_str(&folder.read(format!("{out}/inspection.json"))).unwrap()
 }
 
-/// Protects: a job by its parameters, by its key and from the database is the same job as the one that `solve` runs,
-/// and everything that the page names is there.
+/// Protects: a job that is given by its parameters, by its key or in the database is the job that `solve` runs, and all
+/// files that the page names exist.
 #[test]
-fn a_job_is_looked_into() {
+fn parameters_and_keys_select_the_same_job() {
     let folder = folder();
     let page = folder.ok("inspect mine.json omega_rpm=7 mu=0.4");
     assert_eq!(page.trim(), "reports/mine/mu-0.4_omega_rpm-7/index.html");
@@ -45,9 +45,9 @@ fn a_job_is_looked_into() {
     }
 }
 
-/// Protects: looks that differ in anything that the command is told do not share a folder, and none is the report's.
+/// Protects: inspections with different arguments have different folders, and none of them is the folder of the report.
 #[test]
-fn looks_have_folders_of_their_own() {
+fn each_inspection_has_its_own_folder() {
     let folder = folder();
     let mut single = small(&Value::Null);
     single.as_object_mut().unwrap().remove("grid");
@@ -64,7 +64,7 @@ fn looks_have_folders_of_their_own() {
     let overlays = ["mu=0.4", "mu=0.2"]
         .map(|job| folder.ok(&format!("inspect mine.json {job} --overlay omega_rpm=2,7")));
     assert_ne!(overlays[0], overlays[1]);
-    // A look with other nodes leaves nothing of the one before.
+    // An inspection of other nodes removes the files of the previous one.
     folder.ok("inspect mine.json mu=0.4 --node centre --frames 16");
     let files: Vec<String> = std::fs::read_dir(folder.path("reports/mine/mu-0.4_omega_rpm-7"))
         .unwrap()
@@ -75,28 +75,29 @@ fn looks_have_folders_of_their_own() {
     assert_eq!(std::fs::read_dir(folder.path("reports/mine/mu-0.4_omega_rpm-7/fields")).unwrap().count(), 16);
 }
 
-/// Protects: what is not given is the study's scene's, and is told; nodes, cycles and frames are those that are asked for.
+/// Protects: parameters without a setting have the values of the study's scene, and the command says so. Nodes, cycles and
+/// frames are as requested.
 #[test]
-fn the_rest_is_the_scenes() {
+fn other_parameters_are_those_of_the_scene() {
     let folder = folder();
     let assert = folder
-        .command("inspect mine.json mu=0.2 --node -2,3 --node centre --cycles 3 --frames 16 --out look")
+        .command("inspect mine.json mu=0.2 --node -2,3 --node centre --cycles 3 --frames 16 --out out")
         .assert()
         .code(0);
     assert!(stderr(&assert).contains("from the study's scene: ω = 7 rpm\n"), "{}", stderr(&assert));
-    let found = summary(&folder, "look");
+    let found = summary(&folder, "out");
     assert_eq!(
         (&found["job"]["scene"]["contact"]["mu"], &found["job"]["scene"]["disk"]["omega_rpm"]),
         (&json!(0.2), &json!(7.0))
     );
     assert_eq!(found["nodes"][1]["name"], "centre");
-    assert_eq!(std::fs::read_dir(folder.path("look/fields")).unwrap().count(), 16);
+    assert_eq!(std::fs::read_dir(folder.path("out/fields")).unwrap().count(), 16);
 }
 
-/// Protects: an overlay has a stretch of every job, one and a half cycles from where its cycle begins, and figure and
-/// numbers for every node.
+/// Protects: an overlay has one and a half cycles of every job, from the beginning of a cycle, and a figure and a table for
+/// every node.
 #[test]
-fn jobs_are_laid_over_each_other() {
+fn an_overlay_compares_jobs() {
     let folder = folder();
     let files =
         folder.ok("inspect mine.json mu=0.4 --overlay omega_rpm=2,7,20 --node front_centre --node centre");
@@ -104,8 +105,8 @@ fn jobs_are_laid_over_each_other() {
     let overlay = rows(&folder.read("reports/mine/overlay_omega_rpm_mu-0.4/figure8_front_centre.csv"));
     for speed in ["2", "7", "20"] {
         let of_job: Vec<_> = overlay.iter().filter(|row| row["job"] == format!("ω = {speed} rpm")).collect();
-        folder.ok(&format!("inspect mine.json mu=0.4 omega_rpm={speed} --out look"));
-        let until_s = 1.5 * summary(&folder, "look")["period_s"].as_f64().unwrap();
+        folder.ok(&format!("inspect mine.json mu=0.4 omega_rpm={speed} --out out"));
+        let until_s = 1.5 * summary(&folder, "out")["period_s"].as_f64().unwrap();
         let number = |row: &ExportRow, name: &str| -> f64 { row[name].parse().unwrap() };
         let (first, last) = (of_job[0], of_job[of_job.len() - 1]);
         let step_s = (number(last, "time_s") - number(first, "time_s")) / (of_job.len() - 1) as f64;
@@ -116,11 +117,11 @@ fn jobs_are_laid_over_each_other() {
     assert!(folder.read("reports/mine/overlay_omega_rpm_mu-0.4/figure8_centre.svg").contains("ω = 20 rpm"));
 }
 
-/// Protects: mistakes are told with what would be right, and nothing is written.
+/// Protects: messages about wrong arguments say what is expected, and no file is written.
 #[test]
-fn mistakes_are_told() {
+fn wrong_arguments_are_explained() {
     let folder = folder();
-    for (arguments, told) in [
+    for (arguments, expected) in [
         ("mine.json omega=7", "did you mean `omega_rpm`"),
         ("mine.json mu=nought", "mu"),
         ("mine.json 0000", "no job of mine has a key that begins with `0000`"),
@@ -138,10 +139,10 @@ fn mistakes_are_told() {
         ("mine.json mu", "NAME=VALUE, for example mu=…"),
         ("mine.json omega=7", "NAME=VALUE: omega"),
         ("mine.json --node 9,0", "9,0 mm is not"),
-        ("mine.json --out mine.json/look", "mine.json/look: "),
+        ("mine.json --out mine.json/out", "mine.json/out: "),
     ] {
         let assert = folder.command(&format!("inspect {arguments}")).assert().code(2);
-        assert!(stderr(&assert).contains(told), "{arguments}: {}", stderr(&assert));
+        assert!(stderr(&assert).contains(expected), "{arguments}: {}", stderr(&assert));
     }
     assert_eq!(folder.files(), ["mine.json"]);
     folder.ok("submit mine.json");
@@ -149,12 +150,12 @@ fn mistakes_are_told() {
     assert!(stderr(&assert).contains("mine"), "{}", stderr(&assert));
 }
 
-/// Protects: Ctrl-C ends a look, nothing half-written is left, and the exit code says that work is left.
+/// Protects: Ctrl-C ends an inspection with the code for jobs that are left, and no incomplete file remains.
 #[cfg(target_os = "linux")]
 #[test]
-fn a_look_can_be_stopped() {
+fn an_inspection_can_be_interrupted() {
     let folder = Folder::with("long", &long());
-    let running = folder.start("inspect long.json mu=0.4 omega_rpm=7 limit_s=100 --out look");
+    let running = folder.start("inspect long.json mu=0.4 omega_rpm=7 limit_s=100 --out out");
     wait("the signal handler", || handles_interrupts(&running));
     running.signal("INT");
     let (code, out, error) = running.end();

@@ -1,5 +1,4 @@
-//! The command as a user runs it: its output, its files, its exit codes, and what an interruption may not
-//! change.
+//! The command as a user runs it: its output, its files, its exit codes, and the results after an interruption.
 
 mod accuracy;
 mod commands;

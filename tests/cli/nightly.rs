@@ -4,7 +4,7 @@ use std::process::Command;
 
 use crate::support::Folder;
 
-/// Exit code and output of the comparison; none where there is no Python.
+/// Exit code and output of the comparison; `None` without Python.
 fn compared(folder: &Folder, jobs: &str) -> Option<(i32, String)> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/scripts/nightly.py");
     let Ok(output) = Command::new("python3").arg(script).arg(folder.path(jobs)).arg(folder.path("")).output()
@@ -16,10 +16,10 @@ fn compared(folder: &Folder, jobs: &str) -> Option<(i32, String)> {
     Some((output.status.code().unwrap(), text))
 }
 
-/// Protects: the mini sweep is within the tolerances of its reference; a figure beyond them, a job that failed and one that
-/// is missing are drifts, told with their place; what cannot be compared is something else.
+/// Protects: the mini sweep is within the tolerances of its reference. A figure beyond them, a failed job and a missing job
+/// are drifts and are listed with their parameters. Files that cannot be compared have another exit code.
 #[test]
-fn a_drift_is_told() {
+fn drifts_are_listed() {
     let folder = Folder::new();
     folder.write("mini.json", include_str!("../../studies/mini.json"));
     folder.ok("run mini.json");

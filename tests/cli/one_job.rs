@@ -14,7 +14,7 @@ fn folder() -> Folder {
     Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4], "omega_rpm": [2, 7] })))
 }
 
-/// The history's columns, as numbers where they are.
+/// The rows of a history.
 struct History(Vec<crate::support::ExportRow>);
 
 impl History {
@@ -33,8 +33,8 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Protects: the history has one line a step with increasing time, every contact node in one state, and
-/// its forces are those of the scene: in the steady state N averages to the load and T/F to μ*.
+/// Protects: the history has one line per step with increasing time, and every contact node is in one state. In the steady
+/// state the mean of N is the load and the mean of T/F is μ*.
 #[test]
 fn the_history_is_that_of_the_run() {
     let folder = folder();
@@ -52,7 +52,7 @@ fn the_history_is_that_of_the_run() {
 
     let load = history.column("load_n");
     assert_eq!(*load.last().unwrap(), 30.0);
-    // Whole cycles: from the start of the window that the record averages over.
+    // The window of the record holds whole cycles.
     let start = time.partition_point(|&time| time < record["window_start_s"].as_f64().unwrap());
     assert!(start > 0 && start < time.len() - 500, "{start}");
     let normal = mean(&history.column("normal_n")[start..]);
@@ -64,7 +64,7 @@ fn the_history_is_that_of_the_run() {
     }
 }
 
-/// Protects: `--every` thins the history out and changes nothing in it.
+/// Protects: `--every` keeps some lines of the history and does not change them.
 #[test]
 fn every_keeps_each_nth_step() {
     let folder = folder();
@@ -74,12 +74,11 @@ fn every_keeps_each_nth_step() {
     let (all, some) = (folder.read("all.csv"), folder.read("some.csv"));
     let expected: Vec<_> = all.lines().take(1).chain(all.lines().skip(1).step_by(10)).collect();
     assert_eq!(some.lines().collect::<Vec<_>>(), expected);
-    // Without a history there is nothing to thin out.
+    // `--every` needs a history.
     folder.command("solve mine.json --set mu=0.2 --set omega_rpm=7 --every 10").assert().code(2);
 }
 
-/// Protects: one job alone and the same job in a sweep find the same figures to the last bit, and it
-/// needs no database.
+/// Protects: a job alone has the same figures as in a sweep, to the last bit, and needs no database.
 #[test]
 fn a_single_job_is_that_of_the_sweep() {
     let folder = folder();
@@ -99,7 +98,7 @@ fn a_single_job_is_that_of_the_sweep() {
 
 /// Protects: the text has the figures of the record, and a setting reaches the solver.
 #[test]
-fn the_text_is_the_record_in_short() {
+fn the_text_agrees_with_the_record() {
     let folder = folder();
     let record: Value = serde_json::from_str(
         &folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --set load_n=10 --json"),
@@ -109,14 +108,14 @@ fn the_text_is_the_record_in_short() {
     assert!(text.contains("regime                 stable\n"), "{text}");
     assert!(text.contains("frequency              none\n"), "{text}");
     assert!(text.contains(&format!("{:.5} ± ", record["mu_star"].as_f64().unwrap())), "{text}");
-    // A third of the load presses a third as hard.
+    // The stress is proportional to the load.
     let full: Value =
         serde_json::from_str(&folder.ok("solve mine.json --set mu=0.2 --set omega_rpm=7 --json")).unwrap();
     let ratio = full["sigma_n_max_pa"].as_f64().unwrap() / record["sigma_n_max_pa"].as_f64().unwrap();
     assert!((ratio - 3.0).abs() < 0.3, "{ratio}");
 }
 
-/// Protects: a device or a link that is given as a file to write stays what it is.
+/// Protects: a device or a symbolic link that is given as the output file is written to and not replaced.
 #[cfg(unix)]
 #[test]
 fn a_device_is_written_to_and_not_replaced() {
@@ -132,7 +131,7 @@ fn a_device_is_written_to_and_not_replaced() {
     assert_eq!(folder.files(), ["link.csv", "mine.json", "null", "target.csv"]);
 }
 
-/// Protects: a history that cannot be written is an error that names the file, and leaves nothing behind.
+/// Protects: the error for a history that cannot be written names the file, and no file remains.
 #[test]
 fn an_unwritable_history_is_named() {
     let folder = folder();
@@ -143,7 +142,7 @@ fn an_unwritable_history_is_named() {
     assert_eq!(folder.files(), ["mine.json"]);
 }
 
-/// Protects: Ctrl-C ends a long job with the code for work left over, and its history so far is kept.
+/// Protects: Ctrl-C ends a long job with the code for jobs that are left, and its history so far is written.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_job_keeps_its_history() {

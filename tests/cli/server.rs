@@ -1,4 +1,4 @@
-//! The commands on a PostgreSQL server, where there is one.
+//! The commands on a PostgreSQL server. The tests are skipped without a server.
 #![cfg(unix)]
 
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -10,7 +10,7 @@ use serde_json::{Value, json};
 use crate::server_database::{ServerDatabase, block_on};
 use crate::support::{Folder, LONG_JOBS, long, rows, small, stderr, stdout, wait, without_wall_times};
 
-/// A folder with a study, and what an undisturbed run in a file makes of it.
+/// A folder with a study, and the export of its run in a file.
 fn prepared(study: &Value) -> (Folder, String) {
     let folder = Folder::with("study", study);
     folder.ok("run study.json --db file.db --out file");
@@ -18,8 +18,8 @@ fn prepared(study: &Value) -> (Folder, String) {
     (folder, export)
 }
 
-/// Protects: whatever a command does with a file it does with a server: the same results, tables, figures and export
-/// byte for byte but for run times, and copies either way are the same to the last byte.
+/// Protects: every command does the same with a file and with a server: results, tables, figures and export are equal
+/// except for run times, and copies in both directions are equal to the last byte.
 #[test]
 fn every_command_works_on_a_server() {
     let Some(database) = ServerDatabase::new() else { return };
@@ -50,18 +50,18 @@ fn every_command_works_on_a_server() {
         [&show, "status study", "status", "retry study --failed", "cancel study", "rm study", "gc", "status"]
     {
         let [there, here] = [url.as_str(), "copied.db"].map(|db| folder.ok(&format!("{command} --db {db}")));
-        // How much smaller a database becomes is its own.
-        let told = |text: &str| text.split("; the database is").next().unwrap().to_owned();
-        assert_eq!(told(&there), told(&here), "{command}");
+        // The size in bytes depends on the kind of database.
+        let without_size = |text: &str| text.split("; the database is").next().unwrap().to_owned();
+        assert_eq!(without_size(&there), without_size(&here), "{command}");
     }
-    // A server for tests may do without syncs, which doctor rightly complains about.
+    // A server for tests may run without fsync, which doctor reports as a problem.
     let doctor = stdout(&folder.command(&format!("doctor --db {url}")).assert());
     assert_eq!(doctor.matches("PROBLEM").count(), doctor.matches("PROBLEM  fsync").count(), "{doctor}");
     assert!(doctor.contains("PostgreSQL") && doctor.contains("connections"), "{doctor}");
 }
 
-/// Protects: several workers share a server's jobs; one that is killed loses none of them, and everything is done once,
-/// with the bytes of an undisturbed run; status says who works, where, and what was taken back.
+/// Protects: several workers share the jobs of a server. If one is killed, no job is lost, each job is stored once, and the
+/// results are those of an uninterrupted run. The status lists the workers, their hosts and the jobs taken back.
 #[test]
 fn a_killed_worker_loses_nothing() {
     let Some(database) = ServerDatabase::new() else { return };
@@ -96,7 +96,7 @@ fn a_killed_worker_loses_nothing() {
     assert_eq!(results.unsigned_abs(), LONG_JOBS);
 }
 
-/// A port that turns everybody away until it is told what server is behind it.
+/// A port that closes every connection until the address of the server behind it is set.
 struct Relay {
     port: u16,
     refused: Arc<AtomicU32>,
@@ -108,7 +108,7 @@ impl Relay {
         let listener = TcpListener::bind("127.0.0.1:0").unwrap();
         let port = listener.local_addr().unwrap().port();
         let (refused, server) = (Arc::new(AtomicU32::new(0)), Arc::new(OnceLock::new()));
-        let relay = Self { port, refused: Arc::clone(&refused), server: Arc::clone(&server) };
+        let this = Self { port, refused: Arc::clone(&refused), server: Arc::clone(&server) };
         std::thread::spawn(move || {
             for client in listener.incoming() {
                 let client = client.unwrap();
@@ -116,10 +116,10 @@ impl Relay {
                     refused.fetch_add(1, Ordering::Relaxed);
                     continue;
                 };
-                pass_on(&client, &TcpStream::connect(server).unwrap());
+                relay(&client, &TcpStream::connect(server).unwrap());
             }
         });
-        relay
+        this
     }
 
     fn refused(&self) -> u32 {
@@ -127,7 +127,7 @@ impl Relay {
     }
 }
 
-fn pass_on(client: &TcpStream, server: &TcpStream) {
+fn relay(client: &TcpStream, server: &TcpStream) {
     for (from, to) in [(client, server), (server, client)] {
         let (mut from, mut to) = (from.try_clone().unwrap(), to.try_clone().unwrap());
         std::thread::spawn(move || {
@@ -137,8 +137,8 @@ fn pass_on(client: &TcpStream, server: &TcpStream) {
     }
 }
 
-/// Protects: a worker that was told to stay and finds no server at its start waits for it, says why, works when it is
-/// there, and can be stopped before; one that was not told ends at once.
+/// Protects: a worker with an idle exit that finds no server at its start waits for it, says why, runs the jobs when the
+/// server answers, and can be stopped before. A worker without an idle exit ends immediately.
 #[test]
 fn a_worker_waits_for_its_server() {
     let Some(database) = ServerDatabase::new() else { return };
@@ -150,8 +150,8 @@ fn a_worker_waits_for_its_server() {
     let (user, address) = start.rsplit_once('@').unwrap();
     let relayed = format!("{user}@127.0.0.1:{}/{database_name}", relay.port);
 
-    let told = stderr(&folder.command(&format!("work --db {relayed}")).assert().code(2));
-    assert!(told.contains("no answer from the server"), "{told}");
+    let message = stderr(&folder.command(&format!("work --db {relayed}")).assert().code(2));
+    assert!(message.contains("no answer from the server"), "{message}");
     let work = format!("work --idle-exit 1s --db {relayed}");
     let stopped = folder.start(&work);
     let before = relay.refused();
@@ -170,9 +170,9 @@ fn a_worker_waits_for_its_server() {
     assert!(folder.ok(&format!("status study --db {url}")).contains("2 done"));
 }
 
-/// Protects: what goes to a server that can encrypt is encrypted without asking for it. A certificate that nobody
-/// vouches for is refused where it is to be checked, at once and with the advice that helps, also by a worker that would
-/// wait for its server; the file that vouches for it can be named.
+/// Protects: connections to a server that supports encryption are encrypted by default. If certificates are to be checked,
+/// an untrusted one is refused immediately with advice, also by a worker that would wait for its server. The URL can name
+/// a root certificate.
 #[test]
 fn connections_are_encrypted() {
     let Some(database) = ServerDatabase::new() else { return };
@@ -183,7 +183,7 @@ fn connections_are_encrypted() {
         sqlx::query_scalar(certificate).fetch_one(&mut database.raw().await).await.unwrap()
     });
     let Some(certificate) = certificate else {
-        eprintln!("skipped: the server does not encrypt");
+        eprintln!("skipped: the server does not support encryption");
         return;
     };
     let folder = Folder::with("study", &small(&json!({ "mu": [0.2] })));
@@ -194,45 +194,48 @@ fn connections_are_encrypted() {
                         WHERE datname = current_database() AND application_name = 'tribosweep'";
         block_on(async { sqlx::query_scalar(sessions).fetch_one(&mut database.raw().await).await.unwrap() })
     };
-    wait("the worker to be there", || is_encrypted().is_some());
+    wait("the worker to connect", || is_encrypted().is_some());
     assert_eq!(is_encrypted(), Some(true));
     worker.signal("INT");
     worker.end();
 
-    // By whom and not for whom: that is the server's own affair.
+    // The certificate's issuer is checked, not the host name, which depends on the test server.
     let checked = format!("--db {url}?sslmode=verify-ca");
     for command in ["status", "work --idle-exit 1h"] {
-        let told = stderr(&folder.command(&format!("{command} {checked}")).assert().code(2));
-        assert!(told.contains("certificate is not trusted") && told.contains("sslrootcert"), "{told}");
+        let message = stderr(&folder.command(&format!("{command} {checked}")).assert().code(2));
+        assert!(
+            message.contains("certificate is not trusted") && message.contains("sslrootcert"),
+            "{message}"
+        );
     }
-    let vouched = format!("{checked}&sslrootcert={}", folder.path("site.crt").display());
-    let told = stderr(&folder.command(&format!("work --idle-exit 1h {vouched}")).assert().code(2));
-    assert!(told.contains("No such file") && told.contains("sslrootcert"), "{told}");
+    let trusted = format!("{checked}&sslrootcert={}", folder.path("site.crt").display());
+    let message = stderr(&folder.command(&format!("work --idle-exit 1h {trusted}")).assert().code(2));
+    assert!(message.contains("No such file") && message.contains("sslrootcert"), "{message}");
     std::fs::write(folder.path("site.crt"), certificate).unwrap();
-    assert!(folder.ok(&format!("status study {vouched}")).contains("study"));
+    assert!(folder.ok(&format!("status study {trusted}")).contains("study"));
 }
 
-/// Protects: a server that is not there, a database that has nothing, a URL of something else and one that says too
-/// little are told apart, with the advice that fits, and no password in it.
+/// Protects: a server that does not answer, an empty database, a URL of another kind and an invalid URL have different
+/// messages with advice, and no message contains a password.
 #[cfg(feature = "postgres")]
 #[test]
 fn bad_urls_are_explained() {
     let folder = Folder::with("study", &small(&json!({ "mu": [0.3] })));
-    let told = |arguments: &str| {
+    let refusal = |arguments: &str| {
         let text = stderr(&folder.command(arguments).assert().code(2));
         assert!(!text.contains("secret"), "{text}");
         text
     };
-    let nobody = told("submit study.json --db postgres://ada:secret@127.0.0.1:1/x");
+    let nobody = refusal("submit study.json --db postgres://ada:secret@127.0.0.1:1/x");
     assert!(nobody.contains("postgres://ada@127.0.0.1:1/x") && nobody.contains("no answer"), "{nobody}");
-    let other = told("status --db mysql://localhost/x");
+    let other = refusal("status --db mysql://localhost/x");
     assert!(other.contains("mysql") && other.contains("postgres://"), "{other}");
-    let port = told("status --db postgres://ada:secret@localhost:port/x");
+    let port = refusal("status --db postgres://ada:secret@localhost:port/x");
     assert!(port.contains("postgres://USER@HOST"), "{port}");
     let Some(database) = ServerDatabase::new() else { return };
     let url = database.url();
-    let empty = told(&format!("status --db {url}"));
+    let empty = refusal(&format!("status --db {url}"));
     assert!(empty.contains("no database at") && empty.contains("submit"), "{empty}");
-    let missing = told(&format!("submit study.json --db {}", url.replace('?', "_missing?")));
+    let missing = refusal(&format!("submit study.json --db {}", url.replace('?', "_missing?")));
     assert!(missing.contains("does not exist"), "{missing}");
 }

@@ -1,5 +1,5 @@
-//! Several processes on one database, some of which are killed: every job is done once, nothing that was finished is
-//! lost, and the bytes are those of an undisturbed run.
+//! Several processes on one database, some of which are killed: every job is stored once, no finished job is lost, and the
+//! results are those of an uninterrupted run.
 #![cfg(unix)]
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -11,7 +11,7 @@ use sqlx::{ConnectOptions, SqliteConnection};
 
 use crate::support::{Folder, Running, long, rows, small, stderr, wait, wall_times, without_wall_times};
 
-/// More jobs than a process does in its life here, of different lengths, some tens of milliseconds each.
+/// More jobs than a process finishes before it is killed here. They take some tens of milliseconds each.
 fn many() -> Value {
     let mut study = small(&json!({
         "mu": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6],
@@ -22,10 +22,10 @@ fn many() -> Value {
     study
 }
 
-/// Jobs that a thread runs at once.
+/// Jobs that a thread advances together.
 const LANES: u64 = 8;
 
-/// Jobs that a thread holds at most: in its lanes, waiting for one, and ended but not stored yet.
+/// The largest number of jobs that a thread holds: in its lanes, waiting for a lane, and ended but not stored yet.
 const HELD: u64 = 3 * LANES;
 
 fn undisturbed(study: &Value) -> String {
@@ -34,7 +34,7 @@ fn undisturbed(study: &Value) -> String {
     without_wall_times(&folder.ok("export study"))
 }
 
-/// Rows of a statement, past the program.
+/// The rows of an SQL statement on the database.
 fn read<T>(folder: &Folder, statement: &'static str) -> Vec<T>
 where
     T: Send + Unpin + for<'r> sqlx::FromRow<'r, sqlx::sqlite::SqliteRow>,
@@ -46,18 +46,17 @@ where
     })
 }
 
-/// Numbers that look random and are the same in every run.
-struct Draw(u64);
+/// Pseudo-random numbers, the same in every run.
+struct Random(u64);
 
-impl Draw {
+impl Random {
     fn below(&mut self, limit: u64) -> u64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 33) % limit
     }
 }
 
-/// Protects: two processes that work on one study share it: both do some of its jobs, none does another's, and both
-/// say that all is done.
+/// Protects: two processes share the jobs of a study: both run some of them, no job is run twice, and both end with success.
 #[test]
 fn two_workers_share_a_study() {
     let folder = Folder::with("study", &many());
@@ -78,10 +77,9 @@ fn two_workers_share_a_study() {
     assert!(folder.ok("doctor").contains("none at work"));
 }
 
-/// Protects: when one of two processes is killed, the other takes its jobs back while it works, does them, and ends
-/// with everything done; nothing that either had finished is done again.
+/// Protects: when one of two processes is killed, the other takes its jobs back and runs them. No finished job is run again.
 #[test]
-fn the_other_goes_on() {
+fn the_other_worker_takes_jobs_back() {
     let folder = Folder::with("study", &many());
     folder.ok("submit study.json");
     let survivor = folder.start("work --threads 1");
@@ -90,7 +88,7 @@ fn the_other_goes_on() {
     let pid = i64::from(killed.id());
     killed.signal("KILL");
     assert_eq!(killed.end().0, None);
-    // The survivor has work of its own, and takes nothing back before it has none or its heartbeat comes.
+    // The survivor takes jobs back only when it has no work or sends a heartbeat.
     let owners: Vec<(i64,)> = read(
         &folder,
         "SELECT w.pid FROM jobs AS j JOIN workers AS w ON w.id = j.owner WHERE j.state = 'running'",
@@ -103,17 +101,17 @@ fn the_other_goes_on() {
     assert_eq!(without_wall_times(&export), undisturbed(&many()));
     let after = wall_times(&export);
     for (job, wall_s) in &before {
-        assert_eq!(&after[job], wall_s, "{job} was done again");
+        assert_eq!(&after[job], wall_s, "{job} was run again");
     }
     let crashes: Vec<(i64, i64)> = read(&folder, "SELECT SUM(crashes), SUM(attempt) - COUNT(*) FROM jobs");
     let (crashes, repeated) = crashes[0];
     assert!((1..=HELD).contains(&crashes.unsigned_abs()), "{crashes} jobs were held by the one thread");
-    assert_eq!((crashes, repeated), (held, held), "what it held, and nothing else");
+    assert_eq!((crashes, repeated), (held, held), "the jobs that it held, and no others");
 }
 
-/// Protects: a job whose processes die again and again fails with that reason, and is run again when it is asked for.
+/// Protects: a job whose process dies several times in a row fails with that reason, and `retry` runs it again.
 #[test]
-fn a_deadly_job_fails() {
+fn a_job_that_kills_its_process_fails() {
     let mut study = long();
     study["grid"] = json!({ "mu": [0.2] });
     study["run"]["limit_s"] = json!(4.0);
@@ -121,14 +119,14 @@ fn a_deadly_job_fails() {
     folder.ok("submit study.json");
     for attempt in 1..=2 {
         let work = folder.start("work --max-crashes 2");
-        // The job is "running" from the process before until this one has taken it.
+        // The state does not tell the attempts apart: the job stays running until this process has taken it back.
         wait("the attempt", || read::<(i64,)>(&folder, "SELECT attempt FROM jobs") == [(attempt,)]);
         work.signal("KILL");
         assert_eq!(work.end().0, None);
     }
     let (code, _, messages) = folder.start("work --max-crashes 2").end();
     assert_eq!(code, Some(1), "{messages}");
-    assert!(messages.contains("died again and again"), "{messages}");
+    assert!(messages.contains("died several times in a row"), "{messages}");
     let status = folder.ok("status study");
     assert!(status.contains("its process died 2 times"), "{status}");
     folder.ok("retry study --failed");
@@ -136,9 +134,10 @@ fn a_deadly_job_fails() {
     assert_eq!(rows(&folder.ok("export study"))[0]["error"], "");
 }
 
-/// Protects: a long job whose process is killed goes on from its last checkpoint to the same bytes, and is not blamed.
+/// Protects: a long job whose process is killed continues from its last checkpoint to the same result. Progress resets its
+/// count of crashes.
 #[test]
-fn a_killed_long_job_goes_on() {
+fn a_killed_long_job_continues_from_its_checkpoint() {
     let mut study = long();
     study["grid"] = json!({ "mu": [0.2, 0.4] });
     study["run"]["limit_s"] = json!(2.0);
@@ -146,11 +145,11 @@ fn a_killed_long_job_goes_on() {
     undisturbed.ok("run study.json");
     let folder = Folder::with("study", &study);
     folder.ok("submit study.json");
-    let kept = || read::<(i64,)>(&folder, "SELECT COALESCE(SUM(attempt), 0) FROM checkpoints");
+    let checkpoints = || read::<(i64,)>(&folder, "SELECT COALESCE(SUM(attempt), 0) FROM checkpoints");
     for attempt in 1..=3 {
         let work = folder.start("work --checkpoint-every 0.02 --max-crashes 2");
-        // Both jobs, each by this attempt.
-        wait("a checkpoint", || kept() == [(2 * attempt,)]);
+        // Both jobs have one from this attempt.
+        wait("a checkpoint", || checkpoints() == [(2 * attempt,)]);
         work.signal("KILL");
         assert_eq!(work.end().0, None);
     }
@@ -159,15 +158,15 @@ fn a_killed_long_job_goes_on() {
     assert_eq!(found, expected);
 }
 
-/// Protects: a copy of the database's files at any instant of a process that writes it, as a power cut or a backup
-/// leaves them, in whatever order they are copied, opens whole and holds every result that was finished by then.
+/// Protects: a copy of the database's files at any instant while a process writes, as after a power cut or in a backup, can
+/// be opened and has every result that was finished before. The order of copying does not matter.
 #[test]
-fn a_copy_at_any_instant_is_whole() {
-    let mut draw = Draw(11);
+fn a_copy_at_any_instant_is_consistent() {
+    let mut random = Random(11);
     let mut instants = BTreeSet::new();
-    // Jobs that are computed together end together, and a sweep is as fast as the machine: not every one has as many.
+    // Jobs that are advanced together end together, so on a fast machine one sweep may have only a few instants.
     for _ in 0..10 {
-        instants.extend(copy_at_instants(&mut draw));
+        instants.extend(copy_at_instants(&mut random));
         if instants.len() > 5 {
             return;
         }
@@ -175,8 +174,8 @@ fn a_copy_at_any_instant_is_whole() {
     panic!("copies at different instants: {instants:?}");
 }
 
-/// Copies the database of a sweep again and again, looks at the copies, and returns how many jobs they had finished.
-fn copy_at_instants(draw: &mut Draw) -> Vec<usize> {
+/// Copies the database of a sweep several times, checks the copies, and returns the number of finished jobs in each.
+fn copy_at_instants(random: &mut Random) -> Vec<usize> {
     let folder = Folder::with("study", &many());
     let run = folder.start("run study.json --threads 2");
     folder.wait_for("study", |counts| counts["done"] > 0);
@@ -186,16 +185,16 @@ fn copy_at_instants(draw: &mut Draw) -> Vec<usize> {
     };
     let mut copies = Vec::new();
     for copy in 0..12 {
-        std::thread::sleep(Duration::from_millis(draw.below(90)));
+        std::thread::sleep(Duration::from_millis(random.below(90)));
         let before = finished();
         if before.len() == 60 {
             // The process may close the database before it stops.
             break;
         }
-        // The instant: the process stands still while its files are copied, with whatever locks it holds, and while
-        // the copy is looked at, so that there are several instants on a slow machine, too.
+        // The process is stopped while its files are copied, with all locks that it holds, and while the copy is checked,
+        // so that there are several instants on a slow machine too.
         run.signal("STOP");
-        stopped(&run);
+        wait_until_stopped(&run);
         let other = Folder::new();
         let mut files = ["", "-wal", "-shm"];
         files.rotate_left(copy % 3);
@@ -204,7 +203,7 @@ fn copy_at_instants(draw: &mut Draw) -> Vec<usize> {
             std::fs::copy(folder.path(&name), other.path(&name)).is_ok()
         });
         if !copied {
-            // It had closed the database.
+            // The process had closed the database.
             run.signal("CONT");
             break;
         }
@@ -214,7 +213,7 @@ fn copy_at_instants(draw: &mut Draw) -> Vec<usize> {
         assert!(doctor.contains("integrity    ok"), "{doctor}");
         assert!(
             before.iter().all(|job| then.contains_key(job)),
-            "the copy lacks what was finished: {before:?}, {then:?}"
+            "the copy lacks finished jobs: {before:?}, {then:?}"
         );
         copies.push(then);
     }
@@ -223,13 +222,13 @@ fn copy_at_instants(draw: &mut Draw) -> Vec<usize> {
     let after = wall_times(&folder.ok("export study"));
     for then in &copies {
         let finished = then.iter().all(|(job, wall_s)| after.get(job) == Some(wall_s));
-        assert!(finished, "the copy has what was never finished: {then:?}, {after:?}");
+        assert!(finished, "the copy has jobs that were not finished: {then:?}, {after:?}");
     }
     copies.iter().map(BTreeMap::len).collect()
 }
 
-/// Waits until every thread of the process stands still.
-fn stopped(run: &Running) {
+/// Waits until every thread of the process is stopped.
+fn wait_until_stopped(run: &Running) {
     let tasks = format!("/proc/{}/task", run.id());
     wait("the process to stop", || {
         std::fs::read_dir(&tasks).unwrap().all(|task| {
@@ -239,31 +238,31 @@ fn stopped(run: &Running) {
     });
 }
 
-/// Protects: many random kills of several processes lose no finished result, repeat no more than what was running,
-/// record nothing twice, and end in the bytes of an undisturbed run. (`scripts/torture.py` does the same for long.)
+/// Protects: many random kills of several processes lose no finished result, repeat only jobs that were running, store no
+/// result twice, and end with the results of an uninterrupted run. (`scripts/torture.py` is a longer version.)
 #[test]
 fn many_kills_lose_nothing() {
     const WORKERS: usize = 3;
     const TIME: Duration = Duration::from_secs(8);
     let folder = Folder::with("study", &many());
     folder.ok("submit study.json");
-    let mut draw = Draw(5);
+    let mut random = Random(5);
     let start = || folder.start("work --threads 1 --max-crashes 1000");
     let mut workers: Vec<Running> = (0..WORKERS).map(|_| start()).collect();
     let mut kills = 0;
     let mut finished = BTreeMap::new();
     let begun = Instant::now();
     while begun.elapsed() < TIME && finished.len() < 60 {
-        // Often enough for many kills before the last job on a fast machine, and not so often that none ends.
-        std::thread::sleep(Duration::from_millis(draw.below(80)));
-        let index = draw.below(WORKERS as u64) as usize;
+        // Short enough for many kills on a fast machine, and long enough for some jobs to end.
+        std::thread::sleep(Duration::from_millis(random.below(80)));
+        let index = random.below(WORKERS as u64) as usize;
         let killed = std::mem::replace(&mut workers[index], start());
         killed.signal("KILL");
         kills += u64::from(killed.end().0.is_none());
         let results = "SELECT key, wall_s FROM results AS r JOIN jobs AS j ON j.id = r.job_id";
         let now: BTreeMap<String, f64> = read(&folder, results).into_iter().collect();
         for (job, wall_s) in &finished {
-            assert_eq!(now.get(job), Some(wall_s), "{job} was lost or done again");
+            assert_eq!(now.get(job), Some(wall_s), "{job} was lost or run again");
         }
         finished = now;
     }
@@ -278,23 +277,23 @@ fn many_kills_lose_nothing() {
     );
     let (jobs, attempts, results) = counts[0];
     assert_eq!((jobs, results), (60, 60));
-    assert!(kills >= 10, "{kills} kills are no torture");
+    assert!(kills >= 10, "only {kills} kills");
     let repeated = (attempts - jobs).unsigned_abs();
     let most = HELD * kills;
     assert!(repeated <= most, "{repeated} jobs were repeated after {kills} kills of one thread each");
     println!("{kills} kills, {repeated} jobs repeated, {jobs} jobs");
 }
 
-/// Protects: a worker that is told to stay takes up what is submitted while it is idle, and ends by itself when nothing
-/// has come for as long as it was told.
+/// Protects: a worker with an idle exit runs jobs that are submitted while it is idle, and ends when no job has come for that
+/// time.
 #[test]
-fn an_idle_worker_takes_up_what_comes() {
+fn an_idle_worker_runs_new_jobs() {
     let folder = Folder::with("first", &small(&json!({ "mu": [0.2, 0.3] })));
     folder.add("second", &small(&json!({ "mu": [0.4, 0.5] })));
     folder.ok("submit first.json");
     let worker = folder.start("work --idle-exit 3s");
     folder.wait_for("first", |jobs| jobs["done"] == 2);
-    // It is idle for a moment.
+    // The worker is idle for a moment.
     std::thread::sleep(Duration::from_millis(700));
     folder.ok("submit second.json");
     folder.wait_for("second", |jobs| jobs["done"] == 2);
@@ -304,10 +303,10 @@ fn an_idle_worker_takes_up_what_comes() {
     assert!(stderr(&assert).contains("expected a duration such as 60s"), "{}", stderr(&assert));
 }
 
-/// Protects: a worker that was told how long to stay does not wait for what others run while they are there, and says
-/// so; one that is still there takes over from one that died.
+/// Protects: a worker with an idle exit does not wait for jobs that other live workers run, and says so. It takes over the
+/// jobs of a worker that died.
 #[test]
-fn an_idle_worker_waits_for_no_straggler() {
+fn an_idle_worker_does_not_wait_for_a_straggler() {
     let mut study = long();
     study["grid"] = json!({ "mu": [0.2, 0.4] });
     study["run"]["limit_s"] = json!(2.0);
@@ -316,10 +315,10 @@ fn an_idle_worker_waits_for_no_straggler() {
     let straggler = folder.start("work --threads 1");
     folder.wait_for("study", |jobs| jobs["running"] == 2);
     straggler.signal("STOP");
-    stopped(&straggler);
+    wait_until_stopped(&straggler);
     let (code, _, messages) = folder.start("work --idle-exit 1s").end();
     assert_eq!(code, Some(0), "{messages}");
-    assert!(messages.contains("other workers run 2 jobs"), "{messages}");
+    assert!(messages.contains("other workers are running 2 jobs"), "{messages}");
 
     let staying = folder.start("work --idle-exit 5s");
     wait("a worker to stay", || {
@@ -333,7 +332,7 @@ fn an_idle_worker_waits_for_no_straggler() {
     assert!(folder.ok("status study").contains("2 done"));
 }
 
-/// Protects: an idle worker is stopped by Ctrl-C at once, and nothing is left over.
+/// Protects: Ctrl-C stops an idle worker immediately and with success, since no job is left.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_idle_worker_can_be_stopped() {

@@ -1,11 +1,11 @@
-//! A study in parts, and what brings databases together.
+//! A study in shards, and merging and copying databases.
 
 use serde_json::json;
 
 use crate::support::{Folder, rows, small, stderr, without_wall_times};
 
-/// Protects: a study that is submitted, worked on and merged in shards is the whole study, byte for byte but for run
-/// times; merging again changes nothing, and what no shard has done is still to be done.
+/// Protects: a study that is submitted, run and merged in shards has the results of the whole study, byte for byte except
+/// for run times. Merging again changes nothing, and jobs that no shard has run are still pending.
 #[test]
 fn shards_are_the_whole_study() {
     let study = small(&json!({ "mu": [0.2, 0.3, 0.4], "omega_rpm": [5, 20] }));
@@ -30,24 +30,24 @@ fn shards_are_the_whole_study() {
     folder.ok("report study --db 1.db --out part");
 }
 
-/// Protects: what cannot be merged or split is refused before anything is written.
+/// Protects: wrong shards and databases that cannot be merged are refused before anything is written.
 #[test]
-fn bad_parts_are_refused() {
+fn wrong_shards_and_databases_are_refused() {
     let folder = Folder::with("study", &small(&json!({ "mu": [0.2, 0.3] })));
     for shard in ["0/2", "3/2", "1", "1/0", "a/b", "1/2/3", "-1/2"] {
-        let told = stderr(&folder.command(&format!("submit study.json --shard={shard}")).assert().code(2));
-        assert!(told.contains("1/4"), "{shard}: {told}");
+        let message = stderr(&folder.command(&format!("submit study.json --shard={shard}")).assert().code(2));
+        assert!(message.contains("1/4"), "{shard}: {message}");
     }
     assert!(!folder.path("tribosweep.db").exists());
     folder.ok("submit study.json --db a.db");
-    let told = stderr(&folder.command("merge a.db missing.db --db b.db").assert().code(2));
-    assert!(told.contains("missing.db") && !folder.path("b.db").exists(), "{told}");
-    let told = stderr(&folder.command("copy --from a.db --to ./a.db").assert().code(2));
-    assert!(told.contains("both"), "{told}");
-    let told = stderr(&folder.command("copy other --from a.db --to b.db").assert().code(2));
-    assert!(told.contains("no study `other`"), "{told}");
+    let message = stderr(&folder.command("merge a.db missing.db --db b.db").assert().code(2));
+    assert!(message.contains("missing.db") && !folder.path("b.db").exists(), "{message}");
+    let message = stderr(&folder.command("copy --from a.db --to ./a.db").assert().code(2));
+    assert!(message.contains("both"), "{message}");
+    let message = stderr(&folder.command("copy other --from a.db --to b.db").assert().code(2));
+    assert!(message.contains("no study `other`"), "{message}");
     folder.add("study", &small(&json!({ "mu": [0.5] })));
     folder.ok("submit study.json --db b.db");
-    let told = stderr(&folder.command("copy --from a.db --to b.db").assert().code(2));
-    assert!(told.contains("another one"), "{told}");
+    let message = stderr(&folder.command("copy --from a.db --to b.db").assert().code(2));
+    assert!(message.contains("another one"), "{message}");
 }

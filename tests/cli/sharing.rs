@@ -1,11 +1,11 @@
-//! Nothing is simulated twice.
+//! No job is simulated twice.
 
 use serde_json::json;
 
 use crate::support::{Folder, rows, small, stderr, wall_times};
 
-/// Protects: a repeated submission adds no jobs, and a repeated run simulates nothing: the wall times are
-/// those of the first one.
+/// Protects: a repeated submission adds no jobs, and a repeated run simulates nothing: the wall times are those of the first
+/// run.
 #[test]
 fn a_repeated_run_costs_nothing() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4], "omega_rpm": [2, 7] })));
@@ -23,11 +23,11 @@ fn a_repeated_run_costs_nothing() {
     assert_eq!(folder.ok("export mine"), export);
 }
 
-/// Protects: studies whose grids overlap share the jobs of the overlap, however the study writes them.
+/// Protects: studies whose grids overlap share jobs, whether a parameter is in the grid or in the scene.
 #[test]
 fn overlapping_studies_share_jobs() {
     let folder = Folder::with("first", &small(&json!({ "mu": [0.4], "omega_rpm": [2, 7] })));
-    // The same jobs at ω = 7: once in the grid and once in the scene.
+    // The same jobs at ω = 7, which is in the grid of one study and in the scene of the other.
     let mut second = small(&json!({ "mu": [0.4, 0.2] }));
     second["scene"]["disk"] = json!({ "omega_rpm": 7.0 });
     folder.add("second", &second);
@@ -47,10 +47,9 @@ fn overlapping_studies_share_jobs() {
     assert_ne!(second[1]["job"], first[0]["job"]);
 }
 
-/// Protects: a study that is changed and submitted again has its new jobs, and keeps what was done for
-/// the old ones.
+/// Protects: a study that is changed and submitted again has its new jobs and keeps the results of the old ones.
 #[test]
-fn a_grown_study_simulates_only_what_is_new() {
+fn a_larger_study_simulates_only_new_jobs() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2], "omega_rpm": [2, 7] })));
     folder.ok("run mine.json");
     let before = wall_times(&folder.ok("export mine"));

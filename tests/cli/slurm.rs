@@ -1,4 +1,4 @@
-//! The scripts for a Slurm cluster, as far as they can be tried without one; `scripts/slurm.py` runs them on one.
+//! The scripts for a Slurm cluster, as far as they can be tested without one; `scripts/slurm.py` runs them on a cluster.
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
@@ -13,7 +13,7 @@ use crate::support::{Folder, TRIBOSWEEP, small, stderr, stdout, wait};
 
 const SCRIPTS: [&str; 3] = ["workers.sbatch", "report.sbatch", "submit.sh"];
 const URL: &str = "postgres://me@host:5432/sweeps";
-/// What a shell could trip over.
+/// Characters that a shell could interpret.
 const ODD: &str = "a 'b' \"c\" $d `e` \\f;g & h*";
 
 fn six_jobs() -> Value {
@@ -25,15 +25,15 @@ fn executable(path: &Path, text: &str) {
     std::fs::set_permissions(path, std::fs::Permissions::from_mode(0o755)).unwrap();
 }
 
-/// Every script must be one to bash.
-fn is_sound(folder: &Path) {
+/// Asserts that bash can parse every script.
+fn assert_valid_scripts(folder: &Path) {
     for script in SCRIPTS {
         let output = Command::new("bash").arg("-n").arg(folder.join(script)).output().unwrap();
         assert!(output.status.success(), "{script}: {}", String::from_utf8_lossy(&output.stderr));
     }
 }
 
-/// The values that the settings of a script have in the shell.
+/// The values of a script's settings in the shell.
 fn settings(script: &Path) -> BTreeMap<String, String> {
     let text = std::fs::read_to_string(script).unwrap();
     let lines = text.lines().skip_while(|line| line.starts_with('#') || line.is_empty());
@@ -46,18 +46,18 @@ fn settings(script: &Path) -> BTreeMap<String, String> {
     names.into_iter().map(str::to_owned).zip(values.split('\0').map(str::to_owned)).collect()
 }
 
-/// A folder with programs that go first in PATH: they write down their arguments, a line a call, and do what `deeds` say.
+/// A folder with fake programs that come first in PATH: each logs its arguments, one line per call, and runs its script.
 struct Cluster {
     folder: Folder,
 }
 
 impl Cluster {
-    fn new(deeds: &[(&str, &str)]) -> Self {
+    fn new(programs: &[(&str, &str)]) -> Self {
         let folder = Folder::with("mine", &six_jobs());
         std::fs::create_dir(folder.path("bin")).unwrap();
-        for (name, deed) in deeds {
+        for (name, script) in programs {
             let calls = folder.path("calls");
-            let text = format!("#!/bin/bash\necho {name} \"$@\" >> {}\n{deed}\n", calls.display());
+            let text = format!("#!/bin/bash\necho {name} \"$@\" >> {}\n{script}\n", calls.display());
             executable(&folder.path("bin").join(name), &text);
         }
         Self { folder }
@@ -77,7 +77,7 @@ impl Cluster {
 
 const NUMBERS: &str = "case $* in *report*) echo '12;cluster';; *) echo 11;; esac";
 
-/// Protects: the array is what was asked for, in both modes.
+/// Protects: the array has the requested settings, in both modes.
 #[test]
 fn an_array_of_workers() {
     for (db, has_shards) in [(URL, false), ("some.db", true)] {
@@ -85,7 +85,7 @@ fn an_array_of_workers() {
         let options = "--workers 6 --cpus-per-worker 4 --partition a,b --time 1-12 --account x --mem 2G";
         let printed = folder.ok(&format!("slurm mine.json {options} --db {db}"));
         assert_eq!(printed, "mine.slurm/submit.sh\n");
-        is_sound(&folder.path("mine.slurm"));
+        assert_valid_scripts(&folder.path("mine.slurm"));
         let workers = folder.read("mine.slurm/workers.sbatch");
         for line in [
             "--array=0-5",
@@ -114,9 +114,9 @@ fn an_array_of_workers() {
     }
 }
 
-/// Protects: without options Slurm decides, and nothing is asked of it that was not given.
+/// Protects: the scripts have no settings for options that are not given, so that Slurm's defaults apply.
 #[test]
-fn what_is_not_given_is_not_asked_for() {
+fn options_that_are_not_given_are_left_to_slurm() {
     let folder = Folder::with("mine", &six_jobs());
     folder.ok("slurm mine.json --workers 1");
     let workers = folder.read("mine.slurm/workers.sbatch");
@@ -125,9 +125,9 @@ fn what_is_not_given_is_not_asked_for() {
     }
 }
 
-/// Protects: paths keep all characters that mean something to a shell, and what is relative is made absolute.
+/// Protects: paths with characters that a shell interprets are kept, and relative paths are made absolute.
 #[test]
-fn odd_paths() {
+fn paths_are_quoted() {
     for db in [URL, "o'd d.db"] {
         let folder = Folder::new();
         let odd = folder.path(ODD);
@@ -136,7 +136,7 @@ fn odd_paths() {
         let mut command = folder.command("slurm mine.json --workers 2 --out");
         command.current_dir(&odd).arg("it's \"here\"").args(["--db", db]).assert().code(0);
         let out = odd.join("it's \"here\"");
-        is_sound(&out);
+        assert_valid_scripts(&out);
         for script in SCRIPTS {
             let values = settings(&out.join(script));
             assert_eq!(values["study"], odd.join("mine.json").to_str().unwrap());
@@ -147,27 +147,27 @@ fn odd_paths() {
     }
 }
 
-/// Protects: a password is not written into files that others may read, nor shown.
+/// Protects: a password is neither written into files that others may read nor shown.
 #[test]
 fn a_password_is_refused() {
     let folder = Folder::with("mine", &six_jobs());
     for url in ["postgres://me:secret@host/db", "postgresql://host/db?password=secret"] {
-        let told =
+        let message =
             stderr(&folder.command(&format!("slurm mine.json --workers 2 --db {url}")).assert().code(2));
-        assert!(told.contains("~/.pgpass") && told.contains("PGPASSWORD"), "{told}");
-        assert!(!told.contains("secret"), "{told}");
+        assert!(message.contains("~/.pgpass") && message.contains("PGPASSWORD"), "{message}");
+        assert!(!message.contains("secret"), "{message}");
     }
     assert_eq!(folder.files(), ["mine.json"]);
 }
 
-/// Protects: what Slurm would refuse, or nobody can mean, is refused before anything is written, with what would be right.
+/// Protects: options that Slurm would refuse or that make no sense are refused with advice before anything is written.
 #[test]
 fn bad_options() {
     let folder = Folder::with("mine", &six_jobs());
     folder.write("bad.json", "{ \"grid\": { \"nu\": [0.3] } }");
     for (arguments, expected) in [
         ("mine.json --workers 0", "1..="),
-        ("mine.json --workers 7", "--workers 6 is the most"),
+        ("mine.json --workers 7", "at most --workers 6"),
         ("mine.json --workers 2 --time abc", "hours:minutes:seconds"),
         ("mine.json --workers 2 --time 2", "at least 5 minutes"),
         ("mine.json --workers 2 --mem lots", "such as 500M or 2G"),
@@ -177,13 +177,13 @@ fn bad_options() {
         ("mine.json", "--workers"),
         ("bad.json --workers 2", "grid.nu"),
     ] {
-        let told = stderr(&folder.command(&format!("slurm {arguments}")).assert().code(2));
-        assert!(told.contains(expected), "{arguments}: {told}");
+        let message = stderr(&folder.command(&format!("slurm {arguments}")).assert().code(2));
+        assert!(message.contains(expected), "{arguments}: {message}");
     }
     assert_eq!(folder.files(), ["bad.json", "mine.json"]);
 }
 
-/// Protects: scripts are written again; logs, shards and results stay.
+/// Protects: writing again replaces the scripts and keeps logs, shards and results.
 #[test]
 fn an_existing_folder() {
     let folder = Folder::with("mine", &six_jobs());
@@ -198,10 +198,10 @@ fn an_existing_folder() {
     assert!(kept.iter().all(|file| folder.read(file) == "kept"));
 }
 
-/// Protects: with shards the study is checked and both scripts are submitted, the report after the array, from the folder
-/// whatever folder the command is called from.
+/// Protects: with shards the study is checked and both scripts are submitted from their own folder, the report with a
+/// dependency on the array.
 #[test]
-fn submitted() {
+fn array_and_report_are_submitted() {
     let cluster =
         Cluster::new(&[("sbatch", &format!("pwd >> where\n{NUMBERS}")), ("squeue", ""), ("scancel", "")]);
     let end = cluster.command("slurm mine.json --workers 2 --submit").assert().code(0);
@@ -215,38 +215,38 @@ fn submitted() {
     assert_eq!(cluster.folder.read("mine.slurm/where"), format!("{0}\n{0}\n", out.display()));
 }
 
-/// Protects: while an array works on the shards, no second one is submitted.
+/// Protects: no second array is submitted while one is working on the shards.
 #[test]
-fn not_twice_at_a_time() {
+fn one_array_at_a_time() {
     let cluster = Cluster::new(&[("sbatch", NUMBERS), ("squeue", "echo still there"), ("scancel", "")]);
     cluster.command("slurm mine.json --workers 2 --submit").assert().code(0);
-    let told = stderr(&cluster.command("slurm mine.json --workers 2 --submit").assert().code(2));
-    assert!(told.contains("array 11 of this folder has not ended"), "{told}");
+    let message = stderr(&cluster.command("slurm mine.json --workers 2 --submit").assert().code(2));
+    assert!(message.contains("array 11 of this folder has not ended"), "{message}");
     assert_eq!(cluster.calls().matches("sbatch").count(), 2 * 2, "{}", cluster.calls());
 }
 
-/// Protects: where Slurm is not there or refuses, it is said, and nothing is left that runs.
+/// Protects: if Slurm is missing or refuses, the message says so and no job is left in Slurm's queue.
 #[test]
-fn nothing_half_done() {
-    let told = |cluster: &Cluster| {
+fn all_or_nothing_is_submitted() {
+    let refusal = |cluster: &Cluster| {
         let end = cluster.command("slurm mine.json --workers 2 --submit").assert().code(2);
         assert!(!cluster.folder.path("mine.slurm/jobs").exists());
         stderr(&end)
     };
-    let refusal = "echo 'sbatch: error: no such partition' >&2; exit 1";
-    let refuses = Cluster::new(&[("sbatch", refusal), ("squeue", ""), ("scancel", "")]);
-    let text = told(&refuses);
+    let script = "echo 'sbatch: error: no such partition' >&2; exit 1";
+    let refuses = Cluster::new(&[("sbatch", script), ("squeue", ""), ("scancel", "")]);
+    let text = refusal(&refuses);
     assert!(text.contains("no such partition") && text.contains("nothing is submitted"), "{text}");
 
     let second =
-        format!("case $* in *report*) {refusal};; *) echo 11;; esac").replace("; exit 1;;", "; exit 1 ;;");
+        format!("case $* in *report*) {script};; *) echo 11;; esac").replace("; exit 1;;", "; exit 1 ;;");
     let half = Cluster::new(&[("sbatch", &second), ("squeue", ""), ("scancel", "")]);
-    let text = told(&half);
-    assert!(text.contains("array 11 was taken back"), "{text}");
+    let text = refusal(&half);
+    assert!(text.contains("array 11 was cancelled"), "{text}");
     assert!(half.calls().ends_with("scancel 11\n"), "{}", half.calls());
 
     let none = Folder::with("mine", &six_jobs());
-    // No Slurm, but bash.
+    // A PATH with bash and without Slurm.
     std::fs::create_dir(none.path("bin")).unwrap();
     for program in ["bash", "env"] {
         let found =
@@ -259,14 +259,14 @@ fn nothing_half_done() {
     assert!(text.contains("sbatch is not there"), "{text}");
 }
 
-/// A task of the array in the hands of a stand-in for the program, which writes down what it is asked, keeps a "database",
-/// and works for as long as it is told.
+/// A task of the array with a fake program, which logs its arguments, keeps a "database", and works until a file is
+/// removed.
 struct Task {
     cluster: Cluster,
 }
 
-/// What the stand-in does. The database has a line for each time that it was worked on.
-const STAND_IN: &str = r#"
+/// The fake program. Its database has a line for each run of `work`.
+const FAKE_PROGRAM: &str = r#"
 command=$1
 db=$(while [ $# -gt 0 ]; do if [ "$1" = --db ]; then echo "$2"; fi; shift; done)
 case $command in
@@ -281,12 +281,12 @@ esac
 
 impl Task {
     fn new() -> Self {
-        let cluster = Cluster::new(&[("scontrol", ""), ("stand-in", STAND_IN)]);
+        let cluster = Cluster::new(&[("scontrol", ""), ("fake-program", FAKE_PROGRAM)]);
         cluster.folder.ok("slurm mine.json --workers 2");
         let script = cluster.folder.read("mine.slurm/workers.sbatch");
         let line = script.lines().find(|line| line.starts_with("tribosweep=")).unwrap();
-        let stand_in = format!("tribosweep={}", cluster.folder.path("bin/stand-in").display());
-        cluster.folder.write("mine.slurm/workers.sbatch", &script.replace(line, &stand_in));
+        let fake_program = format!("tribosweep={}", cluster.folder.path("bin/fake-program").display());
+        cluster.folder.write("mine.slurm/workers.sbatch", &script.replace(line, &fake_program));
         std::fs::create_dir(cluster.folder.path("node")).unwrap();
         Self { cluster }
     }
@@ -307,16 +307,16 @@ impl Task {
         command.env_remove("SLURM_TMPDIR").stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
     }
 
-    /// Runs it to its end, or sends it a signal when it works.
+    /// Runs the task to its end, or sends it a signal when its worker runs.
     fn run(&self, signal: Option<&str>) -> Option<i32> {
-        let begun = self.cluster.calls().matches("stand-in work").count();
+        let begun = self.cluster.calls().matches("fake-program work").count();
         if signal.is_some() {
             self.cluster.folder.write("node/busy", "");
         }
         let mut task = self.start();
         if let Some(signal) = signal {
-            wait("the worker", || self.cluster.calls().matches("stand-in work").count() > begun);
-            // Its trap comes right after.
+            wait("the worker", || self.cluster.calls().matches("fake-program work").count() > begun);
+            // The fake program sets its trap right after the log entry.
             std::thread::sleep(Duration::from_millis(200));
             let kill = Command::new("kill").args([format!("-{signal}"), task.id().to_string()]).status();
             assert!(kill.unwrap().success());
@@ -335,10 +335,10 @@ impl Task {
     }
 }
 
-/// Protects: a task plans its shard on the node, works on it, copies it whole and leaves nothing on the node; the next run
-/// takes it up.
+/// Protects: a task plans its shard on the node, works on it, copies it to the shared folder and leaves no file on the node.
+/// The next run continues from the copy.
 #[test]
-fn a_shard_is_kept_and_taken_up() {
+fn the_next_task_continues_from_the_copy() {
     let task = Task::new();
     assert_eq!(task.run(None), Some(0));
     assert_eq!(task.kept(), "worked\n");
@@ -351,8 +351,8 @@ fn a_shard_is_kept_and_taken_up() {
     assert!(!task.cluster.calls().contains("scontrol"));
 }
 
-/// Protects: a task that is stopped waits for its worker and keeps the shard; at the time limit it requeues itself, and not
-/// the whole array, and never after SIGTERM.
+/// Protects: a task that is stopped waits for its worker and copies the shard. At the time limit it requeues itself, not the
+/// whole array; after SIGTERM it does not requeue.
 #[test]
 fn a_task_that_is_stopped() {
     let task = Task::new();
@@ -365,7 +365,7 @@ fn a_task_that_is_stopped() {
     assert!(task.left_on_the_node().is_empty(), "{:?}", task.left_on_the_node());
 }
 
-/// Protects: a worker that is killed is started again, and what it left beside its database is in the copy.
+/// Protects: a worker that is killed is started again, and the copy has the content of its write-ahead log.
 #[test]
 fn a_worker_that_is_killed() {
     let task = Task::new();
@@ -374,9 +374,9 @@ fn a_worker_that_is_killed() {
     assert_eq!(task.kept(), "worked\nworked\nunclosed\n");
 }
 
-/// Protects: of what a killed task left on the node and what was kept, the newer is taken up.
+/// Protects: a task continues from the database that a killed task left on the node or from the copy, whichever is newer.
 #[test]
-fn the_newer_is_taken_up() {
+fn a_task_continues_from_the_newer_database() {
     let task = Task::new();
     let folder = &task.cluster.folder;
     task.run(None);

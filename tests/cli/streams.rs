@@ -1,4 +1,4 @@
-//! Results go to standard output and nothing else does; a reader that leaves is no failure.
+//! Only results go to standard output. A reader that closes its pipe early is not an error.
 
 use std::process::{Command, Stdio};
 
@@ -10,10 +10,10 @@ fn folder() -> Folder {
     Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })))
 }
 
-/// Protects: commands without a result print nothing, commands with a result say nothing else, so that
-/// both streams can be piped.
+/// Protects: commands without a result print nothing, and commands with a result print nothing else, so that both streams
+/// can be piped.
 #[test]
-fn results_and_messages_have_a_stream_each() {
+fn results_and_messages_have_different_streams() {
     let folder = folder();
     for (command, has_result, has_messages) in [
         ("submit mine.json", false, true),
@@ -38,9 +38,9 @@ fn results_and_messages_have_a_stream_each() {
     assert!(stderr(&failed).starts_with("error: "), "{}", stderr(&failed));
 }
 
-/// Protects: `tribosweep … | head` succeeds, also when the reader is gone before the first byte.
+/// Protects: `tribosweep … | head` succeeds, even if the reader closes the pipe before the first byte.
 #[test]
-fn a_reader_that_leaves_is_no_failure() {
+fn a_closed_pipe_is_not_an_error() {
     let folder = folder();
     for command in
         ["run mine.json", "export mine", "export mine --format json", "status", "schema", "completions zsh"]
@@ -56,9 +56,9 @@ fn a_reader_that_leaves_is_no_failure() {
     }
 }
 
-/// Protects: a reader that leaves does not turn a failure into a success.
+/// Protects: a closed pipe does not turn a failure into a success.
 #[test]
-fn a_reader_that_leaves_hides_no_failure() {
+fn a_closed_pipe_hides_no_failure() {
     let folder = Folder::with("bad", &small(&json!({ "load_n": [30, 1e200] })));
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);
@@ -68,9 +68,9 @@ fn a_reader_that_leaves_hides_no_failure() {
     assert_eq!(output.status.code(), Some(1), "{}", String::from_utf8(output.stderr).unwrap());
 }
 
-/// Protects: a sweep whose messages nobody reads goes on to its end.
+/// Protects: a sweep runs to its end even if its standard error is closed.
 #[test]
-fn a_sweep_needs_no_reader_of_its_messages() {
+fn a_sweep_needs_no_standard_error() {
     let folder = folder();
     let (reader, writer) = std::io::pipe().unwrap();
     drop(reader);

@@ -1,4 +1,4 @@
-//! A folder with study files, and the command run in it.
+//! A folder with study files in which the command is run.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -12,13 +12,13 @@ use tempfile::TempDir;
 /// The command under test.
 pub const TRIBOSWEEP: &str = env!("CARGO_BIN_EXE_tribosweep");
 
-/// The header of the export, as other programs know it.
+/// The header of the export, which other programs rely on.
 pub const HEADER: &str = "study,job,omega_rpm,mu,status,regime,mu_star,mu_star_se,mu_star_contact,frequency_hz,\
 stick_share,slip_share,separated_share,n_over_f_min,n_over_f_max,sigma_n_max_pa,slip_speed_max_m_s,cycles,\
 simulated_s,steps,time_step_s,energy_residual,identity_residual,wall_s,error";
 
-/// Waiting longer than this for another process means that it hangs.
-const PATIENCE: Duration = Duration::from_mins(2);
+/// A process that takes longer hangs.
+const TIMEOUT: Duration = Duration::from_mins(2);
 
 pub struct Folder(TempDir);
 
@@ -55,16 +55,16 @@ impl Folder {
     pub fn command(&self, arguments: &str) -> Command {
         let mut command = Command::new(TRIBOSWEEP);
         command.current_dir(&self.0).env_remove("TRIBOSWEEP_DB").args(arguments.split_whitespace());
-        command.timeout(PATIENCE);
+        command.timeout(TIMEOUT);
         command
     }
 
-    /// What the command printed; it must succeed.
+    /// The standard output of the command, which must succeed.
     pub fn ok(&self, arguments: &str) -> String {
         stdout(&self.command(arguments).assert().code(0))
     }
 
-    /// Starts the command and does not wait for it.
+    /// Starts the command without waiting for its end.
     pub fn start(&self, arguments: &str) -> Running {
         let child = std::process::Command::new(TRIBOSWEEP)
             .current_dir(&self.0)
@@ -76,20 +76,20 @@ impl Folder {
         Running(Some(child.unwrap()))
     }
 
-    /// The number of jobs in each state, as `status --json` tells.
+    /// The number of jobs in each state, from `status --json`.
     pub fn counts(&self, study: &str) -> BTreeMap<String, u64> {
         let status: Value = serde_json::from_str(&self.ok(&format!("status {study} --json"))).unwrap();
         serde_json::from_value(status["jobs"].clone()).unwrap()
     }
 
-    /// Asks for the state of a study until `enough` says yes.
-    pub fn wait_for(&self, study: &str, enough: impl Fn(&BTreeMap<String, u64>) -> bool) {
-        wait("the study to get there", || {
-            // The database, or the study in it, may not be there yet.
+    /// Waits until the number of jobs in each state fulfils a condition.
+    pub fn wait_for(&self, study: &str, is_fulfilled: impl Fn(&BTreeMap<String, u64>) -> bool) {
+        wait("the jobs of the study", || {
+            // The database or the study may not exist yet.
             let mut command = self.command(&format!("status {study} --json"));
             let Ok(output) = command.ok() else { return false };
             let status: Value = serde_json::from_slice(&output.stdout).unwrap();
-            enough(&serde_json::from_value(status["jobs"].clone()).unwrap())
+            is_fulfilled(&serde_json::from_value(status["jobs"].clone()).unwrap())
         });
     }
 
@@ -112,7 +112,7 @@ impl Folder {
     }
 }
 
-/// A command that runs on its own; it ends with the test.
+/// A command that runs in the background. It is killed when this is dropped.
 pub struct Running(Option<Child>);
 
 impl Running {
@@ -126,7 +126,7 @@ impl Running {
         assert!(kill.args([format!("-{name}"), self.id().to_string()]).status().unwrap().success());
     }
 
-    /// Waits for its end: exit code (none if a signal ended it), standard output, standard error.
+    /// Waits for the end and returns exit code (`None` after a signal), standard output and standard error.
     pub fn end(mut self) -> (Option<i32>, String, String) {
         let output = self.0.take().unwrap().wait_with_output().unwrap();
         let text = |bytes| String::from_utf8(bytes).unwrap();
@@ -151,11 +151,11 @@ pub fn handles_interrupts(process: &Running) -> bool {
     u64::from_str_radix(caught.trim(), 16).unwrap() & 0b10 != 0
 }
 
-/// Asks until the answer is yes.
-pub fn wait(for_what: &str, mut enough: impl FnMut() -> bool) {
-    let begun = Instant::now();
-    while !enough() {
-        assert!(begun.elapsed() < PATIENCE, "waited in vain for {for_what}");
+/// Waits until a condition holds.
+pub fn wait(for_what: &str, mut is_fulfilled: impl FnMut() -> bool) {
+    let start = Instant::now();
+    while !is_fulfilled() {
+        assert!(start.elapsed() < TIMEOUT, "waited too long for {for_what}");
         std::thread::sleep(Duration::from_millis(5));
     }
 }
@@ -177,15 +177,15 @@ pub fn small(grid: &Value) -> Value {
     })
 }
 
-/// Jobs that take some tenths of a second and as long as one another: time to interrupt them. There are more than two
-/// threads advance together, so that some are left when the first are done.
+/// Jobs that all take some tenths of a second, so that they can be interrupted. There are more than two threads advance
+/// together, so that some are left when the first ones are done.
 pub fn long() -> Value {
     let mut study = small(&json!({ "mu": [0.2, 0.3, 0.4, 0.5], "omega_rpm": [2, 3, 5, 7, 10, 20] }));
     study["run"] = json!({ "limit_s": 0.2, "stop_early": false });
     study
 }
 
-/// Jobs of [`long`].
+/// The number of jobs of [`long`].
 pub const LONG_JOBS: u64 = 24;
 
 /// One row of an export, by column.
@@ -201,7 +201,7 @@ pub fn wall_times(export: &str) -> BTreeMap<String, String> {
     ended.map(|row| (row["job"].clone(), row["wall_s"].clone())).collect()
 }
 
-/// The export without the values of `wall_s`, all other bytes as they are.
+/// The export without the values of `wall_s`; all other bytes are unchanged.
 pub fn without_wall_times(export: &str) -> String {
     let column = HEADER.split(',').position(|name| name == "wall_s").unwrap();
     assert!(!export.contains('"'), "a quoted cell may hold a comma: {export}");

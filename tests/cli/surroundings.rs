@@ -1,5 +1,5 @@
-//! Full and read-only disks, locks and damage, as the command meets them: each ends in a message that says what to do,
-//! and nothing is lost.
+//! Full and read-only disks, locks and damaged files: the command ends with a message that says what to do, and no result
+//! is lost.
 #![cfg(unix)]
 
 use std::fs;
@@ -18,15 +18,15 @@ fn undisturbed(study: &Value) -> String {
     without_wall_times(&folder.ok("export study"))
 }
 
-/// Fails with a message.
-fn refused(folder: &Folder, arguments: &str, message: &str) {
-    let told = stderr(&folder.command(arguments).assert().code(2));
-    assert!(told.contains(message), "{arguments}: {told}");
-    assert!(!told.contains("panicked"), "{told}");
+/// Asserts that the command fails with a message.
+fn assert_refused(folder: &Folder, arguments: &str, expected: &str) {
+    let message = stderr(&folder.command(arguments).assert().code(2));
+    assert!(message.contains(expected), "{arguments}: {message}");
+    assert!(!message.contains("panicked"), "{message}");
 }
 
-/// Protects: a disk that fills up in the middle ends the work with a message that says so; with room again the same
-/// command does the rest.
+/// Protects: when the disk fills up, the work ends with a message that says so. When there is room again, the same command
+/// runs the other jobs.
 #[test]
 fn a_disk_that_fills_up() {
     let folder = Folder::new();
@@ -38,49 +38,49 @@ fn a_disk_that_fills_up() {
     let work = folder.start("work");
     folder.wait_for("study", |counts| counts["running"] > 0);
     let filler = folder.path("filler");
-    // All that is left, and then some.
+    // This is more than the free space.
     let _ = fs::write(&filler, vec![0; 5_000_000]);
-    let (code, _, told) = work.end();
-    assert_eq!(code, Some(2), "{told}");
-    assert!(told.contains("the disk of the database is full"), "{told}");
-    refused(&folder, "work", "the disk of the database is full");
+    let (code, _, message) = work.end();
+    assert_eq!(code, Some(2), "{message}");
+    assert!(message.contains("the disk of the database is full"), "{message}");
+    assert_refused(&folder, "work", "the disk of the database is full");
     fs::remove_file(&filler).unwrap();
     folder.ok("work");
     assert_eq!(without_wall_times(&folder.ok("export study")), undisturbed(&study));
 }
 
-/// Protects: a disk with room for results and none for the states of running jobs does not stop a sweep.
+/// Protects: a disk with room for results but not for checkpoints does not stop a sweep.
 #[test]
 fn a_disk_that_is_too_small_for_checkpoints() {
     let folder = Folder::new();
     let Some(_mount) = Mount::new(&folder.path(""), "size=1500k") else { return };
-    // A state takes a megabyte.
+    // A checkpoint takes a megabyte.
     let mut study = small(&json!({ "mu": [0.2, 0.4], "omega_rpm": [7, 20] }));
     study["scene"]["pin"]["elements"] = json!([24, 30, 20]);
     study["run"] = json!({ "limit_s": 0.002, "stop_early": false });
     folder.add("study", &study);
     folder.ok("submit study.json");
-    let (code, _, told) = folder.start("work --checkpoint-every 0.05").end();
-    assert_eq!(code, Some(0), "{told}");
+    let (code, _, message) = folder.start("work --checkpoint-every 0.05").end();
+    assert_eq!(code, Some(0), "{message}");
     assert!(
-        told.contains("the state of running jobs cannot be kept: the disk of the database is full"),
-        "{told}"
+        message.contains("the state of running jobs cannot be kept: the disk of the database is full"),
+        "{message}"
     );
     assert_eq!(folder.counts("study")["done"], 4);
 }
 
-/// Protects: a sweep on a disk that can only be read can be looked at, and says why it cannot be worked on; it goes on
-/// where it can be written.
+/// Protects: a database on a read-only disk can be read, and a command that has to write says why it cannot. The sweep
+/// continues when the disk can be written.
 #[test]
-fn a_disk_that_can_only_be_read() {
+fn a_read_only_disk() {
     let folder = Folder::new();
     let Some(mount) = Mount::new(&folder.path(""), "size=50M") else { return };
     folder.add("study", &long());
     folder.ok("submit study.json");
     mount.remount("ro");
     assert_eq!(folder.counts("study")["pending"], 24);
-    refused(&folder, "work", "Read-only file system");
-    refused(&folder, "cancel study", "Read-only file system");
+    assert_refused(&folder, "work", "Read-only file system");
+    assert_refused(&folder, "cancel study", "Read-only file system");
     mount.remount("rw");
     folder.ok("work");
     let export = folder.ok("export study");
@@ -89,39 +89,39 @@ fn a_disk_that_can_only_be_read() {
     assert_eq!(without_wall_times(&export), undisturbed(&long()));
 }
 
-/// Protects: a lock of another program is waited for; the work that goes on meanwhile is not lost.
+/// Protects: a worker waits for the lock of another program, and results that it computes meanwhile are not lost.
 #[tokio::test]
 async fn a_lock_is_waited_for() {
-    const KEPT: Duration = Duration::from_secs(1);
+    const LOCKED: Duration = Duration::from_secs(1);
     let folder = Folder::with("study", &long());
     folder.ok("submit study.json");
     let options = SqliteConnectOptions::new().filename(folder.path("tribosweep.db"));
     let mut other = options.connect().await.unwrap();
     sqlx::raw_sql("BEGIN IMMEDIATE").execute(&mut other).await.unwrap();
     let (begun, work) = (Instant::now(), folder.start("work"));
-    tokio::time::sleep(KEPT).await;
-    assert_eq!(folder.counts("study")["pending"], 24, "reading goes on");
+    tokio::time::sleep(LOCKED).await;
+    assert_eq!(folder.counts("study")["pending"], 24, "the database can still be read");
     sqlx::raw_sql("ROLLBACK").execute(&mut other).await.unwrap();
     assert_eq!(work.end().0, Some(0));
-    assert!(begun.elapsed() > KEPT);
+    assert!(begun.elapsed() > LOCKED);
     assert_eq!(without_wall_times(&folder.ok("export study")), undisturbed(&long()));
 }
 
-/// Protects: a damaged file is called that by whoever reads or works, and the file stays as it is.
+/// Protects: commands that read or work on a damaged file say that it is damaged, and do not change it.
 #[test]
 fn a_damaged_file() {
     let folder = Folder::with("study", &long());
     folder.ok("run study.json");
     let path = folder.path("tribosweep.db");
     let mut bytes = fs::read(&path).unwrap();
-    // All but the first pages, which hold the tables' definitions.
+    // The first pages, which hold the definitions of the tables, stay intact.
     let whole = bytes.len();
     bytes[whole / 3..whole / 3 * 2].fill(0xa5);
     fs::write(&path, &bytes).unwrap();
-    let told = folder.command("doctor").assert().code(2);
-    assert!(stdout(&told).contains("PROBLEM"), "{}", stdout(&told));
+    let message = folder.command("doctor").assert().code(2);
+    assert!(stdout(&message).contains("PROBLEM"), "{}", stdout(&message));
     for arguments in ["export study", "report study", "run study.json"] {
-        refused(&folder, arguments, "the database is damaged");
+        assert_refused(&folder, arguments, "the database is damaged");
     }
     assert_eq!(fs::read(&path).unwrap(), bytes);
 }

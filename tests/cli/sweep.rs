@@ -1,4 +1,4 @@
-//! The whole sweep in one command, and what it leaves behind.
+//! The whole sweep in one command, and the files that it writes.
 
 use std::collections::BTreeSet;
 
@@ -31,8 +31,8 @@ const REPORT: [&str; 21] = [
     "shares.svg",
 ];
 
-/// Protects: one command takes the shipped quick study from its file to the table of μ*, the files of the
-/// report and an export with all four contact regimes, and leaves nothing unfinished behind.
+/// Protects: one command runs the shipped quick study and prints the table of μ*, writes all files of the report and no
+/// others, and the export has all four contact regimes.
 #[test]
 fn the_mini_study_in_one_command() {
     let folder = Folder::new();
@@ -62,10 +62,9 @@ fn the_mini_study_in_one_command() {
     assert_eq!(folder.files(), expected);
 }
 
-/// Protects: the shipped study's μ* lies below the local coefficient, far below where the contact sticks
-/// and separates: the table a user reads is that of the physics, not of another column.
+/// Protects: the table has the μ* of the export, which is between half of the local coefficient and the whole of it.
 #[test]
-fn the_table_holds_what_the_export_says() {
+fn the_table_agrees_with_the_export() {
     let folder = Folder::new();
     folder.write("mini.json", include_str!("../../studies/mini.json"));
     let table = folder.ok("run mini.json");
@@ -79,7 +78,7 @@ fn the_table_holds_what_the_export_says() {
     }
 }
 
-/// Protects: CSV and JSON lines say the same, cell by cell; the same goes for a file.
+/// Protects: CSV and JSON lines have the same values, on standard output and in a file.
 #[test]
 fn json_lines_agree_with_the_csv() {
     let folder = Folder::new();

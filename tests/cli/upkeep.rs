@@ -1,12 +1,12 @@
-//! Looking after studies and their database: retry, cancel, rm, gc, doctor, show, priorities.
+//! Maintenance of studies and their database: retry, cancel, rm, gc, doctor, show, priorities.
 
 use serde_json::{Value, json};
 
 use crate::support::{Folder, rows, small, stderr, stdout};
 
-/// Protects: what is cancelled is not run, is counted as that, and comes back with `retry` or with a submission.
+/// Protects: cancelled jobs are not run and are counted as cancelled. `retry` or another submission makes them pending.
 #[test]
-fn cancelled_jobs_stay_away_until_asked_for() {
+fn cancelled_jobs_are_not_run_until_requested() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
     folder.ok("submit mine.json");
     let cancelled = folder.command("cancel mine").assert().code(0);
@@ -22,7 +22,7 @@ fn cancelled_jobs_stay_away_until_asked_for() {
     assert_eq!(folder.counts("mine")["done"], 2);
 }
 
-/// Protects: failed jobs are run again when asked for, and only they.
+/// Protects: `retry --failed` runs failed jobs again and no others.
 #[test]
 fn failed_jobs_are_retried() {
     let folder = Folder::with("bad", &small(&json!({ "load_n": [30, 1e200] })));
@@ -39,7 +39,7 @@ fn failed_jobs_are_retried() {
     assert_eq!((shown["state"].as_str(), shown["attempt"].as_u64()), (Some("failed"), Some(2)));
 }
 
-/// Protects: a removed study is gone, its results stay until `gc` says what it dropped.
+/// Protects: the results of a removed study stay in the database until `gc`, which prints how many it deleted.
 #[test]
 fn removed_studies_leave_no_garbage() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
@@ -51,11 +51,11 @@ fn removed_studies_leave_no_garbage() {
     let collected = folder.ok("gc");
     assert!(collected.starts_with("dropped 1 jobs, 1 results and "), "{collected}");
     assert!(folder.ok("gc").starts_with("dropped 0 jobs, 0 results and 0 "));
-    assert_eq!(folder.counts("other")["done"], 1, "shared with what was removed");
+    assert_eq!(folder.counts("other")["done"], 1, "the job is shared with the removed study");
     assert_eq!(folder.command("rm mine").assert().get_output().status.code(), Some(2));
 }
 
-/// Protects: a priority goes before cost: the study that is urgent is done first.
+/// Protects: the priority counts more than the cost: the urgent study is run first.
 #[test]
 fn an_urgent_study_goes_first() {
     let folder = Folder::with("slow", &small(&json!({ "mu": [0.2, 0.3] })));
@@ -73,9 +73,9 @@ fn an_urgent_study_goes_first() {
     assert!(ended("urgent")[0] <= *ended("slow").iter().min().unwrap());
 }
 
-/// Protects: every result says what it was made with, and a key may be shortened as far as it is one job's.
+/// Protects: `show` has the provenance of a result, and accepts the first characters of a key if they are unique.
 #[test]
-fn a_result_says_where_it_comes_from() {
+fn results_have_a_provenance() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
     folder.ok("run mine.json --threads 2");
     let job = rows(&folder.ok("export mine"))[0]["job"].clone();
@@ -92,15 +92,15 @@ fn a_result_says_where_it_comes_from() {
     }
     assert!(shown["started_ms"].as_i64().unwrap() <= shown["finished_ms"].as_i64().unwrap());
     let several = folder.command("show").arg("").assert().code(2);
-    assert!(stderr(&several).contains("several jobs begin with"), "{}", stderr(&several));
+    assert!(stderr(&several).contains("several jobs have keys that begin with"), "{}", stderr(&several));
     let none = folder.command("show zz").assert().code(2);
-    assert!(stderr(&none).contains("no job's key begins with `zz`"), "{}", stderr(&none));
+    assert!(stderr(&none).contains("no job has a key that begins with `zz`"), "{}", stderr(&none));
 }
 
-/// Protects: a healthy database is called that; a damaged one is a problem with the code of bad surroundings, as is
-/// what is no database at all.
+/// Protects: `doctor` finds no problem in a healthy database. A file that is not a database is a problem with exit code 2,
+/// and so is a missing file.
 #[test]
-fn the_doctor_tells_the_healthy_from_the_ill() {
+fn doctor_finds_problems() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
     folder.ok("run mine.json");
     let healthy = folder.ok("doctor");

@@ -1,4 +1,4 @@
-//! `report --watch`: a report that follows a study.
+//! `report --watch`: a report that is updated while its study runs.
 
 use serde_json::json;
 
@@ -6,10 +6,10 @@ use crate::support::{Folder, LONG_JOBS, long, small, wait};
 
 const REFRESH: &str = "http-equiv=\"refresh\"";
 
-/// Protects: while another process works, the page is written again and again and loads itself anew; when nothing is
-/// left, it is complete, loads itself no more, and the command ends.
+/// Protects: while another process works, the page is updated and reloads itself. When no job is left, the page is complete
+/// and does not reload itself any more, and the command ends.
 #[test]
-fn a_watched_report_follows_the_sweep() {
+fn a_watched_report_is_updated() {
     let folder = Folder::with("long", &long());
     folder.ok("submit long.json");
     let watching = folder.start("report long --watch 1 --out out");
@@ -25,10 +25,10 @@ fn a_watched_report_follows_the_sweep() {
     assert!(!page.contains(REFRESH));
 }
 
-/// Protects: a report is not written anew while nothing changes, and an interruption leaves one that does not wait for
-/// another.
+/// Protects: a report is not written again while nothing changes. After an interruption the page does not reload itself any
+/// more.
 #[test]
-fn an_interrupted_watch_leaves_a_quiet_page() {
+fn an_interrupted_watch_ends_the_reloading() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
     folder.ok("submit mine.json");
     let watching = folder.start("report mine --watch 1 --out out");
@@ -42,9 +42,9 @@ fn an_interrupted_watch_leaves_a_quiet_page() {
     assert!(page().contains("2 of 2 jobs are missing") && !page().contains(REFRESH));
 }
 
-/// Protects: a study that is finished is reported once, and an interval that is none is refused.
+/// Protects: a finished study is reported once, and an interval of 0 is refused.
 #[test]
-fn a_finished_study_is_not_waited_for() {
+fn a_finished_study_is_reported_once() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
     folder.ok("run mine.json --out out");
     let page = folder.read("out/report.html");

@@ -1,13 +1,13 @@
 
-# On the node's own disk, as in the tasks.
+# The database is on the local disk of the node, as in the tasks.
 node_folder=$(mktemp -d "${SLURM_TMPDIR:-${TMPDIR:-/tmp}}/tribosweep-report.XXXXXX") || exit 2
 trap 'rm -rf "$node_folder"' EXIT
 db="$node_folder/$merged"
 shards=()
 for ((i = 0; i < workers; i++)); do
-    [ -e "$folder/shards/shard-$i.db" ] || say "there is no shard-$i.db: that task has not got to its end"
+    [ -e "$folder/shards/shard-$i.db" ] || say "there is no shard-$i.db: its task has not ended"
 done
-# All that there are: with more tasks in an earlier array there are more.
+# An earlier array may have had more tasks: all shards are merged.
 for kept in "$folder"/shards/shard-*.db; do
     [ -e "$kept" ] || continue
     cp -p "$kept" "$node_folder/" || exit 2
@@ -16,7 +16,7 @@ done
 if [ "${#shards[@]}" -gt 0 ]; then
     "$tribosweep" merge --db "$db" -- "${shards[@]}" || exit 2
 fi
-# The rows of shards that were never begun.
+# This adds the rows of shards that were never started.
 "$tribosweep" submit --db "$db" -- "$study" || exit 2
 if [ ! -e "$db-wal" ] && cp "$db" "$folder/.$merged.partial"; then
     mv -f "$folder/.$merged.partial" "$folder/$merged" || exit 2

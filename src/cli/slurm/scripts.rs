@@ -1,4 +1,4 @@
-//! The scripts of a job array, made of templates and settings.
+//! The scripts of a job array, from templates and settings.
 
 use super::Args;
 use super::settings::Database;
@@ -8,33 +8,35 @@ use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
 /// The script that plans the study and submits the others.
-pub const SUBMIT: &str = "submit.sh";
+pub(crate) const SUBMIT: &str = "submit.sh";
 const WORKERS: &str = "workers.sbatch";
 const REPORT: &str = "report.sbatch";
 
 const BASH: &str = "#!/bin/bash\n";
 
-/// How long before its time limit a task is told [s]: time to keep the states of its jobs and to copy a shard.
+/// How long before its time limit a task gets a signal, in seconds: it needs the time to store the states of its jobs and
+/// to copy a shard.
 const NOTICE_S: u32 = 120;
 /// How long a worker on a shared database waits for jobs.
 const IDLE_EXIT: &str = "60s";
-/// How often a shard is copied to the shared folder [s]; a node that dies costs as much.
+/// The interval in seconds at which a shard is copied to the shared folder. A node that dies loses the work of at most one
+/// interval.
 const KEEP_EVERY_S: &str = "1800";
-/// How often a task starts its worker again after it was killed; more than a job needs to fail (`--max-crashes`).
+/// How often a task starts its worker again after it was killed: more often than a job needs to fail (`--max-crashes`).
 const STARTS: &str = "10";
 
-/// Scripts of one study and the folder where they go.
-pub struct Scripts {
+/// The scripts of one study and their folder.
+pub(crate) struct Scripts {
     folder: PathBuf,
     has_shards: bool,
     texts: [(&'static str, String); 3],
 }
 
 impl Scripts {
-    /// Makes the scripts; nothing is written.
-    pub fn new(args: &Args, name: &str, database: &Database, folder: &Path) -> Result<Self, CliError> {
-        let folder = std::path::absolute(folder).map_err(|source| file_error(folder, source))?;
-        let study = std::path::absolute(&args.study).map_err(|source| file_error(&args.study, source))?;
+    /// Creates the texts of the scripts; nothing is written.
+    pub(crate) fn new(args: &Args, name: &str, database: &Database, folder: &Path) -> Result<Self, CliError> {
+        let folder = std::path::absolute(folder).map_err(|source| CliError::file(folder, source))?;
+        let study = std::path::absolute(&args.study).map_err(|source| CliError::file(&args.study, source))?;
         let program = program();
         let workers = args.workers.to_string();
         let common = [
@@ -76,8 +78,8 @@ impl Scripts {
         Ok(Self { folder, has_shards: mode.url.is_empty(), texts })
     }
 
-    /// Writes the scripts; what else is in the folder stays.
-    pub fn write(&self) -> Result<(), CliError> {
+    /// Writes the scripts. Other files in the folder stay as they are.
+    pub(crate) fn write(&self) -> Result<(), CliError> {
         create(&self.folder)?;
         if self.has_shards {
             create(&self.folder.join("shards"))?;
@@ -89,14 +91,14 @@ impl Scripts {
     }
 
     /// The script that submits the others.
-    pub fn submit(&self) -> PathBuf {
+    pub(crate) fn submit(&self) -> PathBuf {
         self.folder.join(SUBMIT)
     }
 }
 
-/// What differs between workers that share a database and workers with shards.
+/// The difference between workers that share a database and workers with shards.
 struct Mode<'a> {
-    /// The URL that all share; none with shards.
+    /// The URL of the shared database; empty with shards.
     url: &'a str,
     database: (&'static str, &'a str),
     waiting: (&'static str, &'static str),
@@ -125,8 +127,8 @@ impl<'a> Mode<'a> {
     }
 }
 
-/// The head of a script for `sbatch`: Slurm reads these lines up to the first command. Paths are relative to the folder
-/// that `submit.sh` is in, so that none has to be quoted in Slurm's way, in which % and \ mean something.
+/// The head of a script for `sbatch`: Slurm reads these lines up to the first command. Paths are relative to the folder of
+/// `submit.sh`, so that no path has to be quoted by Slurm's rules, which give % and \ a meaning.
 fn sbatch(args: &Args, name: &str, workers: Option<u32>) -> String {
     let mut head = BASH.to_owned();
     let mut line = |option: &str, value: &str| {
@@ -160,39 +162,39 @@ fn sbatch(args: &Args, name: &str, workers: Option<u32>) -> String {
     head + "#SBATCH --requeue\n"
 }
 
-/// Shell variables, with values quoted so that they stay what they are.
+/// Assignments to shell variables with quoted values.
 fn settings<'a>(values: impl IntoIterator<Item = &'a (&'a str, &'a str)>) -> Result<String, CliError> {
     values.into_iter().try_fold(String::new(), |mut text, (name, value)| {
         let quoted = shlex::try_quote(value)
-            .map_err(|error| CliError::Plan(format!("{name} cannot be written into a script: {error}")))?;
+            .map_err(|error| CliError::Refused(format!("{name} cannot be written into a script: {error}")))?;
         let _ = writeln!(text, "{name}={quoted}");
         Ok(text)
     })
 }
 
-/// This program, or the one of that name where it cannot be seen, such as after an update.
+/// The path of this program, or its name if the file does not exist any more, for example after an update.
 fn program() -> PathBuf {
     std::env::current_exe().ok().filter(|path| path.exists()).unwrap_or_else(|| PathBuf::from("tribosweep"))
 }
 
 fn utf8(path: &Path) -> Result<&str, CliError> {
-    path.to_str()
-        .ok_or_else(|| CliError::Plan(format!("{}: scripts need a path that is UTF-8", path.display())))
-}
-
-fn file_error(path: &Path, source: std::io::Error) -> CliError {
-    CliError::File { path: path.display().to_string(), source }
+    path.to_str().ok_or_else(|| {
+        CliError::Refused(format!(
+            "{}: the path cannot be written into a script because it is not UTF-8",
+            path.display()
+        ))
+    })
 }
 
 fn create(folder: &Path) -> Result<(), CliError> {
-    std::fs::create_dir_all(folder).map_err(|source| file_error(folder, source))
+    std::fs::create_dir_all(folder).map_err(|source| CliError::file(folder, source))
 }
 
 #[cfg(unix)]
 fn make_executable(path: &Path) -> Result<(), CliError> {
     use std::os::unix::fs::PermissionsExt;
     let permissions = std::fs::Permissions::from_mode(0o755);
-    std::fs::set_permissions(path, permissions).map_err(|source| file_error(path, source))
+    std::fs::set_permissions(path, permissions).map_err(|source| CliError::file(path, source))
 }
 
 #[cfg(not(unix))]

@@ -1,15 +1,15 @@
-//! What Slurm and the database are told. What cannot be meant is refused here: Slurm would say so when the study is
-//! planned already.
+//! The settings for Slurm and the database. Invalid values are refused here: Slurm would refuse them only after the study
+//! has been planned.
 
 use crate::cli::error::CliError;
 use crate::queue::Location;
 
-/// Tasks stop two minutes before their time limit, of which Slurm may be a minute early: in less than this they would
-/// be stopped again and again before they get anywhere.
+/// Tasks stop two minutes before their time limit, and Slurm's signal may come a minute earlier. With a shorter limit they
+/// would be stopped again and again without any progress.
 const SHORTEST_MINUTES: u64 = 5;
 
-/// Reads names with commas between them.
-pub fn names(text: &str) -> Result<String, String> {
+/// Reads names that are separated by commas.
+pub(crate) fn names(text: &str) -> Result<String, String> {
     let usable = |name: &str| {
         let allowed = |c: char| c.is_ascii_alphanumeric() || "_-.+@".contains(c);
         !name.is_empty() && !name.starts_with('-') && name.chars().all(allowed)
@@ -17,22 +17,21 @@ pub fn names(text: &str) -> Result<String, String> {
     if text.split(',').all(usable) {
         return Ok(text.to_owned());
     }
-    Err("expected a name of letters, digits, _, -, . , + and @, or several with commas between them"
-        .to_owned())
+    Err("expected a name of letters, digits, _, -, . , + and @, or several separated by commas".to_owned())
 }
 
 /// Reads an amount of memory.
-pub fn memory(text: &str) -> Result<String, String> {
+pub(crate) fn memory(text: &str) -> Result<String, String> {
     let number = text.strip_suffix(['K', 'M', 'G', 'T', 'k', 'm', 'g', 't']).unwrap_or(text);
     if !number.is_empty() && number.bytes().all(|c| c.is_ascii_digit()) {
         return Ok(text.to_owned());
     }
-    Err("expected a whole number of megabytes, or one with K, M, G or T behind it, such as 500M or 2G"
+    Err("expected a whole number of megabytes, or a number with the unit K, M, G or T, such as 500M or 2G"
         .to_owned())
 }
 
-/// Reads a time limit in one of Slurm's six ways of writing it.
-pub fn time_limit(text: &str) -> Result<String, String> {
+/// Reads a time limit in one of Slurm's six formats.
+pub(crate) fn time_limit(text: &str) -> Result<String, String> {
     if ["UNLIMITED", "INFINITE"].iter().any(|word| word.eq_ignore_ascii_case(text)) {
         return Ok(text.to_owned());
     }
@@ -43,8 +42,8 @@ pub fn time_limit(text: &str) -> Result<String, String> {
     })?;
     if seconds < SHORTEST_MINUTES * 60 {
         return Err(format!(
-            "too short: tasks stop two to three minutes before their time limit, to go on in another time slot; \
-             expected at least {SHORTEST_MINUTES} minutes, and better hours"
+            "too short: tasks stop two to three minutes before their time limit, to continue in another time slot; \
+             expected at least {SHORTEST_MINUTES} minutes, better hours"
         ));
     }
     Ok(text.to_owned())
@@ -68,20 +67,21 @@ fn seconds(text: &str) -> Option<u64> {
     Some(days.map_or(Some(0), number)? * 86_400 + within_a_day)
 }
 
-/// Where the workers' jobs are.
+/// The database of the workers.
 #[derive(Debug)]
-pub enum Database {
-    /// In one PostgreSQL database that all workers share, by its URL.
+pub(crate) enum Database {
+    /// The URL of a PostgreSQL database that all workers share.
     Shared(String),
-    /// In a SQLite file a worker on its node's own disk; at the end they become the file with this name.
+    /// Each worker has a SQLite file on the local disk of its node. At the end these shards are merged into the file with
+    /// this name.
     Shards(String),
 }
 
 impl Database {
-    /// What `--db` asks for.
-    pub fn of(db: &Location) -> Result<Self, CliError> {
+    /// The database that `--db` names.
+    pub(crate) fn of(db: &Location) -> Result<Self, CliError> {
         match db {
-            // Not shown: what is refused is a secret.
+            // The message does not show the URL: it contains a password.
             Location::Server(server) if server.has_password() => Err(CliError::Usage(
                 "the URL of the database has a password, and the scripts are files that others may read; leave it \
                  out of the URL, and put it into ~/.pgpass (a line host:port:database:user:password, chmod 600) or \
@@ -107,7 +107,7 @@ impl Database {
 mod tests {
     use super::*;
 
-    /// Protects: every way in which Slurm writes a time is taken, with its meaning; others are not.
+    /// Protects: every time format of Slurm is accepted and has the right value; other texts are refused.
     #[test]
     fn times() {
         for (text, expected) in [
@@ -127,9 +127,9 @@ mod tests {
         assert!(time_limit("unlimited").is_ok() && time_limit("5").is_ok());
     }
 
-    /// Protects: what Slurm or a shell would read as something else is no name and no amount of memory.
+    /// Protects: texts that Slurm or a shell would interpret are refused as names and as amounts of memory.
     #[test]
-    fn words() {
+    fn names_and_memory() {
         for text in ["main", "main,low", "gpu-a100.v2", "user@site"] {
             assert_eq!(names(text).unwrap(), text);
         }

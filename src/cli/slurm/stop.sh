@@ -1,11 +1,11 @@
 
-# What Slurm 22.05 sends, as seen on a cluster (scripts/slurm.py starts one):
+# The signals of Slurm 22.05, observed on a cluster (scripts/slurm.py starts one):
 #  - scancel, scontrol requeue and the end of a pre-emption's grace time: SIGCONT and SIGTERM to this shell and to all its
-#    children at once, SIGKILL to what is left after KillWait (30 s unless the site says otherwise);
-#  - the begin of a pre-emption's grace time: nothing to a batch job (signals go to steps of srun alone), or the signal of
-#    --signal where the site has PreemptParameters=send_user_signal;
-#  - the time limit: SIGUSR1 to this shell alone, up to a minute earlier than --signal says, then as scancel.
-# Without traps the shell would die of these, and the worker of SIGKILL in the middle of giving its jobs back.
+#    children, SIGKILL to the remaining processes after KillWait (default 30 s);
+#  - the start of a pre-emption's grace time: nothing to a batch job (only steps of srun get signals), or the signal of
+#    --signal if the site has PreemptParameters=send_user_signal;
+#  - the time limit: SIGUSR1 to this shell only, up to a minute earlier than --signal says, then the same as scancel.
+# Without traps these signals would end the shell, and SIGKILL would end the worker while it gives its jobs back.
 reason=
 worker=
 asked=
@@ -15,7 +15,8 @@ trap 'reason=${reason:-limit}; ask' USR1
 
 say() { printf '%s task %s: %s\n' "$(date +%FT%T)" "$SLURM_ARRAY_TASK_ID" "$*"; }
 
-# Asks the worker to stop. Slurm may have told it as well: twice within a second is once to it, later is "at once".
+# Asks the worker to stop. Slurm may have sent it a signal too: the worker takes two signals within a second for one, and
+# stops immediately at a later one.
 ask() {
     if [ -n "$worker" ] && [ -z "$asked" ]; then
         asked=yes
@@ -23,34 +24,34 @@ ask() {
     fi
 }
 
-# Runs a worker to its end, whatever signals come meanwhile; its exit code is in $code.
+# Runs a worker until it ends, also if this shell gets signals; the exit code of the worker is in $code.
 run() {
     local last
     asked=
     "$@" &
     worker=$!
-    # A signal between the start and the line above found no worker to ask.
+    # The trap of a signal that came before the line above did not know the worker.
     [ -z "$reason" ] || ask
     while :; do
         wait "$worker"
         code=$?
         [ "$code" -gt 128 ] || break
-        # A trapped signal ends `wait` and not the worker.
+        # A trapped signal ends `wait` but not the worker.
         kill -0 "$worker" 2> /dev/null && continue
-        # It ended at that very moment: the shell still knows its code, unless that was what `wait` gave before.
+        # The worker has ended: the shell still knows its code, unless the first `wait` returned it.
         wait "$worker" 2> /dev/null
         last=$?
         [ "$last" -eq 127 ] || code=$last
         break
     done
     worker=
-    # Asked to stop before it listened.
+    # The worker got the signal before it could handle it.
     if [ -n "$reason" ] && [ "$code" -eq 143 ]; then code=3; fi
 }
 
-# Whether to start the worker again: it was killed (by the system for want of memory, by somebody), this task was not. A
-# job that kills its worker again and again fails in the queue before the starts are used up.
-killed() {
+# Whether to start the worker again: it was killed (by the system because of its memory, or by somebody) and this task was
+# not. A job that kills its worker several times fails in the queue before the starts are used up.
+restarts() {
     [ -z "$reason" ] && [ "$code" -gt 128 ] || return 1
     if [ "$starts" -eq 0 ]; then
         say "the worker died again (code $code); giving up"
@@ -60,16 +61,16 @@ killed() {
     say "the worker died (code $code) and is started again"
 }
 
-# What must not be half done: a signal to all children of the shell does not end it.
-whole() { (trap '' TERM USR1 && exec "$@"); }
+# Runs a command that must not be interrupted: signals to all children of the shell do not end it.
+uninterrupted() { (trap '' TERM USR1 && exec "$@"); }
 
-# Goes on in another time slot if the time limit came before the end of the work. Not after SIGTERM: whoever cancels a
-# task means it, and what is pre-empted Slurm puts back itself. The task is named by array and index, because the number
-# of one of the tasks is that of the array, and requeueing it would stop all the others.
-go_on_later() {
+# Requeues this task if the time limit came before the end of the work. It does not after SIGTERM: a cancelled task is not
+# wanted any more, and Slurm requeues pre-empted tasks itself. The task is named by array and index, because one of the
+# tasks has the same number as the array, and requeueing that number would stop all tasks.
+requeue_at_limit() {
     if [ "$reason" = limit ] && [ "$code" -eq 3 ]; then
-        say "the time limit is near: going on in another time slot"
+        say "the time limit is near: continuing in another time slot"
         scontrol requeue "${SLURM_ARRAY_JOB_ID}_${SLURM_ARRAY_TASK_ID}" \
-            || say "cannot be put back into Slurm's queue; run submit.sh again for what is left"
+            || say "this task cannot be requeued; run submit.sh again for the jobs that are left"
     fi
 }

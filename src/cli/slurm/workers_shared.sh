@@ -2,8 +2,8 @@
 say "worker for $name on $(hostname)"
 while [ -z "$reason" ]; do
     run "$tribosweep" work --db "$db" --threads "$SLURM_CPUS_PER_TASK" --idle-exit "$idle_exit"
-    killed || break
+    restarts || break
 done
 say "the worker ended with $code"
-go_on_later
+requeue_at_limit
 exit "$code"

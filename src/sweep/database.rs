@@ -1,0 +1,76 @@
+//! Opening the database, and studies by name or file.
+
+use super::error::SweepError;
+use crate::queue::{Clock, Location, Queue, QueueError, Settings};
+use crate::study::Study;
+use std::future::Future;
+use std::path::Path;
+
+/// Runs a future to its end on this thread, for programs without an asynchronous runtime.
+///
+/// # Errors
+/// Those of the future, and [`SweepError::Runtime`].
+///
+/// # Panics
+/// Inside an asynchronous runtime, which can await the future itself.
+pub fn block_on<T, E: From<SweepError>>(future: impl Future<Output = Result<T, E>>) -> Result<T, E> {
+    let runtime = tokio::runtime::Builder::new_current_thread().enable_all().build();
+    runtime.map_err(SweepError::Runtime)?.block_on(future)
+}
+
+/// Opens a database; creates it if it does not exist. The location is a path or a [`Location`].
+///
+/// # Errors
+/// As [`Queue::open`].
+pub async fn open(database: impl Into<Location>) -> Result<Queue, SweepError> {
+    Ok(Queue::open(database, Clock::OfDatabase).await?)
+}
+
+/// Opens an existing database to read from it.
+///
+/// # Errors
+/// As [`Queue::open_to_read`].
+pub async fn open_to_read(database: impl Into<Location>) -> Result<Queue, SweepError> {
+    Ok(Queue::open_to_read(database, Clock::OfDatabase).await?)
+}
+
+/// Opens an existing database to change it.
+///
+/// # Errors
+/// As [`Queue::open_existing`].
+pub async fn open_to_change(database: impl Into<Location>) -> Result<Queue, SweepError> {
+    Ok(Queue::open_existing(database, Clock::OfDatabase, Settings::default()).await?)
+}
+
+/// The name of a study that is given as its name or as its file. What ends in `.json` is a file.
+///
+/// # Errors
+/// If the file cannot be read or is no valid study.
+pub fn study_name(study: &str) -> Result<String, SweepError> {
+    Ok(match study_file(study) {
+        Some(path) => Study::load(path)?.name().to_owned(),
+        None => study.to_owned(),
+    })
+}
+
+/// The study in a file, or the one in the database as it was submitted. What ends in `.json` is a file.
+///
+/// # Errors
+/// If the file or the database cannot be read, the study is not valid, or the database has no study of that name.
+pub async fn load_study(study: &str, database: &Location) -> Result<Study, SweepError> {
+    if let Some(path) = study_file(study) {
+        return Ok(Study::load(path)?);
+    }
+    let mut queue = open_to_read(database.clone()).await?;
+    let Some(found) = queue.study(study).await? else {
+        let known = queue.studies().await?.into_iter().map(|study| study.name).collect();
+        return Err(QueueError::UnknownStudy { name: study.to_owned(), known }.into());
+    };
+    queue.close().await?;
+    Ok(Study::parse(&found.document, study)?)
+}
+
+fn study_file(study: &str) -> Option<&Path> {
+    let path = Path::new(study);
+    path.extension().is_some_and(|extension| extension == "json").then_some(path)
+}

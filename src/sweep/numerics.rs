@@ -1,0 +1,40 @@
+//! What the accuracy and the cost of a job depend on besides the physics.
+
+use crate::report::JobNumerics;
+use crate::spec::{Detection, JobSpec, Numerics, RunControl};
+use crate::study::job_key;
+
+/// The numerics of a job, as reports compare them.
+pub(super) fn numerics(spec: &JobSpec) -> JobNumerics {
+    let JobSpec { scene, numerics, run, detection } = spec;
+    let elements = scene.pin.elements;
+    let element_volume_m3: f64 = (0..3).map(|axis| scene.pin.size_m[axis] / elements[axis] as f64).product();
+    JobNumerics {
+        case: case_key(spec),
+        elements,
+        element_size_m: element_volume_m3.cbrt(),
+        nodes: elements.iter().map(|&n| n as u64 + 1).product(),
+        beta2: numerics.beta2,
+        beta_r_s: numerics.beta_r_s,
+        safety_factor: numerics.time_step_s.is_none().then_some(numerics.safety_factor),
+        limit_s: run.limit_s,
+        stop_early: run.stop_early,
+        average_last_fraction: run.average_last_fraction,
+        cycles: detection.cycles,
+        tolerance: detection.tolerance,
+        drift_tolerance: detection.drift_tolerance,
+    }
+}
+
+/// The key of the physical case, which all jobs with the same physics share: the key of a job with this scene, a mesh of
+/// one element, and everything else at its default.
+fn case_key(spec: &JobSpec) -> String {
+    let mut case = JobSpec {
+        scene: spec.scene.clone(),
+        numerics: Numerics::default(),
+        run: RunControl::default(),
+        detection: Detection::default(),
+    };
+    case.scene.pin.elements = [1, 1, 1];
+    job_key(&case, "")
+}

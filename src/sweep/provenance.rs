@@ -1,0 +1,48 @@
+//! Where a study and its results come from, for reports.
+
+use super::error::SweepError;
+use crate::queue::{MadeWith, Queue};
+use crate::report::{BuildInfo, Provenance, ResultGroup};
+use serde::Deserialize;
+
+/// The part of a worker's provenance that reports show. Other versions may have stored fewer fields.
+#[derive(Debug, Default, Deserialize)]
+#[serde(default)]
+struct StoredProvenance {
+    version: String,
+    commit: String,
+    host: String,
+    cpu: Option<String>,
+    architecture: String,
+    system: String,
+    vectors: String,
+    threads: u64,
+}
+
+/// The study's document and the provenance of its results; `None` if the study has been removed meanwhile.
+pub(super) async fn read(queue: &mut Queue, study: &str) -> Result<Option<Provenance>, SweepError> {
+    let Some(document) = queue.study(study).await? else { return Ok(None) };
+    let groups = queue.made_with(study).await?;
+    Ok(Some(Provenance::grouped(document.document, document.submitted_ms, groups.iter().map(report_group))))
+}
+
+fn report_group(group: &MadeWith) -> ResultGroup {
+    // A provenance that cannot be read counts as unknown.
+    let stored: Option<StoredProvenance> =
+        group.provenance.as_deref().and_then(|text| serde_json::from_str(text).ok());
+    let build = stored.map(|stored| BuildInfo {
+        version: stored.version,
+        commit: stored.commit,
+        host: stored.host,
+        cpu: stored.cpu,
+        platform: [stored.architecture, stored.system].join(" "),
+        vectors: stored.vectors,
+        threads: stored.threads,
+    });
+    ResultGroup {
+        build,
+        jobs: group.jobs,
+        first_ms: group.first_finished_ms,
+        last_ms: group.last_finished_ms,
+    }
+}

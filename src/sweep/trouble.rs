@@ -1,0 +1,56 @@
+//! The jobs of a study that failed or did not become periodic.
+
+use super::error::SweepError;
+use super::rows::{RowParameters, for_each_row};
+use crate::analysis::Outcome;
+use crate::queue::{Queue, Rows};
+use crate::report::JobRow;
+use crate::report::trouble::{Grid, MAX_LISTED, Regions, cause};
+
+/// The jobs of a study that failed or did not become periodic.
+#[derive(Debug)]
+pub struct Trouble {
+    /// Rows of the jobs that failed.
+    pub failed: Vec<JobRow>,
+    /// Number of jobs that reached their time limit without a periodic state.
+    pub not_periodic: usize,
+    /// Where in the grid these jobs are.
+    pub regions: Regions,
+}
+
+impl Trouble {
+    /// Finds these jobs. Only the parameters of the others are read: records are most of a study.
+    ///
+    /// # Errors
+    /// If the database has no such study or cannot be read.
+    pub async fn read(queue: &mut Queue, study: &str) -> Result<Self, SweepError> {
+        let mut grid = Grid::default();
+        let mut unreadable = None;
+        let read = queue.each_parameters(study, |text| match serde_json::from_str::<RowParameters>(text) {
+            Ok(row) => grid.add(row.omega_rpm, row.mu, &row.grid),
+            Err(error) => _ = unreadable.get_or_insert(error),
+        });
+        read.await?;
+        if let Some(reason) = unreadable {
+            return Err(SweepError::Unreadable { subject: study.to_owned(), what: "parameters", reason });
+        }
+        let (mut troubled, mut failed) = (Vec::new(), Vec::new());
+        let mut note = |ordinal: u64, row: &JobRow| {
+            troubled.extend(cause(row).map(|cause| (ordinal as usize, row.job.clone(), cause)));
+        };
+        for_each_row(queue, study, Rows::Failed, |ordinal, row| {
+            note(ordinal, &row);
+            failed.push(row);
+            Ok(())
+        })
+        .await?;
+        let not_periodic = Rows::Done(Outcome::NotPeriodic.name());
+        for_each_row(queue, study, not_periodic, |ordinal, row| {
+            note(ordinal, &row);
+            Ok(())
+        })
+        .await?;
+        let not_periodic = troubled.len() - failed.len();
+        Ok(Self { failed, not_periodic, regions: grid.regions(troubled, MAX_LISTED) })
+    }
+}
