@@ -5,7 +5,7 @@ use crate::queue::{NewJob, NewStudy};
 use crate::report::JobNumerics;
 use crate::solver::{self, Model};
 use crate::spec::{Detection, JobSpec, Numerics, RunControl};
-use crate::study::{Job, Study, StudyError, job_key};
+use crate::study::{Job, SharedKeys, Study, StudyError};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
@@ -45,8 +45,10 @@ impl Plan {
             .map_err(|reason| StudyError::Read { file: source_name.clone(), reason })?;
         let study = Study::parse(&document, &source_name)?;
         let jobs = study.expand(solver::VERSION)?;
-        let batches: Vec<String> =
-            jobs.par_iter().map(|job| job_key(&job.spec.shared_part(), solver::VERSION)).collect();
+        let batches: Vec<String> = jobs
+            .par_iter()
+            .map_init(|| SharedKeys::new(solver::VERSION), |keys, job| keys.key(job.spec.shared_part()))
+            .collect();
         preflight(path, &jobs, &batches)?;
         Ok(Self { study, jobs, batches, document })
     }
@@ -57,12 +59,12 @@ impl Plan {
             .jobs
             .par_iter()
             .zip(&self.batches)
-            .map(|(job, batch)| {
+            .map_init(|| SharedKeys::new(""), |cases, (job, batch)| {
                 let row = RowParameters {
                     omega_rpm: job.spec.scene.disk.omega_rpm,
                     mu: job.spec.scene.contact.mu,
                     grid: job.parameters.clone(),
-                    numerics: Some(numerics(&job.spec)),
+                    numerics: Some(numerics(&job.spec, cases)),
                 };
                 Ok(NewJob {
                     key: job.key.clone(),
@@ -82,7 +84,7 @@ fn encode(what: &impl Serialize) -> Result<String, CliError> {
     serde_json::to_string(what).map_err(|error| CliError::Unreadable(error.to_string()))
 }
 
-fn numerics(spec: &JobSpec) -> JobNumerics {
+fn numerics(spec: &JobSpec, cases: &mut SharedKeys) -> JobNumerics {
     let JobSpec { scene, numerics, run, detection } = spec;
     let elements = scene.pin.elements;
     let element_volume_m3: f64 = (0..3).map(|axis| scene.pin.size_m[axis] / elements[axis] as f64).product();
@@ -93,7 +95,7 @@ fn numerics(spec: &JobSpec) -> JobNumerics {
         detection: Detection::default(),
     };
     JobNumerics {
-        case: case_key(case),
+        case: case_key(case, cases),
         elements,
         element_size_m: element_volume_m3.cbrt(),
         nodes: elements.iter().map(|&n| n as u64 + 1).product(),
@@ -110,9 +112,9 @@ fn numerics(spec: &JobSpec) -> JobNumerics {
 }
 
 /// The key that all jobs of a physical case share: that of the job with everything else at its default.
-fn case_key(mut case: JobSpec) -> String {
+fn case_key(mut case: JobSpec, cases: &mut SharedKeys) -> String {
     case.scene.pin.elements = [1, 1, 1];
-    job_key(&case, "")
+    cases.key(case)
 }
 
 /// Refuses a study with a job that the solver would refuse before its first step.
