@@ -59,22 +59,25 @@ impl Plan {
             .jobs
             .par_iter()
             .zip(&self.batches)
-            .map_init(|| SharedKeys::new(""), |cases, (job, batch)| {
-                let row = RowParameters {
-                    omega_rpm: job.spec.scene.disk.omega_rpm,
-                    mu: job.spec.scene.contact.mu,
-                    grid: job.parameters.clone(),
-                    numerics: Some(numerics(&job.spec, cases)),
-                };
-                Ok(NewJob {
-                    key: job.key.clone(),
-                    payload: encode(&job.spec)?,
-                    parameters: encode(&row)?,
-                    cost: job.cost,
-                    batch: batch.clone(),
-                    priority,
-                })
-            })
+            .map_init(
+                || SharedKeys::new(""),
+                |cases, (job, batch)| {
+                    let row = RowParameters {
+                        omega_rpm: job.spec.scene.disk.omega_rpm,
+                        mu: job.spec.scene.contact.mu,
+                        grid: job.parameters.clone(),
+                        numerics: Some(numerics(&job.spec, cases)),
+                    };
+                    Ok(NewJob {
+                        key: job.key.clone(),
+                        payload: encode(&job.spec)?,
+                        parameters: encode(&row)?,
+                        cost: job.cost,
+                        batch: batch.clone(),
+                        priority,
+                    })
+                },
+            )
             .collect::<Result<_, CliError>>()?;
         Ok(NewStudy { name: self.study.name().to_owned(), document: self.document.clone(), jobs })
     }

@@ -192,9 +192,8 @@ impl<'a> Dispatcher<'a> {
     fn take_answerable_requests(&mut self) -> Vec<Request> {
         let pending = usize::try_from(self.tally.counts.pending).unwrap_or(usize::MAX);
         let share = pending.div_ceil(self.threads).max(1);
-        let (mut now, later): (Vec<_>, Vec<_>) = std::mem::take(&mut self.requests)
-            .into_iter()
-            .partition(|request| self.is_answerable(request));
+        let (mut now, later): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.requests).into_iter().partition(|request| self.is_answerable(request));
         for request in &mut now {
             request.limit = request.limit.min(share);
         }
@@ -239,8 +238,7 @@ impl<'a> Dispatcher<'a> {
                         if !is_last {
                             progress.waiting(&format!("the state of running jobs cannot be kept: {error}"));
                         }
-                        is_refused =
-                            !is_last || backoff.wait(error, self.interrupt, progress).await.is_err();
+                        is_refused = !is_last || backoff.wait(error, self.interrupt, progress).await.is_err();
                     }
                 }
             }

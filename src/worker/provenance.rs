@@ -59,7 +59,10 @@ mod tests {
     #[test]
     fn provenance_is_complete() {
         let provenance: serde_json::Value = serde_json::from_str(&worker(3).provenance).unwrap();
-        assert_eq!((provenance["version"].as_str(), provenance["threads"].as_u64()), (Some(VERSION), Some(3)));
+        assert_eq!(
+            (provenance["version"].as_str(), provenance["threads"].as_u64()),
+            (Some(VERSION), Some(3))
+        );
         let commit = provenance["commit"].as_str().unwrap().trim_end_matches("+modified").to_owned();
         let is_hash = commit.len() == 40 && commit.chars().all(|c| c.is_ascii_hexdigit());
         assert!(is_hash || commit == "unknown", "{commit}");

@@ -58,7 +58,9 @@ impl RetryBackoff {
 /// The pause after waiting for `waited`. It differs from process to process: when a server goes down, all its workers
 /// begin to wait together, and must not try again together.
 fn pause(waited: Duration, process: u32) -> Duration {
-    (waited / PAUSE_DIVISOR).clamp(SHORTEST_PAUSE, LONGEST_PAUSE).mul_f64(1.0 - 0.5 * f64::from(process % 64) / 64.0)
+    (waited / PAUSE_DIVISOR)
+        .clamp(SHORTEST_PAUSE, LONGEST_PAUSE)
+        .mul_f64(1.0 - 0.5 * f64::from(process % 64) / 64.0)
 }
 
 #[cfg(test)]

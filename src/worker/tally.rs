@@ -54,7 +54,9 @@ impl Tally {
         let took = begun.elapsed();
         let workers = u32::try_from(queue.alive().await?.workers).unwrap_or(u32::MAX).max(1);
         self.next_query = Instant::now()
-            + took.saturating_mul(QUERY_SHARE.saturating_mul(workers)).clamp(SHORTEST_PAUSE, LONGEST_PAUSE.max(took * QUERY_SHARE));
+            + took
+                .saturating_mul(QUERY_SHARE.saturating_mul(workers))
+                .clamp(SHORTEST_PAUSE, LONGEST_PAUSE.max(took * QUERY_SHARE));
         Ok(())
     }
 

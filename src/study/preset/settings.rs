@@ -119,7 +119,10 @@ impl Preset {
 
     /// Whether presets set a parameter, or the whole field of which it sets a part.
     pub(in super::super) fn covers(parameter: &Parameter) -> bool {
-        PRESET_PARAMETERS.iter().filter_map(|name| Parameter::find(name)).any(|own| own.sets(&parameter.field()))
+        PRESET_PARAMETERS
+            .iter()
+            .filter_map(|name| Parameter::find(name))
+            .any(|own| own.sets(&parameter.field()))
             || parameter.name == TIME_STEP
     }
 
@@ -137,7 +140,12 @@ impl Preset {
     }
 
     /// Sets the parameters in a serialised job, except those for which `is_set_elsewhere` holds.
-    pub(in super::super) fn apply(self, scene: &Scene, job: &mut Value, is_set_elsewhere: impl Fn(&Parameter) -> bool) {
+    pub(in super::super) fn apply(
+        self,
+        scene: &Scene,
+        job: &mut Value,
+        is_set_elsewhere: impl Fn(&Parameter) -> bool,
+    ) {
         for (name, value) in self.settings(scene) {
             let parameter = Parameter::find(name).expect("presets set parameters of the registry");
             if !is_set_elsewhere(parameter) {
