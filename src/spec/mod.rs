@@ -22,7 +22,7 @@ pub use check::{FieldError, Violations};
 pub use detection::Detection;
 pub use numerics::{Numerics, RunControl};
 pub use pin::Pin;
-pub use ring::{Clock, Ring, TargetSurface};
+pub use ring::{DiskTimeStep, Ring, TargetSurface};
 pub use scene::{Clamp, ClampSide, Contact, Disk, DiskKind, Load, Scene, TopFace};
 
 use schemars::JsonSchema;

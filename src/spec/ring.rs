@@ -31,7 +31,7 @@ pub struct Ring {
     /// How the target surface is interpolated between its nodes.
     pub target: TargetSurface,
     /// How the disk's time step is chosen.
-    pub clock: Clock,
+    pub clock: DiskTimeStep,
 }
 
 /// The target surface between its nodes.
@@ -48,7 +48,9 @@ pub enum TargetSurface {
 /// How the disk's time step is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Clock {
+// The name in the schema is older than that of the type.
+#[schemars(rename = "Clock")]
+pub enum DiskTimeStep {
     /// The disk takes as many stages in each step of the pin as it needs to be stable.
     #[default]
     Own,
@@ -69,7 +71,7 @@ impl Default for Ring {
             coarse_element_size_m: 0.012,
             track_arc_deg: 25.0,
             target: TargetSurface::Bilinear,
-            clock: Clock::Own,
+            clock: DiskTimeStep::Own,
         }
     }
 }

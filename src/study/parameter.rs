@@ -1,7 +1,7 @@
 //! The registry of parameters: what a grid or an override can set, by short name.
 
 use super::suggest;
-use crate::spec::{ClampSide, Clock, DiskKind, TargetSurface, TopFace};
+use crate::spec::{ClampSide, DiskKind, DiskTimeStep, TargetSurface, TopFace};
 use schemars::{Schema, SchemaGenerator};
 use serde_json::Value;
 
@@ -41,7 +41,7 @@ const CLAMP_SIDE: Kind = Kind::Name(SchemaGenerator::subschema_for::<ClampSide>)
 const TOP_FACE: Kind = Kind::Name(SchemaGenerator::subschema_for::<TopFace>);
 const DISK_KIND: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskKind>);
 const TARGET: Kind = Kind::Name(SchemaGenerator::subschema_for::<TargetSurface>);
-const CLOCK: Kind = Kind::Name(SchemaGenerator::subschema_for::<Clock>);
+const DISK_TIME_STEP: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskTimeStep>);
 
 /// All parameters, in the order in which help and messages list them.
 #[rustfmt::skip]
@@ -62,7 +62,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("disk_coarse_element_size_m", "/scene/disk/ring/coarse_element_size_m", Kind::Number, "largest element of an elastic disk elsewhere [m]"),
     parameter("track_arc_deg", "/scene/disk/ring/track_arc_deg", Kind::Number, "arc of an elastic disk that the pin may sweep [°]"),
     parameter("target", "/scene/disk/ring/target", TARGET, "how an elastic disk's surface is interpolated [name]"),
-    parameter("disk_clock", "/scene/disk/ring/clock", CLOCK, "whether an elastic disk has its own time step [name]"),
+    parameter("disk_clock", "/scene/disk/ring/clock", DISK_TIME_STEP, "whether an elastic disk has its own time step [name]"),
     parameter("young_modulus_pa", "/scene/pin/young_modulus_pa", Kind::Number, "Young's modulus of the pin [Pa]"),
     parameter("poisson_ratio", "/scene/pin/poisson_ratio", Kind::Number, "Poisson's ratio of the pin [-]"),
     parameter("density_kg_m3", "/scene/pin/density_kg_m3", Kind::Number, "density of the pin [kg/m³]"),

@@ -13,7 +13,7 @@ use crate::evidence::Evidence;
 use tribosweep::solver::boundary;
 use tribosweep::solver::material::Material;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
-use tribosweep::spec::{Clock, DiskKind, JobSpec, TargetSurface};
+use tribosweep::spec::{DiskKind, DiskTimeStep, JobSpec, TargetSurface};
 
 const COULOMB: &str = "Coulomb's law";
 
@@ -176,7 +176,7 @@ fn pressed(upper: usize, lower: usize, target: TargetSurface) -> Pressed {
         thickness_m: size[2],
         elements: [lower, lower, lower],
         target,
-        clock: Clock::Common,
+        clock: DiskTimeStep::Common,
         held: true,
     };
     let model = on_block(definition, &below);

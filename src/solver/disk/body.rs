@@ -6,7 +6,7 @@ use super::operator::{Elements, RingOperator};
 use super::response::Response;
 use super::stages::{MAX_STAGES, Stages};
 use crate::solver::material::Material;
-use crate::spec::{Clock, Scene, TargetSurface};
+use crate::spec::{DiskTimeStep, Scene, TargetSurface};
 
 /// What an elastic disk is made of.
 #[derive(Debug, Clone)]
@@ -20,7 +20,7 @@ pub struct DiskDefinition {
     /// How its top is interpolated.
     pub target: TargetSurface,
     /// Whether it has its own time step.
-    pub clock: Clock,
+    pub clock: DiskTimeStep,
 }
 
 impl DiskDefinition {
@@ -65,8 +65,8 @@ impl Unclocked {
         let elements = Elements::new(&definition.mesh, &definition.material);
         let (operator, masses_kg) = RingOperator::new(&definition.mesh, &elements);
         let most_stages = match definition.clock {
-            Clock::Own => MAX_STAGES,
-            Clock::Common => 1,
+            DiskTimeStep::Own => MAX_STAGES,
+            DiskTimeStep::Common => 1,
         };
         let omega_max_squared = bound::omega_max_squared(&definition.mesh, &elements);
         Self { definition, operator, masses_kg, omega_max_squared, most_stages }
