@@ -1,15 +1,15 @@
-//! Violations of physical or numerical limits, with the field, its value and what would be right.
+//! Violations of physical or numerical limits: the field, its value and the expectation.
 
 use std::fmt;
 
-/// One value that cannot be used.
+/// One value that violates a limit.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FieldError {
-    /// Path of the field below the job, e.g. `scene.pin.poisson_ratio`.
+    /// Path of the field from the job's root, e.g. `scene.pin.poisson_ratio`.
     pub field: String,
     /// The value as given.
     pub value: String,
-    /// What would be right.
+    /// What is expected instead.
     pub expected: String,
 }
 
@@ -19,13 +19,13 @@ impl fmt::Display for FieldError {
     }
 }
 
-/// All violations found in one job; never empty when returned as an error.
+/// All violations of one job; never empty when returned as an error.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Violations(pub Vec<FieldError>);
 
 impl Violations {
     /// Records that `field` has the unusable `value`.
-    pub fn add(&mut self, field: &str, value: impl fmt::Display, expected: impl Into<String>) {
+    pub(super) fn add(&mut self, field: &str, value: impl fmt::Display, expected: impl Into<String>) {
         self.0.push(FieldError {
             field: field.to_owned(),
             value: value.to_string(),
@@ -34,14 +34,14 @@ impl Violations {
     }
 
     /// Records a violation unless `value` is finite and `holds`.
-    pub fn require(&mut self, field: &str, value: f64, holds: bool, expected: &str) {
+    pub(super) fn require(&mut self, field: &str, value: f64, holds: bool, expected: &str) {
         if !(value.is_finite() && holds) {
             self.add(field, readable(value), expected);
         }
     }
 
-    /// Records a violation unless `value` is a positive quantity that can be computed with: see [`MAGNITUDES`].
-    pub fn require_magnitude(&mut self, field: &str, value: f64, expected: &str) {
+    /// Records a violation unless `value` is positive and within [`MAGNITUDES`].
+    pub(super) fn require_magnitude(&mut self, field: &str, value: f64, expected: &str) {
         let (low, high) = (*MAGNITUDES.start(), *MAGNITUDES.end());
         if value.is_finite() && value > 0.0 && !MAGNITUDES.contains(&value) {
             self.add(field, readable(value), format!("{expected}, from {low:e} to {high:e}"));
@@ -50,29 +50,26 @@ impl Violations {
         }
     }
 
-    /// Records a violation if `value`, otherwise good, is too large to be computed with: see [`MAGNITUDES`].
-    pub fn at_most(&mut self, field: &str, value: f64) {
+    /// Records a violation if `value` exceeds the upper end of [`MAGNITUDES`].
+    pub(super) fn limit_magnitude(&mut self, field: &str, value: f64) {
         let highest = *MAGNITUDES.end();
         if value.is_finite() && value > highest {
             self.add(field, readable(value), format!("at most {highest:e}"));
         }
     }
 
-    /// `Ok` when nothing was found.
-    ///
-    /// # Errors
-    /// The violations themselves.
-    pub fn into_result(self) -> Result<(), Self> {
+    /// `Ok` when there is no violation, otherwise the violations as the error.
+    pub(super) fn into_result(self) -> Result<(), Self> {
         if self.0.is_empty() { Ok(()) } else { Err(self) }
     }
 }
 
-/// Positive quantities in SI units beyond these ends belong to no pin. Within them all that the solver forms of
-/// them (squares of forces and speeds, masses, stiffness over mass) stays far inside the range of f64; beyond,
-/// a frequency can overflow before the first step.
+/// Usable magnitudes of positive quantities in SI units; no tribometer has values outside. Within this range everything
+/// that the solver computes from them (squares of forces and speeds, masses, stiffness over mass) stays far inside the
+/// range of f64. Outside of it a frequency can overflow before the first step.
 const MAGNITUDES: std::ops::RangeInclusive<f64> = 1.0e-20..=1.0e20;
 
-/// A number without the zeros that plain notation spends on small and large ones.
+/// The number in plain notation, or with an exponent where plain notation would have many zeros.
 pub(super) fn readable(value: f64) -> String {
     if value == 0.0 || (1.0e-4..1.0e7).contains(&value.abs()) || !value.is_finite() {
         value.to_string()

@@ -1,4 +1,4 @@
-//! When a state counts as periodic, as decayed, and which regime name it gets.
+//! Thresholds by which a state counts as periodic or as decayed, and by which a regime gets its name.
 
 use super::check::Violations;
 use schemars::JsonSchema;

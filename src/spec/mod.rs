@@ -15,14 +15,16 @@ mod check;
 mod detection;
 pub mod elasticity;
 mod numerics;
+mod pin;
 mod ring;
 mod scene;
 
 pub use check::{FieldError, Violations};
 pub use detection::Detection;
 pub use numerics::{Numerics, RunControl};
-pub use ring::{Clock, Ring, TargetSurface};
-pub use scene::{Clamp, ClampSide, Contact, Disk, DiskKind, Load, Pin, Scene, TopFace};
+pub use pin::Pin;
+pub use ring::{DiskTimeStep, Ring, TargetSurface};
+pub use scene::{Clamp, ClampSide, Contact, Disk, DiskKind, Load, Scene, TopFace};
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -41,8 +43,8 @@ pub struct JobSpec {
     pub detection: Detection,
 }
 
-/// A decay is observed over at least so many transit times of shear waves over the pin's height
-/// (2.5 ms in the reference scene): the squeal's line must be well above the lowest line looked at.
+/// Shortest observation of a decay, in transit times of shear waves over the pin's height (2.5 ms in the reference
+/// scene): the squeal's frequency must lie well above the lowest frequency that the observation resolves.
 const SHORTEST_OBSERVATION: f64 = 100.0;
 
 impl JobSpec {
@@ -65,7 +67,7 @@ impl JobSpec {
             );
         }
         if self.scene.disk.kind == DiskKind::Elastic {
-            self.check_sweep(&mut found);
+            self.check_elastic_disk(&mut found);
         }
         let observation_s = self.detection.decay_observation_s;
         let shortest_s = SHORTEST_OBSERVATION * self.scene.pin.shear_transit_s();
@@ -82,11 +84,12 @@ impl JobSpec {
         found.into_result()
     }
 
-    /// An elastic disk is fine only where the pin passes, and is not damped by the integrator.
-    fn check_sweep(&self, found: &mut Violations) {
+    /// Limits that an elastic disk sets: its mesh is fine only where the pin passes, and its energy balance holds for
+    /// the central difference only.
+    fn check_elastic_disk(&self, found: &mut Violations) {
         let swept_deg = self.scene.disk.omega_rpm * 6.0 * self.run.limit_s;
         let arc_deg = self.scene.disk.ring.track_arc_deg;
-        if arc_deg < 360.0 && swept_deg > arc_deg * ring::FORGIVEN {
+        if arc_deg < 360.0 && swept_deg > arc_deg * ring::ROUNDING {
             found.add(
                 "scene.disk.ring.track_arc_deg",
                 arc_deg,
@@ -107,8 +110,8 @@ impl JobSpec {
         }
     }
 
-    /// What a job shares with all that can be advanced together with it: body, mesh, clamp, integrator and time
-    /// step. What drives and loads it, how long it runs and how it is looked at is set to the defaults.
+    /// The part of the job that all jobs of one batch share, because they are advanced with one model: bodies, meshes,
+    /// clamp, integrator and time step. Friction, load, speed, run length and detection have their defaults in it.
     #[must_use]
     pub fn shared_part(&self) -> Self {
         let mut scene = self.scene.clone();

@@ -36,7 +36,7 @@ impl Numerics {
         );
         let damping = self.beta_r_s;
         found.require("numerics.beta_r_s", damping, damping >= 0.0, "a damping time >= 0 s");
-        found.at_most("numerics.beta_r_s", damping);
+        found.limit_magnitude("numerics.beta_r_s", damping);
         let safety = self.safety_factor;
         found.require(
             "numerics.safety_factor",

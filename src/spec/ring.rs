@@ -1,12 +1,12 @@
 //! The body of an elastic disk.
 
 use super::check::Violations;
-use super::scene::Pin;
+use super::pin::Pin;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// An elastic ring, meshed with hexahedra in (r, θ, z), whose top face is the target of the contact. The nodes of
-/// its inner radius turn rigidly at ω and are blocked in z. Defaults to the steel disk of Baillet et al. 2005.
+/// its inner radius turn rigidly at ω and are fixed in z. Defaults to the steel disk of Baillet et al. 2005.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Ring {
@@ -30,8 +30,8 @@ pub struct Ring {
     pub track_arc_deg: f64,
     /// How the target surface is interpolated between its nodes.
     pub target: TargetSurface,
-    /// Whether the disk has a time step of its own.
-    pub clock: Clock,
+    /// How the disk's time step is chosen.
+    pub clock: DiskTimeStep,
 }
 
 /// The target surface between its nodes.
@@ -48,7 +48,9 @@ pub enum TargetSurface {
 /// How the disk's time step is chosen.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Clock {
+// The name in the schema is older than that of the type.
+#[schemars(rename = "Clock")]
+pub enum DiskTimeStep {
     /// The disk takes as many stages in each step of the pin as it needs to be stable.
     #[default]
     Own,
@@ -69,37 +71,38 @@ impl Default for Ring {
             coarse_element_size_m: 0.012,
             track_arc_deg: 25.0,
             target: TargetSurface::Bilinear,
-            clock: Clock::Own,
+            clock: DiskTimeStep::Own,
         }
     }
 }
 
-/// More elements in one direction than this are a slip of the keyboard.
+/// Largest number of elements in one direction: more are taken for a typing error.
 const MAX_ELEMENTS: f64 = 2000.0;
 
-/// About so many elements in each direction are between fine and coarse.
+/// Estimated number of elements per direction in the transition from the fine to the coarse mesh.
 const GRADED_ELEMENTS: f64 = 5.0;
 
 /// Largest number of nodes: about a gigabyte of fields, and days of run time.
 const MAX_NODES: f64 = 2.0e6;
 
-/// Forgives the rounding of decimal lengths.
-pub(super) const FORGIVEN: f64 = 1.0 + 1.0e-9;
+/// Relative tolerance when lengths or angles are compared: decimal values are rounded.
+pub(super) const ROUNDING: f64 = 1.0 + 1.0e-9;
 
 impl Ring {
-    /// About the number of nodes under `pin` at the radius `track_m`: fine ones under the track, coarse ones elsewhere.
-    pub fn about_nodes(&self, pin: &Pin, track_m: f64) -> f64 {
+    /// Estimated number of nodes of the disk when `pin` slides at the radius `track_m` [m]: the mesh is fine under the
+    /// track and coarse elsewhere.
+    pub(crate) fn estimated_nodes(&self, pin: &Pin, track_m: f64) -> f64 {
         let (fine, coarse) = (self.element_size_m, self.coarse_element_size_m);
-        let along = |length: f64, under: f64| {
-            under.min(length) / fine + (length - under).max(0.0) / coarse + GRADED_ELEMENTS
+        let nodes_along = |length_m: f64, fine_part_m: f64| {
+            fine_part_m.min(length_m) / fine + (length_m - fine_part_m).max(0.0) / coarse + GRADED_ELEMENTS
         };
         let around_m = std::f64::consts::TAU * track_m;
-        let around = along(around_m, around_m * self.track_arc_deg / 360.0 + pin.size_m[1]);
-        let across = along(self.outer_radius_m - self.inner_radius_m, pin.size_m[0]);
-        around * across * along(self.thickness_m, fine)
+        let around = nodes_along(around_m, around_m * self.track_arc_deg / 360.0 + pin.size_m[1]);
+        let across = nodes_along(self.outer_radius_m - self.inner_radius_m, pin.size_m[0]);
+        around * across * nodes_along(self.thickness_m, fine)
     }
 
-    /// Adds every violated limit to `found`, of a disk under `pin` at the radius `track_m`.
+    /// Adds every violated limit to `found`, for a disk on which `pin` slides at the radius `track_m` [m].
     pub(super) fn check(&self, pin: &Pin, track_m: f64, found: &mut Violations) {
         let field = |name: &str| format!("scene.disk.ring.{name}");
         let lengths = [
@@ -145,10 +148,10 @@ impl Ring {
                 longest / MAX_ELEMENTS
             ),
         );
-        // Under the pin's corners, and an element more for tangents at the patches' corners.
+        // The disk must reach one element beyond the pin's corners: the tangents at a patch's corners need its neighbours.
         let [half_x, half_y] = [pin.size_m[0] / 2.0, pin.size_m[1] / 2.0];
         let (low, high) = (track_m - half_x - fine, (track_m + half_x).hypot(half_y) + fine);
-        let nodes = self.about_nodes(pin, track_m);
+        let nodes = self.estimated_nodes(pin, track_m);
         if nodes > MAX_NODES {
             found.add(
                 &field("element_size_m"),
@@ -159,13 +162,13 @@ impl Ring {
         found.require(
             &field("inner_radius_m"),
             self.inner_radius_m,
-            self.inner_radius_m <= low * FORGIVEN,
+            self.inner_radius_m <= low * ROUNDING,
             &format!("at most {low:.6} m, an element inside of the pin's inner side"),
         );
         found.require(
             &field("outer_radius_m"),
             self.outer_radius_m,
-            self.outer_radius_m * FORGIVEN >= high,
+            self.outer_radius_m * ROUNDING >= high,
             &format!("at least {high:.6} m, an element outside of the pin's outer corners"),
         );
     }

@@ -1,10 +1,11 @@
 //! The scene: pin, disk, contact law, boundary conditions and load.
 
 use super::check::Violations;
-use super::elasticity;
+use super::pin::Pin;
 use super::ring::Ring;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use strum::{IntoStaticStr, VariantArray};
 
 /// A pin pressed on a rotating disk. Defaults to the reference scene (Baillet et al. 2005, tables 1 and 2).
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
@@ -22,42 +23,6 @@ pub struct Scene {
     pub top: TopFace,
     /// The normal load on the pin's top face.
     pub load: Load,
-}
-
-/// The pin: a linear elastic block meshed with nx × ny × nz trilinear hexahedra.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Pin {
-    /// Edge lengths [m] in x (radial), y (sliding direction) and z.
-    pub size_m: [f64; 3],
-    /// Number of elements in x, y and z.
-    pub elements: [usize; 3],
-    /// Young's modulus [Pa].
-    pub young_modulus_pa: f64,
-    /// Poisson's ratio, −1 < ν < 0.5.
-    pub poisson_ratio: f64,
-    /// Density [kg/m³].
-    pub density_kg_m3: f64,
-}
-
-impl Default for Pin {
-    fn default() -> Self {
-        Self {
-            size_m: [0.012, 0.015, 0.010],
-            elements: [12, 15, 10],
-            young_modulus_pa: 1.0e9,
-            poisson_ratio: 0.3,
-            density_kg_m3: 2500.0,
-        }
-    }
-}
-
-impl Pin {
-    /// Time [s] in which a shear wave crosses the pin's height; NaN for an unphysical material.
-    pub(super) fn shear_transit_s(&self) -> f64 {
-        self.size_m[2]
-            / elasticity::shear_wave_speed_m_s(self.young_modulus_pa, self.poisson_ratio, self.density_kg_m3)
-    }
 }
 
 /// What the disk is made of.
@@ -106,8 +71,21 @@ impl Default for Contact {
 }
 
 /// Where on the top face the clamp is.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    Serialize,
+    Deserialize,
+    JsonSchema,
+    IntoStaticStr,
+    VariantArray,
+)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum ClampSide {
     /// A strip along the −x side, nearest the disk's axis.
     #[default]
@@ -127,28 +105,12 @@ pub enum ClampSide {
 }
 
 impl ClampSide {
-    /// All of them.
-    pub const ALL: [Self; 7] = [
-        Self::InnerSide,
-        Self::OuterSide,
-        Self::LeadingEnd,
-        Self::TrailingEnd,
-        Self::BothSides,
-        Self::BothEnds,
-        Self::WholeTop,
-    ];
+    /// All of them, in the order of their declaration.
+    pub const ALL: &[Self] = <Self as VariantArray>::VARIANTS;
 
     /// The name used in study files, e.g. `inner_side`.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::InnerSide => "inner_side",
-            Self::OuterSide => "outer_side",
-            Self::LeadingEnd => "leading_end",
-            Self::TrailingEnd => "trailing_end",
-            Self::BothSides => "both_sides",
-            Self::BothEnds => "both_ends",
-            Self::WholeTop => "whole_top",
-        }
+        self.into()
     }
 }
 
@@ -198,48 +160,11 @@ impl Default for Load {
     }
 }
 
-/// Largest number of elements per direction: a guard against a slip of the keyboard, not a limit of the method.
-const MAX_ELEMENTS: usize = 1000;
-
-/// Largest number of elements in all: about a gigabyte of fields, and days of run time.
-const MAX_TOTAL_ELEMENTS: f64 = 2.0e6;
-
 impl Scene {
     /// Adds every violated limit to `found`.
     pub(super) fn check(&self, found: &mut Violations) {
         let pin = &self.pin;
-        for (axis, size) in pin.size_m.iter().enumerate() {
-            found.require_magnitude(&format!("scene.pin.size_m[{axis}]"), *size, "a length > 0 m");
-        }
-        for (axis, &count) in pin.elements.iter().enumerate() {
-            if !(1..=MAX_ELEMENTS).contains(&count) {
-                found.add(
-                    &format!("scene.pin.elements[{axis}]"),
-                    count,
-                    format!("a number of elements from 1 to {MAX_ELEMENTS}"),
-                );
-            }
-        }
-        let total = pin.elements.iter().map(|&count| count as f64).product::<f64>();
-        if total > MAX_TOTAL_ELEMENTS {
-            found.add(
-                "scene.pin.elements",
-                format!("{:?} ({total:e} elements)", pin.elements),
-                format!("at most {MAX_TOTAL_ELEMENTS:e} elements in all"),
-            );
-        }
-        let e = pin.young_modulus_pa;
-        found.require_magnitude("scene.pin.young_modulus_pa", e, "a modulus > 0 Pa");
-        let nu = pin.poisson_ratio;
-        found.require(
-            "scene.pin.poisson_ratio",
-            nu,
-            nu > -1.0 && nu < 0.5,
-            "a Poisson's ratio with -1 < ν < 0.5 (0.5 is incompressible: no finite wave speed)",
-        );
-        let rho = pin.density_kg_m3;
-        found.require_magnitude("scene.pin.density_kg_m3", rho, "a density > 0 kg/m³");
-
+        pin.check(found);
         let omega = self.disk.omega_rpm;
         found.require_magnitude(
             "scene.disk.omega_rpm",
@@ -253,16 +178,16 @@ impl Scene {
             radius > pin.size_m[0] / 2.0,
             "a radius larger than half the pin's width, so that the pin does not lie over the axis",
         );
-        found.at_most("scene.disk.track_radius_m", radius);
+        found.limit_magnitude("scene.disk.track_radius_m", radius);
         if self.disk.kind == DiskKind::Elastic {
             self.disk.ring.check(pin, radius, found);
         }
         let mu = self.contact.mu;
         found.require("scene.contact.mu", mu, mu >= 0.0, "a friction coefficient >= 0");
-        found.at_most("scene.contact.mu", mu);
+        found.limit_magnitude("scene.contact.mu", mu);
         let width = self.clamp.width_m;
         found.require("scene.clamp.width_m", width, width >= 0.0, "a width >= 0 m (0 holds one node row)");
-        found.at_most("scene.clamp.width_m", width);
+        found.limit_magnitude("scene.clamp.width_m", width);
         let force = self.load.force_n;
         found.require("scene.load.force_n", force, force > 0.0, "a load > 0 N, pressing the pin on the disk");
         let ramp = self.load.ramp_s;

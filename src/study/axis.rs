@@ -1,11 +1,11 @@
-//! One axis of a grid: a list of values or a range, with every value checked for its type.
+//! One axis of a grid: a list of values or a range. Every value is checked for its type.
 
 use super::error::Problem;
-use super::expand::MAX_JOBS;
-use super::file::{Range, Spacing};
 use super::json::decode;
-use super::origin::Origin;
+use super::limits::MAX_JOBS;
 use super::parameter::{Kind, Parameter};
+use super::range::{Range, Spacing};
+use super::source::SourceText;
 use crate::spec::JobSpec;
 use serde_json::{Value, json};
 use std::collections::HashMap;
@@ -14,10 +14,10 @@ use std::collections::HashMap;
 #[derive(Debug, Clone)]
 pub(super) struct Axis {
     pub parameter: &'static Parameter,
-    /// Normalised, all different, all of the parameter's type.
+    /// Normalised values of the parameter's type, without repetitions.
     pub values: Vec<Value>,
-    /// Whether the file lists the values one by one, so that each has a place of its own.
-    pub listed: bool,
+    /// Whether the file lists the values one by one, so that each has a position of its own.
+    pub is_listed: bool,
 }
 
 impl Axis {
@@ -31,32 +31,32 @@ impl Axis {
         parameter: &'static Parameter,
         given: &Value,
         template: &Value,
-        origin: &Origin,
+        source: &SourceText,
     ) -> Result<Self, Vec<Problem>> {
         let path = format!("grid.{}", parameter.name);
         let values = match given {
             Value::Array(list) if list.is_empty() => Err(vec![
-                origin
+                source
                     .problem(&path, "expected at least one value")
                     .with_help("leave the parameter out to use the value of the base job"),
             ]),
             Value::Array(list) => Ok(list.clone()),
-            Value::Object(_) => range(parameter, given, &path, origin),
-            _ => Err(vec![origin.problem(&path, format!("expected {}", axis_form(parameter)))]),
+            Value::Object(_) => range_values(parameter, given, &path, source),
+            _ => Err(vec![source.problem(&path, format!("expected {}", axis_form(parameter)))]),
         }?;
         let axis = Self {
             parameter,
             values: values.into_iter().map(|value| parameter.normalise(value)).collect(),
-            listed: given.is_array(),
+            is_listed: given.is_array(),
         };
-        let problems = axis.problems(template, origin);
+        let problems = axis.problems(template, source);
         if problems.is_empty() { Ok(axis) } else { Err(problems) }
     }
 
-    /// Where value `index` stands in the file, as path and as words.
+    /// Where value `index` stands in the file: its path, and words for messages.
     pub(super) fn value_path(&self, index: usize) -> (String, String) {
         let path = self.path();
-        if self.listed {
+        if self.is_listed {
             let item = format!("{path}[{index}]");
             return (item.clone(), item);
         }
@@ -64,18 +64,18 @@ impl Axis {
         (path, words)
     }
 
-    fn problems(&self, template: &Value, origin: &Origin) -> Vec<Problem> {
+    fn problems(&self, template: &Value, source: &SourceText) -> Vec<Problem> {
         let mut first_with = HashMap::new();
         let mut problems = Vec::new();
         for (index, value) in self.values.iter().enumerate() {
             let (path, words) = self.value_path(index);
             if let Err(message) = check_type(self.parameter, value, template) {
-                problems.push(origin.problem(&path, message).with_help(self.parameter.help()));
+                problems.push(source.problem(&path, message).with_help(self.parameter.help()));
             } else if let Some(first) = first_with.insert(value.to_string(), words) {
                 let message = format!("the same value as {first}; expected all values to differ");
-                problems.push(origin.problem(&path, message));
-                if !self.listed {
-                    // A range too narrow for its count: one complaint says it.
+                problems.push(source.problem(&path, message));
+                if !self.is_listed {
+                    // The range is too narrow for its count. One message is enough.
                     break;
                 }
             }
@@ -84,10 +84,10 @@ impl Axis {
     }
 }
 
-/// Whether `value` has the type of the parameter; if not, what would be right.
+/// Checks that `value` has the type of the parameter; the error says what is expected. `template` is a serialised job.
 pub(super) fn check_type(parameter: &Parameter, value: &Value, template: &Value) -> Result<(), String> {
     if value.is_null() {
-        // An optional field would take it, as "not given".
+        // An optional field would accept null, as if it were absent.
         return Err("expected a value; leave the parameter out to use its default".to_owned());
     }
     let mut job = template.clone();
@@ -98,6 +98,7 @@ pub(super) fn check_type(parameter: &Parameter, value: &Value, template: &Value)
     })
 }
 
+/// What an axis of the parameter looks like, for messages.
 fn axis_form(parameter: &Parameter) -> &'static str {
     match parameter.kind {
         Kind::Number | Kind::Count => {
@@ -108,18 +109,19 @@ fn axis_form(parameter: &Parameter) -> &'static str {
     }
 }
 
-fn range(
+/// The values of the range `given`.
+fn range_values(
     parameter: &Parameter,
     given: &Value,
     path: &str,
-    origin: &Origin,
+    source: &SourceText,
 ) -> Result<Vec<Value>, Vec<Problem>> {
     if !matches!(parameter.kind, Kind::Number | Kind::Count) {
-        return Err(vec![origin.problem(path, format!("expected {}", axis_form(parameter)))]);
+        return Err(vec![source.problem(path, format!("expected {}", axis_form(parameter)))]);
     }
     let range: Range = decode(given, &json!({ "spacing": "linear" }))
-        .map_err(|mismatch| vec![origin.mismatch(path, mismatch)])?;
-    let field = |name: &str, message: String| Err(vec![origin.problem(&format!("{path}.{name}"), message)]);
+        .map_err(|mismatch| vec![source.mismatch(path, mismatch)])?;
+    let field = |name: &str, message: String| Err(vec![source.problem(&format!("{path}.{name}"), message)]);
     if range.count > MAX_JOBS {
         return field("count", format!("expected at most {MAX_JOBS} values"));
     }
@@ -138,32 +140,10 @@ fn range(
     }
     let values = range.values();
     if matches!(parameter.kind, Kind::Count)
-        && let Some(broken) = values.iter().find(|value| value.fract() != 0.0)
+        && let Some(fraction) = values.iter().find(|value| value.fract() != 0.0)
     {
-        let message = format!("gives the value {broken}; expected whole numbers only");
-        return Err(vec![origin.problem(path, message).with_help("list the values instead")]);
+        let message = format!("gives the value {fraction}; expected whole numbers only");
+        return Err(vec![source.problem(path, message).with_help("list the values instead")]);
     }
     Ok(values.into_iter().map(Value::from).collect())
-}
-
-impl Range {
-    /// The ends exactly as given, the values between them rounded to 12 significant digits: then
-    /// 0.1 to 0.6 contains 0.3 and not 0.30000000000000004, and is the same job as a listed 0.3.
-    fn values(&self) -> Vec<f64> {
-        let last = self.count - 1;
-        let between = |step: usize| {
-            let share = step as f64 / last as f64;
-            let value = match self.spacing {
-                Spacing::Linear => self.from * (1.0 - share) + self.to * share,
-                Spacing::Log => (self.from.ln() * (1.0 - share) + self.to.ln() * share).exp(),
-            };
-            format!("{value:.11e}").parse().unwrap_or(value)
-        };
-        let value = |step| match step {
-            0 => self.from,
-            step if step == last => self.to,
-            step => between(step),
-        };
-        (0..self.count).map(value).collect()
-    }
 }

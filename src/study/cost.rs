@@ -1,16 +1,16 @@
-//! A rough cost of a job, to order jobs and to estimate what remains.
+//! The estimated cost of a job, to order jobs and to estimate the remaining time.
 
 use crate::spec::{DiskKind, JobSpec, elasticity};
 
-/// What a node of an elastic disk costs in a step, in nodes of the pin: its rows are general, and it makes about two
-/// stages.
+/// Cost of a node of an elastic disk relative to a node of the pin: its rows of K are general ones, and it takes about
+/// two stages per step.
 const DISK_NODE: f64 = 8.0;
 
 /// Nodes × time steps up to the time limit.
 ///
 /// The step is `safety_factor` × h / `c_p` with the shortest element edge h and the speed `c_p` of
-/// pressure waves. A run that stops early costs less, and damping shortens the step: good for
-/// comparison, not for a promise.
+/// pressure waves. A run that stops early costs less, and damping shortens the step: the cost serves
+/// comparisons between jobs, it is no prediction.
 pub(super) fn node_steps(spec: &JobSpec) -> f64 {
     let pin = &spec.scene.pin;
     let nodes: f64 = pin.elements.iter().map(|&n| n as f64 + 1.0).product();
@@ -22,7 +22,7 @@ pub(super) fn node_steps(spec: &JobSpec) -> f64 {
     let nodes = match spec.scene.disk.kind {
         DiskKind::Rigid => nodes,
         DiskKind::Elastic => {
-            nodes + DISK_NODE * spec.scene.disk.ring.about_nodes(pin, spec.scene.disk.track_radius_m)
+            nodes + DISK_NODE * spec.scene.disk.ring.estimated_nodes(pin, spec.scene.disk.track_radius_m)
         }
     };
     nodes * (spec.run.limit_s / step).ceil().max(1.0)

@@ -1,10 +1,10 @@
-//! What is wrong with a study, written for the person who has to correct it.
+//! What is wrong with a study, in words for the person who corrects it.
 
-use super::expand::MAX_JOBS;
+use super::limits::MAX_JOBS;
 use super::locate::Position;
 use std::fmt;
 
-/// Beyond this many problems the rest is only counted: the first ones are read, the others scroll by.
+/// Largest number of problems in a message; further ones are only counted.
 const SHOWN: usize = 20;
 
 /// Why a study or a selection of one of its jobs cannot be used.
@@ -25,10 +25,10 @@ pub enum StudyError {
         file: String,
         /// Where reading stopped.
         position: Position,
-        /// What was expected there.
+        /// What is wrong there.
         message: String,
     },
-    /// The grid has too many points to be meant.
+    /// The grid has more than [`MAX_JOBS`] points.
     #[error(
         "{file}: grid: {points} jobs ({factors}): expected at most {MAX_JOBS}\n  help: shorten an axis, or split the study"
     )]
@@ -40,13 +40,13 @@ pub enum StudyError {
         /// The product as written: `mu 6 × omega_rpm 17`.
         factors: String,
     },
-    /// Fields, parameters or values that cannot be used; never empty.
+    /// Fields, parameters or values that cannot be used; the list is never empty.
     #[error("{}", Listing(.0))]
     Invalid(Vec<Problem>),
 }
 
 impl StudyError {
-    /// The single problems, where the error is made of such.
+    /// The single problems of [`StudyError::Invalid`]; empty for other errors.
     pub fn problems(&self) -> &[Problem] {
         if let Self::Invalid(problems) = self { problems } else { &[] }
     }
@@ -63,15 +63,15 @@ impl From<Problem> for StudyError {
 pub struct Problem {
     /// The study file, or `--set` for an override.
     pub file: String,
-    /// Where in the file, when the field is written there.
+    /// Position in the file, if the file gives the field.
     pub position: Option<Position>,
     /// Path of the field in the file: `scene.pin.poisson_ratio`, `grid.mu[2]`.
     pub field: String,
-    /// The value as written; absent when the field itself is missing or the value says nothing.
+    /// The value as written; absent when the file does not give the field.
     pub value: Option<String>,
-    /// What would be right.
+    /// What is wrong, or what is expected.
     pub message: String,
-    /// Where the value comes from and what to do.
+    /// Lines of advice: where the value comes from and what to do.
     pub help: Vec<String>,
 }
 

@@ -1,9 +1,9 @@
-//! The shape of a study file.
+//! The shape of a study file, and its JSON schema.
 
 use super::preset::Preset;
 use super::schema::grid_schema;
 use crate::spec::{Detection, Numerics, RunControl, Scene};
-use schemars::JsonSchema;
+use schemars::{JsonSchema, schema_for};
 use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Value};
 
@@ -38,8 +38,15 @@ pub(super) struct StudyFile {
     pub grid: Option<Map<String, Value>>,
 }
 
+/// The JSON schema (draft 2020-12) of a study file.
+///
+/// It describes names and types. The physical limits are checked by [`Study::parse`](super::Study::parse).
+pub fn schema() -> Value {
+    schema_for!(StudyFile).to_value()
+}
+
 impl StudyFile {
-    /// The shape of a study file: the reference scene, with a preset because it is a name.
+    /// An example that has every object and every name that a study file can have, for checks of its shape.
     pub(super) fn template() -> Value {
         let file = Self { preset: Some(Preset::Standard), ..Self::default() };
         serde_json::to_value(file).expect("a study is plain data with string keys")
@@ -49,31 +56,4 @@ impl StudyFile {
 /// `"grid": null` is a mistake and not the absence of a grid.
 fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
     T::deserialize(deserializer).map(Some)
-}
-
-/// Evenly spaced values of a parameter.
-#[derive(Debug, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub(super) struct Range {
-    /// First value.
-    pub from: f64,
-    /// Last value.
-    pub to: f64,
-    /// Number of values including both ends: at least 2, or 1 when `from` equals `to`.
-    #[schemars(range(min = 1))]
-    pub count: usize,
-    /// Equal steps (the default) or equal ratios.
-    #[serde(default)]
-    pub spacing: Spacing,
-}
-
-/// How the values of a range are spaced.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub(super) enum Spacing {
-    /// Equal steps.
-    #[default]
-    Linear,
-    /// Equal ratios; both ends must be > 0.
-    Log,
 }

@@ -1,4 +1,4 @@
-//! Between JSON values and typed data, with serde's messages put into the words of a study file.
+//! Conversion between JSON values and typed data. serde's messages are rewritten in the words of a study file.
 
 use super::locate::join;
 use super::suggest;
@@ -8,29 +8,29 @@ use serde::de::DeserializeOwned;
 use serde_json::Value;
 
 /// Why a value does not have the required type.
-pub(super) struct Mismatch {
-    /// Path below the decoded value; empty for the value itself.
+pub(super) struct TypeMismatch {
+    /// Path from the decoded value on; empty for the value itself.
     pub path: String,
-    /// What would be right.
+    /// What is expected.
     pub message: String,
-    /// The name that was probably meant.
+    /// The name that the author probably meant.
     pub suggestion: Option<String>,
-    /// Whether the field's name is wrong and not its value.
+    /// Whether the field's name is wrong rather than its value.
     pub is_name: bool,
 }
 
-/// The job as JSON, for pointers to set its fields.
+/// The job as JSON, in which [`Parameter::set`](super::Parameter) sets fields.
 pub(super) fn encode(job: &JobSpec) -> Value {
     serde_json::to_value(job).expect("a job is plain data with string keys")
 }
 
-/// The job of `value`: an encoded job in which only checked values were set.
-pub(super) fn checked_job(value: &Value) -> JobSpec {
+/// Decodes a job from [`encode`] in which only values of checked types were set.
+pub(super) fn decode_checked(value: &Value) -> JobSpec {
     JobSpec::deserialize(value).expect("each value was checked for its type on this job")
 }
 
 /// Decodes `value`, which must have objects and names where `template` has them.
-pub(super) fn decode<T: DeserializeOwned>(value: &Value, template: &Value) -> Result<T, Mismatch> {
+pub(super) fn decode<T: DeserializeOwned>(value: &Value, template: &Value) -> Result<T, TypeMismatch> {
     same_shape(value, template, "")?;
     serde_path_to_error::deserialize(value).map_err(|error| {
         let path = error.path().to_string();
@@ -39,12 +39,12 @@ pub(super) fn decode<T: DeserializeOwned>(value: &Value, template: &Value) -> Re
     })
 }
 
-/// Refuses what serde would take and a reader would not understand: a list of a structure's fields
-/// without their names, and a name written as `{"inner_side": null}`.
-fn same_shape(value: &Value, template: &Value, path: &str) -> Result<(), Mismatch> {
+/// Refuses two forms that serde accepts and a reader would not understand: a list of a structure's values without their
+/// names, and a name written as `{"inner_side": null}`.
+fn same_shape(value: &Value, template: &Value, path: &str) -> Result<(), TypeMismatch> {
     let refuse = |message: &str| {
         let (path, message) = (path.to_owned(), message.to_owned());
-        Err(Mismatch { path, message, suggestion: None, is_name: false })
+        Err(TypeMismatch { path, message, suggestion: None, is_name: false })
     };
     match (template, value) {
         (Value::Object(fields), Value::Object(given)) => given.iter().try_for_each(|(name, inner)| {
@@ -57,7 +57,8 @@ fn same_shape(value: &Value, template: &Value, path: &str) -> Result<(), Mismatc
     }
 }
 
-fn explain(path: String, message: &str) -> Mismatch {
+/// Rewrites a message of serde.
+fn explain(path: String, message: &str) -> TypeMismatch {
     let is_name = message.starts_with("unknown field");
     let is_unknown = is_name || message.starts_with("unknown variant");
     // serde writes: unknown field `wrong`, expected one of `a`, `b`
@@ -68,14 +69,14 @@ fn explain(path: String, message: &str) -> Mismatch {
     });
     let message = match message.split_once(", expected ") {
         Some((_, expected)) if is_name => format!("no such field; expected {expected}"),
-        Some((_, expected)) => format!("expected {}", plain(expected)),
+        Some((_, expected)) => format!("expected {}", in_json_words(expected)),
         None => message.to_owned(),
     };
-    Mismatch { path, message, suggestion, is_name }
+    TypeMismatch { path, message, suggestion, is_name }
 }
 
-/// Type names of Rust and serde in the words of JSON.
-fn plain(expected: &str) -> &str {
+/// Translates type names of Rust and serde into the words of JSON.
+fn in_json_words(expected: &str) -> &str {
     match expected {
         "f64" => "a number",
         "usize" | "u64" => "a whole number >= 0, without a decimal point",

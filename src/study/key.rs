@@ -3,17 +3,18 @@
 use super::json::encode;
 use crate::spec::{Clamp, ClampSide, DiskKind, JobSpec, Numerics};
 use serde_json::Value;
+use std::collections::VecDeque;
 use std::fmt::Write;
 
-/// 128 bits: no two of a billion jobs collide.
+/// Length of a key. 128 bits suffice for a billion jobs without a collision.
 const HEX_DIGITS: usize = 32;
 
 /// The key of a job under a version of the solver: BLAKE3 of its canonical JSON, 32 hex digits.
 ///
-/// Canonical means: fields sorted, no space, numbers in their shortest exact form, 0 for −0, and
-/// fields that have no effect replaced: the clamp's width where no strip uses it, the safety factor where
-/// the time step is given; or left out: the ring of a rigid disk. A new `solver_version` changes every key, so that
-/// old results are not taken for new ones.
+/// In canonical JSON the fields are sorted, there is no space, and numbers have their shortest exact form, with 0 for
+/// −0. Fields without effect do not enter: the clamp's width where no strip uses it and the safety factor where the
+/// time step is given have their defaults, and the ring of a rigid disk is left out. A new `solver_version` changes
+/// every key, so that old results are not taken for new ones.
 pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     let mut spec = spec.clone();
     if spec.scene.clamp.side == ClampSide::WholeTop {
@@ -28,15 +29,43 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     {
         disk.remove("ring");
     }
-    let mut text = String::new();
+    // The version cannot be confused with the job's text: it is quoted, and the job begins with a brace.
+    let mut text = Value::from(solver_version).to_string();
     write_canonical(&job, &mut text);
-    // The version cannot run into the job: it is quoted and the job begins with a brace.
-    let hash = blake3::hash(format!("{}{text}", Value::from(solver_version)).as_bytes());
-    hash.to_hex()[..HEX_DIGITS].to_owned()
+    blake3::hash(text.as_bytes()).to_hex()[..HEX_DIGITS].to_owned()
 }
 
-/// Sorts the fields itself: whether `serde_json` keeps them sorted depends on a feature that any
-/// other dependency can switch on.
+/// Largest number of parts that are remembered: a search through them takes less time than to encode one job.
+const MAX_REMEMBERED: usize = 64;
+
+/// Keys of parts that many jobs share, such as [`JobSpec::shared_part`]. A part that was met recently is not encoded
+/// again.
+#[derive(Debug)]
+pub(crate) struct SharedKeys {
+    solver_version: &'static str,
+    recent: VecDeque<(JobSpec, String)>,
+}
+
+impl SharedKeys {
+    /// Keys under that version of the solver.
+    pub(crate) fn new(solver_version: &'static str) -> Self {
+        Self { solver_version, recent: VecDeque::new() }
+    }
+
+    /// The [`job_key`] of `part`.
+    pub(crate) fn key(&mut self, part: JobSpec) -> String {
+        if let Some((_, key)) = self.recent.iter().find(|(known, _)| *known == part) {
+            return key.clone();
+        }
+        let key = job_key(&part, self.solver_version);
+        self.recent.truncate(MAX_REMEMBERED - 1);
+        self.recent.push_front((part, key.clone()));
+        key
+    }
+}
+
+/// Writes canonical JSON. The fields are sorted here, because whether `serde_json` keeps them sorted depends on a feature
+/// that any other dependency can switch on.
 fn write_canonical(value: &Value, out: &mut String) {
     match value {
         Value::Object(fields) => {

@@ -1,19 +1,19 @@
 //! The registry of parameters: what a grid or an override can set, by short name.
 
 use super::suggest;
-use crate::spec::{ClampSide, Clock, DiskKind, TargetSurface, TopFace};
+use crate::spec::{ClampSide, DiskKind, DiskTimeStep, TargetSurface, TopFace};
 use schemars::{Schema, SchemaGenerator};
 use serde_json::Value;
 
-/// What kind of values a parameter takes. The types are checked by deserialising the job, not here:
-/// the kind says how to write values, for ranges and for the schema.
+/// The kind of values of a parameter: how they are written, whether ranges make sense, and their schema. Types are
+/// checked by deserialising the job, not by the kind.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Kind {
     /// A number.
     Number,
     /// A whole number.
     Count,
-    /// `[nx, ny, nz]`.
+    /// Three whole numbers, `[nx, ny, nz]`.
     Counts,
     /// `true` or `false`.
     Flag,
@@ -28,7 +28,7 @@ pub struct Parameter {
     pub name: &'static str,
     /// JSON pointer into a [`JobSpec`](crate::spec::JobSpec).
     pub pointer: &'static str,
-    /// What it is, with its unit.
+    /// Description, with the unit in brackets.
     pub doc: &'static str,
     pub(super) kind: Kind,
 }
@@ -41,7 +41,7 @@ const CLAMP_SIDE: Kind = Kind::Name(SchemaGenerator::subschema_for::<ClampSide>)
 const TOP_FACE: Kind = Kind::Name(SchemaGenerator::subschema_for::<TopFace>);
 const DISK_KIND: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskKind>);
 const TARGET: Kind = Kind::Name(SchemaGenerator::subschema_for::<TargetSurface>);
-const CLOCK: Kind = Kind::Name(SchemaGenerator::subschema_for::<Clock>);
+const DISK_TIME_STEP: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskTimeStep>);
 
 /// All parameters, in the order in which help and messages list them.
 #[rustfmt::skip]
@@ -62,7 +62,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("disk_coarse_element_size_m", "/scene/disk/ring/coarse_element_size_m", Kind::Number, "largest element of an elastic disk elsewhere [m]"),
     parameter("track_arc_deg", "/scene/disk/ring/track_arc_deg", Kind::Number, "arc of an elastic disk that the pin may sweep [°]"),
     parameter("target", "/scene/disk/ring/target", TARGET, "how an elastic disk's surface is interpolated [name]"),
-    parameter("disk_clock", "/scene/disk/ring/clock", CLOCK, "whether an elastic disk has its own time step [name]"),
+    parameter("disk_clock", "/scene/disk/ring/clock", DISK_TIME_STEP, "whether an elastic disk has its own time step [name]"),
     parameter("young_modulus_pa", "/scene/pin/young_modulus_pa", Kind::Number, "Young's modulus of the pin [Pa]"),
     parameter("poisson_ratio", "/scene/pin/poisson_ratio", Kind::Number, "Poisson's ratio of the pin [-]"),
     parameter("density_kg_m3", "/scene/pin/density_kg_m3", Kind::Number, "density of the pin [kg/m³]"),
@@ -96,7 +96,7 @@ impl Parameter {
         PARAMETERS.iter().find(|parameter| parameter.name == name)
     }
 
-    /// The field it sets, as messages write it: `scene.pin.size_m[0]`.
+    /// The path of the field that it sets, as in messages: `scene.pin.size_m[0]`.
     pub fn field(&self) -> String {
         let write = |path: String, step: &str| match step.parse::<usize>() {
             Ok(index) => format!("{path}[{index}]"),
@@ -105,17 +105,17 @@ impl Parameter {
         self.pointer[1..].split('/').fold(String::new(), write)
     }
 
-    /// What it is, as a line of help.
+    /// A line of help: name and description.
     pub(super) fn help(&self) -> String {
         format!("`{}`: {}", self.name, self.doc)
     }
 
-    /// Whether setting it determines the field `path` or a part of it that `path` names.
+    /// Whether setting the parameter determines the field `path`.
     pub(super) fn sets(&self, path: &str) -> bool {
         path.strip_prefix(&self.field()).is_some_and(|rest| rest.is_empty() || rest.starts_with('['))
     }
 
-    /// Whether both set a common field, so that a job cannot have both.
+    /// Whether both parameters set a common field, so that a job cannot have both.
     pub(super) fn overlaps(&self, other: &Self) -> bool {
         self.sets(&other.field()) || other.sets(&self.field())
     }
@@ -124,7 +124,7 @@ impl Parameter {
     pub(super) fn set(&self, job: &mut Value, value: &Value) {
         let (parent, last) = self.pointer.rsplit_once('/').unwrap_or(("", self.pointer));
         match job.pointer_mut(parent) {
-            // Inserted rather than replaced: an optional field is absent from the serialised job.
+            // Insert rather than replace: an optional field may be absent from the serialised job.
             Some(Value::Object(fields)) => _ = fields.insert(last.to_owned(), value.clone()),
             Some(Value::Array(entries)) => {
                 if let Some(entry) = last.parse().ok().and_then(|i: usize| entries.get_mut(i)) {
@@ -135,7 +135,7 @@ impl Parameter {
         }
     }
 
-    /// One spelling for equal numbers: 7 and 7.0, -0 and 0, a count 6.0 that a range has made.
+    /// One spelling for equal numbers: 7.0 for 7, 0 for -0, and 6 for a count 6.0 of a range.
     pub(super) fn normalise(&self, value: Value) -> Value {
         match (self.kind, value) {
             (Kind::Number, Value::Number(number)) => match number.as_f64() {
@@ -149,7 +149,7 @@ impl Parameter {
     }
 }
 
-/// A whole number without decimal point; anything else as it is, for the type check to refuse.
+/// A whole number without its decimal point. Any other value stays as it is, and the type check refuses it.
 fn whole(value: Value) -> Value {
     match value.as_f64() {
         Some(float) if float.fract() == 0.0 && (0.0..1e15).contains(&float) => Value::from(float as u64),
@@ -159,7 +159,7 @@ fn whole(value: Value) -> Value {
 
 /// Help for a parameter that does not exist.
 pub(super) fn unknown_help(wrong: &str) -> Vec<String> {
-    // Also recognised by the field it sets, because that is what the rest of the file calls it.
+    // A parameter is also recognised by the name of its field, which the rest of the file uses.
     let spellings = |parameter: &'static Parameter| {
         let field = parameter.field();
         let last = field.rsplit('.').next().unwrap_or_default().to_owned();

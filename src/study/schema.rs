@@ -1,18 +1,11 @@
-//! The JSON schema of a study file, for editors and for tests.
+//! The JSON schema of a study's grid.
 
-use super::file::{Range, StudyFile};
 use super::parameter::{Kind, PARAMETERS, Parameter};
-use schemars::{Schema, SchemaGenerator, json_schema, schema_for};
+use super::range::Range;
+use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
 
-/// The JSON schema (draft 2020-12) of a study file.
-///
-/// It holds names and types; the physical limits are checked by [`Study::parse`](super::Study::parse).
-pub fn schema() -> Value {
-    schema_for!(StudyFile).to_value()
-}
-
-/// Every parameter by name, and nothing else.
+/// Every parameter by name, and no other property.
 pub(super) fn grid_schema(schemas: &mut SchemaGenerator) -> Schema {
     let properties: Map<String, Value> = PARAMETERS
         .iter()

@@ -1,19 +1,20 @@
-//! One job of a study, picked by `name=value` overrides.
+//! One job of a study, selected by `name=value` overrides.
 
 use super::axis::{Axis, check_type};
+use super::definition::Study;
 use super::error::{Problem, StudyError};
-use super::origin::shorten;
+use super::json;
 use super::parameter::{Kind, Parameter, unknown_help};
 use super::preset::Preset;
-use super::{Study, json};
+use super::source::shorten;
 use crate::spec::JobSpec;
 use serde_json::Value;
 
-/// What stands for the file in messages about overrides.
+/// Stands for the file in messages about overrides.
 const SOURCE: &str = "--set";
 
-/// So many values of a parameter are listed to choose from.
-const LISTED: usize = 40;
+/// Largest number of values that a message lists to choose from.
+const MAX_LISTED: usize = 40;
 
 impl Study {
     /// The job with `overrides` (name, value) on top of the base job and the grid.
@@ -28,8 +29,8 @@ impl Study {
         self.single_with_preset(None, overrides)
     }
 
-    /// [`Study::single`] with the settings of a `preset`, which goes before the file and the grid and behind the
-    /// overrides.
+    /// [`Study::single`] with the settings of a `preset`. The preset takes precedence over the file and the grid, and the
+    /// overrides over the preset.
     ///
     /// # Errors
     /// Those of [`Study::single`].
@@ -38,7 +39,7 @@ impl Study {
         preset: Option<Preset>,
         overrides: &[(String, String)],
     ) -> Result<JobSpec, StudyError> {
-        let (found, left_open) = self.pick(SOURCE, preset, overrides);
+        let (found, left_open) = self.select(SOURCE, preset, overrides);
         if left_open.is_empty() {
             return found;
         }
@@ -50,23 +51,24 @@ impl Study {
         Err(StudyError::Invalid(problems))
     }
 
-    /// [`Study::single_with_preset`], but parameters of the grid that are left open have the base job's value. Also
-    /// gives the names of these. `source` is what messages say of where the overrides come from.
+    /// As [`Study::single_with_preset`], but parameters of the grid that are left open have the base job's value. Also
+    /// returns the names of these parameters. `source` stands for the origin of the overrides in messages.
     ///
     /// # Errors
-    /// Those of [`Study::single`] but for open parameters.
-    pub fn single_on_base(
+    /// Those of [`Study::single`] except for open parameters.
+    pub(crate) fn single_on_base(
         &self,
         source: &str,
         preset: Option<Preset>,
         overrides: &[(String, String)],
     ) -> Result<(JobSpec, Vec<&'static str>), StudyError> {
-        let (spec, left_open) = self.pick(source, preset, overrides);
+        let (spec, left_open) = self.select(source, preset, overrides);
         Ok((spec?, left_open.into_iter().map(|axis| axis.parameter.name).collect()))
     }
 
-    /// The job with these overrides, and the axes of the grid of which no value is picked: there it has the base job's.
-    fn pick(
+    /// The job with these overrides, and the axes of the grid that they leave open. In these the job has the base job's
+    /// value.
+    fn select(
         &self,
         source: &str,
         preset: Option<Preset>,
@@ -74,7 +76,7 @@ impl Study {
     ) -> (Result<JobSpec, StudyError>, Vec<&Axis>) {
         let mut job = json::encode(&self.base);
         let mut problems = Vec::new();
-        let mut taken: Vec<&Parameter> = Vec::new();
+        let mut overridden: Vec<&Parameter> = Vec::new();
         let mut settings = Vec::new();
         for (name, text) in overrides {
             let problem = |message| problem(source, name, text, message);
@@ -82,22 +84,22 @@ impl Study {
                 problems.push(Problem { help: unknown_help(name), ..problem("no such parameter".into()) });
                 continue;
             };
-            if let Some(other) = taken.iter().find(|other| other.overlaps(parameter)) {
+            if let Some(other) = overridden.iter().find(|other| other.overlaps(parameter)) {
                 let message = format!("{} is already set; expected only one of the two", other.name);
                 problems.push(problem(message));
             }
-            taken.push(parameter);
-            let value = parameter.normalise(read(parameter, text));
+            overridden.push(parameter);
+            let value = parameter.normalise(parse_value(parameter, text));
             match check_type(parameter, &value, &job) {
                 Ok(()) => settings.push((parameter, value)),
                 Err(message) => problems.push(problem(message).with_help(parameter.help())),
             }
         }
         let mut left_open = Vec::new();
-        for axis in &self.axes {
+        for axis in &self.grid.axes {
             match axis.values.as_slice() {
                 [only] => axis.parameter.set(&mut job, only),
-                _ if taken.iter().any(|parameter| parameter.sets(&axis.parameter.field())) => {}
+                _ if overridden.iter().any(|parameter| parameter.sets(&axis.parameter.field())) => {}
                 _ if preset.is_some() && Preset::covers(axis.parameter) => {}
                 _ => left_open.push(axis),
             }
@@ -109,33 +111,33 @@ impl Study {
             parameter.set(&mut job, value);
         }
         if let Some(preset) = preset {
-            preset.override_job(&mut job, &taken);
+            preset.override_job(&mut job, &overridden);
         }
-        (self.checked(source, &job, &taken), left_open)
+        (self.checked(source, &job, &overridden), left_open)
     }
 
     fn left_open(&self, axis: &Axis) -> Problem {
-        let mut values: Vec<_> = axis.values.iter().take(LISTED).map(Value::to_string).collect();
-        if axis.values.len() > LISTED {
+        let mut values: Vec<_> = axis.values.iter().take(MAX_LISTED).map(Value::to_string).collect();
+        if axis.values.len() > MAX_LISTED {
             values.push("…".to_owned());
         }
         let name = axis.parameter.name;
-        let problem = self.origin.problem(&axis.path(), "expected one value for a single job");
+        let problem = self.source.problem(&axis.path(), "expected one value for a single job");
         Problem { value: Some(format!("[{}]", values.join(", "))), ..problem }
             .with_help(format!("pick one with --set {name}={}", values[0].trim_matches('"')))
     }
 
     fn checked(&self, source: &str, job: &Value, overridden: &[&Parameter]) -> Result<JobSpec, StudyError> {
-        let spec = json::checked_job(job);
+        let spec = json::decode_checked(job);
         let Err(violations) = spec.check() else { return Ok(spec) };
         let describe = |violation: &crate::spec::FieldError| {
             let message = format!("expected {}", violation.expected);
-            let origin = if overridden.iter().any(|parameter| parameter.sets(&violation.field)) {
+            let problem = if overridden.iter().any(|parameter| parameter.sets(&violation.field)) {
                 problem(source, &violation.field, &violation.value, message)
             } else {
-                self.origin.problem(&violation.field, message)
+                self.source.problem(&violation.field, message)
             };
-            Problem { value: Some(violation.value.clone()), ..origin }
+            Problem { value: Some(violation.value.clone()), ..problem }
         };
         Err(StudyError::Invalid(violations.0.iter().map(describe).collect()))
     }
@@ -152,7 +154,8 @@ fn problem(source: &str, field: &str, value: &str, message: String) -> Problem {
     }
 }
 
-fn read(parameter: &Parameter, text: &str) -> Value {
+/// Reads the text of an override: counts as `12x15x10`, then JSON, otherwise a string.
+fn parse_value(parameter: &Parameter, text: &str) -> Value {
     if matches!(parameter.kind, Kind::Counts) {
         let counts: Result<Vec<u64>, _> = text.split(['x', '×']).map(|n| n.trim().parse()).collect();
         if let Ok(counts) = counts {

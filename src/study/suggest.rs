@@ -1,11 +1,11 @@
-//! "Did you mean …?"
+//! Suggestions for misspelt names.
 
-/// Below this similarity a suggestion misleads more often than it helps.
-const SIMILAR: f64 = 0.75;
+/// Least similarity (Jaro–Winkler) of a suggestion; less similar names mislead more often than they help.
+const LEAST_SIMILARITY: f64 = 0.75;
 
-/// The candidate most like `wrong`, if any is like it.
+/// The candidate most similar to `wrong`, if one is similar enough.
 ///
-/// A candidate is a name with the spellings it is recognised by.
+/// A candidate is a name with the spellings by which it is recognised.
 pub(super) fn nearest<'a>(
     wrong: &str,
     candidates: impl IntoIterator<Item = (&'a str, Vec<String>)>,
@@ -17,7 +17,7 @@ pub(super) fn nearest<'a>(
             let score = |spelling: &String| strsim::jaro_winkler(&wrong, &spelling.to_lowercase());
             (name, spellings.iter().map(score).fold(0.0, f64::max))
         })
-        .filter(|(_, score)| *score >= SIMILAR)
+        .filter(|(_, score)| *score >= LEAST_SIMILARITY)
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(name, _)| name)
 }

@@ -2,15 +2,15 @@
 
 use crate::report::JobNumerics;
 use crate::spec::{Detection, JobSpec, Numerics, RunControl};
-use crate::study::job_key;
+use crate::study::SharedKeys;
 
-/// The numerics of a job, as reports compare them.
-pub(super) fn numerics(spec: &JobSpec) -> JobNumerics {
+/// The numerics of a job, as reports compare them. `cases` makes the keys of physical cases.
+pub(super) fn numerics(spec: &JobSpec, cases: &mut SharedKeys) -> JobNumerics {
     let JobSpec { scene, numerics, run, detection } = spec;
     let elements = scene.pin.elements;
     let element_volume_m3: f64 = (0..3).map(|axis| scene.pin.size_m[axis] / elements[axis] as f64).product();
     JobNumerics {
-        case: case_key(spec),
+        case: case_key(spec, cases),
         elements,
         element_size_m: element_volume_m3.cbrt(),
         nodes: elements.iter().map(|&n| n as u64 + 1).product(),
@@ -28,7 +28,7 @@ pub(super) fn numerics(spec: &JobSpec) -> JobNumerics {
 
 /// The key of the physical case, which all jobs with the same physics share: the key of a job with this scene, a mesh of
 /// one element, and everything else at its default.
-fn case_key(spec: &JobSpec) -> String {
+fn case_key(spec: &JobSpec, cases: &mut SharedKeys) -> String {
     let mut case = JobSpec {
         scene: spec.scene.clone(),
         numerics: Numerics::default(),
@@ -36,5 +36,5 @@ fn case_key(spec: &JobSpec) -> String {
         detection: Detection::default(),
     };
     case.scene.pin.elements = [1, 1, 1];
-    job_key(&case, "")
+    cases.key(case)
 }

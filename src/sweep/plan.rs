@@ -5,7 +5,7 @@ use super::numerics::numerics;
 use super::rows::RowParameters;
 use crate::queue::{NewJob, NewStudy, Queue, Shard, Submitted};
 use crate::solver::{self, Model};
-use crate::study::{Job, Study, StudyError, job_key};
+use crate::study::{Job, SharedKeys, Study, StudyError};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
 use std::collections::BTreeSet;
@@ -42,8 +42,10 @@ impl Plan {
     pub fn parse(text: &str, source_name: &str) -> Result<Self, SweepError> {
         let study = Study::parse(text, source_name)?;
         let jobs = study.expand(solver::VERSION)?;
-        let batches: Vec<String> =
-            jobs.par_iter().map(|job| job_key(&job.spec.shared_part(), solver::VERSION)).collect();
+        let batches: Vec<String> = jobs
+            .par_iter()
+            .map_init(|| SharedKeys::new(solver::VERSION), |keys, job| keys.key(job.spec.shared_part()))
+            .collect();
         preflight(source_name, &jobs, &batches)?;
         Ok(Self { study, jobs, batches, document: text.to_owned() })
     }
@@ -94,22 +96,25 @@ impl Plan {
             .jobs
             .par_iter()
             .zip(&self.batches)
-            .map(|(job, batch)| {
-                let parameters = RowParameters {
-                    omega_rpm: job.spec.scene.disk.omega_rpm,
-                    mu: job.spec.scene.contact.mu,
-                    grid: job.parameters.clone(),
-                    numerics: Some(numerics(&job.spec)),
-                };
-                Ok(NewJob {
-                    key: job.key.clone(),
-                    payload: encode(&job.spec)?,
-                    parameters: encode(&parameters)?,
-                    cost: job.cost,
-                    batch: batch.clone(),
-                    priority,
-                })
-            })
+            .map_init(
+                || SharedKeys::new(""),
+                |cases, (job, batch)| {
+                    let parameters = RowParameters {
+                        omega_rpm: job.spec.scene.disk.omega_rpm,
+                        mu: job.spec.scene.contact.mu,
+                        grid: job.parameters.clone(),
+                        numerics: Some(numerics(&job.spec, cases)),
+                    };
+                    Ok(NewJob {
+                        key: job.key.clone(),
+                        payload: encode(&job.spec)?,
+                        parameters: encode(&parameters)?,
+                        cost: job.cost,
+                        batch: batch.clone(),
+                        priority,
+                    })
+                },
+            )
             .collect::<Result<_, SweepError>>()?;
         Ok(NewStudy { name: self.name().to_owned(), document: self.document.clone(), jobs })
     }

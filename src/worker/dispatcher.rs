@@ -1,243 +1,199 @@
-//! The dispatcher: owns the database connection, the interrupt and the progress display.
+//! The dispatcher of a worker: it owns the database connection and the progress display.
+//!
+//! It takes turns: it stores the ends of jobs and claims new ones in one transaction, answers the threads' requests, and
+//! waits for their reports.
 
-use super::checkpoint::Kept;
+use super::channel::{Assignment, JobProgress, Report, Request};
+use super::checkpoint::SealedCheckpoint;
 use super::eta::Eta;
-use super::executor::{Assignment, Executor, JobClock, Report, Request};
+use super::executor::Executor;
 use super::heartbeat::Heartbeat;
-use super::idle::Idle;
+use super::idle::IdleTimer;
 use super::interrupt::Interrupt;
 use super::options::WorkOptions;
-use super::patience::Patience;
 use super::progress::{Progress, RunningJob, Snapshot};
-use super::provenance;
+use super::retry::RetryBackoff;
 use super::tally::Tally;
 use crate::queue::{
-    Claim, ClaimedJob, Counts, Exchanged, Finished, FinishedOutcome, Queue, QueueError, Scope, TakenBack,
+    Claim, ClaimedJob, Exchanged, Finished, FinishedOutcome, Queue, QueueError, Scope, TakenBack,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
-use thiserror::Error;
-use tokio::sync::mpsc::{UnboundedReceiver, unbounded_channel};
+use tokio::sync::mpsc::UnboundedReceiver;
 
-/// How often progress is shown when nothing finishes, and other workers' jobs are looked at when there is nothing
-/// else to do.
+/// Longest time without a turn: how often progress is shown when no job ends.
 const TICK: Duration = Duration::from_millis(250);
 
-/// What a worker left behind.
-#[derive(Debug, Clone, PartialEq)]
-pub struct WorkSummary {
-    /// Jobs of the scope in each state.
-    pub counts: Counts,
-    /// Jobs that other processes had left running when they died.
-    pub taken_back: TakenBack,
-    /// Whether it was asked to stop.
-    pub interrupted: bool,
-}
-
-/// Why a worker could not work.
-#[derive(Debug, Error)]
-pub enum WorkError {
-    /// The queue.
-    #[error(transparent)]
-    Queue(#[from] QueueError),
-    /// The threads.
-    #[error("cannot start the worker threads: {0}")]
-    Threads(#[from] rayon::ThreadPoolBuildError),
-}
-
-/// Works through the pending jobs of `scope` until none is left or `interrupt` is raised.
-///
-/// Other processes may work on the same database, and their jobs are done here if they die. Running ones are waited for;
-/// with [`WorkOptions::idle_exit`] only while somebody's signs of life are missing.
-/// Interrupted jobs go back to the queue, long ones with where they are.
-///
-/// # Errors
-/// If the database fails, or threads cannot be started.
-pub async fn work(
-    queue: &mut Queue,
-    scope: &Scope,
-    options: WorkOptions,
-    interrupt: &Interrupt,
-    progress: &mut impl Progress,
-) -> Result<WorkSummary, WorkError> {
-    let patience = Patience::new();
-    // A worker among many is not lost for a server that is just being restarted.
-    while let Err(error) = queue.open_jobs(scope).await {
-        if interrupt.is_raised() {
-            return Err(error.into());
-        }
-        patience.wait(error, interrupt, progress).await?;
-    }
-    let left = queue.counts(scope).await?;
-    // No more threads than jobs to run on them, unless more may come.
-    let jobs = usize::try_from(left.pending + left.running).unwrap_or(usize::MAX);
-    let threads =
-        if options.idle_exit.is_some() { options.threads } else { options.threads.min(jobs.max(1)) };
-    let (sender, reports) = unbounded_channel();
-    let executor = Executor::new(WorkOptions { threads, ..options }, &sender, interrupt)?;
-    queue.register(&provenance::worker(threads)).await?;
-    let taken_back = queue.take_back().await?;
-    let tally = Tally::new(queue, scope).await?;
-    let lease = queue.settings().lease;
-    let mut dispatcher = Dispatcher {
-        queue,
-        scope,
-        threads,
-        interrupt,
-        executor,
-        reports,
-        requests: Vec::new(),
-        checkpoints: Vec::new(),
-        running: BTreeMap::new(),
-        timings: Vec::new(),
-        heartbeat: Heartbeat::new(lease),
-        idle: Idle::default(),
-        idle_exit: options.idle_exit,
-        is_stopping: false,
-        taken_back,
-        tally,
-    };
-    let worked = dispatcher.run(progress).await;
-    // After an error too, as far as it goes: what is given back did not crash. The first error is the one to report.
-    if worked.is_err() {
-        let _ = dispatcher.queue.unregister().await;
-    }
-    worked?;
-    dispatcher.end(progress).await?;
-    let snapshot = dispatcher.snapshot();
-    progress.stopped(&snapshot);
-    let (counts, taken_back) = (snapshot.counts, dispatcher.taken_back);
-    Ok(WorkSummary { counts, taken_back, interrupted: interrupt.is_raised() })
-}
-
-struct Dispatcher<'a> {
+/// Turns between the database and the solver threads.
+pub struct Dispatcher<'a> {
     queue: &'a mut Queue,
     scope: &'a Scope,
     threads: usize,
     interrupt: &'a Interrupt,
     executor: Executor,
     reports: UnboundedReceiver<Report>,
-    /// What threads have asked for and have not been answered.
+    /// Requests of threads that have not been answered.
     requests: Vec<Request>,
-    /// What is to be kept.
-    checkpoints: Vec<Kept>,
-    /// Cost and clock of every running job, by key.
-    running: BTreeMap<String, (f64, Arc<JobClock>)>,
-    /// (cost, seconds) of what this worker has finished.
+    /// Checkpoints that have not been stored.
+    checkpoints: Vec<SealedCheckpoint>,
+    /// Cost and progress of every running job, by key.
+    running: BTreeMap<String, (f64, Arc<JobProgress>)>,
+    /// Cost and duration [s] of the jobs that this worker has finished.
     timings: Vec<(f64, f64)>,
     heartbeat: Heartbeat,
-    idle: Idle,
+    idle: IdleTimer,
     idle_exit: Option<Duration>,
-    /// Whether the database knows of the interruption.
+    /// Whether the database knows that this worker was asked to stop.
     is_stopping: bool,
     taken_back: TakenBack,
     tally: Tally,
 }
 
-impl Dispatcher<'_> {
-    async fn run(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
+impl<'a> Dispatcher<'a> {
+    /// A dispatcher of a worker that is registered.
+    pub async fn new(
+        queue: &'a mut Queue,
+        scope: &'a Scope,
+        options: WorkOptions,
+        interrupt: &'a Interrupt,
+        executor: Executor,
+        reports: UnboundedReceiver<Report>,
+    ) -> Result<Self, QueueError> {
+        let taken_back = queue.take_back().await?;
+        let tally = Tally::new(queue, scope).await?;
+        let heartbeat = Heartbeat::new(queue.settings().lease);
+        Ok(Self {
+            queue,
+            scope,
+            threads: options.threads,
+            interrupt,
+            executor,
+            reports,
+            requests: Vec::new(),
+            checkpoints: Vec::new(),
+            running: BTreeMap::new(),
+            timings: Vec::new(),
+            heartbeat,
+            idle: IdleTimer::default(),
+            idle_exit: options.idle_exit,
+            is_stopping: false,
+            taken_back,
+            tally,
+        })
+    }
+
+    /// Takes turns with the database until there is nothing more to do.
+    pub async fn run(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
         let mut done = Vec::new();
         loop {
-            self.keep_checkpoints(progress).await;
-            let asked = self.answerable();
-            let exchanged = self.exchange(&done, &asked, progress).await?;
-            self.settle(&done, &exchanged.refused, progress);
+            self.store_checkpoints(progress).await;
+            let requests = self.take_answerable_requests();
+            let exchanged = self.exchange(&done, &requests, progress).await?;
+            self.record_ends(&done, &exchanged.refused, progress);
             done.clear();
-            for (request, jobs) in asked.into_iter().zip(exchanged.claimed) {
+            for (request, jobs) in requests.into_iter().zip(exchanged.claimed) {
                 self.answer(request, jobs);
             }
             self.tally.refresh(self.queue, self.scope).await?;
             progress.update(&self.snapshot());
             loop {
-                if self.running.is_empty() && self.is_over(progress).await? {
+                if self.running.is_empty() && self.is_finished(progress).await? {
                     return Ok(());
                 }
-                // Only the channel is awaited under the timeout; the database never is.
+                // Never wrap a database future in a timeout: dropping it would hold the lock.
                 match tokio::time::timeout(TICK, self.reports.recv()).await {
-                    Ok(Some(report)) => self.take(report, &mut done),
+                    Ok(Some(report)) => self.accept(report, &mut done),
                     Ok(None) => unreachable!("the threads hold senders"),
                     Err(_) => self.tick(progress).await?,
                 }
                 while let Ok(report) = self.reports.try_recv() {
-                    self.take(report, &mut done);
+                    self.accept(report, &mut done);
                 }
-                if !done.is_empty() || !self.checkpoints.is_empty() || !self.is_quiet() {
+                if !done.is_empty() || !self.checkpoints.is_empty() || self.has_answerable_request() {
                     break;
                 }
             }
         }
     }
 
-    /// Ends the worker in order.
-    async fn end(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
-        let patience = Patience::new();
+    /// Leaves the database as far as it answers; what fails is ignored.
+    pub async fn unregister(&mut self) {
+        let _ = self.queue.unregister().await;
+    }
+
+    /// Unregisters the worker and counts the jobs for the last time.
+    pub async fn shut_down(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
+        let backoff = RetryBackoff::new();
         loop {
-            let ended = match self.queue.unregister().await {
-                Ok(()) => self.tally.ask(self.queue, self.scope).await,
+            let left = match self.queue.unregister().await {
+                Ok(()) => self.tally.query(self.queue, self.scope).await,
                 error => error,
             };
-            match ended {
+            match left {
                 Ok(()) => return Ok(()),
-                Err(error) => patience.wait(error, self.interrupt, progress).await?,
+                Err(error) => backoff.wait(error, self.interrupt, progress).await?,
             }
         }
     }
 
-    /// Whether there is nothing to do but stop.
-    async fn is_over(&mut self, progress: &mut impl Progress) -> Result<bool, QueueError> {
+    /// Whether the worker is to stop, given that no job runs here.
+    async fn is_finished(&mut self, progress: &mut impl Progress) -> Result<bool, QueueError> {
         if self.interrupt.is_raised() {
             return Ok(true);
         }
-        if self.tally.counts.pending > 0 || !self.idle.is_due() {
+        if self.tally.counts.pending > 0 || !self.idle.is_poll_due() {
             return Ok(false);
         }
-        let patience = Patience::new();
+        let backoff = RetryBackoff::new();
         loop {
-            match self.look().await {
-                Ok(is_over) => return Ok(is_over),
+            match self.poll_for_jobs().await {
+                Ok(is_finished) => return Ok(is_finished),
                 Err(_) if self.interrupt.is_raised() => return Ok(true),
-                Err(error) => patience.wait(error, self.interrupt, progress).await?,
+                Err(error) => backoff.wait(error, self.interrupt, progress).await?,
             }
         }
     }
 
-    /// Looks for what is new and for what died elsewhere; returns whether there is nothing more to wait for.
-    async fn look(&mut self) -> Result<bool, QueueError> {
+    /// Looks for new jobs and for jobs of dead workers; returns whether there is nothing more to wait for.
+    async fn poll_for_jobs(&mut self) -> Result<bool, QueueError> {
         self.take_back().await?;
-        // What is counted here may be older than what others do.
+        // The tally may be older than the changes by other workers.
         let open = self.queue.open_jobs(self.scope).await?;
         if open.has_pending {
-            self.tally.is_outdated();
+            self.tally.invalidate();
             return Ok(false);
         }
         let Some(limit) = self.idle_exit else { return Ok(!open.has_running) };
-        // Who was told how long to stay does not wait for what runs elsewhere, unless it may be about to come back.
-        Ok(self.idle.lasts() >= limit && !(open.has_running && self.queue.misses_somebody().await?))
+        // Exits even if other workers are still running jobs, unless one of them has missed a heartbeat: its jobs may
+        // come back.
+        Ok(self.idle.elapsed() >= limit && !(open.has_running && self.queue.misses_somebody().await?))
     }
 
-    fn take(&mut self, report: Report, done: &mut Vec<Finished>) {
+    fn accept(&mut self, report: Report, done: &mut Vec<Finished>) {
         match report {
             Report::Finished(job) => done.push(job),
-            Report::Checkpoint(kept) => self.checkpoints.push(kept),
-            Report::Wants(request) => self.requests.push(request),
+            Report::Checkpoint(checkpoint) => self.checkpoints.push(checkpoint),
+            Report::Request(request) => self.requests.push(request),
         }
     }
 
-    /// Whether no request can be answered: none is about a batch, and no job is there for the others.
-    fn is_quiet(&self) -> bool {
-        let has_jobs = self.tally.counts.pending > 0 && !self.interrupt.is_raised();
-        self.requests.iter().all(|request| request.batch.is_none() && !has_jobs)
+    /// Whether a request can be answered now. Batch requests are answered immediately, possibly with no job; a request
+    /// for any job waits until there is one.
+    fn is_answerable(&self, request: &Request) -> bool {
+        request.batch.is_some() || (self.tally.counts.pending > 0 && !self.interrupt.is_raised())
     }
 
-    /// The requests to answer now; none of them gets more than a fair share of what is left.
-    fn answerable(&mut self) -> Vec<Request> {
+    fn has_answerable_request(&self) -> bool {
+        self.requests.iter().any(|request| self.is_answerable(request))
+    }
+
+    /// Removes the requests to answer now. None of them asks for more than a fair share of the pending jobs.
+    fn take_answerable_requests(&mut self) -> Vec<Request> {
         let pending = usize::try_from(self.tally.counts.pending).unwrap_or(usize::MAX);
         let share = pending.div_ceil(self.threads).max(1);
-        let is_open = !self.interrupt.is_raised();
-        let (mut now, later): (Vec<_>, Vec<_>) = std::mem::take(&mut self.requests)
-            .into_iter()
-            .partition(|request| request.batch.is_some() || (is_open && pending > 0));
+        let (mut now, later): (Vec<_>, Vec<_>) =
+            std::mem::take(&mut self.requests).into_iter().partition(|request| self.is_answerable(request));
         for request in &mut now {
             request.limit = request.limit.min(share);
         }
@@ -245,65 +201,64 @@ impl Dispatcher<'_> {
         now
     }
 
-    /// Hands a thread its jobs. A thread that asked for any job and gets none keeps its request.
+    /// Sends a thread its jobs. A request for any job stays open if there is none.
     fn answer(&mut self, request: Request, jobs: Vec<ClaimedJob>) {
         if jobs.is_empty() && request.batch.is_none() {
-            // Others were faster. Until the next count there is nothing to ask for.
+            // Other workers were faster. No job is claimed until the database has been queried again.
             self.tally.counts.pending = 0;
             self.requests.push(request);
             return;
         }
         if !jobs.is_empty() {
-            self.idle.end();
+            self.idle.reset();
         }
-        self.tally.claimed(jobs.len() as u64);
+        self.tally.add_claimed(jobs.len() as u64);
         let assignments = jobs.into_iter().map(|job| {
-            let clock = Arc::new(JobClock::default());
-            self.running.insert(job.key.clone(), (job.cost, Arc::clone(&clock)));
-            Assignment { job, clock }
+            let progress = Arc::new(JobProgress::default());
+            self.running.insert(job.key.clone(), (job.cost, Arc::clone(&progress)));
+            Assignment { job, progress }
         });
         let assignments = assignments.collect();
-        self.executor.answer(request.thread, assignments);
+        self.executor.reply(request.thread, assignments);
     }
 
-    /// Keeps where long jobs are. Before their ends: what is released takes its last checkpoint with it.
+    /// Stores the checkpoints. This comes before the ends of jobs, so that a released job has its last checkpoint.
     ///
-    /// A checkpoint is a help and not a result: where it cannot be kept, the work goes on, and the one before is there.
-    async fn keep_checkpoints(&mut self, progress: &mut impl Progress) {
+    /// If a checkpoint cannot be stored, the work goes on: the previous one is still there.
+    async fn store_checkpoints(&mut self, progress: &mut impl Progress) {
         let mut is_refused = false;
-        let patience = Patience::new();
-        for Kept { key, attempt, bytes } in std::mem::take(&mut self.checkpoints) {
+        let backoff = RetryBackoff::new();
+        for SealedCheckpoint { key, attempt, bytes } in std::mem::take(&mut self.checkpoints) {
             while !is_refused {
                 match self.queue.save_checkpoint(&key, attempt, &bytes).await {
                     Ok(_) => break,
                     Err(error) => {
-                        // No other one comes for what is released now.
+                        // The jobs are being released, and no later checkpoint will replace this one.
                         let is_last = self.interrupt.is_raised();
                         if !is_last {
                             progress.waiting(&format!("the state of running jobs cannot be kept: {error}"));
                         }
-                        is_refused =
-                            !is_last || patience.wait(error, self.interrupt, progress).await.is_err();
+                        is_refused = !is_last || backoff.wait(error, self.interrupt, progress).await.is_err();
                     }
                 }
             }
-            if let Some((_, clock)) = self.running.get(&key) {
-                clock.end_keeping();
+            if let Some((_, progress)) = self.running.get(&key) {
+                progress.end_checkpoint();
             }
         }
     }
 
-    /// Stores what is done and claims what is asked for. While the database is locked, running jobs go on.
+    /// Stores the ends of jobs and claims the requested ones. While the database is locked, running jobs go on.
     async fn exchange(
         &mut self,
         done: &[Finished],
-        asked: &[Request],
+        requests: &[Request],
         progress: &mut impl Progress,
     ) -> Result<Exchanged, QueueError> {
-        let patience = Patience::new();
+        let backoff = RetryBackoff::new();
         loop {
             let is_open = !self.interrupt.is_raised();
-            let claims: Vec<_> = asked
+            let claims: Vec<_> = requests
                 .iter()
                 .map(|request| Claim {
                     scope: self.scope.clone(),
@@ -313,43 +268,44 @@ impl Dispatcher<'_> {
                 .collect();
             let exchanged = match self.keep_alive().await {
                 Ok(()) => self.queue.exchange(done, &claims).await,
-                // Who cannot give a sign of life may have been forgotten, and must not claim.
+                // A worker that cannot send a heartbeat may count as dead, and must not claim.
                 Err(error) => Err(error),
             };
             match exchanged {
-                // After an interruption, too: what is finished is not to be thrown away.
                 Ok(exchanged) => return Ok(exchanged),
+                // Also after an interruption: finished work must not be lost.
                 Err(error @ QueueError::Locked(_)) => progress.waiting(&error.to_string()),
-                Err(error) => patience.wait(error, self.interrupt, progress).await?,
+                Err(error) => backoff.wait(error, self.interrupt, progress).await?,
             }
         }
     }
 
-    /// What a quarter of a second without news brings.
+    /// What is to do after [`TICK`] without a report.
     async fn tick(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
         match self.keep_alive().await {
             // A lease outlasts several heartbeats.
             Err(error) if error.is_transient() => {}
-            kept => kept?,
+            kept_alive => kept_alive?,
         }
         self.tally.refresh(self.queue, self.scope).await?;
         progress.update(&self.snapshot());
         Ok(())
     }
 
-    /// Extends the leases of what runs here and takes back what runs nowhere.
+    /// Sends a heartbeat if one is due, which extends the leases of the jobs that run here, and takes back the jobs of
+    /// dead workers.
     async fn keep_alive(&mut self) -> Result<(), QueueError> {
         if self.interrupt.is_raised() && !self.is_stopping {
-            // If it is ended at once now, that is no crash. Where it cannot be said, it is taken for one.
+            // From now on a sudden end of this process is no crash. If the database does not learn it, it is one.
             self.is_stopping = self.queue.stopping().await.is_ok();
         }
         if !self.heartbeat.is_due() {
             return Ok(());
         }
         self.queue.heartbeat().await?;
-        self.heartbeat.is_given();
+        self.heartbeat.mark_sent();
         match self.take_back().await {
-            // Next time.
+            // The next heartbeat tries again.
             Err(error) if error.is_transient() => Ok(()),
             taken => taken,
         }
@@ -362,14 +318,15 @@ impl Dispatcher<'_> {
         Ok(())
     }
 
-    fn settle(&mut self, done: &[Finished], refused: &[String], progress: &mut impl Progress) {
+    /// Counts the ends that were stored. `refused` has the keys of jobs that belong to another worker by now.
+    fn record_ends(&mut self, done: &[Finished], refused: &[String], progress: &mut impl Progress) {
         for job in done {
             let cost = self.running.remove(&job.key).map_or(0.0, |(cost, _)| cost);
             if refused.contains(&job.key) {
-                // Another worker has it, and counts it.
+                // The other worker counts it.
                 continue;
             }
-            self.tally.ended(&job.outcome, cost);
+            self.tally.add_ended(&job.outcome, cost);
             match &job.outcome {
                 FinishedOutcome::Done { .. } => self.timings.push((cost, job.wall_s)),
                 FinishedOutcome::Failed { error } => progress.failed(&job.key, error),
@@ -378,13 +335,19 @@ impl Dispatcher<'_> {
         }
     }
 
-    fn snapshot(&self) -> Snapshot {
+    /// Jobs of dead workers that were taken back.
+    pub fn taken_back(&self) -> TakenBack {
+        self.taken_back
+    }
+
+    /// The state of the jobs now.
+    pub fn snapshot(&self) -> Snapshot {
         let Tally { counts, remaining_cost, .. } = self.tally;
         let eta = Eta::estimate(&self.timings, remaining_cost, counts.pending + counts.running, self.threads);
         let running = self
             .running
             .iter()
-            .map(|(key, (_, clock))| RunningJob { key: key.clone(), simulated_s: clock.simulated_s() })
+            .map(|(key, (_, progress))| RunningJob { key: key.clone(), simulated_s: progress.simulated_s() })
             .collect();
         Snapshot { counts, running, eta }
     }

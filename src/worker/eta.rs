@@ -1,8 +1,8 @@
-//! An estimate of the remaining time that is honest when job costs differ.
+//! An estimate of the remaining time for jobs of different costs.
 //!
-//! The planner gives every job a relative cost: what it takes if it runs to its time limit. How much
-//! of it a job really takes is known only afterwards (a limit cycle found early ends it), so the
-//! finished jobs give a mean *and a spread* of seconds per cost, and the estimate is a range.
+//! The planner gives every job a relative cost: what it takes if it runs to its time limit. A job may take less,
+//! because it ends when its limit cycle is found. So the finished jobs give a mean *and a spread* of seconds per
+//! cost, and the estimate is a range.
 
 use std::fmt;
 use std::time::Duration;
@@ -17,8 +17,8 @@ pub struct Eta {
 }
 
 impl Eta {
-    /// Estimates the time for `remaining_cost` in `remaining_jobs` on `threads`, from the (cost,
-    /// seconds) of finished jobs. `None` before three jobs have finished.
+    /// Estimates the time that `remaining_jobs` with the total cost `remaining_cost` take on `threads` threads, from the
+    /// cost and the duration [s] of finished jobs. `None` if fewer than three jobs have finished.
     pub fn estimate(
         finished: &[(f64, f64)],
         remaining_cost: f64,
@@ -34,7 +34,7 @@ impl Eta {
         let mean = rates.iter().sum::<f64>() / n;
         let variance = rates.iter().map(|rate| (rate - mean).powi(2)).sum::<f64>() / (n - 1.0);
         let jobs = remaining_jobs.max(1) as f64;
-        // The mean is uncertain by σ/√n and the sum over the remaining jobs scatters by σ/√jobs.
+        // The standard error of the mean is σ/√n, and the mean over the remaining jobs scatters by σ/√jobs.
         let uncertainty = 2.0 * (variance * (1.0 / n + 1.0 / jobs)).sqrt();
         let seconds = |rate: f64| {
             let wall_s = (rate.max(0.0) * remaining_cost / threads as f64).min(1.0e9);
@@ -69,14 +69,14 @@ mod tests {
 
     /// Protects: equal jobs give a sharp estimate, and threads share the work.
     #[test]
-    fn equal_jobs_give_a_point() {
+    fn equal_jobs_give_a_single_time() {
         let finished = [(10.0, 2.0); 5];
         let eta = Eta::estimate(&finished, 400.0, 40, 2).unwrap();
         assert_eq!((eta.low, eta.high), (Duration::from_secs(40), Duration::from_secs(40)));
         assert_eq!(eta.to_string(), "about 40 s");
     }
 
-    /// Protects: jobs of unequal rates give a range around the mean that narrows with more evidence.
+    /// Protects: jobs of unequal rates give a range around the mean that narrows as more jobs finish.
     #[test]
     fn unequal_jobs_give_a_range() {
         let few = [(1.0, 1.0), (1.0, 3.0), (1.0, 2.0)];
@@ -89,9 +89,9 @@ mod tests {
         assert!(width(&many) < width(&few));
     }
 
-    /// Protects: nothing is claimed before there is evidence.
+    /// Protects: two finished jobs give no estimate.
     #[test]
-    fn two_jobs_are_no_evidence() {
+    fn two_jobs_give_no_estimate() {
         assert_eq!(Eta::estimate(&[(1.0, 1.0), (1.0, 1.0)], 10.0, 10, 1), None);
     }
 }

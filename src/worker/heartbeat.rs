@@ -1,11 +1,11 @@
-//! When to give a sign of life.
+//! When the next heartbeat is due.
 
 use std::time::{Duration, Instant};
 
-/// A small part of a lease, so that a few missed ones cost none.
-const PART_OF_LEASE: u32 = 8;
+/// Heartbeats per lease: the lease outlasts a few missed ones.
+const PER_LEASE: u32 = 8;
 
-/// Says when the next heartbeat is due, by a clock that nobody sets.
+/// Says when the next heartbeat is due, by the monotonic clock.
 #[derive(Debug)]
 pub struct Heartbeat {
     interval: Duration,
@@ -15,17 +15,17 @@ pub struct Heartbeat {
 impl Heartbeat {
     /// The first one is due an interval from now.
     pub fn new(lease: Duration) -> Self {
-        let interval = lease / PART_OF_LEASE;
+        let interval = lease / PER_LEASE;
         Self { interval, due: Instant::now() + interval }
     }
 
-    /// Whether it is time.
+    /// Whether a heartbeat is due.
     pub fn is_due(&self) -> bool {
         Instant::now() >= self.due
     }
 
-    /// It was given: the next interval begins. One that could not be given stays due.
-    pub fn is_given(&mut self) {
+    /// Begins the next interval. Without this call a heartbeat stays due.
+    pub fn mark_sent(&mut self) {
         self.due = Instant::now() + self.interval;
     }
 }
@@ -35,7 +35,7 @@ mod tests {
     use super::*;
     use crate::queue::Settings;
 
-    /// Protects: a lease outlasts several heartbeats, with a database that is locked for as long as it may be.
+    /// Protects: a lease outlasts several heartbeats, even while the database is locked for the busy timeout.
     #[test]
     fn a_lease_outlasts_missed_heartbeats() {
         for lease in [Settings::default().lease, Settings::SHORTEST_LEASE, Duration::from_hours(1)] {
@@ -44,14 +44,14 @@ mod tests {
         }
     }
 
-    /// Protects: the first heartbeat is not due at once, and one that was not given stays due.
+    /// Protects: the first heartbeat is not due at once, and one that was not sent stays due.
     #[test]
-    fn what_is_due_stays_due() {
+    fn unsent_heartbeats_stay_due() {
         assert!(!Heartbeat::new(Duration::from_mins(2)).is_due());
         let mut overdue = Heartbeat::new(Duration::ZERO);
         assert!(overdue.is_due() && overdue.is_due());
         overdue.interval = Duration::from_mins(1);
-        overdue.is_given();
+        overdue.mark_sent();
         assert!(!overdue.is_due());
     }
 }

@@ -1,44 +1,45 @@
-//! How long there has been nothing to do, and when to look again.
+//! How long there has been no job, and when to look for jobs again.
 
 use std::time::{Duration, Instant};
 
-/// Looked at first after so long …
-const SOONEST: Duration = Duration::from_millis(250);
+/// Shortest time between two polls.
+const SHORTEST_PAUSE: Duration = Duration::from_millis(250);
 
-/// … and never later than this: hundreds of workers that wait must not keep a server busy.
-const LATEST: Duration = Duration::from_secs(5);
+/// Longest time between two polls. It is not shorter because hundreds of idle workers must not keep a server busy.
+const LONGEST_PAUSE: Duration = Duration::from_secs(5);
 
-/// The part of the time waited so far after which it is looked again.
-const PART: u32 = 8;
+/// In between, the pause is the idle time so far divided by this.
+const PAUSE_DIVISOR: u32 = 8;
 
-/// Nothing to do.
+/// A worker's idle time and its next poll.
 #[derive(Debug, Default)]
-pub struct Idle {
+pub struct IdleTimer {
     since: Option<Instant>,
-    look: Option<Instant>,
+    next_poll: Option<Instant>,
 }
 
-impl Idle {
-    /// There is something to do.
-    pub fn end(&mut self) {
+impl IdleTimer {
+    /// The worker has a job again.
+    pub fn reset(&mut self) {
         *self = Self::default();
     }
 
-    /// There is nothing to do; whether it is time to look for more.
-    pub fn is_due(&mut self) -> bool {
-        self.is_due_at(Instant::now())
+    /// Called while the worker has no job: whether to look for jobs now. If so, the next pause begins.
+    pub fn is_poll_due(&mut self) -> bool {
+        self.is_poll_due_at(Instant::now())
     }
 
-    /// How long there has been nothing to do.
-    pub fn lasts(&self) -> Duration {
+    /// How long the worker has been idle.
+    pub fn elapsed(&self) -> Duration {
         self.since.map_or(Duration::ZERO, |since| since.elapsed())
     }
 
-    fn is_due_at(&mut self, now: Instant) -> bool {
+    fn is_poll_due_at(&mut self, now: Instant) -> bool {
         let since = *self.since.get_or_insert(now);
-        let is_due = self.look.is_none_or(|look| now >= look);
+        let is_due = self.next_poll.is_none_or(|next| now >= next);
         if is_due {
-            self.look = Some(now + (now.duration_since(since) / PART).clamp(SOONEST, LATEST));
+            let pause = now.duration_since(since) / PAUSE_DIVISOR;
+            self.next_poll = Some(now + pause.clamp(SHORTEST_PAUSE, LONGEST_PAUSE));
         }
         is_due
     }
@@ -48,19 +49,20 @@ impl Idle {
 mod tests {
     use super::*;
 
-    /// Protects: what comes soon is found soon, and who waits for an hour looks every few seconds.
+    /// Protects: a worker that has just become idle polls often, and one that has been idle for an hour every few
+    /// seconds.
     #[test]
-    fn looks_become_rarer() {
+    fn polls_become_rarer() {
         let begun = Instant::now();
-        let looks = |idle: &mut Idle, from_s: u64, to_s: u64| {
+        let polls = |idle: &mut IdleTimer, from_s: u64, to_s: u64| {
             let ticks = (4 * from_s..4 * to_s).map(|tick| begun + Duration::from_millis(250 * tick));
-            ticks.filter(|&now| idle.is_due_at(now)).count()
+            ticks.filter(|&now| idle.is_poll_due_at(now)).count()
         };
-        let mut idle = Idle::default();
-        assert_eq!(looks(&mut idle, 0, 2), 8);
-        looks(&mut idle, 2, 3600);
-        assert_eq!(looks(&mut idle, 3600, 3700), 20);
-        idle.end();
-        assert!(idle.is_due_at(begun + Duration::from_hours(2)));
+        let mut idle = IdleTimer::default();
+        assert_eq!(polls(&mut idle, 0, 2), 8);
+        polls(&mut idle, 2, 3600);
+        assert_eq!(polls(&mut idle, 3600, 3700), 20);
+        idle.reset();
+        assert!(idle.is_poll_due_at(begun + Duration::from_hours(2)));
     }
 }

@@ -1,40 +1,45 @@
-//! Runs the queue's jobs: a dispatcher that owns database, signals and progress, and an executor that
-//! owns the work, with messages between them.
+//! Runs the jobs of a queue: a dispatcher owns the database and the progress display, solver threads own the work, and
+//! they exchange messages.
 //!
 //! ```text
-//!                  claimed jobs                 a thread's crew: jobs of one batch in the
-//!  Queue ◄────► dispatcher ───────────► executor ───────► lanes of analysis::batch
+//!                  claimed jobs                  a batch runner per thread: jobs of one batch in
+//!  Queue ◄────► dispatcher ───────────► executor ───────► the lanes of analysis::batch
 //!   one transaction   ▲                                        │
-//!   a turn            └─── finished jobs, requests (channel) ◄─┘
+//!   per turn          └──── ended jobs, requests (channel) ◄───┘
 //! ```
 //!
-//! Threads ask for jobs and say of which batch they can use more, because what can be advanced in one vector shares
-//! a model. The dispatcher answers from the database; meanwhile the other lanes go on.
+//! Jobs that are advanced in one vector share a model. So threads request jobs of the batch that they are running. The
+//! dispatcher answers from the database, and meanwhile the other lanes go on.
 //!
-//! The states of long jobs are kept in the database now and then, and go on from there after an interruption.
+//! The states of long jobs are stored in the database at intervals. After an interruption they are resumed from there.
 //!
-//! A job starts only after its claim is committed, and nothing in the pool waits for the database. A
-//! job's result depends on nothing but its specification: threads, order and companions change no bit.
+//! A job starts only after its claim is committed, and no solver thread waits for the database while it has jobs. The
+//! result of a job depends on nothing but its specification: threads, order and companions change no bit of it.
 
+mod batch_runner;
+mod channel;
 mod checkpoint;
-mod crew;
 mod dispatcher;
 mod eta;
 mod executor;
 mod heartbeat;
 mod idle;
 mod interrupt;
+mod isolate;
+mod job;
 mod open;
 mod options;
-mod patience;
 mod progress;
 mod provenance;
+mod retry;
+mod schedule;
 mod tally;
+mod work;
 
-pub use dispatcher::{WorkError, WorkSummary, work};
 pub use eta::Eta;
 pub use interrupt::Interrupt;
 pub use open::open;
 pub use options::WorkOptions;
 pub use progress::{Progress, RunningJob, SilentProgress, Snapshot};
 pub use provenance::program;
+pub use work::{WorkError, WorkSummary, work};

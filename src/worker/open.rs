@@ -1,12 +1,12 @@
-//! Opening the database for a worker among many, some of which start while the server does not answer.
+//! Opening the database for a worker, even while the server does not answer yet.
 
 use super::interrupt::Interrupt;
-use super::patience::Patience;
 use super::progress::Progress;
+use super::retry::RetryBackoff;
 use crate::queue::{Clock, Location, Queue, QueueError, Settings};
 
-/// Opens the database at `location`, which must exist, and waits for its server for as long as an hour; `None` if
-/// `interrupt` was raised meanwhile.
+/// Opens the database at `location`, which must exist. Waits up to an hour for its server; `None` if `interrupt` is
+/// raised meanwhile.
 ///
 /// # Errors
 /// As [`Queue::open_existing`].
@@ -16,13 +16,13 @@ pub async fn open(
     interrupt: &Interrupt,
     progress: &mut impl Progress,
 ) -> Result<Option<Queue>, QueueError> {
-    let patience = Patience::new();
+    let backoff = RetryBackoff::new();
     loop {
         let error = match Queue::open_existing(location.clone(), Clock::OfDatabase, settings).await {
             Ok(queue) => return Ok(Some(queue)),
             Err(error) => error,
         };
-        patience.wait(error, interrupt, progress).await?;
+        backoff.wait(error, interrupt, progress).await?;
         if interrupt.is_raised() {
             return Ok(None);
         }

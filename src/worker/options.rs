@@ -1,23 +1,25 @@
+//! Settings of a worker.
+
 use std::time::Duration;
 
-/// How a worker works.
+/// Settings of a worker.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct WorkOptions {
     /// Number of threads.
     pub threads: usize,
-    /// How often a running job's state is kept; never if none. Only jobs that are predicted to last two intervals or
-    /// more, by their time limit, are kept at all.
+    /// How often the state of a running job is stored; `None` if never. Only jobs that are predicted to last two
+    /// intervals or more, by their time limit, are stored at all.
     pub checkpoint_interval: Option<Duration>,
-    /// How long to stay when there is nothing to do here, for jobs that may come; then what others run is left to them.
-    /// Without, the end of all jobs is the end.
+    /// How long the worker stays when it has no job, because new jobs may come. Then it exits even if other workers are
+    /// still running jobs, unless one of them has missed a heartbeat. `None`: it exits when all jobs have ended.
     pub idle_exit: Option<Duration>,
 }
 
 impl WorkOptions {
-    /// A checkpoint costs milliseconds, and losing a minute's work little more.
+    /// The default interval. A checkpoint costs milliseconds, and at most a minute's work is lost.
     pub const CHECKPOINT_INTERVAL: Duration = Duration::from_mins(1);
 
-    /// So many threads, all else as usual.
+    /// Settings with that number of threads and defaults otherwise.
     pub fn new(threads: usize) -> Self {
         Self { threads, checkpoint_interval: Some(Self::CHECKPOINT_INTERVAL), idle_exit: None }
     }

@@ -1,4 +1,4 @@
-//! What the dispatcher tells while it works.
+//! How a worker reports its progress.
 
 use super::eta::Eta;
 use crate::queue::Counts;
@@ -12,18 +12,18 @@ pub struct RunningJob {
     pub simulated_s: f64,
 }
 
-/// The state of the sweep at one moment.
+/// The state of a worker's jobs at one moment.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Snapshot {
-    /// Jobs in each state.
+    /// Jobs of the worker's scope in each state.
     pub counts: Counts,
-    /// The running jobs.
+    /// The jobs that this worker runs.
     pub running: Vec<RunningJob>,
-    /// Remaining time, once it can be told.
+    /// Remaining time, once it can be estimated.
     pub eta: Option<Eta>,
 }
 
-/// Shows progress.
+/// Receives the progress of a worker, on the thread that runs [`work`](super::work).
 pub trait Progress {
     /// Called a few times a second and after every finished job.
     fn update(&mut self, snapshot: &Snapshot);
@@ -31,7 +31,7 @@ pub trait Progress {
     /// Called when a job failed.
     fn failed(&mut self, key: &str, error: &str);
 
-    /// Called when the database keeps the worker waiting.
+    /// Called when the worker has to wait for the database.
     fn waiting(&mut self, reason: &str) {
         let _ = reason;
     }
@@ -40,7 +40,7 @@ pub trait Progress {
     fn stopped(&mut self, snapshot: &Snapshot);
 }
 
-/// Shows nothing.
+/// Ignores all progress.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SilentProgress;
 

@@ -1,4 +1,4 @@
-//! What results are made with: program, commit, machine, vector instructions, threads.
+//! The provenance of results: program, commit, machine, vector instructions, threads.
 
 use crate::queue::Worker;
 use fearless_simd::Level;
@@ -7,18 +7,19 @@ use serde_json::json;
 /// The program's version.
 const VERSION: &str = env!("CARGO_PKG_VERSION");
 
-/// The commit it was built from; `unknown` where there was no repository, `+modified` where the sources differed.
+/// The commit that the program was built from: `unknown` without a repository, with `+modified` if the sources differed.
 const COMMIT: &str = env!("TRIBOSWEEP_COMMIT");
 
-/// A hash of the sources it was built from: another one is another program, whatever its commit.
+/// A hash of the sources that the program was built from. Programs with different hashes are different programs,
+/// whatever their commits.
 pub(super) const SOURCES: &str = env!("TRIBOSWEEP_SOURCES");
 
-/// This program: its name, version and commit.
+/// Name, version and commit of this program, for people.
 pub fn program() -> String {
     format!("tribosweep {VERSION}, commit {COMMIT}")
 }
 
-/// This process as a worker, with what its results are made with as JSON.
+/// This process as a worker, with the provenance of its results as JSON.
 pub fn worker(threads: usize) -> Worker {
     let mut worker = Worker::this_process(threads, VERSION, "");
     let provenance = json!({
@@ -37,7 +38,7 @@ pub fn worker(threads: usize) -> Worker {
     worker
 }
 
-/// The processor's name, where the system tells.
+/// The processor's name, if the system provides it.
 fn cpu_model() -> Option<String> {
     let processors = std::fs::read_to_string("/proc/cpuinfo").ok()?;
     let line = processors.lines().find(|line| line.starts_with("model name"))?;
@@ -54,19 +55,22 @@ fn vectors() -> String {
 mod tests {
     use super::*;
 
-    /// Protects: what is told is there to be read: a version, a commit, and the name alone of the vector instructions.
+    /// Protects: the provenance names version, commit, threads, host and the bare name of the vector instructions.
     #[test]
-    fn everything_is_told() {
-        let told: serde_json::Value = serde_json::from_str(&worker(3).provenance).unwrap();
-        assert_eq!((told["version"].as_str(), told["threads"].as_u64()), (Some(VERSION), Some(3)));
-        let commit = told["commit"].as_str().unwrap().trim_end_matches("+modified").to_owned();
+    fn provenance_is_complete() {
+        let provenance: serde_json::Value = serde_json::from_str(&worker(3).provenance).unwrap();
+        assert_eq!(
+            (provenance["version"].as_str(), provenance["threads"].as_u64()),
+            (Some(VERSION), Some(3))
+        );
+        let commit = provenance["commit"].as_str().unwrap().trim_end_matches("+modified").to_owned();
         let is_hash = commit.len() == 40 && commit.chars().all(|c| c.is_ascii_hexdigit());
         assert!(is_hash || commit == "unknown", "{commit}");
-        let vectors = told["vectors"].as_str().unwrap();
+        let vectors = provenance["vectors"].as_str().unwrap();
         assert!(
             !vectors.is_empty() && vectors.chars().all(|c| c.is_ascii_alphanumeric() || c == '_'),
             "{vectors}"
         );
-        assert!(!told["host"].as_str().unwrap().is_empty());
+        assert!(!provenance["host"].as_str().unwrap().is_empty());
     }
 }

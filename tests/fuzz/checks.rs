@@ -7,24 +7,24 @@ use tribosweep::solver::Model;
 use tribosweep::spec::JobSpec;
 use tribosweep::study::{Study, StudyError, job_key};
 
-/// Larger grids are legal but slow; a text that asks for one is passed over.
-const MOST_POINTS: f64 = 2000.0;
+/// Largest grid that is tried. Larger ones are legal but slow, and their texts are skipped.
+const MAX_POINTS: f64 = 2000.0;
 
-/// What became of a text.
+/// What the parser did with a text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Fate {
     /// It is a study.
     Accepted,
     /// It was refused, with a message.
     Refused,
-    /// It asks for more grid points than are tried here.
-    PassedOver,
+    /// It has more grid points than are tried here.
+    Skipped,
 }
 
 /// Parses `text` and checks what must hold of the study or of the refusal.
 pub fn check_study(text: &str) -> Fate {
-    if grid_points(text) > MOST_POINTS {
-        return Fate::PassedOver;
+    if grid_points(text) > MAX_POINTS {
+        return Fate::Skipped;
     }
     match Study::parse(text, "fuzzed.json") {
         Ok(study) => {
@@ -57,7 +57,7 @@ pub fn check_overrides(study: &Study, overrides: &str) -> Fate {
     }
 }
 
-/// Number of grid points that `text` asks for, as far as it can be read; 0 where it cannot.
+/// Number of grid points of `text`; 0 if it cannot be read.
 fn grid_points(text: &str) -> f64 {
     let Ok(value) = serde_json::from_str::<Value>(text) else { return 0.0 };
     let Some(axes) = value.get("grid").and_then(Value::as_object) else { return 0.0 };
@@ -65,7 +65,7 @@ fn grid_points(text: &str) -> f64 {
         Value::Array(list) => list.len() as f64,
         other => other.get("count").and_then(Value::as_f64).unwrap_or(1.0),
     });
-    // A count that is out of range is refused before anything is made of it.
+    // The parser refuses a count out of range before it makes values.
     let plausible = |length: f64| if (1.0..=1.0e6).contains(&length) { length } else { 1.0 };
     lengths.map(plausible).product()
 }
@@ -88,7 +88,7 @@ fn check_spec(spec: &JobSpec) {
     let read: JobSpec = serde_json::from_str(&stored).expect("a stored job can be read");
     assert_eq!(&read, spec, "{stored}");
     assert_eq!(job_key(&read, "fuzz"), job_key(spec, "fuzz"));
-    // Larger meshes take too long to assemble when a time step is given.
+    // A given time step needs the assembled model, which takes too long for larger meshes.
     if spec.scene.pin.elements.iter().product::<usize>() <= 2 {
         // Refusals are fine; panics and endless loops are not.
         let _ = Model::preflight(&spec.scene, &spec.numerics);

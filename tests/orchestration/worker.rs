@@ -38,7 +38,7 @@ fn solvable(key: &str, spec: &JobSpec) -> NewJob {
     job(key, &serde_json::to_string(spec).unwrap())
 }
 
-/// So many different jobs named a, b, c …
+/// `count` different jobs, named a, b, c …
 fn several(count: u8, limit_s: f64) -> Vec<NewJob> {
     let key = |i: u8| char::from(b'a' + i).to_string();
     (0..count).map(|i| solvable(&key(i), &spec(0.1 + 0.05 * f64::from(i), limit_s))).collect()
@@ -52,7 +52,7 @@ async fn row(queue: &mut Queue, study: &str, key: &str) -> StudyRow {
     queue.rows(study).await.unwrap().into_iter().find(|row| row.key == key).unwrap()
 }
 
-/// Remembers all it is shown, and calls `react` with each snapshot.
+/// Records all progress, and calls `react` with each snapshot.
 struct Recorder<F: FnMut(&Snapshot)> {
     snapshots: Vec<Snapshot>,
     failures: Vec<(String, String)>,

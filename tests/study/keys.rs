@@ -1,4 +1,4 @@
-//! Protects: a key names a result. Whatever can change the result changes the key, nothing else does.
+//! Protects: a key identifies a result. Whatever can change the result changes the key, and nothing else does.
 
 use super::parse;
 use serde_json::Value;

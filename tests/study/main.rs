@@ -1,4 +1,4 @@
-//! Studies as data: what is refused and how it is told, what a grid expands into, what a key means.
+//! Studies as data: what is refused and with which message, what a grid expands into, what a key means.
 
 mod expansion;
 mod keys;

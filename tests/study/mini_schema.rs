@@ -1,17 +1,17 @@
-//! As much of a JSON schema validator as the study schema uses; a keyword it does not know is an error.
+//! A JSON schema validator for the keywords that the study schema uses; any other keyword is an error.
 
 use serde_json::Value;
 
 #[rustfmt::skip]
 const KNOWN: &[&str] = &[
-    // Say nothing about a value.
+    // Keywords that do not constrain a value.
     "$schema", "$defs", "title", "description", "default", "format",
-    // Do.
+    // Keywords that do.
     "$ref", "type", "const", "enum", "anyOf", "oneOf", "properties", "additionalProperties", "required",
     "minProperties", "items", "minItems", "maxItems", "uniqueItems", "minimum", "pattern",
 ];
 
-/// Where and why `value` breaks `schema`, if it does.
+/// Where and why `value` violates `schema`, if it does.
 pub fn violation(root: &Value, schema: &Value, value: &Value, at: &str) -> Option<String> {
     let fail = |why: String| Some(format!("{at}: {why}"));
     let number = |limit: &Value| limit.as_f64().expect("a limit is a number");
@@ -41,7 +41,7 @@ pub fn violation(root: &Value, schema: &Value, value: &Value, at: &str) -> Optio
                 .iter()
                 .find_map(|(name, inner)| violation(root, rule.get(name)?, inner, &format!("{at}/{name}"))),
             ("additionalProperties", Value::Object(fields)) => {
-                assert_eq!(rule, &Value::Bool(false), "only a closed object is understood");
+                assert_eq!(rule, &Value::Bool(false), "only a closed object is supported");
                 let known = |name: &String| schema["properties"].get(name).is_some();
                 fields
                     .keys()
@@ -70,7 +70,7 @@ pub fn violation(root: &Value, schema: &Value, value: &Value, at: &str) -> Optio
             }
             ("minimum", Value::Number(_)) if number(value) < number(rule) => fail("too small".into()),
             ("pattern", Value::String(text)) => {
-                assert_eq!(rule, "^[A-Za-z0-9_-]+$", "only the pattern of names is understood");
+                assert_eq!(rule, "^[A-Za-z0-9_-]+$", "only the pattern of names is supported");
                 let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
                 let fits = !text.is_empty() && text.chars().all(allowed);
                 if fits { None } else { fail("not a name".into()) }
@@ -98,6 +98,6 @@ fn has_type(value: &Value, name: &str) -> bool {
         "integer" => value.as_f64().is_some_and(|float| float.fract() == 0.0),
         "array" => value.is_array(),
         "object" => value.is_object(),
-        other => panic!("type {other} is not understood"),
+        other => panic!("type {other} is not supported"),
     }
 }

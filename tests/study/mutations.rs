@@ -1,5 +1,5 @@
 //! Protects: no text makes the parser panic, hang, or accept an unusable job. The fuzz targets in tests/fuzz try
-//! texts by the million; these are enough to notice a slip without a nightly compiler.
+//! millions of texts with a nightly compiler; these few thousand find most mistakes without one.
 
 #[path = "../fuzz/checks.rs"]
 mod checks;
@@ -11,7 +11,7 @@ use tribosweep::study::Study;
 /// Mutants of each seed.
 const MUTANTS: usize = 400;
 
-/// What mutants are made of, besides pieces of the seeds.
+/// Pieces of the mutants, besides pieces of the seeds.
 const PIECES: [&str; 24] = [
     "null",
     "true",
@@ -94,7 +94,7 @@ fn mutated_studies_are_accepted_or_refused() {
             fates[check_study(&choices.mutant(seed, &seeds)) as usize] += 1;
         }
     }
-    // Both ways are gone, often.
+    // Both outcomes are frequent.
     let enough = seeds.len() * MUTANTS / 50;
     assert!(fates[Fate::Accepted as usize] > enough && fates[Fate::Refused as usize] > enough, "{fates:?}");
 }
@@ -114,8 +114,8 @@ fn mutated_overrides_are_accepted_or_refused() {
     assert!(fates[Fate::Accepted as usize] > enough && fates[Fate::Refused as usize] > enough, "{fates:?}");
 }
 
-/// Protects: the memory for places grows with the text and not with its square: a long key over many values
-/// would take 40 GB here.
+/// Protects: the memory for the positions of fields grows with the text and not with its square, which would be 40 GB
+/// for this long key above many values.
 #[test]
 fn a_long_key_over_many_values_is_refused() {
     let key = "k".repeat(200_000);
@@ -124,7 +124,7 @@ fn a_long_key_over_many_values_is_refused() {
     assert_eq!(check_study(&text), Fate::Refused);
 }
 
-/// Protects: a grid far too large is refused before its values are looked at one by one, which takes minutes.
+/// Protects: a grid that is far too large is refused before its values are read, which would take minutes.
 #[test]
 fn a_grid_of_many_long_axes_is_refused_at_once() {
     let axis = |name: &str| format!("\"{name}\": {{ \"from\": 1, \"to\": 2, \"count\": 1000000 }}");

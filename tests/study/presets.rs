@@ -1,5 +1,5 @@
-//! Protects: a preset is the settings that it says, in a study and on the command line, and its measured errors
-//! are those of these settings.
+//! Protects: a preset stands for its documented settings, in a study and on the command line, and its measured errors
+//! belong to these settings.
 
 use super::{assert_contains, parse, refusal};
 use serde_json::{Value, json};
@@ -11,7 +11,7 @@ fn base(preset: &str, more: &str) -> JobSpec {
     parse(&format!(r#"{{ "preset": "{preset}"{more} }}"#)).base().clone()
 }
 
-/// Spelled out: these are the settings that the measured errors belong to.
+/// The values are repeated here, because the measured errors belong to them.
 #[test]
 fn presets_set_mesh_step_and_detection() {
     for (name, elements, safety_factor, tolerance, drift_tolerance) in [
@@ -37,14 +37,14 @@ fn a_preset_has_the_key_of_its_settings() {
 }
 
 #[test]
-fn what_the_file_gives_itself_goes_before_the_preset() {
+fn values_of_the_file_take_precedence_over_the_preset() {
     let spec = base(
         "draft",
         r#", "numerics": { "safety_factor": 0.3 }, "scene": { "pin": { "elements": [6, 6, 6] } }"#,
     );
     assert_eq!((spec.numerics.safety_factor, spec.scene.pin.elements), (0.3, [6, 6, 6]));
     assert_eq!(spec.detection.tolerance, 0.03);
-    // Even where it is the default.
+    // Even if the value is the default.
     assert_eq!(base("draft", r#", "detection": { "tolerance": 0.01 }"#).detection.tolerance, 0.01);
     let study = parse(r#"{ "preset": "draft", "grid": { "elements": [[3, 3, 3]], "mu": [0.1] } }"#);
     assert_eq!(study.expand("1").unwrap()[0].spec.scene.pin.elements, [3, 3, 3]);
@@ -63,7 +63,7 @@ fn the_mesh_follows_pin_and_clamp() {
     // Twice the pin under twice the clamp is the same mesh.
     let large = r#""pin": { "size_m": [0.024, 0.03, 0.02] }, "clamp": { "width_m": 0.004 }"#;
     assert_eq!(elements(large), [12, 15, 10]);
-    // No row fits: the wished mesh, for the solver to refuse with the reason.
+    // No count has a row there: the desired mesh, which the solver refuses with the reason.
     assert_eq!(elements(&clamp("inner_side", 0.000_123_4)), [12, 15, 10]);
     for side in [ClampSide::InnerSide, ClampSide::TrailingEnd] {
         for preset in Preset::ALL {
@@ -84,7 +84,7 @@ fn unknown_presets_are_refused() {
     refusal(r#"{ "grid": { "preset": ["draft"] } }"#);
 }
 
-/// Protects: on the command line a preset goes before the study and its grid, and `--set` before the preset.
+/// Protects: on the command line a preset takes precedence over the study and its grid, and `--set` over the preset.
 #[test]
 fn a_preset_for_one_job() {
     let study = parse(
@@ -123,7 +123,7 @@ fn the_evidence_is_of_these_presets() {
     }
 }
 
-/// Protects: the stated errors and costs follow from the stated results.
+/// Protects: the stated errors and costs are those of the stated results.
 #[test]
 fn the_stated_errors_are_those_of_the_results() {
     let evidence = Evidence::measured();
@@ -165,7 +165,7 @@ fn the_draft_keeps_its_stated_error() {
     assert!(error <= stated.frequency_error * (1.0 + 1.0e-6), "{error} > {}", stated.frequency_error);
 }
 
-/// Protects: the sweep that the program is known for runs with the standard accuracy.
+/// Protects: figure7 has the settings of the standard preset.
 #[test]
 fn figure7_has_the_standard_accuracy() {
     let figure7 = Study::load("studies/figure7.json".as_ref()).unwrap();

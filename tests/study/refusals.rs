@@ -1,5 +1,5 @@
-//! Protects: nothing unusable gets through, and each message names file, place, field, value and
-//! what would be right.
+//! Protects: nothing unusable is accepted, and each message names file, position, field, value and
+//! what is expected.
 
 use super::{assert_contains, parse, refusal};
 use tribosweep::study::{MAX_JOBS, Study, StudyError};
@@ -12,10 +12,10 @@ fn a_missing_file_is_named() {
 }
 
 #[test]
-fn broken_json_is_told_with_line_and_column() {
+fn broken_json_is_reported_with_line_and_column() {
     assert_contains(&refusal("{\n  \"scene\": {,\n"), &["studies/x.json:2:13: not valid JSON: "]);
     assert_contains(&refusal("{ \"run\": { \"limit_s\": 1e999 } }"), &["number out of range"]);
-    // A position that an editor can go to, even where serde says column 0.
+    // A position that an editor can go to, although serde_json reports column 0.
     assert_contains(&refusal(""), &["studies/x.json:1:1: not valid JSON: "]);
 }
 
@@ -222,7 +222,7 @@ fn grids_that_explode_are_refused_with_their_size() {
 }
 
 #[test]
-fn non_physical_values_of_the_base_job_are_all_told_with_their_place() {
+fn non_physical_values_of_the_base_job_are_all_reported_with_their_position() {
     let text = refusal(
         "{ \"scene\": { \"pin\": { \"poisson_ratio\": 0.5 },\n  \"contact\": { \"mu\": -0.1 } },\n  \"numerics\": { \"beta2\": 2 } }",
     );
@@ -235,10 +235,9 @@ fn non_physical_values_of_the_base_job_are_all_told_with_their_place() {
     assert_eq!(text.lines().count(), 3, "{text}");
 }
 
-/// Protects: a magnitude that would overflow before the first step is refused with the range, and not called
-/// non-positive.
+/// Protects: a magnitude that would overflow before the first step is refused with the range, not as non-positive.
 #[test]
-fn magnitudes_beyond_all_pins_are_refused() {
+fn magnitudes_out_of_range_are_refused() {
     for (field, value, expected) in [
         (r#""pin": { "young_modulus_pa": 1e300 }"#, "young_modulus_pa = 1e300", "from 1e-20 to 1e20"),
         (r#""pin": { "density_kg_m3": 1e-210 }"#, "density_kg_m3 = 1e-210", "from 1e-20 to 1e20"),
@@ -252,7 +251,7 @@ fn magnitudes_beyond_all_pins_are_refused() {
 }
 
 #[test]
-fn non_physical_grid_values_are_told_once_each_and_named() {
+fn non_physical_grid_values_are_reported_once_each_and_named() {
     let text = refusal(
         r#"{ "scene": { "disk": { "omega_rpm": -7 } }, "grid": { "mu": [0.2, -1, 0.4, -3],
         "omega_rpm": { "from": -1, "to": 98, "count": 100 }, "elements": [[6, 8, 5], [6, 0, 5]] } }"#,
@@ -269,12 +268,12 @@ fn non_physical_grid_values_are_told_once_each_and_named() {
     for once in ["scene.contact.mu = -1", "scene.disk.omega_rpm = -1", "scene.pin.elements[1] = 0"] {
         assert_eq!(text.matches(once).count(), 1, "{text}");
     }
-    // The base's own speed is in no job.
+    // No job has the base job's own speed.
     assert!(!text.contains("-7"), "{text}");
 }
 
 #[test]
-fn values_that_do_not_fit_together_are_told_with_a_job_that_has_them() {
+fn incompatible_values_are_reported_with_a_job_that_has_them() {
     let text = refusal(r#"{ "grid": { "mu": [0.2, 0.4, 0.6], "limit_s": [0.1, 0.0001] } }"#);
     let expected = [
         "studies/x.json: scene.load.ramp_s = 0.0005: expected less than the run's time limit (run.limit_s = 0.0001)",
@@ -294,8 +293,8 @@ fn long_listings_are_cut_and_counted() {
     assert_eq!(error.problems()[1].value.as_deref(), Some("-2"));
 }
 
-/// Protects: an elastic disk that cannot carry the pin, or that the pin would leave, is refused with what it needs; the
-/// ring of a rigid disk is not looked at.
+/// Protects: an elastic disk that is too small for the pin, or that the pin would leave, is refused with the value it
+/// needs; the ring of a rigid disk is not checked.
 #[test]
 fn disks_that_do_not_fit_are_refused() {
     let ring = |kind: &str, ring: &str, rest: &str| {
@@ -337,7 +336,7 @@ fn disks_that_do_not_fit_are_refused() {
     ] {
         assert_contains(&refusal(&ring("elastic", values, rest)), &expected);
     }
-    // An element from the pin on either side is enough, and so is an arc of just what is swept.
+    // One element beyond the pin on either side is enough, and so is an arc exactly as long as the swept one.
     parse(&ring("elastic", r#""inner_radius_m": 0.0829, "outer_radius_m": 0.100189"#, ""));
     parse(&ring("elastic", r#""track_arc_deg": 24"#, r#", "grid": { "omega_rpm": [100] }"#));
     parse(&ring("rigid", r#""inner_radius_m": 0.09"#, r#", "numerics": { "beta2": 0.6 }"#));

@@ -1,4 +1,4 @@
-//! Protects: the studies that come with the package are valid and hold what their names promise.
+//! Protects: the studies that come with the package are valid and contain what their names say.
 
 use std::path::PathBuf;
 use tribosweep::spec::{ClampSide, JobSpec};
@@ -71,8 +71,8 @@ fn mini_is_small() {
 fn clamps_has_every_clamp() {
     let jobs = jobs("studies/clamps.json");
     let expected: Vec<_> = ClampSide::ALL
-        .into_iter()
-        .flat_map(|side| [2.0, 6.0, 7.0, 12.0, 35.0].map(|omega| (side, omega)))
+        .iter()
+        .flat_map(|&side| [2.0, 6.0, 7.0, 12.0, 35.0].map(|omega| (side, omega)))
         .collect();
     let found: Vec<_> = jobs.iter().map(|j| (j.spec.scene.clamp.side, j.spec.scene.disk.omega_rpm)).collect();
     assert_eq!(found, expected);
@@ -96,8 +96,8 @@ fn every_clamp_ends_at_a_node_row() {
     }
 }
 
-/// Protects: the studies of errors vary numerics only, so that all their jobs are one physical case a speed, and
-/// the two damping times of mesh_convergence are on every mesh.
+/// Protects: the studies of errors vary numerics only. So their jobs are one physical case per speed, and mesh_convergence
+/// has both damping times on every mesh.
 #[test]
 fn studies_of_errors_vary_numerics_only() {
     for (file, cases, count) in [
@@ -121,7 +121,7 @@ fn studies_of_errors_vary_numerics_only() {
     }
 }
 
-/// Protects: the three studies of work and precision are compared as one: they have the scene in common.
+/// Protects: the three studies of work and precision share their scene, because they are compared as one.
 #[test]
 fn the_studies_of_work_and_precision_share_their_scene() {
     let scene = |file: &str| {

@@ -1,4 +1,4 @@
-//! Protects: `--set` picks exactly one job, and says what is missing or wrong.
+//! Protects: `--set` selects exactly one job, and messages say what is missing or wrong.
 
 use super::{assert_contains, message, parse};
 use tribosweep::spec::{ClampSide, JobSpec, TopFace};
@@ -26,13 +26,13 @@ fn overrides_and_single_values_fix_the_grid() {
     expected.numerics.beta2 = 0.6;
     expected.run.limit_s = 0.01;
     assert_eq!(spec, expected);
-    // An override is stronger than the grid's single value.
+    // An override takes precedence over the grid's single value.
     let spec = single(&parse(GRID), &[("omega_rpm", "7"), ("mu", "0.2"), ("beta2", "0.7")]).unwrap();
     assert_eq!(spec.numerics.beta2, 0.7);
 }
 
 #[test]
-fn a_job_picked_from_the_grid_is_the_job_of_the_grid() {
+fn a_selected_job_is_the_job_of_the_grid() {
     let study = parse(GRID);
     let jobs = study.expand("1").unwrap();
     assert_eq!(single(&study, &[("mu", "0.4"), ("omega_rpm", "2")]).unwrap(), jobs[2].spec);
@@ -106,7 +106,7 @@ fn wrong_overrides_are_all_refused() {
 }
 
 #[test]
-fn the_picked_job_is_checked() {
+fn the_selected_job_is_checked() {
     assert_contains(&refused("{}", &[("mu", "-1")]), &["--set: scene.contact.mu = -1: expected a friction"]);
     // The limit is overridden, the ramp that no longer fits is the file's.
     let ramp = r#"{ "scene": { "load": { "ramp_s": 0.01 } } }"#;
@@ -129,7 +129,7 @@ fn every_parameter_of_the_registry_reaches_its_field() {
     }
 }
 
-/// The short names promised to users.
+/// The documented short names.
 #[test]
 fn the_registry_sets_these_fields() {
     let set = |name, value| single(&parse("{}"), &[(name, value)]).unwrap();

@@ -11,7 +11,7 @@ use tribosweep::analysis::{JobError, Unobserved, solve};
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, SolverError, State};
-use tribosweep::spec::{Clock, DiskKind, JobSpec, TargetSurface};
+use tribosweep::spec::{DiskKind, DiskTimeStep, JobSpec, TargetSurface};
 
 const SPAN_S: f64 = 3.0e-4;
 const ONE_CLOCK: &str = "one clock with a sixteenth of the step";
@@ -57,7 +57,7 @@ fn energies_close_with_stages() {
 /// by itself, which is what it costs where there is no disk to make stages: on a rigid one.
 #[test]
 fn stages_change_less_than_the_step_does() {
-    let displacements = |kind: DiskKind, clock: Clock, time_step_s: f64| {
+    let displacements = |kind: DiskKind, clock: DiskTimeStep, time_step_s: f64| {
         let mut spec = coarse_scene();
         spec.scene.disk.kind = kind;
         spec.scene.disk.ring.clock = clock;
@@ -75,15 +75,15 @@ fn stages_change_less_than_the_step_does() {
     // Rounded so that all runs end at the same time.
     let whole = |step: f64| SPAN_S / (SPAN_S / step).ceil();
     let own = model(&coarse_scene()).time_step_s();
-    let (elastic, _) = displacements(DiskKind::Elastic, Clock::Common, whole(own / 16.0));
-    let (rigid, _) = displacements(DiskKind::Rigid, Clock::Own, whole(own / 16.0));
+    let (elastic, _) = displacements(DiskKind::Elastic, DiskTimeStep::Common, whole(own / 16.0));
+    let (rigid, _) = displacements(DiskKind::Rigid, DiskTimeStep::Own, whole(own / 16.0));
     let mut evidence =
         Evidence::new("R4", "two clocks, pin's displacements after 0.3 ms, error over their size", ONE_CLOCK);
     for step in [own, own / 1.5] {
         let step = whole(step);
-        let (found, stages) = displacements(DiskKind::Elastic, Clock::Own, step);
+        let (found, stages) = displacements(DiskKind::Elastic, DiskTimeStep::Own, step);
         assert!(stages > 1);
-        let of_step = distance(&displacements(DiskKind::Rigid, Clock::Own, step).0, &rigid);
+        let of_step = distance(&displacements(DiskKind::Rigid, DiskTimeStep::Own, step).0, &rigid);
         let name = format!("{stages} stages in {step:.2e} s");
         evidence.bounded(name, distance(&found, &elastic), 0.0, 1.0, of_step);
     }

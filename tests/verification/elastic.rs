@@ -9,7 +9,7 @@ use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::interface::target::TargetDefinition;
 use tribosweep::solver::material::Material;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State};
-use tribosweep::spec::{Clock, TargetSurface};
+use tribosweep::spec::{DiskTimeStep, TargetSurface};
 
 /// Radius of the ring over the block's width.
 const STRAIGHT: f64 = 1.0e7;
@@ -20,7 +20,7 @@ pub struct Below {
     pub thickness_m: f64,
     pub elements: [usize; 3],
     pub target: TargetSurface,
-    pub clock: Clock,
+    pub clock: DiskTimeStep,
     /// Whether its bottom is held.
     pub held: bool,
 }

@@ -14,7 +14,7 @@ use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::material::Material;
 use tribosweep::solver::support::load;
 use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
-use tribosweep::spec::{Clock, DiskKind, JobSpec, TargetSurface};
+use tribosweep::spec::{DiskKind, DiskTimeStep, JobSpec, TargetSurface};
 
 const COULOMB: &str = "Coulomb's law";
 
@@ -177,7 +177,7 @@ fn pressed(upper: usize, lower: usize, target: TargetSurface) -> Pressed {
         thickness_m: size[2],
         elements: [lower, lower, lower],
         target,
-        clock: Clock::Common,
+        clock: DiskTimeStep::Common,
         held: true,
     };
     let model = on_block(definition, &below);

@@ -6,7 +6,7 @@ use tribosweep::solver::body::ring::RingMesh;
 use tribosweep::solver::body::ring::operator::{RingOperator, RingScratch};
 use tribosweep::solver::field::Field;
 use tribosweep::solver::material::Material;
-use tribosweep::spec::{Clock, Pin, Ring, TargetSurface};
+use tribosweep::spec::{DiskTimeStep, Pin, Ring, TargetSurface};
 
 /// The reference ring's steel.
 pub const STEEL: Material = Material { young_modulus_pa: 2.1e11, poisson_ratio: 0.3, density_kg_m3: 7800.0 };
@@ -43,7 +43,7 @@ pub fn graded_mesh(element_size_m: f64, coarse_element_size_m: f64) -> RingMesh 
         coarse_element_size_m,
         track_arc_deg: 1.0,
         target: TargetSurface::Bilinear,
-        clock: Clock::Own,
+        clock: DiskTimeStep::Own,
     };
     RingMesh::under_track(&ring, &Pin::default(), TRACK_RADIUS_M)
 }

@@ -20,7 +20,7 @@ use crate::evidence::Evidence;
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::material::Material;
 use tribosweep::solver::{ModelDefinition, State, TimeStep};
-use tribosweep::spec::{Clock, TargetSurface};
+use tribosweep::spec::{DiskTimeStep, TargetSurface};
 
 const LENGTH: f64 = 10.0;
 const SPEED: f64 = 0.1;
@@ -41,7 +41,13 @@ struct Impact {
 }
 
 /// `spans` [s] in which the stress is averaged; the run ends at `end_s`.
-fn run(layers: usize, young_modulus_pa: f64, clock: Clock, spans: [[f64; 2]; 2], end_s: f64) -> Impact {
+fn run(
+    layers: usize,
+    young_modulus_pa: f64,
+    clock: DiskTimeStep,
+    spans: [[f64; 2]; 2],
+    end_s: f64,
+) -> Impact {
     let material = |young_modulus_pa| Material { young_modulus_pa, poisson_ratio: 0.0, density_kg_m3: 0.01 };
     let size = [10.0 * LENGTH, 10.0 * LENGTH, LENGTH];
     let base = free_block(size, [1, 1, layers], material(young_modulus_pa));
@@ -99,7 +105,7 @@ fn equal_bars_exchange_their_velocities() {
     let mut upper = Evidence::new("B4b", "equal bars, momentum of the upper bar after it", RUNCIE);
     let mut lower = Evidence::new("B4b", "equal bars, momentum of the lower bar after it", RUNCIE);
     for layers in [20, 40, 80] {
-        let found = run(layers, 100.0, Clock::Common, [[0.15, 0.25], [0.15, 0.25]], 0.38);
+        let found = run(layers, 100.0, DiskTimeStep::Common, [[0.15, 0.25], [0.15, 0.25]], 0.38);
         let name = format!("{layers} layers");
         stress.found(&name, found.stress[0] / 0.05, 1.0, 1.0);
         upper.found(&name, found.momentum[0], 0.0, 1.0);
@@ -116,14 +122,14 @@ fn equal_bars_exchange_their_velocities() {
 /// one.
 #[test]
 fn dissimilar_bars_stay_in_contact() {
-    for (clock, name) in [(Clock::Common, "one clock"), (Clock::Own, "two clocks")] {
+    for (clock, name) in [(DiskTimeStep::Common, "one clock"), (DiskTimeStep::Own, "two clocks")] {
         let mut first =
             Evidence::new("B4b", format!("dissimilar bars, {name}, first stress over its size"), RUNCIE);
         let mut second =
             Evidence::new("B4b", format!("dissimilar bars, {name}, second stress over the first"), RUNCIE);
         for layers in [20, 40, 80] {
             let found = run(layers, 49.0, clock, [[0.15, 0.25], [0.33, 0.36]], 0.37);
-            assert_eq!(found.stages > 1, clock == Clock::Own, "{found:?}");
+            assert_eq!(found.stages > 1, clock == DiskTimeStep::Own, "{found:?}");
             let size = 0.07 / 1.7;
             first.found(format!("{layers} layers"), found.stress[0] / size, 1.0, 1.0);
             second.found(format!("{layers} layers"), found.stress[1] / size, 0.007_266_4 / size, 1.0);

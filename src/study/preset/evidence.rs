@@ -1,5 +1,6 @@
-//! What was measured of the presets: data written by `scripts/accuracy.py`, never by hand.
+//! Measured errors of the presets. The data are written by `scripts/accuracy.py`, never by hand.
 
+use super::settings::Preset;
 use serde::{Deserialize, Serialize};
 
 /// Errors of all presets, and where they were measured.
@@ -16,7 +17,7 @@ pub struct Evidence {
     pub mu: f64,
     /// What the errors are taken from.
     pub reference: ReferenceEvidence,
-    /// One entry a preset, in the order of [`Preset::ALL`](super::Preset::ALL).
+    /// One entry a preset, in the order of [`Preset::ALL`].
     pub presets: Vec<PresetEvidence>,
 }
 
@@ -90,7 +91,7 @@ impl Evidence {
     }
 
     /// What was measured of a preset.
-    pub fn of(&self, preset: super::Preset) -> Option<&PresetEvidence> {
+    pub fn of(&self, preset: Preset) -> Option<&PresetEvidence> {
         self.presets.iter().find(|entry| entry.name == preset.name())
     }
 }

@@ -6,8 +6,8 @@ use tribosweep::worker::{Interrupt, SilentProgress, WorkError, WorkOptions, work
 use super::{Recorder, job, row, several, solvable, spec, submit};
 use crate::support::{Sandbox, counts, of};
 
-/// Protects: whatever is wrong with a job (its text, its values, the run), that job fails with
-/// the reason, the observer is told, and the sweep goes on to its end.
+/// Protects: whatever is wrong with a job (its text, its values, its run), only that job fails, with the reason, which
+/// the progress display receives; the sweep goes on to its end.
 #[tokio::test]
 async fn a_failed_job_stops_nothing() {
     let mut diverging = spec(0.2, 0.001);
@@ -18,7 +18,7 @@ async fn a_failed_job_stops_nothing() {
     incompressible.scene.pin.poisson_ratio = 0.5;
     let mut off_the_mesh = spec(0.2, 0.001);
     off_the_mesh.scene.clamp.width_m = 0.0025;
-    // Beyond what a computer can hold as an energy, a time step or a buffer.
+    // Values that overflow an energy, a time step or a buffer.
     let mut stiff = spec(0.2, 0.001);
     stiff.scene.pin.young_modulus_pa = 1e300;
     let mut nearly_incompressible = spec(0.2, 0.001);

@@ -8,7 +8,7 @@ use tribosweep::worker::{Interrupt, SilentProgress, WorkOptions, work};
 use super::{Recorder, row, several, submit};
 use crate::support::{Sandbox, claim, counts, dead_worker};
 
-/// Protects: a worker that is to stop before it starts claims nothing, and says that work is left.
+/// Protects: a worker that is asked to stop before it starts claims nothing, and reports that work is left.
 #[tokio::test]
 async fn an_early_interrupt_claims_nothing() {
     let sandbox = Sandbox::new();
@@ -26,8 +26,8 @@ async fn an_early_interrupt_claims_nothing() {
     assert!(rows.iter().all(|row| row.attempt == 0 && row.note.is_none()), "{rows:?}");
 }
 
-/// Protects: an interrupt in the middle gives the running jobs back with a reason, keeps what is done, and
-/// the next worker does the rest only.
+/// Protects: an interrupted worker gives its running jobs back with a reason and keeps finished results, and the next
+/// worker runs only the remaining jobs.
 #[tokio::test]
 async fn an_interrupt_gives_running_jobs_back() {
     let sandbox = Sandbox::new();
@@ -35,7 +35,7 @@ async fn an_interrupt_gives_running_jobs_back() {
     // Two short jobs, and four that would take minutes: the interrupt cannot come too late.
     let mut jobs = several(6, 50.0);
     for (job, short) in jobs.iter_mut().zip(several(2, 0.001)) {
-        // Dear jobs come first.
+        // Jobs of high cost come first.
         *job = tribosweep::queue::NewJob { cost: 2.0, ..short };
     }
     submit(&mut queue, "study", jobs).await;
@@ -62,7 +62,7 @@ async fn an_interrupt_gives_running_jobs_back() {
         assert!(row.note.as_ref().unwrap().starts_with("released"), "{row:?}");
     }
 
-    // The rest in a version that ends, under the same keys.
+    // The remaining jobs get a short run under the same keys.
     let mut raw = sandbox.raw().await;
     for job in &several(6, 0.001)[2..] {
         let update = sqlx::query(
@@ -82,10 +82,10 @@ async fn an_interrupt_gives_running_jobs_back() {
     }
 }
 
-/// Protects: a long job that is interrupted, again and again, goes on where it was, to the bits of a run in one go. What
-/// is short, and whatever a worker runs that keeps nothing, leaves nothing behind.
+/// Protects: a long job that is interrupted several times resumes each time, and its result has the bits of an
+/// uninterrupted run. Short jobs, and jobs of a worker without checkpoints, leave no checkpoint.
 #[tokio::test]
-async fn long_jobs_go_on_where_they_were() {
+async fn long_jobs_resume_from_checkpoints() {
     const LIMIT_S: f64 = 1.0;
     let sandbox = Sandbox::new();
     let mut queue = sandbox.open().await;
@@ -94,7 +94,7 @@ async fn long_jobs_go_on_where_they_were() {
     let mut raw = sandbox.raw().await;
     let often = Some(Duration::from_millis(1));
     let never = Some(Duration::from_hours(1));
-    // Each with the part of the run after which it is interrupted, and what it then leaves.
+    // The checkpoint interval, the part of the run after which it is interrupted, and the checkpoints that are left.
     for (interval, part, kept) in [(None, 0.1, 0), (never, 0.2, 0), (often, 0.3, 3), (often, 0.6, 3)] {
         let interrupt = Interrupt::default();
         let raised = interrupt.clone();
@@ -109,11 +109,11 @@ async fn long_jobs_go_on_where_they_were() {
         let count: (i64,) =
             sqlx::query_as("SELECT COUNT(*) FROM checkpoints").fetch_one(&mut raw).await.unwrap();
         assert_eq!(count.0, kept);
-        // A job that has not been looked at yet shows no time.
+        // A job whose progress has not been shown yet has no simulated time.
         let places = recorder.snapshots.iter().flat_map(|snapshot| &snapshot.running);
         let begun = places.map(|job| job.simulated_s).filter(|&s| s > 0.0).fold(LIMIT_S, f64::min);
         if part == 0.6 {
-            assert!(begun > 0.3 * LIMIT_S, "went on from {begun} s");
+            assert!(begun > 0.3 * LIMIT_S, "resumed from {begun} s");
         }
     }
     let options = WorkOptions { checkpoint_interval: often, ..WorkOptions::new(1) };
@@ -130,7 +130,7 @@ async fn long_jobs_go_on_where_they_were() {
     }
 }
 
-/// Protects: jobs that a dead process left running are done too, and counted.
+/// Protects: jobs that a dead process left running are taken back, counted and run.
 #[tokio::test]
 async fn jobs_left_running_are_taken_back() {
     let sandbox = Sandbox::new();

@@ -1,4 +1,4 @@
-//! A database that keeps the worker waiting.
+//! A database that makes the worker wait.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,12 +11,12 @@ use tribosweep::worker::{Interrupt, WorkOptions, work};
 use super::{Recorder, several, solvable, spec, submit};
 use crate::support::Sandbox;
 
-/// A queue that asks again and again rather than wait.
-async fn impatient(sandbox: &Sandbox) -> Queue {
+/// A queue whose requests fail soon, so that the worker has to repeat them.
+async fn queue_with_short_timeout(sandbox: &Sandbox) -> Queue {
     sandbox.open_with(Settings { busy_timeout: Duration::from_millis(20), ..Settings::default() }).await
 }
 
-/// Locks the database for some time when it is told to.
+/// A task that locks the database for some time, and the channel that starts it.
 async fn lock_for(sandbox: &Sandbox, time: Duration) -> (oneshot::Sender<()>, tokio::task::JoinHandle<()>) {
     let mut raw = sandbox.raw().await;
     let (begin, begun) = oneshot::channel();
@@ -29,29 +29,29 @@ async fn lock_for(sandbox: &Sandbox, time: Duration) -> (oneshot::Sender<()>, to
     (begin, other)
 }
 
-/// Protects: while the database is locked, or its disk slow, running jobs go on at their pace; what ended meanwhile is
-/// stored afterwards.
+/// Protects: while the database is locked, or its disk is slow, running jobs go on at their speed. Jobs that end meanwhile
+/// are stored afterwards.
 #[tokio::test]
 async fn the_solver_does_not_wait_for_the_database() {
-    const KEPT: Duration = Duration::from_secs(2);
+    const LOCKED_FOR: Duration = Duration::from_secs(2);
     let sandbox = Sandbox::new();
-    let mut queue = impatient(&sandbox).await;
-    // One that outlasts the lock, and some of which one or other ends while it is there, on a fast machine and a slow one.
+    let mut queue = queue_with_short_timeout(&sandbox).await;
+    // One job outlasts the lock. Of the others some end during the lock, on a fast machine as on a slow one.
     let mut jobs = several(7, 50.0);
     for (i, job) in (1..).zip(&mut jobs[1..]) {
         *job = solvable(&job.key, &spec(0.2, 0.01 * 1.6_f64.powi(i)));
     }
     submit(&mut queue, "study", jobs).await;
 
-    let (begin, other) = lock_for(&sandbox, KEPT).await;
+    let (begin, other) = lock_for(&sandbox, LOCKED_FOR).await;
     let interrupt = Interrupt::default();
     let raised = interrupt.clone();
     let mut begin = Some(begin);
-    let mut places = Vec::new();
+    let mut shown = Vec::new();
     let mut recorder = Recorder::new(|snapshot| {
         let long = snapshot.running.iter().find(|job| job.key == "a").filter(|job| job.simulated_s > 0.0);
         let Some(long) = long else { return };
-        places.push((Instant::now(), long.simulated_s));
+        shown.push((Instant::now(), long.simulated_s));
         if let Some(begin) = begin.take() {
             begin.send(()).unwrap();
         }
@@ -64,26 +64,26 @@ async fn the_solver_does_not_wait_for_the_database() {
     other.await.unwrap();
     assert_eq!(summary.counts.done, 6);
 
-    // Nothing is shown while a turn waits for the lock.
-    let steps = places.windows(2).map(|pair| (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1));
+    // No progress is shown while a turn waits for the lock.
+    let steps = shown.windows(2).map(|pair| (pair[1].0 - pair[0].0, pair[1].1 - pair[0].1));
     let (silence, simulated_s) = steps.max_by_key(|(time, _)| *time).unwrap();
-    assert!(silence > KEPT / 2, "the lock was met: {places:?}");
-    let whole = (places[places.len() - 1].0 - places[0].0, places[places.len() - 1].1 - places[0].1);
-    let pace = |(time, simulated_s): (Duration, f64)| simulated_s / time.as_secs_f64();
-    // A solver that waited would get on in what of the silence is before the lock, a tick of 0.25 s. One that does not is
-    // slowed by its companions, if there are more of them in the silence than later: to a half at worst.
-    assert!(pace((silence, simulated_s)) > 0.25 * pace(whole), "{places:?}");
+    assert!(silence > LOCKED_FOR / 2, "no turn waited for the lock: {shown:?}");
+    let whole = (shown[shown.len() - 1].0 - shown[0].0, shown[shown.len() - 1].1 - shown[0].1);
+    let speed = |(time, simulated_s): (Duration, f64)| simulated_s / time.as_secs_f64();
+    // A solver that waited for the database would advance only before the lock, during one tick of 0.25 s. One that does
+    // not wait may still be slower in the silence than later, because more jobs share its thread: half as fast at worst.
+    assert!(speed((silence, simulated_s)) > 0.25 * speed(whole), "{shown:?}");
 }
 
-/// Protects: what ends while the database is locked is stored, and what runs is given back, also when the worker is asked
-/// to stop meanwhile.
+/// Protects: if the worker is asked to stop while the database is locked, ended jobs are stored and running jobs are given
+/// back all the same.
 #[tokio::test]
 async fn an_interruption_waits_for_the_lock() {
-    const KEPT: Duration = Duration::from_secs(1);
+    const LOCKED_FOR: Duration = Duration::from_secs(1);
     let sandbox = Sandbox::new();
-    let mut queue = impatient(&sandbox).await;
+    let mut queue = queue_with_short_timeout(&sandbox).await;
     submit(&mut queue, "study", several(7, 50.0)).await;
-    let (begin, other) = lock_for(&sandbox, KEPT).await;
+    let (begin, other) = lock_for(&sandbox, LOCKED_FOR).await;
     let (interrupt, is_begun) = (Interrupt::default(), Arc::new(AtomicBool::new(false)));
     let (raised, seen) = (interrupt.clone(), Arc::clone(&is_begun));
     let mut begin = Some(begin);
@@ -99,7 +99,7 @@ async fn an_interruption_waits_for_the_lock() {
         while !is_begun.load(Ordering::Relaxed) {
             tokio::time::sleep(Duration::from_millis(5)).await;
         }
-        tokio::time::sleep(KEPT / 4).await;
+        tokio::time::sleep(LOCKED_FOR / 4).await;
         raised.raise();
     });
     let summary =

@@ -8,8 +8,8 @@ use tribosweep::worker::{Interrupt, SilentProgress, WorkOptions, work};
 use super::{Recorder, several, submit};
 use crate::support::{Sandbox, counts, of};
 
-/// Protects: progress only grows, the total stays, no more jobs run than there are lanes on the threads, and the end
-/// is shown once with nothing left.
+/// Protects: progress only grows, the total stays the same, no more jobs run than the threads have lanes, and the end is
+/// shown once, with no job left.
 #[tokio::test]
 async fn progress_only_grows() {
     for threads in [1, 3] {
@@ -31,16 +31,16 @@ async fn progress_only_grows() {
             assert_eq!(snapshot.running.len() as u64, snapshot.counts.running);
             assert!(snapshot.running.iter().all(|job| (0.0..=0.0021).contains(&job.simulated_s)));
         }
-        // Time left is told once there is evidence, and not before.
+        // The remaining time is estimated as soon as three jobs are done.
         for snapshot in &recorder.snapshots {
             assert_eq!(snapshot.eta.is_some(), snapshot.counts.done >= 3, "{snapshot:?}");
         }
     }
 }
 
-/// Protects: the clock of a running job moves, so that a long job is seen to live.
+/// Protects: the simulated time of a running job grows in the display, so that a long job does not look dead.
 #[tokio::test]
-async fn a_running_job_tells_its_time() {
+async fn the_simulated_time_of_a_running_job_grows() {
     let sandbox = Sandbox::new();
     let mut queue = sandbox.open().await;
     submit(&mut queue, "study", several(1, 50.0)).await;
@@ -58,8 +58,7 @@ async fn a_running_job_tells_its_time() {
     assert!(times.last() > times.first(), "{times:?}");
 }
 
-/// Protects: what is stored is what the solver finds for that job alone, to the last bit, on any number of
-/// threads.
+/// Protects: the stored record is that of the job run alone, to the last bit, on any number of threads.
 #[tokio::test]
 async fn records_are_those_of_the_solver() {
     let jobs = several(4, 0.003);
@@ -86,7 +85,7 @@ async fn records_are_those_of_the_solver() {
     assert!(stored.iter().all(|records| *records == stored[0]));
 }
 
-/// Protects: a worker for one study leaves the jobs of the others alone.
+/// Protects: a worker for one study does not run the jobs of other studies.
 #[tokio::test]
 async fn a_worker_keeps_to_its_study() {
     let sandbox = Sandbox::new();

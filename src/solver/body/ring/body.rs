@@ -6,7 +6,7 @@ use super::operator::{Elements, RingOperator};
 use super::response::Response;
 use super::stages::{MAX_STAGES, Stages};
 use crate::solver::material::Material;
-use crate::spec::{Clock, Scene, TargetSurface};
+use crate::spec::{DiskTimeStep, Scene, TargetSurface};
 
 /// What an elastic disk is made of.
 #[derive(Debug, Clone)]
@@ -20,7 +20,7 @@ pub struct RingDefinition {
     /// How its top is interpolated.
     pub target: TargetSurface,
     /// Whether it has its own time step.
-    pub clock: Clock,
+    pub clock: DiskTimeStep,
     /// Distance [m] of the pin's axis from the axis of rotation.
     pub track_radius_m: f64,
 }
@@ -68,8 +68,8 @@ impl UnsteppedRing {
         let elements = Elements::new(&definition.mesh, &definition.material);
         let (operator, masses_kg) = RingOperator::new(&definition.mesh, &elements);
         let most_stages = match definition.clock {
-            Clock::Own => MAX_STAGES,
-            Clock::Common => 1,
+            DiskTimeStep::Own => MAX_STAGES,
+            DiskTimeStep::Common => 1,
         };
         let omega_max_squared = bound::omega_max_squared(&definition.mesh, &elements);
         Self { definition, operator, masses_kg, omega_max_squared, most_stages }

@@ -1,0 +1,35 @@
+//! Runs one job without companions, to find the job that panics.
+
+use super::channel::WorkerChannel;
+use super::job::{ParsedJob, outcome, panic_outcome};
+use crate::analysis::batch::Batch;
+use crate::queue::FinishedOutcome;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+
+/// Runs a job by itself. If it panics again, it is the one at fault, and its outcome says so.
+pub fn isolate_panic(job: &ParsedJob, channel: &WorkerChannel) -> FinishedOutcome {
+    catch_unwind(AssertUnwindSafe(|| solve_alone(job, channel)))
+        .unwrap_or_else(|panic| panic_outcome(&*panic))
+}
+
+fn solve_alone(job: &ParsedJob, channel: &WorkerChannel) -> FinishedOutcome {
+    let started = Batch::new(&job.spec).and_then(|mut batch| {
+        batch.begin(0, job.spec.clone())?;
+        Ok(batch)
+    });
+    let mut batch = match started {
+        Ok(batch) => batch,
+        Err(error) => return outcome(Err(error)),
+    };
+    loop {
+        if let Some(ended) = batch.advance().pop() {
+            return outcome(ended.result);
+        }
+        for (_, simulated_s) in batch.simulated() {
+            job.assignment.progress.set_simulated_s(simulated_s);
+        }
+        if channel.interrupt.is_raised() {
+            return FinishedOutcome::Released;
+        }
+    }
+}

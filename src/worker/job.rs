@@ -1,0 +1,49 @@
+//! A job in the hands of a thread: its payload is parsed once, and its end is put into the words of the queue.
+
+use super::channel::Assignment;
+use crate::analysis::{JobError, JobRecord};
+use crate::queue::FinishedOutcome;
+use crate::spec::JobSpec;
+use std::any::Any;
+
+/// An assignment whose payload has been parsed.
+#[derive(Debug)]
+pub struct ParsedJob {
+    /// The job as it was claimed.
+    pub assignment: Assignment,
+    /// Its payload.
+    pub spec: JobSpec,
+}
+
+impl ParsedJob {
+    /// Parses the payload. If it is no job, the assignment comes back with its outcome.
+    pub fn parse(assignment: Assignment) -> Result<Self, (Assignment, FinishedOutcome)> {
+        match serde_json::from_str(&assignment.job.payload) {
+            Ok(spec) => Ok(Self { assignment, spec }),
+            Err(error) => {
+                Err((assignment, FinishedOutcome::Failed { error: format!("unreadable job: {error}") }))
+            }
+        }
+    }
+}
+
+/// The end of a run in the words of the queue.
+pub fn outcome(result: Result<JobRecord, JobError>) -> FinishedOutcome {
+    match result {
+        Ok(record) => match serde_json::to_string(&record) {
+            Ok(text) => FinishedOutcome::Done { record: text, label: record.outcome.name().to_owned() },
+            Err(error) => FinishedOutcome::Failed { error: format!("unwritable record: {error}") },
+        },
+        Err(error) => FinishedOutcome::Failed { error: error.to_string() },
+    }
+}
+
+/// The outcome of a job whose run panicked.
+pub fn panic_outcome(panic: &(dyn Any + Send)) -> FinishedOutcome {
+    let message = panic
+        .downcast_ref::<String>()
+        .map(String::as_str)
+        .or_else(|| panic.downcast_ref::<&str>().copied())
+        .unwrap_or("no message");
+    FinishedOutcome::Failed { error: format!("internal error (please report it): {message}") }
+}
