@@ -1,7 +1,7 @@
 //! Where a study and its results come from, for reports.
 
 use super::error::CliError;
-use crate::queue::{MadeWith, Queue};
+use crate::queue::{ProvenanceGroup, Queue};
 use crate::report::{Made, Maker, Origin};
 use serde::Deserialize;
 
@@ -22,11 +22,11 @@ struct Told {
 /// The study's document and what its results were made with; nothing if the study has been removed meanwhile.
 pub async fn read(queue: &mut Queue, study: &str) -> Result<Option<Origin>, CliError> {
     let Some(document) = queue.study(study).await? else { return Ok(None) };
-    let made = queue.made_with(study).await?;
+    let made = queue.provenance_groups(study).await?;
     Ok(Some(Origin::grouped(document.document, document.submitted_ms, made.iter().map(convert))))
 }
 
-fn convert(made: &MadeWith) -> Made {
+fn convert(made: &ProvenanceGroup) -> Made {
     // What cannot be read is not known.
     let told: Option<Told> = made.provenance.as_deref().and_then(|text| serde_json::from_str(text).ok());
     let with = told.map(|told| Maker {

@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use super::work::all_cores;
-use crate::queue::{Alive, Counts, Queue, Scope};
+use crate::queue::{ActiveWorkers, Counts, Queue, Scope};
 use crate::worker::Eta;
 use anstyle::{AnsiColor, Style};
 use serde_json::{Value, json};
@@ -13,7 +13,7 @@ const BAR: (usize, usize) = (40, 10);
 /// What is left of a study that is not finished.
 pub struct Outlook {
     counts: Counts,
-    alive: Alive,
+    alive: ActiveWorkers,
     /// This machine's threads.
     cores: usize,
     /// The time that is left with the workers that are there, or on this machine if there are none.
@@ -26,7 +26,7 @@ pub async fn read(queue: &mut Queue, study: &str, counts: Counts) -> Result<Opti
     if left == 0 {
         return Ok(None);
     }
-    let alive = queue.alive().await?;
+    let alive = queue.active_workers().await?;
     let cores = all_cores();
     let threads = if alive.threads > 0 { alive.threads } else { cores as u64 };
     let cost = queue.remaining_cost(&Scope::Study(study.to_owned())).await?;
@@ -69,7 +69,7 @@ impl Outlook {
     }
 
     fn time(&self) -> String {
-        let Alive { workers, threads } = self.alive;
+        let ActiveWorkers { workers, threads } = self.alive;
         let with =
             |threads: u64| if threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") };
         match (workers, &self.eta) {
@@ -119,7 +119,7 @@ mod tests {
     fn outlook(workers: u64, eta_s: Option<u64>) -> Outlook {
         let counts = Counts { done: 30, failed: 3, running: 2, pending: 65, cancelled: 7 };
         let eta = eta_s.map(Duration::from_secs).map(|time| Eta { low: time, high: 2 * time });
-        Outlook { counts, alive: Alive { workers, threads: 2 * workers }, cores: 4, eta }
+        Outlook { counts, alive: ActiveWorkers { workers, threads: 2 * workers }, cores: 4, eta }
     }
 
     fn plain(outlook: &Outlook, width: usize) -> Vec<String> {

@@ -213,7 +213,7 @@ impl Dispatcher<'_> {
         }
         let Some(limit) = self.idle_exit else { return Ok(!open.has_running) };
         // Who was told how long to stay does not wait for what runs elsewhere, unless it may be about to come back.
-        Ok(self.idle.lasts() >= limit && !(open.has_running && self.queue.misses_somebody().await?))
+        Ok(self.idle.lasts() >= limit && !(open.has_running && self.queue.has_missing_workers().await?))
     }
 
     fn take(&mut self, report: Report, done: &mut Vec<Finished>) {
@@ -341,7 +341,7 @@ impl Dispatcher<'_> {
     async fn keep_alive(&mut self) -> Result<(), QueueError> {
         if self.interrupt.is_raised() && !self.is_stopping {
             // If it is ended at once now, that is no crash. Where it cannot be said, it is taken for one.
-            self.is_stopping = self.queue.stopping().await.is_ok();
+            self.is_stopping = self.queue.mark_stopping().await.is_ok();
         }
         if !self.heartbeat.is_due() {
             return Ok(());
