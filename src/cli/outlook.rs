@@ -1,6 +1,6 @@
 //! The outlook of a study as text and JSON.
 
-use crate::queue::Alive;
+use crate::queue::ActiveWorkers;
 use crate::sweep::Outlook;
 use anstyle::{AnsiColor, Style};
 use serde_json::{Value, json};
@@ -34,7 +34,7 @@ fn bar(outlook: &Outlook, length: usize) -> String {
 }
 
 fn time(outlook: &Outlook) -> String {
-    let Alive { workers, threads } = outlook.alive;
+    let ActiveWorkers { workers, threads } = outlook.alive;
     let with = |threads: u64| if threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") };
     match (workers, &outlook.eta) {
         (0, Some(eta)) => {
@@ -87,7 +87,7 @@ mod tests {
     fn outlook(workers: u64, eta_s: Option<u64>) -> Outlook {
         let counts = Counts { done: 30, failed: 3, running: 2, pending: 65, cancelled: 7 };
         let eta = eta_s.map(Duration::from_secs).map(|time| Eta { low: time, high: 2 * time });
-        Outlook { counts, alive: Alive { workers, threads: 2 * workers }, threads_here: 4, eta }
+        Outlook { counts, alive: ActiveWorkers { workers, threads: 2 * workers }, threads_here: 4, eta }
     }
 
     fn plain(outlook: &Outlook, width: usize) -> Vec<String> {

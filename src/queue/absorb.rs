@@ -1,35 +1,39 @@
-//! Takes over what another database has: to move a study, or to bring shards together.
+//! Copies studies from another database: to move a study, or to merge shards.
 
 use std::collections::HashMap;
 
 use super::bulk::json;
 use super::engine::{Connection, Statement, query};
-use super::submit::{self, UPSERT_STUDY};
-use super::{JobState, NewJob, Queue, QueueError, studies};
+use super::error::QueueError;
+use super::handle::Queue;
+use super::lookup;
+use super::state::JobState;
+use super::submit::{self, NewJob, UPSERT_STUDY};
 
-/// What was taken over.
+/// What was copied.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Absorbed {
-    /// Studies of the other database.
+    /// Studies that were copied.
     pub studies: u64,
     /// Their rows.
     pub rows: u64,
-    /// Jobs that are new here.
+    /// Jobs that did not exist in this database.
     pub added: u64,
-    /// Jobs that have their end from there: those that are new, and those that had none here.
+    /// Jobs whose outcome was copied: they were done or failed in the other database, and not yet in this one, or they
+    /// were done there and had failed here.
     pub ended: u64,
-    /// Jobs that were pending, running or cancelled there and have not ended here either.
+    /// Jobs that are neither done nor failed in either database.
     pub open: u64,
 }
 
-/// Rows that are taken over at a time.
+/// Rows that are copied in one transaction.
 const PAGE: i64 = 1_000;
 
 const STUDIES: &str = "
     SELECT id, name, document, submitted_ms, cancelled_ms FROM studies
     WHERE $1 IS NULL OR name = $1 ORDER BY id";
 
-/// Rows of a study with all that is known of their jobs.
+/// Rows of a study with the definition of their jobs.
 const ROWS: &str = "
     SELECT m.ordinal, m.parameters, j.key, j.batch, j.priority, j.cost, p.payload
     FROM study_jobs AS m
@@ -40,7 +44,7 @@ const ROWS: &str = "
 
 type RowColumns = (i64, String, String, String, i64, f64, String);
 
-/// How far the jobs of the same rows are.
+/// The states of the same rows' jobs.
 const STATES: &str = "
     SELECT j.key, j.state, j.attempt, j.crashes, j.created_ms, j.started_ms, j.note, j.label
     FROM study_jobs AS m JOIN jobs AS j ON j.id = m.job_id
@@ -63,7 +67,7 @@ const CHECKPOINTS: &str = "
     JOIN jobs AS j ON j.id = m.job_id
     JOIN checkpoints AS c ON c.job_id = j.id";
 
-/// What is here of the same keys.
+/// The jobs in this database that have the same keys.
 const HERE: Statement = Statement::each(
     "SELECT j.key, j.state, j.attempt FROM json_each($1) AS e CROSS JOIN jobs AS j ON j.key = e.value",
     "SELECT j.key, j.state, j.attempt
@@ -86,7 +90,8 @@ const SET_STATES: Statement = Statement::each(
     WHERE jobs.key = e.value ->> 0",
 );
 
-/// One by one: JSON has numbers to 15 digits in one of the databases, and a time is to stay what it is.
+/// Results are inserted one by one: one of the databases reads JSON numbers with 15 digits only, and times must be copied
+/// exactly.
 const SET_RESULT: &str = "
     INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)
     SELECT id, $2, $3, $4, $5, $6, $7, $8 FROM jobs WHERE key = $1
@@ -99,10 +104,10 @@ const SET_CHECKPOINT: &str = "
 
 const CANCELLED: &str = "UPDATE studies SET cancelled_ms = $2 WHERE id = $1";
 
-/// A study there.
+/// A study in the other database.
 type StudyColumns = (i64, String, String, i64, Option<i64>);
 
-/// A part of a study there: its rows, and all that is known of their jobs.
+/// A part of a study in the other database: rows, and everything about their jobs.
 struct Page {
     rows: Vec<(i64, NewJob)>,
     states: Vec<StateColumns>,
@@ -111,21 +116,22 @@ struct Page {
 }
 
 impl Queue {
-    /// Takes over the studies of another database, or one of them: rows, jobs, results of all attempts, checkpoints.
+    /// Copies all studies of another database, or one of them: rows, jobs, results of all attempts, checkpoints.
     ///
-    /// Nothing that is here is lost: a job that is done here stays so, one that has not ended here takes its end from
-    /// there, and one that failed here and is done there is done. What runs there is pending here. Doing it again
-    /// changes nothing. Each part of a study is taken over whole or not at all; after an error, do it again.
+    /// This database loses nothing. A job that is done here stays done. A job that has not ended here takes the outcome
+    /// of the other database. A job that failed here and is done there becomes done. A job that is running there becomes
+    /// pending here. A repeated call changes nothing. Each part of a study is copied completely or not at all; after an
+    /// error, call this again.
     ///
     /// # Errors
-    /// [`QueueError::UnknownStudy`] if the other database has no such study, [`QueueError::OtherStudy`] if there is
-    /// another one of its name here; or if one of the databases fails.
+    /// [`QueueError::UnknownStudy`] if the other database has no such study; [`QueueError::OtherStudy`] if this database
+    /// has a different study of that name; or if one of the databases fails.
     pub async fn absorb(&mut self, other: &mut Self, study: Option<&str>) -> Result<Absorbed, QueueError> {
         if let Some(name) = study {
-            studies::require(&mut other.connection, name).await?;
+            lookup::require(&mut other.connection, name).await?;
         }
         let found: Vec<StudyColumns> = query(STUDIES).bind(study).all(&mut other.connection).await?;
-        // All before the first, so that it is all or nothing.
+        // Every study is checked before the first one is copied, so that a conflict changes nothing.
         for (_, name, document, ..) in &found {
             let here = self.study(name).await?;
             if here.is_some_and(|here| here.document != *document) {
@@ -147,7 +153,7 @@ impl Queue {
     ) -> Result<(), QueueError> {
         let here_id = self
             .write(async |connection, _| {
-                if let Some(id) = studies::find(connection, name).await? {
+                if let Some(id) = lookup::find(connection, name).await? {
                     return Ok(id);
                 }
                 let id: i64 = query(UPSERT_STUDY)
@@ -164,13 +170,13 @@ impl Queue {
         let mut next = 0;
         while let Some(page) = read(&mut other.connection, *there_id, next).await? {
             next = page.rows.last().map_or(next, |(ordinal, _)| ordinal + 1);
-            let taken = self
+            let copied = self
                 .write(async |connection, now_ms| write(connection, here_id, &page, now_ms).await)
                 .await?;
             absorbed.rows += page.rows.len() as u64;
-            absorbed.added += taken.added;
-            absorbed.ended += taken.ended;
-            absorbed.open += taken.open;
+            absorbed.added += copied.added;
+            absorbed.ended += copied.ended;
+            absorbed.open += copied.open;
         }
         Ok(())
     }
@@ -186,7 +192,7 @@ async fn read(connection: &mut Connection, study_id: i64, from: i64) -> Result<O
     };
     Ok(Some(Page {
         rows: rows.into_iter().map(row).collect(),
-        // First of all: what ends meanwhile is taken over as if it had not ended.
+        // The states are read first. A job that ends in the meantime is copied as if it had not ended.
         states: about(STATES).all(connection).await?,
         results: about(RESULTS).all(connection).await?,
         checkpoints: about(CHECKPOINTS).all(connection).await?,
@@ -211,13 +217,13 @@ async fn write(
     submit::delete_rows(connection, study_id, &changed).await?;
     submit::insert(connection, study_id, &changed, now_ms).await?;
 
-    // For each job that is taken over, the attempts here that come before those there.
-    let mut taken: HashMap<&str, i64> = HashMap::new();
+    // For each job that is copied: how many attempts it has here. Those of the other database are numbered after them.
+    let mut copied: HashMap<&str, i64> = HashMap::new();
     let mut states = Vec::new();
     let mut absorbed = Absorbed::default();
     for (key, state, attempt, crashes, created_ms, started_ms, note, label) in &page.states {
         let there = match JobState::from_column(state) {
-            // Nobody runs it here.
+            // No worker of this database runs it.
             JobState::Running => JobState::Pending,
             state => state,
         };
@@ -225,42 +231,42 @@ async fn write(
             None => 0,
             Some((state, attempts)) if is_better(there, *state) => *attempts,
             Some((state, _)) => {
-                absorbed.open += u64::from(!is_end(*state));
+                absorbed.open += u64::from(!has_ended(*state));
                 continue;
             }
         };
-        if taken.insert(key, before).is_some() {
+        if copied.insert(key, before).is_some() {
             continue;
         }
         absorbed.added += u64::from(!here.contains_key(key.as_str()));
-        absorbed.ended += u64::from(is_end(there));
-        absorbed.open += u64::from(!is_end(there));
+        absorbed.ended += u64::from(has_ended(there));
+        absorbed.open += u64::from(!has_ended(there));
         states.push((key, there.as_str(), before + attempt, crashes, created_ms, started_ms, note, label));
     }
     query(SET_STATES).bind(json(&states)).run(connection).await?;
     for (key, attempt, record, error, wall_s, started_ms, finished_ms, provenance) in &page.results {
-        let Some(before) = taken.get(key.as_str()) else { continue };
+        let Some(before) = copied.get(key.as_str()) else { continue };
         let result =
             query(SET_RESULT).bind(key).bind(before + attempt).bind(record).bind(error).bind(*wall_s);
         result.bind(*started_ms).bind(*finished_ms).bind(provenance).run(connection).await?;
     }
     for (key, attempt, bytes, saved_ms) in &page.checkpoints {
-        let Some(before) = taken.get(key.as_str()) else { continue };
+        let Some(before) = copied.get(key.as_str()) else { continue };
         let checkpoint = query(SET_CHECKPOINT).bind(key).bind(before + attempt).bind(bytes.as_slice());
         checkpoint.bind(*saved_ms).run(connection).await?;
     }
     Ok(absorbed)
 }
 
-fn is_end(state: JobState) -> bool {
+fn has_ended(state: JobState) -> bool {
     matches!(state, JobState::Done | JobState::Failed)
 }
 
-/// Whether a job's state there says more than its state here. What runs here is its worker's.
+/// Whether the state in the other database replaces the state here. A job that is running here belongs to its worker.
 fn is_better(there: JobState, here: JobState) -> bool {
     match here {
-        JobState::Pending => is_end(there),
-        // Whoever copies a study asks for its jobs.
+        JobState::Pending => has_ended(there),
+        // A copied study requests its jobs, so they are no longer cancelled.
         JobState::Cancelled => there != JobState::Cancelled,
         JobState::Failed => there == JobState::Done,
         JobState::Running | JobState::Done => false,

@@ -1,20 +1,22 @@
 use super::engine::{Statement, query};
-use super::{Queue, QueueError, studies};
+use super::error::QueueError;
+use super::handle::Queue;
+use super::lookup;
 
 /// What a cancellation changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Cancelled {
-    /// Pending jobs that are cancelled now.
+    /// Pending jobs that became cancelled.
     pub cancelled: u64,
-    /// Pending jobs that stay, because another study asks for them.
+    /// Jobs that stay pending because another study requests them.
     pub shared: u64,
-    /// Jobs that are running: they run to their end and their results are kept.
+    /// Running jobs. They run to their end, and their results are kept.
     pub running: u64,
 }
 
 const CANCEL_STUDY: &str = "UPDATE studies SET cancelled_ms = $2 WHERE id = $1";
 
-/// A cancelled study asks for nothing.
+/// A cancelled study requests no jobs.
 const CANCEL_JOBS: &str = "
     UPDATE jobs SET state = 'cancelled', note = $2
     WHERE id IN (SELECT job_id FROM study_pending WHERE study_id = $1)
@@ -39,15 +41,15 @@ const RUNNING: Statement = Statement::each(
 const NOTE: &str = "cancelled: asked for by its user";
 
 impl Queue {
-    /// Cancels the pending jobs of a study that no other study asks for.
+    /// Cancels the pending jobs of a study that no other study requests.
     ///
-    /// Running jobs go on: what they have cost is paid for, and a worker that should stop is stopped itself.
+    /// Running jobs continue, because their computing time is already spent. To stop a worker, interrupt its process.
     ///
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be written.
     pub async fn cancel(&mut self, study: &str) -> Result<Cancelled, QueueError> {
         self.write(async |connection, now_ms| {
-            let study_id = studies::require(connection, study).await?;
+            let study_id = lookup::require(connection, study).await?;
             query(CANCEL_STUDY).bind(study_id).bind(now_ms).run(connection).await?;
             let cancelled = query(CANCEL_JOBS).bind(study_id).bind(NOTE).run(connection).await?;
             let shared: i64 = query(SHARED).bind(study_id).scalar(connection).await?;

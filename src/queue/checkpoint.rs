@@ -1,5 +1,6 @@
 use super::engine::query;
-use super::{Queue, QueueError};
+use super::error::QueueError;
+use super::handle::Queue;
 
 const SAVE: &str = "
     INSERT INTO checkpoints (job_id, attempt, bytes, saved_ms)
@@ -7,13 +8,14 @@ const SAVE: &str = "
     ON CONFLICT (job_id) DO UPDATE
     SET attempt = excluded.attempt, bytes = excluded.bytes, saved_ms = excluded.saved_ms";
 
-/// A job that gets further with each attempt is not what kills its processes.
-const FORGIVE: &str = "UPDATE jobs SET crashes = 0 WHERE key = $1 AND crashes > 0";
+/// A job that makes progress in each attempt is not the reason why its processes die.
+const RESET_CRASHES: &str = "UPDATE jobs SET crashes = 0 WHERE key = $1 AND crashes > 0";
 
 impl Queue {
-    /// Keeps where a running attempt is, instead of what was kept before; `false` if the worker lost the job.
+    /// Stores a checkpoint of a running attempt in place of the previous one. Returns `false` if the worker has lost the
+    /// job.
     ///
-    /// The next attempt is given the bytes with its claim. They vanish when the job ends.
+    /// The next attempt receives the bytes with its claim. They are deleted when the job ends.
     ///
     /// # Errors
     /// If the database cannot be written.
@@ -27,11 +29,11 @@ impl Queue {
         bytes: &[u8],
     ) -> Result<bool, QueueError> {
         let owner = self.registration().id;
-        self.write_own(async |connection, now_ms| {
+        self.write_shared(async |connection, now_ms| {
             let saved = query(SAVE).bind(key).bind(attempt).bind(owner).bind(bytes).bind(now_ms);
             let is_saved = saved.run(connection).await? == 1;
             if is_saved {
-                query(FORGIVE).bind(key).run(connection).await?;
+                query(RESET_CRASHES).bind(key).run(connection).await?;
             }
             Ok(is_saved)
         })

@@ -1,15 +1,17 @@
 use super::engine::{Connection, Statement, query};
-use super::{QueueError, Scope};
+use super::error::QueueError;
+use super::scope::Scope;
 
-/// How many jobs to take, and from where: all of one batch, so that they can be run together.
+/// How many jobs to claim, and which. All claimed jobs are of one batch, so that they can be run together.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Claim {
-    /// Whose jobs.
+    /// Which jobs may be claimed.
     pub scope: Scope,
-    /// At most so many. An attempt counts from its claim: what is not started is to be handed back.
+    /// The largest number of jobs. An attempt counts from its claim, so jobs that are not started must be given back as
+    /// `FinishedOutcome::Unstarted`.
     pub limit: usize,
-    /// The batch; otherwise that of the job that comes first, whatever the priority of its further jobs. While a job of a
-    /// higher priority waits, a batch that is named gives only jobs of that priority.
+    /// The batch. With `None`, it is the batch of the first job in the order of claims, and jobs of all priorities are
+    /// claimed from it. A named batch yields only jobs that have at least the highest priority of all pending jobs.
     pub batch: Option<String>,
 }
 
@@ -18,28 +20,29 @@ pub struct Claim {
 pub struct ClaimedJob {
     /// Identifies the job.
     pub key: String,
-    /// What the executor needs.
+    /// What the executor needs to run the job.
     pub payload: String,
-    /// Which start of the job this is, from 1; to be given back when it ends.
+    /// The number of this start of the job, from 1. The finish must name it.
     pub attempt: u32,
-    /// Expected effort.
+    /// The expected effort.
     pub cost: f64,
-    /// The name of what it can be run together with.
+    /// The batch: jobs of the same batch can be run together.
     pub batch: String,
-    /// Where an earlier attempt got to.
+    /// The last checkpoint of an earlier attempt.
     pub checkpoint: Option<Vec<u8>>,
 }
 
-/// One statement a claim, since handing a statement to the database costs more than what it does for one job.
+/// A claim is one statement, because sending a statement to the database costs more than its work for one job.
 ///
-/// Dear jobs first within a priority, so that no long one is left to a single worker at the end; then by age. Without
-/// a batch ($5) it is that of the job that comes first; with one, nothing of a lower priority than that job's is taken.
+/// Within a priority, expensive jobs come first, so that at the end no long job is left to a single worker. Jobs of equal
+/// cost are ordered by age. If the batch ($5) is null, it is the batch of the first job. If it is not null, no job with a
+/// lower priority than the first job's is claimed.
 ///
-/// `SQLite`: INDEXED BY, since without it the planner may sort every pending job, which makes each claim as slow as the
-/// queue is long.
+/// `SQLite`: without INDEXED BY, the planner may sort all pending jobs, and the time of a claim grows with the length of
+/// the queue.
 ///
-/// PostgreSQL: what another worker is just claiming is locked, and is passed over. Never waiting for it, claims cannot
-/// wait for each other in a circle.
+/// PostgreSQL: SKIP LOCKED passes over the jobs that another worker is claiming. Deadlock is impossible because a claim
+/// never waits for a row.
 const TAKE: Statement = Statement::each(
     "
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3
@@ -76,11 +79,11 @@ const TAKE: Statement = Statement::each(
               (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)",
 );
 
-/// As above, of the study named $6.
+/// As above, for the study named $6.
 ///
-/// PostgreSQL: LATERAL keeps the order of the loops, and what is added to the state leaves only the number to look a job
-/// up by; otherwise all pending jobs may be looked through for each row, where none was pending when they were last
-/// counted.
+/// PostgreSQL: LATERAL fixes the order of the loops. The expression on the state leaves only the primary key for looking
+/// a job up. Without it, the planner may scan all pending jobs for each row if no job was pending when it last collected
+/// statistics.
 const TAKE_OF_STUDY: Statement = Statement::each(
     "
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3
@@ -123,7 +126,7 @@ const TAKE_OF_STUDY: Statement = Statement::each(
 
 type Columns = (i64, String, String, i64, f64, i64, String, Option<Vec<u8>>);
 
-/// What all claims of a transaction have in common.
+/// What all claims of a transaction share.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Lease {
     pub owner: i64,
@@ -131,7 +134,7 @@ pub(super) struct Lease {
     pub until_ms: i64,
 }
 
-/// Marks the next jobs as running and returns them in the order of the claim.
+/// Marks the next jobs as running. Returns them in the order of claims.
 pub(super) async fn take(
     connection: &mut Connection,
     claim: &Claim,
@@ -155,10 +158,10 @@ pub(super) async fn take(
         rows = take.all(connection).await?;
     }
     if rows.is_empty() {
-        // A study that is not there has no jobs either.
+        // The reason may be that the study does not exist, which is an error.
         claim.scope.study_id(connection).await?;
     }
-    // RETURNING promises no order.
+    // RETURNING does not guarantee an order.
     rows.sort_by(|a, b| b.5.cmp(&a.5).then(b.4.total_cmp(&a.4)).then(a.0.cmp(&b.0)));
     let job = |(_, key, payload, attempt, cost, _, batch, checkpoint): Columns| ClaimedJob {
         key,
@@ -176,8 +179,7 @@ mod tests {
     use super::{TAKE, TAKE_OF_STUDY};
     use crate::queue::{Clock, Queue};
 
-    /// Protects: no claim looks at every pending job or sorts them: each reads as many entries of an index as it takes
-    /// jobs.
+    /// Protects: a claim neither scans nor sorts all pending jobs. It reads as many index entries as it claims jobs.
     #[tokio::test]
     async fn claims_use_their_indexes() {
         let folder = tempfile::TempDir::new().unwrap();

@@ -2,13 +2,13 @@ use std::fmt;
 use std::sync::Arc;
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Whose time is written beside what happens, and by which leases end.
+/// The clock for timestamps and leases.
 #[derive(Clone, Default)]
 pub enum Clock {
-    /// The database's: that of its server, the same for all who use it, or for a file that of this machine.
+    /// The database's clock: the server's, which is the same for all its clients, or for a file this machine's.
     #[default]
     OfDatabase,
-    /// Milliseconds since 1970-01-01 UTC from elsewhere, so that tests own the time.
+    /// A function that returns milliseconds since 1970-01-01 UTC, so that tests control the time.
     Given(Arc<dyn Fn() -> i64 + Send + Sync>),
 }
 
@@ -23,6 +23,6 @@ impl fmt::Debug for Clock {
 
 /// This machine's time, in milliseconds since 1970-01-01 UTC.
 pub(super) fn machine_ms() -> i64 {
-    // A clock set before 1970 is no reason to stop a sweep: no result depends on these times.
+    // A clock that is set before 1970 does not stop a sweep: no result depends on these times.
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |time| time.as_millis() as i64)
 }

@@ -1,22 +1,25 @@
 use super::engine::{Connection, query};
-use super::{JobState, Queue, QueueError, Scope};
+use super::error::QueueError;
+use super::handle::Queue;
+use super::scope::Scope;
+use super::state::JobState;
 
-/// Jobs by state. A job that several rows of a study point to counts once: it is simulated once.
+/// The number of jobs in each state. A job that several rows of a study point to counts once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
-    /// Waiting to be claimed.
+    /// Jobs that wait to be claimed.
     pub pending: u64,
-    /// Claimed.
+    /// Claimed jobs.
     pub running: u64,
-    /// Ended with a record.
+    /// Jobs that ended with a record.
     pub done: u64,
-    /// Ended with an error.
+    /// Jobs that ended with an error.
     pub failed: u64,
-    /// Not wanted any more.
+    /// Jobs that no study requests any more.
     pub cancelled: u64,
 }
 
-/// The inner query comes first, so that the work follows the size of the study, not of the database.
+/// The inner query comes first, so that the work depends on the size of the study and not on that of the database.
 const OF_STUDY: &str = "
     SELECT j.state, COUNT(*)
     FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = $1) AS m
@@ -24,7 +27,7 @@ const OF_STUDY: &str = "
     GROUP BY j.state";
 
 impl Counts {
-    /// All jobs.
+    /// The number of all jobs.
     pub fn total(&self) -> u64 {
         self.pending + self.running + self.done + self.failed + self.cancelled
     }

@@ -1,7 +1,9 @@
 use super::engine::query;
-use super::{JobState, Queue, QueueError};
+use super::error::QueueError;
+use super::handle::Queue;
+use super::state::JobState;
 
-/// All that is known of a job but its payload and record.
+/// Everything about a job except its payload and its record.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JobDetails {
     /// Its key.
@@ -12,11 +14,11 @@ pub struct JobDetails {
     pub priority: i64,
     /// Its expected effort.
     pub cost: f64,
-    /// What it can be run together with.
+    /// Its batch: jobs of the same batch can be run together.
     pub batch: String,
     /// How many times it was started.
     pub attempt: u32,
-    /// How many of its processes died in a row.
+    /// How many of its processes died in succession, without a checkpoint in between.
     pub crashes: u32,
     /// Why it last went back to pending, if it ever did.
     pub note: Option<String>,
@@ -26,15 +28,16 @@ pub struct JobDetails {
     pub wall_s: Option<f64>,
     /// When the last attempt began, in milliseconds since 1970-01-01 UTC.
     pub started_ms: Option<i64>,
-    /// When it ended.
+    /// When that attempt ended, in milliseconds since 1970-01-01 UTC.
     pub finished_ms: Option<i64>,
-    /// What the result was made with, as its worker told it.
+    /// What the result was made with, as its worker declared it.
     pub provenance: Option<String>,
-    /// The names of the studies that have it.
+    /// The names of the studies that contain it.
     pub studies: Vec<String>,
 }
 
-/// Keys that begin with $1: a range, so that the index is used, and no character of the key is a wildcard.
+/// Keys that begin with $1. The range condition makes the database use the index. `substr` is used instead of LIKE because
+/// a key may contain wildcards.
 const JOBS: &str = "
     SELECT j.id, j.key, j.state, j.priority, j.cost, j.batch, j.attempt, j.crashes, j.note, j.started_ms,
            r.error, r.wall_s, r.finished_ms, r.provenance
@@ -95,7 +98,7 @@ fn details(columns: Columns, studies: Vec<String>) -> JobDetails {
         error,
         wall_s,
         finished_ms,
-        made,
+        provenance,
     ) = columns;
     JobDetails {
         key,
@@ -110,7 +113,7 @@ fn details(columns: Columns, studies: Vec<String>) -> JobDetails {
         wall_s,
         started_ms,
         finished_ms,
-        provenance: made,
+        provenance,
         studies,
     }
 }

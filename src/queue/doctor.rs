@@ -1,35 +1,15 @@
-//! What can be wrong with a database and its surroundings, looked at one by one.
+//! Checks of a database and its environment.
 
 use std::path::Path;
 
+use super::clock::Clock;
 use super::engine::{Connection, query};
-use super::owner::{Owner, Verdict};
-use super::{Clock, Location, Queue, QueueError, sqlite};
-
-/// One thing that was looked at.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Finding {
-    /// What was looked at.
-    pub subject: &'static str,
-    /// What was found, and what to do about it if it is wrong.
-    pub text: String,
-    /// Whether it needs doing something.
-    pub is_problem: bool,
-}
-
-impl Finding {
-    pub(super) fn good(subject: &'static str, text: impl Into<String>) -> Self {
-        Self { subject, text: text.into(), is_problem: false }
-    }
-
-    pub(super) fn bad(subject: &'static str, text: impl Into<String>) -> Self {
-        Self { subject, text: text.into(), is_problem: true }
-    }
-
-    pub(super) fn judged(subject: &'static str, text: impl Into<String>, is_good: bool) -> Self {
-        Self { subject, text: text.into(), is_problem: !is_good }
-    }
-}
+use super::error::QueueError;
+use super::finding::Finding;
+use super::handle::Queue;
+use super::location::Location;
+use super::owner::{Liveness, Owner};
+use super::sqlite;
 
 const RUNNING_OF: &str = "SELECT COUNT(*) FROM jobs WHERE owner = $1 AND state = 'running'";
 
@@ -37,10 +17,10 @@ const EXPIRED_OF: &str = "
     SELECT COUNT(*) FROM jobs
     WHERE owner = $1 AND state = 'running' AND (lease_until_ms <= $2 OR lease_until_ms > $3)";
 
-/// Looks at the database at `location`. It is not changed, but for tables that are brought up to date.
+/// Checks the database at `location`. It is not changed, except that tables of an older version are migrated.
 ///
 /// # Errors
-/// [`QueueError::NoDatabase`]; all else is a finding.
+/// [`QueueError::NoDatabase`]. Every other problem is a finding.
 pub async fn examine(location: &Location, clock: Clock) -> Result<Vec<Finding>, QueueError> {
     let mut findings = match location {
         Location::File(path) => surroundings(path)?,
@@ -48,7 +28,7 @@ pub async fn examine(location: &Location, clock: Clock) -> Result<Vec<Finding>, 
     };
     match Queue::open_to_read(location.clone(), clock).await {
         Err(error @ QueueError::NoDatabase { .. }) => return Err(error),
-        // Network file systems, old libraries, other programs' files and damaged headers are refused there.
+        // Opening refuses network file systems, old libraries, files of other programs and damaged headers.
         Err(error) => findings.push(Finding::bad("opens", error.to_string())),
         Ok(mut queue) => {
             if let Err(error) = inspect(&mut queue, &mut findings).await {
@@ -69,7 +49,7 @@ fn surroundings(path: &Path) -> Result<Vec<Finding>, QueueError> {
     let writable = if is_writable {
         "yes"
     } else {
-        "no: studies can be looked at; to work on them, make file and folder writable"
+        "no: studies can be read; to work on them, make the file and its folder writable"
     };
     Ok(vec![
         Finding::good("database", path.display().to_string()),
@@ -83,9 +63,9 @@ async fn inspect(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), Q
         #[cfg(feature = "postgres")]
         Connection::Postgres(session) => {
             session.examine(findings).await?;
+            // A difference is no problem: leases use the server's clock only.
             let ahead_ms = queue.now_ms().await? - super::clock::machine_ms();
-            // Leases are by the server's clock alone.
-            let text = format!("the server's is {} s ahead of this machine's", ahead_ms as f64 / 1e3);
+            let text = format!("the server's clock is {} s ahead of this machine's", ahead_ms as f64 / 1e3);
             findings.push(Finding::good("clock", text));
         }
     }
@@ -99,11 +79,11 @@ async fn workers(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), Q
     for owner in &owners {
         let connection = &mut queue.connection;
         let own: i64 = query(RUNNING_OF).bind(owner.id).scalar(connection).await?;
-        let expired = query(EXPIRED_OF).bind(owner.id).bind(now_ms).bind(owner.far_ms(now_ms));
-        let (word, left) = match owner.verdict() {
-            Verdict::Alive => ("alive", 0),
-            Verdict::Gone => ("gone", own),
-            Verdict::Elsewhere => ("not to be seen from here", expired.scalar(connection).await?),
+        let expired = query(EXPIRED_OF).bind(owner.id).bind(now_ms).bind(owner.latest_plausible_ms(now_ms));
+        let (word, left) = match owner.liveness() {
+            Liveness::Alive => ("alive", 0),
+            Liveness::Gone => ("gone", own),
+            Liveness::Unknown => ("not visible from here", expired.scalar(connection).await?),
         };
         running += own;
         stale += left;
@@ -117,7 +97,7 @@ async fn workers(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), Q
     if owners.is_empty() {
         findings.push(Finding::good("worker", "none at work"));
     }
-    // Nobody has to do anything about them: the next worker does.
+    // This is no problem: the next worker takes the jobs back.
     let text = format!("{running} running jobs, {stale} of them left by processes that are gone");
     let advice = if stale > 0 { "; the next `tribosweep work` takes them back" } else { "" };
     findings.push(Finding::good("leases", text + advice));

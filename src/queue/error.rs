@@ -1,11 +1,12 @@
+use std::error::Error;
 use std::path::PathBuf;
 
-use sqlx::error::DatabaseError;
-use sqlx::sqlite::SqliteError;
+use super::location::Location;
 
-use super::Location;
+/// The error of the database library beneath. The library itself is no part of the queue's interface.
+type Source = Box<dyn Error + Send + Sync>;
 
-/// What can go wrong with the queue, with what to do about it in the text.
+/// What can go wrong with the queue. The messages say what to do.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum QueueError {
@@ -16,21 +17,21 @@ pub enum QueueError {
         folder: PathBuf,
     },
 
-    /// There is nothing to read.
+    /// There is no database to read.
     #[error("no database at {database}; submit a study first with `tribosweep submit STUDY`")]
     NoDatabase {
         /// Where the database was looked for.
         database: Location,
     },
 
-    /// The path holds something else.
+    /// The path contains something else than a database.
     #[error("{path} is not a SQLite database and is left as it is; give another database path")]
     NotADatabase {
         /// The file or folder found there.
         path: PathBuf,
     },
 
-    /// The path holds a database with other tables.
+    /// The path contains a database of another program.
     #[error(
         "{path} is a SQLite database of another program and is left as it is; give another database path"
     )]
@@ -39,7 +40,7 @@ pub enum QueueError {
         path: PathBuf,
     },
 
-    /// The database's schema has migrations this program does not know.
+    /// The database's schema has migrations that this program does not know.
     #[error(
         "{database} was written by a newer tribosweep (schema {found}; this one knows up to {known}); \
          update tribosweep, or give another database path"
@@ -53,7 +54,7 @@ pub enum QueueError {
         known: i64,
     },
 
-    /// The linked `SQLite` can corrupt a write-ahead log that two connections write.
+    /// The linked `SQLite` can corrupt a write-ahead log that two connections write to.
     #[error(
         "SQLite {found} is linked, and versions before {oldest} can corrupt a database that two processes write; \
          build tribosweep with its bundled SQLite"
@@ -65,7 +66,7 @@ pub enum QueueError {
         oldest: String,
     },
 
-    /// The file system cannot share memory between processes the way a write-ahead log needs.
+    /// The database is on a network file system, which cannot provide the shared memory of a write-ahead log.
     #[error(
         "{path} lies on a network file system ({kind}), where SQLite's locks and write-ahead log cannot be relied on; \
          put the database on a local disk and copy it when the work is done"
@@ -77,7 +78,7 @@ pub enum QueueError {
         kind: String,
     },
 
-    /// `SQLite` accepted the wish for a write-ahead log and did something else.
+    /// `SQLite` cannot use a write-ahead log.
     #[error(
         "{path} cannot use a write-ahead log (SQLite stays in mode `{mode}`); put the database on a local disk"
     )]
@@ -88,7 +89,7 @@ pub enum QueueError {
         mode: String,
     },
 
-    /// A process of an earlier version, which knows nothing of several workers, runs jobs.
+    /// A process of an earlier version, which does not support several workers, runs jobs.
     #[error(
         "an older tribosweep is working on {path}, and its tables are to be brought up to date; \
          wait for it to end, or stop it first"
@@ -98,7 +99,7 @@ pub enum QueueError {
         path: PathBuf,
     },
 
-    /// The database cannot be brought up to date because it cannot be written.
+    /// The tables have to be migrated, and the database is read-only.
     #[error(
         "{path} was written by an older tribosweep (schema {found}; this one needs {needed}) and cannot be written \
          here; copy it to a folder that can be written"
@@ -112,7 +113,7 @@ pub enum QueueError {
         needed: i64,
     },
 
-    /// A log that is not folded in yet needs a file of shared memory to be read.
+    /// The database is read-only and has a write-ahead log. `SQLite` would have to create a shared-memory file to read it.
     #[error(
         "{path} has a write-ahead log, which cannot be read where nothing can be written; copy {path} and {path}-wal \
          to a folder that can be written"
@@ -127,11 +128,11 @@ pub enum QueueError {
     UnknownStudy {
         /// The name asked for.
         name: String,
-        /// The studies there are, oldest first.
+        /// The existing studies, oldest first.
         known: Vec<String>,
     },
 
-    /// Another study has that name.
+    /// A different study has that name.
     #[error(
         "the study `{name}` is another one in the database that is written to; remove one of them (`tribosweep rm`), or \
          submit one under another name"
@@ -150,7 +151,7 @@ pub enum QueueError {
         cost: f64,
     },
 
-    /// A file beside the database (a lock) could not be used.
+    /// A lock file beside the database could not be used.
     #[error("cannot use {path}: {source}")]
     File {
         /// The file.
@@ -165,7 +166,7 @@ pub enum QueueError {
         /// The database.
         database: Location,
         /// What the database said.
-        source: sqlx::Error,
+        source: Source,
     },
 
     /// The tables could not be created or brought up to date.
@@ -174,110 +175,71 @@ pub enum QueueError {
         /// The database.
         database: Location,
         /// What the migration said.
-        source: sqlx::migrate::MigrateError,
+        source: Source,
     },
 
-    /// The server cannot be used as it is asked for.
+    /// The server cannot be used in the way that the URL demands.
     #[error("{database}: {reason}")]
     Server {
         /// The database.
         database: Location,
-        /// What is wrong, and what would be right.
+        /// What is wrong, and what to do.
         reason: String,
     },
 
-    /// The server could not be reached to open the database.
+    /// The server could not be reached when the database was opened.
     #[error("{database}: no answer from the server ({reason})")]
     NoAnswer {
         /// The database.
         database: Location,
-        /// What came instead of an answer.
+        /// What happened instead of an answer.
         reason: String,
     },
 
-    /// Somebody else holds a lock longer than the busy timeout.
+    /// Another process holds a lock for longer than the busy timeout.
     #[error(
-        "the database is locked: another program holds a lock on it for longer than anything here takes. Close what \
-         has it open (a database shell, a viewer, a backup); the same command then goes on, and nothing is lost"
+        "the database is locked: another program holds a lock on it for longer than any operation here takes. Close the \
+         program that has it open (a database shell, a viewer, a backup); the same command then continues, and nothing is \
+         lost"
     )]
-    Locked(#[source] sqlx::Error),
+    Locked(#[source] Source),
 
-    /// The server does not answer, or has ended the connection. What was sent last may have been done or not.
+    /// The server does not answer, or it has ended the connection. It is unknown whether the last transaction was committed.
     #[error(
-        "the database server does not answer ({0}); nothing is lost, and the same command goes on when it does"
+        "the database server does not answer ({0}); nothing is lost, and the same command continues when it does"
     )]
     Unreachable(String),
 
-    /// There is no room.
+    /// The disk is full.
     #[error(
-        "the disk of the database is full; what was stored is kept. Make room and start the same command again"
+        "the disk of the database is full; everything stored so far is kept. Make room and start the same command again"
     )]
-    DiskFull(#[source] sqlx::Error),
+    DiskFull(#[source] Source),
 
-    /// The database may be read only.
+    /// The database cannot be written.
     #[error(
-        "the database cannot be written (its file or folder is read-only or somebody else's, or the server does not allow \
-         it to this user: {0}); change that, or copy it and give the copy with --db"
+        "the database cannot be written (its file or folder is read-only or belongs to another user, or the server does not \
+         allow this user to write: {0}); change that, or copy the database and give the copy with --db"
     )]
-    ReadOnly(#[source] sqlx::Error),
+    ReadOnly(#[source] Source),
 
-    /// The file is not what `SQLite` wrote.
+    /// The file is damaged.
     #[error(
         "the database is damaged: {0}. Look at it with `tribosweep doctor`; what can still be read comes out of \
          `sqlite3 FILE .recover`, and a backup is better"
     )]
-    Damaged(#[source] sqlx::Error),
+    Damaged(#[source] Source),
 
-    /// Anything else the database reports.
+    /// Any other error of the database.
     #[error("the database reports: {0}")]
-    Database(#[source] sqlx::Error),
+    Database(#[source] Source),
 }
 
 impl QueueError {
-    /// Whether the same may well succeed a while later.
+    /// Whether the same operation may succeed later.
     pub fn is_transient(&self) -> bool {
         matches!(self, Self::Locked(_) | Self::Unreachable(_) | Self::NoAnswer { .. })
     }
-}
-
-impl From<sqlx::Error> for QueueError {
-    fn from(source: sqlx::Error) -> Self {
-        #[cfg(feature = "postgres")]
-        let source = match super::postgres::error::known(source) {
-            Ok(known) => return known,
-            Err(other) => other,
-        };
-        match sqlite_code(&source) {
-            Some(SQLITE_BUSY | SQLITE_LOCKED) => Self::Locked(source),
-            Some(SQLITE_READONLY) => Self::ReadOnly(source),
-            Some(SQLITE_CORRUPT | SQLITE_NOTADB) => Self::Damaged(source),
-            Some(SQLITE_FULL) => Self::DiskFull(source),
-            Some(SQLITE_IOERR) if extended_code(&source) == Some(SQLITE_IOERR_SHMSIZE) => {
-                Self::DiskFull(source)
-            }
-            _ => Self::Database(source),
-        }
-    }
-}
-
-const SQLITE_BUSY: u32 = 5;
-const SQLITE_LOCKED: u32 = 6;
-const SQLITE_READONLY: u32 = 8;
-const SQLITE_IOERR: u32 = 10;
-/// There is no room for the shared memory, the first thing that whoever opens the database writes.
-const SQLITE_IOERR_SHMSIZE: u32 = SQLITE_IOERR | (19 << 8);
-const SQLITE_CORRUPT: u32 = 11;
-const SQLITE_FULL: u32 = 13;
-/// A file with a wrong header.
-pub(super) const SQLITE_NOTADB: u32 = 26;
-
-/// `SQLite`'s primary result code; the extended one, which sqlx gives, has the details in its upper bits.
-pub(super) fn sqlite_code(error: &sqlx::Error) -> Option<u32> {
-    extended_code(error).map(|extended| extended & 0xff)
-}
-
-fn extended_code(error: &sqlx::Error) -> Option<u32> {
-    error.as_database_error()?.try_downcast_ref::<SqliteError>()?.code()?.parse().ok()
 }
 
 fn existing(known: &[String]) -> String {

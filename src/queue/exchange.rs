@@ -1,35 +1,38 @@
 use std::collections::BTreeMap;
 
-use super::engine::{Access, Connection, query};
+use super::access::Access;
+use super::claim::{self, Claim, ClaimedJob};
+use super::engine::{Connection, query};
+use super::error::QueueError;
+use super::finish::{self, Finished, FinishedOutcome};
+use super::handle::Queue;
 use super::transaction::transact;
-use super::{Claim, ClaimedJob, Finished, FinishedOutcome, Queue, QueueError, claim, finish};
 
-/// What an exchange gave back.
+/// The answer to an exchange.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Exchanged {
-    /// Jobs to run now, claim by claim, each the dearest first.
+    /// The claimed jobs, one list per claim, each in the order of claims: expensive jobs first within a priority.
     pub claimed: Vec<Vec<ClaimedJob>>,
-    /// Keys of finished jobs that were not stored, because this worker does not run the attempt they name.
+    /// Keys of finished jobs whose outcome was refused, because this worker does not run the attempt that they name.
     pub refused: Vec<String>,
 }
 
-const IN_HAND: &str = "SELECT key, attempt FROM jobs WHERE owner = $1 AND state = 'running'";
+const RUNNING: &str = "SELECT key, attempt FROM jobs WHERE owner = $1 AND state = 'running'";
 
 const RECORDED: &str = "
     SELECT COUNT(*) FROM results AS r JOIN jobs AS j ON j.id = r.job_id WHERE j.key = $1 AND r.attempt = $2";
 
 impl Queue {
-    /// Stores all that finished and claims what to run next, in one transaction: a turn of the dispatcher.
+    /// Stores the outcomes of finished attempts and claims the next jobs, in one transaction.
     ///
-    /// One transaction a turn, not one a job, is what makes thousands of jobs a second possible. Nothing
-    /// claimed may start before this returns, and a job released here may be claimed again here: an
-    /// interrupted caller claims nothing.
+    /// One transaction for many jobs makes thousands of jobs per second possible. A claimed job may start only after this
+    /// returns. A job that is released here may be claimed again in the same exchange, so a caller that was interrupted
+    /// must not claim.
     ///
     /// # Errors
-    /// [`QueueError::UnknownStudy`] for a claim's scope, or if the database cannot be written; then
-    /// nothing is stored or claimed, and `finished` is still the caller's to store. After
-    /// [`QueueError::Unreachable`] it may have been done all the same: the next exchange finds out, and is to be given
-    /// the same ends.
+    /// [`QueueError::UnknownStudy`] for a claim's scope, or if the database cannot be written. Then nothing is stored or
+    /// claimed, and the caller must keep `finished` and pass it again. After [`QueueError::Unreachable`] it is unknown
+    /// whether the transaction was committed. The next exchange resolves this if it is given the same outcomes again.
     ///
     /// # Panics
     /// If no worker is registered.
@@ -38,7 +41,7 @@ impl Queue {
         finished: &[Finished],
         claims: &[Claim],
     ) -> Result<Exchanged, QueueError> {
-        let lease_ms = self.lease_ms();
+        let lease_ms = self.settings.lease_ms();
         let registration = self.registration.as_mut().expect("jobs are run by a registered worker");
         let (owner, provenance, held) =
             (registration.id, &registration.worker.provenance, &registration.held);
@@ -46,7 +49,7 @@ impl Queue {
             transact(&mut self.connection, &self.clock, Access::Shared, async |connection, now_ms| {
                 let is_in_doubt = connection.is_in_doubt();
                 if is_in_doubt {
-                    let unknown = unknown(connection, owner, held).await?;
+                    let unknown = claimed_unknowingly(connection, owner, held).await?;
                     finish::store(connection, &unknown, owner, provenance, now_ms).await?;
                 }
                 let mut refused = finish::store(connection, finished, owner, provenance, now_ms).await?;
@@ -61,7 +64,7 @@ impl Queue {
                 Ok(Exchanged { claimed, refused })
             })
             .await?;
-        self.connection.is_settled();
+        self.connection.clear_doubt();
         for job in finished {
             registration.held.remove(&job.key);
         }
@@ -69,21 +72,21 @@ impl Queue {
             registration.held.insert(job.key.clone(), job.attempt);
         }
         let is_counted = |job: &&Finished| job.outcome.is_end() && !exchanged.refused.contains(&job.key);
-        registration.pace.count(finished.iter().filter(is_counted).count());
+        registration.throughput.add(finished.iter().filter(is_counted).count());
         Ok(exchanged)
     }
 }
 
-/// What the worker has in hand by the database and not by its own account: a claim whose answer was lost.
-async fn unknown(
+/// Jobs that the worker owns in the database but does not know of: they are from a claim whose answer was lost.
+async fn claimed_unknowingly(
     connection: &mut Connection,
     owner: i64,
     held: &BTreeMap<String, u32>,
 ) -> Result<Vec<Finished>, QueueError> {
-    let in_hand: Vec<(String, i64)> = query(IN_HAND).bind(owner).all(connection).await?;
+    let running: Vec<(String, i64)> = query(RUNNING).bind(owner).all(connection).await?;
     let is_known =
         |(key, attempt): &(String, i64)| held.get(key).is_some_and(|&own| i64::from(own) == *attempt);
-    let unknown = in_hand.into_iter().filter(|job| !is_known(job));
+    let unknown = running.into_iter().filter(|job| !is_known(job));
     let unstarted = |(key, attempt): (String, i64)| Finished {
         key,
         attempt: attempt as u32,
@@ -93,7 +96,7 @@ async fn unknown(
     Ok(unknown.map(unstarted).collect())
 }
 
-/// Those of `refused` that were not stored before, in an exchange whose answer was lost.
+/// Those of `refused` that were not already stored by an exchange whose answer was lost.
 async fn not_recorded(
     connection: &mut Connection,
     finished: &[Finished],

@@ -2,18 +2,19 @@ use std::collections::HashSet;
 
 use super::bulk::json;
 use super::engine::{Connection, Statement, query};
-use super::{JobState, QueueError};
+use super::error::QueueError;
+use super::state::JobState;
 
-/// The end of one attempt.
+/// A finished attempt.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Finished {
-    /// The job.
+    /// The job's key.
     pub key: String,
-    /// The attempt, as it was claimed.
+    /// The attempt's number, as in the claim.
     pub attempt: u32,
     /// How it ended.
     pub outcome: FinishedOutcome,
-    /// How long it took, in seconds; jobs that run together share their time.
+    /// How long the attempt took, in seconds. Jobs that run together share their time.
     pub wall_s: f64,
 }
 
@@ -22,24 +23,24 @@ pub struct Finished {
 pub enum FinishedOutcome {
     /// With a result.
     Done {
-        /// The result.
+        /// The result, as an opaque text.
         record: String,
-        /// How it ended, in a word by which such jobs are found.
+        /// A word for the kind of result, by which rows can be selected ([`Rows::Done`](super::Rows::Done)).
         label: String,
     },
-    /// Without a result, and the same would happen again.
+    /// Without a result. Another attempt would fail in the same way.
     Failed {
         /// What went wrong.
         error: String,
     },
-    /// Stopped because of an interruption: the job is pending again, with its checkpoint if it has one.
+    /// Interrupted. The job is pending again, with its checkpoint if it has one.
     Released,
-    /// Claimed, but not begun: the job is pending again, as if it had not been claimed.
+    /// Claimed but not started. The job is pending again, and the attempt does not count.
     Unstarted,
 }
 
 impl FinishedOutcome {
-    /// Whether the job has come to its end.
+    /// Whether the job has ended.
     pub(super) fn is_end(&self) -> bool {
         matches!(self, Self::Done { .. } | Self::Failed { .. })
     }
@@ -47,14 +48,14 @@ impl FinishedOutcome {
 
 const RELEASED: &str = "released: the work was interrupted before the job ended";
 
-/// All of a turn's ends in one go, since handing a statement to the database costs more than what it does for one job:
-/// $1 has the results and $5 the ends.
+/// One statement for all outcomes of an exchange, because sending a statement to the database costs more than its work for
+/// one job. $1 contains the results and $5 the outcomes.
 ///
-/// The fence, `state = 'running' AND owner = … AND attempt = …`, is in every statement that speaks for an attempt:
-/// whoever lost the job in the meantime changes nothing.
+/// Every statement on behalf of an attempt has the fence `state = 'running' AND owner = … AND attempt = …`: a worker that
+/// has lost the job changes nothing.
 ///
-/// A key is looked up for each end. `SQLite`: CROSS JOIN, and plus signs that leave only the key to look jobs up by, and so
-/// keep the loops in this order. PostgreSQL: the same by what is added to the other columns.
+/// The database must look up one key per outcome. `SQLite`: CROSS JOIN fixes the order of the loops, and the plus signs
+/// leave only the key's index. PostgreSQL: the expressions on the other columns have the same effect.
 const STORE: Statement = Statement::each(
     "
     INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)
@@ -91,7 +92,7 @@ const STORE: Statement = Statement::each(
     SELECT key FROM ended",
 );
 
-/// Stores the ends of attempts; gives the keys of those that `owner` does not run.
+/// Stores the outcomes of attempts. Returns the keys of those that `owner` does not run.
 pub(super) async fn store(
     connection: &mut Connection,
     finished: &[Finished],
@@ -100,15 +101,15 @@ pub(super) async fn store(
     now_ms: i64,
 ) -> Result<Vec<String>, QueueError> {
     let mut ended: HashSet<String> = HashSet::new();
-    for part in parts(finished, connection.message_bytes().saturating_sub(provenance.len())) {
-        let results: Vec<_> = part.iter().filter_map(result).collect();
-        let ends: Vec<_> = part.iter().map(end).collect();
+    for part in messages(finished, connection.max_message_bytes().saturating_sub(provenance.len())) {
+        let results: Vec<_> = part.iter().filter_map(result_row).collect();
+        let outcomes: Vec<_> = part.iter().map(outcome_row).collect();
         let keys: Vec<String> = query(STORE)
             .bind(json(&results))
             .bind(owner)
             .bind(now_ms)
             .bind(provenance)
-            .bind(json(&ends))
+            .bind(json(&outcomes))
             .scalars(connection)
             .await?;
         ended.extend(keys);
@@ -117,27 +118,28 @@ pub(super) async fn store(
     Ok(keys.filter(|key| !ended.contains(*key)).cloned().collect())
 }
 
-/// Parts that are no longer than `most_bytes` each in the form that they are sent in, or of one end.
-fn parts(mut finished: &[Finished], most_bytes: usize) -> Vec<&[Finished]> {
-    let mut parts = Vec::new();
+/// Splits the attempts into messages that have at most `max_bytes` in the form in which they are sent. An attempt that is
+/// larger than that is a message of its own.
+fn messages(mut finished: &[Finished], max_bytes: usize) -> Vec<&[Finished]> {
+    let mut messages = Vec::new();
     while !finished.is_empty() {
         let mut bytes = 0;
         let fits = |job: &&Finished| {
-            bytes += json(&result(job)).len() + json(&end(job)).len() + 2;
-            bytes <= most_bytes
+            bytes += json(&result_row(job)).len() + json(&outcome_row(job)).len() + 2;
+            bytes <= max_bytes
         };
         let count = finished.iter().take_while(fits).count();
-        let (part, rest) = finished.split_at(count.max(1));
-        parts.push(part);
+        let (message, rest) = finished.split_at(count.max(1));
+        messages.push(message);
         finished = rest;
     }
-    parts
+    messages
 }
 
 /// Key, attempt, record, error and time.
 type ResultRow<'a> = (&'a str, u32, Option<&'a str>, Option<&'a str>, f64);
 
-fn result(job: &Finished) -> Option<ResultRow<'_>> {
+fn result_row(job: &Finished) -> Option<ResultRow<'_>> {
     let (record, error) = match &job.outcome {
         FinishedOutcome::Done { record, .. } => (Some(record.as_str()), None),
         FinishedOutcome::Failed { error } => (None, Some(error.as_str())),
@@ -146,10 +148,10 @@ fn result(job: &Finished) -> Option<ResultRow<'_>> {
     Some((&job.key, job.attempt, record, error, job.wall_s))
 }
 
-/// Key, attempt, state, note, the attempts that do not count, and label.
-type EndRow<'a> = (&'a str, u32, &'static str, Option<&'static str>, u32, Option<&'a str>);
+/// Key, attempt, state, note, the number of attempts that do not count, and label.
+type OutcomeRow<'a> = (&'a str, u32, &'static str, Option<&'static str>, u32, Option<&'a str>);
 
-fn end(job: &Finished) -> EndRow<'_> {
+fn outcome_row(job: &Finished) -> OutcomeRow<'_> {
     let (state, note, undone, label) = match &job.outcome {
         FinishedOutcome::Done { label, .. } => (JobState::Done, None, 0, Some(label.as_str())),
         FinishedOutcome::Failed { .. } => (JobState::Failed, None, 0, None),
@@ -161,13 +163,13 @@ fn end(job: &Finished) -> EndRow<'_> {
 
 #[cfg(test)]
 mod tests {
-    use super::{Finished, FinishedOutcome, STORE, parts};
+    use super::{Finished, FinishedOutcome, STORE, json, messages, outcome_row, result_row};
     use crate::queue::{Clock, Queue};
 
-    /// Protects: what is sent in one message is no longer than it may be, in the form that it is sent in, unless it is a
-    /// single end; and nothing is left out or sent twice.
+    /// Protects: no message is longer than the limit in the form in which it is sent, unless it has a single attempt;
+    /// and no attempt is left out or sent twice.
     #[test]
-    fn parts_are_as_long_as_they_may_be() {
+    fn messages_are_within_the_limit() {
         let done = |index: usize| {
             let outcome = FinishedOutcome::Done {
                 record: "\"".repeat(100 * (index % 7)),
@@ -177,26 +179,26 @@ mod tests {
         };
         let finished: Vec<_> = (0..40).map(done).collect();
         let sent = |part: &[Finished]| {
-            let results: Vec<_> = part.iter().filter_map(super::result).collect();
-            super::json(&results).len() + super::json(&part.iter().map(super::end).collect::<Vec<_>>()).len()
+            let results: Vec<_> = part.iter().filter_map(result_row).collect();
+            json(&results).len() + json(&part.iter().map(outcome_row).collect::<Vec<_>>()).len()
         };
-        for most_bytes in [1, 1000, 3000, usize::MAX] {
-            let parts = parts(&finished, most_bytes);
-            assert_eq!(parts.concat(), finished);
+        for max_bytes in [1, 1000, 3000, usize::MAX] {
+            let messages = messages(&finished, max_bytes);
+            assert_eq!(messages.concat(), finished);
             assert!(
-                parts.iter().all(|part| part.len() == 1 || sent(part) <= most_bytes.saturating_add(2)),
-                "{most_bytes}"
+                messages.iter().all(|part| part.len() == 1 || sent(part) <= max_bytes.saturating_add(2)),
+                "{max_bytes}"
             );
         }
-        assert_eq!(parts(&finished, usize::MAX).len(), 1);
-        assert_eq!(parts(&finished, 1).len(), 40);
-        assert!(parts(&finished, 3000).len() < 20);
-        assert!(parts(&[], 1000).is_empty());
+        assert_eq!(messages(&finished, usize::MAX).len(), 1);
+        assert_eq!(messages(&finished, 1).len(), 40);
+        assert!(messages(&finished, 3000).len() < 20);
+        assert!(messages(&[], 1000).is_empty());
     }
 
-    /// Protects: ends are looked up by their keys, and not every job is looked at for each turn.
+    /// Protects: the jobs of outcomes are looked up by their keys, so that an exchange does not scan all jobs.
     #[tokio::test]
-    async fn ends_look_jobs_up_by_key() {
+    async fn outcomes_look_jobs_up_by_key() {
         let folder = tempfile::TempDir::new().unwrap();
         let mut queue = Queue::open(folder.path().join("db"), Clock::OfDatabase).await.unwrap();
         for statement in STORE.sqlite().split(';') {

@@ -1,10 +1,11 @@
 use super::engine::query;
-use super::{Queue, QueueError};
+use super::error::QueueError;
+use super::handle::Queue;
 
-/// What was dropped.
+/// What garbage collection deleted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Garbage {
-    /// Jobs that no study refers to.
+    /// Jobs that no study referred to.
     pub jobs: u64,
     /// Their results.
     pub results: u64,
@@ -14,12 +15,12 @@ pub struct Garbage {
     pub bytes: u64,
 }
 
-/// A running job is its worker's; it is dropped next time.
+/// A running job belongs to its worker. It is deleted by a later garbage collection.
 const UNREFERENCED: &str = "
     CREATE TEMP TABLE garbage AS
     SELECT id FROM jobs WHERE state <> 'running' AND NOT EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = jobs.id)";
 
-/// One that was taken for dead ($1) may be cut off and come back; after a day it does not.
+/// A worker that was declared dead may only have been disconnected. It is kept for a day (until $1) in case it comes back.
 const WORKERS: &str = "
     DELETE FROM workers
     WHERE ended_ms IS NOT NULL AND (ended_ms = heartbeat_ms OR heartbeat_ms < $1)
@@ -28,7 +29,7 @@ const WORKERS: &str = "
 const DAY_MS: i64 = 24 * 3600 * 1000;
 
 impl Queue {
-    /// Drops jobs that no study refers to, with their results, and gives their space back.
+    /// Deletes jobs that no study refers to, with their results, and frees their space.
     ///
     /// # Errors
     /// If the database cannot be written.

@@ -2,7 +2,9 @@ use std::ffi::OsString;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
-/// Where a database is: a file of `SQLite`'s, or a PostgreSQL server.
+use url::{Url, form_urlencoded};
+
+/// Where a database is: a `SQLite` file or a PostgreSQL server.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Location {
     /// A file.
@@ -11,26 +13,27 @@ pub enum Location {
     Server(Server),
 }
 
-/// A PostgreSQL database by its URL. It may hold a password, which is never shown.
+/// The URL of a PostgreSQL database. It may contain a password, which is never shown.
 #[derive(Clone, PartialEq, Eq)]
 pub struct Server {
     url: String,
 }
 
-/// How the URL of a PostgreSQL database begins, before `://`.
+/// The schemes of PostgreSQL's URLs.
 const SCHEMES: [&str; 2] = ["postgres", "postgresql"];
 
 impl Location {
-    /// What a user wrote: a URL where there is a `://` in it, or else a path.
+    /// Parses what a user wrote: text with `://` is a URL, all else is a path.
     pub fn parse(text: OsString) -> Self {
         match text.to_str() {
-            // Also of an unknown kind: who refuses it must not show its password, and does so when it is opened.
+            // A URL of another kind is refused when it is opened. It must not be taken for a path, because messages show
+            // paths and the URL may contain a password.
             Some(url) if url.contains("://") => Self::Server(Server { url: url.to_owned() }),
             _ => Self::File(text.into()),
         }
     }
 
-    /// The path, where it is a file's.
+    /// The path, if the database is a file.
     pub fn path(&self) -> Option<&Path> {
         match self {
             Self::File(path) => Some(path),
@@ -40,75 +43,80 @@ impl Location {
 }
 
 impl Server {
-    /// The whole URL.
+    /// The URL with its password.
     pub fn url(&self) -> &str {
         &self.url
     }
 
-    /// Whether it is PostgreSQL's.
+    /// Checks that the scheme is PostgreSQL's.
     ///
     /// # Errors
-    /// If it is not, what would be right.
-    pub fn check(&self) -> Result<(), String> {
-        let (scheme, _) = self.parts();
+    /// A text that names the schemes that are possible.
+    pub(crate) fn check_scheme(&self) -> Result<(), String> {
+        let (scheme, _) = self.url.split_once("://").unwrap_or_default();
         if SCHEMES.iter().any(|known| known.eq_ignore_ascii_case(scheme)) {
             return Ok(());
         }
         Err(format!(
-            "no database is known that `{scheme}://` names; expected a path, or postgres://USER@HOST/DATABASE"
+            "`{scheme}://` is not a known database; expected a path, or postgres://USER@HOST/DATABASE"
         ))
     }
 
-    /// Whether the URL holds a password.
+    /// Whether the URL contains a password.
     pub fn has_password(&self) -> bool {
-        let (_, rest) = self.parts();
-        has_password_in_front(rest) || pairs(rest).any(is_password)
+        match Url::parse(&self.url) {
+            Ok(url) => url.password().is_some() || pairs(&url).any(is_password),
+            Err(_) => is_guarded(&self.url) || self.url.to_ascii_lowercase().contains("password="),
+        }
     }
 
-    /// The URL without the password.
+    /// The URL without passwords.
     pub fn without_password(&self) -> String {
-        let (scheme, rest) = self.parts();
-        let mut shown = rest.to_owned();
-        if has_password_in_front(rest)
-            && let (Some((user, _)), Some((_, host))) = (rest.split_once(':'), rest.rsplit_once('@'))
-        {
-            shown = format!("{user}@{host}");
+        match Url::parse(&self.url) {
+            Ok(url) if self.has_password() => strip_passwords(url).into(),
+            Ok(_) => self.url.clone(),
+            Err(_) => strip_unparsable(&self.url),
         }
-        if pairs(&shown).any(is_password) {
-            let others: Vec<&str> = pairs(&shown).filter(|pair| !is_password(pair)).collect();
-            let front = shown.split('?').next().unwrap_or_default();
-            let mark = if others.is_empty() { "" } else { "?" };
-            shown = format!("{front}{mark}{}", others.join("&"));
-        }
-        format!("{scheme}://{shown}")
-    }
-
-    /// The scheme, and what follows `://`.
-    fn parts(&self) -> (&str, &str) {
-        self.url.split_once("://").unwrap_or_default()
     }
 }
 
-/// The settings behind the question mark.
-fn pairs(rest: &str) -> impl Iterator<Item = &str> {
-    rest.split_once('?').map_or("", |(_, query)| query).split('&').filter(|pair| !pair.is_empty())
+/// The settings after the question mark, encoded as they are.
+fn pairs(url: &Url) -> impl Iterator<Item = &str> {
+    url.query().unwrap_or_default().split('&')
 }
 
 fn is_password(pair: &str) -> bool {
-    pair.to_ascii_lowercase().starts_with("password=")
+    form_urlencoded::parse(pair.as_bytes()).any(|(name, _)| name.eq_ignore_ascii_case("password"))
 }
 
-/// Whether there is one before the host: `user:password@host`.
-fn has_password_in_front(rest: &str) -> bool {
-    let authority = rest.split(['/', '?', '#']).next().unwrap_or(rest);
-    // One that was not encoded may hold these characters, too; what is all digits then is a port.
-    let is_port = |text: &str| {
-        text.split(['/', '?', '#']).next().is_some_and(|it| it.bytes().all(|c| c.is_ascii_digit()))
-    };
-    authority.rsplit_once('@').is_some_and(|(user, _)| user.contains(':'))
-        || rest
-            .rsplit_once('@')
-            .is_some_and(|(before, _)| before.split_once(':').is_some_and(|(_, after)| !is_port(after)))
+fn strip_passwords(mut url: Url) -> Url {
+    // This fails for a URL without a host only, which has no password here either.
+    let _ = url.set_password(None);
+    let others: Vec<&str> = pairs(&url).filter(|pair| !is_password(pair)).collect();
+    let others = others.join("&");
+    url.set_query((!others.is_empty()).then_some(others.as_str()));
+    // The rest of a password with an unencoded `#`.
+    url.set_fragment(None);
+    url
+}
+
+/// As [`strip_passwords`], for text that is not a valid URL, for instance because its password has unencoded characters.
+/// Everything between the first `:` and the last `@` may belong to the password, and so may all settings.
+fn strip_unparsable(text: &str) -> String {
+    let Some((scheme, rest)) = text.split_once("://") else { return String::new() };
+    if is_guarded(text)
+        && let (Some((user, _)), Some((_, host))) = (rest.split_once(':'), rest.rsplit_once('@'))
+    {
+        let host = host.split('?').next().unwrap_or_default();
+        return format!("{scheme}://{user}@{host}");
+    }
+    format!("{scheme}://{}", rest.split('?').next().unwrap_or_default())
+}
+
+/// Whether text that is not a valid URL has a `:` before an `@`.
+fn is_guarded(text: &str) -> bool {
+    let rest = text.split_once("://").map_or(text, |(_, rest)| rest);
+    rest.rsplit_once('@').is_some_and(|(user, _)| user.contains(':'))
 }
 
 impl fmt::Display for Location {
@@ -153,13 +161,13 @@ mod tests {
     fn servers_and_files_are_told_apart() {
         for url in ["postgres://ada@db/sweeps", "postgresql://db", "POSTGRES://db"] {
             let Location::Server(server) = Location::parse(url.into()) else { panic!("{url}") };
-            assert_eq!(server.check(), Ok(()));
+            assert_eq!(server.check_scheme(), Ok(()));
         }
         for path in ["tribosweep.db", "/data/postgres/x.db", "postgres:x"] {
             assert_eq!(Location::parse(path.into()), Location::File(path.into()));
         }
         let Location::Server(server) = Location::parse("mysql://ada:secret@db/x".into()) else { panic!() };
-        let error = server.check().unwrap_err();
+        let error = server.check_scheme().unwrap_err();
         assert!(error.contains("mysql://") && error.contains("postgres://"), "{error}");
         assert!(!error.contains("secret"), "{error}");
     }

@@ -1,5 +1,5 @@
-//! Jobs in a database: a file of `SQLite`'s, or PostgreSQL. Payloads, parameters and records are opaque strings;
-//! nothing here knows mechanics.
+//! A queue of jobs in a `SQLite` file or in a PostgreSQL database. Payloads, parameters and records are opaque strings:
+//! nothing here depends on what the jobs compute.
 //!
 //! ```text
 //!            submit            exchange: claim             exchange: finish
@@ -13,29 +13,34 @@
 //!         Released and Unstarted (interruption), take_back (the process died; too often: failed)
 //! ```
 //!
-//! * A **job** is identified by its key. Submitting a key that is there already adds nothing, so studies share
-//!   jobs and a repeated submission costs no simulation.
-//! * A **study** is identified by its name. It is a document and an ordered list of rows, each a set of
-//!   parameters that points to a job; two rows may point to the same one.
-//! * A **worker** is a process that runs jobs; there may be several. What it claims is its own, until it ends or is
-//!   gone (`take_back` says when that is).
-//! * An **attempt** is one start of a job. Finishing names the attempt and counts only if the same worker is still
-//!   running that very attempt: whoever lost a job cannot overwrite what came after.
-//! * Jobs of one **batch** can be run together; a claim takes jobs of one batch only.
+//! * A **job** is identified by its key. Submitting a key that already exists adds no job. Studies therefore share jobs,
+//!   and a repeated submission costs no simulation.
+//! * A **study** is identified by its name. It is a document and an ordered list of rows. Each row is a set of
+//!   parameters and points to a job; two rows may point to the same job.
+//! * A **worker** is a process that runs jobs; there may be several. A worker owns the jobs that it has claimed until it
+//!   finishes them or is gone (`take_back` defines when a worker is gone).
+//! * An **attempt** is one start of a job. A finish names its attempt, and it counts only if the same worker is still
+//!   running that attempt. A worker that lost a job therefore cannot overwrite later results.
+//! * Jobs of one **batch** can be run together. A claim takes jobs of one batch only.
 //!
 //! # Rules
-//! * What is done is written once, for both databases; `engine` has what is different between them, and a statement that
-//!   they do not have in common comes in two dialects, side by side.
-//! * Whatever is written is written in a transaction that begins with its lock: alone, or beside others that change
-//!   only what their own worker has in hand or what nobody has (`engine::Access`). On `SQLite` all are alone, and a
-//!   transaction that begins by reading cannot be promoted while another writes: it fails at once with "database is
-//!   locked", whatever the busy timeout. On PostgreSQL those that are not alone never wait for each other.
-//! * Inside a transaction nothing but the database is awaited, and no future of this module is to be dropped
-//!   half-way (no `select!`, no timeout around it): the lock it holds stops every other process.
-//! * Reads are single statements. A transaction held open by a reader keeps the write-ahead log from being
-//!   folded back into the database, and old rows from being cleared away.
+//! * Each operation is written once, for both databases. `engine` contains the differences between them; a statement that
+//!   the databases do not share is written in two dialects, side by side.
+//! * Every write happens in a transaction that takes its lock at the start. The lock is exclusive, or it is shared with
+//!   transactions that change only their own worker's jobs or claim jobs that nobody has (`Access`). On `SQLite` every
+//!   lock is exclusive. `SQLite` cannot promote a transaction that began by reading while another one writes: it fails at
+//!   once with "database is locked", whatever the busy timeout is. On PostgreSQL, transactions with shared locks never
+//!   wait for each other.
+//! * A transaction awaits nothing but the database. Never drop a future of this module before it is ready (no `select!`,
+//!   no timeout around it): the transaction would keep its lock and block every other process.
+//! * Reads are single statements. A reader that holds a transaction open prevents checkpoints of the write-ahead log and
+//!   the removal of old row versions.
+//!
+//! [`Queue`] is defined in `handle`. Each operation adds its methods in its own file. No two files use each other, so this
+//! file only declares and re-exports.
 
 mod absorb;
+mod access;
 mod bulk;
 mod cancel;
 mod checkpoint;
@@ -47,18 +52,21 @@ mod doctor;
 mod engine;
 mod error;
 mod exchange;
+mod finding;
 mod finish;
 mod garbage;
+mod handle;
 mod heartbeat;
 mod location;
-mod made;
+mod lookup;
 mod open;
 mod open_jobs;
 mod owner;
-mod pace;
 #[cfg(feature = "postgres")]
 mod postgres;
 mod process;
+mod provenance;
+mod register;
 mod remaining;
 mod remove;
 mod retry;
@@ -71,6 +79,7 @@ mod state;
 mod studies;
 mod submit;
 mod take_back;
+mod throughput;
 mod timings;
 mod transaction;
 mod worker;
@@ -82,14 +91,16 @@ pub use claim::{Claim, ClaimedJob};
 pub use clock::Clock;
 pub use counts::Counts;
 pub use details::JobDetails;
-pub use doctor::{Finding, examine};
+pub use doctor::examine;
 pub use error::QueueError;
 pub use exchange::Exchanged;
+pub use finding::Finding;
 pub use finish::{Finished, FinishedOutcome};
 pub use garbage::Garbage;
+pub use handle::Queue;
 pub use location::{Location, Server};
-pub use made::MadeWith;
 pub use open_jobs::OpenJobs;
+pub use provenance::ProvenanceGroup;
 pub use remove::Removed;
 pub use retry::{Retried, Retry};
 pub use rows::{Rows, StudyRow};
@@ -100,39 +111,4 @@ pub use studies::{StudyDocument, StudySummary};
 pub use submit::{NewJob, NewStudy, Shard, Submitted};
 pub use take_back::TakenBack;
 pub use worker::Worker;
-pub use workers::{Alive, WorkerPresence, WorkerStatus};
-
-use engine::Connection;
-
-/// One connection to the database of studies and jobs.
-#[derive(Debug)]
-pub struct Queue {
-    connection: Connection,
-    clock: Clock,
-    location: Location,
-    settings: Settings,
-    /// The worker that owns what is claimed here.
-    registration: Option<worker::Registration>,
-}
-
-impl Queue {
-    /// Where the database is.
-    pub fn location(&self) -> &Location {
-        &self.location
-    }
-
-    /// What it was opened with.
-    pub fn settings(&self) -> Settings {
-        self.settings
-    }
-
-    /// Closes the connection and waits for it, so that the last one out folds the write-ahead log back in.
-    ///
-    /// Dropping the queue loses nothing, but may leave the log's files beside the database.
-    ///
-    /// # Errors
-    /// If the database cannot be closed, e.g. on a full disk.
-    pub async fn close(self) -> Result<(), QueueError> {
-        self.connection.close().await
-    }
-}
+pub use workers::{ActiveWorkers, WorkerPresence, WorkerStatus};

@@ -1,12 +1,20 @@
+use super::clock::Clock;
 use super::engine::Connection;
-use super::{Clock, Location, Queue, QueueError, Settings, sqlite};
+use super::error::QueueError;
+use super::handle::Queue;
+use super::location::Location;
+#[cfg(feature = "postgres")]
+use super::postgres;
+use super::settings::Settings;
+use super::sqlite;
 
 impl Queue {
-    /// Opens the database at `location`; creates its tables, and a file but not its folder, if they are missing.
+    /// Opens the database at `location`. Creates its tables, and its file but not the folder, if they are missing.
     ///
     /// # Errors
-    /// If the folder is missing, the path holds something else or a newer schema, or the file system or
-    /// the `SQLite` library cannot be trusted with several writers. If the server does not answer or let us in.
+    /// For a file: if the folder is missing, if the path contains something else or a newer schema, or if the file system
+    /// or the `SQLite` library is not safe with several writers. For a server: if it does not answer or refuses the
+    /// connection.
     pub async fn open(location: impl Into<Location>, clock: Clock) -> Result<Self, QueueError> {
         Self::open_with(location, clock, Settings::default()).await
     }
@@ -26,12 +34,12 @@ impl Queue {
             Location::File(path) => Connection::Sqlite(sqlite::open(path, settings).await?),
             #[cfg(feature = "postgres")]
             Location::Server(server) => {
-                Connection::Postgres(Box::new(super::postgres::open(server, settings).await?))
+                Connection::Postgres(Box::new(postgres::open(server, settings).await?))
             }
             #[cfg(not(feature = "postgres"))]
             Location::Server(_) => return Err(no_postgres(location)),
         };
-        Ok(Self::of(connection, location, clock, settings))
+        Ok(Self::new(connection, location, clock, settings))
     }
 
     /// Opens the database at `location`, which must exist.
@@ -49,37 +57,34 @@ impl Queue {
             Location::File(path) if !path.exists() => Err(QueueError::NoDatabase { database: location }),
             #[cfg(feature = "postgres")]
             Location::Server(server) => {
-                let session = super::postgres::open_existing(server, settings).await?;
-                Ok(Self::of(Connection::Postgres(Box::new(session)), location, clock, settings))
+                let session = postgres::open_existing(server, settings).await?;
+                Ok(Self::new(Connection::Postgres(Box::new(session)), location, clock, settings))
             }
             _ => Self::open_with(location, clock, settings).await,
         }
     }
 
-    /// Opens the database at `location`, which must exist, for what only reads: also where nothing can be written.
+    /// Opens the database at `location`, which must exist, for reading. A file may be read-only.
     ///
     /// # Errors
-    /// As [`Queue::open_existing`]; where nothing can be written, also if that would be needed to read.
+    /// As [`Queue::open_existing`]. Also if a read-only file cannot be read because it would have to be migrated, or
+    /// because its write-ahead log would have to be merged.
     pub async fn open_to_read(location: impl Into<Location>, clock: Clock) -> Result<Self, QueueError> {
         let location = location.into();
         let settings = Settings::default();
         match &location {
             Location::File(path) if path.exists() => {
                 let connection = Connection::Sqlite(sqlite::open_to_read(path, settings).await?);
-                Ok(Self::of(connection, location, clock, settings))
+                Ok(Self::new(connection, location, clock, settings))
             }
             _ => Self::open_existing(location, clock, settings).await,
         }
-    }
-
-    fn of(connection: Connection, location: Location, clock: Clock, settings: Settings) -> Self {
-        Self { connection, clock, location, settings, registration: None }
     }
 }
 
 fn check(location: &Location) -> Result<(), QueueError> {
     let Location::Server(server) = location else { return Ok(()) };
-    server.check().map_err(|reason| QueueError::Server { database: location.clone(), reason })
+    server.check_scheme().map_err(|reason| QueueError::Server { database: location.clone(), reason })
 }
 
 #[cfg(not(feature = "postgres"))]

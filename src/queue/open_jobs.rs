@@ -1,11 +1,13 @@
 use super::engine::query;
-use super::{Queue, QueueError, Scope};
+use super::error::QueueError;
+use super::handle::Queue;
+use super::scope::Scope;
 
 const ALL: &str = "
     SELECT (SELECT COUNT(*) FROM (SELECT 1 FROM jobs WHERE state = 'pending' LIMIT 1) AS p),
            (SELECT COUNT(*) FROM (SELECT 1 FROM jobs WHERE state = 'running' LIMIT 1) AS r)";
 
-/// With what is added, a running job is asked for its studies, and not a study for all of its jobs.
+/// `study_id + 0` makes PostgreSQL look up the studies of each running job instead of all jobs of the study.
 const OF_STUDY: &str = "
     SELECT (SELECT COUNT(*) FROM (SELECT 1 FROM study_pending WHERE study_id = $1 LIMIT 1) AS p),
            (SELECT COUNT(*) FROM (
@@ -14,18 +16,18 @@ const OF_STUDY: &str = "
                   AND EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id + 0 = $1)
                 LIMIT 1) AS r)";
 
-/// Whether there is anything left to do.
+/// Whether there are unfinished jobs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct OpenJobs {
-    /// There are jobs that wait to be claimed.
+    /// Whether jobs wait to be claimed.
     pub has_pending: bool,
-    /// There are jobs that run somewhere.
+    /// Whether jobs run on some worker.
     pub has_running: bool,
 }
 
 impl Queue {
-    /// Whether jobs of `scope` are left: for those who wait, and ask so often that counting would keep the database
-    /// busy.
+    /// Whether `scope` has pending and running jobs. Workers that wait for jobs call this often, so it does not count them,
+    /// which would keep the database busy.
     ///
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.

@@ -1,10 +1,11 @@
-//! A worker as the database knows it, and what can be known of its process from here.
+//! A worker as the database knows it, and whether its process is alive as far as this process can see.
 
 use super::engine::{Statement, query};
+use super::error::QueueError;
+use super::handle::Queue;
 use super::process::{self, Presence};
-use super::{Queue, QueueError};
 
-/// A worker that has not ended in order, or owns jobs all the same.
+/// A worker that has not ended in order, or that still owns running jobs.
 #[derive(Debug)]
 pub(super) struct Owner {
     pub id: i64,
@@ -19,21 +20,21 @@ pub(super) struct Owner {
     stopping_ms: Option<i64>,
     ended_ms: Option<i64>,
     lease_ms: i64,
-    /// Whether the database is on a server: machines that know nothing of each other may have the same name.
+    /// Whether the database is on a server. Then two machines may have the same name.
     is_on_server: bool,
 }
 
-/// What is known of an owner.
+/// Whether an owner's process is alive.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Verdict {
+pub(super) enum Liveness {
     Alive,
     Gone,
-    /// Its signs of life and its leases decide.
-    Elsewhere,
+    /// The process is not visible from here: its heartbeats and its leases decide.
+    Unknown,
 }
 
-/// No clock that anybody works with is wrong by more.
-const FAR_AHEAD_MS: i64 = 24 * 3600 * 1000;
+/// No clock in use is wrong by more than this.
+const MAX_CLOCK_ERROR_MS: i64 = 24 * 3600 * 1000;
 
 const OWNERS: Statement = Statement::each(
     "
@@ -66,7 +67,7 @@ type Columns = (
 );
 
 impl Queue {
-    /// All who may own running jobs.
+    /// All workers that may own running jobs.
     pub(super) async fn owners(&mut self) -> Result<Vec<Owner>, QueueError> {
         let owners: Vec<Columns> = query(OWNERS).all(&mut self.connection).await?;
         let is_on_server = self.location.path().is_none();
@@ -96,19 +97,19 @@ impl Owner {
         }
     }
 
-    /// Leases that end later are wrong: they were written by a clock that had jumped, and would never end.
-    pub fn far_ms(&self, now_ms: i64) -> i64 {
-        now_ms.saturating_add(self.lease_ms).saturating_add(FAR_AHEAD_MS)
+    /// A lease that ends after this time is wrong: a clock that had jumped wrote it, and it would hardly ever end.
+    pub fn latest_plausible_ms(&self, now_ms: i64) -> i64 {
+        now_ms.saturating_add(self.lease_ms).saturating_add(MAX_CLOCK_ERROR_MS)
     }
 
-    /// Whether it has ended, or has given no sign of life for as long as its own lease.
+    /// Whether it has ended, or has sent no heartbeat for as long as its own lease.
     pub fn is_silent(&self, now_ms: i64) -> bool {
         let until_ms = self.heartbeat_ms.saturating_add(self.lease_ms);
-        self.ended_ms.is_some() || until_ms <= now_ms || until_ms > self.far_ms(now_ms)
+        self.ended_ms.is_some() || until_ms <= now_ms || until_ms > self.latest_plausible_ms(now_ms)
     }
 
-    /// Whether signs of life are missing, of those that come eight times in a lease.
-    pub fn is_missed(&self, now_ms: i64) -> bool {
+    /// Whether two heartbeats are overdue. Heartbeats are sent eight times in a lease.
+    pub fn has_missed_heartbeats(&self, now_ms: i64) -> bool {
         self.is_silent(now_ms) || self.heartbeat_ms.saturating_add(self.lease_ms / 4) <= now_ms
     }
 
@@ -117,23 +118,23 @@ impl Owner {
         self.stopping_ms.is_some()
     }
 
-    pub fn verdict(&self) -> Verdict {
+    pub fn liveness(&self) -> Liveness {
         let here = (process::host(), process::boot_id(), process::pid_namespace());
         let (Some(start), true) = (self.process_start, self.boot_id.is_some() && self.host == here.0) else {
-            return Verdict::Elsewhere;
+            return Liveness::Unknown;
         };
         if self.boot_id != here.1 {
-            return if self.is_on_server { Verdict::Elsewhere } else { Verdict::Gone };
+            return if self.is_on_server { Liveness::Unknown } else { Liveness::Gone };
         }
         if self.pid_namespace != here.2 {
-            return Verdict::Elsewhere;
+            return Liveness::Unknown;
         }
         match process::presence(self.pid, start) {
-            // Whoever has ended in order has nothing in hand any more.
-            Presence::Alive if self.ended_ms.is_some() => Verdict::Gone,
-            Presence::Alive => Verdict::Alive,
-            Presence::Gone => Verdict::Gone,
-            Presence::Unknown => Verdict::Elsewhere,
+            // The process is alive, but its work has ended: it holds no jobs any more.
+            Presence::Alive if self.ended_ms.is_some() => Liveness::Gone,
+            Presence::Alive => Liveness::Alive,
+            Presence::Gone => Liveness::Gone,
+            Presence::Unknown => Liveness::Unknown,
         }
     }
 }

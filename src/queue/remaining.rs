@@ -1,7 +1,10 @@
-//! What is left to do, by cost: jobs differ in it by orders of magnitude, so their number says nothing of the time.
+//! The cost of the jobs that are left. The costs of jobs differ by orders of magnitude, so their number is no measure of the
+//! time.
 
 use super::engine::{Statement, query};
-use super::{Queue, QueueError, Scope};
+use super::error::QueueError;
+use super::handle::Queue;
+use super::scope::Scope;
 
 const REMAINING: &str = "SELECT COALESCE(SUM(cost), 0.0) FROM jobs WHERE state IN ('pending', 'running')";
 
@@ -19,7 +22,7 @@ const REMAINING_OF_STUDY: Statement = Statement::each(
 );
 
 impl Queue {
-    /// The cost of all jobs of `scope` that are pending or running.
+    /// The sum of the costs of all jobs of `scope` that are pending or running.
     ///
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.

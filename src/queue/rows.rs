@@ -1,12 +1,15 @@
 use std::ops::ControlFlow;
 
 use super::engine::{Statement, query};
-use super::{JobState, Queue, QueueError, studies};
+use super::error::QueueError;
+use super::handle::Queue;
+use super::lookup;
+use super::state::JobState;
 
-/// One row of a study with what reports show of its job; [`Queue::jobs`] knows more of a single one.
+/// One row of a study with the data of its job that reports need. [`Queue::jobs`] returns more about a single job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct StudyRow {
-    /// Place in the study, from 0.
+    /// The row's number in the study, from 0.
     pub ordinal: u64,
     /// The job's key; several rows may share it.
     pub key: String,
@@ -14,7 +17,7 @@ pub struct StudyRow {
     pub parameters: String,
     /// The job's state.
     pub state: JobState,
-    /// What the job found, if it is done.
+    /// The job's result, if it is done.
     pub record: Option<String>,
     /// Why the job failed, if it did.
     pub error: Option<String>,
@@ -22,18 +25,19 @@ pub struct StudyRow {
     pub wall_s: Option<f64>,
     /// How many times the job was started.
     pub attempt: u32,
-    /// How many of its processes died in a row.
+    /// How many of its processes died in succession, without a checkpoint in between.
     pub crashes: u32,
     /// Why the job last went back to pending, if it ever did.
     pub note: Option<String>,
 }
 
-/// A job that is to be tried again has results of earlier attempts, which say nothing of this one.
+/// The result of the job's last attempt. A job that is pending again may have results of earlier attempts, which do not
+/// count.
 ///
-/// All that is short comes in one column: every value that is handed on costs more than what is in it. (Not the time:
-/// JSON has it to 15 digits.)
+/// The short values are one column in JSON, because reading a column costs more than the value in it. (Except the time:
+/// in JSON it would have 15 digits only.)
 ///
-/// Without $4, all rows; with it, those whose jobs are in that state, and with $5 those of them with that label.
+/// If $4 is not null, only rows whose jobs are in that state; if $5 is not null, only those whose jobs have that label.
 const ROWS: Statement = Statement::each(
     "
     SELECT json_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note), m.parameters, r.record, r.wall_s
@@ -59,8 +63,8 @@ const ROWS: Statement = Statement::each(
 const PARAMETERS: &str = "
     SELECT ordinal, parameters FROM study_jobs WHERE study_id = $1 AND ordinal >= $2 ORDER BY ordinal LIMIT $3";
 
-/// Rows that are read at a time: a reader that takes all at once keeps the write-ahead log from being folded back
-/// meanwhile, and needs the memory for all.
+/// Rows that are read at a time. Reading all rows at once would prevent checkpoints of the write-ahead log meanwhile, and
+/// would need memory for all of them.
 const PAGE: i64 = 1_000;
 
 /// Which rows of a study.
@@ -68,9 +72,9 @@ const PAGE: i64 = 1_000;
 pub enum Rows<'a> {
     /// All of them.
     All,
-    /// Those whose jobs have failed.
+    /// Rows whose jobs have failed.
     Failed,
-    /// Those whose jobs are done with this label.
+    /// Rows whose jobs are done with this label.
     Done(&'a str),
 }
 
@@ -89,10 +93,9 @@ impl Queue {
         Ok(rows)
     }
 
-    /// Shows rows of a study to `look`, in the order of its document, some at a time: for those who do not need them all
-    /// at once. It may say that it has seen enough.
+    /// Calls `visit` with the rows of a study, page by page, in the order of its document. `visit` can stop the reading.
     ///
-    /// What changes meanwhile is seen in later rows and not in earlier ones.
+    /// A change that is made meanwhile is visible in later pages only.
     ///
     /// # Errors
     /// As [`Queue::rows`].
@@ -100,9 +103,9 @@ impl Queue {
         &mut self,
         study: &str,
         which: Rows<'_>,
-        mut look: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
+        mut visit: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
     ) -> Result<(), QueueError> {
-        let study_id = studies::require(&mut self.connection, study).await?;
+        let study_id = lookup::require(&mut self.connection, study).await?;
         let (state, label) = match which {
             Rows::All => (None, None),
             Rows::Failed => (Some(JobState::Failed), None),
@@ -116,23 +119,23 @@ impl Queue {
             let page = page.into_iter().map(StudyRow::from_columns).collect::<Result<Vec<_>, _>>()?;
             let Some(last) = page.last() else { return Ok(()) };
             next = last.ordinal.cast_signed() + 1;
-            if look(page).is_break() {
+            if visit(page).is_break() {
                 return Ok(());
             }
         }
     }
 
-    /// Shows the parameters of a study's rows to `look`, in the order of its document: without what their jobs have
-    /// found, which is most of what rows are.
+    /// Calls `visit` with the parameters of each row of a study, in the order of its document. It does not read the records,
+    /// which are most of the data of rows.
     ///
     /// # Errors
     /// As [`Queue::rows`].
     pub async fn each_parameters(
         &mut self,
         study: &str,
-        mut look: impl FnMut(&str),
+        mut visit: impl FnMut(&str),
     ) -> Result<(), QueueError> {
-        let study_id = studies::require(&mut self.connection, study).await?;
+        let study_id = lookup::require(&mut self.connection, study).await?;
         let mut next = 0_i64;
         loop {
             let page = query(PARAMETERS).bind(study_id).bind(next).bind(PAGE);
@@ -140,20 +143,20 @@ impl Queue {
             let Some((last, _)) = page.last() else { return Ok(()) };
             next = last + 1;
             for (_, parameters) in &page {
-                look(parameters);
+                visit(parameters);
             }
         }
     }
 }
 
-/// The short ones, parameters, record and time.
+/// The short values, parameters, record and time.
 type Columns = (String, String, Option<String>, Option<f64>);
 
 impl StudyRow {
     fn from_columns((short, parameters, record, wall_s): Columns) -> Result<Self, QueueError> {
         type Short = (u64, String, String, Option<String>, u32, u32, Option<String>);
         let (ordinal, key, state, error, attempt, crashes, note): Short =
-            serde_json::from_str(&short).map_err(|error| sqlx::Error::Decode(error.into()))?;
+            serde_json::from_str(&short).map_err(|error| QueueError::Database(error.into()))?;
         let state = JobState::from_column(&state);
         Ok(Self { ordinal, key, parameters, state, record, error, wall_s, attempt, crashes, note })
     }

@@ -1,7 +1,8 @@
 use super::engine::Connection;
-use super::{QueueError, studies};
+use super::error::QueueError;
+use super::lookup;
 
-/// Which jobs an operation is about.
+/// The jobs that an operation is about.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Scope {
     /// All jobs in the database.
@@ -11,11 +12,11 @@ pub enum Scope {
 }
 
 impl Scope {
-    /// The study's number, for statements that take none as "all".
+    /// The study's number, or `None` for all jobs.
     pub(super) async fn study_id(&self, connection: &mut Connection) -> Result<Option<i64>, QueueError> {
         match self {
             Self::All => Ok(None),
-            Self::Study(name) => studies::require(connection, name).await.map(Some),
+            Self::Study(name) => lookup::require(connection, name).await.map(Some),
         }
     }
 }

@@ -1,20 +1,20 @@
-/// Where a job is in its life.
+/// The state of a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum JobState {
-    /// Waits to be claimed.
+    /// The job waits to be claimed.
     Pending,
-    /// Claimed by a process, and running there unless that process died.
+    /// A worker has claimed the job. It is running, unless the worker's process has died.
     Running,
-    /// Ended with a record.
+    /// The job ended with a record.
     Done,
-    /// Ended with an error.
+    /// The job ended with an error.
     Failed,
-    /// Not wanted any more by any study.
+    /// No study requests the job any more.
     Cancelled,
 }
 
 impl JobState {
-    /// The name used in the database and in output.
+    /// The name in the database and in output.
     pub fn as_str(self) -> &'static str {
         match self {
             Self::Pending => "pending",
@@ -32,7 +32,7 @@ impl JobState {
             "done" => Self::Done,
             "failed" => Self::Failed,
             "cancelled" => Self::Cancelled,
-            other => unreachable!("the table's CHECK admits no state `{other}`"),
+            other => unreachable!("the table's CHECK constraint excludes the state `{other}`"),
         }
     }
 }

@@ -1,7 +1,9 @@
-use super::engine::{Connection, query};
-use super::{Counts, Queue, QueueError, counts};
+use super::counts::{self, Counts};
+use super::engine::query;
+use super::error::QueueError;
+use super::handle::Queue;
 
-/// A study in a list.
+/// A study in the list of all studies.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct StudySummary {
     /// Its name.
@@ -51,19 +53,4 @@ impl Queue {
                 .await?;
         Ok(found.map(|(name, document, submitted_ms)| StudyDocument { name, document, submitted_ms }))
     }
-}
-
-/// The study's number in the tables.
-pub(super) async fn find(connection: &mut Connection, name: &str) -> Result<Option<i64>, QueueError> {
-    let id = query("SELECT id FROM studies WHERE name = $1").bind(name);
-    Ok(id.optional(connection).await?.map(|(id,)| id))
-}
-
-/// As [`find`], but a missing study is an error that names those there are.
-pub(super) async fn require(connection: &mut Connection, name: &str) -> Result<i64, QueueError> {
-    if let Some(id) = find(connection, name).await? {
-        return Ok(id);
-    }
-    let known = query("SELECT name FROM studies ORDER BY id").scalars(connection).await?;
-    Err(QueueError::UnknownStudy { name: name.into(), known })
 }

@@ -1,17 +1,20 @@
 use std::collections::HashSet;
 
 use super::bulk::json;
+use super::counts;
 use super::engine::{Connection, Statement, query};
-use super::{Queue, QueueError, counts, studies};
+use super::error::QueueError;
+use super::handle::Queue;
+use super::lookup;
 
 /// A study to be submitted.
 #[derive(Debug, Clone, PartialEq)]
 pub struct NewStudy {
     /// Identifies the study.
     pub name: String,
-    /// The study as its author wrote it, kept for reference.
+    /// The study as its author wrote it. It is stored for reference.
     pub document: String,
-    /// Its rows, in order. A key may repeat.
+    /// Its rows, in order. Several rows may have the same key.
     pub jobs: Vec<NewJob>,
 }
 
@@ -22,23 +25,23 @@ pub struct NewJob {
     pub key: String,
     /// What the executor needs to run the job.
     pub payload: String,
-    /// What distinguishes this row in its study.
+    /// What distinguishes this row from the others of its study.
     pub parameters: String,
-    /// Expected effort, in any unit; dearer jobs are claimed first.
+    /// The expected effort, in any unit. It must be finite. Expensive jobs are claimed first.
     pub cost: f64,
-    /// Names what the job can be run together with; may be empty.
+    /// Jobs of the same batch can be run together. The name may be empty.
     pub batch: String,
-    /// Jobs of a higher priority are claimed first, whatever they cost. `None` leaves a known job's as it is; that of
-    /// a new one is 0.
+    /// Jobs with a higher priority are claimed first, whatever they cost. With `None`, an existing job keeps its priority,
+    /// and a new job has priority 0.
     pub priority: Option<i64>,
 }
 
-/// Every so-manieth row of a study, for databases that share it.
+/// A part of a study's rows, for several databases that divide a study: the rows whose number modulo `of` is `index`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Shard {
-    /// Which one, from 0.
+    /// The number of this shard, from 0.
     pub index: u64,
-    /// Of how many.
+    /// The number of shards.
     pub of: u64,
 }
 
@@ -54,27 +57,27 @@ impl Shard {
 /// What a submission changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Submitted {
-    /// Whether a study of that name was there and was replaced.
+    /// Whether a study of that name existed and was replaced.
     pub replaced: bool,
     /// Rows of the study.
     pub rows: u64,
-    /// Different jobs they point to.
+    /// Different jobs that the rows point to.
     pub jobs: u64,
-    /// Jobs that are new in the database.
+    /// Jobs that did not exist in the database.
     pub added: u64,
-    /// Jobs that were there, in whatever state.
+    /// Jobs that existed, in any state.
     pub already_known: u64,
-    /// Jobs that were there and are done.
+    /// Jobs that existed and are done.
     pub already_done: u64,
-    /// Jobs that were there and have failed.
+    /// Jobs that existed and have failed.
     pub already_failed: u64,
-    /// Pending jobs of the replaced study that nobody asks for any more, which are cancelled.
+    /// Pending jobs of the replaced study that became cancelled because no study requests them any more.
     pub cancelled: u64,
 }
 
-/// Rows bound as one JSON text insert twice as fast as row by row; the text of a million jobs would pass
-/// `SQLite`'s limit of 10⁹ bytes.
-pub(super) const CHUNK: usize = 10_000;
+/// Rows per JSON parameter. Rows in one JSON text are inserted twice as fast as row by row, but the text of a million jobs
+/// would exceed `SQLite`'s limit of 10⁹ bytes.
+const CHUNK: usize = 10_000;
 
 pub(super) const UPSERT_STUDY: &str = "
     INSERT INTO studies (name, document, submitted_ms) VALUES ($1, $2, $3)
@@ -82,10 +85,10 @@ pub(super) const UPSERT_STUDY: &str = "
     SET document = excluded.document, submitted_ms = excluded.submitted_ms, cancelled_ms = NULL
     RETURNING id";
 
-/// Array elements come in their order, so that a job's number follows its place in the study.
-/// (`WHERE true` keeps the parser from reading ON CONFLICT as a join's ON.)
+/// Jobs are inserted in the order of the array, so that their numbers have the order of the study's rows.
+/// (`SQLite`: `WHERE true` keeps the parser from reading ON CONFLICT as a join condition.)
 ///
-/// What can be run together is the program's to say, and another version may say it differently.
+/// The batch of an existing job is updated because another version of the program may group jobs differently.
 const INSERT_JOBS: Statement = Statement::each(
     "
     INSERT INTO jobs (key, cost, batch, priority, created_ms)
@@ -105,7 +108,7 @@ const INSERT_JOBS: Statement = Statement::each(
     ON CONFLICT (key) DO UPDATE SET batch = excluded.batch WHERE jobs.batch <> excluded.batch",
 );
 
-/// CROSS JOIN keeps the order of the loops: a key is looked up for each row, not the rows for each job.
+/// `SQLite`: CROSS JOIN fixes the order of the loops, so that a key is looked up for each row.
 const INSERT_PAYLOADS: Statement = Statement::each(
     "
     INSERT INTO payloads (job_id, payload)
@@ -117,7 +120,7 @@ const INSERT_PAYLOADS: Statement = Statement::each(
     ON CONFLICT (job_id) DO NOTHING",
 );
 
-/// As above, the key is looked up for each row.
+/// The key is looked up for each row, as above.
 const SET_PRIORITY: Statement = Statement::each(
     "
     UPDATE jobs SET priority = e.value ->> 4
@@ -129,23 +132,23 @@ const SET_PRIORITY: Statement = Statement::each(
     WHERE jobs.key = e.value ->> 0 AND jobs.priority <> (e.value ->> 4)::bigint",
 );
 
-/// Who submits a job asks for it, whoever cancelled it before.
-const ASK_AGAIN: &str = "
+/// A submission requests its jobs, even if they were cancelled before.
+const UNDO_CANCELLATION: &str = "
     UPDATE jobs SET state = 'pending', note = NULL
     WHERE state = 'cancelled' AND id IN (SELECT job_id FROM study_jobs WHERE study_id = $1)";
 
-/// What only the replaced document asked for.
-const CANCEL_UNASKED: &str = "
+/// Cancels the jobs that only the replaced document requested.
+const CANCEL_UNREQUESTED: &str = "
     UPDATE jobs SET state = 'cancelled', note = $1
     WHERE state = 'pending' AND NOT EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = jobs.id)";
 
 const NOTE: &str = "cancelled: its study was replaced by one without it";
 
-/// Rows beyond the end of the new document, and of other shards.
+/// Deletes rows beyond the end of the new document, and rows of other shards.
 const DELETE_SURPLUS: &str =
     "DELETE FROM study_jobs WHERE study_id = $1 AND (ordinal >= $2 OR ordinal % $3 <> $4)";
 
-/// The places in the array of rows that are not there, or otherwise. A row that is there has its job and its payload.
+/// The array indices of rows that are missing or different in the database. An existing row has its job and its payload.
 const CHANGED: Statement = Statement::each(
     "
     SELECT e.key
@@ -187,9 +190,8 @@ const INSERT_ROWS: Statement = Statement::each(
 impl Queue {
     /// Adds a study, or replaces the document and rows of the one with its name.
     ///
-    /// Jobs that are there already keep their result; those that were cancelled are pending again. Jobs that no study
-    /// refers to any more stay too: their results are paid for, and the next edit may ask for them again. Those of
-    /// them that have not begun are cancelled.
+    /// Existing jobs keep their results, and cancelled ones are pending again. Jobs that no study refers to any more also
+    /// stay, because the next edit may request their results again; the pending ones among them are cancelled.
     ///
     /// # Errors
     /// [`QueueError::BadCost`], or if the database cannot be written; then nothing has changed.
@@ -197,23 +199,23 @@ impl Queue {
         self.submit_shard(study, Shard::WHOLE).await
     }
 
-    /// As [`Queue::submit`], of some rows only, each in its place.
+    /// As [`Queue::submit`], for the rows of one shard only. Each row keeps its number in the study.
     ///
     /// # Errors
     /// As [`Queue::submit`].
     ///
     /// # Panics
-    /// If there are no shards, or fewer than this one's index says.
+    /// If the shard's index is not less than the number of shards.
     pub async fn submit_shard(&mut self, study: &NewStudy, shard: Shard) -> Result<Submitted, QueueError> {
         assert!(shard.index < shard.of, "{shard:?}");
-        // JSON has no NaN and no infinity: they would arrive as null.
+        // JSON cannot represent NaN and infinity; they would become null.
         if let Some(job) = study.jobs.iter().find(|job| !job.cost.is_finite()) {
             return Err(QueueError::BadCost { key: job.key.clone(), cost: job.cost });
         }
         let rows: Vec<_> = (0_i64..).zip(&study.jobs).filter(|(ordinal, _)| shard.has(*ordinal)).collect();
         let (replaced, added, cancelled, counts) = self
             .write(async |connection, now_ms| {
-                let replaced = studies::find(connection, &study.name).await?.is_some();
+                let replaced = lookup::find(connection, &study.name).await?.is_some();
                 let study_id: i64 = query(UPSERT_STUDY)
                     .bind(&study.name)
                     .bind(&study.document)
@@ -240,9 +242,9 @@ impl Queue {
                     set_priority(connection, chunk).await?;
                 }
                 let added = count_jobs(connection).await? - before;
-                query(ASK_AGAIN).bind(study_id).run(connection).await?;
+                query(UNDO_CANCELLATION).bind(study_id).run(connection).await?;
                 let cancelled =
-                    if replaced { query(CANCEL_UNASKED).bind(NOTE).run(connection).await? } else { 0 };
+                    if replaced { query(CANCEL_UNREQUESTED).bind(NOTE).run(connection).await? } else { 0 };
                 let counts = counts::of_study(connection, study_id).await?;
                 Ok((replaced, added, cancelled, counts))
             })
@@ -267,10 +269,11 @@ async fn count_jobs(connection: &mut Connection) -> Result<u64, QueueError> {
     Ok(count.unsigned_abs())
 }
 
-/// A row of a study with its place.
+/// A row of a study with its number.
 pub(super) type Row<'a> = (i64, &'a NewJob);
 
-/// Those of `rows` that the study does not have as they are: a study that is submitted again unchanged writes none.
+/// Those of `rows` that the study does not have, or has in another form. An unchanged study has none, and its submission
+/// writes nothing.
 pub(super) async fn changed<'a>(
     connection: &mut Connection,
     study_id: i64,
@@ -325,7 +328,7 @@ mod tests {
     use super::{NewJob, NewStudy};
     use crate::queue::{Clock, Queue};
 
-    /// Protects: a study that is submitted again writes what has changed and nothing else, whatever its size.
+    /// Protects: a study that is submitted again writes only its changes, whatever its size.
     #[tokio::test]
     async fn only_what_changed_is_written() {
         let folder = tempfile::TempDir::new().unwrap();

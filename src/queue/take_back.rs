@@ -1,32 +1,33 @@
-//! Jobs whose process is gone become pending again.
+//! Reclaims the jobs of workers that are gone: the jobs become pending again.
 //!
-//! Who is gone, in this order:
-//! 1. An owner on this boot of this machine is asked for in the table of processes. If it is there, its jobs stay
-//!    its own however old its lease is: a process that was stopped or a machine that slept comes back, and a clock
-//!    that jumps takes nothing from anybody. If it is not, they are pending at once.
-//! 2. An owner on an earlier boot of this machine is gone. (Of a file's machine: of those that share a server two may have
-//!    the same name, and another boot is another machine.)
-//! 3. Of any other owner nothing is known but its signs of life, which come before the end of its own lease, and the
-//!    leases of its jobs, by the database's clock. One that ends
-//!    further ahead than any clock is wrong counts as over too: it was written by a clock that had jumped, and would
-//!    never end.
+//! These rules decide, in this order, whether a worker is gone:
+//! 1. If the worker is on this boot of this machine, the table of processes decides. If its process exists, it keeps its
+//!    jobs, however old its lease is: a stopped process continues later, a machine that slept wakes up, and a clock that
+//!    jumps takes no jobs from anybody. If its process does not exist, its jobs are pending at once.
+//! 2. If the worker is on an earlier boot of this machine, it is gone. This holds for a database file only: on a server,
+//!    two machines may have the same name, and another boot may be another machine.
+//! 3. For any other worker, its heartbeats and the leases of its jobs decide, by the database's clock. A worker is silent
+//!    if its last heartbeat is older than its own lease. A lease that ends further in the future than any clock error
+//!    explains counts as expired: a clock that had jumped wrote it.
 //!
-//! Whatever is decided, nothing is lost by a mistake: a job that is run twice is recorded once, by the fence.
+//! A wrong decision loses nothing: a job that is run twice is recorded once, because outcomes are fenced by owner and
+//! attempt.
 
 use super::engine::query;
-use super::owner::{Owner, Verdict};
-use super::{Queue, QueueError};
+use super::error::QueueError;
+use super::handle::Queue;
+use super::owner::{Liveness, Owner};
 
-/// What was taken back.
+/// The jobs that were taken back.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct TakenBack {
-    /// Jobs that are pending again.
+    /// Jobs that became pending.
     pub pending: u64,
-    /// Jobs whose process died too often, which have failed.
+    /// Jobs that failed because their processes died too often.
     pub failed: u64,
 }
 
-/// $4 is set where the leases decide; $6 is 1 for a crash, and 0 where the process had been asked to stop.
+/// $4 is the time if the leases decide, and null otherwise. $6 is 1 for a crash, and 0 if the process had been asked to stop.
 const TAKE_BACK: &str = "
     UPDATE jobs
     SET state = CASE WHEN crashes + $6 >= $2 THEN 'failed' ELSE 'pending' END,
@@ -39,7 +40,7 @@ const CRASHED: &str = "
     INSERT INTO results (job_id, attempt, error, started_ms, finished_ms)
     SELECT id, attempt, $2, started_ms, $3 FROM jobs WHERE id = $1";
 
-/// The worker has ended if it has nothing left in hand and has not given a sign of life ($4) meanwhile.
+/// Counts the jobs that were taken back. The worker has ended if it holds no more jobs and has sent no heartbeat since $4.
 const COUNT: &str = "
     UPDATE workers
     SET taken_back = taken_back + $3,
@@ -52,15 +53,15 @@ const COUNT: &str = "
 const TAKEN_BACK: &str = "taken back: the process that ran the job ended without finishing it";
 
 impl Queue {
-    /// Sets the jobs of processes that are gone back to pending; those whose processes died too often in a row have
-    /// failed.
+    /// Takes back the jobs of workers that are gone: they become pending, or failed if their processes died too often in
+    /// succession.
     ///
     /// # Errors
     /// If the database cannot be written.
     pub async fn take_back(&mut self) -> Result<TakenBack, QueueError> {
         let mut taken = TakenBack::default();
         let owners = self.owners().await?;
-        // Its own jobs are this process' to end.
+        // This worker finishes its own jobs.
         let own = self.registration.as_ref().map(|own| own.id);
         let others: Vec<_> = owners.iter().filter(|owner| Some(owner.id) != own).collect();
         if others.is_empty() {
@@ -68,41 +69,40 @@ impl Queue {
         }
         let now_ms = self.now_ms().await?;
         for owner in others {
-            let verdict = owner.verdict();
-            let is_suspect = match verdict {
-                Verdict::Alive => false,
-                Verdict::Gone => true,
-                // Many workers look at each other all the time: the tables are locked only for one that is silent.
-                Verdict::Elsewhere => owner.is_silent(now_ms),
+            let liveness = owner.liveness();
+            let is_suspect = match liveness {
+                Liveness::Alive => false,
+                Liveness::Gone => true,
+                // Many workers check each other often, so the exclusive lock is taken only for a silent one.
+                Liveness::Unknown => owner.is_silent(now_ms),
             };
             if is_suspect {
-                self.take_from(owner, verdict, &mut taken).await?;
+                self.take_from(owner, liveness, &mut taken).await?;
             }
         }
         Ok(taken)
     }
 
-    /// Whether jobs may soon be pending again: somebody who may own some is gone or about to go, or has not given the
-    /// signs of life that were due.
+    /// Whether jobs of other workers may soon become pending: another worker is gone, is stopping or has missed heartbeats.
     ///
     /// # Errors
     /// If the database cannot be read.
-    pub async fn misses_somebody(&mut self) -> Result<bool, QueueError> {
+    pub async fn has_missing_workers(&mut self) -> Result<bool, QueueError> {
         let owners = self.owners().await?;
         let now_ms = self.now_ms().await?;
         let own = self.registration.as_ref().map(|own| own.id);
         let mut others = owners.iter().filter(|owner| Some(owner.id) != own);
-        Ok(others.any(|owner| match owner.verdict() {
-            Verdict::Alive => owner.is_stopping(),
-            Verdict::Gone => true,
-            Verdict::Elsewhere => owner.is_stopping() || owner.is_missed(now_ms),
+        Ok(others.any(|owner| match owner.liveness() {
+            Liveness::Alive => owner.is_stopping(),
+            Liveness::Gone => true,
+            Liveness::Unknown => owner.is_stopping() || owner.has_missed_heartbeats(now_ms),
         }))
     }
 
     async fn take_from(
         &mut self,
         owner: &Owner,
-        verdict: Verdict,
+        liveness: Liveness,
         taken: &mut TakenBack,
     ) -> Result<(), QueueError> {
         let crash_limit = self.settings.crash_limit;
@@ -113,8 +113,8 @@ impl Queue {
                     .bind(owner.id)
                     .bind(crash_limit)
                     .bind(TAKEN_BACK)
-                    .bind((verdict == Verdict::Elsewhere).then_some(now_ms))
-                    .bind(owner.far_ms(now_ms))
+                    .bind((liveness == Liveness::Unknown).then_some(now_ms))
+                    .bind(owner.latest_plausible_ms(now_ms))
                     .bind(i64::from(!owner.is_stopping()))
                     .all(connection)
                     .await?;

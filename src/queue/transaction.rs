@@ -1,28 +1,31 @@
 //! Transactions that write.
 
-use super::engine::{Access, Connection};
-use super::{Clock, Queue, QueueError};
+use super::access::Access;
+use super::clock::Clock;
+use super::engine::Connection;
+use super::error::QueueError;
+use super::handle::Queue;
 
 impl Queue {
-    /// Does `work`, which is told the time, in a transaction that nobody writes beside: all of it, or after an error
-    /// nothing.
+    /// Runs `work` in an exclusive transaction, with the time in milliseconds since 1970-01-01 UTC. After an error, the
+    /// transaction is rolled back.
     pub(super) async fn write<T>(
         &mut self,
         work: impl AsyncFnOnce(&mut Connection, i64) -> Result<T, QueueError>,
     ) -> Result<T, QueueError> {
-        transact(&mut self.connection, &self.clock, Access::Alone, work).await
+        transact(&mut self.connection, &self.clock, Access::Exclusive, work).await
     }
 
-    /// As [`Self::write`], for what changes only what this queue's worker has in hand, or takes what nobody has: others
-    /// may do the same at once.
-    pub(super) async fn write_own<T>(
+    /// As [`Self::write`], in a shared transaction: `work` may change only jobs of this queue's worker, and claim jobs that
+    /// nobody has.
+    pub(super) async fn write_shared<T>(
         &mut self,
         work: impl AsyncFnOnce(&mut Connection, i64) -> Result<T, QueueError>,
     ) -> Result<T, QueueError> {
         transact(&mut self.connection, &self.clock, Access::Shared, work).await
     }
 
-    /// The time by the clock that this queue goes by, in milliseconds since 1970-01-01 UTC.
+    /// The time of this queue's clock, in milliseconds since 1970-01-01 UTC.
     ///
     /// # Errors
     /// If the database cannot be asked.
@@ -31,7 +34,7 @@ impl Queue {
     }
 }
 
-/// Does `work` in a transaction.
+/// Runs `work` in a transaction.
 pub(super) async fn transact<T>(
     connection: &mut Connection,
     clock: &Clock,

@@ -1,53 +1,54 @@
 use super::engine::query;
-use super::owner::{Owner, Verdict};
-use super::{Queue, QueueError};
+use super::error::QueueError;
+use super::handle::Queue;
+use super::owner::{Liveness, Owner};
 
-/// A worker that is there, or that was lost with jobs in hand.
+/// A worker that is active, or that was lost while it held jobs.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WorkerStatus {
-    /// The machine that it is on.
+    /// The machine's name.
     pub host: String,
-    /// Its process there.
+    /// The process number on that machine.
     pub pid: u32,
     /// How many threads it has.
     pub threads: u64,
-    /// Whether it is there.
+    /// Whether it is active.
     pub presence: WorkerPresence,
     /// Jobs that it runs.
     pub running: u64,
-    /// Jobs that it has finished, by its last sign of life.
+    /// Jobs that it had finished at its last heartbeat.
     pub finished: u64,
-    /// Jobs that it finished a second, in the last ten minutes before that.
+    /// Jobs that it finished per second, in the ten minutes before its last heartbeat.
     pub jobs_per_s: Option<f64>,
     /// Jobs that were taken back from it.
     pub taken_back: u64,
     /// When it began, in milliseconds since 1970-01-01 UTC.
     pub started_ms: i64,
-    /// How long ago its last sign of life was, in milliseconds.
+    /// How long ago its last heartbeat was, in milliseconds.
     pub silent_ms: i64,
 }
 
-/// Whether a worker is there.
+/// Whether a worker is active.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum WorkerPresence {
-    /// It is.
+    /// It is active.
     Working,
-    /// It is, and has been asked to stop.
+    /// It is active and has been asked to stop.
     Stopping,
-    /// It has ended, or has been silent for longer than a lease.
+    /// Its process has ended, or it has sent no heartbeat for longer than its lease.
     Gone,
 }
 
-/// The workers that are there now, summed up.
+/// How many workers are active.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct Alive {
-    /// How many they are.
+pub struct ActiveWorkers {
+    /// The number of workers.
     pub workers: u64,
-    /// How many threads they have together.
+    /// The sum of their threads.
     pub threads: u64,
 }
 
-const LOST: &str = "
+const WORKERS: &str = "
     SELECT id, host, pid, threads, finished, jobs_per_s, taken_back, started_ms, heartbeat_ms
     FROM workers WHERE ended_ms IS NULL OR taken_back > 0 ORDER BY id";
 
@@ -57,7 +58,7 @@ const RUNNING: &str = "
 type Columns = (i64, String, i64, i64, i64, Option<f64>, i64, i64, i64);
 
 impl Queue {
-    /// The workers that are there, and those from which jobs were taken back, the earliest first.
+    /// The active workers and those from which jobs were taken back. The one that registered first comes first.
     ///
     /// # Errors
     /// If the database cannot be read.
@@ -65,7 +66,7 @@ impl Queue {
         let owners = self.owners().await?;
         let now_ms = self.now_ms().await?;
         let running: Vec<(i64, i64)> = query(RUNNING).all(&mut self.connection).await?;
-        let rows: Vec<Columns> = query(LOST).all(&mut self.connection).await?;
+        let rows: Vec<Columns> = query(WORKERS).all(&mut self.connection).await?;
         let status =
             |(id, host, pid, threads, finished, jobs_per_s, taken_back, started_ms, heartbeat_ms)| {
                 let owner = owners.iter().find(|owner| owner.id == id);
@@ -88,30 +89,30 @@ impl Queue {
         Ok(rows.into_iter().map(status).collect())
     }
 
-    /// The workers that are there now and have not been asked to stop. Whose process cannot be seen from here is there as
-    /// long as its last sign of life is no older than a lease.
+    /// Counts the active workers that have not been asked to stop. A worker whose process is not visible from here is
+    /// active if its last heartbeat is not older than its lease.
     ///
     /// # Errors
     /// If the database cannot be read.
-    pub async fn alive(&mut self) -> Result<Alive, QueueError> {
+    pub async fn active_workers(&mut self) -> Result<ActiveWorkers, QueueError> {
         let owners = self.owners().await?;
         let now_ms = self.now_ms().await?;
-        let there = owners.iter().filter(|owner| owner.presence(now_ms) == WorkerPresence::Working);
-        Ok(there.fold(Alive::default(), |alive, owner| Alive {
-            workers: alive.workers + 1,
-            threads: alive.threads + owner.threads,
+        let active = owners.iter().filter(|owner| owner.presence(now_ms) == WorkerPresence::Working);
+        Ok(active.fold(ActiveWorkers::default(), |sum, owner| ActiveWorkers {
+            workers: sum.workers + 1,
+            threads: sum.threads + owner.threads,
         }))
     }
 }
 
 impl Owner {
     fn presence(&self, now_ms: i64) -> WorkerPresence {
-        let is_there = match self.verdict() {
-            Verdict::Alive => true,
-            Verdict::Gone => false,
-            Verdict::Elsewhere => !self.is_silent(now_ms),
+        let is_active = match self.liveness() {
+            Liveness::Alive => true,
+            Liveness::Gone => false,
+            Liveness::Unknown => !self.is_silent(now_ms),
         };
-        match (is_there, self.is_stopping()) {
+        match (is_active, self.is_stopping()) {
             (false, _) => WorkerPresence::Gone,
             (true, true) => WorkerPresence::Stopping,
             (true, false) => WorkerPresence::Working,

@@ -1,7 +1,7 @@
 //! How far a study is, and when it will be finished.
 
 use super::error::SweepError;
-use crate::queue::{Alive, Counts, Queue, Scope};
+use crate::queue::{ActiveWorkers, Counts, Queue, Scope};
 use crate::worker::Eta;
 use std::num::NonZeroUsize;
 
@@ -11,7 +11,7 @@ pub struct Outlook {
     /// The study's jobs by state.
     pub counts: Counts,
     /// The workers that are running now.
-    pub alive: Alive,
+    pub alive: ActiveWorkers,
     /// Number of threads that this machine can run at once.
     pub threads_here: usize,
     /// The remaining time with the workers that are running, or on this machine if none is; `None` while too few jobs
@@ -29,7 +29,7 @@ impl Outlook {
         if left == 0 {
             return Ok(None);
         }
-        let alive = queue.alive().await?;
+        let alive = queue.active_workers().await?;
         let threads_here = available_threads();
         let threads = if alive.threads > 0 { alive.threads } else { threads_here as u64 };
         let cost = queue.remaining_cost(&Scope::Study(study.to_owned())).await?;

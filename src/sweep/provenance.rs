@@ -1,7 +1,7 @@
 //! Where a study and its results come from, for reports.
 
 use super::error::SweepError;
-use crate::queue::{MadeWith, Queue};
+use crate::queue::{ProvenanceGroup, Queue};
 use crate::report::{BuildInfo, Provenance, ResultGroup};
 use serde::Deserialize;
 
@@ -22,11 +22,11 @@ struct StoredProvenance {
 /// The study's document and the provenance of its results; `None` if the study has been removed meanwhile.
 pub(super) async fn read(queue: &mut Queue, study: &str) -> Result<Option<Provenance>, SweepError> {
     let Some(document) = queue.study(study).await? else { return Ok(None) };
-    let groups = queue.made_with(study).await?;
+    let groups = queue.provenance_groups(study).await?;
     Ok(Some(Provenance::grouped(document.document, document.submitted_ms, groups.iter().map(report_group))))
 }
 
-fn report_group(group: &MadeWith) -> ResultGroup {
+fn report_group(group: &ProvenanceGroup) -> ResultGroup {
     // A provenance that cannot be read counts as unknown.
     let stored: Option<StoredProvenance> =
         group.provenance.as_deref().and_then(|text| serde_json::from_str(text).ok());

@@ -167,7 +167,7 @@ impl<'a> Dispatcher<'a> {
         let Some(limit) = self.idle_exit else { return Ok(!open.has_running) };
         // Exits even if other workers are still running jobs, unless one of them has missed a heartbeat: its jobs may
         // come back.
-        Ok(self.idle.elapsed() >= limit && !(open.has_running && self.queue.misses_somebody().await?))
+        Ok(self.idle.elapsed() >= limit && !(open.has_running && self.queue.has_missing_workers().await?))
     }
 
     fn accept(&mut self, report: Report, done: &mut Vec<Finished>) {
@@ -297,7 +297,7 @@ impl<'a> Dispatcher<'a> {
     async fn keep_alive(&mut self) -> Result<(), QueueError> {
         if self.interrupt.is_raised() && !self.is_stopping {
             // From now on a sudden end of this process is no crash. If the database does not learn it, it is one.
-            self.is_stopping = self.queue.stopping().await.is_ok();
+            self.is_stopping = self.queue.mark_stopping().await.is_ok();
         }
         if !self.heartbeat.is_due() {
             return Ok(());

@@ -52,7 +52,7 @@ impl Tally {
         self.counts = queue.counts(scope).await?;
         self.remaining_cost = queue.remaining_cost(scope).await?;
         let took = begun.elapsed();
-        let workers = u32::try_from(queue.alive().await?.workers).unwrap_or(u32::MAX).max(1);
+        let workers = u32::try_from(queue.active_workers().await?.workers).unwrap_or(u32::MAX).max(1);
         self.next_query = Instant::now()
             + took
                 .saturating_mul(QUERY_SHARE.saturating_mul(workers))

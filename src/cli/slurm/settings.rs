@@ -89,7 +89,7 @@ impl Database {
                     .to_owned(),
             )),
             Location::Server(server) => {
-                server.check().map_err(|reason| CliError::Usage(format!("{db}: {reason}")))?;
+                server.check_scheme().map_err(|reason| CliError::Usage(format!("{db}: {reason}")))?;
                 Ok(Self::Shared(server.url().to_owned()))
             }
             Location::File(path) => {

@@ -1,4 +1,4 @@
-//! A statement with its parameters, and the ways to run it.
+//! Statements with their parameters, and the ways to run them.
 
 use std::borrow::Cow;
 
@@ -7,23 +7,25 @@ use sqlx::FromRow;
 use sqlx::postgres::PgRow;
 use sqlx::sqlite::SqliteRow;
 
-use super::{Connection, Statement};
-use crate::queue::QueueError;
+use super::connection::Connection;
+use super::statement::Statement;
+use crate::queue::error::QueueError;
+use crate::queue::sqlite;
 
-/// What rows of either database can be read as: tuples of `i64`, `f64`, `String`, `Vec<u8>` and options of them. (There
-/// are no unsigned numbers in PostgreSQL.)
+/// The types that rows of both databases can be read as: tuples of `i64`, `f64`, `String`, `Vec<u8>` and options of these.
+/// (PostgreSQL has no unsigned integers.)
 #[cfg(feature = "postgres")]
 pub trait Columns: Send + Unpin + for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> {}
 #[cfg(feature = "postgres")]
 impl<T: Send + Unpin + for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow>> Columns for T {}
 
-/// What rows can be read as: tuples of `i64`, `f64`, `String`, `Vec<u8>` and options of them.
+/// The types that rows can be read as: tuples of `i64`, `f64`, `String`, `Vec<u8>` and options of these.
 #[cfg(not(feature = "postgres"))]
 pub trait Columns: Send + Unpin + for<'r> FromRow<'r, SqliteRow> {}
 #[cfg(not(feature = "postgres"))]
 impl<T: Send + Unpin + for<'r> FromRow<'r, SqliteRow>> Columns for T {}
 
-/// A parameter.
+/// A parameter of a statement.
 #[derive(Debug, Clone)]
 pub enum Value<'q> {
     Integer(Option<i64>),
@@ -32,19 +34,19 @@ pub enum Value<'q> {
     Bytes(Option<&'q [u8]>),
 }
 
-/// A statement whose parameters are bound one after the other.
+/// A statement and its parameters, which are bound in the order `$1`, `$2`, ….
 #[derive(Debug, Clone)]
 pub struct Query<'q> {
     statement: Statement,
     values: Vec<Value<'q>>,
 }
 
-/// A statement without parameters yet.
+/// A statement whose parameters are not bound yet.
 pub fn query<'q>(statement: impl Into<Statement>) -> Query<'q> {
     Query { statement: statement.into(), values: Vec::new() }
 }
 
-/// The parameters of `$query`, bound to what sqlx makes of it.
+/// sqlx's query with the parameters bound.
 macro_rules! bound {
     ($query:expr, $values:expr) => {{
         let mut query = $query;
@@ -67,17 +69,18 @@ impl<'q> Query<'q> {
         self
     }
 
-    /// Runs it and gives the number of rows that it changed.
+    /// Runs the statement. Returns the number of changed rows.
     pub async fn run(self, connection: &mut Connection) -> Result<u64, QueueError> {
         let Self { statement, values } = self;
         match connection {
             Connection::Sqlite(connection) => {
                 let query = bound!(sqlx::query(statement.sqlite()), values);
-                Ok(query.execute(connection).await?.rows_affected())
+                let done = query.execute(connection).await.map_err(sqlite::classify)?;
+                Ok(done.rows_affected())
             }
             #[cfg(feature = "postgres")]
             Connection::Postgres(session) => {
-                let done = session.attempt(async |connection| {
+                let done = session.request(async |connection| {
                     bound!(sqlx::query(statement.postgres()), values).execute(connection).await
                 });
                 Ok(done.await?.rows_affected())
@@ -85,16 +88,17 @@ impl<'q> Query<'q> {
         }
     }
 
-    /// All rows.
+    /// Runs the statement. Returns all rows.
     pub async fn all<T: Columns>(self, connection: &mut Connection) -> Result<Vec<T>, QueueError> {
         let Self { statement, values } = self;
         match connection {
             Connection::Sqlite(connection) => {
-                Ok(bound!(sqlx::query_as(statement.sqlite()), values).fetch_all(connection).await?)
+                let query = bound!(sqlx::query_as(statement.sqlite()), values);
+                query.fetch_all(connection).await.map_err(sqlite::classify)
             }
             #[cfg(feature = "postgres")]
             Connection::Postgres(session) => {
-                let rows = session.attempt(async |connection| {
+                let rows = session.request(async |connection| {
                     bound!(sqlx::query_as(statement.postgres()), values).fetch_all(connection).await
                 });
                 rows.await
@@ -102,16 +106,17 @@ impl<'q> Query<'q> {
         }
     }
 
-    /// The first row, if there is one.
+    /// Runs the statement. Returns the first row, if there is one.
     pub async fn optional<T: Columns>(self, connection: &mut Connection) -> Result<Option<T>, QueueError> {
         let Self { statement, values } = self;
         match connection {
             Connection::Sqlite(connection) => {
-                Ok(bound!(sqlx::query_as(statement.sqlite()), values).fetch_optional(connection).await?)
+                let query = bound!(sqlx::query_as(statement.sqlite()), values);
+                query.fetch_optional(connection).await.map_err(sqlite::classify)
             }
             #[cfg(feature = "postgres")]
             Connection::Postgres(session) => {
-                let row = session.attempt(async |connection| {
+                let row = session.request(async |connection| {
                     bound!(sqlx::query_as(statement.postgres()), values).fetch_optional(connection).await
                 });
                 row.await
@@ -119,12 +124,12 @@ impl<'q> Query<'q> {
         }
     }
 
-    /// The one row.
+    /// Runs a statement that returns one row.
     pub async fn one<T: Columns>(self, connection: &mut Connection) -> Result<T, QueueError> {
-        self.optional(connection).await?.ok_or_else(|| sqlx::Error::RowNotFound.into())
+        self.optional(connection).await?.ok_or_else(|| QueueError::Database(sqlx::Error::RowNotFound.into()))
     }
 
-    /// The one value of the one row.
+    /// Runs a statement that returns one row with one value.
     pub async fn scalar<T>(self, connection: &mut Connection) -> Result<T, QueueError>
     where
         (T,): Columns,
@@ -132,7 +137,7 @@ impl<'q> Query<'q> {
         self.one::<(T,)>(connection).await.map(|(value,)| value)
     }
 
-    /// The one value of each row.
+    /// Runs a statement whose rows have one value each.
     pub async fn scalars<T>(self, connection: &mut Connection) -> Result<Vec<T>, QueueError>
     where
         (T,): Columns,

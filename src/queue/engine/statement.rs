@@ -1,4 +1,4 @@
-/// A statement in the words of each database. Parameters are `$1`, `$2`, … in both.
+/// A statement in the dialect of each database. Parameters are `$1`, `$2`, … in both.
 #[derive(Debug, Clone, Copy)]
 pub struct Statement {
     sqlite: &'static str,
@@ -7,7 +7,7 @@ pub struct Statement {
 }
 
 impl Statement {
-    /// In two dialects.
+    /// A statement with different texts for the two databases.
     pub const fn each(sqlite: &'static str, postgres: &'static str) -> Self {
         #[cfg(not(feature = "postgres"))]
         let _ = postgres;
@@ -18,18 +18,19 @@ impl Statement {
         }
     }
 
-    /// For `SQLite`.
+    /// The text for `SQLite`.
     pub const fn sqlite(self) -> &'static str {
         self.sqlite
     }
 
-    /// For PostgreSQL.
+    /// The text for PostgreSQL.
     #[cfg(feature = "postgres")]
     pub const fn postgres(self) -> &'static str {
         self.postgres
     }
 }
 
+/// A statement with one text for both databases.
 impl From<&'static str> for Statement {
     fn from(both: &'static str) -> Self {
         Self::each(both, both)

@@ -1,12 +1,13 @@
-//! What can be wrong with a server.
+//! Checks of a server.
 
 use std::time::Instant;
 
-use super::Session;
-use crate::queue::{Finding, QueueError};
+use super::session::Session;
+use crate::queue::error::QueueError;
+use crate::queue::finding::Finding;
 
 impl Session {
-    /// Looks at the server and the way to it.
+    /// Checks the server and the connection to it.
     pub async fn examine(&mut self, findings: &mut Vec<Finding>) -> Result<(), QueueError> {
         let version: String = self.setting("server_version").await?;
         findings.push(Finding::good("PostgreSQL", version));
@@ -14,7 +15,7 @@ impl Session {
         let (used, allowed, size) = self.connections().await?;
         let answer_ms = begun.elapsed().as_secs_f64() * 1e3;
         findings.push(Finding::good("answer", format!("after {answer_ms:.1} ms")));
-        // Each worker has one, and so has each command.
+        // Each worker needs a connection, and so does each command.
         let text = format!("{used} of {allowed} connections of the server are in use; each worker needs one");
         findings.push(Finding::judged("connections", text, used < allowed));
         findings.push(Finding::good("size", format!("{:.1} MB in the database", size as f64 / 1e6)));
@@ -28,7 +29,7 @@ impl Session {
     }
 
     async fn setting(&mut self, name: &'static str) -> Result<String, QueueError> {
-        self.attempt(async |connection| {
+        self.request(async |connection| {
             sqlx::query_scalar("SELECT current_setting($1)").bind(name).fetch_one(connection).await
         })
         .await
@@ -40,6 +41,6 @@ impl Session {
                    CAST(current_setting('max_connections') AS BIGINT)
                        - CAST(current_setting('superuser_reserved_connections') AS BIGINT),
                    pg_database_size(current_database())";
-        self.attempt(async |connection| sqlx::query_as(connections).fetch_one(connection).await).await
+        self.request(async |connection| sqlx::query_as(connections).fetch_one(connection).await).await
     }
 }

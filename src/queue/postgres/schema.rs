@@ -1,15 +1,17 @@
-//! The tables and their versions: the files in `migrations/postgres`, each applied once, in order.
+//! The tables and their versions: the files in `migrations/postgres`. Each is applied once, in order.
 
 use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
 use sqlx::{PgConnection, SqlSafeStr};
 
-use crate::queue::{Location, QueueError};
+use super::error::classify;
+use crate::queue::error::QueueError;
+use crate::queue::location::Location;
 
-/// The schema with the tables, so that other programs can use the same database.
+/// The schema that contains the tables, so that other programs can use the same database.
 pub(super) const NAME: &str = "tribosweep";
 
-/// Held while tables are made, by whoever does.
-const MAKING: i64 = 0x7472_6962_0000_0002;
+/// The key of the advisory lock that a process holds while it creates or migrates tables.
+const MIGRATION_LOCK: i64 = 0x7472_6962_0000_0002;
 
 /// Whether there are tables.
 pub(super) async fn has_tables(connection: &mut PgConnection) -> Result<bool, sqlx::Error> {
@@ -21,38 +23,40 @@ pub(super) async fn has_tables(connection: &mut PgConnection) -> Result<bool, sq
 pub(super) async fn migrate(connection: &mut PgConnection, location: &Location) -> Result<(), QueueError> {
     let migrator = migrator();
     let known = migrator.iter().map(|migration| migration.version).max().unwrap_or(0);
-    if version(connection).await? == known {
+    if version(connection).await.map_err(classify)? == known {
         return Ok(());
     }
-    sqlx::query("SELECT pg_advisory_lock($1)").bind(MAKING).execute(&mut *connection).await?;
-    let made = make(connection, &migrator, location, known).await;
-    sqlx::query("SELECT pg_advisory_unlock($1)").bind(MAKING).execute(connection).await?;
-    made
+    let lock = sqlx::query("SELECT pg_advisory_lock($1)").bind(MIGRATION_LOCK);
+    lock.execute(&mut *connection).await.map_err(classify)?;
+    let migrated = apply(connection, &migrator, location, known).await;
+    let unlock = sqlx::query("SELECT pg_advisory_unlock($1)").bind(MIGRATION_LOCK);
+    unlock.execute(connection).await.map_err(classify)?;
+    migrated
 }
 
-async fn make(
+async fn apply(
     connection: &mut PgConnection,
     migrator: &Migrator,
     location: &Location,
     known: i64,
 ) -> Result<(), QueueError> {
     let create = sqlx::AssertSqlSafe(format!("CREATE SCHEMA IF NOT EXISTS {NAME}"));
-    sqlx::raw_sql(create).execute(&mut *connection).await?;
+    sqlx::raw_sql(create).execute(&mut *connection).await.map_err(classify)?;
     migrator.run(connection).await.map_err(|error| match error {
         MigrateError::VersionMissing(found) if found > known => {
             QueueError::NewerDatabase { database: location.clone(), found, known }
         }
-        source => QueueError::Migrate { database: location.clone(), source },
+        error => QueueError::Migrate { database: location.clone(), source: error.into() },
     })
 }
 
 /// The version of the tables, 0 if there are none.
-async fn version(connection: &mut PgConnection) -> Result<i64, QueueError> {
+async fn version(connection: &mut PgConnection) -> Result<i64, sqlx::Error> {
     if !has_tables(connection).await? {
         return Ok(0);
     }
     let newest = sqlx::query_scalar("SELECT COALESCE(MAX(version), 0) FROM _sqlx_migrations");
-    Ok(newest.fetch_one(connection).await?)
+    newest.fetch_one(connection).await
 }
 
 fn migrator() -> Migrator {

@@ -1,37 +1,44 @@
-//! What can be wrong with a file.
+//! Checks of a database file.
 
 use sqlx::SqliteConnection;
 
-use crate::queue::{Finding, QueueError};
+use super::error::classify;
+use crate::queue::error::QueueError;
+use crate::queue::finding::Finding;
 
 const SYNCHRONOUS: [&str; 4] = ["off", "normal", "full", "extra"];
 
-/// Looks at library, file and references.
+/// Checks the library, the file and the references between tables.
 pub(in crate::queue) async fn examine(
     connection: &mut SqliteConnection,
     findings: &mut Vec<Finding>,
 ) -> Result<(), QueueError> {
     let version: String = scalar(connection, "SELECT sqlite_version()").await?;
     findings.push(Finding::good("SQLite", version));
-    findings.push(Finding::good("file system", "local, or not known to be of the network"));
+    findings.push(Finding::good("file system", "local, or not known to be a network file system"));
     let mode: String = scalar(connection, "PRAGMA journal_mode").await?;
-    // A database that cannot be written is read as if it had no log.
+    // A database that cannot be written is opened as if it had no log, so any mode is acceptable.
     findings.push(Finding::good("journal", mode));
     let level: i64 = scalar(connection, "PRAGMA synchronous").await?;
     let level = usize::try_from(level).ok().and_then(|level| SYNCHRONOUS.get(level));
     findings.push(Finding::good("synchronous", *level.unwrap_or(&"unknown")));
 
-    // The first few tell what is wrong.
-    let damage: Vec<String> =
-        sqlx::query_scalar("PRAGMA integrity_check(5)").fetch_all(&mut *connection).await?;
+    // The first few problems suffice to show what is wrong.
+    let damage: Vec<String> = sqlx::query_scalar("PRAGMA integrity_check(5)")
+        .fetch_all(&mut *connection)
+        .await
+        .map_err(classify)?;
     let is_whole = damage == ["ok"];
     let advice = "; copy what can be read with `sqlite3 FILE .recover`, or take a backup";
     let text = if is_whole { "ok".to_owned() } else { damage.join("; ") + advice };
     findings.push(Finding::judged("integrity", text, is_whole));
 
     let orphans: i64 = scalar(connection, "SELECT COUNT(*) FROM pragma_foreign_key_check").await?;
-    let text =
-        if orphans == 0 { "ok".to_owned() } else { format!("{orphans} rows refer to what is not there") };
+    let text = if orphans == 0 {
+        "ok".to_owned()
+    } else {
+        format!("{orphans} rows refer to rows that do not exist")
+    };
     findings.push(Finding::judged("references", text, orphans == 0));
     Ok(())
 }
@@ -40,5 +47,5 @@ async fn scalar<T>(connection: &mut SqliteConnection, statement: &'static str) -
 where
     T: Send + Unpin + for<'r> sqlx::Decode<'r, sqlx::Sqlite> + sqlx::Type<sqlx::Sqlite>,
 {
-    Ok(sqlx::query_scalar(statement).fetch_one(connection).await?)
+    sqlx::query_scalar(statement).fetch_one(connection).await.map_err(classify)
 }

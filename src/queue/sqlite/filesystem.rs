@@ -1,10 +1,10 @@
-//! Is a folder on a network file system? A write-ahead log needs memory shared by all processes that use
-//! the database, which such file systems cannot give across machines, and their locks often do nothing.
+//! Detects network file systems. A write-ahead log needs memory that all processes of the database share. Network file
+//! systems cannot share memory across machines, and their locks are often not reliable.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Types as the kernel names them. FUSE file systems are listed one by one: most of them are local.
+/// The kernel's names of the types. FUSE file systems are listed one by one because most of them are local.
 const NETWORK: [&str; 15] = [
     "nfs",
     "nfs4",
@@ -23,16 +23,16 @@ const NETWORK: [&str; 15] = [
     "fuse.ceph",
 ];
 
-/// The type of the network file system `folder` (absolute, without symbolic links) is on, if it is on one.
+/// The type of the network file system that contains `folder` (absolute, without symbolic links), if it is on one.
 ///
-/// Where the system has no table of mounts to read, nothing is detected.
+/// Nothing is detected on systems without `/proc/self/mounts`.
 pub(super) fn network_kind(folder: &Path) -> Option<String> {
     let mounts = fs::read_to_string("/proc/self/mounts").ok()?;
     kind_of(&mounts, folder).filter(|kind| NETWORK.contains(kind)).map(str::to_owned)
 }
 
-/// The type of the file system that holds `folder`: the deepest mount above it, the last one if several
-/// are stacked on the same point.
+/// The type of the file system that contains `folder`: that of the deepest mount point above it. If several file systems
+/// are mounted on the same point, the last one counts.
 fn kind_of<'a>(mounts: &'a str, folder: &Path) -> Option<&'a str> {
     mounts
         .lines()
@@ -45,7 +45,7 @@ fn kind_of<'a>(mounts: &'a str, folder: &Path) -> Option<&'a str> {
         .map(|(_, kind)| kind)
 }
 
-/// The table separates fields by spaces and writes those inside a name as octal.
+/// The table separates fields by spaces, and it writes white space inside a name in octal.
 fn unescape(field: &str) -> PathBuf {
     field.replace("\\040", " ").replace("\\011", "\t").replace("\\012", "\n").replace("\\134", "\\").into()
 }
@@ -61,7 +61,7 @@ mod tests {
                           mds@tcp:/fs /data lustre rw 0 0\n\
                           //nas/x /my\\040disk cifs rw 0 0\n";
 
-    /// Protects: the mount that counts is the deepest one, by whole path components, and the last of a stack.
+    /// Protects: the deepest mount point counts, compared by whole path components, and the last one of a stack.
     #[test]
     fn the_deepest_mount_decides() {
         for (folder, kind) in [

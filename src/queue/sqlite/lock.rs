@@ -1,22 +1,22 @@
-//! Locks of the operating system on files beside the database. They end with the process that holds them,
-//! however it ends, so there is nothing stale to clean up; the empty file of the opening lock stays.
+//! File locks of the operating system, on files beside the database. A lock ends with the process that holds it, however
+//! the process ends, so no stale locks remain. The empty file of the opening lock stays.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
 
-use crate::queue::QueueError;
+use crate::queue::error::QueueError;
 
-/// The lock that a process of the first schema held while it ran jobs; with it, none of them does.
+/// The lock that a process with the first schema held while it ran jobs. Whoever holds it knows that no such process runs.
 pub(super) struct FormerWorkerLock {
     path: PathBuf,
     _file: File,
 }
 
 impl FormerWorkerLock {
-    /// Takes it.
+    /// Takes the lock without waiting.
     ///
     /// # Errors
-    /// [`QueueError::OlderWorking`] if a process holds it.
+    /// [`QueueError::OlderWorking`] if another process holds the lock.
     pub fn take(database: &Path) -> Result<Self, QueueError> {
         let (path, file) = open_beside(database, ".worker")?;
         match file.try_lock() {
@@ -26,23 +26,23 @@ impl FormerWorkerLock {
         }
     }
 
-    /// Ends it with its file, when nobody needs it any more: no process of the first schema opens a newer database.
+    /// Deletes the lock file after the migration: no process with the first schema opens a newer database.
     pub fn remove(self) {
-        // An empty file that stays is no harm.
+        // A remaining empty file does no harm.
         let _ = std::fs::remove_file(&self.path);
     }
 }
 
-/// Waits until nobody else is opening the database; others wait until the returned file is closed.
+/// Waits until no other process is opening the database. Others then wait until the returned file is closed.
 pub(super) async fn opening_lock(database: &Path) -> Result<File, QueueError> {
     let (path, file) = open_beside(database, ".lock")?;
-    // Waiting on the runtime's own thread would stop the very task that is to release the lock, if two
-    // tasks of one runtime open the database.
+    // If two tasks of one single-threaded runtime open the database, waiting on the runtime's thread would block the task
+    // that holds the lock.
     let locked = tokio::task::spawn_blocking(move || file.lock().map(|()| file)).await;
     locked.expect("locking a file does not panic").map_err(|source| QueueError::File { path, source })
 }
 
-/// Whether a lock file can be written beside the database.
+/// Whether a lock file can be created beside the database.
 pub(super) fn can_be_taken(database: &Path) -> bool {
     open_beside(database, ".lock").is_ok()
 }

@@ -5,40 +5,42 @@ use std::path::{Path, PathBuf};
 use sqlx::sqlite::{SqliteConnectOptions, SqliteSynchronous};
 use sqlx::{ConnectOptions, SqliteConnection};
 
+use super::error::{classify, classify_at_open};
 use super::{filesystem, lock, schema};
-use crate::queue::error::{SQLITE_NOTADB, sqlite_code};
-use crate::queue::{QueueError, Settings};
+use crate::queue::error::QueueError;
+use crate::queue::settings::Settings;
 
-/// The oldest `SQLite` that does not lose data when two connections write and checkpoint a log at once.
+/// The oldest supported `SQLite`. Earlier ones can lose data when one connection writes to the log and another one makes a
+/// checkpoint at the same time.
 const OLDEST_SQLITE: [u32; 3] = [3, 51, 3];
 
-/// 64 MiB; negative means KiB and not pages.
+/// The size of the page cache: 64 MiB. A negative number means KiB instead of pages.
 const CACHE_KIB: &str = "-65536";
 
-/// 40 MB of pages, against 4 by default.
+/// How many pages the write-ahead log has before a checkpoint: 40 MB instead of 4 MB by default.
 const LOG_PAGES: &str = "10000";
 
-/// As many as are read at a time.
+/// The size of the buffer between the database's thread and the reader: one page of rows.
 const ROWS_IN_FLIGHT: usize = 1_000;
 
-/// Opens the database at `path`; creates it, but not its folder, if it is missing.
+/// Opens the database at `path`. Creates it if it is missing, but not its folder.
 pub(in crate::queue) async fn open(path: &Path, settings: Settings) -> Result<SqliteConnection, QueueError> {
     let path = resolve(path)?;
-    check_place(&path)?;
-    // Creating the file, switching it to a write-ahead log and creating the tables all fail with
-    // "database is locked" in one of two processes that do so at once; the busy timeout does not help.
+    check_path(&path)?;
+    // If two processes create the file, switch it to a write-ahead log or create the tables at the same time, one of them
+    // fails with "database is locked". The busy timeout does not help.
     let opening = lock::opening_lock(&path).await?;
     let mut connection = connect(&path, options(&path, settings).create_if_missing(true)).await?;
     check_library(&mut connection).await?;
     schema::check_ownership(&mut connection, &path).await?;
     use_write_ahead_log(&mut connection, &path).await?;
     schema::migrate(&mut connection, &path).await?;
-    sqlx::query("PRAGMA foreign_keys = ON").execute(&mut connection).await?;
+    sqlx::query("PRAGMA foreign_keys = ON").execute(&mut connection).await.map_err(classify)?;
     drop(opening);
     Ok(connection)
 }
 
-/// Opens the database at `path`, which must exist, for what only reads: also where nothing can be written.
+/// Opens the database at `path`, which must exist, for reading. This also works if the file and its folder are read-only.
 pub(in crate::queue) async fn open_to_read(
     path: &Path,
     settings: Settings,
@@ -47,14 +49,14 @@ pub(in crate::queue) async fn open_to_read(
         return open(path, settings).await;
     }
     let path = resolve(path)?;
-    check_place(&path)?;
+    check_path(&path)?;
     let beside = |suffix: &str| {
         let mut name = path.as_os_str().to_owned();
         name.push(suffix);
         Path::new(&name).exists()
     };
-    // Without a log nobody is writing, and SQLite need not look for one; it could not create the shared memory
-    // through which it would.
+    // Without a log, no process is writing. SQLite is then told that the file is immutable, because otherwise it would try
+    // to create the shared memory for a log.
     let has_log = beside("-wal");
     if has_log && !beside("-shm") {
         return Err(QueueError::UnreadableLog { path });
@@ -66,7 +68,7 @@ pub(in crate::queue) async fn open_to_read(
     Ok(connection)
 }
 
-fn check_place(path: &Path) -> Result<(), QueueError> {
+fn check_path(path: &Path) -> Result<(), QueueError> {
     let folder = path.parent().unwrap_or(Path::new("/"));
     if let Some(kind) = filesystem::network_kind(folder) {
         return Err(QueueError::NetworkFileSystem { path: path.into(), kind });
@@ -77,19 +79,19 @@ fn check_place(path: &Path) -> Result<(), QueueError> {
     Ok(())
 }
 
-/// Whether the file can be written, and files beside it.
+/// Whether the database file and files beside it can be written.
 pub(in crate::queue) fn is_writable(path: &Path) -> bool {
     let refused = |error: &std::io::Error| {
         matches!(error.kind(), ErrorKind::PermissionDenied | ErrorKind::ReadOnlyFilesystem)
     };
     let Ok(path) = resolve(path) else { return true };
     let file = OpenOptions::new().write(true).open(&path);
-    // What is wrong otherwise is told by opening it.
+    // Other errors are reported when the database is opened.
     !file.is_err_and(|error| refused(&error)) && lock::can_be_taken(&path)
 }
 
-/// The one true name of a database that may not exist yet: locks are files beside the database, and a
-/// symbolic link to it must lead to the same ones.
+/// The canonical path of a database that may not exist yet. Lock files are beside the database, and a symbolic link to the
+/// database must lead to the same lock files.
 pub(in crate::queue) fn resolve(path: &Path) -> Result<PathBuf, QueueError> {
     if let Ok(existing) = path.canonicalize() {
         return Ok(existing);
@@ -108,35 +110,27 @@ fn options(path: &Path, settings: Settings) -> SqliteConnectOptions {
     SqliteConnectOptions::new()
         .filename(path)
         .busy_timeout(settings.busy_timeout)
-        // In a write-ahead log this can lose the last transactions in a power cut, never the database; what
-        // is lost is simulated again.
+        // With a write-ahead log, a power cut can lose the last transactions, but it cannot damage the database. Lost
+        // results are simulated again.
         .synchronous(SqliteSynchronous::Normal)
-        // A turn touches some pages of many tables; what is written to the log again and again is folded back once.
+        // An exchange changes some pages of many tables. With fewer checkpoints, a page that changes often is copied from
+        // the log into the database once.
         .pragma("cache_size", CACHE_KIB)
         .pragma("wal_autocheckpoint", LOG_PAGES)
-        // What a statement would need to be undone alone: written to a file, it costs a fifth of a turn.
+        // Statement journals in a file would take a fifth of the time of an exchange.
         .pragma("temp_store", "MEMORY")
-        // Rows come from a thread of their own; waking each other for every few costs more than reading them.
+        // A separate thread reads the rows. With a small buffer, the two threads would wake each other so often that this
+        // takes more time than reading.
         .row_buffer_size(ROWS_IN_FLIGHT)
 }
 
 async fn connect(path: &Path, options: SqliteConnectOptions) -> Result<SqliteConnection, QueueError> {
-    options.connect().await.map_err(|source| open_error(path, source))
-}
-
-/// Reading a file that is not a database fails wherever `SQLite` first looks at it.
-pub(super) fn open_error(path: &Path, source: sqlx::Error) -> QueueError {
-    if sqlite_code(&source) == Some(SQLITE_NOTADB) {
-        return QueueError::NotADatabase { path: path.into() };
-    }
-    match QueueError::from(source) {
-        QueueError::Database(source) => QueueError::Open { database: path.into(), source },
-        known => known,
-    }
+    options.connect().await.map_err(|source| classify_at_open(path, source))
 }
 
 async fn check_library(connection: &mut SqliteConnection) -> Result<(), QueueError> {
-    let version: String = sqlx::query_scalar("SELECT sqlite_version()").fetch_one(connection).await?;
+    let version: String =
+        sqlx::query_scalar("SELECT sqlite_version()").fetch_one(connection).await.map_err(classify)?;
     if is_safe(&version) {
         Ok(())
     } else {
@@ -150,9 +144,10 @@ fn is_safe(version: &str) -> bool {
     parts.as_slice() >= OLDEST_SQLITE.as_slice()
 }
 
-/// The pragma answers with the mode now in force and reports no error if that is not the one asked for.
+/// The pragma returns the mode that is now in force. It reports no error if the requested mode is not possible.
 async fn use_write_ahead_log(connection: &mut SqliteConnection, path: &Path) -> Result<(), QueueError> {
-    let mode: String = sqlx::query_scalar("PRAGMA journal_mode = WAL").fetch_one(connection).await?;
+    let mode: String =
+        sqlx::query_scalar("PRAGMA journal_mode = WAL").fetch_one(connection).await.map_err(classify)?;
     if mode.eq_ignore_ascii_case("wal") {
         Ok(())
     } else {
@@ -164,7 +159,7 @@ async fn use_write_ahead_log(connection: &mut SqliteConnection, path: &Path) -> 
 mod tests {
     use super::is_safe;
 
-    /// Protects: versions are compared as numbers, and one that cannot be read is not trusted.
+    /// Protects: versions are compared as numbers, and a version that cannot be parsed is refused.
     #[test]
     fn old_libraries_are_refused() {
         for (version, safe) in [

@@ -1,4 +1,4 @@
-//! The tables and their versions: the files in `migrations/sqlite`, each applied once, in order.
+//! The tables and their versions: the files in `migrations/sqlite`. Each is applied once, in order.
 
 use std::cmp::Ordering;
 use std::path::Path;
@@ -6,25 +6,25 @@ use std::path::Path;
 use sqlx::migrate::{MigrateError, Migration, MigrationType, Migrator};
 use sqlx::{SqlSafeStr, SqliteConnection};
 
+use super::error::{classify, classify_at_open};
 use super::lock::FormerWorkerLock;
-use super::open::open_error;
-use crate::queue::QueueError;
+use crate::queue::error::QueueError;
 
-/// Set by the first migration: "trib" in ASCII.
+/// The application id in the file's header, set by the first migration: "trib" in ASCII.
 const APPLICATION_ID: i64 = 0x7472_6962;
 
-/// Without an owner's mark, only a database without tables may become ours. The table of migrations is not
-/// counted: it is created before the first migration, and the program may have been stopped in between.
+/// A database without an application id may only be used if it has no tables. The table of migrations does not count: it
+/// is created before the first migration, and the program may have been stopped in between.
 const OTHER_TABLES: &str = "
     SELECT COUNT(*) FROM sqlite_schema
     WHERE type = 'table' AND name <> '_sqlx_migrations' AND name NOT LIKE 'sqlite\\_%' ESCAPE '\\'";
 
-/// Refuses a file that is no database, or another program's, before anything in it is changed.
+/// Refuses a file that is not a database, or a database of another program, before anything in it is changed.
 pub(super) async fn check_ownership(
     connection: &mut SqliteConnection,
     path: &Path,
 ) -> Result<(), QueueError> {
-    let failed = |source| open_error(path, source);
+    let failed = |source| classify_at_open(path, source);
     let id: i64 =
         sqlx::query_scalar("PRAGMA application_id").fetch_one(&mut *connection).await.map_err(failed)?;
     if id == APPLICATION_ID {
@@ -34,20 +34,24 @@ pub(super) async fn check_ownership(
     if id == 0 && tables == 0 { Ok(()) } else { Err(QueueError::ForeignDatabase { path: path.into() }) }
 }
 
-/// Brings the tables up to date. The caller holds the opening lock: the migrator takes none on `SQLite`.
+/// Brings the tables up to date. The caller must hold the opening lock: sqlx's migrator takes no lock on `SQLite`.
 ///
-/// Foreign keys are off on return, and to be switched on.
+/// Foreign keys are off on return; the caller must switch them on.
 pub(super) async fn migrate(connection: &mut SqliteConnection, path: &Path) -> Result<(), QueueError> {
     let migrator = migrator();
     let known = newest(&migrator);
-    // Tables are rebuilt under those that refer to them; the pragma does nothing inside a migration's transaction.
-    sqlx::query("PRAGMA foreign_keys = OFF").execute(&mut *connection).await?;
-    let former = if version(connection).await? == 1 { Some(FormerWorkerLock::take(path)?) } else { None };
+    // A migration rebuilds tables that others refer to. The pragma has no effect inside the migration's transaction.
+    sqlx::query("PRAGMA foreign_keys = OFF").execute(&mut *connection).await.map_err(classify)?;
+    let former = if version(connection).await.map_err(classify)? == 1 {
+        Some(FormerWorkerLock::take(path)?)
+    } else {
+        None
+    };
     migrator.run(connection).await.map_err(|error| match error {
         MigrateError::VersionMissing(found) if found > known => {
             QueueError::NewerDatabase { database: path.into(), found, known }
         }
-        source => QueueError::Migrate { database: path.into(), source },
+        error => QueueError::Migrate { database: path.into(), source: error.into() },
     })?;
     if let Some(former) = former {
         former.remove();
@@ -55,9 +59,9 @@ pub(super) async fn migrate(connection: &mut SqliteConnection, path: &Path) -> R
     Ok(())
 }
 
-/// Refuses tables that this program does not read as they are, where they cannot be changed.
+/// Refuses a read-only database with tables of another version, which would have to be migrated first.
 pub(super) async fn check_version(connection: &mut SqliteConnection, path: &Path) -> Result<(), QueueError> {
-    let (found, needed) = (version(connection).await?, newest(&migrator()));
+    let (found, needed) = (version(connection).await.map_err(classify)?, newest(&migrator()));
     match found.cmp(&needed) {
         Ordering::Equal => Ok(()),
         Ordering::Less => Err(QueueError::OlderDatabase { path: path.into(), found, needed }),
@@ -66,7 +70,7 @@ pub(super) async fn check_version(connection: &mut SqliteConnection, path: &Path
 }
 
 /// The version of the tables, 0 if there are none.
-async fn version(connection: &mut SqliteConnection) -> Result<i64, QueueError> {
+async fn version(connection: &mut SqliteConnection) -> Result<i64, sqlx::Error> {
     let tables: i64 =
         sqlx::query_scalar("SELECT COUNT(*) FROM sqlite_schema WHERE name = '_sqlx_migrations'")
             .fetch_one(&mut *connection)
@@ -75,7 +79,7 @@ async fn version(connection: &mut SqliteConnection) -> Result<i64, QueueError> {
         return Ok(0);
     }
     let newest = sqlx::query_scalar("SELECT COALESCE(MAX(version), 0) FROM _sqlx_migrations");
-    Ok(newest.fetch_one(connection).await?)
+    newest.fetch_one(connection).await
 }
 
 fn newest(migrator: &Migrator) -> i64 {

@@ -168,7 +168,7 @@ async fn who_was_away_too_long_goes_on() {
     assert_eq!(late.refused, ["p", "q"]);
     assert_eq!(keys(&late.claimed[0]), ["r"]);
     assert_eq!(other.take_back().await.unwrap(), TakenBack::default(), "it is there again");
-    assert_eq!(other.alive().await.unwrap().workers, 2);
+    assert_eq!(other.active_workers().await.unwrap().workers, 2);
 }
 
 /// Protects: a server that is not there is an error that says so, at once, with the name and without the password.

@@ -1,12 +1,12 @@
 //! Who is there, how long jobs took, and what results were made with.
 
-use tribosweep::queue::{Alive, FinishedOutcome, MadeWith, QueueError, Scope, Worker};
+use tribosweep::queue::{ActiveWorkers, FinishedOutcome, ProvenanceGroup, QueueError, Scope, Worker};
 
 use super::ENGINE;
 use crate::support::{Sandbox, claim, dead_worker, done, failed, finish, foreign_worker, job, of, study};
 
-fn alive(workers: u64, threads: u64) -> Alive {
-    Alive { workers, threads }
+fn alive(workers: u64, threads: u64) -> ActiveWorkers {
+    ActiveWorkers { workers, threads }
 }
 
 /// Protects: workers are there while their process is, whatever their last sign of life; one that is to stop is not
@@ -17,15 +17,15 @@ async fn the_living_are_counted() {
     let lease_ms = 120_000;
     sandbox.clock.set(10 * lease_ms);
     let mut own = sandbox.open_as(&Worker { threads: 3, ..Worker::this_process(1, "test", "") }).await;
-    assert_eq!(own.alive().await.unwrap(), alive(1, 3));
+    assert_eq!(own.active_workers().await.unwrap(), alive(1, 3));
     sandbox.open_as(&dead_worker()).await;
-    assert_eq!(own.alive().await.unwrap(), alive(1, 3));
+    assert_eq!(own.active_workers().await.unwrap(), alive(1, 3));
     sandbox.open_as(&Worker { threads: 4, ..foreign_worker() }).await;
-    assert_eq!(own.alive().await.unwrap(), alive(2, 7));
+    assert_eq!(own.active_workers().await.unwrap(), alive(2, 7));
     sandbox.clock.set(11 * lease_ms);
-    assert_eq!(own.alive().await.unwrap(), alive(1, 3), "a lease without a sign of life");
-    own.stopping().await.unwrap();
-    assert_eq!(own.alive().await.unwrap(), alive(0, 0));
+    assert_eq!(own.active_workers().await.unwrap(), alive(1, 3), "a lease without a sign of life");
+    own.mark_stopping().await.unwrap();
+    assert_eq!(own.active_workers().await.unwrap(), alive(0, 0));
 }
 
 /// Protects: an estimate is made of the study's jobs that are done, with what they cost and took.
@@ -93,7 +93,7 @@ async fn origins_are_told_once() {
     let mut first = sandbox.open_as(&worker("first")).await;
     first.submit(&study("a", &["x", "y", "z", "x"])).await.unwrap();
     first.submit(&study("b", &["other"])).await.unwrap();
-    assert!(first.made_with("a").await.unwrap().is_empty());
+    assert!(first.provenance_groups("a").await.unwrap().is_empty());
     claim(&mut first, of("a"), 2).await;
     claim(&mut first, of("b"), 1).await;
     sandbox.clock.set(1_000);
@@ -106,13 +106,13 @@ async fn origins_are_told_once() {
     sandbox.clock.set(3_000);
     finish(&mut second, "z", 1, done("record")).await;
 
-    let made = |provenance: &str, jobs, first_finished_ms, last_finished_ms| MadeWith {
+    let made = |provenance: &str, jobs, first_finished_ms, last_finished_ms| ProvenanceGroup {
         provenance: Some(provenance.to_owned()),
         jobs,
         first_finished_ms,
         last_finished_ms,
     };
     let expected = [made("first", 2, 1_000, 2_000), made("second", 1, 3_000, 3_000)];
-    assert_eq!(first.made_with("a").await.unwrap(), expected);
-    assert!(matches!(first.made_with("c").await, Err(QueueError::UnknownStudy { .. })));
+    assert_eq!(first.provenance_groups("a").await.unwrap(), expected);
+    assert!(matches!(first.provenance_groups("c").await, Err(QueueError::UnknownStudy { .. })));
 }

@@ -110,7 +110,7 @@ async fn a_worker_has_its_own_lease() {
     for now_ms in [600_000, 3_500_000] {
         sandbox.clock.set(now_ms);
         assert_eq!(queue.take_back().await.unwrap(), NOTHING);
-        assert_eq!(queue.alive().await.unwrap().workers, 2, "after {now_ms} ms");
+        assert_eq!(queue.active_workers().await.unwrap().workers, 2, "after {now_ms} ms");
     }
     // It was idle until now: the job's lease outlasts the worker's.
     claim(&mut far, Scope::All, 1).await;
@@ -167,20 +167,20 @@ async fn who_is_late_is_missed() {
     let lease_ms = i64::try_from(Settings::default().lease.as_millis()).unwrap();
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
-    assert!(!queue.misses_somebody().await.unwrap(), "nobody misses himself");
+    assert!(!queue.has_missing_workers().await.unwrap(), "nobody misses himself");
     let mut far = left_by(&sandbox, &foreign_worker()).await;
     sandbox.clock.set(lease_ms / 4 - 1);
-    assert!(!queue.misses_somebody().await.unwrap());
+    assert!(!queue.has_missing_workers().await.unwrap());
     sandbox.clock.set(lease_ms / 4);
-    assert!(queue.misses_somebody().await.unwrap());
+    assert!(queue.has_missing_workers().await.unwrap());
     far.heartbeat().await.unwrap();
-    assert!(!queue.misses_somebody().await.unwrap());
-    far.stopping().await.unwrap();
-    assert!(queue.misses_somebody().await.unwrap(), "it gives its jobs back");
+    assert!(!queue.has_missing_workers().await.unwrap());
+    far.mark_stopping().await.unwrap();
+    assert!(queue.has_missing_workers().await.unwrap(), "it gives its jobs back");
     far.unregister().await.unwrap();
-    assert!(!queue.misses_somebody().await.unwrap());
+    assert!(!queue.has_missing_workers().await.unwrap());
     sandbox.open_as(&dead_worker()).await;
-    assert!(queue.misses_somebody().await.unwrap());
+    assert!(queue.has_missing_workers().await.unwrap());
 }
 
 /// Protects: a worker that was cut off until its row was swept has lost its jobs, says so by its next sign of life, and
@@ -199,7 +199,7 @@ async fn a_forgotten_worker_comes_back() {
     assert!(!finish(&mut far, "z", 1, done("a late record of z")).await);
     assert_eq!(keys(&claim(&mut far, Scope::All, 1).await), ["z"]);
     assert!(finish(&mut far, "z", 2, done("record of z")).await);
-    assert_eq!(queue.alive().await.unwrap().workers, 2);
+    assert_eq!(queue.active_workers().await.unwrap().workers, 2);
     assert_eq!(queue.take_back().await.unwrap(), NOTHING);
     assert_eq!(sandbox.number("SELECT COUNT(*) FROM results").await, 2);
 }
@@ -273,7 +273,7 @@ async fn who_is_stopped_twice_has_not_crashed() {
         let mut dead = sandbox.open_as(&dead_worker()).await;
         claim(&mut dead, Scope::All, 1).await;
         if is_stopped {
-            dead.stopping().await.unwrap();
+            dead.mark_stopping().await.unwrap();
         }
         assert_eq!(queue.take_back().await.unwrap(), expected);
     }
