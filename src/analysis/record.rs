@@ -109,6 +109,60 @@ pub struct ElasticDisk {
     pub residual_max: f64,
 }
 
+impl EnergyTotals {
+    fn figures(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let Self { kinetic_j, elastic_j, load_work_j, drive_work_j, friction_j, damping_j, contact_loss_j } =
+            *self;
+        let figures = [
+            ("kinetic_j", kinetic_j),
+            ("elastic_j", elastic_j),
+            ("load_work_j", load_work_j),
+            ("drive_work_j", drive_work_j),
+            ("friction_j", friction_j),
+            ("damping_j", damping_j),
+            ("contact_loss_j", contact_loss_j),
+        ];
+        figures.into_iter()
+    }
+}
+
+impl ObservedNode {
+    fn figures(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let Self { name: _, y_peak_to_peak_m, lift_max_m, sigma_n_max_pa, slip_speed_max_m_s } = self;
+        let figures = [
+            ("y_peak_to_peak_m", *y_peak_to_peak_m),
+            ("lift_max_m", *lift_max_m),
+            ("sigma_n_max_pa", *sigma_n_max_pa),
+            ("slip_speed_max_m_s", *slip_speed_max_m_s),
+        ];
+        figures.into_iter()
+    }
+}
+
+impl ElasticDisk {
+    fn figures(&self) -> impl Iterator<Item = (&'static str, f64)> {
+        let Self {
+            elements: _,
+            track_element_m: [along_m, across_m, down_m],
+            longest_edge_m,
+            stages: _,
+            sweeps_mean,
+            sweeps_max,
+            residual_max,
+        } = *self;
+        let figures = [
+            ("track_element_m[0]", along_m),
+            ("track_element_m[1]", across_m),
+            ("track_element_m[2]", down_m),
+            ("longest_edge_m", longest_edge_m),
+            ("sweeps_mean", sweeps_mean),
+            ("sweeps_max", sweeps_max),
+            ("residual_max", residual_max),
+        ];
+        figures.into_iter()
+    }
+}
+
 /// What was found in one run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobRecord {
@@ -268,51 +322,11 @@ impl JobRecord {
             figures.push(("obstacle.drift".to_owned(), *drift));
         }
         if let Some(disk) = disk {
-            let ElasticDisk {
-                elements: _,
-                track_element_m,
-                longest_edge_m,
-                stages: _,
-                sweeps_mean,
-                sweeps_max,
-                residual_max,
-            } = disk;
-            let edges = track_element_m.iter().enumerate();
-            figures.extend(edges.map(|(i, value)| (format!("disk.track_element_m[{i}]"), *value)));
-            figures.extend([
-                ("disk.longest_edge_m".to_owned(), *longest_edge_m),
-                ("disk.sweeps_mean".to_owned(), *sweeps_mean),
-                ("disk.sweeps_max".to_owned(), *sweeps_max),
-                ("disk.residual_max".to_owned(), *residual_max),
-            ]);
+            figures.extend(disk.figures().map(|(path, value)| (format!("disk.{path}"), value)));
         }
-        let EnergyTotals {
-            kinetic_j,
-            elastic_j,
-            load_work_j,
-            drive_work_j,
-            friction_j,
-            damping_j,
-            contact_loss_j,
-        } = energy;
-        figures.extend([
-            ("energy.kinetic_j".to_owned(), *kinetic_j),
-            ("energy.elastic_j".to_owned(), *elastic_j),
-            ("energy.load_work_j".to_owned(), *load_work_j),
-            ("energy.drive_work_j".to_owned(), *drive_work_j),
-            ("energy.friction_j".to_owned(), *friction_j),
-            ("energy.damping_j".to_owned(), *damping_j),
-            ("energy.contact_loss_j".to_owned(), *contact_loss_j),
-        ]);
+        figures.extend(energy.figures().map(|(path, value)| (format!("energy.{path}"), value)));
         for (i, node) in nodes.iter().enumerate() {
-            let ObservedNode { name: _, y_peak_to_peak_m, lift_max_m, sigma_n_max_pa, slip_speed_max_m_s } =
-                node;
-            figures.extend([
-                (format!("nodes[{i}].y_peak_to_peak_m"), *y_peak_to_peak_m),
-                (format!("nodes[{i}].lift_max_m"), *lift_max_m),
-                (format!("nodes[{i}].sigma_n_max_pa"), *sigma_n_max_pa),
-                (format!("nodes[{i}].slip_speed_max_m_s"), *slip_speed_max_m_s),
-            ]);
+            figures.extend(node.figures().map(|(path, value)| (format!("nodes[{i}].{path}"), value)));
         }
         figures
     }

@@ -41,19 +41,19 @@ const MAX_REMEMBERED: usize = 64;
 /// Keys of parts that many jobs share, such as [`JobSpec::shared_part`]. A part that was met recently is not encoded
 /// again.
 #[derive(Debug)]
-pub(crate) struct SharedKeys {
+pub struct SharedKeys {
     solver_version: &'static str,
     recent: VecDeque<(JobSpec, String)>,
 }
 
 impl SharedKeys {
     /// Keys under that version of the solver.
-    pub(crate) fn new(solver_version: &'static str) -> Self {
+    pub fn new(solver_version: &'static str) -> Self {
         Self { solver_version, recent: VecDeque::new() }
     }
 
     /// The [`job_key`] of `part`.
-    pub(crate) fn key(&mut self, part: JobSpec) -> String {
+    pub fn key(&mut self, part: JobSpec) -> String {
         if let Some((_, key)) = self.recent.iter().find(|(known, _)| *known == part) {
             return key.clone();
         }

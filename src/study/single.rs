@@ -56,7 +56,7 @@ impl Study {
     ///
     /// # Errors
     /// Those of [`Study::single`] except for open parameters.
-    pub(crate) fn single_on_base(
+    pub fn single_on_base(
         &self,
         source: &str,
         preset: Option<Preset>,

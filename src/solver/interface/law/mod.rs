@@ -40,8 +40,8 @@ pub(in crate::solver) trait FrictionLaw<R: Real>: Copy {
 impl Law {
     /// The largest friction force \[N\] of one node, as of [`FrictionLaw::limit_n`].
     #[inline(always)]
-    pub(in crate::solver) fn limit_n(&self, normal_n: f64, increment_m: [f64; 2], slipped: f64) -> f64 {
-        match *self {
+    pub(in crate::solver) fn limit_n(self, normal_n: f64, increment_m: [f64; 2], slipped: f64) -> f64 {
+        match self {
             Self::Coulomb { mu } => Coulomb { mu }.limit_n(normal_n, increment_m, slipped),
         }
     }
