@@ -39,7 +39,7 @@ impl Layout {
 
 /// Where the lanes of a node are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Place {
+pub struct LaneSlot {
     block: usize,
     slot: usize,
 }
@@ -148,17 +148,17 @@ impl<const L: usize> Field<L> {
     }
 
     /// Where a node is.
-    pub fn place(&self, node: usize) -> Place {
+    pub fn place(&self, node: usize) -> LaneSlot {
         let along = node % self.nodes_per_line * L;
         let line = node / self.nodes_per_line;
-        Place { block: line * self.blocks_per_line + along / WIDTH, slot: along % WIDTH }
+        LaneSlot { block: line * self.blocks_per_line + along / WIDTH, slot: along % WIDTH }
     }
 
     /// The lanes of one component at a place.
     ///
     /// # Panics
     /// Never for a place of this field: lanes do not straddle blocks.
-    pub fn at(&self, place: Place, component: usize) -> &[f64; L] {
+    pub fn at(&self, place: LaneSlot, component: usize) -> &[f64; L] {
         self.blocks[place.block].0[component][place.slot..]
             .first_chunk()
             .expect("lanes do not straddle blocks")
@@ -168,7 +168,7 @@ impl<const L: usize> Field<L> {
     ///
     /// # Panics
     /// Never for a place of this field: lanes do not straddle blocks.
-    pub fn at_mut(&mut self, place: Place, component: usize) -> &mut [f64; L] {
+    pub fn at_mut(&mut self, place: LaneSlot, component: usize) -> &mut [f64; L] {
         self.blocks[place.block].0[component][place.slot..]
             .first_chunk_mut()
             .expect("lanes do not straddle blocks")

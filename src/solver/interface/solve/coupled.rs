@@ -22,7 +22,7 @@ use super::Given;
 use super::sweeps::{ContactRow, Solves, TargetNode, TargetNodes};
 use crate::solver::body::block::Face;
 use crate::solver::body::ring::{RingBody, RingState};
-use crate::solver::field::{Field, Place, WIDTH, add_slots};
+use crate::solver::field::{Field, LaneSlot, WIDTH, add_slots};
 use crate::solver::interface::LIMIT;
 use crate::solver::interface::target::patch::{Grid, PatchCoord, Share};
 use crate::solver::interface::{Contacts, Interface, Status};
@@ -135,7 +135,7 @@ impl<const L: usize> Before<L> {
 /// A slave node.
 #[derive(Debug, Clone, Copy)]
 struct Slave {
-    place: Place,
+    place: LaneSlot,
     angle_rad: f64,
     across: PatchCoord,
     inverse_mass: f64,

@@ -6,7 +6,7 @@
 
 use super::Given;
 use crate::solver::body::block::Face;
-use crate::solver::field::Place;
+use crate::solver::field::LaneSlot;
 use crate::solver::interface::LIMIT;
 use crate::solver::interface::law::project;
 use crate::solver::interface::{Contacts, SlaveNode, Status};
@@ -14,7 +14,7 @@ use crate::solver::interface::{Contacts, SlaveNode, Status};
 /// A slave node with a fixed component.
 #[derive(Debug, Clone)]
 pub(super) struct HeldNode<const L: usize> {
-    place: Place,
+    place: LaneSlot,
     node: SlaveNode,
     /// Its displacements [m] at t_n.
     u_m: [[f64; L]; 3],
@@ -23,7 +23,7 @@ pub(super) struct HeldNode<const L: usize> {
 }
 
 impl<const L: usize> HeldNode<L> {
-    pub fn new(place: Place, node: SlaveNode) -> Self {
+    pub fn new(place: LaneSlot, node: SlaveNode) -> Self {
         Self { place, node, u_m: [[0.0; L]; 3], slipped: [0.0; L] }
     }
 

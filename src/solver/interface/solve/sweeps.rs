@@ -95,7 +95,7 @@ pub(super) struct TargetNode {
     /// Force [N] that the slave nodes receive through it.
     pub force_n: [f64; 3],
     /// Its displacement [m] under that force.
-    pub compliance_m: [f64; 3],
+    pub displacement_m: [f64; 3],
 }
 
 impl TargetNode {
@@ -129,7 +129,7 @@ impl TargetNodes {
         for share in shares {
             let node = self.node(share);
             for c in 0..3 {
-                relative[c] += share.weight * node.compliance_m[c];
+                relative[c] += share.weight * node.displacement_m[c];
             }
         }
         relative
@@ -193,7 +193,7 @@ impl TargetNodes {
                     for c in 0..3 {
                         let part = share.weight * delta[c];
                         node.force_n[c] += part;
-                        node.compliance_m[c] += (u_scale * node.inverse_mass) * part;
+                        node.displacement_m[c] += (u_scale * node.inverse_mass) * part;
                         change = change.max(delta[c].abs());
                     }
                 }
@@ -228,7 +228,7 @@ impl TargetNodes {
     pub fn respond(&mut self, body: &RingBody, u_scale: f64) {
         for node in &mut self.nodes {
             // In the node's own directions at first.
-            node.compliance_m = [0.0; 3];
+            node.displacement_m = [0.0; 3];
         }
         let reach = body.response().reach() as isize;
         let (columns, rows) = ((self.nodes.len() / self.rows) as isize, self.rows as isize);
@@ -246,13 +246,13 @@ impl TargetNodes {
                     let way = times(&top[((r + reach) * line + c + reach) as usize], force);
                     let node = &mut self.nodes[((column + c) * rows + row + r) as usize];
                     for i in 0..3 {
-                        node.compliance_m[i] += way[i];
+                        node.displacement_m[i] += way[i];
                     }
                 }
             }
         }
         for node in &mut self.nodes {
-            node.compliance_m = node.in_pin(node.compliance_m.map(|way| u_scale * way));
+            node.displacement_m = node.in_pin(node.displacement_m.map(|way| u_scale * way));
         }
     }
 

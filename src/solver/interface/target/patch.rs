@@ -17,7 +17,7 @@ pub const BILINEAR: usize = 4;
 pub struct PatchCoord {
     /// Cell, counted along the track.
     pub cell: isize,
-    /// Place in it.
+    /// LaneSlot in it.
     pub part: f64,
 }
 
