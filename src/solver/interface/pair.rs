@@ -14,7 +14,7 @@ pub struct SlaveNode {
     pub mass_kg: f64,
     /// Tributary area \[m²\].
     pub area_m2: f64,
-    /// LaneSlot in the contact face \[m\], x and y from the pin's axis.
+    /// Place in the contact face \[m\], x and y from the pin's axis.
     pub position_m: [f64; 2],
     /// Gap \[m\] between the undeformed pin and the undeformed target. The gap of a node is this plus its displacement
     /// in z, less that of the target.

@@ -17,7 +17,7 @@ pub const BILINEAR: usize = 4;
 pub struct PatchCoord {
     /// Cell, counted along the track.
     pub cell: isize,
-    /// LaneSlot in it.
+    /// Place in it.
     pub part: f64,
 }
 
