@@ -28,7 +28,6 @@ use nalgebra::{Complex, DMatrix, DVector};
 use tribosweep::analysis::{Outcome, Unobserved, drive, solve};
 use tribosweep::solver::field::Field;
 use tribosweep::solver::interface::ContactState;
-use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, State, step};
 use tribosweep::spec::JobSpec;
 
@@ -61,7 +60,7 @@ struct Sliding {
 }
 
 impl Sliding {
-    fn new(model: &Model, drive: &Drive) -> Self {
+    fn new(model: &Model, drive: &Drive, mu: f64) -> Self {
         let n = 3 * model.mesh().node_count();
         let k = stiffness(model);
         let top_z: Vec<usize> = model.mesh().top_nodes().map(|node| 3 * node + 2).collect();
@@ -78,7 +77,6 @@ impl Sliding {
         let mass = DVector::from_fn(size, |q, _| {
             moved[q].iter().map(|dof| model.pin().masses_kg()[dof / 3]).sum::<f64>()
         });
-        let Law::Coulomb { mu } = drive.law;
         // Friction μ N_i d_i on the slave nodes, N = K_z u.
         let mut sliding = k.clone();
         for slave in model.slaves() {
@@ -293,7 +291,7 @@ fn runs_follow_the_recursion() {
     for mu in [0.1, 0.2, 0.3, 0.4] {
         for safety_factor in [0.8, 0.4] {
             let (model, drive) = case(mu, safety_factor);
-            let sliding = Sliding::new(&model, &drive);
+            let sliding = Sliding::new(&model, &drive, mu);
             let exact = sliding.at_step(model.time_step_s(), sliding.leading());
             let found = followed(&model, &drive, &sliding, &exact);
             let size = exact.lambda.norm();
@@ -311,7 +309,7 @@ fn runs_follow_the_recursion() {
 #[test]
 fn the_recursion_converges_in_first_order() {
     let (model, drive) = case(0.4, 0.4);
-    let sliding = Sliding::new(&model, &drive);
+    let sliding = Sliding::new(&model, &drive, 0.4);
     let exact = sliding.leading();
     let mut growth = Evidence::new("Flutter", "growth rate [1/s] over the time step", SOURCE);
     let mut frequency = Evidence::new("Flutter", "frequency [Hz] over the time step", SOURCE);
@@ -331,7 +329,7 @@ fn the_recursion_converges_in_first_order() {
 #[test]
 fn the_squeal_is_right_at_a_working_step() {
     let (model, drive) = case(0.4, 0.4);
-    let sliding = Sliding::new(&model, &drive);
+    let sliding = Sliding::new(&model, &drive, 0.4);
     let exact = sliding.leading();
     let found = followed(&model, &drive, &sliding, &sliding.at_step(model.time_step_s(), exact));
     let resolution = format!("Δt {:.2e} s", model.time_step_s());
@@ -366,13 +364,13 @@ fn onset(mut low: f64, mut high: f64, growth: impl Fn(f64) -> f64) -> f64 {
 fn onset_of_squeal_is_that_of_the_eigenvalues() {
     let exact = onset(0.2, 0.3, |mu| {
         let (model, drive) = case(mu, 0.4);
-        Sliding::new(&model, &drive).leading_near(SQUEAL_HZ).re
+        Sliding::new(&model, &drive, mu).leading_near(SQUEAL_HZ).re
     });
     let mut evidence = Evidence::new("Flutter", "onset μ of the squeal, from growth in runs", SOURCE);
     for safety_factor in [0.2, 0.1, 0.05] {
         let found = onset(0.2, 0.3, |mu| {
             let (model, drive) = case(mu, safety_factor);
-            let sliding = Sliding::new(&model, &drive);
+            let sliding = Sliding::new(&model, &drive, mu);
             let mode = sliding.at_step(model.time_step_s(), sliding.leading_near(SQUEAL_HZ));
             followed(&model, &drive, &sliding, &mode).re
         });
@@ -391,7 +389,7 @@ fn reported_decay_is_the_eigenvalue() {
     let mut evidence = Evidence::new("Flutter", "growth rate [1/s] in the record of a stable job", SOURCE);
     for mu in [0.1, 0.2] {
         let (model, drive) = case(mu, 0.7);
-        let exact = Sliding::new(&model, &drive).leading();
+        let exact = Sliding::new(&model, &drive, mu).leading();
         let record = solve(&spec(mu, 0.7), &mut Unobserved).unwrap();
         assert_eq!(record.outcome, Outcome::Decayed);
         let found = record.growth_rate_per_s.expect("a decayed job has a growth rate");
