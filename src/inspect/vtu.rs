@@ -41,7 +41,7 @@ pub fn write_grid(
     let mut header = format!(
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-         <UnstructuredGrid>\n<Bin NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
+         <UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
         points_m.len(),
         cells.len()
     );
@@ -66,7 +66,7 @@ pub fn write_grid(
     header += &arrays.add("Int64", "connectivity", 1, &[], connectivity);
     header += &arrays.add("Int64", "offsets", 1, &[], offsets);
     header += &arrays.add("UInt8", "types", 1, &[], vec![HEXAHEDRON; cells.len()]);
-    header += "</Cells>\n</Bin>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+    header += "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
     out.write_all(header.as_bytes())?;
     out.write_all(&arrays.bytes)?;
     out.write_all(b"\n</AppendedData>\n</VTKFile>\n")
