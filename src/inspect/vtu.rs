@@ -106,3 +106,43 @@ impl Arrays {
         element
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects: the elements have the names and the nesting of VTK's format, also where neither VTK nor meshio is
+    /// installed to read a file.
+    #[test]
+    fn elements_are_those_of_the_format() {
+        let values = Values::Codes(vec![0; 8]);
+        let data = [PointData { name: "state", components: &[], values }];
+        let mut file = Vec::new();
+        write_grid(&[[0.0; 3]; 8], &[[0, 1, 2, 3, 4, 5, 6, 7]], &data, &mut file).unwrap();
+        // The appended data are no text.
+        let text = String::from_utf8_lossy(&file);
+        let header = format!("{}</VTKFile>", text.split_once("<AppendedData").unwrap().0);
+        let document = roxmltree::Document::parse(&header).unwrap();
+        let path = |element: roxmltree::Node| {
+            let mut names: Vec<&str> = element.ancestors().map(|node| node.tag_name().name()).collect();
+            names.reverse();
+            names.join("/")
+        };
+        let arrays = document.descendants().filter(|node| node.has_tag_name("DataArray"));
+        let found: Vec<_> =
+            arrays.map(|array| (path(array.parent().unwrap()), array.attribute("Name").unwrap())).collect();
+        let piece = "/VTKFile/UnstructuredGrid/Piece";
+        let [point_data, points, cells] =
+            ["PointData", "Points", "Cells"].map(|name| format!("{piece}/{name}"));
+        assert_eq!(
+            found,
+            [
+                (point_data, "state"),
+                (points, "points"),
+                (cells.clone(), "connectivity"),
+                (cells.clone(), "offsets"),
+                (cells, "types"),
+            ]
+        );
+    }
+}
