@@ -41,7 +41,7 @@ pub fn write_grid(
     let mut header = format!(
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-         <UnstructuredGrid>\n<Bin NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
+         <UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
         points_m.len(),
         cells.len()
     );
@@ -66,7 +66,7 @@ pub fn write_grid(
     header += &arrays.add("Int64", "connectivity", 1, &[], connectivity);
     header += &arrays.add("Int64", "offsets", 1, &[], offsets);
     header += &arrays.add("UInt8", "types", 1, &[], vec![HEXAHEDRON; cells.len()]);
-    header += "</Cells>\n</Bin>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
+    header += "</Cells>\n</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
     out.write_all(header.as_bytes())?;
     out.write_all(&arrays.bytes)?;
     out.write_all(b"\n</AppendedData>\n</VTKFile>\n")
@@ -104,5 +104,45 @@ impl Arrays {
         self.bytes.extend((bytes.len() as u64).to_le_bytes());
         self.bytes.extend(bytes);
         element
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects: the elements have the names and the nesting of VTK's format, also where neither VTK nor meshio is
+    /// installed to read a file.
+    #[test]
+    fn elements_are_those_of_the_format() {
+        let values = Values::Codes(vec![0; 8]);
+        let data = [PointData { name: "state", components: &[], values }];
+        let mut file = Vec::new();
+        write_grid(&[[0.0; 3]; 8], &[[0, 1, 2, 3, 4, 5, 6, 7]], &data, &mut file).unwrap();
+        // The appended data are no text.
+        let text = String::from_utf8_lossy(&file);
+        let header = format!("{}</VTKFile>", text.split_once("<AppendedData").unwrap().0);
+        let document = roxmltree::Document::parse(&header).unwrap();
+        let path = |element: roxmltree::Node| {
+            let mut names: Vec<&str> = element.ancestors().map(|node| node.tag_name().name()).collect();
+            names.reverse();
+            names.join("/")
+        };
+        let arrays = document.descendants().filter(|node| node.has_tag_name("DataArray"));
+        let found: Vec<_> =
+            arrays.map(|array| (path(array.parent().unwrap()), array.attribute("Name").unwrap())).collect();
+        let piece = "/VTKFile/UnstructuredGrid/Piece";
+        let [point_data, points, cells] =
+            ["PointData", "Points", "Cells"].map(|name| format!("{piece}/{name}"));
+        assert_eq!(
+            found,
+            [
+                (point_data, "state"),
+                (points, "points"),
+                (cells.clone(), "connectivity"),
+                (cells.clone(), "offsets"),
+                (cells, "types"),
+            ]
+        );
     }
 }
