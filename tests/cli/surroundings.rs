@@ -63,7 +63,7 @@ fn a_disk_that_is_too_small_for_checkpoints() {
     let (code, _, told) = folder.start("work --checkpoint-every 0.05").end();
     assert_eq!(code, Some(0), "{told}");
     assert!(
-        told.contains("the state of running jobs cannot be kept: the disk of the database is full"),
+        told.contains("the state of running jobs cannot be stored: the disk of the database is full"),
         "{told}"
     );
     assert_eq!(folder.counts("study")["done"], 4);
