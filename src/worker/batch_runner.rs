@@ -15,7 +15,7 @@ use std::time::{Duration, Instant};
 const PREFETCH_BELOW: Duration = Duration::from_millis(50);
 
 /// The jobs that are advanced together, and those that wait for a lane.
-pub(super) struct BatchRunner<'a> {
+pub struct BatchRunner<'a> {
     channel: &'a WorkerChannel,
     batch: Batch,
     /// The batch's name in requests.
@@ -126,12 +126,9 @@ impl<'a> BatchRunner<'a> {
     }
 
     fn wait_for_lanes(&mut self, assignments: Vec<Assignment>) {
-        for assignment in assignments {
-            match ParsedJob::parse(assignment) {
-                Ok(job) => self.waiting.push_back(job),
-                Err((assignment, failure)) => self.channel.finish(&assignment.job, failure, 0.0),
-            }
-        }
+        let jobs =
+            assignments.into_iter().filter_map(|assignment| ParsedJob::parse(assignment, self.channel));
+        self.waiting.extend(jobs);
     }
 
     /// Begins waiting jobs in free lanes.

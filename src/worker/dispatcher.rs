@@ -236,7 +236,7 @@ impl<'a> Dispatcher<'a> {
                         // The jobs are being released, and no later checkpoint will replace this one.
                         let is_last = self.interrupt.is_raised();
                         if !is_last {
-                            progress.waiting(&format!("the state of running jobs cannot be kept: {error}"));
+                            progress.waiting(&format!("the state of running jobs cannot be stored: {error}"));
                         }
                         is_refused = !is_last || backoff.wait(error, self.interrupt, progress).await.is_err();
                     }

@@ -60,18 +60,11 @@ fn run_jobs(channel: &WorkerChannel) {
     loop {
         channel.request(None, 1);
         let Ok(assignments) = channel.wait_for_reply() else { return };
-        for assignment in assignments {
-            let mut jobs = match ParsedJob::parse(assignment) {
-                Ok(job) => vec![job],
-                Err((assignment, failure)) => {
-                    channel.finish(&assignment.job, failure, 0.0);
-                    continue;
-                }
-            };
-            // A runner returns the jobs that do not match its batch.
-            while let Some(first) = jobs.pop() {
-                jobs.extend(BatchRunner::run(channel, first));
-            }
+        let mut jobs: Vec<_> =
+            assignments.into_iter().filter_map(|assignment| ParsedJob::parse(assignment, channel)).collect();
+        // A runner returns the jobs that do not match its batch.
+        while let Some(first) = jobs.pop() {
+            jobs.extend(BatchRunner::run(channel, first));
         }
     }
 }

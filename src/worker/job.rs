@@ -1,6 +1,6 @@
-//! A job in the hands of a thread: its payload is parsed once, and its end is put into the words of the queue.
+//! A job on its thread: its payload is parsed once, and its end becomes an outcome for the queue.
 
-use super::channel::Assignment;
+use super::channel::{Assignment, WorkerChannel};
 use crate::analysis::{JobError, JobRecord};
 use crate::queue::FinishedOutcome;
 use crate::spec::JobSpec;
@@ -16,18 +16,20 @@ pub struct ParsedJob {
 }
 
 impl ParsedJob {
-    /// Parses the payload. If it is no job, the assignment comes back with its outcome.
-    pub fn parse(assignment: Assignment) -> Result<Self, (Assignment, FinishedOutcome)> {
+    /// Parses the payload. If it is no job, reports that the job failed.
+    pub fn parse(assignment: Assignment, channel: &WorkerChannel) -> Option<Self> {
         match serde_json::from_str(&assignment.job.payload) {
-            Ok(spec) => Ok(Self { assignment, spec }),
+            Ok(spec) => Some(Self { assignment, spec }),
             Err(error) => {
-                Err((assignment, FinishedOutcome::Failed { error: format!("unreadable job: {error}") }))
+                let failure = FinishedOutcome::Failed { error: format!("unreadable job: {error}") };
+                channel.finish(&assignment.job, failure, 0.0);
+                None
             }
         }
     }
 }
 
-/// The end of a run in the words of the queue.
+/// The end of a run as an outcome for the queue.
 pub fn outcome(result: Result<JobRecord, JobError>) -> FinishedOutcome {
     match result {
         Ok(record) => match serde_json::to_string(&record) {

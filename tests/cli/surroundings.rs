@@ -63,7 +63,7 @@ fn a_disk_that_is_too_small_for_checkpoints() {
     let (code, _, message) = folder.start("work --checkpoint-every 0.05").end();
     assert_eq!(code, Some(0), "{message}");
     assert!(
-        message.contains("the state of running jobs cannot be kept: the disk of the database is full"),
+        message.contains("the state of running jobs cannot be stored: the disk of the database is full"),
         "{message}"
     );
     assert_eq!(folder.counts("study")["done"], 4);

@@ -1,14 +1,14 @@
 //! The presets and the parameters that they set.
 
-use super::super::json;
-use super::super::parameter::Parameter;
 use crate::spec::{Clamp, ClampSide, Pin, Scene};
+use crate::study::json;
+use crate::study::parameter::Parameter;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use strum::{EnumString, IntoStaticStr};
 
-/// How accurate a study is to be. `tribosweep presets` prints settings and measured errors.
+/// The accuracy of a study by one word. `tribosweep presets` prints settings and measured errors.
 #[derive(
     Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema, EnumString, IntoStaticStr,
 )]
@@ -118,7 +118,7 @@ impl Preset {
     }
 
     /// Whether presets set a parameter, or the whole field of which it sets a part.
-    pub(in super::super) fn covers(parameter: &Parameter) -> bool {
+    pub(in crate::study) fn covers(parameter: &Parameter) -> bool {
         PRESET_PARAMETERS
             .iter()
             .filter_map(|name| Parameter::find(name))
@@ -129,7 +129,7 @@ impl Preset {
     /// Sets the parameters in a serialised job, except those that the `overrides` of the command line set.
     ///
     /// The preset's time step is a fraction of the stability limit, so a time step from the file is removed.
-    pub(in super::super) fn override_job(self, job: &mut Value, overrides: &[&Parameter]) {
+    pub(in crate::study) fn override_job(self, job: &mut Value, overrides: &[&Parameter]) {
         let scene = json::decode_checked(job).scene;
         self.apply(&scene, job, |parameter| overrides.iter().any(|other| other.overlaps(parameter)));
         if !overrides.iter().any(|parameter| parameter.name == TIME_STEP)
@@ -140,7 +140,7 @@ impl Preset {
     }
 
     /// Sets the parameters in a serialised job, except those for which `is_set_elsewhere` holds.
-    pub(in super::super) fn apply(
+    pub(in crate::study) fn apply(
         self,
         scene: &Scene,
         job: &mut Value,
