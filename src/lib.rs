@@ -46,7 +46,7 @@
 //!  │        │          └─────► analysis ──► solver ──► spec
 //!  │        ├─────► report ──► publish, analysis::record
 //!  │        └─────► study ───► spec
-//!  └──────────────► inspect ─► publish, analysis
+//!  └──────────────► inspect ─► publish, analysis, solver
 //! ```
 //!
 //! * [`spec`] – the definition of a job: scene, numerics and run control as plain data with their physical limits.

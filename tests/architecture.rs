@@ -15,7 +15,7 @@ const MAY_USE: [(&str, &[&str]); 14] = [
     ("publish", &["units"]),
     ("inspect", &["analysis", "publish", "solver", "spec", "units"]),
     ("report", &["analysis", "publish"]),
-    ("worker", &["analysis", "queue", "spec"]),
+    ("worker", &["analysis", "queue", "spec", "units"]),
     // Of `publish` it uses the error of `report`.
     ("sweep", &["analysis", "publish", "queue", "report", "solver", "spec", "study", "worker"]),
     (

@@ -4,6 +4,7 @@
 //! because it ends when its limit cycle is found. So the finished jobs give a mean *and a spread* of seconds per
 //! cost, and the estimate is a range.
 
+use crate::units::duration_text;
 use std::fmt;
 use std::time::Duration;
 
@@ -46,20 +47,8 @@ impl Eta {
 
 impl fmt::Display for Eta {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let (low, high) = (readable(self.low), readable(self.high));
+        let [low, high] = [self.low, self.high].map(|time| duration_text(time.as_secs_f64(), 0));
         if low == high { write!(f, "about {low}") } else { write!(f, "{low} to {high}") }
-    }
-}
-
-/// Seconds below two minutes, minutes below two hours, then hours.
-fn readable(duration: Duration) -> String {
-    let seconds = duration.as_secs_f64();
-    if seconds < 120.0 {
-        format!("{seconds:.0} s")
-    } else if seconds < 7200.0 {
-        format!("{:.0} min", seconds / 60.0)
-    } else {
-        format!("{:.1} h", seconds / 3600.0)
     }
 }
 
