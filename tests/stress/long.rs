@@ -85,15 +85,14 @@ fn shaken(model: &Model) -> State<1> {
 /// Clamped and tied degrees of freedom start as the supports say.
 fn admissible(definition: &ModelDefinition, model: &Model, state: &mut State<1>) {
     for support in &definition.supports {
-        match support {
-            Support::Fixed(fixed) => fixed.dofs.iter().for_each(|&dof| state.p[dof] = 0.0),
-            Support::Tied(tied) => {
-                let mass = |node: &usize| model.pin().masses_kg()[*node];
-                let total: f64 = tied.nodes.iter().map(mass).sum();
-                let momentum: f64 =
-                    tied.nodes.iter().map(|n| mass(n) * state.p[3 * n + tied.component]).sum();
-                tied.dofs().for_each(|dof| state.p[dof] = momentum / total);
-            }
+        if let Support::Fixed(fixed) = support {
+            fixed.dofs.iter().for_each(|&dof| state.p[dof] = 0.0);
+        }
+        if let Support::Tied(tied) = support {
+            let mass = |node: &usize| model.pin().masses_kg()[*node];
+            let total: f64 = tied.nodes.iter().map(mass).sum();
+            let momentum: f64 = tied.nodes.iter().map(|n| mass(n) * state.p[3 * n + tied.component]).sum();
+            tied.dofs().for_each(|dof| state.p[dof] = momentum / total);
         }
     }
 }
