@@ -1,7 +1,7 @@
 //! Degrees of freedom that never move.
 
+use super::applied::{AppliedSupport, Supported};
 use super::weights::{Weights, ones};
-use super::{AppliedSupport, Supported};
 use crate::solver::body::block::BlockMesh;
 use fearless_simd::{Level, dispatch};
 

@@ -9,12 +9,14 @@
 //! stability limit ([`Bound`]). A rigid support does the first alone. Another kind of support is a file with
 //! [`AppliedSupport`] for it, and a variant of [`Support`].
 
+mod applied;
 pub mod clamp;
 mod fixed;
 pub mod load;
 mod tied;
 mod weights;
 
+pub(in crate::solver) use applied::{AppliedSupport, Supported};
 pub use fixed::Fixed;
 pub use tied::Tied;
 
@@ -24,7 +26,6 @@ use super::error::SolverError;
 use super::field::Field;
 use super::scheme::{Bound, Scheme};
 use fixed::AppliedFixed;
-use std::fmt::Debug;
 use tied::AppliedTie;
 
 /// A support, as a model is defined with it.
@@ -111,32 +112,6 @@ pub fn freedoms(supports: &[Support], mesh: &BlockMesh) -> Result<Vec<Freedom>, 
         }
     }
     Ok(freedoms)
-}
-
-/// A support in every lane. It may remember within a step what [`AppliedSupport::add_energies`] needs; nothing is
-/// carried from step to step.
-pub(in crate::solver) trait AppliedSupport<const L: usize>: Debug + Send + Sync {
-    /// Acts on the pin at t_n: adds the support's force to the residual, and what the frame carries \[N\] to
-    /// `reaction_n`.
-    fn act(&mut self, pin: &mut Supported<'_, L>, reaction_n: &mut [[f64; L]; 3]);
-
-    /// Adds the energy that is stored at t_n, and the work of damping in the step that led from there to `u_after`.
-    /// A rigid support stores nothing and has no damping.
-    fn add_energies(&self, _scheme: &Scheme, _u_after: &Field<L>, _total: &mut EnergySums<L>) {}
-
-    /// A copy.
-    fn boxed(&self) -> Box<dyn AppliedSupport<L>>;
-}
-
-/// The pin at t_n, on which supports act.
-pub(in crate::solver) struct Supported<'a, const L: usize> {
-    /// Displacements [m] and p_n [m/s]. Rigid supports do not need them.
-    #[expect(dead_code, reason = "for supports whose force depends on the motion")]
-    pub u: &'a Field<L>,
-    #[expect(dead_code, reason = "for supports whose force depends on the motion")]
-    pub p: &'a Field<L>,
-    /// K (u + β_R p) − external forces [N].
-    pub residual: &'a mut Field<L>,
 }
 
 /// All supports in every lane, in the order of the definition.

@@ -2,8 +2,8 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
+use super::applied::{AppliedSupport, Supported};
 use super::weights::{Weights, ones};
-use super::{AppliedSupport, Supported};
 use crate::solver::body::block::BlockMesh;
 use crate::solver::field::{Field, in_slots};
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};

@@ -18,7 +18,7 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::Given;
+use super::given::Given;
 use super::sweeps::{ContactRow, Solves, TargetNode, TargetNodes};
 use crate::solver::body::block::Face;
 use crate::solver::body::ring::{RingBody, RingState};

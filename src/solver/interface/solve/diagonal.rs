@@ -13,7 +13,7 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::Given;
+use super::given::Given;
 use super::held::HeldNode;
 use crate::solver::body::block::Face;
 use crate::solver::field::{Field, in_slots};

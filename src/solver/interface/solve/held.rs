@@ -4,7 +4,7 @@
 //! whole slip, and the free direction is left with its part of the cone ([`partially_held_friction`]). Such nodes are
 //! rare.
 
-use super::Given;
+use super::given::Given;
 use crate::solver::body::block::Face;
 use crate::solver::field::LaneSlot;
 use crate::solver::interface::LIMIT;

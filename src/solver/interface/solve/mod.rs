@@ -5,28 +5,20 @@
 
 mod coupled;
 mod diagonal;
+mod given;
 mod held;
 pub mod sweeps;
 
+pub(in crate::solver) use given::Given;
 pub use sweeps::Solves;
 
 use super::target::Target;
 use super::{Contacts, Interface};
 use crate::solver::body::block::Face;
 use crate::solver::body::ring::{RingBody, RingState};
-use crate::solver::drive::Drive;
 use crate::solver::lane::LaneState;
-use crate::solver::scheme::StepFactors;
 use coupled::RingTarget;
 use diagonal::DiagonalSolve;
-
-/// What a contact solve is given of a step.
-pub(in crate::solver) struct Given<'a, const L: usize> {
-    pub factors: &'a StepFactors,
-    pub drives: &'a [Drive; L],
-    /// Number n of steps that the lanes have done before this one.
-    pub steps_done: &'a [u64; L],
-}
 
 /// The target in every lane, with the solve that it needs.
 #[derive(Debug, Clone)]
