@@ -1,13 +1,14 @@
-//! Supports: what holds the pin besides contact.
+//! Supports: what holds the pin, apart from contact.
 //!
-//! * [`Fixed`] – degrees of freedom that never move. Their residual is what the frame carries: T comes from it.
+//! * [`Fixed`] – degrees of freedom that never move. Their residual is the reaction force on the pin, from which T
+//!   is computed.
 //! * [`Tied`] – nodes that share one displacement in one component.
-//! * [`clamp`] – which of these a scene's clamp and top face are.
+//! * [`clamp`] – the supports that represent a scene's clamp and top face.
 //! * [`load`] – the normal load, which acts on the same planes.
 //!
-//! A support gives four things: a force on the residual, stored energy, the work of its damping, and its share of the
-//! stability limit ([`Bound`]). A rigid support does the first alone. Another kind of support is a file with
-//! [`AppliedSupport`] for it, and a variant of [`Support`].
+//! A support gives four things: a force on the residual, stored energy, the work of its damping, and its share of
+//! the stability limit ([`Bound`]). A rigid support gives only the force. To add a kind of support, write a file
+//! that implements `AppliedSupport` for it, and add a variant to [`Support`].
 
 pub mod clamp;
 mod fixed;
@@ -27,7 +28,7 @@ use fixed::AppliedFixed;
 use std::fmt::Debug;
 use tied::AppliedTie;
 
-/// A support, as a model is defined with it.
+/// A support in the definition of a model.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Support {
     /// Degrees of freedom that never move.
@@ -47,7 +48,7 @@ impl Support {
         Self::Tied(Tied { component, nodes: nodes.into_iter().collect() })
     }
 
-    /// The degrees of freedom (3·node + component) on which it acts.
+    /// The degrees of freedom (3·node + component) on which the support acts.
     pub fn dofs(&self) -> Vec<usize> {
         match self {
             Self::Fixed(fixed) => fixed.dofs.clone(),
@@ -55,8 +56,8 @@ impl Support {
         }
     }
 
-    /// What it adds to the pin's share of the stability limit, for the lumped masses of the pin \[kg\]. A rigid support
-    /// adds nothing: it can only lower frequencies.
+    /// Contribution to the stability limit of a pin with these lumped masses \[kg\]. A rigid support contributes
+    /// nothing, because it can only lower frequencies.
     pub fn bound(&self, _masses_kg: &[f64]) -> Bound {
         match self {
             Self::Fixed(_) | Self::Tied(_) => Bound::default(),
@@ -71,12 +72,12 @@ impl Support {
     }
 }
 
-/// How every degree of freedom of `mesh` may move with these supports.
+/// How every degree of freedom (3·node + component) of `mesh` may move with these supports.
 ///
 /// # Errors
-/// If a support is out of range, if a degree of freedom is supported twice, or if a tie mixes nodes of the contact face
-/// with others: the contact solve treats each slave node by its own mass, which is right for a tied group only when
-/// the whole group is in contact alike.
+/// If a support is out of range, if a degree of freedom is supported twice, or if a tie mixes nodes of the contact
+/// face with others. The contact solve uses the mass of each slave node alone. For a tied group this is right only
+/// if all its nodes are in contact alike.
 pub fn freedoms(supports: &[Support], mesh: &BlockMesh) -> Result<Vec<Freedom>, SolverError> {
     let mut freedoms = vec![Freedom::Free; 3 * mesh.node_count()];
     let mut set = |dof: usize, freedom| match freedoms.get_mut(dof) {
@@ -113,15 +114,15 @@ pub fn freedoms(supports: &[Support], mesh: &BlockMesh) -> Result<Vec<Freedom>, 
     Ok(freedoms)
 }
 
-/// A support in every lane. It may remember within a step what [`AppliedSupport::add_energies`] needs; nothing is
+/// A support in every lane. It may store within a step what [`AppliedSupport::add_energies`] needs. Nothing is
 /// carried from step to step.
 pub(in crate::solver) trait AppliedSupport<const L: usize>: Debug + Send + Sync {
-    /// Acts on the pin at t_n: adds the support's force to the residual, and what the frame carries \[N\] to
+    /// Acts on the pin at t_n: adds the support's force to the residual, and its reaction force on the pin \[N\] to
     /// `reaction_n`.
     fn act(&mut self, pin: &mut Supported<'_, L>, reaction_n: &mut [[f64; L]; 3]);
 
-    /// Adds the energy that is stored at t_n, and the work of damping in the step that led from there to `u_after`.
-    /// A rigid support stores nothing and has no damping.
+    /// Adds the energy stored at t_n, and the work of damping in the step from there to `u_after`. A rigid support
+    /// has neither.
     fn add_energies(&self, _scheme: &Scheme, _u_after: &Field<L>, _total: &mut EnergySums<L>) {}
 
     /// A copy.
@@ -130,12 +131,13 @@ pub(in crate::solver) trait AppliedSupport<const L: usize>: Debug + Send + Sync 
 
 /// The pin at t_n, on which supports act.
 pub(in crate::solver) struct Supported<'a, const L: usize> {
-    /// Displacements [m] and p_n [m/s]. Rigid supports do not need them.
+    /// Displacements \[m\] at t_n. Rigid supports do not need them, nor `p`.
     #[expect(dead_code, reason = "for supports whose force depends on the motion")]
     pub u: &'a Field<L>,
     #[expect(dead_code, reason = "for supports whose force depends on the motion")]
+    /// p_n \[m/s\].
     pub p: &'a Field<L>,
-    /// K (u + β_R p) − external forces [N].
+    /// K (u + β_R p) − external forces \[N\].
     pub residual: &'a mut Field<L>,
 }
 
@@ -144,12 +146,12 @@ pub(in crate::solver) struct Supported<'a, const L: usize> {
 pub(in crate::solver) struct AppliedSupports<const L: usize>(Vec<Box<dyn AppliedSupport<L>>>);
 
 impl<const L: usize> AppliedSupports<L> {
-    /// The supports of a pin with these lumped masses \[kg\].
+    /// Prepares the supports of a pin with these lumped masses \[kg\].
     pub fn new(supports: &[Support], mesh: &BlockMesh, masses_kg: &[f64]) -> Self {
         Self(supports.iter().map(|support| support.applied(mesh, masses_kg)).collect())
     }
 
-    /// Lets all supports act on the pin; returns what the frame carries \[N\].
+    /// Lets all supports act on the pin. Returns the sum of their reaction forces on the pin \[N\]: x, y and z.
     pub fn act(&mut self, pin: &mut Supported<'_, L>) -> [[f64; L]; 3] {
         let mut reaction_n = [[0.0; L]; 3];
         for support in &mut self.0 {
