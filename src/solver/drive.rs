@@ -1,8 +1,8 @@
-//! What one lane is driven by; everything else of a job is shared through the [`Model`](super::Model).
+//! The inputs that differ between lanes. All lanes share everything else through the [`Model`](super::Model).
 
 use super::interface::law::Law;
 
-/// What one lane is driven by. All lanes of a state have the same kind of law.
+/// The inputs of one lane. All lanes of a state have the same kind of law.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
     /// The friction law with its coefficients.
@@ -11,12 +11,12 @@ pub struct Drive {
     pub rate: f64,
     /// Total load \[N\] after the ramp.
     pub force_n: f64,
-    /// Duration \[s\] of the load's linear ramp; 0 is a sudden load.
+    /// Duration \[s\] of the load's linear ramp. With 0 the load is applied suddenly.
     pub ramp_s: f64,
 }
 
 impl Drive {
-    /// The load \[N\] at a time.
+    /// The load \[N\] at the time `time_s`.
     pub fn load_n(&self, time_s: f64) -> f64 {
         if time_s >= self.ramp_s { self.force_n } else { self.force_n * (time_s / self.ramp_s) }
     }
@@ -26,7 +26,7 @@ impl Drive {
 mod tests {
     use super::*;
 
-    /// Protects: the ramp is linear from zero, then constant; without one the load is there at once.
+    /// Protects: the load rises linearly from zero, then stays constant. Without a ramp it is there at once.
     #[test]
     fn the_load_is_ramped() {
         let law = Law::Coulomb { mu: 0.0 };

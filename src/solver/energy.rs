@@ -1,27 +1,31 @@
-//! Energy bookkeeping of a run.
+//! Energy balance of a run.
 //!
-//! For Newmark's method with β = 0, γ = β₂ and nodal forces f (load, contact, damping) the scheme
-//! satisfies, to rounding (Krenk, *Energy conservation in Newmark based time integration
-//! algorithms*, CMAME 195, 2006, with β = 0),
+//! For Newmark's method with β = 0, γ = β₂ and nodal forces f (load, contact, damping) the scheme satisfies, to
+//! rounding,
 //!
 //! ```text
 //! E_n = ½ vMv + ½ uKu − (γ/4) Δt² aMa
 //! E_{n+1} − E_n = Δu·[(1−γ) f_n + γ f_{n+1}] − (γ−½) [ΔuKΔu − (γ/2) Δt² ΔaMΔa]
 //! ```
 //!
-//! For γ = ½ the kinetic part is ½ v_{n−½} M v_{n+½}. So a force f_n does the work
-//! f_n·[(1−γ)Δu_n + γΔu_{n−1}]. For contact forces this splits into
-//! * the drive's work f_t·VΔt (and N times the rise of an elastic disk's surface along the node's way),
-//! * friction: −f_t·[(1−γ)s_n + γs_{n−1}] of the slipping nodes, s the increment relative to the target,
-//! * contact loss: the same product for the tangential forces of sticking nodes, and −N·[(1−γ)Δz_n +
-//!   γΔz_{n−1}] of all nodes: what a velocity jump costs when a node sticks or closes.
+//! (Krenk, *Energy conservation in Newmark based time integration algorithms*, CMAME 195, 2006, with β = 0). For γ
+//! = ½ the kinetic part is ½ v_{n−½} M v_{n+½}. So a force f_n does the work f_n·\[(1−γ)Δu_n + γΔu_{n−1}\]. For
+//! contact forces this work has three parts:
+//! * The work of the drive is f_t·VΔt. On an elastic disk, N times the rise of the surface along the node's path is
+//!   added.
+//! * The work of friction is −f_t·\[(1−γ)s_n + γs_{n−1}\] of the slipping nodes, where s is the increment relative
+//!   to the target.
+//! * The contact loss is the same product for the tangential forces of sticking nodes, and
+//!   −N·\[(1−γ)Δz_n + γΔz_{n−1}\] for all nodes. It is the energy that a velocity jump costs when a node sticks or
+//!   closes.
 //!
-//! The energies are a sum over bodies, supports and the interface. The interface and the load give their works in every
-//! step (they act on boundary nodes only). The stored energies and the damping of bodies need products with K. They are
-//! evaluated in an audit every `interval` steps, and the work of damping is the sample times `interval`. With `interval` =
-//! 1 the balance closes to rounding.
+//! The energies are a sum over bodies, supports and the interface. The works of the interface and of the load are
+//! summed in every step, because they need boundary nodes only. The stored energies and the damping of bodies need
+//! products with K. They are evaluated in an audit every `interval` steps, and the work of damping is the sample
+//! times `interval`. With `interval` = 1 the balance closes to rounding.
 //!
-//! On an elastic disk the contact forces work on both bodies, and increments are relative to the deformed target.
+//! On an elastic disk the contact forces do work on both bodies, and increments are relative to the deformed
+//! target.
 
 use super::body::EnergySums;
 use super::body::block::BlockAudit;
@@ -33,29 +37,29 @@ use super::model::Model;
 use super::state::State;
 use serde::{Deserialize, Serialize};
 
-/// Energies [J] of one lane: stored now, done and lost since the start.
+/// Energies \[J\] of one lane: stored at the last audit; done as work or lost since the start.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Energies {
-    /// Kinetic, ½vMv − (γ/4)Δt²aMa.
+    /// Kinetic energy ½vMv − (γ/4)Δt²aMa.
     pub kinetic_j: f64,
-    /// Elastic, ½uKu.
+    /// Elastic energy ½uKu.
     pub elastic_j: f64,
-    /// Stored at the start.
+    /// Energy stored at the start.
     pub initial_j: f64,
     /// Work of the load.
     pub load_work_j: f64,
     /// Work of the moving target on the pin.
     pub drive_work_j: f64,
-    /// Dissipated by friction.
+    /// Energy dissipated by friction.
     pub friction_j: f64,
-    /// Dissipated by `β_R` and by β₂ > ½.
+    /// Energy dissipated by `β_R` and by β₂ > ½.
     pub damping_j: f64,
-    /// Lost in contact impacts.
+    /// Energy lost in contact impacts.
     pub contact_loss_j: f64,
 }
 
 impl Energies {
-    /// What was put in minus what is stored and lost [J]; zero but for rounding and sampling.
+    /// Energy put in minus energy stored, dissipated and lost \[J\]. It is zero except for rounding and sampling.
     pub fn imbalance_j(&self) -> f64 {
         self.initial_j + self.load_work_j + self.drive_work_j
             - self.kinetic_j
@@ -65,19 +69,19 @@ impl Energies {
             - self.contact_loss_j
     }
 
-    /// Energy put in [J], the scale of the balance.
+    /// Energy put in \[J\], as a sum of magnitudes. It is the scale of the balance.
     pub fn input_j(&self) -> f64 {
         self.initial_j.abs() + self.load_work_j.abs() + self.drive_work_j.abs()
     }
 
-    /// |imbalance| over the energy put in; 0 when nothing was put in.
+    /// |imbalance| divided by the energy put in; 0 if nothing was put in.
     pub fn relative_residual(&self) -> f64 {
         let input = self.input_j();
         if input > 0.0 { self.imbalance_j().abs() / input } else { 0.0 }
     }
 }
 
-/// A sum of works weighted as the scheme does: increments before and after the force's time.
+/// Work of forces at t_n over the increments after and before t_n. The scheme weights the two by 1−γ and γ.
 #[derive(Debug, Clone, Copy, Default)]
 struct Work {
     after_j: f64,
@@ -100,8 +104,8 @@ struct LaneSums {
     numerical_j: f64,
 }
 
-/// Follows the energies of all lanes; call [`EnergyLedger::before_step`] and
-/// [`EnergyLedger::after_step`] around every step from the first one on.
+/// Sums the energies of all lanes. Call [`EnergyLedger::before_step`] and [`EnergyLedger::after_step`] around every
+/// step from the first one on.
 #[derive(Debug, Clone)]
 pub struct EnergyLedger<const L: usize> {
     interval: u64,
@@ -139,9 +143,9 @@ impl<const L: usize> EnergyLedger<L> {
         &self.energies[lane]
     }
 
-    /// Keeps what the audit of the coming step needs of the state at `t_n`.
+    /// Stores what the audit of the coming step needs of the state at `t_n`.
     ///
-    /// Steps are counted together for all lanes, so that jobs have to begin at an audit.
+    /// All lanes count their steps together, so a job must begin at an audit.
     pub fn before_step(&mut self, model: &Model, state: &State<L>) {
         let (scheme, steps_done) = (model.scheme(), state.steps_of_lanes());
         let before = state.motion(&steps_done);
@@ -156,7 +160,7 @@ impl<const L: usize> EnergyLedger<L> {
         }
     }
 
-    /// Adds up the works of the step just done and, at an audit, evaluates the energies at its `t_n`.
+    /// Adds the works of the step just done and, at an audit, evaluates the energies at the `t_n` of that step.
     pub fn after_step(&mut self, model: &Model, drives: &[Drive; L], state: &State<L>) {
         let done = state.step - 1;
         let works = self.interface.of_step(model.time_step_s(), drives, &state.contacts, &state.target);
@@ -189,12 +193,14 @@ impl<const L: usize> EnergyLedger<L> {
         }
     }
 
-    /// β₂ > ½ needs the acceleration of the step before the audited one, too.
+    /// Whether a step stores its initial state. With β₂ > ½ an audit also needs the acceleration of the step before
+    /// it.
     fn keeps(&self, model: &Model, step: u64) -> bool {
         self.audits(step) || (model.scheme().beta2 > 0.5 && self.audits(step + 1))
     }
 
-    /// Evaluates the energies at `t_n` and returns this step's damping work over the increment after `t_n`.
+    /// Evaluates the energies at `t_n`. Returns the damping work \[J\] over the increment after `t_n`, times the
+    /// interval.
     fn evaluate(&mut self, model: &Model, state: &State<L>) -> [f64; L] {
         let (scheme, steps_done) = (model.scheme(), state.steps_of_lanes());
         let gamma = scheme.beta2;
@@ -228,7 +234,8 @@ impl<const L: usize> EnergyLedger<L> {
     }
 }
 
-/// A lane is saved just before an audit, and loaded just before an audit of another ledger. Zeros forget it.
+/// A lane must be saved just before an audit, and loaded just before an audit of another ledger. Zeros clear a
+/// lane.
 impl<const L: usize> LaneState for EnergyLedger<L> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
         let LaneSums { load, drive, friction, contact_loss, damping, numerical_j } = self.sums[lane];

@@ -1,21 +1,21 @@
-//! What the solver refuses and how it fails.
+//! Errors of the solver: models that it refuses, and runs that fail.
 
 use thiserror::Error;
 
-/// A refusal before the first step, or a run that diverged.
+/// A model that is refused before the first step, or a run that fails.
 #[derive(Debug, Clone, PartialEq, Error)]
 pub enum SolverError {
-    /// The study's time step is above the stability limit.
+    /// The time step of the study is above the stability limit.
     #[error(
         "numerics.time_step_s = {time_step_s:e} s is above the stability limit {limit_s:e} s of this mesh, \
          damping and β₂ (ω_max ≤ {omega_max_rad_s:.6e} rad/s); give a smaller one or leave it out"
     )]
     TimeStepTooLarge {
-        /// The step asked for [s].
+        /// The requested step \[s\].
         time_step_s: f64,
-        /// The limit [s].
+        /// The stability limit \[s\].
         limit_s: f64,
-        /// The bound of the largest frequency [rad/s].
+        /// Upper bound of the largest angular frequency \[rad/s\].
         omega_max_rad_s: f64,
     },
     /// The mesh has no node row near the clamp's width.
@@ -24,24 +24,24 @@ pub enum SolverError {
          {length_m} m the nearest widths are {below_m} m and {above_m} m; choose one of these or a finer mesh"
     )]
     ClampOffMesh {
-        /// The width asked for [m].
+        /// The requested width \[m\].
         width_m: f64,
-        /// Elements across.
+        /// Number of elements over `length_m`.
         elements: usize,
-        /// Length across [m].
+        /// Length \[m\] of the top face in the direction of the width.
         length_m: f64,
-        /// Nearest width below [m].
+        /// Nearest width below \[m\].
         below_m: f64,
-        /// Nearest width above [m].
+        /// Nearest width above \[m\].
         above_m: f64,
     },
     /// The supports contradict each other, or the target does not allow them.
     #[error("inconsistent constraints: {0}")]
     Constraints(String),
-    /// The stiffness matrix that was given is none.
+    /// The given matrix is not a stiffness matrix of the mesh.
     #[error("not a stiffness matrix: {0}")]
     Stiffness(String),
-    /// The contact forces on an elastic disk were not found.
+    /// The contact solve on an elastic disk did not converge.
     #[error(
         "the contact solve of step {step} (t = {time_s:.6e} s) did not converge: after {sweeps} sweeps the forces \
          are off by {residual:.1e} of the largest, more than {tolerance:.0e}; sweeps converge slowly where many slave \
@@ -49,15 +49,15 @@ pub enum SolverError {
          coefficient, with which there may be no solution"
     )]
     ContactNotSolved {
-        /// The step.
+        /// The step, counted from 1.
         step: u64,
-        /// Its time [s].
+        /// Its time \[s\].
         time_s: f64,
-        /// Sweeps done.
+        /// Number of sweeps done.
         sweeps: u32,
-        /// Residual of the forces, over the largest force.
+        /// Residual of the forces, relative to the largest force.
         residual: f64,
-        /// What it should have been.
+        /// The convergence tolerance, relative to the largest force.
         tolerance: f64,
     },
     /// The run diverged; there is no result.
@@ -67,15 +67,15 @@ pub enum SolverError {
         x = position_m[0] * 1e3, y = position_m[1] * 1e3, z = position_m[2] * 1e3
     )]
     Diverged {
-        /// Step at which it was noticed.
+        /// Step at which the divergence was detected.
         step: u64,
-        /// Its time [s].
+        /// Its time \[s\].
         time_s: f64,
         /// The node with the largest (or a non-finite) velocity.
         node: usize,
-        /// That node's position [m].
+        /// That node's position \[m\].
         position_m: [f64; 3],
-        /// What was seen.
+        /// Description of what diverged.
         what: String,
         /// The likely cause.
         cause: String,

@@ -1,14 +1,14 @@
-//! Nodal vector fields, laid out for vectors of eight numbers.
+//! Nodal vector fields, laid out for SIMD vectors of eight numbers.
 //!
-//! A mesh line (nodes along x) of `L` lanes is one row of numbers per component, node → lane, padded
-//! with zeros to whole [`Block`]s of eight. A block holds the three components one after the other.
-//! Neighbours in x are `L` numbers away, neighbours in y and z whole lines, so every operation on
-//! lines is the same for any lane count and its results have the same bits.
+//! A mesh line (nodes along x, or along θ in a ring) with `L` lanes is one row of numbers per component, ordered
+//! node → lane and padded with zeros to whole [`Block`]s of eight. A block holds the three components one after the
+//! other. Neighbours on a line are `L` numbers apart, and neighbours across lines are whole lines apart. So every
+//! operation on lines is the same for any lane count, and its results have the same bits.
 
 use super::lane::{LaneState, next};
 use std::ops::{Index, IndexMut};
 
-/// Numbers in a vector.
+/// Number of f64 values in a SIMD vector.
 pub const WIDTH: usize = 8;
 
 /// Eight consecutive numbers of each component of a line.
@@ -21,10 +21,10 @@ pub struct Block(pub [[f64; WIDTH]; 3]);
 #[repr(align(64))]
 pub struct Row(pub [f64; WIDTH]);
 
-/// How many lines a field has, and how many nodes a line.
+/// Number of lines of a field, and number of nodes per line.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
-    /// Nodes of a line.
+    /// Number of nodes per line.
     pub nodes_per_line: usize,
     /// Number of lines.
     pub lines: usize,
@@ -37,17 +37,18 @@ impl Layout {
     }
 }
 
-/// Where the lanes of a node are.
+/// Position of a node's lanes in a field.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct LaneSlot {
     block: usize,
     slot: usize,
 }
 
-/// A vector per node and lane. Indexed by (3·node + component)·L + lane, whatever the storage.
+/// A vector per node and lane. It is indexed by (3·node + component)·L + lane, whatever the storage.
 ///
-/// The padding of displacements and velocities is zero: it is a neighbour of the last node in a product. A
-/// product leaves numbers in the padding of its result, which nothing may read; so fields are not compared.
+/// The padding of displacements and velocities is zero, because products read it as a neighbour of the last node. A
+/// product leaves arbitrary numbers in the padding of its result. Nothing may read them, so fields are not
+/// comparable.
 #[derive(Debug, Clone)]
 pub struct Field<const L: usize> {
     nodes_per_line: usize,
@@ -55,15 +56,15 @@ pub struct Field<const L: usize> {
     blocks: Vec<Block>,
 }
 
-/// The same numbers for every node: the lanes' values, slot by slot.
+/// Repeats the values of the lanes over the slots of a block, so that every node has the same values.
 pub fn in_slots<const L: usize>(lanes: &[f64; L]) -> [f64; WIDTH] {
     std::array::from_fn(|slot| lanes[slot % L])
 }
 
-/// Adds the numbers of a block to those of their lanes, node after node.
+/// Adds the numbers of a block to the totals of their lanes, node after node.
 ///
-/// All sums over nodes are made like this: first across the lines of a column of blocks, slot by slot, then
-/// along the line. So their order, and with it their bits, is the same for any lane count.
+/// All sums over nodes have this order: first across the lines of a column of blocks, slot by slot, then along the
+/// line. So the order, and with it the bits, is the same for any lane count.
 pub fn add_slots<const L: usize>(totals: &mut [f64; L], slots: &[f64; WIDTH]) {
     for nodes in slots.chunks_exact(L) {
         for (total, value) in totals.iter_mut().zip(nodes) {
@@ -80,7 +81,7 @@ pub fn blocks_per_line<const L: usize>(nodes: usize) -> usize {
 impl<const L: usize> Field<L> {
     const LANES_FILL_BLOCKS: () = assert!(L == 1 || L == 2 || L == 4 || L == 8, "1, 2, 4 or 8 lanes");
 
-    /// All zero.
+    /// A field of zeros.
     pub fn zeros(layout: Layout) -> Self {
         let () = Self::LANES_FILL_BLOCKS;
         let Layout { nodes_per_line, lines } = layout;
@@ -88,7 +89,7 @@ impl<const L: usize> Field<L> {
         Self { nodes_per_line, blocks_per_line, blocks: vec![Block::default(); blocks_per_line * lines] }
     }
 
-    /// From values in the order node → component → lane.
+    /// A field of `values` in the order node → component → lane.
     ///
     /// # Panics
     /// If there is not one value per node, component and lane.
@@ -111,12 +112,12 @@ impl<const L: usize> Field<L> {
         3 * L * self.nodes_per_line * (self.blocks.len() / self.blocks_per_line)
     }
 
-    /// Whether there is no value; a mesh has nodes, so never.
+    /// Whether the field has no values. This is never true, because a mesh has nodes.
     pub fn is_empty(&self) -> bool {
         self.blocks.is_empty()
     }
 
-    /// Σ over all nodes and components of this times another field of the same nodes.
+    /// The scalar product with another field of the same nodes, lane by lane: Σ over all nodes and components.
     pub fn dot(&self, other: &Self) -> [f64; L] {
         let mut columns = vec![Row::default(); self.blocks_per_line];
         for (at, (a, b)) in self.blocks.iter().zip(&other.blocks).enumerate() {
@@ -137,37 +138,37 @@ impl<const L: usize> Field<L> {
         self.blocks_per_line
     }
 
-    /// All blocks, line after line: y faster than z.
+    /// All blocks, line after line in the order of the nodes.
     pub fn blocks(&self) -> &[Block] {
         &self.blocks
     }
 
-    /// All blocks. What a product will read must keep its padding zero.
+    /// All blocks, mutable. The padding of a field that goes into a product must stay zero.
     pub fn blocks_mut(&mut self) -> &mut [Block] {
         &mut self.blocks
     }
 
-    /// Where a node is.
+    /// Position of a node's lanes.
     pub fn place(&self, node: usize) -> LaneSlot {
         let along = node % self.nodes_per_line * L;
         let line = node / self.nodes_per_line;
         LaneSlot { block: line * self.blocks_per_line + along / WIDTH, slot: along % WIDTH }
     }
 
-    /// The lanes of one component at a place.
+    /// The values of all lanes for one component at `place`.
     ///
     /// # Panics
-    /// Never for a place of this field: lanes do not straddle blocks.
+    /// Never for a place of this field: the lanes of a node are in one block.
     pub fn at(&self, place: LaneSlot, component: usize) -> &[f64; L] {
         self.blocks[place.block].0[component][place.slot..]
             .first_chunk()
             .expect("lanes do not straddle blocks")
     }
 
-    /// The lanes of one component at a place.
+    /// The values of all lanes for one component at `place`, mutable.
     ///
     /// # Panics
-    /// Never for a place of this field: lanes do not straddle blocks.
+    /// Never for a place of this field: the lanes of a node are in one block.
     pub fn at_mut(&mut self, place: LaneSlot, component: usize) -> &mut [f64; L] {
         self.blocks[place.block].0[component][place.slot..]
             .first_chunk_mut()
@@ -180,7 +181,7 @@ impl<const L: usize> LaneState for Field<L> {
         saved.extend((0..self.len() / L).map(|dof| self[dof * L + lane]));
     }
 
-    /// The padding of the lane becomes zero: a lane that has overflowed has left its mark there, too.
+    /// Sets the lane's padding to zero as well, because a lane that overflowed leaves non-finite numbers there.
     fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
         for row in self.blocks.iter_mut().flat_map(|block| &mut block.0) {
             for value in row.iter_mut().skip(lane).step_by(L) {

@@ -8,25 +8,25 @@ use super::interface::solve::sweeps::{MAX_SWEEPS, TOLERANCE};
 use super::model::Model;
 use super::state::State;
 
-/// The scheme's stored energy may exceed all energy put in by this factor before a run counts as diverged.
+/// A run counts as diverged if its stored energy exceeds the energy put in by more than this factor.
 ///
-/// The balance of `solver::energy` is exact: what is stored was put in and not lost. So no run stores more
-/// than was put in, unless contact or damping give energy instead of taking it, as they do when the highest
-/// mode alternates at the very limit. Twice leaves room for rounding and for single steps.
+/// The balance of [`energy`](super::energy) is exact. So no run stores more energy than was put in, unless contact
+/// or damping add energy. This happens when the highest mode alternates at the stability limit. The factor 2 leaves
+/// room for rounding and for single steps.
 const STORED_FACTOR: f64 = 2.0;
 
-/// The same for the sum of the magnitudes of both parts, elastic and kinetic.
+/// The same factor for the sum of the magnitudes of the elastic and the kinetic energy.
 ///
-/// Above the limit the scheme still conserves its own energy, in which the kinetic part of a mode that
-/// alternates is negative: both parts grow without bound while their sum stays what it was. Below the limit
-/// the magnitudes exceed the sum by 1/(1 − (Δt/Δt_limit)²) at most, 50 at 0.99 of the limit, and come near
-/// that only when all the energy is in the highest mode. A run beyond twice that is noise of the mesh.
+/// Above the limit the scheme still conserves its own energy, in which the kinetic part of an alternating mode is
+/// negative. Both parts then grow without bound while their sum stays constant. Below the limit the magnitudes
+/// exceed the sum by at most 1/(1 − (Δt/Δt_limit)²), which is 50 at 0.99 of the limit. They reach this only if all
+/// the energy is in the highest mode. Beyond twice that, the result is mesh noise.
 const MAGNITUDE_FACTOR: f64 = 100.0;
 
-/// Checks a lane of `state` against its `energies` at the last audit.
+/// Checks a lane of `state` with its `energies` at the last audit.
 ///
 /// # Errors
-/// [`SolverError::Diverged`] if the energy is not finite or out of all proportion.
+/// [`SolverError::Diverged`] if the energy is not finite or exceeds one of the two factors above.
 pub fn check<const L: usize>(
     model: &Model,
     drive: &Drive,
@@ -37,9 +37,10 @@ pub fn check<const L: usize>(
     let stored = energies.kinetic_j + energies.elastic_j;
     let magnitude = energies.kinetic_j.abs() + energies.elastic_j.abs();
     let input = energies.input_j();
-    // The energy put in may happen to be zero. Motion with the target needs no room: the drive puts it in.
+    // The energy put in can be zero, so the energy of a static compression is added. Motion with the target needs
+    // no allowance: the work of the drive contains its energy.
     let scale = input + model.pin().compression_energy_j(drive.force_n);
-    // `<=` is false for NaN: a non-finite energy is caught, too.
+    // `<=` is false for NaN, so an energy that is not finite fails as well.
     if stored <= STORED_FACTOR * scale && magnitude <= MAGNITUDE_FACTOR * scale && scale.is_finite() {
         return Ok(());
     }
@@ -54,10 +55,10 @@ pub fn check<const L: usize>(
     Err(diverged(model, state, lane, what))
 }
 
-/// Checks that every displacement and velocity of a lane is finite, at the end of a run.
+/// Checks at the end of a run that every displacement and velocity of a lane is finite.
 ///
 /// # Errors
-/// [`SolverError::Diverged`] if one is not.
+/// [`SolverError::Diverged`] if one of them is not.
 pub fn check_finite<const L: usize>(model: &Model, state: &State<L>, lane: usize) -> Result<(), SolverError> {
     let finite = |field: &Field<L>| field.values().skip(lane).step_by(L).all(f64::is_finite);
     if finite(&state.u) && finite(&state.p) && state.target.is_finite(lane) {
@@ -67,7 +68,7 @@ pub fn check_finite<const L: usize>(model: &Model, state: &State<L>, lane: usize
     }
 }
 
-/// Checks that the contact solves of a lane on an elastic target have converged.
+/// Checks that all contact solves of a lane on an elastic disk have converged.
 ///
 /// # Errors
 /// [`SolverError::ContactNotSolved`] if one has not.
@@ -89,7 +90,7 @@ pub fn check_contact<const L: usize>(
     })
 }
 
-/// Above this fraction of the stability limit the step itself is suspect.
+/// Above this fraction of the stability limit the time step itself is the likely cause of a divergence.
 const AT_THE_LIMIT: f64 = 0.99;
 
 const NOT_FINITE: &str = "displacements or velocities are no longer finite";
@@ -97,7 +98,7 @@ const NOT_FINITE: &str = "displacements or velocities are no longer finite";
 fn diverged<const L: usize>(model: &Model, state: &State<L>, lane: usize, what: String) -> SolverError {
     let node = worst_node(model, state, lane);
     let ratio = model.time_step_s() / model.time_step_limit_s();
-    // The limit itself is a legal step; computing it rounds.
+    // The limit itself is allowed; the tolerance covers the rounding of its computation.
     let cause = if ratio > 1.0 + 1.0e-12 {
         format!("the time step is {ratio:.4} of the stability limit; reduce it")
     } else if ratio > AT_THE_LIMIT {
@@ -121,7 +122,7 @@ fn diverged<const L: usize>(model: &Model, state: &State<L>, lane: usize, what: 
     }
 }
 
-/// The node with a non-finite velocity, or else the largest one.
+/// The node with a velocity that is not finite; if there is none, the node with the largest speed.
 fn worst_node<const L: usize>(model: &Model, state: &State<L>, lane: usize) -> usize {
     let speed_squared = |node: usize| -> f64 {
         let sum: f64 = (0..3).map(|c| state.p[(3 * node + c) * L + lane].powi(2)).sum();

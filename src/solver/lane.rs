@@ -1,24 +1,24 @@
-//! A lane as a list of numbers, which any lane of any state of the same model can take over.
+//! A lane as a list of numbers, which any lane of any state of the same model can load.
 //!
-//! So a job moves between states with different numbers of lanes, and so a checkpoint is made. A list of zeros is a lane
-//! at rest.
+//! With it a job moves between states with different lane counts, and checkpoints are written. A list of zeros is a
+//! lane at rest.
 
-/// What a lane has of its own.
+/// State that each lane has separately.
 pub trait LaneState {
-    /// Appends the numbers of a lane.
+    /// Appends the numbers of a lane to `saved`.
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>);
 
-    /// Sets a lane to numbers that were saved. Zeros bring it to rest.
+    /// Sets a lane from saved numbers. Zeros bring it to rest.
     ///
     /// # Panics
     /// If there are fewer numbers than were saved.
     fn load_lane(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>);
 }
 
-/// The next numbers of a lane that was saved.
+/// The next `N` saved numbers of a lane.
 ///
 /// # Panics
-/// If there are too few.
+/// If there are fewer.
 pub fn next<const N: usize>(saved: &mut dyn Iterator<Item = f64>) -> [f64; N] {
     std::array::from_fn(|_| saved.next().expect("as many numbers as were saved"))
 }
@@ -49,7 +49,7 @@ impl<T: LaneState> LaneState for [T] {
     }
 }
 
-/// A part that not every model has.
+/// A part that only some models have.
 impl<T: LaneState> LaneState for Option<T> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
         if let Some(part) = self {

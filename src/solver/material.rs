@@ -5,11 +5,11 @@ use crate::spec::Pin;
 /// A linear elastic isotropic material.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Material {
-    /// Young's modulus E [Pa].
+    /// Young's modulus E \[Pa\].
     pub young_modulus_pa: f64,
     /// Poisson's ratio ν.
     pub poisson_ratio: f64,
-    /// Density ρ [kg/m³].
+    /// Density ρ \[kg/m³\].
     pub density_kg_m3: f64,
 }
 
@@ -23,23 +23,23 @@ impl Material {
         }
     }
 
-    /// Lamé's first parameter λ = Eν / ((1+ν)(1−2ν)) [Pa].
+    /// Lamé's first parameter λ = Eν / ((1+ν)(1−2ν)) \[Pa\].
     pub fn lame_lambda_pa(&self) -> f64 {
         let nu = self.poisson_ratio;
         self.young_modulus_pa * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
     }
 
-    /// Shear modulus G = E / (2(1+ν)) [Pa].
+    /// Shear modulus G = E / (2(1+ν)) \[Pa\].
     pub fn shear_modulus_pa(&self) -> f64 {
         self.young_modulus_pa / (2.0 * (1.0 + self.poisson_ratio))
     }
 
-    /// Speed c_p = √((λ+2G)/ρ) of pressure waves [m/s].
+    /// Speed c_p = √((λ+2G)/ρ) of pressure waves \[m/s\].
     pub fn pressure_wave_speed_m_s(&self) -> f64 {
         ((self.lame_lambda_pa() + 2.0 * self.shear_modulus_pa()) / self.density_kg_m3).sqrt()
     }
 
-    /// Speed c_s = √(G/ρ) of shear waves [m/s].
+    /// Speed c_s = √(G/ρ) of shear waves \[m/s\].
     pub fn shear_wave_speed_m_s(&self) -> f64 {
         (self.shear_modulus_pa() / self.density_kg_m3).sqrt()
     }

@@ -1,4 +1,4 @@
-//! The immutable part of a run, shared by all lanes: the pin, what holds and loads it, and what it slides on.
+//! The immutable part of a run, shared by all lanes: the pin, its supports and load, and its target.
 
 use super::body::block::{BlockBody, BlockMesh, Stiffness};
 use super::body::ring::{RingBody, RingDefinition, UnsteppedRing};
@@ -10,20 +10,20 @@ use super::scheme::{Bound, Scheme, TimeStep};
 use super::support::load::LoadShare;
 use super::support::{self, Support};
 
-/// What a model is made of.
+/// The parts from which a model is made.
 #[derive(Debug, Clone)]
 pub struct ModelDefinition {
     /// The mesh of the pin.
     pub mesh: BlockMesh,
-    /// Its material.
+    /// The material of the pin.
     pub material: Material,
-    /// What resists its deformation.
+    /// The stiffness of the pin: elastic, or springs.
     pub stiffness: Stiffness,
-    /// What holds it.
+    /// The supports of the pin.
     pub supports: Vec<Support>,
-    /// Nodal forces per unit of the total load.
+    /// Nodal forces per unit of the total load (dimensionless).
     pub load: Vec<LoadShare>,
-    /// What it slides on.
+    /// The target, on which the pin slides.
     pub target: TargetDefinition,
     /// β₂ of the scheme.
     pub beta2: f64,
@@ -47,15 +47,15 @@ pub struct Model {
 }
 
 impl Model {
-    /// A model from its parts.
+    /// Builds a model from its parts.
     ///
     /// # Errors
-    /// If the supports are inconsistent, the springs do not fit the mesh, or the time step is above the limit. On an
-    /// elastic disk also if a node of the contact face is held or tied, or if β₂ is not ½: these are solved on a rigid
-    /// target only.
+    /// If the supports are inconsistent, the springs do not fit the mesh, or the time step is above the limit. On
+    /// an elastic disk also if a node of the contact face is fixed or tied, or if β₂ is not ½: only the contact
+    /// solve on a rigid target supports these.
     ///
     /// # Panics
-    /// If there is not one surface velocity per contact-face node.
+    /// If a rigid target does not have one surface velocity per node of the contact face.
     pub fn new(definition: ModelDefinition) -> Result<Self, SolverError> {
         let ModelDefinition { mesh, material, stiffness, supports, load, target, beta2, beta_r_s, time_step } =
             definition;
@@ -80,9 +80,9 @@ impl Model {
             omega_max_rad_s: omega_max,
         };
         let time_step_s = match time_step {
-            // The limit of an elastic target has its margin.
+            // The limit of an elastic target already contains a margin.
             TimeStep::FractionOfLimit(fraction) => (fraction * pin_limit).min(target_limit),
-            // The limit itself is a legal step; computing it rounds.
+            // The limit itself is allowed; the factor covers the rounding of its computation.
             TimeStep::Given(dt) if dt <= limit * (1.0 + 1e-12) => dt,
             TimeStep::Given(dt) => return Err(too_large(dt)),
             TimeStep::Unchecked(dt) => dt,
@@ -120,27 +120,27 @@ impl Model {
         self.pin.mesh()
     }
 
-    /// What holds the pin.
+    /// The supports of the pin.
     pub fn supports(&self) -> &[Support] {
         &self.supports
     }
 
-    /// Nodal forces per unit of the total load.
+    /// Nodal forces per unit of the total load (dimensionless).
     pub fn load(&self) -> &[LoadShare] {
         &self.load
     }
 
-    /// Where the pin touches its target.
+    /// The contact face of the pin: its slave nodes.
     pub fn interface(&self) -> &Interface {
         &self.interface
     }
 
-    /// Nodes of the contact face.
+    /// The nodes of the contact face.
     pub fn slaves(&self) -> &[SlaveNode] {
         self.interface.slaves()
     }
 
-    /// What the pin slides on.
+    /// The target, on which the pin slides.
     pub fn target(&self) -> &Target {
         &self.target
     }
@@ -150,7 +150,7 @@ impl Model {
         self.target.ring()
     }
 
-    /// The numbers of the time integration.
+    /// The parameters of the time integration.
     pub fn scheme(&self) -> &Scheme {
         &self.scheme
     }
@@ -165,7 +165,7 @@ impl Model {
         self.time_step_limit_s
     }
 
-    /// The clamp's width \[m\] that the mesh gives.
+    /// Width \[m\] of the scene's clamp on the mesh; 0 for a model that was not built from a scene.
     pub fn clamp_width_m(&self) -> f64 {
         self.clamp_width_m
     }

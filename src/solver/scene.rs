@@ -1,4 +1,4 @@
-//! The model of a scene.
+//! Builds the model of a scene.
 
 use super::body::block::{BlockMesh, Stiffness};
 use super::body::ring::RingDefinition;
@@ -11,7 +11,7 @@ use super::support::{clamp, load};
 use crate::spec::{DiskKind, Numerics, Scene};
 
 impl Model {
-    /// The model of a scene.
+    /// Builds the model of a scene.
     ///
     /// # Errors
     /// If the mesh has no node row near the clamp's width, or the time step is above the limit.
@@ -37,10 +37,10 @@ impl Model {
         Ok(Self::new(definition)?.with_clamp_width(strip.width_m))
     }
 
-    /// Whether [`Model::from_scene`] would accept the scene; cheap unless a time step is given.
+    /// Checks whether [`Model::from_scene`] accepts the scene. It builds the model only if a time step is given.
     ///
     /// # Errors
-    /// As [`Model::from_scene`].
+    /// The same as of [`Model::from_scene`].
     pub fn preflight(scene: &Scene, numerics: &Numerics) -> Result<(), SolverError> {
         let mesh = BlockMesh::new(scene.pin.size_m, scene.pin.elements);
         clamp::clamped_strip(&mesh, &scene.clamp)?;

@@ -1,6 +1,6 @@
 //! The β₂ method (Newmark with β = 0, γ = β₂; the paper's equation \[2\]).
 //!
-//! It is written for the displacements u_n and for p_n = v_{n−1} + (1−β₂)Δt a_{n−1}. The damping β_R K acts on p_n:
+//! The unknowns are the displacements u_n and p_n = v_{n−1} + (1−β₂)Δt a_{n−1}. The damping β_R K acts on p_n:
 //!
 //! ```text
 //! M a_n   = r_n − K (u_n + β_R p_n) + contact forces
@@ -8,12 +8,16 @@
 //! p_{n+1} = p_n + Δt a_n
 //! ```
 //!
-//! At n = 0, p_0 is the initial velocity v_0, and the factors are ½ and 1−β₂: the first step is half a step.
+//! In the first step (n = 0), p_0 is the initial velocity v_0, and the factors of Δt² a and Δt a are ½ and 1−β₂.
 //!
 //! # Stability
 //! For one mode, with W = ωΔt and b = β_R/Δt, the amplification matrix of the recursion has
-//! det = 1 − (β₂ − ½ + b)W² and trace = 2 − (½ + β₂ + b)W². The recursion is stable while 1 + trace + det ≥ 0, that is
-//! **W² (β₂ + b) ≤ 2**, a quadratic in Δt.
+//!
+//! ```text
+//! det = 1 − (β₂ − ½ + b) W²        trace = 2 − (½ + β₂ + b) W²
+//! ```
+//!
+//! The recursion is stable while 1 + trace + det ≥ 0, that is **W² (β₂ + b) ≤ 2**, a quadratic inequality in Δt.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -25,16 +29,16 @@ use fearless_simd::{Simd, f64x8, prelude::*};
 pub enum TimeStep {
     /// A fraction of the stability limit.
     FractionOfLimit(f64),
-    /// A step [s], which is refused when it is above the limit.
+    /// A step \[s\] that is refused if it is above the limit.
     Given(f64),
-    /// A step [s] that is taken without a check, to study what happens above the limit.
+    /// A step \[s\] that is used without a check, to study what happens above the limit.
     Unchecked(f64),
 }
 
-/// The numbers of the method, which all bodies share.
+/// The parameters of the method. All bodies share them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Scheme {
-    /// β₂.
+    /// The parameter β₂, which is Newmark's γ.
     pub beta2: f64,
     /// Stiffness-proportional damping `β_R` \[s\].
     pub beta_r_s: f64,
@@ -42,24 +46,24 @@ pub struct Scheme {
     pub time_step_s: f64,
 }
 
-/// What multiplies accelerations in a step of all lanes; a lane may be at its first step.
+/// Factors of the acceleration in one step of all lanes. The factors of a lane's first step differ from the others.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::solver) struct StepFactors {
     pub time_step_s: f64,
     pub beta_r_s: f64,
-    /// Factor of a in `u_{n+1}` \[s²\], slot by slot.
+    /// Factor of a in `u_{n+1}` \[s²\], one per slot.
     pub u_scale: [f64; WIDTH],
-    /// Factor of a in `p_{n+1}` \[s\].
+    /// Factor of a in `p_{n+1}` \[s\], one per slot.
     pub p_scale: [f64; WIDTH],
 }
 
 impl Scheme {
-    /// Factors of Δt² a in `u_{n+1}` and of Δt a in `p_{n+1}`; the first step (n = 0) has its own.
+    /// Factors of Δt² a in `u_{n+1}` and of Δt a in `p_{n+1}`. The first step (n = 0) has its own.
     pub(in crate::solver) fn factors(&self, is_first: bool) -> (f64, f64) {
         if is_first { (0.5, 1.0 - self.beta2) } else { (0.5 + self.beta2, 1.0) }
     }
 
-    /// The factors of a step in which every lane has done so many steps before.
+    /// The factors of a step before which each lane has done `steps_done` steps.
     pub(in crate::solver) fn step_factors<const L: usize>(&self, steps_done: &[u64; L]) -> StepFactors {
         let dt = self.time_step_s;
         let (mut u_scale, mut p_scale) = ([0.0; L], [0.0; L]);
@@ -77,7 +81,7 @@ impl Scheme {
 }
 
 impl StepFactors {
-    /// u + Δt p + cΔt² a and p + dΔt a for a = −force/m.
+    /// Returns u + Δt p + cΔt² a and p + dΔt a for a = −force/m, where cΔt² and dΔt are the two scales.
     #[inline(always)]
     pub fn moved<S: Simd>(
         &self,
@@ -95,19 +99,19 @@ impl StepFactors {
     }
 }
 
-/// What the parts of a model contribute to the stability limit.
+/// Contribution of one part of a model to the stability limit.
 ///
 /// By Rayleigh's quotient the largest ω² of a sum of parts is at most the sum of their largest ω².
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Bound {
     /// Upper bound of the angular frequency ω \[rad/s\].
     pub omega_max_rad_s: f64,
-    /// Upper bound of the damping c/m \[1/s\] that is not `β_R` K.
+    /// Upper bound of c/m \[1/s\] for damping other than `β_R` K.
     pub damping_per_s: f64,
 }
 
 impl Bound {
-    /// The bound of both parts together.
+    /// The bound of both parts together: ω² and c/m add up.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -123,12 +127,12 @@ impl Bound {
         if self.damping_per_s > 0.0 {
             damping += self.damping_per_s / omega;
         }
-        // The form 2c/(b+√(b²+4ac)) keeps its digits when damping is strong.
+        // This form of the root, 2c/(b+√(b²+4ac)), does not cancel when damping is strong.
         4.0 / (omega * (damping + (damping * damping + 8.0 * beta2).sqrt()))
     }
 }
 
-/// Largest stable time step \[s\] for modes up to `omega_max` \[rad/s\] without other damping than `β_R`.
+/// Largest stable time step \[s\] for modes up to `omega_max` \[rad/s\], with no damping but `β_R` K.
 pub fn time_step_limit_s(omega_max: f64, beta2: f64, beta_r_s: f64) -> f64 {
     Bound { omega_max_rad_s: omega_max, damping_per_s: 0.0 }.time_step_limit_s(beta2, beta_r_s)
 }
@@ -137,8 +141,8 @@ pub fn time_step_limit_s(omega_max: f64, beta2: f64, beta_r_s: f64) -> f64 {
 mod tests {
     use super::*;
 
-    /// Protects: the closed form is the limit of the recursion itself, for every β₂ and damping:
-    /// just below it a mode stays bounded, just above it grows.
+    /// Protects: the closed form is the limit of the recursion itself, for every β₂ and damping. Just below it a
+    /// mode stays bounded, just above it the mode grows.
     #[test]
     fn limit_is_that_of_the_recursion() {
         for beta2 in [0.5, 0.6, 0.8, 1.0] {
@@ -167,7 +171,8 @@ mod tests {
         }
     }
 
-    /// Protects: the published limits: √(2/β₂) undamped, and (2/ω)(√(1+ξ²) − ξ) for the damped central difference.
+    /// Protects: the closed form gives the published limits: √(2/β₂) without damping, and (2/ω)(√(1+ξ²) − ξ) for
+    /// the damped central difference.
     #[test]
     fn agrees_with_the_published_limits() {
         let omega = 2.0e5;

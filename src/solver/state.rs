@@ -14,27 +14,29 @@ use super::support::load::AppliedLoad;
 pub struct State<const L: usize> {
     /// Steps that the lanes have taken together.
     pub step: u64,
-    /// Value of `step` at which the job in a lane began, or would have: it is at t_n with n = `step` − `begun`,
-    /// in wrapping arithmetic, because a job may come from elsewhere in the middle of its run.
+    /// Value of `step` at which the job in a lane began. The job is at t_n with n = `step` − `begun`. The
+    /// subtraction wraps, because a job can be loaded in the middle of its run and then has more steps than this
+    /// state.
     pub begun: [u64; L],
     /// Displacements `u_n` of the pin \[m\].
     pub u: Field<L>,
     /// `p_n = v_{n−1} + (1−β₂)Δt a_{n−1}` of the pin \[m/s\]; at n = 0 the initial velocity.
     pub p: Field<L>,
-    /// Contact during the step that led here.
+    /// Contact during the last step, from `t_{n−1}` to `t_n`.
     pub contacts: Contacts<L>,
-    /// What the pin slides on.
+    /// The target, on which the pin slides.
     pub target: TargetState<L>,
-    /// Sum of the reactions \[N\] of the supports on the pin at `t_{n−1}`, x, y and z.
+    /// Sum of the reaction forces \[N\] of the supports on the pin at `t_{n−1}`: x, y and z.
     pub reaction_n: [[f64; L]; 3],
     /// Load \[N\] at `t_{n−1}`.
     pub load_n: [f64; L],
-    /// Displacement \[m\] on which a unit of the load does work, at `t_{n−2}`, `t_{n−1}` and `t_n`.
+    /// Displacement \[m\] that is work-conjugate to the total load, at `t_{n−2}`, `t_{n−1}` and `t_n`.
     pub load_stroke_m: [[f64; L]; 3],
     pub(super) workspace: Workspace<L>,
 }
 
-/// What moves the pin: scratch of the step and what it needs of the model. Nothing in it is carried from step to step.
+/// The parts of the model that move the pin, prepared for all lanes, and scratch memory. Nothing in it is carried
+/// from step to step.
 #[derive(Debug, Clone)]
 pub(super) struct Workspace<const L: usize> {
     pub pin: BlockMotion<L>,
@@ -43,7 +45,7 @@ pub(super) struct Workspace<const L: usize> {
 }
 
 impl<const L: usize> State<L> {
-    /// At rest and undeformed.
+    /// All lanes at rest and undeformed.
     pub fn at_rest(model: &Model) -> Self {
         let pin = model.pin();
         Self {
@@ -69,7 +71,7 @@ impl<const L: usize> State<L> {
         self.step.wrapping_sub(self.begun[lane])
     }
 
-    /// The same of all lanes.
+    /// Number of steps that the job in each lane has done.
     pub(super) fn steps_of_lanes(&self) -> [u64; L] {
         std::array::from_fn(|lane| self.steps_done(lane))
     }
@@ -80,10 +82,10 @@ impl<const L: usize> State<L> {
     }
 }
 
-/// All that a lane's job needs to go on. Zeros are a job that begins at rest.
+/// The saved numbers are all that a job needs to continue. Zeros are a job that begins at rest.
 impl<const L: usize> LaneState for State<L> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
-        // Exact: there are fewer steps than 2⁵³.
+        // The conversion is exact below 2⁵³ steps.
         saved.push(self.steps_done(lane) as f64);
         self.u.save_lane(lane, saved);
         self.p.save_lane(lane, saved);

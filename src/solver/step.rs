@@ -1,7 +1,7 @@
-//! One time step of the β₂ method ([`scheme`](super::scheme)) with contact; nothing else happens here.
+//! One time step of the β₂ method ([`scheme`](super::scheme)) with contact.
 
 use super::drive::Drive;
-use super::interface::solve::Given;
+use super::interface::solve::StepData;
 use super::model::Model;
 use super::state::State;
 use super::support::Supported;
@@ -22,7 +22,7 @@ pub fn step<const L: usize>(model: &Model, drives: &[Drive; L], state: &mut Stat
     state.reaction_n = work.supports.act(&mut Supported { u: &state.u, p: &state.p, residual });
     work.pin.advance_constrained_planes(&factors, &mut state.u, &mut state.p);
 
-    let given = Given { factors: &factors, drives, steps_done: &steps_done };
+    let given = StepData { factors: &factors, drives, steps_done: &steps_done };
     let mut face = work.pin.face(&mut state.u, &mut state.p);
     let held_n = state.target.solve(&given, &mut face, &mut state.contacts);
     for c in 0..3 {
@@ -35,7 +35,7 @@ pub fn step<const L: usize>(model: &Model, drives: &[Drive; L], state: &mut Stat
     state.step += 1;
 }
 
-/// A pin that begins deformed has no stroke before its first step.
+/// Sets the load's displacements of lanes at their first step: a pin that begins deformed has not moved before.
 fn begin_load_strokes<const L: usize>(steps_done: &[u64; L], state: &mut State<L>) {
     if steps_done.iter().all(|&steps| steps > 0) {
         return;
@@ -56,7 +56,7 @@ mod tests {
     use crate::solver::interface::law::Law;
     use crate::spec::JobSpec;
 
-    /// Protects: the load of a step is that of its time t_n, not of the step before or after.
+    /// Protects: the load of a step is that at its time t_n, not that of the step before or after.
     #[test]
     fn a_step_takes_the_load_of_its_own_time() {
         let mut spec = JobSpec::default();

@@ -12,13 +12,13 @@
 use crate::solver::material::Material;
 use nalgebra::{Matrix3, SMatrix, Vector3};
 
-/// The 24 × 24 stiffness matrix of one element, rows and columns `3·node + component` [N/m].
+/// The 24 × 24 stiffness matrix of one element, rows and columns `3·node + component` \[N/m\].
 pub type ElementStiffness = SMatrix<f64, 24, 24>;
 
-/// Stiffness K_e = ∫ Bᵀ D B dV of a box of edge lengths `h` [m], by 2 × 2 × 2 Gauss points.
+/// Stiffness K_e = ∫ Bᵀ D B dV \[N/m\] of a box of edge lengths `h` \[m\], by 2 × 2 × 2 Gauss points.
 ///
-/// For a box the map to the unit cube is diagonal, so the integrand is a polynomial that two points
-/// per direction integrate exactly.
+/// For a box the map to the unit cube is diagonal. So the integrand is a polynomial that two points per direction
+/// integrate exactly.
 pub fn stiffness(material: &Material, h: [f64; 3]) -> ElementStiffness {
     let lambda = material.lame_lambda_pa();
     let shear = material.shear_modulus_pa();
@@ -42,12 +42,12 @@ pub fn stiffness(material: &Material, h: [f64; 3]) -> ElementStiffness {
             }
         }
     }
-    // Rounding differs between (a, b) and (b, a); an exactly symmetric operator keeps energies exact.
+    // Rounding differs between (a, b) and (b, a). Energies are exact only if the operator is exactly symmetric.
     (k + k.transpose()) * 0.5
 }
 
-/// Stiffness [N/m] and row-sum lumped volumes [m³] of an isoparametric hexahedron with these corners [m], numbered
-/// as above, by 2 × 2 × 2 Gauss points.
+/// Stiffness \[N/m\] and row-sum lumped volumes \[m³\] of an isoparametric hexahedron with these corners \[m\],
+/// numbered as in the figure above, by 2 × 2 × 2 Gauss points.
 ///
 /// # Panics
 /// If the element is inverted.
@@ -58,7 +58,7 @@ pub fn isoparametric(material: &Material, corners: &[Vector3<f64>; 8]) -> (Eleme
     let mut volumes = [0.0; 8];
     for point in 0..8 {
         let xi = gauss_point(point);
-        // On the cube [−1, 1]³ itself, edges 2.
+        // Gradients on the reference cube [−1, 1]³, whose edges have the length 2.
         let local = gradients_at(xi, [2.0; 3]);
         let jacobian: Matrix3<f64> = local.iter().zip(corners).map(|(g, x)| g * x.transpose()).sum();
         let weight = jacobian.determinant();
@@ -85,13 +85,13 @@ pub fn isoparametric(material: &Material, corners: &[Vector3<f64>; 8]) -> (Eleme
     ((k + k.transpose()) * 0.5, volumes)
 }
 
-/// Position of a Gauss point in [−1, 1]³.
+/// Position of a Gauss point in \[−1, 1\]³.
 fn gauss_point(index: usize) -> [f64; 3] {
     let g = 1.0 / 3.0_f64.sqrt();
     std::array::from_fn(|axis| if index >> axis & 1 == 0 { -g } else { g })
 }
 
-/// Gradients ∂N_a/∂x [1/m] of the eight shape functions at ξ ∈ [−1, 1]³.
+/// Gradients ∂N_a/∂x \[1/m\] of the eight shape functions of a box of edge lengths `h` at ξ ∈ \[−1, 1\]³.
 fn gradients_at(xi: [f64; 3], h: [f64; 3]) -> [Vector3<f64>; 8] {
     std::array::from_fn(|a| {
         let sign: [f64; 3] = std::array::from_fn(|axis| if a >> axis & 1 == 0 { -1.0 } else { 1.0 });
@@ -111,7 +111,7 @@ mod tests {
     const MATERIAL: Material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
     const H: [f64; 3] = [1.0e-3, 1.5e-3, 0.7e-3];
 
-    /// Protects: rigid motions carry no force, so they cost no energy and need no time step.
+    /// Protects: rigid motions cause no force and store no energy.
     #[test]
     fn rigid_motions_are_free() {
         let k = stiffness(&MATERIAL, H);
@@ -124,12 +124,12 @@ mod tests {
                 axis[mode % 3] = 1.0;
                 if mode < 3 { axis[c] } else { axis.cross(&x)[c] }
             });
-            // 24 products of size `scale`, each rounded once.
-            assert!((k * u).amax() < 24.0 * 4.0 * f64::EPSILON * scale, "rigid mode {mode} carries force");
+            // There are 24 products of the size `scale`, each rounded once.
+            assert!((k * u).amax() < 24.0 * 4.0 * f64::EPSILON * scale, "rigid mode {mode} causes a force");
         }
     }
 
-    /// Protects: the patch test; a uniform strain gives the exact stress, hence the exact strain energy.
+    /// Protects: the patch test. A uniform strain gives the exact stress, hence the exact strain energy.
     #[test]
     fn uniform_strain_has_the_exact_energy() {
         let k = stiffness(&MATERIAL, H);

@@ -1,11 +1,11 @@
-//! Bodies: what deforms.
+//! Deformable bodies.
 //!
-//! A body has nodes with lumped masses, internal forces K (u + β_R p), stored energies with the work of its damping, and
-//! an upper bound of its largest frequency.
+//! A body has nodes with lumped masses, internal forces K (u + β_R p), stored energies, the work of its damping,
+//! and an upper bound of its largest frequency.
 //!
-//! * [`block`] – the pin: a uniform block, moved in the same pass that forms the product with K.
+//! * [`block`] – the pin: a uniform block. Its nodes are moved in the same pass that forms the product with K.
 //! * [`ring`] – the elastic disk.
-//! * [`hexahedron`] – the element of both.
+//! * [`hexahedron`] – the finite element of both.
 //!
 //! Bodies know nothing of supports, contact or each other.
 
@@ -16,15 +16,15 @@ pub mod ring;
 /// How one degree of freedom of a body may move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Freedom {
-    /// By itself.
+    /// It moves by itself.
     Free,
-    /// Not at all.
+    /// It does not move.
     Fixed,
-    /// With the others of the group of this number.
+    /// It moves with the other members of the group of this number.
     Tied(usize),
 }
 
-/// Stored energies \[J\] at t_n, and the work of damping in one step: sums over bodies and supports.
+/// Stored energies \[J\] at t_n, and the work \[J\] of damping in one step, summed over bodies and supports.
 #[derive(Debug, Clone, Copy)]
 #[expect(clippy::struct_field_names, reason = "units are part of the names")]
 pub(in crate::solver) struct EnergySums<const L: usize> {
@@ -34,7 +34,7 @@ pub(in crate::solver) struct EnergySums<const L: usize> {
     pub damping_after_j: [f64; L],
     /// Work of the damping forces at t_n over the increment before t_n.
     pub damping_before_j: [f64; L],
-    /// What β₂ > ½ dissipates in the step before t_n.
+    /// Energy that β₂ > ½ dissipates in the step before t_n.
     pub numerical_j: [f64; L],
 }
 
@@ -48,7 +48,7 @@ impl<const L: usize> EnergySums<L> {
     };
 }
 
-/// Adds lane by lane.
+/// Adds `part` to `total` lane by lane.
 pub(in crate::solver) fn add_lanes<const L: usize>(total: &mut [f64; L], part: &[f64; L]) {
     for (total, part) in total.iter_mut().zip(part) {
         *total += part;

@@ -1,4 +1,4 @@
-//! What is found at the slave nodes in a step.
+//! Results of a contact solve at the slave nodes.
 
 use crate::solver::field::{Field, Layout};
 use crate::solver::lane::LaneState;
@@ -9,9 +9,9 @@ pub enum ContactState {
     /// No contact force.
     #[default]
     Separated,
-    /// Contact force inside the friction cone: moves with the target.
+    /// The contact force is inside the friction cone: the node moves with the target.
     Stick,
-    /// Contact force on the friction cone: moves relative to the target.
+    /// The contact force is on the friction cone: the node moves relative to the target.
     Slip,
 }
 
@@ -26,38 +26,38 @@ impl ContactState {
     }
 }
 
-/// Contact of all slave nodes during the last step; slave nodes are numbered as the nodes of the contact face.
+/// Contact of all slave nodes during the last step. Slave nodes are numbered like the nodes of the contact face.
 #[derive(Debug, Clone)]
 pub struct Contacts<const L: usize> {
-    /// Contact force [N] on the pin at t_n: x, y, and N ≥ 0 in z (the multipliers are its negative).
+    /// Contact force \[N\] on the pin at t_n: x, y, and N ≥ 0 in z (the multipliers are minus these forces).
     pub force_n: Field<L>,
-    /// Displacement increment [m] relative to the target over the step: x, y and (target at rest) z.
+    /// Displacement increment \[m\] relative to the target over the step: x, y, and in z the change of the gap.
     pub increment_m: Field<L>,
-    /// The same over the step before.
+    /// The increment \[m\] over the step before.
     pub previous_increment_m: Field<L>,
-    /// What [`Status`] names, component by component.
+    /// Gap and state; [`Status`] names the components.
     pub status: Field<L>,
-    /// The limit [N] of the friction force at t_n, which the law gave, in the first component; the others are free for
-    /// laws with a memory.
+    /// In the first component, the limit \[N\] of the friction force at t_n that the law gave. The other components
+    /// are free for laws with a memory.
     pub friction: Field<L>,
 }
 
-/// The component of [`Contacts::friction`] that is the limit.
+/// The component of [`Contacts::friction`] that holds the limit.
 pub(crate) const LIMIT: usize = 0;
 
 /// The components of [`Contacts::status`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Status {
-    /// Gap [m] at t_{n+1}, positive when open.
+    /// Gap \[m\] at t_{n+1}, positive when open.
     Gap = 0,
     /// 1 if the node carried a contact force during the step, otherwise 0.
     Closed = 1,
-    /// 1 if it slipped, otherwise 0.
+    /// 1 if the node slipped, otherwise 0.
     Slips = 2,
 }
 
 impl<const L: usize> Contacts<L> {
-    /// No contact at slave nodes of this layout.
+    /// No contact at the slave nodes of a face with this layout.
     pub fn separated(layout: Layout) -> Self {
         let face = || Field::zeros(layout);
         Self {
@@ -69,7 +69,7 @@ impl<const L: usize> Contacts<L> {
         }
     }
 
-    /// Before a step: what was found over the last step now belongs to the step before.
+    /// Prepares a step: the increments of the last step become those of the step before.
     pub(in crate::solver) fn swap_increments(&mut self) {
         std::mem::swap(&mut self.increment_m, &mut self.previous_increment_m);
     }
@@ -93,22 +93,22 @@ impl<const L: usize> Contacts<L> {
         self.force_n.len() / (3 * L)
     }
 
-    /// Contact force [N] on a slave node of a lane at t_n.
+    /// Contact force \[N\] on a slave node of a lane at t_n.
     pub fn force_of(&self, slave: usize, lane: usize) -> [f64; 3] {
         vector(&self.force_n, slave, lane)
     }
 
-    /// Displacement increment [m] of a slave node of a lane relative to the target.
+    /// Displacement increment \[m\] of a slave node of a lane relative to the target.
     pub fn increment_of(&self, slave: usize, lane: usize) -> [f64; 3] {
         vector(&self.increment_m, slave, lane)
     }
 
-    /// The limit [N] of the friction force on a slave node of a lane at t_n.
+    /// The limit \[N\] of the friction force on a slave node of a lane at t_n.
     pub fn friction_limit_of(&self, slave: usize, lane: usize) -> f64 {
         self.friction.at(self.friction.place(slave), LIMIT)[lane]
     }
 
-    /// Gap [m] of a slave node of a lane at t_{n+1}.
+    /// Gap \[m\] of a slave node of a lane at t_{n+1}.
     pub fn gap_of(&self, slave: usize, lane: usize) -> f64 {
         self.status.at(self.status.place(slave), Status::Gap as usize)[lane]
     }
@@ -130,13 +130,13 @@ impl<const L: usize> Contacts<L> {
         (0..self.slaves()).map(move |slave| self.state_of(slave, lane))
     }
 
-    /// Contact forces [N] on all slave nodes of a lane.
+    /// Contact forces \[N\] on all slave nodes of a lane.
     pub fn forces(&self, lane: usize) -> impl Iterator<Item = [f64; 3]> + '_ {
         (0..self.slaves()).map(move |slave| self.force_of(slave, lane))
     }
 }
 
-/// Zeros separate the nodes.
+/// Zeros are a lane without contact.
 impl<const L: usize> LaneState for Contacts<L> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
         for field in self.fields() {

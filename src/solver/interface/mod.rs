@@ -1,21 +1,21 @@
-//! The interface: where the pin touches its target.
+//! The interface: contact of the pin with its target.
 //!
-//! A contact force comes about in this order:
+//! A contact force is found in this order:
 //!
 //! ```text
 //! pair (slave node, initial gap) ─► gap and slip of the prediction ─► solve: normal force, then friction
 //!                                       ▲ target (how it moves)                └► law: limit, projection
 //! ```
 //!
-//! Contact is by forward increment Lagrange multipliers (Carpenter, Taylor and Katona, 1991): u* is predicted without
-//! contact. Every slave node that would be below its target at t_{n+1} gets a constraint, and the multipliers that put it
-//! back act at t_n.
+//! The method is that of forward increment Lagrange multipliers (Carpenter, Taylor and Katona, 1991). The
+//! displacements u* are predicted without contact. Every slave node that would be below its target at t_{n+1} gets
+//! a constraint. The multipliers that put it back act at t_n.
 //!
 //! * [`Interface`] – the slave nodes with their initial gaps and the velocity of the target under them.
 //! * [`law`] – friction laws, and the projection that all of them share.
 //! * [`target`] – rigid surfaces, and the surface of an elastic disk between its nodes.
-//! * [`solve`] – the two ways of solving: node by node on a rigid target, by sweeps on an elastic one.
-//! * [`Contacts`] – what is found: forces, friction limits, increments, gaps and states.
+//! * [`solve`] – the two contact solves: node by node on a rigid target, by sweeps on an elastic one.
+//! * [`Contacts`] – the results: forces, friction limits, increments, gaps and states.
 
 mod contacts;
 pub mod law;

@@ -1,4 +1,4 @@
-//! The slave nodes, and what is under them.
+//! The slave nodes: their initial gaps, and the velocity of the target under them.
 
 use super::target::SurfaceMotion;
 use crate::solver::body::Freedom;
@@ -8,24 +8,25 @@ use crate::solver::field::{Field, Layout};
 /// A node of the contact face.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SlaveNode {
-    /// Its index in the mesh of the pin.
+    /// Index in the mesh of the pin.
     pub node: usize,
     /// Lumped mass \[kg\].
     pub mass_kg: f64,
     /// Tributary area \[m²\].
     pub area_m2: f64,
-    /// Place in the contact face \[m\], x and y from the pin's axis.
+    /// Position in the contact face \[m\], x and y from the pin's axis.
     pub position_m: [f64; 2],
-    /// Gap \[m\] between the undeformed pin and the undeformed target. The gap of a node is this plus its displacement
-    /// in z, less that of the target.
+    /// Gap \[m\] between the undeformed pin and the undeformed target. The gap of a node is this plus its
+    /// displacement in z, minus the displacement of the target.
     pub initial_gap_m: f64,
-    /// Velocity of the target under it per unit of the drive's rate, x and y.
+    /// Velocity of the target under the node per unit of the drive's rate, x and y: \[m\] for a disk, 1 for a
+    /// plane.
     pub surface_motion: [f64; 2],
-    /// Which components are not fixed.
+    /// Whether each component can move, that is, is not fixed.
     pub mobile: [bool; 3],
 }
 
-/// The slave nodes of a pin, numbered as the nodes of its contact face.
+/// The slave nodes of a pin, numbered like the nodes of its contact face.
 #[derive(Debug, Clone)]
 pub struct Interface {
     slaves: Vec<SlaveNode>,
@@ -35,7 +36,7 @@ pub struct Interface {
 }
 
 impl Interface {
-    /// The contact face of a pin on a target that moves like this.
+    /// The contact face of `pin` on a target that moves with `surface_motion` under the slave nodes.
     ///
     /// # Panics
     /// If there is not one surface velocity per node of the contact face.
@@ -86,7 +87,7 @@ impl Interface {
         self.extent_m
     }
 
-    /// The slave nodes in the centre of the leading edge (−y) and of the trailing edge (+y).
+    /// Slave nodes at the centre of the leading edge (−y) and of the trailing edge (+y).
     pub fn edge_centres(&self) -> [usize; 2] {
         self.edge_centres
     }
@@ -96,7 +97,7 @@ impl Interface {
         self.layout
     }
 
-    /// Three numbers of every slave node, the same in all lanes.
+    /// A field with three values per slave node, the same in all lanes.
     pub fn field<const L: usize>(&self, values: impl Fn(&SlaveNode) -> [f64; 3]) -> Field<L> {
         let mut field = Field::zeros(self.layout);
         for (slave, node) in self.slaves.iter().enumerate() {

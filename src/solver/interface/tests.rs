@@ -1,7 +1,7 @@
-//! Initial gaps, and what a law is told.
+//! Tests of initial gaps and of the arguments of a friction law.
 
 use super::law::{FrictionLaw, Law};
-use super::solve::{Given, TargetState};
+use super::solve::{StepData, TargetState};
 use super::{Contacts, LIMIT, Status};
 use crate::solver::body::block::BlockMotion;
 use crate::solver::{Drive, Model, State, step};
@@ -22,8 +22,8 @@ fn model(disk: DiskKind) -> Model {
     Model::from_scene(&spec.scene, &spec.numerics).unwrap()
 }
 
-/// Protects: a gap is the initial gap plus the displacement, on both kinds of target. A pin that begins lower by its
-/// initial gap moves as one that begins on the target: contact forces, gaps and states are the same.
+/// Protects: a gap is the initial gap plus the displacement, on both kinds of target. A pin that begins lower by
+/// its initial gap moves like one that begins on the target: contact forces, gaps and states are the same.
 #[test]
 fn a_pin_that_begins_lower_by_its_gap_moves_alike() {
     for disk in [DiskKind::Rigid, DiskKind::Elastic] {
@@ -40,8 +40,8 @@ fn a_pin_that_begins_lower_by_its_gap_moves_alike() {
             step(&raised, &[DRIVE], &mut lowered);
             for slave in 0..flat.slaves().len() {
                 let [found, exact] = [&lowered, &on_target].map(|state| state.contacts.force_of(slave, 0));
-                // The displacements round at the size of the shift, which a stiffness m/Δt² of 10⁷ N/m and the steps
-                // since then turn into forces.
+                // The rounding errors of the displacements have the size of the shift. A stiffness m/Δt² of 10⁷ N/m
+                // turns them into forces, and they accumulate over the steps.
                 let stiffness = flat.slaves()[slave].mass_kg / flat.time_step_s().powi(2);
                 let rounding = 8.0 * (n + 1) as f64 * f64::EPSILON * SHIFT_M * stiffness;
                 for c in 0..3 {
@@ -58,11 +58,11 @@ fn a_pin_that_begins_lower_by_its_gap_moves_alike() {
                 closed += usize::from(exact[2] > 0.0);
             }
         }
-        assert!(closed > STEPS, "there is contact: {closed}");
+        assert!(closed > STEPS, "too few contacts: {closed}");
     }
 }
 
-/// Protects: a node touches only when it has closed its own gap.
+/// Protects: a node is in contact only after it has closed its own gap.
 #[test]
 fn only_nodes_that_have_closed_their_gap_touch() {
     let model =
@@ -79,11 +79,11 @@ fn only_nodes_that_have_closed_their_gap_touch() {
     }
 }
 
-/// A law that shows what it is told.
+/// A friction law whose limit encodes its arguments.
 #[derive(Clone, Copy)]
-pub(super) struct Telltale;
+pub(super) struct ExposingLaw;
 
-impl<S: Simd> FrictionLaw<f64x8<S>> for Telltale {
+impl<S: Simd> FrictionLaw<f64x8<S>> for ExposingLaw {
     fn limit_n(&self, normal_n: f64x8<S>, increment_m: [f64x8<S>; 2], slipped: f64x8<S>) -> f64x8<S> {
         let simd = normal_n.simd;
         normal_n
@@ -92,10 +92,10 @@ impl<S: Simd> FrictionLaw<f64x8<S>> for Telltale {
     }
 }
 
-/// Protects: a law is told the normal force of this step, and of the step before the increment and whether the node
-/// slipped. The limit is stored beside the force.
+/// Protects: a law gets the normal force of this step, and the increment and the slip of the step before. The limit
+/// is stored with the force.
 #[test]
-fn a_law_is_told_of_the_step_before() {
+fn a_law_gets_the_step_before() {
     let model = model(DiskKind::Rigid);
     let mut state = State::<1>::at_rest(&model);
     for _ in 0..STEPS {
@@ -104,11 +104,11 @@ fn a_law_is_told_of_the_step_before() {
     let before: Contacts<1> = state.contacts.clone();
     let steps_done = [state.steps_done(0)];
     let factors = model.scheme().step_factors(&steps_done);
-    let given = Given { factors: &factors, drives: &[DRIVE], steps_done: &steps_done };
+    let given = StepData { factors: &factors, drives: &[DRIVE], steps_done: &steps_done };
     let motion = BlockMotion::<1>::new(model.pin());
     let mut target = TargetState::<1>::at_rest(model.interface(), model.target());
     let (mut u, mut p) = (state.u.clone(), state.p.clone());
-    target.solve_with(Telltale, &given, &mut motion.face(&mut u, &mut p), &mut state.contacts);
+    target.solve_with(ExposingLaw, &given, &mut motion.face(&mut u, &mut p), &mut state.contacts);
     let mut slipped_nodes = 0;
     for slave in 0..model.slaves().len() {
         let place = before.status.place(slave);

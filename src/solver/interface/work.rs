@@ -1,4 +1,4 @@
-//! Works of the contact forces of one step.
+//! Work of the contact forces of one step.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -8,19 +8,19 @@ use crate::solver::drive::Drive;
 use crate::solver::field::{Block, Field, WIDTH, add_slots};
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
-/// The velocities of the target, with which its work is reckoned.
+/// Computes the work of the contact forces.
 #[derive(Debug, Clone)]
 pub(in crate::solver) struct InterfaceWork<const L: usize> {
-    /// Velocity per unit of the drive's rate, x and y, of every slave node.
+    /// Velocity of the target per unit of the drive's rate under every slave node, x and y.
     motion: Field<L>,
 }
 
-/// What the forces of a step did over the increments after and before their time [J].
+/// Work \[J\] of the forces at t_n over the increments after and before t_n.
 #[derive(Debug, Clone, Copy)]
 #[expect(clippy::struct_field_names, reason = "units are part of the names")]
 pub(in crate::solver) struct StepWorks<const L: usize> {
     pub drive_j: [f64; L],
-    /// Work of the drive over the slopes of an elastic target.
+    /// Work of the drive on the slopes of an elastic target.
     pub slope_after_j: [f64; L],
     pub slope_before_j: [f64; L],
     pub friction_after_j: [f64; L],
@@ -35,7 +35,7 @@ impl<const L: usize> InterfaceWork<L> {
         Self { motion }
     }
 
-    /// The works of the step that led to these contacts and this target.
+    /// The works of the step that gave these contacts and this target.
     pub fn of_step(
         &self,
         time_step_s: f64,
@@ -76,7 +76,7 @@ impl<const L: usize> InterfaceWork<L> {
                 let slips = f64x8::from_slice(simd, &contacts.status.blocks()[at].0[Status::Slips as usize]);
                 let slips = slips.simd_gt(zero);
                 totals[0] += product(simd, force, motion, 0) + product(simd, force, motion, 1);
-                // The tangential work of slipping nodes is friction; all else is lost in the contact.
+                // The tangential work of slipping nodes is friction. All other work is contact loss.
                 totals[1] -= slips.select(now[0], zero);
                 totals[2] -= slips.select(before[0], zero);
                 totals[3] -= slips.select(zero, now[0]) + now[1];
@@ -92,7 +92,7 @@ impl<const L: usize> InterfaceWork<L> {
     }
 }
 
-/// Force times increment: the tangential part, and the normal one.
+/// Work of a force over an increment: its tangential part and its normal part.
 #[inline(always)]
 fn work<S: Simd>(simd: S, force: &Block, increment: &Block) -> [f64x8<S>; 2] {
     [

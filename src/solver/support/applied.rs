@@ -5,15 +5,15 @@ use crate::solver::field::Field;
 use crate::solver::scheme::Scheme;
 use std::fmt::Debug;
 
-/// A support in every lane. It may remember within a step what [`AppliedSupport::add_energies`] needs; nothing is
+/// A support in every lane. It may store within a step what [`AppliedSupport::add_energies`] needs. Nothing is
 /// carried from step to step.
 pub(in crate::solver) trait AppliedSupport<const L: usize>: Debug + Send + Sync {
-    /// Acts on the pin at t_n: adds the support's force to the residual, and what the frame carries \[N\] to
+    /// Acts on the pin at t_n: adds the support's force to the residual, and its reaction force on the pin \[N\] to
     /// `reaction_n`.
     fn act(&mut self, pin: &mut Supported<'_, L>, reaction_n: &mut [[f64; L]; 3]);
 
-    /// Adds the energy that is stored at t_n, and the work of damping in the step that led from there to `u_after`.
-    /// A rigid support stores nothing and has no damping.
+    /// Adds the energy stored at t_n, and the work of damping in the step from there to `u_after`. A rigid support
+    /// has neither.
     fn add_energies(&self, _scheme: &Scheme, _u_after: &Field<L>, _total: &mut EnergySums<L>) {}
 
     /// A copy.
@@ -22,11 +22,12 @@ pub(in crate::solver) trait AppliedSupport<const L: usize>: Debug + Send + Sync 
 
 /// The pin at t_n, on which supports act.
 pub(in crate::solver) struct Supported<'a, const L: usize> {
-    /// Displacements [m] and p_n [m/s]. Rigid supports do not need them.
+    /// Displacements \[m\] at t_n. Rigid supports do not need them, nor `p`.
     #[expect(dead_code, reason = "for supports whose force depends on the motion")]
     pub u: &'a Field<L>,
+    /// p_n \[m/s\].
     #[expect(dead_code, reason = "for supports whose force depends on the motion")]
     pub p: &'a Field<L>,
-    /// K (u + β_R p) − external forces [N].
+    /// K (u + β_R p) − external forces \[N\].
     pub residual: &'a mut Field<L>,
 }

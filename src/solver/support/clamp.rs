@@ -5,15 +5,15 @@ use crate::solver::body::block::BlockMesh;
 use crate::solver::error::SolverError;
 use crate::spec::{Clamp, ClampSide, TopFace};
 
-/// How far the nearest node row may be from the clamp's width, as a fraction of that width.
+/// Largest distance of the nearest node row from the clamp's width, as a fraction of that width.
 const WIDTH_TOLERANCE: f64 = 0.25;
 
-/// The clamp's nodes and the width that the mesh gives it.
+/// The nodes of a clamp, and its width on the mesh.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ClampedStrip {
     /// Clamped nodes of the top face.
     pub nodes: Vec<usize>,
-    /// Distance [m] from the edge to the last held row.
+    /// Distance \[m\] from the edge to the last clamped row of nodes.
     pub width_m: f64,
 }
 
@@ -37,7 +37,7 @@ pub fn clamped_strip(mesh: &BlockMesh, clamp: &Clamp) -> Result<ClampedStrip, So
     let h = mesh.element_size_m()[axis];
     let last_row = ((clamp.width_m / h).round() as usize).min(elements);
     let width_m = last_row as f64 * h;
-    // The relative slack of 1e-12 forgives the rounding of decimal widths.
+    // The relative tolerance of 1e-12 covers the rounding of decimal widths.
     if (width_m - clamp.width_m).abs() > WIDTH_TOLERANCE * clamp.width_m * (1.0 + 1e-12) {
         let below = ((clamp.width_m / h).floor() as usize).min(elements);
         return Err(SolverError::ClampOffMesh {
@@ -75,7 +75,7 @@ mod tests {
         clamped_strip(&BlockMesh::new(SIZE_M, elements), &Clamp { side, width_m })
     }
 
-    /// Protects: a width in metres means the same strip on every mesh that can show it.
+    /// Protects: a width in metres gives the same strip on every mesh that has a node row there.
     #[test]
     fn width_means_the_same_on_every_mesh() {
         for elements in [[6, 8, 5], [12, 15, 10], [18, 22, 15], [24, 30, 20]] {
@@ -87,7 +87,7 @@ mod tests {
 
     type Held = fn([f64; 3]) -> bool;
 
-    /// Protects: each named side holds the nodes that its name says.
+    /// Protects: each named side clamps the nodes that its name says.
     #[test]
     fn sides_are_where_their_names_say() {
         let mesh = BlockMesh::new(SIZE_M, [12, 15, 10]);
@@ -106,7 +106,7 @@ mod tests {
         }
     }
 
-    /// Protects: a mesh that cannot show the width is refused with the widths that it can show.
+    /// Protects: a width without a node row near it is refused, and the error names the nearest possible widths.
     #[test]
     fn a_width_between_rows_is_refused() {
         let error = strip([6, 8, 5], ClampSide::InnerSide, 0.001).unwrap_err();

@@ -12,7 +12,8 @@ pub struct Fixed {
     pub dofs: Vec<usize>,
 }
 
-/// The same in every lane: the motion of the pin leaves them where they are, and their reactions are added up here.
+/// Fixed degrees of freedom in every lane. Their inverse mass is zero, so the pin's motion does not change them.
+/// Here their reactions are summed.
 #[derive(Debug, Clone)]
 pub(super) struct AppliedFixed<const L: usize> {
     held: Vec<Weights>,

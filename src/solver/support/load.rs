@@ -7,7 +7,7 @@ use crate::solver::body::block::BlockMesh;
 use crate::solver::field::{Field, in_slots};
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
-/// A nodal force per unit of the total load.
+/// A nodal force per unit of the total load (dimensionless).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoadShare {
     /// 3·node + component.
@@ -16,7 +16,7 @@ pub struct LoadShare {
     pub share: f64,
 }
 
-/// A total load of 1 in −z, spread over the top face by tributary area.
+/// The shares of a total load of 1 in −z, distributed over the top face by tributary area.
 pub fn normal_load(mesh: &BlockMesh) -> Vec<LoadShare> {
     let area = mesh.size_m()[0] * mesh.size_m()[1];
     mesh.top_nodes()
@@ -24,7 +24,7 @@ pub fn normal_load(mesh: &BlockMesh) -> Vec<LoadShare> {
         .collect()
 }
 
-/// The load's pattern in every lane.
+/// The distribution of the load in every lane.
 #[derive(Debug, Clone)]
 pub(in crate::solver) struct AppliedLoad<const L: usize> {
     shares: Vec<Weights>,
@@ -36,7 +36,7 @@ impl<const L: usize> AppliedLoad<L> {
         Self { shares: weights::<L>(mesh, &shares) }
     }
 
-    /// residual −= load.
+    /// Subtracts the load \[N\] from the residual \[N\].
     pub fn act(&self, load_n: &[f64; L], residual: &mut Field<L>) {
         dispatch!(Level::new(), simd => self.act_in(simd, load_n, residual));
     }
@@ -53,7 +53,7 @@ impl<const L: usize> AppliedLoad<L> {
         }
     }
 
-    /// Displacement \[m\] over which a unit of the total load does work.
+    /// Displacement \[m\] that is work-conjugate to the total load: Σ share·u.
     pub fn stroke_m(&self, u: &Field<L>) -> [f64; L] {
         let mut stroke = [0.0; L];
         for load in &self.shares {

@@ -1,13 +1,14 @@
-//! Supports: what holds the pin besides contact.
+//! Supports: what holds the pin, apart from contact.
 //!
-//! * [`Fixed`] – degrees of freedom that never move. Their residual is what the frame carries: T comes from it.
+//! * [`Fixed`] – degrees of freedom that never move. Their residual is the reaction force on the pin, from which T
+//!   is computed.
 //! * [`Tied`] – nodes that share one displacement in one component.
-//! * [`clamp`] – which of these a scene's clamp and top face are.
+//! * [`clamp`] – the supports that represent a scene's clamp and top face.
 //! * [`load`] – the normal load, which acts on the same planes.
 //!
-//! A support gives four things: a force on the residual, stored energy, the work of its damping, and its share of the
-//! stability limit ([`Bound`]). A rigid support does the first alone. Another kind of support is a file with
-//! [`AppliedSupport`] for it, and a variant of [`Support`].
+//! A support gives four things: a force on the residual, stored energy, the work of its damping, and its share of
+//! the stability limit ([`Bound`]). A rigid support gives only the force. To add a kind of support, write a file
+//! that implements `AppliedSupport` for it, and add a variant to [`Support`].
 
 mod applied;
 pub mod clamp;
@@ -28,7 +29,7 @@ use super::scheme::{Bound, Scheme};
 use fixed::AppliedFixed;
 use tied::AppliedTie;
 
-/// A support, as a model is defined with it.
+/// A support in the definition of a model.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Support {
     /// Degrees of freedom that never move.
@@ -48,7 +49,7 @@ impl Support {
         Self::Tied(Tied { component, nodes: nodes.into_iter().collect() })
     }
 
-    /// The degrees of freedom (3·node + component) on which it acts.
+    /// The degrees of freedom (3·node + component) on which the support acts.
     pub fn dofs(&self) -> Vec<usize> {
         match self {
             Self::Fixed(fixed) => fixed.dofs.clone(),
@@ -56,8 +57,8 @@ impl Support {
         }
     }
 
-    /// What it adds to the pin's share of the stability limit, for the lumped masses of the pin \[kg\]. A rigid support
-    /// adds nothing: it can only lower frequencies.
+    /// Contribution to the stability limit of a pin with these lumped masses \[kg\]. A rigid support contributes
+    /// nothing, because it can only lower frequencies.
     pub fn bound(&self, _masses_kg: &[f64]) -> Bound {
         match self {
             Self::Fixed(_) | Self::Tied(_) => Bound::default(),
@@ -72,12 +73,12 @@ impl Support {
     }
 }
 
-/// How every degree of freedom of `mesh` may move with these supports.
+/// How every degree of freedom (3·node + component) of `mesh` may move with these supports.
 ///
 /// # Errors
-/// If a support is out of range, if a degree of freedom is supported twice, or if a tie mixes nodes of the contact face
-/// with others: the contact solve treats each slave node by its own mass, which is right for a tied group only when
-/// the whole group is in contact alike.
+/// If a support is out of range, if a degree of freedom is supported twice, or if a tie mixes nodes of the contact
+/// face with others. The contact solve uses the mass of each slave node alone. For a tied group this is right only
+/// if all its nodes are in contact alike.
 pub fn freedoms(supports: &[Support], mesh: &BlockMesh) -> Result<Vec<Freedom>, SolverError> {
     let mut freedoms = vec![Freedom::Free; 3 * mesh.node_count()];
     let mut set = |dof: usize, freedom| match freedoms.get_mut(dof) {
@@ -119,12 +120,12 @@ pub fn freedoms(supports: &[Support], mesh: &BlockMesh) -> Result<Vec<Freedom>, 
 pub(in crate::solver) struct AppliedSupports<const L: usize>(Vec<Box<dyn AppliedSupport<L>>>);
 
 impl<const L: usize> AppliedSupports<L> {
-    /// The supports of a pin with these lumped masses \[kg\].
+    /// Prepares the supports of a pin with these lumped masses \[kg\].
     pub fn new(supports: &[Support], mesh: &BlockMesh, masses_kg: &[f64]) -> Self {
         Self(supports.iter().map(|support| support.applied(mesh, masses_kg)).collect())
     }
 
-    /// Lets all supports act on the pin; returns what the frame carries \[N\].
+    /// Lets all supports act on the pin. Returns the sum of their reaction forces on the pin \[N\]: x, y and z.
     pub fn act(&mut self, pin: &mut Supported<'_, L>) -> [[f64; L]; 3] {
         let mut reaction_n = [[0.0; L]; 3];
         for support in &mut self.0 {

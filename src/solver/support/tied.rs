@@ -24,11 +24,11 @@ impl Tied {
     }
 }
 
-/// The same in every lane.
+/// A tie in every lane.
 #[derive(Debug, Clone)]
 pub(super) struct AppliedTie<const L: usize> {
     members: Vec<Weights>,
-    /// 1/(mass of the group) [1/kg].
+    /// 1/(mass of the group) \[1/kg\].
     inverse_mass: f64,
 }
 
@@ -40,7 +40,8 @@ impl<const L: usize> AppliedTie<L> {
         }
     }
 
-    /// The residual of every member becomes minus the acceleration of the group, as of a unit mass.
+    /// Replaces the residual of every member by Σ residual/Σ mass, which is minus the acceleration of the group.
+    /// Tied degrees of freedom have the inverse mass 1, so every member then moves with this acceleration.
     #[inline(always)]
     fn share<S: Simd>(&self, simd: S, residual: &mut Field<L>) {
         let mut sum = [0.0; L];

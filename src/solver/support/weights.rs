@@ -1,4 +1,4 @@
-//! Numbers on some nodes of a plane, for sums and forces over these nodes.
+//! Weights of the nodes of a plane, for sums and forces over these nodes.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -6,7 +6,7 @@ use crate::solver::body::block::BlockMesh;
 use crate::solver::field::{Field, Row, WIDTH, add_slots};
 use fearless_simd::{Simd, f64x8, prelude::*};
 
-/// A weight per node of one plane and component; zero where nothing acts.
+/// The weights of all nodes of one plane in one component, zero where nothing acts.
 #[derive(Debug, Clone)]
 pub(super) struct Weights {
     pub plane: usize,
@@ -15,7 +15,7 @@ pub(super) struct Weights {
 }
 
 impl Weights {
-    /// Adds Σ weight·field to the totals.
+    /// Adds Σ weight·field to the totals of the lanes.
     #[inline(always)]
     pub fn add_up<S: Simd, const L: usize>(&self, simd: S, field: &Field<L>, totals: &mut [f64; L]) {
         let stride = field.blocks_per_line();
@@ -34,8 +34,8 @@ impl Weights {
     }
 }
 
-/// Weights of degrees of freedom: one entry per plane and component that has any, planes from the contact face
-/// upwards.
+/// Sorts weighted degrees of freedom (3·node + component, weight) by plane and component. There is one entry for
+/// each plane and component with a weight. Planes are ordered from the contact face upwards.
 pub(super) fn weights<const L: usize>(mesh: &BlockMesh, dofs: &[(usize, f64)]) -> Vec<Weights> {
     let [mx, my, mz] = mesh.nodes_per_axis();
     let mut found = Vec::new();

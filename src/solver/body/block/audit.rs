@@ -1,4 +1,4 @@
-//! Stored energies and the work of damping at one time t_n.
+//! Stored energies of a block and the work of its damping at one time t_n.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -11,7 +11,7 @@ use crate::solver::lane::LaneState;
 use crate::solver::scheme::Scheme;
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
-/// A block's displacements and p at one time, and the number of steps that each lane has done.
+/// Displacements \[m\] and p \[m/s\] of a block at one time, and the number of steps that each lane has done.
 #[derive(Clone, Copy)]
 pub(in crate::solver) struct Motion<'a, const L: usize> {
     pub u: &'a Field<L>,
@@ -19,7 +19,7 @@ pub(in crate::solver) struct Motion<'a, const L: usize> {
     pub steps_done: &'a [u64; L],
 }
 
-/// The energies of a block: what is kept from before the step, and what belongs to the step before.
+/// Evaluates the energies of a block. It stores values from before the audited step.
 #[derive(Debug, Clone)]
 pub(in crate::solver) struct BlockAudit<const L: usize> {
     mass: LineTable<L>,
@@ -27,18 +27,21 @@ pub(in crate::solver) struct BlockAudit<const L: usize> {
     /// K p.
     kp: Field<L>,
     scratch: Scratch<L>,
+    /// ½uKu before the step.
     elastic_j: [f64; L],
+    /// Work of damping over the increment before t_n.
     damping_before_j: [f64; L],
     /// Sums of the columns of blocks.
     columns: Vec<[Row; SUMS]>,
-    /// For β₂ > ½.
+    /// Present for β₂ > ½ only.
     jumps: Option<Jumps<L>>,
 }
 
-/// What β₂ > ½ takes into account besides.
+/// The additional fields for β₂ > ½.
 #[derive(Debug, Clone)]
 struct Jumps<const L: usize> {
-    /// Displacements before the step: with β₂ = 1 the first step tells its acceleration by nothing else.
+    /// Displacements before the step. With β₂ = 1 the first step does not change p, so its acceleration follows
+    /// from the displacements alone.
     u: Field<L>,
     acceleration: Field<L>,
     previous_acceleration: Field<L>,
@@ -46,7 +49,7 @@ struct Jumps<const L: usize> {
     increment: Field<L>,
 }
 
-/// Kinetic energy, damping after t_n, and ΔaMΔa.
+/// Number of sums: kinetic energy, work of damping after t_n, and ΔaMΔa.
 const SUMS: usize = 3;
 const KINETIC: usize = 0;
 const DAMPING_AFTER: usize = 1;
@@ -73,7 +76,7 @@ impl<const L: usize> BlockAudit<L> {
         }
     }
 
-    /// Keeps the state before the step.
+    /// Stores the state before the step.
     pub fn keep(&mut self, before: &Motion<'_, L>) {
         self.p.clone_from(before.p);
         if let Some(jumps) = &mut self.jumps {
@@ -81,10 +84,10 @@ impl<const L: usize> BlockAudit<L> {
         }
     }
 
-    /// The works of u and p against K before the step.
+    /// Evaluates uKu and pKp before the step.
     pub fn begin(&mut self, block: &BlockBody, scheme: &Scheme, before: &Motion<'_, L>) {
         let (operator, dt, beta_r) = (block.operator(), scheme.time_step_s, scheme.beta_r_s);
-        // K u is not kept.
+        // K p overwrites K u below.
         self.elastic_j = operator.product(before.u, &mut self.kp, &mut self.scratch).map(|form| 0.5 * form);
         if beta_r == 0.0 {
             return;
@@ -101,7 +104,7 @@ impl<const L: usize> BlockAudit<L> {
         }
     }
 
-    /// `a_n` from the step's displacements, contact forces included, for β₂ > ½.
+    /// Computes `a_n` from the displacements of the step, contact forces included. It is needed for β₂ > ½.
     pub fn find_acceleration(&mut self, scheme: &Scheme, after: &Motion<'_, L>) {
         let Some(jumps) = &mut self.jumps else { return };
         let dt = scheme.time_step_s;
@@ -116,7 +119,7 @@ impl<const L: usize> BlockAudit<L> {
         }
     }
 
-    /// Ends the step: its acceleration becomes that of the step before.
+    /// Ends the step: its acceleration becomes the previous one.
     pub fn end(&mut self) {
         if let Some(jumps) = &mut self.jumps {
             std::mem::swap(&mut jumps.acceleration, &mut jumps.previous_acceleration);
@@ -146,7 +149,7 @@ impl<const L: usize> BlockAudit<L> {
         add_lanes(&mut total.numerical_j, &numerical_j);
     }
 
-    /// The sums over all nodes that need the state after the step.
+    /// Forms the sums over all nodes that need the state after the step.
     #[inline(always)]
     fn add_up<S: Simd>(&mut self, simd: S, block: &BlockBody, scheme: &Scheme, after: &Motion<'_, L>) {
         let [_, my, mz] = block.mesh().nodes_per_axis();
@@ -197,7 +200,7 @@ impl<const L: usize> BlockAudit<L> {
         }
     }
 
-    /// (γ−½)[ΔuKΔu − ½γΔt² ΔaMΔa] of the step before `t_n`; overwrites K p, which is no longer needed.
+    /// (γ−½)\[ΔuKΔu − ½γΔt² ΔaMΔa\] \[J\] of the step before `t_n`. It overwrites K p, which is no longer needed.
     fn numerical_loss(&mut self, block: &BlockBody, scheme: &Scheme, inertial_jump_j: &[f64; L]) -> [f64; L] {
         let Some(jumps) = &mut self.jumps else { return [0.0; L] };
         let (dt, gamma) = (scheme.time_step_s, scheme.beta2);
@@ -216,7 +219,7 @@ impl<const L: usize> BlockAudit<L> {
     }
 }
 
-/// Between audits only the acceleration of the step before is kept.
+/// Only the acceleration of the step before is carried from step to step.
 impl<const L: usize> LaneState for BlockAudit<L> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
         if let Some(jumps) = &self.jumps {
@@ -231,7 +234,7 @@ impl<const L: usize> LaneState for BlockAudit<L> {
     }
 }
 
-/// The factor of a in the displacements of the step that every lane has just done [s²].
+/// Factor \[s²\] of a in the displacements of the step that each lane has just done.
 fn u_scales<const L: usize>(scheme: &Scheme, after: &Motion<'_, L>) -> [f64; L] {
     let dt = scheme.time_step_s;
     after.steps_done.map(|steps| scheme.factors(steps == 1).0 * dt * dt)

@@ -1,4 +1,4 @@
-//! Rigorous bounds of the largest frequency of a block and of point masses joined by springs.
+//! Rigorous upper bounds of the largest frequency of a block and of point masses joined by springs.
 
 use super::mesh::BlockMesh;
 use super::operator::AssembledOperator;
@@ -7,14 +7,14 @@ use crate::solver::body::hexahedron::ElementStiffness;
 use nalgebra::DMatrix;
 use std::collections::BTreeSet;
 
-/// Upper bound of the largest angular frequency [rad/s] of the constrained, lumped block.
+/// Upper bound of the largest angular frequency \[rad/s\] of the constrained, lumped block.
 ///
-/// By Rayleigh's quotient ω_max² of a sum of parts is at most the largest ω² of a part. Two
-/// partitions are evaluated and the lower bound taken:
-/// * single elements, each reduced to the motions that its fixed and tied degrees of freedom allow
-///   (exact for one-dimensional columns);
-/// * free patches of two or three elements a side, which come within a few percent of the assembled
-///   block where single elements are a quarter too high (constraints can only lower ω_max).
+/// By Rayleigh's quotient ω_max² of a sum of parts is at most the largest ω² of a part. Two partitions are
+/// evaluated, and the smaller bound is used:
+/// * Single elements, each reduced to the motions that its fixed and tied degrees of freedom allow. This is exact
+///   for one-dimensional columns.
+/// * Free patches of two or three elements a side. Constraints can only lower ω_max, so they are left out. This
+///   bound is within a few percent of the assembled block, where that of single elements is a quarter too high.
 pub fn omega_max_bound(
     mesh: &BlockMesh,
     element: &ElementStiffness,
@@ -24,8 +24,9 @@ pub fn omega_max_bound(
     by_elements(mesh, element, density_kg_m3, freedoms).min(by_patches(mesh, element, density_kg_m3))
 }
 
-/// Upper bound of the largest angular frequency [rad/s] of point masses joined by springs: Gershgorin's
-/// discs of M⁻¹K, ω² ≤ `max_i` Σ_j |K_ij|/m_i over what is not fixed (ties can only lower it).
+/// Upper bound of the largest angular frequency \[rad/s\] of point masses joined by springs. It comes from
+/// Gershgorin's discs of M⁻¹K: ω² ≤ `max_i` Σ_j |K_ij|/m_i over all degrees of freedom that are not fixed. Ties can
+/// only lower ω.
 pub fn omega_max_bound_of_springs(
     springs: &AssembledOperator,
     masses_kg: &[f64],
@@ -57,7 +58,7 @@ fn by_elements(
     patterns.iter().map(|p| reduced_omega_squared(element, corner_mass, p)).fold(0.0, f64::max).sqrt()
 }
 
-/// Cuts the block into patches of two elements a side (three once where the count is odd).
+/// Cuts the block into patches of two elements a side, with one patch of three where the count is odd.
 fn by_patches(mesh: &BlockMesh, element: &ElementStiffness, density_kg_m3: f64) -> f64 {
     let h = mesh.element_size_m();
     let sides = mesh.elements().map(|n| match n {
@@ -80,7 +81,7 @@ fn by_patches(mesh: &BlockMesh, element: &ElementStiffness, density_kg_m3: f64) 
     omega_max
 }
 
-/// Largest angular frequency [rad/s] of a free block by dense eigenvalues; for small patches.
+/// Largest angular frequency \[rad/s\] of a free block by dense eigenvalues; for small patches.
 fn free_omega_max(patch: &BlockMesh, element: &ElementStiffness, density_kg_m3: f64) -> f64 {
     let masses = patch.lumped_masses_kg(density_kg_m3);
     let size = 3 * masses.len();
@@ -126,7 +127,7 @@ fn take(next: &mut u8) -> u8 {
     *next - 1
 }
 
-/// Largest eigenvalue ω² of one element reduced to its independent motions.
+/// Largest eigenvalue ω² \[rad²/s²\] of one element that is reduced to its independent motions.
 fn reduced_omega_squared(element: &ElementStiffness, corner_mass: f64, pattern: &[u8; 24]) -> f64 {
     let size = pattern.iter().filter(|&&n| n != FIXED).max().map_or(0, |&n| usize::from(n) + 1);
     if size == 0 {
@@ -161,8 +162,9 @@ mod tests {
     use crate::solver::field::Field;
     use crate::solver::material::Material;
 
-    /// Protects: the bound is above the true ω_max of the assembled block (found from below by power
-    /// iteration) and not wastefully so, on odd, even, flat and nearly incompressible blocks.
+    /// Protects: the bound is above the true ω_max of the assembled block, which power iteration finds from below,
+    /// and at most a quarter above it. The blocks have odd, even and single element counts, and one is nearly
+    /// incompressible.
     #[test]
     fn bounds_the_assembled_block_from_above() {
         for (elements, poisson_ratio) in
@@ -195,7 +197,8 @@ mod tests {
                 }
             }
             let ratio = bound / from_below;
-            // Above, but for the rounding of the eigenvalues; at most the quarter that single elements cost.
+            // The bound may be below the true value only by the rounding of the eigenvalues. It is at most as high
+            // as that of single elements, a quarter above the true value.
             assert!(ratio > 1.0 - 1e-12 && ratio < 1.25, "{elements:?}, ν = {poisson_ratio}: {ratio}");
         }
     }

@@ -1,9 +1,9 @@
-//! A number per node that depends on the line's faces alone, such as the lumped mass.
+//! A table of nodal values, such as the lumped mass, that are the same on all lines of a kind.
 
 use super::BlockMesh;
 use crate::solver::field::{Row, WIDTH, blocks_per_line};
 
-/// The rows of the four kinds of lines (inside, on a face in y, on a face in z, on both), zero in the padding.
+/// The values of the four kinds of lines: inside, on a face in y, on a face in z, on both. The padding is zero.
 #[derive(Debug, Clone)]
 pub(super) struct LineTable<const L: usize> {
     rows: Vec<Row>,
@@ -12,11 +12,11 @@ pub(super) struct LineTable<const L: usize> {
 }
 
 impl<const L: usize> LineTable<L> {
-    /// `value` is asked for one line of each kind, node by node.
+    /// Evaluates `value` at the nodes of one line of each kind.
     pub fn new(mesh: &BlockMesh, value: impl Fn(usize) -> f64) -> Self {
         let [mx, my, mz] = mesh.nodes_per_axis();
         let blocks = blocks_per_line::<L>(mx);
-        // (1, 1) is inside unless the block is one element thick, and then no line asks for it.
+        // Line (1, 1) is inside, unless the block is one element thick. Then no line is of this kind.
         let kinds = [[1, 1], [0, 1], [1, 0], [0, 0]];
         let mut rows = vec![Row::default(); kinds.len() * blocks];
         for (kind, [j, k]) in kinds.into_iter().enumerate() {
@@ -31,7 +31,7 @@ impl<const L: usize> LineTable<L> {
         Self { rows, starts }
     }
 
-    /// The numbers of a block.
+    /// The values of block `along` of a line.
     #[inline]
     pub fn row(&self, line: usize, along: usize) -> &[f64; WIDTH] {
         &self.rows[self.starts[line] + along].0

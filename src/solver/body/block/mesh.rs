@@ -2,9 +2,9 @@
 
 use crate::solver::field::Layout;
 
-/// A block [0, lx] × [0, ly] × [0, lz] (x and y centred on 0) of nx × ny × nz equal hexahedra.
+/// A block of the size lx × ly × lz with nx × ny × nz equal hexahedra. x and y are centred on 0, and z begins at 0.
 ///
-/// Node (i, j, k) has the index `i + (nx+1)·(j + (ny+1)·k)`; k = 0 is the contact face.
+/// Node (i, j, k) has the index `i + (nx+1)·(j + (ny+1)·k)`. The contact face is k = 0.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BlockMesh {
     elements: [usize; 3],
@@ -15,7 +15,7 @@ impl BlockMesh {
     /// A block of `size_m` with `elements` in x, y and z.
     ///
     /// # Panics
-    /// If an element count is zero or a size not positive: callers check their input first.
+    /// If an element count is zero or a size is not positive. Callers check their input first.
     pub fn new(size_m: [f64; 3], elements: [usize; 3]) -> Self {
         assert!(elements.iter().all(|&n| n > 0), "a mesh needs at least one element per direction");
         assert!(size_m.iter().all(|&l| l > 0.0), "a block needs positive edge lengths");
@@ -27,12 +27,12 @@ impl BlockMesh {
         self.elements
     }
 
-    /// Edge lengths [m].
+    /// Edge lengths \[m\].
     pub fn size_m(&self) -> [f64; 3] {
         self.size_m
     }
 
-    /// Edge lengths [m] of one element.
+    /// Edge lengths \[m\] of one element.
     pub fn element_size_m(&self) -> [f64; 3] {
         std::array::from_fn(|axis| self.size_m[axis] / self.elements[axis] as f64)
     }
@@ -71,7 +71,7 @@ impl BlockMesh {
         [node % mx, node / mx % my, node / (mx * my)]
     }
 
-    /// Coordinates [m] of a node; x and y measured from the block's axis, z from the contact face.
+    /// Coordinates \[m\] of a node: x and y from the block's axis, z from the contact face.
     pub fn coordinates_m(&self, node: usize) -> [f64; 3] {
         let h = self.element_size_m();
         let grid = self.grid_position(node);
@@ -90,14 +90,14 @@ impl BlockMesh {
         (0..nz).flat_map(move |k| (0..ny).flat_map(move |j| (0..nx).map(move |i| [i, j, k])))
     }
 
-    /// Row-sum lumped nodal masses [kg] for the density ρ.
+    /// Row-sum lumped nodal masses \[kg\] for the density ρ.
     pub fn lumped_masses_kg(&self, density_kg_m3: f64) -> Vec<f64> {
         let [hx, hy, hz] = self.element_size_m();
         let corner = density_kg_m3 * hx * hy * hz / 8.0;
         (0..self.node_count()).map(|node| corner * self.adjacent_cells(node, 3)).collect()
     }
 
-    /// Tributary area [m²] of a node of the contact or top face: ¼, ½ or 1 element face.
+    /// Tributary area \[m²\] of a node of the contact or top face: ¼, ½ or 1 element face.
     pub fn tributary_area_m2(&self, node: usize) -> f64 {
         let [hx, hy, _] = self.element_size_m();
         hx * hy / 4.0 * self.adjacent_cells(node, 2)

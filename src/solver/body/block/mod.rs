@@ -25,12 +25,12 @@ use crate::solver::field::Field;
 use crate::solver::material::Material;
 use operator::{AssembledOperator, Operator, Scratch, TensorOperator};
 
-/// What resists the deformation.
+/// What resists the deformation of the block.
 #[derive(Debug, Clone)]
 pub enum Stiffness {
-    /// The block is elastic, of its material.
+    /// Linear elasticity with the block's material.
     Elastic,
-    /// The nodes are point masses joined by these springs. Of the material only the density is used.
+    /// The nodes are point masses joined by these springs. Only the density of the material is used.
     Springs(AssembledOperator),
 }
 
@@ -41,7 +41,7 @@ pub struct BlockBody {
     material: Material,
     operator: Operator,
     masses_kg: Vec<f64>,
-    /// Of every degree of freedom.
+    /// How every degree of freedom may move.
     freedoms: Vec<Freedom>,
     /// Planes of nodes, from the contact face upwards, on which supports, loads or contact act.
     constrained_planes: Vec<bool>,
@@ -49,8 +49,8 @@ pub struct BlockBody {
 }
 
 impl BlockBody {
-    /// A block whose degrees of freedom may move as `freedoms` says. Supports and loads act on the degrees of freedom
-    /// `acted_on` (3·node + component).
+    /// A block with one entry of `freedoms` for each degree of freedom (3·node + component). Supports and loads act
+    /// on the degrees of freedom `acted_on`.
     ///
     /// # Errors
     /// If the springs do not fit the mesh.
@@ -81,7 +81,7 @@ impl BlockBody {
             }
         };
         let [_, _, planes] = mesh.nodes_per_axis();
-        // The product with an assembled K is not formed plane by plane.
+        // The product with an assembled K is not formed plane by plane, so no plane is moved during it.
         let mut constrained_planes = vec![matches!(operator, Operator::Assembled(_)); planes];
         constrained_planes[0] = true;
         for dof in acted_on {
@@ -120,7 +120,8 @@ impl BlockBody {
         self.omega_max_rad_s
     }
 
-    /// K x of one lane, both in the order node → component. This is for a look at the operator; a step does not use it.
+    /// K x of one lane (\[N\] for x in \[m\]), both in the order node → component. It serves inspection and tests;
+    /// no time step uses it.
     ///
     /// # Panics
     /// If there are not three values per node.
@@ -132,7 +133,7 @@ impl BlockBody {
         product.values().collect()
     }
 
-    /// Energy \[J\] of the uniform compression by `force_n` on the contact face: F²h/(2EA).
+    /// Energy \[J\] of a uniform compression by `force_n` on the contact face: F²h/(2EA).
     pub fn compression_energy_j(&self, force_n: f64) -> f64 {
         let [lx, ly, lz] = self.mesh.size_m();
         force_n.powi(2) * lz / (2.0 * self.material.young_modulus_pa * lx * ly)

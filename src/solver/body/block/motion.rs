@@ -4,9 +4,9 @@
 //! a_n = −K (u_n + β_R p_n)/m       u_{n+1} = u_n + Δt p_n + c Δt² a_n       p_{n+1} = p_n + d Δt a_n
 //! ```
 //!
-//! Planes without constraints are moved as soon as the product with K has passed them, so that a step reads and writes
-//! their fields once. For the other planes the product is kept as the residual. Load and supports change the residual,
-//! and then these planes are moved. The contact solve moves the contact face.
+//! Planes without constraints are moved as soon as the product with K has passed them, so that a step reads and
+//! writes their fields only once. For the other planes the product is kept as the residual. The load and the
+//! supports change the residual, and then these planes are moved. The contact solve moves the contact face.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -18,13 +18,13 @@ use crate::solver::field::{Block, Field};
 use crate::solver::scheme::StepFactors;
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
-/// The slave nodes at t_n, which a contact solve takes to t_{n+1}.
+/// The slave nodes at t_n, which the contact solve moves to t_{n+1}.
 pub(in crate::solver) struct Face<'a, const L: usize> {
     pub u: &'a mut Field<L>,
     pub p: &'a mut Field<L>,
-    /// K (u + β_R p) − external forces [N].
+    /// K (u + β_R p) − external forces \[N\].
     pub residual: &'a Field<L>,
-    /// 1/m of every degree of freedom, 0 where it is fixed.
+    /// 1/m \[1/kg\] of every degree of freedom, 0 where it is fixed.
     pub inverse_mass: &'a [Block],
 }
 
@@ -34,16 +34,18 @@ pub(in crate::solver) struct BlockMotion<const L: usize> {
     inverse_masses: InverseMasses<L>,
     /// Scratch of the product with K.
     scratch: Scratch<L>,
-    /// K (u + β_R p) − external forces [N] on the constrained planes.
+    /// K (u + β_R p) − external forces \[N\] on the constrained planes.
     residual: Field<L>,
 }
 
-/// What is fixed during a run.
+/// The inverse masses, which are constant during a run.
 #[derive(Debug, Clone)]
 struct InverseMasses<const L: usize> {
+    /// 1/m \[1/kg\] of every node.
     free: LineTable<L>,
-    /// 1/m of every degree of freedom of a constrained plane. It is 0 where the degree of freedom is fixed, and 1
-    /// where it is tied: there the support replaces the residual by the acceleration of the group.
+    /// 1/m \[1/kg\] of every degree of freedom of a constrained plane. It is 0 where the degree of freedom is
+    /// fixed. It is 1 where it is tied, because there the support replaces the residual by minus the acceleration
+    /// of the group.
     constrained: Vec<Vec<Block>>,
     constrained_planes: Vec<bool>,
     blocks_per_plane: usize,
@@ -77,12 +79,12 @@ impl<const L: usize> BlockMotion<L> {
         }
     }
 
-    /// The internal forces on the constrained planes, which load and supports add to.
+    /// The residual on the constrained planes. The load and the supports change it.
     pub fn residual_mut(&mut self) -> &mut Field<L> {
         &mut self.residual
     }
 
-    /// What the contact solve is given.
+    /// The contact face, for the contact solve.
     pub fn face<'a>(&'a self, u: &'a mut Field<L>, p: &'a mut Field<L>) -> Face<'a, L> {
         Face { u, p, residual: &self.residual, inverse_mass: &self.inverse_masses.constrained[0] }
     }

@@ -1,17 +1,18 @@
-//! Stress at the nodes of a block, for looking at it; no step needs it.
+//! Stress at the nodes of a block, for output. No time step uses it.
 
 use super::BlockMesh;
 use crate::solver::material::Material;
 
-/// Components of a stress: xx, yy, zz, xy, yz, xz.
+/// Names of the components of a stress, in their order.
 pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 
-/// Stress [Pa] at every node, from displacements [m] in the order node → component.
+/// Stress \[Pa\] at every node, in the order of [`COMPONENTS`], from displacements \[m\] in the order node →
+/// component.
 ///
-/// Strains are differences of nodal displacements along the mesh lines: central ones inside, which are the mean of what
-/// the elements on both sides have there, and one-sided ones of the second order on the faces, where the elements' own
-/// are of the first. So they are exact for displacements that are quadratic in the coordinates, on meshes with two
-/// elements or more in each direction.
+/// Strains are finite differences of nodal displacements along the mesh lines. Inside they are central differences,
+/// which are the mean of the strains of the two adjacent elements. On the faces they are one-sided differences of
+/// second order; the strains of the elements are only of first order there. So they are exact for displacements
+/// that are quadratic in the coordinates, on meshes with at least two elements in each direction.
 ///
 /// # Panics
 /// If there are not three displacements per node.
@@ -53,7 +54,7 @@ mod tests {
 
     const MATERIAL: Material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
 
-    /// Protects: the law, the order of the components and the faces: a displacement that is quadratic in the
+    /// Protects: Hooke's law, the order of the components, and the faces. A displacement that is quadratic in the
     /// coordinates has its exact stress at every node.
     #[test]
     fn quadratic_displacements_have_their_exact_stress() {
@@ -73,7 +74,8 @@ mod tests {
                 shear * (2.0 * y + 0.5 * y),
             ];
             for (f, e) in found.iter().zip(exact) {
-                // Differences of numbers up to 0.05 over edges of 3 mm, times a modulus: some roundings of each.
+                // A stress is a sum of differences of numbers up to 0.05 over edges of 3 mm, times a modulus. The
+                // bound allows some roundings of each.
                 let rounding = 16.0 * f64::EPSILON * 0.05 / 0.003 * (lambda + 2.0 * shear);
                 assert!((f - e).abs() <= rounding, "node {node}: {found:?} instead of {exact:?}");
             }

@@ -1,7 +1,7 @@
 //! Stored energies of a ring and the work of its damping.
 //!
-//! A step of the ring is the central difference with the mass M̃ = M B⁻¹ ([`stages`](super::stages)). So its kinetic
-//! energy is that of a block with M̃ for M: ½ v·M(B⁻¹v) − ¼Δt² a·M(B⁻¹a).
+//! A step of the ring is the central difference with the mass M̃ = M B⁻¹ ([`stages`](super::stages)). So its
+//! kinetic energy is that of a block with M̃ instead of M: ½ v·M(B⁻¹v) − ¼Δt² a·M(B⁻¹a).
 
 use super::operator::RingScratch;
 use super::{RingBody, RingState, rows_of};
@@ -9,7 +9,7 @@ use crate::solver::body::{EnergySums, add_lanes};
 use crate::solver::field::{Field, Row, WIDTH, add_slots, in_slots};
 use crate::solver::scheme::Scheme;
 
-/// The energies of a ring: what is kept from before the step.
+/// Evaluates the energies of a ring. It stores values from before the audited step.
 #[derive(Debug, Clone)]
 pub(in crate::solver) struct RingAudit<const L: usize> {
     masses_kg: Vec<Row>,
@@ -36,12 +36,12 @@ impl<const L: usize> RingAudit<L> {
         }
     }
 
-    /// Keeps the state before the step, and the works of u and p against K.
+    /// Stores the state before the step, and evaluates uKu and pKp.
     pub fn begin(&mut self, body: &RingBody, scheme: &Scheme, before: &RingState<L>) {
         let Scheme { time_step_s, beta_r_s, .. } = *scheme;
         self.p.clone_from(&before.p);
         self.momentum_velocity.clone_from(before.momentum_velocity());
-        // K u is not kept.
+        // K p overwrites K u below.
         let elastic = body.operator().form(&before.u, &mut self.kp, &mut self.scratch);
         self.elastic_j = elastic.map(|form| 0.5 * form);
         if beta_r_s > 0.0 {
@@ -50,7 +50,8 @@ impl<const L: usize> RingAudit<L> {
         }
     }
 
-    /// Adds the energies at t_n, the time before the step. The lanes in `begins` have done their first step.
+    /// Adds the energies at t_n, the time before the step. `begins` marks the lanes that have done only their first
+    /// step.
     pub fn add_to(
         &self,
         total: &mut EnergySums<L>,

@@ -8,25 +8,25 @@ use super::stages::{MAX_STAGES, Stages};
 use crate::solver::material::Material;
 use crate::spec::{DiskTimeStep, Scene, TargetSurface};
 
-/// What an elastic disk is made of.
+/// The definition of an elastic disk.
 #[derive(Debug, Clone)]
 pub struct RingDefinition {
-    /// Its mesh.
+    /// The mesh.
     pub mesh: RingMesh,
-    /// Its material.
+    /// The material.
     pub material: Material,
-    /// Nodes that do not move in the turning frame.
+    /// Nodes that do not move in the rotating frame.
     pub held: Vec<usize>,
-    /// How its top is interpolated.
+    /// How the top face is interpolated.
     pub target: TargetSurface,
-    /// Whether it has its own time step.
+    /// Whether the disk may make several stages in a time step.
     pub clock: DiskTimeStep,
-    /// Distance [m] of the pin's axis from the axis of rotation.
+    /// Distance \[m\] of the pin's axis from the axis of rotation.
     pub track_radius_m: f64,
 }
 
 impl RingDefinition {
-    /// The disk of a scene: the nodes of the inner radius turn rigidly.
+    /// The disk of a scene. The nodes at the inner radius are fixed in the rotating frame.
     pub fn of_scene(scene: &Scene) -> Self {
         let ring = &scene.disk.ring;
         let mesh = RingMesh::under_track(ring, &scene.pin, scene.disk.track_radius_m);
@@ -57,7 +57,7 @@ pub struct RingBody {
     definition: RingDefinition,
     operator: RingOperator,
     masses_kg: Vec<f64>,
-    /// 1/m of every node, 0 where it is held.
+    /// 1/m \[1/kg\] of every node, 0 where it is held.
     inverse_mass: Vec<f64>,
     stages: Stages,
     response: Response,
@@ -75,17 +75,17 @@ impl UnsteppedRing {
         Self { definition, operator, masses_kg, omega_max_squared, most_stages }
     }
 
-    /// The bound of the largest angular frequency [rad/s].
+    /// Upper bound of the largest angular frequency \[rad/s\].
     pub fn omega_max(&self) -> f64 {
         self.omega_max_squared.sqrt()
     }
 
-    /// The longest step [s] with which its stages are stable.
+    /// The longest step \[s\] for which the stages are stable.
     pub fn longest_step_s(&self, beta_r_s: f64) -> f64 {
         Stages::longest_step_s(self.omega_max_squared, self.most_stages, beta_r_s)
     }
 
-    /// The disk with the fewest stages that are stable; none if the step is too long.
+    /// The disk with the fewest stages that are stable; `None` if the step is too long.
     pub fn with_step(self, time_step_s: f64, beta_r_s: f64) -> Option<RingBody> {
         let stages = Stages::fewest(self.omega_max_squared, self.most_stages, time_step_s, beta_r_s)?;
         let mut inverse_mass: Vec<f64> = self.masses_kg.iter().map(|mass| 1.0 / mass).collect();
@@ -106,27 +106,27 @@ impl UnsteppedRing {
 }
 
 impl RingBody {
-    /// Its mesh.
+    /// The mesh.
     pub fn mesh(&self) -> &RingMesh {
         &self.definition.mesh
     }
 
-    /// How its top is interpolated.
+    /// How the top face is interpolated.
     pub fn target(&self) -> TargetSurface {
         self.definition.target
     }
 
-    /// Its stiffness.
+    /// The stiffness operator.
     pub fn operator(&self) -> &RingOperator {
         &self.operator
     }
 
-    /// Lumped nodal masses [kg].
+    /// Lumped nodal masses \[kg\].
     pub fn masses_kg(&self) -> &[f64] {
         &self.masses_kg
     }
 
-    /// 1/m [1/kg] of every node, 0 where it is held.
+    /// 1/m \[1/kg\] of every node, 0 where it is held.
     pub fn inverse_mass(&self) -> &[f64] {
         &self.inverse_mass
     }

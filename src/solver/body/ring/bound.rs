@@ -1,4 +1,4 @@
-//! A rigorous bound of the ring's largest frequency.
+//! A rigorous upper bound of the ring's largest frequency.
 
 use super::mesh::RingMesh;
 use super::operator::Elements;
@@ -6,11 +6,12 @@ use super::sector::SectorElement;
 use nalgebra::DMatrix;
 use std::ops::Range;
 
-/// Upper bound of ω_max² [rad²/s²] of the lumped ring.
+/// Upper bound of ω_max² \[rad²/s²\] of the lumped ring.
 ///
-/// By Rayleigh's quotient ω_max² of a sum of parts is at most the largest ω² of a part, and what is held can only
-/// lower it. The parts are patches of two elements a side (one or three at the end of an odd count), which come
-/// nearer than single elements; a patch is looked at only if its elements could make it the worst.
+/// By Rayleigh's quotient ω_max² of a sum of parts is at most the largest ω² of a part. Fixed nodes can only lower
+/// it. The parts are patches of two elements a side (one or three at the end of an odd count), whose bound is
+/// closer than that of single elements. A patch is evaluated only if its single elements have an ω² above the bound
+/// so far.
 pub(super) fn omega_max_squared(mesh: &RingMesh, elements: &Elements) -> f64 {
     let [_, rows, planes] = mesh.nodes_per_axis();
     let sectors = mesh.sectors_rad();
@@ -46,7 +47,7 @@ pub(super) fn omega_max_squared(mesh: &RingMesh, elements: &Elements) -> f64 {
     bound
 }
 
-/// Ranges of two, the last of one or three if the count is odd.
+/// Ranges of two. If the count is odd, the last range has three, or the only one has one.
 fn parts(count: usize) -> Vec<Range<usize>> {
     let mut parts: Vec<_> = (0..count / 2).map(|n| 2 * n..2 * n + 2).collect();
     match parts.last_mut() {
@@ -56,9 +57,9 @@ fn parts(count: usize) -> Vec<Range<usize>> {
     parts
 }
 
-/// Neighbouring elements.
+/// A patch of neighbouring elements.
 struct Patch {
-    /// The largest ω² of any of them by itself.
+    /// Largest ω² of the single elements.
     alone: f64,
     angles_rad: Vec<f64>,
     rings: Range<usize>,
@@ -66,14 +67,14 @@ struct Patch {
 }
 
 impl Patch {
-    /// Its elements: sector of the patch, radius, depth.
+    /// The elements: sector of the patch, radius, depth.
     fn places(&self) -> impl Iterator<Item = [usize; 3]> + '_ {
         let rings =
             move |a| self.rings.clone().flat_map(move |i| self.layers.clone().map(move |k| [a, i, k]));
         (0..self.angles_rad.len()).flat_map(rings)
     }
 
-    /// The largest ω² of all of them together.
+    /// Largest ω² of the joined elements.
     fn joined(&self, elements: &Elements) -> f64 {
         let (columns, across) = (self.angles_rad.len() + 1, self.rings.len() + 1);
         let members = self.places().map(|[a, i, k]| {
@@ -89,7 +90,7 @@ impl Patch {
     }
 }
 
-/// Largest ω² of elements that are joined at these nodes.
+/// Largest ω² of elements that are joined at these node numbers.
 fn largest<'a>(members: impl Iterator<Item = (&'a SectorElement, [usize; 8])>, nodes: usize) -> f64 {
     let mut k = DMatrix::<f64>::zeros(3 * nodes, 3 * nodes);
     let mut masses = vec![0.0; nodes];

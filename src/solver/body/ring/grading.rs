@@ -1,17 +1,19 @@
-//! Element sizes that grow away from where fine ones are needed.
+//! Element sizes that grow with the distance from a fine region.
 
-/// Largest ratio of the sizes of neighbours.
+/// Largest ratio of the sizes of neighbouring elements.
 const GROWTH: f64 = 1.4;
 
-/// Sizes of the elements over `length`, the first of size `fine` and none above `coarse` (nor, by rounding, above
-/// `fine` where `length` is shorter). Neighbours differ by [`GROWTH`] at most, and no element is smaller than it has
-/// to be. None at all over no length.
+/// Sizes \[m or rad\] of the elements over `length`: as few elements as possible, with sizes of neighbours that
+/// differ by a factor of at most 1.4.
+///
+/// The first element has the size `fine`, and none is larger than `coarse`. If equal elements are enough, all have
+/// the same size, at most `fine`. The list is empty if `length` is not positive.
 pub fn graded(length: f64, fine: f64, coarse: f64) -> Vec<f64> {
     if length <= 0.0 {
         return Vec::new();
     }
     let total = |count: usize, growth: f64| -> f64 { sizes(count, fine, coarse, growth).sum() };
-    // Forgives the rounding of decimal lengths.
+    // The factor covers the rounding of decimal lengths.
     let enough = length * (1.0 - 1.0e-9);
     let most = (length / fine).ceil().max(1.0) as usize;
     let count = (1..most).find(|&count| total(count, GROWTH) >= enough).unwrap_or(most);
@@ -19,7 +21,7 @@ pub fn graded(length: f64, fine: f64, coarse: f64) -> Vec<f64> {
         return vec![length / count as f64; count];
     }
     let (mut low, mut high) = (1.0, GROWTH);
-    // As many halvings as there are bits.
+    // 64 halvings reach the precision of f64.
     for _ in 0..64 {
         let middle = 0.5 * (low + high);
         if total(count, middle) < length {
@@ -39,7 +41,7 @@ fn sizes(count: usize, fine: f64, coarse: f64, growth: f64) -> impl Iterator<Ite
 mod tests {
     use super::*;
 
-    /// Protects: the elements fill the length, begin fine, and stay within the growth and the coarse size.
+    /// Protects: the elements fill the length, begin fine, and keep to the limits of growth and size.
     #[test]
     fn sizes_fill_the_length_within_the_limits() {
         for (length, fine, coarse) in

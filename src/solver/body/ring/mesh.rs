@@ -5,10 +5,10 @@ use crate::solver::field::Layout;
 use crate::spec::{Pin, Ring};
 use std::f64::consts::TAU;
 
-/// A ring, or a sector of one, of hexahedra in (r, θ, z) with the top face at z = 0.
+/// A ring, or a sector of a ring, of hexahedra in (r, θ, z) with the top face at z = 0.
 ///
-/// Node (j, i, k) is at the angle j, the radius i and the height k, counted from the top downwards; its index is
-/// `j + nθ·(i + nr·k)`. Edges are straight, so the ring is a polygon.
+/// Node (j, i, k) is at the angle j, the radius i and the depth k, which is counted from the top downwards. Its
+/// index is `j + nθ·(i + nr·k)`. Edges are straight, so the ring is a polygon.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RingMesh {
     sectors_rad: Vec<f64>,
@@ -19,45 +19,45 @@ pub struct RingMesh {
     track: Track,
 }
 
-/// The part of the top face with equal elements, over which the slave nodes may pass.
+/// The part of the top face with equal elements. The slave nodes stay on it.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Track {
-    /// Angle [rad] of its first column of nodes, which is column 0.
+    /// Angle \[rad\] of its first column of nodes, which is column 0 of the mesh.
     pub first_angle_rad: f64,
-    /// Angle [rad] of its sectors.
+    /// Angle \[rad\] of one sector.
     pub sector_rad: f64,
-    /// Number of its sectors.
+    /// Number of sectors.
     pub sectors: usize,
-    /// Its first row of nodes.
+    /// First row of nodes.
     pub first_row: usize,
-    /// Radius [m] of that row.
+    /// Radius \[m\] of that row.
     pub first_radius_m: f64,
-    /// Radial edge [m] of its elements.
+    /// Radial edge \[m\] of the elements.
     pub element_m: f64,
-    /// Number of its elements in r.
+    /// Number of elements in r.
     pub elements: usize,
 }
 
-/// What the generator made of the target sizes.
+/// The element counts and sizes of a generated mesh.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct MeshReport {
-    /// Elements in θ, r and z.
+    /// Number of elements in θ, r and z.
     pub elements: [usize; 3],
-    /// Longest edge [m] of the elements under the track, in θ, r and z.
+    /// Longest edge \[m\] of the elements under the track, in θ, r and z.
     pub track_element_m: [f64; 3],
-    /// Longest edge [m] elsewhere.
+    /// Longest edge \[m\] of all elements.
     pub longest_edge_m: f64,
 }
 
 impl RingMesh {
-    /// The mesh of a ring under a pin whose centre is at the radius `track_radius_m` and sweeps, from the angle 0
-    /// backwards, the ring's arc.
+    /// The mesh of a ring under a pin. The pin's centre is at the radius `track_radius_m`. Relative to the ring it
+    /// moves from the angle 0 backwards over the ring's arc.
     pub fn under_track(ring: &Ring, pin: &Pin, track_radius_m: f64) -> Self {
         let (fine, coarse) = (ring.element_size_m, ring.coarse_element_size_m);
         let [half_x, half_y] = [pin.size_m[0] / 2.0, pin.size_m[1] / 2.0];
         let (inside, outside) = (track_radius_m - half_x, (track_radius_m + half_x).hypot(half_y));
-        // An element more on either side, from which patches take tangents; all of what is left if that is less
-        // than half an element.
+        // The track has one more element on either side, from which patches take tangents. It ends at the edge of
+        // the ring if less than half an element would be left there.
         let low =
             if inside - 1.5 * fine <= ring.inner_radius_m { ring.inner_radius_m } else { inside - fine };
         let high =
@@ -108,8 +108,8 @@ impl RingMesh {
         Self::new(sectors_rad, radii_m, heights_m, true, track)
     }
 
-    /// A sector of a ring of equal elements, or a whole one of `angle_rad` = 2π; the track is all of its top.
-    /// `elements` are those in θ, r and z.
+    /// A sector of a ring with equal elements, or a whole ring if `angle_rad` is 2π. The track is the whole top
+    /// face. `elements` are the numbers of elements in θ, r and z.
     ///
     /// # Panics
     /// If there is no element in a direction.
@@ -174,7 +174,7 @@ impl RingMesh {
         Layout { nodes_per_line: columns, lines: rows }
     }
 
-    /// Index of node (j, i, k): angle, radius, depth.
+    /// Index of the node at angle j, radius i and depth k.
     pub fn node(&self, j: usize, i: usize, k: usize) -> usize {
         let [columns, rows, _] = self.nodes_per_axis();
         j + columns * (i + rows * k)
@@ -186,28 +186,28 @@ impl RingMesh {
         [node % columns, node / columns % rows, node / (columns * rows)]
     }
 
-    /// Radius [m], angle [rad] and height [m] of a node in the frame that turns with the ring.
+    /// Radius \[m\], angle \[rad\] and height \[m\] of a node in the rotating frame.
     pub fn polar_m(&self, node: usize) -> [f64; 3] {
         let [j, i, k] = self.grid_position(node);
         [self.radii_m[i], self.angles_rad[j], self.heights_m[k]]
     }
 
-    /// Angles [rad] of the sectors; sector j is between the columns j and j + 1.
+    /// Angles \[rad\] of the sectors. Sector j is between the columns j and j + 1.
     pub fn sectors_rad(&self) -> &[f64] {
         &self.sectors_rad
     }
 
-    /// Angles [rad] of the columns of nodes.
+    /// Angles \[rad\] of the columns of nodes.
     pub fn angles_rad(&self) -> &[f64] {
         &self.angles_rad
     }
 
-    /// Radii [m] of the rows of nodes.
+    /// Radii \[m\] of the rows of nodes.
     pub fn radii_m(&self) -> &[f64] {
         &self.radii_m
     }
 
-    /// Heights [m] of the planes of nodes, from the top, 0, downwards.
+    /// Heights \[m\] of the planes of nodes, from 0 at the top downwards.
     pub fn heights_m(&self) -> &[f64] {
         &self.heights_m
     }
@@ -222,7 +222,7 @@ impl RingMesh {
         &self.track
     }
 
-    /// What the generator made.
+    /// The element counts and sizes.
     pub fn report(&self) -> MeshReport {
         let track = &self.track;
         let outside = track.first_radius_m + track.element_m * track.elements as f64;
@@ -241,7 +241,7 @@ impl RingMesh {
     }
 }
 
-/// Number of equal parts of at most `size`; forgives the rounding of decimal lengths.
+/// Number of equal parts of at most `size`. The factor covers the rounding of decimal lengths.
 fn count(length: f64, size: f64) -> usize {
     (length / size * (1.0 - 1.0e-9)).ceil().max(1.0) as usize
 }

@@ -7,12 +7,15 @@
 //! ```
 //!
 //! # The rotating frame
-//! The ring is formulated in the frame that turns with it, with nodal vectors along the node's own radial,
-//! tangential and axial directions. There its stiffness is constant, the same for all sectors of equal angle, and
-//! the same for all lanes whatever their ω. Left out are the forces that the rotation itself brings, −2MΩ×u̇ and
-//! MΩ²r: at 100 rpm, Ω = 10.5 rad/s, Coriolis forces are 2Ω/ω = 2·10⁻⁴ of the inertia at the squeal's 15 kHz, the
-//! centrifugal softening (Ω/ω)² = 10⁻⁸ of it, and the centrifugal load stretches the ring by a constant
-//! ρΩ²r³/E ≈ 7 nm, of which the top face, which is all that matters to the pin, sees a uniform fraction in z.
+//! The ring is formulated in the frame that rotates with it. Nodal vectors have the node's own radial, tangential
+//! and axial directions. In this frame the stiffness is constant, the same for all sectors of equal angle, and the
+//! same for all lanes whatever their ω.
+//!
+//! The forces due to the rotation, −2MΩ×u̇ and MΩ²r, are neglected. At 100 rpm, Ω = 10.5 rad/s:
+//! * The Coriolis forces are 2Ω/ω = 2·10⁻⁴ of the inertia forces at the squeal frequency of 15 kHz.
+//! * The centrifugal softening is (Ω/ω)² = 10⁻⁸ of them.
+//! * The centrifugal load stretches the ring by a constant ρΩ²r³/E ≈ 7 nm. The pin touches only the top face, which
+//!   moves uniformly in z by a fraction of this.
 
 mod audit;
 mod body;

@@ -1,4 +1,4 @@
-//! What changes of an elastic disk, and how it is moved.
+//! The state of an elastic disk, and how it is moved.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -11,22 +11,22 @@ use crate::solver::lane::LaneState;
 use crate::solver::scheme::StepFactors;
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
-/// The disk's state in every lane, in the frame that turns with it; vectors are radial, tangential, axial.
+/// The disk's state in every lane, in the frame that rotates with it. Vectors are radial, tangential, axial.
 #[derive(Debug, Clone)]
 pub struct RingState<const L: usize> {
-    /// Displacements `u_n` [m].
+    /// Displacements `u_n` \[m\].
     pub u: Field<L>,
-    /// `p_n = v_{n−1} + ½Δt a_{n−1}` [m/s].
+    /// `p_n = v_{n−1} + ½Δt a_{n−1}` \[m/s\].
     pub p: Field<L>,
-    /// B⁻¹p [m/s]: M B⁻¹ p is the momentum. None with one stage, where it is p.
+    /// B⁻¹p \[m/s\]; the momentum is M B⁻¹ p. `None` with one stage, where it equals p.
     pub unfiltered: Option<Field<L>>,
     pub(in crate::solver) workspace: RingWorkspace<L>,
 }
 
-/// Scratch; nothing in it is carried from step to step.
+/// Scratch memory. Nothing in it is carried from step to step.
 #[derive(Debug, Clone)]
 pub(in crate::solver) struct RingWorkspace<const L: usize> {
-    /// 1/m [1/kg] of each block's nodes, 0 where held and in the padding.
+    /// 1/m \[1/kg\] of each block's nodes, 0 where a node is held and in the padding.
     inverse_mass: Vec<Row>,
     strained: Field<L>,
     moved: Field<L>,
@@ -37,7 +37,7 @@ pub(in crate::solver) struct RingWorkspace<const L: usize> {
 }
 
 impl<const L: usize> RingState<L> {
-    /// At rest.
+    /// All lanes at rest.
     pub fn at_rest(body: &RingBody) -> Self {
         let field = || Field::zeros(body.mesh().layout());
         Self {
@@ -56,7 +56,7 @@ impl<const L: usize> RingState<L> {
         }
     }
 
-    /// B⁻¹p.
+    /// B⁻¹p \[m/s\].
     pub fn momentum_velocity(&self) -> &Field<L> {
         self.unfiltered.as_ref().unwrap_or(&self.p)
     }
@@ -90,15 +90,17 @@ impl<const L: usize> RingState<L> {
 pub(in crate::solver) struct TrackForce {
     /// Index of the node in the mesh.
     pub node: usize,
-    /// Its column in mesh and track, and its row in the track.
+    /// Its column in the mesh and in the track.
     pub column: usize,
+    /// Its row in the track.
     pub row: usize,
-    /// Force [N] in the node's own directions.
+    /// Force \[N\] in the node's own directions.
     pub force_n: [f64; 3],
 }
 
 impl<const L: usize> RingState<L> {
-    /// Moves one lane, which has been predicted, by a force on a node of the track.
+    /// Adds the motion of one lane due to a force on a node of the track, after the prediction. `u_scale` is cΔt²
+    /// \[s²\], `p_scale` is dΔt \[s\].
     pub(in crate::solver) fn add_force(
         &mut self,
         body: &RingBody,
@@ -174,7 +176,7 @@ fn strain<S: Simd, const L: usize>(
 }
 
 impl<const L: usize> RingWorkspace<L> {
-    /// d = −σ A x, and the momentum's part of the step: −Δt A x.
+    /// d = −σ A x, and the change −c′Δt A x of B⁻¹p in the step.
     #[inline(always)]
     fn first_stage<S: Simd>(
         &mut self,
@@ -202,7 +204,7 @@ impl<const L: usize> RingWorkspace<L> {
         }
     }
 
-    /// The stage's displacements x + d.
+    /// Computes the stage's displacements x + d.
     #[inline(always)]
     fn add_moved<S: Simd>(&mut self, simd: S) {
         let given = self.strained.blocks().iter().zip(self.moved.blocks());
@@ -234,7 +236,7 @@ impl<const L: usize> RingWorkspace<L> {
         std::mem::swap(&mut self.moved, &mut self.moved_before);
     }
 
-    /// u ← u + Δt p + c Δt² a, p ← p + d Δt a, with Δt² a = 2 d.
+    /// u ← u + Δt p + c Δt² a and p ← p + c′Δt a, with Δt² a = 2 d.
     #[inline(always)]
     fn advance<S: Simd>(&self, simd: S, factors: &StepFactors, u: &mut Field<L>, p: &mut Field<L>) {
         let dt = factors.time_step_s;
@@ -252,7 +254,7 @@ impl<const L: usize> RingWorkspace<L> {
     }
 }
 
-/// A number per node in the blocks of a field, the same in all lanes.
+/// Nodal values in the blocks of a field, the same in all lanes.
 pub(in crate::solver) fn rows_of<const L: usize>(values: &[f64], field: &Field<L>) -> Vec<Row> {
     let mut spread = field.clone();
     for (node, value) in values.iter().enumerate() {

@@ -1,8 +1,8 @@
 //! The ring's stiffness: y = K x.
 //!
-//! A node's row of K depends on its radius, its depth and the angles of the two sectors that it joins; columns of
-//! nodes between the same angles form a class and share their rows. Vectors run along θ, where neighbours are one
-//! node away as in the pin's lines; the ends of a closed ring are each other's neighbours.
+//! A node's row of K depends on its radius, its depth and the angles of the two adjacent sectors. Columns of nodes
+//! between the same angles form a class and share their rows. Vectors run along θ, where neighbours are one node
+//! away, as in the pin's lines. The two ends of a line of a closed ring are neighbours.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -12,7 +12,7 @@ use crate::solver::field::{Block, Field, Row, WIDTH, blocks_per_line};
 use crate::solver::material::Material;
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 
-/// The elements of every distinct sector.
+/// The elements of every distinct sector angle.
 #[derive(Debug, Clone)]
 pub(super) struct Elements {
     angles_rad: Vec<f64>,
@@ -40,12 +40,13 @@ impl Elements {
         Self { angles_rad, all, layers, rows }
     }
 
-    /// All distinct ones.
+    /// All distinct elements.
     pub fn all(&self) -> &[SectorElement] {
         &self.all
     }
 
-    /// Where among all the element between the radii i and i + 1 and the depths k and k + 1 of a sector is.
+    /// Index in [`Elements::all`] of the element between the radii i and i + 1 and the depths k and k + 1 of a
+    /// sector.
     pub fn index(&self, angle_rad: f64, i: usize, k: usize) -> usize {
         let angle = self.angles_rad.iter().position(|known| *known == angle_rad).expect("a known sector");
         (angle * self.layers + k) * self.rows + i
@@ -56,11 +57,12 @@ impl Elements {
     }
 }
 
-/// A row's blocks: neighbouring line (depth and radius −1, 0, 1) → column −1, 0, 1 → component of x → of y.
+/// The blocks of a row of K: neighbouring line (depth and radius −1, 0, 1) → column −1, 0, 1 → component of x →
+/// component of y.
 type NodeRow = [[[[f64; 3]; 3]; 3]; 9];
 
-/// The same of a node between equal sectors, which is its own mirror image: 14 numbers a line, in the order in which
-/// [`Around::even_sum`] takes them.
+/// The row of a node between equal sectors. The row is mirror-symmetric, so 14 numbers a line are enough.
+/// [`Around::even_sum`] reads them in this order.
 type EvenRow = [[f64; 14]; 9];
 
 /// K of a ring.
@@ -71,16 +73,16 @@ pub struct RingOperator {
     closed: bool,
     /// Class of every column.
     classes: Vec<usize>,
-    /// Whether a class is between equal sectors.
+    /// Whether the two sectors of a class are equal.
     even: Vec<bool>,
     /// Class → depth → radius.
     rows: Vec<NodeRow>,
-    /// The same; zero for classes that are not even.
+    /// Class → depth → radius. Only the rows of even classes are used.
     even_rows: Vec<EvenRow>,
 }
 
 impl RingOperator {
-    /// K of a mesh and the lumped masses [kg] of its nodes.
+    /// K of a mesh, and the lumped masses \[kg\] of its nodes.
     pub(super) fn new(mesh: &RingMesh, elements: &Elements) -> (Self, Vec<f64>) {
         let nodes = mesh.nodes_per_axis();
         let [columns, rows, planes] = nodes;
@@ -121,12 +123,12 @@ impl RingOperator {
         (operator, masses_kg)
     }
 
-    /// K of a mesh of a material, for looking at it, and the lumped masses [kg].
+    /// K of a mesh of one material, and the lumped masses \[kg\] of its nodes; for inspection and tests.
     pub fn of_mesh(mesh: &RingMesh, material: &Material) -> (Self, Vec<f64>) {
         Self::new(mesh, &Elements::new(mesh, material))
     }
 
-    /// Classes of columns, column by column: equal numbers have equal rows.
+    /// Class of every column. Columns of the same class have equal rows of K.
     pub fn classes(&self) -> &[usize] {
         &self.classes
     }
@@ -191,7 +193,7 @@ impl RingOperator {
         }
     }
 
-    /// Lays out x with a vector before and after each line, which hold the neighbours of its ends.
+    /// Stores x with one more vector before and after each line. These hold the neighbours of its ends.
     #[inline(always)]
     fn stage<S: Simd, const L: usize>(&self, simd: S, x: &Field<L>, scratch: &mut RingScratch<L>) {
         let [columns, _, _] = self.nodes;
@@ -247,8 +249,8 @@ impl<const L: usize> Around<'_, L> {
         sums
     }
 
-    /// The same for a node between equal sectors: components that change their sign in the mirror see differences of
-    /// the neighbours, the others sums.
+    /// The same for a node between equal sectors. Components that change their sign in the mirror image depend on
+    /// differences of the neighbours, the others on sums.
     #[inline(always)]
     fn even_sum<S: Simd>(&self, simd: S, row: &EvenRow) -> [f64x8<S>; 3] {
         let zero = f64x8::splat(simd, 0.0);
@@ -277,7 +279,7 @@ impl<const L: usize> Around<'_, L> {
         sums
     }
 
-    /// The neighbouring lines that there are: number among nine, and where the line's block begins in what is staged.
+    /// The neighbouring lines that exist: number among nine, and index of the block's window in `staged`.
     #[inline(always)]
     fn lines(&self) -> impl Iterator<Item = (usize, usize)> {
         let [_, rows, planes] = self.nodes;
@@ -298,7 +300,7 @@ impl<const L: usize> Around<'_, L> {
     }
 }
 
-/// The numbers of a row of a node between equal sectors.
+/// The row of a node between equal sectors, in its short form.
 fn even_row(row: &NodeRow) -> EvenRow {
     std::array::from_fn(|line| {
         let here = |c: usize, d: usize| row[line][1][d][c];
@@ -327,13 +329,13 @@ fn even_row(row: &NodeRow) -> EvenRow {
 pub struct RingScratch<const L: usize> {
     /// x: line → component → a vector, the nodes in whole vectors, a vector.
     staged: Vec<f64>,
-    /// Numbers of a component of a line in it.
+    /// Number of values per component of a line in `staged`.
     pitch: usize,
     /// The classes in each block along a line.
     kinds: Vec<Vec<Kind>>,
 }
 
-/// A class in a block, and 1 in the slots that belong to it.
+/// A class that occurs in a block, with 1 in the slots that belong to it.
 #[derive(Debug, Clone)]
 struct Kind {
     class: usize,
@@ -371,7 +373,7 @@ fn sectors_beside(mesh: &RingMesh, j: usize) -> [Option<f64>; 2] {
     [before.copied(), sectors.get(j).copied()]
 }
 
-/// A node's row of K and its mass [kg].
+/// A node's row of K and its mass \[kg\].
 fn node_row(
     nodes: [usize; 3],
     elements: &Elements,
@@ -382,7 +384,7 @@ fn node_row(
     let [_, rows, planes] = nodes;
     let mut row: NodeRow = Default::default();
     let mut mass_kg = 0.0;
-    // In the order of the elements' own places, so that K_ab and K_ba are the same sums.
+    // The elements are added in the order of their positions, so that K_ab and K_ba are the same sums.
     for (side, angle) in beside.iter().enumerate() {
         let Some(angle) = *angle else { continue };
         for layer in k.saturating_sub(1)..(k + 1).min(planes - 1) {

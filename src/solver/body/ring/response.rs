@@ -1,28 +1,28 @@
-//! What forces on the disk's top nodes do to it within one step.
+//! Response of the disk to forces on its top nodes within one step.
 
 use super::mesh::RingMesh;
 use super::operator::{RingOperator, RingScratch};
 use super::stages::Stages;
 use crate::solver::field::Field;
 
-/// B M⁻¹ between the nodes of the track and those around them, as far as m − 1 stages carry: displacements per
-/// force, over the step's factor of Δt²a, in the nodes' own directions.
+/// B M⁻¹ \[1/kg\] between the nodes of the track and the nodes up to m − 1 nodes away, for m stages. It is the
+/// displacement per force, divided by the step's factor of Δt²a, in the nodes' own directions.
 #[derive(Debug, Clone)]
 pub struct Response {
     reach: usize,
-    /// Of every column of nodes of the track: which of the different neighbourhoods it has.
+    /// Index of the neighbourhood in `loads`, for every column of nodes of the track.
     columns: Vec<usize>,
     rows: usize,
-    /// Neighbourhood → row of the track → depth, row and column from −reach to reach: component of the motion → of
-    /// the force.
+    /// Neighbourhood → row of the track → depth, row and column → component of the motion → component of the force.
+    /// Row and column run from −reach to reach.
     loads: Vec<Vec<[[f64; 3]; 3]>>,
 }
 
-/// Lanes: one for each component of the force, and one that stays empty.
+/// Number of lanes: one for each component of the force, and an empty one.
 const LANES: usize = 4;
 
 impl Response {
-    /// Of the stages of a step on a mesh, whose nodes have these 1/m [1/kg], 0 where they are held.
+    /// The response of the stages of a step. `inverse_mass` is 1/m \[1/kg\] of every node, 0 where it is held.
     pub fn new(
         mesh: &RingMesh,
         operator: &RingOperator,
@@ -58,13 +58,13 @@ impl Response {
         Self { reach, columns: of_column, rows, loads }
     }
 
-    /// How many nodes away a force is felt.
+    /// Largest distance, in nodes, at which a force acts within a step.
     pub fn reach(&self) -> usize {
         self.reach
     }
 
-    /// What a force on a node of the track moves, the node counted in the track's columns and rows: depth, row and
-    /// column from −reach to reach, columns fastest; zero where there is no node [1/kg].
+    /// Response \[1/kg\] to a force on the node at this column and row of the track: depth, then row and column
+    /// from −reach to reach, columns fastest. It is zero where there is no node.
     pub fn of(&self, column: usize, row: usize) -> &[[[f64; 3]; 3]] {
         let all = &self.loads[self.columns[column]];
         let each = all.len() / self.rows;
@@ -72,7 +72,7 @@ impl Response {
     }
 }
 
-/// The column so many columns on; none beyond the ends of a sector.
+/// The column `offset` columns further; `None` beyond the ends of a sector.
 pub fn column_at(mesh: &RingMesh, column: usize, offset: isize) -> Option<usize> {
     let [columns, _, _] = mesh.nodes_per_axis();
     let at = column as isize + offset;
@@ -83,7 +83,7 @@ pub fn column_at(mesh: &RingMesh, column: usize, offset: isize) -> Option<usize>
     }
 }
 
-/// The stages of a step from rest with a unit force on one node, component by component.
+/// Runs the stages of a step from rest with a unit force on one node, for each component.
 fn unit_forces(
     mesh: &RingMesh,
     operator: &RingOperator,

@@ -5,9 +5,9 @@ use crate::solver::body::hexahedron::{ElementStiffness, isoparametric};
 use crate::solver::material::Material;
 use nalgebra::Vector3;
 
-/// Stiffness and masses of one element, which all sectors of the same angle share.
+/// Stiffness \[N/m\] and masses of one element, which all sectors of the same angle share.
 ///
-/// Corners are numbered r fastest, then θ, then z upwards; vectors are (radial, tangential, axial) at their node.
+/// Corners are numbered r fastest, then θ, then z upwards. Vectors are (radial, tangential, axial) at their node.
 #[derive(Debug, Clone)]
 pub(super) struct SectorElement {
     pub stiffness: ElementStiffness,
@@ -39,7 +39,7 @@ pub(super) fn element(
         }
     }
     let symmetric = (turned + turned.transpose()) * 0.5;
-    // A sector is its own mirror image; rounding is not.
+    // A sector is symmetric about its middle. Rounding is not, so the matrix is averaged with its mirror image.
     let mirror = |index: usize| {
         let (corner, component) = (index / 3, index % 3);
         (3 * (corner ^ 2) + component, if component == 1 { -1.0 } else { 1.0 })
@@ -55,7 +55,7 @@ pub(super) fn element(
     }
 }
 
-/// Columns: the radial, tangential and axial direction at an angle.
+/// Matrix whose columns are the radial, tangential and axial direction at an angle.
 fn axes(angle_rad: f64) -> nalgebra::Matrix3<f64> {
     let (sin, cos) = (libm::sin(angle_rad), libm::cos(angle_rad));
     nalgebra::Matrix3::new(cos, -sin, 0.0, sin, cos, 0.0, 0.0, 0.0, 1.0)

@@ -1,21 +1,25 @@
-//! How the disk keeps up with the pin's step: stabilised leapfrog–Chebyshev stages.
+//! Stabilised leapfrog–Chebyshev stages, with which the disk takes the time step of the pin.
 //!
-//! Over the pin's step Δt the disk makes m stages, each a product with A = M⁻¹K, and together they are one step of
-//! the leapfrog with a filtered acceleration:
+//! In one step Δt of the pin the disk makes m stages, each with one product with A = M⁻¹K. Together they are one
+//! step of the leapfrog with a filtered acceleration:
 //!
 //! ```text
 //! a = −Ã x + B M⁻¹ f      Δt² Ã = 2 [1 − T_m(ν − sA)/T_m(ν)]      B = Ã A⁻¹      x = u + β_R p
 //! ```
 //!
-//! with Chebyshev's polynomials T_m, ν ≥ 1 and s such that Ã = A − O(A²). Because B and Ã are the same polynomial
-//! but for the factor A, this is the central difference of the body with the same stiffness K and the mass matrix
-//! M̃ = M B⁻¹, which is symmetric and positive: so everything known of the central difference with one step holds,
-//! the exact energy balance with ½vM̃v + ½uKu, the contact solve with displacements that meet at t_{n+1}, and
-//! stability as long as the eigenvalues of Δt²Ã, at most 2[1 + 1/T_m(ν)], obey the limit of [`scheme`]. They do
-//! up to A = (1+ν)/s, that is for about m times the step of one stage. Static states are exact for any m.
+//! with Chebyshev's polynomials T_m, ν ≥ 1, and s such that Ã = A − O(A²). B and Ã = B A are polynomials in A. So
+//! this is the central difference of the body with the same stiffness K and the mass matrix M̃ = M B⁻¹, which is
+//! symmetric and positive. Therefore all properties of the central difference with one step hold:
+//! * The energy balance with ½vM̃v + ½uKu is exact.
+//! * The displacements of the contact solve meet at t_{n+1}.
+//! * The step is stable as long as the eigenvalues of Δt²Ã, at most 2\[1 + 1/T_m(ν)\], are within the limit of
+//!   [`scheme`]. This holds up to A = (1+ν)/s, that is for about m times the step of one stage.
 //!
-//! Two clocks that exchange held or interpolated forces have no such bound: where a multiple of the longer step
-//! is in resonance with a mode of the finer body, they grow. Here such a mode has B ≈ 0: it is not driven.
+//! Static states are exact for any m.
+//!
+//! Subcycling, in which the two bodies exchange held or interpolated forces, has no such stability. It grows where
+//! a multiple of the longer step is in resonance with a mode of the finer body. Here such a mode has B ≈ 0, so
+//! contact forces do not drive it.
 //!
 //! Sources: Diaz and Grote, *Energy conserving explicit local time stepping for second-order wave equations*, SIAM
 //! J. Sci. Comput. 31 (2009); Grote, Michel and Sauter, *Stabilized leapfrog based local time-stepping method for
@@ -24,36 +28,36 @@
 //!
 //! [`scheme`]: crate::solver::scheme
 
-/// Largest number of stages in a step; a disk that needs more shortens the step.
+/// Largest number of stages in a step. A disk that needs more makes the time step shorter.
 pub const MAX_STAGES: usize = 4;
 
-/// Part of the stability limit of Δt²Ã that the stages use.
+/// Fraction of the stability limit of Δt²Ã that the stages use.
 const MARGIN: f64 = 0.95;
 
-/// T_m(ν) is at least this: keeps Ã positive where T_m(ν − sA) is 1, at a price of some percent of the step.
+/// Lower bound of T_m(ν). It keeps Ã positive where T_m(ν − sA) is 1, and it shortens the step by a few percent.
 const LEAST_DAMPING: f64 = 1.05;
 
 /// One stage: d ← α d − γ d_before − σ A (x + d).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Stage {
-    /// α.
+    /// Factor α of d.
     pub own: f64,
-    /// γ.
+    /// Factor γ of the previous d.
     pub before: f64,
-    /// σ [s²].
+    /// Factor σ \[s²\] of A (x + d).
     pub force_s2: f64,
 }
 
-/// The stages of one step: Δt² a = 2 d after the last one.
+/// The stages of one step. After the last one Δt² a = 2 d.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Stages {
     stages: Vec<Stage>,
-    /// Largest eigenvalue [1/s²] of A for which they are stable.
+    /// Largest eigenvalue \[1/s²\] of A for which the stages are stable.
     largest_per_s2: f64,
 }
 
 impl Stages {
-    /// `count` stages in a step, for the damping β_R; none where damping alone is beyond what they can follow.
+    /// `count` stages in a step with the damping β_R. `None` if the damping alone is too strong for stability.
     pub fn new(count: usize, time_step_s: f64, beta_r_s: f64) -> Option<Self> {
         let m = count as f64;
         // ω̃²(½Δt² + β_RΔt) ≤ 2, with ω̃²Δt² = 2(1 + 1/T_m(ν)).
@@ -95,11 +99,12 @@ impl Stages {
             .find(|stages| largest_per_s2 <= stages.largest_per_s2)
     }
 
-    /// The longest step [s] for which [`Stages::fewest`] finds some.
+    /// The longest step \[s\] for which [`Stages::fewest`] finds stages.
     pub fn longest_step_s(largest_per_s2: f64, most: usize, beta_r_s: f64) -> f64 {
         let works = |dt: f64| Self::fewest(largest_per_s2, most, dt, beta_r_s).is_some();
-        // Not with every shorter step do several stages work, since damping weighs more in it. So the search comes from
-        // above: m stages reach less than m times the undamped limit of one.
+        // If a step is stable, a shorter one need not be, because damping weighs more in it. So the search starts
+        // from above. Its start is an upper bound, because m stages allow less than m times the undamped step of
+        // one stage.
         let mut high = 2.0 * most as f64 / largest_per_s2.sqrt();
         let mut low = high;
         while !works(low) {
@@ -122,7 +127,7 @@ impl Stages {
         self.stages.len()
     }
 
-    /// Δt² Ã and B for a scalar A [1/s²]: what a mode of that eigenvalue sees.
+    /// Δt² Ã and B of a mode with the eigenvalue A \[1/s²\].
     pub fn of_mode(&self, time_step_s: f64, a_per_s2: f64) -> [f64; 2] {
         let [mut d, mut before] = [0.0, 0.0];
         for stage in &self.stages {
@@ -140,8 +145,8 @@ mod tests {
 
     const DT: f64 = 5.0e-7;
 
-    /// Protects: over the whole range for which stages claim to be stable, Ã is positive and within the limit of the
-    /// damped central difference, and B lies in (0, 1]: M̃ is a mass, at least as large as M.
+    /// Protects: over the whole range for which stages count as stable, Ã is positive and within the limit of the
+    /// damped central difference. B lies in (0, 1], so M̃ is a positive mass, at least as large as M.
     #[test]
     fn every_mode_is_a_stable_oscillator_with_a_positive_mass() {
         for count in 1..=MAX_STAGES {
@@ -158,7 +163,7 @@ mod tests {
         }
     }
 
-    /// Protects: slow modes are followed to second order, as by the central difference itself.
+    /// Protects: slow modes are integrated to second order, as by the central difference itself.
     #[test]
     fn slow_modes_are_exact_to_second_order() {
         for count in 1..=MAX_STAGES {
@@ -169,13 +174,15 @@ mod tests {
             } else {
                 let ratio = error(0.1) / error(0.05);
                 assert!((ratio - 4.0).abs() < 0.05, "{count}: {ratio}");
-                // The constant of the undamped filter is (1 − 1/m²)/12 < 1/12; damping adds less than its double.
+                // The error constant of the undamped filter is (1 − 1/m²)/12 < 1/12. Damping adds less than twice
+                // this.
                 assert!(error(0.1) < 0.01 / 4.0);
             }
         }
     }
 
-    /// Protects: the longest step is found where damping is so strong that stages do not work with all shorter ones.
+    /// Protects: the longest step is found where damping is so strong that stages are unstable with some shorter
+    /// steps.
     #[test]
     fn strong_damping_does_not_hide_the_longest_step() {
         let (largest_per_s2, beta_r_s) = (1.0e15, 5.0e-8);

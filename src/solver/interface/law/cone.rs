@@ -9,18 +9,19 @@
 
 use super::Real;
 
-/// Friction on one node or on eight.
+/// Friction of one node or of eight.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::solver) struct Friction<R: Real> {
-    /// Its components [N].
+    /// Components of the friction force \[N\], x and y.
     pub force_n: [R; 2],
     /// Which nodes stick.
     pub sticks: R::Mask,
 }
 
-/// Projects the trial force \[N\] (the one that would stop all relative motion) on the disk of radius `limit_n` ≥ 0.
+/// Projects the trial force \[N\] (the force that would stop all relative motion) on the disk of the radius
+/// `limit_n`, which is not negative.
 ///
-/// With an isotropic mass the projection along the trial force is the exact solution: what is left of the relative motion
+/// With an isotropic mass the projection along the trial force is the exact solution: the remaining relative motion
 /// is parallel to the trial force, so friction opposes the slip.
 #[inline(always)]
 pub(in crate::solver) fn project<R: Real>(trial_n: [R; 2], limit_n: R) -> Friction<R> {
@@ -41,7 +42,7 @@ mod tests {
     use super::*;
     use fearless_simd::{Level, dispatch, f64x8, prelude::*};
 
-    /// The projection of eight nodes, all with the same numbers: the first of them.
+    /// Projects eight nodes with the same numbers. Returns the result of the first.
     fn project_eight(trial_n: [f64; 2], limit_n: f64) -> ([f64; 2], bool) {
         dispatch!(Level::new(), simd => {
             let all = |value| f64x8::splat(simd, value);
@@ -50,7 +51,7 @@ mod tests {
         })
     }
 
-    /// Protects: inside the cone the force is untouched, outside it lies on the cone along the trial.
+    /// Protects: a trial force inside the cone is not changed; one outside is scaled to the cone.
     #[test]
     fn inside_sticks_outside_slips_on_the_cone() {
         assert_eq!(project_eight([0.3, -0.4], 0.5), ([0.3, -0.4], true));
@@ -59,7 +60,7 @@ mod tests {
         assert!((force[0] - 0.3).abs() < 1e-15 && (force[1] + 0.4).abs() < 1e-15);
     }
 
-    /// Protects: without friction nothing is transmitted, and a node that is exactly still has no 0/0.
+    /// Protects: without friction no force is transmitted, and a node without slip gives no 0/0.
     #[test]
     fn limits_are_finite() {
         assert_eq!(project_eight([1.0, 0.0], 0.0), ([0.0, 0.0], false));
@@ -67,8 +68,9 @@ mod tests {
         assert_eq!(project_eight([0.0, 0.0], 0.0).0, [0.0, 0.0]);
     }
 
-    /// The force in the disk that is nearest to the trial force, found without the formula: the trial force if it is in
-    /// the disk, otherwise the best of a fan of directions on the rim, which is refined about the best one.
+    /// The force in the disk that is nearest to the trial force, found by a search. It is the trial force if that
+    /// is in the disk. Otherwise it is the best of a fan of directions on the rim, and the fan is refined around
+    /// the best one.
     fn nearest_in_the_disk(trial_n: [f64; 2], limit_n: f64) -> [f64; 2] {
         let distance = |t: [f64; 2]| (t[0] - trial_n[0]).hypot(t[1] - trial_n[1]);
         if trial_n[0].hypot(trial_n[1]) <= limit_n {
@@ -84,8 +86,8 @@ mod tests {
         on_rim(middle)
     }
 
-    /// Protects: the projection is the nearest force of the disk, for one node and for eight with the same bits, in all
-    /// directions, near the rim and far from it.
+    /// Protects: the projection is the nearest force of the disk, in all directions, near the rim and far from it.
+    /// One node and eight nodes give the same bits.
     #[test]
     fn the_projection_is_the_nearest_force() {
         for i in 0..48 {
@@ -100,8 +102,8 @@ mod tests {
                         (force.map(f64::to_bits), sticks)
                     );
                     let nearest = nearest_in_the_disk(trial_n, limit_n);
-                    // Rounding moves the distance d by εd, and d changes by TLδ²/2d over an angle δ: the search tells
-                    // directions √(2ε/TL)d ≤ √(8εT/L) apart, that is forces √(8εTL).
+                    // Rounding changes the distance d by εd. A turn by an angle δ changes d by TLδ²/(2d). So the
+                    // search resolves directions only to δ = √(2ε/TL)d ≤ √(8εT/L), that is forces to √(8εTL).
                     let tolerance = (8.0 * f64::EPSILON * length * limit_n).sqrt() + 2e-9 * limit_n;
                     for c in 0..2 {
                         assert!(

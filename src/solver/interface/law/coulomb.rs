@@ -1,10 +1,10 @@
-//! Coulomb's law without regularisation: the limit is μN.
+//! Coulomb's law without regularisation: the friction limit is μN.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
 use super::{FrictionLaw, Real};
 
-/// Coulomb's law with the friction coefficient μ of one lane, or of the lanes of eight nodes.
+/// Coulomb's law with the friction coefficient μ of one node or of eight.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::solver) struct Coulomb<R> {
     pub mu: R,
@@ -17,7 +17,7 @@ impl<R: Real> FrictionLaw<R> for Coulomb<R> {
     }
 }
 
-/// μ = 0 in all lanes.
+/// Coulomb's law with μ = 0 in all lanes.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::solver) struct Frictionless;
 

@@ -1,9 +1,11 @@
 //! Friction laws.
 //!
-//! A law gives the largest friction force of a slave node, its limit. [`project`] does the rest for every law: a node
-//! whose trial force is within the limit sticks, any other slips with the limit against its slip.
+//! A law gives the friction limit of a slave node, which is its largest friction force. The projection (`project`)
+//! is the same for every law. A node whose trial force is within the limit sticks. Any other node slips, and a
+//! force of the size of the limit opposes its slip.
 //!
-//! Another law is a file with [`FrictionLaw`] for it, a variant of [`Law`], and an arm in its functions.
+//! To add a law, write a file that implements `FrictionLaw` for it, add a variant to [`Law`], and an arm to each
+//! `match` on it.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -25,20 +27,20 @@ pub enum Law {
     },
 }
 
-/// A law for one node (`R` = `f64`) or for eight.
+/// A friction law for one node (`R` = `f64`) or for eight.
 pub(in crate::solver) trait FrictionLaw<R: Real>: Copy {
     /// False if the limit is always zero. Then no trial force is computed.
     const TRANSMITS: bool = true;
 
-    /// The largest friction force \[N\] under the normal force `normal_n` ≥ 0 \[N\].
+    /// The friction limit \[N\] under the normal force `normal_n` ≥ 0 \[N\].
     ///
-    /// Of the step before a law may use the increment \[m\] of the node relative to the target, x and y, and whether the
-    /// node slipped (1) or not (0).
+    /// A law may use two results of the step before: the increment \[m\] of the node relative to the target in x
+    /// and y, and whether the node slipped (1) or not (0).
     fn limit_n(&self, normal_n: R, increment_m: [R; 2], slipped: R) -> R;
 }
 
 impl Law {
-    /// The largest friction force \[N\] of one node, as of [`FrictionLaw::limit_n`].
+    /// The friction limit \[N\] of one node; see [`FrictionLaw::limit_n`].
     #[inline(always)]
     pub(in crate::solver) fn limit_n(self, normal_n: f64, increment_m: [f64; 2], slipped: f64) -> f64 {
         match self {
@@ -47,7 +49,7 @@ impl Law {
     }
 }
 
-/// Calls vector code with the law of all lanes, compiled for the law and for the vectors of this machine.
+/// Calls SIMD code with the law of all lanes. The code is compiled for each law and for each SIMD level.
 macro_rules! with_law_of_lanes {
     ($drives:expr, $simd:ident, $law:ident => $call:expr) => {{
         let coefficients = $drives.map(|drive| match drive.law {

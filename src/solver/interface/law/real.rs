@@ -1,22 +1,22 @@
-//! One number or a vector of them: what the projection and the laws are written for.
+//! The number type of the projection and the laws: one number, or a vector of eight.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
 use fearless_simd::{Simd, f64x8, mask64x8, prelude::*};
 use std::ops::{Add, Div, Mul};
 
-/// A number, or eight of them. The operations round alike for both.
+/// A number, or a vector of eight. The operations of both round alike.
 pub(in crate::solver) trait Real:
     Copy + Add<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
-    /// What a comparison gives.
+    /// Result of a comparison.
     type Mask: Copy;
 
-    /// Zero, as many as there are numbers.
+    /// Zero in every element.
     fn zero(self) -> Self;
     /// Square root.
     fn root(self) -> Self;
-    /// self ≤ other; false where one is not a number.
+    /// self ≤ other; false where either is NaN.
     fn at_most(self, other: Self) -> Self::Mask;
     /// `yes` where the mask is set, otherwise `no`.
     fn choose(mask: Self::Mask, yes: Self, no: Self) -> Self;

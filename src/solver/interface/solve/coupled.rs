@@ -1,24 +1,26 @@
 //! The forward-increment solve on an elastic disk.
 //!
-//! Pin and disk are predicted to t_{n+1} without contact. A slave node s carries the row G_s = (1, −N_1, …, −N_k) of
-//! the shape functions of the patch under it at t_{n+1}, and multipliers f (force on the pin; its negative, spread
-//! by the same shape functions, acts on the disk) are found such that
+//! Pin and disk are predicted to t_{n+1} without contact. A slave node s has the constraint row
+//! G_s = (1, −N_1, …, −N_k) with the shape functions of the patch under it at t_{n+1}. The multiplier f is the
+//! force on the pin. Its negative, distributed by the same shape functions, acts on the disk. The multipliers
+//! satisfy
 //!
 //! ```text
-//! g = g* + cΔt² (1/m_s + N C Nᵀ) f     g ≥ 0, N ≥ 0, g N = 0     |t| ≤ μN, slip opposes t
+//! g = g* + cΔt² (1/m_s + N C Nᵀ) f     g ≥ 0, N ≥ 0, g N = 0     |t| ≤ limit(N), slip opposes t
 //! ```
 //!
-//! C = B M⁻¹ is the disk's response (`Response` in [`ring`](crate::solver::body::ring)); it couples slave nodes
-//! that share target nodes, by Gauss–Seidel ([`sweeps`](super::sweeps)). The solve begins with the forces of the step
-//! before and ends when no force changes by more than [`TOLERANCE`](super::sweeps::TOLERANCE) of the largest.
+//! C = B M⁻¹ is the disk's response (`Response` in [`ring`](crate::solver::body::ring)). It couples slave nodes
+//! that share target nodes, so the rows are solved by Gauss–Seidel ([`sweeps`](super::sweeps)). The solve begins
+//! with the forces of the step before. It ends when no force changes by more than
+//! [`TOLERANCE`](super::sweeps::TOLERANCE) of the largest.
 //!
-//! The gap is measured to the deformed target; slip is the pin's motion past the material point of the disk that
-//! is under the node at t_{n+1}, and so has no jump where a node passes from one patch to the next. The normal
-//! is that of the undeformed top: slopes are 10⁻⁶.
+//! The gap is measured to the deformed target. Slip is the motion of the pin relative to the material point of the
+//! disk that is under the node at t_{n+1}. So it has no jump where a node passes from one patch to the next. The
+//! normal is that of the undeformed top face, because slopes are 10⁻⁶.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::given::Given;
+use super::step_data::StepData;
 use super::sweeps::{ContactRow, Solves, TargetNode, TargetNodes};
 use crate::solver::body::block::Face;
 use crate::solver::body::ring::{RingBody, RingState};
@@ -37,10 +39,11 @@ use std::sync::Arc;
 pub(super) struct RingTarget<const L: usize> {
     body: Arc<RingBody>,
     state: RingState<L>,
-    /// Increments of the disk's surface under each slave node over the step [m]: x, y, and in z by how much the surface at
-    /// t_n is higher where the node will be than where it is.
+    /// Increment \[m\] of the disk's surface under each slave node over the step: x and y. In z it is the height of
+    /// the surface at t_n under the node's position at t_{n+1}, minus that under its position at t_n.
     increment_m: Field<L>,
-    /// The same over the step before; in z by the patches of this step, as [`Contacts::previous_increment_m`] is.
+    /// The increment \[m\] over the step before. In z it uses the patches of this step, like
+    /// [`Contacts::previous_increment_m`].
     previous_increment_m: Field<L>,
     solves: [Solves; L],
     solve: CoupledSolve<L>,
@@ -96,23 +99,24 @@ impl<const L: usize> LaneState for RingTarget<L> {
     }
 }
 
-/// What the solve needs of the model, and scratch. Nothing in it is carried from step to step.
+/// The constants of the solve, and scratch memory. Nothing in it is carried from step to step.
 #[derive(Debug, Clone)]
 struct CoupledSolve<const L: usize> {
     grid: Grid,
     slaves: Vec<Slave>,
-    /// Smallest and largest angle [rad] of a slave node.
+    /// Smallest and largest angle \[rad\] of a slave node.
     angles_rad: [f64; 2],
     /// Sine and cosine of the angles of the mesh's columns.
     directions: Vec<(f64, f64)>,
-    /// The pin's face and the disk's top at t_n.
+    /// The pin's contact face at t_n.
     face_before: Before<L>,
+    /// The disk's top face at t_n.
     top_before: Before<L>,
     rows: Vec<ContactRow>,
     targets: TargetNodes,
 }
 
-/// Displacements [m] at t_n and, as p_n, over the step before [m/s].
+/// Displacements \[m\] at t_n, and p_n \[m/s\], which is the velocity over the step before.
 #[derive(Debug, Clone)]
 struct Before<const L: usize> {
     u: Field<L>,
@@ -124,7 +128,7 @@ impl<const L: usize> Before<L> {
         Self { u: field.clone(), p: field }
     }
 
-    /// Keeps the first blocks of these.
+    /// Copies the first blocks of `u` and `p`.
     fn keep(&mut self, u: &Field<L>, p: &Field<L>) {
         let count = self.u.blocks().len();
         self.u.blocks_mut().copy_from_slice(&u.blocks()[..count]);
@@ -132,7 +136,7 @@ impl<const L: usize> Before<L> {
     }
 }
 
-/// A slave node.
+/// A slave node on the disk.
 #[derive(Debug, Clone, Copy)]
 struct Slave {
     place: LaneSlot,
@@ -152,7 +156,7 @@ impl<const L: usize> CoupledSolve<L> {
             .iter()
             .enumerate()
             .map(|(index, slave)| {
-                // The lever arms (−Y, X) say where a node is.
+                // The lever arms (−Y, X) give the position of a node from the disk's axis.
                 let [minus_y, x] = slave.surface_motion;
                 Slave {
                     place: face.place(index),
@@ -178,12 +182,12 @@ impl<const L: usize> CoupledSolve<L> {
         }
     }
 
-    /// Where the slave nodes of a lane are on the track at t_{n+1}.
+    /// Coordinates of the slave nodes of a lane along and across the track at t_{n+1}.
     fn patch_coords(&self, turned_rad: f64) -> impl Iterator<Item = (PatchCoord, PatchCoord)> + '_ {
         self.slaves.iter().map(move |slave| (self.grid.along(slave.angle_rad - turned_rad), slave.across))
     }
 
-    /// Collects the target nodes of a lane.
+    /// Collects the target nodes under the slave nodes of a lane. The disk has turned by `turned_rad` at t_{n+1}.
     fn gather(&mut self, body: &RingBody, lane: usize, turned_rad: f64, dt: f64, disk: &RingState<L>) {
         let [low, high] = self.angles_rad.map(|angle| self.grid.along(angle - turned_rad).cell);
         let (first, last) = (low - self.grid.margin(), high + 1 + self.grid.margin());
@@ -219,8 +223,8 @@ impl<const L: usize> CoupledSolve<L> {
 }
 
 impl<const L: usize> RingTarget<L> {
-    /// Moves the slave nodes and the disk.
-    pub fn solve(&mut self, given: &Given<'_, L>, face: &mut Face<'_, L>, contacts: &mut Contacts<L>) {
+    /// Moves the slave nodes and the disk to t_{n+1}.
+    pub fn solve(&mut self, given: &StepData<'_, L>, face: &mut Face<'_, L>, contacts: &mut Contacts<L>) {
         std::mem::swap(&mut self.increment_m, &mut self.previous_increment_m);
         self.solve.face_before.keep(face.u, face.p);
         self.solve.top_before.keep(&self.state.u, &self.state.p);
@@ -248,7 +252,7 @@ impl<const L: usize> RingTarget<L> {
 
     fn solve_lane<const K: usize>(
         &mut self,
-        given: &Given<'_, L>,
+        given: &StepData<'_, L>,
         lane: usize,
         shares: &[[Share; K]],
         face: &mut Face<'_, L>,
@@ -301,10 +305,11 @@ impl<const L: usize> RingTarget<L> {
             contacts.friction.at_mut(place, LIMIT)[lane] = row.limit_n;
             let increment = [relative[0], relative[1], gap - gap_before];
             let status = [gap, f64::from(u8::from(closed)), f64::from(u8::from(closed && !row.sticks))];
-            // The surface under the node at t_n, and what is then under its place at t_{n+1}.
+            // The height of the surface at t_n, under the node's position at t_n and at t_{n+1}.
             let under = (face_before.u.at(place, 2)[lane] + slave.initial_gap_m) - gap_before;
             let mut ahead = 0.0;
-            // What the constraint of this step says of the step before: its forces do work over that, too.
+            // The increment over the step before by the constraint of this step: its forces do work over that
+            // increment, too.
             let mut last: [f64; 3] =
                 std::array::from_fn(|c| given.factors.time_step_s * face_before.p.at(place, c)[lane]);
             for share in shares {
@@ -340,7 +345,7 @@ impl<const L: usize> RingTarget<L> {
     }
 }
 
-/// Moves the slave nodes as if there were no contact.
+/// Moves the slave nodes without contact.
 #[inline(always)]
 fn predict<S: Simd, const L: usize>(simd: S, factors: &StepFactors, face: &mut Face<'_, L>, count: usize) {
     let moving = face.u.blocks_mut()[..count].iter_mut().zip(&mut face.p.blocks_mut()[..count]);
@@ -354,7 +359,7 @@ fn predict<S: Simd, const L: usize>(simd: S, factors: &StepFactors, face: &mut F
     }
 }
 
-/// Normal forces times an increment.
+/// Work \[J\] of the normal forces over an increment in z.
 fn normal_work<const L: usize>(contacts: &Contacts<L>, increment_m: &Field<L>) -> [f64; L] {
     let stride = increment_m.blocks_per_line();
     let mut total = [0.0; L];

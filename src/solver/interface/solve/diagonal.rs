@@ -1,20 +1,20 @@
 //! The forward-increment solve on a rigid target, in closed form.
 //!
-//! On a rigid target c Δt² G M⁻¹ Gᵀ is diagonal (c is the scheme's factor of Δt²a in u_{n+1}). So each slave node is solved
-//! by itself, and one pass is exact. With the gap g* of the prediction and the initial gap g₀:
+//! On a rigid target c Δt² G M⁻¹ Gᵀ is diagonal (G contains the constraint rows, c is the scheme's factor of Δt²a
+//! in u_{n+1}). So each slave node is solved by itself, and one pass is exact. With the gap g* of the prediction
+//! and the initial gap g₀:
 //!
 //! ```text
 //! g* = g₀ + z*        N = −m g*/(cΔt²)  if g* < 0       t_trial = −m δ*/(cΔt²),  δ* = u*_t − u_t − VΔt
 //! ```
 //!
-//! The pass predicts a block of slave nodes and corrects it at once. So a step reads and writes their displacements once,
-//! as it does those of other nodes. Nodes that are held in some direction are solved one by one
-//! ([`held`](super::held)).
+//! The pass predicts a block of slave nodes and corrects it at once, so that a step reads and writes their
+//! displacements only once. Nodes with a fixed component are solved one by one ([`held`](super::held)).
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::given::Given;
 use super::held::HeldNode;
+use super::step_data::StepData;
 use crate::solver::body::block::Face;
 use crate::solver::field::{Field, in_slots};
 use crate::solver::interface::LIMIT;
@@ -22,13 +22,13 @@ use crate::solver::interface::law::{FrictionLaw, project, with_law_of_lanes};
 use crate::solver::interface::{Contacts, Interface, SlaveNode, Status};
 use fearless_simd::{Simd, f64x8, prelude::*};
 
-/// What is fixed during a run.
+/// The constants of a run.
 #[derive(Debug, Clone)]
 pub(super) struct DiagonalSolve<const L: usize> {
-    /// Per slave node: velocity of the target per unit of the drive's rate, x and y, and the mass; that of a node
-    /// that the pass does not solve is zero.
+    /// Per slave node: velocity of the target per unit of the drive's rate in x and y, and the mass \[kg\]. The
+    /// mass is zero if the pass does not solve the node.
     nodes: Field<L>,
-    /// Initial gap [m] of every slave node, in the first component.
+    /// Initial gap \[m\] of every slave node, in the first component.
     initial_gap_m: Field<L>,
     held: Vec<HeldNode<L>>,
 }
@@ -46,10 +46,11 @@ impl<const L: usize> DiagonalSolve<L> {
         Self { nodes, initial_gap_m, held }
     }
 
-    /// Moves the slave nodes; returns what supports carry of the contact forces on held ones \[N\].
+    /// Moves the slave nodes. Returns the sum of the contact forces \[N\] on fixed degrees of freedom, which
+    /// supports carry.
     pub fn solve(
         &mut self,
-        given: &Given<'_, L>,
+        given: &StepData<'_, L>,
         face: &mut Face<'_, L>,
         contacts: &mut Contacts<L>,
     ) -> [[f64; L]; 3] {
@@ -64,14 +65,14 @@ impl<const L: usize> DiagonalSolve<L> {
         carried_n
     }
 
-    /// Predicts and corrects all nodes that are free to move. Where the law transmits nothing, the square root and the
-    /// quotient of the projection are left out.
+    /// Predicts and corrects all nodes without a fixed component. If the law transmits no force, the square root
+    /// and the division of the projection are left out.
     #[inline(always)]
     pub(super) fn pass<S: Simd, W: FrictionLaw<f64x8<S>>>(
         &self,
         simd: S,
         law: W,
-        given: &Given<'_, L>,
+        given: &StepData<'_, L>,
         face: &mut Face<'_, L>,
         contacts: &mut Contacts<L>,
     ) {
@@ -126,8 +127,8 @@ impl<const L: usize> DiagonalSolve<L> {
                 ([zero; 2], slip[0].simd_eq(zero) & slip[1].simd_eq(zero) & closed)
             };
             let inverse = f64x8::from_slice(simd, &inverse_mass.0[2]);
-            // Constrained displacements are set, not corrected: a sticking node must not creep, nor a
-            // closed one sink, by the rounding of its correction.
+            // Constrained displacements are set, not corrected. The rounding of a correction would let a sticking
+            // node creep and a closed node sink.
             for c in 0..2 {
                 tangential[c] = closed.select(tangential[c], zero);
                 let corrected =

@@ -1,10 +1,10 @@
-//! Slave nodes that are held in some direction, one by one.
+//! Slave nodes with a fixed component, solved one by one.
 //!
-//! A node that is held in a tangential direction in which the target moves slips there in any case. Friction opposes the
-//! whole slip, and the free direction is left with its part of the cone ([`partially_held_friction`]). Such nodes are
-//! rare.
+//! If a node is fixed in a tangential direction in which the target moves, it slips there in any case. Friction
+//! opposes the whole slip vector, so the free direction gets only a part of the friction limit
+//! ([`partially_held_friction`]). Such nodes are rare.
 
-use super::given::Given;
+use super::step_data::StepData;
 use crate::solver::body::block::Face;
 use crate::solver::field::LaneSlot;
 use crate::solver::interface::LIMIT;
@@ -16,9 +16,9 @@ use crate::solver::interface::{Contacts, SlaveNode, Status};
 pub(super) struct HeldNode<const L: usize> {
     place: LaneSlot,
     node: SlaveNode,
-    /// Its displacements [m] at t_n.
+    /// Displacements \[m\] at t_n.
     u_m: [[f64; L]; 3],
-    /// Whether it slipped in the step before (0 or 1).
+    /// Whether the node slipped in the step before (0 or 1).
     slipped: [f64; L],
 }
 
@@ -27,7 +27,7 @@ impl<const L: usize> HeldNode<L> {
         Self { place, node, u_m: [[0.0; L]; 3], slipped: [0.0; L] }
     }
 
-    /// Keeps what the pass will overwrite.
+    /// Stores the values that the pass will overwrite.
     pub fn keep(&mut self, face: &Face<'_, L>, contacts: &Contacts<L>) {
         for c in 0..3 {
             self.u_m[c] = *face.u.at(self.place, c);
@@ -35,11 +35,11 @@ impl<const L: usize> HeldNode<L> {
         self.slipped = *contacts.status.at(self.place, Status::Slips as usize);
     }
 
-    /// Corrects the node, which the pass has predicted, in all lanes; adds what its support carries of the contact forces
-    /// \[N\] to `carried_n`.
+    /// Corrects the node in all lanes, after the pass has predicted it. Adds the contact forces \[N\] on its fixed
+    /// components to `carried_n`.
     pub fn solve(
         &self,
-        given: &Given<'_, L>,
+        given: &StepData<'_, L>,
         face: &mut Face<'_, L>,
         contacts: &mut Contacts<L>,
         carried_n: &mut [[f64; L]; 3],
@@ -57,13 +57,13 @@ impl<const L: usize> HeldNode<L> {
     fn solve_lane(
         &self,
         lane: usize,
-        given: &Given<'_, L>,
+        given: &StepData<'_, L>,
         face: &mut Face<'_, L>,
         contacts: &mut Contacts<L>,
     ) {
         let (factors, drive) = (given.factors, &given.drives[lane]);
         let place = self.place;
-        // A slot's scales are those of its lane.
+        // Slot `lane` of the scales belongs to that lane.
         let (u_scale, p_scale) = (factors.u_scale[lane], factors.p_scale[lane]);
         let stiffness = self.node.mass_kg * (1.0 / u_scale);
         let carried = self.node.surface_motion.map(|motion| motion * (drive.rate * factors.time_step_s));
@@ -105,7 +105,7 @@ impl<const L: usize> HeldNode<L> {
     }
 }
 
-/// Friction \[N\] on a closed node with the predicted `slip` \[m\], and whether it slips.
+/// Friction \[N\] on a closed node with the predicted `slip` \[m\], and whether the node slips.
 fn tangential(mobile: [bool; 3], slip: [f64; 2], stiffness: f64, limit_n: f64) -> ([f64; 2], bool) {
     let held_slip = |c: usize| !mobile[c] && slip[c] != 0.0;
     match (held_slip(0), held_slip(1)) {
@@ -119,7 +119,7 @@ fn tangential(mobile: [bool; 3], slip: [f64; 2], stiffness: f64, limit_n: f64) -
             let [y, x] = partially_held_friction(slip[1], slip[0], stiffness, limit_n);
             ([x, y], true)
         }
-        // Held in both: nothing to solve.
+        // No direction is free: the slip is given, and friction opposes it.
         _ => {
             let length = (slip[0] * slip[0] + slip[1] * slip[1]).sqrt();
             (slip.map(|s| -limit_n * s / length), true)
@@ -127,13 +127,13 @@ fn tangential(mobile: [bool; 3], slip: [f64; 2], stiffness: f64, limit_n: f64) -
     }
 }
 
-/// Friction \[N\] on a node that slips by `given_m` ≠ 0 in a direction in which it is held, and that would slip by `free_m`
-/// in the other direction without friction. There a force t changes the slip by t/`stiffness_n_m`. Friction has the size
-/// of the limit R and opposes the whole slip, t = −R s/|s|: components in the held and in the free direction.
+/// Friction \[N\] on a node with one fixed tangential direction, in which it slips by `given_m` ≠ 0. Without
+/// friction it would slip by `free_m` in the other direction, where a force t changes the slip by
+/// t/`stiffness_n_m`. The friction t = −R s/|s| has the size of the limit R and opposes the whole slip vector s.
+/// Returns its components in the fixed and in the free direction.
 ///
-/// The free slip δ is the root of g(δ) = δ + (R/k) δ/√(given² + δ²) − free. On the side of `free_m` g
-/// increases and is concave, so Newton's method from a point between 0 and the root climbs to it without
-/// overshooting.
+/// The free slip δ is the root of g(δ) = δ + (R/k) δ/√(given² + δ²) − free. For free > 0 and δ ≥ 0, g increases and
+/// is concave. So Newton's method, started between 0 and the root, converges from below without overshooting.
 fn partially_held_friction(given_m: f64, free_m: f64, stiffness_n_m: f64, limit_n: f64) -> [f64; 2] {
     let (reach, aim) = (limit_n / stiffness_n_m, free_m.abs());
     // Two lower bounds of the root: δ/√(given² + δ²) is at most δ/|given| and at most 1.
@@ -143,7 +143,7 @@ fn partially_held_friction(given_m: f64, free_m: f64, stiffness_n_m: f64, limit_
         let residual = slip + reach * slip / length - aim;
         let slope = 1.0 + reach * given_m * given_m / (length * length * length);
         let next = slip - residual / slope;
-        // Rounding ends the climb, and so does a number that is not finite.
+        // The iteration ends when rounding stops the increase, or at a number that is not finite.
         if next > slip {
             slip = next;
         } else {
@@ -157,8 +157,8 @@ fn partially_held_friction(given_m: f64, free_m: f64, stiffness_n_m: f64, limit_
 mod tests {
     use super::*;
 
-    /// Protects: the force on a partially held node lies on the cone, opposes the slip that it leaves, and is
-    /// found from any side and at any ratio of the slips.
+    /// Protects: the force on a partially held node lies on the cone and opposes the remaining slip, for all signs
+    /// and ratios of the two slips.
     #[test]
     fn the_friction_of_a_partially_held_node_opposes_its_slip() {
         for given in [1e-9, -0.5, 1.0, 1e6_f64] {
@@ -168,7 +168,7 @@ mod tests {
                     let force = partially_held_friction(given, free, stiffness, limit);
                     let slip: f64 = free + force[1] / stiffness;
                     let length = given.hypot(slip);
-                    // The slip cancels in free + t/k: rounded at the size of these.
+                    // The sum free + t/k cancels, so the rounding error of the slip has the size of its terms.
                     let rounding =
                         8.0 * f64::EPSILON * (limit + limit * (free.abs() + limit / stiffness) / length);
                     let exact = [-limit * given / length, -limit * slip / length];

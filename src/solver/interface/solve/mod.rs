@@ -1,15 +1,15 @@
-//! The two ways of solving for the contact forces of a step.
+//! The two solves for the contact forces of a step.
 //!
-//! * [`diagonal`] – on a rigid target: node by node, in closed form.
-//! * [`coupled`] – on an elastic disk: constraints that share target nodes, by Gauss–Seidel ([`sweeps`]).
+//! * `diagonal` – on a rigid target: node by node, in closed form.
+//! * `coupled` – on an elastic disk, where constraints share target nodes: by Gauss–Seidel ([`sweeps`]).
 
 mod coupled;
 mod diagonal;
-mod given;
 mod held;
+mod step_data;
 pub mod sweeps;
 
-pub(in crate::solver) use given::Given;
+pub(in crate::solver) use step_data::StepData;
 pub use sweeps::Solves;
 
 use super::target::Target;
@@ -20,7 +20,7 @@ use crate::solver::lane::LaneState;
 use coupled::RingTarget;
 use diagonal::DiagonalSolve;
 
-/// The target in every lane, with the solve that it needs.
+/// The target in every lane, with its contact solve.
 #[derive(Debug, Clone)]
 pub struct TargetState<const L: usize>(Kind<L>);
 
@@ -31,7 +31,7 @@ enum Kind<const L: usize> {
 }
 
 impl<const L: usize> TargetState<L> {
-    /// At rest under the pin.
+    /// The target at rest.
     pub(in crate::solver) fn at_rest(interface: &Interface, target: &Target) -> Self {
         Self(match target {
             Target::Rigid => Kind::Rigid(DiagonalSolve::new(interface)),
@@ -39,10 +39,11 @@ impl<const L: usize> TargetState<L> {
         })
     }
 
-    /// Moves the slave nodes and the target to t_{n+1}; returns what supports of the pin carry of the contact forces \[N\].
+    /// Moves the slave nodes and the target to t_{n+1}. Returns the sum of the contact forces \[N\] on fixed
+    /// degrees of freedom of the pin, which its supports carry: x, y and z.
     pub(in crate::solver) fn solve(
         &mut self,
-        given: &Given<'_, L>,
+        given: &StepData<'_, L>,
         face: &mut Face<'_, L>,
         contacts: &mut Contacts<L>,
     ) -> [[f64; L]; 3] {
@@ -51,18 +52,18 @@ impl<const L: usize> TargetState<L> {
             Kind::Rigid(solve) => solve.solve(given, face, contacts),
             Kind::Ring(ring) => {
                 ring.solve(given, face, contacts);
-                // No slave node of a pin on a ring is held.
+                // On a ring no slave node is fixed: `Model::new` refuses it.
                 [[0.0; L]; 3]
             }
         }
     }
 
-    /// [`TargetState::solve`] on a rigid target with a law of the tests.
+    /// [`TargetState::solve`] on a rigid target with a friction law of the tests.
     #[cfg(test)]
     pub(super) fn solve_with(
         &mut self,
-        law: super::tests::Telltale,
-        given: &Given<'_, L>,
+        law: super::tests::ExposingLaw,
+        given: &StepData<'_, L>,
         face: &mut Face<'_, L>,
         contacts: &mut Contacts<L>,
     ) {
@@ -79,8 +80,8 @@ impl<const L: usize> TargetState<L> {
         }
     }
 
-    /// Displacement increment \[m\] of the target itself under a slave node of a lane over the last step, beyond the
-    /// motion that is prescribed; zero on a rigid target.
+    /// Displacement increment \[m\] of the target under a slave node of a lane over the last step, in addition to
+    /// the prescribed motion. It is zero on a rigid target.
     pub fn increment_of(&self, slave: usize, lane: usize) -> [f64; 3] {
         match &self.0 {
             Kind::Rigid(_) => [0.0; 3],
@@ -88,7 +89,7 @@ impl<const L: usize> TargetState<L> {
         }
     }
 
-    /// How the contact solves of a lane went, on an elastic target.
+    /// Convergence statistics of the contact solves of a lane; `None` on a rigid target.
     pub fn solves_of(&self, lane: usize) -> Option<&Solves> {
         match &self.0 {
             Kind::Rigid(_) => None,
@@ -96,8 +97,8 @@ impl<const L: usize> TargetState<L> {
         }
     }
 
-    /// Works \[J\] of the drive over the slopes of the target, over the increments after and before the forces' time. A
-    /// rigid target has no slopes.
+    /// Works \[J\] of the drive on the slopes of the target, over the increments after and before the time of the
+    /// forces. A rigid target has no slopes.
     pub(in crate::solver) fn slope_works_j(&self, contacts: &Contacts<L>) -> [[f64; L]; 2] {
         match &self.0 {
             Kind::Rigid(_) => [[0.0; L]; 2],

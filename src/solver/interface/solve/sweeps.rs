@@ -1,35 +1,36 @@
 //! Gauss–Seidel sweeps over the constraint rows of one lane.
 //!
-//! A row is solved by itself: normal force, then projection on its cone. What it has changed is passed on to the
-//! rows that share its target nodes with M⁻¹, the largest that the disk's response C = B M⁻¹ can be; after the sweep C
-//! itself is applied. So a sweep is exact where the disk makes one stage, and contracts where it makes several.
+//! Each row is solved by itself: first the normal force, then the projection on its friction cone. The change of
+//! its force is passed on to the rows that share its target nodes. Within a sweep this uses M⁻¹, the upper bound of
+//! the disk's response C = B M⁻¹. After the sweep C itself is applied. So the couplings are exact if the disk makes
+//! one stage. With several stages the sweeps contract.
 
 use crate::solver::body::ring::{RingBody, TrackForce, times};
 use crate::solver::interface::law::{Law, project};
 use crate::solver::interface::target::patch::Share;
 use crate::solver::lane::next;
 
-/// Largest change of a nodal force in the last sweep, over the largest nodal force.
+/// Convergence tolerance: largest change of a nodal force in the last sweep, relative to the largest nodal force.
 pub const TOLERANCE: f64 = 1.0e-10;
 
-/// The solve has failed after so many sweeps. The reference scene takes six.
+/// Number of sweeps after which a solve has failed. The reference scene needs six.
 pub const MAX_SWEEPS: u32 = 500;
 
-/// How the solves of a lane went.
+/// Convergence statistics of the contact solves of a lane.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Solves {
-    /// Sweeps of all its steps.
+    /// Number of sweeps of all steps.
     pub sweeps: f64,
-    /// Most sweeps of a step.
+    /// Largest number of sweeps in one step.
     pub most_sweeps: f64,
-    /// Largest residual of the forces that were found, over the largest force.
+    /// Largest residual of the forces, relative to the largest force.
     pub residual: f64,
-    /// Step whose solve did not converge, counted from 1; 0 if there is none.
+    /// First step whose solve did not converge, counted from 1; 0 if there is none.
     pub failed_step: f64,
 }
 
 impl Solves {
-    /// Adds the solve of a step, counted from 1.
+    /// Adds the solve of a step. Steps are counted from 1.
     pub(super) fn add(&mut self, step: u64, sweeps: u32, residual: f64) {
         let sweeps = f64::from(sweeps);
         self.sweeps += sweeps;
@@ -50,68 +51,74 @@ impl Solves {
     }
 }
 
-/// A slave node's constraint during the solve of one lane; vectors in the pin's directions.
+/// Constraint row of a slave node during the solve of one lane. Vectors are in the pin's directions.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct ContactRow {
-    /// Slip in x and y and gap [m] of the prediction.
+    /// Slip in x and y, and gap \[m\], of the prediction.
     pub free_m: [f64; 3],
     pub force_n: [f64; 3],
-    /// Displacement per force [m/N]: of the pin's node alone, and of all the row.
+    /// Compliance \[m/N\] (displacement per force) of the pin's node alone.
     pub own: f64,
+    /// Compliance \[m/N\] of the whole row.
     pub compliance: f64,
     pub sticks: bool,
-    /// Limit [N] of the friction force.
+    /// Limit \[N\] of the friction force.
     pub limit_n: f64,
-    /// Of the step before: the increment [m] relative to the target, and whether the node slipped (0 or 1).
+    /// Increment \[m\] relative to the target over the step before.
     pub last_increment_m: [f64; 2],
+    /// Whether the node slipped in the step before (0 or 1).
     pub slipped: f64,
 }
 
-/// The nodes of the disk's top that the slave nodes of a lane can touch, column by column.
+/// The nodes of the disk's top face that the slave nodes of a lane can touch, column by column.
 #[derive(Debug, Clone)]
 pub(super) struct TargetNodes {
     pub rows: usize,
-    /// The track's column of the first ones.
+    /// Column of the track at which `nodes` begins.
     pub first: isize,
     pub nodes: Vec<TargetNode>,
 }
 
-/// One of them; vectors in the pin's directions unless said otherwise.
+/// A node of the disk's top face. Vectors are in the pin's directions unless stated otherwise.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct TargetNode {
-    /// Index in the mesh, column in mesh and track, row of the track.
+    /// Index in the mesh.
     pub node: usize,
+    /// Column in the mesh, which is that in the track.
     pub column: usize,
+    /// Row in the track.
     pub row: usize,
-    /// Of the angle at which the node is at t_{n+1}.
+    /// Cosine of the node's angle at t_{n+1}.
     pub cos: f64,
+    /// Sine of that angle.
     pub sin: f64,
-    /// Height [m] at t_n, and increment [m] of the prediction.
+    /// Displacement in z \[m\] at t_n.
     pub height_m: f64,
+    /// Increment \[m\] of the prediction.
     pub increment_m: [f64; 3],
-    /// Increment [m] of the step before.
+    /// Increment \[m\] of the step before.
     pub last_increment_m: [f64; 3],
     pub inverse_mass: f64,
-    /// Force [N] that the slave nodes receive through it.
+    /// Contact force \[N\] that the slave nodes receive through this node.
     pub force_n: [f64; 3],
-    /// Its displacement [m] under that force.
+    /// Response cΔt² C f \[m\] to that force. The node itself moves by minus this.
     pub displacement_m: [f64; 3],
 }
 
 impl TargetNode {
-    /// A vector of the node's own directions in the pin's.
+    /// Transforms a vector from the node's own directions (radial, tangential, axial) to the pin's.
     pub fn in_pin(&self, [radial, tangential, axial]: [f64; 3]) -> [f64; 3] {
         [radial * self.cos - tangential * self.sin, radial * self.sin + tangential * self.cos, axial]
     }
 
-    /// The force on the node in its own directions.
+    /// `force_n` in the node's own directions.
     fn own_force_n(&self) -> [f64; 3] {
         let [x, y, z] = self.force_n;
         [x * self.cos + y * self.sin, y * self.cos - x * self.sin, z]
     }
 }
 
-/// What solves a row by itself.
+/// Solution of one row while all other forces stay fixed.
 struct RowSolution {
     force_n: [f64; 3],
     limit_n: f64,
@@ -123,7 +130,7 @@ impl TargetNodes {
         &self.nodes[share.column * self.rows + share.row]
     }
 
-    /// Slip and gap [m] of a slave node under the forces as they stand.
+    /// Slip and gap \[m\] of a slave node under the current forces.
     pub fn relative_m(&self, row: &ContactRow, shares: &[Share]) -> [f64; 3] {
         let mut relative: [f64; 3] = std::array::from_fn(|c| row.free_m[c] + row.own * row.force_n[c]);
         for share in shares {
@@ -135,11 +142,11 @@ impl TargetNodes {
         relative
     }
 
-    /// What solves a row by itself, the others as they stand.
+    /// Solves one row while all other forces stay fixed.
     fn solve_row(&self, row: &ContactRow, shares: &[Share], law: Law) -> RowSolution {
         let relative = self.relative_m(row, shares);
         let stiffness = 1.0 / row.compliance;
-        // A number that is not finite gives no force; the guard finds it.
+        // NaN gives no force here; the guard detects it.
         let normal = (row.force_n[2] - relative[2] * stiffness).max(0.0);
         if normal <= 0.0 {
             return RowSolution { force_n: [0.0, 0.0, normal], limit_n: 0.0, sticks: false };
@@ -151,7 +158,7 @@ impl TargetNodes {
         RowSolution { force_n: [x, y, normal], limit_n, sticks: friction.sticks }
     }
 
-    /// By how much the forces miss their own rows, over the largest force: max |f − solved(f)| / max N.
+    /// Residual of the current forces, relative to the largest force: max |f − solved(f)| / max N.
     pub fn residual<const K: usize>(&self, law: Law, rows: &[ContactRow], shares: &[[Share; K]]) -> f64 {
         let (mut missed, mut largest) = (0.0_f64, 0.0_f64);
         for (row, shares) in rows.iter().zip(shares) {
@@ -164,8 +171,8 @@ impl TargetNodes {
         if largest > 0.0 { missed / largest } else { missed }
     }
 
-    /// Sweeps over the slave nodes until their forces stand still: how many it took, more than [`MAX_SWEEPS`] if they
-    /// did not.
+    /// Sweeps over the slave nodes until their forces converge. Returns the number of sweeps, or [`MAX_SWEEPS`] + 1
+    /// if they do not converge. `u_scale` is cΔt² \[s²\].
     pub fn sweep<const K: usize>(
         &mut self,
         body: &RingBody,
@@ -199,7 +206,7 @@ impl TargetNodes {
                 }
             }
             if change <= TOLERANCE * largest {
-                // Where nothing touches, nothing was solved.
+                // Without contact the solve counts no sweep.
                 return if largest > 0.0 { sweep } else { 0 };
             }
             if couples_further {
@@ -209,7 +216,7 @@ impl TargetNodes {
         MAX_SWEEPS + 1
     }
 
-    /// Spreads the slave nodes' forces over the target nodes.
+    /// Distributes the slave nodes' forces over the target nodes.
     pub fn spread<const K: usize>(&mut self, rows: &[ContactRow], shares: &[[Share; K]]) {
         for node in &mut self.nodes {
             node.force_n = [0.0; 3];
@@ -224,10 +231,10 @@ impl TargetNodes {
         }
     }
 
-    /// cΔt² C f at the target nodes.
+    /// Computes the response cΔt² C f of the target nodes; `u_scale` is cΔt² \[s²\].
     pub fn respond(&mut self, body: &RingBody, u_scale: f64) {
         for node in &mut self.nodes {
-            // In the node's own directions at first.
+            // During the sum the displacement is in the node's own directions.
             node.displacement_m = [0.0; 3];
         }
         let reach = body.response().reach() as isize;

@@ -1,6 +1,6 @@
-//! What the pin slides on.
+//! Targets: the surfaces on which the pin slides.
 //!
-//! * [`rigid`] – a plane or a disk that moves as it is driven.
+//! * [`rotating_disk`], [`straight_plane`] – rigid surfaces with a given velocity.
 //! * [`patch`] – the surface of an elastic disk between its nodes.
 
 pub mod patch;
@@ -11,12 +11,12 @@ pub use rigid::{SurfaceMotion, rotating_disk, straight_plane};
 use crate::solver::body::ring::{RingBody, RingDefinition, UnsteppedRing};
 use std::sync::Arc;
 
-/// A target, as a model is defined with it.
+/// A target in the definition of a model.
 #[derive(Debug, Clone)]
 pub enum TargetDefinition {
-    /// A rigid surface with this velocity under each slave node per unit of the drive's rate.
+    /// A rigid surface with this velocity under each slave node, per unit of the drive's rate.
     Rigid(SurfaceMotion),
-    /// An elastic disk that turns about its axis.
+    /// An elastic disk that rotates about its axis.
     Ring(RingDefinition),
 }
 
@@ -30,7 +30,7 @@ pub enum Target {
 }
 
 impl Target {
-    /// The elastic disk, if it is one.
+    /// The elastic disk, if the target is one.
     pub fn ring(&self) -> Option<&RingBody> {
         match self {
             Self::Rigid => None,
@@ -46,8 +46,8 @@ pub(in crate::solver) enum UnsteppedTarget {
 }
 
 impl UnsteppedTarget {
-    /// The longest step \[s\] that it can take, and the bound of its largest angular frequency \[rad/s\]; a rigid target
-    /// takes any step.
+    /// The longest stable step \[s\], and the upper bound of the largest angular frequency \[rad/s\]. `None` for a
+    /// rigid target, which allows any step.
     pub fn longest_step_s(&self, beta_r_s: f64) -> Option<(f64, f64)> {
         match self {
             Self::Rigid => None,
@@ -55,7 +55,7 @@ impl UnsteppedTarget {
         }
     }
 
-    /// The target with a time step; none if the step is too long.
+    /// The target with a time step; `None` if the step is too long.
     pub fn with_step(self, time_step_s: f64, beta_r_s: f64) -> Option<Target> {
         match self {
             Self::Rigid => Some(Target::Rigid),

@@ -1,44 +1,45 @@
 //! The target surface of an elastic disk between its nodes.
 //!
-//! In polar coordinates the track is a uniform grid, so the patch under a slave node and its place in it follow from
-//! its radius and its angle by division. Slave nodes are placed where they are undeformed, on the disk turned by ωt:
-//! displacements are 10⁻³ of a patch, and what they change in the gap is the product of two small quantities.
+//! In polar coordinates the track is a uniform grid. So the patch under a slave node, and the local coordinates in
+//! it, follow from the node's radius and angle by division. Slave nodes have their undeformed positions, on the
+//! disk turned by ωt. Displacements are 10⁻³ of a patch, and their effect on the gap is a product of two small
+//! quantities.
 
 use crate::solver::body::ring::mesh::{RingMesh, Track};
 use crate::spec::TargetSurface;
 
-/// Nodes of the smooth patch: the four corners and eight around them.
+/// Number of nodes of the smooth patch: the four corners and eight nodes around them.
 pub const SMOOTH: usize = 12;
-/// Nodes of the bilinear patch.
+/// Number of nodes of the bilinear patch.
 pub const BILINEAR: usize = 4;
 
-/// Where something is on the track: the cell, and the place in it from 0 to 1.
+/// A coordinate along or across the track.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct PatchCoord {
-    /// Cell, counted along the track.
+    /// Index of the cell.
     pub cell: isize,
-    /// Place in it.
+    /// Local coordinate in the cell, from 0 to 1. It is outside this range beyond the ends of the track.
     pub part: f64,
 }
 
-/// The columns and rows of nodes that carry the target under the slave nodes.
+/// The grid of nodes that carries the target surface under the slave nodes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Grid {
     track: Track,
-    /// Whether the track runs all around.
+    /// Whether the track is a closed circle.
     endless: bool,
-    /// Columns and rows beyond a cell's corners that its patch needs.
+    /// Number of columns and rows beyond a cell's corners that its patch needs.
     margin: usize,
 }
 
-/// A node of a patch and its share.
+/// A node of a patch and its weight.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Share {
-    /// Columns from the first column asked for.
+    /// Column of the node, counted from the first column that the caller gave.
     pub column: usize,
     /// Row of the track.
     pub row: usize,
-    /// Value of its shape function.
+    /// Value of the node's shape function.
     pub weight: f64,
 }
 
@@ -58,12 +59,12 @@ impl Grid {
         self.track.elements + 1
     }
 
-    /// Columns beyond a cell's corners that its patch needs.
+    /// Number of columns beyond a cell's corners that its patch needs.
     pub fn margin(&self) -> isize {
         self.margin as isize
     }
 
-    /// The place of an angle [rad] along the track. Beyond the ends of one that has ends it is continued.
+    /// The coordinate along the track of an angle \[rad\]. It is extrapolated beyond the ends of an open track.
     pub fn along(&self, angle_rad: f64) -> PatchCoord {
         let at = (angle_rad - self.track.first_angle_rad) / self.track.sector_rad;
         if self.endless {
@@ -73,14 +74,14 @@ impl Grid {
         }
     }
 
-    /// The place of a radius [m] across the track.
+    /// The coordinate across the track of a radius \[m\].
     pub fn across(&self, radius_m: f64) -> PatchCoord {
         let at = (radius_m - self.track.first_radius_m) / self.track.element_m;
         patch_coord(at, 0, self.track.elements as isize - 1)
     }
 
-    /// The existing column at a column that may be counted on around an endless track, or lie just beyond the ends
-    /// of another.
+    /// The column of the mesh for a column index. The index wraps around on a closed track. On an open track it is
+    /// clamped to the ends.
     pub fn track_column(&self, column: isize) -> usize {
         let sectors = self.track.sectors as isize;
         (if self.endless { column.rem_euclid(sectors) } else { column.clamp(0, sectors) }) as usize
@@ -91,7 +92,7 @@ impl Grid {
         self.endless || (0..=self.track.sectors as isize).contains(&column)
     }
 
-    /// Shares of a four-node quadrilateral, columns counted from `first`.
+    /// Shares of the bilinear patch with four nodes. Columns are counted from `first`.
     pub fn bilinear(&self, along: PatchCoord, across: PatchCoord, first: isize) -> [Share; BILINEAR] {
         std::array::from_fn(|n| {
             let (column, row) = (n & 1, n >> 1);
@@ -103,14 +104,15 @@ impl Grid {
         })
     }
 
-    /// Shares of a bicubic Ferguson patch: Hermite's polynomials over the corners' values and tangents, no twist.
-    /// Tangents are central differences of the neighbours (one-sided where there is none), so they are the same
-    /// for the patches on both sides of an edge.
+    /// Shares of a bicubic Ferguson patch, columns counted from `first`. It has Hermite polynomials for the values
+    /// and tangents at the corners, and zero twist. Tangents are central differences of the neighbours, or
+    /// one-sided where a neighbour is missing. So the patches on both sides of an edge have the same tangents
+    /// there.
     pub fn ferguson(&self, along: PatchCoord, across: PatchCoord, first: isize) -> [Share; SMOOTH] {
         let [value_v, tangent_v] = hermite(along.part);
         let [value_u, tangent_u] = hermite(across.part);
         let (column, row) = (along.cell, across.cell);
-        // Weights of the columns and rows from −1 to 2 about the cell's first corner.
+        // Weights of the columns and rows from −1 to 2, counted from the cell's first corner.
         let mut weights = [[0.0; 4]; 4];
         for a in 0..2 {
             for b in 0..2 {
@@ -130,7 +132,7 @@ impl Grid {
         let places =
             (0..16).map(|n| (n / 4, n % 4)).filter(|(a, b)| !(matches!(a, 0 | 3) && matches!(b, 0 | 3)));
         for (share, (a, b)) in shares.iter_mut().zip(places) {
-            // A node that does not exist has no weight; any other may stand for it.
+            // A node that does not exist has the weight zero. An existing node takes its place.
             let row = (row + b as isize - 1).clamp(0, self.rows() as isize - 1);
             *share = Share {
                 column: (column + a as isize - 1 - first) as usize,
@@ -151,13 +153,13 @@ fn linear(part: f64) -> [f64; 2] {
     [1.0 - part, part]
 }
 
-/// Hermite's cubics: of the values at 0 and 1, of the tangents at 0 and 1.
+/// Cubic Hermite polynomials at `t`: for the values at 0 and 1, and for the tangents at 0 and 1.
 fn hermite(t: f64) -> [[f64; 2]; 2] {
     let (t2, t3) = (t * t, t * t * t);
     [[1.0 - 3.0 * t2 + 2.0 * t3, 3.0 * t2 - 2.0 * t3], [t - 2.0 * t2 + t3, t3 - t2]]
 }
 
-/// A tangent per cell from the neighbours that there are: offsets and factors.
+/// Offsets and factors of the finite difference for a tangent, per cell, from the neighbours that exist.
 fn difference(low: bool, high: bool) -> [(isize, f64); 2] {
     match (low, high) {
         (true, true) => [(-1, -0.5), (1, 0.5)],
@@ -179,8 +181,8 @@ mod tests {
         shares.iter().map(|share| share.weight * of(share.column as f64, share.row as f64)).sum()
     }
 
-    /// Protects: both patches reproduce what is constant and linear in the grid's coordinates, up to the grid's
-    /// edges, and the smooth one inside it what is quadratic.
+    /// Protects: both patches reproduce constant and linear functions of the grid's coordinates, up to the edges of
+    /// the grid. Inside the grid the smooth patch also reproduces quadratic functions.
     #[test]
     fn polynomials_are_reproduced() {
         for target in [TargetSurface::Bilinear, TargetSurface::Ferguson] {
@@ -193,7 +195,7 @@ mod tests {
                     let found = |of: &dyn Fn(f64, f64) -> f64| match target {
                         TargetSurface::Bilinear => value(&grid.bilinear(along, across, 0), of),
                         TargetSurface::Ferguson => {
-                            // Counted from one column further down, since the first patch looks there.
+                            // Columns are counted from −1, because the first patch reaches there.
                             value(&grid.ferguson(along, across, -1), |column, row| of(column - 1.0, row))
                         }
                     };
@@ -208,8 +210,8 @@ mod tests {
         }
     }
 
-    /// Protects: what is interpolated and, with Ferguson patches, its slope have no jump where a slave node crosses an
-    /// edge, along and across; the bilinear slope jumps.
+    /// Protects: the interpolated value has no jump where a slave node crosses an edge, along and across the track.
+    /// With Ferguson patches the slope has none either; the bilinear slope jumps.
     #[test]
     fn crossing_an_edge_is_smooth() {
         let wavy = |column: f64, row: f64| (1.3 * column).sin() * (0.7 * row).cos();
@@ -229,7 +231,7 @@ mod tests {
             };
             for (y, x, along) in [(5.0, 3.4, true), (4.6, 4.0, false)] {
                 let shifted = |by: f64| if along { at(y + by, x) } else { at(y, x + by) };
-                // The slope is of size 1.
+                // The slope has the size 1.
                 assert!((shifted(h) - shifted(-h)).abs() < 4.0 * h);
                 let (before, after) =
                     ((shifted(-h) - shifted(-2.0 * h)) / h, (shifted(2.0 * h) - shifted(h)) / h);

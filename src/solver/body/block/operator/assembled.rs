@@ -6,21 +6,21 @@ use crate::solver::error::SolverError;
 use crate::solver::field::Field;
 use std::collections::BTreeMap;
 
-/// K row by row, columns in ascending order.
+/// K, stored row by row with columns in ascending order.
 #[derive(Debug, Clone)]
 pub struct AssembledOperator {
-    /// Where each row starts in `columns` and `values`; one more entry than rows.
+    /// Index of each row's first entry in `columns` and `values`; one more element than rows.
     starts: Vec<usize>,
     columns: Vec<usize>,
-    /// N/m.
+    /// Entries \[N/m\].
     values: Vec<f64>,
 }
 
 impl AssembledOperator {
-    /// K of size `dofs` × `dofs` from entries (row, column, value [N/m]), which are added up where they coincide.
+    /// K of size `dofs` × `dofs` from entries (row, column, value \[N/m\]). Entries at the same place are added.
     ///
     /// # Errors
-    /// If an entry lies outside, or K is not symmetric to the rounding of its sums.
+    /// If an entry lies outside the matrix, or if K is not symmetric to the rounding of its sums.
     pub fn from_entries(
         dofs: usize,
         entries: impl IntoIterator<Item = (usize, usize, f64)>,
@@ -59,7 +59,7 @@ impl AssembledOperator {
     /// K of a block of equal elements.
     ///
     /// # Panics
-    /// Never: the entries of a mesh lie inside, and an element's stiffness is symmetric.
+    /// Never: the entries of a mesh lie inside the matrix, and an element's stiffness is symmetric.
     pub fn of_block(mesh: &BlockMesh, element: &ElementStiffness) -> Self {
         let entries = mesh.element_positions().flat_map(|[i, j, k]| {
             let nodes = mesh.element_nodes(i, j, k);
@@ -74,7 +74,7 @@ impl AssembledOperator {
         self.starts.len() - 1
     }
 
-    /// The entries (column, value [N/m]) of one row.
+    /// The entries (column, value \[N/m\]) of one row.
     pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, f64)> + '_ {
         let range = self.starts[row]..self.starts[row + 1];
         self.columns[range.clone()].iter().copied().zip(self.values[range].iter().copied())
@@ -99,7 +99,7 @@ impl AssembledOperator {
 mod tests {
     use super::*;
 
-    /// Protects: entries add up, rows are applied lane by lane.
+    /// Protects: entries at the same place are added, and rows are applied lane by lane.
     #[test]
     fn two_springs_in_a_row() {
         let spring = |a: usize, b: usize, k: f64| [(a, a, k), (a, b, -k), (b, a, -k), (b, b, k)];
@@ -114,7 +114,7 @@ mod tests {
         assert_eq!(found, [[2.0, -2.0], [-2.0, 5.0], [0.0, -3.0]]);
     }
 
-    /// Protects: what is no stiffness is refused, with the entry.
+    /// Protects: a matrix that is not a stiffness matrix is refused, and the error names the entry.
     #[test]
     fn asymmetric_and_foreign_entries_are_refused() {
         let asymmetric = AssembledOperator::from_entries(2, [(0, 1, 1.0)]).unwrap_err().to_string();

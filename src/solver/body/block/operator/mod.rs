@@ -1,8 +1,8 @@
 //! The stiffness operator: y = K x.
 //!
-//! * [`TensorOperator`] – K of a uniform elastic block, the form that runs.
-//! * [`AssembledOperator`] – any symmetric K, row by row: discrete springs and masses, and the
-//!   reference that the other form is tested against.
+//! * [`TensorOperator`] – K of a uniform elastic block as a sum of tensor products. Simulations use this form.
+//! * [`AssembledOperator`] – any symmetric K, row by row. It serves discrete springs and masses, and the tests
+//!   compare the other form with it.
 
 mod assembled;
 mod tensor;
@@ -15,9 +15,9 @@ use crate::solver::field::Field;
 /// K in one of its forms.
 #[derive(Debug, Clone)]
 pub enum Operator {
-    /// Of a uniform elastic block.
+    /// K of a uniform elastic block.
     Tensor(TensorOperator),
-    /// Given row by row.
+    /// K given row by row.
     Assembled(AssembledOperator),
 }
 

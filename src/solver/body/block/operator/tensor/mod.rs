@@ -1,7 +1,7 @@
 //! K of a uniform block as a sum of tensor products of one-dimensional matrices.
 //!
 //! On a uniform block of trilinear, fully integrated hexahedra every term of the elastic energy is a product of
-//! one-dimensional integrals, boundaries included: with the mass M = ∫NᵢNⱼ, the stiffness S = ∫Nᵢ′Nⱼ′ and the
+//! one-dimensional integrals, boundaries included. With the mass M = ∫NᵢNⱼ, the stiffness S = ∫Nᵢ′Nⱼ′ and the
 //! derivative D = ∫Nᵢ′Nⱼ of linear elements in each direction,
 //!
 //! ```text
@@ -16,7 +16,8 @@
 //! K_xy = Mz/4 { Ây [−(λ+G)Âx − (λ−G)B̂x] + B̂y [(λ−G)Âx + (λ+G)B̂x] }
 //! ```
 //!
-//! About 100 operations a node, against 486 of the assembled rows. [`pass`] does them in one sweep over the mesh.
+//! This form needs about 100 operations per node; the assembled rows need 486. The module `pass` does them in one
+//! sweep over the mesh.
 
 mod pass;
 #[cfg(test)]
@@ -33,18 +34,18 @@ use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 #[derive(Debug, Clone)]
 pub struct TensorOperator {
     nodes: [usize; 3],
-    /// Of K_cc: [Sx My Mz, Mx Sy Mz, Mx My Sz] for each component c.
+    /// Coefficients of K_cc: \[Sx My Mz, Mx Sy Mz, Mx My Sz\] for each component c.
     own: [[f64; 3]; 3],
-    /// −(λ+G) of the coupling xy, xz, yz, with the third direction's scale.
+    /// −(λ+G) of the couplings xy, xz, yz, times the scale of the third direction.
     skew: [f64; 3],
-    /// (λ−G) of the same.
+    /// (λ−G) of the same couplings, times the same scale.
     edge: [f64; 3],
-    /// (λ−G)/(λ+G): a centre term B̂[…] is this share of the neighbour term Â[…], but for …
+    /// (λ−G)/(λ+G). The second bracket of a coupling is minus this times the first bracket, plus 4λG/(λ+G) B̂.
     share: f64,
-    /// … 4λG/(λ+G) B̂B̂ where two faces meet, of the same.
+    /// 4λG/(λ+G) of the same couplings, times the same scale. It acts where two faces meet (B̂B̂).
     corner: [f64; 3],
-    /// 1, 2 and 4, the factors of the centre. As constants they would be compiled to additions (2x = x + x), and
-    /// additions are what the product waits for.
+    /// 1, 2 and 4, the factors of the centre. They are not constants, because the compiler would turn constants
+    /// into additions (2x = x + x), and the product is limited by additions.
     powers: [f64; 3],
 }
 
@@ -90,7 +91,7 @@ impl TensorOperator {
 struct Product<'a> {
     x: &'a [Block],
     y: &'a mut [Block],
-    /// x·y by columns.
+    /// x·y, summed by columns of blocks.
     forms: &'a mut [Row],
 }
 

@@ -1,13 +1,13 @@
 //! One sweep over the mesh that gives K x block by block.
 //!
-//! Plane by plane: the plane's x, made once, is laid out in lines with a zero node on either side. Then each
-//! column of blocks is marched along y: the x-sums of three consecutive lines stay in registers and give the
-//! y-sums, and these what the plane adds to itself and to its two neighbours, of which one is complete then.
+//! The sweep goes plane by plane. It first computes the plane's x and stores it in lines with a zero node on either
+//! side. Then it goes along y through each column of blocks. The x-sums of three consecutive lines stay in
+//! registers and give the y-sums. The y-sums give the plane's contributions to itself and to its two neighbours.
+//! After that the plane below is complete.
 //!
-//! Vectors run along x and lanes; nothing is added up along them, and every number goes through the same
-//! operations in the same order (plain multiply and add, never fused) whatever the vector width and the lane
-//! count. Only the sign of a sum of zeros may differ: terms of the two ends of a line are left out in blocks that hold
-//! neither.
+//! Vectors run along x and lanes, and no sum runs along them. Every number goes through the same operations in the
+//! same order (plain multiply and add, never fused), whatever the vector width and the lane count. Only the sign of
+//! a zero sum may differ, because blocks without an end of a line leave out the terms of the ends.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -16,7 +16,7 @@ use crate::solver::body::block::BlockMesh;
 use crate::solver::field::{Row, WIDTH, blocks_per_line};
 use fearless_simd::{Simd, f64x8, prelude::*};
 
-/// Where a block is.
+/// Position of a block.
 #[derive(Debug, Clone, Copy)]
 pub struct BlockIndex {
     /// Plane of nodes, from the contact face upwards.
@@ -29,23 +29,24 @@ pub struct BlockIndex {
     pub at: usize,
 }
 
-/// What goes into a product and what becomes of it, block by block.
+/// The input and the output of a product, block by block.
 pub trait Pass<S: Simd> {
     /// The three components of x in block `at`.
     fn input(&self, simd: S, at: usize) -> [f64x8<S>; 3];
-    /// Takes the three components of K x in a block. Inputs of its plane and of those below are not read again.
-    /// Planes come in their order, the blocks of a plane column by column.
+    /// Takes the three components of K x in a block. The inputs of its plane and of those below are not read again,
+    /// so it may overwrite them. Planes come in their order, the blocks of a plane column by column.
     fn output(&mut self, simd: S, index: BlockIndex, kx: [f64x8<S>; 3]);
 }
 
 /// Scratch of a pass.
 #[derive(Debug)]
 pub struct Scratch<const L: usize> {
-    /// The plane's x: line → component → a vector that ends with a zero node, the nodes, a vector of zeros.
+    /// x of the current plane: line → component → a vector that ends with a zero node, the nodes, a vector of
+    /// zeros.
     staged: Vec<f64>,
-    /// Numbers of a component of a line in it.
+    /// Number of values per component of a line in `staged`.
     pitch: usize,
-    /// What the plane before has so far, and what it adds to this one: block along the line → line.
+    /// Partial sums: block along the line → line.
     columns: Vec<PlaneSums>,
     ends: Vec<Ends>,
     /// Room for x·Kx by columns.
@@ -55,11 +56,13 @@ pub struct Scratch<const L: usize> {
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
 struct PlaneSums {
+    /// Sum of the plane before, without the contribution of the current plane.
     before: [[f64; WIDTH]; 3],
+    /// Contribution of the plane before to the current plane.
     ahead: [[f64; WIDTH]; 3],
 }
 
-/// Factors of the centre along x in a block: of Ŝ, of M̂ (twice that), and B̂.
+/// Diagonal entries along x in a block: of Ŝ (`centre`), of M̂ (`double`), and of B̂ (`outward`).
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
 struct Ends {
@@ -75,7 +78,7 @@ impl Ends {
     }
 }
 
-/// Bytes of a cache line, on which whole vectors are to begin.
+/// Number of bytes of a cache line. Vectors begin at its boundaries.
 const ALIGNMENT: usize = 64;
 
 impl<const L: usize> Scratch<L> {
@@ -102,7 +105,7 @@ impl<const L: usize> Scratch<L> {
         }
     }
 
-    /// A zero for each column of blocks, lent for a pass.
+    /// Takes the room for x·Kx, set to zero. [`Scratch::give_forms`] returns it.
     pub(super) fn take_forms(&mut self) -> Vec<Row> {
         let mut forms = std::mem::take(&mut self.forms);
         forms.fill(Row::default());
@@ -115,7 +118,7 @@ impl<const L: usize> Scratch<L> {
 }
 
 impl<const L: usize> Clone for Scratch<L> {
-    /// Fresh scratch: the copy's numbers start elsewhere in their cache line, so its zeros lie elsewhere, too.
+    /// Makes fresh scratch. The offset of the copy to its cache line differs, so its zero nodes have other indices.
     fn clone(&self) -> Self {
         Self {
             staged: vec![0.0; self.staged.len()],
@@ -127,7 +130,7 @@ impl<const L: usize> Clone for Scratch<L> {
     }
 }
 
-/// B̂: −1 at the low end, 1 at the high end.
+/// Diagonal of B̂: −1 at the low end, 1 at the high end, 0 between.
 fn outward(index: usize, nodes: usize) -> f64 {
     if index == 0 {
         -1.0
@@ -138,7 +141,8 @@ fn outward(index: usize, nodes: usize) -> f64 {
     }
 }
 
-/// x-sums of a block of a line: M̂x, Ŝx and Âx-type, of each component.
+/// x-sums of a block of a line, for each component: M̂x (`m`), Ŝx (`s`), and the Â and B̂ terms of the couplings
+/// (`a`).
 #[derive(Clone, Copy)]
 struct LineSums<S: Simd> {
     m: [f64x8<S>; 3],
@@ -154,18 +158,18 @@ struct Column<'a, const L: usize> {
     ends: &'a Ends,
 }
 
-/// A vector of a line with the ones before and after it.
+/// A vector of a line with the vectors before and after it.
 type Window = [f64; 3 * WIDTH];
 
 impl<const L: usize> Column<'_, L> {
-    /// One component of the block of each line, with its surroundings.
+    /// The windows of one component, line by line.
     #[inline(always)]
     fn windows(&self, c: usize) -> impl Iterator<Item = &Window> {
         let start = c * self.pitch + WIDTH * self.along;
         self.staged[start..].chunks(3 * self.pitch).map_while(<[f64]>::first_chunk)
     }
 
-    /// B̂x of a line's block.
+    /// B̂x of the block of line `j`, component `c`.
     #[inline(always)]
     fn outward<S: Simd>(&self, simd: S, j: usize, c: usize) -> f64x8<S> {
         let start = (3 * j + c) * self.pitch + WIDTH * (self.along + 1);
@@ -205,7 +209,7 @@ impl TensorOperator {
         }
     }
 
-    /// Lays out x of plane `k`.
+    /// Stores x of plane `k` in `staged`.
     #[inline(always)]
     fn stage<S: Simd, const L: usize>(
         &self,
@@ -231,7 +235,7 @@ impl TensorOperator {
         }
     }
 
-    /// The sums over y and z of a column of blocks of plane `k`; completes that column of plane `k` − 1.
+    /// Forms the sums over y and z of a column of blocks of plane `k`, and completes that column of plane `k` − 1.
     #[inline(always)]
     fn march<S: Simd, const L: usize, const Z: bool, const ENDS: bool>(
         &self,
@@ -302,9 +306,9 @@ impl TensorOperator {
         sums
     }
 
-    /// Adds line `j` of a plane to itself and to its neighbours, from the x-sums of the lines j − 1, j, j + 1;
-    /// for a line on a face in y (`Y`), of a plane on a face in z (`Z`), in a block with an end in x (`ENDS`),
-    /// or not. Returns what is complete of the plane before.
+    /// Adds the contributions of line `j` of a plane to the plane itself and to its neighbours, from the x-sums of
+    /// the lines j − 1, j, j + 1. The code is compiled for a line on a face in y or not (`Y`), a plane on a face in
+    /// z or not (`Z`), and a block with an end in x or not (`ENDS`). Returns the completed K x of the plane before.
     #[inline(always)]
     fn combine<S: Simd, const L: usize, const Y: bool, const Z: bool, const ENDS: bool>(
         &self,
@@ -373,7 +377,7 @@ impl TensorOperator {
                 centre[2] += corner * here.m[1];
             }
         }
-        // The first plane finds zeros ahead, because the last one of the pass before leaves them.
+        // The first plane reads zeros from `ahead`, because the last plane of a pass stores zeros there.
         let before = load_all(simd, &plane.before);
         let ahead = load_all(simd, &plane.ahead);
         let is_last = Z && out_z > 0.0;
@@ -388,7 +392,7 @@ impl TensorOperator {
         below
     }
 
-    /// Factors of the centre of Ŝ and M̂ in a direction, for a node on a face or not.
+    /// Diagonal entries of Ŝ and M̂ in a direction, for a node on a face or inside.
     #[inline(always)]
     fn centre<S: Simd, const FACE: bool>(&self, simd: S) -> [f64x8<S>; 2] {
         let first = usize::from(!FACE);
@@ -412,7 +416,8 @@ impl TensorOperator {
     }
 }
 
-/// Three rows as vectors. (`map` on arrays is a call, which vectors do not survive.)
+/// Loads three rows as vectors. `map` on the array would compile to a call, across which vectors do not stay in
+/// registers.
 #[inline(always)]
 pub fn load_all<S: Simd>(simd: S, rows: &[[f64; WIDTH]; 3]) -> [f64x8<S>; 3] {
     [f64x8::from_slice(simd, &rows[0]), f64x8::from_slice(simd, &rows[1]), f64x8::from_slice(simd, &rows[2])]

@@ -2,7 +2,7 @@ use super::super::AssembledOperator;
 use super::*;
 use crate::solver::body::hexahedron::stiffness;
 
-/// A deterministic, structureless field.
+/// A deterministic pseudo-random field.
 fn values(n: usize, seed: u64) -> Vec<f64> {
     let mut s = seed;
     (0..n)
@@ -20,8 +20,8 @@ fn product<const L: usize>(mesh: &BlockMesh, material: &Material, x: &[f64]) -> 
     y
 }
 
-/// Protects: the tensor form is the assembled K on every kind of node, down to one-element meshes,
-/// for every sign of λ − G.
+/// Protects: the tensor form equals the assembled K on every kind of node, down to meshes of one element, for every
+/// sign of λ − G.
 #[test]
 fn equals_element_by_element_assembly() {
     for poisson_ratio in [0.3, 0.0, 0.25, 0.45, -0.4] {
@@ -35,7 +35,7 @@ fn equals_element_by_element_assembly() {
             AssembledOperator::of_block(&mesh, &ke)
                 .product(&Field::from_values(mesh.layout(), &x), &mut reference);
             let y = product::<1>(&mesh, &material, &x);
-            // At most 8·24 terms of size |ke|·½ in the one form, 110 sums of such in the other.
+            // The assembled form has at most 8·24 terms of the size |ke|·½, the tensor form 110 sums of such terms.
             let bound = 400.0 * f64::EPSILON * ke.amax();
             for (i, b) in reference.values().enumerate() {
                 assert!(
@@ -48,7 +48,7 @@ fn equals_element_by_element_assembly() {
     }
 }
 
-/// Protects: the same bits on every vector width that this machine has.
+/// Protects: the result has the same bits on every vector width that this machine has.
 #[test]
 fn vector_widths_agree_to_the_last_bit() {
     let material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
@@ -71,7 +71,7 @@ fn vector_widths_agree_to_the_last_bit() {
     }
 }
 
-/// Protects: a lane's bits do not depend on the lane count or on its companions.
+/// Protects: a lane's bits do not depend on the lane count or on the other lanes.
 #[test]
 fn lanes_do_not_see_each_other() {
     fn compare<const L: usize>(mesh: &BlockMesh, material: &Material) {
@@ -97,7 +97,7 @@ fn lanes_do_not_see_each_other() {
     }
 }
 
-/// Protects: scratch that has been used and copied serves as well as new scratch, wherever the copy lies in memory.
+/// Protects: used and copied scratch gives the same product as new scratch, wherever the copy lies in memory.
 #[test]
 fn copied_scratch_is_as_good_as_new() {
     let material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
@@ -111,7 +111,7 @@ fn copied_scratch_is_as_good_as_new() {
     };
     let mut used = Scratch::<1>::new(&mesh);
     let expected = product(&mut used);
-    // Kept, so that every copy lies elsewhere.
+    // The copies are kept, so that each has another address.
     let copies: Vec<Scratch<1>> = (0..50)
         .map(|odd| {
             let _shift = vec![0_u8; 16 * odd + 1];
