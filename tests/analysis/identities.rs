@@ -15,8 +15,8 @@ fn spec(omega_rpm: f64, mu: f64) -> JobSpec {
 /// Largest error of an average over a window, in units of T/F. Over the window the pin's momentum changes by
 /// at most two contributions. (a) The tolerance of the periodic state allows `tolerance` × aF/ω, where a is
 /// half the range of N/F and ω the cycle's angular frequency (all of aF/ω if the run is not periodic). (b)
-/// The ends of a cycle are resolved to a step, which allows half a step of the force at each end. N counts
-/// μ-fold, T once.
+/// The ends of a cycle are resolved to a step, which allows half a step of the force at each end. N
+/// enters with the factor μ, T with the factor 1.
 fn averaging_error(spec: &JobSpec, record: &JobRecord) -> f64 {
     let duration_s = record.simulated_s - record.window_start_s;
     let half_range = (record.n_over_f_max - record.n_over_f_min) / 2.0;
