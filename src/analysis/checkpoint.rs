@@ -2,8 +2,7 @@
 //! uninterrupted run.
 //!
 //! A checkpoint holds the numbers of the job's lane and the state of its analysis. It is valid only for the
-//! same model and the same program: the format has no version of its own, so its owner must make sure of
-//! that.
+//! same model and the same program. The format has no version of its own, so its owner must check this.
 
 use super::lane::LaneAnalysis;
 use thiserror::Error;

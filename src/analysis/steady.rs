@@ -164,11 +164,11 @@ pub fn frequency_hz(cycles: &[Cycle], crossings: usize) -> f64 {
 
 /// Periods of the fundamental per section crossing, 1/d.
 ///
-/// Two cycles between crossings are alike if they differ by at most a fifth, in duration and in how far N
-/// goes above and below F. Those that are not alike are humps of one cycle. d is the smallest divisor of m
-/// for which all of them at a distance of d are alike. A limit cycle of m crossings is then a cycle of d
-/// humps with a slight subharmonic. Its normal force still has its strongest low line at 1/d of the crossing
-/// frequency, and that line is reported.
+/// Two [`Cycle`]s are alike if they differ by at most a fifth, in duration and in how far N goes above and
+/// below F. Those that are not alike are humps of one limit cycle. d is the smallest divisor of m for which
+/// all of them at a distance of d are alike. A limit cycle of m crossings is then a cycle of d humps with a
+/// slight subharmonic. Its normal force still has its strongest low line at 1/d of the crossing frequency,
+/// and that line is reported.
 fn fundamental_per_crossing(groups: &[&[Cycle]]) -> f64 {
     const ALIKE: f64 = 0.2;
     let m = groups[0].len();

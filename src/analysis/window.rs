@@ -40,7 +40,7 @@ pub(super) struct Trailing {
     blocks: VecDeque<Block>,
 }
 
-/// Some consecutive steps.
+/// A block of consecutive steps.
 #[derive(Serialize, Deserialize)]
 struct Block {
     start_s: f64,

@@ -13,7 +13,7 @@ fn aspect(spec: &JobSpec) -> f64 {
     edges.iter().copied().fold(0.0, f64::max) / edges.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// ½ β_R ω of the highest mode: above 1 it is over-critically damped.
+/// ½ β_R ω of the highest mode. Above 1 the mode is over-critically damped.
 fn damping_of_highest_mode(spec: &JobSpec) -> f64 {
     let undamped = tribosweep::spec::Numerics { beta_r_s: 0.0, time_step_s: None, ..spec.numerics.clone() };
     let limit_s = Model::from_scene(&spec.scene, &undamped).map_or(0.0, |model| model.time_step_limit_s());

@@ -1,4 +1,4 @@
-//! One-dimensional columns and small helpers shared by the topics.
+//! One-dimensional columns and small helpers shared by the other files.
 
 use tribosweep::solver::body::block::{BlockMesh, Stiffness};
 use tribosweep::solver::interface::law::Law;

@@ -147,7 +147,7 @@ fn pin_frequencies(suffix: &str, scales: &[usize]) {
 #[test]
 fn cube_frequencies_converge_with_order_two() {
     let stated = [0.45456, 0.61211, 0.62250, 0.5_f64.sqrt(), 0.72778, 0.76276];
-    // One class of each set that the cube's symmetry makes equal.
+    // One class of each set of classes that are equal by the cube's symmetry.
     let classes = [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, -1.0]];
     let size_m = [SIDE_M; 3];
     let references = references(size_m, &classes, stated.len());

@@ -77,7 +77,7 @@ impl Chain {
         0.5 * stiffness_n_m * squares.sum::<f64>()
     }
 
-    /// Largest velocity [m/s] of the bar, half a step before.
+    /// Largest velocity [m/s] of the bar, half a step before the displacements.
     pub fn fastest_m_s(&self, state: &State<1>) -> f64 {
         let speed = |j| state.p[3 * self.model.mesh().node(0, j, 0) + Y].abs();
         (0..self.nodes).map(speed).fold(0.0, f64::max)

@@ -12,9 +12,9 @@
 //! Source: ∂N/∂x = ∓q, N = −EA ∂u/∂x; the rigid-contact limit of the microslip model of Menq, Bielak and
 //! Griffin, *The influence of microslip on vibratory response, part I*, Journal of Sound and Vibration 107
 //! (1986) 279–293. It is the one-dimensional counterpart of Cattaneo's and Mindlin's contact: a slip zone
-//! that grows from the loaded edge, reverse slip at twice the limit on unloading, a loop whose area is of
-//! third order in F. Their own problem (two equal curved bodies) needs a curved, deformable target and is not
-//! verified here.
+//! grows from the loaded edge, unloading causes reverse slip at twice the limit, and the area of the loop is
+//! of third order in F. Their own problem (two equal curved bodies) needs a curved, deformable target and is
+//! not verified here.
 //!
 //! **The chain's own answer.** N drops by qh at every slipping node (qh/2 at the first), so after node j it
 //! is F − qh(j + ½). At F = qhJ the nodes 0 … J−1 slip and u_j = (qh²/2EA)(J − j)². This is exactly the bar's

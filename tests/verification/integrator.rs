@@ -66,7 +66,7 @@ fn modes_follow_the_amplification_matrix() {
                     q.push(state.u[2] - 2.0);
                 }
                 let name = format!("β_R = {beta_r_s} s, mode {mode}, W = {:.3}", w2.sqrt());
-                // From rest the half-force first step gives q_1 = (1 − W²/2) q_0.
+                // From rest, the first step with half the force gives q_1 = (1 − W²/2) q_0.
                 first.bounded(&name, q[1], 1.0 - w2 / 2.0, 1.0, rounding(&model, 1));
                 // From q_1 on all steps are alike. Three successive values give a Casoratian.
                 let casoratian = |n: usize| q[n + 1] * q[n - 1] - q[n] * q[n];
