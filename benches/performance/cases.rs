@@ -1,4 +1,4 @@
-//! What a node and step cost, and what the parts of a scene add.
+//! The cost of a node and step, and the additional cost of each part of a scene.
 
 use crate::machine::Machine;
 use crate::timing::{ROUNDS, seconds};
@@ -13,10 +13,11 @@ use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, State, step};
 use tribosweep::spec::{JobSpec, TopFace};
 
-/// Additions and multiplications of an inner node in a step, counted in `operator::tensor::pass` (100) and
-/// `integrate` (6 for u + β_R p, 21 for the motion).
+/// Additions and multiplications of an inner node in a step, counted in
+/// `solver::body::block::operator::tensor::pass` (100) and `solver::body::block::motion` (6 for u + β_R p, 21
+/// for the motion).
 const FLOPS: f64 = 127.0;
-/// Displacements and velocities are read and written once.
+/// Bytes of a node in a step. Displacements and velocities are read and written once.
 const BYTES: f64 = 4.0 * 3.0 * 8.0;
 
 /// One mesh with one number of lanes; times in ns per node, step and job.
@@ -24,13 +25,13 @@ const BYTES: f64 = 4.0 * 3.0 * 8.0;
 pub struct MeshCase {
     elements: [usize; 3],
     lanes: usize,
-    /// y = K x alone.
+    /// The product y = K x alone.
     product_ns: f64,
     /// A step: product, integration, contact.
     step_ns: f64,
-    /// All that a sweep does: energies, guard, statistics and detection included.
+    /// Everything that a sweep does: energies, guard, statistics and detection are included.
     job_ns: f64,
-    /// What arithmetic and what the traffic of u and p allow.
+    /// Lower bounds from the arithmetic and from the memory traffic of u and p.
     arithmetic_bound_ns: f64,
     traffic_bound_ns: f64,
 }
@@ -40,9 +41,9 @@ const MESHES: [[usize; 3]; 5] = [[6, 8, 5], [12, 15, 10], [18, 22, 15], [24, 30,
 fn spec(elements: [usize; 3]) -> JobSpec {
     let mut spec = JobSpec::default();
     spec.scene.pin.elements = elements;
-    // A width that all of the meshes can show.
+    // All meshes can represent this width.
     spec.scene.clamp.width_m = 0.002;
-    // Long enough for any benchmark, and never settled.
+    // The run is longer than any benchmark and does not stop early.
     spec.run.limit_s = 1.0;
     spec.run.stop_early = false;
     spec
@@ -79,7 +80,7 @@ fn lanes<const L: usize>(spec: &JobSpec, count: usize) -> Lanes<L> {
     lanes
 }
 
-/// Into the frictional contact, as far as a benchmark can wait.
+/// Advances into frictional contact, as far as the time of a benchmark allows.
 fn settle(spec: &JobSpec, mut advance: impl FnMut()) {
     let nodes: usize = spec.scene.pin.elements.iter().product();
     for _ in 0..(4_000_000 / nodes).clamp(2, 200) {
@@ -116,7 +117,8 @@ fn mesh<const L: usize>(elements: [usize; 3], machine: &Machine) -> MeshCase {
         product_ns: per_node(&model, L, 1, product_s),
         step_ns: per_node(&model, L, 1, step_s),
         job_ns: per_node(&model, L, STEPS, job_s),
-        // Vectors of one lane are padded, but not counted here: the bound is that of the work itself.
+        // Vectors of one lane are padded. The padding is not counted here: the bound is that of the work
+        // itself.
         arithmetic_bound_ns: FLOPS / machine.plain_gflops,
         traffic_bound_ns: BYTES / machine.gb_per_s(working_set),
     }
@@ -170,7 +172,7 @@ pub fn meshes(machine: &Machine) -> Vec<MeshCase> {
     best
 }
 
-/// A scene with something and without it; times in ns per node, step and job.
+/// The times of a scene with some part and without it, in ns per node, step and job.
 #[derive(Debug, Serialize)]
 pub struct Pair {
     what: &'static str,
@@ -189,7 +191,7 @@ impl Pair {
     }
 }
 
-/// Steps of one scene with eight lanes.
+/// Time of a step of one scene with eight lanes, in ns per node, step and job.
 fn stepping(name: &str, spec: &JobSpec, mu: f64) -> f64 {
     let model = model(spec);
     let drives = [Drive { law: Law::Coulomb { mu }, rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
@@ -198,7 +200,7 @@ fn stepping(name: &str, spec: &JobSpec, mu: f64) -> f64 {
     per_node(&model, 8, 1, seconds(name, || step(&model, &drives, &mut state)))
 }
 
-/// What each part of a scene or of the bookkeeping costs, on 12 × 15 × 10 elements with eight lanes.
+/// The cost of each part of a scene and of the bookkeeping, on 12 × 15 × 10 elements with eight lanes.
 pub fn pairs() -> Vec<Pair> {
     let mut best = round_of_pairs();
     for _ in 1..ROUNDS {

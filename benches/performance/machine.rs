@@ -1,20 +1,20 @@
-//! What one core of this machine can do.
+//! The peak performance of one core of this machine.
 
 use crate::timing::fastest;
 use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
 use serde::Serialize;
 use std::hint::black_box;
 
-/// Peaks of one core.
+/// Peak performance of one core.
 #[derive(Debug, Serialize)]
 pub struct Machine {
     /// The vector instructions that the solver chooses.
     pub vectors: String,
     /// Fused multiply-adds [GFLOP/s, two for each].
     pub fused_gflops: f64,
-    /// As many plain multiplications as additions [GFLOP/s]: what the solver's rounding rule allows.
+    /// As many plain multiplications as additions [GFLOP/s]. The solver's rounding rule allows only these.
     pub plain_gflops: f64,
-    /// Bytes and GB/s of reading and writing an array of that size, from L1 to memory.
+    /// Bandwidth of reading and writing arrays of several sizes, from the L1 cache to memory.
     pub bandwidth: Vec<Bandwidth>,
 }
 
@@ -25,7 +25,7 @@ pub struct Bandwidth {
     pub gb_per_s: f64,
 }
 
-/// Independent chains: more than latency times units of any core.
+/// Number of independent chains of operations. It is above latency times number of units of any core.
 const CHAINS: usize = 16;
 const ROUNDS: usize = 4096;
 
@@ -100,7 +100,8 @@ pub fn measure() -> Machine {
 }
 
 impl Machine {
-    /// Bandwidth [GB/s] for a working set of so many bytes: that of the smallest array measured that is not smaller.
+    /// Bandwidth [GB/s] for a working set of so many bytes. It is that of the smallest measured array that is
+    /// not smaller.
     pub fn gb_per_s(&self, bytes: f64) -> f64 {
         let level = self.bandwidth.iter().find(|level| bytes <= level.bytes as f64);
         level.or(self.bandwidth.last()).expect("levels were measured").gb_per_s

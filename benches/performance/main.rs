@@ -1,9 +1,10 @@
-//! How fast the solver is, and how fast it could be: `cargo bench`.
+//! The speed of the solver, and its lower bounds: `cargo bench`.
 //!
-//! Prints what the machine can do, what a node and step cost against that, and what each part of a scene adds. The
-//! numbers are also written to `target/performance.json`, from which `scripts/performance.py` makes its tables.
+//! It prints the peak performance of the machine, the cost of a node and step relative to it, and the
+//! additional cost of each part of a scene. It also writes the numbers to `target/performance.json`, from
+//! which `scripts/performance.py` makes its tables.
 //!
-//! Times are medians of Criterion's samples, the fastest of several rounds. One core is used.
+//! A time is the median of Criterion's samples in the fastest of several rounds. One core is used.
 
 mod cases;
 mod machine;
@@ -12,7 +13,7 @@ mod timing;
 use serde_json::json;
 
 fn main() {
-    // Cargo passes `--bench`; a word besides selects a part: `cargo bench -- mesh`.
+    // Cargo passes `--bench`. Another word selects a part: `cargo bench -- mesh`.
     let only = std::env::args().skip(1).find(|argument| !argument.starts_with('-'));
     let wanted = |part: &str| only.as_deref().is_none_or(|only| part.starts_with(only));
     let mut found = serde_json::Map::new();

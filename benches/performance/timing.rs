@@ -1,18 +1,18 @@
 //! Medians from Criterion, and the best of several rounds.
 //!
-//! On a machine that others use, too, the speed changes for seconds at a time. All cases are therefore measured in
-//! turn, several times over, and the fastest round counts: what is compared has then seen the same machine.
+//! On a shared machine the speed changes for seconds at a time. Therefore all cases are measured in turn, in
+//! several rounds, and the fastest round counts. So the compared values come from similar conditions.
 
 use criterion::Criterion;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
-/// Where Criterion keeps what it measures.
+/// The folder in which Criterion stores its measurements.
 fn home() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("target/criterion")
 }
 
-/// Rounds of all cases.
+/// Number of rounds of all cases.
 pub const ROUNDS: usize = 4;
 
 /// Median time [s] of one call.

@@ -9,8 +9,8 @@ use std::sync::Arc;
 
 /// Jobs that share a model, advanced together.
 ///
-/// There are 1, 2, 4 or 8 lanes. Jobs move to fewer or more of them as they end and begin; no job's result
-/// depends on any of it.
+/// There are 1, 2, 4 or 8 lanes. Their number changes as jobs begin and end, and the jobs then move to other
+/// lanes. No job's result depends on this.
 pub struct Batch {
     shared: JobSpec,
     widest: usize,
@@ -24,7 +24,7 @@ enum AnyLanes {
     Eight(Box<Lanes<8>>),
 }
 
-/// Calls the same method of lanes of any number.
+/// Calls the same method for every number of lanes.
 macro_rules! each {
     ($lanes:expr, $of:ident => $call:expr) => {
         match $lanes {
@@ -48,11 +48,11 @@ impl AnyLanes {
 }
 
 impl Batch {
-    /// A batch without jobs, for those that share a model with `spec`.
+    /// A batch without jobs. Its jobs must share the model of `spec`.
     ///
     /// # Errors
-    /// If the specification is not physical or the solver refuses the model; then it would refuse it for every
-    /// job of the batch.
+    /// If the specification is not physical or the solver refuses the model. The solver would then refuse it
+    /// for every job of the batch.
     pub fn new(spec: &JobSpec) -> Result<Self, JobError> {
         spec.check()?;
         let model = Model::from_scene(&spec.scene, &spec.numerics)?;
@@ -63,12 +63,12 @@ impl Batch {
         })
     }
 
-    /// Whether a job can be advanced with those of this batch.
+    /// Whether a job shares the model of this batch.
     pub fn takes(&self, spec: &JobSpec) -> bool {
         self.shared == spec.shared_part()
     }
 
-    /// The largest number of jobs that it pays to advance together.
+    /// The largest number of jobs for which it pays off to advance them together.
     pub fn widest(&self) -> usize {
         self.widest
     }
@@ -78,13 +78,13 @@ impl Batch {
         each!(&self.lanes, lanes => lanes.jobs())
     }
 
-    /// Begins a job, which its owner calls `ticket`.
+    /// Begins a job. Its owner identifies it by `ticket`.
     ///
     /// # Errors
     /// If the specification is not physical or asks for too many steps.
     ///
     /// # Panics
-    /// If the job is not one of this batch, or there are as many as there may be.
+    /// If the job has another model, or if the batch is full.
     pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Result<(), JobError> {
         spec.check()?;
         self.make_room(&spec);
@@ -94,10 +94,11 @@ impl Batch {
         })
     }
 
-    /// Goes on with a job where a [`Batch::checkpoint`] of it left off. Its result has the bits of a run in one go.
+    /// Continues a job from its [`Batch::checkpoint`]. The result has the same bits as that of an
+    /// uninterrupted run.
     ///
     /// # Errors
-    /// [`Unreadable`]; then the job has not begun.
+    /// [`Unreadable`]. The job has not begun then.
     ///
     /// # Panics
     /// As [`Batch::begin`].
@@ -109,7 +110,7 @@ impl Batch {
         })
     }
 
-    /// Where a job is in its run, for [`Batch::resume`] of the same program; none if there is no such job.
+    /// The checkpoint of a job, for [`Batch::resume`] of the same program; none if there is no such job.
     pub fn checkpoint(&self, ticket: u64) -> Option<Vec<u8>> {
         each!(&self.lanes, lanes => lanes.checkpoint(ticket))
     }
@@ -122,12 +123,12 @@ impl Batch {
         }
     }
 
-    /// Moves the jobs to no more lanes than they need: for when no other job is to come.
+    /// Moves the jobs to as few lanes as possible. This is useful when no other job will come.
     pub fn narrow(&mut self) {
         self.fit(self.jobs());
     }
 
-    /// Changes the number of lanes to the smallest that holds so many jobs.
+    /// Changes the number of lanes to the smallest that holds `jobs` jobs.
     fn fit(&mut self, jobs: usize) {
         let lanes = jobs.max(1).next_power_of_two().min(8);
         let now = match &self.lanes {
@@ -146,17 +147,17 @@ impl Batch {
         each!(&mut self.lanes, lanes => lanes.advance(&mut |_| {}))
     }
 
-    /// Simulated time [s] of every job, by its ticket.
+    /// Simulated time \[s\] of every job, by its ticket.
     pub fn simulated(&self) -> Vec<(u64, f64)> {
         each!(&self.lanes, lanes => lanes.simulated().collect())
     }
 }
 
-/// Nodes times lanes beyond which another lane costs more than it saves: the fields that a step reads and writes
-/// no longer stay near the core. Measured; see docs/performance.md.
+/// Nodes times lanes above which another lane costs more than it saves: the fields that a step reads and
+/// writes then no longer fit into the core's caches. The value is measured; see docs/performance.md.
 const NODES_TIMES_LANES: usize = 40_000;
 
-/// The number of lanes that pays for a mesh.
+/// The largest number of lanes that pays off for a mesh.
 fn widest(nodes: usize) -> usize {
     [8, 4, 2].into_iter().find(|lanes| lanes * nodes <= NODES_TIMES_LANES).unwrap_or(1)
 }

@@ -1,22 +1,23 @@
-//! Where a job is in its run: enough to go on, in any lane and any other process, to the same bits.
+//! Checkpoints: from a checkpoint, a job continues in any lane and any process, with the same bits as an
+//! uninterrupted run.
 //!
-//! The numbers of its lane and the analysis as it stands. Of the same model and the same program only: the form has no
-//! version of its own, and who keeps it has to see to that.
+//! A checkpoint holds the numbers of the job's lane and the state of its analysis. It is valid only for the
+//! same model and the same program. The format has no version of its own, so its owner must check this.
 
 use super::lane::LaneAnalysis;
 use thiserror::Error;
 
-/// A checkpoint of another form, or of a job of another model.
+/// The checkpoint has another format, or it belongs to a job of another model.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Error)]
 #[error("the checkpoint is not one of this job")]
 pub struct Unreadable;
 
-/// The bytes of what a lane has saved and what has been found so far.
+/// Encodes the numbers of a lane and the state of its analysis.
 pub(super) fn encode(numbers: &[f64], analysis: &LaneAnalysis) -> Vec<u8> {
     postcard::to_allocvec(&(numbers, analysis)).expect("numbers and their lists have a form in bytes")
 }
 
-/// Reads the bytes of a lane that saves so many numbers.
+/// Decodes the checkpoint of a lane that has `numbers` numbers.
 pub(super) fn decode(bytes: &[u8], numbers: usize) -> Result<(Vec<f64>, LaneAnalysis), Unreadable> {
     match postcard::from_bytes::<(Vec<f64>, LaneAnalysis)>(bytes) {
         Ok(read) if read.0.len() == numbers => Ok(read),

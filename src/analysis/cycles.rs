@@ -6,48 +6,48 @@ use crate::solver::Model;
 use crate::solver::energy::Energies;
 use serde::{Deserialize, Serialize};
 
-/// One passage from an upward crossing of N = F to the next.
+/// The part of a run from one upward crossing of N = F to the next.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
-    /// Start [s], interpolated.
+    /// Start \[s\], interpolated between two steps.
     pub start_s: f64,
-    /// End [s], interpolated.
+    /// End \[s\], interpolated between two steps.
     pub end_s: f64,
-    /// Figures of the steps in between.
+    /// Figures of the steps of the cycle.
     pub figures: Figures,
     /// Energies at the start.
     pub energies: Energies,
-    /// Half the range [N] of the filtered N.
+    /// Half the range \[N\] of the filtered N.
     pub amplitude_n: f64,
-    /// Largest and smallest filtered N − F [N].
+    /// Largest and smallest filtered N − F \[N\].
     pub extremes_n: [f64; 2],
 }
 
 impl Cycle {
-    /// Duration [s].
+    /// Duration \[s\].
     pub fn period_s(&self) -> f64 {
         self.end_s - self.start_s
     }
 }
 
-/// Time constant of each of the two section filters over the shear-wave transit time of the pin's
-/// height: 6.4 µs (25 kHz) in the reference scene. It keeps impact spikes and high modes from
-/// making crossings of their own; a constant delay does not change the period.
+/// Time constant of each of the two section filters, over the shear-wave transit time of the pin's height. It
+/// is 6.4 µs (25 kHz) in the reference scene. The filters prevent crossings by impact spikes and high modes.
+/// Their constant delay does not change the period.
 const SECTION_SMOOTHING: f64 = 0.25;
 
-/// A crossing counts when N has been below F by this fraction of the last cycle's amplitude since
-/// the one before.
+/// A crossing counts only if N has been below F by more than this fraction of the last cycle's amplitude
+/// since the previous crossing.
 const HYSTERESIS: f64 = 0.25;
 
-/// Time constant with which the last cycle's amplitude is forgotten, over the same transit time: about
-/// six cycles of the reference scene. Without it a violent start would hide a small cycle for good.
+/// Time constant with which the last cycle's amplitude is forgotten, over the same transit time. It is about
+/// six cycles of the reference scene. Without it, a violent start would hide a small cycle for ever.
 const AMPLITUDE_MEMORY: f64 = 16.0;
 
-/// Cuts a run into cycles on the fly.
+/// Divides a run into cycles, step by step.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CycleCutter {
     gain: f64,
-    /// Fraction of the remembered amplitude that a step leaves.
+    /// Fraction of the remembered amplitude that remains after a step.
     memory: f64,
     filters: [Smoother; 2],
     ramp_s: f64,

@@ -1,26 +1,27 @@
 //! Whether steady sliding decays.
 //!
-//! While no node sticks and none opens or closes, the system is linear, and all its signals are sums of
-//! lines that grow or decay exponentially (see `lines`). Sliding is called decaying only when every one of
-//! several signals decays: N alone would not show a mode that is odd in x or y on a symmetric pin.
+//! While no node sticks and none opens or closes, the system is linear. All its signals are then sums of
+//! lines that grow or decay exponentially (see `lines`). Sliding counts as decaying only if each of several
+//! signals decays: N alone does not show a mode of a symmetric pin that is odd in x or y.
 
 use super::lines::LineMonitor;
 use super::sample::Sample;
 use crate::spec::Detection;
 use serde::{Deserialize, Serialize};
 
-/// The signals watched, all over F: N, its first moments about the y and x axes, and the sideways friction.
+/// Number of observed signals. All of them are over F: N, its first moments about the y and x axes, and the
+/// sideways friction.
 const SIGNALS: usize = 4;
 
 /// Amplitude, over F, below which lines are not judged on an elastic disk.
 ///
-/// Nodes that pass from patch to patch excite the disk all the time, and its lowest modes, at some kHz, are hardly
-/// damped: N never comes to rest. On steel with elements of 2.5 mm what is left after 50 ms is less than 4·10⁻⁸ of F at
-/// 7 rpm and 10⁻⁶ at 100 rpm. So a growth that is slower than about 300 1/s and begins below this is not seen
-/// within an observation of 8 ms.
+/// Nodes that pass from patch to patch excite the disk all the time. Its lowest modes, at some kHz, have
+/// almost no damping, so N never comes to rest. On steel with elements of 2.5 mm the oscillation that remains
+/// after 50 ms is less than 4·10⁻⁸ of F at 7 rpm and 10⁻⁶ at 100 rpm. Therefore a growth that is slower than
+/// about 300 1/s and begins below this floor is not detected within an observation of 8 ms.
 pub const ELASTIC_FLOOR: f64 = 1.0e-6;
 
-/// Watches sliding for growth and decay.
+/// Detects growth and decay of steady sliding.
 #[derive(Serialize, Deserialize)]
 pub struct DecayMonitor {
     ramp_s: f64,
@@ -29,22 +30,22 @@ pub struct DecayMonitor {
 }
 
 impl DecayMonitor {
-    /// A monitor that starts after the load's ramp and judges what is above the amplitude `floor`, over F.
+    /// A monitor that starts after the load's ramp. It judges lines above the amplitude `floor`, over F.
     pub fn new(time_step_s: f64, ramp_s: f64, detection: &Detection, floor: f64) -> Self {
         let observation_s = detection.decay_observation_s;
         let monitors = std::array::from_fn(|_| LineMonitor::new(time_step_s, observation_s, floor));
         Self { ramp_s, monitors, decays: false }
     }
 
-    /// Growth rate [1/s] of the fastest growing (or slowest decaying) strong line of any signal over the
-    /// last observation time, or, once it has decayed to rounding, the last one measured; none unless all
-    /// of the observation time was sliding.
+    /// Growth rate \[1/s\] of the fastest growing (or slowest decaying) strong line of any signal over the
+    /// last observation time. After the oscillation has decayed to rounding, it is the last measured rate. It
+    /// is none unless sliding was steady during the whole observation time.
     pub fn growth_rate_per_s(&self) -> Option<f64> {
         let rates = self.monitors.iter().filter_map(|monitor| monitor.verdict()?.growth_rate_per_s);
         rates.reduce(f64::max)
     }
 
-    /// Adds one step; returns whether sliding has been measured to decay and has not ended since.
+    /// Adds one step. Returns whether sliding was measured to decay and has not ended since.
     pub fn push(&mut self, sample: &Sample) -> bool {
         if sample.time_s < self.ramp_s {
             return false;
@@ -66,7 +67,7 @@ impl DecayMonitor {
         if self.monitors.iter().all(|monitor| monitor.verdict().is_some_and(|verdict| verdict.decays)) {
             self.decays = true;
         } else if self.growth_rate_per_s().is_some_and(|rate| rate > 0.0) {
-            // Once measured, a decay is only taken back by growth, not by an undecided stretch.
+            // Only growth revokes a measured decay. An undecided observation does not.
             self.decays = false;
         }
         self.decays

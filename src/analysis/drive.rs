@@ -1,14 +1,14 @@
-//! What a job's lane is driven by.
+//! The drive of a job's lane: friction law, speed and load.
 
 use crate::solver::Drive;
 use crate::solver::interface::law::Law;
 use crate::spec::JobSpec;
 use crate::units::rad_per_s_from_rpm;
 
-/// A lane without a job: nothing moves, nothing presses.
+/// The drive of a lane without a job: no motion and no load.
 pub(super) const IDLE: Drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
 
-/// What the lane of a job is driven by.
+/// The drive of the lane of a job.
 pub fn drive(spec: &JobSpec) -> Drive {
     Drive {
         law: Law::Coulomb { mu: spec.scene.contact.mu },

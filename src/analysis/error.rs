@@ -4,7 +4,7 @@ use crate::solver::SolverError;
 use crate::spec::Violations;
 use thiserror::Error;
 
-/// Largest number of steps of a run: a thousand times those of the reference scene's longest jobs.
+/// Largest number of steps of a run. It is a thousand times the steps of the reference scene's longest jobs.
 const MAX_STEPS: f64 = 5.0e7;
 
 /// Why a job has no record.
@@ -16,15 +16,15 @@ pub enum JobError {
     /// The solver refused the scene or the run diverged.
     #[error(transparent)]
     Solver(#[from] SolverError),
-    /// The time step is out of all proportion to the run.
+    /// The time step is too small for the length of the run.
     #[error(
         "run.limit_s = {limit_s:e} s takes {steps:.1e} steps of {time_step_s:.3e} s, more than the {MAX_STEPS:.0e} \
          that a run may have: look for extreme material or damping values, or give a shorter limit"
     )]
     TooManySteps {
-        /// The run's time limit [s].
+        /// The run's time limit \[s\].
         limit_s: f64,
-        /// The time step [s].
+        /// The time step \[s\].
         time_step_s: f64,
         /// Their ratio.
         steps: f64,
@@ -42,7 +42,7 @@ pub enum JobError {
     Interrupted,
 }
 
-/// Steps of a run. Buffers are sized and loops end by this number, so it must be within reason.
+/// Number of steps of a run. Buffers have this size and loops this length, so it has an upper limit.
 pub(super) fn step_count(limit_s: f64, time_step_s: f64) -> Result<u64, JobError> {
     let steps = (limit_s / time_step_s).ceil();
     // `<=` is false for NaN.

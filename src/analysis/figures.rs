@@ -7,7 +7,8 @@ use std::f64::consts::PI;
 /// Sums and extremes over consecutive steps.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Figures {
-    /// Number of steps; the first and the last of a cycle count by the part that belongs to it.
+    /// Number of steps. The first and the last step of a cycle count with the fraction that belongs to the
+    /// cycle.
     weight: f64,
     load: f64,
     normal: f64,
@@ -18,15 +19,15 @@ pub struct Figures {
     stick: f64,
     slip: f64,
     separated: f64,
-    /// Smallest smoothed N [N].
+    /// Smallest smoothed N \[N\].
     pub normal_min_n: f64,
-    /// Largest smoothed N [N].
+    /// Largest smoothed N \[N\].
     pub normal_max_n: f64,
-    /// Largest smoothed nodal normal stress [Pa].
+    /// Largest smoothed nodal normal stress \[Pa\].
     pub sigma_n_max_pa: f64,
-    /// Largest slip speed [m/s].
+    /// Largest slip speed \[m/s\].
     pub slip_speed_max_m_s: f64,
-    /// Largest gap [m] of a node.
+    /// Largest gap \[m\] of a node.
     pub lift_max_m: f64,
     /// Extremes of the observed nodes.
     pub nodes: [NodeFigures; OBSERVED],
@@ -37,11 +38,11 @@ pub struct Figures {
 pub struct NodeFigures {
     y_min_m: f64,
     y_max_m: f64,
-    /// Largest gap [m].
+    /// Largest gap \[m\].
     pub lift_max_m: f64,
-    /// Largest smoothed normal stress [Pa].
+    /// Largest smoothed normal stress \[Pa\].
     pub sigma_n_max_pa: f64,
-    /// Largest slip speed [m/s].
+    /// Largest slip speed \[m/s\].
     pub slip_speed_max_m_s: f64,
 }
 
@@ -54,14 +55,14 @@ impl NodeFigures {
         slip_speed_max_m_s: 0.0,
     };
 
-    /// Peak-to-peak displacement in y [m].
+    /// Peak-to-peak displacement in y \[m\].
     pub fn y_peak_to_peak_m(&self) -> f64 {
         self.y_max_m - self.y_min_m
     }
 }
 
 impl Figures {
-    /// No step yet.
+    /// The figures of no step.
     pub const EMPTY: Self = Self {
         weight: 0.0,
         load: 0.0,
@@ -81,7 +82,7 @@ impl Figures {
         nodes: [NodeFigures::EMPTY; OBSERVED],
     };
 
-    /// Adds one step, or the part `weight` of it that belongs to the window.
+    /// Adds one step, or the fraction `weight` of it that belongs to the window.
     pub fn add(&mut self, sample: &Sample, weight: f64) {
         self.weight += weight;
         self.load += weight * sample.load_n;
@@ -107,7 +108,7 @@ impl Figures {
         }
     }
 
-    /// Adds another window, its sums multiplied by `factor`.
+    /// Adds another window. Its sums are multiplied by `factor`.
     fn merge(&mut self, other: &Self, factor: f64) {
         self.weight += factor * other.weight;
         self.load += factor * other.load;
@@ -133,7 +134,7 @@ impl Figures {
         }
     }
 
-    /// All windows together.
+    /// The figures of all windows together.
     pub fn merged<'a>(windows: impl IntoIterator<Item = &'a Self>) -> Self {
         windows.into_iter().fold(Self::EMPTY, |mut all, window| {
             all.merge(window, 1.0);
@@ -141,8 +142,8 @@ impl Figures {
         })
     }
 
-    /// Consecutive windows together, weighted by a Hann taper: oscillations that have no whole number
-    /// of periods in the windows leave (almost) nothing in the means.
+    /// The figures of consecutive windows together, weighted by a Hann taper. An oscillation without a whole
+    /// number of periods in the windows then leaves almost nothing in the means.
     pub fn tapered<'a>(windows: impl ExactSizeIterator<Item = &'a Self>) -> Self {
         let count = windows.len() as f64;
         windows.enumerate().fold(Self::EMPTY, |mut all, (i, window)| {
@@ -151,7 +152,7 @@ impl Figures {
         })
     }
 
-    /// Whether there is nothing to average.
+    /// Whether no step was added.
     pub fn is_empty(&self) -> bool {
         self.weight == 0.0
     }
@@ -171,12 +172,12 @@ impl Figures {
         ratio(self.normal, self.load)
     }
 
-    /// (1/F)⟨Σ(μN − t_y)⟩ over sticking nodes: what sticking takes off μ*.
+    /// (1/F)⟨Σ(μN − t_y)⟩ over sticking nodes: the reduction of μ* by stick.
     pub fn stick_reduction(&self) -> f64 {
         ratio(self.stick_deficit, self.load)
     }
 
-    /// (1/F)⟨Σ μN(1 − cos φ)⟩ over slipping nodes: what misaligned or reversed slip takes off μ*.
+    /// (1/F)⟨Σ μN(1 − cos φ)⟩ over slipping nodes: the reduction of μ* by misaligned or reversed slip.
     pub fn slip_reduction(&self) -> f64 {
         ratio(self.slip_deficit, self.load)
     }
@@ -188,7 +189,7 @@ impl Figures {
     }
 }
 
-/// A mean over a mean; 0 where there is nothing to compare with (no step yet, no load, no contact).
+/// A mean over a mean. It is 0 where the second mean is 0: without a step, load or contact.
 fn ratio(part: f64, whole: f64) -> f64 {
     if whole == 0.0 { 0.0 } else { part / whole }
 }

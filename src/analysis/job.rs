@@ -8,21 +8,21 @@ use crate::spec::JobSpec;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
-/// Looks on while a job runs.
+/// Receives the steps and the progress of a running job.
 pub trait JobObserver {
-    /// Called after every step.
+    /// Is called after every step.
     fn step(&mut self, moment: &Moment<'_, 1>) {
         let _ = moment;
     }
 
-    /// Called every few steps with the simulated time [s]; `Break` interrupts the job.
+    /// Is called every few steps with the simulated time \[s\]. `Break` interrupts the job.
     fn progress(&mut self, simulated_s: f64) -> ControlFlow<()> {
         let _ = simulated_s;
         ControlFlow::Continue(())
     }
 }
 
-/// An observer that only lets the job run.
+/// An observer that does nothing.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Unobserved;
 
@@ -31,8 +31,8 @@ impl JobObserver for Unobserved {}
 /// Solves one job.
 ///
 /// # Errors
-/// If the specification is not physical, the solver refuses it, it takes too many steps, the run
-/// diverges or a figure overflows, or `observer` interrupts it.
+/// If the specification is not physical, the solver refuses it, the run takes too many steps or diverges, a
+/// figure overflows, or `observer` interrupts the run.
 pub fn solve(spec: &JobSpec, observer: &mut impl JobObserver) -> Result<JobRecord, JobError> {
     spec.check()?;
     let model = Model::from_scene(&spec.scene, &spec.numerics)?;

@@ -1,4 +1,4 @@
-//! The analysis of one lane, fed step by step.
+//! The analysis of one lane. It receives the run step by step.
 
 use super::cycles::{Cycle, CycleCutter};
 use super::decay::{self, DecayMonitor};
@@ -15,13 +15,14 @@ use crate::solver::interface::solve::Solves;
 use crate::spec::JobSpec;
 use serde::{Deserialize, Serialize};
 
-/// Follows one job's run and makes its record.
+/// Evaluates the run of one job and creates its record.
 #[derive(Serialize, Deserialize)]
 pub struct LaneAnalysis {
     #[serde(skip)]
     spec: JobSpec,
     cutter: CycleCutter,
-    /// None when the run is too short for an observation: it would only keep samples that nobody judges.
+    /// None if the run is shorter than one observation: the monitor would store samples, but could never
+    /// judge them.
     monitor: Option<DecayMonitor>,
     cycles: Vec<Cycle>,
     steady: Option<SteadyState>,
@@ -34,7 +35,7 @@ impl LaneAnalysis {
     /// The analysis of the job `spec`.
     pub fn new(model: &Model, spec: JobSpec) -> Self {
         let ramp_s = spec.scene.load.ramp_s;
-        // Two steps of slack: times are multiples of the step.
+        // Times are multiples of the step, so two steps are added as a tolerance.
         let slidable_s = spec.run.limit_s - ramp_s + 2.0 * model.time_step_s();
         let observes = spec.detection.decay_observation_s <= slidable_s;
         Self {
@@ -50,13 +51,14 @@ impl LaneAnalysis {
         }
     }
 
-    /// The same analysis, read from where it was kept, where its job's specification is not.
+    /// Adds the job's specification to an analysis that was read from a checkpoint, which does not contain
+    /// it.
     #[must_use]
     pub fn of(self, spec: JobSpec) -> Self {
         Self { spec, ..self }
     }
 
-    /// Adds a step; `energies` are those of the last audit.
+    /// Adds a step. `energies` are those of the last audit.
     pub fn push(&mut self, sample: &Sample, energies: &Energies) {
         if let Some(cycle) = self.cutter.push(sample, energies) {
             self.cycles.push(cycle);
@@ -67,13 +69,13 @@ impl LaneAnalysis {
         self.trailing.push(sample, energies);
     }
 
-    /// Whether the run can stop: the state is periodic or has been seen to decay.
+    /// Whether the run can stop: its state is periodic, or it was measured to decay.
     pub fn is_settled(&self) -> bool {
         self.steady.is_some() || self.decays
     }
 
-    /// The record of the run that ended after so many `steps` with these final `energies`, and these contact solves
-    /// on an elastic disk.
+    /// The record of a run that ended after `steps` steps with these final `energies`. `solves` are the
+    /// contact solves on an elastic disk.
     pub fn record(
         &self,
         model: &Model,
@@ -134,11 +136,11 @@ impl LaneAnalysis {
     }
 
     /// The averaging window:
-    /// * decayed: the last observation time, tapered, whether or not there were cycles in it;
-    /// * periodic: the cycles in which the state was found steady, or with `stop_early` = false all whole
-    ///   cycles in the last part of the run;
-    /// * neither: these cycles, or that part itself when they are too few or cover less than half of it,
-    ///   or the last observation time when not a single step falls into it.
+    /// * Decayed: the last observation time, tapered, whether or not it contains cycles.
+    /// * Periodic: the cycles in which the state was found periodic. If `stop_early` is false: all whole
+    ///   cycles in the last part of the run.
+    /// * Neither: all whole cycles in the last part of the run. If they are too few or cover less than half
+    ///   of this part: the part itself. If not a single step falls into it: the last observation time.
     fn window(&self, simulated_s: f64) -> Window {
         if self.decays {
             return self.trailing.window(true);
@@ -164,7 +166,7 @@ impl LaneAnalysis {
                 start_s: self.late.start_s,
                 figures: self.late.figures,
                 energies: self.late.energies.unwrap_or_default(),
-                // Without cycles to tell the parts, equal pieces of the last observation time serve.
+                // There are no cycles here, so equal blocks of the last observation time replace them.
                 mu_star_parts: self.trailing.window(false).mu_star_parts,
                 cycles: 0,
                 frequency_hz: None,
@@ -185,19 +187,19 @@ impl LaneAnalysis {
     }
 }
 
-/// Amplitude, over F, below which there is nothing to be seen of growth or decay.
+/// Amplitude, over F, below which growth and decay cannot be measured.
 fn decay_floor(model: &Model) -> f64 {
     if model.ring().is_some() { decay::ELASTIC_FLOOR } else { lines::ROUNDING }
 }
 
-/// Names the regime from the outcome and the shares of stick and separation.
+/// The regime that follows from the outcome and the shares of stick and separation.
 fn regime(outcome: Outcome, stick: f64, separated: f64, threshold: f64) -> Regime {
     match (stick > threshold, separated > threshold) {
         _ if outcome == Outcome::Decayed => Regime::Stable,
         (true, true) => Regime::StickSlipSeparation,
         (true, false) => Regime::StickSlip,
         (false, true) => Regime::SlipSeparation,
-        // A limit cycle with hardly any of either is named after the larger.
+        // A limit cycle with little stick and little separation is named after the larger share.
         (false, false) if outcome == Outcome::Periodic && stick >= separated => Regime::StickSlip,
         (false, false) if outcome == Outcome::Periodic => Regime::SlipSeparation,
         (false, false) => Regime::Undecided,

@@ -1,8 +1,9 @@
 //! Jobs advanced together, one in each lane.
 //!
-//! The jobs share a model and nothing else: a job's result is the same bits in any lane, with any companions and
-//! for any number of lanes. They need not begin together. A lane whose job has ended is at rest, costs what its
-//! slots in the vectors cost anyway, and can be given another job whenever the lanes are between two audits.
+//! The jobs share a model and nothing else. A job's result has the same bits in any lane, with any companions
+//! and for any number of lanes. The jobs need not begin together. A lane whose job has ended is at rest. It
+//! costs as much as before, because its slots in the vectors remain. It can receive another job whenever the
+//! lanes are between two audits.
 
 use super::checkpoint::{self, Unreadable};
 use super::drive::{IDLE, drive};
@@ -16,11 +17,12 @@ use crate::solver::{Drive, Model, State, guard, step};
 use crate::spec::JobSpec;
 use std::sync::Arc;
 
-/// Steps between two evaluations of the stored energies (and of the divergence guard), and the only times at
-/// which jobs begin.
+/// Steps between two evaluations of the stored energies and of the divergence guard. Jobs begin only at these
+/// times.
 ///
-/// An evaluation costs two products with K; at 16 that is an eighth of a run. The damping's work is
-/// sampled as often: about four times per period of the fastest mode that damping leaves alive.
+/// An evaluation costs two products with K, so with 16 steps all of them cost an eighth of a run. The
+/// damping's work is sampled at the same steps: about four times per period of the fastest mode that damping
+/// does not suppress.
 pub const AUDIT_INTERVAL: u64 = 16;
 
 /// Up to `L` jobs of one model.
@@ -41,28 +43,28 @@ struct Run {
     analysis: Box<LaneAnalysis>,
 }
 
-/// What can be seen of a job after a step.
+/// The data of a job after a step, for observers.
 pub struct Moment<'a, const L: usize> {
-    /// What the job's owner calls it.
+    /// The number by which the job's owner identifies it.
     pub ticket: u64,
-    /// The lane that it is in.
+    /// The lane of the job.
     pub lane: usize,
     /// Totals and extremes of the step.
     pub sample: &'a Sample,
-    /// What the lanes share.
+    /// The model that the lanes share.
     pub model: &'a Model,
-    /// The state that the step led to.
+    /// The state after the step.
     pub state: &'a State<L>,
-    /// What made the sample, with the smoothed stress of every contact node.
+    /// The sampler that computed the sample. It has the smoothed stress of every contact node.
     pub sampler: &'a Sampler<L>,
 }
 
 /// A job that has ended.
 #[derive(Debug)]
 pub struct Ended {
-    /// What its owner called it.
+    /// The number by which the job's owner identifies it.
     pub ticket: u64,
-    /// What was found.
+    /// The job's record, or the reason why it has none.
     pub result: Result<JobRecord, JobError>,
 }
 
@@ -79,10 +81,10 @@ impl<const L: usize> Lanes<L> {
         }
     }
 
-    /// Lanes with the jobs of other lanes of the same model, wherever these are in their runs.
+    /// New lanes that take over the jobs of other lanes of the same model, at any point of their runs.
     ///
     /// # Panics
-    /// If there are more of them than lanes.
+    /// If there are more jobs than lanes.
     pub fn taken_over<const M: usize>(from: &mut Lanes<M>) -> Self {
         let mut lanes = Self::new(Arc::clone(&from.model));
         lanes.state.step = from.state.step;
@@ -98,7 +100,7 @@ impl<const L: usize> Lanes<L> {
         lanes
     }
 
-    /// A lane without a job.
+    /// The first lane without a job, if there is one.
     pub fn free_lane(&self) -> Option<usize> {
         self.runs.iter().position(Option::is_none)
     }
@@ -127,13 +129,14 @@ impl<const L: usize> Lanes<L> {
         Ok(())
     }
 
-    /// Puts a job into a lane where a [`Lanes::checkpoint`] of it left off. Its result has the bits of a run in one go.
+    /// Continues a job in a lane from its [`Lanes::checkpoint`]. The result has the same bits as that of an
+    /// uninterrupted run.
     ///
     /// # Errors
-    /// [`Unreadable`]; then the lane is as it was.
+    /// [`Unreadable`]. The lane is unchanged then.
     ///
     /// # Panics
-    /// As [`Lanes::begin`], or if the job would not begin there.
+    /// As [`Lanes::begin`], and if [`Lanes::begin`] returns an error.
     pub fn resume(
         &mut self,
         lane: usize,
@@ -150,14 +153,14 @@ impl<const L: usize> Lanes<L> {
         Ok(())
     }
 
-    /// Where a job is in its run; none if there is no such job.
+    /// The checkpoint of a job; none if there is no such job.
     pub fn checkpoint(&self, ticket: u64) -> Option<Vec<u8>> {
         let lane = self.runs.iter().position(|run| run.as_ref().is_some_and(|run| run.ticket == ticket))?;
         let analysis = &self.runs[lane].as_ref()?.analysis;
         Some(checkpoint::encode(&self.save(lane), analysis))
     }
 
-    /// The numbers of a lane, wherever its job is in its run.
+    /// The numbers that describe a lane, at any point of its job's run.
     fn save(&self, lane: usize) -> Vec<f64> {
         let mut saved = Vec::new();
         self.state.save_lane(lane, &mut saved);
@@ -166,7 +169,7 @@ impl<const L: usize> Lanes<L> {
         saved
     }
 
-    /// Sets a lane to the numbers of another one.
+    /// Sets the numbers that describe a lane, in the order of [`Self::save`].
     fn load(&mut self, lane: usize, saved: &mut dyn Iterator<Item = f64>) {
         self.state.load_lane(lane, saved);
         self.ledger.load_lane(lane, saved);
@@ -179,7 +182,7 @@ impl<const L: usize> Lanes<L> {
         self.drives[lane] = IDLE;
     }
 
-    /// Simulated time [s] of every job, by its ticket.
+    /// Simulated time \[s\] of every job, by its ticket.
     pub fn simulated(&self) -> impl Iterator<Item = (u64, f64)> + '_ {
         let dt = self.model.time_step_s();
         let runs = self.runs.iter().enumerate();
@@ -188,8 +191,8 @@ impl<const L: usize> Lanes<L> {
         })
     }
 
-    /// Advances all jobs to just before the next audit, and returns those that ended on the way. Every step of
-    /// every job is shown to `observe`.
+    /// Advances all jobs until just before the next audit, and returns those that ended on the way. Calls
+    /// `observe` after every step of every job.
     pub fn advance(&mut self, observe: &mut impl FnMut(&Moment<'_, L>)) -> Vec<Ended> {
         let mut ended = Vec::new();
         loop {

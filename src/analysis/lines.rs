@@ -1,20 +1,20 @@
 //! Growth and decay of one signal of a linear system, line by line.
 //!
-//! A small amplitude says nothing: a weak instability may hide for tens of milliseconds under the
-//! decaying start-up oscillation. A signal of a linear system is a sum of lines that grow or decay
-//! exponentially. Spectra of successive, overlapping stretches give every line's growth rate with its
-//! standard error. There are two sets of them:
-//! * long stretches under a Kaiser window, whose side lobes (10⁻⁸) hide nothing weak beside something
-//!   strong. Every peak in them, down to rounding, must decay by more than three standard errors;
-//! * short stretches under a Hann window, which follow a line in time. In them every strong line (within
-//!   10⁻³ of the strongest) must decay steadily: two lines too close for the long stretches beat, and a
-//!   beat falls for a while, but not along an exponential.
+//! A small amplitude proves nothing: the decaying start-up oscillation may hide a weak instability for tens
+//! of milliseconds. A signal of a linear system is a sum of lines that grow or decay exponentially. The
+//! signal is therefore divided into successive, overlapping stretches. Their spectra give the growth rate of
+//! every line with its standard error. There are two sets of stretches:
+//! * Long stretches under a Kaiser window. Its side lobes (10⁻⁸) do not hide a weak line beside a strong one.
+//!   Every peak in these spectra, down to rounding, must decay by more than three standard errors.
+//! * Short stretches under a Hann window, which follow a line in time. In them every strong line (within 10⁻³
+//!   of the strongest) must decay steadily. Two lines that are too close for the long stretches beat. A beat
+//!   falls for a while, but not exponentially.
 //!
-//! Lines below a floor are not judged: rounding, or what keeps exciting the system.
+//! Lines below a floor are not judged. The floor is rounding, or the amplitude of a permanent excitation.
 //!
-//! What this cannot tell: a line within the main lobe of one that is 10³ times stronger or more (1.4 kHz at
-//! an observation of 8 ms, in inverse proportion to it), and two lines whose beat takes longer than the
-//! observation. A longer `decay_observation_s` resolves both.
+//! This method cannot detect a line within the main lobe of one that is 10³ times stronger or more (1.4 kHz
+//! at an observation of 8 ms, in inverse proportion to it). It cannot separate two lines whose beat takes
+//! longer than the observation. A longer `decay_observation_s` resolves both.
 
 use realfft::{RealFftPlanner, RealToComplex};
 use serde::{Deserialize, Serialize};
@@ -22,30 +22,30 @@ use std::collections::VecDeque;
 use std::f64::consts::PI;
 use std::sync::Arc;
 
-/// Hops per observation time: a new stretch of each kind begins with every hop.
+/// Hops per observation time. A new stretch of each kind begins with every hop.
 const HOPS: usize = 16;
-/// Hops in a long and in a short stretch.
+/// Hops in a long stretch and in a short stretch.
 const LONG: usize = 10;
 const SHORT: usize = 4;
-/// Parameter of the Kaiser window: side lobes of 10⁻⁸, a main lobe of ±√(1 + (β/π)²) = ±6.8 lines.
+/// Parameter of the Kaiser window. Its side lobes are 10⁻⁸, its main lobe is ±√(1 + (β/π)²) = ±6.8 lines.
 const KAISER_BETA: f64 = 21.0;
-/// The lowest line looked at, outside the main lobe of the mean.
+/// The lowest line that is judged. It is outside the main lobe of the mean.
 const FIRST_LINE: usize = 7;
-/// A line weaker than the strongest by this factor may be a side lobe.
+/// A line that is weaker than the strongest by this factor may be a side lobe.
 const LEAKAGE: f64 = 1.0e-7;
-/// A line is strong within this factor of the strongest.
+/// A line is strong if it is within this factor of the strongest.
 const STRONG: f64 = 1.0e-3;
-/// Amplitudes (of signals of order one) below this are rounding.
+/// Amplitudes (of signals of order one) below this value are rounding.
 pub const ROUNDING: f64 = 1.0e-11;
-/// A rate is believed when it differs from zero by this many standard errors.
+/// A rate is significant if it differs from zero by this many standard errors.
 const STANDARD_ERRORS: f64 = 3.0;
-/// The same for the short stretches, whose misfit is a beat rather than chance: a correlation of −0.875
-/// with a straight line (a whole period of a sine has 0.78).
+/// The same for the short stretches, whose misfit is a beat rather than chance. The value corresponds to a
+/// correlation of −0.875 with a straight line (a whole period of a sine has 0.78).
 const STEADY_STANDARD_ERRORS: f64 = 6.0;
-/// Smallest fall of a strong line's logarithm over the observation time that counts as a decay.
+/// Smallest decrease of a strong line's logarithm over the observation time that counts as a decay.
 const SMALLEST_FALL: f64 = 1.0e-3;
 
-/// Watches one signal for growth and decay.
+/// Detects growth and decay of one signal.
 #[derive(Serialize, Deserialize)]
 pub struct LineMonitor {
     floor: f64,
@@ -61,11 +61,12 @@ pub struct LineMonitor {
     verdict: Option<Verdict>,
 }
 
-/// What the last observation time says of a signal.
+/// The result for a signal over the last observation time.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Verdict {
-    /// Growth rate [1/s] of the fastest growing (or slowest decaying) strong line, or, once everything has
-    /// decayed to the floor, the last one measured; none if there was never more than that.
+    /// Growth rate \[1/s\] of the fastest growing (or slowest decaying) strong line. After all lines have
+    /// decayed to the floor, it is the last measured rate. It is none if the signal was never above the
+    /// floor.
     pub growth_rate_per_s: Option<f64>,
     /// Whether all lines decay.
     pub decays: bool,
@@ -88,7 +89,7 @@ enum Taper {
     Kaiser,
 }
 
-/// What a transform needs; made when the first stretch is complete.
+/// The plan of a transform and the weights of its window. It is created when the first stretch is complete.
 struct Plan {
     transform: Arc<dyn RealToComplex<f64>>,
     weights: Vec<f64>,
@@ -100,7 +101,7 @@ impl Stretches {
         Self { taper, kept: HOPS - hops + 1, plan: None, spectra: VecDeque::new() }
     }
 
-    /// Adds the stretch `samples`, always equally long.
+    /// Adds the stretch `samples`. All stretches have the same length.
     fn push(&mut self, samples: &[f64]) {
         let plan = self.plan.get_or_insert_with(|| {
             let length = samples.len();
@@ -109,7 +110,7 @@ impl Stretches {
             let weight = weights.iter().sum();
             Plan { transform: RealFftPlanner::new().plan_fft_forward(length), weights, weight }
         });
-        // The weighted mean leaves nothing at the line 0 that could leak into others.
+        // Subtracting the weighted mean removes the line 0, which could leak into others.
         let mean = samples.iter().zip(&plan.weights).map(|(x, w)| x * w).sum::<f64>() / plan.weight;
         let mut input: Vec<f64> = samples.iter().zip(&plan.weights).map(|(x, w)| (x - mean) * w).collect();
         let mut output = plan.transform.make_output_vec();
@@ -167,9 +168,9 @@ fn bessel_i0(x: f64) -> f64 {
 }
 
 impl LineMonitor {
-    /// A monitor that judges over `observation_s` what is above the amplitude `floor`.
+    /// A monitor that judges lines above the amplitude `floor` over `observation_s`.
     pub fn new(time_step_s: f64, observation_s: f64, floor: f64) -> Self {
-        // However long the observation, a stretch has a number of steps that can be written down.
+        // This limits the number of steps in a stretch, however long the observation is.
         let longest = (u32::MAX as usize / HOPS) as f64;
         let hop = (observation_s / (HOPS as f64 * time_step_s)).ceil().clamp(8.0, longest);
         Self {
@@ -187,7 +188,7 @@ impl LineMonitor {
         }
     }
 
-    /// What the last complete observation says; none before there is one.
+    /// The result of the last complete observation; none before there is one.
     pub fn verdict(&self) -> Option<Verdict> {
         self.verdict
     }
@@ -202,7 +203,7 @@ impl LineMonitor {
         }
     }
 
-    /// Forgets everything.
+    /// Starts the observation anew.
     pub fn start_anew(&mut self) {
         self.since_hop = 0;
         self.samples.clear();
@@ -236,7 +237,7 @@ impl LineMonitor {
         let last = &self.long.spectra[self.long.spectra.len() - 1];
         let highest = last.iter().skip(FIRST_LINE).copied().fold(0.0, f64::max);
         if highest < self.floor {
-            // Everything has decayed to the floor since the signal began: a measured decay, too.
+            // All lines have decayed to the floor since the signal began. This is a measured decay, too.
             let elapsed_s = self.hop_s * (self.hops - SHORT as u64) as f64;
             let at_least = (self.start_amplitude > self.floor)
                 .then(|| (self.floor / self.start_amplitude).ln() / elapsed_s);
@@ -261,7 +262,7 @@ impl LineMonitor {
     }
 }
 
-/// Whether a line is not below its neighbours (those below [`FIRST_LINE`] do not count).
+/// Whether a line is a local maximum. Lines below [`FIRST_LINE`] do not count as neighbours.
 fn is_peak(spectrum: &[f64], line: usize) -> bool {
     (line == FIRST_LINE || spectrum[line - 1] < spectrum[line])
         && spectrum.get(line + 1).is_none_or(|&next| next <= spectrum[line])

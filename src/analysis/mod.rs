@@ -1,4 +1,4 @@
-//! What is found in a run: cycles, periodic state, decay, regime, μ*, identities.
+//! The evaluation of a run: cycles, periodic state, decay, regime, μ*, identities.
 //!
 //! ```text
 //! solver state ─► sample ─► cycles ─► steady (periodic?) ─┐
@@ -7,11 +7,13 @@
 //! ```
 //!
 //! # Definitions
-//! * **μ*** = ⟨T⟩/⟨F⟩ over whole limit cycles, T the tangential force in y that the clamp carries.
-//! * The macroscopic identity: μ − μ* = (1/F)⟨Σ_stick(μN − t_y) + Σ_slip μN(1 − cos φ)⟩, φ the angle of
+//! * **μ*** = ⟨T⟩/⟨F⟩ over whole limit cycles. T is the tangential force in y that the clamp carries, F the
+//!   normal load.
+//! * The macroscopic identity is μ − μ* = (1/F)⟨Σ_stick(μN − t_y) + Σ_slip μN(1 − cos φ)⟩. φ is the angle of
 //!   friction from +y, the direction in which T is measured.
-//! * The energy identity: work of drive and load = friction + damping + contact loss + change of stored energy.
-//! * Stresses and the extremes of N are taken behind a short low-pass ([`sample::STRESS_SMOOTHING`]).
+//! * The energy identity is: work of drive and load = friction + damping + contact loss + change of stored
+//!   energy.
+//! * Stresses and the extremes of N are taken after a short low-pass filter ([`sample::STRESS_SMOOTHING`]).
 
 pub mod batch;
 mod checkpoint;

@@ -1,4 +1,4 @@
-//! The record of one job: every figure that was found in its run.
+//! The record of one job: all results of its run.
 
 use super::steady::Obstacle;
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ pub enum Outcome {
     Periodic,
     /// The oscillation decays at a measured negative growth rate: sliding is stable.
     Decayed,
-    /// The time limit came first; the figures are averages over the last part of the run.
+    /// The run reached its time limit first. The figures are averages over the last part of the run.
     NotPeriodic,
 }
 
@@ -55,7 +55,7 @@ impl Regime {
     }
 }
 
-/// Energies [J] of a run: the state at its end and the work done and lost since its start.
+/// Energies \[J\] of a run: those stored at its end, and the work and the losses since its start.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct EnergyTotals {
     /// Kinetic energy of the pin and of an elastic disk.
@@ -79,13 +79,13 @@ pub struct EnergyTotals {
 pub struct ObservedNode {
     /// `front_centre` (leading end) or `rear_centre` (trailing end).
     pub name: String,
-    /// Peak-to-peak displacement [m] in y.
+    /// Peak-to-peak displacement \[m\] in y.
     pub y_peak_to_peak_m: f64,
-    /// Largest gap [m].
+    /// Largest gap \[m\].
     pub lift_max_m: f64,
-    /// Largest normal contact stress [Pa] (smoothed as the job's).
+    /// Largest normal contact stress \[Pa\], smoothed like that of the job.
     pub sigma_n_max_pa: f64,
-    /// Largest slip speed [m/s] while in contact.
+    /// Largest slip speed \[m/s\] while in contact.
     pub slip_speed_max_m_s: f64,
 }
 
@@ -94,18 +94,18 @@ pub struct ObservedNode {
 pub struct ElasticDisk {
     /// Elements in θ, r and z.
     pub elements: [usize; 3],
-    /// Longest edge [m] of the elements under the track, in θ, r and z.
+    /// Longest edge \[m\] of the elements under the track, in θ, r and z.
     pub track_element_m: [f64; 3],
-    /// Longest edge [m] elsewhere.
+    /// Longest edge \[m\] elsewhere.
     pub longest_edge_m: f64,
     /// Stages that the disk takes in a time step.
     pub stages: usize,
-    /// Gauss–Seidel sweeps of a contact solve, on average.
+    /// Mean number of Gauss–Seidel sweeps of a contact solve.
     pub sweeps_mean: f64,
-    /// Most sweeps of a contact solve.
+    /// Largest number of sweeps of a contact solve.
     pub sweeps_max: f64,
-    /// Largest residual of a solve: by how much a force misses its own row of the contact equations, over the largest
-    /// force.
+    /// Largest residual of a solve: the error of a force in its own row of the contact equations, over the
+    /// largest force.
     pub residual_max: f64,
 }
 
@@ -163,21 +163,22 @@ impl ElasticDisk {
     }
 }
 
-/// What was found in one run.
+/// The results of one run.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobRecord {
     /// How the run ended.
     pub outcome: Outcome,
     /// The contact regime.
     pub regime: Regime,
-    /// Macroscopic friction coefficient μ* = ⟨T⟩/⟨F⟩, T from the clamp's reactions.
+    /// Macroscopic friction coefficient μ* = ⟨T⟩/⟨F⟩. T comes from the clamp's reactions.
     pub mu_star: f64,
-    /// Standard error of `mu_star` over cycles (over equal parts of the window when sliding is stable).
+    /// Standard error of `mu_star`, from its values in single cycles (in equal parts of the window if sliding
+    /// is stable).
     pub mu_star_se: f64,
-    /// The same ratio from the mean contact forces, a check.
+    /// The same ratio from the mean contact forces, as a check.
     pub mu_star_contact: f64,
-    /// Fundamental frequency [Hz] of the total normal contact force; of a run that is not periodic the mean
-    /// rate of its section crossings; none when sliding is stable or has no cycles.
+    /// Fundamental frequency \[Hz\] of the total normal contact force. For a run that is not periodic it is
+    /// the mean rate of the section crossings. It is none if sliding is stable or has no cycles.
     pub frequency_hz: Option<f64>,
     /// Share of the node-time in stick.
     pub stick_share: f64,
@@ -189,50 +190,50 @@ pub struct JobRecord {
     pub n_over_f_min: f64,
     /// Largest total normal contact force over F in the window (smoothed).
     pub n_over_f_max: f64,
-    /// Largest nodal normal contact stress [Pa] in the window (smoothed).
+    /// Largest nodal normal contact stress \[Pa\] in the window (smoothed).
     pub sigma_n_max_pa: f64,
-    /// Largest slip speed [m/s] of a node in contact in the window.
+    /// Largest slip speed \[m/s\] of a node in contact in the window.
     pub slip_speed_max_m_s: f64,
-    /// Largest gap [m] of a node in the window.
+    /// Largest gap \[m\] of a node in the window.
     pub lift_max_m: f64,
-    /// Whole limit cycles in the averaging window; 0 when stable.
+    /// Number of whole limit cycles in the averaging window; 0 if sliding is stable.
     pub cycles: usize,
     /// Section crossings that make up one limit cycle (1 for a simple cycle).
     pub crossings_per_cycle: usize,
-    /// Simulated time [s] at the end of the run.
+    /// Simulated time \[s\] at the end of the run.
     pub simulated_s: f64,
-    /// Start [s] of the averaging window.
+    /// Start \[s\] of the averaging window.
     pub window_start_s: f64,
     /// Time steps taken.
     pub steps: u64,
-    /// The time step used [s].
+    /// The time step used \[s\].
     pub time_step_s: f64,
-    /// The stability limit [s] of the operator used.
+    /// The stability limit \[s\] of the operator used.
     pub time_step_limit_s: f64,
-    /// The clamp's width [m] that the mesh actually gives.
+    /// Width \[m\] of the clamp on the mesh, which may differ from the specified one.
     pub clamp_width_m: f64,
-    /// |energy balance| over the energy put in: how well the energies close.
+    /// |Imbalance| of the energies over the energy put in.
     pub energy_residual: f64,
-    /// Residual of μ − μ* = `(1/F)⟨Σ(μN − t_y)⟩`, absolute.
+    /// Residual of the identity μ − μ* = `(1/F)⟨Σ(μN − t_y)⟩`, absolute.
     pub macroscopic_identity_residual: f64,
-    /// Residual of work of drive and load = friction + damping + contact loss + change of stored energy over
-    /// the window, over the drive's work.
+    /// Residual of the energy identity over the window, relative to the drive's work. The identity is: work
+    /// of drive and load = friction + damping + contact loss + change of stored energy.
     pub energy_identity_residual: f64,
-    /// Contact loss over the drive's work in the window: what the identity ⟨T⟩V = friction + damping of the
-    /// continuous problem misses on this mesh and time step.
+    /// Contact loss over the drive's work in the window. On this mesh and with this time step, the identity
+    /// ⟨T⟩V = friction + damping of the continuous problem has this error.
     pub contact_loss_share: f64,
-    /// What sticking nodes take off μ*: `(1/F)⟨Σ_stick(μN − t_y)⟩`.
+    /// Reduction of μ* by sticking nodes: `(1/F)⟨Σ_stick(μN − t_y)⟩`.
     pub mu_reduction_stick: f64,
-    /// What misaligned or reversed slip takes off μ*: `(1/F)⟨Σ_slip μN(1 − cos φ)⟩`.
+    /// Reduction of μ* by misaligned or reversed slip: `(1/F)⟨Σ_slip μN(1 − cos φ)⟩`.
     pub mu_reduction_slip: f64,
-    /// Growth rate [1/s] of the fastest growing (or slowest decaying) strong line of the total normal force
-    /// at the end of the run, when the last of it was steady sliding; negative: sliding is stable.
+    /// Growth rate \[1/s\] of the fastest growing (or slowest decaying) strong line at the end of the run, if
+    /// the run ended in steady sliding. If it is negative, sliding is stable.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub growth_rate_per_s: Option<f64>,
-    /// Why the run was not found periodic, where it was not (nor to decay).
+    /// Why the run is not periodic; none if it is periodic or decays.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub obstacle: Option<Obstacle>,
-    /// The elastic disk, if it is one.
+    /// The elastic disk; none if the disk is rigid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disk: Option<ElasticDisk>,
     /// Energies at the end of the run.
@@ -249,12 +250,13 @@ impl JobRecord {
 
     /// The path of a figure that is not a finite number, if there is one.
     ///
-    /// JSON has no such number: it would be stored as null, and nobody could read the record again.
+    /// JSON has no such number. It would be stored as null, and the record could not be read again.
     pub fn non_finite_figure(&self) -> Option<String> {
         self.figures().into_iter().find(|(_, value)| !value.is_finite()).map(|(path, _)| path)
     }
 
-    /// Every real number of the record with its path. All fields are named here, so that none can be forgotten.
+    /// Every real number of the record with its path. The pattern names all fields, so that none can be
+    /// forgotten.
     fn figures(&self) -> Vec<(String, f64)> {
         let Self {
             outcome: _,
@@ -337,7 +339,7 @@ mod tests {
     use super::*;
     use serde_json::Value;
 
-    /// A record in which nothing is missing.
+    /// A record in which every optional field is present.
     fn full() -> JobRecord {
         let disk = ElasticDisk {
             elements: [1, 2, 3],
@@ -401,7 +403,8 @@ mod tests {
         }
     }
 
-    /// Protects: every real number that a record stores is looked at, each once, and one that is not finite is named.
+    /// Protects: the check for finite numbers covers every real number that a record stores exactly once, and
+    /// it names a number that is not finite.
     #[test]
     fn every_number_is_looked_at() {
         let record = full();

@@ -1,4 +1,4 @@
-//! What is observed at every step.
+//! The samples of a run: totals and extremes over the contact face at every step.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -13,27 +13,27 @@ use serde::{Deserialize, Serialize};
 /// Totals and extremes over the contact face during one step (forces at `t_n`).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Sample {
-    /// `t_n` [s].
+    /// `t_n` \[s\].
     pub time_s: f64,
-    /// Normal load F [N].
+    /// Normal load F \[N\].
     pub load_n: f64,
-    /// Total normal contact force N [N].
+    /// Total normal contact force N \[N\].
     pub normal_n: f64,
-    /// N after the stress smoother [N].
+    /// N after the stress smoother \[N\].
     pub smooth_normal_n: f64,
-    /// Total contact friction force on the pin in y [N].
+    /// Total contact friction force on the pin in y \[N\].
     pub contact_tangential_n: f64,
-    /// Total contact friction force on the pin in x [N].
+    /// Total contact friction force on the pin in x \[N\].
     pub contact_sideways_n: f64,
-    /// Σ N x/lx [N]: the normal contact force's first moment about the pin's axis, over its width.
+    /// Σ N x/lx \[N\]: the normal contact force's first moment about the pin's axis, over its width.
     pub x_moment_n: f64,
-    /// Σ N y/ly [N].
+    /// Σ N y/ly \[N\].
     pub y_moment_n: f64,
-    /// Tangential force T [N] in y that the clamp carries.
+    /// Tangential force T \[N\] in y that the clamp carries.
     pub clamp_tangential_n: f64,
-    /// Σ over sticking nodes of μN − t_y [N].
+    /// Σ over sticking nodes of μN − t_y \[N\].
     pub stick_deficit_n: f64,
-    /// Σ over slipping nodes of μN(1 − cos φ) [N], φ the angle of friction from +y.
+    /// Σ over slipping nodes of μN(1 − cos φ) \[N\], φ the angle of friction from +y.
     pub slip_deficit_n: f64,
     /// Number of nodes in stick.
     pub stick: usize,
@@ -41,20 +41,20 @@ pub struct Sample {
     pub slip: usize,
     /// Number of separated nodes.
     pub separated: usize,
-    /// Number of nodes that are in another state than in the step before.
+    /// Number of nodes whose state differs from that in the step before.
     pub transitions: usize,
-    /// Largest smoothed nodal normal stress [Pa].
+    /// Largest smoothed nodal normal stress \[Pa\].
     pub sigma_n_max_pa: f64,
-    /// Largest slip speed [m/s] of a node in contact.
+    /// Largest slip speed \[m/s\] of a node in contact.
     pub slip_speed_max_m_s: f64,
-    /// Largest gap [m] of a node.
+    /// Largest gap \[m\] of a node.
     pub lift_max_m: f64,
     /// The observed nodes.
     pub nodes: [NodeSample; OBSERVED],
 }
 
 impl Sample {
-    /// Friction over normal force, of all contact forces in y; 0 without contact.
+    /// Total friction force in y over total normal force; 0 without contact.
     pub fn equivalent_friction(&self) -> f64 {
         if self.normal_n > 0.0 { self.contact_tangential_n / self.normal_n } else { 0.0 }
     }
@@ -63,23 +63,23 @@ impl Sample {
 /// Number of observed nodes.
 pub const OBSERVED: usize = 2;
 
-/// Their names: the centre of the leading and of the trailing edge of the contact face.
+/// Names of the observed nodes: the centre of the leading and of the trailing edge of the contact face.
 pub const OBSERVED_NAMES: [&str; OBSERVED] = ["front_centre", "rear_centre"];
 
 /// One observed contact node during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct NodeSample {
-    /// Displacement [m].
+    /// Displacement \[m\].
     pub u_m: [f64; 3],
-    /// Velocity in y over the step [m/s].
+    /// Velocity in y over the step \[m/s\].
     pub y_velocity_m_s: f64,
-    /// Gap [m].
+    /// Gap \[m\].
     pub gap_m: f64,
-    /// Contact force [N] on the pin: friction in x and y, N in z.
+    /// Contact force \[N\] on the pin: friction in x and y, N in z.
     pub force_n: [f64; 3],
-    /// Smoothed normal stress [Pa].
+    /// Smoothed normal stress \[Pa\].
     pub sigma_n_pa: f64,
-    /// Slip speed [m/s]; 0 unless slipping.
+    /// Slip speed \[m/s\]; 0 unless the node slips.
     pub slip_speed_m_s: f64,
     /// Contact state.
     pub state: ContactState,
@@ -100,7 +100,7 @@ pub struct Smoother {
 }
 
 impl Smoother {
-    /// A filter that has had this input for ever.
+    /// A filter whose input has always been `value`.
     pub fn at(value: f64) -> Self {
         Self { value }
     }
@@ -119,18 +119,19 @@ pub fn smoothing_gain(time_step_s: f64, tau_s: f64) -> f64 {
 
 /// Time constant of the stress smoother over the pressure-wave transit time of the pin's height.
 ///
-/// A node that closes carries a one-step spike of about ρ c v/CFL, which is a property of the time
-/// step, not of the contact. 0.15 transit times (2 µs in the reference scene) take it away and damp
-/// the 16 kHz cycle by 2 %.
+/// A node that closes carries a spike of about ρ c v/CFL for one step. The spike is a property of the time
+/// step, not of the contact. 0.15 transit times (2 µs in the reference scene) remove it, and they damp the 16
+/// kHz cycle by 2 %.
 pub const STRESS_SMOOTHING: f64 = 0.15;
 
-/// Makes the [`Sample`]s of all lanes.
+/// Computes the [`Sample`]s of all lanes.
 #[derive(Debug, Clone)]
 pub struct Sampler<const L: usize> {
     gain: f64,
-    /// Of every slave node: 1/area, x/lx and y/ly.
+    /// 1/area, x/lx and y/ly of every slave node.
     nodes: Field<L>,
-    /// Of every slave node after the last step: its smoothed stress, whether it was closed and whether it slipped.
+    /// For every slave node after the last step: its smoothed stress, whether it was closed and whether it
+    /// slipped.
     last: Field<L>,
     normal: [Smoother; L],
     /// The slave nodes that are always observed.
@@ -144,7 +145,7 @@ struct Totals<const L: usize> {
     maxima: [[f64; L]; MAXIMA],
 }
 
-/// What [`Totals::sums`] are of.
+/// Number and indices of [`Totals::sums`].
 const SUMS: usize = 10;
 const NORMAL: usize = 0;
 const TANGENTIAL: usize = 1;
@@ -157,7 +158,7 @@ const ALL_CLOSED: usize = 7;
 const ALL_SLIPPING: usize = 8;
 const TRANSITIONS: usize = 9;
 
-/// What [`Totals::maxima`] are of.
+/// Number and indices of [`Totals::maxima`].
 const MAXIMA: usize = 3;
 const STRESS: usize = 0;
 const SLIPPED: usize = 1;
@@ -187,7 +188,7 @@ impl<const L: usize> Sampler<L> {
         }
     }
 
-    /// The samples of the step that `state` has just done.
+    /// The samples of the last step of `state`.
     pub fn sample(&mut self, model: &Model, drives: &[Drive; L], state: &State<L>) -> [Sample; L] {
         let dt = model.time_step_s();
         let Totals { sums, maxima } = dispatch!(Level::new(), simd => self.add_up(simd, &state.contacts));
@@ -200,7 +201,7 @@ impl<const L: usize> Sampler<L> {
             contact_sideways_n: sums[SIDEWAYS][l],
             x_moment_n: sums[X_MOMENT][l],
             y_moment_n: sums[Y_MOMENT][l],
-            // The clamp's reaction acts on the pin against the friction of the disk.
+            // The clamp's reaction on the pin opposes the friction of the disk.
             clamp_tangential_n: -state.reaction_n[1][l],
             stick_deficit_n: sums[STICK_DEFICIT][l],
             slip_deficit_n: sums[SLIP_DEFICIT][l],
@@ -215,12 +216,12 @@ impl<const L: usize> Sampler<L> {
         })
     }
 
-    /// The gain of its smoothers.
+    /// The gain of the stress smoothers.
     pub fn gain(&self) -> f64 {
         self.gain
     }
 
-    /// One slave node of a lane during the step that `state` has just done.
+    /// One slave node of a lane during the last step of `state`.
     pub fn node(
         &self,
         slave: usize,
@@ -311,7 +312,7 @@ impl<const L: usize> Sampler<L> {
     }
 }
 
-/// Zeros forget the lane.
+/// A lane of zeros has no history.
 impl<const L: usize> LaneState for Sampler<L> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
         self.last.save_lane(lane, saved);

@@ -1,10 +1,10 @@
 //! When a sequence of cycles counts as a periodic steady state.
 //!
-//! A limit cycle may take several section crossings (a subharmonic, or a normal force with two humps
-//! per cycle), so groups of m = 1, 2, 3, 4 crossings are tried and the smallest m whose groups repeat
-//! is the cycle. The groups repeat when, over the last `cycles` of them, every figure stays within
-//! `tolerance` and its mean over the two halves within `drift_tolerance`. The amplitude of N is one
-//! of the figures: a slowly growing or decaying oscillation is not periodic however small it is.
+//! A limit cycle may have several section crossings (a subharmonic, or a normal force with two humps per
+//! cycle). Therefore groups of m = 1, 2, 3, 4 crossings are tried. The smallest m whose groups repeat gives
+//! the limit cycle. Groups repeat if, over the last `cycles` of them, the range of every figure is within
+//! `tolerance`, and its means over the two halves differ by at most `drift_tolerance`. The amplitude of N is
+//! one of the figures: a slowly growing or decaying oscillation is not periodic, however small it is.
 
 use super::cycles::Cycle;
 use super::figures::Figures;
@@ -19,11 +19,11 @@ const MAX_CROSSINGS: usize = 4;
 pub struct SteadyState {
     /// Section crossings per limit cycle.
     pub crossings_per_cycle: usize,
-    /// Section crossings in the window in which it was established.
+    /// Section crossings in the window in which the state was found.
     pub window_crossings: usize,
 }
 
-/// Looks for a periodic steady state at the end of `cycles`.
+/// Finds a periodic steady state at the end of `cycles`.
 pub fn find(cycles: &[Cycle], detection: &Detection) -> Option<SteadyState> {
     (1..=MAX_CROSSINGS).find_map(|m| {
         let window_crossings = m * detection.cycles;
@@ -33,31 +33,32 @@ pub fn find(cycles: &[Cycle], detection: &Detection) -> Option<SteadyState> {
     })
 }
 
-/// What keeps the end of a run from counting as periodic.
+/// Why the end of a run does not count as periodic.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Obstacle {
-    /// There are fewer section crossings than have to repeat.
+    /// There are fewer section crossings than must repeat.
     FewCycles {
-        /// How many there are.
+        /// Number of crossings.
         found: usize,
-        /// How many have to repeat.
+        /// Number of crossings that must repeat.
         needed: usize,
     },
-    /// All nodes slip all the time: there is growth or decay, and no limit cycle.
+    /// All nodes slip all the time: the oscillation grows or decays, and there is no limit cycle.
     SlipOnly,
-    /// A figure is not the same from cycle to cycle, whatever is taken for a cycle.
+    /// A figure differs from cycle to cycle, for every number of crossings per cycle.
     Unsteady {
-        /// The figure that is farthest from what is tolerated.
+        /// The figure that exceeds its tolerance most.
         figure: String,
-        /// Its largest minus its smallest value over the cycles; relative to the mean for period, stress and amplitude.
+        /// Its largest minus its smallest value over the cycles, relative to the mean for period, stress and
+        /// amplitude.
         spread: f64,
-        /// The difference of its means over the halves of them, likewise.
+        /// The difference of its means over the two halves of the cycles, relative in the same way.
         drift: f64,
     },
 }
 
-/// What keeps the end of `cycles` from being periodic, where [`find`] finds nothing.
+/// Why the end of `cycles` is not periodic, if [`find`] finds nothing.
 pub fn obstacle(cycles: &[Cycle], detection: &Detection) -> Obstacle {
     let few = Obstacle::FewCycles { found: cycles.len(), needed: detection.cycles };
     let attempts = (1..=MAX_CROSSINGS).filter_map(|m| {
@@ -69,7 +70,7 @@ pub fn obstacle(cycles: &[Cycle], detection: &Detection) -> Obstacle {
         let excesses = (0..FIGURES).map(|f| (Variation::of(&groups, f).excess(detection), f));
         let (excess, f) = excesses.max_by(|a, b| a.0.total_cmp(&b.0))?;
         let Variation { spread, drift, scale } = Variation::of(&groups, f);
-        // Infinity has no form in a record.
+        // A record cannot store infinity.
         let relative = |x: f64| if scale > 0.0 { x / scale } else { 0.0 };
         let figure = NAMES[f].to_owned();
         Some((excess, Obstacle::Unsteady { figure, spread: relative(spread), drift: relative(drift) }))
@@ -79,7 +80,7 @@ pub fn obstacle(cycles: &[Cycle], detection: &Detection) -> Obstacle {
 
 /// Number of figures compared.
 const FIGURES: usize = 8;
-/// Their names.
+/// Names of the compared figures.
 const NAMES: [&str; FIGURES] = [
     "mu_star",
     "n_over_f",
@@ -112,7 +113,7 @@ fn repeats(groups: &[[f64; FIGURES]], detection: &Detection) -> bool {
     !slips_only(groups) && (0..FIGURES).all(|f| Variation::of(groups, f).is_tolerated(detection))
 }
 
-/// All nodes slipping all the time is linear: it has no limit cycle, only growth or decay.
+/// Whether all nodes slip all the time. Such sliding is linear: it grows or decays, and has no limit cycle.
 fn slips_only(groups: &[[f64; FIGURES]]) -> bool {
     let slip = 3;
     groups.iter().all(|group| group[slip] >= 1.0)
@@ -143,17 +144,17 @@ impl Variation {
             && self.drift <= detection.drift_tolerance * self.scale
     }
 
-    /// Spread or drift over what is tolerated, whichever is larger.
+    /// The larger of spread and drift, each over its tolerance.
     fn excess(&self, detection: &Detection) -> f64 {
         let over = |x: f64, tolerance: f64| if x == 0.0 { 0.0 } else { x / (tolerance * self.scale) };
         over(self.spread, detection.tolerance).max(over(self.drift, detection.drift_tolerance))
     }
 }
 
-/// Frequency [Hz] of the fundamental over consecutive `cycles`, `crossings` of which make a limit cycle.
+/// Frequency \[Hz\] of the fundamental over consecutive `cycles`. A limit cycle has `crossings` of them.
 ///
 /// # Panics
-/// Unless `cycles` are whole limit cycles, at least one.
+/// Unless `cycles` are one or more whole limit cycles.
 pub fn frequency_hz(cycles: &[Cycle], crossings: usize) -> f64 {
     assert!(!cycles.is_empty() && cycles.len().is_multiple_of(crossings), "whole limit cycles");
     let groups: Vec<_> = cycles.chunks_exact(crossings).collect();
@@ -163,15 +164,15 @@ pub fn frequency_hz(cycles: &[Cycle], crossings: usize) -> f64 {
 
 /// Periods of the fundamental per section crossing, 1/d.
 ///
-/// Passages that differ by more than a fifth, in duration or in how far N goes above or below F, are
-/// humps of one cycle. A limit cycle of m crossings of which every d-th is alike is a cycle of d humps,
-/// slightly subharmonic: its normal force still has its strongest low line at 1/d of the crossing
-/// frequency, and that is the one reported. So d is the smallest divisor of m for which all passages at
-/// a distance of d are alike.
+/// Two [`Cycle`]s are alike if they differ by at most a fifth, in duration and in how far N goes above and
+/// below F. Those that are not alike are humps of one limit cycle. d is the smallest divisor of m for which
+/// all of them at a distance of d are alike. A limit cycle of m crossings is then a cycle of d humps with a
+/// slight subharmonic. Its normal force still has its strongest low line at 1/d of the crossing frequency,
+/// and that line is reported.
 fn fundamental_per_crossing(groups: &[&[Cycle]]) -> f64 {
     const ALIKE: f64 = 0.2;
     let m = groups[0].len();
-    // Duration, highest and lowest N of the passage at each position, as means over all groups.
+    // Duration, highest and lowest N − F at each position, as means over all groups.
     let passages: Vec<[f64; 3]> = (0..m)
         .map(|position| {
             let figures = groups.iter().map(|group| {
@@ -201,8 +202,8 @@ fn fundamental_per_crossing(groups: &[&[Cycle]]) -> f64 {
     1.0 / humps as f64
 }
 
-/// Standard error of the mean of consecutive, correlated `values`: from the means of ⌊√n⌋ batches.
-/// At least two batches; zero for a single value, which says nothing.
+/// Standard error of the mean of consecutive, correlated `values`, from the means of ⌊√n⌋ batches, at least
+/// two. It is zero for a single value, from which no error can be estimated.
 pub fn standard_error(values: &[f64]) -> f64 {
     if values.len() < 2 {
         return 0.0;

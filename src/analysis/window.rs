@@ -1,4 +1,4 @@
-//! The windows of a run that figures can be taken from.
+//! The windows of a run over which figures are averaged.
 
 use super::figures::Figures;
 use super::sample::Sample;
@@ -6,14 +6,14 @@ use crate::solver::energy::Energies;
 use serde::{Deserialize, Serialize};
 use std::collections::VecDeque;
 
-/// The last part of a run that ends at its time limit.
+/// The window at the end of a run that reaches its time limit.
 #[derive(Serialize, Deserialize)]
 pub(super) struct LateWindow {
-    /// Where it starts [s].
+    /// Where it starts \[s\].
     pub start_s: f64,
     /// Figures of its steps.
     pub figures: Figures,
-    /// Energies at its first step, once there is one.
+    /// Energies at its first step; none before that step.
     pub energies: Option<Energies>,
 }
 
@@ -23,7 +23,7 @@ impl LateWindow {
         Self { start_s, figures: Figures::EMPTY, energies: None }
     }
 
-    /// Adds a step, if it is late enough.
+    /// Adds a step if it lies in the window.
     pub fn push(&mut self, sample: &Sample, energies: &Energies) {
         if sample.time_s >= self.start_s {
             self.figures.add(sample, 1.0);
@@ -32,7 +32,7 @@ impl LateWindow {
     }
 }
 
-/// The last observation time, in equal blocks of steps.
+/// The last observation time, divided into equal blocks of steps.
 #[derive(Serialize, Deserialize)]
 pub(super) struct Trailing {
     steps_per_block: u64,
@@ -40,7 +40,7 @@ pub(super) struct Trailing {
     blocks: VecDeque<Block>,
 }
 
-/// Some consecutive steps.
+/// A block of consecutive steps.
 #[derive(Serialize, Deserialize)]
 struct Block {
     start_s: f64,
@@ -50,7 +50,7 @@ struct Block {
 }
 
 impl Trailing {
-    /// Blocks per observation time: so many that a Hann taper over them is smooth.
+    /// Blocks per observation time. There are so many of them that a Hann taper over them is smooth.
     const BLOCKS: usize = 64;
 
     pub fn new(observation_s: f64, time_step_s: f64) -> Self {
@@ -88,18 +88,18 @@ impl Trailing {
     }
 }
 
-/// The window that the figures are taken from.
+/// The window over which the figures of a record are averaged.
 pub(super) struct Window {
-    /// Where it starts [s].
+    /// Where it starts \[s\].
     pub start_s: f64,
     /// Figures of its steps.
     pub figures: Figures,
     /// Energies at its start.
     pub energies: Energies,
-    /// T/F of the parts of which the mean's standard error is taken.
+    /// T/F of the parts of the window. They give the standard error of the mean.
     pub mu_star_parts: Vec<f64>,
-    /// Limit cycles.
+    /// Number of limit cycles.
     pub cycles: usize,
-    /// Fundamental frequency [Hz] of N.
+    /// Fundamental frequency \[Hz\] of N.
     pub frequency_hz: Option<f64>,
 }

@@ -6,7 +6,8 @@ use tribosweep::analysis::batch::Batch;
 use tribosweep::analysis::{Unobserved, solve};
 use tribosweep::spec::{DiskKind, JobSpec};
 
-/// Jobs of one model that differ in all that may: friction, speed, load, ramp, length, and whether they stop early.
+/// Jobs of one model. They differ in everything that may differ: friction, speed, load, ramp, length, and
+/// early stop.
 fn jobs(disk: DiskKind) -> Vec<JobSpec> {
     (0..11)
         .map(|i| {
@@ -34,14 +35,14 @@ fn alone(job: &JobSpec) -> String {
     serde_json::to_string(&solve(job, &mut Unobserved).unwrap()).unwrap()
 }
 
-/// Protects: a job's record is the same bytes whether it runs alone or beside others, in whatever lane, begun when
-/// others are in the middle, moved to more lanes when others come and to fewer when they end.
+/// Protects: a job's record has the same bytes alone and beside others, in any lane. Jobs begin while others
+/// are in the middle of their runs. They move to more lanes when others begin, and to fewer when others end.
 #[test]
 fn companions_change_nothing() {
     companions_change_nothing_on(DiskKind::Rigid);
 }
 
-/// Protects: the same on an elastic disk, over which lanes of different speed are at different places.
+/// Protects: the same on an elastic disk. Lanes of different speed have their pins at different places on it.
 #[test]
 fn companions_change_nothing_on_an_elastic_disk() {
     companions_change_nothing_on(DiskKind::Elastic);
@@ -55,7 +56,8 @@ fn companions_change_nothing_on(disk: DiskKind) {
     let mut waiting = jobs.iter().enumerate();
     let (mut turns, mut widths) = (0, std::collections::BTreeSet::new());
     while found.len() < jobs.len() {
-        // One more every third turn: begun at different steps, up to all lanes.
+        // Every third turn one more job begins, until all lanes are full. So the jobs begin at different
+        // steps.
         if turns % 3 == 0 && batch.jobs() < batch.widest() {
             match waiting.next() {
                 Some((ticket, job)) => batch.begin(ticket as u64, job.clone()).unwrap(),
@@ -74,14 +76,15 @@ fn companions_change_nothing_on(disk: DiskKind) {
     }
 }
 
-/// Protects: a job that is kept at any audit and goes on in another batch, in another lane beside others, and again from
-/// there, has the bytes of a run in one go: its analysis (cycles, watch for a decay, averages) goes on, too.
+/// Protects: a job that is saved at an audit and continues in another batch, in another lane beside others,
+/// gives the bytes of an uninterrupted run, also after several such interruptions. Its analysis (cycles,
+/// decay monitor, averages) continues, too.
 #[test]
 fn a_resumed_job_has_the_same_bits() {
     resumed_jobs_have_the_same_bits(DiskKind::Rigid);
 }
 
-/// Protects: the same on an elastic disk, whose state is kept with the job's.
+/// Protects: the same on an elastic disk, whose state is part of the checkpoint.
 #[test]
 fn a_resumed_job_on_an_elastic_disk_has_the_same_bits() {
     resumed_jobs_have_the_same_bits(DiskKind::Elastic);
@@ -89,7 +92,7 @@ fn a_resumed_job_on_an_elastic_disk_has_the_same_bits() {
 
 fn resumed_jobs_have_the_same_bits(disk: DiskKind) {
     let mut jobs = jobs(disk);
-    // Judged stable, after an observation that is interrupted.
+    // This job is found stable after an observation that is interrupted.
     jobs[3].detection.decay_observation_s = 0.0026;
     jobs[3].run.limit_s = 0.012;
     jobs[3].scene.contact.mu = 0.2;
@@ -108,7 +111,7 @@ fn resumed_jobs_have_the_same_bits(disk: DiskKind) {
                 if turns % pause == 0 && resumed < 40 {
                     let kept = batch.checkpoint(1).unwrap();
                     batch = Batch::new(&jobs[job]).unwrap();
-                    // The companion is at another step, and the job in another lane than before.
+                    // The companion is at another step, and the job is in another lane than before.
                     if resumed % 2 == 0 {
                         batch.begin(9, jobs[1].clone()).unwrap();
                         batch.advance();
@@ -127,7 +130,8 @@ fn resumed_jobs_have_the_same_bits(disk: DiskKind) {
     assert!(alone(&jobs[3]).contains("decayed"), "the watch for a decay was among it");
 }
 
-/// Protects: a checkpoint that is not one of this model is refused, and the lane takes the job from its beginning.
+/// Protects: a checkpoint of another model is refused, and the batch can still run the job from its
+/// beginning.
 #[test]
 fn a_foreign_checkpoint_is_refused() {
     let job = coarse();
@@ -151,7 +155,8 @@ fn a_foreign_checkpoint_is_refused() {
     assert_eq!(serde_json::to_string(&ended.remove(0).result.unwrap()).unwrap(), alone(&job));
 }
 
-/// Protects: a job that is refused as it begins ends with the error that it has alone; the lane takes another one.
+/// Protects: a job that is refused at its beginning ends with the same error as alone, and its lane is free
+/// for another job.
 #[test]
 fn a_refused_job_leaves_its_lane_free() {
     let good = coarse();
@@ -169,7 +174,7 @@ fn a_refused_job_leaves_its_lane_free() {
     assert_eq!((ended.ticket, serde_json::to_string(&ended.result.unwrap()).unwrap()), (2, alone(&good)));
 }
 
-/// Protects: what cannot be advanced together is told apart.
+/// Protects: a batch accepts the jobs of its own model and no others.
 #[test]
 fn jobs_of_other_models_are_not_taken() {
     let job = coarse();

@@ -22,7 +22,7 @@ fn monitor() -> DecayMonitor {
     DecayMonitor::new(STEP_S, 0.0, &Detection::default(), ROUNDING)
 }
 
-/// Time [s] at which sliding with these lines is first declared decaying, and the rate then.
+/// Time [s] at which sliding with these lines is first declared decaying, and the measured rate.
 fn declared(lines: &[Line], duration_s: f64) -> Option<(f64, f64)> {
     let mut monitor = monitor();
     (0..(duration_s / STEP_S) as usize).find_map(|n| {
@@ -33,9 +33,9 @@ fn declared(lines: &[Line], duration_s: f64) -> Option<(f64, f64)> {
     })
 }
 
-/// Protects: one damped line is declared after the observation time, with its own rate, whatever its
-/// frequency, amplitude, rate and phase. The logarithm of a line's amplitude is linear but for the
-/// window's side lobes (1e-7), so 1 % of the rate (or 0.01 /s) is generous.
+/// Protects: sliding with one damped line is declared decaying after the observation time, with the rate of
+/// that line, for any frequency, amplitude, rate and phase. The logarithm of a line's amplitude is linear
+/// except for the window's side lobes (1e-7), so a tolerance of 1 % of the rate (or 0.01 /s) is generous.
 #[test]
 fn a_damped_line_decays_at_its_rate() {
     let mut random = Random(11);
@@ -49,7 +49,7 @@ fn a_damped_line_decays_at_its_rate() {
     }
 }
 
-/// Protects: of several well separated lines the slowest strong one gives the rate, to 3 %.
+/// Protects: of several well separated strong lines, the one that decays slowest gives the rate, to 3 %.
 #[test]
 fn the_slowest_of_several_lines_gives_the_rate() {
     let mut random = Random(12);
@@ -68,8 +68,9 @@ fn the_slowest_of_several_lines_gives_the_rate() {
     }
 }
 
-/// Protects: a growing line is never overlooked, however weak beside a decaying one (down to 1e-6),
-/// far away from it or only 1.5 kHz. It must not be declared at any time of the run.
+/// Protects: a growing line is always detected, even if it is weak beside a decaying one (down to 1e-6), and
+/// whether it is far away from it or only 1.5 kHz. Sliding must not be declared decaying at any time of the
+/// run.
 #[test]
 fn a_weak_growing_line_is_not_overlooked() {
     let mut random = Random(13);
@@ -93,7 +94,7 @@ fn a_weak_growing_line_is_not_overlooked() {
     }
 }
 
-/// Protects: an undamped line, with or without rounding noise, is not a decaying one.
+/// Protects: sliding with an undamped line, with or without rounding noise, is not declared decaying.
 #[test]
 fn an_undamped_line_does_not_decay() {
     let mut random = Random(14);
@@ -111,8 +112,8 @@ fn an_undamped_line_does_not_decay() {
     }
 }
 
-/// Protects: two undamped or growing lines whose beat falls for a while are not decaying. Beats of at
-/// least 150 Hz have more than a period in the observation of 8 ms.
+/// Protects: two undamped or growing lines whose beat falls for a while are not declared decaying. Beats of
+/// at least 150 Hz have more than one period in the observation of 8 ms.
 #[test]
 fn a_falling_beat_is_not_a_decay() {
     let mut random = Random(15);
@@ -125,10 +126,10 @@ fn a_falling_beat_is_not_a_decay() {
     }
 }
 
-/// Protects: two close decaying lines beat but are declared in the end, with a negative rate. From
-/// 500 Hz on, two periods of the beat in a long stretch, it is the slower one's to a tenth; below,
-/// the beat itself is part of what is measured and the rate only has to be between half the slower and
-/// the faster one.
+/// Protects: two close decaying lines beat, but they are declared decaying in the end, with a negative rate.
+/// From 500 Hz on (two periods of the beat in a long stretch) this is the rate of the slower line, to a
+/// tenth. Below 500 Hz the beat itself is part of the measurement. There the rate only has to be between half
+/// that of the slower line and that of the faster line.
 #[test]
 fn beating_decaying_lines_are_declared() {
     let mut random = Random(16);
@@ -144,8 +145,8 @@ fn beating_decaying_lines_are_declared() {
     }
 }
 
-/// Protects: no oscillation at all, and one that falls to rounding at once, count as decaying, with a
-/// finite rate that is not positive.
+/// Protects: sliding without any oscillation, or with one that falls to rounding at once, is declared
+/// decaying, with a finite rate that is not positive.
 #[test]
 fn nothing_left_is_decaying() {
     for lines in [&[][..], &[Line(1.0, 15.0e3, -2.0e4, 0.0)], &[Line(1.0e-13, 15.0e3, 0.0, 0.0)]] {
@@ -157,8 +158,8 @@ fn nothing_left_is_decaying() {
     assert!(decaying && constant.growth_rate_per_s().is_none(), "nothing ever moved: no rate");
 }
 
-/// Protects: the rate stays the measured one after the oscillation has fallen to rounding (1e-11 is
-/// reached after 25 ms at −1000 /s).
+/// Protects: the measured rate remains after the oscillation has fallen to rounding (at −1000 /s it reaches
+/// 1e-11 after 25 ms).
 #[test]
 fn the_rate_outlives_the_oscillation() {
     let mut monitor = monitor();
@@ -170,7 +171,7 @@ fn the_rate_outlives_the_oscillation() {
     assert!((found / -1000.0 - 1.0).abs() < 0.03, "{found}");
 }
 
-/// Protects: a single node that sticks or separates in a single step starts the observation anew.
+/// Protects: one node that sticks or separates in one step starts the observation anew.
 #[test]
 fn stick_or_separation_starts_anew() {
     for (stick, separated) in [(1, 0), (0, 1)] {
@@ -196,8 +197,8 @@ fn stick_or_separation_starts_anew() {
     }
 }
 
-/// Protects: nothing is judged during the load's ramp, and an observation time far beyond any run
-/// costs nothing and declares nothing.
+/// Protects: no decay is declared during the load's ramp. An observation time far beyond any run needs no
+/// memory and declares nothing.
 #[test]
 fn ramp_and_endless_observation() {
     let mut ramped = DecayMonitor::new(STEP_S, 1.0, &Detection::default(), ROUNDING);
@@ -209,8 +210,8 @@ fn ramp_and_endless_observation() {
     }
 }
 
-/// Protects: a mode that is odd across the pin is seen although the total normal force hides it: here the
-/// moment of N grows while N itself decays.
+/// Protects: a mode that is odd across the pin is detected although the total normal force does not show it.
+/// Here the moment of N grows while N itself decays.
 #[test]
 fn a_growing_tilt_is_not_overlooked() {
     for tilt in [1.0e-9, 1.0e-4] {

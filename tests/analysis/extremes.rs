@@ -1,11 +1,11 @@
-//! Short runs and extreme but legal inputs: a record without NaN, or a clean error.
+//! Short runs and extreme but legal inputs. They give a record without NaN, or a clear error.
 
 use crate::signals::coarse;
 use tribosweep::analysis::{JobError, JobRecord, Outcome, Regime, Unobserved, solve};
 use tribosweep::solver::SolverError;
 use tribosweep::spec::{ClampSide, JobSpec, TopFace};
 
-/// The record after a round trip through JSON, where NaN and ∞ would become null and be refused.
+/// The record after a round trip through JSON. JSON would store NaN and ∞ as null, which cannot be read back.
 fn finite_record(what: &str, spec: &JobSpec) -> JobRecord {
     let record = solve(spec, &mut Unobserved).unwrap_or_else(|e| panic!("{what}: {e}"));
     let json = serde_json::to_string(&record).unwrap();
@@ -26,7 +26,8 @@ fn changed(change: impl FnOnce(&mut JobSpec)) -> JobSpec {
     spec
 }
 
-/// Protects: a run that is too short to settle says so, with finite figures.
+/// Protects: a run that is too short to become periodic or to decay is reported as not periodic, with finite
+/// figures.
 #[test]
 fn runs_too_short_to_settle() {
     let cases: [(&str, JobSpec); 9] = [
@@ -46,8 +47,8 @@ fn runs_too_short_to_settle() {
     }
 }
 
-/// Protects: runs that decay before the window of the last part begins, with hardly a cycle in them
-/// (strong damping, no friction), have figures all the same: μ* = μ less the disk's curvature.
+/// Protects: a run that decays before the window of the last part begins, with hardly a cycle in it (strong
+/// damping), still has figures. μ* is μ less the effect of the disk's curvature.
 #[test]
 fn decayed_runs_without_cycles() {
     for mu in [0.0, 0.1] {
@@ -65,8 +66,8 @@ fn decayed_runs_without_cycles() {
     }
 }
 
-/// Protects: an observation too short to see the pin's own oscillations grow is refused, so that no
-/// sliding is called stable on its evidence.
+/// Protects: an observation that is too short to show a growth of the pin's own oscillations is refused.
+/// Otherwise sliding could be called stable without evidence.
 #[test]
 fn an_observation_of_nothing_is_refused() {
     for observation_s in [1.0e-300, 1.0e-4, 2.4e-3] {
@@ -79,7 +80,7 @@ fn an_observation_of_nothing_is_refused() {
     }
 }
 
-/// Protects: extreme but legal inputs end in a finite record, or in a refusal that says why.
+/// Protects: extreme but legal inputs give a finite record, or an error that names the reason.
 #[test]
 fn extreme_inputs() {
     let cases: [(&str, JobSpec); 19] = [
@@ -142,8 +143,8 @@ fn extreme_inputs() {
     }
 }
 
-/// Protects: an instability that is odd across a symmetrically clamped pin, and so invisible in the total
-/// normal force, is not called stable: this job's sideways motion grows from 9 ms on.
+/// Protects: an instability that is odd across a symmetrically clamped pin is not called stable, although the
+/// total normal force does not show it. The sideways motion of this job grows from 9 ms on.
 #[test]
 fn an_odd_instability_is_not_stable() {
     let spec = changed(|s| {
@@ -156,8 +157,8 @@ fn an_odd_instability_is_not_stable() {
     assert_ne!(finite_record("odd mode", &spec).outcome, Outcome::Decayed);
 }
 
-/// Protects: steady sliding with a corner that stays lifted is as linear as any: its decay is measured and
-/// it is stable, not a squeal.
+/// Protects: steady sliding with a corner that stays lifted is linear, too. Its decay is measured, and it is
+/// called stable, not squeal.
 #[test]
 fn a_lifted_corner_may_be_stable() {
     let spec = changed(|s| {

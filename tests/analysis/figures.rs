@@ -45,7 +45,7 @@ fn ratios(figures: &Figures) -> [f64; 8] {
     ]
 }
 
-/// Protects: shares sum to one, whatever the weights.
+/// Protects: the shares sum to one for any weights.
 #[test]
 fn shares_sum_to_one() {
     let mut figures = Figures::EMPTY;
@@ -55,8 +55,8 @@ fn shares_sum_to_one() {
     }
 }
 
-/// Protects: merging windows is adding all their samples: sums to rounding (1000 additions of either
-/// sign), extremes exactly.
+/// Protects: merging windows gives the same as adding all their samples. Sums agree to rounding (1000
+/// additions of either sign), extremes exactly.
 #[test]
 fn merged_equals_adding_all() {
     let samples = random_samples(1000);
@@ -72,9 +72,9 @@ fn merged_equals_adding_all() {
     }
 }
 
-/// Protects: the taper. T/F oscillates by ±0.1 with a period of 7.3 windows, 5.48 of which are in the
-/// 40 windows: the plain mean is off by up to 0.1/(π·5.48) = 6 · 10⁻³; under the taper the leakage is
-/// 1/(1 − 5.48²) = 1/29 of that, 2 · 10⁻⁴.
+/// Protects: the taper removes an unfinished oscillation from the mean. T/F oscillates by ±0.1 with a period
+/// of 7.3 windows, so the 40 windows contain 5.48 periods. The plain mean is off by up to 0.1/(π·5.48) =
+/// 6·10⁻³. Under the taper the leakage is 1/(1 − 5.48²) = 1/29 of that, 2·10⁻⁴.
 #[test]
 fn tapered_mean_kills_an_unfinished_oscillation() {
     let mut worst = [0.0_f64; 2];
@@ -103,7 +103,7 @@ fn tapered_mean_kills_an_unfinished_oscillation() {
     assert!(worst[1] < 3.0e-4, "{worst:?}");
 }
 
-/// Protects: whatever is empty is said to be, and has finite figures.
+/// Protects: an empty window is recognised as empty, and its figures are finite.
 #[test]
 fn an_empty_window_is_finite() {
     assert!(Figures::EMPTY.is_empty());
@@ -111,10 +111,10 @@ fn an_empty_window_is_finite() {
     assert!(ratios(&Figures::EMPTY).iter().all(|ratio| ratio.is_finite()), "{:?}", ratios(&Figures::EMPTY));
 }
 
-/// Protects: the step in which a cycle ends is shared without loss: the mean over consecutive cycles
-/// is the integral of the samples (each standing for the step that ends at it) between the first and
-/// the last crossing. T is a straight line here, so a step counted twice or not at all would show:
-/// ⟨T⟩/F = ½(start + end) + half a step, to rounding.
+/// Protects: the step in which a cycle ends is divided between the two cycles without loss. So the mean over
+/// consecutive cycles is the integral of the samples between the first and the last crossing. Each sample
+/// stands for the step that ends at it. T is a straight line here, so a step that is counted twice or not at
+/// all would show: ⟨T⟩/F = ½(start + end) + half a step, to rounding.
 #[test]
 fn cycles_share_their_last_step() {
     let cycles = cut(STEP_S, 0.005, |t| {
@@ -129,7 +129,7 @@ fn cycles_share_their_last_step() {
     for window in [&cycles[..], &cycles[3..4], &cycles[7..29]] {
         let (start_s, end_s) = (window[0].start_s, window[window.len() - 1].end_s);
         let found = Figures::merged(window.iter().map(|cycle| &cycle.figures)).mu_star();
-        // The samples stand for staircase steps: their integral between two fractions θ of a step.
+        // The samples form a staircase. This is its integral up to a time with the fraction θ of a step.
         let stairs = |time_s: f64| {
             let whole = (time_s / STEP_S).floor();
             let theta = time_s / STEP_S - whole;

@@ -16,9 +16,9 @@ fn assert_near(found_hz: f64, tolerance_hz: f64, what: &str) {
     assert!((found_hz - SQUEAL_HZ).abs() < tolerance_hz, "{what}: {found_hz} Hz");
 }
 
-/// Protects: the interpolated crossings of a sinusoid of any size, on any grid. Linear interpolation
-/// misses the crossing of a sinusoid by at most ω²Δt³/8 < 6 ns for Δt ≤ 1.75 µs; two such errors over
-/// 20 cycles are 0.12 Hz.
+/// Protects: the interpolated crossings give the frequency of a sinusoid of any amplitude, for any time step.
+/// Linear interpolation misses the crossing of a sinusoid by at most ω²Δt³/8 < 6 ns for Δt ≤ 1.75 µs. Two
+/// such errors over 20 cycles are 0.12 Hz.
 #[test]
 fn a_sinusoid_on_any_grid() {
     let mut random = Random(1);
@@ -33,9 +33,9 @@ fn a_sinusoid_on_any_grid() {
     }
 }
 
-/// Protects: strong harmonics (30 % and 20 %) neither add crossings nor bias the frequency. Behind the
-/// section filters |x''/x'| is below 2ω at the crossing, so an interpolated crossing is off by at most
-/// 2ωΔt²/8 = 17 ns: 0.4 Hz over 20 cycles.
+/// Protects: strong harmonics (30 % and 20 %) neither add crossings nor bias the frequency. After the section
+/// filters |x''/x'| is below 2ω at the crossing, so an interpolated crossing is off by at most 2ωΔt²/8 = 17
+/// ns. This is 0.4 Hz over 20 cycles.
 #[test]
 fn strong_harmonics() {
     for eighth in 0..8 {
@@ -60,19 +60,20 @@ fn spiky(height: f64, phase: f64) -> Vec<Cycle> {
     })
 }
 
-/// Protects: one-step impact spikes (which fall on the grid, so they jitter by a step) at any phase.
-/// Behind the filters a spike of height h is h Δt t/τ² exp(−t/τ), τ = 6.4 µs, of slope at most
-/// hΔt/τ² = 0.062 F/µs for h = 3; shifted by a step it moves the crossing (slope ≥ 0.055 F/µs) by
-/// less than 1 µs: 10 Hz over 20 cycles. The filters delay the crossing to the phase 0.17; of a spike
-/// half a cycle or more before the next one (phases 0.2 to 0.65) only 2 % is left there.
-/// A spike in the trough may make a hump of its own; the fundamental stays.
+/// Protects: impact spikes of one step, at any phase, barely change the frequency. They fall on the time
+/// steps, so they jitter by a step. After the filters a spike of height h is h Δt t/τ² exp(−t/τ) with τ = 6.4
+/// µs. Its slope is at most hΔt/τ² = 0.062 F/µs for h = 3. A spike that is shifted by a step moves the
+/// crossing (slope ≥ 0.055 F/µs) by less than 1 µs: 10 Hz over 20 cycles. The filters delay the crossing to
+/// the phase 0.17. Of a spike that comes half a cycle or more before the next crossing (phases 0.2 to 0.65),
+/// only 2 % is left there. A spike in the trough may cause a hump of its own, but the fundamental remains.
 #[test]
 fn impact_spikes() {
     for twentieth in 0..20 {
         let phase = f64::from(twentieth) / 20.0;
         let cycles = spiky(3.0, phase);
         let tolerance_hz = if (0.2..0.66).contains(&phase) { 1.0 } else { 10.0 };
-        // The spikes' jitter may keep the window from being periodic; the frequency rule must hold all the same.
+        // The jitter of the spikes may keep the window from being periodic. The frequency must be right in
+        // this case, too.
         let hz = steady::find(&cycles, &Detection::default()).map_or_else(
             || {
                 let crossings = if cycles.len() > 100 { 2 } else { 1 };
@@ -85,7 +86,7 @@ fn impact_spikes() {
     }
 }
 
-/// Protects: two unequal humps per cycle are one cycle: the fundamental is reported, not the harmonic.
+/// Protects: two unequal humps are one cycle. The fundamental is reported, not the harmonic.
 #[test]
 fn two_unequal_humps_are_one_cycle() {
     for (second, phase) in [(1.3, 0.3), (1.6, 1.0), (2.0, -0.5), (1.5, 2.0), (2.0, 3.0), (2.0, 1.3)] {
@@ -99,8 +100,8 @@ fn two_unequal_humps_are_one_cycle() {
     }
 }
 
-/// Protects: a slightly period-doubled N (every other cycle 6 % higher) has a limit cycle of two
-/// crossings but keeps the crossing frequency.
+/// Protects: a slightly period-doubled N (every second cycle is 6 % higher) has a limit cycle of two
+/// crossings, but the reported frequency is still that of the crossings.
 #[test]
 fn a_slight_period_doubling_keeps_the_frequency() {
     let cycles = cut(STEP_S, 0.006, |t| {
@@ -111,8 +112,8 @@ fn a_slight_period_doubling_keeps_the_frequency() {
     assert_near(hz, 1.0, "period doubled");
 }
 
-/// Protects: two unequal humps whose cycle is slightly period-doubled: four crossings make the limit
-/// cycle, and the fundamental is every second one, not every fourth.
+/// Protects: if the cycle of two unequal humps is slightly period-doubled, the limit cycle has four
+/// crossings. The period of the fundamental is that of two crossings, not of four.
 #[test]
 fn a_slight_period_doubling_of_two_humps_keeps_the_fundamental() {
     let cycles = cut(STEP_S, 0.012, |t| {
@@ -124,7 +125,7 @@ fn a_slight_period_doubling_of_two_humps_keeps_the_fundamental() {
     assert_near(hz, 1.0, "doubled humps");
 }
 
-/// Protects: after a violent start a small limit cycle is still cut into cycles: the memory of the
+/// Protects: after a violent start, a small limit cycle is still divided into cycles. The memory of the
 /// start's amplitude must fade (here the filters themselves start a whole F below).
 #[test]
 fn a_small_cycle_after_a_violent_start() {

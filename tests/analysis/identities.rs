@@ -1,4 +1,4 @@
-//! Identities and the stopping rule in real, coarse runs.
+//! The identities and the early stop in real, but coarse runs.
 
 use crate::signals::coarse;
 use tribosweep::analysis::{JobRecord, Outcome, Unobserved, solve};
@@ -12,11 +12,11 @@ fn spec(omega_rpm: f64, mu: f64) -> JobSpec {
     spec
 }
 
-/// What averaging over a window can be off by, in units of T/F. Over the window the pin's momentum
-/// changes by at most (a) what the tolerance of the periodic state leaves, `tolerance` × aF/ω with a
-/// half the range of N/F and ω the cycle's angular frequency (all of aF/ω when not periodic), and (b) half
-/// a step of the force at each end, because a step is the smallest part of a cycle's end. N counts
-/// μ-fold, T once.
+/// Largest error of an average over a window, in units of T/F. Over the window the pin's momentum changes by
+/// at most two contributions. (a) The tolerance of the periodic state allows `tolerance` × aF/ω, where a is
+/// half the range of N/F and ω the cycle's angular frequency (all of aF/ω if the run is not periodic). (b)
+/// The ends of a cycle are resolved to a step, which allows half a step of the force at each end. N
+/// enters with the factor μ, T with the factor 1.
 fn averaging_error(spec: &JobSpec, record: &JobRecord) -> f64 {
     let duration_s = record.simulated_s - record.window_start_s;
     let half_range = (record.n_over_f_max - record.n_over_f_min) / 2.0;
@@ -36,16 +36,17 @@ fn check(spec: &JobSpec, record: &JobRecord) {
     assert!((spec.scene.contact.mu - record.mu_star - reduction).abs() < error, "bound {error}; {what}");
     let shares = record.stick_share + record.slip_share + record.separated_share;
     assert!((shares - 1.0).abs() < 1e-12, "{what}");
-    // The ledger closes to rounding but for the damping's work, which is a sum over every 16th step: of
-    // 20 cycles some 100 samples, of a power that swings by its own size: 10 %, twice that is allowed.
+    // The ledger closes to rounding except for the damping's work, which is a sum over every 16th step: some
+    // 100 samples in 20 cycles. The power varies by its own size, so the sum has an error of 10 %. Twice that
+    // is allowed.
     let damping = record.energy.damping_j / record.energy.drive_work_j;
     assert!(record.energy_identity_residual.abs() < 0.2 * damping + 1e-9, "damping {damping}; {what}");
     assert!(record.energy_residual < 0.2 * damping + 1e-9, "damping {damping}; {what}");
 }
 
-/// Protects: both identities, μ* from the contact, and that stopping at the periodic state (or at a
-/// decay) does not change the result: μ* within 0.003 and the frequency within 0.2 % of what the last
-/// 40 % of a run of 40 ms say.
+/// Protects: both identities hold, and μ* from the contact forces agrees. An early stop at the periodic state
+/// (or at a decay) does not change the result: μ* is within 0.003 and the frequency within 0.2 % of the
+/// values from the last 40 % of a run of 40 ms.
 #[test]
 fn identities_hold_and_stopping_early_changes_nothing() {
     for (omega_rpm, mu) in [

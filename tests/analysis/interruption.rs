@@ -1,10 +1,10 @@
-//! What an observer can do.
+//! An observer interrupts a job.
 
 use crate::signals::coarse;
 use std::ops::ControlFlow;
 use tribosweep::analysis::{JobError, JobObserver, Moment, solve};
 
-/// Asks to stop from a simulated time on; counts the steps and looks at their times.
+/// Interrupts the job at a simulated time. It counts the steps and checks that their times increase.
 struct StopsAt {
     stop_s: f64,
     steps: u64,
@@ -40,8 +40,8 @@ fn interrupted_at(stop_s: f64) -> StopsAt {
     observer
 }
 
-/// Protects: an interrupted job ends as such, with no step after the request, and the request can be
-/// made at least every 100 steps.
+/// Protects: an interrupted job ends with the error `Interrupted` and does no step after the request. A
+/// request is possible at least every 100 steps.
 #[test]
 fn interruption_is_prompt() {
     let first = interrupted_at(0.0);

@@ -1,4 +1,4 @@
-//! What the analysis finds in known signals and in short runs.
+//! Tests of the analysis with known signals and in short runs.
 
 mod batch;
 mod decay;

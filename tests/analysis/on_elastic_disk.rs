@@ -1,4 +1,4 @@
-//! What the analysis says of jobs on an elastic disk.
+//! The analysis of jobs on an elastic disk.
 
 use crate::signals::coarse;
 use tribosweep::analysis::{JobRecord, Outcome, Regime, Unobserved, solve};
@@ -18,8 +18,8 @@ fn on(disk: DiskKind, mut job: JobSpec) -> JobRecord {
     solve(&job, &mut Unobserved).unwrap()
 }
 
-/// Protects: steady sliding is found stable on an elastic disk as on a rigid one, although nodes that pass from patch to
-/// patch and the disk's hardly damped modes keep N from ever being still.
+/// Protects: steady sliding is found stable on an elastic disk as on a rigid one, although N never comes to
+/// rest there: nodes pass from patch to patch, and the disk has modes with almost no damping.
 #[test]
 fn stable_sliding_is_stable_on_both_disks() {
     for (mu, omega_rpm) in [(0.1, 7.0), (0.1, 100.0), (0.2, 20.0)] {
@@ -32,7 +32,7 @@ fn stable_sliding_is_stable_on_both_disks() {
     }
 }
 
-/// Protects: squeal is found on both, and the record says what the elastic disk was made of.
+/// Protects: squeal is found periodic on both disks, and the record describes the mesh of the elastic one.
 #[test]
 fn squeal_is_periodic_on_both_disks() {
     let [rigid, elastic] = [DiskKind::Rigid, DiskKind::Elastic].map(|disk| on(disk, job(0.4, 7.0)));

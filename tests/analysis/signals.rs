@@ -1,4 +1,4 @@
-//! Made-up samples, a fixed-seed generator and the coarse scene.
+//! Artificial samples, a random generator with a fixed seed, and the coarse scene.
 
 use std::f64::consts::TAU;
 use tribosweep::analysis::cycles::{Cycle, CycleCutter};
@@ -7,7 +7,7 @@ use tribosweep::solver::Model;
 use tribosweep::solver::energy::Energies;
 use tribosweep::spec::JobSpec;
 
-/// The load of all made-up signals [N].
+/// The load of all artificial signals [N].
 pub const LOAD_N: f64 = 30.0;
 /// The paper's squeal frequency [Hz].
 pub const SQUEAL_HZ: f64 = 14_500.0;
@@ -39,7 +39,7 @@ impl Random {
     }
 }
 
-/// The coarse scene of the verification: 6 × 8 × 5 elements, 2 mm strip.
+/// The coarse scene of the verification: 6 × 8 × 5 elements and a clamp of 2 mm.
 pub fn coarse() -> JobSpec {
     let mut spec = JobSpec::default();
     spec.scene.pin.elements = [6, 8, 5];

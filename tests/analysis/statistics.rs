@@ -3,10 +3,10 @@
 use crate::signals::Random;
 use tribosweep::analysis::steady::standard_error;
 
-/// Protects: the standard error of an AR(1) sequence's mean. With ρ = 0.5 and unit innovations the
-/// variance of a mean of n is s²(n) = [1 − 2ρ(1 − ρⁿ)/(n(1 − ρ²))]/(n(1 − ρ)²). Means of ⌊√n⌋ = 20
-/// batches of 20 see (s²(20) − s²(400))/20·20/19 of it; over 400 sequences the mean of the estimated
-/// variance has the relative standard deviation √(2/19/400) = 1.6 %, of which five are allowed.
+/// Protects: the standard error of an AR(1) sequence's mean is right. With ρ = 0.5 and unit innovations the
+/// variance of a mean of n values is s²(n) = [1 − 2ρ(1 − ρⁿ)/(n(1 − ρ²))]/(n(1 − ρ)²). The means of ⌊√n⌋ = 20
+/// batches of 20 values estimate (s²(20) − s²(400))/20·20/19. Over 400 sequences the mean of the estimated
+/// variance has the relative standard deviation √(2/19/400) = 1.6 %. Five of these are allowed.
 #[test]
 fn ar1_sequences() {
     let (rho, n, sequences) = (0.5_f64, 400_usize, 400);
@@ -27,19 +27,20 @@ fn ar1_sequences() {
     }
     let expected = (variance(20.0) - variance(400.0)) / 19.0;
     assert!((mean_square / expected - 1.0).abs() < 5.0 * 0.0162, "{mean_square} instead of {expected}");
-    // The naive error of independent values would be three times too small in variance.
+    // The naive error, for independent values, would be too small by a factor of three in variance.
     let naive = 1.0 / (1.0 - rho * rho) / 400.0;
     assert!(mean_square > 2.0 * naive);
 }
 
-/// Protects: constants have no error, two values are enough to see one, a single one claims none; never NaN.
+/// Protects: equal values have no error, two different values are enough for an error, a single value gives
+/// zero, and NaN never occurs.
 #[test]
 fn constant_and_short_sequences() {
     for n in [0, 1, 2, 3, 4, 5, 17, 400] {
         assert_eq!(standard_error(&vec![0.25; n]), 0.0, "{n} equal values");
     }
-    // Two batches of one, the last two values: variance 1/2, error of the mean 1/2.
+    // There are two batches of one value, the last two: variance 1/2, error of the mean 1/2.
     assert!((standard_error(&[1.0, 2.0, 3.0]) - 0.5).abs() < 1e-15);
-    // Two batches of two: means 1.5 and 3.5, variance 2, error of the mean 1.
+    // There are two batches of two values: means 1.5 and 3.5, variance 2, error of the mean 1.
     assert!((standard_error(&[1.0, 2.0, 3.0, 4.0]) - 1.0).abs() < 1e-15);
 }

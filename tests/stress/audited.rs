@@ -1,23 +1,25 @@
-//! A job's run once more, with its energies balanced at every step, and how well they have to close.
+//! A job's run is repeated with its energies balanced at every step. A bound says how well they must close.
 //!
-//! The balance is an identity of the scheme (`solver::energy`), so in exact arithmetic it closes to zero.
-//! In floating point every operation errs by at most ε = 2⁻⁵² of its result, and the standard model of
-//! rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, ch. 3) turns that into a bound that
-//! is computed along with the run:
+//! The balance is an identity of the scheme (`solver::energy`), so in exact arithmetic the imbalance is zero.
+//! In floating point the result of every operation has a relative error of at most ε = 2⁻⁵². The standard
+//! model of rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, ch. 3) turns this into a
+//! bound that is computed during the run:
 //!
-//! * The nodal force of a step goes through some 40 operations in sequence (sums along x, y and z of
-//!   `operator::tensor` and about ten more terms). With |K| the sum of the magnitudes of all its terms, before
-//!   any of them cancel, it errs, at each degree of freedom, by at most ~91 ε w with room for the sums along
-//!   lines, w = |K|(|u| + β_R|p|) + m(|u| + Δt|p|)/Δt² + |external forces|; the term with 1/Δt² is the rounding of
-//!   u_{n+1} and p_{n+1} themselves, as a force. An error of the force does the work error × |Δu|. The scheme
-//!   weights the increments on both sides, and the numerical damping of β₂ > ½ takes in one more.
-//! * The step and the ledger each evaluate these sums: twice. So a step contributes at most
+//! * The nodal force of a step is the result of some 40 operations in sequence (sums along x, y and z of
+//!   `solver::body::block::operator::tensor` and about ten more terms). |K| is the sum of the magnitudes of
+//!   all its terms, before any of them cancel. At each degree of freedom the error of the force is at most
+//!   ~91 ε w, with room for the sums along lines, where w = |K|(|u| + β_R|p|) + m(|u| + Δt|p|)/Δt² +
+//!   |external forces|. The term with 1/Δt² is the rounding of u_{n+1} and p_{n+1} themselves, as a force. An
+//!   error of the force does the work error × |Δu|. The scheme weights the increments on both sides, and the
+//!   numerical damping of β₂ > ½ includes one more.
+//! * The step and the ledger each evaluate these sums, so the error counts twice. A step contributes at most
 //!   C ε Σ w(|Δu_n| + |Δu_{n−1}| + |Δu_{n−2}|) with C = 200.
-//! * The sums of works round once a step and term: 8 ε Σ|works so far|.
-//! * At the end, ½uKu errs by C ε ½|u||K||u|, and the kinetic energy, whose acceleration is a difference of
-//!   displacements, by C ε Σ m g (g + |u|/Δt), g = |p| + |Δu_n|/Δt + |Δu_{n−1}|/Δt.
+//! * The sums of works are rounded once per step and term: 8 ε Σ|works so far|.
+//! * At the end, ½uKu has an error of C ε ½|u||K||u|. The acceleration in the kinetic energy is a difference
+//!   of displacements, so that energy has an error of C ε Σ m g (g + |u|/Δt), where g = |p| + |Δu_n|/Δt +
+//!   |Δu_{n−1}|/Δt.
 //!
-//! Terms in ε² are left out: nothing here takes 10¹³ steps.
+//! Terms in ε² are neglected: no run here has 10¹³ steps.
 
 use tribosweep::solver::body::block::BlockMesh;
 use tribosweep::solver::body::block::operator::AssembledOperator;
@@ -25,7 +27,7 @@ use tribosweep::solver::energy::{Energies, EnergyLedger};
 use tribosweep::solver::material::Material;
 use tribosweep::solver::{Drive, Model, State, step};
 
-/// Roundings that a force goes through, in the step and in the ledger.
+/// Number of roundings of a force, in the step and in the ledger.
 const ROUNDINGS: f64 = 200.0;
 
 /// Steps between two audits of a job.
@@ -102,7 +104,7 @@ impl<'a> Audited<'a> {
         self.every.energies(0)
     }
 
-    /// The energies as a job sees them, at its last audit.
+    /// The energies as the job computes them, at its last audit.
     pub fn sampled_energies(&self) -> &Energies {
         self.sampled.energies(0)
     }
@@ -112,8 +114,9 @@ impl<'a> Audited<'a> {
         &self.at_job_audit
     }
 
-    /// Largest ratios seen at the job's audits, of the stored energy and of the sum of the magnitudes of its parts,
-    /// to the energy put in and the static compression F²h/(2EA) (which the divergence guard compares).
+    /// Largest ratios at the job's audits: of the stored energy, and of the sum of the magnitudes of its
+    /// parts. Both are over the energy put in plus the static compression F²h/(2EA), as in the divergence
+    /// guard.
     pub fn highest_ratios(&self) -> [f64; 2] {
         [self.highest_stored, self.highest_magnitude]
     }
@@ -133,7 +136,7 @@ impl<'a> Audited<'a> {
         f64::EPSILON * (ROUNDINGS * (self.force_work_j + self.end_terms_j()) + 8.0 * self.sums_j)
     }
 
-    /// w without the contact forces, which the step has yet to find.
+    /// Computes w without the contact forces, which the step has not found yet.
     fn find_magnitudes(&mut self) {
         let (dt, beta_r) = (self.model.time_step_s(), self.model.scheme().beta_r_s);
         let strained = self.state.u.values().zip(self.state.p.values());
@@ -152,7 +155,7 @@ impl<'a> Audited<'a> {
                 self.forces[3 * slave.node + c] += contact[c].abs();
             }
         }
-        // The whole load at every top node: more than its share, and simpler.
+        // Every top node gets the whole load. This is more than its share, but simpler.
         for node in mesh.top_nodes() {
             self.forces[3 * node + 2] += self.state.load_n[0].abs();
         }
@@ -186,7 +189,8 @@ impl<'a> Audited<'a> {
 fn magnitudes(mesh: &BlockMesh, material: &Material) -> AssembledOperator {
     let h = mesh.element_size_m();
     let (lambda, shear) = (material.lame_lambda_pa(), material.shear_modulus_pa());
-    // Corners a and b are on the same side along an axis or not: ∫NN is 2 or 1 sixths of h, ∫N′N′ is ±1/h, ∫N′N ±½.
+    // Along an axis, corners a and b are on the same side or on opposite sides: ∫NN is 2 or 1 sixths of h,
+    // ∫N′N′ is ±1/h, and ∫N′N is ±½.
     let mass =
         |axis: usize, a: usize, b: usize| h[axis] / 6.0 * if (a ^ b) >> axis & 1 == 0 { 2.0 } else { 1.0 };
     let entry = |a: usize, r: usize, b: usize, c: usize| -> f64 {
@@ -200,7 +204,7 @@ fn magnitudes(mesh: &BlockMesh, material: &Material) -> AssembledOperator {
             };
             (0..3).map(term).sum()
         } else {
-            // λ and G times two derivatives each, in the sums and differences λ ± G.
+            // λ and G multiply two derivatives each, and the operator uses their sum and difference λ ± G.
             2.0 * (lambda.abs() + shear) * product(&|axis| (axis == r || axis == c).then_some(0.5))
         }
     };

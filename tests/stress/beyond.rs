@@ -1,4 +1,4 @@
-//! Above the true stability limit: a divergence must be noticed, and when.
+//! Runs above the true stability limit. The guard must detect their divergence in time.
 
 use crate::modes::{self, Mode};
 use crate::scenes::{IDLE, in_the_air, lifted, pin};
@@ -10,7 +10,7 @@ use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, ModelDefinition, SolverError, State, guard, step};
 use tribosweep::spec::{Clamp, ClampSide, JobSpec};
 
-/// Steps between two looks of the guard, as in a job.
+/// Steps between two checks by the guard, as in a job.
 const INTERVAL: u64 = 16;
 
 const FRACTION: f64 = 1.02;
@@ -22,7 +22,8 @@ fn integrators() -> impl Iterator<Item = (f64, f64)> {
     [0.5, 0.75, 1.0].into_iter().flat_map(|beta2| [0.0, 0.01, 1.0].map(|damping| (beta2, damping)))
 }
 
-/// Runs with the guard as a job does; the step at which it stopped, and what it said.
+/// Runs with the guard as a job does. Returns the step at which the guard stopped the run, the node and the
+/// message.
 fn guarded(model: &Model, drive: Drive, mut state: State<1>, steps: u64) -> Option<(u64, usize, String)> {
     let mut ledger = EnergyLedger::new(model, INTERVAL);
     for n in 0..steps {
@@ -40,8 +41,8 @@ fn guarded(model: &Model, drive: Drive, mut state: State<1>, steps: u64) -> Opti
     None
 }
 
-/// The step at which the guard must stop a single mode: its two-term recursion (`solver::scheme`) in place of
-/// the block, the energies of `solver::energy` in place of the ledger.
+/// The step at which the guard must stop a single mode. The two-term recursion of the mode (`solver::scheme`)
+/// replaces the block, and the energies of `solver::energy` replace the ledger.
 fn predicted(model: &Model, mode: &Mode, speed_m_s: f64) -> u64 {
     let (dt, gamma, beta_r) = (model.time_step_s(), model.scheme().beta2, model.scheme().beta_r_s);
     let (omega2, mass) = (mode.omega * mode.omega, mode.mass_kg);
@@ -72,17 +73,17 @@ fn definition(beta2: f64, damping: f64, closed: bool) -> (ModelDefinition, Mode)
     (ModelDefinition { beta_r_s: 2.0 * damping / mode.omega, ..undamped }, mode)
 }
 
-/// Protects: at 1.02 of the true limit (not of the program's bound, which is a few percent lower) a free pin in
-/// its highest mode is stopped at the very audit at which the amplification matrix says that the guard must see
-/// it, for every β₂ and damping; undamped, too, where the scheme conserves its energy while it diverges.
+/// Protects: at 1.02 of the true limit (not of the program's bound, which is a few percent lower), a free pin
+/// in its highest mode is stopped at the very audit that the amplification matrix predicts, for every β₂ and
+/// damping. The undamped pin is stopped, too, although the scheme conserves its energy while it diverges.
 #[test]
 fn a_free_pin_is_stopped_when_it_must_be() {
     let mut lines = Vec::new();
     for (beta2, damping) in integrators() {
         let (free, mode) = definition(beta2, damping, false);
         let model = modes::at_fraction(&in_the_air(free), &mode, FRACTION).unwrap();
-        // It starts undeformed with a velocity, so that all of its energy is there to compare with. An amplitude of
-        // v/ω = 1 nm may grow a thousandfold before the plane is in its way.
+        // The pin starts undeformed with a velocity, so that its whole energy is there for the comparison.
+        // Its amplitude of v/ω = 1 nm may grow a thousandfold before the pin reaches the plane.
         let speed_m_s = 1.0e-9 * mode.omega;
         let predicted = predicted(&model, &mode, speed_m_s);
         assert!(predicted > 1, "nothing has grown yet: β₂ = {beta2}, {damping}");
@@ -100,9 +101,10 @@ fn a_free_pin_is_stopped_when_it_must_be() {
     summary::write("beyond", &lines);
 }
 
-/// Protects: a pin that is pressed on the disk and dragged is stopped as well, at 1.02 of the limit that it has
-/// with its whole base held in z (with an open base it is lower). The highest mode begins no lower than with the
-/// rounding of the deformation that the load makes, so it needs at most ln(10⁴/ε²)/(2 ln λ) steps from there.
+/// Protects: a pin that is pressed on the disk and dragged is stopped as well. Its step is 1.02 of the limit
+/// for a base that is held in z as a whole (with an open base the limit is lower). The highest mode begins at
+/// least with the rounding of the deformation under the load, so it needs at most ln(10⁴/ε²)/(2 ln λ) steps
+/// from there.
 #[test]
 fn a_pressed_pin_is_stopped() {
     let mut lines = Vec::new();
@@ -110,7 +112,7 @@ fn a_pressed_pin_is_stopped() {
         let (closed, mode) = definition(beta2, damping, true);
         let model = modes::at_fraction(&closed, &mode, FRACTION).unwrap();
         let growth = modes::growth_per_step(mode.omega, &model);
-        // Pressure waves cross the pin twice while the load comes on.
+        // Pressure waves cross the pin twice while the load increases.
         let ramp_s = 2.0 * model.mesh().size_m()[2] / model.pin().material().pressure_wave_speed_m_s();
         let drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.733, force_n: 30.0, ramp_s };
         let rounding = (1.0e4 / f64::EPSILON.powi(2)).ln() / (2.0 * growth.ln());
@@ -124,8 +126,8 @@ fn a_pressed_pin_is_stopped() {
     summary::write("beyond", &lines);
 }
 
-/// Protects: the guard stops nothing that is stable: the same states at 0.99 of the true limit go on, although
-/// the magnitudes of their energies are up to 50 times the energy itself.
+/// Protects: the guard stops no stable run. The same states at 0.99 of the true limit continue, although the
+/// magnitudes of their energies are up to 50 times the energy itself.
 #[test]
 fn below_the_limit_nothing_is_stopped() {
     for (beta2, damping) in integrators() {
@@ -140,8 +142,9 @@ fn below_the_limit_nothing_is_stopped() {
     }
 }
 
-/// Protects: at exactly the limit (one element, where the bound is exact) the highest mode alternates and friction feeds
-/// it, so that more is stored than was put in: the run is stopped and told to keep below. At 0.99 it has a result.
+/// Protects: a run at exactly the limit is stopped, and its message says to stay below it. With one element
+/// the bound is exact. The highest mode alternates there, and friction feeds it until more energy is stored
+/// than was put in. At 0.99 of the limit the run has a result.
 #[test]
 fn the_limit_itself_is_told() {
     let mut spec = JobSpec::default();
@@ -187,7 +190,7 @@ fn line(
     })
 }
 
-/// Protects: the node that is told is the worst one of its own lane, and both of the guard's factors.
+/// Protects: the guard names the worst node of its own lane, and both of its factors work.
 #[test]
 fn the_guard_tells_the_node_and_keeps_both_factors() {
     let model = Model::new(pin([6, 8, 5])).expect("a legal scene");
@@ -195,7 +198,7 @@ fn the_guard_tells_the_node_and_keeps_both_factors() {
     for (speed, node) in [(1.0, 17), (f64::NAN, 42), (f64::INFINITY, 5)] {
         let mut state = State::<2>::at_rest(&model);
         state.p[2 * (3 * node + 1) + 1] = speed;
-        // The other lane is worse, elsewhere.
+        // The other lane has a worse node elsewhere.
         state.p[2 * 3 * 60] = 1.0e9;
         let energies = Energies { kinetic_j: f64::NAN, ..Energies::default() };
         match guard::check(&model, &drive, &state, 1, &energies) {

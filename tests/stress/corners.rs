@@ -1,19 +1,19 @@
-//! The corners that a stress test has to have been in.
+//! The corners of the parameter space that the stress test must reach.
 
 use tribosweep::solver::Model;
 use tribosweep::spec::{ClampSide, JobSpec, TopFace};
 
-/// A corner by name.
+/// The name of a corner, and whether a job is in it.
 type Corner = (&'static str, fn(&JobSpec) -> bool);
 
-/// Edge ratio of the pin's elements.
+/// Longest over shortest edge of the pin's elements.
 fn aspect(spec: &JobSpec) -> f64 {
     let pin = &spec.scene.pin;
     let edges: Vec<f64> = (0..3).map(|axis| pin.size_m[axis] / pin.elements[axis] as f64).collect();
     edges.iter().copied().fold(0.0, f64::max) / edges.iter().copied().fold(f64::INFINITY, f64::min)
 }
 
-/// ½ β_R ω of the highest mode: above 1 it is over-critically damped.
+/// ½ β_R ω of the highest mode. Above 1 the mode is over-critically damped.
 fn damping_of_highest_mode(spec: &JobSpec) -> f64 {
     let undamped = tribosweep::spec::Numerics { beta_r_s: 0.0, time_step_s: None, ..spec.numerics.clone() };
     let limit_s = Model::from_scene(&spec.scene, &undamped).map_or(0.0, |model| model.time_step_limit_s());
@@ -31,7 +31,7 @@ fn given_over_limit(spec: &JobSpec) -> f64 {
     Model::from_scene(&spec.scene, &free).map_or(0.0, |model| given_s / model.time_step_limit_s())
 }
 
-/// Every corner; the predicates are asked of legal cases only.
+/// All corners. The predicates are evaluated for legal cases only.
 pub const CORNERS: [Corner; 32] = [
     ("one element", |s| s.scene.pin.elements == [1, 1, 1]),
     ("ν ≥ 0.49", |s| s.scene.pin.poisson_ratio >= 0.49),

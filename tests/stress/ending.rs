@@ -1,4 +1,4 @@
-//! How a case ends, and whether that is one of the ways in which it may.
+//! How a case ends, and whether this ending is allowed.
 
 use crate::audited::Audited;
 use serde_json::Value;
@@ -15,16 +15,16 @@ pub enum Ending {
     Result(Box<Closure>),
     /// A refusal before the first step.
     Refused {
-        /// The check that refused it.
+        /// The check that refused the job.
         by: &'static str,
-        /// What it said.
+        /// The message of the error.
         message: String,
     },
     /// A run that was stopped, with step and node.
     Diverged {
         /// The step.
         step: u64,
-        /// What it said.
+        /// The message of the error.
         message: String,
     },
 }
@@ -36,17 +36,18 @@ pub struct Closure {
     pub outcome: &'static str,
     /// Time steps.
     pub steps: u64,
-    /// |imbalance| over the rounding bound, every step audited; must be ≤ 1.
+    /// |imbalance| over the rounding bound, with an audit at every step; must be ≤ 1.
     pub imbalance_over_bound: f64,
-    /// |imbalance| over the energy put in, every step audited.
+    /// |imbalance| over the energy put in, with an audit at every step.
     pub residual: f64,
-    /// The rounding bound over the energy put in: below 1 the check says something.
+    /// The rounding bound over the energy put in. The check is meaningful if this is below 1.
     pub bound_over_input: f64,
-    /// The record's own residual, which adds the sampling error of the damping's work.
+    /// The record's own residual. It includes the sampling error of the damping's work.
     pub sampled_residual: f64,
-    /// Largest stored energy over the energy put in: above 1 contact or damping has given energy.
+    /// Largest stored energy over the energy put in. If it is above 1, contact or damping has supplied
+    /// energy.
     pub highest_stored: f64,
-    /// The same of the sum of the magnitudes of its parts.
+    /// The same for the sum of the magnitudes of the parts of the stored energy.
     pub highest_magnitude: f64,
 }
 
@@ -72,7 +73,7 @@ impl JobObserver for Watch {
 /// Solves `spec` as the queue does and judges how it ends.
 ///
 /// # Errors
-/// If it ends in a way in which no case may: what was wrong.
+/// The reason why the ending is not allowed.
 pub fn examine(spec: &JobSpec) -> Result<Ending, String> {
     let mut watch = Watch::default();
     let solved = catch_unwind(AssertUnwindSafe(|| solve(spec, &mut watch)));
@@ -135,14 +136,15 @@ fn result(spec: &JobSpec, record: &JobRecord, steps: u64) -> Result<Ending, Stri
     require(closure.imbalance_over_bound <= 1.0, || {
         format!("the energies do not close: {closure:?}: {energies:?}")
     })?;
-    // What the record's balance is off by is the sampling of the damping's work and nothing else.
+    // The imbalance of the record is the sampling error of the damping's work and nothing else.
     let (exact, sampled) = (run.energies_at_job_audit(), run.sampled_energies());
     let unexplained_j = (sampled.imbalance_j() + sampled.damping_j) - (exact.imbalance_j() + exact.damping_j);
     require(unexplained_j.abs() <= bound_j, || format!("sampling changed {unexplained_j} J: {closure:?}"))?;
     Ok(Ending::Result(Box::new(closure)))
 }
 
-/// As the queue stores it and the report reads it: no figure is null but those that may be absent.
+/// Checks that a record is unchanged after the queue stores it and the report reads it. No figure is null
+/// except those that may be absent.
 fn stored_as_it_is(record: &JobRecord) -> Result<(), String> {
     let text = serde_json::to_string(record).map_err(|error| error.to_string())?;
     let read: JobRecord = serde_json::from_str(&text).map_err(|error| format!("{error}: {text}"))?;
@@ -152,14 +154,14 @@ fn stored_as_it_is(record: &JobRecord) -> Result<(), String> {
     require(null.is_none(), || format!("null: {null:?}"))
 }
 
-/// Facts of every record, whatever the scene.
+/// Checks facts that hold for every record, whatever the scene.
 fn plausible(spec: &JobSpec, record: &JobRecord) -> Result<(), String> {
     let shares = [record.stick_share, record.slip_share, record.separated_share];
     let rounding = 1.0e-9;
     let sum: f64 = shares.iter().sum();
     let within = shares.iter().all(|share| (0.0..=1.0 + rounding).contains(share));
     require(within && (sum - 1.0).abs() < rounding, || format!("shares {shares:?}"))?;
-    // Coulomb: no node's friction exceeds μN, so neither does the mean.
+    // By Coulomb's law no node's friction exceeds μN, so neither does the mean.
     let most = spec.scene.contact.mu * (1.0 + rounding);
     require(record.mu_star_contact.abs() <= most, || {
         format!("mean contact friction {}", record.mu_star_contact)
@@ -171,7 +173,7 @@ fn plausible(spec: &JobSpec, record: &JobRecord) -> Result<(), String> {
     require((record.simulated_s - time_s).abs() <= rounding * time_s, || format!("{time_s} s"))
 }
 
-/// The audited run is the job's run, and its sampled ledger differs from the exact one by the damping alone.
+/// Checks that the audited run is the job's run: its sampled ledger has the same bits.
 fn same_energies(record: &JobRecord, run: &Audited<'_>) -> Result<(), String> {
     let (job, again) = (&record.energy, run.sampled_energies());
     let pairs = [

@@ -1,14 +1,14 @@
-//! Hostile but legal scenes: case = f(seed, index).
+//! Hostile but legal scenes. A case is a function of seed and index.
 //!
-//! Every parameter is drawn from its whole range, and with a fair chance from the corners of it. A small
-//! part of the cases is spoiled on purpose with one illegal value, and another with one value far outside
-//! anything physical: these must be refused.
+//! Every parameter is drawn from its whole range, and often from the corners of it. A small part of the cases
+//! gets one illegal value on purpose. Another small part gets one value far outside anything physical. These
+//! cases must be refused.
 
 use crate::random::Random;
 use tribosweep::solver::Model;
 use tribosweep::spec::{ClampSide, JobSpec, TopFace};
 
-/// Nodes × steps of a case at most: 10 000 cases take minutes.
+/// Largest number of nodes × steps of a case. With it 10 000 cases take minutes.
 const MOST_NODE_STEPS: f64 = 1.5e5;
 
 /// The job of case `index` of `seed`.
@@ -35,7 +35,7 @@ fn pin(random: &mut Random, spec: &mut JobSpec) {
     if random.chance(0.12) {
         pin.elements = [1, 1, 1];
     }
-    // Edges of an element: up to 50 times the shortest, and exactly that in a third of the cases.
+    // The edges of an element are up to 50 times the shortest one, and exactly that in a third of the cases.
     let long = random.whole(0, 2);
     for axis in 0..3 {
         let stretch = if random.chance(0.5) { 1.0 } else { random.log_between(1.0, 50.0) };
@@ -58,8 +58,8 @@ fn contact(random: &mut Random, spec: &mut JobSpec) {
     let radius = spec.scene.pin.size_m[0] / 2.0;
     let far = random.log_between(1.0 + 1.0e-9, 1.0e3);
     spec.scene.disk.track_radius_m = radius * if random.chance(0.2) { 1.0 + 1.0e-9 } else { far };
-    // Speeds at the pin's centre over five decades, in two ways: of themselves, and (as only V/F counts)
-    // against the speed μp/(ρ c_s) that belongs to the load.
+    // The speed at the pin's centre covers five decades. Only V/F counts, so in half of the cases the load is
+    // chosen around the pressure p = ρ c_s V that belongs to the speed.
     let speed_m_s = random.log_between(1.0e-3, 1.0e2);
     spec.scene.disk.omega_rpm = speed_m_s / spec.scene.disk.track_radius_m * 30.0 / std::f64::consts::PI;
     let load = &mut spec.scene.load;
@@ -90,7 +90,8 @@ fn numerics(random: &mut Random, spec: &mut JobSpec) {
     let any = random.between(0.5, 1.0);
     spec.numerics.beta2 = if random.chance(0.6) { random.pick(&[0.5, 1.0]) } else { any };
     let pin = &spec.scene.pin;
-    // The fraction of critical damping, ½β_Rω, of the lowest shear mode of the height or of the highest mode.
+    // `fraction` is the fraction of critical damping, ½β_Rω, of the lowest shear mode of the height or of the
+    // highest mode.
     let modulus_pa = pin.young_modulus_pa / (2.0 * (1.0 + pin.poisson_ratio));
     let speed_m_s = (modulus_pa / pin.density_kg_m3).sqrt();
     let shortest_m =
@@ -102,13 +103,13 @@ fn numerics(random: &mut Random, spec: &mut JobSpec) {
     let any = random.between(0.05, 1.0);
     spec.numerics.safety_factor = if random.chance(0.6) { random.pick(&[0.7, 0.99, 1.0]) } else { any };
     if random.chance(0.2) {
-        // At the limit, close below it, far below it, and above it.
+        // The step is at the limit, close below it, far below it, or above it.
         let of_limit = random.pick(&[1.0, 1.0, 0.99, 0.1, 1.02]);
         spec.numerics.time_step_s = time_step_limit_s(spec).map(|limit_s| of_limit * limit_s);
     }
 }
 
-/// The program's own limit, where the scene has one.
+/// The program's own limit; none if the solver refuses the scene.
 fn time_step_limit_s(spec: &JobSpec) -> Option<f64> {
     let numerics = tribosweep::spec::Numerics { time_step_s: None, ..spec.numerics.clone() };
     Some(Model::from_scene(&spec.scene, &numerics).ok()?.time_step_limit_s())
@@ -142,7 +143,7 @@ fn duration(random: &mut Random, spec: &mut JobSpec) {
     }
 }
 
-/// One value that is not legal.
+/// Sets one value that is not legal.
 fn spoil(random: &mut Random, spec: &mut JobSpec) {
     let scene = &mut spec.scene;
     match random.whole(0, 13) {
@@ -163,7 +164,7 @@ fn spoil(random: &mut Random, spec: &mut JobSpec) {
     }
 }
 
-/// One value that no pin has, up to the ends of the floating-point range.
+/// Sets one value that no pin has, up to the ends of the floating-point range.
 fn overdo(random: &mut Random, spec: &mut JobSpec) {
     let exponent = random.between(15.0, 308.0) * random.pick(&[-1.0, 1.0]);
     let value = 10_f64.powf(exponent);

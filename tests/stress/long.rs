@@ -1,6 +1,6 @@
-//! Long runs at 0.99 of the true stability limit, with energies that an analysis bounds.
+//! Long runs at 0.99 of the true stability limit. An analysis of the scheme gives bounds of their energies.
 //!
-//! A run in the ordinary suite has 20 000 steps, in `scripts/stability.py` a million.
+//! A run in the ordinary suite has 20 000 steps, a run in `scripts/stability.py` a million.
 
 use crate::audited::Audited;
 use crate::modes;
@@ -16,7 +16,7 @@ const FRACTION: f64 = 0.99;
 const SHORT: u64 = 20_000;
 const LONG: u64 = 1_000_000;
 
-/// What a long run showed.
+/// The result of a long run.
 struct Course {
     scene: &'static str,
     steps: u64,
@@ -28,7 +28,8 @@ struct Course {
     residual: f64,
 }
 
-/// Runs `steps` steps and compares `energy_j` (of the run) with `bound_j` at every one.
+/// Runs `steps` steps. `energy_over_bound` is the ratio of the energy to its analytical bound after every
+/// step.
 fn follow(
     scene: &'static str,
     mut run: Audited<'_>,
@@ -39,7 +40,7 @@ fn follow(
     for _ in 0..steps {
         run.advance();
         let ratio = energy_over_bound(&run);
-        // `max` would pass over a NaN.
+        // `max` would ignore a NaN.
         highest = if ratio <= highest { highest } else { ratio };
     }
     let energies = run.energies();
@@ -50,7 +51,7 @@ fn follow(
         imbalance_over_rounding: energies.imbalance_j().abs() / run.rounding_bound_j(),
         residual: energies.relative_residual(),
     };
-    // Written so that a NaN fails.
+    // These comparisons also fail for NaN.
     assert!(course.energy_over_bound <= 1.0, "{scene}: {} of the bound", course.energy_over_bound);
     assert!(course.imbalance_over_rounding <= 1.0, "{scene}: {}", course.imbalance_over_rounding);
     course
@@ -61,7 +62,8 @@ fn at_the_limit(definition: &ModelDefinition) -> Model {
     modes::at_fraction(definition, &mode, FRACTION).expect("a step that is not checked")
 }
 
-/// Random velocities in the air, without momentum in z (nothing else moves the pin as a whole).
+/// A pin in the air with random velocities, without momentum in z. (Its supports prevent all other rigid
+/// motions.)
 fn shaken(model: &Model) -> State<1> {
     let mut state = State::at_rest(model);
     let mut random = Random::of_case(1, 0);
@@ -76,13 +78,14 @@ fn shaken(model: &Model) -> State<1> {
     let nodes = model.mesh().node_count();
     for node in 0..nodes {
         state.p[3 * node + 2] -= momentum / total;
-        // Far above the amplitudes (10⁻³ m/s over 10⁴ to 10⁶ 1/s), and not so high that its rounding drowns them.
+        // The height is far above the amplitudes (10⁻³ m/s over 10⁴ to 10⁶ 1/s), but so small that its
+        // rounding does not hide them.
         state.u[3 * node + 2] = 2.0e-6;
     }
     state
 }
 
-/// Clamped and tied degrees of freedom start as the supports say.
+/// Gives clamped and tied degrees of freedom initial velocities that their supports allow.
 fn admissible(definition: &ModelDefinition, model: &Model, state: &mut State<1>) {
     for support in &definition.supports {
         if let Support::Fixed(fixed) = support {
@@ -97,8 +100,9 @@ fn admissible(definition: &ModelDefinition, model: &Model, state: &mut State<1>)
     }
 }
 
-/// A pin shaken in the air. β₂ = ½ without damping conserves the scheme's energy E, so ½vMv + ½uKu, mode by mode
-/// at most E/(1 − (ωΔt/2)²), is at most E/(1 − 0.99²) = 50.3 E for ever. With β₂ > ½ or β_R > 0 E only falls.
+/// A pin that is shaken in the air. For β₂ = ½ without damping the scheme conserves its energy E. For every
+/// mode ½vMv + ½uKu is at most E/(1 − (ωΔt/2)²), so it is at most E/(1 − 0.99²) = 50.3 E at all times. With
+/// β₂ > ½ or β_R > 0, E only falls.
 fn in_the_air_course(
     scene: &'static str,
     elements: [usize; 3],
@@ -126,9 +130,9 @@ fn in_the_air_course(
     })
 }
 
-/// A pin under a sudden load without friction: only the load works, W = F s with the stroke s, and neither damping
-/// nor contact give energy (β₂ = ½: a contact force N takes N z_{n−1}/2 ≥ 0). So ½ k s² ≤ stored ≤ F s with the pin's
-/// stiffness k ≥ EA/h: stored ≤ 2F²h/(EA), four times the static compression.
+/// A pin under a sudden load without friction. Only the load does work, W = F s with the stroke s. Damping
+/// and contact do not supply energy (for β₂ = ½ a contact force N takes N z_{n−1}/2 ≥ 0). With the pin's
+/// stiffness k ≥ EA/h, ½ k s² ≤ stored ≤ F s. So stored ≤ 2F²h/(EA), four times the static compression.
 fn pressed_course(elements: [usize; 3], steps: u64) -> Course {
     let definition = pin(elements);
     let model = at_the_limit(&definition);
@@ -141,7 +145,7 @@ fn pressed_course(elements: [usize; 3], steps: u64) -> Course {
     })
 }
 
-/// A pin dragged over the disk: what is stored was put in.
+/// A pin that is dragged over the disk. It stores at most the energy that was put in.
 fn sliding_course(scene: &'static str, elements: [usize; 3], mu: f64, steps: u64) -> Course {
     let definition = ModelDefinition { beta_r_s: 5.0e-8, ..pin(elements) };
     let model = at_the_limit(&definition);
@@ -168,14 +172,14 @@ fn all(steps: u64) -> Vec<Course> {
     ]
 }
 
-/// Protects: at 0.99 of the true limit energies stay below what an analysis of the scheme allows, and the balance
-/// closes to the rounding of the run.
+/// Protects: at 0.99 of the true limit the energies stay below the bounds from an analysis of the scheme, and
+/// the balance closes to the rounding of the run.
 #[test]
 fn energies_stay_bounded() {
     all(SHORT);
 }
 
-/// The same over a million steps.
+/// Protects: the same over a million steps.
 #[test]
 #[ignore = "a minute or two; scripts/stability.py runs it"]
 fn energies_stay_bounded_over_a_million_steps() {

@@ -1,4 +1,4 @@
-//! The true highest mode of a constrained block, from the program's own operator, by dense eigenvalues.
+//! The true highest mode of a constrained block, from dense eigenvalues of the program's own operator.
 
 use nalgebra::DMatrix;
 use tribosweep::solver::body::Freedom;
@@ -15,7 +15,8 @@ pub struct Mode {
     pub mass_kg: f64,
 }
 
-/// The highest mode of `definition`'s block under its constraints; with `closed`, the contact face is held in z.
+/// The highest mode of `definition`'s block under its constraints. With `closed`, the contact face is held in
+/// z.
 pub fn highest(definition: &ModelDefinition, closed: bool) -> Mode {
     let mesh = &definition.mesh;
     let mut supports = definition.supports.clone();
@@ -28,7 +29,7 @@ pub fn highest(definition: &ModelDefinition, closed: bool) -> Mode {
             .expect("a model below its limit");
     let masses = model.pin().masses_kg();
 
-    // Column by column: the number of the independent motion of each degree of freedom.
+    // For every independent motion: the degrees of freedom that move with it.
     let mut motions: Vec<Vec<usize>> = Vec::new();
     let mut tied = std::collections::BTreeMap::new();
     for (dof, freedom) in freedoms.iter().enumerate() {
@@ -74,7 +75,8 @@ pub fn highest(definition: &ModelDefinition, closed: bool) -> Mode {
     Mode { omega: eigen.eigenvalues[top].sqrt(), shape, mass_kg }
 }
 
-/// `definition` at a fraction of its **true** stability limit, which is above the program's bound.
+/// The model of `definition` at a fraction of its **true** stability limit, which is above the program's
+/// bound.
 pub fn at_fraction(definition: &ModelDefinition, mode: &Mode, fraction: f64) -> Result<Model, SolverError> {
     let limit_s = scheme::time_step_limit_s(mode.omega, definition.beta2, definition.beta_r_s);
     let time_step = TimeStep::Unchecked(fraction * limit_s);

@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-/// Corners along every axis; all combinations are jobs.
+/// A study with corners along every axis. All combinations are jobs.
 fn study() -> Value {
     json!({
         "name": "corners",
@@ -15,15 +15,15 @@ fn study() -> Value {
             "ramp_s": [0, 5.0e-4],
             "omega_rpm": [0.01, 1000],
             "beta2": [0.5, 1],
-            // None, strong, and so strong that the steps are too many.
+            // The damping is zero, strong, or so strong that the run has too many steps.
             "beta_r_s": [0, 1.0e-5, 1.0],
             "top": ["tied_in_z", "free_in_z"],
         },
     })
 }
 
-/// Protects: hostile jobs in the queue end with figures in the database, or with a reason and without figures;
-/// none is lost, none stays behind, and no figure is null for not being a number.
+/// Protects: hostile jobs in the queue end with figures in the database, or with an error and without
+/// figures. No job is lost or left unfinished, and no figure is null because it is not a number.
 #[test]
 fn hostile_jobs_come_out_of_the_database() {
     let folder = tempfile::TempDir::new().unwrap();
@@ -57,6 +57,6 @@ fn hostile_jobs_come_out_of_the_database() {
             other => panic!("a job was left {other}: {row}"),
         }
     }
-    // Exactly those with the strongest damping.
+    // Exactly the jobs with the strongest damping fail.
     assert_eq!(failed, rows.len() / 3);
 }

@@ -1,5 +1,5 @@
-//! A small generator of random numbers whose values never change: case 4711 of a seed is the same scene
-//! for good, whatever happens to the packages around.
+//! A small generator of random numbers whose values never change. Case 4711 of a seed remains the same scene,
+//! whatever versions the dependencies have.
 
 /// SplitMix64 (Steele, Lea, Flood, *Fast splittable pseudorandom number generators*, OOPSLA 2014).
 #[derive(Debug, Clone)]

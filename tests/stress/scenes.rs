@@ -1,4 +1,4 @@
-//! Small scenes on both sides of the limit.
+//! Small scenes for time steps below and above the limit.
 
 use tribosweep::solver::body::block::BlockMesh;
 use tribosweep::solver::body::block::Stiffness;
@@ -17,7 +17,7 @@ pub const MATERIAL: Material =
 /// No load, no friction, target at rest.
 pub const IDLE: Drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
 
-/// The reference pin on a coarse mesh: one node row of its inner side clamped, the top tied in z.
+/// The reference pin on a coarse mesh. One node row of its inner side is clamped, and the top is tied in z.
 pub fn pin(elements: [usize; 3]) -> ModelDefinition {
     let mesh = BlockMesh::new([0.012, 0.015, 0.010], elements);
     let clamp = Clamp { side: ClampSide::InnerSide, width_m: 0.0 };
@@ -35,12 +35,12 @@ pub fn pin(elements: [usize; 3]) -> ModelDefinition {
     }
 }
 
-/// The pin without its load, to be held in the air.
+/// The pin without its load, for runs in the air.
 pub fn in_the_air(definition: ModelDefinition) -> ModelDefinition {
     ModelDefinition { load: Vec::<LoadShare>::new(), ..definition }
 }
 
-/// Undeformed `height_m` above the plane, moving with `speed_m_s` times `shape`.
+/// The state of an undeformed pin `height_m` above the plane. It moves with `speed_m_s` times `shape`.
 pub fn lifted(model: &tribosweep::solver::Model, height_m: f64, speed_m_s: f64, shape: &[f64]) -> State<1> {
     let mut state = State::at_rest(model);
     for (dof, shape) in shape.iter().enumerate() {

@@ -1,9 +1,9 @@
-//! Makes a failing case simpler as long as it still fails, so that it is a case one can think about.
+//! Simplifies a failing case as long as it still fails, so that its cause is easier to find.
 
 use serde_json::{Value, json};
 use tribosweep::spec::JobSpec;
 
-/// Plain values, tried one after the other, until none of them helps any more.
+/// Plain values. They are tried one after the other until none of them simplifies the case any more.
 fn plain() -> Vec<(&'static str, Value)> {
     vec![
         ("/scene/pin/elements", json!([1, 1, 1])),
@@ -32,7 +32,7 @@ fn plain() -> Vec<(&'static str, Value)> {
     ]
 }
 
-/// The simplest job on the way to a plain one for which `fails` still holds.
+/// A job with as many plain values as possible for which `fails` still holds.
 pub fn simplest(spec: &JobSpec, fails: impl Fn(&JobSpec) -> bool) -> JobSpec {
     let mut best = spec.clone();
     loop {

@@ -1,4 +1,4 @@
-//! Lines of JSON for `scripts/stability.py`, when it asks for them.
+//! Lines of JSON for `scripts/stability.py`, if it asks for them.
 
 use serde_json::Value;
 use std::fs::OpenOptions;

@@ -1,27 +1,32 @@
 //! B4a A bar hits a rigid wall.
 //!
-//! Problem: a bar (ν = 0) of length L and speed v0 hits a rigid wall. Contact stress ρ c v0 for 2L/c, then it
-//! leaves at v0; kinetic energy KE0(1 − τ) while the front climbs and KE0(τ − 1) while it returns, τ = ct/L. Source:
-//! A. J. C. B. de Saint-Venant's impact solution (1867; S. Timoshenko, J. N. Goodier, *Theory of
-//! elasticity*, art. 164). Pin material, v0 = 0.1 m/s: 158 114 Pa, 31.6228 µs.
+//! Problem: a bar (ν = 0) of length L and speed v0 hits a rigid wall. The contact stress is ρ c v0 for 2L/c,
+//! then the bar leaves at v0. With τ = ct/L, the kinetic energy is KE0(1 − τ) while the front climbs and
+//! KE0(τ − 1) while it returns. Source: A. J. C. B. de Saint-Venant's impact solution (1867; S. Timoshenko,
+//! J. N. Goodier, *Theory of elasticity*, art. 164). For the pin's material and v0 = 0.1 m/s the stress is
+//! 158 114 Pa and the contact lasts 31.6228 µs.
 //!
-//! What the scheme does with it, N elements, C = cΔt/h, central difference:
-//! * At C = 1 it transports waves exactly: stress, contact time, energy and the velocities of all nodes but
-//!   that of the contact, which forward increments leave at rest, hold to rounding.
-//! * Its loss of energy is exactly (1 + 2C²φ(1−φ))/2N: a gap that closes φ of a step after t_n stops the
-//!   contact node (mass m0 = m/2N) with the forces m0 v0 (1−φ)/Δt and m0 v0 (φ + 2C²(1−φ))/Δt of that
-//!   step and the next. Their work on the increments before and after (`solver::energy`) is
-//!   ½m0v0²[(1−φ²) + (φ² + 2C²φ(1−φ))]; no later force acts on a moving node.
-//! * For C < 1 the front disperses: ω = ck(1 − (1−C²)(kh)²/24) to leading order, so after 2L the front is the
-//!   integral of Airy's function over a width s = (Lh²(1−C²)/4)^⅓, its smooth side ahead. The stress at the wall,
-//!   ρcv0(1 − 2∫_x^∞ Ai), vanishes at x0 = −0.4096, where the integral is ½ (tables in DLMF, ch. 9): contact
-//!   lasts −x0 s/c longer, and 2ρv0 s|Ai′(x0)| of the impulse is missing: 1 − v/v0 → 0.4465((1−C²)/4N²)^⅓. The next
-//!   term of the phase is smaller by (h/s)², so both have order ⅔ in 1/N, and the law itself has it again.
-//! * β₂ > ½ damps as β_R = (β₂−½)Δt does: after t the front is a Gaussian of variance β_R t. The stress at
-//!   the wall falls through zero in the middle of the returning front (w² = 2β_R L/c), and the tail up to
-//!   there, w/√(2π), is missing twice: 1 − v/v0 → 2√((β₂−½)C/(πN)). Order ½ only, 3 to 6 % at N = 100, C = ½.
+//! The discrete solution with N elements, C = cΔt/h and the central difference:
+//! * At C = 1 the scheme transports waves exactly. Stress, contact time, energy and the nodal velocities hold
+//!   to rounding. The only exception is the velocity of the contact node, which forward increments leave at
+//!   rest.
+//! * The loss of energy is exactly (1 + 2C²φ(1−φ))/2N. A gap that closes φ of a step after t_n stops the
+//!   contact node (mass m0 = m/2N) with the forces m0 v0 (1−φ)/Δt and m0 v0 (φ + 2C²(1−φ))/Δt of that step
+//!   and the next. Their work on the increments before and after (`solver::energy`) is ½m0v0²[(1−φ²) + (φ² +
+//!   2C²φ(1−φ))]. No later force acts on a moving node.
+//! * For C < 1 the front disperses: ω = ck(1 − (1−C²)(kh)²/24) to leading order. So after 2L the front is the
+//!   integral of Airy's function over a width s = (Lh²(1−C²)/4)^⅓, with its smooth side ahead. The stress at
+//!   the wall, ρcv0(1 − 2∫_x^∞ Ai), vanishes at x0 = −0.4096, where the integral is ½ (tables in DLMF, ch.
+//!   9). Contact lasts −x0 s/c longer, and 2ρv0 s|Ai′(x0)| of the impulse is missing: 1 − v/v0 →
+//!   0.4465((1−C²)/4N²)^⅓. The next term of the phase is smaller by (h/s)², so both errors have order ⅔ in
+//!   1/N, and the relative error of this law has order ⅔, too.
+//! * β₂ > ½ damps as β_R = (β₂−½)Δt does. After the time t the front is a Gaussian of variance β_R t. The
+//!   stress at the wall falls through zero in the middle of the returning front (w² = 2β_R L/c). The tail up
+//!   to there, w/√(2π), is missing twice: 1 − v/v0 → 2√((β₂−½)C/(πN)). This is of order ½ only, 3 to 6 % at N
+//!   = 100, C = ½.
 //!
-//! The force of the first step in contact is an arbitrary spike below C = 1; impulse and times are not.
+//! Below C = 1 the force of the first step in contact is an arbitrary spike. Impulse and times are not
+//! arbitrary.
 //!
 //! Impact of two deformable bars is in `two_bodies`.
 
@@ -63,7 +68,7 @@ fn rebound(model: &Model, state: &State<1>) -> f64 {
     momentum / (mass_kg(model) * SPEED_M_S)
 }
 
-/// Falling towards the wall, `gap_steps` steps of free flight away.
+/// A bar that falls towards the wall, `gap_steps` steps of free flight away from it.
 fn falling(model: &Model, gap_steps: f64) -> State<1> {
     let mut state = State::at_rest(model);
     for node in 0..model.mesh().node_count() {
@@ -73,8 +78,8 @@ fn falling(model: &Model, gap_steps: f64) -> State<1> {
     state
 }
 
-/// Roundings in a velocity after `steps` steps: each product with K rounds displacements of up to N
-/// increments, and a wave carries that along without growth.
+/// Roundings in a velocity after `steps` steps. Each product with K rounds displacements of up to N
+/// increments, and a wave transports these errors without growth.
 fn roundings(layers: usize, steps: usize) -> f64 {
     ROUNDINGS_PER_FORCE * layers as f64 * steps as f64
 }
@@ -112,7 +117,8 @@ fn impact(model: &Model, gap_steps: f64) -> Impact {
     }
 }
 
-/// B4a at cΔt/h = 1: force and kinetic energy during contact, contact time and rebound, to rounding.
+/// Protects: at cΔt/h = 1 the contact force, the kinetic energy, the contact time and the rebound are exact
+/// to rounding.
 #[test]
 fn wall_impact_is_exact_at_unit_cfl() {
     let mut stress = Evidence::new("B4a", "cΔt/h = 1, contact stress at its worst step [Pa]", SAINT_VENANT);
@@ -140,8 +146,8 @@ fn wall_impact_is_exact_at_unit_cfl() {
             if (found_pa - exact_pa).abs() > (worst_pa - exact_pa).abs() {
                 worst_pa = found_pa;
             }
-            // p is the velocity half a step before t_{n+1}. The element that then holds the front has one moving and
-            // one resting node: exact in between, too.
+            // p is the velocity half a step before t_{n+1}. At that time the front is in an element with one
+            // moving and one resting node, so the kinetic energy is exact there, too.
             let tau = (n as f64 + 0.5) / layers as f64;
             let twice: f64 = (0..model.mesh().node_count())
                 .map(|node| model.pin().masses_kg()[node] * state.p[3 * node + 2].powi(2))
@@ -173,7 +179,7 @@ fn wall_impact_is_exact_at_unit_cfl() {
     centre.judge_exact(operations);
 }
 
-/// B4a: the loss of energy of one closing gap is exact at any step and any phase of the closing.
+/// Protects: the energy that a closing gap loses is exact for any step and any phase of the closing.
 #[test]
 fn closing_loses_the_contact_nodes_energy() {
     let layers = 50;
@@ -199,13 +205,14 @@ fn closing_loses_the_contact_nodes_energy() {
     balance.judge_exact(roundings(layers, steps));
 }
 
-/// B4a: what tends to Saint-Venant's answer, and how fast: order 1 at the limit, ⅔ below it.
+/// Protects: rebound, contact time, impulse and energy tend to Saint-Venant's answer, with order 1 at the
+/// limit and ⅔ below it.
 #[test]
 fn wall_impact_converges() {
     wall_impact_series("", &[25, 50, 100, 200]);
 }
 
-/// Protects: the same orders over six doublings.
+/// Protects: the orders are the same over six doublings.
 #[test]
 #[ignore = "bars of up to 1600 elements"]
 fn wall_impact_converges_over_six_doublings() {
@@ -237,7 +244,7 @@ fn wall_impact_series(suffix: &str, layers: &[usize]) {
     }
 }
 
-/// B4a below the limit: what the dispersed front takes off the rebound, by its law.
+/// Protects: below the limit, the dispersed front reduces the rebound as its law says.
 #[test]
 fn dispersion_slows_the_rebound() {
     // 2|Ai′(x0)| with ∫_{x0}^∞ Ai = ½, x0 = −0.409 603.
@@ -254,7 +261,7 @@ fn dispersion_slows_the_rebound() {
     }
 }
 
-/// B4a with β₂ > ½: the numerical damping takes its share of the rebound, as the damped front says.
+/// Protects: with β₂ > ½, the numerical damping reduces the rebound as the law of the damped front says.
 #[test]
 fn numerical_damping_slows_the_rebound() {
     for beta2 in [0.6, 0.8, 1.0] {

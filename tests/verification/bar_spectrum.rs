@@ -1,13 +1,13 @@
 //! B2 The spectrum of a one-dimensional column.
 //!
-//! Problem: axial vibrations of a bar (ν = 0, or u_x = u_y = 0 and then with c = c_p) of length L.
+//! Problem: axial vibrations of a bar of length L, with ν = 0, or with u_x = u_y = 0 and c = c_p.
 //! * Continuous: f_n = n c/2L with free ends, (2n − 1) c/4L with one end held. Source: d'Alembert (1747). For the
 //!   10 mm pin with ν = 0: 31 622.8 Hz and 15 811.4 Hz.
 //! * Discrete: lumped linear elements of length h = L/N have exactly ω_n = (2c/h) sin(nπ/2N) with free ends
 //!   and (2c/h) sin((2n − 1)π/4N) with one held, modes cos(nπk/N). Source: the dispersion relation of
 //!   masses and springs (L. Brillouin, *Wave propagation in periodic structures*, 1946).
-//! * In time, the central difference turns ω into θ per step, sin(θ/2) = ωΔt/2; at cΔt/h = 1 that is
-//!   θ = nπ/N, the continuous frequency.
+//! * In time, the central difference advances a mode by the phase θ per step, sin(θ/2) = ωΔt/2. At cΔt/h = 1
+//!   this is θ = nπ/N, the phase of the continuous frequency.
 //!
 //! Expanding the sine gives the error −(nπ/2N)²/6 against the continuous frequency: order 2.
 
@@ -26,7 +26,7 @@ fn bar(layers: usize, material: Material) -> ModelDefinition {
     axial_bar(COLUMN_HEIGHT_M, layers, material, false)
 }
 
-/// K cos(nπk/N) by the program, over mass: an eigenvector with exactly ω_n².
+/// Protects: cos(nπk/N) is an eigenvector of the program's K and M, with exactly ω_n².
 #[test]
 fn discrete_modes_are_eigenvectors() {
     let layers = 20;
@@ -52,11 +52,11 @@ fn discrete_modes_are_eigenvectors() {
         }
         evidence.found(format!("ν = {poisson_ratio}"), worst / top_rate.powi(2), 0.0, 1.0);
     }
-    // Σ|K||φ|/m ≤ ω_max², its largest value; ten more for mass, sines and cosines.
+    // Σ|K||φ|/m is at most ω_max². Ten more roundings are for mass, sines and cosines.
     evidence.judge_exact(ROUNDINGS_PER_FORCE + 10.0);
 }
 
-/// Frequencies [Hz] of the program's K and M reduced to one displacement a level; the top held or not.
+/// Frequencies [Hz] of the program's K and M, reduced to one displacement per level. The top is held or free.
 fn frequencies_hz(model: &Model, top_fixed: bool) -> Vec<f64> {
     let mesh = model.mesh();
     let levels = mesh.elements()[2] + usize::from(!top_fixed);
@@ -78,7 +78,7 @@ fn frequencies_hz(model: &Model, top_fixed: bool) -> Vec<f64> {
     found
 }
 
-/// Protects: frequencies from the program's own K and M tend to the continuous ones.
+/// Protects: the frequencies from the program's own K and M tend to the continuous ones.
 #[test]
 fn frequencies_converge_to_the_continuous_bar() {
     for (poisson_ratio, what) in [(0.0, "bar, ν = 0"), (0.3, "confined column, ν = 0.3")] {
@@ -124,7 +124,7 @@ fn central_difference_dispersion_is_exact() {
             let phase = mode as f64 * PI / layers as f64;
             let theta = if cfl < 1.0 { 2.0 * (cfl * (phase / 2.0).sin()).asin() } else { phase };
             let mut state = State::at_rest(&model);
-            // Two above the plane, so that contact plays no part.
+            // The bar is 2 m above the plane, so that there is no contact.
             for node in 0..model.mesh().node_count() {
                 let k = model.mesh().grid_position(node)[2] as f64;
                 state.u[3 * node + 2] = 2.0 + (phase * k).cos();
@@ -138,7 +138,7 @@ fn central_difference_dispersion_is_exact() {
                     (worst, found, exact) = (error, state.u[2], expected);
                 }
             }
-            // A step rounds Δt²M⁻¹K u, of size (ω_maxΔt)²·3 ≤ 12; its error drifts away at most linearly.
+            // A step rounds Δt²M⁻¹K u, of size (ω_maxΔt)²·3 ≤ 12. The error of a step grows at most linearly.
             let per_step = ROUNDINGS_PER_FORCE * 12.0 * f64::EPSILON;
             let bound = per_step * f64::from(steps * steps) / 2.0;
             evidence.bounded(format!("cΔt/h = {cfl}, mode {mode}"), found, exact, 1.0, bound);

@@ -1,32 +1,33 @@
 //! B8 An oscillator on a moving belt, constant friction coefficient.
 //!
-//! A mass m on a spring k to the ground, pressed with N on a belt of speed V; ω = √(k/m), x_s = μN/k.
+//! A mass m is held by a spring k from the ground and pressed with N on a belt of speed V. ω = √(k/m), x_s =
+//! μN/k.
 //!
-//! * **Started at rest** it slips all the time if μNω/k < V: friction is the constant μN, and
-//!   x = x_s (1 − cos ωt).
-//! * **Started stuck** (x = 0, velocity V) it is carried until k x = μN, at t₁ = x_s/V, and leaves with
-//!   velocity V: x = x_s + (V/ω) sin ω(t − t₁). Its velocity V cos ω(t − t₁) touches that of the belt
-//!   tangentially once a period and never again sticks for a finite time: **with a constant coefficient
-//!   there is no stick–slip limit cycle**, and the amplitude V/ω stays.
+//! * **Started at rest**, it slips all the time if μNω/k < V. Friction is the constant μN, and x = x_s (1 −
+//!   cos ωt).
+//! * **Started stuck** (x = 0, velocity V), it moves with the belt until k x = μN, at t₁ = x_s/V, and then
+//!   begins to slip with velocity V: x = x_s + (V/ω) sin ω(t − t₁). Its velocity V cos ω(t − t₁) touches that
+//!   of the belt tangentially once a period, and it never sticks again for a finite time. **With a constant
+//!   coefficient there is no stick–slip limit cycle**, and the amplitude V/ω remains.
 //!
-//! Source: integration of m ẍ = μN − k x (den Hartog, *Mechanical Vibrations*, 4th ed. 1956, § 7.1,
-//! discusses the mechanism). A static coefficient above the kinetic one, which does give stick–slip, is no
-//! part of the program's law and is not verified.
+//! Source: integration of m ẍ = μN − k x (den Hartog, *Mechanical Vibrations*, 4th ed. 1956, § 7.1, discusses
+//! the mechanism). A static coefficient above the kinetic one does cause stick–slip. It is no part of the
+//! program's law and is not verified.
 //!
-//! **What the scheme makes of it.** With y = x − x_s the central difference gives y_{n+1} − 2y_n + y_{n−1}
-//! = −W² y_n, W = ωΔt, so motion at rest is exactly y_n = −x_s cos θn with sin(θ/2) = W/2; its phase θ/W −
-//! 1 is W²/24: second order. A slip phase that begins at y_0 = fVΔt, 0 < f ≤ 1, after a step of VΔt has the
-//! amplitude
+//! **The discrete solution.** With y = x − x_s the central difference gives y_{n+1} − 2y_n + y_{n−1} = −W²
+//! y_n, W = ωΔt. So the motion from rest is exactly y_n = −x_s cos θn with sin(θ/2) = W/2. The error of its
+//! phase, θ/W − 1, is W²/24: second order. A slip phase that begins at y_0 = fVΔt, 0 < f ≤ 1, after a step of
+//! VΔt has the amplitude
 //!
 //! ```text
 //! A² = (V/ω)² [1 − W² f(1 − f)] / (1 − W²/4)
 //! ```
 //!
-//! (from the invariant y_n² − 2 cos θ y_n y_{n−1} + y_{n−1}² = A² sin² θ), between V/ω and (V/ω)/√(1 −
-//! W²/4). Its fastest step, 2A sin(θ/2) = AW, may exceed VΔt while the middle of the step is within θ/2 of
-//! the phase of greatest speed: in one step per period, in which it sticks. That step ends at y ≥ 0 (it
-//! began at y ≥ −A sin θ ≥ −VΔt), so the next phase of slip begins as described: the amplitude's bounds
-//! hold for ever, and the share of stick is at most θ/(2π).
+//! This follows from the invariant y_n² − 2 cos θ y_n y_{n−1} + y_{n−1}² = A² sin² θ. The amplitude is
+//! between V/ω and (V/ω)/√(1 − W²/4). The fastest step, 2A sin(θ/2) = AW, may exceed VΔt while the middle of
+//! the step is within θ/2 of the phase of greatest speed. This is one step per period, and the mass sticks in
+//! it. That step ends at y ≥ 0 (it began at y ≥ −A sin θ ≥ −VΔt), so the next slip phase begins as described.
+//! Therefore the bounds of the amplitude hold for ever, and the share of stick is at most θ/(2π).
 
 use crate::common::advance;
 use crate::evidence::Evidence;
@@ -69,7 +70,7 @@ fn measured_theta(y: &[f64]) -> f64 {
     (top / bottom).acos()
 }
 
-/// Protects: constant friction on a slipping oscillator: a shift of the centre, and nothing else.
+/// Protects: constant friction shifts the centre of a slipping oscillator and does nothing else.
 #[test]
 fn started_at_rest_it_oscillates_about_the_shifted_centre() {
     let mut discrete = Evidence::new(
@@ -103,7 +104,7 @@ fn started_at_rest_it_oscillates_about_the_shifted_centre() {
         discrete.found(&resolution, worst.1, worst.2, STATIC_M);
         frequency.found(&resolution, measured_theta(&y) * OMEGA / w, OMEGA, OMEGA);
     }
-    // About ten roundings a step of u, p and the force, each carried along without growth.
+    // There are about ten roundings of u, p and the force per step. None of them grows.
     discrete.judge_exact(10.0 * most_steps as f64);
     frequency.judge_order(2.0, 2.0, 10.0 * most_steps as f64 * f64::EPSILON);
 }
@@ -119,7 +120,7 @@ struct Swing {
 
 const PERIODS: usize = 40;
 
-/// Started stuck, followed over whole periods between upward crossings of the centre.
+/// Follows a mass that is started stuck over whole periods between upward crossings of the centre.
 fn swing(w: f64, belt_speed_m_s: f64) -> Swing {
     let model = oscillator(w);
     let dt = model.time_step_s();
@@ -158,8 +159,8 @@ fn swing(w: f64, belt_speed_m_s: f64) -> Swing {
     }
 }
 
-/// Protects: no stick–slip is made up where the law has none, and slip → stick → slip at equal velocities
-/// costs no energy.
+/// Protects: the scheme shows no stick–slip where the law has none, and slip → stick → slip at equal
+/// velocities costs no energy.
 #[test]
 fn started_stuck_it_touches_the_belts_speed_and_does_not_stick() {
     const TOUCH: &str = "x = μN/k + (V/ω) sin ω(t − t₁) after t₁ = μN/(kV)";
@@ -176,7 +177,7 @@ fn started_stuck_it_touches_the_belts_speed_and_does_not_stick() {
         "energy balance of an oscillator on a belt, relative to the energy put in",
         "work of the drive = friction + contact loss + stored energy, an identity of the scheme",
     );
-    // Not in proportion to anything else, so that steps and the stick's end are not in step.
+    // This speed has no simple ratio to the other quantities, so the end of stick falls anywhere in a step.
     let belt_speed_m_s = 0.1234 * STATIC_M * OMEGA;
     let exact_m = belt_speed_m_s / OMEGA;
     for w in RESOLUTIONS {

@@ -1,22 +1,23 @@
 //! B7 A rigid block: stopping distance, and stick on an incline.
 //!
-//! A block of mass m pressed with F slides at v0 and is decelerated by d = μF/m: it stops after
-//! t = v0/d and v0²/(2d). On an incline of angle α the tangential pull is F tan α, F the normal force: it
-//! sticks iff tan α ≤ μ and otherwise accelerates by F(tan α − μ)/m. Source: Coulomb's law and Newton's;
-//! any textbook of mechanics.
+//! A block of mass m is pressed with F and slides at v0. Friction decelerates it by d = μF/m, so it stops
+//! after t = v0/d and v0²/(2d). On an incline of angle α, the tangential pull is F tan α and F is the normal
+//! force. The block sticks if and only if tan α ≤ μ. Otherwise it accelerates by F(tan α − μ)/m. Source:
+//! Coulomb's and Newton's laws; any textbook of mechanics.
 //!
-//! **What the scheme makes of it.** Under a constant force the β₂ method is exact, whatever β₂: at t_n =
-//! nΔt, u_n = v0 t_n − d t_n²/2 and p_n = v0 − d(t_n − β₂Δt). The block sticks in the first step in which
-//! friction can stop it, p_n ≤ (½ + β₂)dΔt, that is t_n ≥ t − Δt/2: it stops at the t_n nearest to the
-//! exact t, at most Δt/2 off, and exactly at u_n = v0²/(2d) − d(t_n − t)²/2, at most dΔt²/8 short. (With β₂
-//! above ½ the share (β₂ − ½)/(β₂ + ½) of p is left after a step of stick; less friction than before holds
-//! it.) So the stopping time is first and the distance second order. With t/Δt = N + 1/3, and N such that
-//! the next resolution is 4(N + 1/3), the offset is Δt/3 every time, and single orders are clean.
+//! **The discrete solution.** Under a constant force the β₂ method is exact for any β₂: at t_n = nΔt, u_n =
+//! v0 t_n − d t_n²/2 and p_n = v0 − d(t_n − β₂Δt). The block sticks in the first step in which friction can
+//! stop it, p_n ≤ (½ + β₂)dΔt, that is t_n ≥ t − Δt/2. So it stops at the t_n nearest to the exact t, at most
+//! Δt/2 off. Its place is exactly u_n = v0²/(2d) − d(t_n − t)²/2, at most dΔt²/8 short. (With β₂ above ½ the
+//! share (β₂ − ½)/(β₂ + ½) of p remains after a step of stick. Less friction than before then holds the
+//! block.) So the stopping time is of first order and the distance of second order. With t/Δt = N + 1/3, and
+//! N such that the next resolution is 4(N + 1/3), the offset is Δt/3 every time, and single orders are
+//! regular.
 //!
-//! **On an elastic block** (two levels of m/2, shear spring k) in steady deceleration the top is ahead by
-//! μF/(2k) and both levels have the rigid block's velocity. The base sticks by the same criterion, for its
-//! m/2 and the spring's μF/2 add up to the rigid block's; then at most μF/2 and the rest of the last step's
-//! momentum pull at it, and it keeps the rigid block's position.
+//! **On an elastic block** (two levels of m/2, shear spring k) in steady deceleration, the top is ahead by
+//! μF/(2k) and both levels have the rigid block's velocity. The base sticks by the same criterion, because
+//! its m/2 and the spring's μF/2 add up to those of the rigid block. Afterwards at most μF/2 and the rest of
+//! the last step's momentum pull at it, so it keeps the rigid block's position.
 
 use crate::common::{COLUMN_AREA_M2, COLUMN_HEIGHT_M, advance, all_of, column_mesh, definition, level_ties};
 use crate::evidence::Evidence;
@@ -50,14 +51,15 @@ fn is_stuck(state: &State<1>, slave: usize) -> bool {
     state.contacts.state_of(slave, 0) == ContactState::Stick
 }
 
-/// Slides until it sticks and as long again; time [s] and place [m] where it stopped.
+/// Slides until the block sticks, and continues for as long again. Returns the time [s] and the place [m] of
+/// the stop.
 fn slide_to_rest(model: &Model, mut state: State<1>) -> (f64, f64) {
     let mut stopped_at = None;
     let steps = (2.0 * STOP_TIME_S / model.time_step_s()) as u64;
     for n in 0..steps {
         advance(model, &DRIVE, &mut state, 1);
         let sticks = is_stuck(&state, 0);
-        // Step n starts at t_n, where the block is when it sticks for the first time.
+        // Step n starts at t_n. The block stops there if this is the first step in which it sticks.
         stopped_at = stopped_at.or(sticks.then_some(n as f64 * model.time_step_s()));
         assert_eq!(sticks, stopped_at.is_some(), "what has stopped does not move again");
     }
@@ -70,7 +72,7 @@ fn sliding(model: &Model) -> State<1> {
     state
 }
 
-/// Protects: sliding friction and the transition to rest within a step, for a point mass.
+/// Protects: sliding friction and the transition to rest within a step are right for a point mass.
 #[test]
 fn stops_where_and_when_a_rigid_block_stops() {
     let mut time = Evidence::new("B7", "stopping time of a rigid block [s]", NEWTON);
@@ -96,14 +98,14 @@ fn stops_where_and_when_a_rigid_block_stops() {
         }
         most_steps = most_steps.max(steps);
     }
-    // Each step rounds p and u a few times; an error of p is carried through the rest of the way.
+    // Each step rounds p and u a few times. An error of p acts over the rest of the distance.
     let roundings = 10.0 * most_steps;
     time.judge_order(1.0, 4.0, roundings * f64::EPSILON);
     distance.judge_order(2.0, 4.0, roundings * f64::EPSILON);
     discrete.judge_exact(roundings);
 }
 
-/// Protects: the bounds of the last step hold wherever in a step the exact stop falls.
+/// Protects: the bounds of the last step hold for any phase of the exact stop within a step.
 #[test]
 fn the_last_step_costs_at_most_half_a_step() {
     let mut time = Evidence::new("B7", "stopping time at any phase of the step [s]", NEWTON);
@@ -128,7 +130,7 @@ fn sticks_on_an_incline_up_to_the_friction_angle() {
     let time_step_s = 1.0e-6;
     let mut travel =
         Evidence::new("B7", "travel on an incline of tan α = r μ [m]", "a = F(tan α − μ)/m; 0 for r ≤ 1");
-    // Trial force and limit are rounded a few times each: 1 ∓ 16 ε is beyond that.
+    // Trial force and limit are rounded a few times each. 1 ∓ 16 ε is beyond these roundings.
     let edge = 16.0 * f64::EPSILON;
     for ratio in [0.0, 0.5, 1.0 - edge, 1.0 + edge, 1.01, 2.0] {
         let model = rigid_block(ratio * MU, 0.5, time_step_s);
@@ -169,8 +171,8 @@ fn shear_stiffness_n_m(young_modulus_pa: f64) -> f64 {
     young_modulus_pa / 2.0 * COLUMN_AREA_M2 / COLUMN_HEIGHT_M
 }
 
-/// Protects: the same on elastic elements: the base of a deforming block stops where a rigid one does, and
-/// the rest coming to rest does not move it again.
+/// Protects: the base of a deforming block stops where a rigid block stops. It does not move again while the
+/// rest of the block comes to rest.
 #[test]
 fn an_elastic_blocks_base_stops_like_a_rigid_block() {
     let mut place = Evidence::new(
@@ -195,19 +197,21 @@ fn an_elastic_blocks_base_stops_like_a_rigid_block() {
         let offset_s = stopped_s - STOP_TIME_S;
         assert!(offset_s.abs() <= 0.5 * model.time_step_s() * (1.0 + 1e-9), "{offset_s:e} s off");
         let exact = STOP_DISTANCE_M - 0.5 * DECELERATION_M_S2 * offset_s * offset_s;
-        // Rounding of the spring's force: a displacement D is rounded to εD, which the spring makes a
-        // force kεD and the time Δt < 1/ω a displacement of at most εD again, once a step.
+        // Rounding of the spring's force: a displacement D has the rounding error εD. The spring turns it
+        // into a force kεD. In the time Δt < 1/ω this force causes a displacement of at most εD again. This
+        // happens once per step.
         let bound = 20.0 * steps * f64::EPSILON;
         place.bounded(format!("E = {young_modulus_pa:.0e} Pa"), place_m, exact, STOP_DISTANCE_M, bound);
     }
     place.judge_bounded("20 roundings a step");
 }
 
-/// Protects: a deforming block pulled up to its limit: not the slightest slip below it, slip above it.
+/// Protects: a deforming block that is pulled up to its limit does not slip at all below the limit, and slips
+/// above it.
 ///
-/// Critically damped shear mode ω, pulled with a ramp over T = 200/ω: the base's traction in excess of a
-/// slow ramp's is at most 1/(eωT) = 0.2 % of the pull (response R/f = (1 + 2s)/(1 + s)², s in units of ω,
-/// to a ramp), so 0.99 of the limit stays below it.
+/// The shear mode ω is critically damped and pulled with a ramp over T = 200/ω. The base's traction exceeds
+/// that of a slow ramp by at most 1/(eωT) = 0.2 % of the pull (the response to a ramp is R/f = (1 + 2s)/(1 +
+/// s)², s in units of ω). So 0.99 of the limit stays below the limit.
 #[test]
 fn an_elastic_block_sticks_up_to_the_friction_angle() {
     for (fraction, sticks) in [(0.5, true), (0.99, true), (1.01, false), (2.0, false)] {

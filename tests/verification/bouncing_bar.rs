@@ -4,27 +4,27 @@
 //! h0 = 5 m above a rigid floor, g = 10 m/s². Source: D. Doyen, A. Ern, S. Piperno, *Time-integration
 //! schemes for the finite element dynamic Signorini problem*, SIAM J. Sci. Comput. 33 (2011).
 //!
-//! The solution, derived: an undeformed bar hits at t1 = √(2h0/g) = 1 s with vf = 10 m/s. In contact
-//! u = −vf s − ½gs² + φ(s − z/c) + φ(s − (2L−z)/c) with s = t − t1 and φ(x) = (vf x + ½gx²) for x > 0, which
-//! keeps the base at 0 and the top free. The contact stress is ρcφ′(s) = ρc(vf + gs): 300 Pa rising to 500 Pa
-//! until the wave is back at s = 2L/c = ⅔ s. Then all of the bar moves up at vf, with the shape g(z² − 2Lz)/c².
-//! In flight that shape vibrates freely about its mean −2gL²/3c²: by d'Alembert the base follows its even,
-//! 2L-periodic continuation,
+//! The solution is derived as follows. An undeformed bar hits the floor at t1 = √(2h0/g) = 1 s with vf = 10
+//! m/s. In contact u = −vf s − ½gs² + φ(s − z/c) + φ(s − (2L−z)/c) with s = t − t1 and φ(x) = (vf x + ½gx²)
+//! for x > 0. This keeps the base at 0 and the top free. The contact stress is ρcφ′(s) = ρc(vf + gs). It
+//! rises from 300 Pa to 500 Pa until the wave is back at s = 2L/c = ⅔ s. Then the whole bar moves up at vf,
+//! with the shape g(z² − 2Lz)/c². In flight this shape vibrates freely about its mean −2gL²/3c². By
+//! d'Alembert the base follows the even, 2L-periodic continuation of the shape,
 //!
 //! ```text
 //! u(0, t) = vf s − ½gs² + g(ζ² − 2Lζ)/c²,   s = t − 5/3,   ζ = cs mod 2L
 //! ```
 //!
 //! (the cosine series −2gL²/3c² + Σ 4g/(cλ_n)² cos cλ_n s, λ_n = nπ/L). The flight takes 2 s, three whole
-//! periods of the vibration, so the second impact (11/3 to 13/3 s, 500 falling to 300 Pa) is the first one
-//! reversed in time, and at 16/3 s the bar is at rest and undeformed at h0 again. The impulse of each contact is
-//! 2ρLvf + ρLg·2L/c = 266.667 Ns/m².
+//! periods of the vibration. So the second impact (11/3 to 13/3 s, the stress falls from 500 to 300 Pa) is
+//! the first one reversed in time. At 16/3 s the bar is at rest and undeformed at h0 again. The impulse of
+//! each contact is 2ρLvf + ρLg·2L/c = 266.667 Ns/m².
 //!
-//! At cΔt/h = 1 the scheme transports waves, gravity included, exactly; the first contact's stress holds to
-//! rounding. Its loss of energy is the contact node's kinetic energy: the gap closes at t_n, where the one closing
-//! force m0(vf + ½gΔt)/Δt works on the increment (vf − ½gΔt)Δt before it, half of which is (1 − (gΔt/2vf)²)/2N of
-//! all energy, at any step (see `bar`, φ = 0). All else has the order of that loss, 1; below the limit the returning front is
-//! dispersed, order ⅔ (see `bar`).
+//! At cΔt/h = 1 the scheme transports waves exactly, gravity included, so the stress of the first contact
+//! holds to rounding. The loss of energy is the kinetic energy of the contact node. The gap closes at t_n.
+//! The one closing force m0(vf + ½gΔt)/Δt works on the increment (vf − ½gΔt)Δt before it. Half of this work
+//! is (1 − (gΔt/2vf)²)/2N of all energy, for any step (see `bar`, φ = 0). All other errors have the order of
+//! that loss, 1. Below the limit the returning front is dispersed, which gives order ⅔ (see `bar`).
 
 use crate::common::{
     FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, axial_bar, normal_force_n, step_at_cfl,
@@ -67,7 +67,7 @@ fn base_m(t: f64) -> f64 {
     }
 }
 
-/// Protects: the closed form above against the series it is published as, and its continuity.
+/// Protects: the closed form above agrees with the published series.
 #[test]
 fn closed_form_is_the_published_series() {
     let terms = 20_000;
@@ -90,7 +90,7 @@ fn closed_form_is_the_published_series() {
 fn bar(layers: usize, cfl: f64) -> Model {
     let material = Material { young_modulus_pa: 900.0, poisson_ratio: 0.0, density_kg_m3: 1.0 };
     let base = axial_bar(LENGTH_M, layers, material, false);
-    // Weights of the lumped nodes, so that a load of 1 is the bar's weight.
+    // The shares are the weights of the lumped nodes, so that a load of 1 is the bar's weight.
     let masses = base.mesh.lumped_masses_kg(material.density_kg_m3);
     let load = masses
         .iter()
@@ -110,7 +110,7 @@ fn closing_loss(layers: usize, cfl: f64) -> f64 {
 struct Bounce {
     /// Largest error of the base's height over the period.
     worst_height_m: f64,
-    /// Largest error of the first contact's stress, but for its first and last two steps.
+    /// Largest error of the first contact's stress, except in its first two and last two steps.
     worst_stress_pa: f64,
     impulses_ns_m2: [f64; 2],
     contact_s: [f64; 2],
@@ -139,8 +139,9 @@ fn bounce(layers: usize, cfl: f64) -> Bounce {
         let stress_pa = normal_force_n(&state) / area_m2;
         let impact = usize::from(t > MID_FLIGHT_S);
         found.impulses_ns_m2[impact] += stress_pa * dt;
-        // A gap that closes exactly at a step may do so a step early by rounding. Rounding of the fall's 3N steps of
-        // some metres, 10⁻⁹ m, times ρh/2Δt² = 3·10⁴ Pa/m is far below 10⁻³ Pa.
+        // A gap that closes exactly at a step may close one step early because of rounding. The fall has 3N
+        // steps over some metres, so its rounding is 10⁻⁹ m. Times ρh/2Δt² = 3·10⁴ Pa/m this is far below
+        // 10⁻³ Pa.
         found.contact_s[impact] += if stress_pa > 1e-3 { dt } else { 0.0 };
         found.losses[impact] = ledger.energies(0).contact_loss_j / fall_energy_j;
         if t > 1.0 + 2.5 * dt && t < 1.0 + CONTACT_S - 2.5 * dt {
@@ -154,13 +155,14 @@ fn bounce(layers: usize, cfl: f64) -> Bounce {
     found
 }
 
-/// B5 at the limit and below it: the first contact's stress and loss to rounding, the rest with its order.
+/// Protects: the first contact's stress (at the limit) and loss are exact to rounding, and all other results
+/// converge with their order, at the limit and below it.
 #[test]
 fn bounces_with_the_analysed_orders() {
     series("", &[20, 40, 80, 160]);
 }
 
-/// Protects: the same orders over six doublings.
+/// Protects: the orders are the same over six doublings.
 #[test]
 #[ignore = "bars of up to 1280 elements"]
 fn bounces_over_six_doublings() {
@@ -172,8 +174,8 @@ fn series(suffix: &str, layers: &[usize]) {
     for cfl in [1.0, 0.5] {
         let name = |what: &str| format!("cΔt/h = {cfl}{suffix}, {what}");
         let case = |what: &str| Evidence::new("B5", name(what), DOYEN);
-        // Below the limit the stress that dispersed waves leave behind the closing shock oscillates and decays as
-        // slowly as the front: it has no order at its worst step.
+        // Below the limit, dispersed waves behind the closing shock make the stress oscillate. The
+        // oscillation decays as slowly as the front, so the stress at its worst step has no order.
         let mut stress =
             (cfl == 1.0).then(|| case("worst error of the first contact's stress, 300 to 500 Pa"));
         let mut first_loss = Evidence::new("B5", name("energy lost in the first impact"), LOSS);
@@ -193,7 +195,8 @@ fn series(suffix: &str, layers: &[usize]) {
             height.found(&name, found.worst_height_m / HEIGHT_M, 0.0, 1.0);
             first_impulse.found(&name, found.impulses_ns_m2[0], IMPULSE_NS_M2, IMPULSE_NS_M2);
             second_impulse.found(&name, found.impulses_ns_m2[1], IMPULSE_NS_M2, IMPULSE_NS_M2);
-            // At the limit contact is counted in whole steps, one of which is cut at either end.
+            // At the limit the contact time is counted in whole steps, and one of them may be missing at
+            // either end.
             let bound = 2.0 * LENGTH_M / (WAVE_SPEED_M_S * layers as f64 * CONTACT_S);
             if cfl == 1.0 {
                 first_time.bounded(&name, found.contact_s[0], CONTACT_S, CONTACT_S, bound);
@@ -203,7 +206,7 @@ fn series(suffix: &str, layers: &[usize]) {
             second_time.found(&name, found.contact_s[1], CONTACT_S, CONTACT_S);
             energy.found(&name, 1.0 - found.losses[1], 1.0, 1.0);
         }
-        // Sixteen transits, and displacements of up to N increments.
+        // There are sixteen transits, and displacements have up to N increments.
         let operations = ROUNDINGS_PER_FORCE * finest * 16.0 * finest / cfl;
         let rounding = operations * f64::EPSILON;
         first_loss.judge_exact(operations);

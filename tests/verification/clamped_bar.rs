@@ -1,19 +1,21 @@
 //! B6 A clamped bar that hits its obstacle periodically.
 //!
-//! Problem: ρ = E = L = 1, u(1) = 0, obstacle u(0) ≥ 0, released from u0 = (1 − x)/2 at rest. Source: the
-//! one-dimensional impact problem of F. Dabaghi, A. Petrov, J. Pousin, Y. Renard, *A robust finite element
-//! redistribution approach for elastodynamic contact problems*, Appl. Numer. Math. 103 (2016).
+//! Problem: a bar with ρ = E = L = 1 is held at u(1) = 0 and has the obstacle u(0) ≥ 0. It is released at
+//! rest from u0 = (1 − x)/2. Source: the one-dimensional impact problem of F. Dabaghi, A. Petrov, J. Pousin,
+//! Y. Renard, *A robust finite element redistribution approach for elastodynamic contact problems*, Appl.
+//! Numer. Math. 103 (2016).
 //!
-//! The solution, by d'Alembert: release sends a wave from the free end that relieves the stress −½ and leaves
-//! v = −½, so u(0, t) = ½ − t/2. At t = 1 the wave is at the clamp and all of the bar is undeformed at
-//! v = −½. Both ends stop: u(0) = 0 with the contact stress ½ until, at t = 2, both waves have crossed
-//! and all of it moves at +½; u(0, t) = (t − 2)/2 until it is at rest at t = 3 as at the start. Period 3, energy
-//! ⅛, impulse ½ a period.
+//! The solution, by d'Alembert: the release sends a wave from the free end that relieves the stress −½ and
+//! leaves v = −½, so u(0, t) = ½ − t/2. At t = 1 the wave is at the clamp, and the whole bar is undeformed at
+//! v = −½. Then both ends stop, and u(0) = 0 with the contact stress ½. At t = 2 both waves have crossed, and
+//! the whole bar moves at +½. From then on u(0, t) = (t − 2)/2, until the bar is at rest at t = 3 as at the
+//! start. The period is 3, the energy ⅛, and the impulse ½ per period.
 //!
-//! The scheme with N elements and C = cΔt/h: its energy ½vMv + ½uKu − ¼Δt²aMa starts at (1 − C²/2N)/8, because
-//! the stress at the released end makes its half element accelerate by c²/h, and the first closing loses
-//! 1/2N more (see `bar`). At C = 1 the motion is then exactly periodic, the contact node being left at rest when
-//! the bar leaves: errors have order 1 and do not grow. Below the limit fronts disperse: order ⅔ (see `bar`).
+//! The scheme with N elements and C = cΔt/h: its energy ½vMv + ½uKu − ¼Δt²aMa starts at (1 − C²/2N)/8,
+//! because the stress at the released end accelerates its half element by c²/h. The first closing loses 1/2N
+//! more (see `bar`). At C = 1 the motion is then exactly periodic, because the contact node is left at rest
+//! when the bar leaves. So errors have order 1 and do not grow. Below the limit fronts disperse, which gives
+//! order ⅔ (see `bar`).
 
 use crate::common::{
     FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, axial_bar, normal_force_n, step_at_cfl,
@@ -38,7 +40,7 @@ struct Period {
     impulse_ns: f64,
     /// Mean contact stress over the middle half of the contact.
     stress_pa: f64,
-    /// Stored at the end of the period over ⅛.
+    /// Stored energy at the end of the period over ⅛.
     energy: f64,
 }
 
@@ -82,13 +84,13 @@ fn run(layers: usize, cfl: f64) -> [Period; PERIODS] {
     found
 }
 
-/// B6: three periods at the limit and below it.
+/// Protects: the results of three periods converge with their orders, at the limit and below it.
 #[test]
 fn impacts_repeat() {
     series("", &[20, 40, 80, 160]);
 }
 
-/// Protects: the same orders over six doublings.
+/// Protects: the orders are the same over six doublings.
 #[test]
 #[ignore = "bars of up to 1280 elements"]
 fn impacts_repeat_over_six_doublings() {

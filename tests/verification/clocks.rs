@@ -1,8 +1,9 @@
 //! R4 Two clocks: energy and accuracy of the disk's stages.
 //!
-//! With m stages the disk is a body of the same stiffness and the mass M B⁻¹ in the central difference of the pin's
-//! step (`solver::body::ring::stages`), so the energies of both bodies balance exactly; and its error is of second order in
-//! the step, while the contact's is of first order.
+//! With m stages per step of the pin, the disk acts in the central difference of the pin's step as a body of
+//! the same stiffness and the mass M B⁻¹ (`solver::body::ring::stages`). So the energies of both bodies
+//! balance exactly. The error of the stages is of second order in the step, while that of the contact is of
+//! first order.
 
 use crate::common::{ROUNDINGS_PER_FORCE, advance};
 use crate::elastic::{coarse_scene, drive};
@@ -21,8 +22,8 @@ fn model(spec: &JobSpec) -> Model {
     Model::from_scene(&spec.scene, &spec.numerics).unwrap()
 }
 
-/// Protects: over 20 ms of squeal with several stages a step the energies of pin and disk close to rounding when they
-/// are looked at in every step; with bilinear patches and smooth ones.
+/// Protects: the energies of pin and disk close to rounding over 20 ms of squeal with several stages per
+/// step, if every step is audited. This holds with bilinear and with smooth patches.
 #[test]
 fn energies_close_with_stages() {
     let mut evidence = Evidence::new("R4", "imbalance over the energy put in, 20 ms", KRENK);
@@ -49,12 +50,12 @@ fn energies_close_with_stages() {
         evidence.found(format!("{target:?}"), energies.imbalance_j(), 0.0, energies.input_j());
         most_steps = most_steps.max(steps as f64);
     }
-    // Every step adds works of forces, each rounded as a row of K u is.
+    // Every step adds works of forces. Each force is rounded like a row of K u.
     evidence.judge_exact(ROUNDINGS_PER_FORCE * most_steps);
 }
 
-/// Protects: against the reference with one clock and a fine step, several stages cost no more accuracy than the step does
-/// by itself, which is what it costs where there is no disk to make stages: on a rigid one.
+/// Protects: several stages cost no more accuracy than the step itself. The reference has one clock and a
+/// fine step. The error of the step itself is that on a rigid disk, which has no stages.
 #[test]
 fn stages_change_less_than_the_step_does() {
     let displacements = |kind: DiskKind, clock: DiskTimeStep, time_step_s: f64| {
@@ -72,7 +73,7 @@ fn stages_change_less_than_the_step_does() {
         let size = b.iter().map(|v| v * v).sum::<f64>().sqrt();
         a.iter().zip(b).map(|(a, b)| (a - b) * (a - b)).sum::<f64>().sqrt() / size
     };
-    // Rounded so that all runs end at the same time.
+    // Steps are rounded so that all runs end at the same time.
     let whole = |step: f64| SPAN_S / (SPAN_S / step).ceil();
     let own = model(&coarse_scene()).time_step_s();
     let (elastic, _) = displacements(DiskKind::Elastic, DiskTimeStep::Common, whole(own / 16.0));
@@ -90,11 +91,12 @@ fn stages_change_less_than_the_step_does() {
     evidence.judge_bounded("the error of the same step on a rigid disk");
 }
 
-/// Protects: with no damping at all, over ten thousand steps of a shaken pin that bounces on the disk, for every
-/// number of stages and disks from softer than the pin to much stiffer, nothing grows: a frictionless contact force N takes
-/// N g_{n−1}/2 ≥ 0 over the increments before and after its time, so what is stored at that time, between the two, is at most
-/// what was put in and what the force has yet to take, N g_n/2. (Clocks that exchange held forces grow by a percent a step
-/// where a multiple of the longer step is in resonance with the finer mesh.)
+/// Protects: without any damping, nothing grows over ten thousand steps of a shaken pin that bounces on the
+/// disk, for every number of stages and for disks from softer than the pin to much stiffer. A frictionless
+/// contact force N takes N g_{n−1}/2 ≥ 0 over the increments before and after its time. At that time, between
+/// the two increments, the force has yet to take N g_n/2. So the stored energy is at most what was put in
+/// plus N g_n/2. (Clocks that exchange held forces grow by a percent per step where a multiple of the longer
+/// step is in resonance with the finer mesh.)
 #[test]
 fn nothing_grows_without_damping() {
     let mut seen = std::collections::BTreeSet::new();
@@ -114,7 +116,7 @@ fn nothing_grows_without_damping() {
         let drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.7, force_n: 30.0, ramp_s: 0.0 };
         let mut state = State::<1>::at_rest(&model);
         for dof in 0..state.p.len() {
-            // Any rough pattern; its size is that of the squeal's velocities.
+            // The pattern is arbitrary, but rough. Its size is that of the squeal's velocities.
             state.p[dof] = 0.1 * (((dof * 7919) % 101) as f64 / 50.0 - 1.0);
         }
         for &dof in &clamped(&spec) {
@@ -146,15 +148,15 @@ fn nothing_grows_without_damping() {
     evidence.judge_bounded("energy balance, and contact that only takes; each step rounds as a row of K u");
 }
 
-/// Degrees of freedom that the scene holds or ties, whose velocities are not free to be chosen.
+/// Degrees of freedom that the scene holds or ties. Their velocities cannot be chosen freely.
 fn clamped(spec: &JobSpec) -> Vec<usize> {
     let mesh =
         tribosweep::solver::body::block::BlockMesh::new(spec.scene.pin.size_m, spec.scene.pin.elements);
     mesh.top_nodes().flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2]).collect()
 }
 
-/// Protects: a contact solve that does not converge ends the job with an error that says when and by how much. The disk is
-/// so light that some tens of slave nodes hang together by target nodes that weigh next to nothing.
+/// Protects: a contact solve that does not converge ends the job with an error that gives the step and the
+/// residual. The disk is so light that target nodes with almost no mass couple some tens of slave nodes.
 #[test]
 fn a_solve_that_fails_is_an_error() {
     let mut spec = coarse_scene();
@@ -168,13 +170,13 @@ fn a_solve_that_fails_is_an_error() {
     }
 }
 
-/// Protects: a disk that turns several times under a pin that does not touch it is not strained at all; and one that
-/// carries the pin all the while, over every sector and the end of the ring's numbering, closes its energies.
+/// Protects: a disk that turns several times under a pin without contact has no strain. The energies of a
+/// disk that carries the pin all the time, over every sector and over the end of the ring's numbering, close.
 #[test]
 fn several_turns_strain_nothing() {
     let mut spec = coarse_scene();
     spec.scene.disk.ring.track_arc_deg = 360.0;
-    // A thousand turns a second: three of them are soon over, and the pin passes many edges.
+    // At a thousand turns per second, three turns take little time, and the pin passes many edges.
     spec.scene.disk.omega_rpm = 60_000.0;
     let model = model(&spec);
     let steps = (3.0e-3 / model.time_step_s()) as usize;

@@ -1,4 +1,4 @@
-//! One-dimensional columns and small helpers shared by the topics.
+//! One-dimensional columns and small helpers shared by the other files.
 
 use tribosweep::solver::body::block::{BlockMesh, Stiffness};
 use tribosweep::solver::interface::law::Law;
@@ -13,7 +13,7 @@ pub fn pin_material(poisson_ratio: f64) -> Material {
     Material { young_modulus_pa: 1.0e9, poisson_ratio, density_kg_m3: 2500.0 }
 }
 
-/// Cross section of a column: so wide that no lateral mode is faster than the axial ones.
+/// Width of a column. It is so large that no lateral mode is faster than the axial ones.
 pub const COLUMN_WIDTH_M: f64 = 0.1;
 
 /// Height of a column.
@@ -32,7 +32,7 @@ pub fn level(mesh: &BlockMesh, k: usize) -> Vec<usize> {
     (0..mesh.node_count()).filter(|&node| mesh.grid_position(node)[2] == k).collect()
 }
 
-/// Every level of the column moves as one in `component`.
+/// Ties that make every level of the column move as one in `component`.
 pub fn level_ties(mesh: &BlockMesh, component: usize) -> Vec<Support> {
     (0..=mesh.elements()[2]).map(|k| Support::tied(component, level(mesh, k))).collect()
 }
@@ -79,8 +79,9 @@ pub fn normal_force_n(state: &State<1>) -> f64 {
     state.contacts.forces(0).map(|force| force[2]).sum()
 }
 
-/// Most roundings behind one component of K u, relative to Σ|K||u|: an entry of the element's stiffness is a
-/// sum over 8 Gauss points of some 10 roundings each, up to 8 elements add up, and a row has 81 products.
+/// Largest number of roundings of one component of K u, relative to Σ|K||u|. An entry of the element's
+/// stiffness is a sum over 8 Gauss points of some 10 roundings each, up to 8 elements are added, and a row
+/// has 81 products.
 pub const ROUNDINGS_PER_FORCE: f64 = 8.0 * 10.0 + 8.0 + 81.0;
 
 /// A bar along z: it moves in z only, and is ten times as wide as long, so that its limit is cΔt/h = 1.
@@ -99,6 +100,6 @@ pub fn step_at_cfl(definition: &ModelDefinition, cfl: f64) -> TimeStep {
     TimeStep::Given(cfl * h / definition.material.pressure_wave_speed_m_s())
 }
 
-/// Order ⅔ (to the digits that are shown) of what a dispersed front decides: the central difference's phase
-/// error is cubic in frequency, which smears a front that has travelled L over (h²L)^⅓.
+/// Order ⅔ (to the digits that are shown) of errors that a dispersed front causes. The phase error of the
+/// central difference is cubic in frequency, so a front that has travelled L is smeared over (h²L)^⅓.
 pub const FRONT_ORDER: f64 = 0.667;

@@ -1,17 +1,18 @@
 //! B15 Identities on a real limit cycle: momentum, macroscopic friction and energy.
 //!
-//! Problem: the reference pin on a coarse mesh at 7 rpm and μ = 0.4, a limit cycle with stick, slip and
-//! separation. With the momentum P = Σ m p of the free degrees of freedom (p_{n+1} = p_n + Δt a_n):
+//! Problem: the reference pin on a coarse mesh at 7 rpm and μ = 0.4. Its limit cycle has stick, slip and
+//! separation. P = Σ m p is the momentum of the free degrees of freedom (p_{n+1} = p_n + Δt a_n).
 //!
 //! * Newton: P_{n+1} − P_n = Δt (reaction + load + contact forces) in x, y and z at every step, because a
-//!   translation strains nothing. Rounding: that of all rows of K u together.
-//! * Macroscopic identity: with R = ⟨Σ_stick(μN − t_y) + Σ_slip μN(1 − cos φ)⟩/F of a window of time W,
-//!   μ − ⟨T⟩/F − R = (ΔP_y − μ ΔP_z)/(F W) for *every* window, since Σt_y = μN − (the sums) holds at every
-//!   step and ⟨T_contact⟩ − ⟨T⟩ = ΔP_y/W, ⟨N⟩ − F = ΔP_z/W. So over n cycles the residual falls as 1/W
-//!   below (range P_y + μ range P_z)/(F W), and over whole periods it vanishes.
-//! * Energy identity: work of drive and load − friction − damping − contact loss = change of the stored energy,
-//!   to rounding with every step audited; over a window the drive's work alone misses what is lost by at most
-//!   the range of stored energy and load potential, again 1/W.
+//!   translation causes no strain. The rounding is that of all rows of K u together.
+//! * Macroscopic identity: let R = ⟨Σ_stick(μN − t_y) + Σ_slip μN(1 − cos φ)⟩/F over a window of time W. Then
+//!   μ − ⟨T⟩/F − R = (ΔP_y − μ ΔP_z)/(F W) for *every* window, because Σt_y = μN − (the sums) holds at every
+//!   step, ⟨T_contact⟩ − ⟨T⟩ = ΔP_y/W and ⟨N⟩ − F = ΔP_z/W. So over n cycles the residual stays below (range
+//!   P_y + μ range P_z)/(F W), which falls as 1/W. Over whole periods it vanishes.
+//! * Energy identity: work of drive and load − friction − damping − contact loss = change of the stored
+//!   energy, to rounding if every step is audited. Over a window, the drive's work alone differs from the
+//!   losses by at most the range of stored energy and load potential, which falls as 1/W relative to the
+//!   work.
 //!
 //! Source: momentum and energy balance of the pin; the identities are derived here from Newton's law and the
 //! definitions of `analysis`.
@@ -29,7 +30,7 @@ use tribosweep::spec::JobSpec;
 
 const MU: f64 = 0.4;
 const LOAD_N: f64 = 30.0;
-/// The limit cycle is reached after this time, and observed after it.
+/// The limit cycle is reached before this time. The observation starts at it.
 const TRANSIENT_S: f64 = 5.0e-3;
 const WINDOWS_S: [f64; 4] = [0.5e-3, 1.0e-3, 2.0e-3, 4.0e-3];
 
@@ -46,7 +47,7 @@ fn momentum_ns(model: &Model, state: &State<1>) -> [f64; 3] {
     })
 }
 
-/// Smallest and largest of what is seen.
+/// Smallest and largest value so far.
 #[derive(Clone, Copy)]
 struct Range(f64, f64);
 
@@ -62,13 +63,13 @@ impl Range {
     }
 }
 
-/// What is left of the drive's work over a window when the losses are taken off [J].
+/// Work of the drive less all losses over a window [J].
 fn drive_excess_j(from: &Energies, to: &Energies) -> f64 {
     let excess = |e: &Energies| e.drive_work_j - e.friction_j - e.damping_j - e.contact_loss_j;
     excess(to) - excess(from)
 }
 
-/// Protects: clamp reaction, contact forces, deficits of friction and energies against each other.
+/// Protects: clamp reaction, contact forces, deficits of friction and energies agree with each other.
 #[test]
 fn identities_hold_in_every_window() {
     let model = model();
@@ -85,7 +86,7 @@ fn identities_hold_in_every_window() {
     // Momentum, energies and time at the start of the observation.
     let mut start = ([0.0; 3], Energies::default(), 0.0);
     let (mut worst_newton, mut largest_u) = ([0.0_f64; 3], 0.0_f64);
-    // What rounding of the slip's direction may add to the sums of the deficits [N].
+    // Error that the rounding of the slip's direction may add to the sums of the deficits [N].
     let mut direction_rounding_n = 0.0;
     let mut macroscopic = Evidence::new("B15", "limit cycle, residual of the macroscopic identity", IDENTITY);
     let mut exact_residual = Evidence::new(
@@ -96,8 +97,8 @@ fn identities_hold_in_every_window() {
     let mut energy =
         Evidence::new("B15", "limit cycle, drive work less all losses over drive work", IDENTITY);
     let mut balance = Evidence::new("B15", "limit cycle, imbalance of energies over the input", IDENTITY);
-    // (name, macroscopic residual, drive excess, drive work, window) of the windows, bounded at the end, when
-    // the ranges over all of them are known.
+    // (name, macroscopic residual, drive excess, drive work, window) of the windows. Their bounds follow at
+    // the end, when the ranges over all of them are known.
     let mut windows = Vec::new();
     let total_s = TRANSIENT_S + WINDOWS_S[WINDOWS_S.len() - 1];
     let mut next_window = 0;

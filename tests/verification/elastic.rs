@@ -1,6 +1,7 @@
-//! A block on an elastic block; a tool of the topics.
+//! A block on an elastic block; a tool for the other files.
 //!
-//! The lower block is a sector of a ring of so large a radius that it is straight but for 10⁻⁷ of its width.
+//! The lower block is a sector of a ring. The radius is so large that the block is straight to 10⁻⁷ of its
+//! width.
 
 use std::f64::consts::TAU;
 use tribosweep::solver::body::block::BlockMesh;
@@ -14,7 +15,7 @@ use tribosweep::spec::{DiskTimeStep, TargetSurface};
 /// Radius of the ring over the block's width.
 const STRAIGHT: f64 = 1.0e7;
 
-/// A block of `elements` (x, y, z) of this material under a pin of `size_m` in x and y, `thickness_m` thick.
+/// The lower block, with `elements` in x, y and z. Its size in x and y is that of the pin.
 pub struct Below {
     pub material: Material,
     pub thickness_m: f64,
@@ -25,7 +26,7 @@ pub struct Below {
     pub held: bool,
 }
 
-/// The upper block of `base` on it; the drive is a straight plane's.
+/// The model of the upper block `base` on the lower one. The drive is that of a straight plane.
 pub fn on_block(base: ModelDefinition, below: &Below) -> Model {
     let [lx, ly, _] = base.mesh.size_m();
     let radius = STRAIGHT * lx.max(ly);
@@ -57,7 +58,7 @@ pub fn momentum(model: &Model, state: &State<1>) -> [f64; 2] {
     [pin.sum(), below.sum()]
 }
 
-/// A pin on a coarse ring of its own size class, for runs that have to be quick: pin 6 × 8 × 5, elements of 8 mm.
+/// A pin of 6 × 8 × 5 elements on a ring with elements of 6 mm under the track, for runs that must be quick.
 pub fn coarse_scene() -> tribosweep::spec::JobSpec {
     let mut spec = tribosweep::spec::JobSpec::default();
     spec.scene.pin.elements = [6, 8, 5];
@@ -68,12 +69,12 @@ pub fn coarse_scene() -> tribosweep::spec::JobSpec {
     spec
 }
 
-/// A block that is free but for its contact.
+/// A block without supports. Only the contact acts on it.
 pub fn free_block(size_m: [f64; 3], elements: [usize; 3], material: Material) -> ModelDefinition {
     crate::common::definition(BlockMesh::new(size_m, elements), material, Vec::new())
 }
 
-/// ω of a job's disk and the rest of what drives it.
+/// The drive of a job with this μ and this speed of the disk.
 pub fn drive(mu: f64, omega_rpm: f64) -> Drive {
     Drive { law: Law::Coulomb { mu }, rate: omega_rpm * TAU / 60.0, force_n: 30.0, ramp_s: 5.0e-4 }
 }

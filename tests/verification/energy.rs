@@ -1,6 +1,8 @@
-//! B15 The energy balance of the scheme: kinetic + elastic = work of load and drive − friction − damping −
-//! contact loss, exactly (S. Krenk, *Energy conservation in Newmark based time integration algorithms*, CMAME
-//! 195, 2006, with β = 0; see `solver::energy`), and what sampling it costs.
+//! B15 The energy balance of the scheme, and the error of sampling it.
+//!
+//! In every step kinetic + elastic = work of load and drive − friction − damping − contact loss, exactly (S.
+//! Krenk, *Energy conservation in Newmark based time integration algorithms*, CMAME 195, 2006, with β = 0;
+//! see `solver::energy`).
 
 use crate::common::ROUNDINGS_PER_FORCE;
 use crate::evidence::Evidence;
@@ -41,8 +43,8 @@ fn run(spec: &JobSpec, interval: u64) -> (EnergyLedger<1>, u64) {
     (ledger, steps)
 }
 
-/// Protects: every term of the balance, for every integrator and damping: audited at each step it
-/// closes to rounding. A wrong force, work or dissipation anywhere would leave a residual.
+/// Protects: every term of the balance is right, for every integrator and damping. With an audit at each step
+/// the balance closes to rounding. A wrong force, work or dissipation would leave a residual.
 #[test]
 fn closes_to_rounding_when_every_step_is_audited() {
     let mut evidence = Evidence::new(
@@ -68,13 +70,13 @@ fn closes_to_rounding_when_every_step_is_audited() {
             }
         }
     }
-    // Every step adds works of forces, each rounded as a row of K u is.
+    // Every step adds works of forces. Each force is rounded like a row of K u.
     evidence.judge_exact(ROUNDINGS_PER_FORCE * most_steps);
 }
 
-/// Protects: sampling changes the damping's work only within its sampling error, and nothing else. The
-/// power of damping is positive and swings by its own size with every cycle, so the sum of n samples of it,
-/// were they as bad as random ones, would be off by 1/√n of it, seldom by more than three times that.
+/// Protects: sampling changes the damping's work only within its sampling error, and nothing else. The power
+/// of damping is positive and varies by its own size in every cycle. If n samples were as bad as random ones,
+/// their sum would have a relative error of 1/√n, and seldom more than three times that.
 #[test]
 fn sampling_touches_only_the_damping() {
     let mut evidence = Evidence::new(
@@ -92,7 +94,7 @@ fn sampling_touches_only_the_damping() {
     evidence.judge_bounded("three standard errors of the samples of a power that swings by its own size");
 }
 
-/// The reference pin on a coarse mesh at a fraction of the stability limit, unchecked.
+/// The reference pin on a coarse mesh at a fraction of the stability limit, which is not checked.
 fn beyond_the_limit(fraction: f64) -> Model {
     let mesh = BlockMesh::new([0.012, 0.015, 0.010], [6, 8, 5]);
     let strip = clamp::clamped_strip(&mesh, &Clamp { width_m: 0.002, ..Clamp::default() }).unwrap();
@@ -112,7 +114,7 @@ fn beyond_the_limit(fraction: f64) -> Model {
     Model::new(ModelDefinition { time_step, ..definition }).unwrap()
 }
 
-/// Runs with the guard as a job does; the step at which it struck, if it did.
+/// Runs with the guard as a job does. Returns the guard's error, if the guard stops the run.
 fn guarded(model: &Model, steps: u64) -> Result<(), SolverError> {
     let drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.733, force_n: 30.0, ramp_s: 5.0e-4 };
     let mut state = State::<1>::at_rest(model);
@@ -128,9 +130,9 @@ fn guarded(model: &Model, steps: u64) -> Result<(), SolverError> {
     Ok(())
 }
 
-/// Protects: a run that diverges is stopped, long before its numbers overflow, with step, time, node
-/// and the likely cause; a run at the limit is not. (The bound of ω_max is up to a few percent above the
-/// true one, so a step has to be that much too large before anything grows.)
+/// Protects: a run that diverges is stopped long before its numbers overflow, with step, time, node and the
+/// likely cause. A run at the limit is not stopped. (The bound of ω_max is up to a few percent above the true
+/// one, so only a step that is larger by as much lets anything grow.)
 #[test]
 fn divergence_is_noticed_and_explained() {
     guarded(&beyond_the_limit(1.0), 20_000).unwrap();

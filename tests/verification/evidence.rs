@@ -1,30 +1,32 @@
-//! What a case found, judged by one of four criteria and written down for `docs/verification.md`.
+//! The evidence of a case. It is judged by one of four criteria and written down for `docs/verification.md`.
 //!
-//! * **Exact**: the scheme reproduces the answer; the error may be rounding, with a bound that counts operations.
-//! * **Convergent**: over at least three resolutions, each `ratio` times finer than the last, the finest
-//!   observed order lies within [`ORDER_SLACK`] of the order that the scheme's analysis gives, and the
-//!   limit extrapolated with that order differs from the exact answer by no more than the last two
+//! * **Exact**: the scheme reproduces the answer. The error may only be rounding, and its bound counts
+//!   operations.
+//! * **Convergent**: there are at least three resolutions, each `ratio` times finer than the last. The finest
+//!   observed order lies within [`ORDER_SLACK`] of the order that the scheme's analysis gives. The limit is
+//!   extrapolated with that order. It differs from the exact answer by no more than the last two
 //!   extrapolations differ from each other (plus rounding).
-//! * **Convergent overall**: where fronts and impacts make single orders irregular, the slope of the error
-//!   from the coarsest to the finest of at least three resolutions reaches the analysed order (less
-//!   [`ORDER_SLACK`]); nothing is said of a limit.
+//! * **Convergent overall**: fronts and impacts make single orders irregular. The slope of the error from the
+//!   coarsest to the finest of at least three resolutions reaches the analysed order (less [`ORDER_SLACK`]).
+//!   The limit is not judged.
 //! * **Bounded**: each error is below a bound that follows from an analysis of the scheme at that resolution.
 //!
-//! Every case is written as one JSON file to the folder that `TRIBOSWEEP_VERIFICATION` names, before it
-//! is judged: a failing case shows up in the page, too.
+//! Every case is written as one JSON file to the folder that `TRIBOSWEEP_VERIFICATION` names. It is written
+//! before it is judged, so that a failing case is in the document, too.
 
 use serde_json::json;
 use std::cell::Cell;
 use std::fs;
 use std::path::PathBuf;
 
-/// The benchmark of the criteria's own tests, which leave no evidence.
+/// The benchmark of the criteria's own tests. They write no evidence.
 const MADE_UP: &str = "made up";
 
-/// An order rounds to the nearest half: 0.75 to 1.25 is first order, 1.75 to 2.25 second.
+/// An observed order may differ by this from the expected one: 0.75 to 1.25 is first order, 1.75 to 2.25
+/// second.
 pub const ORDER_SLACK: f64 = 0.25;
 
-/// One case: a quantity with an exact answer, and what was found at one or more resolutions.
+/// One case: a quantity with an exact answer, and the values found at one or more resolutions.
 #[derive(Debug)]
 #[must_use]
 pub struct Evidence {
@@ -53,20 +55,21 @@ struct Row {
 }
 
 impl Evidence {
-    /// A case of `benchmark` ("B1" …); `quantity` with its unit, `source` of the exact answer.
+    /// A case of `benchmark` ("B1" …). `quantity` includes the unit, and `source` is that of the exact
+    /// answer.
     pub fn new(benchmark: &'static str, quantity: impl Into<String>, source: &'static str) -> Self {
         Self { benchmark, quantity: quantity.into(), source, rows: Vec::new(), judged: Cell::new(false) }
     }
 
-    /// What was found at a resolution. `scale` makes the error relative: the exact value itself, or
-    /// the size of what cancels in it.
+    /// Adds the value found at a resolution. `scale` makes the error relative. It is the exact value itself,
+    /// or the size of the terms that cancel in it.
     pub fn found(&mut self, resolution: impl Into<String>, found: f64, exact: f64, scale: f64) -> &mut Self {
         let error = (found - exact).abs() / scale.abs();
         self.rows.push(Row { resolution: resolution.into(), found, exact, error, bound: None });
         self
     }
 
-    /// As [`Self::found`], with the bound of the error at this resolution.
+    /// As [`Self::found`], but with a bound of the error at this resolution.
     pub fn bounded(
         &mut self,
         resolution: impl Into<String>,
@@ -89,7 +92,7 @@ impl Evidence {
         self.judge(&format!("exact: at most {operations:.0} roundings"), &json!({}));
     }
 
-    /// Judges: every error is below its bound; `why` is where the bounds come from.
+    /// Judges: every error is below its bound. `why` names the origin of the bounds.
     pub fn judge_bounded(self, why: &str) {
         assert!(
             self.rows.iter().all(|row| row.bound.is_some()),
@@ -105,7 +108,8 @@ impl Evidence {
         let errors: Vec<f64> = self.rows.iter().map(|row| row.error).collect();
         assert!(errors.len() >= 3, "{}: an order takes three resolutions", self.quantity);
         let orders: Vec<f64> = errors.windows(2).map(|e| (e[0] / e[1]).ln() / ratio.ln()).collect();
-        // Signed errors relative to the scale, extrapolated pair by pair: what remains is the limit's error.
+        // The signed errors, relative to the scale, are extrapolated pair by pair. The result is the error of
+        // the limit.
         let signed: Vec<f64> =
             self.rows.iter().map(|row| row.error.copysign(row.found - row.exact)).collect();
         let gain = ratio.powf(order);
@@ -130,7 +134,7 @@ impl Evidence {
     }
 
     /// Judges: from the coarsest to the finest of the rows, each `ratio` times finer than the last, the error
-    /// falls with `order` at least; `why` says why no single order can be expected.
+    /// falls at least with `order`. `why` says why no single order can be expected.
     pub fn judge_overall_order(self, order: f64, ratio: f64, why: &str) {
         let errors: Vec<f64> = self.rows.iter().map(|row| row.error).collect();
         assert!(errors.len() >= 3, "{}: an order takes three resolutions", self.quantity);
@@ -219,7 +223,8 @@ mod tests {
     #[test]
     #[should_panic(expected = "extrapolated limit")]
     fn a_wrong_limit_is_noticed() {
-        // Second order towards 0.9999: the order still looks right, the limit does not.
+        // The errors converge towards 0.9999 with second order. The order still looks right, but the limit is
+        // wrong.
         series([0.04 - 1e-4, 0.01 - 1e-4, 0.0025 - 1e-4]).judge_order(2.0, 2.0, 0.0);
     }
 

@@ -1,27 +1,29 @@
-//! Linear flutter: the pin's coupled mode from the time domain against complex eigenvalues.
+//! Linear flutter: the pin's coupled mode in the time domain, compared with complex eigenvalues.
 //!
-//! While every slave node slips and none lifts off, sliding is a linear problem. With q the free
-//! displacements (base nodes held at z = 0, the top tied), N_i = (K(u + β_R v))_iz the normal force of
-//! slave node i, d_i the direction in which the disk moves under it and V_i its speed,
+//! While every slave node slips and none lifts off, sliding is a linear problem. q are the free displacements
+//! (base nodes held at z = 0, the top tied), N_i = (K(u + β_R v))_iz is the normal force of slave node i, d_i
+//! the direction in which the disk moves under it, and V_i its speed:
 //!
 //! ```text
 //! M q̈ + (K − μ d K_z)(q + β_R q̇) + C q̇ = f,     C_i = μN_i⁰/V_i (I − d_i d_iᵀ)
 //! ```
 //!
-//! K_z are the rows of the normal forces: the coupling that makes the problem unsymmetric. C is the
-//! change of friction's direction by sideways motion; N_i⁰ is the steady state's. Growth rate and
-//! frequency are λ = σ + iω of the state matrix. Source: linearisation of the model (mode-coupling
-//! instability), solved here densely and independently of the time step: K alone is the program's.
+//! K_z are the rows of the normal forces. This coupling makes the problem unsymmetric. C is the change of
+//! friction's direction by sideways motion, with N_i⁰ of the steady state. Growth rate and frequency are λ =
+//! σ + iω, an eigenvalue of the state matrix. Source: linearisation of the model (mode-coupling instability).
+//! It is solved here with dense matrices and independently of the time step; only K is the program's.
 //!
-//! The scheme itself is a linear recursion in this state: for the central difference p_n = (u_n − u_{n−1})/Δt and
+//! The scheme itself is a linear recursion in this state. For the central difference p_n = (u_n − u_{n−1})/Δt
+//! and
 //!
 //! ```text
 //! (M/Δt + C) p_{n+1} = (M/Δt − β_R K_μ) p_n − K_μ u_n,     u_{n+1} = u_n + Δt p_{n+1},     K_μ = K − μ d K_z
 //! ```
 //!
-//! (damping is evaluated half a step early, friction's direction half a step late: both of first order in Δt, the
-//! rest of second). Its eigenvalues e^{λΔt} are the exact answer for a run at that step, so the two
-//! questions are asked apart: does the program do what the recursion says, and does that tend to λ?
+//! Damping is evaluated half a step early and friction's direction half a step late. Both errors are of first
+//! order in Δt, all others of second. The eigenvalues e^{λΔt} of the recursion are the exact answer for a run
+//! at that step. So two questions are tested separately: does the program follow the recursion, and does the
+//! recursion tend to λ?
 
 use crate::evidence::Evidence;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -33,7 +35,7 @@ use tribosweep::spec::JobSpec;
 
 const SOURCE: &str = "complex eigenvalues of the linearised sliding problem, dense";
 
-/// A coarse pin on a disk that is fast enough for steady sliding to be pressed everywhere.
+/// A coarse pin on a disk that is so fast that all nodes are pressed on it in steady sliding.
 fn spec(mu: f64, safety_factor: f64) -> JobSpec {
     let mut spec = JobSpec::default();
     spec.scene.pin.elements = [3, 4, 2];
@@ -147,7 +149,7 @@ impl Sliding {
         self.fastest_growing(|_| true)
     }
 
-    /// The fastest growing mode within a tenth of a frequency.
+    /// The fastest growing mode whose frequency is within a tenth of `frequency_hz`.
     fn leading_near(&self, frequency_hz: f64) -> Complex<f64> {
         self.fastest_growing(|lambda| (lambda.im / HZ / frequency_hz - 1.0).abs() < 0.1)
     }
@@ -158,7 +160,7 @@ impl Sliding {
         *candidates.max_by(|a, b| a.re.total_cmp(&b.re)).expect("such a mode exists")
     }
 
-    /// The mode of the recursion at a step next to `lambda`.
+    /// The mode of the recursion at the step `dt` whose eigenvalue is nearest to `lambda`.
     fn at_step(&self, dt: f64, lambda: Complex<f64>) -> Mode {
         let matrix = self.step_matrix(dt).map(Complex::from);
         let (value, right) = eigenpair(&matrix, (lambda * dt).exp());
@@ -182,7 +184,7 @@ fn stiffness(model: &Model) -> DMatrix<f64> {
     k
 }
 
-/// x and y of the top nodes within the clamp's width of the inner side.
+/// The x and y degrees of freedom of the top nodes within the clamp's width of the inner side.
 fn fixed_dofs(model: &Model, n: usize) -> Vec<usize> {
     let mesh = model.mesh();
     let edge = -mesh.size_m()[0] / 2.0 + model.clamp_width_m() * 1.001;
@@ -213,12 +215,12 @@ impl Sliding {
     }
 }
 
-/// The eigenvalue next to `guess` and its vector, by inverse iteration.
+/// The eigenvalue nearest to `guess` and its vector, by inverse iteration.
 fn eigenpair(matrix: &DMatrix<Complex<f64>>, guess: Complex<f64>) -> (Complex<f64>, DVector<Complex<f64>>) {
     let size = matrix.nrows();
     let mut shifted = matrix.clone();
     for i in 0..size {
-        // Off the eigenvalue by more than rounding, so that the factors exist.
+        // The shift differs from the eigenvalue by more than rounding, so that the factors exist.
         shifted[(i, i)] -= guess * (1.0 + 1e-10);
     }
     let lu = shifted.lu();
@@ -237,8 +239,8 @@ fn eigenpair(matrix: &DMatrix<Complex<f64>>, guess: Complex<f64>) -> (Complex<f6
     (x.dotc(&(matrix * &x)), x)
 }
 
-/// λ of a mode in the time domain: steady sliding is disturbed by the mode, so little that no node
-/// changes its state, and its amplitude is followed by projection on the left vector.
+/// λ of a mode in the time domain. The mode disturbs steady sliding, but so little that no node changes its
+/// state. Projection on the left vector gives its amplitude.
 fn followed(model: &Model, drive: &Drive, sliding: &Sliding, mode: &Mode) -> Complex<f64> {
     let size = sliding.moved.len();
     let (q, p) = (mode.right.rows(0, size), mode.right.rows(size, size) * Complex::from(OMEGA_0));
@@ -247,7 +249,7 @@ fn followed(model: &Model, drive: &Drive, sliding: &Sliding, mode: &Mode) -> Com
     let mut state = State::<1>::at_rest(model);
     sliding.spread(&(&sliding.steady + q.map(|x| x.re) * share), &mut state.u);
     sliding.spread(&(p.map(|x| x.re) * share), &mut state.p);
-    // Past the half-force first step, which starts from velocities.
+    // This skips the first step, which has half the force for a start from given velocities.
     state.step = 1;
     let dt = model.time_step_s();
     let steps = (FOLLOWED_S / dt) as usize;
@@ -269,11 +271,11 @@ fn followed(model: &Model, drive: &Drive, sliding: &Sliding, mode: &Mode) -> Com
     logarithm / (steps as f64 * dt)
 }
 
-/// Amplitude of the disturbance over the steady deflection. Friction's direction makes the problem
-/// nonlinear: what is neglected is of this size relative to what is kept.
+/// Amplitude of the disturbance over the steady deflection. Friction's direction makes the problem nonlinear.
+/// The neglected terms are of this size relative to the others.
 const DISTURBANCE: f64 = 1.0e-7;
 
-/// Fifteen periods of the squeal.
+/// Time over which a mode is followed: fifteen periods of the squeal.
 const FOLLOWED_S: f64 = 1.0e-3;
 
 fn case(mu: f64, safety_factor: f64) -> (Model, Drive) {
@@ -283,7 +285,8 @@ fn case(mu: f64, safety_factor: f64) -> (Model, Drive) {
 
 const HZ: f64 = std::f64::consts::TAU;
 
-/// Protects: a run in steady sliding is the recursion: friction, its direction, the coupling through N, damping.
+/// Protects: a run in steady sliding follows the recursion: friction, its direction, the coupling through N,
+/// and damping.
 #[test]
 fn runs_follow_the_recursion() {
     let mut growth = Evidence::new("Flutter", "growth rate [1/s] of a run against the recursion", SOURCE);
@@ -318,14 +321,15 @@ fn the_recursion_converges_in_first_order() {
         growth.found(format!("Δt {dt:e} s"), lambda.re, exact.re, exact.norm());
         frequency.found(format!("Δt {dt:e} s"), lambda.im / HZ, exact.im / HZ, exact.norm() / HZ);
     }
-    // The logarithm of a number next to 1 divided by Δt: rounding over |λ|Δt, times the eigenproblem's condition.
+    // λ is the logarithm of a number next to 1, divided by Δt. Its error is rounding over |λ|Δt, times the
+    // condition of the eigenproblem.
     let rounding = 1.0e3 * f64::EPSILON / (exact.norm() * 2.0e-8);
     growth.judge_order(1.0, 2.0, rounding);
     frequency.judge_order(1.0, 2.0, rounding);
 }
 
-/// Protects: at 0.4 of the limit, a step of 1.9 µs on this coarse mesh, the squeal is as accurate as
-/// the program promises: its frequency to 0.5 %, its growth rate to 5 %.
+/// Protects: at 0.4 of the limit (a step of 1.9 µs on this coarse mesh) the squeal is as accurate as the
+/// program promises: its frequency to 0.5 %, its growth rate to 5 %.
 #[test]
 fn the_squeal_is_right_at_a_working_step() {
     let (model, drive) = case(0.4, 0.4);
@@ -359,7 +363,7 @@ fn onset(mut low: f64, mut high: f64, growth: impl Fn(f64) -> f64) -> f64 {
     high
 }
 
-/// Protects: the onset of squeal, measured from growth in runs, tends to that of the eigenvalues.
+/// Protects: the onset of squeal, measured from the growth in runs, tends to that of the eigenvalues.
 #[test]
 fn onset_of_squeal_is_that_of_the_eigenvalues() {
     let exact = onset(0.2, 0.3, |mu| {
@@ -380,10 +384,11 @@ fn onset_of_squeal_is_that_of_the_eigenvalues() {
     evidence.judge_order(1.0, 2.0, DISTURBANCE * SQUEAL_HZ * HZ / 3.0e4);
 }
 
-/// The coupled modes lie at 15 to 16 kHz; the onset is asked of them, not of the slowest line.
+/// Frequency of the coupled modes, which lie at 15 to 16 kHz. The onset is that of these modes, not that of
+/// the line that decays most slowly.
 const SQUEAL_HZ: f64 = 15_500.0;
 
-/// Protects: the growth rate that a job reports as its evidence of stable sliding is the eigenvalue's.
+/// Protects: the growth rate that a job reports as evidence of stable sliding is that of the eigenvalue.
 #[test]
 fn reported_decay_is_the_eigenvalue() {
     let mut evidence = Evidence::new("Flutter", "growth rate [1/s] in the record of a stable job", SOURCE);

@@ -1,28 +1,30 @@
 //! B1 Free vibrations of a traction-free block.
 //!
-//! Problem: the eigenfrequencies of K φ = ω² M φ with the program's own stiffness and lumped mass.
-//! They tend to those of the elastic block with order 2 in the element size: the trilinear field makes ω²
-//! O(h²) too high and lumping the mass O(h²) too low, for smooth modes (G. Strang, G. J. Fix, *An analysis of
+//! Problem: the eigenfrequencies of K φ = ω² M φ with the program's own stiffness and lumped mass. They tend
+//! to those of the elastic block with order 2 in the element size. For smooth modes, the trilinear field
+//! makes ω² O(h²) too high and lumping the mass makes it O(h²) too low (G. Strang, G. J. Fix, *An analysis of
 //! the finite element method*, 1973, ch. 6).
 //!
 //! Exact answers:
-//! * Six rigid motions carry no force.
+//! * Six rigid motions cause no force.
 //! * Lamé's equivoluminal mode of a square section of side a, u = (sin πx/a cos πy/a, −cos πx/a sin πy/a, 0)
-//!   about its centre, in a plane or in a block of any height, has f = c_s/(√2 a) whatever Poisson's ratio:
-//!   it has neither dilatation nor traction on any face (G. Lamé, *Leçons sur la théorie mathématique de
-//!   l'élasticité*, 1852).
-//! * All other modes from the Rayleigh–Ritz method with Legendre polynomials up to degree 14 (Demarest
-//!   1971; Visscher et al. 1991; see `ritz`), which the tests compute themselves. What degree 14 leaves is
-//!   less than its change from degree 12. For the 12 × 15 × 10 mm pin (1 GPa, ν = 0.3, 2500 kg/m³)
-//!   11594.8, 15191.1, 16238.8, 18083.2, 18329.0, 19833.4, 20149.3, 21144.1, 21371.6, 22050.0, 22650.3 and
-//!   22801.9 Hz; for a cube of side L, f L/c_s = 0.45456, 0.61211, 0.62250, 1/√2, 0.72778, 0.76276.
+//!   about its centre, in a plane or in a block of any height, has f = c_s/(√2 a) for any Poisson's ratio,
+//!   because it has neither dilatation nor traction on any face (G. Lamé, *Leçons sur la théorie mathématique
+//!   de l'élasticité*, 1852).
+//! * All other modes come from the Rayleigh–Ritz method with Legendre polynomials up to degree 14 (Demarest
+//!   1971; Visscher et al. 1991; see `ritz`), which the tests compute themselves. The error of degree 14 is
+//!   less than its change from degree 12. For the 12 × 15 × 10 mm pin (1 GPa, ν = 0.3, 2500 kg/m³) the
+//!   frequencies are 11594.8, 15191.1, 16238.8, 18083.2, 18329.0, 19833.4, 20149.3, 21144.1, 21371.6,
+//!   22050.0, 22650.3 and 22801.9 Hz. For a cube of side L, f L/c_s = 0.45456, 0.61211, 0.62250, 1/√2,
+//!   0.72778, 0.76276.
 //!
-//! Modes are matched by mirror class and rank within it, which refinement does not change (see `modes`);
-//! Lamé's mode by its shape. Frequencies of degenerate modes are shown once.
+//! Modes are matched by mirror class and rank within it, which refinement does not change (see `modes`).
+//! Lamé's mode is matched by its shape. Frequencies of degenerate modes are shown once.
 //!
 //! In two modes (the pin's fifth, the cube's third) the h² errors of the lumped mass, which lower a
-//! frequency, and of the trilinear field, which raise it, nearly cancel on elements of equal sides. What is
-//! left is small and of no single order, so there the case is the overall order from the coarsest mesh on.
+//! frequency, and of the trilinear field, which raise it, nearly cancel on elements of equal sides. The
+//! remainder is small and has no single order, so the case there is the overall order from the coarsest mesh
+//! on.
 
 use crate::common::{all_of, definition, pin_material};
 use crate::evidence::Evidence;
@@ -37,7 +39,8 @@ const SIDE_M: f64 = 0.010;
 const RITZ: &str = "Rayleigh–Ritz, Legendre polynomials to degree 14 (Demarest 1971)";
 const LAME: &str = "Lamé's equivoluminal mode, c_s/(√2 a)";
 const CANCELS: &str = "the h² errors of lumped mass and trilinear field nearly cancel in this mode";
-/// Below every elastic frequency here, so that the inverse iteration is well-conditioned and quick.
+/// This shift is below every elastic frequency here, so that the inverse iteration is well-conditioned and
+/// quick.
 const SHIFT_HZ: f64 = 3000.0;
 
 /// A block with the rows of its stiffness.
@@ -60,7 +63,7 @@ impl Block {
     }
 }
 
-/// A mode of the Rayleigh–Ritz method, its place in its class, and what the method leaves.
+/// A mode of the Rayleigh–Ritz method, its rank in its class, and the relative error that the method leaves.
 struct Reference {
     class: MirrorClass,
     rank: usize,
@@ -75,7 +78,8 @@ fn references(size_m: [f64; 3], classes: &[MirrorClass], count: usize) -> Vec<Re
     for &class in classes {
         let coarse = ritz::frequencies_hz(size_m, &material, 12, class);
         let fine = ritz::frequencies_hz(size_m, &material, 14, class);
-        // A rigid motion's ω² is a rounding of the largest one: it stays far below a kilohertz.
+        // The ω² of a rigid motion is a rounding error of the largest ω², so its frequency stays far below a
+        // kilohertz.
         for rank in (0..count).filter(|&rank| fine[rank] > 1000.0) {
             let frequency_hz = fine[rank];
             let remainder = (coarse[rank] / frequency_hz - 1.0).abs();
@@ -93,13 +97,13 @@ fn label(elements: [usize; 3]) -> String {
     format!("{nx} × {ny} × {nz} elements")
 }
 
-/// Protects: stiffness, mass and assembly of the solver together: the pin's twelve lowest modes.
+/// Protects: stiffness, mass and assembly of the solver together give the pin's twelve lowest modes.
 #[test]
 fn pin_frequencies_converge_with_order_two() {
     pin_frequencies("", &[1, 2, 4]);
 }
 
-/// Protects: the same on one mesh more, 32 × 40 × 24; it takes a minute or two.
+/// Protects: the same on one finer mesh, 32 × 40 × 24. It takes a minute or two.
 #[test]
 #[ignore = "a mesh of 32 × 40 × 24 elements"]
 fn pin_frequencies_on_a_fine_mesh() {
@@ -138,11 +142,12 @@ fn pin_frequencies(suffix: &str, scales: &[usize]) {
     }
 }
 
-/// Protects: the same on a cube, whose modes are degenerate: cubic symmetry of element and assembly.
+/// Protects: the same on a cube, whose modes are degenerate. This tests the cubic symmetry of element and
+/// assembly.
 #[test]
 fn cube_frequencies_converge_with_order_two() {
     let stated = [0.45456, 0.61211, 0.62250, 0.5_f64.sqrt(), 0.72778, 0.76276];
-    // One class of each set that the cube's symmetry makes equal.
+    // One class of each set of classes that are equal by the cube's symmetry.
     let classes = [[1.0, 1.0, 1.0], [-1.0, 1.0, 1.0], [1.0, -1.0, -1.0], [-1.0, -1.0, -1.0]];
     let size_m = [SIDE_M; 3];
     let references = references(size_m, &classes, stated.len());
@@ -166,7 +171,7 @@ fn cube_frequencies_converge_with_order_two() {
     }
 }
 
-/// The frequency of the one mode that looks like Lamé's in the plane of the axes `plane`.
+/// The frequency of the one mode that has Lamé's shape in the plane of the axes `plane`.
 fn lame_frequency_hz(model: &Model, modes: &[Mode], plane: [usize; 2], side_m: f64) -> f64 {
     let mesh = model.mesh();
     let centre = [0.0, 0.0, mesh.size_m()[2] / 2.0];
@@ -181,16 +186,17 @@ fn lame_frequency_hz(model: &Model, modes: &[Mode], plane: [usize; 2], side_m: f
         (0..x.len()).map(|dof| x[dof] * y[dof] * model.pin().masses_kg()[dof / 3]).sum()
     };
     let norm = product(&shape, &shape);
-    // Shares of the shape's square in orthonormal modes add up to at most 1, so only one can have a half.
+    // The shares of the shape's square in orthonormal modes add up to at most 1, so only one share can exceed
+    // a half.
     let alike: Vec<&Mode> =
         modes.iter().filter(|mode| product(&mode.shape, &shape).powi(2) > 0.5 * norm).collect();
     assert_eq!(alike.len(), 1, "one mode has Lamé's shape");
     alike[0].frequency_hz
 }
 
-/// Protects: shear stiffness and mass in three dimensions. The block is flat, so that no other mode of its class
-/// is within a tenth of Lamé's and mixes with it on a coarse mesh; ν is above 0, where the bar modes c_0/2a of
-/// both directions coincide with it.
+/// Protects: shear stiffness and mass are right in three dimensions. The block is flat, so that no other mode
+/// of its class is within a tenth of Lamé's frequency and mixes with it on a coarse mesh. ν is above 0,
+/// because at ν = 0 the bar modes c_0/2a of both directions coincide with Lamé's mode.
 #[test]
 fn lame_mode_of_a_block_of_square_section() {
     for poisson_ratio in [0.15, 0.3] {
@@ -208,11 +214,11 @@ fn lame_mode_of_a_block_of_square_section() {
     }
 }
 
-/// What the subspace iteration leaves of a frequency: it stops at changes of 10⁻¹² of ω² + shift.
+/// Relative error of a frequency after the subspace iteration. It stops at changes of 10⁻¹² of ω² + shift.
 const ITERATION: f64 = 1e-11;
 
-/// Protects: the same in plane strain by held degrees of freedom, up to a nearly incompressible material, which
-/// takes finer meshes before the order shows; ν is above 0 for the same reason.
+/// Protects: the same in plane strain by held degrees of freedom, up to a nearly incompressible material.
+/// That material takes finer meshes before the order shows. ν is above 0 for the same reason.
 #[test]
 fn lame_mode_of_a_square_in_plane_strain() {
     for poisson_ratio in [0.15, 0.3, 0.45] {
@@ -232,7 +238,8 @@ fn lame_mode_of_a_square_in_plane_strain() {
     }
 }
 
-/// Protects: the reference method itself: Lamé's mode is no polynomial, yet degree 14 has it to rounding.
+/// Protects: the reference method itself is right. Lamé's mode is no polynomial, but degree 14 gives it to
+/// rounding.
 #[test]
 fn rayleigh_ritz_finds_the_lame_mode() {
     let mut evidence = Evidence::new("B1", "cube, Lamé mode by Rayleigh–Ritz, f L/c_s", LAME);
@@ -254,14 +261,14 @@ fn rayleigh_ritz_finds_the_lame_mode() {
     evidence.judge_bounded("rounding of the dense eigenvalues");
 }
 
-/// Largest component of K u, relative to the sum of magnitudes that cancels in it.
+/// Largest component of K u, relative to the sum of magnitudes of the terms that cancel in it.
 fn relative_force(model: &Model, rows: &[Vec<(usize, f64)>], u: &[f64]) -> f64 {
     let force = model.pin().stiffness_times(u);
     let cancels = |row: &Vec<(usize, f64)>| row.iter().map(|(c, k)| (k * u[*c]).abs()).sum::<f64>();
     force.iter().zip(rows).map(|(f, row)| f.abs() / cancels(row)).fold(0.0, f64::max)
 }
 
-/// Protects: translations and linearised rotations carry no force (B15 for the elastic operator).
+/// Protects: translations and linearised rotations cause no force (B15 for the elastic operator).
 #[test]
 fn rigid_motions_carry_no_force() {
     let mut evidence =
@@ -288,6 +295,7 @@ fn rigid_motions_carry_no_force() {
             evidence.found(resolution, relative_force(&block.model, &block.rows, &u), 0.0, 1.0);
         }
     }
-    // An entry of K: 8 Gauss points of some 10 roundings each and 8 elements; a row: 81 products.
+    // An entry of K is a sum over 8 Gauss points of some 10 roundings each and over 8 elements. A row has 81
+    // products.
     evidence.judge_exact(8.0 * 10.0 + 8.0 + 81.0);
 }

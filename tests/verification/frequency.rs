@@ -4,17 +4,18 @@
 //! low-pass filters, upward crossings of N = F, linear interpolation) and `steady::frequency_hz`. Source of the
 //! answers: the signals themselves. Bounds:
 //!
-//! * Sinusoid. The filters leave a sampled sinusoid. Linear interpolation between t_0 and t_1 is off by
-//!   ½x″(t − t_0)(t_1 − t) ≤ (Δt²/8)·ω²·|x|, and |x| ≤ aωΔt beside a crossing whose slope is aω cos ωΔt or more: a
-//!   crossing is at most ω²Δt³/(8 cos ωΔt) off, a frequency over the time T twice that over T. Order 3 in Δt.
-//! * Impacts. One-step pulses fall on the step at or after their time, up to Δt late. The crossing follows its
-//!   pulse at a fixed delay (what earlier pulses leave after a period, (1 + T/τ)e^(−T/τ) with τ = 6.4 µs, is
-//!   3·10⁻⁴ of a pulse), and interpolation stays within the step: each end is off by less than 2Δt.
-//!   Half-sines have no jitter, and interpolation within a step: less than Δt.
-//! * Decay. A line a e^(−λt) cos ωt under a moving window is the same but for the factor e^(−λt), so the logarithm
-//!   of its amplitude falls with slope λ but for the leakage of mean and image, less than 10⁻⁷ of it
-//!   under the Kaiser window with β = 21. A regression over 7 hops t_h turns errors of 10⁻⁷ into
-//!   10⁻⁷·Σ|x|/Σx²/t_h = 10⁻⁷·(12/28)/t_h at most.
+//! * Sinusoid. After the filters it is still a sampled sinusoid. Linear interpolation between t_0 and t_1 is
+//!   off by ½x″(t − t_0)(t_1 − t) ≤ (Δt²/8)·ω²·|x|. Beside a crossing |x| ≤ aωΔt, and the slope is aω cos ωΔt
+//!   or more. So a crossing is at most ω²Δt³/(8 cos ωΔt) off, and a frequency over the time T twice that over
+//!   T. The order in Δt is 3.
+//! * Impacts. One-step pulses fall on the step at or after their time, up to Δt late. The crossing follows
+//!   its pulse at a fixed delay, because earlier pulses have decayed after a period: (1 + T/τ)e^(−T/τ) with τ
+//!   = 6.4 µs is 3·10⁻⁴ of a pulse. Interpolation stays within the step. So each end is off by less than 2Δt.
+//!   Half-sines have no jitter, and interpolation within a step is off by less than Δt.
+//! * Decay. Under a moving window a line a e^(−λt) cos ωt changes only by the factor e^(−λt). So the
+//!   logarithm of its amplitude falls with slope λ, except for the leakage of mean and image, which is less
+//!   than 10⁻⁷ of it under the Kaiser window with β = 21. A regression over 7 hops t_h turns errors of 10⁻⁷
+//!   into 10⁻⁷·Σ|x|/Σx²/t_h = 10⁻⁷·(12/28)/t_h at most.
 
 use crate::evidence::Evidence;
 use std::f64::consts::{PI, TAU};
@@ -29,8 +30,9 @@ use tribosweep::spec::{Detection, JobSpec};
 
 const SQUEAL_HZ: f64 = 14_500.0;
 const LOAD_N: f64 = 30.0;
-/// By then what the filters' start leaves, (1 + t/τ)e^(−t/τ), is below rounding, and its amplitude of about F is
-/// forgotten (by e^-5, with the cutter's 0.4 ms) beside one of 0.01 F.
+/// At this time the remainder of the filters' start, (1 + t/τ)e^(−t/τ), is below rounding. The start has an
+/// amplitude of about F. The cutter's memory of it has fallen by e^-5 (its time constant is 0.4 ms), so that
+/// an amplitude of 0.01 F is not hidden.
 const START_S: f64 = 2.0e-3;
 
 fn sample(time_s: f64, n_over_f: f64) -> Sample {
@@ -64,12 +66,12 @@ fn worst_hz(estimate: impl Fn(f64) -> f64) -> f64 {
         .expect("sixteen phases")
 }
 
-/// Whole cycles in a duration, at least, as a time [s]: a part of a cycle is cut off at either end.
+/// Duration [s] of the whole cycles in `duration_s`, at least: a part of a cycle is cut off at either end.
 fn whole_cycles_s(duration_s: f64) -> f64 {
     (duration_s * SQUEAL_HZ - 2.0).floor() / SQUEAL_HZ
 }
 
-/// Protects: frequency of a sinusoid, worst of 16 phases.
+/// Protects: the frequency of a sinusoid is right for the worst of 16 phases.
 #[test]
 fn sinusoid() {
     for (duration_s, name) in [(1.0e-3, "1 ms"), (5.0e-3, "5 ms")] {
@@ -92,7 +94,8 @@ fn sinusoid() {
     }
 }
 
-/// Protects: frequency of impact-like signals, whose spectra are combs, worst of 16 phases.
+/// Protects: the frequency of impact-like signals, whose spectra are combs, is right for the worst of 16
+/// phases.
 #[test]
 fn impacts() {
     let duration_s = 5.0e-3;
@@ -102,7 +105,7 @@ fn impacts() {
             let reached = (SQUEAL_HZ * t + phase).floor();
             let pulse = reached > count;
             count = reached;
-            // One step that carries the whole cycle's impulse.
+            // One step carries the impulse of the whole cycle.
             if pulse { 1.0 / (SQUEAL_HZ * step_s) } else { 0.0 }
         })
     };
@@ -124,7 +127,7 @@ fn impacts() {
     humps.judge_bounded("Δt at either end: interpolation");
 }
 
-/// Protects: the growth rate by which sliding is called stable.
+/// Protects: the growth rate by which sliding is called stable is right.
 #[test]
 fn growth_rate_of_a_decaying_line() {
     let detection = Detection::default();
@@ -138,7 +141,7 @@ fn growth_rate_of_a_decaying_line() {
             let line = 0.1 * (rate * t).exp() * (TAU * hz * t).cos();
             monitor.push(&sample(t, 1.0 + line)).then(|| monitor.growth_rate_per_s())?
         });
-        // Sixteen hops make an observation.
+        // An observation has sixteen hops.
         let bound = 1.0e-7 * (12.0 / 28.0) * 16.0 / detection.decay_observation_s;
         evidence.bounded(format!("{hz} Hz, {rate} /s"), found.expect("a rate"), rate, 1.0, bound);
     }

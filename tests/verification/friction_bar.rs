@@ -1,44 +1,44 @@
-//! B10 The front of slip in an elastic bar on dry friction under a sudden push.
+//! B10 The slip front in an elastic bar on dry friction under a sudden push.
 //!
-//! A semi-infinite bar (area A, modulus E, wave speed c) at rest, held by friction of at most q per length,
-//! is pushed at x = 0 with the pressure P0 from t = 0 on, for ever. With L = 2AP0/q and t* = L/c:
+//! A semi-infinite bar (area A, modulus E, wave speed c) is at rest and held by friction of at most q per
+//! length. From t = 0 on, the pressure P0 pushes it at x = 0. With L = 2AP0/q and t* = L/c:
 //!
 //! ```text
 //! x < ct, t < t*:  P = P0 − qx/(2A),   v = (P0 − cqt/(2A))/(ρc), the same in the whole slipping part
 //! t ≥ t*:          at rest, u(x) = A/(Eq) (P0 − qx/(2A))² for x < L, P as before
 //! ```
 //!
-//! (ρ∂v/∂t = −∂P/∂x − q/A and ∂P/∂t = −E ∂v/∂x hold, P = ρcv on the front x = ct.) The push does the work
-//! A²P0³/(Eq): a third is stored as strain, two thirds are dissipated. u(0) is twice that of a slow push.
-//! Source: Nikitin and Tyurekhodgaev, *Wave propagation and vibration of elastic rods with interfacial
-//! frictional slip*, Wave Motion 12 (1990) 513–526; derived anew as above.
+//! This satisfies ρ∂v/∂t = −∂P/∂x − q/A and ∂P/∂t = −E ∂v/∂x, and P = ρcv on the front x = ct. The push does
+//! the work A²P0³/(Eq). A third of it is stored as strain energy, two thirds are dissipated. u(0) is twice
+//! that of a slow push. Source: Nikitin and Tyurekhodgaev, *Wave propagation and vibration of elastic rods
+//! with interfacial frictional slip*, Wave Motion 12 (1990) 513–526; derived here independently.
 //!
-//! **What the scheme makes of it** at cΔt/h = 1, κ = qh²/(EA), n* = t*/Δt: a slipping node obeys u_i^{n+1}
-//! = u_{i+1}^n + u_{i−1}^n − u_i^{n−1} − κ. Its own u_i^n drops out: nodes and steps of equal parity (n − i
-//! even) do not see the others, and for them the recursion, its start and the front are satisfied by the
-//! exact solution itself, u_i^n = (κ/4)[(n* − i)² − (n* − n)²], as long as each slips in the step that
-//! leads to n. (In the step from even to odd n − i it moves by (κ/2)(n* + 1 − 2n), or sticks once that is
-//! negative: friction takes hold of a node for the whole step in which the front arrives at its start.) A
-//! node stays where it is at its last even n whose next move (κ/4)[(n* − n)² − (n* − n − 2)²] would not be
-//! positive, |n* − n| ≤ 1:
+//! **The discrete solution** at cΔt/h = 1, with κ = qh²/(EA) and n* = t*/Δt. A slipping node obeys u_i^{n+1}
+//! = u_{i+1}^n + u_{i−1}^n − u_i^{n−1} − κ. Its own u_i^n drops out, so nodes and steps of equal parity (n −
+//! i even) are independent of the others. For them the exact solution itself, u_i^n = (κ/4)[(n* − i)² − (n* −
+//! n)²], satisfies the recursion, its start and the front, as long as each node slips in the step that leads
+//! to n. (In the step from even to odd n − i the node moves by (κ/2)(n* + 1 − 2n), or sticks once that is
+//! negative: friction acts on a node for the whole step at whose start the front arrives.) A node comes to
+//! rest at its last even n whose next move (κ/4)[(n* − n)² − (n* − n − 2)²] would not be positive, |n* − n| ≤
+//! 1:
 //!
 //! ```text
 //! u_i = (κ/4)[(n* − i)² − r²],   r the distance of n* to the nearest integer of i's parity
 //! ```
 //!
-//! So the scheme is exact but for κ/4 at most, which is u(0)/n*²: second order, and for whole n* an
-//! alternation of 0 and exactly −κ/4; the stored part of the work is (1/3)(1 + 2/n*²) for even n*. The
-//! sudden push itself costs energy in the scheme's own balance: E_0 = −(γ/4)Δt² aMa (see `solver::energy`)
-//! with the end node's a = (P0A − qh/2)/(ρAh/2) is −(n* − 1)²/(2n*³) of the work, which is missing in the
-//! dissipated part: first order.
+//! So the error of the scheme is at most κ/4, which is u(0)/n*²: second order. For whole n* it alternates
+//! between 0 and exactly −κ/4. The stored part of the work is (1/3)(1 + 2/n*²) for even n*. The sudden push
+//! itself costs energy in the scheme's own balance: E_0 = −(γ/4)Δt² aMa (see `solver::energy`) with the end
+//! node's a = (P0A − qh/2)/(ρAh/2) is −(n* − 1)²/(2n*³) of the work. This is missing in the dissipated part:
+//! first order.
 //!
-//! Below cΔt/h = 1 the front is dispersed into an Airy integral that is w = (h²L)^⅓ wide after the length
-//! L. Friction acts from where the nodes begin to move, so its work is displaced by a part of w: the errors
-//! of u(0) and of the energies are of the order w/L = (h/L)^⅔. Behind the front the ripples fall off as
-//! (w/d)^¾ with the distance d and, once the bar itself has slowed down, friction lets them through in one
-//! direction only: near x = L they add up to as much as ∫(w/d)^¾ dd/L = (h/L)^½. The first of them, the
-//! front's overshoot by a quarter, runs on as a pulse, ever weaker with finer meshes, that ends at about
-//! 1.2 L and 1.3 t* on all of them: the extent and duration of slip in this sense are not compared.
+//! Below cΔt/h = 1 the front is dispersed into an Airy integral that is w = (h²L)^⅓ wide after the length L.
+//! Friction acts from where the nodes begin to move, so its work is displaced by a part of w. Therefore the
+//! errors of u(0) and of the energies are of the order w/L = (h/L)^⅔. Behind the front the ripples fall off
+//! as (w/d)^¾ with the distance d. Once the bar itself has slowed down, friction lets them pass in one
+//! direction only. Near x = L they add up to as much as ∫(w/d)^¾ dd/L = (h/L)^½. The first ripple, the
+//! front's overshoot by a quarter, continues as a pulse. It is weaker on finer meshes, but it ends at about
+//! 1.2 L and 1.3 t* on all of them. So the extent and duration of slip in this sense are not compared.
 
 use crate::evidence::Evidence;
 use crate::friction_chain::{AREA_M2, CAPACITY_N_M, Chain, DENSITY_KG_M3, YOUNG_MODULUS_PA};
@@ -57,7 +57,7 @@ const FIRST_SPEED_M_S: f64 = PRESSURE_PA / (DENSITY_KG_M3 * WAVE_SPEED_M_S);
 const WORK_J: f64 = AREA_M2 * PRESSURE_PA * PUSHED_IN_M;
 const SOURCE: &str = "Nikitin and Tyurekhodgaev, Wave Motion 12 (1990) 513–526";
 
-/// A push that has come to rest.
+/// The result of a push, when the chain has come to rest.
 struct Rest {
     chain: Chain,
     state: State<1>,
@@ -65,7 +65,8 @@ struct Rest {
     steps: u64,
 }
 
-/// Pushes a chain with `n_star` spacings over L until all of it is at rest; `watch` sees every step.
+/// Pushes a chain with `n_star` spacings over L until all of it is at rest. `watch` is called after every
+/// step.
 fn push(n_star: f64, cfl: f64, mut watch: impl FnMut(&Chain, &State<1>)) -> Rest {
     let spacing_m = SLIP_LENGTH_M / n_star;
     let chain = Chain::new((1.5 * n_star) as usize + 4, spacing_m, 0.0, TimeStep::FractionOfLimit(cfl));
@@ -79,14 +80,14 @@ fn push(n_star: f64, cfl: f64, mut watch: impl FnMut(&Chain, &State<1>)) -> Rest
         audited_step(&chain.model, drive, &mut state, &mut ledger);
         watch(&chain, &state);
         steps += 1;
-        // Not "all stick": at cΔt/h = 1 half the nodes rest exactly on the edge of the cone and may slip by
-        // rounding.
+        // The criterion is not that all nodes stick. At cΔt/h = 1 half the nodes rest exactly on the edge of
+        // the cone and may slip because of rounding.
         if steps > (n_star / cfl) as u64 && chain.fastest_m_s(&state) < 1.0e-9 * FIRST_SPEED_M_S {
             break;
         }
         assert!(steps < (4.0 * n_star / cfl) as u64, "it comes to rest");
     }
-    // The ledger's balance is that of the step's beginning: one more step at rest completes it.
+    // The ledger's balance is that of the step's beginning, so one more step at rest completes it.
     audited_step(&chain.model, drive, &mut state, &mut ledger);
     assert!(chain.fastest_m_s(&state) < 1.0e-9 * FIRST_SPEED_M_S, "what is at rest stays at rest");
     let last = chain.nodes() - 1;
@@ -107,8 +108,8 @@ fn worst(rest: &Rest, exact_m: impl Fn(usize) -> f64) -> (f64, f64) {
         .expect("a chain has nodes")
 }
 
-/// Protects: slip, its front, and slip → stick of many nodes at cΔt/h = 1, to rounding, for whole and
-/// broken n*.
+/// Protects: slip, its front, and the transition of many nodes from slip to stick are exact to rounding at
+/// cΔt/h = 1, for whole and fractional n*.
 #[test]
 fn the_front_at_unit_cfl_is_the_discrete_solution() {
     const DISCRETE: &str = "exact discrete solution at cΔt/h = 1: (κ/4)[(n* − i)² − r²]";
@@ -158,8 +159,8 @@ fn the_front_at_unit_cfl_is_the_discrete_solution() {
     length.judge_bounded("the last node to move is at most a spacing from the end");
 }
 
-/// Protects: the same against the bar itself: displacement and stored energy of second order, dissipation of
-/// first order because of the sudden push.
+/// Protects: the same converges to the bar itself. Displacement and stored energy are of second order,
+/// dissipation is of first order because of the sudden push.
 #[test]
 fn the_front_at_unit_cfl_converges_to_the_bar() {
     let mut u =
@@ -179,7 +180,7 @@ fn the_front_at_unit_cfl_converges_to_the_bar() {
     friction.judge_order(1.0, 2.0, rounding);
 }
 
-/// Displacements and the stored and dissipated parts of the work when everything has stopped.
+/// Records the displacements and the stored and dissipated parts of the work when everything has stopped.
 fn at_rest(rest: &Rest, resolution: &str, [u, strain, friction]: [&mut Evidence; 3]) {
     let (found, exact) = worst(rest, |j| exact_u_m(j as f64 * rest.chain.spacing_m));
     u.found(resolution, found, exact, PUSHED_IN_M);
@@ -217,7 +218,7 @@ fn the_front_below_unit_cfl_converges_to_the_bar() {
     converges_below_unit_cfl(&[20.0, 40.0, 80.0], "");
 }
 
-/// Protects: as above, into the asymptotic range.
+/// Protects: the same on finer meshes, into the asymptotic range.
 #[test]
 #[ignore = "six resolutions"]
 fn the_front_below_unit_cfl_converges_further() {

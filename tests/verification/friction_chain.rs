@@ -6,8 +6,8 @@
 //! -------------------- plane at rest ------------------------------------------------> y
 //! ```
 //!
-//! The pressure comes from springs so that the drive's force is free to vary in time. What the nodes can
-//! carry is μN = qh at most; a bar of n_slip nodes slips over 2F/q under a sudden, F/q under a slow load.
+//! The pressure comes from springs, so that the drive's force is free to vary in time. A node carries at most
+//! μN = qh. The bar slips over 2F/q under a sudden load and over F/q under a slow one.
 
 use crate::particles::{Particles, Y, Z};
 use tribosweep::solver::body::block::BlockMesh;
@@ -21,7 +21,7 @@ pub const MU: f64 = 0.4;
 /// Friction capacity q per length [N/m].
 pub const CAPACITY_N_M: f64 = 2000.0;
 
-/// A chain and what its nodes are pressed with.
+/// A chain and the compression of the springs that press its nodes.
 pub struct Chain {
     pub model: Model,
     pub spacing_m: f64,
@@ -51,7 +51,7 @@ impl Chain {
         Self { model: chain.model(beta_r_s, time_step), spacing_m, nodes, compression_m }
     }
 
-    /// At rest and pressed.
+    /// The state of a chain that is at rest and pressed.
     pub fn pressed(&self) -> State<1> {
         let mut state = State::at_rest(&self.model);
         for j in 0..self.nodes {
@@ -60,7 +60,7 @@ impl Chain {
         state
     }
 
-    /// A plane at rest and a push [N] on the first node.
+    /// The drive of a plane at rest and a push [N] on the first node.
     pub fn push(force_n: f64) -> Drive {
         Drive { law: Law::Coulomb { mu: MU }, rate: 0.0, force_n, ramp_s: 0.0 }
     }
@@ -77,7 +77,7 @@ impl Chain {
         0.5 * stiffness_n_m * squares.sum::<f64>()
     }
 
-    /// Largest velocity [m/s] of the bar, half a step before.
+    /// Largest velocity [m/s] of the bar, half a step before the displacements.
     pub fn fastest_m_s(&self, state: &State<1>) -> f64 {
         let speed = |j| state.p[3 * self.model.mesh().node(0, j, 0) + Y].abs();
         (0..self.nodes).map(speed).fold(0.0, f64::max)

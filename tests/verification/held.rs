@@ -1,17 +1,16 @@
-//! B8 An oscillator across the motion of the belt that it is pressed on: dry friction acts as viscous
-//! damping.
+//! B8 An oscillator that moves across the direction of its belt. Dry friction acts as viscous damping.
 //!
 //! A mass m on a spring k in x is held in y, the direction in which the belt moves with V. It slips all the
-//! time, and Coulomb's friction μN opposes the whole slip (ẋ, −V): its part in x is −μN ẋ/√(V² + ẋ²), for
-//! |ẋ| ≪ V the viscous force −cẋ with **c = μN/V**, however large the static friction would be: the
-//! amplitude decays as e^{−ct/(2m)}, the frequency is √(k/m − c²/(4m²)), and the mean force on the support
-//! in y is μN. Source: the expansion above, which leaves (ẋ/V)²/2 out; here that is below 10⁻¹². (A law
-//! that gave x the whole cone would stop the mass within a quarter of a period.)
+//! time. Coulomb's friction μN opposes the whole slip (ẋ, −V), so its part in x is −μN ẋ/√(V² + ẋ²). For |ẋ|
+//! ≪ V this is the viscous force −cẋ with **c = μN/V**, however large the static friction would be. The
+//! amplitude decays as e^{−ct/(2m)}, the frequency is √(k/m − c²/(4m²)), and the mean force on the support in
+//! y is μN. Source: the expansion above, which neglects (ẋ/V)²/2, here below 10⁻¹². (A law that gave the
+//! whole cone to x would stop the mass within a quarter of a period.)
 //!
-//! **What the scheme makes of it**: friction at t_n opposes the step from t_n to t_{n+1}, so the
-//! displacement obeys (1 + γ) x_{n+1} − (2 + γ − W²) x_n + x_{n−1} = 0, γ = cΔt/m, W² = kΔt²/m: the
-//! amplitude falls by √(1 + γ) in a step, ln(1 + γ)/(2Δt) = (c/2m)(1 − γ/2 + …): first order, as is the
-//! phase.
+//! **The discrete solution**: friction at t_n opposes the step from t_n to t_{n+1}, so the displacement obeys
+//! (1 + γ) x_{n+1} − (2 + γ − W²) x_n + x_{n−1} = 0, γ = cΔt/m, W² = kΔt²/m. The amplitude falls by the
+//! factor √(1 + γ) in a step. The decay rate is ln(1 + γ)/(2Δt) = (c/2m)(1 − γ/2 + …), of first order. The
+//! phase is of first order, too.
 
 use crate::evidence::Evidence;
 use crate::particles::{Particles, X, Y, Z, audited_step};
@@ -86,7 +85,7 @@ fn is_damped_by_the_friction_across() {
                 worst_carried = carried;
             }
             x.push(state.u[X]);
-            // The half-force first step from rest sees half of W² and of γ.
+            // The first step from rest has half the force, so half of W² and of γ appear in it.
             let next = if n == 0 {
                 own[0] - 0.5 * w * w / (1.0 + 0.5 * gamma) * own[0]
             } else {
@@ -95,14 +94,14 @@ fn is_damped_by_the_friction_across() {
             own.push(next);
         }
         let resolution = format!("ωΔt = {w}");
-        // The slip's direction leaves at most (ẋ/V)²/2 to x; besides ten roundings of N and the cone.
+        // The slip's direction gives at most (ẋ/V)²/2 of the force to x. N and the cone add ten roundings.
         let bound = 0.5 * (AMPLITUDE_M * OMEGA / BELT_M_S).powi(2) + 10.0 * f64::EPSILON;
         support.bounded(&resolution, worst_carried, 1.0, 1.0, bound);
         energy.found(&resolution, ledger.energies(0).relative_residual(), 0.0, 1.0);
         let worst =
             (0..x.len()).max_by(|&a, &b| (x[a] - own[a]).abs().total_cmp(&(x[b] - own[b]).abs())).unwrap();
         discrete.found(&resolution, x[worst], own[worst], AMPLITUDE_M);
-        // x_{n+1} = a x_n + b x_{n−1} in the sense of least squares; e^{−2 decay Δt} = −b.
+        // x_{n+1} = a x_n + b x_{n−1} is fitted by least squares; e^{−2 decay Δt} = −b.
         let sums = x[1..].windows(3).fold([0.0; 5], |s, x| {
             [
                 s[0] + x[1] * x[1],
@@ -120,11 +119,11 @@ fn is_damped_by_the_friction_across() {
         let exact = (OMEGA * OMEGA - DECAY * DECAY).sqrt();
         frequency.found(&resolution, (a / (2.0 * (-b).sqrt())).acos() / dt, exact, exact);
     }
-    // About ten roundings a step, carried along without growth; what the expansion leaves out, 10⁻¹⁴ of c,
-    // is less.
+    // There are about ten roundings per step, and they do not grow. The neglected term of the expansion,
+    // 10⁻¹⁴ of c, is smaller.
     discrete.judge_exact(10.0 * most as f64);
-    // A fitted coefficient is uncertain by a few roundings of x over its second difference W² x, and the
-    // decay by that over 2Δt.
+    // A fitted coefficient is uncertain by a few roundings of x over its second difference W² x. The decay is
+    // uncertain by that over 2Δt.
     let rounding = 4.0 * f64::EPSILON / (0.025_f64.powi(3) / OMEGA) / (2.0 * DECAY);
     decay.judge_order(1.0, 2.0, rounding);
     frequency.judge_order(1.0, 2.0, rounding);

@@ -1,7 +1,7 @@
 //! B11 Partial slip of an elastic bar on dry friction under a slowly alternating force.
 //!
-//! A bar (EA) held by friction of at most q per length is pushed at its end, x = 0. Slowly loaded with F it
-//! slips over F/q, where the normal force is F − qx, and
+//! A bar (EA) is held by friction of at most q per length and pushed at its end, x = 0. Under a slow load F
+//! it slips over the length F/q. There the normal force is F − qx, and
 //!
 //! ```text
 //! u(0) = F²/(2EAq)                                 first loading up to F0
@@ -12,21 +12,21 @@
 //! Source: ∂N/∂x = ∓q, N = −EA ∂u/∂x; the rigid-contact limit of the microslip model of Menq, Bielak and
 //! Griffin, *The influence of microslip on vibratory response, part I*, Journal of Sound and Vibration 107
 //! (1986) 279–293. It is the one-dimensional counterpart of Cattaneo's and Mindlin's contact: a slip zone
-//! that grows from the loaded edge, reverse slip at twice the limit on unloading, a loop whose area is of
-//! third order in F. Their own problem (two equal curved bodies) needs a curved, deformable target and is not
-//! verified here.
+//! grows from the loaded edge, unloading causes reverse slip at twice the limit, and the area of the loop is
+//! of third order in F. Their own problem (two equal curved bodies) needs a curved, deformable target and is
+//! not verified here.
 //!
 //! **The chain's own answer.** N drops by qh at every slipping node (qh/2 at the first), so after node j it
-//! is F − qh(j + ½); at F = qhJ the nodes 0 … J−1 slip and u_j = (qh²/2EA)(J − j)², the bar's displacement
-//! exactly, on every branch whose half amplitude is a whole number of nodes. Friction's work in a cycle, Σ
-//! 4 (qh²/2EA)(J − j)² times the nodes' capacity, is that of the bar times **1 + 1/(2J²)**: second order in
-//! h.
+//! is F − qh(j + ½). At F = qhJ the nodes 0 … J−1 slip and u_j = (qh²/2EA)(J − j)². This is exactly the bar's
+//! displacement, on every branch whose half amplitude is a whole number of nodes. Friction's work in a cycle
+//! is Σ 4 (qh²/2EA)(J − j)² times the nodes' capacity. It is that of the bar times **1 + 1/(2J²)**: second
+//! order in h.
 //!
-//! **The rate.** The force runs along cosines, F₀ → −F₀ in 2T; β_R = 0.3 transit times of the slip zone
-//! keeps the motion from ringing. Its stress is a lag: EA(u' + β_R u̇') = −N acts as the force F − β_R Ḟ,
-//! an error of the displacement of order 1/T between the turning points. At a turning point Ḟ = 0, and what
-//! remains there and in the work between turning points is inertia and the curvature of the lag, ∝ F̈:
-//! order 1/T².
+//! **The rate of loading.** The force follows cosines, F₀ → −F₀ in 2T. β_R = 0.3 transit times of the slip
+//! zone damps vibrations. The damping stress acts as a lag: EA(u' + β_R u̇') = −N has the effect of the force
+//! F − β_R Ḟ. Between the turning points this is an error of the displacement of order 1/T. At a turning
+//! point Ḟ = 0. The errors there, and those of the work between turning points, come from inertia and the
+//! curvature of the lag, ∝ F̈: order 1/T².
 
 use crate::evidence::Evidence;
 use crate::friction_chain::{AREA_M2, CAPACITY_N_M, Chain, DENSITY_KG_M3, YOUNG_MODULUS_PA};
@@ -43,22 +43,22 @@ const PUSHED_IN_M: f64 = FORCE_N * FORCE_N / (2.0 * YOUNG_MODULUS_PA * AREA_M2 *
 const LOOP_J: f64 = 2.0 * FORCE_N * FORCE_N * FORCE_N / (3.0 * YOUNG_MODULUS_PA * AREA_M2 * CAPACITY_N_M);
 const SOURCE: &str = "Menq, Bielak and Griffin, J. Sound Vib. 107 (1986) 279–293, rigid contact";
 
-/// The force at the time `t` in units of T: up to F0 at 1, then F0 cos.
+/// The force [N] at the time `t` in units of T. It rises to F0 at t = 1 and is F0 cos afterwards.
 fn force_n(t: f64) -> f64 {
     FORCE_N * if t < 1.0 { 0.5 * (1.0 - (PI * t).cos()) } else { (FRAC_PI_2 * (t - 1.0)).cos() }
 }
 
-/// What was found at F0, 0, −F0, 0 and F0 again.
+/// The results at F0, 0, −F0, 0 and F0 again.
 struct Cycle {
     u_m: [f64; 5],
-    /// Nodes that had moved at F0, and that had moved back at the first zero.
+    /// Number of nodes that had moved at F0, and that had moved back at the first zero.
     slipped: usize,
     slipped_back: usize,
     /// Friction's work [J] between the two passages of F0.
     work_j: f64,
 }
 
-/// A chain with `j` nodes in the slip zone, T = `rate` transit times of it.
+/// One cycle of a chain with `j` nodes in the slip zone. T is `rate` transit times of the zone.
 fn cycle(j: usize, rate: f64) -> Cycle {
     let transit_s = SLIP_LENGTH_M / (YOUNG_MODULUS_PA / DENSITY_KG_M3).sqrt();
     let time_step = TimeStep::FractionOfLimit(0.7);
@@ -69,7 +69,7 @@ fn cycle(j: usize, rate: f64) -> Cycle {
     let (mut u_m, mut work_j) = ([0.0; 5], [0.0; 5]);
     let (mut peak_m, mut slipped_back) = (Vec::new(), 0);
     let field = |state: &_| (0..chain.nodes()).map(|i| chain.u_m(state, i)).collect::<Vec<_>>();
-    // Far below the displacement of the last node that slips, (qh²/2EA) = PUSHED_IN_M/j².
+    // This is far below the displacement of the last node that slips, (qh²/2EA) = PUSHED_IN_M/j².
     let moved_m = 1.0e-2 * PUSHED_IN_M / (j * j) as f64;
     for mark in 0..5 {
         for n in 0..quarter {
@@ -93,8 +93,8 @@ fn cycle(j: usize, rate: f64) -> Cycle {
 
 const RATES: [f64; 3] = [50.0, 100.0, 200.0];
 
-/// Protects: partial slip, reverse slip and the closed loop, free of the mesh's error: what a slow load
-/// leaves vanishes with its rate.
+/// Protects: partial slip, reverse slip and the closed loop are right, without the error of the mesh. The
+/// error of a finite rate of loading vanishes with the rate.
 #[test]
 fn the_loop_is_the_bars_as_the_load_slows_down() {
     const J: usize = 8;
@@ -119,7 +119,7 @@ fn the_loop_is_the_bars_as_the_load_slows_down() {
         }
         work.found(&resolution, found.work_j, LOOP_J * (1.0 + 0.5 / (J * J) as f64), LOOP_J);
     }
-    // Rounding of some 10⁵ steps is far below what the rate leaves.
+    // The rounding of some 10⁵ steps is far below the error of the rate.
     let rounding = 1.0e5 * f64::EPSILON;
     for (evidence, _, order) in u {
         evidence.judge_order(order, 2.0, rounding);
@@ -127,7 +127,7 @@ fn the_loop_is_the_bars_as_the_load_slows_down() {
     work.judge_order(2.0, 2.0, rounding);
 }
 
-/// Protects: the extent of slip and of reverse slip, node by node.
+/// Protects: the extent of slip and of reverse slip is right to one node.
 #[test]
 fn slip_and_reverse_slip_reach_as_far_as_the_bars() {
     let mut slip = Evidence::new("B11", "slip length of a friction bar at F0 [m]", SOURCE);
@@ -145,8 +145,9 @@ fn slip_and_reverse_slip_reach_as_far_as_the_bars() {
     reverse.judge_bounded("one spacing");
 }
 
-/// Protects: the dissipation of partial slip converges with the mesh, second order. The rate's error is
-/// extrapolated away (second order); how far that can be trusted is the difference of two extrapolations.
+/// Protects: the dissipation of partial slip converges with the mesh in second order. Extrapolation (second
+/// order) removes the error of the rate. The difference of two extrapolations shows how far it can be
+/// trusted.
 #[test]
 fn the_work_of_a_cycle_converges_with_the_mesh() {
     let mut work = Evidence::new(

@@ -1,12 +1,13 @@
 //! B3 The β₂ integrator on single modes of a real mesh.
 //!
-//! Problem: one oscillator of frequency ω. With W = ωΔt and b = β_R/Δt, successive displacements obey
-//! q_{n+1} = trace·q_n − det·q_{n−1}, det = 1 − (β₂ − ½ + b)W², trace = 2 − (½ + β₂ + b)W² = 2√det cos θ; the limit
-//! is W²(β₂ + b) = 2, i.e. W = √(2/β₂) undamped. Source: the amplification matrix of Newmark's method with
-//! β = 0, γ = β₂ (N. M. Newmark 1959; T. J. R. Hughes, *The finite element method*, 1987, ch. 9); exact.
+//! Problem: one oscillator of frequency ω. With W = ωΔt and b = β_R/Δt, successive displacements obey q_{n+1}
+//! = trace·q_n − det·q_{n−1}, det = 1 − (β₂ − ½ + b)W², trace = 2 − (½ + β₂ + b)W² = 2√det cos θ. The
+//! stability limit is W²(β₂ + b) = 2, i.e. W = √(2/β₂) without damping. Source: the amplification matrix of
+//! Newmark's method with β = 0, γ = β₂ (N. M. Newmark 1959; T. J. R. Hughes, *The finite element method*,
+//! 1987, ch. 9). The answer is exact.
 //!
-//! det is found as the ratio of successive Casoratians q_{n+1}q_{n−1} − q_n², which the recursion multiplies by
-//! det at every step (Abel's identity), the trace from (q_{n+1} + det q_{n−1})/q_n.
+//! det is found as the ratio of successive Casoratians q_{n+1}q_{n−1} − q_n², which the recursion multiplies
+//! by det at every step (Abel's identity). The trace is found from (q_{n+1} + det q_{n−1})/q_n.
 
 use crate::common::{IDLE, ROUNDINGS_PER_FORCE, advance, bar};
 use crate::evidence::Evidence;
@@ -16,7 +17,7 @@ use tribosweep::solver::{Model, ModelDefinition, SolverError, State, TimeStep};
 const LAYERS: usize = 12;
 const SOURCE: &str = "amplification matrix of Newmark's method, β = 0, γ = β₂";
 
-/// A bar in its mode `mode`, two above the plane.
+/// A bar in its mode `mode`, 2 m above the plane.
 fn in_mode(model: &Model, mode: usize) -> State<1> {
     let mut state = State::at_rest(model);
     for node in 0..model.mesh().node_count() {
@@ -32,8 +33,8 @@ fn omega(model: &Model, mode: usize) -> f64 {
         * (mode as f64 * PI / (2 * LAYERS) as f64).sin()
 }
 
-/// Rounding of a displacement after n steps: each step rounds Δt²M⁻¹K(u + β_R p), of size
-/// (ω_maxΔt)²(1 + b)·3 times a scheme's factor of at most 3/2, and it drifts away at most linearly.
+/// Rounding of a displacement after n steps. Each step rounds Δt²M⁻¹K(u + β_R p), of size (ω_maxΔt)²(1 + b)·3
+/// times a scheme's factor of at most 3/2. The error of a step grows at most linearly.
 fn rounding(model: &Model, n: usize) -> f64 {
     let dt = model.time_step_s();
     let w2 = (omega(model, LAYERS) * dt).powi(2);
@@ -41,7 +42,7 @@ fn rounding(model: &Model, n: usize) -> f64 {
     ROUNDINGS_PER_FORCE * size * f64::EPSILON * (n * n) as f64 / 2.0
 }
 
-/// Protects: numerical and physical damping and the phase per step are exactly those of the scheme.
+/// Protects: numerical damping, physical damping and the phase per step are exactly those of the scheme.
 #[test]
 fn modes_follow_the_amplification_matrix() {
     let steps = 8;
@@ -65,9 +66,9 @@ fn modes_follow_the_amplification_matrix() {
                     q.push(state.u[2] - 2.0);
                 }
                 let name = format!("β_R = {beta_r_s} s, mode {mode}, W = {:.3}", w2.sqrt());
-                // From rest the half-force first step gives q_1 = (1 − W²/2) q_0.
+                // From rest, the first step with half the force gives q_1 = (1 − W²/2) q_0.
                 first.bounded(&name, q[1], 1.0 - w2 / 2.0, 1.0, rounding(&model, 1));
-                // From q_1 on all steps are alike: three successive values make a Casoratian.
+                // From q_1 on all steps are alike. Three successive values give a Casoratian.
                 let casoratian = |n: usize| q[n + 1] * q[n - 1] - q[n] * q[n];
                 let n = (2..steps - 1).max_by(|&a, &b| {
                     casoratian(a).abs().min(q[a].abs()).total_cmp(&casoratian(b).abs().min(q[b].abs()))
@@ -75,11 +76,12 @@ fn modes_follow_the_amplification_matrix() {
                 let n = n.expect("steps");
                 let det = casoratian(n + 1) / casoratian(n);
                 let trace_found = (q[n + 1] + det * q[n - 1]) / q[n];
-                // A Casoratian's three products of values up to |q| each carry two roundings.
+                // A Casoratian has three products of values up to |q|, and each of them carries two
+                // roundings.
                 let size = q[n - 1..=n + 2].iter().fold(0.0_f64, |a, q| a.max(q.abs()));
                 let bound = 2.0 * 4.0 * size * rounding(&model, steps) / casoratian(n).abs();
                 dets.bounded(&name, det, determinant, 1.0, bound);
-                // Two displacements enter the trace, and det with its own error.
+                // Two displacements enter the trace, and det enters with its own error.
                 let bound = (4.0 * rounding(&model, steps) + size * bound) / q[n].abs();
                 traces.bounded(&name, trace_found, trace, 1.0, bound);
             }
@@ -100,9 +102,10 @@ fn growth(beta2: f64, beta_r_s: f64, fraction: f64) -> f64 {
     state.u.values().skip(2).step_by(3).map(|u| (u - 2.0).abs()).fold(0.0, f64::max)
 }
 
-/// Protects: the limit that the program states is the scheme's, W²(β₂ + b) = 2, and that of its own step:
-/// at 0.999 of it the highest mode, undamped, stays below 1/sin θ = 11; at 1.002 the root near −1 is beyond it by
-/// (W²(β₂+b) − 2)·2/(1 − det) ≥ 0.016/(1 − det), with 1 − det ≤ 2, so that 3000 steps make 10¹⁰ at least.
+/// Protects: the limit that the program states is that of the scheme, W²(β₂ + b) = 2, and that of its own
+/// step. At 0.999 of it the highest mode, undamped, stays below 1/sin θ = 11. At 1.002 the root near −1
+/// exceeds 1 in size by (W²(β₂+b) − 2)·2/(1 − det) ≥ 0.016/(1 − det), with 1 − det ≤ 2, so that 3000 steps
+/// give 10¹⁰ at least.
 #[test]
 fn stated_limit_is_the_limit() {
     let mut evidence = Evidence::new("B3", "limit, W²(β₂ + β_R/Δt)", SOURCE);
@@ -118,11 +121,12 @@ fn stated_limit_is_the_limit() {
             assert!(above.is_nan() || above > 1e6, "β₂ = {beta2}, β_R = {beta_r_s}: {above} above the limit");
         }
     }
-    // The element's stiffness and the eigenvalues of its reduced 24 × 24 matrix, of which ω is the root.
+    // The roundings are those of the element's stiffness and of the eigenvalues of its reduced 24 × 24
+    // matrix. ω is the root of an eigenvalue.
     evidence.judge_exact(ROUNDINGS_PER_FORCE + 24.0);
 }
 
-/// Protects: a given step above the limit is refused with both numbers; at the limit it is taken.
+/// Protects: a given step above the limit is refused with both numbers. A step at the limit is accepted.
 #[test]
 fn a_step_above_the_limit_is_refused() {
     let limit_s = Model::new(bar(LAYERS)).unwrap().time_step_limit_s();

@@ -1,10 +1,10 @@
 //! B15 Invariances of the problem: homogeneity, mirror symmetry, rotation of the scene, free flight, lanes.
 //!
 //! Source: linear elasticity, Coulomb's law and the rigid plane have no scale of force, no handedness and no
-//! preferred direction in the plane. What differs between two such runs is the order of the program's sums, so
-//! they agree to rounding (ROUNDINGS_PER_FORCE a step, in units of the largest displacement at (ω_maxΔt)² ≤ 2),
-//! which unstable sliding amplifies: its fastest mode grows at 5000 to 7000/s in this scene, by e^7 at most in 1 ms.
-//! Rigid motions of the elastic operator are in `free_block`.
+//! preferred direction in the plane. Two such runs differ only in the order of the program's sums. So they
+//! agree to rounding (ROUNDINGS_PER_FORCE per step, in units of the largest displacement at (ω_maxΔt)² ≤ 2).
+//! Unstable sliding amplifies this rounding: its fastest mode grows at 5000 to 7000/s in this scene, by e^7
+//! at most in 1 ms. Rigid motions of the elastic operator are in `free_block`.
 
 use crate::common::{IDLE, ROUNDINGS_PER_FORCE, advance, definition, pin_material};
 use crate::evidence::Evidence;
@@ -28,9 +28,9 @@ fn small_model() -> Model {
 
 const DRIVE: Drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.733, force_n: 30.0, ramp_s: 5.0e-4 };
 
-/// Homogeneity: (F, V) → s(F, V) scales displacements, velocities and contact forces by s. Scaling by
-/// a power of two is exact in binary, so the whole trajectory, through stick, slip and separation,
-/// must be the same bits but for the exponent.
+/// Protects: homogeneity. (F, V) → s(F, V) scales displacements, velocities and contact forces by s. Scaling
+/// by a power of two is exact in binary. So the whole trajectory, through stick, slip and separation, must
+/// have the same bits except for the exponent.
 #[test]
 fn scaling_load_and_speed_by_powers_of_two_scales_the_bits() {
     let model = small_model();
@@ -77,7 +77,7 @@ fn straight(size_m: [f64; 3], elements: [usize; 3], side: ClampSide, direction: 
         target: TargetDefinition::Rigid(vec![direction; mesh.bottom_nodes().len()]),
         beta2: 0.5,
         beta_r_s: 5.0e-8,
-        // 0.7 of the limit, the same to the last bit in every direction.
+        // This is 0.7 of the limit, the same to the last bit in every direction.
         time_step: TimeStep::Given(1.7e-6),
         mesh,
     })
@@ -86,8 +86,9 @@ fn straight(size_m: [f64; 3], elements: [usize; 3], side: ClampSide, direction: 
 
 const STRAIGHT: Drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.067, force_n: 30.0, ramp_s: 1.0e-4 };
 
-/// Largest deviation of the displacements of `b` from those of `a` over the largest, after 1 ms: node
-/// (i, j, k) and component c of `a` are the node `image(i, j, k)` and `turned(c)` (component, sign) of `b`.
+/// Largest deviation of the displacements of `b` from those of `a` over the largest one, after 1 ms, and the
+/// number of steps. Node (i, j, k) of `a` is the node `image(i, j, k)` of `b`. Component c of `a` is
+/// `turned[c]` (component, sign) of `b`.
 fn deviation(
     a: &Model,
     b: &Model,
@@ -122,7 +123,7 @@ fn deviation(
 const SIZE_M: [f64; 3] = [0.012, 0.015, 0.010];
 const ELEMENTS: [usize; 3] = [6, 8, 5];
 
-/// Mirror symmetry in x, and rotation by a quarter turn about z, which swaps the roles of x and y in mesh,
+/// Protects: mirror symmetry in x, and rotation by a quarter turn about z, which exchanges x and y in mesh,
 /// clamp and motion.
 #[test]
 fn mirrored_and_turned_scenes_give_mirrored_and_turned_motion() {
@@ -135,7 +136,7 @@ fn mirrored_and_turned_scenes_give_mirrored_and_turned_motion() {
     let plain = straight(SIZE_M, ELEMENTS, ClampSide::InnerSide, [0.0, 1.0]);
     let mirrored = straight(SIZE_M, ELEMENTS, ClampSide::OuterSide, [0.0, 1.0]);
     let mirror = deviation(&plain, &mirrored, |[i, j, k]| [nx - i, j, k], [(0, -1.0), (1, 1.0), (2, 1.0)]);
-    // x → y and y → −x: the clamp at −x comes to −y, the motion towards +y to −x.
+    // x → y and y → −x: the clamp at −x moves to −y, and the motion towards +y becomes a motion towards −x.
     let turned = straight(
         [SIZE_M[1], SIZE_M[0], SIZE_M[2]],
         [ny, nx, ELEMENTS[2]],
@@ -153,7 +154,8 @@ fn mirrored_and_turned_scenes_give_mirrored_and_turned_motion() {
 /// Height of the free flight.
 const HEIGHT_M: f64 = 0.01;
 
-/// Free flight: a pin that touches nothing keeps any rigid motion, translation or (linearised) rotation.
+/// Protects: free flight. A pin that touches nothing keeps any rigid motion, translation or (linearised)
+/// rotation.
 #[test]
 fn free_flight_is_rigid() {
     let mesh = BlockMesh::new(SIZE_M, ELEMENTS);
@@ -177,7 +179,7 @@ fn free_flight_is_rigid() {
                 let (d, e) = ((c + 1) % 3, (c + 2) % 3);
                 state.p[3 * node + c] = velocity[c] + spin[d] * x[e] - spin[e] * x[d];
             }
-            // So far above the plane that nothing touches it in 500 steps.
+            // The pin is so far above the plane that it touches nothing in 500 steps.
             state.u[3 * node + 2] = HEIGHT_M;
         }
         let before = state.p.clone();
@@ -190,8 +192,8 @@ fn free_flight_is_rigid() {
                 (state.u[dof] - start - before[dof] * time_s).abs()
             })
             .fold(0.0, f64::max);
-        // Each step rounds displacements of at most HEIGHT_M and the distance, (ω_maxΔt)² ≤ 4 times them in the
-        // force; an error in the velocity drifts away linearly.
+        // Each step rounds displacements of at most HEIGHT_M plus the distance, and in the force (ω_maxΔt)² ≤
+        // 4 times as much. The effect of an error in the velocity grows linearly.
         let size = HEIGHT_M + fastest * time_s;
         let bound = ROUNDINGS_PER_FORCE * 4.0 * size * f64::EPSILON * (steps * steps) as f64 / 2.0;
         evidence.bounded(name, worst / (fastest * time_s), 0.0, 1.0, bound / (fastest * time_s));
@@ -199,7 +201,8 @@ fn free_flight_is_rigid() {
     evidence.judge_bounded("rounding: the error of each step drifts away at most linearly");
 }
 
-/// Lanes: jobs advanced together give the bits that each gives alone, whatever its companions do.
+/// Protects: independent lanes. Jobs that are advanced together have the bits that each has alone, whatever
+/// its companions do.
 #[test]
 fn lanes_are_independent_to_the_last_bit() {
     let model = small_model();
@@ -237,9 +240,9 @@ fn lanes_are_independent_to_the_last_bit() {
     }
 }
 
-/// The solver's bits belong to its version: a change of them must raise `solver::VERSION`, or results
-/// stored under the old one would be taken for new ones. The step uses only IEEE operations and square
-/// roots, and the time step is given, so the bits are the same on every machine.
+/// Protects: the solver's bits belong to its version. A change of the bits must raise `solver::VERSION`.
+/// Otherwise results stored under the old version would be taken for new ones. The step uses only IEEE
+/// operations and square roots, and the time step is given, so the bits are the same on every machine.
 #[test]
 fn a_change_of_bits_raises_the_version() {
     let mut spec = JobSpec::default();

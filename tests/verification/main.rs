@@ -1,8 +1,9 @@
-//! Verification against exact answers and independent values; one file a topic.
+//! Verification against exact answers and independent values; one file per topic.
 //!
-//! Not verified, for the program does not have it: a static friction coefficient above the kinetic one (the
-//! stick–slip cycle on a belt), and partial slip of two elastic bodies (Cattaneo and Mindlin), which needs
-//! a curved, deformable target; `hysteresis` is its one-dimensional counterpart.
+//! Two things are not verified, because the program does not have them. The first is a static friction
+//! coefficient above the kinetic one (the stick–slip cycle on a belt). The second is partial slip of two
+//! elastic bodies (Cattaneo and Mindlin), which needs a curved, deformable target. `hysteresis` is its
+//! one-dimensional counterpart.
 
 mod bar;
 mod bar_spectrum;

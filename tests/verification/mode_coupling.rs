@@ -9,26 +9,27 @@
 //! ------------------- belt, μ  --> V
 //! ```
 //!
-//! While C slides (N > 0, ẏ < V) the spring's elongation is e = s z_B − c y, the normal force N = N0 − k s
-//! e and friction μN. With m = k = 1 and offsets removed:
+//! While C slides (N > 0, ẏ < V), the spring's elongation is e = s z_B − c y, the normal force is N = N0 − k
+//! s e, and friction is μN. With m = k = 1 and offsets removed:
 //!
 //! ```text
 //! ÿ + [c (c − μs) + s² − c²] y − s (c − μs) z = 0       trace T = 2s² − μsc
 //! z̈ − s c y + s² z = 0                                  determinant D = s² (s² − c²), whatever μ
 //! ```
 //!
-//! so λ² = −T/2 ± √(T²/4 − D): two frequencies while T² > 4D, a growing oscillation beyond **μ_c = 2 tan θ
-//! (1 − √(1 − cot² θ))**, and (Im λ²)² = D − T²/4 is a quadratic in μ. For θ = 80°: μ_c = 0.17772; μ = 0.1:
-//! 1.036404, 0.921118 rad/s; μ = 0.2: λ = 0.0308635 ± 0.9765746 i; μ = 0.4: 0.0974837 ± 0.9721869 i.
-//! Source: the two equations above; the mechanism is that of Hoffmann, Fischer, Allgaier and Gaul, *A
-//! minimal model for studying properties of the mode-coupling type instability in friction induced
-//! oscillations*, Mechanics Research Communications 29 (2002) 197–205.
+//! So λ² = −T/2 ± √(T²/4 − D). There are two frequencies while T² > 4D, and a growing oscillation beyond
+//! **μ_c = 2 tan θ (1 − √(1 − cot² θ))**. (Im λ²)² = D − T²/4 is a quadratic function of μ. For θ = 80°, μ_c
+//! = 0.17772. At μ = 0.1 the frequencies are 1.036404 and 0.921118 rad/s. At μ = 0.2, λ = 0.0308635 ±
+//! 0.9765746 i. At μ = 0.4, λ = 0.0974837 ± 0.9721869 i. Source: the two equations above. The mechanism is
+//! that of Hoffmann, Fischer, Allgaier and Gaul, *A minimal model for studying properties of the
+//! mode-coupling type instability in friction induced oscillations*, Mechanics Research Communications 29
+//! (2002) 197–205.
 //!
-//! **What the scheme makes of it.** The central difference turns e^{λt} into r^n with r − 2 + 1/r = (λΔt)²,
-//! that is sinh(ln r / 2) = λΔt/2: neutral stays neutral, the onset does not depend on Δt, and ln r/Δt
+//! **The discrete solution.** The central difference turns e^{λt} into r^n with r − 2 + 1/r = (λΔt)², that is
+//! sinh(ln r / 2) = λΔt/2. So neutral motion stays neutral, the onset does not depend on Δt, and ln r/Δt
 //! differs from λ by −λ³Δt²/24: second order in growth rate and in frequency. r is measured from the
-//! histories y_n and z_n: their second differences are fitted by a 2 × 2 matrix times (y, z) and a
-//! constant, in the sense of least squares; its eigenvalues are r − 2 + 1/r.
+//! histories y_n and z_n. A 2 × 2 matrix times (y, z) plus a constant is fitted to their second differences
+//! by least squares. The eigenvalues of the matrix are r − 2 + 1/r.
 
 use crate::evidence::Evidence;
 use crate::particles::{Particles, Y, Z};
@@ -114,7 +115,7 @@ fn measured_modes(y: &[f64], z: &[f64], time_step_s: f64) -> [Complex; 2] {
         [(ya * zz - za * yz) / determinant, (yy * za - yz * ya) / determinant]
     };
     let [row_y, row_z] = [fit(&ay), fit(&az)];
-    // The eigenvalues of the fitted matrix are q − 2.
+    // The eigenvalues of the fitted matrix are q − 2, with q = r + 1/r.
     let half_trace = (row_y[0] + row_z[1]) / 2.0;
     let discriminant = ((row_y[0] - row_z[1]) / 2.0).powi(2) + row_y[1] * row_z[0];
     let root = if discriminant >= 0.0 { (discriminant.sqrt(), 0.0) } else { (0.0, (-discriminant).sqrt()) };
@@ -129,10 +130,10 @@ fn measured_modes(y: &[f64], z: &[f64], time_step_s: f64) -> [Complex; 2] {
     })
 }
 
-/// Displacement [m] from steady sliding at the start: the motion is linear in it while N > 0 and ẏ < V.
+/// Displacement [m] from steady sliding at the start. The motion is linear in it while N > 0 and ẏ < V.
 const DISTURBANCE_M: f64 = 0.05;
 
-/// Slides from a disturbance for `duration_s`: the displacements of C in y and of B in z.
+/// Slides from a disturbance for `duration_s`. Returns the displacements of C in y and of B in z.
 fn slide(mu: f64, time_step_s: f64, duration_s: f64) -> (Vec<f64>, Vec<f64>) {
     let model = oscillator(time_step_s);
     let drive = Drive { law: Law::Coulomb { mu }, rate: 10.0, force_n: NORMAL_N, ramp_s: 0.0 };
@@ -159,8 +160,8 @@ fn fit_rounding(time_step_s: f64) -> f64 {
     4.0 * f64::EPSILON * 0.5 / DISTURBANCE_M / (time_step_s * time_step_s)
 }
 
-/// Protects: the signs and sizes of the follower force that makes friction unstable: growth rates and
-/// frequencies of flutter with the order of the scheme.
+/// Protects: the follower force that makes friction unstable has the right sign and size. Growth rates and
+/// frequencies of flutter converge with the order of the scheme.
 #[test]
 fn flutter_grows_as_the_eigenvalues_say() {
     for (mu, growth, frequency) in [(0.2, 0.030_863_5, 0.976_574_6), (0.4, 0.097_483_7, 0.972_186_9)] {
@@ -174,14 +175,14 @@ fn flutter_grows_as_the_eigenvalues_say() {
             omega.found(format!("Δt = {dt} s"), found.1, exact.1, exact.1);
         }
         // An error δ of each of the four coefficients changes D − T²/4 = (2σω)² by at most 4δ and the root
-        // 2σω by 4δ/(4σω); λ² has T/2 besides.
+        // 2σω by 4δ/(4σω). λ² also contains T/2.
         let of_square = fit_rounding(TIME_STEPS_S[2]) * (1.0 + 1.0 / (exact.0 * exact.1));
         rate.judge_order(2.0, 2.0, of_square / (2.0 * exact.1 * exact.0));
         omega.judge_order(2.0, 2.0, of_square / (2.0 * exact.1 * exact.1));
     }
 }
 
-/// Protects: below the onset there are the two frequencies of the sliding oscillator.
+/// Protects: below the onset the sliding oscillator has its two frequencies.
 #[test]
 fn below_the_onset_there_are_two_frequencies() {
     let exact = exact_modes(0.1);
@@ -192,14 +193,14 @@ fn below_the_onset_there_are_two_frequencies() {
         for dt in TIME_STEPS_S {
             omega.found(format!("Δt = {dt} s"), modes(0.1, dt)[mode].1, exact[mode].1, exact[mode].1);
         }
-        // As above: the root T²/4 − D is a quarter of the squared distance of the two ω².
+        // As above. Here T²/4 − D is a quarter of the squared distance of the two ω².
         omega.judge_order(2.0, 2.0, fit_rounding(TIME_STEPS_S[2]) * (1.0 + 4.0 / distance));
     }
 }
 
 /// Protects: below the onset friction neither feeds nor damps. The amplitude of a mode follows from the
-/// invariant ξ_n² − 2 cos θ ξ_n ξ_{n−1} + ξ_{n−1}² = A² sin² θ of its coordinate ξ = (s c) y + (K_yy − Ω²)
-/// z (left eigenvector).
+/// invariant ξ_n² − 2 cos θ ξ_n ξ_{n−1} + ξ_{n−1}² = A² sin² θ of its coordinate ξ = (s c) y + (K_yy − Ω²) z
+/// (left eigenvector).
 #[test]
 fn below_the_onset_sliding_is_neutral() {
     const DURATION_S: f64 = 2000.0;
@@ -216,8 +217,8 @@ fn below_the_onset_sliding_is_neutral() {
             let squared = |n: usize| xi(n).powi(2) - 2.0 * cosine * xi(n) * xi(n - 1) + xi(n - 1).powi(2);
             let last = y.len() - 1;
             let found = 0.5 * (squared(last) / squared(1)).ln() / DURATION_S;
-            // ξ is rounded at the size of u and its difference, ξωΔt, carries the amplitude; n steps of a
-            // neutral motion add up their roundings, ten a step.
+            // ξ is rounded at the size of u, and the amplitude comes from its difference, ξωΔt. The n steps
+            // of a neutral motion add up their roundings, ten per step.
             let bound = 10.0 * f64::EPSILON * 0.5 / DISTURBANCE_M * last as f64 / (omega * dt) / DURATION_S;
             growth.bounded(format!("Δt = {dt} s, {name}"), found, 0.0, 1.0, bound);
         }
@@ -225,8 +226,8 @@ fn below_the_onset_sliding_is_neutral() {
     growth.judge_bounded("rounding, ten a step: the scheme keeps neutral modes neutral");
 }
 
-/// Protects: the onset itself: (2σω)² measured at three μ beyond it, continued to zero as the quadratic that
-/// it is.
+/// Protects: the onset itself is right. (2σω)² is measured at three μ beyond it and continued to zero as a
+/// quadratic function.
 #[test]
 fn flutter_sets_in_at_the_critical_friction() {
     let (s, c) = direction();
@@ -251,7 +252,7 @@ fn flutter_sets_in_at_the_critical_friction() {
         let found = at[0] - 2.0 * g[0] / (slope + (slope * slope - 4.0 * second * g[0]).sqrt());
         onset.found(format!("Δt = {dt} s"), found, exact, exact);
     }
-    // An error 4δ of each g, times the weights of the extrapolation (their sizes add up to 2 at μ_c), over
-    // the slope (T/2) s c ≈ 0.16 and μ_c.
+    // Each g has an error of 4δ. The weights of the extrapolation multiply it (their sizes add up to 2 at
+    // μ_c). The slope (T/2) s c ≈ 0.16 and μ_c divide it.
     onset.judge_order(2.0, 2.0, 8.0 * fit_rounding(time_steps_s[2]) / (0.16 * exact));
 }

@@ -1,8 +1,8 @@
-//! Free vibrations of a block from the program's own stiffness and lumped mass; a tool of the topics.
+//! Free vibrations of a block from the program's own stiffness and lumped mass; a tool for the other files.
 //!
 //! A block has three mirror planes, so each of its modes is even or odd in every one of them. The
-//! eigenproblem is solved in each of the eight mirror classes by itself: modes of one class do not
-//! cross as the mesh is refined, so their rank within the class identifies them on every mesh.
+//! eigenproblem is solved separately in each of the eight mirror classes. Modes of one class do not cross as
+//! the mesh is refined, so their rank within the class identifies them on every mesh.
 
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
@@ -32,8 +32,8 @@ pub fn mirror_sign(class: MirrorClass, axis: usize, c: usize) -> f64 {
 
 /// Rows of K as the program applies it: 3·node + component → (column, value [N/m]).
 ///
-/// A row reaches one node far in every direction, so nodes three apart share a product: 81 products with
-/// unit displacements give all columns.
+/// A row reaches only the neighbouring nodes in every direction, so nodes three apart can share a product. 81
+/// products with unit displacements give all columns.
 pub fn stiffness_rows(model: &Model) -> Vec<Vec<(usize, f64)>> {
     let mesh = model.mesh();
     let dofs = 3 * mesh.node_count();
@@ -78,7 +78,7 @@ pub struct Mode {
 
 /// The independent degrees of freedom of one mirror class.
 struct ClassFreedom {
-    /// Of every degree of freedom the independent one that it follows, and with which sign.
+    /// For every degree of freedom: the independent one that it follows, and the sign.
     follows: Vec<Option<(usize, f64)>>,
     count: usize,
 }
@@ -88,7 +88,7 @@ fn freedom(mesh: &BlockMesh, class: MirrorClass, held: &dyn Fn(usize) -> bool) -
     let mut number = vec![None; 3 * mesh.node_count()];
     let mut count = 0;
     let mut follows = vec![None; 3 * mesh.node_count()];
-    // The longest direction last keeps the band narrow.
+    // The longest direction is numbered last, which keeps the band narrow.
     let longest = (0..3).max_by_key(|&a| n[a]).expect("three directions");
     let mut nodes: Vec<usize> = (0..mesh.node_count()).collect();
     nodes.sort_by_key(|&node| mesh.grid_position(node)[longest]);
@@ -115,7 +115,7 @@ fn freedom(mesh: &BlockMesh, class: MirrorClass, held: &dyn Fn(usize) -> bool) -
 /// Cholesky's factor of a symmetric positive definite matrix with `band` diagonals below the main one.
 struct Banded {
     band: usize,
-    /// Row by row, the diagonal last.
+    /// The rows. The last entry of a row is the diagonal.
     rows: Vec<Vec<f64>>,
 }
 

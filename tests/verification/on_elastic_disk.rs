@@ -1,11 +1,12 @@
 //! R5 The contact on an elastic disk.
 //!
-//! * A slave node that slides carries t = μN whatever patch it is on, and where it crosses an edge neither slip nor
-//!   force may jump: in steady sliding T/N is a constant of the pin's geometry. (An element-wise update of the slip
-//!   from local coordinates loses a part of it at every edge: Akantu 5.0.7 falls from 0.399 to 0.31 of N there.)
-//! * Action equals reaction: what the pin's load and clamp put in comes out at the ring's held nodes.
-//! * As the disk gets stiffer at constant density, its deflection under given forces falls as 1/E, and so does the
-//!   difference from a rigid disk, until the modes of the disk are so fast that they follow statically.
+//! * A slave node that slides carries t = μN on any patch. Where it crosses an edge, neither slip nor force
+//!   may jump. So in steady sliding T/N is a constant of the pin's geometry. (An element-wise update of the
+//!   slip from local coordinates loses a part of it at every edge: with Akantu 5.0.7, T falls from 0.399 to
+//!   0.31 of N there.)
+//! * Action equals reaction: the disk receives the opposite of the contact forces on the pin.
+//! * As the disk gets stiffer at constant density, its modes become so fast that they respond statically.
+//!   Then its deflection under given forces falls as 1/E, and so does the difference from a rigid disk.
 
 use crate::common::advance;
 use crate::elastic::{Below, coarse_scene, drive, free_block, on_block};
@@ -22,11 +23,11 @@ fn model(spec: &JobSpec) -> Model {
     Model::from_scene(&spec.scene, &spec.numerics).unwrap()
 }
 
-/// T/N and N over time, in sliding that has become steady, of a pin that crosses several edges.
+/// T/N and N over time in steady sliding of a pin that crosses several edges, and the number of edges.
 fn sliding(target: TargetSurface) -> (Vec<[f64; 2]>, f64) {
     let mut spec = coarse_scene();
     spec.scene.disk.ring.target = target;
-    // Soft enough for the patches to show, and edges that come quickly.
+    // The disk is soft enough to show the patches, and the edges come quickly.
     spec.scene.disk.ring.young_modulus_pa = 2.0e10;
     spec.numerics.beta_r_s = 1.0e-6;
     let model = model(&spec);
@@ -51,8 +52,8 @@ fn sliding(target: TargetSurface) -> (Vec<[f64; 2]>, f64) {
     (found, swept_rad / model.ring().unwrap().mesh().track().sector_rad)
 }
 
-/// Protects: a pin rides over several edges with T = μN to 10⁻⁶, on bilinear and on smooth patches; and what the smooth
-/// ones are for: the normal force wavers less as nodes pass from patch to patch.
+/// Protects: a pin slides over several edges with T = μN to 10⁻⁶, on bilinear and on smooth patches. With
+/// smooth patches the normal force varies less as nodes pass from patch to patch. This is their purpose.
 #[test]
 fn riding_over_edges_is_smooth() {
     let mut evidence = Evidence::new("R5", "sliding over edges, T/N against μ = 0.1", COULOMB);
@@ -78,7 +79,7 @@ fn riding_over_edges_is_smooth() {
     gain.judge_bounded("what has no kinks excites less than what has");
 }
 
-/// Protects: the forces that the pin receives are those that the disk receives, at every step.
+/// Protects: the pin and the disk receive opposite contact forces at every step.
 #[test]
 fn action_is_reaction() {
     let mut spec = coarse_scene();
@@ -98,7 +99,7 @@ fn action_is_reaction() {
     for _ in 0..600 {
         let before = momentum(&state);
         let elastic: f64 = {
-            // −Σ K u over the free nodes: all else that acts on them.
+            // −Σ K u over the free nodes is all other force on them.
             let u = &state.target.ring().unwrap().1.u;
             let mut product = u.clone();
             let mut scratch = tribosweep::solver::body::ring::operator::RingScratch::new(body.operator());
@@ -117,11 +118,12 @@ fn action_is_reaction() {
         }
     }
     evidence.found("the worst of 600 steps", worst.1, worst.2, worst.3);
-    // A sum over the disk's nodes of rows of K and of momenta, which are Δt⁻¹ times the forces' impulse so far.
+    // The error is that of a sum over the disk's nodes of rows of K and of momenta. The momenta are the
+    // impulse of the forces so far, and they are divided by Δt.
     evidence.judge_exact(crate::common::ROUNDINGS_PER_FORCE * (body.mesh().node_count() * 600) as f64);
 }
 
-/// Protects: the stiffer the disk, the nearer to the rigid one, as 1/E: displacements of the pin after 0.4 ms.
+/// Protects: the displacements of the pin after 0.4 ms tend to those on a rigid disk as 1/E.
 #[test]
 fn a_stiff_disk_tends_to_the_rigid_one() {
     let displacements = |spec: &JobSpec| {
@@ -153,11 +155,12 @@ fn a_stiff_disk_tends_to_the_rigid_one() {
     evidence.judge_overall_order(1.0, 4.0, "nodes that close a step earlier or later shift single values");
 }
 
-/// Nodal contact forces and heights of the interface of two blocks under a uniform pressure, at rest.
+/// Errors of the nodal contact forces and of the heights of the interface of two blocks under a uniform
+/// pressure, at rest.
 struct Pressed {
     /// Worst nodal force of the upper block over pressure times tributary area, less one.
     slave: f64,
-    /// The same of what the lower block's top nodes receive.
+    /// The same for the forces that the lower block's top nodes receive.
     target: f64,
     /// Worst height of the interface less its mean, over the shortening of both blocks.
     waviness: f64,
@@ -168,7 +171,8 @@ fn pressed(upper: usize, lower: usize, target: TargetSurface) -> Pressed {
     let material = Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.0, density_kg_m3: 2500.0 };
     let base = free_block(size, [upper, upper, upper], material);
     let load = load::normal_load(&base.mesh);
-    // Half of critical for the slowest mode, both blocks on the ground: the motion dies within some of its periods.
+    // The damping is half of critical for the slowest mode of both blocks on the ground, so the motion dies
+    // within some of its periods.
     let slowest = 0.5 * std::f64::consts::PI * material.pressure_wave_speed_m_s() / (2.0 * size[2]);
     let definition =
         ModelDefinition { load, beta_r_s: 1.0 / slowest, time_step: TimeStep::FractionOfLimit(0.9), ..base };
@@ -195,7 +199,7 @@ fn pressed(upper: usize, lower: usize, target: TargetSurface) -> Pressed {
             .zip(state.contacts.forces(0))
             .map(|(slave, force)| force[2] / (pressure * slave.area_m2) - 1.0),
     );
-    // At rest the top nodes receive what K u gives.
+    // At rest the contact forces on the top nodes are K u.
     let mut product = disk.u.clone();
     let mut scratch = tribosweep::solver::body::ring::operator::RingScratch::new(body.operator());
     body.operator().product(&disk.u, &mut product, &mut scratch);
@@ -214,8 +218,9 @@ fn pressed(upper: usize, lower: usize, target: TargetSurface) -> Pressed {
     Pressed { slave, target, waviness }
 }
 
-/// How far the one-pass rule itself is off: slave nodes with their shares of a uniform pressure, spread over target nodes
-/// by linear shape functions, against the target nodes' own shares; the worst over a line (a face is the product of two).
+/// Error of the one-pass method itself, over a line (a face is the product of two lines). The slave nodes
+/// have their shares of a uniform pressure. Linear shape functions spread these shares over target nodes. The
+/// result is the largest deviation from the target nodes' own shares.
 fn one_pass_error(upper: usize, lower: usize) -> f64 {
     let end = |index: usize, count: usize| if index == 0 || index == count { 0.5 } else { 1.0 };
     let mut received = vec![0.0; lower + 1];
@@ -230,10 +235,10 @@ fn one_pass_error(upper: usize, lower: usize) -> f64 {
     received.iter().enumerate().map(off).fold(0.0, f64::max)
 }
 
-/// Protects: blocks with the same mesh pass the patch test to what is left of the motion; blocks with different ones
-/// fail it as node-to-surface contact does (the slave nodes' forces are spread by shape functions, which is not the
-/// uniform pressure's share), by an error of the nodal forces that does not fall with refinement, and of the
-/// displacements that does.
+/// Protects: blocks with the same mesh pass the patch test, to the remainder of the motion. Blocks with
+/// different meshes fail it, as node-to-surface contact does: shape functions spread the slave nodes' forces,
+/// and the result is not the share of a uniform pressure. The error of the nodal forces does not fall with
+/// refinement, but the error of the displacements does.
 #[test]
 fn the_patch_test_is_passed_by_equal_meshes() {
     for target in [TargetSurface::Bilinear, TargetSurface::Ferguson] {

@@ -1,8 +1,8 @@
 //! Point masses on springs above the moving plane: the discrete systems of the friction cases.
 //!
-//! A system is a block mesh of which only some degrees of freedom are released; all others are fixed. Its
-//! nodes carry lumped masses (a corner of one element ρV/8), the released ones are joined by springs, and
-//! a released node of the contact face whose z is released too is a contact node.
+//! A system is a block mesh of which only some degrees of freedom are released. All others are fixed. The
+//! nodes carry lumped masses (ρV/8 at a corner of one element), and springs join the released ones. A node of
+//! the contact face whose z is released is a contact node.
 
 use std::collections::BTreeSet;
 use tribosweep::solver::body::block::BlockMesh;
@@ -31,7 +31,7 @@ pub struct Particles {
 }
 
 impl Particles {
-    /// Nothing released, no springs.
+    /// A system without released degrees of freedom and without springs.
     pub fn new(mesh: BlockMesh, density_kg_m3: f64) -> Self {
         Self { mesh, density_kg_m3, released: BTreeSet::new(), entries: Vec::new(), load: Vec::new() }
     }
@@ -70,12 +70,12 @@ impl Particles {
         self
     }
 
-    /// The model, central difference.
+    /// The model, with the central difference.
     pub fn model(&self, beta_r_s: f64, time_step: TimeStep) -> Model {
         Model::new(self.definition(beta_r_s, time_step)).unwrap()
     }
 
-    /// What the model is made of, central difference.
+    /// The definition of the model, with the central difference.
     pub fn definition(&self, beta_r_s: f64, time_step: TimeStep) -> ModelDefinition {
         let dofs = 3 * self.mesh.node_count();
         let springs = AssembledOperator::from_entries(dofs, self.entries.iter().copied()).unwrap();
@@ -98,7 +98,7 @@ impl Particles {
     }
 }
 
-/// One step with its energies.
+/// Does one step and balances its energies.
 pub fn audited_step(model: &Model, drive: Drive, state: &mut State<1>, ledger: &mut EnergyLedger<1>) {
     ledger.before_step(model, state);
     step(model, &[drive], state);

@@ -1,16 +1,18 @@
 //! B13 The constant-stress contact patch.
 //!
-//! Problem: a block under uniform pressure p on a frictionless rigid plane. σ_zz = −p everywhere, the top goes
-//! down by p h/E with free sides or p h/(λ+2G) confined, and every slave node carries p times its tributary
-//! area: a quarter of an element's face at corners, a half at edges. Exact for trilinear elements. Source: uniform
-//! stress (Hooke); the contact patch test of R. L. Taylor, P. Papadopoulos, *On a patch test for contact
-//! problems in two dimensions* (1991). Pin, p = 30/180 MPa: 1.6667 µm free, 1.2381 µm confined.
+//! Problem: a block under uniform pressure p on a frictionless rigid plane. σ_zz = −p everywhere. The top
+//! moves down by p h/E with free sides, or by p h/(λ+2G) if confined. Every slave node carries p times its
+//! tributary area: a quarter of an element's face at corners, a half at edges. This is exact for trilinear
+//! elements. Source: uniform stress (Hooke); the contact patch test of R. L. Taylor, P. Papadopoulos, *On a
+//! patch test for contact problems in two dimensions* (1991). For the pin with p = 30/180 MPa the top moves
+//! by 1.6667 µm free, 1.2381 µm confined.
 //!
 //! Two stacked blocks, the other half of the contact patch test, are in `on_elastic_disk`.
 //!
-//! Rounding: a step rounds a nodal force by ROUNDINGS_PER_FORCE·ε·Σ|K||u|. Displacements carry that along and
-//! give it back as forces of (ω_maxΔt)² ≤ 2 times its size (at 0.7 of the limit) at every later step, so a force is
-//! off by 2n of it after n steps. Displacements along the plane are free to drift, by n²/2 Δt²/m times it.
+//! Rounding: a step rounds a nodal force by ROUNDINGS_PER_FORCE·ε·Σ|K||u|. The error stays in the
+//! displacements and causes forces of (ω_maxΔt)² ≤ 2 times its size (at 0.7 of the limit) at every later
+//! step, so a force is off by 2n of it after n steps. Displacements along the plane are free to drift, by
+//! n²/2 Δt²/m times the error.
 
 use crate::common::{ROUNDINGS_PER_FORCE, advance, all_of, definition, pin_material};
 use crate::evidence::Evidence;
@@ -137,8 +139,9 @@ fn a_damped_block_settles_into_the_patch() {
     let mut evidence = cases("patch, settled from rest");
     for elements in MESHES {
         for (confined, stated_um) in [(false, 1.666_7), (true, 1.238_1)] {
-            // The load excites modes symmetric in x and y only. The lowest is longitudinal, near c_0/4h = 15.8 kHz
-            // less a tenth for lateral inertia; it decays at β_Rω²/2 = 2·10⁴/s, by e^-80 in 4 ms.
+            // The load excites only modes that are symmetric in x and y. The lowest is longitudinal, near
+            // c_0/4h = 15.8 kHz less a tenth for lateral inertia. It decays at β_Rω²/2 = 2·10⁴/s, by e^-80 in
+            // 4 ms.
             let model = model(elements, confined, 5.0e-6);
             let mut state = State::at_rest(&model);
             let steps = (4.0e-3 / model.time_step_s()).ceil() as usize;

@@ -4,12 +4,12 @@
 //! integrated hexahedra, clamp 2 mm at the inner side, F ramped over 1 ms, β_R = 2·10⁻⁸ s, central
 //! difference, Δt = 1.75·10⁻⁶ s, statistics over the last 40 % of 20 ms), not from this program.
 //!
-//! Tolerances are what those numbers themselves leave open:
-//! * its means are over a stretch W of any phase, so a quantity that swings by ±a at ω may be off by a·2/(ωW);
-//!   T/F swings about as much as N/F, whose range is known;
-//! * its frequencies are lines of a spectrum over W, good to one line, 1/W;
-//! * a share of node-time may differ by what would not change the name of a regime (3 %), because it depends on
-//!   when a node at rest to rounding counts as sticking.
+//! The tolerances follow from the uncertainty of those numbers:
+//! * The means are over a window W that begins at any phase. So the mean of a quantity that oscillates by ±a
+//!   at ω may be off by a·2/(ωW). T/F oscillates about as much as N/F, whose range is known.
+//! * The frequencies are lines of a spectrum over W, so they are accurate to one line, 1/W.
+//! * A share of node-time may differ by the threshold of a regime (3 %), because it depends on when a node at
+//!   rest to rounding counts as sticking.
 
 use tribosweep::analysis::{JobRecord, Outcome, Unobserved, solve};
 use tribosweep::spec::JobSpec;
@@ -33,13 +33,13 @@ fn run(spec: &JobSpec) -> JobRecord {
     solve(spec, &mut Unobserved).unwrap()
 }
 
-/// What the independent solver's μ* leaves open: partial cycles in its stretch, and `last_digit` / 2.
+/// Uncertainty of the independent solver's μ*: partial cycles in its window, and `last_digit` / 2.
 fn mu_star_tolerance(record: &JobRecord, stretch_s: f64, last_digit: f64) -> f64 {
     let swing = (record.n_over_f_max - record.n_over_f_min) / 2.0;
     swing * 2.0 / (std::f64::consts::TAU * record.frequency_hz.unwrap() * stretch_s) + 0.5 * last_digit
 }
 
-/// Its stretches: 40 % of 20 ms in the table, of 10 ms in the mesh series.
+/// Windows of the independent solver: 40 % of 20 ms in the table, of 10 ms in the mesh series.
 const TABLE_STRETCH_S: f64 = 8.0e-3;
 const MESH_STRETCH_S: f64 = 4.0e-3;
 
@@ -53,9 +53,9 @@ const TABLE: [(f64, f64, f64, [f64; 3]); 6] = [
     (100.0, 0.396, 15_740.0, [0.00, 0.58, 0.42]),
 ];
 
-/// Protects: μ*, frequency and shares over the whole range of speeds; and that stopping at the
-/// periodic state does not change μ*. At 0.5 rpm this lightly damped case is quasi-periodic (the
-/// amplitude of N beats by 20 % over about five cycles), so it must not be called periodic.
+/// Protects: μ*, frequency and shares agree over the whole range of speeds, and an early stop at the periodic
+/// state does not change μ*. At 0.5 rpm this lightly damped case is quasi-periodic (the amplitude of N beats
+/// by 20 % over about five cycles), so it must not be called periodic.
 #[test]
 fn table_over_the_speeds() {
     for (omega_rpm, mu_star, frequency_hz, shares) in TABLE {
@@ -81,14 +81,14 @@ fn table_over_the_speeds() {
             assert_eq!(early.outcome, Outcome::Periodic, "{omega_rpm} rpm");
             assert!(early.simulated_s < 0.7 * full.simulated_s, "{omega_rpm} rpm: it stops early");
         }
-        // Periodic means that μ* of successive cycles is the same within this.
+        // In a periodic state, μ* of successive cycles agrees within this tolerance.
         let tolerance = spec(omega_rpm, 0.4).detection.tolerance * full.mu_star;
         assert!((early.mu_star - full.mu_star).abs() < tolerance, "{omega_rpm} rpm: early {}", early.mu_star);
     }
 }
 
-/// Protects: the threshold: at μ = 0.2 sliding decays, measurably, and μ* = μ less what the disk's
-/// curvature under the pin takes (⟨1 − cos ψ⟩ ≈ ⟨y²⟩/2R² = 0.11 %).
+/// Protects: the threshold of squeal is right. At μ = 0.2 sliding decays at a measured rate, and μ* is μ less
+/// the effect of the disk's curvature under the pin (⟨1 − cos ψ⟩ ≈ ⟨y²⟩/2R² = 0.11 %).
 #[test]
 fn low_friction_slides_stably() {
     let mut spec = spec(7.0, 0.2);
@@ -100,8 +100,8 @@ fn low_friction_slides_stably() {
     assert!((record.mu_star / 0.2 - (1.0 - curvature)).abs() < 0.2 * curvature, "μ* {}", record.mu_star);
 }
 
-/// Protects: convergence of μ* in the time step (7 rpm), at first order or better, to the same limit
-/// as the finest step and as the independent solver.
+/// Protects: μ* converges in the time step (7 rpm), at first order or better. The limit is that of the finest
+/// step and of the independent solver.
 #[test]
 fn time_step_series_converges() {
     let steps_s = [1.6e-6, 8.0e-7, 4.0e-7, 5.5e-8];
@@ -119,17 +119,17 @@ fn time_step_series_converges() {
         let tolerance = mu_star_tolerance(record, TABLE_STRETCH_S, 1e-4);
         assert!((record.mu_star - expected).abs() < tolerance, "{found:?} instead of {independent:?}");
     }
-    // Aitken's limit and order of the three halvings, from nothing but them.
+    // Aitken's limit and order follow from the first three steps alone, each half of the one before.
     let (first, second) = (found[0] - found[1], found[1] - found[2]);
     let order = (first / second).log2();
     assert!((0.9..2.1).contains(&order), "order {order} of {found:?}");
     let limit = found[2] - second * second / (first - second);
-    // The extrapolation is trusted to half of its last difference; the finest step is 7 times smaller.
+    // The extrapolation is trusted to half of its last difference. The finest step is 7 times smaller.
     let error = (limit - found[3]).abs();
     assert!(error < 0.5 * second, "{found:?} tends to {limit}, the finest step gives {}", found[3]);
 }
 
-/// Protects: mesh convergence with the clamp's width held, against the independent solver
+/// Protects: μ* converges with the mesh at constant clamp width, in agreement with the independent solver
 /// (β_R = 5·10⁻⁸ s, 10 ms, 7 rpm).
 #[test]
 fn mesh_series_agrees() {

@@ -1,26 +1,28 @@
 //! R1 Free vibrations of the ring.
 //!
-//! Problem: the eigenfrequencies of K φ = ω² M φ with the ring's own stiffness and lumped mass. A uniform closed
-//! ring is its own image after one sector, so modes have n waves around: nodal amplitudes in r and z times cos nθ
-//! for u_r and u_z, and sin nθ for u_θ (for n = 0 also sin and cos the other way round, which is torsion). The
-//! products of K with such fields give a small dense problem for every n, with no mode left out. It is split by the
-//! mirror in the middle plane.
+//! Problem: the eigenfrequencies of K φ = ω² M φ with the ring's own stiffness and lumped mass. A uniform
+//! closed ring is unchanged by a rotation by one sector, so modes have n waves around. Their nodal amplitudes
+//! depend on r and z. u_r and u_z vary with cos nθ, u_θ varies with sin nθ (for n = 0 also with sin and cos
+//! exchanged, which is torsion). The products of K with such fields give a small dense problem for every n,
+//! and no mode is left out. The mirror symmetry about the middle plane splits it into two.
 //!
-//! They tend to those of the elastic ring with order 2 in the element size: the trilinear field makes ω² O(h²) too
-//! high, lumping O(h²) too low, for smooth modes (G. Strang, G. J. Fix, *An analysis of the finite element method*,
-//! 1973, ch. 6); edges are chords, which lie O(h²) inside the circles.
+//! The frequencies tend to those of the elastic ring with order 2 in the element size. For smooth modes, the
+//! trilinear field makes ω² O(h²) too high and lumping makes it O(h²) too low (G. Strang, G. J. Fix, *An
+//! analysis of the finite element method*, 1973, ch. 6). Edges are chords, which lie O(h²) inside the
+//! circles.
 //!
 //! Exact answers for the reference ring (70–120 mm, 85 mm, 210 GPa, ν = 0.3, 7800 kg/m³), all free:
-//! * Torsional modes, u_θ = R(r) cos(kπz/H) with the frequencies f² = f_r² + (k c_s/2H)². Free surfaces leave
-//!   R = r with f_r = 0 and R = A J₁(κr) + B Y₁(κr), κ = 2πf_r/c_s, with J₂(κa) Y₂(κb) = J₂(κb) Y₂(κa), for
-//!   R′ − R/r is −κ times the same of second order (K. F. Graff, *Wave motion in elastic solids*, 1975, ch. 8).
-//! * All other modes from the Rayleigh–Ritz method up to degree 14 (see `ring_ritz`); what it leaves is less than its
-//!   change from degree 12.
+//! * Torsional modes are u_θ = R(r) cos(kπz/H) with the frequencies f² = f_r² + (k c_s/2H)². Free surfaces
+//!   allow R = r with f_r = 0. They also allow R = A J₁(κr) + B Y₁(κr), κ = 2πf_r/c_s, with J₂(κa) Y₂(κb) =
+//!   J₂(κb) Y₂(κa), because R′ − R/r is −κ times the same expression of second order (K. F. Graff, *Wave
+//!   motion in elastic solids*, 1975, ch. 8).
+//! * All other modes come from the Rayleigh–Ritz method up to degree 14 (see `ring_ritz`). Its error is less
+//!   than its change from degree 12.
 //!
 //! Modes are matched by their class and rank within it, which refinement does not change. In one mode
-//! (`CANCELLING`) the h² errors of the lumped mass, which lower a frequency, and of the trilinear field, which raise
-//! it, nearly cancel; what is left is of higher and of no single order, so there the case is the overall order from
-//! the coarsest mesh on.
+//! (`CANCELLING`) the h² errors of the lumped mass, which lower a frequency, and of the trilinear field,
+//! which raise it, nearly cancel. The remainder is of higher order and of no single order, so the case there
+//! is the overall order from the coarsest mesh on.
 
 use crate::evidence::Evidence;
 use crate::ring_ritz;
@@ -31,7 +33,7 @@ use tribosweep::solver::body::ring::RingMesh;
 
 const RITZ: &str = "Rayleigh–Ritz in cylindrical coordinates, Legendre polynomials to degree 14";
 const TORSION: &str = "torsional modes of a free hollow cylinder (Graff 1975)";
-/// The mode in which they do (see the head comment).
+/// The mode in which these errors nearly cancel (see the head comment).
 const CANCELLING: &str = "n = 3, antisymmetric to the middle plane, mode 1";
 const CANCELS: &str = "the h² errors of lumped mass and trilinear field nearly cancel in this mode";
 /// The frequencies [Hz] of the Rayleigh–Ritz method.
@@ -48,13 +50,13 @@ const STATED: [(&str, f64); 8] = [
 /// Elements in θ, r and z.
 const MESHES: [[usize; 3]; 3] = [[36, 3, 5], [72, 6, 10], [144, 12, 20]];
 
-/// Which modes.
+/// A class of modes.
 #[derive(Clone, Copy)]
 struct Class {
     waves: usize,
     /// u_r ~ sin nθ, u_θ ~ cos nθ, u_z ~ sin nθ instead of cos, sin and cos.
     torsional: bool,
-    /// To the middle plane.
+    /// Whether the modes are symmetric about the middle plane.
     symmetric: bool,
 }
 
@@ -66,7 +68,7 @@ fn frequencies_hz(body: &RingBody, class: Class) -> Vec<f64> {
         let angle = class.waves as f64 * mesh.angles_rad()[j];
         if (c == 1) == class.torsional { angle.cos() } else { angle.sin() }
     };
-    // Amplitude of (i, k, c) among the unknowns of the class, and its sign there.
+    // Number of the amplitude of (i, k, c) among the unknowns of the class, and its sign.
     let unknown = |i: usize, k: usize, c: usize| {
         let sign = if (c < 2) == class.symmetric { 1.0 } else { -1.0 };
         let mirrored = planes - 1 - k;
@@ -75,7 +77,7 @@ fn frequencies_hz(body: &RingBody, class: Class) -> Vec<f64> {
     };
     let all = rows * planes.div_ceil(2) * 3;
     let (mut stiffness, mut masses) = (DMatrix::<f64>::zeros(all, all), vec![0.0; all]);
-    // Unit amplitudes of lines so far apart that no row sees two of them.
+    // Lines of nodes with unit amplitudes are so far apart that no row of K contains two of them.
     for number in 0..27 {
         let (c, across, down) = (number / 9, number / 3 % 3, number % 3);
         let mut u = body.zeros();
@@ -124,7 +126,7 @@ fn rounding(all_hz: &[f64], frequency_hz: f64) -> f64 {
     0.5 * all_hz.len() as f64 * f64::EPSILON * largest * largest
 }
 
-/// Records and judges some modes of a class: name, rank, exact frequency [Hz] and what that leaves.
+/// Records and judges some modes of a class: name, rank, exact frequency [Hz] and its relative uncertainty.
 fn judge(class: Class, source: &'static str, modes: &[(String, usize, f64, f64)]) {
     let found: Vec<Vec<f64>> = MESHES
         .iter()
@@ -152,7 +154,8 @@ fn judge(class: Class, source: &'static str, modes: &[(String, usize, f64, f64)]
 fn radial_shear_hz() -> f64 {
     let [a, b] = RADII_M;
     let free = |k: f64| libm::jn(2, k * a) * libm::yn(2, k * b) - libm::jn(2, k * b) * libm::yn(2, k * a);
-    // The shear of a strip of this width, π/(b − a), is the limit of a thin ring; the next is at twice that.
+    // π/(b − a), the shear of a strip of this width, is the limit of a thin ring. The next root is at twice
+    // that.
     let (mut low, mut high) = (0.5 * PI / (b - a), 1.5 * PI / (b - a));
     assert!(free(low) * free(high) < 0.0, "one root");
     for _ in 0..60 {
@@ -167,7 +170,7 @@ fn torsion_hz(radial_hz: f64, k: usize) -> f64 {
     radial_hz.hypot(k as f64 * STEEL.shear_wave_speed_m_s() / (2.0 * THICKNESS_M))
 }
 
-/// Protects: shear stiffness in θz and rθ and masses, against exact modes of the annulus.
+/// Protects: shear stiffness in θz and rθ and the masses agree with exact modes of the annulus.
 #[test]
 fn ring_torsional_frequencies_converge_with_order_two() {
     let shear_hz = radial_shear_hz();
@@ -187,7 +190,8 @@ fn ring_torsional_frequencies_converge_with_order_two() {
     }
 }
 
-/// Protects: the whole stiffness: the two lowest modes with two and three waves around of either symmetry.
+/// Protects: the whole stiffness is right: the two lowest modes with two and three waves around, of either
+/// symmetry.
 #[test]
 fn ring_flexural_frequencies_converge_with_order_two() {
     for waves in [2, 3] {
@@ -211,7 +215,7 @@ fn ring_flexural_frequencies_converge_with_order_two() {
     }
 }
 
-/// Protects: the reference method itself: with n = 0 it has the torsional modes among its own.
+/// Protects: the reference method itself is right. With n = 0 its modes include the torsional ones.
 #[test]
 fn ring_rayleigh_ritz_finds_the_torsional_modes() {
     let mut evidence = Evidence::new("R1", "ring, torsional modes by Rayleigh–Ritz, frequency [Hz]", TORSION);
@@ -226,7 +230,7 @@ fn ring_rayleigh_ritz_finds_the_torsional_modes() {
             (found, rounding(&all, exact))
         };
         let ((coarse, _), (fine, rounding)) = (nearest(12), nearest(14));
-        // Degree by degree the error falls: what is left is less than the last change.
+        // The error falls with every degree, so it is less than the last change.
         let bound = (coarse / fine - 1.0).abs() + rounding;
         evidence.bounded(format!("f_r = {radial_hz:.0} Hz, k = {k}"), fine, exact, exact, bound);
     }

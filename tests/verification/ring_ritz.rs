@@ -1,10 +1,10 @@
-//! Free vibrations of an elastic ring by the Rayleigh–Ritz method; a tool of the topics.
+//! Free vibrations of an elastic ring by the Rayleigh–Ritz method; a tool for the other files.
 //!
-//! For n waves around, u_r and u_z are products of Legendre polynomials in r and z times cos nθ, u_θ times sin nθ,
-//! of total degree ≤ N (as in J. So, A. W. Leissa, *Three-dimensional vibrations of thick circular and annular
-//! plates*, J. Sound Vib. 209, 1998, with algebraic polynomials there). Integrals by Gauss quadrature with the
-//! weight r. Frequencies are upper bounds that fall exponentially in N. With n = 0, u_θ decouples: the torsional
-//! modes are there as well as the others.
+//! For n waves around, u_r and u_z are products of Legendre polynomials in r and z times cos nθ, and u_θ
+//! times sin nθ. The total degree is ≤ N (as in J. So, A. W. Leissa, *Three-dimensional vibrations of thick
+//! circular and annular plates*, J. Sound Vib. 209, 1998, with algebraic polynomials there). Gauss quadrature
+//! with the weight r gives the integrals. The frequencies are upper bounds, and their errors fall
+//! exponentially in N. With n = 0, u_θ decouples, and the torsional modes are found together with the others.
 
 use crate::ring_tools::{RADII_M, STEEL, THICKNESS_M};
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -29,7 +29,8 @@ pub fn gauss(count: usize) -> Vec<[f64; 2]> {
     (0..count)
         .map(|n| {
             let mut xi = (PI * (n as f64 + 0.75) / (count as f64 + 0.5)).cos();
-            // Newton's iteration doubles the digits: from two to all of them in fewer.
+            // Newton's iteration doubles the correct digits, so fewer iterations lead from two digits to all
+            // of them.
             for _ in 0..8 {
                 let [p, slope] = legendre(count, xi)[count];
                 xi -= p / slope;
@@ -51,7 +52,7 @@ pub fn frequencies_hz(n: usize, order: usize, symmetric: bool) -> Vec<f64> {
     let points = gauss(order + 8);
     let (lambda, shear) = (STEEL.lame_lambda_pa(), STEEL.shear_modulus_pa());
     let count = points.len() * points.len();
-    // Rows: strains and displacements at the points, times the roots of their weights in the energies.
+    // The rows are strains and displacements at the points, times the roots of their weights in the energies.
     let mut strains = DMatrix::zeros(7 * count, basis.len());
     let mut moved = DMatrix::zeros(3 * count, basis.len());
     let waves = n as f64;

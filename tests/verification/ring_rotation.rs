@@ -1,8 +1,8 @@
 //! R3 Rigid motions of the ring.
 //!
 //! Problem: K u of the three translations and the three linearised rotations u = e × x, in the nodes' own
-//! directions. There a translation along x is (cos θ, −sin θ, 0) and the turn about the axis (0, r, 0), so this is a
-//! test of the turned element matrices, of the class of columns that each row belongs to and of the ring's closure.
+//! directions. There a translation along x is (cos θ, −sin θ, 0) and the rotation about the axis is (0, r,
+//! 0). So this tests the rotated element matrices, the class of columns of each row, and the ring's closure.
 //!
 //! Exact answer: no force. Isoparametric elements contain all linear fields, whatever their shape. Rounding is
 //! counted in [`RingBody::roundings`].
@@ -22,8 +22,8 @@ fn rigid_motions(body: &RingBody) -> Vec<Nodal> {
     translations.chain(rotations).collect()
 }
 
-/// Protects: all rows of K, those at the joint of the closed ring, at the ends of a sector and between unequal
-/// sectors included: they strain nothing where the motion is rigid.
+/// Protects: all rows of K give no force in rigid motions, including those at the joint of the closed ring,
+/// at the ends of a sector and between unequal sectors.
 #[test]
 fn ring_rigid_motions_carry_no_force() {
     let mut evidence =
@@ -46,7 +46,7 @@ fn ring_rigid_motions_carry_no_force() {
     evidence.judge_exact(most);
 }
 
-/// Protects: the test above can fail: a twist is not rigid, and its force is no rounding.
+/// Protects: the test above can fail. A twist is not rigid, and its force is far above rounding.
 #[test]
 fn ring_twist_carries_a_force() {
     let body = RingBody::new(graded_mesh(0.005, 0.012));

@@ -1,29 +1,31 @@
 //! R2 The ring's top settles under the pin's load.
 //!
-//! Problem: 30 N spread evenly over the pin's footprint, 12 mm × 15 mm with its centre at the radius 91.4 mm, on
-//! the reference ring with its inner radius held; the mean settlement of the footprint, on graded meshes as in a
-//! run. The footprint's edges need not be edges of the mesh: nodal forces are the shape functions' means over it.
+//! Problem: a load of 30 N is spread evenly over the pin's footprint, 12 mm × 15 mm with its centre at the
+//! radius 91.4 mm, on the reference ring. The ring's inner radius is held. The result is the mean settlement
+//! of the footprint, on graded meshes as in a run. The footprint's edges need not be edges of the mesh,
+//! because nodal forces are the shape functions' means over it.
 //!
-//! Exact answer, by subtraction of the singular part: the settlement of a half-space plus that of a ring without load
-//! on its top. On a rectangle of the sides a and b on a half-space (A. E. H. Love, *The stress produced in a
-//! semi-infinite solid by pressure on part of the boundary*, 1929; S. P. Timoshenko, J. N. Goodier, *Theory of
-//! elasticity*, art. 139: 0.95 p√A (1−ν²)/E for a square) the mean is
+//! The exact answer follows by subtraction of the singular part. It is the settlement of a half-space plus
+//! that of a ring without load on its top. For a rectangle of the sides a and b on a half-space (A. E. H.
+//! Love, *The stress produced in a semi-infinite solid by pressure on part of the boundary*, 1929; S. P.
+//! Timoshenko, J. N. Goodier, *Theory of elasticity*, art. 139: 0.95 p√A (1−ν²)/E for a square) the mean is
 //!
 //! ```text
 //! w = (1−ν²)P/(πE a²b²) {2ab [a asinh(b/a) + b asinh(a/b)] + ⅔ [a³ + b³ − (a²+b²)^{3/2}]}
 //! ```
 //!
-//! What the ring has besides solves its own problem with the half-space's tractions at the outer and lower face and
-//! its displacement at the inner face, both with the opposite sign. These are at least 15 mm away from the load, so
-//! this part, −0.42 nm of 8.7 nm, is smooth under the footprint and needs no fine mesh; what a mesh leaves of it is
-//! less than its change from one with twice the elements' size. It comes from Boussinesq's displacements and
-//! stresses, not from a fine mesh near the load: the two answers share no error there.
+//! The ring's own part solves another problem: the ring has the half-space's tractions at the outer and lower
+//! face and its displacement at the inner face, both with the opposite sign. These faces are at least 15 mm
+//! away from the load. So this part, −0.42 nm of 8.7 nm, is smooth under the footprint and needs no fine
+//! mesh. Its error on a mesh is less than its change from a mesh with elements of twice the size. It comes
+//! from Boussinesq's displacements and stresses, not from a fine mesh near the load, so the two answers share
+//! no error there.
 //!
-//! The mean settlement is the work of the load per force: its error is the square of the energy norm's, of order 2,
-//! for pressure that jumps leaves displacements in H² (the edge of the held face does not, but it is far away and
-//! hardly strained). The mesh generator fits whole elements into given lengths with
-//! a growth of its own, so the meshes are not exactly similar: the case is the overall order over the cube root of the
-//! number of elements.
+//! The mean settlement is the work of the load per force. Its error is the square of the error in the energy
+//! norm, so it is of order 2, because a pressure with jumps leaves displacements in H². (The edge of the held
+//! face does not, but it is far away and hardly strained.) The mesh generator fits whole elements into given
+//! lengths with its own growth ratio, so the meshes are not exactly similar. Therefore the case is the
+//! overall order over the cube root of the number of elements.
 
 use crate::evidence::Evidence;
 use crate::ring_ritz::gauss;
@@ -32,7 +34,7 @@ use crate::ring_tools::{Nodal, RingBody, STEEL, TRACK_RADIUS_M, graded_mesh};
 use std::f64::consts::PI;
 
 const LOAD_N: f64 = 30.0;
-/// The pin's, in x (radial) and y.
+/// Sides of the pin's footprint in x (radial) and y.
 const SIZE_M: [f64; 2] = [0.012, 0.015];
 const SOURCE: &str = "half-space (Love 1929) and the ring's own part by subtraction of the singular one";
 const NOT_SIMILAR: &str = "meshes that are graded by a generator are not exactly similar";
@@ -47,7 +49,7 @@ fn half_space_m([a, b]: [f64; 2]) -> f64 {
     (1.0 - nu * nu) * LOAD_N / (PI * STEEL.young_modulus_pa * (a * b).powi(2)) * mean_of_inverse
 }
 
-/// Means over the footprint of the top's shape functions: node and share.
+/// Means of the top's shape functions over the footprint, as node and share.
 fn footprint(body: &RingBody) -> Vec<(usize, f64)> {
     let mesh = &body.mesh;
     let mut shares = vec![0.0; mesh.node_count()];
@@ -57,7 +59,7 @@ fn footprint(body: &RingBody) -> Vec<(usize, f64)> {
         let j = mesh.angles_rad().partition_point(|angle| *angle <= y.atan2(x)) - 1;
         let half = 0.5 * mesh.sectors_rad()[j];
         let (sin, cos) = (mesh.angles_rad()[j] + half).sin_cos();
-        // Along and across the middle of the sector, whose edges are straight.
+        // Coordinates along and across the middle of the sector, whose edges are straight.
         let (along, across) = (x * cos + y * sin, y * cos - x * sin);
         let r = along / half.cos();
         let i = mesh.radii_m().partition_point(|radius| *radius <= r) - 1;
@@ -107,10 +109,10 @@ fn traction([x, y, z]: [f64; 3], n: [f64; 3]) -> [f64; 3] {
     [sideways(x, n[0]), sideways(y, n[1]), (shear * across + axial * n[2]) / (2.0 * PI)]
 }
 
-/// Mean over the footprint of what a point load of 1 N gives at a place.
+/// Mean over the footprint of the effect of a point load of 1 N at a place.
 fn under_footprint(x: [f64; 3], of_point: impl Fn([f64; 3]) -> [f64; 3]) -> [f64; 3] {
-    // The integrands are analytic as far as the place, which is twice the footprint's half side from its centre or
-    // more: eight points leave (2 + √3)^−16 ≈ 10⁻⁹.
+    // The integrands are analytic as far as the place. Its distance from the footprint's centre is at least
+    // twice half the footprint's side, so eight points leave (2 + √3)^−16 ≈ 10⁻⁹.
     let points = gauss(8);
     let mut mean = [0.0; 3];
     for [a, weight_a] in &points {
@@ -125,8 +127,8 @@ fn under_footprint(x: [f64; 3], of_point: impl Fn([f64; 3]) -> [f64; 3]) -> [f64
     mean
 }
 
-/// Adds the forces of minus the half-space's tractions on a face with these nodes, in cyclic order around the
-/// outward normal.
+/// Adds the nodal forces of the half-space's tractions, with the opposite sign, on a face. Its nodes are in
+/// cyclic order around the outward normal.
 fn add_tractions(body: &RingBody, nodes: [usize; 4], load: &mut Nodal) {
     let corners = nodes.map(|node| body.position_m(node));
     for [xi, weight_xi] in gauss(2) {
@@ -151,7 +153,7 @@ fn add_tractions(body: &RingBody, nodes: [usize; 4], load: &mut Nodal) {
     }
 }
 
-/// What the ring settles besides the half-space [m].
+/// The ring's own part of the mean settlement [m].
 fn own_part_m(body: &RingBody) -> f64 {
     let mesh = &body.mesh;
     let [columns, rows, planes] = mesh.nodes_per_axis();
@@ -178,8 +180,8 @@ fn own_part_m(body: &RingBody) -> f64 {
     settlement_m(body, &body.solve(&load, |dof| is_held(body, dof), start))
 }
 
-/// Protects: how far a loaded ring gives way where the pin stands: stiffness, grading, holding and the nodes'
-/// directions.
+/// Protects: the settlement of a loaded ring under the pin is right: stiffness, grading, supports and the
+/// nodes' directions.
 #[test]
 fn ring_settlement_under_the_pin_converges() {
     let [coarse, fine] = [0.006, 0.003].map(|size| own_part_m(&RingBody::new(graded_mesh(size, size))));
@@ -193,10 +195,10 @@ fn ring_settlement_under_the_pin_converges() {
         elements.push(body.mesh.report().elements.map(|n| n as f64).iter().product::<f64>());
         evidence.found(format!("{:.2}/{:.2} mm", 1e3 * size, 2e3 * size), found, exact, exact);
     }
-    // The size of an element by their number, per refinement.
+    // Ratio of element sizes per refinement, from the number of elements.
     let ratio = (elements[2] / elements[0]).powf(1.0 / 6.0);
     evidence.judge_overall_order(2.0, ratio, NOT_SIMILAR);
-    // Extrapolated with order 2 pair by pair, judged as by `Evidence::judge_order`.
+    // The limits are extrapolated with order 2 pair by pair and judged as in `Evidence::judge_order`.
     let limit = |n: usize| {
         let gain = (elements[n + 1] / elements[n]).powf(2.0 / 3.0);
         (gain * errors[n + 1] - errors[n]) / (gain - 1.0)
@@ -207,15 +209,16 @@ fn ring_settlement_under_the_pin_converges() {
     assert!(left < 0.2 * errors[2].abs(), "the ring's own part is known well enough: {coarse:e}, {fine:e}");
 }
 
-/// Protects: the exact answer's parts: the closed form for a square, and Boussinesq's tractions, which are Hooke's
-/// for his displacements.
+/// Protects: the parts of the exact answer are right: the closed form for a square, and Boussinesq's
+/// tractions, which follow from his displacements by Hooke's law.
 #[test]
 fn ring_settlement_reference_is_sound() {
     let side = 0.01;
     let rounded = half_space_m([side, side]) * STEEL.young_modulus_pa * side
         / (LOAD_N * (1.0 - STEEL.poisson_ratio.powi(2)));
     assert!((rounded - 0.95).abs() < 0.005, "{rounded} instead of 0.95");
-    // Hooke's law for the displacements, by central differences: h² of a field that varies over 30 mm.
+    // Hooke's law is applied to the displacements by central differences. Their error is h² of a field that
+    // varies over 30 mm.
     let (at, h) = ([0.011, -0.017, -0.023], 1e-5);
     let gradient: [[f64; 3]; 3] = std::array::from_fn(|b| {
         let moved = |by: f64| boussinesq_m(std::array::from_fn(|c| if c == b { at[c] + by } else { at[c] }));
@@ -229,7 +232,7 @@ fn ring_settlement_reference_is_sound() {
         for c in 0..3 {
             let hooke = shear * (gradient[axis][c] + gradient[c][axis])
                 + if c == axis { lambda * trace } else { 0.0 };
-            // 1/ρ² is the size of what cancels.
+            // 1/ρ² is the size of the terms that cancel.
             assert!(
                 (found[c] - hooke).abs() < 1e-5 / 0.03_f64.powi(2),
                 "σ_{axis}{c}: {} and {hooke}",

@@ -1,28 +1,30 @@
 //! R2 Statics of the ring: the patch test and a point load on its top.
 //!
 //! # The patch test
-//! Displacements linear in Cartesian x, y and z on the graded mesh. Exact answer: no force at inner nodes, and the
-//! work u·K u = V σ:ε of the polygonal ring, V = H (b² − a²) Σ ½ sin α over the sectors of the angles α. For each of
-//! the nine gradients. Isoparametric elements contain these fields, and 2 × 2 × 2 points integrate ∂N/∂x det J,
-//! which is quadratic in each coordinate, exactly (B. M. Irons, A. Razzaque, *Experience with the patch test*, 1972).
+//! The displacements are linear in Cartesian x, y and z on the graded mesh, with each of the nine gradients.
+//! Exact answer: inner nodes have no force, and the work is u·K u = V σ:ε of the polygonal ring, V = H (b² −
+//! a²) Σ ½ sin α over the sectors of the angles α. Isoparametric elements contain these fields, and 2 × 2 × 2
+//! points integrate ∂N/∂x det J, which is quadratic in each coordinate, exactly (B. M. Irons, A. Razzaque,
+//! *Experience with the patch test*, 1972).
 //!
 //! # The point load
-//! A load P at a node in the middle of the top of a uniform sector. Exact answer: the half-space of J. Boussinesq
-//! (*Application des potentiels*, 1885; K. L. Johnson, *Contact mechanics*, 1985, §3.2),
+//! A load P acts at a node in the middle of the top of a uniform sector. Exact answer: the half-space of J.
+//! Boussinesq (*Application des potentiels*, 1885; K. L. Johnson, *Contact mechanics*, 1985, §3.2),
 //!
 //! ```text
 //! u_z = (1+ν)P/(2πE) [z²/ρ³ + 2(1−ν)/ρ]      u_r = (1+ν)P/(2πE) [rz/ρ³ − (1−2ν) r/(ρ(ρ+z))]
 //! ```
 //!
-//! at the depth z, the distance r from the load's axis and ρ² = r² + z²; on the surface u_z = (1−ν²)P/(πE r). All of
-//! the sector's surface but its top is held at exactly these displacements. So the body's exact solution is the
-//! half-space's, whatever its size: what is left is the mesh.
+//! at the depth z, the distance r from the load's axis and ρ² = r² + z². On the surface u_z = (1−ν²)P/(πE r).
+//! The whole surface of the sector except its top is held at exactly these displacements. So the exact
+//! solution of the body is that of the half-space, whatever the body's size, and the only error is that of
+//! the mesh.
 //!
-//! At a fixed distance from the load the error is of order 2: the field is smooth there, and what the singular load
-//! brings from afar is the product of two energy errors, a(G − G_h, g − g_h), one of each point's Green function;
-//! both are singular at their points, and from the far side the other one is smooth, so each neighbourhood gives
+//! At a fixed distance from the load the error is of order 2. The field is smooth there. The singular load
+//! contributes the product of two energy errors, a(G − G_h, g − g_h), one of the Green function of each
+//! point. Each function is singular at its own point and smooth at the other one, so each neighbourhood gives
 //! O(h²), up to a logarithm (A. H. Schatz, L. B. Wahlbin, *Interior maximum norm estimates for finite element
-//! methods*, Math. Comp. 31, 1977). The nearest node looked at is 4 elements away on the coarsest mesh.
+//! methods*, Math. Comp. 31, 1977). The nearest evaluated node is 4 elements away on the coarsest mesh.
 
 use crate::evidence::Evidence;
 use crate::ring_tools::{RADII_M, RingBody, STEEL, graded_mesh};
@@ -37,7 +39,7 @@ fn gradients() -> impl Iterator<Item = [usize; 2]> {
     (0..9).map(|number| [number / 3, number % 3])
 }
 
-/// Protects: element matrices and assembly on the graded mesh, in the nodes' own directions.
+/// Protects: element matrices and assembly are right on the graded mesh, in the nodes' own directions.
 #[test]
 fn ring_patch_test() {
     let mut forces = Evidence::new("R2", "ring patch test, inner |K u| over Σ|K| max|u|", PATCH);
@@ -86,12 +88,13 @@ pub fn boussinesq_m([x, y, z]: [f64; 3]) -> [f64; 3] {
     [outwards * x, outwards * y, -down]
 }
 
-/// Protects: loads on the top and what the top does under them, with the same operator as in a run.
+/// Protects: loads on the top give the right displacements of the top, with the same operator as in a run.
 #[test]
 fn ring_point_load_converges_to_boussinesq() {
     let middle_m = 0.5 * (RADII_M[0] + RADII_M[1]);
     let (width_m, thickness_m) = (RADII_M[1] - RADII_M[0], 0.025);
-    // (θ, r, z) offset of the places in 16ths of the sector: 4 elements of the coarsest mesh away and more.
+    // Offsets (θ, r, z) of the places in 16ths of the sector. They are at least 4 elements of the coarsest
+    // mesh away.
     let places = [[4, 0, 0], [0, 4, 0], [0, -4, 0], [4, 4, 0], [0, 0, 4], [4, 0, 2]];
     let mut settled = places.map(|[j, i, k]| {
         let name = format!("point load, settlement at ({j}, {i}, {k})/16 of 50 mm in θ, r, z [m/N]");

@@ -1,5 +1,5 @@
-//! An elastic ring with its stiffness, in Cartesian or nodal directions, and its static solutions; a tool of the
-//! topics.
+//! An elastic ring with its stiffness, in Cartesian or nodal directions, and its static solutions; a tool for
+//! the other files.
 
 use std::f64::consts::PI;
 use tribosweep::solver::body::ring::RingMesh;
@@ -30,7 +30,7 @@ pub struct RingBody {
     operator: RingOperator,
 }
 
-/// The graded mesh of the reference ring under a pin that stays where it is.
+/// The graded mesh of the reference ring under a pin that stays at one place of the track.
 pub fn graded_mesh(element_size_m: f64, coarse_element_size_m: f64) -> RingMesh {
     let ring = Ring {
         inner_radius_m: RADII_M[0],
@@ -91,11 +91,13 @@ impl RingBody {
         force
     }
 
-    /// Applies K to unit vectors of one component at nodes so far apart that no row sees two of them, until every
-    /// column of K was seen once; `look` is given the unit vectors and the product.
+    /// Applies K to unit vectors of one component at many nodes at once. The nodes are so far apart that no
+    /// row of K contains two of them. Every column of K occurs once. `look` receives the unit vectors and the
+    /// product.
     fn probe(&self, mut look: impl FnMut(&Nodal, &Nodal)) {
         let [columns, _, _] = self.mesh.nodes_per_axis();
-        // Around a closed ring, threes may leave columns over; those get colours of their own.
+        // The number of columns of a closed ring may not be a multiple of three. The remaining columns get
+        // colours of their own.
         let whole = columns - columns % 3;
         let colour = |j: usize| if j < whole { j % 3 } else { 3 + j - whole };
         for number in 0..9 * (3 + columns % 3) {
@@ -123,8 +125,8 @@ impl RingBody {
         sums
     }
 
-    /// Largest force of K u on the nodes that `of` picks, each relative to Σ|K| of its row times the largest
-    /// component of u: what cancels in it if u has its largest size all around.
+    /// For every motion: the largest component of K u at the nodes that `of` selects. It is relative to Σ|K|
+    /// of its row times the largest component of u, which is the size of the terms that cancel.
     pub fn relative_forces(&self, motions: &[Nodal], of: impl Fn([usize; 3]) -> bool) -> Vec<f64> {
         let sums = self.row_sums();
         let largest = |u: &Nodal| u.values().map(f64::abs).fold(0.0, f64::max);
@@ -141,29 +143,31 @@ impl RingBody {
             .collect()
     }
 
-    /// Most roundings behind a component of [`Self::relative_forces`].
+    /// Largest number of roundings of a component of [`Self::relative_forces`].
     ///
-    /// A Gauss point's part of an entry of K has two gradients, each from sums of 8 products (the Jacobian), its
-    /// inverse (12 roundings) and a product with it (5), a determinant (8) and 4 more: 62; the parts of 8 points,
-    /// one of which may be as large as the entry, are added. Turning it into the nodes' directions takes 2 × 4
-    /// roundings, mirroring 4, 4 elements add up on either side, and a row has 81 products. Positions are off by one
-    /// rounding of an angle up to 2π for every column before, with which the vectors turn, and by 5 of their own.
+    /// A Gauss point's part of an entry of K has 62 roundings: two gradients with 25 each (sums of 8 products
+    /// for the Jacobian, 12 for its inverse, 5 for a product with it), a determinant (8) and 4 more. The
+    /// parts of 8 points are added, and one of them may be as large as the entry. Rotation into the nodes'
+    /// directions takes 2 × 4 roundings and mirroring 4. On either side 4 elements are added, and a row has
+    /// 81 products. The angle of a column has one rounding, of up to 2π, for every column before it, and the
+    /// vectors rotate with it. A position has 5 roundings of its own.
     pub fn roundings(&self) -> f64 {
         let [columns, _, _] = self.mesh.nodes_per_axis();
         8.0 * 62.0 + 8.0 + 8.0 + 4.0 + 8.0 + 81.0 + PI * columns as f64 + 5.0
     }
 
-    /// Most roundings [J] behind u·K u: those of each force times its displacement.
+    /// Rounding error of u·K u over ε [J], at most: the roundings of each force times its displacement.
     pub fn work_roundings(&self, u: &Nodal) -> f64 {
         let largest = u.values().map(f64::abs).fold(0.0, f64::max);
         let rows = self.row_sums();
         self.roundings() * largest * u.values().zip(rows).map(|(u, sum)| u.abs() * sum).sum::<f64>()
     }
 
-    /// The static displacement under `load`, by conjugate gradients preconditioned with the diagonal. What is held
-    /// (by degree of freedom) stays as it is in `u`.
+    /// The static displacement under `load`, by conjugate gradients preconditioned with the diagonal. Degrees
+    /// of freedom for which `held` is true keep their values of `u`.
     pub fn solve(&self, load: &Nodal, held: impl Fn(usize) -> bool, mut u: Nodal) -> Nodal {
-        // Zero where held and in the padding: so directions are, too.
+        // The inverse is zero at held degrees of freedom and in the padding, so the search directions are
+        // zero there, too.
         let mut inverse = self.zeros();
         self.probe(|units, product| {
             for dof in (0..units.len()).filter(|dof| units[*dof] == 1.0) {
@@ -198,7 +202,7 @@ impl RingBody {
     }
 }
 
-/// What the conjugate gradients leave of the residual.
+/// Relative residual at which the conjugate gradients stop.
 const LEFT: f64 = 1e-11;
 const MOST_ITERATIONS: usize = 5000;
 

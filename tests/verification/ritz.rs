@@ -1,10 +1,10 @@
-//! Free vibrations of an elastic block by the Rayleigh–Ritz method; a tool of the topics.
+//! Free vibrations of an elastic block by the Rayleigh–Ritz method; a tool for the other files.
 //!
-//! Each displacement component is a sum of products of Legendre polynomials of total degree ≤ N
-//! (H. H. Demarest, *Cube-resonance method to determine the elastic constants of solids*, J. Acoust.
-//! Soc. Am. 49, 1971; W. M. Visscher et al., *On the normal modes of free vibration of inhomogeneous
-//! and anisotropic elastic objects*, J. Acoust. Soc. Am. 90, 1991). All integrals are closed-form; the
-//! frequencies fall towards the exact ones exponentially in N, being upper bounds for every N.
+//! Each displacement component is a sum of products of Legendre polynomials of total degree ≤ N (H. H.
+//! Demarest, *Cube-resonance method to determine the elastic constants of solids*, J. Acoust. Soc. Am. 49,
+//! 1971; W. M. Visscher et al., *On the normal modes of free vibration of inhomogeneous and anisotropic
+//! elastic objects*, J. Acoust. Soc. Am. 90, 1991). All integrals have a closed form. The frequencies are
+//! upper bounds for every N and converge exponentially in N.
 
 use crate::modes::{MirrorClass, mirror_sign};
 use nalgebra::DMatrix;

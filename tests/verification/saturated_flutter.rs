@@ -1,7 +1,7 @@
 //! B9 The saturated flutter of the mode-coupled oscillator (`mode_coupling`): stick, slip and lift-off.
 //!
-//! Growth ends when the contact opens and sticks. There is no closed solution, but every bounded motion
-//! obeys, over a window T with load F = N0 and belt speed V:
+//! Growth ends when the contact opens and sticks. There is no closed solution. But over a window T with load
+//! F = N0 and belt speed V, every bounded motion obeys:
 //!
 //! ```text
 //! momentum in z:   ⟨N⟩ = F + ΔP_z/T
@@ -10,10 +10,10 @@
 //! energy:          work of the drive = friction + contact loss + stored energy
 //! ```
 //!
-//! with φ the angle between slip and belt velocity. Source: Newton's second law and Coulomb's law, summed
-//! over the window; the scheme's contact forces act at t_n and change p_n → p_{n+1}, so the sums hold to
-//! rounding. These are the identities by which the program judges its own μ*, here on a system whose onset
-//! of flutter is known exactly.
+//! φ is the angle between slip and belt velocity. Source: Newton's second law and Coulomb's law, summed over
+//! the window. The scheme's contact forces act at t_n and change p_n → p_{n+1}, so the sums hold to rounding.
+//! By these identities the program judges its own μ*. Here they are tested on a system whose onset of flutter
+//! is known exactly.
 
 use crate::evidence::Evidence;
 use crate::mode_coupling::{BODY_Z, NORMAL_N, oscillator, steady};
@@ -46,7 +46,7 @@ fn saturated(mu: f64, belt_speed_m_s: f64, time_step_s: f64) -> Saturated {
     let mut state = steady(&model, mu);
     state.u[Y] += 1.0e-2;
     let mut ledger = EnergyLedger::new(&model, 1);
-    // 100 e-folds of the linear growth, then as long again.
+    // The start takes 100 e-folds of the linear growth. The window is as long again.
     let steps = (1000.0 / time_step_s) as usize;
     for _ in 0..steps {
         audited_step(&model, drive, &mut state, &mut ledger);
@@ -65,7 +65,7 @@ fn saturated(mu: f64, belt_speed_m_s: f64, time_step_s: f64) -> Saturated {
         found.deficit += match contacts.state_of(0, 0) {
             ContactState::Separated => 0.0,
             ContactState::Stick => mu * normal - friction,
-            // Belt and slip are parallel: cos φ is 1 where the belt overtakes the node.
+            // Belt and slip are parallel, and cos φ is 1 where the belt overtakes the node.
             ContactState::Slip => mu * normal * (1.0 + contacts.increment_of(0, 0)[Y].signum()),
         };
         let now = momentum(&state).map(f64::abs);
@@ -83,8 +83,8 @@ fn saturated(mu: f64, belt_speed_m_s: f64, time_step_s: f64) -> Saturated {
     found
 }
 
-/// Protects: on the limit cycle with stick, slip and lift-off the identities on which μ* rests: momentum in
-/// both directions, the deficit of friction, energy.
+/// Protects: the identities on which μ* rests hold on a limit cycle with stick, slip and lift-off: momentum
+/// in both directions, the deficit of friction, and energy.
 #[test]
 fn the_saturated_oscillation_obeys_the_identities() {
     const MOMENTUM: &str = "momentum of the oscillator over the window, an identity of the scheme";
@@ -118,7 +118,8 @@ fn the_saturated_oscillation_obeys_the_identities() {
                 "{at}: stick, slip, lift-off {:?}",
                 found.shares
             );
-            // Sums of that many terms, each rounded at the size of the sum; twice as many since the start.
+            // The sums have one term per step, each rounded at the size of the sum. There are twice as many
+            // steps since the start.
             let rounding = 4.0 * found.steps as f64 * f64::EPSILON;
             normal.bounded(&at, found.normal - found.momentum[1], 1.0, 1.0, rounding);
             friction.bounded(&at, (found.clamp + found.momentum[0]) / found.friction, 1.0, 1.0, rounding);

@@ -1,23 +1,23 @@
 //! B12 A shear column on a moving plane.
 //!
-//! A layer of height h, free in y at the top, pressed with p on a plane of speed V. In the k-th interval of
-//! 2h/c_s the base slips at (2k−1)V0, V0 = μp/(ρc_s), while that is below V; then it sticks, v = V for
-//! ever, with a traction that alternates between two values of opposite sign. Source: d'Alembert's
-//! solution: the base's traction τ and velocity v obey τ = ρc_s (v − v_r), v_r the velocity that the
-//! returning wave alone would give it, which a free top reflects unchanged: twice the wave sent out one
-//! interval before. So τ = μp gives V0 more than v_r, v_r = 0, 2V0, 4V0; from the third interval on V is
-//! less than 5V0: τ/μp = V/V0 − 4, and then minus and plus that. With μp = 66 666.7 Pa and V = 0.25 m/s
+//! A layer of height h is free in y at the top and pressed with p on a plane of speed V. In the k-th interval
+//! of 2h/c_s the base slips at (2k−1)V0, V0 = μp/(ρc_s), while that is below V. Then it sticks for ever, v =
+//! V, with a traction that alternates between two values of opposite sign. Source: d'Alembert's solution. The
+//! base's traction τ and velocity v obey τ = ρc_s (v − v_r). v_r is the velocity that the returning wave
+//! alone would give to the base. A free top reflects a wave unchanged, so v_r is twice the wave that was sent
+//! out one interval before. So τ = μp gives v = v_r + V0 with v_r = 0, 2V0, 4V0. From the third interval on,
+//! V is less than 5V0: τ/μp = V/V0 − 4, and then minus and plus that. With μp = 66 666.7 Pa and V = 0.25 m/s
 //! (pin material, ν = 0.3, for which V0 = 0.067987 m/s): v/V0 = 1, 3, 3.677178, …; τ/μp = 1, 1, −0.322822,
 //! +0.322822, ….
 //!
-//! At c_sΔt/h_e = 1 the scheme transports shear waves exactly, so everything holds to rounding; at the
-//! first step of an interval the front is at the base and the traction is the mean of the values on both
-//! sides. Below, fronts are dispersed over w = (h_e² s)^⅓ after the way s: the base's position is off by a
+//! At c_sΔt/h_e = 1 the scheme transports shear waves exactly, so everything holds to rounding. At the first
+//! step of an interval the front is at the base, and the traction is the mean of the values on both sides.
+//! Below, fronts are dispersed over w = (h_e² s)^⅓ after the distance s. The base's position is off by a
 //! velocity jump times w/c_s, and the mean traction of an interval by a jump times w/h: order ⅔.
 //!
-//! The column's normal degrees of freedom only carry the pressure: all levels above the base are held
-//! at the compression that gives p. Poisson's ratio −0.2 keeps the base's own normal mode below its
-//! limit at this step; the shear problem depends on G and ρ alone, which are the pin's.
+//! The column's normal degrees of freedom only carry the pressure: all levels above the base are held at the
+//! compression that gives p. Poisson's ratio −0.2 keeps the base's own normal mode below its limit at this
+//! step. The shear problem depends only on G and ρ, which are the pin's.
 
 use crate::common::{
     COLUMN_AREA_M2, COLUMN_HEIGHT_M, advance, all_of, column_mesh, definition, level, level_ties,
@@ -69,12 +69,12 @@ const DRIVE: Drive = Drive { law: Law::Coulomb { mu: MU }, rate: PLANE_SPEED_M_S
 const INTERVALS: usize = 8;
 const SOURCE: &str = "d'Alembert's solution, τ = ρc_s (v − v_r) at the base";
 
-/// V0 [m/s].
+/// Unit V0 [m/s] of the base's velocity.
 fn unit_speed_m_s() -> f64 {
     SHEAR_LIMIT_PA / (2500.0 * shear_material().shear_wave_speed_m_s())
 }
 
-/// v/V0 and τ/μp of an interval, from 0 on.
+/// v/V0 and τ/μp of an interval; the first has the number 0.
 fn exact(interval: usize) -> (f64, f64) {
     let ratio = PLANE_SPEED_M_S / unit_speed_m_s();
     match interval {
@@ -91,7 +91,7 @@ fn traction(state: &State<1>) -> f64 {
     friction / (SHEAR_LIMIT_PA * COLUMN_AREA_M2)
 }
 
-/// The numbers that the exact solution gives for the pin's material.
+/// Protects: the exact solution gives the stated numbers for the pin's material.
 #[test]
 fn the_exact_solution_is_as_stated() {
     assert!((unit_speed_m_s() - 0.067_987).abs() < 5.1e-7, "V0");
@@ -105,7 +105,8 @@ fn keep_worst(worst: &mut (f64, f64), found: f64, exact: f64) {
     }
 }
 
-/// Protects: friction, slip → stick and stick in a travelling-wave problem, to rounding.
+/// Protects: friction, the transition from slip to stick, and stick are exact to rounding in a problem with
+/// travelling waves.
 #[test]
 fn base_velocity_climbs_in_steps_and_sticks() {
     const LAYERS: usize = 40;
@@ -137,14 +138,14 @@ fn base_velocity_climbs_in_steps_and_sticks() {
         speeds.found(format!("interval {}", interval + 1), worst_speed.0, worst_speed.1, ratio);
         tractions.found(format!("interval {}", interval + 1), worst_traction.0, worst_traction.1, ratio);
     }
-    // A row of K cancels some 30 products of the size of the displacement Vt: each step changes the
-    // velocity by as many roundings of Vt/Δt, n of V, and n steps add them up.
+    // A row of K cancels some 30 products of the size of the displacement Vt. So each step changes the
+    // velocity by 30 roundings of Vt/Δt, that is n of V, and n steps add them up.
     let steps = (2 * LAYERS * INTERVALS) as f64;
     speeds.judge_exact(30.0 * steps * steps);
     tractions.judge_exact(30.0 * steps * steps);
 }
 
-/// Protects: the same with fronts that the mesh disperses, in the base's position and the mean traction.
+/// Protects: with fronts that the mesh disperses, the base's position and the mean traction converge.
 fn converges_below_unit_cfl(resolutions: &[usize], name: &str) {
     const WHY: &str = "dispersed fronts, (h²s)^⅓ wide";
     let mut place = Evidence::new(

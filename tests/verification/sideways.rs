@@ -1,13 +1,13 @@
 //! B7 A block thrown sideways onto a moving plane: friction opposes the slip, not the velocity.
 //!
-//! A block (m, pressed with F) is put on a plane that moves with V towards +y, with the velocity v_x
-//! across. Seen from the plane it is thrown with w = (v_x, −V) and Coulomb's friction, μF against w, only
-//! makes it slower: it moves straight and stops after |w|/d and |w|²/(2d), d = μF/m, and is carried from
-//! then on. At the time T after that it is at x = v_x|w|/(2d), y = VT − V|w|/(2d): a parabola while it
-//! slips. Source: Galileo's relativity and B7.
+//! A block of mass m, pressed with F, is put on a plane that moves with V towards +y. The block has the
+//! velocity v_x across. In the plane's frame its velocity is w = (v_x, −V), and Coulomb's friction, μF
+//! against w, only makes it slower. So it moves straight and stops after |w|/d and |w|²/(2d), d = μF/m. From
+//! then on the plane carries it. At any later time T it is at x = v_x|w|/(2d), y = VT − V|w|/(2d). Its path
+//! is a parabola while it slips. Source: Galileo's relativity and B7.
 //!
-//! **What the scheme makes of it**: in the plane's frame the rigid block of B7, stopping at the step
-//! nearest to the exact time; d(t_n − t)²/2 is missing along w.
+//! **The discrete solution** is that of the rigid block of B7 in the plane's frame. The block stops at the
+//! step nearest to the exact time, and d(t_n − t)²/2 is missing along w.
 
 use crate::common::advance;
 use crate::evidence::Evidence;
@@ -23,7 +23,8 @@ const RELATIVE_M_S: f64 = 0.5;
 const STOP_S: f64 = RELATIVE_M_S / DECELERATION_M_S2;
 const WAY_M: f64 = 0.5 * RELATIVE_M_S * STOP_S;
 
-/// Protects: the direction of friction in the plane, x and y coupled by the cone, with a moving target.
+/// Protects: the direction of friction in the plane is right, with x and y coupled by the cone and a moving
+/// target.
 #[test]
 fn is_carried_from_where_its_slip_ends() {
     const SOURCE: &str = "straight uniform deceleration μF/m in the plane's frame";
@@ -69,8 +70,8 @@ fn is_carried_from_where_its_slip_ends() {
         discrete.found(format!("{resolution}, y"), lag_m, (WAY_M - short_m) * y_part, WAY_M);
         most_steps = most_steps.max(2.0 * steps);
     }
-    // Each step rounds p and u a few times; an error of p is carried through the rest of the way, and one of
-    // the direction, ε|w|/|p|, matters the less the shorter the way that is left.
+    // Each step rounds p and u a few times. An error of p acts over the rest of the distance. An error of the
+    // direction, ε|w|/|p|, has the less effect the shorter this rest is.
     let roundings = 10.0 * most_steps;
     across.judge_order(2.0, 4.0, roundings * f64::EPSILON);
     along.judge_order(2.0, 4.0, roundings * f64::EPSILON);

@@ -1,18 +1,19 @@
 //! B4b Two elastic bodies hit each other.
 //!
-//! Problem: two bars of length L = 10, E = 100, ρ = 0.01, ν = 0 (c = 100, impedance z = ρc = 1); the upper one comes down
-//! at v = 0.1, the gap of 0.01 closes at t = 0.1. Source: D. M. Runcie, *Impact of two bars* as used in explicit contact
-//! codes (2022), d'Alembert: contact lasts 2L/c, from 0.1 to 0.3, with the interface at v/2 and the stress zv/2 =
-//! 0.05; then the upper bar rests and the lower one has all of its velocity. With E = 49 (c = 70, z = 0.7) the
-//! interface moves at z1 v/(z1+z2) = 0.0411765 with as much stress; at 0.3 the lower bar's wave is back and the stress
-//! falls to 0.0072664 while contact goes on.
+//! Problem: two bars have length L = 10, E = 100, ρ = 0.01, ν = 0 (c = 100, impedance z = ρc = 1). The upper
+//! one comes down at v = 0.1, and the gap of 0.01 closes at t = 0.1. Source: D. M. Runcie, *Impact of two
+//! bars* as used in explicit contact codes (2022), d'Alembert. Contact lasts 2L/c, from 0.1 to 0.3, with the
+//! interface at v/2 and the stress zv/2 = 0.05. Then the upper bar rests and the lower one has all of its
+//! velocity. With E = 49 (c = 70, z = 0.7) the interface moves at z1 v/(z1+z2) = 0.0411765, and the stress
+//! has the same value. At 0.3 the lower bar's wave is back, and the stress falls to 0.0072664 while contact
+//! continues.
 //!
-//! In three dimensions: blocks ten times as wide as long with one element across (ν = 0, so nothing moves sideways), in
-//! the general contact solve with target nodes of finite mass. The lower block has its own stages where its step is
-//! the smaller.
+//! The test is in three dimensions: the blocks are ten times as wide as long and have one element across (ν =
+//! 0, so nothing moves sideways). The general contact solve is used, with target nodes of finite mass. The
+//! lower block has its own stages where its step is the smaller.
 //!
-//! The scheme below its limit disperses fronts: order ⅔ (see `bar`). Momentum: action equals reaction at every step,
-//! so it is conserved to rounding, by M̃ = M B⁻¹ with several stages.
+//! Below its limit the scheme disperses fronts, which gives order ⅔ (see `bar`). Action equals reaction at
+//! every step, so momentum is conserved to rounding. With several stages it is formed with M̃ = M B⁻¹.
 
 use crate::common::{FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, normal_force_n};
 use crate::elastic::{Below, free_block, momentum, on_block};
@@ -40,7 +41,7 @@ struct Impact {
     steps: usize,
 }
 
-/// `spans` [s] in which the stress is averaged; the run ends at `end_s`.
+/// Runs an impact until `end_s`. The stress is averaged in two `spans` [s].
 fn run(
     layers: usize,
     young_modulus_pa: f64,
@@ -93,12 +94,13 @@ fn run(
     }
 }
 
-/// Sums of all degrees of freedom, rounded at every step.
+/// Rounding of sums over all degrees of freedom, at every step.
 fn rounding(impact: &Impact, layers: usize) -> f64 {
     ROUNDINGS_PER_FORCE * (8 * layers * impact.steps) as f64 * f64::EPSILON
 }
 
-/// Protects: equal bars exchange their velocities with the exact stress; momentum and energy are kept.
+/// Protects: equal bars exchange their velocities with the exact stress, and momentum and energy are
+/// conserved.
 #[test]
 fn equal_bars_exchange_their_velocities() {
     let mut stress = Evidence::new("B4b", "equal bars, contact stress over ρcv/2", RUNCIE);
@@ -118,8 +120,8 @@ fn equal_bars_exchange_their_velocities() {
     }
 }
 
-/// Protects: bars of different impedance, with the exact stress in both phases of the contact; with two clocks as with
-/// one.
+/// Protects: bars of different impedance have the exact stress in both phases of the contact, with two clocks
+/// as with one.
 #[test]
 fn dissimilar_bars_stay_in_contact() {
     for (clock, name) in [(DiskTimeStep::Common, "one clock"), (DiskTimeStep::Own, "two clocks")] {

@@ -1,13 +1,13 @@
 //! B7 A block on a wedge: the push that makes it slide.
 //!
-//! A block of weight G on a rigid wedge of slope tan α = 0.1 is pushed horizontally with F. Seen along the
-//! slope the pull is F cos α − G sin α, the pressure F sin α + G cos α, and Coulomb's limit is reached at
-//! F/G = tan(α + arctan μ) = (tan α + μ)/(1 − μ tan α). For μ = 0, 0.1, 0.2, 0.3: F/G = 0.1, 0.202020,
+//! A block of weight G on a rigid wedge of slope tan α = 0.1 is pushed horizontally with F. Along the slope
+//! the pull is F cos α − G sin α, and the pressure is F sin α + G cos α. Coulomb's limit is reached at F/G =
+//! tan(α + arctan μ) = (tan α + μ)/(1 − μ tan α). For μ = 0, 0.1, 0.2, 0.3 this gives F/G = 0.1, 0.202020,
 //! 0.306122, 0.412371, the published values of the NAFEMS contact benchmark CGS-4 (Feng and Prinja,
 //! *Benchmark Tests for Finite Element Modelling of Contact, Gliding and Sliding*, R0081, 2001).
 //!
 //! The acceleration beyond the limit is linear in F, so two runs give the limit by extrapolation to zero
-//! acceleration, without any discretisation error: what remains is rounding.
+//! acceleration. There is no discretisation error; only rounding remains.
 
 use crate::common::advance;
 use crate::evidence::Evidence;
@@ -19,8 +19,8 @@ use tribosweep::solver::{Drive, State, TimeStep};
 const SLOPE: f64 = 0.1;
 const STEPS: usize = 100;
 
-/// Pushed with `push` times the weight for some steps: the way [weights over mass times elapsed time²/2],
-/// and whether it stuck throughout.
+/// Pushes the block with `push` times the weight for some steps. Returns the distance [weights over mass
+/// times elapsed time²/2], and whether it stuck throughout.
 fn pushed(push: f64, mu: f64) -> (f64, bool) {
     let (sine, cosine) = SLOPE.atan().sin_cos();
     let mut block = Particles::corners(1.0);
@@ -37,7 +37,7 @@ fn pushed(push: f64, mu: f64) -> (f64, bool) {
     (state.u[Y] / (0.5 * elapsed_s * elapsed_s), sticks)
 }
 
-/// Protects: the friction limit with normal and tangential force from the same load.
+/// Protects: the friction limit is right with normal and tangential force from the same load.
 #[test]
 fn slides_at_the_published_push() {
     let mut limit = Evidence::new(
@@ -52,13 +52,14 @@ fn slides_at_the_published_push() {
         let (slow, fast) = (pushed(low, mu).0, pushed(high, mu).0);
         let found = low - slow * (high - low) / (fast - slow);
         limit.found(format!("μ = {mu}"), found, exact, exact);
-        // Trial force and limit are differences of rounded products of size G: a thousand roundings apart.
+        // Trial force and limit are differences of rounded products of size G. The two pushes are a thousand
+        // roundings off the limit.
         let edge = 1000.0 * f64::EPSILON;
         if mu > 0.0 {
             assert!(pushed(exact * (1.0 - edge), mu).1, "μ = {mu}: it sticks below the limit");
         }
         assert!(!pushed(exact * (1.0 + edge), mu).1, "μ = {mu}: it slides above the limit");
     }
-    // Rounding a few times a step, and its amplification of at most G/F in the extrapolation.
+    // There are a few roundings per step. The extrapolation amplifies them by at most G/F.
     limit.judge_exact(10.0 * STEPS as f64 / SLOPE);
 }
