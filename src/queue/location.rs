@@ -156,7 +156,8 @@ impl From<PathBuf> for Location {
 mod tests {
     use super::Location;
 
-    /// Protects: what begins like a server's URL is one, another scheme is not taken for a file, and all else is a file.
+    /// Protects: text with `://` is a URL, a URL with another scheme is refused and not taken for a path, and all else is a
+    /// path.
     #[test]
     fn servers_and_files_are_told_apart() {
         for url in ["postgres://ada@db/sweeps", "postgresql://db", "POSTGRES://db"] {
@@ -172,7 +173,7 @@ mod tests {
         assert!(!error.contains("secret"), "{error}");
     }
 
-    /// Protects: no message shows a password, wherever in a URL it is.
+    /// Protects: no message shows a password, wherever it is in the URL, and even if the URL is not valid.
     #[test]
     fn passwords_are_not_shown() {
         for (url, shown) in [
@@ -186,6 +187,12 @@ mod tests {
             ("postgres://db/sweeps?user=ada&password=secret", "postgres://db/sweeps?user=ada"),
             ("postgres://db?password=secret", "postgres://db"),
             ("postgres://ada@db/sweeps?sslmode=require", "postgres://ada@db/sweeps?sslmode=require"),
+            ("postgres://ada@db/x?%70assword=secret&sslmode=require", "postgres://ada@db/x?sslmode=require"),
+            ("postgres://ada@db/x?password=1#secret", "postgres://ada@db/x"),
+            ("postgres://ada:secret@db:port/x?password=secret", "postgres://ada@db:port/x"),
+            ("postgres://db:port/x?password=secret", "postgres://db:port/x"),
+            ("postgres://ada:secret@[::1]:5432/x", "postgres://ada@[::1]:5432/x"),
+            ("odd scheme://ada:secret@db", "odd scheme://ada@db"),
         ] {
             let Location::Server(server) = Location::parse(url.into()) else { panic!("{url}") };
             assert_eq!(server.to_string(), shown);
