@@ -1,13 +1,14 @@
-//! Load on the queue: many processes that claim and finish jobs. The jobs compute nothing; they take no time, or they sleep.
+//! Load on the queue: many processes that claim and finish jobs. The jobs compute nothing; they take no time, or they
+//! sleep.
 //!
 //! ```text
 //! scripts/postgres.sh start /tmp/server
 //! cargo bench --bench queue -- --db postgres://tribosweep@127.0.0.1:PORT/postgres
 //! ```
 //!
-//! For each number of processes, it prints the jobs and claims per second, the time of a claim, and the load of the server:
-//! the processor time of all processes named `postgres`, so no other server should run. Payloads and records have the size
-//! of real ones. `docs/cluster.md` discusses the results.
+//! For each number of processes, it prints the jobs and claims per second, the time of a claim, and the load of the
+//! server: the processor time of all processes named `postgres`, so no other server should run. Payloads and records
+//! have the size of real ones. `docs/cluster.md` discusses the results.
 
 use std::io::Write;
 use std::process::{Command, Stdio};

@@ -16,8 +16,9 @@ fn outcomes(rows: &[StudyRow]) -> Vec<Outcome<'_>> {
     rows.iter().map(outcome).collect()
 }
 
-/// Protects: a study that is copied into either database and back is identical: rows, records, errors, times to the last
-/// bit, attempts, notes, priorities and checkpoints. Running jobs are pending in the copy. A repeated copy changes nothing.
+/// Protects: a study that is copied into either database and back is identical: rows, records, errors, times to the
+/// last bit, attempts, notes, priorities and checkpoints. Running jobs are pending in the copy. A repeated copy changes
+/// nothing.
 #[tokio::test]
 async fn a_copy_is_the_same() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -71,8 +72,8 @@ async fn a_copy_is_the_same() {
     assert_eq!(kept.payload, format!("payload of {}", kept.key));
 }
 
-/// Protects: the shards of a study are disjoint, and together they are the whole study in its order. After a merge, each
-/// job has the result from its shard.
+/// Protects: the shards of a study are disjoint, and together they are the whole study in its order. After a merge,
+/// each job has the result from its shard.
 #[tokio::test]
 async fn shards_make_up_the_whole() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -102,7 +103,8 @@ async fn shards_make_up_the_whole() {
     }
 }
 
-/// Protects: the better of two outcomes is kept, whichever database it is in, and jobs that are running here do not change.
+/// Protects: the better of two outcomes is kept, whichever database it is in, and jobs that are running here do not
+/// change.
 #[tokio::test]
 async fn the_better_outcome_is_kept() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };

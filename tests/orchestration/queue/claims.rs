@@ -31,8 +31,8 @@ fn all(limit: usize, batch: Option<&str>) -> Claim {
     Claim { scope: Scope::All, limit, batch: batch.map(str::to_owned) }
 }
 
-/// Protects: a claim takes jobs of one batch: the named one, or else that of the first job in order. Several claims of one
-/// exchange are served in order, and each has its own answer.
+/// Protects: a claim takes jobs of one batch: the named one, or else that of the first job in order. Several claims of
+/// one exchange are served in order, and each has its own answer.
 #[tokio::test]
 async fn a_claim_is_of_one_batch() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -92,8 +92,8 @@ async fn a_higher_priority_goes_first() {
     assert_eq!(keys(&claim(&mut queue, Scope::All, 9).await), ["u", "x", "y"]);
 }
 
-/// Protects: a claim of a named batch gets no jobs while a job of another batch with a higher priority is pending. That job
-/// therefore need not wait until the batch is done.
+/// Protects: a claim of a named batch gets no jobs while a job of another batch with a higher priority is pending. That
+/// job therefore need not wait until the batch is done.
 #[tokio::test]
 async fn a_higher_priority_ends_a_batch() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -107,8 +107,8 @@ async fn a_higher_priority_ends_a_batch() {
     assert_eq!(keys(&exchange(&mut queue, &more).await[0]), ["y"]);
 }
 
-/// Protects: a submission replaces the batch names of pending jobs, because another version of the program may name batches
-/// differently.
+/// Protects: a submission replaces the batch names of pending jobs, because another version of the program may name
+/// batches differently.
 #[tokio::test]
 async fn a_batch_is_renamed_by_a_submission() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -120,8 +120,8 @@ async fn a_batch_is_renamed_by_a_submission() {
     assert_eq!(exchange(&mut queue, &[all(9, Some("b"))]).await[0].len(), 2);
 }
 
-/// Protects: cancelling a study cancels exactly the pending jobs that no other study requests. If two studies share a job and
-/// both are cancelled, the job is cancelled. Submitting or retrying makes jobs pending again.
+/// Protects: cancelling a study cancels exactly the pending jobs that no other study requests. If two studies share a
+/// job and both are cancelled, the job is cancelled. Submitting or retrying makes jobs pending again.
 #[tokio::test]
 async fn cancelling_and_requesting_again() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -145,8 +145,8 @@ async fn cancelling_and_requesting_again() {
     assert_eq!(keys(&claim(&mut queue, Scope::All, 9).await), ["own"], "study c is not cancelled");
 }
 
-/// Protects: a failed job that is retried is pending. Its row no longer shows the failure, its crash count is reset, and the
-/// outcome of the next attempt counts.
+/// Protects: a failed job that is retried is pending. Its row no longer shows the failure, its crash count is reset,
+/// and the outcome of the next attempt counts.
 #[tokio::test]
 async fn a_failed_job_is_retried() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -164,8 +164,8 @@ async fn a_failed_job_is_retried() {
     assert_eq!(queue.counts(&of("a")).await.unwrap(), counts(0, 0, 2, 0));
 }
 
-/// Protects: removing a study removes nothing that another study has. Results stay until garbage collection, which deletes
-/// exactly the jobs that no study refers to.
+/// Protects: removing a study removes nothing that another study has. Results stay until garbage collection, which
+/// deletes exactly the jobs that no study refers to.
 #[tokio::test]
 async fn removing_and_collecting() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -193,8 +193,8 @@ async fn removing_and_collecting() {
     assert_eq!(queue.counts(&of("b")).await.unwrap(), Counts { cancelled: 1, ..counts(0, 0, 0, 0) });
 }
 
-/// Protects: after any sequence of operations, the table of a study's pending jobs, which claims use, agrees with the jobs.
-/// The sequence is random and the same in every run.
+/// Protects: after any sequence of operations, the table of a study's pending jobs, which claims use, agrees with the
+/// jobs. The sequence is random and the same in every run.
 #[tokio::test]
 async fn a_studys_pending_jobs_are_kept() {
     const KEYS: [&str; 6] = ["p", "q", "r", "s", "t", "u"];

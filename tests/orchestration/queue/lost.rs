@@ -111,8 +111,8 @@ fn finished(key: &str) -> Finished {
 const TWO: [Claim; 1] = [Claim { scope: Scope::All, limit: 2, batch: None }];
 
 /// Protects: after an exchange whose answer was lost, a repeated exchange stores each outcome once and refuses none,
-/// whether the lost transaction was committed or not. The worker then holds exactly the jobs that it knows of. Jobs that
-/// it claimed in the lost transaction are claimed again, by it and by nobody else.
+/// whether the lost transaction was committed or not. The worker then holds exactly the jobs that it knows of. Jobs
+/// that it claimed in the lost transaction are claimed again, by it and by nobody else.
 #[tokio::test]
 async fn an_exchange_in_doubt_is_done_once() {
     for when in [Cut::BeforeCommit, Cut::AfterCommit, Cut::Now] {
@@ -144,8 +144,8 @@ async fn an_exchange_in_doubt_is_done_once() {
     }
 }
 
-/// Protects: a worker that was disconnected for longer than its lease continues afterwards and counts as active. Outcomes of
-/// jobs that another worker has claimed meanwhile are refused.
+/// Protects: a worker that was disconnected for longer than its lease continues afterwards and counts as active.
+/// Outcomes of jobs that another worker has claimed meanwhile are refused.
 #[tokio::test]
 async fn a_worker_continues_after_a_long_disconnection() {
     let Some(relayed) = Relayed::new() else { return };
@@ -171,7 +171,8 @@ async fn a_worker_continues_after_a_long_disconnection() {
     assert_eq!(other.active_workers().await.unwrap().workers, 2);
 }
 
-/// Protects: a server that does not answer is an immediate error, which names the server and does not show the password.
+/// Protects: a server that does not answer is an immediate error, which names the server and does not show the
+/// password.
 #[cfg(feature = "postgres")]
 #[tokio::test]
 async fn a_missing_server_is_named() {

@@ -113,8 +113,8 @@ async fn references_hold_after_the_migration() {
     }
 }
 
-/// Protects: while a worker of the earlier version is running, the database is not migrated, because that version does not
-/// support owners.
+/// Protects: while a worker of the earlier version is running, the database is not migrated, because that version does
+/// not support owners.
 #[tokio::test]
 async fn an_older_worker_is_waited_for() {
     let sandbox = Sandbox::new();

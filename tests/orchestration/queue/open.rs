@@ -120,8 +120,8 @@ async fn a_newer_database_is_refused() {
     assert!(error.to_string().contains("newer tribosweep (schema 9001; this one knows up to 3)"), "{error}");
 }
 
-/// Protects: if several processes open a missing database at the same time, all of them succeed. Without the opening lock,
-/// some of them fail with "database is locked" or "table already exists".
+/// Protects: if several processes open a missing database at the same time, all of them succeed. Without the opening
+/// lock, some of them fail with "database is locked" or "table already exists".
 #[test]
 fn first_opens_at_once_all_succeed() {
     const OPENERS: usize = 8;

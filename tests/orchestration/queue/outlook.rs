@@ -9,8 +9,8 @@ fn active(workers: u64, threads: u64) -> ActiveWorkers {
     ActiveWorkers { workers, threads }
 }
 
-/// Protects: a worker is active while its process exists, however old its last heartbeat is. A worker that is stopping is not
-/// counted. If the process is not visible, the heartbeats decide.
+/// Protects: a worker is active while its process exists, however old its last heartbeat is. A worker that is stopping
+/// is not counted. If the process is not visible, the heartbeats decide.
 #[tokio::test]
 async fn active_workers_are_counted() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -84,8 +84,8 @@ async fn timings_of_many_jobs_are_a_sample() {
     assert!((mean - 1_250.0).abs() < 5.0, "{mean}");
 }
 
-/// Protects: results are grouped by provenance, with the number of jobs and the times of the attempts that count. Results of
-/// other studies are not included.
+/// Protects: results are grouped by provenance, with the number of jobs and the times of the attempts that count.
+/// Results of other studies are not included.
 #[tokio::test]
 async fn results_are_grouped_by_provenance() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };

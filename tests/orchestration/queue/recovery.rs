@@ -21,8 +21,8 @@ async fn left_by(sandbox: &Sandbox, worker: &Worker) -> Queue {
     queue
 }
 
-/// Protects: a job that an interrupted worker gives back is pending again, with a note of the reason, and its next start is
-/// a new attempt.
+/// Protects: a job that an interrupted worker gives back is pending again, with a note of the reason, and its next
+/// start is a new attempt.
 #[tokio::test]
 async fn a_released_job_is_claimed_again() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -36,8 +36,8 @@ async fn a_released_job_is_claimed_again() {
     assert_eq!(claim(&mut queue, Scope::All, 1).await[0].attempt, 2);
 }
 
-/// Protects: a job that was claimed and not started is as if it had not been claimed: the attempt does not count and there is
-/// no note. The worker that gave it back can neither give it back nor finish it again.
+/// Protects: a job that was claimed and not started is as if it had not been claimed: the attempt does not count and
+/// there is no note. The worker that gave it back can neither give it back nor finish it again.
 #[tokio::test]
 async fn an_unstarted_job_costs_no_attempt() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -54,8 +54,8 @@ async fn an_unstarted_job_costs_no_attempt() {
     assert!(finish(&mut other, "x", 1, done("right")).await);
 }
 
-/// Protects: the next worker immediately takes back the jobs that a dead process left running, with a note of the reason.
-/// Done and pending jobs stay as they are, and a late outcome of the dead process is refused.
+/// Protects: the next worker immediately takes back the jobs that a dead process left running, with a note of the
+/// reason. Done and pending jobs stay as they are, and a late outcome of the dead process is refused.
 #[tokio::test]
 async fn jobs_of_a_dead_process_are_taken_back() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -79,7 +79,8 @@ async fn jobs_of_a_dead_process_are_taken_back() {
     assert!(finish(&mut queue, "y", 2, done("right")).await);
 }
 
-/// Protects: a worker is not alive if its process number now belongs to another process, or if its machine has been rebooted.
+/// Protects: a worker is not alive if its process number now belongs to another process, or if its machine has been
+/// rebooted.
 #[tokio::test]
 async fn a_process_number_alone_identifies_no_process() {
     let own = Worker::this_process(1, "test", "");
@@ -97,8 +98,8 @@ async fn a_process_number_alone_identifies_no_process() {
     }
 }
 
-/// Protects: a worker on another machine may be silent for as long as its own lease, not that of the worker that checks it.
-/// Until then, no jobs are taken back from it and it counts as active.
+/// Protects: a worker on another machine may be silent for as long as its own lease, not that of the worker that checks
+/// it. Until then, no jobs are taken back from it and it counts as active.
 #[tokio::test]
 async fn a_worker_has_its_own_lease() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -119,8 +120,8 @@ async fn a_worker_has_its_own_lease() {
     assert!(finish(&mut far, "x", 1, done("record of x")).await);
 }
 
-/// Protects: no jobs are taken back from a live process on this machine, even if a clock that jumped forward or back makes its
-/// lease look expired. Its outcomes are accepted.
+/// Protects: no jobs are taken back from a live process on this machine, even if a clock that jumped forward or back
+/// makes its lease look expired. Its outcomes are accepted.
 #[tokio::test]
 async fn a_clock_that_jumps_takes_nothing() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -136,8 +137,8 @@ async fn a_clock_that_jumps_takes_nothing() {
     assert!(finish(&mut alive, "y", 1, done("record of y")).await);
 }
 
-/// Protects: for a worker on another machine, the leases decide: no job is taken back before its lease ends, and a heartbeat
-/// extends the leases of all jobs. A lease that a wrong clock set far in the future counts as expired.
+/// Protects: for a worker on another machine, the leases decide: no job is taken back before its lease ends, and a
+/// heartbeat extends the leases of all jobs. A lease that a wrong clock set far in the future counts as expired.
 #[tokio::test]
 async fn leases_decide_for_other_machines() {
     let lease_ms = i64::try_from(Settings::default().lease.as_millis()).unwrap();
@@ -159,9 +160,9 @@ async fn leases_decide_for_other_machines() {
     assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 1, failed: 0 });
 }
 
-/// Protects: a worker counts as missing when two of the heartbeats that are sent eight times in a lease are overdue, when it
-/// is stopping, or when its process is gone. It no longer counts as missing after a heartbeat. A worker that waits for jobs
-/// to be given back thus knows how long to wait.
+/// Protects: a worker counts as missing when two of the heartbeats that are sent eight times in a lease are overdue,
+/// when it is stopping, or when its process is gone. It no longer counts as missing after a heartbeat. A worker that
+/// waits for jobs to be given back thus knows how long to wait.
 #[tokio::test]
 async fn a_worker_without_heartbeats_is_missing() {
     let lease_ms = i64::try_from(Settings::default().lease.as_millis()).unwrap();
@@ -183,8 +184,8 @@ async fn a_worker_without_heartbeats_is_missing() {
     assert!(queue.has_missing_workers().await.unwrap());
 }
 
-/// Protects: a worker that was disconnected until garbage collection deleted its row has lost its jobs. It learns that by its
-/// next heartbeat, and continues.
+/// Protects: a worker that was disconnected until garbage collection deleted its row has lost its jobs. It learns that
+/// by its next heartbeat, and continues.
 #[tokio::test]
 async fn a_deleted_worker_registers_again() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -230,8 +231,9 @@ async fn retries_have_a_limit() {
     assert_eq!((rows[1].state, rows[1].attempt, rows[1].crashes), (JobState::Failed, 1, 0));
 }
 
-/// Protects: the next attempt receives the checkpoint, whichever worker runs it. A job that makes progress does not reach the
-/// crash limit. A worker that has lost the job cannot save a checkpoint. No checkpoint remains when the job ends.
+/// Protects: the next attempt receives the checkpoint, whichever worker runs it. A job that makes progress does not
+/// reach the crash limit. A worker that has lost the job cannot save a checkpoint. No checkpoint remains when the job
+/// ends.
 #[tokio::test]
 async fn checkpoints_reach_the_next_attempt() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -257,8 +259,8 @@ async fn checkpoints_reach_the_next_attempt() {
     assert_eq!(sandbox.number("SELECT COUNT(*) FROM checkpoints").await, 0);
 }
 
-/// Protects: the death of a process that had been asked to stop is not a crash of its jobs: they are pending again, however
-/// often they crashed before.
+/// Protects: the death of a process that had been asked to stop is not a crash of its jobs: they are pending again,
+/// however often they crashed before.
 #[tokio::test]
 async fn a_stopped_process_has_not_crashed() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -280,8 +282,8 @@ async fn a_stopped_process_has_not_crashed() {
     assert_eq!(queue.rows("a").await.unwrap()[0].crashes, 2);
 }
 
-/// Protects: a job that failed because its processes died, or that was cancelled, continues from its checkpoint when it is
-/// requested again. A job that failed by itself starts from the beginning.
+/// Protects: a job that failed because its processes died, or that was cancelled, continues from its checkpoint when it
+/// is requested again. A job that failed by itself starts from the beginning.
 #[tokio::test]
 async fn a_checkpoint_outlasts_crashes() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };

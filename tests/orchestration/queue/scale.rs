@@ -7,8 +7,8 @@ use tribosweep::queue::{Claim, ClaimedJob, Finished, FinishedOutcome, NewJob, Ne
 use super::ENGINE;
 use crate::support::{Sandbox, claim, counts, job, keys, of};
 
-/// Protects: a study of 100 000 jobs is stored completely and in order, although it is inserted in several parts. A repeated
-/// submission adds nothing.
+/// Protects: a study of 100 000 jobs is stored completely and in order, although it is inserted in several parts. A
+/// repeated submission adds nothing.
 #[tokio::test]
 async fn a_hundred_thousand_jobs_are_planned() {
     const JOBS: u64 = 100_000;
@@ -70,8 +70,9 @@ async fn claim_time(sandbox: &Sandbox, jobs: usize, scope: &Scope, batch: Option
     best
 }
 
-/// Protects: with a hundred times as many pending jobs, a claim takes no longer: a claim of all jobs, of a study whose jobs
-/// come after those of another study, and of a named batch; even if the database's statistics say that nothing is pending.
+/// Protects: with a hundred times as many pending jobs, a claim takes no longer: a claim of all jobs, of a study whose
+/// jobs come after those of another study, and of a named batch; even if the database's statistics say that nothing is
+/// pending.
 #[tokio::test]
 async fn claims_take_no_longer_in_a_long_queue() {
     for (scope, batch) in [(Scope::All, None), (of("mine"), None), (of("mine"), Some("batch 3"))] {

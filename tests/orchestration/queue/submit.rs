@@ -62,8 +62,8 @@ async fn studies_share_jobs() {
     assert_eq!((a[1].parameters.as_str(), b[0].parameters.as_str()), ("parameters of y", "y as b calls it"));
 }
 
-/// Protects: an edited study has exactly its new document and rows. A job that it no longer contains keeps its result, and
-/// the result is available again when a later edit contains the job.
+/// Protects: an edited study has exactly its new document and rows. A job that it no longer contains keeps its result,
+/// and the result is available again when a later edit contains the job.
 #[tokio::test]
 async fn an_edited_study_is_replaced() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };

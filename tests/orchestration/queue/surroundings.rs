@@ -1,5 +1,5 @@
-//! Problems of a database's environment: locks, full disks, read-only files, damage. Each one leads to a message that says
-//! what to do, and nothing is lost.
+//! Problems of a database's environment: locks, full disks, read-only files, damage. Each one leads to a message that
+//! says what to do, and nothing is lost.
 
 use std::fs;
 use std::time::Duration;
@@ -13,8 +13,8 @@ fn impatient() -> Settings {
     Settings { busy_timeout: Duration::from_millis(50), ..Settings::default() }
 }
 
-/// Protects: if another program holds a lock for longer than the busy timeout, the error says so. The caller can store its
-/// outcomes afterwards, and readers are not blocked.
+/// Protects: if another program holds a lock for longer than the busy timeout, the error says so. The caller can store
+/// its outcomes afterwards, and readers are not blocked.
 #[tokio::test]
 async fn a_lock_that_is_kept() {
     let sandbox = Sandbox::new();
@@ -40,7 +40,8 @@ async fn a_lock_that_is_kept() {
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(1, 0, 1, 0));
 }
 
-/// Protects: a full disk is reported as such. Stored results are kept, and the same queue continues when there is room again.
+/// Protects: a full disk is reported as such. Stored results are kept, and the same queue continues when there is room
+/// again.
 #[tokio::test]
 async fn a_full_disk() {
     let sandbox = Sandbox::new();
@@ -88,8 +89,8 @@ async fn a_read_only_folder() {
     assert!(error.to_string().contains("Read-only file system"), "{error}");
 }
 
-/// Protects: a read-only database with a write-ahead log is refused. If the log were ignored, its results would be missing
-/// without a message.
+/// Protects: a read-only database with a write-ahead log is refused. If the log were ignored, its results would be
+/// missing without a message.
 #[tokio::test]
 async fn a_log_in_a_read_only_folder() {
     let (sandbox, copy) = (Sandbox::new(), Sandbox::new());
@@ -106,7 +107,8 @@ async fn a_log_in_a_read_only_folder() {
     assert!(error.to_string().contains("-wal to a folder that can be written"), "{error}");
 }
 
-/// Protects: damage is reported as such, by the operation that meets it and by the examination, and the file stays unchanged.
+/// Protects: damage is reported as such, by the operation that meets it and by the examination, and the file stays
+/// unchanged.
 #[tokio::test]
 async fn a_damaged_file() {
     let sandbox = Sandbox::new();
@@ -131,7 +133,8 @@ async fn a_damaged_file() {
     assert_eq!(fs::read(sandbox.database()).unwrap(), bytes);
 }
 
-/// Protects: the examination reports how many jobs of dead processes the next worker will take back, and lists all workers.
+/// Protects: the examination reports how many jobs of dead processes the next worker will take back, and lists all
+/// workers.
 #[tokio::test]
 async fn the_examination_sees_workers() {
     let sandbox = Sandbox::new();
