@@ -87,13 +87,11 @@ pub(super) async fn connect(
         let (pid, started, is_encrypted) = sqlx::query_as(backend).fetch_one(&mut connection).await?;
         Ok((connection, Backend { pid, started, is_encrypted }))
     };
-    match tokio::time::timeout(CONNECT_TIMEOUT, connecting).await {
-        Ok(connected) => connected.map_err(|error| connect_error(options, error)),
-        Err(_) => {
-            let reason = format!("no connection within {} s", CONNECT_TIMEOUT.as_secs());
-            Err(ConnectError::Other(QueueError::Unreachable(reason)))
-        }
-    }
+    let Ok(connected) = tokio::time::timeout(CONNECT_TIMEOUT, connecting).await else {
+        let reason = format!("no connection within {} s", CONNECT_TIMEOUT.as_secs());
+        return Err(ConnectError::Other(QueueError::Unreachable(reason)));
+    };
+    connected.map_err(|error| connect_error(options, error))
 }
 
 /// sqlx reports missing and invalid certificate files as I/O errors of the connection.
