@@ -1,13 +1,14 @@
-//! Load on the queue: many processes that claim and finish jobs that are nothing, or that take their time asleep.
+//! Load on the queue: many processes that claim and finish jobs. The jobs compute nothing; they take no time, or they
+//! sleep.
 //!
 //! ```text
 //! scripts/postgres.sh start /tmp/server
 //! cargo bench --bench queue -- --db postgres://tribosweep@127.0.0.1:PORT/postgres
 //! ```
 //!
-//! For each number of processes it tells the jobs and claims a second, how long a claim took, and how busy the server was
-//! (the processor time of all processes named `postgres`, of which there should be no others). Payloads and records have
-//! the size of real ones. `docs/cluster.md` says what follows from it.
+//! For each number of processes, it prints the jobs and claims per second, the time of a claim, and the load of the
+//! server: the processor time of all processes named `postgres`, so no other server should run. Payloads and records
+//! have the size of real ones. `docs/cluster.md` discusses the results.
 
 use std::io::Write;
 use std::process::{Command, Stdio};
@@ -20,33 +21,33 @@ use tribosweep::queue::{
 
 #[derive(Debug, Parser)]
 struct Args {
-    /// The database: a file, or postgres://USER@HOST/DATABASE. Studies stay in it.
+    /// The database: a file, or postgres://USER@HOST/DATABASE. The studies are not deleted afterwards.
     #[arg(long)]
     db: String,
-    /// Jobs of each round.
+    /// The number of jobs in each round.
     #[arg(long, default_value_t = 100_000)]
     jobs: usize,
-    /// Numbers of processes, one after the other.
+    /// The numbers of processes; one round for each.
     #[arg(long, value_delimiter = ',', default_value = "1,2,8,32")]
     workers: Vec<usize>,
     /// Jobs that a process claims at a time.
     #[arg(long, default_value_t = 16)]
     claim: usize,
-    /// How long a job takes; a process runs all that it has claimed at the same time.
+    /// How long a job takes, in seconds. A process runs all its claimed jobs at the same time.
     #[arg(long, default_value_t = 0.0)]
     job_s: f64,
-    /// Claim from all jobs, and not from those of the study.
+    /// Claim from all jobs instead of those of the study.
     #[arg(long)]
     any: bool,
-    /// Be one of the processes, for the study of that name.
+    /// Run as one of the processes, for the study of that name.
     #[arg(long, hide = true)]
     work: Option<String>,
-    /// Given by `cargo bench`.
+    /// `cargo bench` passes this.
     #[arg(long, hide = true)]
     bench: bool,
 }
 
-/// A payload and a record of the length of real ones.
+/// The lengths of a real payload and a real record, in bytes.
 const PAYLOAD: usize = 1_000;
 const RECORD: usize = 1_500;
 
@@ -71,14 +72,14 @@ async fn open(args: &Args) -> Queue {
     Queue::open(location, Clock::OfDatabase).await.unwrap()
 }
 
-/// One number of processes.
+/// Measures one number of processes.
 fn round(args: &Args, workers: usize, study: &str) {
     block_on(async {
         let jobs = (0..args.jobs).map(|index| NewJob {
             key: format!("{study}: {index}"),
             payload: "p".repeat(PAYLOAD),
             parameters: format!("[{index}]"),
-            // Scattered over the study: the worst case.
+            // Costs scattered over the study are the worst case.
             cost: (index * 7919 % 97) as f64,
             batch: String::new(),
             priority: None,
@@ -125,7 +126,7 @@ fn round(args: &Args, workers: usize, study: &str) {
     );
 }
 
-/// Claims and finishes until nothing is left; prints how many jobs that were and how long each turn took.
+/// Claims and finishes jobs until none is left. Prints their number and the time of each exchange.
 async fn work(args: &Args) {
     let study = args.work.clone().unwrap();
     let mut queue = open(args).await;
@@ -140,7 +141,7 @@ async fn work(args: &Args) {
         assert!(exchanged.refused.is_empty(), "{:?}", exchanged.refused);
         done += finished.len();
         let jobs = exchanged.claimed.into_iter().flatten();
-        finished = jobs.map(|job| end(job, args.job_s)).collect();
+        finished = jobs.map(|job| finish(job, args.job_s)).collect();
         if finished.is_empty() {
             break;
         }
@@ -150,23 +151,23 @@ async fn work(args: &Args) {
     }
     queue.unregister().await.unwrap();
     queue.close().await.unwrap();
-    let told = serde_json::to_vec(&(done, claims_ms)).unwrap();
-    std::io::stdout().write_all(&told).unwrap();
+    let report = serde_json::to_vec(&(done, claims_ms)).unwrap();
+    std::io::stdout().write_all(&report).unwrap();
 }
 
-fn end(job: ClaimedJob, wall_s: f64) -> Finished {
+fn finish(job: ClaimedJob, wall_s: f64) -> Finished {
     let outcome = FinishedOutcome::Done { record: "r".repeat(RECORD), label: "periodic".to_owned() };
     Finished { key: job.key, attempt: job.attempt, outcome, wall_s }
 }
 
-/// The processor time of all processes of the server so far, those that have ended included.
+/// The processor time of all processes of the server so far, including ended ones, in seconds.
 fn server_cpu_s() -> f64 {
     let processes = std::fs::read_dir("/proc").into_iter().flatten().flatten();
     let ticks: u64 = processes
         .filter_map(|process| std::fs::read_to_string(process.path().join("stat")).ok())
         .filter(|stat| stat.contains("(postgres)"))
         .filter_map(|stat| {
-            // Own time and that of children waited for, in user and in system mode.
+            // Fields 14 to 17: user and system time of the process, and of its children that have ended.
             let fields = stat.rsplit_once(')')?.1.to_owned();
             Some(
                 fields
@@ -178,6 +179,6 @@ fn server_cpu_s() -> f64 {
             )
         })
         .sum();
-    // The kernel counts a hundred a second for programs, whatever it does itself.
+    // The kernel reports a hundred ticks per second to programs, whatever its internal rate is.
     ticks as f64 / 100.0
 }

@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Runs a study in a file and through PostgreSQL and compares what comes of it.
+"""Runs a study with a SQLite file and with PostgreSQL and compares the results.
 
     cargo build --release
     python3 scripts/engines.py [--study studies/figure7.json] [--program FILE]
 
-The exports must be the same byte for byte but for the run times, and so must the figure. Then the study is copied from
-PostgreSQL to a file and back to an empty database of the server: both exports must be the same to the last byte, run
-times included. Starts a PostgreSQL of its own (scripts/postgres.sh). Only Python's standard library.
+The exports must be identical except for the run times, and the figures must be identical. Then the study is copied from
+PostgreSQL to a file and back to an empty database of the server: both exports must be identical, including the run times.
+The script starts its own PostgreSQL server (scripts/postgres.sh). It needs only Python's standard library.
 """
 
 import argparse
@@ -28,13 +28,13 @@ def main():
     parser.add_argument("--program", default=str(ROOT / "target/release/tribosweep"))
     parser.add_argument("--study", default=str(ROOT / "studies/figure7.json"))
     options = parser.parse_args()
-    # Commands run in a folder of their own.
+    # The commands run in a temporary folder, so the paths must be absolute.
     options.study, options.program = (str(pathlib.Path(path).resolve()) for path in (options.study, options.program))
     os.environ.pop("TRIBOSWEEP_DB", None)
     name = json.loads(pathlib.Path(options.study).read_text())["name"]
     with tempfile.TemporaryDirectory() as folder:
         folder = pathlib.Path(folder)
-        # PostgreSQL's own user has to get to its data.
+        # PostgreSQL's user must be able to access its data.
         folder.chmod(0o755)
 
         def call(*arguments):
@@ -61,12 +61,12 @@ def main():
             for figure in figures:
                 same = (folder / "file" / figure).read_bytes() == (folder / "server" / figure).read_bytes()
                 check(same, f"{figure} differs")
-            print(f"{jobs} jobs: the exports are the same but for run times, and so are {', '.join(figures)}")
+            print(f"{jobs} jobs: the exports are identical except for the run times, and so are {', '.join(figures)}")
             call("copy", "--from", url, "--to", "copied.db")
             call("copy", "--from", "copied.db", "--to", again)
             for database in ["copied.db", again]:
                 check(call("export", name, "--db", database) == on_a_server, f"the copy in {database} differs")
-            print("copied to a file and back to a server: the same to the last byte")
+            print("copied to a file and back to a server: identical")
         finally:
             subprocess.run([postgres, "stop", server], check=True)
     print("all held")

@@ -1,23 +1,23 @@
 #!/usr/bin/env python3
-"""Workers on several hosts with links that are cut: nothing may be lost, and nothing recorded twice.
+"""Cuts the network links of workers on several hosts. No result may be lost, and none may be recorded twice.
 
     cargo build --release
     sudo python3 scripts/network.py [--program FILE] [--jobs 160] [--keep]
 
-Makes four hosts as network namespaces with names of their own, joined by a switch: one with PostgreSQL, three with a
-worker each. While a study is worked on,
+Makes four hosts as network namespaces with their own host names, connected by a switch: one host with PostgreSQL, and
+three with one worker each. While the workers run a study,
 
-  * the link of the first worker is cut for longer than a lease: its jobs are taken back and done by others, and when the
-    link is back the worker goes on, what it had finished meanwhile being refused or stored, never both,
-  * the link of the second is cut again and again for moments, and its sessions are ended on the server whatever they are
-    doing,
-  * the link of the third is cut for less than a lease: nothing is taken from it,
-  * the server itself is stopped at once and started again.
+  * the link of the first worker is cut for longer than a lease: its jobs are taken back and run by other workers. When the
+    link is back, the worker continues, and each result that it finished meanwhile is either stored or refused.
+  * the link of the second worker is cut repeatedly for short times, and its sessions are ended on the server at random
+    moments.
+  * the link of the third worker is cut for less than a lease: no job is taken back from it.
+  * the server is stopped immediately, as in a crash, and started again.
 
-Afterwards every job must be done with one result, and the export must be that of an undisturbed run, byte for byte but
+Afterwards, every job must be done with one result, and the export must be identical to that of an undisturbed run except
 for the run times.
 
-Needs root, iproute2 and PostgreSQL; without them it ends with 77. Only Python's standard library.
+Needs root, iproute2 and PostgreSQL; without them, the exit code is 77. Needs only Python's standard library.
 """
 
 import argparse
@@ -49,7 +49,7 @@ def run(*command, **options):
 
 
 class Network:
-    """Hosts on a switch."""
+    """Hosts that are connected by a switch."""
 
     def __init__(self):
         self.prefix = f"tribo{os.getpid()}"
@@ -76,12 +76,12 @@ class Network:
         run("ip", "-n", self.switch, "link", "set", host, "master", "switch", "up")
 
     def on(self, host, *command):
-        """A command on a host: in its network, and under its name."""
+        """A command that runs on a host: in its network and with its host name."""
         name = 'printf %s "$0" > /proc/sys/kernel/hostname && exec "$@"'
         return ["ip", "netns", "exec", self.hosts[host], "unshare", "--uts", "sh", "-c", name, host, *command]
 
     def cut(self, host):
-        # On the side of the switch: the host does not see that its link is gone, and packets vanish.
+        # The link is cut at the switch, so that the host does not notice it and packets are lost.
         run("ip", "-n", self.switch, "link", "set", host, "nomaster")
 
     def mend(self, host):
@@ -104,7 +104,7 @@ class Sweep:
         (folder / "study.json").write_text(json.dumps(study))
 
     def call(self, *arguments):
-        """A command on the server's host."""
+        """Runs a command of the program on the server's host."""
         return run(*self.network.on("server", self.program, *arguments, "--db", self.url), cwd=self.folder)
 
     def undisturbed(self):
@@ -114,7 +114,7 @@ class Sweep:
     def start(self, host):
         log = open(self.folder / f"{host}.log", "w")
         command = [self.program, "work", "--db", self.url, "--threads", "1", "--checkpoint-every", "1"]
-        # The other end of the work: nobody waits for more than what is left.
+        # A short idle time, so that no worker waits after the end of the study.
         command += ["--lease", f"{LEASE_S}s", "--idle-exit", "1s"]
         self.workers[host] = subprocess.Popen(
             self.network.on(host, *command), cwd=self.folder, stdout=log, stderr=subprocess.STDOUT
@@ -148,7 +148,7 @@ def disturb(sweep, server):
     tell("the links of the first and the third worker are cut")
     time.sleep(LEASE_S / 2)
     network.mend("third")
-    tell(f"the third's is back after {LEASE_S / 2} s")
+    tell(f"the link of the third worker is back after {LEASE_S / 2} s")
     sweep.until("jobs of the first worker to be taken back", lambda: sweep.worker("first")["taken_back"] > 0, 60)
     tell(f"{sweep.worker('first')['taken_back']} jobs of the first worker are taken back")
     before = sweep.worker("first")["finished"]
@@ -157,22 +157,22 @@ def disturb(sweep, server):
     sessions = "FROM pg_stat_activity WHERE client_addr = '10.77.0.12'"
     ended = 0
     for _ in range(12):
-        # Longer cuts without a rest between them add up: each doubles the time after which a packet is sent again.
+        # Longer cuts without pauses would add up, because TCP doubles its retransmission timeout with each lost packet.
         time.sleep(random.uniform(1.0, 1.5))
         network.cut("second")
         time.sleep(random.uniform(0.1, 0.5))
         network.mend("second")
         time.sleep(random.uniform(0.0, 1.0))
         ended += int(sweep.sql(f"SELECT COUNT(pg_terminate_backend(pid)) {sessions}"))
-    tell(f"the second's was cut twelve times for moments, and {ended} of its sessions were ended")
+    tell(f"the link of the second worker was cut twelve times for short times, and {ended} of its sessions were ended")
     network.mend("first")
-    sweep.until("the first worker to go on", lambda: sweep.worker("first")["finished"] > before, 120)
-    check(sweep.worker("first")["presence"] == "working", "the first worker goes on and is not seen")
-    tell("the first's is back, and it goes on")
+    sweep.until("the first worker to continue", lambda: sweep.worker("first")["finished"] > before, 120)
+    check(sweep.worker("first")["presence"] == "working", "the first worker continues but is not counted as working")
+    tell("the link of the first worker is back, and the worker continues")
     for host in ["second", "third"]:
-        check(sweep.worker(host)["taken_back"] == 0, f"jobs were taken from the {host}, which was never away for long")
+        check(sweep.worker(host)["taken_back"] == 0, f"jobs were taken back from the {host} worker, which was never disconnected for long")
 
-    # At once: what clients see is a server that is gone in the middle of whatever it did.
+    # An immediate stop looks like a crash to the clients.
     postgres = ["setpriv", "--reuid", "postgres", "--regid", "postgres", "--init-groups", "--"]
     tool = shutil.which("pg_ctl") or str(max(pathlib.Path("/usr/lib/postgresql").glob("*/bin/pg_ctl")))
     control = [*postgres, tool, "--pgdata", str(server / "data"), "--wait"]
@@ -189,7 +189,7 @@ def compare(sweep, reference):
         check(worker.returncode == 0, f"the worker on {host} ended with {worker.returncode}: {log}")
     jobs = len(reference) - 1
     exported = timeless(sweep.call("export", "apart"))
-    check(exported == reference, "the export is another one than that of an undisturbed run")
+    check(exported == reference, "the export differs from that of an undisturbed run")
     results = int(sweep.sql("SELECT COUNT(*) FROM tribosweep.results"))
     attempts, running = sweep.sql(
         "SELECT SUM(attempt), COUNT(*) FILTER (WHERE state <> 'done') FROM tribosweep.jobs"
@@ -197,7 +197,7 @@ def compare(sweep, reference):
     check((results, int(running)) == (jobs, 0), f"{results} results of {jobs} jobs, {running} not done")
     left = sweep.sql("SELECT COUNT(*) FROM tribosweep.checkpoints")
     check(left == "0", f"{left} checkpoints are left")
-    tell(f"{jobs} jobs done in {attempts} attempts, one result each, the same as undisturbed")
+    tell(f"{jobs} jobs done in {attempts} attempts, one result each, identical to the undisturbed run")
     for host in sweep.workers:
         log = (sweep.folder / f"{host}.log").read_text()
         tell(f"{host}: {log.count('does not answer')} times without the server")

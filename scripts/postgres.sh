@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# A PostgreSQL of one's own on loopback, for tests and for trying things out: no service, no password, gone with its
+# Starts a private PostgreSQL server on loopback for tests: not a system service, without passwords, with all files in one
 # folder. Needs Debian's `postgresql` (or `initdb` and `pg_ctl` in PATH).
 #
 #     scripts/postgres.sh start FOLDER [PORT [ADDRESS [NETWORK]]]   prints the URL for --db
-#     scripts/postgres.sh stop FOLDER                               stops it and removes the folder
+#     scripts/postgres.sh stop FOLDER                               stops the server and removes the folder
 #
-# Without PORT a free one is taken. ADDRESS is listened on beside loopback, and NETWORK (as 10.0.0.0/8) is let in from.
+# Without PORT, a free port is used. The server also listens on ADDRESS, and accepts clients from NETWORK (as 10.0.0.0/8).
 #
-# It syncs and encrypts as a real one does: what is measured here holds elsewhere. TRIBOSWEEP_POSTGRES_FSYNC=off makes
-# tests faster. Without `openssl` it does not encrypt.
+# The server syncs and encrypts like a production server, so that measurements are realistic. TRIBOSWEEP_POSTGRES_FSYNC=off
+# makes tests faster. Without `openssl`, the server does not encrypt.
 set -euo pipefail
 
 usage() {
@@ -23,7 +23,7 @@ find_tool() {
     }
 }
 
-# PostgreSQL refuses to run as root; Debian's package brings a user for it.
+# PostgreSQL refuses to run as root; Debian's package creates a user for it.
 as_owner() {
     if [ "$(id -u)" = 0 ]; then setpriv --reuid postgres --regid postgres --init-groups -- "$@"; else "$@"; fi
 }
@@ -32,7 +32,7 @@ free_port() {
     python3 -c 'import socket; s = socket.socket(); s.bind(("127.0.0.1", 0)); print(s.getsockname()[1])'
 }
 
-# A certificate of the server's own, which `sslrootcert` can name.
+# Creates a self-signed certificate, which `sslrootcert` can name.
 certificate() {
     command -v openssl > /dev/null || return 0
     as_owner openssl req -x509 -days 3650 -nodes -newkey ec -pkeyopt ec_paramgen_curve:prime256v1 \

@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Times the commands on a study of many jobs, and their peak memory.
+"""Measures the run time and the peak memory of the commands for a study with many jobs.
 
     cargo build --release
     python3 scripts/queue_scale.py [--jobs 100000]
     cargo test --release --test orchestration -- --ignored --nocapture throughput
 
-Submits a grid of small jobs, gives every job the record of one of two that were solved (written past the program, so
-that no simulation is waited for; those in a corner of the grid are not periodic), and times what reads it. The second command measures claiming and finishing with a solver
-that does nothing. Times are of a machine and of what else it does. Only Python's standard library.
+Submits a grid of small jobs and gives every job one of two solved records, and then measures the commands that read them.
+The records are written directly to the database, so that no simulation is needed; the jobs in one corner of the grid are not
+periodic. The second command measures claiming and finishing without a solver. The times depend on the machine and its other
+load. The script needs only Python's standard library.
 """
 
 import argparse

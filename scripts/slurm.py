@@ -1,20 +1,20 @@
 #!/usr/bin/env python3
-"""Runs the job array of `tribosweep slurm` on a real Slurm cluster and disturbs it in every way that a site does.
+"""Runs the job array of `tribosweep slurm` on a real Slurm cluster and disturbs it in the ways that occur on clusters.
 
     cargo build --release
     sudo python3 scripts/slurm.py [--program FILE] [--db URL] [--jobs 128] [--keep]
 
-Starts a cluster of one node with two slots (scripts/slurm_cluster.py), submits a study with four workers, and while it is
-being worked on kills a worker (kill -9), requeues a task, lets a job of a higher priority pre-empt all tasks, lets a
-task come to its time limit, cancels a task, and kills another one with its shell. Afterwards every job must be done with
-exactly one result, the export must be that of an undisturbed run, byte for byte but for the run times, the report must
-have been written after the last task, and no process may be left over.
+Starts a cluster with one node and two slots (scripts/slurm_cluster.py) and submits a study with four workers. While the
+workers run, the script kills a worker (kill -9), requeues a task, lets a job of a higher priority preempt all tasks, lets a
+task reach its time limit, cancels a task, and kills another task with its shell. Afterwards, every job must be done with
+exactly one result, the export must be identical to that of an undisturbed run except for the run times, the report must
+have been written after the last task, and no process may remain.
 
-With --db, the URL of an empty PostgreSQL database, the workers share it. Without, every worker has its shard; then the
-last two leave their shards unfinished, the first report has to say so, and running submit.sh again has to do the rest.
-A second, smaller study then loses its node with all that is on its disk: it has to go on from the copy that was kept last.
+With --db, the URL of an empty PostgreSQL database, the workers share that database. Without it, every worker has its shard.
+Then the last two tasks leave their shards unfinished: the first report must say so, and a second run of submit.sh must
+complete the study. A second, smaller study then loses its node with its disk: it must continue from the last saved copy.
 
-Needs root and Debian's packages slurm-wlm and munge; without them it ends with 77. Only Python's standard library.
+Needs root and Debian's packages slurm-wlm and munge; without them, the exit code is 77. Needs only Python's standard library.
 """
 
 import argparse
@@ -35,19 +35,18 @@ from comparing import check, tell, timeless
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SKIPPED = 77
 WORKERS = 4
-# Long enough for two slots to do all jobs, with all that is done to them, while a compiler has the machine as well.
+# Long enough for two slots to run all jobs with all disturbances, even while a compiler uses the same machine.
 PATIENCE_S = 900.0
 ENDED = {"COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_MEMORY", "PREEMPTED"}
 
-
-# How often a shard is kept in the study that loses its node, and how much of a job of `study` its jobs are: several eights
-# of them fit in between.
+# For the study that loses its node: how often a shard is saved, and the length of its jobs relative to those of the first
+# study. Several groups of eight jobs finish between two saves.
 KEEP_EVERY_S = 8
 PART = 0.3
 
 
 def study(jobs, part):
-    """A grid of jobs of some seconds, of which a thread advances eight together."""
+    """A grid of jobs that take some seconds. A thread advances eight of them together."""
     speeds = [round(2.0 + 0.5 * k, 3) for k in range(max(1, jobs // 4))]
     return {
         "name": "drain",
@@ -58,18 +57,18 @@ def study(jobs, part):
 
 
 class Sweep:
-    """A study, the scripts made for it, and the array that they became."""
+    """A study, its scripts and its job array."""
 
     def __init__(self, cluster, folder, options, jobs, workers=WORKERS, part=1.0):
         self.cluster, self.folder, self.options = cluster, pathlib.Path(folder), options
         self.tasks = workers
         self.program = str(pathlib.Path(options.program).resolve())
-        # A path as users have them.
+        # A path with spaces and a quote, as users may have it.
         self.out = self.folder / "a user's folder" / "drain.slurm"
         self.out.parent.mkdir()
         (self.folder / "drain.json").write_text(json.dumps(study(jobs, part)))
         self.array = self.report = None
-        # How often the worker of each task has said that it ended.
+        # For each task, how often its log has said that the worker ended.
         self.ends = {}
 
     def call(self, *arguments, code=0):
@@ -103,7 +102,7 @@ class Sweep:
         tell(f"submitted: array {self.array}, report {self.report}")
 
     def workers(self):
-        """The worker processes of this array by their task, as the system knows them."""
+        """The process numbers of this array's workers by task, from /proc."""
         found = {}
         for process in pathlib.Path("/proc").glob("[0-9]*"):
             try:
@@ -120,7 +119,7 @@ class Sweep:
         return found
 
     def working(self, count):
-        """Waits until so many workers have been at work for long enough to have jobs in their hands."""
+        """Waits until `count` workers have run for long enough to have claimed jobs."""
         since = {}
 
         def is_so():
@@ -129,7 +128,7 @@ class Sweep:
                 since.setdefault((task, process), now)
             return sum(now - since[item] > 1.5 for item in workers.items()) >= count
 
-        self.cluster.until(f"{count} workers to be at work", is_so, 120)
+        self.cluster.until(f"{count} workers to run", is_so, 120)
         return self.workers()
 
     def log(self, task):
@@ -140,7 +139,7 @@ class Sweep:
         return self.cluster.tasks(self.array).get(f"{self.array}_{task}", {})
 
     def is_over(self):
-        """Whether array and report have ended."""
+        """Whether the array and the report have ended."""
         tasks = {**self.cluster.tasks(self.array), **self.cluster.tasks(self.report)}
         return all(values["JobState"] in ENDED for values in tasks.values())
 
@@ -155,7 +154,7 @@ class Sweep:
         for name, values in sorted(tasks.items()):
             tell(f"task {name}: {values['JobState']}, exit {values['ExitCode']}, restarts {values['Restarts']}")
         tell(f"report: {report['JobState']}, exit {report['ExitCode']}")
-        check(not self.workers(), "workers are left over")
+        check(not self.workers(), "worker processes remain")
         return report["ExitCode"]
 
 
@@ -163,18 +162,18 @@ def kill(sweep):
     task, process = sorted(sweep.working(1).items())[0]
     os.kill(process, signal.SIGKILL)
     sweep.cluster.until("another worker", lambda: sweep.workers().get(task, process) != process, 60)
-    check("is started again" in sweep.log(task), "the log does not tell of the killed worker")
+    check("is started again" in sweep.log(task), "the log does not mention the killed worker")
     tell(f"kill -9 of the worker of task {task}: its task has started another one")
 
 
 def stopped(sweep, task, process, how):
-    """Waits until a worker has ended, which must have given its jobs back, and its task is back in the queue."""
+    """Waits until a worker has ended in order and the log says so. Returns its exit code."""
     sweep.cluster.until(f"the worker to end ({how})", lambda: sweep.workers().get(task) != process, 60)
     said = "the worker ended with"
     sweep.ends[task] = sweep.ends.get(task, 0) + 1
     sweep.cluster.until("the task to say so", lambda: sweep.log(task).count(said) >= sweep.ends[task], 60)
     code = sweep.log(task).split(said)[sweep.ends[task]].split()[0]
-    # It may have finished its jobs at that very moment.
+    # 0: it may have finished its jobs at that moment.
     check(code in ("0", "3"), f"{how}: the worker of task {task} ended with {code}")
     return code
 
@@ -193,25 +192,25 @@ def preempt(sweep):
     before = {task: int(sweep.state(task)["Restarts"]) for task in workers}
     command = ["--parsable", "--partition=urgent", "--cpus-per-task=2", "--output=/dev/null", "--wrap=sleep 2"]
     urgent = sweep.cluster.ask("sbatch", *command).strip()
-    codes = [stopped(sweep, task, process, "pre-emption") for task, process in workers.items()]
+    codes = [stopped(sweep, task, process, "preemption") for task, process in workers.items()]
     sweep.cluster.until(
         "the urgent job to end", lambda: sweep.cluster.tasks(urgent)[urgent]["JobState"] in ENDED, 120
     )
     after = {task: int(sweep.state(task)["Restarts"]) for task in workers}
-    # Slurm takes its time; whoever finished within the grace had nothing to be requeued for.
+    # A worker that finished its jobs within the grace time (code 0) is not requeued.
     hit = [task for task, code in zip(workers, codes) if code == "3"]
     check(hit and all(after[task] > before[task] for task in hit), f"not requeued: {before} {after}, {codes}")
-    tell(f"pre-emption of tasks {sorted(workers)}: workers ended with {', '.join(codes)}")
+    tell(f"preemption of tasks {sorted(workers)}: workers ended with {', '.join(codes)}")
 
 
 def time_limit(sweep):
-    # The task whose number is also that of the array, if it is there: requeueing it by that number would requeue all.
+    # Preferably the task whose job number is that of the array: requeueing it by that number would requeue all tasks.
     workers = sorted(sweep.working(1).items())
     task, process = next((item for item in workers if sweep.state(item[0])["JobId"] == sweep.array), workers[0])
     before = int(sweep.state(task)["Restarts"])
     name = f"{sweep.array}_{task}"
-    # Slurm says that the limit is near two minutes before, which with two minutes in all is now; it looks every half
-    # minute.
+    # Slurm sends its signal two minutes before the limit. With a limit of two minutes, it sends it at its next check, and
+    # it checks every half minute.
     sweep.cluster.ask("scontrol", "update", f"JobId={name}", "TimeLimit=2")
     code = stopped(sweep, task, process, "time limit")
     sweep.cluster.until("the task to be requeued", lambda: int(sweep.state(task)["Restarts"]) > before, 60)
@@ -230,9 +229,9 @@ def cancel(sweep):
 
 
 def destroy(sweep):
-    """Kills shell and worker of a task at once, as a node does that loses its power and comes back."""
+    """Kills the shell and the worker of a task at once, as if the node had lost its power."""
     task, process = sorted(sweep.working(1).items())[0]
-    # Slurm itself asks first, with scancel --signal=KILL, too.
+    # The processes are killed directly: even scancel --signal=KILL would send other signals first.
     family, parent = [], process
     while (stat := pathlib.Path(f"/proc/{parent}/stat").read_text()) and "(slurmstepd)" not in stat:
         family.insert(0, parent)
@@ -246,13 +245,13 @@ def destroy(sweep):
 
 
 def finished(sweep, reference):
-    """Compares what came of the array with the undisturbed run."""
+    """Compares the results of the array with those of the undisturbed run."""
     for name in ["jobs.csv", "report/report.html"]:
         check((sweep.out / name).exists(), f"the report job has written no {name}")
     rows = timeless((sweep.out / "jobs.csv").read_text())
     check(len({row[1] for row in rows}) == len(rows) == len(reference), f"{len(rows)} rows of {len(reference)}")
-    check(rows == reference, "the export is another one than that of an undisturbed run")
-    tell(f"{len(rows) - 1} jobs done, one row each, the same as undisturbed")
+    check(rows == reference, "the export differs from that of an undisturbed run")
+    tell(f"{len(rows) - 1} jobs done, one row each, identical to the undisturbed run")
     merged = sweep.out / "drain.db"
     if not sweep.options.db:
         database = sqlite3.connect(f"file:{merged}?mode=ro&immutable=1", uri=True)
@@ -277,20 +276,20 @@ def drain(sweep):
     destroyed = destroy(sweep)
     exit_code = sweep.until_over()
     if not sweep.options.db:
-        check(exit_code == "3:0", f"the first report ended with {exit_code}, not with work left over")
+        check(exit_code == "3:0", f"the first report ended with {exit_code}, not with unfinished jobs")
         page = (sweep.out / "report" / "report.md").read_text()
         check("incomplete" in page, "the report of an unfinished study does not say so")
         left = [row for row in timeless((sweep.out / "jobs.csv").read_text()) if row[4] in ("pending", "running")]
         tell(f"the report says that {len(left)} jobs are left; submitting again")
         sweep.submit()
         exit_code = sweep.until_over()
-        check("left on this node" in sweep.log(destroyed), "what the killed task left on the node was not taken up")
+        check("left on this node" in sweep.log(destroyed), "the task did not continue with the file on the node")
     check(exit_code == "0:0", f"the report ended with {exit_code}")
     finished(sweep, reference)
 
 
 def kept_jobs(database):
-    """How many jobs a kept shard has done."""
+    """The number of done jobs in a saved shard."""
     connection = sqlite3.connect(f"file:{database}?mode=ro&immutable=1", uri=True)
     (jobs,) = connection.execute("SELECT COUNT(*) FROM jobs WHERE state = 'done'").fetchone()
     connection.close()
@@ -298,7 +297,7 @@ def kept_jobs(database):
 
 
 def lose_node(sweep, node_folder):
-    """A node that is lost with its disk costs what was not kept, and no more."""
+    """If a node is lost with its disk, only the work since the last saved copy is lost."""
     reference = sweep.undisturbed()
     sweep.generate()
     script = sweep.out / "workers.sbatch"
@@ -307,27 +306,27 @@ def lose_node(sweep, node_folder):
     script.write_text(text.replace(setting, f"keep_every={KEEP_EVERY_S}"))
     sweep.submit()
     shard = sweep.out / "shards" / "shard-0.db"
-    sweep.cluster.until("finished jobs to be kept", lambda: shard.exists() and kept_jobs(shard) > 0, 300)
+    sweep.cluster.until("finished jobs to be saved", lambda: shard.exists() and kept_jobs(shard) > 0, 300)
     sweep.working(1)
-    check("the worker ended" not in sweep.log(0), "the shard was kept at the end, not in between")
+    check("the worker ended" not in sweep.log(0), "the shard was saved at the end, not before")
     destroy(sweep)
     for path in node_folder.rglob("*"):
         if path.is_file():
             path.unlink()
     kept = kept_jobs(shard)
-    tell(f"the node is lost with its disk; {kept} jobs were kept")
-    check(0 < kept < len(reference) - 1, f"{kept} jobs were kept")
+    tell(f"the node is lost with its disk; {kept} jobs were saved")
+    check(0 < kept < len(reference) - 1, f"{kept} jobs were saved")
     check(sweep.until_over() == "3:0", "the report of an unfinished study does not say so")
     sweep.submit()
-    check(sweep.until_over() == "0:0", "the rest was not done")
-    check(f"going on with {shard}" in sweep.log(0), "the copy that was kept was not taken up")
+    check(sweep.until_over() == "0:0", "the unfinished jobs were not completed")
+    check(f"going on with {shard}" in sweep.log(0), "the task did not continue with the saved copy")
     finished(sweep, reference)
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--program", default=str(ROOT / "target/release/tribosweep"))
-    parser.add_argument("--db", metavar="URL", help="an empty PostgreSQL database; without, every worker has its shard")
+    parser.add_argument("--db", metavar="URL", help="an empty PostgreSQL database; without it, every worker has its shard")
     parser.add_argument("--jobs", type=int, default=128, help="a multiple of four")
     parser.add_argument("--keep", action="store_true", help="keep the folder with all logs")
     options = parser.parse_args()
@@ -337,10 +336,10 @@ def main():
         why = f"no {', '.join(missing)}: apt-get install slurm-wlm munge" if missing else "it needs root"
         print(f"skipped: {why}", file=sys.stderr)
         return SKIPPED
-    # Ended by a signal, it still has a cluster to stop.
+    # SIGTERM must not leave the cluster running.
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))
     folder = tempfile.mkdtemp(prefix="tribosweep-slurm-")
-    # munge's socket is for everybody.
+    # All users must be able to reach munge's socket.
     os.chmod(folder, 0o755)
     try:
         cluster_folder, work_folder = pathlib.Path(folder, "cluster"), pathlib.Path(folder, "work")

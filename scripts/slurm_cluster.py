@@ -1,7 +1,7 @@
-"""A Slurm cluster of one node with two slots on loopback, for as long as a `with` block lasts.
+"""A Slurm cluster with one node and two slots on loopback. It runs while a `with` block runs.
 
-Debian's packages without systemd and without anything of the machine's own Slurm: keys, sockets, ports, logs and states
-are in a folder of their own. Needs root, because slurmd does. Only Python's standard library.
+It uses Debian's packages without systemd and independently of any Slurm of the machine: keys, sockets, ports, logs and
+states are in a separate folder. It needs root, because slurmd does, and only Python's standard library.
 """
 
 import os
@@ -16,9 +16,9 @@ import time
 SLOTS = 2
 PROGRAMS = ["munged", "slurmctld", "slurmd", "sbatch", "squeue", "scancel", "scontrol", "sinfo"]
 
-# Processes are known to be of a job by their parents and not by control groups, which a container may not have. The
-# times that a test would have to sit through are short: GraceTime, how long a pre-empted job goes on; KillWait, between
-# SIGTERM and SIGKILL; cred_expire, which is also how long a requeued task has to wait.
+# Slurm finds the processes of a job by their parents and not by control groups, which a container may not have. The waiting
+# times are short: GraceTime, how long a preempted job continues; KillWait, the time between SIGTERM and SIGKILL; and
+# cred_expire, which is also how long a requeued task waits.
 CONFIGURATION = """
 ClusterName=test
 SlurmctldHost={host}(127.0.0.1)
@@ -61,13 +61,13 @@ PartitionName=urgent Nodes={host} MaxTime=INFINITE State=UP PriorityTier=20
 
 
 def missing():
-    """What has to be installed before a cluster can be started, as programs; none if all is there."""
+    """The names of the programs that are missing for a cluster."""
     path = os.environ.get("PATH", "") + ":/usr/sbin:/sbin"
     return [name for name in PROGRAMS if shutil.which(name, path=path) is None]
 
 
 def free_ports(count):
-    """Ports that nobody listens at."""
+    """Ports that no process listens on."""
     sockets = [socket.socket() for _ in range(count)]
     try:
         for each in sockets:
@@ -79,7 +79,7 @@ def free_ports(count):
 
 
 class Cluster:
-    """Starts the daemons; `environment` is what commands and scripts need to reach them."""
+    """Starts and stops the daemons. Commands and scripts need `environment` to reach them."""
 
     def __init__(self, folder, kill_wait_s=10, grace_s=3):
         self.folder = pathlib.Path(folder)
@@ -123,7 +123,7 @@ class Cluster:
                 grace=self.grace_s,
             )
         )
-        # There has to be one; nothing in it is needed.
+        # This file must exist and may be empty.
         (folder / "cgroup.conf").touch()
         self.daemon(
             "munged",
@@ -156,24 +156,24 @@ class Cluster:
         log.close()
 
     def until(self, what, is_so, patience_s=60.0):
-        """Asks until the answer is yes."""
+        """Waits until `is_so` returns true."""
         begun = time.monotonic()
         while not is_so():
             dead = [process.args[0] for process in self.daemons if process.poll() is not None]
             if dead or time.monotonic() - begun > patience_s:
                 logs = "".join(f"--- {log.name}\n{log.read_text()[-3000:]}" for log in self.folder.glob("*.out"))
-                raise RuntimeError(f"waited in vain for {what} (ended: {dead})\n{logs}")
+                raise RuntimeError(f"waited too long for {what} (ended: {dead})\n{logs}")
             time.sleep(0.1)
 
     def ask(self, *command, check=True):
-        """What a command of Slurm's prints."""
+        """The output of a Slurm command."""
         done = subprocess.run(command, env=self.environment, capture_output=True, text=True)
         if check and done.returncode != 0:
             raise RuntimeError(f"{' '.join(command)} ended with {done.returncode}: {done.stderr}")
         return done.stdout
 
     def tasks(self, job=None):
-        """State and restarts of every task of a job that the controller knows of, by its name (`12_3`, `13`)."""
+        """The properties of every task that the controller knows, by the task's name (`12_3`, `13`)."""
         tasks = {}
         for line in self.ask("scontrol", "show", "job", *([str(job)] if job else []), "--oneliner").splitlines():
             values = dict(word.split("=", 1) for word in line.split() if "=" in word)
@@ -186,11 +186,11 @@ class Cluster:
         return tasks
 
     def stop(self):
-        """Ends all jobs and daemons, in the order in which each can still reach what it needs."""
+        """Ends all jobs and daemons, each before the daemons that it needs."""
         if len(self.daemons) > 1:
             self.ask("scancel", "--user=root", "--signal=KILL", "--full", check=False)
             self.ask("scancel", "--user=root", check=False)
-            # The processes of a job outlive slurmd.
+            # The processes of a job would outlive slurmd.
             give_up = time.monotonic() + 20
             while self.ask("squeue", "--noheader", check=False).strip() and time.monotonic() < give_up:
                 time.sleep(0.1)

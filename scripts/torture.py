@@ -1,15 +1,17 @@
 #!/usr/bin/env python3
-"""Kills worker processes at random for as long as it is told, then compares the export with an undisturbed run.
+"""Kills worker processes at random, then compares the export with that of an undisturbed run.
 
     cargo build --release
     python3 scripts/torture.py [--kills 300] [--workers 3] [--jobs 6000] [--seed 1]
 
-Several processes work on one database. Again and again one of them is killed (kill -9), stopped for a while, or
-interrupted; now and then the database's files are copied while all processes stand still, and the copy is opened. Some
-processes keep the states of their running jobs, most do not.
-After each kill, results that were finished before must be there unchanged. At the end the export must be that of an
-undisturbed run, byte for byte but for the run times, with one result a job, and no more jobs repeated than killed processes can hold.
-Ends earlier when no job is left. Prints the counts; exits non-zero when something does not hold. Only Python's standard library.
+Several processes work on one database. Repeatedly, one of them is killed (kill -9), paused, or interrupted. Sometimes the
+database's files are copied while all processes are paused, and the copy is opened. Some processes save checkpoints of their
+running jobs; most do not.
+
+After each kill, all earlier results must exist unchanged. At the end, the export must be identical to that of an
+undisturbed run except for the run times; each job must have one result; and the number of repeated jobs must not exceed the
+number of jobs that the killed processes held. The script ends earlier when no job is left. It prints the counts and exits
+with an error if a check fails. It needs only Python's standard library.
 """
 
 import argparse
@@ -33,7 +35,7 @@ FILES = ["tribosweep.db", "tribosweep.db-wal", "tribosweep.db-shm"]
 
 
 def study(jobs):
-    """A grid of jobs of some milliseconds, of which a thread advances LANES together."""
+    """A grid of jobs that take some milliseconds. A thread advances LANES of them together."""
     speeds = [round(1.0 + 0.5 * k, 3) for k in range(max(1, jobs // 10))]
     return {
         "name": "torture",
@@ -70,7 +72,7 @@ class Sweep:
 
 
 def finished(rows):
-    """The line of every job that has ended, run time and all: done again, it would have another one."""
+    """The rows of all jobs that have ended, including the run time, which would change if a job were run again."""
     return {row["job"]: tuple(row.values()) for row in rows if row["wall_s"]}
 
 
@@ -83,8 +85,8 @@ def check(holds, text):
         raise SystemExit(f"FAILED: {text}")
 
 
-def stand_still(workers):
-    """Stops every process and waits until it does."""
+def pause_all(workers):
+    """Pauses every process and waits until all its threads have stopped."""
     for worker in workers:
         worker.send_signal(signal.SIGSTOP)
     for worker in workers:
@@ -102,16 +104,16 @@ def stand_still(workers):
 
 
 def copy(sweep, workers, draw):
-    """A copy at one instant, its files in any order, must open whole with every finished result."""
+    """A copy of all files at one instant, in any order, must open with every finished result."""
     before = finished(sweep.export())
-    stand_still(workers)
+    pause_all(workers)
     with tempfile.TemporaryDirectory() as other:
         for name in draw.sample(FILES, 3):
             if (sweep.folder / name).exists():
                 shutil.copy(sweep.folder / name, other)
         for worker in workers:
             worker.send_signal(signal.SIGCONT)
-        # A process that stands still may hold a lock, so nobody else looks before it goes on.
+        # A paused process may hold a lock, so the database is read after the processes continue.
         then, after = finished(sweep.export(other)), finished(sweep.export())
         check(before.items() <= then.items(), "a copy lost results")
         check(then.items() <= after.items(), "a copy has results that were never finished")
@@ -126,17 +128,17 @@ def torture(sweep, options, draw):
     while counts["kills"] < options.kills:
         time.sleep(draw.uniform(0.0, options.pause))
         index = draw.randrange(len(workers))
-        victim, deed = workers[index], draw.random()
-        if deed < 0.05:
+        victim, action = workers[index], draw.random()
+        if action < 0.05:
             counts["copies"] += 1
             copy(sweep, workers, draw)
-        elif deed < 0.15:
+        elif action < 0.15:
             counts["stops"] += 1
             victim.send_signal(signal.SIGSTOP)
             time.sleep(draw.uniform(0.0, 0.3))
             victim.send_signal(signal.SIGCONT)
         else:
-            is_kill = deed >= 0.25
+            is_kill = action >= 0.25
             victim.send_signal(signal.SIGKILL if is_kill else signal.SIGINT)
             workers[index] = sweep.worker(draw)
             code = victim.wait()
@@ -144,7 +146,7 @@ def torture(sweep, options, draw):
             counts[name] += 1
         now = finished(sweep.export())
         lost = [job for job, line in seen.items() if now.get(job) != line]
-        check(not lost, f"lost or done again: {lost}")
+        check(not lost, f"lost or run again: {lost}")
         seen = now
         if len(seen) == options.jobs:
             break
@@ -159,7 +161,7 @@ def main():
     parser.add_argument("--kills", type=int, default=300)
     parser.add_argument("--workers", type=int, default=3)
     parser.add_argument("--jobs", type=int, default=6000, help="a multiple of ten")
-    parser.add_argument("--pause", type=float, default=0.05, help="longest time between two deeds [s]")
+    parser.add_argument("--pause", type=float, default=0.05, help="longest time between two actions [s]")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--program", default=str(ROOT / "target/release/tribosweep"))
     options = parser.parse_args()
@@ -171,20 +173,20 @@ def main():
         reference.call("run", "torture.json")
         sweep = Sweep(options.program, wild, options.jobs)
         counts = torture(sweep, options, draw)
-        check(timeless(sweep.export()) == timeless(reference.export()), "the export is another one")
+        check(timeless(sweep.export()) == timeless(reference.export()), "the export differs")
         database = sqlite3.connect(f"file:{sweep.folder / FILES[0]}?mode=ro", uri=True)
         jobs, attempts = database.execute("SELECT COUNT(*), SUM(attempt) FROM jobs WHERE state = 'done'").fetchone()
         (results,) = database.execute("SELECT COUNT(*) FROM results").fetchone()
         database.close()
         check(jobs == results == options.jobs, f"{jobs} jobs and {results} results of {options.jobs}")
         repeated = attempts - jobs
-        # In lanes, waiting for one, or ended and not stored yet.
+        # Jobs in lanes, jobs that wait for a lane, and jobs that have ended and are not stored yet.
         allowed = 3 * LANES * (counts["kills"] + counts["interrupts"])
         check(repeated <= allowed, f"{repeated} jobs repeated, at most {allowed} were running")
     for name, count in counts.items():
         print(f"{name}: {count}")
     print(f"jobs: {jobs}, results: {results}, repeated: {repeated}, lost: 0, recorded twice: 0")
-    print(f"export: the same as undisturbed, in {time.monotonic() - begun:.0f} s")
+    print(f"export: identical to the undisturbed run, in {time.monotonic() - begun:.0f} s")
 
 
 if __name__ == "__main__":

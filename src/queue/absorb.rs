@@ -90,8 +90,8 @@ const SET_STATES: Statement = Statement::each(
     WHERE jobs.key = e.value ->> 0",
 );
 
-/// Results are inserted one by one: one of the databases reads JSON numbers with 15 digits only, and times must be copied
-/// exactly.
+/// Results are inserted one by one: one of the databases reads JSON numbers with 15 digits only, and times must be
+/// copied exactly.
 const SET_RESULT: &str = "
     INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)
     SELECT id, $2, $3, $4, $5, $6, $7, $8 FROM jobs WHERE key = $1
@@ -119,13 +119,13 @@ impl Queue {
     /// Copies all studies of another database, or one of them: rows, jobs, results of all attempts, checkpoints.
     ///
     /// This database loses nothing. A job that is done here stays done. A job that has not ended here takes the outcome
-    /// of the other database. A job that failed here and is done there becomes done. A job that is running there becomes
-    /// pending here. A repeated call changes nothing. Each part of a study is copied completely or not at all; after an
-    /// error, call this again.
+    /// of the other database. A job that failed here and is done there becomes done. A job that is running there
+    /// becomes pending here. A repeated call changes nothing. Each part of a study is copied completely or not at all;
+    /// after an error, call this again.
     ///
     /// # Errors
-    /// [`QueueError::UnknownStudy`] if the other database has no such study; [`QueueError::OtherStudy`] if this database
-    /// has a different study of that name; or if one of the databases fails.
+    /// [`QueueError::UnknownStudy`] if the other database has no such study; [`QueueError::OtherStudy`] if
+    /// this database has a different study of that name; or if one of the databases fails.
     pub async fn absorb(&mut self, other: &mut Self, study: Option<&str>) -> Result<Absorbed, QueueError> {
         if let Some(name) = study {
             lookup::require(&mut other.connection, name).await?;

@@ -12,8 +12,8 @@ const SAVE: &str = "
 const RESET_CRASHES: &str = "UPDATE jobs SET crashes = 0 WHERE key = $1 AND crashes > 0";
 
 impl Queue {
-    /// Stores a checkpoint of a running attempt in place of the previous one. Returns `false` if the worker has lost the
-    /// job.
+    /// Stores a checkpoint of a running attempt in place of the previous one. Returns `false` if the worker has lost
+    /// the job.
     ///
     /// The next attempt receives the bytes with its claim. They are deleted when the job ends.
     ///

@@ -34,12 +34,12 @@ pub struct ClaimedJob {
 
 /// A claim is one statement, because sending a statement to the database costs more than its work for one job.
 ///
-/// Within a priority, expensive jobs come first, so that at the end no long job is left to a single worker. Jobs of equal
-/// cost are ordered by age. If the batch ($5) is null, it is the batch of the first job. If it is not null, no job with a
-/// lower priority than the first job's is claimed.
+/// Within a priority, expensive jobs come first, so that at the end no long job is left to a single worker. Jobs of
+/// equal cost are ordered by age. If the batch ($5) is null, it is the batch of the first job. If it is not null, no
+/// job with a lower priority than the first job's is claimed.
 ///
-/// `SQLite`: without INDEXED BY, the planner may sort all pending jobs, and the time of a claim grows with the length of
-/// the queue.
+/// `SQLite`: without INDEXED BY, the planner may sort all pending jobs, and the time of a claim grows with the length
+/// of the queue.
 ///
 /// PostgreSQL: SKIP LOCKED passes over the jobs that another worker is claiming. Deadlock is impossible because a claim
 /// never waits for a row.
@@ -81,9 +81,9 @@ const TAKE: Statement = Statement::each(
 
 /// As above, for the study named $6.
 ///
-/// PostgreSQL: LATERAL fixes the order of the loops. The expression on the state leaves only the primary key for looking
-/// a job up. Without it, the planner may scan all pending jobs for each row if no job was pending when it last collected
-/// statistics.
+/// PostgreSQL: LATERAL fixes the order of the loops. The expression on the state leaves only the primary key for
+/// looking a job up. Without it, the planner may scan all pending jobs for each row if no job was pending when it last
+/// collected statistics.
 const TAKE_OF_STUDY: Statement = Statement::each(
     "
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3

@@ -36,8 +36,8 @@ pub struct JobDetails {
     pub studies: Vec<String>,
 }
 
-/// Keys that begin with $1. The range condition makes the database use the index. `substr` is used instead of LIKE because
-/// a key may contain wildcards.
+/// Keys that begin with $1. The range condition makes the database use the index. `substr` is used instead of LIKE
+/// because a key may contain wildcards.
 const JOBS: &str = "
     SELECT j.id, j.key, j.state, j.priority, j.cost, j.batch, j.attempt, j.crashes, j.note, j.started_ms,
            r.error, r.wall_s, r.finished_ms, r.provenance

@@ -113,7 +113,8 @@ pub enum QueueError {
         needed: i64,
     },
 
-    /// The database is read-only and has a write-ahead log. `SQLite` would have to create a shared-memory file to read it.
+    /// The database is read-only and has a write-ahead log. `SQLite` would have to create a shared-memory file to read
+    /// it.
     #[error(
         "{path} has a write-ahead log, which cannot be read where nothing can be written; copy {path} and {path}-wal \
          to a folder that can be written"
@@ -204,7 +205,8 @@ pub enum QueueError {
     )]
     Locked(#[source] Source),
 
-    /// The server does not answer, or it has ended the connection. It is unknown whether the last transaction was committed.
+    /// The server does not answer, or it has ended the connection. It is unknown whether the last transaction was
+    /// committed.
     #[error(
         "the database server does not answer ({0}); nothing is lost, and the same command continues when it does"
     )]

@@ -25,14 +25,15 @@ const RECORDED: &str = "
 impl Queue {
     /// Stores the outcomes of finished attempts and claims the next jobs, in one transaction.
     ///
-    /// One transaction for many jobs makes thousands of jobs per second possible. A claimed job may start only after this
-    /// returns. A job that is released here may be claimed again in the same exchange, so a caller that was interrupted
-    /// must not claim.
+    /// One transaction for many jobs makes thousands of jobs per second possible. A claimed job may start only after
+    /// this returns. A job that is released here may be claimed again in the same exchange, so a caller that was
+    /// interrupted must not claim.
     ///
     /// # Errors
-    /// [`QueueError::UnknownStudy`] for a claim's scope, or if the database cannot be written. Then nothing is stored or
-    /// claimed, and the caller must keep `finished` and pass it again. After [`QueueError::Unreachable`] it is unknown
-    /// whether the transaction was committed. The next exchange resolves this if it is given the same outcomes again.
+    /// [`QueueError::UnknownStudy`] for a claim's scope, or if the database cannot be written. Then nothing is
+    /// stored or claimed, and the caller must keep `finished` and pass it again. After [`QueueError::Unreachable`] it
+    /// is unknown whether the transaction was committed. The next exchange resolves this if it is given the same
+    /// outcomes again.
     ///
     /// # Panics
     /// If no worker is registered.

@@ -48,11 +48,11 @@ impl FinishedOutcome {
 
 const RELEASED: &str = "released: the work was interrupted before the job ended";
 
-/// One statement for all outcomes of an exchange, because sending a statement to the database costs more than its work for
-/// one job. $1 contains the results and $5 the outcomes.
+/// One statement for all outcomes of an exchange, because sending a statement to the database costs more than its work
+/// for one job. $1 contains the results and $5 the outcomes.
 ///
-/// Every statement on behalf of an attempt has the fence `state = 'running' AND owner = … AND attempt = …`: a worker that
-/// has lost the job changes nothing.
+/// Every statement on behalf of an attempt has the fence `state = 'running' AND owner = … AND attempt = …`: a worker
+/// that has lost the job changes nothing.
 ///
 /// The database must look up one key per outcome. `SQLite`: CROSS JOIN fixes the order of the loops, and the plus signs
 /// leave only the key's index. PostgreSQL: the expressions on the other columns have the same effect.
@@ -118,8 +118,8 @@ pub(super) async fn store(
     Ok(keys.filter(|key| !ended.contains(*key)).cloned().collect())
 }
 
-/// Splits the attempts into messages that have at most `max_bytes` in the form in which they are sent. An attempt that is
-/// larger than that is a message of its own.
+/// Splits the attempts into messages that have at most `max_bytes` in the form in which they are sent. An attempt that
+/// is larger than that is a message of its own.
 fn messages(mut finished: &[Finished], max_bytes: usize) -> Vec<&[Finished]> {
     let mut messages = Vec::new();
     while !finished.is_empty() {

@@ -20,7 +20,8 @@ const UNREFERENCED: &str = "
     CREATE TEMP TABLE garbage AS
     SELECT id FROM jobs WHERE state <> 'running' AND NOT EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = jobs.id)";
 
-/// A worker that was declared dead may only have been disconnected. It is kept for a day (until $1) in case it comes back.
+/// A worker that was declared dead may only have been disconnected. It is kept for a day (until $1) in case it comes
+/// back.
 const WORKERS: &str = "
     DELETE FROM workers
     WHERE ended_ms IS NOT NULL AND (ended_ms = heartbeat_ms OR heartbeat_ms < $1)

@@ -11,7 +11,8 @@ const ALIVE: &str =
 impl Queue {
     /// Sends a heartbeat: extends the leases of all jobs that the registered worker runs. Returns their number.
     ///
-    /// If the number is smaller than the worker expects, jobs were taken back from it, and their outcomes will be refused.
+    /// If the number is smaller than the worker expects, jobs were taken back from it, and their outcomes will be
+    /// refused.
     ///
     /// # Errors
     /// If the database cannot be written.
@@ -23,8 +24,8 @@ impl Queue {
         let registration = self.registration_mut();
         let (owner, finished) = (registration.id, registration.throughput.finished());
         let jobs_per_s = registration.throughput.jobs_per_s();
-        // Single statements without the write lock: otherwise all workers would seem dead when one transaction holds the
-        // exclusive lock for longer than a lease.
+        // Single statements without the write lock: otherwise all workers would seem dead when one transaction holds
+        // the exclusive lock for longer than a lease.
         let now_ms = self.now_ms().await?;
         let alive = query(ALIVE).bind(owner).bind(now_ms).bind(finished).bind(Some(jobs_per_s));
         if alive.run(&mut self.connection).await? == 0 {

@@ -26,8 +26,8 @@ impl Location {
     /// Parses what a user wrote: text with `://` is a URL, all else is a path.
     pub fn parse(text: OsString) -> Self {
         match text.to_str() {
-            // A URL of another kind is refused when it is opened. It must not be taken for a path, because messages show
-            // paths and the URL may contain a password.
+            // A URL of another kind is refused when it is opened. It must not be taken for a path, because messages
+            // show paths and the URL may contain a password.
             Some(url) if url.contains("://") => Self::Server(Server { url: url.to_owned() }),
             _ => Self::File(text.into()),
         }
@@ -63,7 +63,7 @@ impl Server {
     }
 
     /// Whether the URL contains a password.
-    pub fn has_password(&self) -> bool {
+    pub(crate) fn has_password(&self) -> bool {
         match Url::parse(&self.url) {
             Ok(url) => url.password().is_some() || pairs(&url).any(is_password),
             Err(_) => is_guarded(&self.url) || self.url.to_ascii_lowercase().contains("password="),
@@ -71,7 +71,7 @@ impl Server {
     }
 
     /// The URL without passwords.
-    pub fn without_password(&self) -> String {
+    fn without_password(&self) -> String {
         match Url::parse(&self.url) {
             Ok(url) if self.has_password() => strip_passwords(url).into(),
             Ok(_) => self.url.clone(),
@@ -100,8 +100,8 @@ fn strip_passwords(mut url: Url) -> Url {
     url
 }
 
-/// As [`strip_passwords`], for text that is not a valid URL, for instance because its password has unencoded characters.
-/// Everything between the first `:` and the last `@` may belong to the password, and so may all settings.
+/// As [`strip_passwords`], for text that is not a valid URL, for instance because its password has unencoded
+/// characters. Everything between the first `:` and the last `@` may belong to the password, and so may all settings.
 fn strip_unparsable(text: &str) -> String {
     let Some((scheme, rest)) = text.split_once("://") else { return String::new() };
     if is_guarded(text)
@@ -156,7 +156,8 @@ impl From<PathBuf> for Location {
 mod tests {
     use super::Location;
 
-    /// Protects: what begins like a server's URL is one, another scheme is not taken for a file, and all else is a file.
+    /// Protects: text with `://` is a URL, a URL with another scheme is refused and not taken for a path, and all else
+    /// is a path.
     #[test]
     fn servers_and_files_are_told_apart() {
         for url in ["postgres://ada@db/sweeps", "postgresql://db", "POSTGRES://db"] {
@@ -172,7 +173,7 @@ mod tests {
         assert!(!error.contains("secret"), "{error}");
     }
 
-    /// Protects: no message shows a password, wherever in a URL it is.
+    /// Protects: no message shows a password, wherever it is in the URL, and even if the URL is not valid.
     #[test]
     fn passwords_are_not_shown() {
         for (url, shown) in [
@@ -186,6 +187,12 @@ mod tests {
             ("postgres://db/sweeps?user=ada&password=secret", "postgres://db/sweeps?user=ada"),
             ("postgres://db?password=secret", "postgres://db"),
             ("postgres://ada@db/sweeps?sslmode=require", "postgres://ada@db/sweeps?sslmode=require"),
+            ("postgres://ada@db/x?%70assword=secret&sslmode=require", "postgres://ada@db/x?sslmode=require"),
+            ("postgres://ada@db/x?password=1#secret", "postgres://ada@db/x"),
+            ("postgres://ada:secret@db:port/x?password=secret", "postgres://ada@db:port/x"),
+            ("postgres://db:port/x?password=secret", "postgres://db:port/x"),
+            ("postgres://ada:secret@[::1]:5432/x", "postgres://ada@[::1]:5432/x"),
+            ("odd scheme://ada:secret@db", "odd scheme://ada@db"),
         ] {
             let Location::Server(server) = Location::parse(url.into()) else { panic!("{url}") };
             assert_eq!(server.to_string(), shown);

@@ -13,31 +13,31 @@
 //!         Released and Unstarted (interruption), take_back (the process died; too often: failed)
 //! ```
 //!
-//! * A **job** is identified by its key. Submitting a key that already exists adds no job. Studies therefore share jobs,
-//!   and a repeated submission costs no simulation.
+//! * A **job** is identified by its key. Submitting a key that already exists adds no job. Studies therefore share
+//!   jobs, and a repeated submission costs no simulation.
 //! * A **study** is identified by its name. It is a document and an ordered list of rows. Each row is a set of
 //!   parameters and points to a job; two rows may point to the same job.
-//! * A **worker** is a process that runs jobs; there may be several. A worker owns the jobs that it has claimed until it
-//!   finishes them or is gone (`take_back` defines when a worker is gone).
+//! * A **worker** is a process that runs jobs; there may be several. A worker owns the jobs that it has claimed until
+//!   it finishes them or is gone (`take_back` defines when a worker is gone).
 //! * An **attempt** is one start of a job. A finish names its attempt, and it counts only if the same worker is still
 //!   running that attempt. A worker that lost a job therefore cannot overwrite later results.
 //! * Jobs of one **batch** can be run together. A claim takes jobs of one batch only.
 //!
 //! # Rules
-//! * Each operation is written once, for both databases. `engine` contains the differences between them; a statement that
-//!   the databases do not share is written in two dialects, side by side.
+//! * Each operation is written once, for both databases. `engine` contains the differences between them; a statement
+//!   that the databases do not share is written in two dialects, side by side.
 //! * Every write happens in a transaction that takes its lock at the start. The lock is exclusive, or it is shared with
 //!   transactions that change only their own worker's jobs or claim jobs that nobody has (`Access`). On `SQLite` every
-//!   lock is exclusive. `SQLite` cannot promote a transaction that began by reading while another one writes: it fails at
-//!   once with "database is locked", whatever the busy timeout is. On PostgreSQL, transactions with shared locks never
-//!   wait for each other.
-//! * A transaction awaits nothing but the database. Never drop a future of this module before it is ready (no `select!`,
-//!   no timeout around it): the transaction would keep its lock and block every other process.
-//! * Reads are single statements. A reader that holds a transaction open prevents checkpoints of the write-ahead log and
-//!   the removal of old row versions.
+//!   lock is exclusive. `SQLite` cannot promote a transaction that began by reading while another one writes: it fails
+//!   at once with "database is locked", whatever the busy timeout is. On PostgreSQL, transactions with shared locks
+//!   never wait for each other.
+//! * A transaction awaits nothing but the database. Never drop a future of this module before it is ready (no
+//!   `select!`, no timeout around it): the transaction would keep its lock and block every other process.
+//! * Reads are single statements. A reader that holds a transaction open prevents checkpoints of the write-ahead log
+//!   and the removal of old row versions.
 //!
-//! [`Queue`] is defined in `handle`. Each operation adds its methods in its own file. No two files use each other, so this
-//! file only declares and re-exports.
+//! [`Queue`] is defined in `handle`, and each operation adds its methods in a file of its own. The files import from
+//! each other directly and never in a circle. This file only declares and re-exports.
 
 mod absorb;
 mod access;

@@ -12,9 +12,9 @@ impl Queue {
     /// Opens the database at `location`. Creates its tables, and its file but not the folder, if they are missing.
     ///
     /// # Errors
-    /// For a file: if the folder is missing, if the path contains something else or a newer schema, or if the file system
-    /// or the `SQLite` library is not safe with several writers. For a server: if it does not answer or refuses the
-    /// connection.
+    /// For a file: if the folder is missing, if the path contains something else or a newer schema, or if the
+    /// file system or the `SQLite` library is not safe with several writers. For a server: if it does not answer or
+    /// refuses the connection.
     pub async fn open(location: impl Into<Location>, clock: Clock) -> Result<Self, QueueError> {
         Self::open_with(location, clock, Settings::default()).await
     }

@@ -26,8 +26,8 @@ pub struct OpenJobs {
 }
 
 impl Queue {
-    /// Whether `scope` has pending and running jobs. Workers that wait for jobs call this often, so it does not count them,
-    /// which would keep the database busy.
+    /// Whether `scope` has pending and running jobs. Workers that wait for jobs call this often, so it does not count
+    /// them, which would keep the database busy.
     ///
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.

@@ -1,5 +1,5 @@
-//! Whether a process is still alive. The process number is not enough: the system uses numbers again after a process has
-//! ended, after a boot, and in other namespaces.
+//! Whether a process is still alive. The process number is not enough: the system uses numbers again after a process
+//! has ended, after a boot, and in other namespaces.
 
 use std::fs;
 use std::io::ErrorKind;
@@ -71,8 +71,8 @@ mod tests {
         assert_eq!(state_and_start("4242 (short) S 1 2"), None);
     }
 
-    /// Protects: this process is alive; the same number with another start is another process; and a child that has ended
-    /// is gone, both before and after its parent waits for it.
+    /// Protects: this process is alive; the same number with another start is another process; and a child that has
+    /// ended is gone, both before and after its parent waits for it.
     #[cfg(target_os = "linux")]
     #[test]
     fn the_end_of_a_process_is_seen() {

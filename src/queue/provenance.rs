@@ -27,7 +27,7 @@ const GROUPS: &str = "
     ORDER BY MIN(r.finished_ms)";
 
 impl Queue {
-    /// The results of a study by their provenance. The group that was begun first comes first.
+    /// The results of a study, grouped by provenance and ordered by the groups' first finish.
     ///
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.

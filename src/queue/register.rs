@@ -58,8 +58,8 @@ impl Queue {
 
     /// Ends the registration. Jobs that the worker still holds are pending again.
     ///
-    /// A process that ends because of an error should call this too, if the error permits it: the jobs that it gives back
-    /// then do not count as crashed.
+    /// A process that ends because of an error should call this too, if the error permits it: the jobs that it gives
+    /// back then do not count as crashed.
     ///
     /// # Errors
     /// If the database cannot be written.

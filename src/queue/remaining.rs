@@ -1,5 +1,5 @@
-//! The cost of the jobs that are left. The costs of jobs differ by orders of magnitude, so their number is no measure of the
-//! time.
+//! The cost of the jobs that are left. The costs of jobs differ by orders of magnitude, so their number is no measure
+//! of the time.
 
 use super::engine::{Statement, query};
 use super::error::QueueError;

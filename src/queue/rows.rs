@@ -63,8 +63,8 @@ const ROWS: Statement = Statement::each(
 const PARAMETERS: &str = "
     SELECT ordinal, parameters FROM study_jobs WHERE study_id = $1 AND ordinal >= $2 ORDER BY ordinal LIMIT $3";
 
-/// Rows that are read at a time. Reading all rows at once would prevent checkpoints of the write-ahead log meanwhile, and
-/// would need memory for all of them.
+/// Rows that are read at a time. Reading all rows at once would prevent checkpoints of the write-ahead log meanwhile,
+/// and would need memory for all of them.
 const PAGE: i64 = 1_000;
 
 /// Which rows of a study.
@@ -93,7 +93,8 @@ impl Queue {
         Ok(rows)
     }
 
-    /// Calls `visit` with the rows of a study, page by page, in the order of its document. `visit` can stop the reading.
+    /// Calls `visit` with the rows of a study, page by page, in the order of its document. `visit` can stop the
+    /// reading.
     ///
     /// A change that is made meanwhile is visible in later pages only.
     ///
@@ -125,8 +126,8 @@ impl Queue {
         }
     }
 
-    /// Calls `visit` with the parameters of each row of a study, in the order of its document. It does not read the records,
-    /// which are most of the data of rows.
+    /// Calls `visit` with the parameters of each row of a study, in the order of its document. It does not read the
+    /// records, which are most of the data of rows.
     ///
     /// # Errors
     /// As [`Queue::rows`].

@@ -15,8 +15,8 @@ impl Settings {
     /// The shortest useful lease. A shorter one would leave no time to wait for a busy database.
     pub const SHORTEST_LEASE: Duration = Duration::from_secs(5);
 
-    /// These settings with another lease. The busy timeout is at most a quarter of the lease, so that a worker that waits
-    /// for a lock does not lose its jobs.
+    /// These settings with another lease. The busy timeout is at most a quarter of the lease, so that a worker that
+    /// waits for a lock does not lose its jobs.
     #[must_use]
     pub fn with_lease(self, lease: Duration) -> Self {
         Self { lease, busy_timeout: (lease / 4).min(Self::default().busy_timeout), ..self }

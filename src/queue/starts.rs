@@ -9,9 +9,9 @@ const STARTS: &str = "
     JOIN jobs AS j ON j.id = m.job_id";
 
 impl Queue {
-    /// How many times jobs of a study were started. While the study stays the same, this never decreases, except for jobs
-    /// that are given back unstarted. Together with the counts by state it shows whether anything has changed, without
-    /// reading results.
+    /// How many times jobs of a study were started. While the study stays the same, this never decreases, except for
+    /// jobs that are given back unstarted. Together with the counts by state it shows whether anything has changed,
+    /// without reading results.
     ///
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.

@@ -31,8 +31,8 @@ pub struct NewJob {
     pub cost: f64,
     /// Jobs of the same batch can be run together. The name may be empty.
     pub batch: String,
-    /// Jobs with a higher priority are claimed first, whatever they cost. With `None`, an existing job keeps its priority,
-    /// and a new job has priority 0.
+    /// Jobs with a higher priority are claimed first, whatever they cost. With `None`, an existing job keeps its
+    /// priority, and a new job has priority 0.
     pub priority: Option<i64>,
 }
 
@@ -75,8 +75,8 @@ pub struct Submitted {
     pub cancelled: u64,
 }
 
-/// Rows per JSON parameter. Rows in one JSON text are inserted twice as fast as row by row, but the text of a million jobs
-/// would exceed `SQLite`'s limit of 10⁹ bytes.
+/// Rows per JSON parameter. Rows in one JSON text are inserted twice as fast as row by row, but the text of a million
+/// jobs would exceed `SQLite`'s limit of 10⁹ bytes.
 const CHUNK: usize = 10_000;
 
 pub(super) const UPSERT_STUDY: &str = "
@@ -148,7 +148,8 @@ const NOTE: &str = "cancelled: its study was replaced by one without it";
 const DELETE_SURPLUS: &str =
     "DELETE FROM study_jobs WHERE study_id = $1 AND (ordinal >= $2 OR ordinal % $3 <> $4)";
 
-/// The array indices of rows that are missing or different in the database. An existing row has its job and its payload.
+/// The array indices of rows that are missing or different in the database. An existing row has its job and its
+/// payload.
 const CHANGED: Statement = Statement::each(
     "
     SELECT e.key
@@ -190,8 +191,8 @@ const INSERT_ROWS: Statement = Statement::each(
 impl Queue {
     /// Adds a study, or replaces the document and rows of the one with its name.
     ///
-    /// Existing jobs keep their results, and cancelled ones are pending again. Jobs that no study refers to any more also
-    /// stay, because the next edit may request their results again; the pending ones among them are cancelled.
+    /// Existing jobs keep their results, and cancelled ones are pending again. Jobs that no study refers to any more
+    /// also stay, because the next edit may request their results again; the pending ones among them are cancelled.
     ///
     /// # Errors
     /// [`QueueError::BadCost`], or if the database cannot be written; then nothing has changed.
@@ -272,8 +273,8 @@ async fn count_jobs(connection: &mut Connection) -> Result<u64, QueueError> {
 /// A row of a study with its number.
 pub(super) type Row<'a> = (i64, &'a NewJob);
 
-/// Those of `rows` that the study does not have, or has in another form. An unchanged study has none, and its submission
-/// writes nothing.
+/// Those of `rows` that the study does not have, or has in another form. An unchanged study has none, and its
+/// submission writes nothing.
 pub(super) async fn changed<'a>(
     connection: &mut Connection,
     study_id: i64,

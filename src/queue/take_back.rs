@@ -1,14 +1,14 @@
 //! Reclaims the jobs of workers that are gone: the jobs become pending again.
 //!
 //! These rules decide, in this order, whether a worker is gone:
-//! 1. If the worker is on this boot of this machine, the table of processes decides. If its process exists, it keeps its
-//!    jobs, however old its lease is: a stopped process continues later, a machine that slept wakes up, and a clock that
-//!    jumps takes no jobs from anybody. If its process does not exist, its jobs are pending at once.
-//! 2. If the worker is on an earlier boot of this machine, it is gone. This holds for a database file only: on a server,
-//!    two machines may have the same name, and another boot may be another machine.
-//! 3. For any other worker, its heartbeats and the leases of its jobs decide, by the database's clock. A worker is silent
-//!    if its last heartbeat is older than its own lease. A lease that ends further in the future than any clock error
-//!    explains counts as expired: a clock that had jumped wrote it.
+//! 1. If the worker is on this boot of this machine, the table of processes decides. If its process exists, it keeps
+//!    its jobs, however old its lease is: a stopped process continues later, a machine that slept wakes up, and a clock
+//!    that jumps takes no jobs from anybody. If its process does not exist, its jobs are pending at once.
+//! 2. If the worker is on an earlier boot of this machine, it is gone. This holds for a database file only: on a
+//!    server, two machines may have the same name, and another boot may be another machine.
+//! 3. For any other worker, its heartbeats and the leases of its jobs decide, by the database's clock. A worker is
+//!    silent if its last heartbeat is older than its own lease. A lease that ends further in the future than any clock
+//!    error explains counts as expired: a clock that had jumped wrote it.
 //!
 //! A wrong decision loses nothing: a job that is run twice is recorded once, because outcomes are fenced by owner and
 //! attempt.
@@ -27,7 +27,8 @@ pub struct TakenBack {
     pub failed: u64,
 }
 
-/// $4 is the time if the leases decide, and null otherwise. $6 is 1 for a crash, and 0 if the process had been asked to stop.
+/// $4 is the time if the leases decide, and null otherwise. $6 is 1 for a crash, and 0 if the process had been asked to
+/// stop.
 const TAKE_BACK: &str = "
     UPDATE jobs
     SET state = CASE WHEN crashes + $6 >= $2 THEN 'failed' ELSE 'pending' END,
@@ -40,7 +41,8 @@ const CRASHED: &str = "
     INSERT INTO results (job_id, attempt, error, started_ms, finished_ms)
     SELECT id, attempt, $2, started_ms, $3 FROM jobs WHERE id = $1";
 
-/// Counts the jobs that were taken back. The worker has ended if it holds no more jobs and has sent no heartbeat since $4.
+/// Counts the jobs that were taken back. The worker has ended if it holds no more jobs and has sent no heartbeat since
+/// $4.
 const COUNT: &str = "
     UPDATE workers
     SET taken_back = taken_back + $3,
@@ -53,8 +55,8 @@ const COUNT: &str = "
 const TAKEN_BACK: &str = "taken back: the process that ran the job ended without finishing it";
 
 impl Queue {
-    /// Takes back the jobs of workers that are gone: they become pending, or failed if their processes died too often in
-    /// succession.
+    /// Takes back the jobs of workers that are gone: they become pending, or failed if their processes died too often
+    /// in succession.
     ///
     /// # Errors
     /// If the database cannot be written.
@@ -83,7 +85,8 @@ impl Queue {
         Ok(taken)
     }
 
-    /// Whether jobs of other workers may soon become pending: another worker is gone, is stopping or has missed heartbeats.
+    /// Whether jobs of other workers may soon become pending: another worker is gone, is stopping or has missed
+    /// heartbeats.
     ///
     /// # Errors
     /// If the database cannot be read.

@@ -3,7 +3,8 @@
 use std::collections::VecDeque;
 use std::time::{Duration, Instant};
 
-/// A longer window would include work that says little about the present; a shorter one would contain too few long jobs.
+/// A longer window would include work that says little about the present; a shorter one would contain too few long
+/// jobs.
 const WINDOW: Duration = Duration::from_mins(10);
 
 /// Counts the jobs that a worker finishes.

@@ -16,8 +16,8 @@ impl Queue {
         transact(&mut self.connection, &self.clock, Access::Exclusive, work).await
     }
 
-    /// As [`Self::write`], in a shared transaction: `work` may change only jobs of this queue's worker, and claim jobs that
-    /// nobody has.
+    /// As [`Self::write`], in a shared transaction: `work` may change only jobs of this queue's worker, and claim jobs
+    /// that nobody has.
     pub(super) async fn write_shared<T>(
         &mut self,
         work: impl AsyncFnOnce(&mut Connection, i64) -> Result<T, QueueError>,

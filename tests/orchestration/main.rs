@@ -1,4 +1,4 @@
-//! Orchestration: what must hold of studies and jobs whatever is interrupted, repeated or done at once.
+//! Orchestration: the properties of studies and jobs that must hold under interruptions, repetitions and concurrency.
 
 #[path = "../support/mount.rs"]
 mod mount;

@@ -1,4 +1,4 @@
-//! The queue on its own: jobs are strings here.
+//! The queue without a worker. The payloads and records of jobs are arbitrary strings here.
 
 mod in_a_file;
 mod lost;

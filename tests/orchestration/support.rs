@@ -1,4 +1,4 @@
-//! A database of one's own, with a clock the test moves.
+//! A separate database for each test, with a clock that the test sets.
 
 use std::path::PathBuf;
 use std::sync::Arc;
@@ -15,7 +15,7 @@ use tribosweep::queue::{
 use crate::server::ServerDatabase;
 pub use crate::server::block_on;
 
-/// A clock that stands still until it is told otherwise.
+/// A clock that stands still until the test sets it.
 #[derive(Debug, Default, Clone)]
 pub struct TestClock(Arc<AtomicI64>);
 
@@ -30,12 +30,12 @@ impl TestClock {
     }
 }
 
-/// What a database is kept by.
+/// The kind of database.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Engine {
-    /// A file of `SQLite`'s.
+    /// A `SQLite` file.
     Sqlite,
-    /// A database on a server.
+    /// A database on a PostgreSQL server.
     Postgres,
 }
 
@@ -47,14 +47,14 @@ pub struct Sandbox {
 }
 
 impl Sandbox {
-    /// A file in a folder of its own.
+    /// A file in a temporary folder.
     pub fn new() -> Self {
         let folder = TempDir::new().unwrap();
         let location = Location::File(folder.path().join("sweep.db"));
         Self { folder, clock: TestClock::default(), location, server: None }
     }
 
-    /// A database of that engine; none, and a message, where there is no server.
+    /// A database of that kind. `None`, with a message, if there is no server.
     pub fn of(engine: Engine) -> Option<Self> {
         let mut sandbox = Self::new();
         if engine == Engine::Postgres {
@@ -74,7 +74,7 @@ impl Sandbox {
         self.location.path().expect("the database is a file").to_owned()
     }
 
-    /// A queue of a worker that is alive: this process.
+    /// A queue whose worker is this process.
     pub async fn open(&self) -> Queue {
         self.open_as(&Worker::this_process(1, "test", "provenance")).await
     }
@@ -93,13 +93,13 @@ impl Sandbox {
         queue
     }
 
-    /// A connection past the queue, to look at the tables or to spoil them.
+    /// A connection that bypasses the queue, to read or to damage the tables.
     pub async fn raw(&self) -> SqliteConnection {
         let options = SqliteConnectOptions::new().filename(self.database()).create_if_missing(true);
         options.connect().await.unwrap()
     }
 
-    /// Runs a statement past the queue.
+    /// Runs a statement that bypasses the queue.
     pub async fn run(&self, statement: &'static str) {
         match &self.server {
             None => drop(sqlx::query(statement).execute(&mut self.raw().await).await.unwrap()),
@@ -107,7 +107,7 @@ impl Sandbox {
         }
     }
 
-    /// The number that a statement past the queue gives.
+    /// The number that a statement returns, bypassing the queue.
     pub async fn number(&self, statement: &'static str) -> i64 {
         match &self.server {
             None => sqlx::query_scalar(statement).fetch_one(&mut self.raw().await).await.unwrap(),
@@ -144,19 +144,19 @@ pub fn counts(pending: u64, running: u64, done: u64, failed: u64) -> Counts {
     Counts { pending, running, done, failed, cancelled: 0 }
 }
 
-/// Claims without finishing anything.
+/// Claims jobs without storing outcomes.
 pub async fn claim(queue: &mut Queue, scope: Scope, limit: usize) -> Vec<ClaimedJob> {
     let claim = Claim { scope, limit, batch: None };
     queue.exchange(&[], &[claim]).await.unwrap().claimed.remove(0)
 }
 
-/// Finishes one job without claiming; whether that was accepted.
+/// Stores one outcome without claiming. Returns whether it was accepted.
 pub async fn finish(queue: &mut Queue, key: &str, attempt: u32, outcome: FinishedOutcome) -> bool {
     let finished = Finished { key: key.into(), attempt, outcome, wall_s: 2.5 };
     store(queue, finished).await.refused.is_empty()
 }
 
-/// Stores one end without claiming.
+/// Stores one outcome without claiming.
 pub async fn store(queue: &mut Queue, finished: Finished) -> Exchanged {
     queue.exchange(&[finished], &[]).await.unwrap()
 }
@@ -170,7 +170,7 @@ pub fn dead_worker() -> Worker {
     worker
 }
 
-/// A worker of which nothing is known here.
+/// A worker on another machine, whose process is not visible from here.
 pub fn foreign_worker() -> Worker {
     Worker { host: "elsewhere".into(), ..Worker::this_process(1, "test", "provenance") }
 }

@@ -61,8 +61,8 @@ impl Connection {
         Ok(time(clock, database_ms))
     }
 
-    /// Whether the connection was lost and replaced since the last [`Self::clear_doubt`]. Then it is not known whether the
-    /// last transaction was committed.
+    /// Whether the connection was lost and replaced since the last [`Self::clear_doubt`]. Then it is not known whether
+    /// the last transaction was committed.
     pub fn is_in_doubt(&self) -> bool {
         match self {
             Self::Sqlite(_) => false,

@@ -12,8 +12,8 @@ use super::statement::Statement;
 use crate::queue::error::QueueError;
 use crate::queue::sqlite;
 
-/// The types that rows of both databases can be read as: tuples of `i64`, `f64`, `String`, `Vec<u8>` and options of these.
-/// (PostgreSQL has no unsigned integers.)
+/// The types that rows of both databases can be read as: tuples of `i64`, `f64`, `String`, `Vec<u8>` and options of
+/// these. (PostgreSQL has no unsigned integers.)
 #[cfg(feature = "postgres")]
 pub trait Columns: Send + Unpin + for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRow> {}
 #[cfg(feature = "postgres")]

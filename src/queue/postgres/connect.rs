@@ -49,13 +49,13 @@ pub(super) async fn connect(
         let mut connection = options.connect().await?;
         let silence_ms = SILENCE_LIMIT.as_millis();
         let silence_s = SILENCE_LIMIT.as_secs();
-        // The timeouts for silent clients: without them, the session of a client that is gone would hold its locks until
-        // the operating system gives the connection up, which takes a quarter of an hour.
+        // The timeouts for silent clients: without them, the session of a client that is gone would hold its locks
+        // until the operating system gives the connection up, which takes a quarter of an hour.
         //
         // The planner settings: every statement here is written for its indexes and reads a few entries of them. The
-        // planner does not know that. It has no statistics of jobs that were submitted a moment ago, and the statistics of
-        // a busy queue are out of date. It would then sort all pending jobs for each claim (measured: 80 ms instead of 3).
-        // JIT compilation would take longer than the statements.
+        // planner does not know that. It has no statistics of jobs that were submitted a moment ago, and the statistics
+        // of a busy queue are out of date. It would then sort all pending jobs for each claim (measured: 80 ms instead
+        // of 3). JIT compilation would take longer than the statements.
         let set = format!(
             "SET search_path TO {schema};
              SET client_min_messages TO warning;
@@ -87,13 +87,11 @@ pub(super) async fn connect(
         let (pid, started, is_encrypted) = sqlx::query_as(backend).fetch_one(&mut connection).await?;
         Ok((connection, Backend { pid, started, is_encrypted }))
     };
-    match tokio::time::timeout(CONNECT_TIMEOUT, connecting).await {
-        Ok(connected) => connected.map_err(|error| connect_error(options, error)),
-        Err(_) => {
-            let reason = format!("no connection within {} s", CONNECT_TIMEOUT.as_secs());
-            Err(ConnectError::Other(QueueError::Unreachable(reason)))
-        }
-    }
+    let Ok(connected) = tokio::time::timeout(CONNECT_TIMEOUT, connecting).await else {
+        let reason = format!("no connection within {} s", CONNECT_TIMEOUT.as_secs());
+        return Err(ConnectError::Other(QueueError::Unreachable(reason)));
+    };
+    connected.map_err(|error| connect_error(options, error))
 }
 
 /// sqlx reports missing and invalid certificate files as I/O errors of the connection.

@@ -4,8 +4,8 @@ use sqlx::postgres::PgDatabaseError;
 
 use crate::queue::error::QueueError;
 
-/// SQLSTATE codes after which the connection or the whole server is gone: an administrator ended it, it crashed, it is not
-/// ready yet, or the client was silent in the middle of a transaction.
+/// SQLSTATE codes after which the connection or the whole server is gone: an administrator ended it, it crashed, it is
+/// not ready yet, or the client was silent in the middle of a transaction.
 const GONE: [&str; 5] = ["57P01", "57P02", "57P03", "57P05", "25P03"];
 
 /// The server has as many connections as it allows.

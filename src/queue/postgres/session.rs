@@ -15,9 +15,9 @@ const LONG_ANSWER_TIMEOUT: Duration = Duration::from_mins(20);
 /// The key of the advisory lock that writing transactions take, shared or exclusive: "trib" in ASCII, and a number.
 const WRITE_LOCK: i64 = 0x7472_6962_0000_0001;
 
-/// The largest message, in bytes, that fits into one TLS record of 16 kB with its overhead. sqlx sends one record at a time
-/// and does not set TCP_NODELAY, so a second record waits until the server has acknowledged the first one. (Measured: an
-/// exchange of 24 kB took 48 ms instead of 5.)
+/// The largest message, in bytes, that fits into one TLS record of 16 kB with its overhead. sqlx sends one record at a
+/// time and does not set TCP_NODELAY, so a second record waits until the server has acknowledged the first one.
+/// (Measured: an exchange of 24 kB took 48 ms instead of 5.)
 const TLS_RECORD_BYTES: usize = 16_000;
 
 /// A session on the server.
@@ -30,8 +30,8 @@ pub(in crate::queue) struct Session {
     backend: Backend,
     is_in_transaction: bool,
     answer_timeout: Duration,
-    /// Whether the session has replaced a lost one. It is then not known whether the last transaction of the lost session
-    /// was committed.
+    /// Whether the session has replaced a lost one. It is then not known whether the last transaction of the lost
+    /// session was committed.
     pub is_in_doubt: bool,
 }
 
@@ -93,8 +93,8 @@ impl Session {
             Access::Exclusive => ("pg_advisory_xact_lock", LONG_ANSWER_TIMEOUT),
             Access::Shared => ("pg_advisory_xact_lock_shared", self.settings.busy_timeout + ANSWER_TIMEOUT),
         };
-        // One message with separate statements: a statement sees the rows as they were when it began, so the lock must be
-        // held before the first real statement begins.
+        // One message with separate statements: a statement sees the rows as they were when it began, so the lock must
+        // be held before the first real statement begins.
         let timeout_ms = timeout.as_millis();
         let begin =
             format!("BEGIN; SET LOCAL statement_timeout TO {timeout_ms}; SELECT {lock}({WRITE_LOCK}); {NOW}");
@@ -116,7 +116,8 @@ impl Session {
     }
 
     pub async fn roll_back(&mut self) {
-        // Without a connection there is nothing to roll back: the server has done it, or does it when it notices the loss.
+        // Without a connection there is nothing to roll back: the server has done it, or does it when it notices the
+        // loss.
         if self.connection.is_none() {
             return self.leave_transaction();
         }
@@ -143,7 +144,8 @@ impl Session {
             format!("SET statement_timeout TO {statement_ms}"),
         ];
         let mut done = Ok(());
-        // In separate messages: several statements in one message are one transaction, and VACUUM is not allowed in one.
+        // In separate messages: several statements in one message are one transaction, and VACUUM is not allowed in
+        // one.
         for statement in vacuum {
             let statement = sqlx::AssertSqlSafe(statement);
             let ran = self.request(async |connection| sqlx::raw_sql(statement).execute(connection).await);

@@ -31,8 +31,8 @@ pub(super) fn network_kind(folder: &Path) -> Option<String> {
     kind_of(&mounts, folder).filter(|kind| NETWORK.contains(kind)).map(str::to_owned)
 }
 
-/// The type of the file system that contains `folder`: that of the deepest mount point above it. If several file systems
-/// are mounted on the same point, the last one counts.
+/// The type of the file system that contains `folder`: that of the deepest mount point above it. If several file
+/// systems are mounted on the same point, the last one counts.
 fn kind_of<'a>(mounts: &'a str, folder: &Path) -> Option<&'a str> {
     mounts
         .lines()

@@ -1,12 +1,13 @@
-//! File locks of the operating system, on files beside the database. A lock ends with the process that holds it, however
-//! the process ends, so no stale locks remain. The empty file of the opening lock stays.
+//! File locks of the operating system, on files beside the database. A lock ends with the process that holds it,
+//! however the process ends, so no stale locks remain. The empty file of the opening lock stays.
 
 use std::fs::{File, OpenOptions, TryLockError};
 use std::path::{Path, PathBuf};
 
 use crate::queue::error::QueueError;
 
-/// The lock that a process with the first schema held while it ran jobs. Whoever holds it knows that no such process runs.
+/// The lock that a process with the first schema held while it ran jobs. Whoever holds it knows that no such process
+/// runs.
 pub(super) struct FormerWorkerLock {
     path: PathBuf,
     _file: File,
@@ -36,8 +37,8 @@ impl FormerWorkerLock {
 /// Waits until no other process is opening the database. Others then wait until the returned file is closed.
 pub(super) async fn opening_lock(database: &Path) -> Result<File, QueueError> {
     let (path, file) = open_beside(database, ".lock")?;
-    // If two tasks of one single-threaded runtime open the database, waiting on the runtime's thread would block the task
-    // that holds the lock.
+    // If two tasks of one single-threaded runtime open the database, waiting on the runtime's thread would block the
+    // task that holds the lock.
     let locked = tokio::task::spawn_blocking(move || file.lock().map(|()| file)).await;
     locked.expect("locking a file does not panic").map_err(|source| QueueError::File { path, source })
 }

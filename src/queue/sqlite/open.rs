@@ -10,8 +10,8 @@ use super::{filesystem, lock, schema};
 use crate::queue::error::QueueError;
 use crate::queue::settings::Settings;
 
-/// The oldest supported `SQLite`. Earlier ones can lose data when one connection writes to the log and another one makes a
-/// checkpoint at the same time.
+/// The oldest supported `SQLite`. Earlier ones can lose data when one connection writes to the log and another one
+/// makes a checkpoint at the same time.
 const OLDEST_SQLITE: [u32; 3] = [3, 51, 3];
 
 /// The size of the page cache: 64 MiB. A negative number means KiB instead of pages.
@@ -27,8 +27,8 @@ const ROWS_IN_FLIGHT: usize = 1_000;
 pub(in crate::queue) async fn open(path: &Path, settings: Settings) -> Result<SqliteConnection, QueueError> {
     let path = resolve(path)?;
     check_path(&path)?;
-    // If two processes create the file, switch it to a write-ahead log or create the tables at the same time, one of them
-    // fails with "database is locked". The busy timeout does not help.
+    // If two processes create the file, switch it to a write-ahead log or create the tables at the same time, one of
+    // them fails with "database is locked". The busy timeout does not help.
     let opening = lock::opening_lock(&path).await?;
     let mut connection = connect(&path, options(&path, settings).create_if_missing(true)).await?;
     check_library(&mut connection).await?;
@@ -40,7 +40,8 @@ pub(in crate::queue) async fn open(path: &Path, settings: Settings) -> Result<Sq
     Ok(connection)
 }
 
-/// Opens the database at `path`, which must exist, for reading. This also works if the file and its folder are read-only.
+/// Opens the database at `path`, which must exist, for reading. This also works if the file and its folder are
+/// read-only.
 pub(in crate::queue) async fn open_to_read(
     path: &Path,
     settings: Settings,
@@ -55,8 +56,8 @@ pub(in crate::queue) async fn open_to_read(
         name.push(suffix);
         Path::new(&name).exists()
     };
-    // Without a log, no process is writing. SQLite is then told that the file is immutable, because otherwise it would try
-    // to create the shared memory for a log.
+    // Without a log, no process is writing. SQLite is then told that the file is immutable, because otherwise it would
+    // try to create the shared memory for a log.
     let has_log = beside("-wal");
     if has_log && !beside("-shm") {
         return Err(QueueError::UnreadableLog { path });
@@ -90,8 +91,8 @@ pub(in crate::queue) fn is_writable(path: &Path) -> bool {
     !file.is_err_and(|error| refused(&error)) && lock::can_be_taken(&path)
 }
 
-/// The canonical path of a database that may not exist yet. Lock files are beside the database, and a symbolic link to the
-/// database must lead to the same lock files.
+/// The canonical path of a database that may not exist yet. Lock files are beside the database, and a symbolic link to
+/// the database must lead to the same lock files.
 pub(in crate::queue) fn resolve(path: &Path) -> Result<PathBuf, QueueError> {
     if let Ok(existing) = path.canonicalize() {
         return Ok(existing);
@@ -113,14 +114,14 @@ fn options(path: &Path, settings: Settings) -> SqliteConnectOptions {
         // With a write-ahead log, a power cut can lose the last transactions, but it cannot damage the database. Lost
         // results are simulated again.
         .synchronous(SqliteSynchronous::Normal)
-        // An exchange changes some pages of many tables. With fewer checkpoints, a page that changes often is copied from
-        // the log into the database once.
+        // An exchange changes some pages of many tables. With fewer checkpoints, a page that changes often is copied
+        // from the log into the database once.
         .pragma("cache_size", CACHE_KIB)
         .pragma("wal_autocheckpoint", LOG_PAGES)
         // Statement journals in a file would take a fifth of the time of an exchange.
         .pragma("temp_store", "MEMORY")
-        // A separate thread reads the rows. With a small buffer, the two threads would wake each other so often that this
-        // takes more time than reading.
+        // A separate thread reads the rows. With a small buffer, the two threads would wake each other so often that
+        // this takes more time than reading.
         .row_buffer_size(ROWS_IN_FLIGHT)
 }
 

@@ -13,8 +13,8 @@ use crate::queue::error::QueueError;
 /// The application id in the file's header, set by the first migration: "trib" in ASCII.
 const APPLICATION_ID: i64 = 0x7472_6962;
 
-/// A database without an application id may only be used if it has no tables. The table of migrations does not count: it
-/// is created before the first migration, and the program may have been stopped in between.
+/// A database without an application id may only be used if it has no tables. The table of migrations does not count:
+/// it is created before the first migration, and the program may have been stopped in between.
 const OTHER_TABLES: &str = "
     SELECT COUNT(*) FROM sqlite_schema
     WHERE type = 'table' AND name <> '_sqlx_migrations' AND name NOT LIKE 'sqlite\\_%' ESCAPE '\\'";

@@ -5,8 +5,8 @@ use crate::queue::error::QueueError;
 
 /// Begins a transaction with the write lock: one that began by reading could not be promoted while another one writes.
 ///
-/// sqlx's own transactions are not used: when a disk is full, `SQLite` rolls the transaction back by itself. sqlx does not
-/// notice that, and it then never begins another transaction on that connection.
+/// sqlx's own transactions are not used: when a disk is full, `SQLite` rolls the transaction back by itself. sqlx does
+/// not notice that, and it then never begins another transaction on that connection.
 pub(in crate::queue) async fn begin(connection: &mut SqliteConnection) -> Result<(), QueueError> {
     run(connection, "BEGIN IMMEDIATE").await
 }

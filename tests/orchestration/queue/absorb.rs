@@ -1,23 +1,24 @@
-//! From one database into another.
+//! Copying studies from one database into another.
 
 use tribosweep::queue::{Absorbed, JobState, QueueError, Scope, Shard, StudyRow};
 
 use super::ENGINE;
 use crate::support::{Sandbox, claim, counts, done, failed, finish, job, labelled, of, study};
 
-/// What a report shows of rows, without how often their jobs were started.
-type End<'a> = (u64, &'a str, JobState, Option<&'a str>, Option<&'a str>);
+/// The data of a row without the number of attempts: ordinal, key, state, record and error.
+type Outcome<'a> = (u64, &'a str, JobState, Option<&'a str>, Option<&'a str>);
 
-fn ends(rows: &[StudyRow]) -> Vec<End<'_>> {
-    let end = |row| -> End<'_> {
+fn outcomes(rows: &[StudyRow]) -> Vec<Outcome<'_>> {
+    let outcome = |row| -> Outcome<'_> {
         let &StudyRow { ordinal, ref key, state, ref record, ref error, .. } = row;
         (ordinal, key.as_str(), state, record.as_deref(), error.as_deref())
     };
-    rows.iter().map(end).collect()
+    rows.iter().map(outcome).collect()
 }
 
-/// Protects: a study that is copied, into either kind of database and back, is the same: rows, records, errors, times to
-/// the last bit, attempts, notes, priorities, checkpoints. What runs there waits here. Doing it again changes nothing.
+/// Protects: a study that is copied into either database and back is identical: rows, records, errors, times to the
+/// last bit, attempts, notes, priorities and checkpoints. Running jobs are pending in the copy. A repeated copy changes
+/// nothing.
 #[tokio::test]
 async fn a_copy_is_the_same() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -60,7 +61,7 @@ async fn a_copy_is_the_same() {
                 (there.state, there.studies) = (here.state, here.studies.clone());
                 assert_eq!(here, there);
             }
-            // Nothing comes of it a second time.
+            // A repeated copy adds nothing.
             let absorbed = target.absorb(&mut from, Some("a")).await.unwrap();
             assert_eq!((absorbed.added, absorbed.ended), (0, 0));
         }
@@ -71,8 +72,8 @@ async fn a_copy_is_the_same() {
     assert_eq!(kept.payload, format!("payload of {}", kept.key));
 }
 
-/// Protects: shards are disjoint and together the whole study in its order, however many there are; merged, each job has
-/// the end that one of them found.
+/// Protects: the shards of a study are disjoint, and together they are the whole study in its order. After a merge,
+/// each job has the result from its shard.
 #[tokio::test]
 async fn shards_make_up_the_whole() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -85,7 +86,7 @@ async fn shards_make_up_the_whole() {
         assert_eq!((submitted.rows, submitted.added), ([3, 2, 2][index as usize], [3, 2, 2][index as usize]));
         let rows = queue.rows("a").await.unwrap();
         assert!(rows.iter().all(|row| row.ordinal % 3 == index), "{rows:?}");
-        // Submitted again, it is the same shard.
+        // Submitting the shard again does not change it.
         assert_eq!(queue.submit_shard(&whole, Shard { index, of: 3 }).await.unwrap().added, 0);
         assert_eq!(queue.rows("a").await.unwrap(), rows);
         for job in claim(&mut queue, Scope::All, 9).await {
@@ -102,9 +103,10 @@ async fn shards_make_up_the_whole() {
     }
 }
 
-/// Protects: the better end stays, whichever database it is in, and nothing that runs here is touched.
+/// Protects: the better of two outcomes is kept, whichever database it is in, and jobs that are running here do not
+/// change.
 #[tokio::test]
-async fn the_better_end_stays() {
+async fn the_better_outcome_is_kept() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let source = Sandbox::new();
     let (mut here, mut there) = (sandbox.open().await, source.open().await);
@@ -139,14 +141,17 @@ async fn the_better_end_stays() {
         (4, keys[4], JobState::Done, Some("here"), None),
         (5, keys[5], JobState::Done, Some("there"), None),
     ];
-    assert_eq!(ends(&rows), expected);
+    assert_eq!(outcomes(&rows), expected);
     assert_eq!(rows[1].attempt, 2, "the failed attempt here came before");
-    assert!(finish(&mut here, keys[3], 1, done("here")).await, "it was this worker's all the time");
+    assert!(
+        finish(&mut here, keys[3], 1, done("here")).await,
+        "the job belonged to this worker all the time"
+    );
 }
 
-/// Protects: whoever copies a study asks for its jobs: those that were cancelled here are to be run again.
+/// Protects: a copied study requests its jobs: jobs that were cancelled here become pending.
 #[tokio::test]
-async fn a_copy_asks_for_its_jobs() {
+async fn a_copy_requests_its_jobs() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let source = Sandbox::new();
     let (mut here, mut there) = (sandbox.open().await, source.open().await);
@@ -158,9 +163,9 @@ async fn a_copy_asks_for_its_jobs() {
     assert_eq!(claim(&mut here, of("a"), 9).await.len(), 2);
 }
 
-/// Protects: a study of the same name that is another one is refused before anything is written.
+/// Protects: a different study of the same name is refused before anything is written.
 #[tokio::test]
-async fn another_study_of_the_name_is_refused() {
+async fn a_different_study_of_the_same_name_is_refused() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let source = Sandbox::new();
     let (mut here, mut there) = (sandbox.open().await, source.open().await);

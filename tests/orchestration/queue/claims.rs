@@ -1,4 +1,4 @@
-//! Which jobs a claim takes: priorities, batches, studies.
+//! Which jobs a claim takes: priorities, batches, studies; cancelling, retrying and removing.
 
 use std::collections::BTreeSet;
 
@@ -31,8 +31,8 @@ fn all(limit: usize, batch: Option<&str>) -> Claim {
     Claim { scope: Scope::All, limit, batch: batch.map(str::to_owned) }
 }
 
-/// Protects: a claim takes jobs of one batch, that of the first job in order unless one is named; several claims of
-/// one exchange follow each other, each with its answer.
+/// Protects: a claim takes jobs of one batch: the named one, or else that of the first job in order. Several claims of
+/// one exchange are served in order, and each has its own answer.
 #[tokio::test]
 async fn a_claim_is_of_one_batch() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -52,11 +52,11 @@ async fn a_claim_is_of_one_batch() {
         [vec!["b1", "b3"], vec![], vec!["a2", "a1"], vec!["b2"]]
     );
     assert!(claimed[2].iter().all(|job| job.batch == "a"));
-    assert!(exchange(&mut queue, &[all(8, Some("b"))]).await[0].is_empty(), "another batch is not asked for");
+    assert!(exchange(&mut queue, &[all(8, Some("b"))]).await[0].is_empty(), "other batches are not claimed");
     assert_eq!(keys(&exchange(&mut queue, &[all(8, None)]).await[0]), ["c1"]);
 }
 
-/// Protects: the same within a study, whose jobs other studies may have in other company.
+/// Protects: the same within a study, some of whose jobs belong to other studies too.
 #[tokio::test]
 async fn a_claim_of_a_study_is_of_one_batch() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -72,8 +72,8 @@ async fn a_claim_of_a_study_is_of_one_batch() {
     assert_eq!(keys(&exchange(&mut queue, &[named]).await[0]), ["b9"]);
 }
 
-/// Protects: priority goes before cost, over studies; a submission with a priority changes that of known jobs, one
-/// without leaves it.
+/// Protects: priority takes precedence over cost, across studies. A submission with a priority changes that of existing
+/// jobs; a submission without one does not.
 #[tokio::test]
 async fn a_higher_priority_goes_first() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -92,8 +92,8 @@ async fn a_higher_priority_goes_first() {
     assert_eq!(keys(&claim(&mut queue, Scope::All, 9).await), ["u", "x", "y"]);
 }
 
-/// Protects: whoever asks for more of a batch gets none while a job of a higher priority waits elsewhere, so that it is
-/// not kept waiting until the batch is done.
+/// Protects: a claim of a named batch gets no jobs while a job of another batch with a higher priority is pending. That
+/// job therefore need not wait until the batch is done.
 #[tokio::test]
 async fn a_higher_priority_ends_a_batch() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -107,7 +107,8 @@ async fn a_higher_priority_ends_a_batch() {
     assert_eq!(keys(&exchange(&mut queue, &more).await[0]), ["y"]);
 }
 
-/// Protects: a batch is the program's to name, and another version's name replaces that of pending jobs.
+/// Protects: a submission replaces the batch names of pending jobs, because another version of the program may name
+/// batches differently.
 #[tokio::test]
 async fn a_batch_is_renamed_by_a_submission() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -119,10 +120,10 @@ async fn a_batch_is_renamed_by_a_submission() {
     assert_eq!(exchange(&mut queue, &[all(9, Some("b"))]).await[0].len(), 2);
 }
 
-/// Protects: cancelling takes the pending jobs that nobody else asks for and no others; two studies that share a job
-/// and are both cancelled do not keep it for each other; submitting or retrying asks again.
+/// Protects: cancelling a study cancels exactly the pending jobs that no other study requests. If two studies share a
+/// job and both are cancelled, the job is cancelled. Submitting or retrying makes jobs pending again.
 #[tokio::test]
-async fn cancelling_and_asking_again() {
+async fn cancelling_and_requesting_again() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["run", "done", "own", "shared"])).await.unwrap();
@@ -133,19 +134,19 @@ async fn cancelling_and_asking_again() {
     assert_eq!((cancelled.cancelled, cancelled.shared, cancelled.running), (1, 1, 1));
     let left = Counts { cancelled: 1, ..counts(1, 1, 1, 0) };
     assert_eq!(queue.counts(&of("a")).await.unwrap(), left);
-    assert!(finish(&mut queue, "run", 1, done("paid for")).await, "running jobs go on");
+    assert!(finish(&mut queue, "run", 1, done("r")).await, "running jobs continue");
 
-    assert_eq!(queue.cancel("b").await.unwrap().cancelled, 1, "a asks for it no more");
+    assert_eq!(queue.cancel("b").await.unwrap().cancelled, 1, "study a does not request it any more");
     assert!(claim(&mut queue, Scope::All, 9).await.is_empty());
     assert_eq!(queue.retry("b", Retry::Failed).await.unwrap(), Retried { failed: 0, cancelled: 0 });
     assert_eq!(queue.retry("b", Retry::All).await.unwrap(), Retried { failed: 0, cancelled: 1 });
     assert_eq!(keys(&claim(&mut queue, Scope::All, 9).await), ["shared"]);
     queue.submit(&study("c", &["own"])).await.unwrap();
-    assert_eq!(keys(&claim(&mut queue, Scope::All, 9).await), ["own"], "c has never been cancelled");
+    assert_eq!(keys(&claim(&mut queue, Scope::All, 9).await), ["own"], "study c is not cancelled");
 }
 
-/// Protects: a failed job that is retried is pending without a trace of its failure in what is reported, its crash
-/// count begins anew, and its next end is what counts.
+/// Protects: a failed job that is retried is pending. Its row no longer shows the failure, its crash count is reset,
+/// and the outcome of the next attempt counts.
 #[tokio::test]
 async fn a_failed_job_is_retried() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -163,8 +164,8 @@ async fn a_failed_job_is_retried() {
     assert_eq!(queue.counts(&of("a")).await.unwrap(), counts(0, 0, 2, 0));
 }
 
-/// Protects: a removed study takes nothing with it that another one has; its results are there until garbage is
-/// collected, which drops what nobody refers to and nothing else.
+/// Protects: removing a study removes nothing that another study has. Results stay until garbage collection, which
+/// deletes exactly the jobs that no study refers to.
 #[tokio::test]
 async fn removing_and_collecting() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -184,7 +185,7 @@ async fn removing_and_collecting() {
     queue.remove("again").await.unwrap();
 
     let garbage = queue.collect_garbage().await.unwrap();
-    assert_eq!((garbage.jobs, garbage.results, garbage.workers), (2, 1, 1), "not what runs");
+    assert_eq!((garbage.jobs, garbage.results, garbage.workers), (2, 1, 1), "running jobs are kept");
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(1, 1, 0, 0));
     assert!(finish(&mut queue, "run", 1, FinishedOutcome::Released).await);
     queue.cancel("b").await.unwrap();
@@ -192,12 +193,12 @@ async fn removing_and_collecting() {
     assert_eq!(queue.counts(&of("b")).await.unwrap(), Counts { cancelled: 1, ..counts(0, 0, 0, 0) });
 }
 
-/// Protects: whatever is done to jobs and studies, in whatever order, the pending jobs that a claim of a study finds
-/// are those that it has. The order is drawn, and the same in every run.
+/// Protects: after any sequence of operations, the table of a study's pending jobs, which claims use, agrees with the
+/// jobs. The sequence is random and the same in every run.
 #[tokio::test]
 async fn a_studys_pending_jobs_are_kept() {
     const KEYS: [&str; 6] = ["p", "q", "r", "s", "t", "u"];
-    // PENDING is what there is and KEPT what a claim looks at.
+    // PENDING counts the pending jobs of all studies, KEPT the rows of the table that claims use.
     const PENDING: &str = "
         SELECT COUNT(*) FROM (
             SELECT DISTINCT m.study_id, j.id FROM study_jobs AS m JOIN jobs AS j ON j.id = m.job_id
@@ -254,5 +255,5 @@ async fn a_studys_pending_jobs_are_kept() {
         assert_eq!(sandbox.number(IN_BOTH).await, pending);
         seen.insert(pending);
     }
-    assert!(seen.len() > 5, "the order drawn does too little: {seen:?}");
+    assert!(seen.len() > 5, "the random sequence varies too little: {seen:?}");
 }

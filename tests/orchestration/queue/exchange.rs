@@ -8,10 +8,10 @@ use tribosweep::queue::{Claim, Finished, FinishedOutcome, JobState, NewStudy, Qu
 use super::ENGINE;
 use crate::support::{Sandbox, block_on, claim, counts, done, failed, finish, job, keys, of, study};
 
-/// Protects: dear jobs come first, jobs of equal cost in the order of submission, and the payload, the
-/// attempt and the cost come with them.
+/// Protects: expensive jobs come first, and jobs of equal cost in the order of submission. A claimed job comes with its
+/// payload, attempt and cost.
 #[tokio::test]
-async fn the_dearest_job_comes_first() {
+async fn the_most_expensive_job_comes_first() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let jobs = [("e", 1.0), ("d", 1.0), ("c", 30.0), ("b", 4.0), ("a", 4.0)];
@@ -29,21 +29,21 @@ async fn the_dearest_job_comes_first() {
     assert!(claim(&mut queue, Scope::All, 9).await.is_empty());
 }
 
-/// Protects: work on one study takes nothing from another, however dear.
+/// Protects: a claim of one study takes no job of another one, however expensive it is.
 #[tokio::test]
 async fn a_claim_keeps_to_its_study() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
-    let mut dear = study("dear", &["x", "shared"]);
-    dear.jobs[0].cost = 99.0;
-    queue.submit(&dear).await.unwrap();
+    let mut expensive = study("expensive", &["x", "shared"]);
+    expensive.jobs[0].cost = 99.0;
+    queue.submit(&expensive).await.unwrap();
     queue.submit(&study("cheap", &["y", "shared"])).await.unwrap();
     assert_eq!(keys(&claim(&mut queue, of("cheap"), 9).await), ["shared", "y"]);
-    assert_eq!(queue.counts(&of("dear")).await.unwrap(), counts(1, 1, 0, 0));
+    assert_eq!(queue.counts(&of("expensive")).await.unwrap(), counts(1, 1, 0, 0));
 }
 
-/// Protects: with several workers on one database at once, every job is claimed exactly once and every
-/// finish is accepted; no transaction meets "database is locked".
+/// Protects: with several concurrent workers on one database, every job is claimed exactly once and every outcome is
+/// accepted. No transaction fails with "database is locked".
 #[test]
 fn every_job_is_claimed_exactly_once() {
     const JOBS: usize = 300;
@@ -52,8 +52,8 @@ fn every_job_is_claimed_exactly_once() {
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     block_on(async { sandbox.open().await.submit(&study("a", &names)).await.unwrap() });
 
-    // A claim in a study reads before it writes, which is what needs a transaction that locks at its start;
-    // so claiming and finishing are exchanges of their own here.
+    // A claim of a study reads before it writes, so its transaction must lock at the start. To test this, claims and
+    // outcomes are separate exchanges here.
     let work = async || {
         let mut queue = sandbox.open().await;
         let mut mine = Vec::new();
@@ -62,9 +62,9 @@ fn every_job_is_claimed_exactly_once() {
             if claimed.is_empty() {
                 return mine;
             }
-            let end = |key| Finished { key, attempt: 1, outcome: done("r"), wall_s: 0.1 };
+            let outcome_of = |key| Finished { key, attempt: 1, outcome: done("r"), wall_s: 0.1 };
             mine.extend(claimed.iter().map(|job| job.key.clone()));
-            let finished: Vec<_> = claimed.into_iter().map(|job| end(job.key)).collect();
+            let finished: Vec<_> = claimed.into_iter().map(|job| outcome_of(job.key)).collect();
             let exchanged = queue.exchange(&finished, &[]).await.unwrap();
             assert!(exchanged.refused.is_empty(), "{:?}", exchanged.refused);
         }
@@ -79,10 +79,10 @@ fn every_job_is_claimed_exactly_once() {
     assert_eq!(all, counts(0, 0, JOBS as u64, 0));
 }
 
-/// Protects: a late finish of an attempt that was given up changes nothing, before and after the later
-/// attempt ends, and its caller is told.
+/// Protects: a late outcome of an attempt that was given back is refused and changes nothing, before and after the next
+/// attempt ends.
 #[tokio::test]
-async fn a_late_finish_is_refused() {
+async fn a_late_outcome_is_refused() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x"])).await.unwrap();
@@ -106,23 +106,24 @@ async fn a_late_finish_is_refused() {
     assert_eq!(sandbox.number("SELECT COUNT(*) FROM results").await, 1);
 }
 
-/// Protects: in a batch, a refused finish is named and stops none of the others.
+/// Protects: if one of several outcomes is refused, its key is returned and the others are stored.
 #[tokio::test]
-async fn a_refused_finish_stops_no_other() {
+async fn a_refused_outcome_stops_no_other() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     claim(&mut queue, Scope::All, 2).await;
-    let end = |key: &str, attempt| Finished { key: key.into(), attempt, outcome: done("r"), wall_s: 0.1 };
-    let batch = [end("x", 7), end("nobody's", 1), end("y", 1)];
+    let finished =
+        |key: &str, attempt| Finished { key: key.into(), attempt, outcome: done("r"), wall_s: 0.1 };
+    let batch = [finished("x", 7), finished("nobody's", 1), finished("y", 1)];
     let exchanged = queue.exchange(&batch, &[]).await.unwrap();
     assert_eq!(exchanged.refused, ["x", "nobody's"]);
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(0, 1, 1, 0));
 }
 
-/// Protects: a failed job keeps its error, is not claimed again, and the rest of the sweep goes on.
+/// Protects: a failed job keeps its error and is not claimed again, and the other jobs of the sweep continue.
 #[tokio::test]
-async fn a_failure_is_kept_and_the_sweep_goes_on() {
+async fn a_failure_is_kept_and_the_sweep_continues() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
@@ -137,15 +138,16 @@ async fn a_failure_is_kept_and_the_sweep_goes_on() {
     assert_eq!((row.error.as_deref(), row.record, row.wall_s), (Some("diverged at 3 ms"), None, Some(0.5)));
 }
 
-/// Protects: an exchange is all or nothing: a claim that cannot be served leaves the finish to be repeated.
+/// Protects: an exchange is atomic: if a claim fails, no outcome is stored, and the caller can pass it again.
 #[tokio::test]
 async fn an_exchange_is_all_or_nothing() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
-    let end = Finished { key: "x".into(), attempt: 1, outcome: done("r"), wall_s: 0.1 };
-    let error = queue.exchange(&[end], &[Claim { scope: of("b"), limit: 1, batch: None }]).await.unwrap_err();
+    let finished = Finished { key: "x".into(), attempt: 1, outcome: done("r"), wall_s: 0.1 };
+    let error =
+        queue.exchange(&[finished], &[Claim { scope: of("b"), limit: 1, batch: None }]).await.unwrap_err();
     assert!(matches!(error, QueueError::UnknownStudy { .. }), "{error:?}");
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(0, 1, 0, 0));
     assert!(finish(&mut queue, "x", 1, done("r")).await);

@@ -1,4 +1,4 @@
-//! What must hold of every database, in a file.
+//! The tests that must pass with both databases, with a `SQLite` file.
 
 const ENGINE: crate::support::Engine = crate::support::Engine::Sqlite;
 

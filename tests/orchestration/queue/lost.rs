@@ -1,5 +1,5 @@
-//! Connections that are lost in the middle of an exchange. Between the queue and the server there is a relay that cuts
-//! them where the test says.
+//! Connections that are lost in the middle of an exchange. A relay between the queue and the server cuts them where the
+//! test demands.
 
 use std::io::{Read, Write};
 use std::net::{Shutdown, TcpListener, TcpStream};
@@ -10,19 +10,19 @@ use tribosweep::queue::{Claim, Clock, Finished, Location, Queue, QueueError, Sco
 
 use crate::support::{Engine, Sandbox, counts, done, foreign_worker, keys, study};
 
-/// When the relay cuts, once.
+/// When the relay cuts the connection, once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Cut {
     Never,
-    /// Instead of handing a COMMIT on.
+    /// Before it forwards a COMMIT.
     BeforeCommit,
-    /// Instead of handing the answer to a COMMIT on.
+    /// After it has forwarded a COMMIT, before it forwards the answer.
     AfterCommit,
-    /// Whatever comes next from the client.
+    /// At the next message of the client.
     Now,
 }
 
-/// A relay to the server; gives its port.
+/// Starts a relay to the server. Returns its port.
 fn relay(server: String, cut: Arc<Mutex<Cut>>) -> u16 {
     let listener = TcpListener::bind("127.0.0.1:0").unwrap();
     let port = listener.local_addr().unwrap().port();
@@ -30,13 +30,13 @@ fn relay(server: String, cut: Arc<Mutex<Cut>>) -> u16 {
         for client in listener.incoming() {
             let (client, server) = (client.unwrap(), TcpStream::connect(&server).unwrap());
             let cut = Arc::clone(&cut);
-            thread::spawn(move || hand_on(client, server, &cut));
+            thread::spawn(move || forward(client, server, &cut));
         }
     });
     port
 }
 
-fn hand_on(mut client: TcpStream, mut server: TcpStream, cut: &Mutex<Cut>) {
+fn forward(mut client: TcpStream, mut server: TcpStream, cut: &Mutex<Cut>) {
     let (mut answers, mut back) = (server.try_clone().unwrap(), client.try_clone().unwrap());
     let is_lost = Arc::new(Mutex::new(false));
     let is_lost_there = Arc::clone(&is_lost);
@@ -104,15 +104,15 @@ impl Relayed {
     }
 }
 
-fn end(key: &str) -> Finished {
+fn finished(key: &str) -> Finished {
     Finished { key: key.into(), attempt: 1, outcome: done(&format!("record of {key}")), wall_s: 0.1 }
 }
 
 const TWO: [Claim; 1] = [Claim { scope: Scope::All, limit: 2, batch: None }];
 
-/// Protects: whether the transaction whose answer was lost was kept or not, the same exchange done again stores each end
-/// once and refuses none, and the worker has in hand just what it was told: what it was given without hearing of it is
-/// not lost to it, and nobody else has it.
+/// Protects: after an exchange whose answer was lost, a repeated exchange stores each outcome once and refuses none,
+/// whether the lost transaction was committed or not. The worker then holds exactly the jobs that it knows of. Jobs
+/// that it claimed in the lost transaction are claimed again, by it and by nobody else.
 #[tokio::test]
 async fn an_exchange_in_doubt_is_done_once() {
     for when in [Cut::BeforeCommit, Cut::AfterCommit, Cut::Now] {
@@ -123,31 +123,31 @@ async fn an_exchange_in_doubt_is_done_once() {
         assert_eq!(keys(&first), ["p", "q"]);
 
         relayed.cut(when);
-        let error = queue.exchange(&[end("p")], &TWO).await.unwrap_err();
+        let error = queue.exchange(&[finished("p")], &TWO).await.unwrap_err();
         assert!(matches!(error, QueueError::Unreachable(_)), "{when:?}: {error:?}");
         let mut witness = relayed.sandbox.open_as(&foreign_worker()).await;
         let kept = if when == Cut::AfterCommit { counts(2, 3, 1, 0) } else { counts(4, 2, 0, 0) };
         assert_eq!(witness.counts(&Scope::All).await.unwrap(), kept, "{when:?}");
 
-        let again = queue.exchange(&[end("p")], &TWO).await.unwrap();
+        let again = queue.exchange(&[finished("p")], &TWO).await.unwrap();
         assert!(again.refused.is_empty(), "{when:?}: {:?}", again.refused);
         assert_eq!(keys(&again.claimed[0]), ["r", "s"]);
         assert!(again.claimed[0].iter().all(|job| job.attempt == 1), "{when:?}: {:?}", again.claimed);
         assert_eq!(witness.counts(&Scope::All).await.unwrap(), counts(2, 3, 1, 0), "{when:?}");
 
-        let rest = queue.exchange(&["q", "r", "s"].map(end), &TWO).await.unwrap();
+        let rest = queue.exchange(&["q", "r", "s"].map(finished), &TWO).await.unwrap();
         assert!(rest.refused.is_empty());
         assert_eq!(keys(&rest.claimed[0]), ["t", "u"]);
-        assert!(queue.exchange(&["t", "u"].map(end), &[]).await.unwrap().refused.is_empty());
+        assert!(queue.exchange(&["t", "u"].map(finished), &[]).await.unwrap().refused.is_empty());
         assert_eq!(relayed.sandbox.number("SELECT COUNT(*) FROM results").await, 6);
         assert_eq!(relayed.sandbox.number("SELECT CAST(SUM(attempt) AS BIGINT) FROM jobs").await, 6);
     }
 }
 
-/// Protects: what a worker finished while it could not be reached for longer than its lease is refused if somebody else
-/// has done it meanwhile, and stored if not; then it works on, and is seen to.
+/// Protects: a worker that was disconnected for longer than its lease continues afterwards and counts as active.
+/// Outcomes of jobs that another worker has claimed meanwhile are refused.
 #[tokio::test]
-async fn who_was_away_too_long_goes_on() {
+async fn a_worker_continues_after_a_long_disconnection() {
     let Some(relayed) = Relayed::new() else { return };
     let location = relayed.location.clone();
     let mut away = Queue::open(location, relayed.sandbox.clock.clock()).await.unwrap();
@@ -164,17 +164,18 @@ async fn who_was_away_too_long_goes_on() {
     relayed.cut(Cut::Now);
     assert!(away.heartbeat().await.is_err());
     assert_eq!(away.heartbeat().await.unwrap(), 0);
-    let late = away.exchange(&[end("p"), end("q")], &TWO).await.unwrap();
+    let late = away.exchange(&[finished("p"), finished("q")], &TWO).await.unwrap();
     assert_eq!(late.refused, ["p", "q"]);
     assert_eq!(keys(&late.claimed[0]), ["r"]);
-    assert_eq!(other.take_back().await.unwrap(), TakenBack::default(), "it is there again");
+    assert_eq!(other.take_back().await.unwrap(), TakenBack::default(), "the worker is active again");
     assert_eq!(other.active_workers().await.unwrap().workers, 2);
 }
 
-/// Protects: a server that is not there is an error that says so, at once, with the name and without the password.
+/// Protects: a server that does not answer is an immediate error, which names the server and does not show the
+/// password.
 #[cfg(feature = "postgres")]
 #[tokio::test]
-async fn a_server_that_is_not_there_is_named() {
+async fn a_missing_server_is_named() {
     let port = TcpListener::bind("127.0.0.1:0").unwrap().local_addr().unwrap().port();
     let location = Location::parse(format!("postgres://ada:secret@127.0.0.1:{port}/x").into());
     let error = Queue::open(location, Clock::OfDatabase).await.unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! Databases of earlier schemas, with data in them.
+//! Migrations of databases with earlier schemas.
 
 use std::fs::File;
 
@@ -8,8 +8,8 @@ use tribosweep::queue::{JobState, Queue, QueueError, Settings, TakenBack};
 
 use crate::support::{Sandbox, claim, counts, done, finish, keys, of};
 
-/// What the first schema could hold: a job in each state, one that was released, two that studies share, one that is
-/// twice in a study, one that nobody refers to, and results of several attempts.
+/// Data of the first schema: a job in each state, a released job, two jobs that studies share, a job that is twice in a
+/// study, a job that no study refers to, and results of several attempts.
 const FIRST_SCHEMA_ROWS: &str = "
     INSERT INTO studies VALUES (1, 'a', 'document of a', 1000), (2, 'b', 'document of b', 2000);
     INSERT INTO jobs (id, key, cost, state, attempt, created_ms, started_ms, note, payload) VALUES
@@ -27,7 +27,7 @@ const FIRST_SCHEMA_ROWS: &str = "
         (5, 1, NULL, 'error of failed', 0.5, 200),
         (9, 1, 'record of unreferenced', NULL, 9.5, 300);";
 
-/// A database as the first schema's program left it.
+/// Creates a database with the first schema.
 async fn first_schema(sandbox: &Sandbox) -> SqliteConnection {
     let mut raw = sandbox.raw().await;
     sqlx::raw_sql("PRAGMA journal_mode = WAL").execute(&mut raw).await.unwrap();
@@ -38,8 +38,8 @@ async fn first_schema(sandbox: &Sandbox) -> SqliteConnection {
     raw
 }
 
-/// Protects: a database of the first schema is brought up to date with all that is in it: studies, rows, states,
-/// attempts, results, and the references between them; what was running is pending, since who ran it is gone.
+/// Protects: the migration from the first schema keeps everything: studies, rows, states, attempts, results, and the
+/// references between them. Running jobs become pending, because their process has ended.
 #[tokio::test]
 async fn the_first_schema_is_brought_up_to_date() {
     let sandbox = Sandbox::new();
@@ -52,12 +52,12 @@ async fn the_first_schema_is_brought_up_to_date() {
     assert_eq!((document.document.as_str(), document.submitted_ms), ("document of b", 2000));
     let rows: Vec<_> =
         queue.rows("a").await.unwrap().into_iter().chain(queue.rows("b").await.unwrap()).collect();
-    let told: Vec<_> = rows
+    let found: Vec<_> = rows
         .iter()
         .map(|row| (row.key.as_str(), row.parameters.as_str(), row.state, row.attempt, row.wall_s))
         .collect();
     assert_eq!(
-        told,
+        found,
         [
             ("pending", "a0", JobState::Pending, 0, None),
             ("running", "a1", JobState::Pending, 2, None),
@@ -82,16 +82,16 @@ async fn the_first_schema_is_brought_up_to_date() {
     assert!(rows[5].note.as_ref().unwrap().starts_with("released"), "{:?}", rows[5]);
     assert_eq!(queue.take_back().await.unwrap(), TakenBack::default());
 
-    // It works as one that was created anew: claims by study and over all, in their order.
+    // Claims work as in a new database: of a study and of all jobs, in their order.
     assert_eq!(keys(&claim(&mut queue, of("a"), 1).await), ["running"]);
     let claimed = claim(&mut queue, tribosweep::queue::Scope::All, 9).await;
     assert_eq!(keys(&claimed), ["released", "pending"]);
     assert_eq!((claimed[0].attempt, claimed[0].payload.as_str()), (3, "payload of released"));
     assert!(finish(&mut queue, "released", 3, done("r")).await);
-    assert_eq!(queue.collect_garbage().await.unwrap().jobs, 1, "the job that nobody refers to");
+    assert_eq!(queue.collect_garbage().await.unwrap().jobs, 1, "the job that no study refers to");
 }
 
-/// Protects: the tables that were rebuilt are those that the others refer to, and references are enforced.
+/// Protects: after the migration, the other tables refer to the rebuilt tables, and foreign keys are enforced.
 #[tokio::test]
 async fn references_hold_after_the_migration() {
     let sandbox = Sandbox::new();
@@ -113,7 +113,8 @@ async fn references_hold_after_the_migration() {
     }
 }
 
-/// Protects: nothing is taken from a worker of the earlier version that is still at work; it knows nothing of owners.
+/// Protects: while a worker of the earlier version is running, the database is not migrated, because that version does
+/// not support owners.
 #[tokio::test]
 async fn an_older_worker_is_waited_for() {
     let sandbox = Sandbox::new();
@@ -127,15 +128,15 @@ async fn an_older_worker_is_waited_for() {
         .fetch_one(&mut raw)
         .await
         .unwrap();
-    assert_eq!(running, 1, "it is as it was");
+    assert_eq!(running, 1, "the database is unchanged");
     drop(lock);
     sandbox.open().await;
-    assert!(!sandbox.folder.path().join("sweep.db.worker").exists(), "it is of no use any more");
+    assert!(!sandbox.folder.path().join("sweep.db.worker").exists(), "the lock file is deleted");
 }
 
-/// Protects: a migration that cannot be made changes nothing, says why, and is made by the next opening.
+/// Protects: a migration that fails changes nothing and reports the reason, and the next opening repeats it.
 #[tokio::test]
-async fn a_migration_is_made_whole_or_not_at_all() {
+async fn a_migration_is_atomic() {
     let sandbox = Sandbox::new();
     let mut raw = first_schema(&sandbox).await;
     sqlx::raw_sql("BEGIN IMMEDIATE").execute(&mut raw).await.unwrap();

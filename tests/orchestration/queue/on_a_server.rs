@@ -1,4 +1,4 @@
-//! What must hold of every database, on a server: the same tests as for a file.
+//! The tests that must pass with both databases, with a PostgreSQL server.
 #![expect(clippy::duplicate_mod)]
 
 const ENGINE: crate::support::Engine = crate::support::Engine::Postgres;

@@ -14,7 +14,7 @@ async fn error_of(path: &Path) -> QueueError {
     Queue::open(path, Clock::OfDatabase).await.expect_err("opening should fail")
 }
 
-/// Protects: a database is created where there was none, keeps what it is told, and is in WAL mode.
+/// Protects: a missing database is created, keeps its data, and uses a write-ahead log.
 #[tokio::test]
 async fn a_new_database_is_created_and_kept() {
     let sandbox = Sandbox::new();
@@ -30,8 +30,7 @@ async fn a_new_database_is_created_and_kept() {
     assert_eq!(mode, "wal");
 }
 
-/// Protects: a command that reads does not leave an empty database or a lock behind when the path is
-/// mistyped, and says what to do.
+/// Protects: opening a mistyped path for reading creates no database and no lock file, and the error says what to do.
 #[tokio::test]
 async fn reading_creates_nothing() {
     let sandbox = Sandbox::new();
@@ -50,9 +49,9 @@ async fn a_missing_folder_is_named() {
     assert!(error.to_string().contains("/missing for the database does not exist"), "{error}");
 }
 
-/// Protects: a file or folder given by mistake is refused and not changed.
+/// Protects: a file that is not a database, and a folder, are refused and not changed.
 #[tokio::test]
-async fn what_is_no_database_is_refused() {
+async fn a_file_that_is_not_a_database_is_refused() {
     let sandbox = Sandbox::new();
     let text = "this is a study, not a database\n".repeat(100);
     fs::write(sandbox.database(), &text).unwrap();
@@ -63,7 +62,7 @@ async fn what_is_no_database_is_refused() {
     assert_eq!(fs::read_to_string(sandbox.database()).unwrap(), text);
 }
 
-/// Protects: the database of another program is refused, and neither gets our tables nor changes its mode.
+/// Protects: the database of another program is refused. Its tables and its journal mode stay as they are.
 #[tokio::test]
 async fn another_programs_database_is_refused() {
     let sandbox = Sandbox::new();
@@ -79,7 +78,7 @@ async fn another_programs_database_is_refused() {
     assert_eq!(mode, "delete");
 }
 
-/// Protects: a first opening that was stopped before the first migration does not lock its user out.
+/// Protects: a database whose creation was stopped before the first migration can be opened.
 #[tokio::test]
 async fn an_interrupted_creation_is_completed() {
     let sandbox = Sandbox::new();
@@ -103,7 +102,7 @@ async fn an_interrupted_creation_is_completed() {
     assert_eq!(sandbox.open().await.submit(&study("a", &["x"])).await.unwrap().added, 1);
 }
 
-/// Protects: an older program does not write into a schema it does not know.
+/// Protects: an older program does not write to a schema that it does not know.
 #[tokio::test]
 async fn a_newer_database_is_refused() {
     let sandbox = Sandbox::new();
@@ -121,8 +120,8 @@ async fn a_newer_database_is_refused() {
     assert!(error.to_string().contains("newer tribosweep (schema 9001; this one knows up to 3)"), "{error}");
 }
 
-/// Protects: processes that are started together on a database that does not exist yet all get it. Without
-/// the opening lock some of them fail with "database is locked" or "table already exists".
+/// Protects: if several processes open a missing database at the same time, all of them succeed. Without the opening
+/// lock, some of them fail with "database is locked" or "table already exists".
 #[test]
 fn first_opens_at_once_all_succeed() {
     const OPENERS: usize = 8;
@@ -147,7 +146,7 @@ fn first_opens_at_once_all_succeed() {
     }
 }
 
-/// Protects: two tasks of one runtime that open the same database do not wait for each other for ever.
+/// Protects: two tasks of one single-threaded runtime that open the same database do not deadlock.
 #[tokio::test]
 async fn two_opens_on_one_thread_do_not_block_each_other() {
     let sandbox = Sandbox::new();

@@ -1,34 +1,34 @@
-//! Who is there, how long jobs took, and what results were made with.
+//! Active workers, run times of jobs, and the provenance of results.
 
 use tribosweep::queue::{ActiveWorkers, FinishedOutcome, ProvenanceGroup, QueueError, Scope, Worker};
 
 use super::ENGINE;
 use crate::support::{Sandbox, claim, dead_worker, done, failed, finish, foreign_worker, job, of, study};
 
-fn alive(workers: u64, threads: u64) -> ActiveWorkers {
+fn active(workers: u64, threads: u64) -> ActiveWorkers {
     ActiveWorkers { workers, threads }
 }
 
-/// Protects: workers are there while their process is, whatever their last sign of life; one that is to stop is not
-/// waited for; of one that cannot be seen its signs of life decide.
+/// Protects: a worker is active while its process exists, however old its last heartbeat is. A worker that is stopping
+/// is not counted. If the process is not visible, the heartbeats decide.
 #[tokio::test]
-async fn the_living_are_counted() {
+async fn active_workers_are_counted() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let lease_ms = 120_000;
     sandbox.clock.set(10 * lease_ms);
     let mut own = sandbox.open_as(&Worker { threads: 3, ..Worker::this_process(1, "test", "") }).await;
-    assert_eq!(own.active_workers().await.unwrap(), alive(1, 3));
+    assert_eq!(own.active_workers().await.unwrap(), active(1, 3));
     sandbox.open_as(&dead_worker()).await;
-    assert_eq!(own.active_workers().await.unwrap(), alive(1, 3));
+    assert_eq!(own.active_workers().await.unwrap(), active(1, 3));
     sandbox.open_as(&Worker { threads: 4, ..foreign_worker() }).await;
-    assert_eq!(own.active_workers().await.unwrap(), alive(2, 7));
+    assert_eq!(own.active_workers().await.unwrap(), active(2, 7));
     sandbox.clock.set(11 * lease_ms);
-    assert_eq!(own.active_workers().await.unwrap(), alive(1, 3), "a lease without a sign of life");
+    assert_eq!(own.active_workers().await.unwrap(), active(1, 3), "no heartbeat for a whole lease");
     own.mark_stopping().await.unwrap();
-    assert_eq!(own.active_workers().await.unwrap(), alive(0, 0));
+    assert_eq!(own.active_workers().await.unwrap(), active(0, 0));
 }
 
-/// Protects: an estimate is made of the study's jobs that are done, with what they cost and took.
+/// Protects: the timings are the costs and run times of the study's done jobs, and of no others.
 #[tokio::test]
 async fn timings_are_those_of_done_jobs() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -46,7 +46,7 @@ async fn timings_are_those_of_done_jobs() {
     assert!(matches!(queue.timings("c").await, Err(QueueError::UnknownStudy { .. })));
 }
 
-/// Protects: whatever happens to a study's jobs shows in their counts or in how often they were started.
+/// Protects: every change of a study's jobs is visible in their counts or in the number of starts.
 #[tokio::test]
 async fn starts_show_what_counts_do_not() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -55,7 +55,7 @@ async fn starts_show_what_counts_do_not() {
     assert_eq!(queue.starts("a").await.unwrap(), 0);
     let first = claim(&mut queue, of("a"), 1).await.remove(0);
     let before = queue.counts(&of("a")).await.unwrap();
-    // The job is given back, and the other one is taken.
+    // The job is given back, and the other job is claimed.
     finish(&mut queue, &first.key, 1, FinishedOutcome::Released).await;
     claim(&mut queue, of("a"), 1).await;
     assert_eq!(queue.counts(&of("a")).await.unwrap(), before);
@@ -63,7 +63,7 @@ async fn starts_show_what_counts_do_not() {
     assert!(matches!(queue.starts("c").await, Err(QueueError::UnknownStudy { .. })));
 }
 
-/// Protects: of a large study an even sample is looked at.
+/// Protects: the timings of a large study are an even sample.
 #[tokio::test]
 async fn timings_of_many_jobs_are_a_sample() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -84,10 +84,10 @@ async fn timings_of_many_jobs_are_a_sample() {
     assert!((mean - 1_250.0).abs() < 5.0, "{mean}");
 }
 
-/// Protects: what results were made with is told once, with the number of jobs and the times of the attempts that count;
-/// what other studies have is not told.
+/// Protects: results are grouped by provenance, with the number of jobs and the times of the attempts that count.
+/// Results of other studies are not included.
 #[tokio::test]
-async fn origins_are_told_once() {
+async fn results_are_grouped_by_provenance() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let worker = |provenance| Worker::this_process(1, "test", provenance);
     let mut first = sandbox.open_as(&worker("first")).await;
@@ -106,13 +106,13 @@ async fn origins_are_told_once() {
     sandbox.clock.set(3_000);
     finish(&mut second, "z", 1, done("record")).await;
 
-    let made = |provenance: &str, jobs, first_finished_ms, last_finished_ms| ProvenanceGroup {
+    let group = |provenance: &str, jobs, first_finished_ms, last_finished_ms| ProvenanceGroup {
         provenance: Some(provenance.to_owned()),
         jobs,
         first_finished_ms,
         last_finished_ms,
     };
-    let expected = [made("first", 2, 1_000, 2_000), made("second", 1, 3_000, 3_000)];
+    let expected = [group("first", 2, 1_000, 2_000), group("second", 1, 3_000, 3_000)];
     assert_eq!(first.provenance_groups("a").await.unwrap(), expected);
     assert!(matches!(first.provenance_groups("c").await, Err(QueueError::UnknownStudy { .. })));
 }

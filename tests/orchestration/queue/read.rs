@@ -1,4 +1,4 @@
-//! What reports and progress read.
+//! What reports and the progress display read.
 
 use std::ops::ControlFlow;
 
@@ -32,7 +32,7 @@ async fn studies_are_listed_with_their_counts() {
     assert_eq!(queue.studies().await.unwrap(), expected);
 }
 
-/// Protects: the document of a study is kept as it was written; no such study is no error here.
+/// Protects: the document of a study is kept unchanged. Asking for a missing study is no error here.
 #[tokio::test]
 async fn the_document_is_kept() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -44,7 +44,7 @@ async fn the_document_is_kept() {
     assert_eq!(queue.study("b").await.unwrap(), None);
 }
 
-/// Protects: rows come in the order of the study, each with all that is known of its job.
+/// Protects: rows come in the order of the study, each with the data of its job.
 #[tokio::test]
 async fn rows_are_complete_and_in_order() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -78,7 +78,7 @@ async fn rows_are_complete_and_in_order() {
     assert_eq!(queue.rows("a").await.unwrap(), expected);
 }
 
-/// Protects: what an estimate of the time left is made of: the cost of what is pending or running.
+/// Protects: the remaining cost is that of the pending and running jobs.
 #[tokio::test]
 async fn remaining_cost() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -99,9 +99,9 @@ async fn remaining_cost() {
     assert_eq!(queue.remaining_cost(&of("a")).await.unwrap(), 3.0);
 }
 
-/// Protects: a mistyped study name is answered with the names there are, by everything that takes one.
+/// Protects: for a mistyped study name, every operation returns an error that lists the existing names.
 #[tokio::test]
-async fn an_unknown_study_is_answered_with_those_known() {
+async fn an_unknown_study_is_an_error_with_the_known_ones() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let error = queue.rows("a").await.unwrap_err();
@@ -124,18 +124,18 @@ async fn an_unknown_study_is_answered_with_those_known() {
     }
 }
 
-/// The places of the rows of study `a`.
+/// The ordinals of the rows of study `a`.
 async fn ordinals_of(queue: &mut Queue, which: Rows<'_>) -> Vec<u64> {
     let mut found = Vec::new();
-    let look = |page: Vec<StudyRow>| {
+    let visit = |page: Vec<StudyRow>| {
         found.extend(page.iter().map(|row| row.ordinal));
         ControlFlow::Continue(())
     };
-    queue.each_page("a", which, look).await.unwrap();
+    queue.each_page("a", which, visit).await.unwrap();
     found
 }
 
-/// Protects: rows are found by the word for their end, of done jobs alone.
+/// Protects: rows are found by their label, and only if their job is done.
 #[tokio::test]
 async fn rows_are_found_by_their_label() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -154,7 +154,7 @@ async fn rows_are_found_by_their_label() {
     assert_eq!(ordinals_of(&mut queue, Rows::All).await, [0, 1, 2, 3, 4]);
 }
 
-/// Protects: whoever has seen enough of a study is not shown the rest.
+/// Protects: the reader of a study can stop before the end.
 #[tokio::test]
 async fn reading_can_be_stopped() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -163,11 +163,11 @@ async fn reading_can_be_stopped() {
     queue.submit(&study("a", &names.iter().map(String::as_str).collect::<Vec<_>>())).await.unwrap();
     for (stop, seen) in [(true, 1_000), (false, 2_500)] {
         let mut rows = 0;
-        let look = |page: Vec<StudyRow>| {
+        let visit = |page: Vec<StudyRow>| {
             rows += page.len();
             if stop { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
         };
-        queue.each_page("a", Rows::All, look).await.unwrap();
+        queue.each_page("a", Rows::All, visit).await.unwrap();
         assert_eq!(rows, seen);
     }
     let mut parameters = Vec::new();

@@ -1,4 +1,4 @@
-//! Interruptions, and processes that die.
+//! Interruptions and crashes of workers.
 
 use tribosweep::queue::{FinishedOutcome, JobState, Queue, Retry, Scope, Settings, TakenBack, Worker};
 
@@ -12,7 +12,7 @@ const NOTHING: TakenBack = TakenBack { pending: 0, failed: 0 };
 /// A day, in milliseconds.
 const DAY_MS: i64 = 86_400_000;
 
-/// A database with the jobs x, y, z, w of which `worker` claimed the first three and has done x.
+/// A database with the jobs x, y, z, w. `worker` has claimed the first three and finished x.
 async fn left_by(sandbox: &Sandbox, worker: &Worker) -> Queue {
     let mut queue = sandbox.open_as(worker).await;
     queue.submit(&study("a", &["x", "y", "z", "w"])).await.unwrap();
@@ -21,7 +21,7 @@ async fn left_by(sandbox: &Sandbox, worker: &Worker) -> Queue {
     queue
 }
 
-/// Protects: a job given back by an interrupted worker is pending again, with the reason, and its next
+/// Protects: a job that an interrupted worker gives back is pending again, with a note of the reason, and its next
 /// start is a new attempt.
 #[tokio::test]
 async fn a_released_job_is_claimed_again() {
@@ -36,8 +36,8 @@ async fn a_released_job_is_claimed_again() {
     assert_eq!(claim(&mut queue, Scope::All, 1).await[0].attempt, 2);
 }
 
-/// Protects: a job that was claimed and not begun is as if it had not been claimed: no attempt counts, no note, and
-/// whoever gave it back cannot give it back or finish it once more.
+/// Protects: a job that was claimed and not started is as if it had not been claimed: the attempt does not count and
+/// there is no note. The worker that gave it back can neither give it back nor finish it again.
 #[tokio::test]
 async fn an_unstarted_job_costs_no_attempt() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -49,13 +49,13 @@ async fn an_unstarted_job_costs_no_attempt() {
     assert_eq!((row.state, row.attempt, row.note), (JobState::Pending, 0, None));
     assert_eq!(claim(&mut other, Scope::All, 1).await[0].attempt, 1);
     for outcome in [FinishedOutcome::Unstarted, done("late"), FinishedOutcome::Released] {
-        assert!(!finish(&mut queue, "x", 1, outcome).await, "the attempt is another worker's");
+        assert!(!finish(&mut queue, "x", 1, outcome).await, "the attempt belongs to another worker");
     }
     assert!(finish(&mut other, "x", 1, done("right")).await);
 }
 
-/// Protects: jobs that a dead process left running are taken back by the next one at once, with the reason; what
-/// was done or pending stays so, and a result the dead process still sends is refused.
+/// Protects: the next worker immediately takes back the jobs that a dead process left running, with a note of the
+/// reason. Done and pending jobs stay as they are, and a late outcome of the dead process is refused.
 #[tokio::test]
 async fn jobs_of_a_dead_process_are_taken_back() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -79,9 +79,10 @@ async fn jobs_of_a_dead_process_are_taken_back() {
     assert!(finish(&mut queue, "y", 2, done("right")).await);
 }
 
-/// Protects: a number that was given again to another process, and a machine that was booted again, are no life.
+/// Protects: a worker is not alive if its process number now belongs to another process, or if its machine has been
+/// rebooted.
 #[tokio::test]
-async fn a_number_alone_is_no_process() {
+async fn a_process_number_alone_identifies_no_process() {
     let own = Worker::this_process(1, "test", "");
     let reused = Worker { process_start: own.process_start.map(|start| start - 1), ..own.clone() };
     let rebooted = Worker { boot_id: Some("an earlier boot".into()), ..own };
@@ -90,15 +91,15 @@ async fn a_number_alone_is_no_process() {
         left_by(&sandbox, &gone).await;
         let mut queue = sandbox.open().await;
         let at_once = queue.take_back().await.unwrap().pending;
-        // Of machines that share a server two may have the same name: another boot may be another machine.
+        // On a server, two machines may have the same name, so another boot may be another machine.
         assert_eq!(at_once, if is_certain { 2 } else { 0 }, "{gone:?}");
         sandbox.clock.set(i64::try_from(Settings::default().lease.as_millis()).unwrap());
         assert_eq!(queue.take_back().await.unwrap().pending, 2 - at_once, "{gone:?}");
     }
 }
 
-/// Protects: how long a worker elsewhere may be silent is what it says itself, not what others allow themselves; while it
-/// may, nothing is taken from it and it is seen as there.
+/// Protects: a worker on another machine may be silent for as long as its own lease, not that of the worker that checks
+/// it. Until then, no jobs are taken back from it and it counts as active.
 #[tokio::test]
 async fn a_worker_has_its_own_lease() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -112,15 +113,15 @@ async fn a_worker_has_its_own_lease() {
         assert_eq!(queue.take_back().await.unwrap(), NOTHING);
         assert_eq!(queue.active_workers().await.unwrap().workers, 2, "after {now_ms} ms");
     }
-    // It was idle until now: the job's lease outlasts the worker's.
+    // The worker claims only now, so the lease of the job ends later than that of the worker.
     claim(&mut far, Scope::All, 1).await;
     sandbox.clock.set(3_700_000);
     assert_eq!(queue.take_back().await.unwrap(), NOTHING);
     assert!(finish(&mut far, "x", 1, done("record of x")).await);
 }
 
-/// Protects: nothing is taken from a process of this machine that lives, however its lease looks to a clock that
-/// jumped, forward or back; and its finish counts.
+/// Protects: no jobs are taken back from a live process on this machine, even if a clock that jumped forward or back
+/// makes its lease look expired. Its outcomes are accepted.
 #[tokio::test]
 async fn a_clock_that_jumps_takes_nothing() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -136,10 +137,10 @@ async fn a_clock_that_jumps_takes_nothing() {
     assert!(finish(&mut alive, "y", 1, done("record of y")).await);
 }
 
-/// Protects: of a worker elsewhere the lease decides: not before it is over, and a heartbeat extends it for every
-/// job. What a wrong clock wrote far ahead is over too.
+/// Protects: for a worker on another machine, the leases decide: no job is taken back before its lease ends, and a
+/// heartbeat extends the leases of all jobs. A lease that a wrong clock set far in the future counts as expired.
 #[tokio::test]
-async fn leases_decide_elsewhere() {
+async fn leases_decide_for_other_machines() {
     let lease_ms = i64::try_from(Settings::default().lease.as_millis()).unwrap();
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut far = left_by(&sandbox, &foreign_worker()).await;
@@ -151,7 +152,7 @@ async fn leases_decide_elsewhere() {
     assert_eq!(queue.take_back().await.unwrap(), NOTHING);
     sandbox.clock.set(2 * lease_ms - 1);
     assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 2, failed: 0 });
-    assert_eq!(far.heartbeat().await.unwrap(), 0, "it learns that it lost them");
+    assert_eq!(far.heartbeat().await.unwrap(), 0, "the worker learns that it lost its jobs");
 
     sandbox.clock.set(1_000 * DAY_MS);
     claim(&mut far, Scope::All, 1).await;
@@ -159,15 +160,15 @@ async fn leases_decide_elsewhere() {
     assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 1, failed: 0 });
 }
 
-/// Protects: somebody is missed when two of the signs of life that come eight times in a lease are overdue, when it is
-/// stopping, or when its process is gone, and not any more when it is back: who waits for what may come back knows how
-/// long.
+/// Protects: a worker counts as missing when two of the heartbeats that are sent eight times in a lease are overdue,
+/// when it is stopping, or when its process is gone. It no longer counts as missing after a heartbeat. A worker that
+/// waits for jobs to be given back thus knows how long to wait.
 #[tokio::test]
-async fn who_is_late_is_missed() {
+async fn a_worker_without_heartbeats_is_missing() {
     let lease_ms = i64::try_from(Settings::default().lease.as_millis()).unwrap();
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
-    assert!(!queue.has_missing_workers().await.unwrap(), "nobody misses himself");
+    assert!(!queue.has_missing_workers().await.unwrap(), "the worker itself does not count");
     let mut far = left_by(&sandbox, &foreign_worker()).await;
     sandbox.clock.set(lease_ms / 4 - 1);
     assert!(!queue.has_missing_workers().await.unwrap());
@@ -176,17 +177,17 @@ async fn who_is_late_is_missed() {
     far.heartbeat().await.unwrap();
     assert!(!queue.has_missing_workers().await.unwrap());
     far.mark_stopping().await.unwrap();
-    assert!(queue.has_missing_workers().await.unwrap(), "it gives its jobs back");
+    assert!(queue.has_missing_workers().await.unwrap(), "a stopping worker gives its jobs back");
     far.unregister().await.unwrap();
     assert!(!queue.has_missing_workers().await.unwrap());
     sandbox.open_as(&dead_worker()).await;
     assert!(queue.has_missing_workers().await.unwrap());
 }
 
-/// Protects: a worker that was cut off until its row was swept has lost its jobs, says so by its next sign of life, and
-/// works on.
+/// Protects: a worker that was disconnected until garbage collection deleted its row has lost its jobs. It learns that
+/// by its next heartbeat, and continues.
 #[tokio::test]
-async fn a_forgotten_worker_comes_back() {
+async fn a_deleted_worker_registers_again() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut far = left_by(&sandbox, &foreign_worker()).await;
     sandbox.clock.set(2 * DAY_MS);
@@ -204,14 +205,14 @@ async fn a_forgotten_worker_comes_back() {
     assert_eq!(sandbox.number("SELECT COUNT(*) FROM results").await, 2);
 }
 
-/// Protects: a job whose processes die is tried so often and not more, then it has failed with that reason; crashes
-/// are counted apart from attempts, and one that fails by itself is not tried again at all.
+/// Protects: a job whose processes die fails when the crash limit is reached, with that reason. Crashes are counted
+/// separately from attempts, and a job that fails by itself is not run again.
 #[tokio::test]
 async fn retries_have_a_limit() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open_with(Settings { crash_limit: 2, ..Settings::default() }).await;
     queue.submit(&study("a", &["deadly", "bad"])).await.unwrap();
-    // An interruption is an attempt and no crash.
+    // An interruption counts as an attempt, not as a crash.
     claim(&mut queue, Scope::All, 1).await;
     assert!(finish(&mut queue, "deadly", 1, FinishedOutcome::Released).await);
     for expected in [TakenBack { pending: 1, failed: 0 }, TakenBack { pending: 0, failed: 1 }] {
@@ -226,14 +227,15 @@ async fn retries_have_a_limit() {
     assert_eq!((rows[0].state, rows[0].attempt, rows[0].crashes), (JobState::Failed, 3, 2));
     let error = rows[0].error.as_ref().unwrap();
     assert!(error.starts_with("its process died 2 times") && error.contains("tribosweep retry"), "{error}");
-    assert_eq!(rows[0].wall_s, None, "nobody knows");
+    assert_eq!(rows[0].wall_s, None, "the time is unknown");
     assert_eq!((rows[1].state, rows[1].attempt, rows[1].crashes), (JobState::Failed, 1, 0));
 }
 
-/// Protects: a checkpoint is given to the next attempt, whoever makes it; a job that gets further is not blamed for
-/// its processes; who lost the job saves nothing; and nothing is left when the job ends.
+/// Protects: the next attempt receives the checkpoint, whichever worker runs it. A job that makes progress does not
+/// reach the crash limit. A worker that has lost the job cannot save a checkpoint. No checkpoint remains when the job
+/// ends.
 #[tokio::test]
-async fn checkpoints_are_handed_on() {
+async fn checkpoints_reach_the_next_attempt() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open_with(Settings { crash_limit: 2, ..Settings::default() }).await;
     queue.submit(&study("a", &["x"])).await.unwrap();
@@ -257,10 +259,10 @@ async fn checkpoints_are_handed_on() {
     assert_eq!(sandbox.number("SELECT COUNT(*) FROM checkpoints").await, 0);
 }
 
-/// Protects: a process that had been asked to stop and is gone did not crash: its jobs are pending again however often
-/// they crashed before.
+/// Protects: the death of a process that had been asked to stop is not a crash of its jobs: they are pending again,
+/// however often they crashed before.
 #[tokio::test]
-async fn who_is_stopped_twice_has_not_crashed() {
+async fn a_stopped_process_has_not_crashed() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open_with(Settings { crash_limit: 2, ..Settings::default() }).await;
     queue.submit(&study("a", &["x"])).await.unwrap();
@@ -280,8 +282,8 @@ async fn who_is_stopped_twice_has_not_crashed() {
     assert_eq!(queue.rows("a").await.unwrap()[0].crashes, 2);
 }
 
-/// Protects: a job that failed because its processes died goes on from its checkpoint when it is asked for again, and so
-/// does one that was cancelled; one that fails by itself begins anew.
+/// Protects: a job that failed because its processes died, or that was cancelled, continues from its checkpoint when it
+/// is requested again. A job that failed by itself starts from the beginning.
 #[tokio::test]
 async fn a_checkpoint_outlasts_crashes() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -300,8 +302,7 @@ async fn a_checkpoint_outlasts_crashes() {
     assert_eq!(claim(&mut queue, Scope::All, 1).await[0].checkpoint, None);
 }
 
-/// Protects: a worker that ends in order, if need be because of an error, gives back what it still holds; that is no
-/// crash.
+/// Protects: a worker that ends in order gives back the jobs that it still holds, and that is not a crash.
 #[tokio::test]
 async fn an_orderly_end_gives_everything_back() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };

@@ -1,4 +1,4 @@
-//! The size the queue is for.
+//! Large studies.
 
 use std::time::{Duration, Instant};
 
@@ -7,8 +7,8 @@ use tribosweep::queue::{Claim, ClaimedJob, Finished, FinishedOutcome, NewJob, Ne
 use super::ENGINE;
 use crate::support::{Sandbox, claim, counts, job, keys, of};
 
-/// Protects: a study of 100 000 jobs is planned completely and in order, across the parts it is inserted in,
-/// and again without adding anything.
+/// Protects: a study of 100 000 jobs is stored completely and in order, although it is inserted in several parts. A
+/// repeated submission adds nothing.
 #[tokio::test]
 async fn a_hundred_thousand_jobs_are_planned() {
     const JOBS: u64 = 100_000;
@@ -32,7 +32,7 @@ async fn a_hundred_thousand_jobs_are_planned() {
     }
 }
 
-/// The fastest of several claims of four jobs, which go back unstarted.
+/// The time of the fastest of several claims of four jobs, which are given back unstarted.
 async fn claim_time(sandbox: &Sandbox, jobs: usize, scope: &Scope, batch: Option<&str>) -> Duration {
     let mut queue = sandbox.open().await;
     let of_study = |name: &str, cost: f64| NewStudy {
@@ -41,12 +41,12 @@ async fn claim_time(sandbox: &Sandbox, jobs: usize, scope: &Scope, batch: Option
         jobs: (0..jobs)
             .map(|index| NewJob {
                 batch: format!("batch {}", index % 7),
-                // Scattered over the study, so that their order is not that in which they are stored.
+                // Scattered costs, so that the order of claims is not the order of storage.
                 ..job(&format!("{name} {index}"), cost + (index * 7919 % 97) as f64 / 100.0)
             })
             .collect(),
     };
-    // The database's own statistics are of a moment at which nothing waited.
+    // The database collects its statistics at a time when no job is pending.
     queue.submit(&of_study("over", 5.0)).await.unwrap();
     queue.cancel("over").await.unwrap();
     sandbox.run("ANALYZE").await;
@@ -70,8 +70,9 @@ async fn claim_time(sandbox: &Sandbox, jobs: usize, scope: &Scope, batch: Option
     best
 }
 
-/// Protects: a claim takes no longer for a hundred times as many pending jobs: over all, in a study behind another
-/// one's jobs, and in a named batch; also where the database believes that nothing is pending.
+/// Protects: with a hundred times as many pending jobs, a claim takes no longer: a claim of all jobs, of a study whose
+/// jobs come after those of another study, and of a named batch; even if the database's statistics say that nothing is
+/// pending.
 #[tokio::test]
 async fn claims_take_no_longer_in_a_long_queue() {
     for (scope, batch) in [(Scope::All, None), (of("mine"), None), (of("mine"), Some("batch 3"))] {
@@ -82,15 +83,15 @@ async fn claims_take_no_longer_in_a_long_queue() {
     }
 }
 
-/// Measures, for `scripts/queue_scale.py`: claiming and finishing with a solver that does nothing.
+/// Measures claiming and finishing without computing anything (see `scripts/queue_scale.py`).
 ///
-/// Protects: nothing is lost at full speed, and no exchange takes longer at its end than at its beginning.
+/// Protects: no job is lost at full speed, and exchanges take no longer at the end of a study than at its beginning.
 #[tokio::test]
 #[ignore = "a measurement of many seconds"]
 async fn throughput() {
     const JOBS: usize = 100_000;
     let record = "r".repeat(1_500);
-    // Costs scattered over the study are the worst case: each claim is on as many pages as it has jobs.
+    // Scattered costs are the worst case: each claimed job is on another page.
     for (limit, costs) in [(4, 97), (16, 97), (64, 97), (16, 1), (64, 1)] {
         let Some(sandbox) = Sandbox::of(ENGINE) else { return };
         let mut queue = sandbox.open().await;
@@ -118,19 +119,19 @@ async fn throughput() {
                 part = Instant::now();
             }
             let outcome = || FinishedOutcome::Done { record: record.clone(), label: "end".to_owned() };
-            let end = |job: ClaimedJob| Finished {
+            let finish = |job: ClaimedJob| Finished {
                 key: job.key,
                 attempt: job.attempt,
                 outcome: outcome(),
                 wall_s: 0.1,
             };
-            finished = exchanged.claimed.into_iter().flatten().map(end).collect();
+            finished = exchanged.claimed.into_iter().flatten().map(finish).collect();
         }
         assert_eq!(queue.counts(&of("large")).await.unwrap(), counts(0, 0, JOBS as u64, 0));
         let total: Duration = parts.iter().sum();
         let rate = JOBS as f64 / total.as_secs_f64();
         println!(
-            "planned in {planning:.2?}; {limit} a turn, {costs} costs: {rate:.0} jobs a second, quarters {parts:.2?}"
+            "planned in {planning:.2?}; {limit} per exchange, {costs} costs: {rate:.0} jobs per second, quarters {parts:.2?}"
         );
         assert!(parts[3] < 3 * parts[0], "{parts:?}");
         let begun = Instant::now();

@@ -41,7 +41,7 @@ async fn submitting_twice_adds_nothing() {
     assert_eq!(queue.rows("a").await.unwrap()[0].record.as_deref(), Some("record of x"));
 }
 
-/// Protects: two studies that ask for the same job share it, its result too, each with its own parameters.
+/// Protects: two studies that request the same job share it and its result, each with its own parameters.
 #[tokio::test]
 async fn studies_share_jobs() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -62,8 +62,8 @@ async fn studies_share_jobs() {
     assert_eq!((a[1].parameters.as_str(), b[0].parameters.as_str()), ("parameters of y", "y as b calls it"));
 }
 
-/// Protects: an edited study has exactly its new document and rows; what it no longer names keeps its
-/// result, and is there again when the next edit names it.
+/// Protects: an edited study has exactly its new document and rows. A job that it no longer contains keeps its result,
+/// and the result is available again when a later edit contains the job.
 #[tokio::test]
 async fn an_edited_study_is_replaced() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
@@ -79,7 +79,7 @@ async fn an_edited_study_is_replaced() {
     let submitted = queue.submit(&edited).await.unwrap();
     assert!(submitted.replaced);
     assert_eq!((submitted.jobs, submitted.added, submitted.already_known), (2, 1, 1));
-    assert_eq!(submitted.cancelled, 1, "nobody asks for y");
+    assert_eq!(submitted.cancelled, 1, "no study requests y");
     let document = queue.study("a").await.unwrap().unwrap();
     assert_eq!((document.document.as_str(), document.submitted_ms), ("edited", 2_000));
     let rows = queue.rows("a").await.unwrap();
@@ -89,7 +89,7 @@ async fn an_edited_study_is_replaced() {
 
     let submitted = queue.submit(&study("a", &["x", "y"])).await.unwrap();
     assert_eq!((submitted.added, submitted.already_done, submitted.cancelled), (0, 1, 2));
-    assert_eq!(queue.counts(&of("a")).await.unwrap(), counts(1, 0, 1, 0), "y is asked for again");
+    assert_eq!(queue.counts(&of("a")).await.unwrap(), counts(1, 0, 1, 0), "y is requested again");
 }
 
 /// Protects: two grid points with the identical job are two rows and one simulation.
@@ -111,7 +111,7 @@ async fn a_job_may_repeat_in_a_study() {
     assert_eq!(rows[2].record.as_deref(), Some("record of x"));
 }
 
-/// Protects: strings come back as they were given, whatever they hold.
+/// Protects: strings are returned unchanged, whatever they contain.
 #[tokio::test]
 async fn strings_are_opaque() {
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };

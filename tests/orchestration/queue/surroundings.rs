@@ -1,5 +1,5 @@
-//! What the surroundings do to a database: locks, full disks, files that cannot be written, damage. Each ends in a
-//! message that says what to do, with nothing lost.
+//! Problems of a database's environment: locks, full disks, read-only files, damage. Each one leads to a message that
+//! says what to do, and nothing is lost.
 
 use std::fs;
 use std::time::Duration;
@@ -13,8 +13,8 @@ fn impatient() -> Settings {
     Settings { busy_timeout: Duration::from_millis(50), ..Settings::default() }
 }
 
-/// Protects: a lock that another program keeps longer than the busy timeout ends in a message that says so; what was
-/// finished is still the caller's and is stored afterwards, and readers are not kept out at all.
+/// Protects: if another program holds a lock for longer than the busy timeout, the error says so. The caller can store
+/// its outcomes afterwards, and readers are not blocked.
 #[tokio::test]
 async fn a_lock_that_is_kept() {
     let sandbox = Sandbox::new();
@@ -40,7 +40,8 @@ async fn a_lock_that_is_kept() {
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(1, 0, 1, 0));
 }
 
-/// Protects: a full disk is called that, what was stored before is there, and with room again the same queue goes on.
+/// Protects: a full disk is reported as such. Stored results are kept, and the same queue continues when there is room
+/// again.
 #[tokio::test]
 async fn a_full_disk() {
     let sandbox = Sandbox::new();
@@ -49,21 +50,22 @@ async fn a_full_disk() {
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     claim(&mut queue, Scope::All, 2).await;
     assert!(finish(&mut queue, "x", 1, done("r")).await);
-    // What is finished is larger than what is left.
+    // The record is larger than the free space.
     let large = "r".repeat(2_000_000);
-    let end = tribosweep::queue::Finished { key: "y".into(), attempt: 1, outcome: done(&large), wall_s: 1.0 };
-    let error = queue.exchange(std::slice::from_ref(&end), &[]).await.unwrap_err();
+    let finished =
+        tribosweep::queue::Finished { key: "y".into(), attempt: 1, outcome: done(&large), wall_s: 1.0 };
+    let error = queue.exchange(std::slice::from_ref(&finished), &[]).await.unwrap_err();
     assert!(matches!(error, QueueError::DiskFull(_)), "{error:?}");
     assert!(error.to_string().contains("Make room"), "{error}");
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(0, 1, 1, 0));
     mount.remount("size=20M");
-    assert!(queue.exchange(&[end], &[]).await.unwrap().refused.is_empty());
+    assert!(queue.exchange(&[finished], &[]).await.unwrap().refused.is_empty());
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(0, 0, 2, 0));
     assert_eq!(queue.rows("a").await.unwrap()[0].record.as_deref(), Some("r"));
     queue.close().await.unwrap();
 }
 
-/// Protects: a database where nothing can be written can be read, and changes nothing; writing says why it cannot.
+/// Protects: a read-only database can be read without changing anything, and the error of a write says what is wrong.
 #[tokio::test]
 async fn a_read_only_folder() {
     let sandbox = Sandbox::new();
@@ -87,8 +89,8 @@ async fn a_read_only_folder() {
     assert!(error.to_string().contains("Read-only file system"), "{error}");
 }
 
-/// Protects: a log that is not folded in is not passed over where it cannot be read: the results in it would be
-/// missing without a word.
+/// Protects: a read-only database with a write-ahead log is refused. If the log were ignored, its results would be
+/// missing without a message.
 #[tokio::test]
 async fn a_log_in_a_read_only_folder() {
     let (sandbox, copy) = (Sandbox::new(), Sandbox::new());
@@ -105,7 +107,8 @@ async fn a_log_in_a_read_only_folder() {
     assert!(error.to_string().contains("-wal to a folder that can be written"), "{error}");
 }
 
-/// Protects: damage is called damage, by what meets it and by the examination, and the file stays as it is.
+/// Protects: damage is reported as such, by the operation that meets it and by the examination, and the file stays
+/// unchanged.
 #[tokio::test]
 async fn a_damaged_file() {
     let sandbox = Sandbox::new();
@@ -117,7 +120,7 @@ async fn a_damaged_file() {
     assert!(healthy.iter().all(|finding| !finding.is_problem), "{healthy:#?}");
 
     let mut bytes = fs::read(sandbox.database()).unwrap();
-    // All but the first pages, which say what is where.
+    // The second half only: the first pages contain the schema.
     let from = bytes.len() / 2;
     bytes[from..].fill(0x5a);
     fs::write(sandbox.database(), &bytes).unwrap();
@@ -130,7 +133,8 @@ async fn a_damaged_file() {
     assert_eq!(fs::read(sandbox.database()).unwrap(), bytes);
 }
 
-/// Protects: the examination tells what the next worker will do about jobs of dead processes, and names the living.
+/// Protects: the examination reports how many jobs of dead processes the next worker will take back, and lists all
+/// workers.
 #[tokio::test]
 async fn the_examination_sees_workers() {
     let sandbox = Sandbox::new();
