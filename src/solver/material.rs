@@ -1,6 +1,6 @@
 //! Linear isotropic elasticity.
 
-use crate::spec::Pin;
+use crate::spec::{Pin, elasticity};
 
 /// A linear elastic isotropic material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,22 +25,21 @@ impl Material {
 
     /// Lamé's first parameter λ = Eν / ((1+ν)(1−2ν)) \[Pa\].
     pub fn lame_lambda_pa(&self) -> f64 {
-        let nu = self.poisson_ratio;
-        self.young_modulus_pa * nu / ((1.0 + nu) * (1.0 - 2.0 * nu))
+        elasticity::lame_lambda_pa(self.young_modulus_pa, self.poisson_ratio)
     }
 
     /// Shear modulus G = E / (2(1+ν)) \[Pa\].
     pub fn shear_modulus_pa(&self) -> f64 {
-        self.young_modulus_pa / (2.0 * (1.0 + self.poisson_ratio))
+        elasticity::shear_modulus_pa(self.young_modulus_pa, self.poisson_ratio)
     }
 
     /// Speed c_p = √((λ+2G)/ρ) of pressure waves \[m/s\].
     pub fn pressure_wave_speed_m_s(&self) -> f64 {
-        ((self.lame_lambda_pa() + 2.0 * self.shear_modulus_pa()) / self.density_kg_m3).sqrt()
+        elasticity::pressure_wave_speed_m_s(self.young_modulus_pa, self.poisson_ratio, self.density_kg_m3)
     }
 
     /// Speed c_s = √(G/ρ) of shear waves \[m/s\].
     pub fn shear_wave_speed_m_s(&self) -> f64 {
-        (self.shear_modulus_pa() / self.density_kg_m3).sqrt()
+        elasticity::shear_wave_speed_m_s(self.young_modulus_pa, self.poisson_ratio, self.density_kg_m3)
     }
 }

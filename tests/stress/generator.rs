@@ -76,7 +76,7 @@ fn contact(random: &mut Random, spec: &mut JobSpec) {
 
 fn clamp(random: &mut Random, spec: &mut JobSpec) {
     let pin = &spec.scene.pin;
-    let side = random.pick(&ClampSide::ALL);
+    let side = random.pick(ClampSide::ALL);
     let axis =
         usize::from(matches!(side, ClampSide::LeadingEnd | ClampSide::TrailingEnd | ClampSide::BothEnds));
     let row_m = pin.size_m[axis] / pin.elements[axis] as f64;
