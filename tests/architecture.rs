@@ -236,3 +236,74 @@ fn sweep_hides_other_crates() {
         }
     }
 }
+
+/// All paths of a `use` tree: `a::{b, c::d}` gives a::b and a::c::d.
+fn paths(tree: &str) -> Vec<Vec<String>> {
+    let tree = tree.trim();
+    if let Some(group) = tree.strip_prefix('{').and_then(|rest| rest.strip_suffix('}')) {
+        let mut nesting = 0;
+        let parts = group.split(|c: char| {
+            nesting += i32::from(c == '{') - i32::from(c == '}');
+            c == ',' && nesting == 0
+        });
+        return parts.filter(|part| !part.trim().is_empty()).flat_map(paths).collect();
+    }
+    let name = |text: &str| text.split(" as ").next().unwrap_or_default().trim().to_owned();
+    match tree.split_once("::") {
+        None => vec![vec![name(tree)]],
+        Some((head, rest)) => paths(rest).into_iter().map(|path| [vec![name(head)], path].concat()).collect(),
+    }
+}
+
+/// The modules that the private `use` declarations of a module name. A `pub use` only passes a name on, and tests may use
+/// anything.
+fn dependencies(module: &[String], text: &str, modules: &BTreeSet<Vec<String>>) -> BTreeSet<Vec<String>> {
+    let code = text.split("#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let declarations = code.split("\nuse ").skip(1).map(|rest| rest.split(';').next().unwrap_or_default());
+    let mut found = BTreeSet::new();
+    for path in declarations.flat_map(paths) {
+        let supers = path.iter().take_while(|name| *name == "super").count();
+        let base = match path[0].as_str() {
+            "crate" => Vec::new(),
+            "super" => module[..module.len() - supers].to_vec(),
+            _ => module.to_vec(),
+        };
+        let mut target = [base, path[usize::from(path[0] == "crate").max(supers)..].to_vec()].concat();
+        while !target.is_empty() && !modules.contains(&target) {
+            target.pop();
+        }
+        if !target.is_empty() && target != module {
+            found.insert(target);
+        }
+    }
+    found
+}
+
+/// Protects: every file can be understood with the files that it uses, because no files use each other in a circle.
+#[test]
+fn no_files_use_each_other_in_a_circle() {
+    assert_eq!(paths("a::{b, c::{d as e, f}}").concat().concat(), "abacdacf");
+    let module = |file: &str| -> Vec<String> {
+        let name = file.strip_suffix(".rs").unwrap();
+        name.strip_suffix("/mod").unwrap_or(name).split('/').map(str::to_owned).collect()
+    };
+    let sources = sources();
+    let modules: BTreeSet<_> = sources.iter().map(|(file, _)| module(file)).collect();
+    let mut uses: BTreeMap<Vec<String>, BTreeSet<Vec<String>>> = sources
+        .iter()
+        .map(|(file, text)| (module(file), dependencies(&module(file), text, &modules)))
+        .filter(|(module, _)| module.last().is_some_and(|name| name != "tests" && name != "lib"))
+        .collect();
+    assert!(uses.values().map(BTreeSet::len).sum::<usize>() > 500, "the declarations are found");
+    // Files that use no remaining file are taken away until only circles and what leads to them remain.
+    loop {
+        let remaining: BTreeSet<_> = uses.keys().cloned().collect();
+        let before = remaining.len();
+        uses.retain(|_, targets| targets.iter().any(|target| remaining.contains(target)));
+        if uses.len() == before {
+            break;
+        }
+    }
+    let left: Vec<_> = uses.keys().map(|module| module.join("::")).collect();
+    assert!(left.is_empty(), "these are in a circle, or use files that are: {}", left.join(", "));
+}

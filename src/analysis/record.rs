@@ -4,8 +4,9 @@ use super::steady::Obstacle;
 use serde::{Deserialize, Serialize};
 
 /// How a run ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Outcome {
     /// A periodic steady state was reached.
     Periodic,
@@ -18,17 +19,14 @@ pub enum Outcome {
 impl Outcome {
     /// The name used in tables and CSV.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Periodic => "periodic",
-            Self::Decayed => "decayed",
-            Self::NotPeriodic => "not_periodic",
-        }
+        self.into()
     }
 }
 
 /// The contact regime, from the shares of node-time spent in each state over whole cycles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
 pub enum Regime {
     /// All nodes in contact slip, and the oscillation decays.
     Stable,
@@ -45,13 +43,7 @@ pub enum Regime {
 impl Regime {
     /// The name used in tables and CSV.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Stable => "stable",
-            Self::StickSlip => "stick_slip",
-            Self::StickSlipSeparation => "stick_slip_separation",
-            Self::SlipSeparation => "slip_separation",
-            Self::Undecided => "undecided",
-        }
+        self.into()
     }
 }
 

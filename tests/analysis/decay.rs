@@ -1,6 +1,7 @@
 //! When sliding counts as decaying.
 
-use crate::signals::{Random, STEP_S, sample, sine};
+use crate::random::Random;
+use crate::signals::{STEP_S, sample, sine};
 use tribosweep::analysis::decay::DecayMonitor;
 use tribosweep::analysis::lines::ROUNDING;
 use tribosweep::analysis::sample::Sample;
@@ -38,7 +39,7 @@ fn declared(lines: &[Line], duration_s: f64) -> Option<(f64, f64)> {
 /// except for the window's side lobes (1e-7), so a tolerance of 1 % of the rate (or 0.01 /s) is generous.
 #[test]
 fn a_damped_line_decays_at_its_rate() {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     for _ in 0..40 {
         let rate = -(10.0_f64).powf(random.between(1.0, 3.0));
         let amplitude = (10.0_f64).powf(random.between(-5.0, 0.0));
@@ -52,7 +53,7 @@ fn a_damped_line_decays_at_its_rate() {
 /// Protects: of several well separated strong lines, the one that decays slowest gives the rate, to 3 %.
 #[test]
 fn the_slowest_of_several_lines_gives_the_rate() {
-    let mut random = Random(12);
+    let mut random = Random::new(12);
     for _ in 0..30 {
         let lines: Vec<Line> = (0..5)
             .map(|i| {
@@ -73,7 +74,7 @@ fn the_slowest_of_several_lines_gives_the_rate() {
 /// run.
 #[test]
 fn a_weak_growing_line_is_not_overlooked() {
-    let mut random = Random(13);
+    let mut random = Random::new(13);
     for _ in 0..60 {
         let decaying = Line(
             (10.0_f64).powf(random.between(-2.0, 0.0)),
@@ -97,7 +98,7 @@ fn a_weak_growing_line_is_not_overlooked() {
 /// Protects: sliding with an undamped line, with or without rounding noise, is not declared decaying.
 #[test]
 fn an_undamped_line_does_not_decay() {
-    let mut random = Random(14);
+    let mut random = Random::new(14);
     for _ in 0..20 {
         let line = Line(0.1, random.between(5.0e3, 5.0e4), 0.0, random.between(0.0, 6.0));
         assert_eq!(declared(&[line], 0.04), None, "{line:?}");
@@ -116,7 +117,7 @@ fn an_undamped_line_does_not_decay() {
 /// at least 150 Hz have more than one period in the observation of 8 ms.
 #[test]
 fn a_falling_beat_is_not_a_decay() {
-    let mut random = Random(15);
+    let mut random = Random::new(15);
     for trial in 0..60 {
         let spacing = [150.0, 200.0, 300.0, 500.0, 900.0, 2.0e3][trial % 6];
         let rate = [0.0, 10.0, 50.0][trial % 3];
@@ -132,7 +133,7 @@ fn a_falling_beat_is_not_a_decay() {
 /// that of the slower line and that of the faster line.
 #[test]
 fn beating_decaying_lines_are_declared() {
-    let mut random = Random(16);
+    let mut random = Random::new(16);
     for trial in 0..40 {
         let spacing = [100.0, 200.0, 500.0, 1.0e3, 2.0e3][trial % 5];
         let lines = [

@@ -1,11 +1,12 @@
 //! Sums, means and weights of windows.
 
-use crate::signals::{LOAD_N, Random, SQUEAL_HZ, STEP_S, cut, sample, sine};
+use crate::random::Random;
+use crate::signals::{LOAD_N, SQUEAL_HZ, STEP_S, cut, sample, sine};
 use tribosweep::analysis::figures::Figures;
 use tribosweep::analysis::sample::Sample;
 
 fn random_samples(count: usize) -> Vec<Sample> {
-    let mut random = Random(31);
+    let mut random = Random::new(31);
     (0..count)
         .map(|n| {
             let mut sample = sample(n as f64 * STEP_S, random.between(0.0, 3.0));

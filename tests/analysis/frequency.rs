@@ -1,6 +1,7 @@
 //! The fundamental frequency of N from its section crossings.
 
-use crate::signals::{Random, SQUEAL_HZ, STEP_S, cut, sample, sine};
+use crate::random::Random;
+use crate::signals::{SQUEAL_HZ, STEP_S, cut, sample, sine};
 use tribosweep::analysis::cycles::Cycle;
 use tribosweep::analysis::steady;
 use tribosweep::spec::Detection;
@@ -21,7 +22,7 @@ fn assert_near(found_hz: f64, tolerance_hz: f64, what: &str) {
 /// such errors over 20 cycles are 0.12 Hz.
 #[test]
 fn a_sinusoid_on_any_grid() {
-    let mut random = Random(1);
+    let mut random = Random::new(1);
     for step_s in [STEP_S, 8.37e-7, 1.0e-6 / 1.3, 1.75e-6, 5.5e-8] {
         for amplitude in [1.0e-6, 0.01, 0.3, 1.0] {
             let phase = random.between(0.0, 6.0);

@@ -8,6 +8,8 @@ mod frequency;
 mod identities;
 mod interruption;
 mod on_elastic_disk;
+#[path = "../support/random.rs"]
+mod random;
 mod signals;
 mod statistics;
 mod steady;

@@ -14,31 +14,6 @@ pub const SQUEAL_HZ: f64 = 14_500.0;
 /// The reference scene's time step [s].
 pub const STEP_S: f64 = 8.5e-7;
 
-/// A uniform generator (splitmix64) with a fixed seed.
-pub struct Random(pub u64);
-
-impl Random {
-    /// Uniform in [0, 1).
-    pub fn unit(&mut self) -> f64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// Uniform between two bounds.
-    pub fn between(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
-    }
-
-    /// Standard normal (Box and Muller).
-    pub fn normal(&mut self) -> f64 {
-        let radius = (-2.0 * (1.0 - self.unit()).ln()).sqrt();
-        radius * (TAU * self.unit()).cos()
-    }
-}
-
 /// The coarse scene of the verification: 6 × 8 × 5 elements and a clamp of 2 mm.
 pub fn coarse() -> JobSpec {
     let mut spec = JobSpec::default();

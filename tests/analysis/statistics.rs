@@ -1,6 +1,6 @@
 //! The standard error of correlated figures.
 
-use crate::signals::Random;
+use crate::random::Random;
 use tribosweep::analysis::steady::standard_error;
 
 /// Protects: the standard error of an AR(1) sequence's mean is right. With ρ = 0.5 and unit innovations the
@@ -13,7 +13,7 @@ fn ar1_sequences() {
     let variance = |n: f64| {
         (1.0 - 2.0 * rho * (1.0 - rho.powf(n)) / (n * (1.0 - rho * rho))) / (n * (1.0 - rho).powi(2))
     };
-    let mut random = Random(21);
+    let mut random = Random::new(21);
     let mut mean_square = 0.0;
     for _ in 0..sequences {
         let mut x = random.normal() / (1.0 - rho * rho).sqrt();

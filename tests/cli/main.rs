@@ -10,6 +10,8 @@ mod interruption;
 mod mount;
 mod nightly;
 mod one_job;
+#[path = "../support/random.rs"]
+mod random;
 mod server;
 #[path = "../support/server.rs"]
 mod server_database;

@@ -2,6 +2,7 @@
 //! results are those of an uninterrupted run.
 #![cfg(unix)]
 
+use crate::random::Random;
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::{Duration, Instant};
 
@@ -44,16 +45,6 @@ where
         let mut connection: SqliteConnection = options.connect().await.unwrap();
         sqlx::query_as(statement).fetch_all(&mut connection).await.unwrap()
     })
-}
-
-/// Pseudo-random numbers, the same in every run.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, limit: u64) -> u64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) % limit
-    }
 }
 
 /// Protects: two processes share the jobs of a study: both run some of them, no job is run twice, and both end with success.
@@ -162,7 +153,7 @@ fn a_killed_long_job_continues_from_its_checkpoint() {
 /// be opened and has every result that was finished before. The order of copying does not matter.
 #[test]
 fn a_copy_at_any_instant_is_consistent() {
-    let mut random = Random(11);
+    let mut random = Random::new(11);
     let mut instants = BTreeSet::new();
     // Jobs that are advanced together end together, so on a fast machine one sweep may have only a few instants.
     for _ in 0..10 {
@@ -246,7 +237,7 @@ fn many_kills_lose_nothing() {
     const TIME: Duration = Duration::from_secs(8);
     let folder = Folder::with("study", &many());
     folder.ok("submit study.json");
-    let mut random = Random(5);
+    let mut random = Random::new(5);
     let start = || folder.start("work --threads 1 --max-crashes 1000");
     let mut workers: Vec<Running> = (0..WORKERS).map(|_| start()).collect();
     let mut kills = 0;

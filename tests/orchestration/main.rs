@@ -3,6 +3,8 @@
 #[path = "../support/mount.rs"]
 mod mount;
 mod queue;
+#[path = "../support/random.rs"]
+mod random;
 #[path = "../support/server.rs"]
 mod server;
 mod support;

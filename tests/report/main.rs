@@ -10,6 +10,8 @@ mod html;
 mod maps;
 mod overview;
 mod pareto;
+#[path = "../support/random.rs"]
+mod random;
 mod svg;
 mod synthetic;
 mod tables;

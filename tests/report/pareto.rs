@@ -1,5 +1,6 @@
 //! Error against run time, with synthetic jobs whose errors are known.
 
+use crate::random::Random;
 use crate::svg;
 use crate::synthetic::{failed, record, row, with};
 use std::fs;
@@ -118,11 +119,8 @@ fn an_unclean_order_is_refused() {
 /// Protects: the front agrees with its definition, for points with equal costs, equal errors or both.
 #[test]
 fn the_front_agrees_with_a_brute_force_search() {
-    let mut state = 12345_u64;
-    let mut next = |n: u64| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) % n
-    };
+    let mut random = Random::new(12345);
+    let mut next = |end: usize| random.below(end);
     for count in 1..60 {
         let points: Vec<(f64, f64)> = (0..count).map(|_| (next(12) as f64, next(12) as f64)).collect();
         let better = |a: (f64, f64), b: (f64, f64)| a.0 <= b.0 && a.1 <= b.1 && (a.0 < b.0 || a.1 < b.1);

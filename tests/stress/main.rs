@@ -16,6 +16,7 @@ mod generator;
 mod long;
 mod modes;
 mod queue;
+#[path = "../support/random.rs"]
 mod random;
 mod scenes;
 mod simplify;

@@ -5,6 +5,8 @@ mod keys;
 mod mini_schema;
 mod mutations;
 mod presets;
+#[path = "../support/random.rs"]
+mod random;
 mod refusals;
 mod schema;
 mod shipped;

@@ -4,6 +4,7 @@
 #[path = "../fuzz/checks.rs"]
 mod checks;
 
+use crate::random::Random;
 use checks::{Fate, check_overrides, check_study};
 use std::path::Path;
 use tribosweep::study::Study;
@@ -46,13 +47,12 @@ fn seeds(target: &str) -> Vec<String> {
     paths.iter().map(|path| std::fs::read_to_string(path).unwrap()).collect()
 }
 
-/// A linear congruential generator (Knuth, *MMIX*); the high bits are good enough to choose places.
-struct Choices(u64);
+/// Random changes of texts.
+struct Choices(Random);
 
 impl Choices {
     fn below(&mut self, end: usize) -> usize {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 33) as usize % end
+        self.0.below(end)
     }
 
     /// A place in `text` between two characters.
@@ -87,7 +87,7 @@ impl Choices {
 #[test]
 fn mutated_studies_are_accepted_or_refused() {
     let seeds = seeds("study");
-    let mut choices = Choices(1);
+    let mut choices = Choices(Random::new(1));
     let mut fates = [0; 3];
     for seed in &seeds {
         for _ in 0..MUTANTS {
@@ -103,7 +103,7 @@ fn mutated_studies_are_accepted_or_refused() {
 fn mutated_overrides_are_accepted_or_refused() {
     let study = Study::parse(r#"{ "name": "x", "grid": { "mu": [0.2, 0.4] } }"#, "x.json").unwrap();
     let seeds = seeds("overrides");
-    let mut choices = Choices(2);
+    let mut choices = Choices(Random::new(2));
     let mut fates = [0; 3];
     for seed in &seeds {
         for _ in 0..MUTANTS {

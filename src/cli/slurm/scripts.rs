@@ -1,6 +1,6 @@
 //! The scripts of a job array, from templates and settings.
 
-use super::Args;
+use super::args::Args;
 use super::settings::Database;
 use crate::cli::error::CliError;
 use crate::cli::output::write_file;

@@ -4,7 +4,8 @@ use crate::solver::field::{Field, Layout};
 use crate::solver::lane::LaneState;
 
 /// State of a slave node during a step.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::IntoStaticStr)]
+#[strum(serialize_all = "snake_case")]
 pub enum ContactState {
     /// No contact force.
     #[default]
@@ -18,11 +19,7 @@ pub enum ContactState {
 impl ContactState {
     /// The name used in tables and CSV.
     pub fn name(self) -> &'static str {
-        match self {
-            Self::Separated => "separated",
-            Self::Stick => "stick",
-            Self::Slip => "slip",
-        }
+        self.into()
     }
 }
 

@@ -1,5 +1,6 @@
 //! Which jobs a claim takes: priorities, batches, studies; cancelling, retrying and removing.
 
+use crate::random::Random;
 use std::collections::BTreeSet;
 
 use tribosweep::queue::{
@@ -212,11 +213,8 @@ async fn a_studys_pending_jobs_are_kept() {
             SELECT study_id, job_id, batch, priority, cost FROM study_pending) AS both_have";
     let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
-    let mut state = 7_u64;
-    let mut draw = |below: usize| {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 33) as usize % below
-    };
+    let mut random = Random::new(7);
+    let mut draw = |end: usize| random.below(end);
     let mut running: Vec<(String, u32)> = Vec::new();
     let mut seen = BTreeSet::new();
     for _ in 0..400 {

@@ -1,11 +1,20 @@
-//! A small generator of random numbers whose values never change. Case 4711 of a seed remains the same scene,
-//! whatever versions the dependencies have.
+//! A small generator of random numbers whose values never change. Case 4711 of a seed remains the same, whatever versions
+//! the dependencies have.
+
+#![allow(dead_code, reason = "each test binary uses a part of it")]
+
+use std::f64::consts::TAU;
 
 /// SplitMix64 (Steele, Lea, Flood, *Fast splittable pseudorandom number generators*, OOPSLA 2014).
 #[derive(Debug, Clone)]
 pub struct Random(u64);
 
 impl Random {
+    /// A generator with this seed.
+    pub fn new(seed: u64) -> Self {
+        Self(seed)
+    }
+
     /// The generator of case `index` of `seed`.
     pub fn of_case(seed: u64, index: u64) -> Self {
         let mut random = Self(seed);
@@ -39,6 +48,17 @@ impl Random {
     /// A whole number from `low` to `high`, both included.
     pub fn whole(&mut self, low: usize, high: usize) -> usize {
         low + (self.next() % (high - low + 1) as u64) as usize
+    }
+
+    /// A whole number below `end`.
+    pub fn below(&mut self, end: usize) -> usize {
+        (self.next() % end as u64) as usize
+    }
+
+    /// Standard normal (Box and Muller).
+    pub fn normal(&mut self) -> f64 {
+        let radius = (-2.0 * (1.0 - self.unit()).ln()).sqrt();
+        radius * (TAU * self.unit()).cos()
     }
 
     /// One of `choices`.
