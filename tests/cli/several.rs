@@ -176,7 +176,7 @@ fn copy_at_instants(random: &mut Random) -> Vec<usize> {
     };
     let mut copies = Vec::new();
     for copy in 0..12 {
-        std::thread::sleep(Duration::from_millis(random.below(90)));
+        std::thread::sleep(Duration::from_millis(random.below(90) as u64));
         let before = finished();
         if before.len() == 60 {
             // The process may close the database before it stops.
@@ -245,8 +245,8 @@ fn many_kills_lose_nothing() {
     let begun = Instant::now();
     while begun.elapsed() < TIME && finished.len() < 60 {
         // Short enough for many kills on a fast machine, and long enough for some jobs to end.
-        std::thread::sleep(Duration::from_millis(random.below(80)));
-        let index = random.below(WORKERS as u64) as usize;
+        std::thread::sleep(Duration::from_millis(random.below(80) as u64));
+        let index = random.below(WORKERS);
         let killed = std::mem::replace(&mut workers[index], start());
         killed.signal("KILL");
         kills += u64::from(killed.end().0.is_none());
