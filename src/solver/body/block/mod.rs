@@ -14,7 +14,7 @@ pub mod operator;
 pub mod stress;
 
 pub(in crate::solver) use audit::{BlockAudit, Motion};
-pub use bound::{omega_max_bound, omega_max_bound_of_springs};
+use bound::{omega_max_bound, omega_max_bound_of_springs};
 pub use mesh::BlockMesh;
 pub(in crate::solver) use motion::{BlockMotion, Face};
 

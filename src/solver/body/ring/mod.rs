@@ -20,7 +20,7 @@
 mod audit;
 mod body;
 mod bound;
-pub mod grading;
+mod grading;
 pub mod mesh;
 mod motion;
 pub mod operator;

@@ -7,7 +7,7 @@ mod coupled;
 mod diagonal;
 mod held;
 mod step_data;
-pub mod sweeps;
+pub(in crate::solver) mod sweeps;
 
 pub(in crate::solver) use step_data::StepData;
 pub use sweeps::Solves;

@@ -8,7 +8,9 @@ mod assembled;
 mod tensor;
 
 pub use assembled::AssembledOperator;
-pub use tensor::{BlockIndex, Pass, Scratch, TensorOperator, load_all};
+pub(crate) use tensor::load_all;
+pub(in crate::solver) use tensor::{BlockIndex, Pass};
+pub use tensor::{Scratch, TensorOperator};
 
 use crate::solver::field::Field;
 

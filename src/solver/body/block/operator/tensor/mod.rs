@@ -23,7 +23,9 @@ mod pass;
 #[cfg(test)]
 mod tests;
 
-pub use pass::{BlockIndex, Pass, Scratch, load_all};
+pub use pass::Scratch;
+pub(crate) use pass::load_all;
+pub(in crate::solver) use pass::{BlockIndex, Pass};
 
 use crate::solver::body::block::BlockMesh;
 use crate::solver::field::{Block, Field, Row, add_slots};

@@ -18,7 +18,7 @@ use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// Position of a block.
 #[derive(Debug, Clone, Copy)]
-pub struct BlockIndex {
+pub(in crate::solver) struct BlockIndex {
     /// Plane of nodes, from the contact face upwards.
     pub plane: usize,
     /// Line of nodes, y faster than z.
@@ -30,7 +30,7 @@ pub struct BlockIndex {
 }
 
 /// The input and the output of a product, block by block.
-pub trait Pass<S: Simd> {
+pub(in crate::solver) trait Pass<S: Simd> {
     /// The three components of x in block `at`.
     fn input(&self, simd: S, at: usize) -> [f64x8<S>; 3];
     /// Takes the three components of K x in a block. The inputs of its plane and of those below are not read again,
@@ -186,7 +186,12 @@ fn here<S: Simd>(simd: S, window: &Window) -> f64x8<S> {
 impl TensorOperator {
     /// One pass over the mesh.
     #[inline(always)]
-    pub fn pass<S: Simd, const L: usize>(&self, simd: S, pass: &mut impl Pass<S>, scratch: &mut Scratch<L>) {
+    pub(in crate::solver) fn pass<S: Simd, const L: usize>(
+        &self,
+        simd: S,
+        pass: &mut impl Pass<S>,
+        scratch: &mut Scratch<L>,
+    ) {
         let [_, my, mz] = self.nodes;
         let blocks = scratch.ends.len();
         for k in 0..mz {
@@ -419,7 +424,7 @@ impl TensorOperator {
 /// Loads three rows as vectors. `map` on the array would compile to a call, across which vectors do not stay in
 /// registers.
 #[inline(always)]
-pub fn load_all<S: Simd>(simd: S, rows: &[[f64; WIDTH]; 3]) -> [f64x8<S>; 3] {
+pub(crate) fn load_all<S: Simd>(simd: S, rows: &[[f64; WIDTH]; 3]) -> [f64x8<S>; 3] {
     [f64x8::from_slice(simd, &rows[0]), f64x8::from_slice(simd, &rows[1]), f64x8::from_slice(simd, &rows[2])]
 }
 
