@@ -62,7 +62,7 @@
 //! * [`cli`] – the command line: arguments, messages and exit codes.
 //!
 //! # Features
-//! All of them are on by default. Without any there are [`spec`], [`solver`], [`analysis`] and [`study`].
+//! All of them are on by default. Without any there are [`spec`], [`solver`], [`analysis`], [`study`] and [`units`].
 //!
 //! * `queue` – [`queue`] and [`worker`].
 //! * `postgres` – the queue on a PostgreSQL server too.

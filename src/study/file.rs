@@ -1,9 +1,9 @@
-//! The shape of a study file, and its JSON schema.
+//! The shape of a study file.
 
+use super::grid_schema::grid_schema;
 use super::preset::Preset;
-use super::schema::grid_schema;
 use crate::spec::{Detection, Numerics, RunControl, Scene};
-use schemars::{JsonSchema, schema_for};
+use schemars::JsonSchema;
 use serde::{Deserialize, Deserializer};
 use serde_json::{Map, Value};
 
@@ -36,13 +36,6 @@ pub(super) struct StudyFile {
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(schema_with = "grid_schema")]
     pub grid: Option<Map<String, Value>>,
-}
-
-/// The JSON schema (draft 2020-12) of a study file.
-///
-/// It describes names and types. The physical limits are checked by [`Study::parse`](super::Study::parse).
-pub fn schema() -> Value {
-    schema_for!(StudyFile).to_value()
 }
 
 impl StudyFile {
