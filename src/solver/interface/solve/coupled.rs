@@ -239,7 +239,7 @@ impl<const L: usize> RingTarget<L> {
             let coords = self.solve.patch_coords(turned_rad);
             match self.body.target() {
                 TargetSurface::Bilinear => {
-                    let shares: Vec<_> = coords.map(|(a, b)| grid.bilinear(a, b, first)).collect();
+                    let shares: Vec<_> = coords.map(|(a, b)| Grid::bilinear(a, b, first)).collect();
                     self.solve_lane(given, lane, &shares, face, contacts);
                 }
                 TargetSurface::Ferguson => {

@@ -93,7 +93,7 @@ impl Grid {
     }
 
     /// Shares of the bilinear patch with four nodes. Columns are counted from `first`.
-    pub fn bilinear(&self, along: PatchCoord, across: PatchCoord, first: isize) -> [Share; BILINEAR] {
+    pub fn bilinear(along: PatchCoord, across: PatchCoord, first: isize) -> [Share; BILINEAR] {
         std::array::from_fn(|n| {
             let (column, row) = (n & 1, n >> 1);
             Share {
@@ -193,7 +193,7 @@ mod tests {
                         (PatchCoord { cell, part }, PatchCoord { cell: row, part: 1.0 - part });
                     let (y, x) = (cell as f64 + part, row as f64 + 1.0 - part);
                     let found = |of: &dyn Fn(f64, f64) -> f64| match target {
-                        TargetSurface::Bilinear => value(&grid.bilinear(along, across, 0), of),
+                        TargetSurface::Bilinear => value(&Grid::bilinear(along, across, 0), of),
                         TargetSurface::Ferguson => {
                             // Columns are counted from −1, because the first patch reaches there.
                             value(&grid.ferguson(along, across, -1), |column, row| of(column - 1.0, row))
@@ -223,7 +223,7 @@ mod tests {
                 let angle = -0.2 + 0.04 * y;
                 let (along, across) = (grid.along(angle), grid.across(0.08 + 0.0025 * x));
                 match target {
-                    TargetSurface::Bilinear => value(&grid.bilinear(along, across, 0), wavy),
+                    TargetSurface::Bilinear => value(&Grid::bilinear(along, across, 0), wavy),
                     TargetSurface::Ferguson => {
                         value(&grid.ferguson(along, across, -1), |column, row| wavy(column - 1.0, row))
                     }
