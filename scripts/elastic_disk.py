@@ -179,8 +179,7 @@ def main():
 
 Written by `scripts/elastic_disk.py`; do not edit. The paper's disk is a steel ring (radii 70 and 120 mm, 85 mm thick) that
 turns under the pin; `figure7` treats it as rigid. This page shows what changes if it is elastic
-(`"disk": {{"kind": "elastic"}}`), and how far the results are converged. [ARCHITECTURE.md](../ARCHITECTURE.md) describes the
-solver, [verification.md](verification.md) its verification.
+(`"disk": {{"kind": "elastic"}}`), and how far the results are converged. [design.md](design.md) describes the solver, [verification.md](verification.md) its verification.
 
 {column()}
 {stiffness()}

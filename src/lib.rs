@@ -54,8 +54,8 @@
 //! * [`analysis`] – the evaluation of a run: cycles, periodic state, decay, regime, μ*, identities.
 //! * [`study`] – studies as data: parse, check, expand into jobs, key, schema.
 //! * [`queue`] – jobs in a database, a SQLite file or a PostgreSQL server; payloads are opaque strings without mechanics.
-//! * [`worker`] – dispatcher (signals, database, progress) and executor (threads).
-//! * [`publish`] – the parts of reports: values as text, drawings, pages, folders.
+//! * [`worker`] – dispatcher (database, progress) and executor (threads).
+//! * [`publish`] – the parts of documents: values as text, drawings, pages, files that are replaced as a whole.
 //! * [`inspect`] – one job run again and shown in detail: histories, cycles, snapshots, fields.
 //! * [`report`] – page, tables, figures and CSV from records.
 //! * [`sweep`] – the steps of a sweep from the study to the report, for the command line and for other programs.

@@ -122,7 +122,7 @@ fn the_scanner_finds_modules() {
     assert_eq!(used("units.rs", "use super::spec;\n").into_iter().collect::<Vec<_>>(), ["spec"]);
     let nested = "mod tests {\n    use super::*;\n}\n";
     assert_eq!(used("units.rs", nested), BTreeSet::new());
-    assert_eq!((depth("cli/mod.rs"), depth("cli/run.rs"), depth("solver/contact/mod.rs")), (1, 2, 2));
+    assert_eq!((depth("cli/mod.rs"), depth("cli/run.rs"), depth("solver/body/mod.rs")), (1, 2, 2));
 }
 
 /// Protects: modules depend on each other in one direction only: mechanics does not know studies, databases and terminals,

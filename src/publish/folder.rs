@@ -76,7 +76,9 @@ pub fn write_atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::R
     let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     // A bare file name has the empty path as its parent.
     let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let mut temporary = temporary_file().tempfile_in(parent)?;
+    // The error names the temporary file, which no reader knows; only the system's part of it is kept.
+    let of_system = |error: io::Error| error.raw_os_error().map_or(error, io::Error::from_raw_os_error);
+    let mut temporary = temporary_file().tempfile_in(parent).map_err(of_system)?;
     fill(temporary.as_file_mut(), write)?;
     temporary.persist(&target).map_err(|error| error.error)?;
     Ok(())

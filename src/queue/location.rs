@@ -73,6 +73,10 @@ impl Server {
     /// The URL without passwords.
     fn without_password(&self) -> String {
         match Url::parse(&self.url) {
+            // The parser took a part of the password for the host.
+            Ok(url) if url.password().is_some() && has_at_sign_after_authority(&self.url) => {
+                strip_unparsable(&self.url)
+            }
             Ok(url) if self.has_password() => strip_passwords(url).into(),
             Ok(_) => self.url.clone(),
             Err(_) => strip_unparsable(&self.url),
@@ -111,6 +115,13 @@ fn strip_unparsable(text: &str) -> String {
         return format!("{scheme}://{user}@{host}");
     }
     format!("{scheme}://{}", rest.split('?').next().unwrap_or_default())
+}
+
+/// Whether an `@` follows the part of a URL that ends at the first `/`, `?` or `#`. After a password, the text up to that
+/// `@` may belong to the password: an unencoded `@` and then one of these characters still make a valid URL.
+fn has_at_sign_after_authority(text: &str) -> bool {
+    let rest = text.split_once("://").map_or(text, |(_, rest)| rest);
+    rest.split_once(['/', '?', '#']).is_some_and(|(_, after)| after.contains('@'))
 }
 
 /// Whether text that is not a valid URL has a `:` before an `@`.
@@ -180,6 +191,9 @@ mod tests {
             ("postgres://ada:secret@db:5433/sweeps", "postgres://ada@db:5433/sweeps"),
             ("postgres://ada:sec@ret@db/sweeps", "postgres://ada@db/sweeps"),
             ("postgres://ada:s/e@c?secret@db/sweeps", "postgres://ada@db/sweeps"),
+            ("postgres://ada:sec@ret/secret@db/sweeps", "postgres://ada@db/sweeps"),
+            ("postgres://ada:sec@ret?secret@db/sweeps", "postgres://ada@db/sweeps"),
+            ("postgres://ada:sec@ret#secret@db/sweeps", "postgres://ada@db/sweeps"),
             ("postgres://ada:1@db/sweeps", "postgres://ada@db/sweeps"),
             ("postgres://db/x?a=b&PASSWORD=secret", "postgres://db/x?a=b"),
             ("postgres://ada@db:5432/x?options=a@b", "postgres://ada@db:5432/x?options=a@b"),

@@ -33,6 +33,7 @@ pub mod trouble;
 
 pub use files::write;
 pub use input::Report;
+#[cfg(feature = "cli")]
 pub(crate) use parameters::assignment;
 pub use provenance::{BuildInfo, Provenance, ResultGroup};
 pub use row::{JobNumerics, JobRow, RowState};

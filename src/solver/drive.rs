@@ -2,7 +2,7 @@
 
 use super::interface::law::Law;
 
-/// The inputs of one lane. All lanes of a state have the same kind of law.
+/// The inputs of one lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
     /// The friction law with its coefficients.

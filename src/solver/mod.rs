@@ -3,11 +3,9 @@
 //! The solver knows nothing of files, the queue or the command line. Its parts:
 //!
 //! ```text
-//! body ◄── support          what deforms; what holds and loads the pin
-//!   ▲         ▲
-//!   └──── interface         contact of the pin with its target: pairs, law, target, solve
-//!             ▲
-//!   scene ─► model (immutable) ─► state (per lane) ─► step ─► energy, guard, observers
+//! body ◄─┬─ support           what deforms; what holds and loads it
+//!        └─ interface         where the pin touches its target: pairs, law, target, solve
+//!   scene ─► model (immutable) ─► state (per lane) ─► step (bare) ─► energy, guard, observers
 //! ```
 //!
 //! * [`body`] – the block of the pin and the ring of an elastic disk: internal forces, masses, energies, bound of

@@ -1,5 +1,5 @@
 //! A sweep from the study to the report: the application layer between the command line and the modules that do the
-//! work. Everything that the program does with a study, another Rust program can do with these functions.
+//! work. Other Rust programs can plan, solve and report studies with these functions.
 //!
 //! ```text
 //! study ──► Plan ──► submit ──► queue ◄──► work

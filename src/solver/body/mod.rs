@@ -7,7 +7,7 @@
 //! * [`ring`] – the elastic disk.
 //! * [`hexahedron`] – the finite element of both.
 //!
-//! Bodies know nothing of supports, contact or each other.
+//! No body uses another body, `support` or `interface`.
 
 pub mod block;
 pub mod hexahedron;

@@ -34,8 +34,8 @@ pub struct Contacts<const L: usize> {
     pub previous_increment_m: Field<L>,
     /// Gap and state; [`Status`] names the components.
     pub status: Field<L>,
-    /// In the first component, the limit \[N\] of the friction force at t_n that the law gave. The other components
-    /// are free for laws with a memory.
+    /// In the first component, the limit \[N\] of the friction force at t_n that the law gave; 0 without contact. The
+    /// other components are 0.
     pub friction: Field<L>,
 }
 

@@ -8,12 +8,14 @@ use std::fmt::Debug;
 /// A support in every lane. It may store within a step what [`AppliedSupport::add_energies`] needs. Nothing is
 /// carried from step to step.
 pub(in crate::solver) trait AppliedSupport<const L: usize>: Debug + Send + Sync {
-    /// Acts on the pin at t_n: adds the support's force to the residual, and its reaction force on the pin \[N\] to
-    /// `reaction_n`.
+    /// Acts on the pin at t_n, and adds its reaction force on the pin \[N\] to `reaction_n`. A compliant support adds its
+    /// force to the residual, a tie replaces the residual, and a fixed support only reads it.
     fn act(&mut self, pin: &mut Supported<'_, L>, reaction_n: &mut [[f64; L]; 3]);
 
     /// Adds the energy stored at t_n, and the work of damping in the step from there to `u_after`. A rigid support
     /// has neither.
+    ///
+    /// The work of damping over the increment before t_n can be given for β₂ = ½ only, where that increment is Δt p_n.
     fn add_energies(&self, _scheme: &Scheme, _u_after: &Field<L>, _total: &mut EnergySums<L>) {}
 
     /// A copy.
@@ -22,7 +24,7 @@ pub(in crate::solver) trait AppliedSupport<const L: usize>: Debug + Send + Sync 
 
 /// The pin at t_n, on which supports act.
 pub(in crate::solver) struct Supported<'a, const L: usize> {
-    /// Displacements \[m\] at t_n. Rigid supports do not need them, nor `p`.
+    /// Displacements \[m\] at t_n, on the planes of nodes on which supports and loads act; the others have been moved. Rigid supports do not need them, nor `p`.
     #[expect(dead_code, reason = "for supports whose force depends on the motion")]
     pub u: &'a Field<L>,
     /// p_n \[m/s\].

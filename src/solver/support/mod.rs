@@ -6,8 +6,8 @@
 //! * [`clamp`] – the supports that represent a scene's clamp and top face.
 //! * [`load`] – the normal load, which acts on the same planes.
 //!
-//! A support gives four things: a force on the residual, stored energy, the work of its damping, and its share of
-//! the stability limit ([`Bound`]). A rigid support gives only the force. To add a kind of support, write a file
+//! A support acts on the residual, stores energy, has a damping that does work, and has a share of the stability limit
+//! ([`Bound`]). A rigid support has neither energy nor damping nor a share of the limit. To add a kind of support, write a file
 //! that implements `AppliedSupport` for it, and add a variant to [`Support`].
 
 mod applied;
@@ -58,7 +58,7 @@ impl Support {
     }
 
     /// Contribution to the stability limit of a pin with these lumped masses \[kg\]. A rigid support contributes
-    /// nothing, because it can only lower frequencies.
+    /// nothing, because it can only lower the largest frequency.
     pub fn bound(&self, _masses_kg: &[f64]) -> Bound {
         match self {
             Self::Fixed(_) | Self::Tied(_) => Bound::default(),
@@ -115,14 +115,17 @@ pub fn freedoms(supports: &[Support], mesh: &BlockMesh) -> Result<Vec<Freedom>, 
     Ok(freedoms)
 }
 
-/// All supports in every lane, in the order of the definition.
+/// All supports in every lane, ties last.
 #[derive(Debug)]
 pub(in crate::solver) struct AppliedSupports<const L: usize>(Vec<Box<dyn AppliedSupport<L>>>);
 
 impl<const L: usize> AppliedSupports<L> {
     /// Prepares the supports of a pin with these lumped masses \[kg\].
     pub fn new(supports: &[Support], mesh: &BlockMesh, masses_kg: &[f64]) -> Self {
-        Self(supports.iter().map(|support| support.applied(mesh, masses_kg)).collect())
+        // A tie replaces the residual, so everything that adds to the residual acts before.
+        let is_tie = |support: &&Support| matches!(support, Support::Tied(_));
+        let (ties, others): (Vec<_>, Vec<_>) = supports.iter().partition(is_tie);
+        Self(others.into_iter().chain(ties).map(|support| support.applied(mesh, masses_kg)).collect())
     }
 
     /// Lets all supports act on the pin. Returns the sum of their reaction forces on the pin \[N\]: x, y and z.

@@ -7,7 +7,7 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::Real;
+use super::real::Real;
 
 /// Friction of one node or of eight.
 #[derive(Debug, Clone, Copy)]

@@ -2,7 +2,8 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::{FrictionLaw, Real};
+use super::friction_law::FrictionLaw;
+use super::real::Real;
 
 /// Coulomb's law with the friction coefficient μ of one node or of eight.
 #[derive(Debug, Clone, Copy)]

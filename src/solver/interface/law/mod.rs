@@ -5,17 +5,19 @@
 //! force of the size of the limit opposes its slip.
 //!
 //! To add a law, write a file that implements `FrictionLaw` for it, add a variant to [`Law`], and an arm to each
-//! `match` on it.
+//! `match` on it. The macro `with_law_of_lanes` must serve lanes with different laws, because a lane without a job has
+//! Coulomb's law with μ = 0.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
 mod cone;
 mod coulomb;
+mod friction_law;
 mod real;
 
 pub(in crate::solver) use cone::project;
 pub(in crate::solver) use coulomb::{Coulomb, Frictionless};
-pub(in crate::solver) use real::Real;
+pub(in crate::solver) use friction_law::FrictionLaw;
 
 /// A friction law with the coefficients of one lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -25,18 +27,6 @@ pub enum Law {
         /// Friction coefficient μ ≥ 0.
         mu: f64,
     },
-}
-
-/// A friction law for one node (`R` = `f64`) or for eight.
-pub(in crate::solver) trait FrictionLaw<R: Real>: Copy {
-    /// False if the limit is always zero. Then no trial force is computed.
-    const TRANSMITS: bool = true;
-
-    /// The friction limit \[N\] under the normal force `normal_n` ≥ 0 \[N\].
-    ///
-    /// A law may use two results of the step before: the increment \[m\] of the node relative to the target in x
-    /// and y, and whether the node slipped (1) or not (0).
-    fn limit_n(&self, normal_n: R, increment_m: [R; 2], slipped: R) -> R;
 }
 
 impl Law {

@@ -294,7 +294,15 @@ impl<const L: usize> RingTarget<L> {
             let place = slave.place;
             let relative = targets.relative_m(row, shares);
             let closed = row.force_n[2] > 0.0;
-            let gap_before = contacts.status.at(place, Status::Gap as usize)[lane];
+            let ahead =
+                shares.iter().fold(0.0, |sum, share| sum + share.weight * targets.node(share).height_m);
+            let raised = face_before.u.at(place, 2)[lane] + slave.initial_gap_m;
+            // No step has measured the gap at the start.
+            let gap_before = if step == 1 {
+                raised - ahead
+            } else {
+                contacts.status.at(place, Status::Gap as usize)[lane]
+            };
             let gap = if closed { 0.0 } else { relative[2] };
             for c in 0..3 {
                 let force = row.force_n[c];
@@ -306,15 +314,13 @@ impl<const L: usize> RingTarget<L> {
             let increment = [relative[0], relative[1], gap - gap_before];
             let status = [gap, f64::from(u8::from(closed)), f64::from(u8::from(closed && !row.sticks))];
             // The height of the surface at t_n, under the node's position at t_n and at t_{n+1}.
-            let under = (face_before.u.at(place, 2)[lane] + slave.initial_gap_m) - gap_before;
-            let mut ahead = 0.0;
+            let under = raised - gap_before;
             // The increment over the step before by the constraint of this step: its forces do work over that
             // increment, too.
             let mut last: [f64; 3] =
                 std::array::from_fn(|c| given.factors.time_step_s * face_before.p.at(place, c)[lane]);
             for share in shares {
                 let node = targets.node(share);
-                ahead += share.weight * node.height_m;
                 for c in 0..3 {
                     last[c] -= share.weight * node.last_increment_m[c];
                 }

@@ -150,7 +150,7 @@ impl<const L: usize> DiagonalSolve<L> {
             }
             let is_closed = closed.select(one, zero);
             closed.select(zero, gap).store_slice(&mut status.0[Status::Gap as usize]);
-            limit.store_slice(&mut friction.0[LIMIT]);
+            closed.select(limit, zero).store_slice(&mut friction.0[LIMIT]);
             is_closed.store_slice(&mut status.0[Status::Closed as usize]);
             sticks.select(zero, is_closed).store_slice(&mut status.0[Status::Slips as usize]);
         }

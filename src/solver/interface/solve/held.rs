@@ -83,7 +83,8 @@ impl<const L: usize> HeldNode<L> {
                 let inverse = 1.0 / self.node.mass_kg;
                 let u = &mut face.u.at_mut(place, c)[lane];
                 *u = match c {
-                    2 => -initial_gap,
+                    // Not −0 where there is no gap.
+                    2 => 0.0 - initial_gap,
                     _ if slips => *u + (u_scale * inverse) * force[c],
                     _ => self.u_m[c][lane] + carried[c],
                 };
