@@ -76,25 +76,12 @@ pub fn write_atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::R
     let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
     // A bare file name has the empty path as its parent.
     let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    // The error names the temporary file, which no reader knows; only the system's part of it is kept.
-    let of_system = |error: io::Error| error.raw_os_error().map_or(error, io::Error::from_raw_os_error);
-    let mut temporary = temporary_file().tempfile_in(parent).map_err(of_system)?;
+    // Created like any new file, so that it has the permissions that the umask leaves, and so that errors do not name it.
+    let create = |path: &Path| fs::OpenOptions::new().write(true).create_new(true).open(path);
+    let mut temporary = tempfile::Builder::new().suffix(".tmp").make_in(parent, create)?;
     fill(temporary.as_file_mut(), write)?;
     temporary.persist(&target).map_err(|error| error.error)?;
     Ok(())
-}
-
-/// Temporary files are private by default, but this one becomes an ordinary file.
-fn temporary_file() -> tempfile::Builder<'static, 'static> {
-    let mut builder = tempfile::Builder::new();
-    #[cfg(unix)]
-    {
-        use std::os::unix::fs::PermissionsExt;
-        // The system call that creates the file takes the umask away from this.
-        builder.permissions(fs::Permissions::from_mode(0o666));
-    }
-    builder.suffix(".tmp");
-    builder
 }
 
 fn fill(file: impl Write, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
@@ -128,6 +115,15 @@ mod tests {
         assert_eq!(failed.unwrap_err().to_string(), "no more");
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(names(folder.path()), ["file"]);
+    }
+
+    /// Protects: an error is that of the system, without the name of a temporary file that no reader knows.
+    #[test]
+    fn errors_do_not_name_the_temporary_file() {
+        let folder = tempfile::tempdir().unwrap();
+        let missing = folder.path().join("missing").join("file");
+        let found = write_atomically(&missing, |_| Ok(())).unwrap_err();
+        assert_eq!(found.to_string(), fs::File::create(&missing).unwrap_err().to_string());
     }
 
     /// Protects: the file has the permissions of an ordinary new file, so that others can read a report where the umask
