@@ -171,6 +171,36 @@ mod tests {
         }
     }
 
+    /// Protects: a part with a damper of its own keeps its place in the limit. With the stiffnesses and the damper of two
+    /// parts on one mode, the recursion stays bounded just below the limit of their sum and grows just above it.
+    #[test]
+    fn the_limit_of_two_parts_is_that_of_the_recursion() {
+        for beta2 in [0.5, 0.8] {
+            for (beta_r, damping_per_s) in [(0.0, 1.0e5), (1.0e-6, 3.0e5), (1.0e-6, 0.0)] {
+                let body = Bound { omega_max_rad_s: 3.0e5, damping_per_s: 0.0 };
+                let both = body.and(Bound { omega_max_rad_s: 2.0e5, damping_per_s });
+                let omega_squared = 3.0e5_f64.powi(2) + 2.0e5_f64.powi(2);
+                for (factor, bounded) in [(0.999, true), (1.001, false)] {
+                    let dt = factor * both.time_step_limit_s(beta2, beta_r);
+                    let (mut u, mut p) = (1.0_f64, 0.0_f64);
+                    for _ in 0..100_000 {
+                        let a = -omega_squared * (u + beta_r * p) - damping_per_s * p;
+                        u += dt * p + (0.5 + beta2) * dt * dt * a;
+                        p += dt * a;
+                        if u.abs() > 1e6 {
+                            break;
+                        }
+                    }
+                    let is_bounded = u.abs() < 1e6;
+                    assert_eq!(
+                        is_bounded, bounded,
+                        "β₂ = {beta2}, β_R = {beta_r}, c/m = {damping_per_s}: {factor}"
+                    );
+                }
+            }
+        }
+    }
+
     /// Protects: the closed form gives the published limits: √(2/β₂) without damping, and (2/ω)(√(1+ξ²) − ξ) for
     /// the damped central difference.
     #[test]
