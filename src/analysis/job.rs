@@ -33,7 +33,7 @@ impl JobObserver for Unobserved {}
 /// # Errors
 /// If the specification is not physical, the solver refuses it, the run takes too many steps or diverges, a
 /// figure overflows, or `observer` interrupts the run.
-pub fn solve(spec: &JobSpec, observer: &mut impl JobObserver) -> Result<JobRecord, JobError> {
+pub fn solve(spec: &JobSpec, observer: &mut dyn JobObserver) -> Result<JobRecord, JobError> {
     spec.check()?;
     let model = Model::from_scene(&spec.scene, &spec.numerics)?;
     let mut lanes = Lanes::<1>::new(Arc::new(model));

@@ -193,7 +193,7 @@ impl<const L: usize> Lanes<L> {
 
     /// Advances all jobs until just before the next audit, and returns those that ended on the way. Calls
     /// `observe` after every step of every job.
-    pub fn advance(&mut self, observe: &mut impl FnMut(&Moment<'_, L>)) -> Vec<Ended> {
+    pub fn advance(&mut self, observe: &mut dyn FnMut(&Moment<'_, L>)) -> Vec<Ended> {
         let mut ended = Vec::new();
         loop {
             let audited = self.ledger.audits(self.state.step);

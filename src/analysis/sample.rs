@@ -6,8 +6,9 @@ use crate::solver::body::block::operator::load_all;
 use crate::solver::field::{Field, WIDTH, add_slots};
 use crate::solver::interface::{ContactState, Contacts, LIMIT, Status};
 use crate::solver::lane::{LaneState, next};
+use crate::solver::simd::dispatch;
 use crate::solver::{Drive, Model, State};
-use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use fearless_simd::{Simd, f64x8, prelude::*};
 use serde::{Deserialize, Serialize};
 
 /// Totals and extremes over the contact face during one step (forces at `t_n`).
@@ -191,7 +192,7 @@ impl<const L: usize> Sampler<L> {
     /// The samples of the last step of `state`.
     pub fn sample(&mut self, model: &Model, drives: &[Drive; L], state: &State<L>) -> [Sample; L] {
         let dt = model.time_step_s();
-        let Totals { sums, maxima } = dispatch!(Level::new(), simd => self.add_up(simd, &state.contacts));
+        let Totals { sums, maxima } = dispatch!(simd => self.add_up(simd, &state.contacts));
         std::array::from_fn(|l| Sample {
             time_s: (state.steps_done(l) - 1) as f64 * dt,
             load_n: state.load_n[l],

@@ -77,7 +77,7 @@ pub fn capture(
     windows: &TimeWindows,
     nodes: &[ObservedNode],
     frames: usize,
-    on_progress: &mut impl FnMut(f64) -> ControlFlow<()>,
+    on_progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Capture, JobError> {
     let mut recorder = Recorder {
         windows,
@@ -125,7 +125,7 @@ fn frame_times_s(windows: &TimeWindows, frames: usize) -> Vec<f64> {
     (0..frames).rev().map(|k| start_s + (end_s - start_s) * k as f64 / frames as f64).collect()
 }
 
-struct Recorder<'a, G> {
+struct Recorder<'a> {
     windows: &'a TimeWindows,
     nodes: &'a [ObservedNode],
     drive: Drive,
@@ -136,10 +136,10 @@ struct Recorder<'a, G> {
     histories: Vec<Vec<(f64, NodeSample)>>,
     face: Vec<FaceStep>,
     frames: Vec<Frame>,
-    on_progress: &'a mut G,
+    on_progress: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
 }
 
-impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
+impl JobObserver for Recorder<'_> {
     fn step(&mut self, moment: &Moment<'_, 1>) {
         let time_s = moment.sample.time_s;
         let within = |[start_s, end_s]: [f64; 2]| time_s >= start_s && time_s < end_s;
@@ -182,7 +182,7 @@ impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Recorder<'_, G> {
     }
 }
 
-impl<G> Recorder<'_, G> {
+impl Recorder<'_> {
     fn face_of(&self, moment: &Moment<'_, 1>) -> Vec<NodeSample> {
         let node = |slave| moment.sampler.node(slave, moment.model, &self.drive, moment.state, moment.lane);
         (0..moment.model.slaves().len()).map(node).collect()

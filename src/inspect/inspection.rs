@@ -84,7 +84,7 @@ impl Inspection {
     pub fn run(
         spec: &JobSpec,
         options: &Options,
-        on_progress: &mut impl FnMut(f64) -> ControlFlow<()>,
+        on_progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Self, InspectionError> {
         let nodes = nodes_of(spec, &options.nodes)?;
         let survey = survey(spec, options.cycles.max(Options::FEWEST_CYCLES), on_progress)?;

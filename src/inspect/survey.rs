@@ -49,7 +49,7 @@ pub struct TimeWindows {
 pub fn survey(
     spec: &JobSpec,
     cycles: usize,
-    on_progress: &mut impl FnMut(f64) -> ControlFlow<()>,
+    on_progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Survey, JobError> {
     let mut surveyor = Surveyor {
         cutter: None,
@@ -108,17 +108,17 @@ impl TimeWindows {
     }
 }
 
-struct Surveyor<'a, G> {
+struct Surveyor<'a> {
     spec: &'a JobSpec,
     /// As in the analysis, so that it finds the same cycles.
     cutter: Option<CycleCutter>,
     passages_s: Vec<[f64; 2]>,
     envelope: Envelope,
     quarter_wave_s: f64,
-    on_progress: &'a mut G,
+    on_progress: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
 }
 
-impl<G: FnMut(f64) -> ControlFlow<()>> JobObserver for Surveyor<'_, G> {
+impl JobObserver for Surveyor<'_> {
     fn step(&mut self, moment: &Moment<'_, 1>) {
         let cutter = self.cutter.get_or_insert_with(|| {
             self.quarter_wave_s = quarter_wave_s(moment.model);

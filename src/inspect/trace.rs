@@ -35,7 +35,7 @@ impl Trace {
         label: &str,
         spec: &JobSpec,
         nodes: &[NodeSelector],
-        on_progress: &mut impl FnMut(f64) -> ControlFlow<()>,
+        on_progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Vec<Self>, InspectionError> {
         let nodes = nodes_of(spec, nodes)?;
         let Survey { windows, .. } = survey(spec, Options::default().cycles, on_progress)?;

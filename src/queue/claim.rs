@@ -176,8 +176,66 @@ pub(super) async fn take(
 
 #[cfg(test)]
 mod tests {
-    use super::{TAKE, TAKE_OF_STUDY};
-    use crate::queue::{Clock, Queue};
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    use super::{Claim, TAKE, TAKE_OF_STUDY};
+    use crate::queue::{Clock, Finished, FinishedOutcome, NewJob, NewStudy, Queue, Scope, Worker};
+
+    /// How many instructions of its virtual machine `SQLite` executes for ten claims of four jobs, which are given back
+    /// unstarted.
+    async fn steps(jobs: usize, scope: &Scope, batch: Option<&str>) -> u64 {
+        let folder = tempfile::TempDir::new().unwrap();
+        let mut queue = Queue::open(folder.path().join("db"), Clock::OfDatabase).await.unwrap();
+        queue.register(&Worker::this_process(1, "test", "provenance")).await.unwrap();
+        for (name, cost) in [("before", 9.0), ("mine", 1.0)] {
+            let job = |index: usize| NewJob {
+                key: format!("{name} {index}"),
+                payload: "payload".into(),
+                parameters: String::new(),
+                // Scattered costs, so that the order of claims is not the order of storage.
+                cost: cost + (index * 7919 % 97) as f64 / 100.0,
+                batch: format!("batch {}", index % 7),
+                priority: None,
+            };
+            let jobs = (0..jobs).map(job).collect();
+            queue.submit(&NewStudy { name: name.into(), document: String::new(), jobs }).await.unwrap();
+        }
+        let steps = Arc::new(AtomicU64::new(0));
+        let counted = Arc::clone(&steps);
+        queue.connection.sqlite().lock_handle().await.unwrap().set_progress_handler(1, move || {
+            counted.fetch_add(1, Ordering::Relaxed);
+            true
+        });
+        let claim = Claim { scope: scope.clone(), limit: 4, batch: batch.map(str::to_owned) };
+        for _ in 0..10 {
+            let claimed = queue.exchange(&[], std::slice::from_ref(&claim)).await.unwrap().claimed.remove(0);
+            assert_eq!(claimed.len(), 4);
+            let back = claimed.into_iter().map(|job| Finished {
+                key: job.key,
+                attempt: job.attempt,
+                outcome: FinishedOutcome::Unstarted,
+                wall_s: 0.0,
+            });
+            queue.exchange(&back.collect::<Vec<_>>(), &[]).await.unwrap();
+        }
+        steps.load(Ordering::Relaxed)
+    }
+
+    /// Protects: with forty times as many pending jobs, a claim takes no more steps: a claim of all jobs, of a study whose
+    /// jobs come after those of another study, and of a named batch.
+    #[tokio::test]
+    async fn claims_take_no_more_steps_in_a_long_queue() {
+        let mine = || Scope::Study("mine".into());
+        for (scope, batch) in [(Scope::All, None), (mine(), None), (mine(), Some("batch 3"))] {
+            let short = steps(500, &scope, batch).await;
+            let long = steps(20_000, &scope, batch).await;
+            assert!(
+                short > 0 && long < 2 * short,
+                "{scope:?} {batch:?}: {short} for 1000 jobs, {long} for 40 000"
+            );
+        }
+    }
 
     /// Protects: a claim neither scans nor sorts all pending jobs. It reads as many index entries as it claims jobs.
     #[tokio::test]

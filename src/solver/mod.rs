@@ -40,6 +40,7 @@ pub mod material;
 pub mod model;
 mod scene;
 pub mod scheme;
+pub(crate) mod simd;
 mod state;
 mod step;
 pub mod support;

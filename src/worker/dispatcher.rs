@@ -84,7 +84,7 @@ impl<'a> Dispatcher<'a> {
     }
 
     /// Takes turns with the database until there is nothing more to do.
-    pub async fn run(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
+    pub async fn run(&mut self, progress: &mut dyn Progress) -> Result<(), QueueError> {
         let mut done = Vec::new();
         loop {
             self.store_checkpoints(progress).await;
@@ -123,7 +123,7 @@ impl<'a> Dispatcher<'a> {
     }
 
     /// Unregisters the worker and counts the jobs for the last time.
-    pub async fn shut_down(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
+    pub async fn shut_down(&mut self, progress: &mut dyn Progress) -> Result<(), QueueError> {
         let backoff = RetryBackoff::new();
         loop {
             let left = match self.queue.unregister().await {
@@ -138,7 +138,7 @@ impl<'a> Dispatcher<'a> {
     }
 
     /// Whether the worker is to stop, given that no job runs here.
-    async fn is_finished(&mut self, progress: &mut impl Progress) -> Result<bool, QueueError> {
+    async fn is_finished(&mut self, progress: &mut dyn Progress) -> Result<bool, QueueError> {
         if self.interrupt.is_raised() {
             return Ok(true);
         }
@@ -225,7 +225,7 @@ impl<'a> Dispatcher<'a> {
     /// Stores the checkpoints. This comes before the ends of jobs, so that a released job has its last checkpoint.
     ///
     /// If a checkpoint cannot be stored, the work goes on: the previous one is still there.
-    async fn store_checkpoints(&mut self, progress: &mut impl Progress) {
+    async fn store_checkpoints(&mut self, progress: &mut dyn Progress) {
         let mut is_refused = false;
         let backoff = RetryBackoff::new();
         for SealedCheckpoint { key, attempt, bytes } in std::mem::take(&mut self.checkpoints) {
@@ -253,7 +253,7 @@ impl<'a> Dispatcher<'a> {
         &mut self,
         done: &[Finished],
         requests: &[Request],
-        progress: &mut impl Progress,
+        progress: &mut dyn Progress,
     ) -> Result<Exchanged, QueueError> {
         let backoff = RetryBackoff::new();
         loop {
@@ -281,7 +281,7 @@ impl<'a> Dispatcher<'a> {
     }
 
     /// What is to do after [`TICK`] without a report.
-    async fn tick(&mut self, progress: &mut impl Progress) -> Result<(), QueueError> {
+    async fn tick(&mut self, progress: &mut dyn Progress) -> Result<(), QueueError> {
         match self.keep_alive().await {
             // A lease outlasts several heartbeats.
             Err(error) if error.is_transient() => {}
@@ -319,7 +319,7 @@ impl<'a> Dispatcher<'a> {
     }
 
     /// Counts the ends that were stored. `refused` has the keys of jobs that belong to another worker by now.
-    fn record_ends(&mut self, done: &[Finished], refused: &[String], progress: &mut impl Progress) {
+    fn record_ends(&mut self, done: &[Finished], refused: &[String], progress: &mut dyn Progress) {
         for job in done {
             let cost = self.running.remove(&job.key).map_or(0.0, |(cost, _)| cost);
             if refused.contains(&job.key) {

@@ -14,7 +14,7 @@ pub async fn open(
     location: &Location,
     settings: Settings,
     interrupt: &Interrupt,
-    progress: &mut impl Progress,
+    progress: &mut dyn Progress,
 ) -> Result<Option<Queue>, QueueError> {
     let backoff = RetryBackoff::new();
     loop {

@@ -38,7 +38,7 @@ impl RetryBackoff {
         &self,
         error: QueueError,
         interrupt: &Interrupt,
-        progress: &mut impl Progress,
+        progress: &mut dyn Progress,
     ) -> Result<(), QueueError> {
         let waited = self.0.elapsed();
         if !error.is_transient() || waited >= LIMIT {

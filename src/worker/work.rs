@@ -8,6 +8,7 @@ use super::progress::Progress;
 use super::provenance;
 use super::retry::RetryBackoff;
 use crate::queue::{Counts, Queue, QueueError, Scope, TakenBack};
+use std::pin::Pin;
 use thiserror::Error;
 use tokio::sync::mpsc::unbounded_channel;
 
@@ -42,14 +43,26 @@ pub enum WorkError {
 /// The future must run on a tokio runtime with timers. The jobs run on threads of their own, and their results depend on
 /// nothing but their specifications.
 ///
+/// The future is boxed, because otherwise each program that awaits it would compile the whole worker again.
+///
 /// # Errors
 /// If the database fails, or threads cannot be started.
-pub async fn work(
+pub fn work<'a>(
+    queue: &'a mut Queue,
+    scope: &'a Scope,
+    options: WorkOptions,
+    interrupt: &'a Interrupt,
+    progress: &'a mut dyn Progress,
+) -> Pin<Box<dyn Future<Output = Result<WorkSummary, WorkError>> + 'a>> {
+    Box::pin(work_through(queue, scope, options, interrupt, progress))
+}
+
+async fn work_through(
     queue: &mut Queue,
     scope: &Scope,
     options: WorkOptions,
     interrupt: &Interrupt,
-    progress: &mut impl Progress,
+    progress: &mut dyn Progress,
 ) -> Result<WorkSummary, WorkError> {
     let backoff = RetryBackoff::new();
     // A worker among many must survive the restart of the server.

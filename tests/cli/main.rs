@@ -23,5 +23,7 @@ mod streams;
 mod support;
 mod surroundings;
 mod sweep;
+#[path = "../support/tools.rs"]
+mod tools;
 mod upkeep;
 mod watch;

@@ -3,13 +3,14 @@
 use std::process::Command;
 
 use crate::support::Folder;
+use crate::tools;
 
 /// Exit code and output of the comparison; `None` without Python.
 fn compared(folder: &Folder, jobs: &str) -> Option<(i32, String)> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/scripts/nightly.py");
     let Ok(output) = Command::new("python3").arg(script).arg(folder.path(jobs)).arg(folder.path("")).output()
     else {
-        eprintln!("skipped: no python3 here");
+        tools::missing("python3 cannot be started", "install Python 3 (Debian: apt-get install python3)");
         return None;
     };
     let text = String::from_utf8(output.stdout).unwrap() + &String::from_utf8(output.stderr).unwrap();

@@ -9,6 +9,7 @@ use serde_json::{Value, json};
 
 use crate::server_database::{ServerDatabase, block_on};
 use crate::support::{Folder, LONG_JOBS, long, rows, small, stderr, stdout, wait, without_wall_times};
+use crate::tools;
 
 /// A folder with a study, and the export of its run in a file.
 fn prepared(study: &Value) -> (Folder, String) {
@@ -183,7 +184,10 @@ fn connections_are_encrypted() {
         sqlx::query_scalar(certificate).fetch_one(&mut database.raw().await).await.unwrap()
     });
     let Some(certificate) = certificate else {
-        eprintln!("skipped: the server does not support encryption");
+        tools::missing(
+            "the server does not support encryption",
+            "install openssl before `scripts/postgres.sh start FOLDER`",
+        );
         return;
     };
     let folder = Folder::with("study", &small(&json!({ "mu": [0.2] })));

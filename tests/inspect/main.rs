@@ -6,6 +6,8 @@ mod chromium;
 mod inspections;
 mod page;
 mod readers;
+#[path = "../support/tools.rs"]
+mod tools;
 
 use std::ops::ControlFlow;
 use tribosweep::inspect::{Inspection, Options};

@@ -1,6 +1,6 @@
 //! The fields as other programs read them: VTK, on which ParaView is based, and meshio.
 
-use crate::{coarse, inspect};
+use crate::{coarse, inspect, tools};
 use serde_json::Value;
 use std::path::Path;
 use std::process::Command;
@@ -67,9 +67,9 @@ fn python() -> String {
 fn read_with(module: &str, script: &str, series: &Path) -> Option<Value> {
     let has = Command::new(python()).args(["-c", &format!("import {module}")]).output();
     if !has.is_ok_and(|output| output.status.success()) {
-        eprintln!(
-            "skipped: {} has no module {module} (pip install {module}; TRIBOSWEEP_PYTHON names another)",
-            python()
+        tools::missing(
+            &format!("{} has no module {module}", python()),
+            &format!("pip install {module}, or set TRIBOSWEEP_PYTHON to a Python that has it"),
         );
         return None;
     }

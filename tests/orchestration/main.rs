@@ -2,10 +2,14 @@
 
 #[path = "../support/mount.rs"]
 mod mount;
-mod queue;
 #[path = "../support/random.rs"]
 mod random;
 #[path = "../support/server.rs"]
 mod server;
+// The macro of the module is used below.
+#[macro_use]
 mod support;
+mod queue;
+#[path = "../support/tools.rs"]
+mod tools;
 mod worker;

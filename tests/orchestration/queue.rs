@@ -1,8 +1,14 @@
 //! The queue without a worker. The payloads and records of jobs are arbitrary strings here.
 
-mod in_a_file;
+mod absorb;
+mod claims;
+mod exchange;
 mod lost;
 mod migrate;
-mod on_a_server;
 mod open;
+mod outlook;
+mod read;
+mod recovery;
+mod scale;
+mod submit;
 mod surroundings;

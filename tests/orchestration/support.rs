@@ -1,6 +1,7 @@
 //! A separate database for each test, with a clock that the test sets.
 
 use std::path::PathBuf;
+use std::pin::Pin;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicI64, Ordering};
 
@@ -39,9 +40,36 @@ pub enum Engine {
     Postgres,
 }
 
+/// Declares that each of the named tests runs on both databases. A test is `async fn NAME(sandbox: &Sandbox)`.
+macro_rules! on_both_databases {
+    ($($(#[$attribute:meta])* $name:ident),* $(,)?) => {
+        $(mod $name {
+            $(#[$attribute])*
+            #[test]
+            fn in_a_file() {
+                crate::support::run_in(crate::support::Engine::Sqlite, |sandbox| Box::pin(super::$name(sandbox)));
+            }
+
+            $(#[$attribute])*
+            #[test]
+            fn on_a_server() {
+                crate::support::run_in(crate::support::Engine::Postgres, |sandbox| Box::pin(super::$name(sandbox)));
+            }
+        })*
+    };
+}
+
+/// Runs a test on that kind of database. Does nothing but say so if there is no server.
+pub fn run_in(engine: Engine, test: fn(&Sandbox) -> Pin<Box<dyn Future<Output = ()> + '_>>) {
+    if let Some(sandbox) = Sandbox::of(engine) {
+        block_on(test(&sandbox));
+    }
+}
+
 pub struct Sandbox {
     pub folder: TempDir,
     pub clock: TestClock,
+    pub engine: Engine,
     location: Location,
     server: Option<ServerDatabase>,
 }
@@ -51,18 +79,23 @@ impl Sandbox {
     pub fn new() -> Self {
         let folder = TempDir::new().unwrap();
         let location = Location::File(folder.path().join("sweep.db"));
-        Self { folder, clock: TestClock::default(), location, server: None }
+        Self { folder, clock: TestClock::default(), engine: Engine::Sqlite, location, server: None }
     }
 
     /// A database of that kind. `None`, with a message, if there is no server.
     pub fn of(engine: Engine) -> Option<Self> {
-        let mut sandbox = Self::new();
+        let mut sandbox = Self { engine, ..Self::new() };
         if engine == Engine::Postgres {
             let server = ServerDatabase::new()?;
             sandbox.location = Location::parse(server.url().into());
             sandbox.server = Some(server);
         }
         Some(sandbox)
+    }
+
+    /// Another, empty database of the same kind.
+    pub fn another(&self) -> Self {
+        Self::of(self.engine).expect("there is a server, because this database is on it")
     }
 
     pub fn location(&self) -> Location {

@@ -15,4 +15,6 @@ mod random;
 mod svg;
 mod synthetic;
 mod tables;
+#[path = "../support/tools.rs"]
+mod tools;
 mod trouble;

@@ -9,6 +9,8 @@ use serde_json::{Value, json};
 use tempfile::TempDir;
 use tungstenite::{Message, WebSocket};
 
+use crate::tools;
+
 /// An answer that takes longer than this is an error.
 const TIMEOUT: Duration = Duration::from_mins(1);
 
@@ -43,7 +45,10 @@ impl Browser {
         command.arg(format!("--user-data-dir={}", profile.path().display()));
         let started = command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn();
         let Ok(process) = started else {
-            eprintln!("skipped: {program} cannot be started here");
+            tools::missing(
+                &format!("{program} cannot be started"),
+                "install Chromium (Debian: apt-get install chromium), or set CHROMIUM to the program",
+            );
             return None;
         };
         let socket = connect(profile.path());

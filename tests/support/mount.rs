@@ -3,6 +3,8 @@
 use std::path::{Path, PathBuf};
 use std::process::Command;
 
+use crate::tools;
+
 /// A file system of its own on a folder, for as long as this lives; none where mounting is refused.
 pub struct Mount(PathBuf);
 
@@ -13,7 +15,10 @@ impl Mount {
         mount.args(["-t", "tmpfs", "-o", options, "tmpfs"]).arg(folder);
         let is_mounted = mount.output().is_ok_and(|output| output.status.success());
         if !is_mounted {
-            eprintln!("skipped: mounting a file system is refused here");
+            tools::missing(
+                "mounting a file system is refused",
+                "run the tests as root with the right to mount",
+            );
         }
         is_mounted.then(|| Self(folder.to_owned()))
     }

@@ -6,6 +6,8 @@ use std::sync::atomic::{AtomicU32, Ordering};
 use sqlx::postgres::PgConnectOptions;
 use sqlx::{ConnectOptions, PgConnection};
 
+use crate::tools;
+
 /// The URL of a PostgreSQL server where databases can be created and dropped (`scripts/postgres.sh start FOLDER`
 /// prints one).
 pub const SERVER: &str = "TRIBOSWEEP_TEST_POSTGRES";
@@ -21,12 +23,16 @@ impl ServerDatabase {
     pub fn new() -> Option<Self> {
         static NUMBER: AtomicU32 = AtomicU32::new(0);
         if cfg!(not(feature = "postgres")) {
-            eprintln!("skipped: this tribosweep is built without PostgreSQL");
+            tools::missing(
+                "this tribosweep is built without PostgreSQL",
+                "build it with the feature `postgres`",
+            );
             return None;
         }
         let Ok(server) = std::env::var(SERVER) else {
-            eprintln!(
-                "skipped: {SERVER} does not name a PostgreSQL server (`scripts/postgres.sh start FOLDER` prints one)"
+            tools::missing(
+                &format!("{SERVER} does not name a PostgreSQL server"),
+                "`scripts/postgres.sh start FOLDER` starts one and prints its URL",
             );
             return None;
         };

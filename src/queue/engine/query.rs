@@ -1,6 +1,7 @@
 //! Statements with their parameters, and the ways to run them.
 
 use std::borrow::Cow;
+use std::pin::Pin;
 
 use sqlx::FromRow;
 #[cfg(feature = "postgres")]
@@ -24,6 +25,29 @@ impl<T: Send + Unpin + for<'r> FromRow<'r, SqliteRow> + for<'r> FromRow<'r, PgRo
 pub trait Columns: Send + Unpin + for<'r> FromRow<'r, SqliteRow> {}
 #[cfg(not(feature = "postgres"))]
 impl<T: Send + Unpin + for<'r> FromRow<'r, SqliteRow>> Columns for T {}
+
+/// A row of one of the databases.
+enum Row {
+    Sqlite(SqliteRow),
+    #[cfg(feature = "postgres")]
+    Postgres(PgRow),
+}
+
+impl Row {
+    fn read<T: Columns>(&self) -> Result<T, sqlx::Error> {
+        match self {
+            Self::Sqlite(row) => T::from_row(row),
+            #[cfg(feature = "postgres")]
+            Self::Postgres(row) => T::from_row(row),
+        }
+    }
+}
+
+type ReadRow<'r> = dyn FnMut(Row) -> Result<(), sqlx::Error> + Send + 'r;
+
+/// A statement that runs. It has no type parameters, because a generic future is compiled again for each use, and again
+/// in each program that uses the library.
+type Answer<'a, T> = Pin<Box<dyn Future<Output = Result<T, QueueError>> + Send + 'a>>;
 
 /// A parameter of a statement.
 #[derive(Debug, Clone)]
@@ -70,58 +94,91 @@ impl<'q> Query<'q> {
     }
 
     /// Runs the statement. Returns the number of changed rows.
-    pub async fn run(self, connection: &mut Connection) -> Result<u64, QueueError> {
+    pub fn run<'a>(self, connection: &'a mut Connection) -> Answer<'a, u64>
+    where
+        'q: 'a,
+    {
         let Self { statement, values } = self;
-        match connection {
-            Connection::Sqlite(connection) => {
-                let query = bound!(sqlx::query(statement.sqlite()), values);
-                let done = query.execute(connection).await.map_err(sqlite::classify)?;
-                Ok(done.rows_affected())
+        Box::pin(async move {
+            match connection {
+                Connection::Sqlite(connection) => {
+                    let query = bound!(sqlx::query(statement.sqlite()), values);
+                    let done = query.execute(connection).await.map_err(sqlite::classify)?;
+                    Ok(done.rows_affected())
+                }
+                #[cfg(feature = "postgres")]
+                Connection::Postgres(session) => {
+                    let done = session.request(async |connection| {
+                        bound!(sqlx::query(statement.postgres()), values).execute(connection).await
+                    });
+                    Ok(done.await?.rows_affected())
+                }
             }
-            #[cfg(feature = "postgres")]
-            Connection::Postgres(session) => {
-                let done = session.request(async |connection| {
-                    bound!(sqlx::query(statement.postgres()), values).execute(connection).await
-                });
-                Ok(done.await?.rows_affected())
+        })
+    }
+
+    /// Runs the statement. Passes each row to `read` as it arrives.
+    fn each<'a>(self, connection: &'a mut Connection, read: &'a mut ReadRow<'_>) -> Answer<'a, ()>
+    where
+        'q: 'a,
+    {
+        let Self { statement, values } = self;
+        Box::pin(async move {
+            match connection {
+                Connection::Sqlite(connection) => {
+                    let query = bound!(sqlx::query(statement.sqlite()), values);
+                    let rows = query.try_map(|row| read(Row::Sqlite(row))).fetch_all(connection);
+                    rows.await.map(drop).map_err(sqlite::classify)
+                }
+                #[cfg(feature = "postgres")]
+                Connection::Postgres(session) => {
+                    let rows = session.request(async |connection| {
+                        let query = bound!(sqlx::query(statement.postgres()), values);
+                        query.try_map(|row| read(Row::Postgres(row))).fetch_all(connection).await
+                    });
+                    rows.await.map(drop)
+                }
             }
-        }
+        })
+    }
+
+    /// Runs the statement. Passes the first row, if there is one, to `read`.
+    fn first<'a>(self, connection: &'a mut Connection, read: &'a mut ReadRow<'_>) -> Answer<'a, ()>
+    where
+        'q: 'a,
+    {
+        let Self { statement, values } = self;
+        Box::pin(async move {
+            match connection {
+                Connection::Sqlite(connection) => {
+                    let query = bound!(sqlx::query(statement.sqlite()), values);
+                    let row = query.try_map(|row| read(Row::Sqlite(row))).fetch_optional(connection);
+                    row.await.map(drop).map_err(sqlite::classify)
+                }
+                #[cfg(feature = "postgres")]
+                Connection::Postgres(session) => {
+                    let row = session.request(async |connection| {
+                        let query = bound!(sqlx::query(statement.postgres()), values);
+                        query.try_map(|row| read(Row::Postgres(row))).fetch_optional(connection).await
+                    });
+                    row.await.map(drop)
+                }
+            }
+        })
     }
 
     /// Runs the statement. Returns all rows.
     pub async fn all<T: Columns>(self, connection: &mut Connection) -> Result<Vec<T>, QueueError> {
-        let Self { statement, values } = self;
-        match connection {
-            Connection::Sqlite(connection) => {
-                let query = bound!(sqlx::query_as(statement.sqlite()), values);
-                query.fetch_all(connection).await.map_err(sqlite::classify)
-            }
-            #[cfg(feature = "postgres")]
-            Connection::Postgres(session) => {
-                let rows = session.request(async |connection| {
-                    bound!(sqlx::query_as(statement.postgres()), values).fetch_all(connection).await
-                });
-                rows.await
-            }
-        }
+        let mut rows = Vec::new();
+        self.each(connection, &mut |row| row.read().map(|row| rows.push(row))).await?;
+        Ok(rows)
     }
 
     /// Runs the statement. Returns the first row, if there is one.
     pub async fn optional<T: Columns>(self, connection: &mut Connection) -> Result<Option<T>, QueueError> {
-        let Self { statement, values } = self;
-        match connection {
-            Connection::Sqlite(connection) => {
-                let query = bound!(sqlx::query_as(statement.sqlite()), values);
-                query.fetch_optional(connection).await.map_err(sqlite::classify)
-            }
-            #[cfg(feature = "postgres")]
-            Connection::Postgres(session) => {
-                let row = session.request(async |connection| {
-                    bound!(sqlx::query_as(statement.postgres()), values).fetch_optional(connection).await
-                });
-                row.await
-            }
-        }
+        let mut first = None;
+        self.first(connection, &mut |row| row.read().map(|row| first = Some(row))).await?;
+        Ok(first)
     }
 
     /// Runs a statement that returns one row.

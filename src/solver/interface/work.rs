@@ -6,7 +6,8 @@ use super::solve::TargetState;
 use super::{Contacts, Interface, Status};
 use crate::solver::drive::Drive;
 use crate::solver::field::{Block, Field, WIDTH, add_slots};
-use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use crate::solver::simd::dispatch;
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// Computes the work of the contact forces.
 #[derive(Debug, Clone)]
@@ -43,7 +44,7 @@ impl<const L: usize> InterfaceWork<L> {
         contacts: &Contacts<L>,
         target: &TargetState<L>,
     ) -> StepWorks<L> {
-        let sums = dispatch!(Level::new(), simd => self.add_up(simd, contacts));
+        let sums = dispatch!(simd => self.add_up(simd, contacts));
         let [mut drive_j, friction_after_j, friction_before_j, contact_loss_after_j, contact_loss_before_j] =
             sums;
         for (drive_j, drive) in drive_j.iter_mut().zip(drives) {

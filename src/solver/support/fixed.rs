@@ -3,7 +3,7 @@
 use super::applied::{AppliedSupport, Supported};
 use super::weights::{Weights, ones};
 use crate::solver::body::block::BlockMesh;
-use fearless_simd::{Level, dispatch};
+use crate::solver::simd::dispatch;
 
 /// Degrees of freedom that never move.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -29,7 +29,7 @@ impl<const L: usize> AppliedSupport<L> for AppliedFixed<L> {
     fn act(&mut self, pin: &mut Supported<'_, L>, reaction_n: &mut [[f64; L]; 3]) {
         for held in &self.held {
             let total = &mut reaction_n[held.component];
-            dispatch!(Level::new(), simd => held.add_up(simd, pin.residual, total));
+            dispatch!(simd => held.add_up(simd, pin.residual, total));
         }
     }
 

@@ -5,7 +5,8 @@
 use super::weights::{Weights, weights};
 use crate::solver::body::block::BlockMesh;
 use crate::solver::field::{Field, in_slots};
-use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use crate::solver::simd::dispatch;
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// A nodal force per unit of the total load (dimensionless).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,7 +39,7 @@ impl<const L: usize> AppliedLoad<L> {
 
     /// Subtracts the load \[N\] from the residual \[N\].
     pub fn act(&self, load_n: &[f64; L], residual: &mut Field<L>) {
-        dispatch!(Level::new(), simd => self.act_in(simd, load_n, residual));
+        dispatch!(simd => self.act_in(simd, load_n, residual));
     }
 
     #[inline(always)]
@@ -57,7 +58,7 @@ impl<const L: usize> AppliedLoad<L> {
     pub fn stroke_m(&self, u: &Field<L>) -> [f64; L] {
         let mut stroke = [0.0; L];
         for load in &self.shares {
-            dispatch!(Level::new(), simd => load.add_up(simd, u, &mut stroke));
+            dispatch!(simd => load.add_up(simd, u, &mut stroke));
         }
         stroke
     }

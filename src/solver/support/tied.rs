@@ -6,7 +6,8 @@ use super::applied::{AppliedSupport, Supported};
 use super::weights::{Weights, ones};
 use crate::solver::body::block::BlockMesh;
 use crate::solver::field::{Field, in_slots};
-use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use crate::solver::simd::dispatch;
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// Nodes that share one displacement in one component.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -65,7 +66,7 @@ impl<const L: usize> AppliedTie<L> {
 
 impl<const L: usize> AppliedSupport<L> for AppliedTie<L> {
     fn act(&mut self, pin: &mut Supported<'_, L>, _reaction_n: &mut [[f64; L]; 3]) {
-        dispatch!(Level::new(), simd => self.share(simd, pin.residual));
+        dispatch!(simd => self.share(simd, pin.residual));
     }
 
     fn boxed(&self) -> Box<dyn AppliedSupport<L>> {

@@ -2,8 +2,15 @@
 
 use tribosweep::queue::{Absorbed, JobState, QueueError, Scope, Shard, StudyRow};
 
-use super::ENGINE;
 use crate::support::{Sandbox, claim, counts, done, failed, finish, job, labelled, of, study};
+
+on_both_databases! {
+    a_copy_is_the_same,
+    shards_make_up_the_whole,
+    the_better_outcome_is_kept,
+    a_copy_requests_its_jobs,
+    a_different_study_of_the_same_name_is_refused,
+}
 
 /// The data of a row without the number of attempts: ordinal, key, state, record and error.
 type Outcome<'a> = (u64, &'a str, JobState, Option<&'a str>, Option<&'a str>);
@@ -19,9 +26,7 @@ fn outcomes(rows: &[StudyRow]) -> Vec<Outcome<'_>> {
 /// Protects: a study that is copied into either database and back is identical: rows, records, errors, times to the
 /// last bit, attempts, notes, priorities and checkpoints. Running jobs are pending in the copy. A repeated copy changes
 /// nothing.
-#[tokio::test]
-async fn a_copy_is_the_same() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_copy_is_the_same(sandbox: &Sandbox) {
     let (source, back) = (Sandbox::new(), Sandbox::new());
     source.clock.set(1_000);
     let mut from = source.open().await;
@@ -74,9 +79,7 @@ async fn a_copy_is_the_same() {
 
 /// Protects: the shards of a study are disjoint, and together they are the whole study in its order. After a merge,
 /// each job has the result from its shard.
-#[tokio::test]
-async fn shards_make_up_the_whole() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn shards_make_up_the_whole(sandbox: &Sandbox) {
     let whole = study("a", &["j0", "j1", "j2", "j3", "j4", "j5", "j6"]);
     let mut merged = sandbox.open().await;
     for index in 0..3 {
@@ -105,9 +108,7 @@ async fn shards_make_up_the_whole() {
 
 /// Protects: the better of two outcomes is kept, whichever database it is in, and jobs that are running here do not
 /// change.
-#[tokio::test]
-async fn the_better_outcome_is_kept() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn the_better_outcome_is_kept(sandbox: &Sandbox) {
     let source = Sandbox::new();
     let (mut here, mut there) = (sandbox.open().await, source.open().await);
     let keys =
@@ -150,9 +151,7 @@ async fn the_better_outcome_is_kept() {
 }
 
 /// Protects: a copied study requests its jobs: jobs that were cancelled here become pending.
-#[tokio::test]
-async fn a_copy_requests_its_jobs() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_copy_requests_its_jobs(sandbox: &Sandbox) {
     let source = Sandbox::new();
     let (mut here, mut there) = (sandbox.open().await, source.open().await);
     here.submit(&study("a", &["x", "y"])).await.unwrap();
@@ -164,9 +163,7 @@ async fn a_copy_requests_its_jobs() {
 }
 
 /// Protects: a different study of the same name is refused before anything is written.
-#[tokio::test]
-async fn a_different_study_of_the_same_name_is_refused() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_different_study_of_the_same_name_is_refused(sandbox: &Sandbox) {
     let source = Sandbox::new();
     let (mut here, mut there) = (sandbox.open().await, source.open().await);
     here.submit(&study("b", &["x"])).await.unwrap();

@@ -7,8 +7,19 @@ use tribosweep::queue::{
     Claim, ClaimedJob, Counts, FinishedOutcome, JobState, NewJob, NewStudy, Queue, Retried, Retry, Scope,
 };
 
-use super::ENGINE;
 use crate::support::{Sandbox, claim, counts, dead_worker, done, failed, finish, job, keys, of, study};
+
+on_both_databases! {
+    a_claim_is_of_one_batch,
+    a_claim_of_a_study_is_of_one_batch,
+    a_higher_priority_goes_first,
+    a_higher_priority_ends_a_batch,
+    a_batch_is_renamed_by_a_submission,
+    cancelling_and_requesting_again,
+    a_failed_job_is_retried,
+    removing_and_collecting,
+    a_studys_pending_jobs_are_kept,
+}
 
 fn study_of(name: &str, jobs: Vec<NewJob>) -> NewStudy {
     NewStudy { name: name.into(), document: String::new(), jobs }
@@ -34,9 +45,7 @@ fn all(limit: usize, batch: Option<&str>) -> Claim {
 
 /// Protects: a claim takes jobs of one batch: the named one, or else that of the first job in order. Several claims of
 /// one exchange are served in order, and each has its own answer.
-#[tokio::test]
-async fn a_claim_is_of_one_batch() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_claim_is_of_one_batch(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let rows = [
         ("a1", 1.0, "a", None),
@@ -58,9 +67,7 @@ async fn a_claim_is_of_one_batch() {
 }
 
 /// Protects: the same within a study, some of whose jobs belong to other studies too.
-#[tokio::test]
-async fn a_claim_of_a_study_is_of_one_batch() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_claim_of_a_study_is_of_one_batch(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let rows = [("a1", 1.0, "a", None), ("b1", 2.0, "b", None), ("a2", 0.5, "a", None)];
     queue.submit(&study_of("mine", jobs(&rows))).await.unwrap();
@@ -75,9 +82,7 @@ async fn a_claim_of_a_study_is_of_one_batch() {
 
 /// Protects: priority takes precedence over cost, across studies. A submission with a priority changes that of existing
 /// jobs; a submission without one does not.
-#[tokio::test]
-async fn a_higher_priority_goes_first() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_higher_priority_goes_first(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let slow = [("x", 90.0, "", None), ("y", 80.0, "", Some(-1)), ("z", 70.0, "", None)];
     queue.submit(&study_of("slow", jobs(&slow))).await.unwrap();
@@ -95,9 +100,7 @@ async fn a_higher_priority_goes_first() {
 
 /// Protects: a claim of a named batch gets no jobs while a job of another batch with a higher priority is pending. That
 /// job therefore need not wait until the batch is done.
-#[tokio::test]
-async fn a_higher_priority_ends_a_batch() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_higher_priority_ends_a_batch(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study_of("slow", jobs(&[("x", 9.0, "a", None), ("y", 8.0, "a", None)]))).await.unwrap();
     let more = [all(1, Some("a"))];
@@ -110,9 +113,7 @@ async fn a_higher_priority_ends_a_batch() {
 
 /// Protects: a submission replaces the batch names of pending jobs, because another version of the program may name
 /// batches differently.
-#[tokio::test]
-async fn a_batch_is_renamed_by_a_submission() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_batch_is_renamed_by_a_submission(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study_of("s", jobs(&[("x", 2.0, "", None), ("y", 1.0, "", None)]))).await.unwrap();
     let submitted =
@@ -123,9 +124,7 @@ async fn a_batch_is_renamed_by_a_submission() {
 
 /// Protects: cancelling a study cancels exactly the pending jobs that no other study requests. If two studies share a
 /// job and both are cancelled, the job is cancelled. Submitting or retrying makes jobs pending again.
-#[tokio::test]
-async fn cancelling_and_requesting_again() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn cancelling_and_requesting_again(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["run", "done", "own", "shared"])).await.unwrap();
     queue.submit(&study("b", &["shared"])).await.unwrap();
@@ -148,9 +147,7 @@ async fn cancelling_and_requesting_again() {
 
 /// Protects: a failed job that is retried is pending. Its row no longer shows the failure, its crash count is reset,
 /// and the outcome of the next attempt counts.
-#[tokio::test]
-async fn a_failed_job_is_retried() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_failed_job_is_retried(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     claim(&mut queue, Scope::All, 2).await;
@@ -167,9 +164,7 @@ async fn a_failed_job_is_retried() {
 
 /// Protects: removing a study removes nothing that another study has. Results stay until garbage collection, which
 /// deletes exactly the jobs that no study refers to.
-#[tokio::test]
-async fn removing_and_collecting() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn removing_and_collecting(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["done", "run", "pending", "shared"])).await.unwrap();
     queue.submit(&study("b", &["shared"])).await.unwrap();
@@ -196,8 +191,7 @@ async fn removing_and_collecting() {
 
 /// Protects: after any sequence of operations, the table of a study's pending jobs, which claims use, agrees with the
 /// jobs. The sequence is random and the same in every run.
-#[tokio::test]
-async fn a_studys_pending_jobs_are_kept() {
+async fn a_studys_pending_jobs_are_kept(sandbox: &Sandbox) {
     const KEYS: [&str; 6] = ["p", "q", "r", "s", "t", "u"];
     // PENDING counts the pending jobs of all studies, KEPT the rows of the table that claims use.
     const PENDING: &str = "
@@ -211,7 +205,6 @@ async fn a_studys_pending_jobs_are_kept() {
             FROM study_jobs AS m JOIN jobs AS j ON j.id = m.job_id WHERE j.state = 'pending'
             INTERSECT
             SELECT study_id, job_id, batch, priority, cost FROM study_pending) AS both_have";
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     let mut random = Random::new(7);
     let mut draw = |end: usize| random.below(end);

@@ -5,14 +5,21 @@ use std::thread;
 
 use tribosweep::queue::{Claim, Finished, FinishedOutcome, JobState, NewStudy, QueueError, Scope};
 
-use super::ENGINE;
 use crate::support::{Sandbox, block_on, claim, counts, done, failed, finish, job, keys, of, study};
+
+on_both_databases! {
+    the_most_expensive_job_comes_first,
+    a_claim_keeps_to_its_study,
+    every_job_is_claimed_exactly_once,
+    a_late_outcome_is_refused,
+    a_refused_outcome_stops_no_other,
+    a_failure_is_kept_and_the_sweep_continues,
+    an_exchange_is_all_or_nothing,
+}
 
 /// Protects: expensive jobs come first, and jobs of equal cost in the order of submission. A claimed job comes with its
 /// payload, attempt and cost.
-#[tokio::test]
-async fn the_most_expensive_job_comes_first() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn the_most_expensive_job_comes_first(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let jobs = [("e", 1.0), ("d", 1.0), ("c", 30.0), ("b", 4.0), ("a", 4.0)];
     let study = NewStudy {
@@ -30,9 +37,7 @@ async fn the_most_expensive_job_comes_first() {
 }
 
 /// Protects: a claim of one study takes no job of another one, however expensive it is.
-#[tokio::test]
-async fn a_claim_keeps_to_its_study() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_claim_keeps_to_its_study(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let mut expensive = study("expensive", &["x", "shared"]);
     expensive.jobs[0].cost = 99.0;
@@ -44,13 +49,11 @@ async fn a_claim_keeps_to_its_study() {
 
 /// Protects: with several concurrent workers on one database, every job is claimed exactly once and every outcome is
 /// accepted. No transaction fails with "database is locked".
-#[test]
-fn every_job_is_claimed_exactly_once() {
+async fn every_job_is_claimed_exactly_once(sandbox: &Sandbox) {
     const JOBS: usize = 300;
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let names: Vec<String> = (0..JOBS).map(|index| format!("job {index}")).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    block_on(async { sandbox.open().await.submit(&study("a", &names)).await.unwrap() });
+    sandbox.open().await.submit(&study("a", &names)).await.unwrap();
 
     // A claim of a study reads before it writes, so its transaction must lock at the start. To test this, claims and
     // outcomes are separate exchanges here.
@@ -75,15 +78,13 @@ fn every_job_is_claimed_exactly_once() {
     });
     assert_eq!(claimed.len(), JOBS);
     assert_eq!(claimed.iter().collect::<HashSet<_>>().len(), JOBS);
-    let all = block_on(async { sandbox.open().await.counts(&Scope::All).await.unwrap() });
+    let all = sandbox.open().await.counts(&Scope::All).await.unwrap();
     assert_eq!(all, counts(0, 0, JOBS as u64, 0));
 }
 
 /// Protects: a late outcome of an attempt that was given back is refused and changes nothing, before and after the next
 /// attempt ends.
-#[tokio::test]
-async fn a_late_outcome_is_refused() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_late_outcome_is_refused(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
@@ -107,9 +108,7 @@ async fn a_late_outcome_is_refused() {
 }
 
 /// Protects: if one of several outcomes is refused, its key is returned and the others are stored.
-#[tokio::test]
-async fn a_refused_outcome_stops_no_other() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_refused_outcome_stops_no_other(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     claim(&mut queue, Scope::All, 2).await;
@@ -122,9 +121,7 @@ async fn a_refused_outcome_stops_no_other() {
 }
 
 /// Protects: a failed job keeps its error and is not claimed again, and the other jobs of the sweep continue.
-#[tokio::test]
-async fn a_failure_is_kept_and_the_sweep_continues() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_failure_is_kept_and_the_sweep_continues(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
@@ -139,9 +136,7 @@ async fn a_failure_is_kept_and_the_sweep_continues() {
 }
 
 /// Protects: an exchange is atomic: if a claim fails, no outcome is stored, and the caller can pass it again.
-#[tokio::test]
-async fn an_exchange_is_all_or_nothing() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn an_exchange_is_all_or_nothing(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;

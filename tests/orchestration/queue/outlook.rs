@@ -2,8 +2,15 @@
 
 use tribosweep::queue::{ActiveWorkers, FinishedOutcome, ProvenanceGroup, QueueError, Scope, Worker};
 
-use super::ENGINE;
 use crate::support::{Sandbox, claim, dead_worker, done, failed, finish, foreign_worker, job, of, study};
+
+on_both_databases! {
+    active_workers_are_counted,
+    timings_are_those_of_done_jobs,
+    starts_show_what_counts_do_not,
+    timings_of_many_jobs_are_a_sample,
+    results_are_grouped_by_provenance,
+}
 
 fn active(workers: u64, threads: u64) -> ActiveWorkers {
     ActiveWorkers { workers, threads }
@@ -11,9 +18,7 @@ fn active(workers: u64, threads: u64) -> ActiveWorkers {
 
 /// Protects: a worker is active while its process exists, however old its last heartbeat is. A worker that is stopping
 /// is not counted. If the process is not visible, the heartbeats decide.
-#[tokio::test]
-async fn active_workers_are_counted() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn active_workers_are_counted(sandbox: &Sandbox) {
     let lease_ms = 120_000;
     sandbox.clock.set(10 * lease_ms);
     let mut own = sandbox.open_as(&Worker { threads: 3, ..Worker::this_process(1, "test", "") }).await;
@@ -29,9 +34,7 @@ async fn active_workers_are_counted() {
 }
 
 /// Protects: the timings are the costs and run times of the study's done jobs, and of no others.
-#[tokio::test]
-async fn timings_are_those_of_done_jobs() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn timings_are_those_of_done_jobs(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let mut own = study("a", &[]);
     own.jobs = vec![job("x", 8.0), job("y", 4.0), job("z", 2.0)];
@@ -47,9 +50,7 @@ async fn timings_are_those_of_done_jobs() {
 }
 
 /// Protects: every change of a study's jobs is visible in their counts or in the number of starts.
-#[tokio::test]
-async fn starts_show_what_counts_do_not() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn starts_show_what_counts_do_not(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y", "x"])).await.unwrap();
     assert_eq!(queue.starts("a").await.unwrap(), 0);
@@ -64,9 +65,7 @@ async fn starts_show_what_counts_do_not() {
 }
 
 /// Protects: the timings of a large study are an even sample.
-#[tokio::test]
-async fn timings_of_many_jobs_are_a_sample() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn timings_of_many_jobs_are_a_sample(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let mut own = study("a", &[]);
     own.jobs = (0..2_500).map(|i| job(&format!("job {i}"), f64::from(i))).collect();
@@ -86,9 +85,7 @@ async fn timings_of_many_jobs_are_a_sample() {
 
 /// Protects: results are grouped by provenance, with the number of jobs and the times of the attempts that count.
 /// Results of other studies are not included.
-#[tokio::test]
-async fn results_are_grouped_by_provenance() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn results_are_grouped_by_provenance(sandbox: &Sandbox) {
     let worker = |provenance| Worker::this_process(1, "test", provenance);
     let mut first = sandbox.open_as(&worker("first")).await;
     first.submit(&study("a", &["x", "y", "z", "x"])).await.unwrap();

@@ -6,13 +6,20 @@ use tribosweep::queue::{
     Claim, JobState, Queue, QueueError, Rows, Scope, StudyDocument, StudyRow, StudySummary,
 };
 
-use super::ENGINE;
 use crate::support::{Sandbox, claim, counts, done, failed, finish, labelled, of, study};
 
+on_both_databases! {
+    studies_are_listed_with_their_counts,
+    the_document_is_kept,
+    rows_are_complete_and_in_order,
+    remaining_cost,
+    an_unknown_study_is_an_error_with_the_known_ones,
+    rows_are_found_by_their_label,
+    reading_can_be_stopped,
+}
+
 /// Protects: the list of studies is in the order of submission, each with its own counts.
-#[tokio::test]
-async fn studies_are_listed_with_their_counts() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn studies_are_listed_with_their_counts(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     assert!(queue.studies().await.unwrap().is_empty());
     sandbox.clock.set(1_000);
@@ -33,9 +40,7 @@ async fn studies_are_listed_with_their_counts() {
 }
 
 /// Protects: the document of a study is kept unchanged. Asking for a missing study is no error here.
-#[tokio::test]
-async fn the_document_is_kept() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn the_document_is_kept(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     sandbox.clock.set(1_000);
     queue.submit(&study("a", &["x"])).await.unwrap();
@@ -45,9 +50,7 @@ async fn the_document_is_kept() {
 }
 
 /// Protects: rows come in the order of the study, each with the data of its job.
-#[tokio::test]
-async fn rows_are_complete_and_in_order() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn rows_are_complete_and_in_order(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["z", "y", "x", "w"])).await.unwrap();
     sandbox.clock.set(1_000);
@@ -79,9 +82,7 @@ async fn rows_are_complete_and_in_order() {
 }
 
 /// Protects: the remaining cost is that of the pending and running jobs.
-#[tokio::test]
-async fn remaining_cost() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn remaining_cost(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let mut a = study("a", &["p", "q", "r", "s", "t"]);
     for (job, cost) in a.jobs.iter_mut().zip([16.0, 8.0, 4.0, 2.0, 1.0]) {
@@ -100,9 +101,7 @@ async fn remaining_cost() {
 }
 
 /// Protects: for a mistyped study name, every operation returns an error that lists the existing names.
-#[tokio::test]
-async fn an_unknown_study_is_an_error_with_the_known_ones() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn an_unknown_study_is_an_error_with_the_known_ones(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let error = queue.rows("a").await.unwrap_err();
     assert!(error.to_string().contains("it has none yet"), "{error}");
@@ -136,9 +135,7 @@ async fn ordinals_of(queue: &mut Queue, which: Rows<'_>) -> Vec<u64> {
 }
 
 /// Protects: rows are found by their label, and only if their job is done.
-#[tokio::test]
-async fn rows_are_found_by_their_label() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn rows_are_found_by_their_label(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let mut a = study("a", &["p", "q", "r", "s", "p"]);
     a.jobs[4].parameters = "p again".into();
@@ -155,9 +152,7 @@ async fn rows_are_found_by_their_label() {
 }
 
 /// Protects: the reader of a study can stop before the end.
-#[tokio::test]
-async fn reading_can_be_stopped() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn reading_can_be_stopped(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let names: Vec<String> = (0..2_500).map(|number| format!("job {number}")).collect();
     queue.submit(&study("a", &names.iter().map(String::as_str).collect::<Vec<_>>())).await.unwrap();

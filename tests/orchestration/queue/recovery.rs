@@ -2,10 +2,26 @@
 
 use tribosweep::queue::{FinishedOutcome, JobState, Queue, Retry, Scope, Settings, TakenBack, Worker};
 
-use super::ENGINE;
 use crate::support::{
     Engine, Sandbox, claim, counts, dead_worker, done, failed, finish, foreign_worker, keys, study,
 };
+
+on_both_databases! {
+    a_released_job_is_claimed_again,
+    an_unstarted_job_costs_no_attempt,
+    jobs_of_a_dead_process_are_taken_back,
+    a_process_number_alone_identifies_no_process,
+    a_worker_has_its_own_lease,
+    a_clock_that_jumps_takes_nothing,
+    leases_decide_for_other_machines,
+    a_worker_without_heartbeats_is_missing,
+    a_deleted_worker_registers_again,
+    retries_have_a_limit,
+    checkpoints_reach_the_next_attempt,
+    a_stopped_process_has_not_crashed,
+    a_checkpoint_outlasts_crashes,
+    an_orderly_end_gives_everything_back,
+}
 
 const NOTHING: TakenBack = TakenBack { pending: 0, failed: 0 };
 
@@ -23,9 +39,7 @@ async fn left_by(sandbox: &Sandbox, worker: &Worker) -> Queue {
 
 /// Protects: a job that an interrupted worker gives back is pending again, with a note of the reason, and its next
 /// start is a new attempt.
-#[tokio::test]
-async fn a_released_job_is_claimed_again() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_released_job_is_claimed_again(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
@@ -38,9 +52,7 @@ async fn a_released_job_is_claimed_again() {
 
 /// Protects: a job that was claimed and not started is as if it had not been claimed: the attempt does not count and
 /// there is no note. The worker that gave it back can neither give it back nor finish it again.
-#[tokio::test]
-async fn an_unstarted_job_costs_no_attempt() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn an_unstarted_job_costs_no_attempt(sandbox: &Sandbox) {
     let (mut queue, mut other) = (sandbox.open().await, sandbox.open().await);
     queue.submit(&study("a", &["x"])).await.unwrap();
     claim(&mut queue, Scope::All, 1).await;
@@ -56,10 +68,8 @@ async fn an_unstarted_job_costs_no_attempt() {
 
 /// Protects: the next worker immediately takes back the jobs that a dead process left running, with a note of the
 /// reason. Done and pending jobs stay as they are, and a late outcome of the dead process is refused.
-#[tokio::test]
-async fn jobs_of_a_dead_process_are_taken_back() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
-    let mut dead = left_by(&sandbox, &dead_worker()).await;
+async fn jobs_of_a_dead_process_are_taken_back(sandbox: &Sandbox) {
+    let mut dead = left_by(sandbox, &dead_worker()).await;
     let mut queue = sandbox.open().await;
     assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 2, failed: 0 });
     assert_eq!(queue.take_back().await.unwrap(), NOTHING);
@@ -81,13 +91,12 @@ async fn jobs_of_a_dead_process_are_taken_back() {
 
 /// Protects: a worker is not alive if its process number now belongs to another process, or if its machine has been
 /// rebooted.
-#[tokio::test]
-async fn a_process_number_alone_identifies_no_process() {
+async fn a_process_number_alone_identifies_no_process(sandbox: &Sandbox) {
     let own = Worker::this_process(1, "test", "");
     let reused = Worker { process_start: own.process_start.map(|start| start - 1), ..own.clone() };
     let rebooted = Worker { boot_id: Some("an earlier boot".into()), ..own };
-    for (gone, is_certain) in [(reused, true), (rebooted, ENGINE == Engine::Sqlite)] {
-        let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+    for (gone, is_certain) in [(reused, true), (rebooted, sandbox.engine == Engine::Sqlite)] {
+        let sandbox = sandbox.another();
         left_by(&sandbox, &gone).await;
         let mut queue = sandbox.open().await;
         let at_once = queue.take_back().await.unwrap().pending;
@@ -100,9 +109,7 @@ async fn a_process_number_alone_identifies_no_process() {
 
 /// Protects: a worker on another machine may be silent for as long as its own lease, not that of the worker that checks
 /// it. Until then, no jobs are taken back from it and it counts as active.
-#[tokio::test]
-async fn a_worker_has_its_own_lease() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_worker_has_its_own_lease(sandbox: &Sandbox) {
     let patient = Settings::default().with_lease(std::time::Duration::from_hours(1));
     let mut far = Queue::open_with(sandbox.location(), sandbox.clock.clock(), patient).await.unwrap();
     far.register(&foreign_worker()).await.unwrap();
@@ -122,11 +129,9 @@ async fn a_worker_has_its_own_lease() {
 
 /// Protects: no jobs are taken back from a live process on this machine, even if a clock that jumped forward or back
 /// makes its lease look expired. Its outcomes are accepted.
-#[tokio::test]
-async fn a_clock_that_jumps_takes_nothing() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_clock_that_jumps_takes_nothing(sandbox: &Sandbox) {
     sandbox.clock.set(1_000 * DAY_MS);
-    let mut alive = left_by(&sandbox, &Worker::this_process(1, "test", "")).await;
+    let mut alive = left_by(sandbox, &Worker::this_process(1, "test", "")).await;
     for now_ms in [3_000 * DAY_MS, 0] {
         sandbox.clock.set(now_ms);
         let mut queue = sandbox.open().await;
@@ -139,11 +144,9 @@ async fn a_clock_that_jumps_takes_nothing() {
 
 /// Protects: for a worker on another machine, the leases decide: no job is taken back before its lease ends, and a
 /// heartbeat extends the leases of all jobs. A lease that a wrong clock set far in the future counts as expired.
-#[tokio::test]
-async fn leases_decide_for_other_machines() {
+async fn leases_decide_for_other_machines(sandbox: &Sandbox) {
     let lease_ms = i64::try_from(Settings::default().lease.as_millis()).unwrap();
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
-    let mut far = left_by(&sandbox, &foreign_worker()).await;
+    let mut far = left_by(sandbox, &foreign_worker()).await;
     let mut queue = sandbox.open().await;
     sandbox.clock.set(lease_ms - 1);
     assert_eq!(queue.take_back().await.unwrap(), NOTHING);
@@ -163,13 +166,11 @@ async fn leases_decide_for_other_machines() {
 /// Protects: a worker counts as missing when two of the heartbeats that are sent eight times in a lease are overdue,
 /// when it is stopping, or when its process is gone. It no longer counts as missing after a heartbeat. A worker that
 /// waits for jobs to be given back thus knows how long to wait.
-#[tokio::test]
-async fn a_worker_without_heartbeats_is_missing() {
+async fn a_worker_without_heartbeats_is_missing(sandbox: &Sandbox) {
     let lease_ms = i64::try_from(Settings::default().lease.as_millis()).unwrap();
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
     let mut queue = sandbox.open().await;
     assert!(!queue.has_missing_workers().await.unwrap(), "the worker itself does not count");
-    let mut far = left_by(&sandbox, &foreign_worker()).await;
+    let mut far = left_by(sandbox, &foreign_worker()).await;
     sandbox.clock.set(lease_ms / 4 - 1);
     assert!(!queue.has_missing_workers().await.unwrap());
     sandbox.clock.set(lease_ms / 4);
@@ -186,10 +187,8 @@ async fn a_worker_without_heartbeats_is_missing() {
 
 /// Protects: a worker that was disconnected until garbage collection deleted its row has lost its jobs. It learns that
 /// by its next heartbeat, and continues.
-#[tokio::test]
-async fn a_deleted_worker_registers_again() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
-    let mut far = left_by(&sandbox, &foreign_worker()).await;
+async fn a_deleted_worker_registers_again(sandbox: &Sandbox) {
+    let mut far = left_by(sandbox, &foreign_worker()).await;
     sandbox.clock.set(2 * DAY_MS);
     let mut queue = sandbox.open().await;
     assert_eq!(queue.take_back().await.unwrap(), TakenBack { pending: 2, failed: 0 });
@@ -207,9 +206,7 @@ async fn a_deleted_worker_registers_again() {
 
 /// Protects: a job whose processes die fails when the crash limit is reached, with that reason. Crashes are counted
 /// separately from attempts, and a job that fails by itself is not run again.
-#[tokio::test]
-async fn retries_have_a_limit() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn retries_have_a_limit(sandbox: &Sandbox) {
     let mut queue = sandbox.open_with(Settings { crash_limit: 2, ..Settings::default() }).await;
     queue.submit(&study("a", &["deadly", "bad"])).await.unwrap();
     // An interruption counts as an attempt, not as a crash.
@@ -234,9 +231,7 @@ async fn retries_have_a_limit() {
 /// Protects: the next attempt receives the checkpoint, whichever worker runs it. A job that makes progress does not
 /// reach the crash limit. A worker that has lost the job cannot save a checkpoint. No checkpoint remains when the job
 /// ends.
-#[tokio::test]
-async fn checkpoints_reach_the_next_attempt() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn checkpoints_reach_the_next_attempt(sandbox: &Sandbox) {
     let mut queue = sandbox.open_with(Settings { crash_limit: 2, ..Settings::default() }).await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     let mut bytes: Option<Vec<u8>> = None;
@@ -261,9 +256,7 @@ async fn checkpoints_reach_the_next_attempt() {
 
 /// Protects: the death of a process that had been asked to stop is not a crash of its jobs: they are pending again,
 /// however often they crashed before.
-#[tokio::test]
-async fn a_stopped_process_has_not_crashed() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_stopped_process_has_not_crashed(sandbox: &Sandbox) {
     let mut queue = sandbox.open_with(Settings { crash_limit: 2, ..Settings::default() }).await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     for (is_stopped, expected) in [
@@ -284,9 +277,7 @@ async fn a_stopped_process_has_not_crashed() {
 
 /// Protects: a job that failed because its processes died, or that was cancelled, continues from its checkpoint when it
 /// is requested again. A job that failed by itself starts from the beginning.
-#[tokio::test]
-async fn a_checkpoint_outlasts_crashes() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_checkpoint_outlasts_crashes(sandbox: &Sandbox) {
     let mut queue = sandbox.open_with(Settings { crash_limit: 1, ..Settings::default() }).await;
     queue.submit(&study("a", &["x"])).await.unwrap();
     let mut dead = sandbox.open_as(&dead_worker()).await;
@@ -303,10 +294,8 @@ async fn a_checkpoint_outlasts_crashes() {
 }
 
 /// Protects: a worker that ends in order gives back the jobs that it still holds, and that is not a crash.
-#[tokio::test]
-async fn an_orderly_end_gives_everything_back() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
-    let mut ending = left_by(&sandbox, &foreign_worker()).await;
+async fn an_orderly_end_gives_everything_back(sandbox: &Sandbox) {
+    let mut ending = left_by(sandbox, &foreign_worker()).await;
     ending.unregister().await.unwrap();
     let mut queue = sandbox.open().await;
     assert_eq!(queue.take_back().await.unwrap(), NOTHING);

@@ -2,13 +2,19 @@
 
 use tribosweep::queue::{Counts, QueueError, Scope, Submitted};
 
-use super::ENGINE;
 use crate::support::{Sandbox, claim, counts, done, failed, finish, job, of, study};
 
+on_both_databases! {
+    submitting_twice_adds_nothing,
+    studies_share_jobs,
+    an_edited_study_is_replaced,
+    a_job_may_repeat_in_a_study,
+    strings_are_opaque,
+    a_cost_is_a_finite_number,
+}
+
 /// Protects: a repeated submission costs no simulation and loses no result.
-#[tokio::test]
-async fn submitting_twice_adds_nothing() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn submitting_twice_adds_nothing(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let study = study("a", &["x", "y", "z"]);
     let first = queue.submit(&study).await.unwrap();
@@ -42,9 +48,7 @@ async fn submitting_twice_adds_nothing() {
 }
 
 /// Protects: two studies that request the same job share it and its result, each with its own parameters.
-#[tokio::test]
-async fn studies_share_jobs() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn studies_share_jobs(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     queue.submit(&study("a", &["x", "y"])).await.unwrap();
     let mut other = study("b", &["y", "z"]);
@@ -64,9 +68,7 @@ async fn studies_share_jobs() {
 
 /// Protects: an edited study has exactly its new document and rows. A job that it no longer contains keeps its result,
 /// and the result is available again when a later edit contains the job.
-#[tokio::test]
-async fn an_edited_study_is_replaced() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn an_edited_study_is_replaced(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     sandbox.clock.set(1_000);
     queue.submit(&study("a", &["x", "y", "z"])).await.unwrap();
@@ -93,9 +95,7 @@ async fn an_edited_study_is_replaced() {
 }
 
 /// Protects: two grid points with the identical job are two rows and one simulation.
-#[tokio::test]
-async fn a_job_may_repeat_in_a_study() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_job_may_repeat_in_a_study(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let mut repeated = study("a", &["x", "y", "x"]);
     repeated.jobs[2].parameters = "x again".into();
@@ -112,9 +112,7 @@ async fn a_job_may_repeat_in_a_study() {
 }
 
 /// Protects: strings are returned unchanged, whatever they contain.
-#[tokio::test]
-async fn strings_are_opaque() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn strings_are_opaque(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     let odd = "{\"a\": [1, 'b''\", \"\\u0041 \\\\ \"]}\n\t– μ* ≥ 0 ☃ 1e3";
     let mut odd_study = study(odd, &[odd]);
@@ -131,9 +129,7 @@ async fn strings_are_opaque() {
 }
 
 /// Protects: a cost that cannot be ordered is reported with its job, and nothing of the study is stored.
-#[tokio::test]
-async fn a_cost_is_a_finite_number() {
-    let Some(sandbox) = Sandbox::of(ENGINE) else { return };
+async fn a_cost_is_a_finite_number(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
     for cost in [f64::NAN, f64::INFINITY] {
         let mut bad = study("a", &["x"]);

@@ -1,7 +1,5 @@
 //! A database that makes the worker wait.
 
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
 
 use tokio::sync::oneshot;
@@ -16,17 +14,30 @@ async fn queue_with_short_timeout(sandbox: &Sandbox) -> Queue {
     sandbox.open_with(Settings { busy_timeout: Duration::from_millis(20), ..Settings::default() }).await
 }
 
-/// A task that locks the database for some time, and the channel that starts it.
-async fn lock_for(sandbox: &Sandbox, time: Duration) -> (oneshot::Sender<()>, tokio::task::JoinHandle<()>) {
-    let mut raw = sandbox.raw().await;
-    let (begin, begun) = oneshot::channel();
-    let other = tokio::spawn(async move {
-        begun.await.unwrap();
-        sqlx::raw_sql("BEGIN IMMEDIATE").execute(&mut raw).await.unwrap();
-        tokio::time::sleep(time).await;
-        sqlx::raw_sql("ROLLBACK").execute(&mut raw).await.unwrap();
-    });
-    (begin, other)
+/// A task that locks the database for some time.
+struct Lock {
+    /// Starts the task.
+    begin: oneshot::Sender<()>,
+    /// Tells when the database is locked.
+    is_locked: oneshot::Receiver<()>,
+    task: tokio::task::JoinHandle<()>,
+}
+
+impl Lock {
+    async fn new(sandbox: &Sandbox, time: Duration) -> Self {
+        let mut raw = sandbox.raw().await;
+        let (begin, begun) = oneshot::channel();
+        let (locked, is_locked) = oneshot::channel();
+        let task = tokio::spawn(async move {
+            begun.await.unwrap();
+            sqlx::raw_sql("BEGIN IMMEDIATE").execute(&mut raw).await.unwrap();
+            // A test that has no use for this event drops the receiver.
+            let _ = locked.send(());
+            tokio::time::sleep(time).await;
+            sqlx::raw_sql("ROLLBACK").execute(&mut raw).await.unwrap();
+        });
+        Self { begin, is_locked, task }
+    }
 }
 
 /// Protects: while the database is locked, or its disk is slow, running jobs go on at their speed. Jobs that end meanwhile
@@ -43,10 +54,10 @@ async fn the_solver_does_not_wait_for_the_database() {
     }
     submit(&mut queue, "study", jobs).await;
 
-    let (begin, other) = lock_for(&sandbox, LOCKED_FOR).await;
+    let lock = Lock::new(&sandbox, LOCKED_FOR).await;
     let interrupt = Interrupt::default();
     let raised = interrupt.clone();
-    let mut begin = Some(begin);
+    let mut begin = Some(lock.begin);
     let mut shown = Vec::new();
     let mut recorder = Recorder::new(|snapshot| {
         let long = snapshot.running.iter().find(|job| job.key == "a").filter(|job| job.simulated_s > 0.0);
@@ -61,7 +72,7 @@ async fn the_solver_does_not_wait_for_the_database() {
     });
     let options = WorkOptions { checkpoint_interval: None, ..WorkOptions::new(1) };
     let summary = work(&mut queue, &Scope::All, options, &interrupt, &mut recorder).await.unwrap();
-    other.await.unwrap();
+    lock.task.await.unwrap();
     assert_eq!(summary.counts.done, 6);
 
     // No progress is shown while a turn waits for the lock.
@@ -83,29 +94,25 @@ async fn an_interruption_waits_for_the_lock() {
     let sandbox = Sandbox::new();
     let mut queue = queue_with_short_timeout(&sandbox).await;
     submit(&mut queue, "study", several(7, 50.0)).await;
-    let (begin, other) = lock_for(&sandbox, LOCKED_FOR).await;
-    let (interrupt, is_begun) = (Interrupt::default(), Arc::new(AtomicBool::new(false)));
-    let (raised, seen) = (interrupt.clone(), Arc::clone(&is_begun));
-    let mut begin = Some(begin);
+    let lock = Lock::new(&sandbox, LOCKED_FOR).await;
+    let interrupt = Interrupt::default();
+    let raised = interrupt.clone();
+    let mut begin = Some(lock.begin);
     let mut recorder = Recorder::new(|snapshot| {
         if snapshot.running.iter().any(|job| job.simulated_s > 0.0)
             && let Some(begin) = begin.take()
         {
             begin.send(()).unwrap();
-            seen.store(true, Ordering::Relaxed);
         }
     });
     let stopper = tokio::spawn(async move {
-        while !is_begun.load(Ordering::Relaxed) {
-            tokio::time::sleep(Duration::from_millis(5)).await;
-        }
-        tokio::time::sleep(LOCKED_FOR / 4).await;
+        lock.is_locked.await.unwrap();
         raised.raise();
     });
     let summary =
         work(&mut queue, &Scope::All, WorkOptions::new(1), &interrupt, &mut recorder).await.unwrap();
     stopper.await.unwrap();
-    other.await.unwrap();
+    lock.task.await.unwrap();
     assert!(summary.interrupted);
     assert_eq!((summary.counts.running, summary.counts.pending), (0, 7));
     let rows = queue.rows("study").await.unwrap();

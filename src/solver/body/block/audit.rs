@@ -9,7 +9,8 @@ use crate::solver::body::{EnergySums, add_lanes};
 use crate::solver::field::{Field, Row, WIDTH, add_slots, in_slots};
 use crate::solver::lane::LaneState;
 use crate::solver::scheme::Scheme;
-use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use crate::solver::simd::dispatch;
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// Displacements \[m\] and p \[m/s\] of a block at one time, and the number of steps that each lane has done.
 #[derive(Clone, Copy)]
@@ -134,7 +135,7 @@ impl<const L: usize> BlockAudit<L> {
         scheme: &Scheme,
         after: &Motion<'_, L>,
     ) {
-        dispatch!(Level::new(), simd => self.add_up(simd, block, scheme, after));
+        dispatch!(simd => self.add_up(simd, block, scheme, after));
         let mut sums = [[0.0; L]; SUMS];
         for column in &self.columns {
             for (sum, slots) in sums.iter_mut().zip(column) {

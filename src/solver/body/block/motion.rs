@@ -16,7 +16,8 @@ use super::operator::{AssembledOperator, BlockIndex, Operator, Pass, Scratch, Te
 use crate::solver::body::Freedom;
 use crate::solver::field::{Block, Field};
 use crate::solver::scheme::StepFactors;
-use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use crate::solver::simd::dispatch;
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// The slave nodes at t_n, which the contact solve moves to t_{n+1}.
 pub(in crate::solver) struct Face<'a, const L: usize> {
@@ -111,7 +112,7 @@ impl<const L: usize> BlockMotion<L> {
             p: p.blocks_mut(),
             residual: self.residual.blocks_mut(),
         };
-        dispatch!(Level::new(), simd => operator.pass(simd, &mut advance, &mut self.scratch));
+        dispatch!(simd => operator.pass(simd, &mut advance, &mut self.scratch));
     }
 
     fn assembled_forces(
@@ -132,7 +133,7 @@ impl<const L: usize> BlockMotion<L> {
 
     /// Moves the constrained planes above the contact face by their residual.
     pub fn advance_constrained_planes(&self, factors: &StepFactors, u: &mut Field<L>, p: &mut Field<L>) {
-        dispatch!(Level::new(), simd => self.advance_constrained(simd, factors, u, p));
+        dispatch!(simd => self.advance_constrained(simd, factors, u, p));
     }
 
     #[inline(always)]

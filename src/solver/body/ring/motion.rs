@@ -9,7 +9,8 @@ use super::stages::Stage;
 use crate::solver::field::{Field, Row, WIDTH};
 use crate::solver::lane::LaneState;
 use crate::solver::scheme::StepFactors;
-use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use crate::solver::simd::dispatch;
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// The disk's state in every lane, in the frame that rotates with it. Vectors are radial, tangential, axial.
 #[derive(Debug, Clone)]
@@ -70,18 +71,18 @@ impl<const L: usize> RingState<L> {
     pub(in crate::solver) fn predict(&mut self, body: &RingBody, factors: &StepFactors) {
         let mut stages = body.stages().stages().iter();
         let work = &mut self.workspace;
-        dispatch!(Level::new(), simd => strain(simd, factors.beta_r_s, &self.u, &self.p, &mut work.strained));
+        dispatch!(simd => strain(simd, factors.beta_r_s, &self.u, &self.p, &mut work.strained));
         body.operator().product(&work.strained, &mut work.product, &mut work.scratch);
         if let Some(first) = stages.next() {
             let unfiltered = self.unfiltered.as_mut();
-            dispatch!(Level::new(), simd => work.first_stage(simd, first, factors, unfiltered));
+            dispatch!(simd => work.first_stage(simd, first, factors, unfiltered));
         }
         for stage in stages {
-            dispatch!(Level::new(), simd => work.add_moved(simd));
+            dispatch!(simd => work.add_moved(simd));
             body.operator().product(&work.stage, &mut work.product, &mut work.scratch);
-            dispatch!(Level::new(), simd => work.next_stage(simd, stage));
+            dispatch!(simd => work.next_stage(simd, stage));
         }
-        dispatch!(Level::new(), simd => work.advance(simd, factors, &mut self.u, &mut self.p));
+        dispatch!(simd => work.advance(simd, factors, &mut self.u, &mut self.p));
     }
 }
 

@@ -10,7 +10,8 @@ use super::mesh::RingMesh;
 use super::sector::{self, SectorElement};
 use crate::solver::field::{Block, Field, Row, WIDTH, blocks_per_line};
 use crate::solver::material::Material;
-use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use crate::solver::simd::dispatch;
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// The elements of every distinct sector angle.
 #[derive(Debug, Clone)]
@@ -135,7 +136,7 @@ impl RingOperator {
 
     /// Computes `y = K x` for `L` lanes.
     pub fn product<const L: usize>(&self, x: &Field<L>, y: &mut Field<L>, scratch: &mut RingScratch<L>) {
-        dispatch!(Level::new(), simd => self.product_in(simd, x, y, scratch));
+        dispatch!(simd => self.product_in(simd, x, y, scratch));
     }
 
     /// Computes `y = K x` for `L` lanes and returns x·y.

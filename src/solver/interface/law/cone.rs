@@ -40,11 +40,12 @@ pub(in crate::solver) fn project<R: Real>(trial_n: [R; 2], limit_n: R) -> Fricti
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fearless_simd::{Level, dispatch, f64x8, prelude::*};
+    use crate::solver::simd::dispatch;
+    use fearless_simd::{f64x8, prelude::*};
 
     /// Projects eight nodes with the same numbers. Returns the result of the first.
     fn project_eight(trial_n: [f64; 2], limit_n: f64) -> ([f64; 2], bool) {
-        dispatch!(Level::new(), simd => {
+        dispatch!(simd => {
             let all = |value| f64x8::splat(simd, value);
             let friction = project([all(trial_n[0]), all(trial_n[1])], all(limit_n));
             (friction.force_n.map(|force| force[0]), friction.sticks.test(0))

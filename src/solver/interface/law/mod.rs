@@ -47,10 +47,10 @@ macro_rules! with_law_of_lanes {
         });
         if coefficients.iter().all(|mu| *mu == 0.0) {
             let $law = $crate::solver::interface::law::Frictionless;
-            fearless_simd::dispatch!(fearless_simd::Level::new(), $simd => $call)
+            $crate::solver::simd::dispatch!($simd => $call)
         } else {
             let mu = $crate::solver::field::in_slots(&coefficients);
-            fearless_simd::dispatch!(fearless_simd::Level::new(), $simd => {
+            $crate::solver::simd::dispatch!($simd => {
                 let $law = $crate::solver::interface::law::Coulomb {
                     mu: fearless_simd::f64x8::from_slice($simd, &mu),
                 };

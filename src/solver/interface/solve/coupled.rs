@@ -30,8 +30,9 @@ use crate::solver::interface::target::patch::{Grid, PatchCoord, Share};
 use crate::solver::interface::{Contacts, Interface, Status};
 use crate::solver::lane::LaneState;
 use crate::solver::scheme::StepFactors;
+use crate::solver::simd::dispatch;
 use crate::spec::TargetSurface;
-use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use fearless_simd::{Simd, f64x8, prelude::*};
 use std::sync::Arc;
 
 /// The elastic disk under the pin, in every lane.
@@ -230,7 +231,7 @@ impl<const L: usize> RingTarget<L> {
         self.solve.top_before.keep(&self.state.u, &self.state.p);
         let count = self.solve.face_before.u.blocks().len();
         self.state.predict(&self.body, given.factors);
-        dispatch!(Level::new(), simd => predict(simd, given.factors, face, count));
+        dispatch!(simd => predict(simd, given.factors, face, count));
         let dt = given.factors.time_step_s;
         for lane in 0..L {
             let turned_rad = given.drives[lane].rate * ((given.steps_done[lane] + 1) as f64 * dt);

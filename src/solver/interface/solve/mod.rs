@@ -69,7 +69,7 @@ impl<const L: usize> TargetState<L> {
     ) {
         contacts.swap_increments();
         let Kind::Rigid(solve) = &self.0 else { panic!("a rigid target") };
-        fearless_simd::dispatch!(fearless_simd::Level::new(), simd => solve.pass(simd, law, given, face, contacts));
+        crate::solver::simd::dispatch!(simd => solve.pass(simd, law, given, face, contacts));
     }
 
     /// The elastic disk and its state, if the target is one.

@@ -30,7 +30,8 @@ pub(in crate::solver) use pass::{BlockIndex, Pass};
 use crate::solver::body::block::BlockMesh;
 use crate::solver::field::{Block, Field, Row, add_slots};
 use crate::solver::material::Material;
-use fearless_simd::{Level, Simd, dispatch, f64x8, prelude::*};
+use crate::solver::simd::dispatch;
+use fearless_simd::{Simd, f64x8, prelude::*};
 
 /// K of a block of equal elements.
 #[derive(Debug, Clone)]
@@ -80,7 +81,7 @@ impl TensorOperator {
     ) -> [f64; L] {
         let mut forms = scratch.take_forms();
         let mut product = Product { x: x.blocks(), y: y.blocks_mut(), forms: &mut forms };
-        dispatch!(Level::new(), simd => self.pass(simd, &mut product, scratch));
+        dispatch!(simd => self.pass(simd, &mut product, scratch));
         let mut total = [0.0; L];
         for slots in &forms {
             add_slots(&mut total, &slots.0);

@@ -1,6 +1,7 @@
 use super::super::AssembledOperator;
 use super::*;
 use crate::solver::body::hexahedron::stiffness;
+use fearless_simd::Level;
 
 /// A deterministic pseudo-random field.
 fn values(n: usize, seed: u64) -> Vec<f64> {
