@@ -1,10 +1,15 @@
 //! Commands that show, check and write: status, report, export, validate, schema, completions.
 
-use std::path::Path;
+use std::collections::BTreeSet;
+use std::path::{Path, PathBuf};
 
+use clap::CommandFactory;
 use serde_json::{Value, json};
+use tribosweep::cli::Cli;
+use tribosweep::solver;
+use tribosweep::study::{Study, schema};
 
-use crate::support::{Folder, HEADER, long, rows, small, stdout};
+use crate::support::{Folder, HEADER, REPORT, long, rows, small, stdout};
 
 /// Protects: the progress of one and of all studies, as text and as JSON, before and after the work.
 #[test]
@@ -124,19 +129,30 @@ fn the_database_is_the_users_choice() {
     }
 }
 
-/// Protects: a report is written into the requested folder, and the path of its page is printed.
+/// Protects: a report is written into the requested folder, and the path of its page is printed. Every folder gets all
+/// files of a report and no others. No file is empty, and the page links all others and nothing else.
 #[test]
 fn report_writes_a_folder() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2], "omega_rpm": [2, 7] })));
     folder.ok("run mine.json --out first");
-    assert!(folder.path("first/report.md").exists() && !folder.path("reports").exists());
+    assert!(!folder.path("reports").exists());
     let printed = folder.ok("report mine.json --out deep/down");
     assert_eq!(Path::new(printed.trim_end()), Path::new("deep/down/report.html"));
     assert_eq!(folder.read("deep/down/report.md"), folder.read("first/report.md"));
     assert_eq!(Path::new(folder.ok("report mine").trim_end()), Path::new("reports/mine/report.html"));
-    let mut files = folder.files();
-    files.retain(|file| file.starts_with("reports"));
-    assert!(files.len() >= 9, "{files:?}");
+    let files = folder.files();
+    let others: BTreeSet<&str> = REPORT.into_iter().filter(|file| *file != "report.md").collect();
+    for report in ["first", "deep/down", "reports/mine"] {
+        let found = files.iter().filter_map(|file| file.strip_prefix(report)?.strip_prefix('/'));
+        let found: Vec<&str> = found.collect();
+        assert_eq!(found, REPORT, "{report}");
+        for file in found {
+            assert!(!folder.read(Path::new(report).join(file)).is_empty(), "{report}/{file}");
+        }
+        let page = folder.read(Path::new(report).join("report.md"));
+        let linked = page.split("](").skip(1).filter_map(|rest| Some(rest.split_once(')')?.0));
+        assert_eq!(linked.collect::<BTreeSet<_>>(), others, "{report}");
+    }
 }
 
 /// Protects: parameters other than ω and μ are columns after the fixed ones, in the order of the study.
@@ -173,53 +189,75 @@ fn validate_writes_no_file() {
     assert_eq!(folder.files(), ["mine.json"]);
 }
 
-/// Protects: the shipped studies are valid for the solver, not only for the parser.
+/// Every shipped study.
+fn shipped_studies() -> Vec<PathBuf> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
+    let mut studies: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    studies.sort();
+    studies
+}
+
+/// Protects: the shipped studies are valid for the solver, not only for the parser. The printed number of jobs is that of
+/// the study's own grid.
 #[test]
 fn the_shipped_studies_are_valid() {
+    let studies = shipped_studies();
+    assert!(studies.iter().any(|study| study.ends_with("figure7.json")), "{studies:?}");
     let folder = Folder::new();
-    for (study, jobs) in [("mini", 6), ("figure7", 102), ("clamps", 35)] {
-        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies").join(format!("{study}.json"));
-        let validated = folder.command("validate").arg(path).assert().code(0);
-        assert!(stdout(&validated).contains(&format!(": valid, {jobs} jobs")), "{}", stdout(&validated));
+    for study in studies {
+        let jobs = Study::load(&study).unwrap().expand(solver::VERSION).unwrap().len();
+        let printed = stdout(&folder.command("validate").arg(&study).assert().code(0));
+        let expected = format!("{}: valid, {jobs} jobs", study.display());
+        let rest = printed.strip_prefix(&expected);
+        assert!(rest.is_some_and(|rest| rest == "\n" || rest.starts_with(" (")), "{expected}: {printed}");
     }
 }
 
-/// Protects: editors can load the schema, and it knows the parts of a study.
+/// Protects: the command prints the whole schema of the library as text that an editor can load. (`tests/study` compares
+/// that schema with the parser.)
 #[test]
-fn the_schema_is_json() {
-    let schema: Value = serde_json::from_str(&Folder::new().ok("schema")).unwrap();
-    for part in ["name", "description", "scene", "numerics", "run", "detection", "grid"] {
-        assert!(schema["properties"][part].is_object(), "{part}");
+fn the_schema_is_that_of_the_library() {
+    let printed = Folder::new().ok("schema");
+    assert_eq!(serde_json::from_str::<Value>(&printed).unwrap(), schema());
+    assert_eq!(printed, format!("{:#}\n", schema()));
+}
+
+/// How the completion script of a shell offers a command.
+fn offer(shell: &str, command: &str) -> String {
+    match shell {
+        "bash" => format!(" tribosweep,{command})\n"),
+        "elvish" => format!("\n            cand {command} '"),
+        "fish" => format!("-n \"__fish_tribosweep_needs_command\" -f -a \"{command}\" "),
+        "powershell" => format!("[CompletionResult]::new('{command}', '{command}', "),
+        "zsh" => format!("\n'{command}:"),
+        other => panic!("this test has to know how a script for {other} offers a command"),
     }
 }
 
-/// Protects: the shell completes every command.
+/// Protects: every supported shell completes every command, and the help lists the same commands.
 #[test]
 fn completions_name_every_command() {
     let folder = Folder::new();
-    let script = folder.ok("completions bash");
-    assert!(script.contains("complete -F _tribosweep"));
-    for command in [
-        "run",
-        "submit",
-        "work",
-        "status",
-        "report",
-        "pareto",
-        "export",
-        "show",
-        "retry",
-        "cancel",
-        "rm",
-        "gc",
-        "doctor",
-        "solve",
-        "validate",
-        "presets",
-        "schema",
-        "completions",
-    ] {
-        assert!(script.contains(&format!("tribosweep__subcmd__{command}")), "{command}");
-        assert!(folder.ok("--help").contains(&format!("\n  {command} ")), "{command}");
+    let mut program = Cli::command();
+    // This adds `help`.
+    program.build();
+    let commands: BTreeSet<&str> = program.get_subcommands().map(clap::Command::get_name).collect();
+    let help = folder.ok("--help");
+    let (_, listed) = help.split_once("\nCommands:\n").unwrap();
+    let listed = listed.lines().take_while(|line| !line.is_empty());
+    // The second line of a description is indented more.
+    let names = listed.filter_map(|line| line.strip_prefix("  ")?.split(' ').next());
+    assert_eq!(names.filter(|name| !name.is_empty()).collect::<BTreeSet<_>>(), commands);
+    assert!(["run", "work", "completions"].iter().all(|known| commands.contains(known)), "{commands:?}");
+
+    let completions = program.find_subcommand("completions").unwrap();
+    let shells = completions.get_positionals().next().unwrap().get_possible_values();
+    assert!(shells.iter().any(|shell| shell.get_name() == "bash"), "{shells:?}");
+    for shell in shells {
+        let shell = shell.get_name();
+        let script = folder.ok(&format!("completions {shell}"));
+        for command in &commands {
+            assert!(script.contains(&offer(shell, command)), "{shell}: {command}");
+        }
     }
 }

@@ -4,32 +4,7 @@ use std::collections::BTreeSet;
 
 use serde_json::Value;
 
-use crate::support::{Folder, HEADER, rows, stderr, stdout};
-
-/// Every table and figure of a study over ω and μ.
-const REPORT: [&str; 21] = [
-    "figure7.csv",
-    "figure7.svg",
-    "frequency.csv",
-    "frequency.md",
-    "frequency.svg",
-    "frequency_map.csv",
-    "frequency_map.svg",
-    "jobs.csv",
-    "mu_star.csv",
-    "mu_star.md",
-    "regime.csv",
-    "regime.md",
-    "regime_map.csv",
-    "regime_map.svg",
-    "report.html",
-    "report.md",
-    "residuals.csv",
-    "residuals.svg",
-    "run_times.csv",
-    "shares.csv",
-    "shares.svg",
-];
+use crate::support::{Folder, HEADER, REPORT, rows, stderr, stdout};
 
 /// Protects: one command runs the shipped quick study and prints the table of μ*, writes all files of the report and no
 /// others, and the export has all four contact regimes.
