@@ -5,7 +5,6 @@ use std::collections::BTreeMap;
 use std::os::unix::fs::PermissionsExt;
 use std::path::Path;
 use std::process::{Command, Stdio};
-use std::time::Duration;
 
 use serde_json::{Value, json};
 
@@ -259,8 +258,8 @@ fn all_or_nothing_is_submitted() {
     assert!(text.contains("sbatch is not there"), "{text}");
 }
 
-/// A task of the array with a fake program, which logs its arguments, keeps a "database", and works until a file is
-/// removed.
+/// A task of the array with a fake program, which logs its arguments, keeps a "database", makes a file when it can be asked
+/// to stop, and works until another file is removed.
 struct Task {
     cluster: Cluster,
 }
@@ -274,6 +273,7 @@ case $command in
     work)
         echo worked >> "$db"
         trap 'exit 3' TERM
+        touch "$TMPDIR/../ready"
         [ ! -e "$TMPDIR/die" ] || { rm "$TMPDIR/die"; echo unclosed > "$db-wal"; kill -KILL $$; }
         while [ -e "$TMPDIR/busy" ]; do sleep 0.05; done ;;
 esac
@@ -309,15 +309,14 @@ impl Task {
 
     /// Runs the task to its end, or sends it a signal when its worker runs.
     fn run(&self, signal: Option<&str>) -> Option<i32> {
-        let begun = self.cluster.calls().matches("fake-program work").count();
+        let ready = self.cluster.folder.path("ready");
+        let _ = std::fs::remove_file(&ready);
         if signal.is_some() {
             self.cluster.folder.write("node/busy", "");
         }
         let mut task = self.start();
         if let Some(signal) = signal {
-            wait("the worker", || self.cluster.calls().matches("fake-program work").count() > begun);
-            // The fake program sets its trap right after the log entry.
-            std::thread::sleep(Duration::from_millis(200));
+            wait("the worker", || ready.exists());
             let kill = Command::new("kill").args([format!("-{signal}"), task.id().to_string()]).status();
             assert!(kill.unwrap().success());
         }
