@@ -91,12 +91,21 @@ impl Folder {
 
     /// Starts the command without waiting for its end.
     pub fn start(&self, arguments: &str) -> Running {
+        self.start_with(arguments, Stdio::piped())
+    }
+
+    /// As [`start`](Self::start), with the messages in a file, so that they can be read while the command runs.
+    pub fn start_with_messages_in(&self, file: &str, arguments: &str) -> Running {
+        self.start_with(arguments, std::fs::File::create(self.path(file)).unwrap().into())
+    }
+
+    fn start_with(&self, arguments: &str, messages: Stdio) -> Running {
         let child = std::process::Command::new(TRIBOSWEEP)
             .current_dir(&self.0)
             .env_remove("TRIBOSWEEP_DB")
             .args(arguments.split_whitespace())
             .stdout(Stdio::piped())
-            .stderr(Stdio::piped())
+            .stderr(messages)
             .spawn();
         Running(Some(child.unwrap()))
     }

@@ -3,14 +3,13 @@
 #![cfg(unix)]
 
 use std::fs;
-use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
-use sqlx::ConnectOptions;
 use sqlx::sqlite::SqliteConnectOptions;
+use sqlx::{ConnectOptions, SqliteConnection};
 
 use crate::mount::Mount;
-use crate::support::{Folder, long, small, stderr, stdout, without_wall_times};
+use crate::support::{Folder, long, small, stderr, stdout, wait, without_wall_times};
 
 fn undisturbed(study: &Value) -> String {
     let folder = Folder::with("study", study);
@@ -89,21 +88,51 @@ fn a_read_only_disk() {
     assert_eq!(without_wall_times(&export), undisturbed(&long()));
 }
 
-/// Protects: a worker waits for the lock of another program, and results that it computes meanwhile are not lost.
-#[tokio::test]
-async fn a_lock_is_waited_for() {
-    const LOCKED: Duration = Duration::from_secs(1);
-    let folder = Folder::with("study", &long());
-    folder.ok("submit study.json");
+/// Locks the database as another program does, until the returned connection rolls its transaction back.
+async fn lock(folder: &Folder) -> SqliteConnection {
     let options = SqliteConnectOptions::new().filename(folder.path("tribosweep.db"));
     let mut other = options.connect().await.unwrap();
     sqlx::raw_sql("BEGIN IMMEDIATE").execute(&mut other).await.unwrap();
-    let (begun, work) = (Instant::now(), folder.start("work"));
-    tokio::time::sleep(LOCKED).await;
-    assert_eq!(folder.counts("study")["pending"], 24, "the database can still be read");
+    other
+}
+
+async fn unlock(mut other: SqliteConnection) {
     sqlx::raw_sql("ROLLBACK").execute(&mut other).await.unwrap();
-    assert_eq!(work.end().0, Some(0));
-    assert!(begun.elapsed() > LOCKED);
+}
+
+/// Protects: a worker that starts while another program has a lock on the database waits for it. After a quarter of its
+/// lease it gives up and says why. Meanwhile the database can be read.
+#[tokio::test]
+async fn a_lock_is_waited_for() {
+    let folder = Folder::with("study", &long());
+    folder.ok("submit study.json");
+    let other = lock(&folder).await;
+    let patient = folder.start("work");
+    // This worker came later and has the shortest lease. When it gives up, the other one has been waiting for longer.
+    assert_refused(&folder, "work --lease 5s", "the database is locked");
+    assert_eq!(folder.counts("study")["pending"], 24, "the database can still be read");
+    unlock(other).await;
+    let (code, _, messages) = patient.end();
+    assert_eq!(code, Some(0), "{messages}");
+    assert_eq!(without_wall_times(&folder.ok("export study")), undisturbed(&long()));
+}
+
+/// Protects: results that a worker computes while another program has a lock on the database are not lost: the worker says
+/// that it waits, and stores them afterwards.
+#[tokio::test]
+async fn results_wait_for_a_lock() {
+    let folder = Folder::with("study", &long());
+    folder.ok("submit study.json");
+    let work = folder.start_with_messages_in("messages", "work --lease 5s");
+    folder.wait_for("study", |counts| counts["running"] > 0);
+    let other = lock(&folder).await;
+    let before = folder.counts("study");
+    assert!(before["running"] > 0, "{before:?}");
+    // The worker writes to the database when a job has ended.
+    wait("the message", || folder.read("messages").contains("waiting: the database is locked"));
+    assert_eq!(folder.counts("study"), before, "nobody can write");
+    unlock(other).await;
+    assert_eq!(work.end().0, Some(0), "{}", folder.read("messages"));
     assert_eq!(without_wall_times(&folder.ok("export study")), undisturbed(&long()));
 }
 
