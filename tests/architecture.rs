@@ -1,4 +1,4 @@
-//! The shape of the crate: which module may use which, read from the sources.
+//! The shape of the crate: which module may use which, read from the sources, and the maps of the modules.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
@@ -111,6 +111,28 @@ fn used(file: &str, text: &str) -> BTreeSet<String> {
     names
 }
 
+/// Each file below src with another top-level module that it uses.
+fn uses() -> Vec<(String, String)> {
+    let mut found = Vec::new();
+    for (file, text) in sources() {
+        let from = top_module(&file);
+        // This file declares the modules, and its example uses them.
+        if from == "lib" {
+            continue;
+        }
+        // Other names at the root (a function, `super::*` in a test) are not modules.
+        let is_other = |to: &String| to != from && MAY_USE.iter().any(|(name, _)| name == to);
+        found.extend(used(&file, &text).into_iter().filter(is_other).map(|to| (file.clone(), to)));
+    }
+    found
+}
+
+/// The modules that a module may use.
+fn may_use(module: &str) -> &'static [&'static str] {
+    let rule = MAY_USE.into_iter().find(|(name, _)| *name == module);
+    rule.unwrap_or_else(|| panic!("the module {module} has no rule")).1
+}
+
 /// Protects: the scanner finds every form in which code names a module. Otherwise the tests below could not fail.
 #[test]
 fn the_scanner_finds_modules() {
@@ -129,26 +151,14 @@ fn the_scanner_finds_modules() {
 /// the queue does not know mechanics, only the command line uses `sweep`, and only the program uses the command line.
 #[test]
 fn modules_use_only_what_they_may() {
-    let rules: BTreeMap<_, _> = MAY_USE.into_iter().collect();
-    let mut edges = BTreeSet::new();
-    let mut wrong = Vec::new();
-    for (file, text) in sources() {
-        let from = top_module(&file);
-        if from == "lib" {
-            continue;
-        }
-        let allowed = rules.get(from).unwrap_or_else(|| panic!("src/{file}: the module has no rule"));
-        for to in used(&file, &text) {
-            // Other names at the root (a function, `super::*` in a test) are not modules.
-            if to != from && rules.contains_key(to.as_str()) {
-                edges.insert((from.to_owned(), to.clone()));
-                if !allowed.contains(&to.as_str()) {
-                    wrong.push(format!("src/{file} uses {to}"));
-                }
-            }
-        }
-    }
+    let all: BTreeSet<String> = sources().iter().map(|(file, _)| top_module(file).to_owned()).collect();
+    let ruled: BTreeSet<String> = MAY_USE.iter().map(|(name, _)| (*name).to_owned()).collect();
+    assert_eq!(all.into_iter().filter(|name| name != "lib").collect::<BTreeSet<_>>(), ruled);
+    let uses = uses();
+    let wrong = uses.iter().filter(|(file, to)| !may_use(top_module(file)).contains(&to.as_str()));
+    let wrong: Vec<_> = wrong.map(|(file, to)| format!("src/{file} uses {to}")).collect();
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    let edges: BTreeSet<_> = uses.iter().map(|(file, to)| (top_module(file), to.as_str())).collect();
     // A scanner that finds nothing would pass the check above, so some dependencies must be found.
     for (from, to) in [
         ("analysis", "solver"),
@@ -166,7 +176,7 @@ fn modules_use_only_what_they_may() {
         ("worker", "analysis"),
         ("worker", "queue"),
     ] {
-        assert!(edges.contains(&(from.to_owned(), to.to_owned())), "{from} does not use {to}");
+        assert!(edges.contains(&(from, to)), "{from} does not use {to}");
     }
 }
 
@@ -181,29 +191,209 @@ fn the_queue_stands_alone() {
     }
 }
 
-/// Protects: the map in lib.rs is correct: every module in it exists and is public, and it has every folder of src.
+/// A file of the repository.
+fn read(path: &str) -> String {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(path);
+    std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// The documentation of the crate at the head of lib.rs.
+fn crate_page() -> String {
+    let text = read("src/lib.rs");
+    let lines = text.lines().filter_map(|line| line.strip_prefix("//!"));
+    lines.map(|line| line.strip_prefix(' ').unwrap_or(line).to_owned() + "\n").collect()
+}
+
+/// The names of the folders in a folder of the repository.
+fn folders(of: &str) -> BTreeSet<String> {
+    let entries = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join(of)).unwrap();
+    let paths = entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_dir());
+    paths.map(|path| path.file_name().unwrap().to_str().unwrap().to_owned()).collect()
+}
+
+/// The public modules at the root of the crate, each with the feature that it needs; an empty name if it needs none.
+fn public_modules() -> BTreeMap<String, String> {
+    let text = read("src/lib.rs");
+    let mut modules = BTreeMap::new();
+    let mut feature = "";
+    for line in text.lines() {
+        if let Some(name) = line.strip_prefix("pub mod ").and_then(|rest| rest.strip_suffix(';')) {
+            modules.insert(name.to_owned(), feature.to_owned());
+        }
+        let condition = line.strip_prefix("#[cfg(feature = \"").and_then(|rest| rest.strip_suffix("\")]"));
+        feature = condition.unwrap_or_default();
+    }
+    modules
+}
+
+/// The names between backticks.
+fn in_backticks(text: &str) -> BTreeSet<String> {
+    text.split('`').skip(1).step_by(2).map(str::to_owned).collect()
+}
+
+/// The first drawing after a part of a page.
+fn drawing<'a>(page: &'a str, after: &str) -> &'a str {
+    let (_, rest) = page.split_once(after).unwrap_or_else(|| panic!("no {after:?}"));
+    let (_, rest) = rest.split_once("```text\n").unwrap();
+    rest.split_once("```").unwrap().0
+}
+
+/// The arrows of a drawing: from which name to which. An arrow begins beside a name, or below it on a line that goes
+/// downwards, and may lead to several names.
+fn arrows(drawing: &str) -> BTreeSet<(String, String)> {
+    let rows: Vec<Vec<char>> = drawing.lines().map(|line| line.chars().collect()).collect();
+    let is_part = |c: &char| c.is_ascii_lowercase() || *c == '_';
+    let name_at = |row: &[char], column: usize| -> String {
+        let start = row[..column].iter().rposition(|c| !is_part(c)).map_or(0, |before| before + 1);
+        row[start..].iter().take_while(|c| is_part(c)).collect()
+    };
+    let mut found = BTreeSet::new();
+    for (number, row) in rows.iter().enumerate() {
+        for head in (0..row.len()).filter(|&column| row[column] == '►') {
+            let tail = row[..head].iter().rposition(|&c| c != '─').unwrap();
+            let from = if row[tail] == ' ' {
+                name_at(row, tail - 1)
+            } else {
+                let above = rows[..number].iter().rfind(|row| row.get(tail).is_some_and(is_part));
+                name_at(above.unwrap(), tail)
+            };
+            let rest: String = row[head + 1..].iter().collect();
+            for to in rest.split('─').next().unwrap_or_default().split(',') {
+                found.insert((from.clone(), to.trim().chars().take_while(is_part).collect()));
+            }
+        }
+    }
+    found
+}
+
+/// The cells of the table with this header.
+fn table(page: &str, header: &str) -> Vec<Vec<String>> {
+    let (_, rest) = page.split_once(header).unwrap_or_else(|| panic!("no {header:?}"));
+    // The first line is the rule below the header.
+    let lines = rest.lines().skip(1).take_while(|line| line.starts_with('|'));
+    let cells = |line: &str| -> Vec<String> {
+        line.trim_matches('|').split('|').map(|cell| cell.trim().to_owned()).collect()
+    };
+    lines.map(cells).collect()
+}
+
+fn is_description(text: &str) -> bool {
+    text.split_whitespace().count() >= 4
+}
+
+const ABOVE_THE_DRAWING: &str = "The map of the crate.";
+
+/// Protects: arrows are read from a drawing as a reader sees them. Otherwise the tests below could not fail.
+#[test]
+fn arrows_are_found() {
+    let drawing = "cli ──► sweep ──► a, b (parts)\n │        └─────► c ─► d\n └──────────────► e::f\n";
+    let expected =
+        [("c", "d"), ("cli", "e"), ("cli", "sweep"), ("sweep", "a"), ("sweep", "b"), ("sweep", "c")];
+    let expected = expected.map(|(from, to)| (from.to_owned(), to.to_owned()));
+    assert_eq!(arrows(drawing), BTreeSet::from(expected));
+}
+
+/// Protects: the map in lib.rs is true. It describes every folder of src and links every public module. Every folder is in
+/// the drawing, whose arrows are uses that exist and are allowed.
 #[test]
 fn the_map_is_true() {
-    let text = std::fs::read_to_string(src().join("lib.rs")).unwrap();
-    let named: BTreeSet<_> = text
-        .lines()
-        .filter_map(|line| line.strip_prefix("//! * [`"))
-        .map(|rest| rest.split('`').next().unwrap().to_owned())
-        .collect();
-    assert!(named.len() >= 8, "{named:?}");
-    for name in &named {
-        let exists =
-            src().join(name).join("mod.rs").is_file() || src().join(name).with_extension("rs").is_file();
-        assert!(exists, "the map names {name}");
-        assert!(text.contains(&format!("\npub mod {name};\n")), "{name} is not public");
+    let page = crate_page();
+    let entries = page.lines().filter_map(|line| line.strip_prefix("* [`")?.split_once("`] – "));
+    let entries: BTreeMap<&str, &str> = entries.collect();
+    let named: BTreeSet<String> = entries.keys().map(|&name| name.to_owned()).collect();
+    assert_eq!(named, folders("src"));
+    for (name, text) in entries {
+        assert!(is_description(text), "{name}: {text}");
     }
-    let folders: BTreeSet<_> = std::fs::read_dir(src())
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .filter(|path| path.is_dir())
-        .map(|path| path.file_name().unwrap().to_str().unwrap().to_owned())
-        .collect();
-    assert_eq!(named, folders);
+    let modules = public_modules();
+    assert!(named.iter().all(|name| modules.contains_key(name)), "{modules:?}");
+    for module in modules.keys() {
+        assert!(page.contains(&format!("[`{module}`]")), "{module} is not linked");
+    }
+    let uses = uses();
+    let arrows = arrows(drawing(&page, ABOVE_THE_DRAWING));
+    for (from, to) in &arrows {
+        assert!(may_use(from).contains(&to.as_str()), "{from} may not use {to}");
+        assert!(uses.iter().any(|(file, used)| top_module(file) == from && used == to), "{from}, {to}");
+    }
+    let drawn: BTreeSet<String> = arrows.into_iter().flat_map(|(from, to)| [from, to]).collect();
+    assert_eq!(drawn, named);
+}
+
+/// Protects: the page of lib.rs says which modules there are with which feature, and it has every feature.
+#[test]
+fn the_map_has_the_features() {
+    let page = crate_page();
+    let linked = |text: &str| -> BTreeSet<String> {
+        text.split("[`").skip(1).filter_map(|rest| Some(rest.split_once('`')?.0.to_owned())).collect()
+    };
+    let (_, without) = page.split_once("Without any there are ").unwrap();
+    let mut told = BTreeMap::from([(String::new(), linked(without.split('.').next().unwrap_or_default()))]);
+    for (feature, text) in page.lines().filter_map(|line| line.strip_prefix("* `")?.split_once("` – ")) {
+        told.insert(feature.to_owned(), linked(text));
+    }
+    let manifest = read("Cargo.toml");
+    let (_, features) = manifest.split_once("[features]\n").unwrap();
+    let lines = features.lines().take_while(|line| !line.starts_with("[dependencies]"));
+    let features = lines.filter_map(|line| Some(line.split_once(" = [")?.0));
+    let features = features.filter(|feature| *feature != "default");
+    let mut expected: BTreeMap<String, BTreeSet<String>> =
+        features.map(|feature| (feature.to_owned(), BTreeSet::new())).collect();
+    for (module, feature) in public_modules() {
+        expected.entry(feature).or_default().insert(module);
+    }
+    assert_eq!(told, expected);
+}
+
+/// Protects: ARCHITECTURE.md has the same rooms as the sources, each with a description. They may use there what they may
+/// use here, and the drawing has the same arrows as that of lib.rs. The rooms of the solver and the folders of the tests
+/// exist, and none is missing.
+#[test]
+fn the_rooms_are_those_of_the_document() {
+    let page = read("ARCHITECTURE.md");
+    assert_eq!(arrows(drawing(&page, "## Rooms\n")), arrows(drawing(&crate_page(), ABOVE_THE_DRAWING)));
+
+    let rooms: BTreeSet<String> = public_modules().into_keys().collect();
+    let mut told = BTreeSet::new();
+    for row in table(&page, "| room | what it is for | may use |\n") {
+        let [room, text, uses] = row.as_slice() else { panic!("{row:?}") };
+        let room = room.trim_matches('`');
+        assert!(is_description(text), "{room}: {text}");
+        let mut allowed = in_backticks(uses);
+        if uses.starts_with("all but ") {
+            allowed.insert(room.to_owned());
+            allowed = &rooms - &allowed;
+        }
+        // A private file at the root is no room.
+        let expected = may_use(room).iter().map(|&name| name.to_owned()).filter(|name| rooms.contains(name));
+        assert_eq!(allowed, expected.collect::<BTreeSet<_>>(), "{room}");
+        told.insert(room.to_owned());
+    }
+    assert_eq!(told, rooms);
+
+    let mut told = BTreeSet::new();
+    for row in table(&page, "| room | what is in it |\n") {
+        assert!(is_description(&row[1]), "{row:?}");
+        told.append(&mut in_backticks(&row[0]));
+    }
+    assert!(told.is_superset(&folders("src/solver")), "{told:?}");
+    for room in told {
+        let path = src().join("solver").join(&room);
+        assert!(path.is_dir() || path.with_extension("rs").is_file(), "{room}");
+    }
+
+    let mut told = BTreeSet::new();
+    for row in table(&page, "| folder | what it protects |\n") {
+        assert!(is_description(&row[1]), "{row:?}");
+        told.append(&mut in_backticks(&row[0]));
+    }
+    // What several test programs share protects nothing by itself.
+    let tests = folders("tests").into_iter().filter(|name| name != "support");
+    let single = std::fs::read_dir(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests")).unwrap();
+    let single = single.map(|entry| entry.unwrap().path()).filter(|path| path.is_file());
+    let single = single.map(|path| path.file_name().unwrap().to_str().unwrap().to_owned());
+    let expected: BTreeSet<_> = tests.chain(single).map(|name| format!("tests/{name}")).collect();
+    assert_eq!(told, expected);
 }
 
 /// Protects: files are short enough to be read as a whole.
