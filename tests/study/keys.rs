@@ -3,7 +3,7 @@
 use super::parse;
 use serde_json::Value;
 use tribosweep::spec::{ClampSide, DiskKind, JobSpec};
-use tribosweep::study::job_key;
+use tribosweep::study::{PARAMETERS, job_key};
 
 fn key(spec: &JobSpec) -> String {
     job_key(spec, "1")
@@ -59,7 +59,14 @@ fn every_field_changes_the_key_even_by_one_ulp() {
     let job = serde_json::to_value(full()).unwrap();
     let mut pointers = Vec::new();
     leaves(&job, "", &mut pointers);
-    assert!(pointers.len() >= 27, "{pointers:?}");
+    for parameter in PARAMETERS {
+        let is_walked = |pointer: &String| {
+            pointer
+                .strip_prefix(parameter.pointer)
+                .is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+        };
+        assert!(pointers.iter().any(is_walked), "{} is not among {pointers:?}", parameter.pointer);
+    }
     for pointer in pointers {
         let mut changed = job.clone();
         let field = changed.pointer_mut(&pointer).unwrap();

@@ -2,8 +2,9 @@
 
 use serde_json::Value;
 
+/// The keywords that the validator understands.
 #[rustfmt::skip]
-const KNOWN: &[&str] = &[
+pub const KNOWN: &[&str] = &[
     // Keywords that do not constrain a value.
     "$schema", "$defs", "title", "description", "default", "format",
     // Keywords that do.
@@ -82,6 +83,24 @@ pub fn violation(root: &Value, schema: &Value, value: &Value, at: &str) -> Optio
         }
     }
     None
+}
+
+/// Calls `visit` with every schema within a schema, and with its place.
+pub fn for_each(schema: &Value, at: &str, visit: &mut impl FnMut(&Value, &str)) {
+    visit(schema, at);
+    for keyword in ["$defs", "properties"] {
+        for (name, inner) in schema[keyword].as_object().into_iter().flatten() {
+            for_each(inner, &format!("{at}/{name}"), visit);
+        }
+    }
+    for keyword in ["anyOf", "oneOf"] {
+        for form in schema[keyword].as_array().into_iter().flatten() {
+            for_each(form, at, visit);
+        }
+    }
+    if let Some(entry) = schema.get("items") {
+        for_each(entry, at, visit);
+    }
 }
 
 fn types(rule: &Value) -> impl Iterator<Item = &str> {

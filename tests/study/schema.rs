@@ -1,8 +1,9 @@
 //! Protects: an editor that uses the schema and the program agree on names and types.
 
-use super::mini_schema::violation;
+use super::mini_schema::{KNOWN, for_each, violation};
 use super::{refusal, shipped};
 use serde_json::{Value, json};
+use std::collections::BTreeSet;
 use tribosweep::spec::JobSpec;
 use tribosweep::study::{PARAMETERS, Study, schema};
 
@@ -19,11 +20,56 @@ fn the_shipped_studies_fit() {
     }
 }
 
+/// Asserts that the schema of an object has the fields of a value and no others, at any depth.
+fn assert_same_fields(root: &Value, schema: &Value, value: &Value, at: &str) {
+    let target = schema["$ref"].as_str().map(|target| root.pointer(target.trim_start_matches('#')).unwrap());
+    let Some(fields) = target.unwrap_or(schema)["properties"].as_object() else { return };
+    let values = value.as_object().unwrap_or_else(|| panic!("{at} is no object"));
+    let names = [fields, values].map(|object| object.keys().collect::<BTreeSet<_>>());
+    assert_eq!(names[0], names[1], "{at}");
+    for (name, field) in fields {
+        assert_same_fields(root, field, &values[name], &format!("{at}/{name}"));
+    }
+}
+
+/// Protects: the schema has every field of a job, and besides these only what makes a study of a job.
 #[test]
 fn a_complete_job_fits() {
     let mut spec = JobSpec::default();
     spec.numerics.time_step_s = Some(1.0e-8);
-    assert_eq!(problem(&serde_json::to_value(spec).unwrap()), None);
+    let job = serde_json::to_value(spec).unwrap();
+    assert_eq!(problem(&job), None);
+    let schema = schema();
+    let mut parts = schema["properties"].as_object().unwrap().clone();
+    for part in ["name", "description", "preset", "grid"] {
+        assert!(parts.remove(part).is_some(), "{part}");
+    }
+    assert_same_fields(&schema, &json!({ "properties": parts }), &job, "");
+}
+
+/// Protects: an editor can explain every field, knows that there is no other one, and offers defaults that are allowed.
+#[test]
+fn every_field_is_described() {
+    let schema = schema();
+    let mut described = 0;
+    for_each(&schema, "", &mut |part: &Value, at: &str| {
+        for keyword in part.as_object().unwrap().keys() {
+            assert!(KNOWN.contains(&keyword.as_str()), "{at}: keyword {keyword} is not understood");
+        }
+        if part["type"] == "object" {
+            assert_eq!(part["additionalProperties"], Value::Bool(false), "{at}");
+        }
+        for (name, field) in part["properties"].as_object().into_iter().flatten() {
+            let text = field["description"].as_str().unwrap_or_default();
+            assert!(text.split_whitespace().count() >= 2, "{at}/{name}: {text:?}");
+            described += 1;
+        }
+        if let Some(default) = part.get("default") {
+            assert_eq!(violation(&schema, part, default, at), None);
+        }
+    });
+    // The grid alone has a field for each parameter.
+    assert!(described > PARAMETERS.len(), "{described}");
 }
 
 /// Each is refused by the schema and by the program.
@@ -58,19 +104,22 @@ fn wrong_names_and_types_are_rejected() {
     }
 }
 
-/// Each is accepted by both.
+/// Each is accepted by both and has so many grid points.
 #[test]
 fn every_form_of_axis_is_accepted() {
-    for study in [
-        json!({}),
-        json!({ "name": "a-B_1", "description": "x" }),
-        json!({ "grid": { "mu": [0.1, 1], "nx": [2, 4], "stop_early": [true, false], "top": ["free_in_z"] } }),
-        json!({ "grid": { "elements": [[1, 2, 3], [4, 5, 6]], "disk_kind": ["rigid"] } }),
-        json!({ "grid": { "mu": { "from": 0.1, "to": 1, "count": 3, "spacing": "log" } } }),
-        json!({ "grid": { "cycles": { "from": 10, "to": 20, "count": 2, "spacing": "linear" } } }),
+    for (study, points) in [
+        (json!({}), 1),
+        (json!({ "name": "a-B_1", "description": "x" }), 1),
+        (
+            json!({ "grid": { "mu": [0.1, 1], "nx": [2, 4], "stop_early": [true, false], "top": ["free_in_z"] } }),
+            8,
+        ),
+        (json!({ "grid": { "elements": [[1, 2, 3], [4, 5, 6]], "disk_kind": ["rigid"] } }), 2),
+        (json!({ "grid": { "mu": { "from": 0.1, "to": 1, "count": 3, "spacing": "log" } } }), 3),
+        (json!({ "grid": { "cycles": { "from": 10, "to": 20, "count": 2, "spacing": "linear" } } }), 2),
     ] {
         assert_eq!(problem(&study), None, "{study}");
-        assert!(Study::parse(&study.to_string(), "x").is_ok(), "{study}");
+        assert_eq!(Study::parse(&study.to_string(), "x").unwrap().grid_size(), points, "{study}");
     }
 }
 

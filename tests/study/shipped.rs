@@ -1,7 +1,7 @@
 //! Protects: the studies that come with the package are valid and contain what their names say.
 
 use std::path::PathBuf;
-use tribosweep::spec::{ClampSide, JobSpec};
+use tribosweep::spec::{ClampSide, DiskKind, JobSpec};
 use tribosweep::study::{Job, Study};
 
 /// Every file in `studies/`.
@@ -51,6 +51,26 @@ fn reference(mu: f64, omega_rpm: f64) -> JobSpec {
     spec.scene.contact.mu = mu;
     spec.scene.disk.omega_rpm = omega_rpm;
     spec
+}
+
+/// Protects: the elastic disk is compared with the rigid one at jobs that differ in nothing else.
+#[test]
+fn figure7_elastic_has_jobs_of_figure7() {
+    let rigid: Vec<JobSpec> = jobs("studies/figure7.json").into_iter().map(|job| job.spec).collect();
+    let elastic = jobs("studies/figure7-elastic.json");
+    assert_eq!(elastic.len(), 12);
+    for job in elastic {
+        let disk = &job.spec.scene.disk;
+        assert_eq!(
+            (disk.kind, disk.ring.young_modulus_pa, disk.ring.density_kg_m3),
+            (DiskKind::Elastic, 2.1e11, 7800.0)
+        );
+        let mut on_rigid = job.spec.clone();
+        on_rigid.scene.disk.kind = DiskKind::Rigid;
+        on_rigid.scene.disk.ring = JobSpec::default().scene.disk.ring;
+        assert!(rigid.contains(&on_rigid), "{on_rigid:?}");
+        assert_eq!(on_rigid.scene.contact.mu, 0.4);
+    }
 }
 
 #[test]
