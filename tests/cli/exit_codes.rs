@@ -127,27 +127,24 @@ fn an_unknown_study() {
     }
 }
 
-/// Protects: usage errors end with code 2; `--help` is not an error.
+/// Protects: usage errors end with code 2, name the wrong or missing argument, and write no file. `--help` is not an error.
 #[test]
 fn usage() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
-    for arguments in [
-        "",
-        "sweep",
-        "run",
-        "run mine.json --threads 0",
-        "run mine.json --threads many",
-        "solve mine.json --set mu",
-        "solve mine.json --set mu=0.2 --history h.csv --every 0",
-        "export mine --format xml",
-        "completions",
+    for (arguments, expected) in [
+        ("", "Usage"),
+        ("sweep", "'sweep'"),
+        ("run", "<STUDY>"),
+        ("run mine.json --threads 0", "'--threads <N>'"),
+        ("run mine.json --threads many", "'many'"),
+        ("solve mine.json --set mu", "expected NAME=VALUE"),
+        ("solve mine.json --set mu=0.2 --history h.csv --every 0", "'--every <N>'"),
+        ("export mine --format xml", "'xml'"),
+        ("completions", "<SHELL>"),
     ] {
-        refuses(
-            &folder,
-            arguments,
-            &["Usage"].map(|usage| if arguments.contains('-') { "--" } else { usage }),
-        );
+        refuses(&folder, arguments, &[expected]);
     }
+    assert_eq!(folder.files(), ["mine.json"]);
     assert!(folder.ok("--help").contains("Exit codes: 0"));
     assert!(folder.ok("--version").starts_with("tribosweep "));
 }

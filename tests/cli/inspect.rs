@@ -30,6 +30,22 @@ fn parameters_and_keys_select_the_same_job() {
             folder.read(format!("reports/mine/mu-0.4_omega_rpm-7/figure{figure}.svg")).starts_with("<svg")
         );
     }
+    let files = folder.files();
+    let files: Vec<&str> =
+        files.iter().filter_map(|file| file.strip_prefix("reports/mine/mu-0.4_omega_rpm-7/")).collect();
+    let page = folder.read("reports/mine/mu-0.4_omega_rpm-7/index.html");
+    let after = |mark: &str| -> Vec<&str> {
+        page.split(mark).skip(1).filter_map(|rest| rest.split(['"', '<']).next()).collect()
+    };
+    let named = [after("download=\""), after("<code>")].concat();
+    assert!(named.contains(&"face.csv") && named.contains(&"node_*.csv"), "{named:?}");
+    for name in named {
+        let is_meant = |file: &&str| match name.split_once('*') {
+            Some((start, end)) => file.starts_with(start) && file.ends_with(end),
+            None => *file == name,
+        };
+        assert!(files.iter().any(is_meant), "{name} is not among {files:?}");
+    }
     let history = rows(&folder.read("reports/mine/mu-0.4_omega_rpm-7/node_rear_centre.csv"));
     assert!(history.len() > 100 && history.iter().any(|row| row["state"] == "slip"));
 

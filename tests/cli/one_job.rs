@@ -142,17 +142,23 @@ fn an_unwritable_history_is_named() {
     assert_eq!(folder.files(), ["mine.json"]);
 }
 
-/// Protects: Ctrl-C ends a long job with the code for jobs that are left, and its history so far is written.
+/// Protects: Ctrl-C ends a long job with the code for jobs that are left, and its history so far is written: it is the
+/// beginning of the history of a whole run.
 #[cfg(target_os = "linux")]
 #[test]
 fn an_interrupted_job_keeps_its_history() {
     let folder = folder();
-    let settings = "--set mu=0.2 --set omega_rpm=7 --set limit_s=50 --set stop_early=false";
-    let solving = folder.start(&format!("solve mine.json {settings} --history history.csv --every 50"));
+    let settings = "--set mu=0.2 --set omega_rpm=7 --set stop_early=false --every 50";
+    let solving = folder.start(&format!("solve mine.json {settings} --set limit_s=50 --history history.csv"));
     wait("the signal handler", || handles_interrupts(&solving));
     solving.signal("INT");
     let (code, out, err) = solving.end();
     assert_eq!((code, out.as_str()), (Some(3), ""), "{err}");
     assert!(err.contains("interrupted"), "{err}");
     assert!(!History::read(&folder, "history.csv").0.is_empty());
+    folder.ok(&format!("solve mine.json {settings} --set limit_s=0.01 --history whole.csv"));
+    let (interrupted, whole) = (folder.read("history.csv"), folder.read("whole.csv"));
+    for (number, (found, expected)) in interrupted.lines().zip(whole.lines()).enumerate() {
+        assert_eq!(found, expected, "line {number}");
+    }
 }

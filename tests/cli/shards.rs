@@ -5,7 +5,8 @@ use serde_json::json;
 use crate::support::{Folder, rows, small, stderr, without_wall_times};
 
 /// Protects: a study that is submitted, run and merged in shards has the results of the whole study, byte for byte except
-/// for run times. Merging again changes nothing, and jobs that no shard has run are still pending.
+/// for run times. Merging again changes nothing, and jobs that no shard has run are still pending. A shard has a report of
+/// its own jobs.
 #[test]
 fn shards_are_the_whole_study() {
     let study = small(&json!({ "mu": [0.2, 0.3, 0.4], "omega_rpm": [5, 20] }));
@@ -28,6 +29,7 @@ fn shards_are_the_whole_study() {
     folder.ok("merge 1.db 4.db --db merged.db");
     assert_eq!(folder.ok("export study --db merged.db"), done);
     folder.ok("report study --db 1.db --out part");
+    assert!(folder.read("part/report.md").contains("2 of 2 jobs done"), "{}", folder.read("part/report.md"));
 }
 
 /// Protects: wrong shards and databases that cannot be merged are refused before anything is written.
