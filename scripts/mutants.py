@@ -1,0 +1,198 @@
+#!/usr/bin/env python3
+"""Shows that wrong programs are caught by named tests.
+
+scripts/mutants.toml lists the mutants. A mutant is an error that is made on purpose in one place of the sources, and it
+names the test that must fail. The script copies the tracked files to target/mutants/source and runs the named tests on
+the unchanged copy, where they must pass. Then it makes one error at a time and runs the test of that mutant. A mutant is
+killed if its test fails, and it survives if its test passes. It is an error if the mutant does not compile, or if its
+test gives no result within the time limit. The builds in target/mutants/target are kept for the next run.
+
+The exit code is 0 if all mutants are killed, or if --check finds nothing wrong. Otherwise it is 1. The script needs git,
+cargo and Python 3.11.
+"""
+
+import argparse
+import os
+import re
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import tomllib
+from pathlib import Path
+from typing import NamedTuple
+
+ROOT = Path(__file__).resolve().parent.parent
+SOURCE = ROOT / "target/mutants/source"
+BUILDS = ROOT / "target/mutants/target"
+# The tests of the unchanged copy run together, and their first build compiles all dependencies.
+UNCHANGED_LIMIT_S, MUTANT_LIMIT_S = 60 * 60, 15 * 60
+
+
+class Mutant(NamedTuple):
+    """One entry of the list, whose head describes the fields."""
+
+    area: str
+    name: str
+    file: str
+    old: str
+    new: str
+    target: str
+    test: str
+
+
+def has_test(mutant):
+    """Whether the module of the test has a function of that name."""
+    *modules, function = mutant.test.split("::")
+    if function == "in_a_file":
+        # A test that runs on both databases is a module, in which each database has a function.
+        function = modules.pop()
+    crate = ROOT / ("src/lib.rs" if mutant.target == "--lib" else f"tests/{mutant.target[7:]}/main.rs")
+    # The first modules are files, and the others are inside the last of these files.
+    for depth in range(len(modules), -1, -1):
+        path = crate.parent.joinpath(*modules[:depth])
+        for file in [path.with_suffix(".rs"), path / "mod.rs"] if depth else [crate]:
+            if file.is_file():
+                names = [rf"\bmod {module}\b" for module in modules[depth:]] + [rf"\bfn {function}\b"]
+                return all(re.search(name, file.read_text()) for name in names)
+    return False
+
+
+def problems(mutant, names):
+    """What is wrong with an entry of the list. `names` are the names of all entries."""
+    file = ROOT / mutant.file
+    count = file.read_text().count(mutant.old) if file.is_file() else 0
+    if count != 1:
+        yield f"{mutant.file}: the text to change occurs {count} times"
+    if mutant.old == mutant.new:
+        yield "the replacement is the text itself"
+    if names.count(mutant.name) != 1:
+        yield "another mutant has this name"
+    if not re.fullmatch(r"--lib|--test \w+", mutant.target):
+        yield f"{mutant.target}: expected --lib or --test and a name"
+    elif not has_test(mutant):
+        yield f"{mutant.target}: there is no test {mutant.test}"
+
+
+def copy_sources():
+    """Copies the tracked files. They get new times, so that cargo does not take the build of a mutant for theirs."""
+    shutil.rmtree(SOURCE, ignore_errors=True)
+    listed = subprocess.run(["git", "ls-files", "-z"], cwd=ROOT, check=True, stdout=subprocess.PIPE, text=True).stdout
+    for name in listed.split("\0"):
+        if (ROOT / name).is_file():
+            (SOURCE / name).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copy(ROOT / name, SOURCE / name)
+
+
+def run_tests(target, tests, limit_s):
+    """Runs tests in the copy. Returns the output of the tests and that of cargo, or none after the time limit."""
+    # These variables name tools and folders. Without them, the tests need nothing but this machine.
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("TRIBOSWEEP_")}
+    environment["CARGO_TARGET_DIR"] = str(BUILDS)
+    command = ["cargo", "test", "--locked", *target.split(), "--", "--color=never", "--exact", *tests]
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "errors": "replace"}
+    # cargo and its tests have a group of their own, so that they end together.
+    process = subprocess.Popen(command, cwd=SOURCE, env=environment, start_new_session=True, **pipes)
+    try:
+        return process.communicate(timeout=limit_s)
+    except subprocess.TimeoutExpired:
+        return None
+    finally:
+        if process.poll() is None:
+            os.killpg(process.pid, signal.SIGKILL)
+            process.communicate()
+
+
+def result_of(test, output):
+    """The word that the output has for the result of a test, or none."""
+    found = re.search(rf"^test {re.escape(test)} \.\.\. (\w+)", output, re.MULTILINE)
+    return found and found[1]
+
+
+def reason_alive(test, done):
+    """Why a mutant is alive. The text is empty if it is killed."""
+    if done is None:
+        return f"error: no result after {MUTANT_LIMIT_S // 60} min"
+    output, messages = done
+    if not re.search(r"^running \d+ tests?$", output, re.MULTILINE):
+        first = re.search(r"^error.*\n?.*", messages, re.MULTILINE)
+        return "error: does not compile: " + " ".join(first[0].split() if first else [])
+    if "running 0 tests" in output or result_of(test, output) == "ok":
+        return "survived: no test fails"
+    return "" if result_of(test, output) == "FAILED" else "error: its test gave no result"
+
+
+def passes_unchanged(mutants):
+    """Runs the tests of the mutants on the unchanged copy. Returns whether all of them pass."""
+    for target in dict.fromkeys(mutant.target for mutant in mutants):
+        tests = list(dict.fromkeys(mutant.test for mutant in mutants if mutant.target == target))
+        begun = time.monotonic()
+        output, messages = run_tests(target, tests, UNCHANGED_LIMIT_S) or ("", "the time limit is over")
+        wrong = [test for test in tests if result_of(test, output) != "ok"]
+        print(f"{time.monotonic() - begun:6.1f} s  unchanged, {target}: {len(tests)} tests", flush=True)
+        if wrong:
+            print(f"{output}\n{messages}\nThese tests do not pass: {', '.join(wrong)}", flush=True)
+            return False
+    return True
+
+
+def try_out(mutant):
+    """Makes the error, runs the test, takes the error back, and prints the result. Returns why the mutant is alive."""
+    begun, file = time.monotonic(), SOURCE / mutant.file
+    text = file.read_text()
+    file.write_text(text.replace(mutant.old, mutant.new))
+    try:
+        reason = reason_alive(mutant.test, run_tests(mutant.target, [mutant.test], MUTANT_LIMIT_S))
+    finally:
+        file.write_text(text)
+    print(f"{time.monotonic() - begun:6.1f} s  {mutant.area}: {mutant.name}: {reason or 'killed'}", flush=True)
+    return reason
+
+
+def page(results):
+    """The results as a Markdown page."""
+    rows = [f"| {m.area} | {m.name} | `{m.file}` | `{m.target}`: `{m.test}` |\n" for m, _ in results]
+    alive = [f"* {mutant.name}: {reason}\n" for mutant, reason in results if reason]
+    return f"""# Deliberately wrong programs
+
+`scripts/mutants.py` writes this page. It makes one error at a time in the sources and runs one test. The error is caught
+if this test fails. `scripts/mutants.toml` has the exact changes.
+
+| area | error | file | test that must fail |
+|---|---|---|---|
+{"".join(rows)}
+## Survivors
+
+{"".join(alive) or f"There are none. All {len(rows)} errors are caught."}
+""".rstrip() + "\n"
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("names", nargs="*", metavar="NAME", help="a mutant to run; without names, all of them run")
+    parser.add_argument("--check", action="store_true", help="compare the list with the sources, and build nothing")
+    parser.add_argument("--table", type=Path, metavar="FILE", help="write the results as a Markdown page")
+    options = parser.parse_args()
+    mutants = [Mutant(**entry) for entry in tomllib.loads((ROOT / "scripts/mutants.toml").read_text())["mutant"]]
+    names = [mutant.name for mutant in mutants]
+    wrong = [f"{mutant.name}: {problem}" for mutant in mutants for problem in problems(mutant, names)]
+    wrong += [f"{name}: there is no such mutant" for name in options.names if name not in names]
+    if wrong or options.check:
+        print("\n".join(wrong) or f"{len(mutants)} mutants, nothing wrong")
+        return 1 if wrong else 0
+    chosen = [mutant for mutant in mutants if not options.names or mutant.name in options.names]
+    copy_sources()
+    if not passes_unchanged(chosen):
+        return 1
+    results = [(mutant, try_out(mutant)) for mutant in chosen]
+    if options.table:
+        options.table.parent.mkdir(parents=True, exist_ok=True)
+        options.table.write_text(page(results))
+    alive = sum(bool(reason) for _, reason in results)
+    print(f"{len(results) - alive} of {len(results)} mutants are killed")
+    return 1 if alive else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
