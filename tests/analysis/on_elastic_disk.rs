@@ -4,6 +4,9 @@ use crate::signals::coarse;
 use tribosweep::analysis::{JobRecord, Outcome, Regime, Unobserved, solve};
 use tribosweep::spec::{DiskKind, JobSpec};
 
+/// Size of the disk's elements under the track.
+const ELEMENT_M: f64 = 0.008;
+
 fn job(mu: f64, omega_rpm: f64) -> JobSpec {
     let mut job = coarse();
     job.scene.contact.mu = mu;
@@ -13,8 +16,8 @@ fn job(mu: f64, omega_rpm: f64) -> JobSpec {
 
 fn on(disk: DiskKind, mut job: JobSpec) -> JobRecord {
     job.scene.disk.kind = disk;
-    job.scene.disk.ring.element_size_m = 0.006;
-    job.scene.disk.ring.coarse_element_size_m = 0.03;
+    job.scene.disk.ring.element_size_m = ELEMENT_M;
+    job.scene.disk.ring.coarse_element_size_m = 5.0 * ELEMENT_M;
     solve(&job, &mut Unobserved).unwrap()
 }
 
@@ -39,8 +42,8 @@ fn squeal_is_periodic_on_both_disks() {
     assert_eq!((rigid.outcome, rigid.regime), (elastic.outcome, elastic.regime));
     assert!(rigid.disk.is_none());
     let disk = elastic.disk.unwrap();
-    assert!(disk.track_element_m.iter().all(|edge| *edge <= 0.006 * (1.0 + 1e-9)), "{disk:?}");
-    assert!(disk.longest_edge_m <= 0.03 * (1.0 + 1e-9), "{disk:?}");
+    assert!(disk.track_element_m.iter().all(|edge| *edge <= ELEMENT_M * (1.0 + 1e-9)), "{disk:?}");
+    assert!(disk.longest_edge_m <= 5.0 * ELEMENT_M * (1.0 + 1e-9), "{disk:?}");
     assert!(
         disk.sweeps_mean >= 1.0 && disk.sweeps_mean <= disk.sweeps_max && disk.residual_max < 1e-9,
         "{disk:?}"

@@ -31,7 +31,7 @@ fn a_disk_that_fills_up() {
     let folder = Folder::new();
     let Some(_mount) = Mount::new(&folder.path(""), "size=4M") else { return };
     let mut study = long();
-    study["run"]["limit_s"] = json!(1.0);
+    study["run"]["limit_s"] = json!(0.4);
     folder.add("study", &study);
     folder.ok("submit study.json");
     let work = folder.start("work");
