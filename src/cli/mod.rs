@@ -101,7 +101,7 @@ enum Command {
     Completions(completions::Args),
 }
 
-/// Runs the command and returns its exit code (see [`exit`]).
+/// Runs the command and returns its exit code (see `exit`).
 pub fn main(cli: Cli) -> u8 {
     let db = &cli.db;
     let result = match cli.command {

@@ -35,18 +35,18 @@ pub struct Capture {
 /// One observed node during one step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct NodeStep {
-    /// t_n [s].
+    /// t_n \[s\].
     pub time_s: f64,
     /// Displacement, velocity, force and state.
     pub node: NodeSample,
-    /// Contact stress [Pa]: friction in x and y, and normal stress, after a zero-phase low-pass filter.
+    /// Contact stress \[Pa\]: friction in x and y, and normal stress, after a zero-phase low-pass filter.
     pub stress_pa: [f64; 3],
 }
 
 /// All contact nodes during one step.
 #[derive(Debug, Clone, PartialEq)]
 pub struct FaceStep {
-    /// t_n [s].
+    /// t_n \[s\].
     pub time_s: f64,
     /// The slave nodes in their order.
     pub nodes: Vec<NodeSample>,
@@ -55,9 +55,9 @@ pub struct FaceStep {
 /// The pin at one time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Frame {
-    /// t_n [s].
+    /// t_n \[s\].
     pub time_s: f64,
-    /// Displacements [m] after the step, in the order node → component.
+    /// Displacements \[m\] after the step, in the order node → component.
     pub u_m: Vec<f64>,
     /// Velocities [m/s] over the step, in the same order.
     pub velocity_m_s: Vec<f64>,

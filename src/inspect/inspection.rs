@@ -77,7 +77,7 @@ pub struct NodeFindings {
 impl Inspection {
     /// Runs the job twice, and evaluates what the second run recorded.
     ///
-    /// `on_progress` gets the simulated time [s] of the current run, and can end the run.
+    /// `on_progress` gets the simulated time \[s\] of the current run, and can end the run.
     ///
     /// # Errors
     /// [`InspectionError`].

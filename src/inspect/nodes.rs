@@ -22,7 +22,7 @@ const NAMED: [(&str, [i8; 2]); 9] = [
 pub enum NodeSelector {
     /// A node with a name.
     Named(&'static str),
-    /// The node nearest to the coordinates x and y [m] from the pin's axis.
+    /// The node nearest to the coordinates x and y \[m\] from the pin's axis.
     At([f64; 2]),
 }
 
@@ -102,7 +102,7 @@ pub struct ObservedNode {
     pub title: String,
     /// Its number among the slave nodes.
     pub slave: usize,
-    /// Its x and y [m] from the pin's axis.
+    /// Its x and y \[m\] from the pin's axis.
     pub at_m: [f64; 2],
 }
 

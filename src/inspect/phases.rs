@@ -7,14 +7,14 @@ use crate::solver::interface::ContactState;
 pub struct Phase {
     /// The state.
     pub state: ContactState,
-    /// Time [s] of its first step.
+    /// Time \[s\] of its first step.
     pub start_s: f64,
-    /// Time [s] of the first step after it.
+    /// Time \[s\] of the first step after it.
     pub end_s: f64,
 }
 
 impl Phase {
-    /// Duration [s].
+    /// Duration \[s\].
     pub fn duration_s(&self) -> f64 {
         self.end_s - self.start_s
     }
@@ -40,22 +40,22 @@ pub fn phases(steps: impl Iterator<Item = (f64, ContactState)>, end_s: f64) -> V
 /// The instants of a cycle of a node, as in the paper's Figure 4. An instant is none if the node does not have its phase.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Instants {
-    /// t_A [s]: contact begins, at the end of the longest separation.
+    /// t_A \[s\]: contact begins, at the end of the longest separation.
     pub contact_s: Option<f64>,
-    /// t_B [s]: stick begins.
+    /// t_B \[s\]: stick begins.
     pub stick_s: Option<f64>,
-    /// t_C [s]: the normal stress is largest.
+    /// t_C \[s\]: the normal stress is largest.
     pub peak_s: f64,
-    /// t_D [s]: stick ends.
+    /// t_D \[s\]: stick ends.
     pub slip_s: Option<f64>,
-    /// t_E [s]: contact ends, at the start of the next longest separation.
+    /// t_E \[s\]: contact ends, at the start of the next longest separation.
     pub separation_s: Option<f64>,
-    /// t_F [s]: that separation ends.
+    /// t_F \[s\]: that separation ends.
     pub end_s: Option<f64>,
 }
 
 impl Instants {
-    /// Letter and time [s] of the instants that exist, in the order of the letters.
+    /// Letter and time \[s\] of the instants that exist, in the order of the letters.
     pub fn named(&self) -> Vec<(char, f64)> {
         let all = [
             ('A', self.contact_s),
@@ -68,7 +68,7 @@ impl Instants {
         all.into_iter().filter_map(|(letter, time_s)| Some((letter, time_s?))).collect()
     }
 
-    /// Start and end [s] of the time in which they are shown: from a twentieth of a period before the first to a twentieth
+    /// Start and end \[s\] of the time in which they are shown: from a twentieth of a period before the first to a twentieth
     /// after the last. For a node that does not separate, it is the period around the peak.
     pub fn span_s(&self, period_s: f64) -> [f64; 2] {
         match (self.contact_s, self.end_s) {
@@ -84,7 +84,7 @@ impl Instants {
     /// closes, or that slips for a moment while it sticks) are ignored: of the separations, or slip phases, that start in
     /// a period, the longest one is taken. Stick lasts from the start of the first to the end of the last phase in which
     /// the node sticks for at least a twentieth of a period. The first of `phases` is not taken as a start, because it
-    /// may have started before the recording. `stress` has the time [s] and the normal stress [Pa] of every step.
+    /// may have started before the recording. `stress` has the time \[s\] and the normal stress \[Pa\] of every step.
     ///
     /// Returns none if there is no step in the cycle.
     pub fn find(phases: &[Phase], stress: &[(f64, f64)], from_s: f64, period_s: f64) -> Option<Self> {

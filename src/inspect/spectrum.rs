@@ -6,14 +6,14 @@ use std::f64::consts::PI;
 /// The amplitude spectrum of a signal.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Spectrum {
-    /// Distance [Hz] of the frequencies. The first one is 0.
+    /// Distance \[Hz\] of the frequencies. The first one is 0.
     pub resolution_hz: f64,
     /// Amplitude at each frequency. A sine over the whole signal with one of these frequencies has its own amplitude.
     pub amplitudes: Vec<f64>,
 }
 
 impl Spectrum {
-    /// The spectrum of samples at a distance of `time_step_s` [s], without their mean, with a Hann window.
+    /// The spectrum of samples at a distance of `time_step_s` \[s\], without their mean, with a Hann window.
     ///
     /// # Panics
     /// Never, because the buffers are those of the transform.
@@ -32,12 +32,12 @@ impl Spectrum {
         Self { resolution_hz: 1.0 / (n as f64 * time_step_s), amplitudes }
     }
 
-    /// Frequency [Hz] and amplitude of every line.
+    /// Frequency \[Hz\] and amplitude of every line.
     pub fn lines(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         self.amplitudes.iter().enumerate().map(|(k, amplitude)| (k as f64 * self.resolution_hz, *amplitude))
     }
 
-    /// The `count` largest local maxima, frequency [Hz] and amplitude, largest first.
+    /// The `count` largest local maxima, frequency \[Hz\] and amplitude, largest first.
     pub fn peaks(&self, count: usize) -> Vec<(f64, f64)> {
         let lines: Vec<_> = self.lines().collect();
         let mut peaks: Vec<_> = lines

@@ -17,11 +17,11 @@ pub struct Summary {
     pub record: JobRecord,
     /// Whether there are cycles. Otherwise the period is that of the pin as a quarter-wave resonator in shear.
     pub cycles: bool,
-    /// Duration [s] of a cycle.
+    /// Duration \[s\] of a cycle.
     pub period_s: f64,
-    /// Start and end [s] of the time in which the observed nodes are shown.
+    /// Start and end \[s\] of the time in which the observed nodes are shown.
     pub shown_s: [f64; 2],
-    /// Start and end [s] of the cycle in which the contact face and the pin are shown.
+    /// Start and end \[s\] of the cycle in which the contact face and the pin are shown.
     pub cycle_s: [f64; 2],
     /// The observed nodes in the time in which they are shown.
     pub nodes: Vec<NodeSummary>,
@@ -30,7 +30,7 @@ pub struct Summary {
     /// The waves of state changes along the middle of the contact face, one for each run of neighbouring nodes with the
     /// change.
     pub waves: Vec<Wave>,
-    /// The largest lines of the total normal force, frequency [Hz] and amplitude [N].
+    /// The largest lines of the total normal force, frequency \[Hz\] and amplitude \[N\].
     pub spectrum_peaks: Vec<(f64, f64)>,
 }
 

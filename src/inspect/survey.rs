@@ -16,7 +16,7 @@ pub const FEWEST_CYCLES: usize = 3;
 pub struct Survey {
     /// The job's record.
     pub record: JobRecord,
-    /// Start and end [s] of all passages between upward crossings of N = F.
+    /// Start and end \[s\] of all passages between upward crossings of N = F.
     pub passages_s: Vec<[f64; 2]>,
     /// Extremes of the totals over the whole run.
     pub envelope: Envelope,
@@ -32,13 +32,13 @@ pub struct TimeWindows {
     /// Whether there are limit cycles, or cycles of a state that is not periodic. Otherwise the period is that of the pin
     /// as a quarter-wave resonator in shear, 4h/c_s.
     pub has_cycles: bool,
-    /// Mean duration [s] of the cycles that are shown.
+    /// Mean duration \[s\] of the cycles that are shown.
     pub period_s: f64,
-    /// Start and end [s] of the time in which the observed nodes are shown.
+    /// Start and end \[s\] of the time in which the observed nodes are shown.
     pub shown_s: [f64; 2],
-    /// Start and end [s] of the cycle in which the whole contact face and the pin are shown.
+    /// Start and end \[s\] of the cycle in which the whole contact face and the pin are shown.
     pub cycle_s: [f64; 2],
-    /// Time [s] from which the totals are recorded: the start of the averaging window, or of `shown_s` if that is earlier.
+    /// Time \[s\] from which the totals are recorded: the start of the averaging window, or of `shown_s` if that is earlier.
     pub totals_from_s: f64,
 }
 

@@ -17,9 +17,9 @@ pub struct Trace {
     pub label: String,
     /// The node.
     pub node: ObservedNode,
-    /// Time [s] at which a cycle starts.
+    /// Time \[s\] at which a cycle starts.
     pub from_s: f64,
-    /// Duration [s] that is shown from there.
+    /// Duration \[s\] that is shown from there.
     pub duration_s: f64,
     /// The steps in that time.
     pub steps: Vec<NodeStep>,

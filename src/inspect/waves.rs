@@ -61,11 +61,11 @@ impl Station {
 pub struct Wave {
     /// What changes.
     pub change: Change,
-    /// y [m] of the first and the last station, from front to rear.
+    /// y \[m\] of the first and the last station, from front to rear.
     pub from_to_m: [f64; 2],
-    /// Time [s] of the change at the first station after the start of the cycle, within one period.
+    /// Time \[s\] of the change at the first station after the start of the cycle, within one period.
     pub start_s: f64,
-    /// Delay [s] from the first to the last station; negative if the wave travels towards the front.
+    /// Delay \[s\] from the first to the last station; negative if the wave travels towards the front.
     pub delay_s: f64,
 }
 

@@ -20,7 +20,7 @@ pub struct JobRow {
     pub mu: f64,
     /// The state of the job.
     pub state: RowState,
-    /// The job's share of the time of its thread [s]. Jobs that are advanced together have equal shares.
+    /// The job's share of the time of its thread \[s\]. Jobs that are advanced together have equal shares.
     pub wall_s: Option<f64>,
     /// The job's numerics; none in studies submitted by a version that did not store them.
     pub numerics: Option<JobNumerics>,
@@ -33,17 +33,17 @@ pub struct JobNumerics {
     pub case: String,
     /// Number of elements in x, y and z.
     pub elements: [usize; 3],
-    /// Element size h [m]: the cube root of an element's volume.
+    /// Element size h \[m\]: the cube root of an element's volume.
     pub element_size_m: f64,
     /// Number of nodes.
     pub nodes: u64,
     /// β₂ of the time scheme.
     pub beta2: f64,
-    /// Stiffness-proportional damping β_R [s].
+    /// Stiffness-proportional damping β_R \[s\].
     pub beta_r_s: f64,
     /// Time step as a fraction of the stability limit; none where the time step itself is given.
     pub safety_factor: Option<f64>,
-    /// Largest simulated time [s] of the run.
+    /// Largest simulated time \[s\] of the run.
     pub limit_s: f64,
     /// Whether the run stops once the state is periodic or has decayed.
     pub stop_early: bool,

@@ -1,11 +1,11 @@
 //! Formulas of linear isotropic elasticity. They give NaN for an unphysical material.
 
-/// Lamé's first parameter λ = Eν / ((1+ν)(1−2ν)) [Pa].
+/// Lamé's first parameter λ = Eν / ((1+ν)(1−2ν)) (Pa).
 pub fn lame_lambda_pa(young_modulus_pa: f64, poisson_ratio: f64) -> f64 {
     young_modulus_pa * poisson_ratio / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio))
 }
 
-/// Shear modulus G = E / (2(1+ν)) [Pa].
+/// Shear modulus G = E / (2(1+ν)) (Pa).
 pub fn shear_modulus_pa(young_modulus_pa: f64, poisson_ratio: f64) -> f64 {
     young_modulus_pa / (2.0 * (1.0 + poisson_ratio))
 }

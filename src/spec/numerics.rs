@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 pub struct Numerics {
     /// β₂ of the time scheme, ½ ≤ β₂ ≤ 1; ½ is the central difference.
     pub beta2: f64,
-    /// Stiffness-proportional damping `β_R` [s], C = `β_R` K.
+    /// Stiffness-proportional damping `β_R` (s), C = `β_R` K.
     pub beta_r_s: f64,
     /// Fraction of the stability limit used as the time step when `time_step_s` is not given.
     pub safety_factor: f64,
-    /// The time step [s]; checked against the stability limit. Absent: `safety_factor` × limit.
+    /// The time step (s); checked against the stability limit. Absent: `safety_factor` × limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_step_s: Option<f64>,
 }
@@ -54,7 +54,7 @@ impl Numerics {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RunControl {
-    /// Simulated time [s] after which a run ends whether or not it became periodic.
+    /// Simulated time (s) after which a run ends whether or not it became periodic.
     pub limit_s: f64,
     /// Stop as soon as the state is periodic or has decayed. `false`: always run to `limit_s`.
     pub stop_early: bool,

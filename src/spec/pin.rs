@@ -15,11 +15,11 @@ const MAX_TOTAL_ELEMENTS: f64 = 2.0e6;
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Pin {
-    /// Edge lengths [m] in x (radial), y (sliding direction) and z.
+    /// Edge lengths (m) in x (radial), y (sliding direction) and z.
     pub size_m: [f64; 3],
     /// Number of elements in x, y and z.
     pub elements: [usize; 3],
-    /// Young's modulus [Pa].
+    /// Young's modulus (Pa).
     pub young_modulus_pa: f64,
     /// Poisson's ratio, −1 < ν < 0.5.
     pub poisson_ratio: f64,

@@ -10,21 +10,21 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Ring {
-    /// Inner radius [m].
+    /// Inner radius (m).
     pub inner_radius_m: f64,
-    /// Outer radius [m].
+    /// Outer radius (m).
     pub outer_radius_m: f64,
-    /// Thickness [m].
+    /// Thickness (m).
     pub thickness_m: f64,
-    /// Young's modulus [Pa].
+    /// Young's modulus (Pa).
     pub young_modulus_pa: f64,
     /// Poisson's ratio, −1 < ν < 0.5.
     pub poisson_ratio: f64,
     /// Density [kg/m³].
     pub density_kg_m3: f64,
-    /// Largest edge [m] of the elements under the track.
+    /// Largest edge (m) of the elements under the track.
     pub element_size_m: f64,
-    /// Largest edge [m] of the elements far from it.
+    /// Largest edge (m) of the elements far from it.
     pub coarse_element_size_m: f64,
     /// Arc [°] that the pin's centre may sweep during the run; under it the mesh is fine. 360: all around.
     pub track_arc_deg: f64,

@@ -44,7 +44,7 @@ pub struct Disk {
     pub kind: DiskKind,
     /// Rotation speed ω [revolutions per minute], constant, > 0.
     pub omega_rpm: f64,
-    /// Distance R [m] of the pin's centre from the axis.
+    /// Distance R (m) of the pin's centre from the axis.
     pub track_radius_m: f64,
     /// The body of an elastic disk; a rigid one does not use it.
     pub ring: Ring,
@@ -123,7 +123,7 @@ impl ClampSide {
 pub struct Clamp {
     /// Where the strip is.
     pub side: ClampSide,
-    /// Width [m] of the strip, measured from the edge to the last held node row.
+    /// Width (m) of the strip, measured from the edge to the last held node row.
     pub width_m: f64,
 }
 
@@ -148,9 +148,9 @@ pub enum TopFace {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Load {
-    /// Total normal load F [N], pressing the pin towards the disk.
+    /// Total normal load F (N), pressing the pin towards the disk.
     pub force_n: f64,
-    /// Duration [s] of the linear ramp; 0 is a sudden load.
+    /// Duration (s) of the linear ramp; 0 is a sudden load.
     pub ramp_s: f64,
 }
 

@@ -19,7 +19,7 @@ pub struct Eta {
 
 impl Eta {
     /// Estimates the time that `remaining_jobs` with the total cost `remaining_cost` take on `threads` threads, from the
-    /// cost and the duration [s] of finished jobs. `None` if fewer than three jobs have finished.
+    /// cost and the duration \[s\] of finished jobs. `None` if fewer than three jobs have finished.
     pub fn estimate(
         finished: &[(f64, f64)],
         remaining_cost: f64,

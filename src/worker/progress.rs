@@ -8,7 +8,7 @@ use crate::queue::Counts;
 pub struct RunningJob {
     /// Key of the job.
     pub key: String,
-    /// Simulated time so far [s].
+    /// Simulated time so far \[s\].
     pub simulated_s: f64,
 }
 

@@ -22,7 +22,7 @@ pub struct Score {
     pub shares_resolution: f64,
     /// Nodes × steps.
     pub node_steps: f64,
-    /// Solver time [s].
+    /// Solver time \[s\].
     pub wall_s: Option<f64>,
     /// On the Pareto front of error and solver time.
     pub on_wall_front: bool,

@@ -39,11 +39,11 @@ pub struct ReferenceEvidence {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct CaseEvidence {
-    /// Disk speed ω [rpm].
+    /// Disk speed ω (rpm).
     pub omega_rpm: f64,
     /// Macroscopic friction coefficient μ*.
     pub mu_star: f64,
-    /// Frequency [Hz].
+    /// Frequency (Hz).
     pub frequency_hz: f64,
     /// Shares of stick, slip and separation.
     pub shares: [f64; 3],

@@ -1,7 +1,7 @@
 //! The two solves for the contact forces of a step.
 //!
 //! * `diagonal` – on a rigid target: node by node, in closed form.
-//! * `coupled` – on an elastic disk, where constraints share target nodes: by Gauss–Seidel ([`sweeps`]).
+//! * `coupled` – on an elastic disk, where constraints share target nodes: by Gauss–Seidel (`sweeps`).
 
 mod coupled;
 mod diagonal;

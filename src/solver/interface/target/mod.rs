@@ -1,7 +1,7 @@
 //! Targets: the surfaces on which the pin slides.
 //!
 //! * [`rotating_disk`], [`straight_plane`] – rigid surfaces with a given velocity.
-//! * [`patch`] – the surface of an elastic disk between its nodes.
+//! * `patch` – the surface of an elastic disk between its nodes.
 
 pub(in crate::solver) mod patch;
 mod rigid;
