@@ -256,3 +256,41 @@ fn observed_nodes(figures: &Figures) -> Vec<ObservedNode> {
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::{contact_loss_share, energy_identity, regime};
+    use crate::analysis::record::{Outcome, Regime};
+    use crate::solver::energy::Energies;
+
+    /// Protects: stick and separation each count from the threshold on. A limit cycle with little of both is named after
+    /// the larger share, another run is undecided, and decayed sliding is stable whatever the shares.
+    #[test]
+    fn a_regime_follows_from_the_shares() {
+        for (outcome, stick, separated, expected) in [
+            (Outcome::Periodic, 0.3, 0.2, Regime::StickSlipSeparation),
+            (Outcome::Periodic, 0.3, 0.0, Regime::StickSlip),
+            (Outcome::Periodic, 0.0, 0.2, Regime::SlipSeparation),
+            (Outcome::NotPeriodic, 0.3, 0.0, Regime::StickSlip),
+            (Outcome::NotPeriodic, 0.0, 0.2, Regime::SlipSeparation),
+            (Outcome::Periodic, 0.004, 0.002, Regime::StickSlip),
+            (Outcome::Periodic, 0.002, 0.004, Regime::SlipSeparation),
+            (Outcome::NotPeriodic, 0.004, 0.002, Regime::Undecided),
+            (Outcome::Decayed, 0.3, 0.2, Regime::Stable),
+        ] {
+            let found = regime(outcome, stick, separated, 0.01);
+            assert_eq!(found, expected, "{outcome:?}, stick {stick}, separated {separated}");
+        }
+    }
+
+    /// Protects: energies are balanced over the window, relative to the work of the drive in it, and a window without
+    /// such work has shares of zero.
+    #[test]
+    fn energies_are_those_of_the_window() {
+        let start = Energies { drive_work_j: 3.0, friction_j: 1.0, kinetic_j: 2.0, ..Energies::default() };
+        let end = Energies { drive_work_j: 7.0, contact_loss_j: 0.5, friction_j: 4.0, ..start };
+        // Put in are 4 J, lost are 3 J by friction and 0.5 J in impacts.
+        assert_eq!((energy_identity(&start, &end), contact_loss_share(&start, &end)), (0.125, 0.125));
+        assert_eq!((energy_identity(&end, &end), contact_loss_share(&end, &end)), (0.0, 0.0));
+    }
+}

@@ -198,6 +198,20 @@ fn stick_or_separation_starts_anew() {
     }
 }
 
+/// Protects: a node that sticks all the time, without a transition, is no steady sliding, however fast the oscillation
+/// decays.
+#[test]
+fn a_node_that_always_sticks_is_no_sliding() {
+    let mut monitor = monitor();
+    let decays = (0..30_000).any(|n| {
+        let t = f64::from(n) * STEP_S;
+        let mut sample = sliding(t, 1.0 + value(&[Line(0.1, 15.0e3, -100.0, 0.0)], t));
+        (sample.stick, sample.slip) = (1, 62);
+        monitor.push(&sample)
+    });
+    assert!(!decays && monitor.growth_rate_per_s().is_none());
+}
+
 /// Protects: no decay is declared during the load's ramp. An observation time far beyond any run needs no
 /// memory and declares nothing.
 #[test]

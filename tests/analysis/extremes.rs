@@ -47,6 +47,19 @@ fn runs_too_short_to_settle() {
     }
 }
 
+/// Protects: a run that settles in no state is averaged over its last part, which is as long as the study says.
+#[test]
+fn unsettled_runs_are_averaged_over_their_last_part() {
+    for fraction in [0.25, 0.6] {
+        let record = finite_record("unsettled", &changed(|s| s.run.average_last_fraction = fraction));
+        let late_s = record.window_start_s - (1.0 - fraction) * 0.002;
+        // The window begins with the first whole cycle of the last part. Steps and cycles shift it, the latter by one at
+        // most.
+        let cycle_s = 1.0 / record.frequency_hz.unwrap();
+        assert!((-record.time_step_s..cycle_s + record.time_step_s).contains(&late_s), "{late_s}");
+    }
+}
+
 /// Protects: a run that decays before the window of the last part begins, with hardly a cycle in it (strong
 /// damping), still has figures. μ* is μ less the effect of the disk's curvature.
 #[test]

@@ -16,6 +16,9 @@ fn random_samples(count: usize) -> Vec<Sample> {
             sample.stick = (random.unit() * 20.0) as usize;
             sample.slip = (random.unit() * 20.0) as usize;
             sample.separated = 63 - sample.stick - sample.slip;
+            sample.sigma_n_max_pa = random.between(0.0, 1e7);
+            sample.slip_speed_max_m_s = random.unit();
+            sample.lift_max_m = random.unit() * 1e-7;
             for node in &mut sample.nodes {
                 node.u_m[1] = random.between(-1e-6, 1e-6);
                 node.gap_m = random.unit() * 1e-7;
@@ -67,7 +70,16 @@ fn merged_equals_adding_all() {
     for (a, b) in ratios(&all).iter().zip(ratios(&merged)) {
         assert!((a - b).abs() < 1e-12, "{a} {b}");
     }
-    assert_eq!((all.normal_min_n, all.normal_max_n), (merged.normal_min_n, merged.normal_max_n));
+    let extremes = |figures: &Figures| {
+        [
+            figures.normal_min_n,
+            figures.normal_max_n,
+            figures.sigma_n_max_pa,
+            figures.slip_speed_max_m_s,
+            figures.lift_max_m,
+        ]
+    };
+    assert_eq!(extremes(&all), extremes(&merged));
     for (a, b) in all.nodes.iter().zip(&merged.nodes) {
         assert_eq!(a, b);
     }

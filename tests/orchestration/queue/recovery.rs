@@ -17,6 +17,7 @@ on_both_databases! {
     a_worker_without_heartbeats_is_missing,
     a_deleted_worker_registers_again,
     retries_have_a_limit,
+    three_crashes_fail_a_job,
     checkpoints_reach_the_next_attempt,
     a_stopped_process_has_not_crashed,
     a_checkpoint_outlasts_crashes,
@@ -226,6 +227,18 @@ async fn retries_have_a_limit(sandbox: &Sandbox) {
     assert!(error.starts_with("its process died 2 times") && error.contains("tribosweep retry"), "{error}");
     assert_eq!(rows[0].wall_s, None, "the time is unknown");
     assert_eq!((rows[1].state, rows[1].attempt, rows[1].crashes), (JobState::Failed, 1, 0));
+}
+
+/// Protects: without other settings, a job fails when its process has died three times.
+async fn three_crashes_fail_a_job(sandbox: &Sandbox) {
+    let mut queue = sandbox.open().await;
+    queue.submit(&study("a", &["deadly"])).await.unwrap();
+    for expected in [(1, 0), (1, 0), (0, 1)] {
+        let mut dead = sandbox.open_as(&dead_worker()).await;
+        claim(&mut dead, Scope::All, 1).await;
+        let taken_back = queue.take_back().await.unwrap();
+        assert_eq!((taken_back.pending, taken_back.failed), expected);
+    }
 }
 
 /// Protects: the next attempt receives the checkpoint, whichever worker runs it. A job that makes progress does not

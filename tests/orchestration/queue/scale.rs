@@ -102,7 +102,10 @@ async fn claims_read_no_more_in_a_long_queue() {
     for (scope, batch) in [(Scope::All, None), (of("mine"), None), (of("mine"), Some("batch 3"))] {
         let short = rows_read(&few, &scope, batch).await;
         let long = rows_read(&many, &scope, batch).await;
-        assert!(short > 0 && long < 2 * short, "{scope:?} {batch:?}: {short} for 1000 jobs, {long} for 40 000");
+        assert!(
+            short > 0 && long < 2 * short,
+            "{scope:?} {batch:?}: {short} for 1000 jobs, {long} for 40 000"
+        );
     }
 }
 
