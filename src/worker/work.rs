@@ -43,7 +43,8 @@ pub enum WorkError {
 /// The future must run on a tokio runtime with timers. The jobs run on threads of their own, and their results depend on
 /// nothing but their specifications.
 ///
-/// The future is boxed, because otherwise each program that awaits it would compile the whole worker again.
+/// The future is boxed, because otherwise each program that awaits it would compile the whole worker again. It stays on
+/// the thread that awaits it (it is not `Send`).
 ///
 /// # Errors
 /// If the database fails, or threads cannot be started.

@@ -21,7 +21,7 @@ fn jobs(disk: DiskKind) -> Vec<JobSpec> {
             job.scene.disk.kind = disk;
             match disk {
                 DiskKind::Rigid => job.numerics.beta2 = 0.6,
-                // The bits of a few elements are as hard to keep as those of many. The pin still passes edges.
+                // The bits of a few elements are as hard to keep as those of many. The faster jobs pass edges.
                 DiskKind::Elastic => {
                     job.scene.pin.elements = [3, 4, 3];
                     job.scene.clamp.width_m = 0.004;

@@ -31,10 +31,10 @@ fn a_disk_that_fills_up() {
     let folder = Folder::new();
     let Some(_mount) = Mount::new(&folder.path(""), "size=4M") else { return };
     let mut study = long();
-    study["run"]["limit_s"] = json!(0.4);
+    study["run"]["limit_s"] = json!(0.6);
     folder.add("study", &study);
     folder.ok("submit study.json");
-    let work = folder.start("work");
+    let work = folder.start("work --threads 1");
     folder.wait_for("study", |counts| counts["running"] > 0);
     let filler = folder.path("filler");
     // This is more than the free space.
@@ -121,9 +121,12 @@ async fn a_lock_is_waited_for() {
 /// that it waits, and stores them afterwards.
 #[tokio::test]
 async fn results_wait_for_a_lock() {
-    let folder = Folder::with("study", &long());
+    let mut study = long();
+    // Jobs still run when the lock comes, on a fast machine too.
+    study["run"]["limit_s"] = json!(0.6);
+    let folder = Folder::with("study", &study);
     folder.ok("submit study.json");
-    let work = folder.start_with_messages_in("messages", "work --lease 5s");
+    let work = folder.start_with_messages_in("messages", "work --threads 1 --lease 5s");
     folder.wait_for("study", |counts| counts["running"] > 0);
     let other = lock(&folder).await;
     let before = folder.counts("study");
@@ -133,7 +136,7 @@ async fn results_wait_for_a_lock() {
     assert_eq!(folder.counts("study"), before, "nobody can write");
     unlock(other).await;
     assert_eq!(work.end().0, Some(0), "{}", folder.read("messages"));
-    assert_eq!(without_wall_times(&folder.ok("export study")), undisturbed(&long()));
+    assert_eq!(without_wall_times(&folder.ok("export study")), undisturbed(&study));
 }
 
 /// Protects: commands that read or work on a damaged file say that it is damaged, and do not change it.

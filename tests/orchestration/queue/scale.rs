@@ -82,9 +82,12 @@ async fn rows_read_so_far(sandbox: &Sandbox) -> i64 {
     // A session adds its numbers to those of the server before it disappears from the list of sessions.
     let others = "SELECT COUNT(*) FROM pg_stat_activity
                   WHERE datname = current_database() AND pid <> pg_backend_pid() AND backend_type = 'client backend'";
-    while sandbox.number(others).await > 0 {
-        tokio::time::sleep(Duration::from_millis(5)).await;
-    }
+    let end = async {
+        while sandbox.number(others).await > 0 {
+            tokio::time::sleep(Duration::from_millis(20)).await;
+        }
+    };
+    tokio::time::timeout(Duration::from_mins(2), end).await.expect("closed sessions end");
     let read = "SELECT CAST((SELECT SUM(seq_tup_read) FROM pg_stat_user_tables)
                           + (SELECT SUM(idx_tup_read) FROM pg_stat_user_indexes) AS BIGINT)";
     sandbox.number(read).await
