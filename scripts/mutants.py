@@ -185,10 +185,13 @@ def main():
     copy_sources()
     if not passes_unchanged(chosen):
         return 1
-    results = [(mutant, try_out(mutant)) for mutant in chosen]
-    if options.table:
-        options.table.parent.mkdir(parents=True, exist_ok=True)
-        options.table.write_text(page(results))
+    results = []
+    for mutant in chosen:
+        results.append((mutant, try_out(mutant)))
+        # The page has all results so far, if the script is stopped.
+        if options.table:
+            options.table.parent.mkdir(parents=True, exist_ok=True)
+            options.table.write_text(page(results))
     alive = sum(bool(reason) for _, reason in results)
     print(f"{len(results) - alive} of {len(results)} mutants are killed")
     return 1 if alive else 0
