@@ -9,7 +9,8 @@ use tribosweep::cli::Cli;
 use tribosweep::solver;
 use tribosweep::study::{Study, schema};
 
-use crate::support::{Folder, HEADER, REPORT, long, rows, small, stdout};
+use crate::report_files::REPORT;
+use crate::support::{Folder, HEADER, long, rows, small, stdout};
 
 /// Protects: the progress of one and of all studies, as text and as JSON, before and after the work.
 #[test]

@@ -12,6 +12,8 @@ mod nightly;
 mod one_job;
 #[path = "../support/random.rs"]
 mod random;
+#[path = "../support/report_files.rs"]
+mod report_files;
 mod server;
 #[path = "../support/server.rs"]
 mod server_database;

@@ -17,31 +17,6 @@ pub const HEADER: &str = "study,job,omega_rpm,mu,status,regime,mu_star,mu_star_s
 stick_share,slip_share,separated_share,n_over_f_min,n_over_f_max,sigma_n_max_pa,slip_speed_max_m_s,cycles,\
 simulated_s,steps,time_step_s,energy_residual,identity_residual,wall_s,error";
 
-/// Every file of the report of a study over ω and μ, sorted.
-pub const REPORT: [&str; 21] = [
-    "figure7.csv",
-    "figure7.svg",
-    "frequency.csv",
-    "frequency.md",
-    "frequency.svg",
-    "frequency_map.csv",
-    "frequency_map.svg",
-    "jobs.csv",
-    "mu_star.csv",
-    "mu_star.md",
-    "regime.csv",
-    "regime.md",
-    "regime_map.csv",
-    "regime_map.svg",
-    "report.html",
-    "report.md",
-    "residuals.csv",
-    "residuals.svg",
-    "run_times.csv",
-    "shares.csv",
-    "shares.svg",
-];
-
 /// A process that takes longer hangs.
 const TIMEOUT: Duration = Duration::from_mins(2);
 

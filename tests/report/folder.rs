@@ -1,35 +1,12 @@
 //! The report as a folder: it has all files, and a page that says what is missing.
 
+use crate::report_files::REPORT;
 use crate::synthetic::{failed, partial_study, periodic, report, row, with};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 use tribosweep::publish::PublishError;
 use tribosweep::report::{JobRow, RowState, write};
-
-const FILES: [&str; 21] = [
-    "figure7.csv",
-    "figure7.svg",
-    "frequency.csv",
-    "frequency.md",
-    "frequency.svg",
-    "frequency_map.csv",
-    "frequency_map.svg",
-    "jobs.csv",
-    "mu_star.csv",
-    "mu_star.md",
-    "regime.csv",
-    "regime.md",
-    "regime_map.csv",
-    "regime_map.svg",
-    "report.html",
-    "report.md",
-    "residuals.csv",
-    "residuals.svg",
-    "run_times.csv",
-    "shares.csv",
-    "shares.svg",
-];
 
 fn names(folder: &Path) -> BTreeSet<String> {
     let entries = fs::read_dir(folder).expect("the folder is there");
@@ -48,14 +25,14 @@ fn writes_exactly_the_documented_files() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let inside = folder.path().join("new").join("deeper");
     let written = write(&report(&partial_study()), &inside).expect("the report is written");
-    let expected: BTreeSet<String> = FILES.map(str::to_owned).into();
+    let expected: BTreeSet<String> = REPORT.map(str::to_owned).into();
     assert_eq!(names(&inside), expected);
     let returned: BTreeSet<String> = written
         .iter()
         .map(|path| path.strip_prefix(&inside).expect("inside").display().to_string())
         .collect();
     assert_eq!(returned, expected);
-    assert_eq!(written.len(), FILES.len());
+    assert_eq!(written.len(), REPORT.len());
 }
 
 /// Protects: a second report in the same folder replaces the files of the first one, and leaves other files alone.
@@ -68,7 +45,7 @@ fn an_existing_folder_is_updated() {
     let jobs = fs::read_to_string(folder.path().join("jobs.csv")).expect("the export");
     assert!(jobs.contains(",periodic,") && !jobs.contains(",pending,"), "{jobs}");
     assert_eq!(fs::read_to_string(folder.path().join("notes.txt")).expect("a file"), "mine");
-    assert_eq!(names(folder.path()).len(), FILES.len() + 1);
+    assert_eq!(names(folder.path()).len(), REPORT.len() + 1);
 }
 
 /// Protects: the page of a running study has counts, reasons and the missing jobs.
@@ -104,7 +81,7 @@ fn the_page_links_every_file() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let written = write(&report(&rows), folder.path()).expect("the report is written");
     let page = fs::read_to_string(folder.path().join("report.md")).expect("the page is there");
-    assert_eq!(written.len(), FILES.len() + 5, "five figures twice");
+    assert_eq!(written.len(), REPORT.len() + 5, "five figures twice");
     for path in written.iter().filter(|path| !path.ends_with("report.md")) {
         let name = path.file_name().expect("a name").to_string_lossy();
         assert!(page.contains(&format!("]({name})")), "{name}");
@@ -149,7 +126,7 @@ fn an_error_names_the_path() {
     assert!(matches!(&error, PublishError::File { path, .. } if *path == blocked), "{error:?}");
     assert!(error.to_string().contains(&blocked.display().to_string()), "{error}");
     assert!(
-        names(folder.path()).iter().all(|name| FILES.contains(&name.as_str())),
+        names(folder.path()).iter().all(|name| REPORT.contains(&name.as_str())),
         "{:?}",
         names(folder.path())
     );

@@ -12,6 +12,8 @@ mod overview;
 mod pareto;
 #[path = "../support/random.rs"]
 mod random;
+#[path = "../support/report_files.rs"]
+mod report_files;
 mod svg;
 mod synthetic;
 mod tables;

@@ -43,6 +43,14 @@ impl Row {
     }
 }
 
+/// Which rows of a statement are read.
+#[derive(Clone, Copy)]
+enum Rows {
+    All,
+    /// The first one, if there is one.
+    First,
+}
+
 type ReadRow<'r> = dyn FnMut(Row) -> Result<(), sqlx::Error> + Send + 'r;
 
 /// A statement that runs. It has no type parameters, because a generic future is compiled again for each use, and again
@@ -117,8 +125,13 @@ impl<'q> Query<'q> {
         })
     }
 
-    /// Runs the statement. Passes each row to `read` as it arrives.
-    fn each<'a>(self, connection: &'a mut Connection, read: &'a mut ReadRow<'_>) -> Answer<'a, ()>
+    /// Runs the statement. Passes the rows to `read` as they arrive.
+    fn fetch<'a>(
+        self,
+        connection: &'a mut Connection,
+        rows: Rows,
+        read: &'a mut ReadRow<'_>,
+    ) -> Answer<'a, ()>
     where
         'q: 'a,
     {
@@ -127,41 +140,24 @@ impl<'q> Query<'q> {
             match connection {
                 Connection::Sqlite(connection) => {
                     let query = bound!(sqlx::query(statement.sqlite()), values);
-                    let rows = query.try_map(|row| read(Row::Sqlite(row))).fetch_all(connection);
-                    rows.await.map(drop).map_err(sqlite::classify)
+                    let query = query.try_map(|row| read(Row::Sqlite(row)));
+                    let done = match rows {
+                        Rows::All => query.fetch_all(connection).await.map(drop),
+                        Rows::First => query.fetch_optional(connection).await.map(drop),
+                    };
+                    done.map_err(sqlite::classify)
                 }
                 #[cfg(feature = "postgres")]
                 Connection::Postgres(session) => {
-                    let rows = session.request(async |connection| {
+                    let done = session.request(async |connection| {
                         let query = bound!(sqlx::query(statement.postgres()), values);
-                        query.try_map(|row| read(Row::Postgres(row))).fetch_all(connection).await
+                        let query = query.try_map(|row| read(Row::Postgres(row)));
+                        match rows {
+                            Rows::All => query.fetch_all(connection).await.map(drop),
+                            Rows::First => query.fetch_optional(connection).await.map(drop),
+                        }
                     });
-                    rows.await.map(drop)
-                }
-            }
-        })
-    }
-
-    /// Runs the statement. Passes the first row, if there is one, to `read`.
-    fn first<'a>(self, connection: &'a mut Connection, read: &'a mut ReadRow<'_>) -> Answer<'a, ()>
-    where
-        'q: 'a,
-    {
-        let Self { statement, values } = self;
-        Box::pin(async move {
-            match connection {
-                Connection::Sqlite(connection) => {
-                    let query = bound!(sqlx::query(statement.sqlite()), values);
-                    let row = query.try_map(|row| read(Row::Sqlite(row))).fetch_optional(connection);
-                    row.await.map(drop).map_err(sqlite::classify)
-                }
-                #[cfg(feature = "postgres")]
-                Connection::Postgres(session) => {
-                    let row = session.request(async |connection| {
-                        let query = bound!(sqlx::query(statement.postgres()), values);
-                        query.try_map(|row| read(Row::Postgres(row))).fetch_optional(connection).await
-                    });
-                    row.await.map(drop)
+                    done.await
                 }
             }
         })
@@ -170,14 +166,14 @@ impl<'q> Query<'q> {
     /// Runs the statement. Returns all rows.
     pub async fn all<T: Columns>(self, connection: &mut Connection) -> Result<Vec<T>, QueueError> {
         let mut rows = Vec::new();
-        self.each(connection, &mut |row| row.read().map(|row| rows.push(row))).await?;
+        self.fetch(connection, Rows::All, &mut |row| row.read().map(|row| rows.push(row))).await?;
         Ok(rows)
     }
 
     /// Runs the statement. Returns the first row, if there is one.
     pub async fn optional<T: Columns>(self, connection: &mut Connection) -> Result<Option<T>, QueueError> {
         let mut first = None;
-        self.first(connection, &mut |row| row.read().map(|row| first = Some(row))).await?;
+        self.fetch(connection, Rows::First, &mut |row| row.read().map(|row| first = Some(row))).await?;
         Ok(first)
     }
 
