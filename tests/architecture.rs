@@ -1,5 +1,8 @@
 //! The shape of the crate: which module may use which, read from the sources, and the maps of the modules.
 
+#[path = "support/walk.rs"]
+mod walk;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
@@ -37,21 +40,14 @@ fn src() -> PathBuf {
 
 /// The source files below src: path relative to src, and text.
 fn sources() -> Vec<(String, String)> {
-    let mut found = Vec::new();
-    let mut folders = vec![src()];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
-                let name = path.strip_prefix(src()).unwrap().to_str().unwrap().replace('\\', "/");
-                found.push((name, std::fs::read_to_string(&path).unwrap()));
-            }
-        }
-    }
-    found.sort();
-    found
+    let files = walk::below(&src())
+        .into_iter()
+        .filter(|file| Path::new(file).extension().is_some_and(|extension| extension == "rs"));
+    let with_text = files.map(|file| {
+        let text = std::fs::read_to_string(src().join(&file)).unwrap();
+        (file, text)
+    });
+    with_text.collect()
 }
 
 /// The top-level module of a file.

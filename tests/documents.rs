@@ -1,5 +1,8 @@
 //! The documents of the repository name only what exists, and everything that is beside the sources is named.
 
+#[path = "support/walk.rs"]
+mod walk;
+
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
@@ -20,22 +23,9 @@ fn read(path: &str) -> String {
 
 /// The paths of all files below a folder from the root of the repository, without what Python leaves.
 fn files(folder: &str) -> Vec<String> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let mut found = Vec::new();
-    let mut folders = vec![root.join(folder)];
-    while let Some(folder) = folders.pop() {
-        for entry in std::fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            if path.is_dir() {
-                folders.push(path);
-            } else {
-                found.push(path.strip_prefix(root).unwrap().to_str().unwrap().replace('\\', "/"));
-            }
-        }
-    }
-    found.retain(|file| !file.contains("/__pycache__/"));
-    found.sort();
-    found
+    let below = walk::below(&Path::new(env!("CARGO_MANIFEST_DIR")).join(folder));
+    let own = below.into_iter().filter(|file| !file.contains("__pycache__/"));
+    own.map(|file| format!("{folder}/{file}")).collect()
 }
 
 /// Every document with its text.

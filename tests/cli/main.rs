@@ -28,4 +28,6 @@ mod sweep;
 #[path = "../support/tools.rs"]
 mod tools;
 mod upkeep;
+#[path = "../support/walk.rs"]
+mod walk;
 mod watch;

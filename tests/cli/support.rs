@@ -104,20 +104,7 @@ impl Folder {
 
     /// Every file below the folder, by its path from there.
     pub fn files(&self) -> Vec<String> {
-        let mut files = Vec::new();
-        let mut folders = vec![self.0.path().to_owned()];
-        while let Some(folder) = folders.pop() {
-            for entry in std::fs::read_dir(folder).unwrap() {
-                let path = entry.unwrap().path();
-                if path.is_dir() {
-                    folders.push(path);
-                } else {
-                    files.push(path.strip_prefix(self.0.path()).unwrap().to_str().unwrap().to_owned());
-                }
-            }
-        }
-        files.sort();
-        files
+        crate::walk::below(self.0.path())
     }
 }
 
