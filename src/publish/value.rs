@@ -33,6 +33,39 @@ pub fn fixed(x: f64, decimals: usize) -> String {
     if x.is_finite() { format!("{x:.decimals$}") } else { MISSING.to_owned() }
 }
 
+/// Multiples of units in which people write quantities: unit, smallest size from which the multiple is used, factor, name.
+/// The largest size comes first.
+const MULTIPLES: [(&str, f64, f64, &str); 12] = [
+    ("Pa", 1e8, 1e9, "GPa"),
+    ("Pa", 1e5, 1e6, "MPa"),
+    ("Pa", 1e2, 1e3, "kPa"),
+    ("m", 1.0, 1.0, "m"),
+    ("m", 1e-4, 1e-3, "mm"),
+    ("m", 0.0, 1e-6, "µm"),
+    ("s", 1.0, 1.0, "s"),
+    ("s", 1e-4, 1e-3, "ms"),
+    ("s", 1e-7, 1e-6, "µs"),
+    ("s", 0.0, 1e-9, "ns"),
+    ("Hz", 1e3, 1e3, "kHz"),
+    ("N", 1e4, 1e3, "kN"),
+];
+
+/// The multiple of a unit in which a quantity of this size is written: its factor and its name. `("Pa", 5e8)` gives 10⁹
+/// and `GPa`.
+pub fn multiple<'a>(unit: &'a str, size: f64) -> (f64, &'a str) {
+    let size = size.abs();
+    let fits = |(of, least, ..): &&(&str, f64, f64, &str)| *of == unit && size >= *least && size > 0.0;
+    MULTIPLES.iter().find(fits).map_or((1.0, unit), |(.., factor, name)| (*factor, *name))
+}
+
+/// A quantity as people write it, with four significant digits: `0.5 GPa`, `2.5 mm`. `unit` is empty for a number without
+/// one.
+pub fn quantity(x: f64, unit: &str) -> String {
+    let (factor, name) = multiple(unit, x);
+    let text = significant(x / factor, 4);
+    if name.is_empty() { text } else { format!("{text} {name}") }
+}
+
 /// A duration in a unit that fits it; [`MISSING`] if it is not finite.
 pub fn duration(seconds: f64) -> String {
     if seconds.is_finite() { duration_text(seconds, 1) } else { MISSING.to_owned() }
@@ -99,6 +132,28 @@ pub fn file_name_part(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Protects: quantities have the multiple of their unit that people write, at both ends of its range.
+    #[test]
+    fn quantities_are_written_as_people_write_them() {
+        let cases = [
+            (5e8, "Pa", "0.5 GPa"),
+            (2.5e6, "Pa", "2.5 MPa"),
+            (0.0025, "m", "2.5 mm"),
+            (0.0026666666666666666, "m", "2.667 mm"),
+            (0.0914, "m", "91.4 mm"),
+            (5e-8, "s", "50 ns"),
+            (0.04, "s", "40 ms"),
+            (15_281.3, "Hz", "15.28 kHz"),
+            (0.0, "m", "0 m"),
+            (30.0, "N", "30 N"),
+            (1.4251026703, "rpm", "1.425 rpm"),
+            (0.4, "", "0.4"),
+        ];
+        for (x, unit, text) in cases {
+            assert_eq!(quantity(x, unit), text);
+        }
+    }
 
     /// Protects: dates at the ends of months, years and leap years, and times before 1970 and after 9999.
     #[test]

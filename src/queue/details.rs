@@ -3,7 +3,7 @@ use super::error::QueueError;
 use super::handle::Queue;
 use super::state::JobState;
 
-/// Everything about a job except its payload and its record.
+/// Everything about a job.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JobDetails {
     /// Its key.
@@ -32,6 +32,10 @@ pub struct JobDetails {
     pub finished_ms: Option<i64>,
     /// What the result was made with, as its worker declared it.
     pub provenance: Option<String>,
+    /// What the executor needs to run the job.
+    pub payload: String,
+    /// Its result, if it is done.
+    pub record: Option<String>,
     /// The names of the studies that contain it.
     pub studies: Vec<String>,
 }
@@ -40,8 +44,9 @@ pub struct JobDetails {
 /// because a key may contain wildcards.
 const JOBS: &str = "
     SELECT j.id, j.key, j.state, j.priority, j.cost, j.batch, j.attempt, j.crashes, j.note, j.started_ms,
-           r.error, r.wall_s, r.finished_ms, r.provenance
+           r.error, r.wall_s, r.finished_ms, r.provenance, p.payload, r.record
     FROM jobs AS j
+    JOIN payloads AS p ON p.job_id = j.id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
     WHERE j.key >= $1 AND substr(j.key, 1, length($1)) = $1
     ORDER BY j.key LIMIT $2";
@@ -63,6 +68,8 @@ type Columns = (
     Option<String>,
     Option<f64>,
     Option<i64>,
+    Option<String>,
+    String,
     Option<String>,
 );
 
@@ -99,6 +106,8 @@ fn details(columns: Columns, studies: Vec<String>) -> JobDetails {
         wall_s,
         finished_ms,
         provenance,
+        payload,
+        record,
     ) = columns;
     JobDetails {
         key,
@@ -114,6 +123,8 @@ fn details(columns: Columns, studies: Vec<String>) -> JobDetails {
         started_ms,
         finished_ms,
         provenance,
+        payload,
+        record,
         studies,
     }
 }

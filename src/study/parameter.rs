@@ -96,6 +96,17 @@ impl Parameter {
         PARAMETERS.iter().find(|parameter| parameter.name == name)
     }
 
+    /// The description without the unit.
+    pub fn description(&self) -> &'static str {
+        self.doc.rsplit_once(" [").map_or(self.doc, |(text, _)| text)
+    }
+
+    /// The unit; none for numbers without a unit, names and flags.
+    pub fn unit(&self) -> Option<&'static str> {
+        let (_, unit) = self.doc.strip_suffix(']')?.rsplit_once(" [")?;
+        Some(unit).filter(|unit| !matches!(*unit, "-" | "name" | "true or false"))
+    }
+
     /// The path of the field that it sets, as in messages: `scene.pin.size_m[0]`.
     pub fn field(&self) -> String {
         let write = |path: String, step: &str| match step.parse::<usize>() {
@@ -172,4 +183,11 @@ pub(super) fn unknown_help(wrong: &str) -> Vec<String> {
     let names: Vec<_> = PARAMETERS.iter().map(|parameter| parameter.name).collect();
     help.push(format!("the parameters are {}", names.join(", ")));
     help
+}
+
+impl PartialEq for Parameter {
+    fn eq(&self, other: &Self) -> bool {
+        // Names are unique.
+        self.name == other.name
+    }
 }

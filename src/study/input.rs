@@ -1,0 +1,32 @@
+//! The inputs of a job: every parameter with the value that the job has.
+
+use super::json::encode;
+use super::parameter::{PARAMETERS, Parameter};
+use crate::spec::{ClampSide, DiskKind, JobSpec};
+use serde_json::Value;
+
+/// A parameter and its value in a job.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Input {
+    /// The parameter: name, description and unit.
+    pub parameter: &'static Parameter,
+    /// Its value in the job.
+    pub value: Value,
+}
+
+/// All inputs of a job that have an effect, the defaults among them, each once: the mesh and the size by their components,
+/// no ring of a rigid disk, no width of a clamp that holds the whole top, and no safety factor beside a given time step.
+pub fn inputs(spec: &JobSpec) -> Vec<Input> {
+    let job = encode(spec);
+    let has_effect = |parameter: &Parameter| match parameter.name {
+        "elements" => false,
+        "clamp_width_m" => spec.scene.clamp.side != ClampSide::WholeTop,
+        "safety_factor" => spec.numerics.time_step_s.is_none(),
+        _ => spec.scene.disk.kind == DiskKind::Elastic || !parameter.pointer.starts_with("/scene/disk/ring/"),
+    };
+    let input = |parameter: &'static Parameter| {
+        let value = job.pointer(parameter.pointer)?.clone();
+        Some(Input { parameter, value })
+    };
+    PARAMETERS.iter().filter(|parameter| has_effect(parameter)).filter_map(input).collect()
+}
