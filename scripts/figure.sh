@@ -5,5 +5,5 @@ cd "$(dirname "$0")/.."
 work=target/docs
 mkdir -p "$work"
 cargo run --release --quiet -- --db "$work/docs.db" run studies/figure7.json --out "$work/figure7" > /dev/null
-cp "$work/figure7/figure7.svg" docs/figure7.svg
+cp "$work/figure7/mu_star.svg" docs/figure7.svg
 echo "written: docs/figure7.svg"

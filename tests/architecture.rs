@@ -19,8 +19,8 @@ const MAY_USE: [(&str, &[&str]); 14] = [
     ("inspect", &["analysis", "publish", "solver", "spec", "units"]),
     ("report", &["analysis", "publish"]),
     ("worker", &["analysis", "queue", "spec", "units"]),
-    // Of `publish` it uses the error of `report`.
-    ("sweep", &["analysis", "publish", "queue", "report", "solver", "spec", "study", "worker"]),
+    // Of `publish` it uses drawings and the error of `report`.
+    ("sweep", &["analysis", "publish", "queue", "report", "solver", "spec", "study", "units", "worker"]),
     (
         "cli",
         &[

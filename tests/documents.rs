@@ -5,6 +5,7 @@ mod walk;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
+use tribosweep::study::{PARAMETERS, Parameter};
 
 /// The folders whose files documents name by their path from the root of the repository.
 const ROOTS: [&str; 8] = [".ci", "benches", "docs", "migrations", "scripts", "src", "studies", "tests"];
@@ -134,6 +135,22 @@ fn paths_in_documents_exist() {
     {
         assert!(found.contains(known), "{known} is not found");
     }
+}
+
+/// Protects: the page about studies lists every parameter of a grid with its unit, as the program has them.
+#[test]
+fn the_parameters_of_a_grid_are_listed() {
+    let row = |parameter: &Parameter| {
+        let (name, field) = (parameter.name, parameter.field());
+        format!(
+            "| `{name}` | {} | {} | `{field}` |\n",
+            parameter.unit().unwrap_or(""),
+            parameter.description()
+        )
+    };
+    let rows = PARAMETERS.iter().map(row).collect::<Vec<_>>().concat();
+    let table = format!("| parameter | unit | meaning | field |\n|---|---|---|---|\n{rows}");
+    assert!(read("docs/studies.md").contains(&table), "docs/studies.md needs this table:\n{table}");
 }
 
 /// The sources by the path of their module.

@@ -3,6 +3,7 @@
 use super::checkpoint::Unreadable;
 use super::error::JobError;
 use super::lanes::{Ended, Lanes};
+use super::workload::Workload;
 use crate::solver::Model;
 use crate::spec::JobSpec;
 use std::sync::Arc;
@@ -58,7 +59,7 @@ impl Batch {
         let model = Model::from_scene(&spec.scene, &spec.numerics)?;
         Ok(Self {
             shared: spec.shared_part(),
-            widest: widest(model.mesh().node_count()),
+            widest: Workload::of(&model).widest(),
             lanes: AnyLanes::One(Box::new(Lanes::new(Arc::new(model)))),
         })
     }
@@ -71,6 +72,11 @@ impl Batch {
     /// The largest number of jobs for which it pays off to advance them together.
     pub fn widest(&self) -> usize {
         self.widest
+    }
+
+    /// What the jobs take.
+    pub fn workload(&self) -> Workload {
+        each!(&self.lanes, lanes => Workload::of(lanes.model()))
     }
 
     /// Number of jobs.
@@ -151,13 +157,4 @@ impl Batch {
     pub fn simulated(&self) -> Vec<(u64, f64)> {
         each!(&self.lanes, lanes => lanes.simulated().collect())
     }
-}
-
-/// Nodes times lanes above which another lane costs more than it saves: the fields that a step reads and
-/// writes then no longer fit into the core's caches. The value is measured; see docs/performance.md.
-const NODES_TIMES_LANES: usize = 40_000;
-
-/// The largest number of lanes that pays off for a mesh.
-fn widest(nodes: usize) -> usize {
-    [8, 4, 2].into_iter().find(|lanes| lanes * nodes <= NODES_TIMES_LANES).unwrap_or(1)
 }

@@ -11,7 +11,7 @@ use super::error::{JobError, step_count};
 use super::lane::LaneAnalysis;
 use super::record::JobRecord;
 use super::sample::{Sample, Sampler};
-use crate::solver::energy::EnergyLedger;
+use crate::solver::energy::{Energies, EnergyLedger};
 use crate::solver::lane::LaneState;
 use crate::solver::{Drive, Model, State, guard, step};
 use crate::spec::JobSpec;
@@ -57,6 +57,8 @@ pub struct Moment<'a, const L: usize> {
     pub state: &'a State<L>,
     /// The sampler that computed the sample. It has the smoothed stress of every contact node.
     pub sampler: &'a Sampler<L>,
+    /// The energies at the last audit.
+    pub energies: &'a Energies,
 }
 
 /// A job that has ended.
@@ -98,6 +100,11 @@ impl<const L: usize> Lanes<L> {
             }
         }
         lanes
+    }
+
+    /// The model that the lanes share.
+    pub fn model(&self) -> &Model {
+        &self.model
     }
 
     /// The first lane without a job, if there is one.
@@ -211,6 +218,7 @@ impl<const L: usize> Lanes<L> {
                         model: &self.model,
                         state: &self.state,
                         sampler: &self.sampler,
+                        energies: self.ledger.energies(lane),
                     });
                     if let Some(result) = self.result(lane, audited) {
                         ended.extend(self.runs[lane].take().map(|run| Ended { ticket: run.ticket, result }));

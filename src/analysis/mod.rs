@@ -30,6 +30,7 @@ pub mod record;
 pub mod sample;
 pub mod steady;
 mod window;
+mod workload;
 
 pub use checkpoint::Unreadable;
 pub use drive::drive;
@@ -38,3 +39,4 @@ pub use job::{JobObserver, Unobserved, solve};
 pub use lanes::Moment;
 pub use record::{ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
 pub use steady::Obstacle;
+pub use workload::{Ending, Workload};

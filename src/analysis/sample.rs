@@ -74,6 +74,8 @@ pub struct NodeSample {
     pub u_m: [f64; 3],
     /// Velocity in y over the step \[m/s\].
     pub y_velocity_m_s: f64,
+    /// Displacement over the step relative to the target \[m\]: x and y.
+    pub slip_m: [f64; 2],
     /// Gap \[m\].
     pub gap_m: f64,
     /// Contact force \[N\] on the pin: friction in x and y, N in z.
@@ -240,6 +242,7 @@ impl<const L: usize> Sampler<L> {
         let [_, of_target, _] = state.target.increment_of(slave, lane);
         NodeSample {
             u_m: std::array::from_fn(|c| state.u.at(place, c)[lane]),
+            slip_m: [x, y],
             y_velocity_m_s: (y + of_target) / dt + model.slaves()[slave].surface_motion[1] * drive.rate,
             gap_m: contacts.gap_of(slave, lane),
             force_n: contacts.force_of(slave, lane),

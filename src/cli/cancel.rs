@@ -3,6 +3,7 @@
 use super::error::CliError;
 use super::output::log;
 use crate::exit;
+use crate::publish::value::count;
 use crate::queue::Location;
 use crate::sweep;
 
@@ -23,19 +24,19 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         Ok::<_, CliError>(cancelled)
     })?;
     log(format_args!(
-        "{name}: {} pending jobs cancelled; `tribosweep retry {name}` makes them pending again",
-        cancelled.cancelled
+        "{name}: {} cancelled; `tribosweep retry {name}` undoes this",
+        count(cancelled.cancelled, "pending job")
     ));
     if cancelled.shared > 0 {
         log(format_args!(
-            "{} pending jobs are not cancelled because other studies need them",
-            cancelled.shared
+            "not cancelled, because other studies need them: {}",
+            count(cancelled.shared, "pending job")
         ));
     }
     if cancelled.running > 0 {
         log(format_args!(
-            "{} jobs are running and will be finished; press Ctrl-C in their worker to stop them",
-            cancelled.running
+            "running, and not cancelled: {}; press Ctrl-C in a worker to stop its jobs",
+            count(cancelled.running, "job")
         ));
     }
     Ok(exit::SUCCESS)

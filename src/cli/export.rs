@@ -3,16 +3,20 @@
 use super::error::CliError;
 use super::output::{fill_file, stream};
 use crate::exit;
-use crate::queue::Location;
-use crate::sweep::{self, ExportFormat};
+use crate::queue::{Location, Queue};
+use crate::sweep::{self, ExportColumns, ExportFormat};
 use std::io::Write;
 use std::path::PathBuf;
 
 /// Arguments of `export`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// The study's name or file.
-    study: String,
+    /// Names or files of the studies; default: all studies of the database. The column `study` tells them apart.
+    #[arg(value_name = "STUDY")]
+    studies: Vec<String>,
+    /// Every input as a column of its own, the defaults too, and the whole record: see `columns --all`.
+    #[arg(long)]
+    all: bool,
     /// Write to this file instead of standard output.
     #[arg(long = "csv", value_name = "FILE")]
     file: Option<PathBuf>,
@@ -31,9 +35,17 @@ enum Format {
     Json,
 }
 
-/// Exports the study.
+/// Exports the studies.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let name = sweep::study_name(&args.study)?;
+    let mut given: Vec<String> = Vec::new();
+    for study in &args.studies {
+        let name = sweep::study_name(study)?;
+        // A study that is given twice would count twice.
+        if !given.contains(&name) {
+            given.push(name);
+        }
+    }
+    let columns = if args.all { ExportColumns::All } else { ExportColumns::Plain };
     let format = match args.format {
         Format::Csv => ExportFormat::Csv,
         Format::Json => ExportFormat::JsonLines,
@@ -41,7 +53,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let fill = |out: &mut dyn Write| {
         sweep::block_on(async {
             let mut queue = sweep::open_to_read(db.clone()).await?;
-            sweep::export(&mut queue, &name, format, out).await?;
+            let studies = if given.is_empty() { every_study(&mut queue).await? } else { given.clone() };
+            sweep::export(&mut queue, &studies, columns, format, out).await?;
             queue.close().await?;
             Ok(())
         })
@@ -51,4 +64,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         None => stream(fill)?,
     }
     Ok(exit::SUCCESS)
+}
+
+async fn every_study(queue: &mut Queue) -> Result<Vec<String>, CliError> {
+    Ok(queue.studies().await?.into_iter().map(|study| study.name).collect())
 }

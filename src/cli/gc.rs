@@ -3,23 +3,47 @@
 use super::error::CliError;
 use super::output::print;
 use crate::exit;
-use crate::queue::Location;
+use crate::publish::value::{count, significant};
+use crate::queue::{Garbage, Location};
 use crate::sweep;
 
+/// Arguments of `gc`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// Only print what would be deleted.
+    #[arg(long)]
+    dry_run: bool,
+}
+
 /// Deletes the jobs that no study needs, with their results, and prints how many they were.
-pub(crate) fn run(db: &Location) -> Result<u8, CliError> {
+pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let garbage = sweep::block_on(async {
-        let mut queue = sweep::open_to_change(db.clone()).await?;
-        let garbage = queue.collect_garbage().await?;
+        let (mut queue, garbage);
+        if args.dry_run {
+            queue = sweep::open_to_read(db.clone()).await?;
+            garbage = queue.preview_garbage().await?;
+        } else {
+            queue = sweep::open_to_change(db.clone()).await?;
+            garbage = queue.collect_garbage().await?;
+        }
         queue.close().await?;
         Ok::<_, CliError>(garbage)
     })?;
-    print(&format!(
-        "dropped {} jobs, {} results and {} ended workers; the database is {:.1} MB smaller\n",
-        garbage.jobs,
-        garbage.results,
-        garbage.workers,
-        garbage.bytes as f64 / 1e6
-    ))?;
+    let megabytes = significant(garbage.bytes as f64 / 1e6, 2);
+    let what = in_words(&garbage);
+    print(&if args.dry_run {
+        format!("`gc` would drop {what}, with {megabytes} MB of data; nothing has been changed\n")
+    } else {
+        format!("dropped {what}; the database is {megabytes} MB smaller\n")
+    })?;
     Ok(exit::SUCCESS)
+}
+
+fn in_words(garbage: &Garbage) -> String {
+    format!(
+        "{}, {} and {}",
+        count(garbage.jobs, "job"),
+        count(garbage.results, "result"),
+        count(garbage.workers, "ended worker")
+    )
 }

@@ -1,4 +1,6 @@
-//! `tribosweep inspect`: one job in detail.
+//! `tribosweep inspect`: one job in detail, or several.
+
+mod several;
 
 use super::error::CliError;
 use super::output::{log, print};
@@ -7,8 +9,8 @@ use crate::exit;
 use crate::inspect::{self, Inspection, InspectionError, NodeSelector, Options, PageHeader, Trace};
 use crate::publish::value;
 use crate::queue::Location;
-use crate::report::assignment;
-use crate::study::{Parameter, Preset, Study};
+use crate::report::{self, assignment};
+use crate::study::{Origin, Parameter, Preset, Study, is_set_by_presets};
 use crate::sweep::{self, SelectedJob};
 use crate::worker::{self, Interrupt};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -43,9 +45,24 @@ pub(crate) struct Args {
     #[arg(long, value_name = "N", conflicts_with = "overlay", default_value_t = Options::default().frames as u16,
           value_parser = clap::value_parser!(u16).range(Options::FEWEST_FRAMES as i64..=1000))]
     frames: u16,
-    /// Folder for the results; default: reports/STUDY/JOB.
+    /// Inspect every job of the study, or those that have the given values NAME=VALUE.
+    #[arg(long, conflicts_with_all = ["overlay", "preset"])]
+    all: bool,
+    /// Store the spectrum of the normal force alone, from one run of the job, without a page. The report draws the spectra
+    /// of its jobs over the speed.
+    #[arg(long, value_name = "WHAT", value_enum, conflicts_with_all = ["overlay", "nodes", "cycles", "frames"])]
+    only: Option<Only>,
+    /// Folder for the results; default: reports/STUDY/inspect/JOB, where the report finds them. With --all: the folder
+    /// above those of the jobs.
     #[arg(long = "out", value_name = "DIR")]
     folder: Option<PathBuf>,
+}
+
+/// A part of an inspection.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Only {
+    /// The spectrum of the total normal contact force.
+    Spectrum,
 }
 
 /// The name of the parameters of a job in messages.
@@ -72,37 +89,100 @@ fn slug(parameters: &[(String, Value)]) -> String {
     value::file_name_part(&parts.collect::<Vec<_>>().join("_"))
 }
 
+/// The folder, or the one beside it with the job's key in its name if this one has the inspection of another job: a job of
+/// another version of the study may have the same grid parameters.
+fn beside_others(folder: PathBuf, key: &str) -> PathBuf {
+    match inspect::key_of(&folder) {
+        Some(other) if other != key => {
+            let name = folder.file_name().unwrap_or_default().to_string_lossy();
+            folder.with_file_name(format!("{name}_{}", &key[..KEY_LENGTH.min(key.len())]))
+        }
+        _ => folder,
+    }
+}
+
+/// Number of characters of a key that tell jobs apart.
+const KEY_LENGTH: usize = 8;
+
 /// Runs the job twice and writes the results.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let study = sweep::block_on(sweep::load_study(&args.study, db))?;
     if args.overlay.is_some() {
-        return overlay(args, &study);
+        return overlay(args, &study, db);
     }
-    let job = select(args, &study, &args.job)?;
+    if args.all {
+        return several::run(args, &study);
+    }
+    let job = select(args, &study, &args.job, db)?;
     log_scene_values(&job);
-    let nodes = args.places(&NodeSelector::DEFAULT);
-    let options = Options { nodes, cycles: args.cycles.into(), frames: args.frames.into() };
-    let preset = args.preset.map(Preset::name);
-    let folder = args.out(&study, &[&slug(&job.parameters), preset.unwrap_or("")]);
+    let folder = args.out(&study, &[&slug(&job.parameters), args.preset.map_or("", Preset::name)]);
+    let folder = if args.folder.is_none() { beside_others(folder, &job.key) } else { folder };
+    if args.only == Some(Only::Spectrum) {
+        return several::spectrum(job, folder);
+    }
     let mut progress = ProgressDisplay::new(&job, foreground::interrupt());
-    let inspection = match in_folder(&folder, || {
-        Inspection::run(&job.spec, &options, &mut |simulated_s| progress.update(simulated_s))
+    match inspect_job(args, &study, &job, &folder, &options(args), &mut progress)? {
+        Ok(()) => Ok(exit::SUCCESS),
+        Err(error) => exit_code(error),
+    }
+}
+
+/// What is recorded of a job.
+fn options(args: &Args) -> Options {
+    let nodes = args.places(&NodeSelector::DEFAULT);
+    Options { nodes, cycles: args.cycles.into(), frames: args.frames.into() }
+}
+
+/// Inspects a job, writes the results, and prints the path of the page.
+fn inspect_job(
+    args: &Args,
+    study: &Study,
+    job: &SelectedJob,
+    folder: &Path,
+    options: &Options,
+    progress: &mut ProgressDisplay,
+) -> Result<Result<(), InspectionError>, CliError> {
+    let inspection = match in_folder(folder, || {
+        Inspection::run(&job.spec, options, &mut |simulated_s| progress.update(simulated_s))
     })? {
         Ok(inspection) => inspection,
-        Err(error) => return exit_code(error),
+        Err(error) => return Ok(Err(error)),
     };
     progress.bar.finish_and_clear();
     let shown = &inspection.survey.windows;
     if shown.has_cycles && shown.cycle_count < options.cycles {
         log(format_args!("{} cycles are shown: the run has no more of the same kind", shown.cycle_count));
     }
-    let of_preset = preset.map_or_else(String::new, |name| format!(", preset {name}"));
-    let title = title(&study, &job.parameters) + &of_preset;
-    let header = PageHeader { title, made_with: worker::program() };
-    inspect::write(&inspection, &folder, &header)?;
+    let of_preset = args.preset.map_or_else(String::new, |preset| format!(", preset {}", preset.name()));
+    let title = title(study, &job.parameters) + &of_preset;
+    let discretisation = sweep::discretisation_of(&job.spec);
+    let header = PageHeader {
+        title,
+        made_with: worker::program(),
+        key: job.key.clone(),
+        sheet: sweep::sheet_of_job(&job.spec, |parameter| origin(args, study, job, parameter)),
+        mu_star_relative_error: discretisation.error().map(|error| error.mu_star_relative),
+        accuracy: discretisation.to_string(),
+    };
+    inspect::write(&inspection, folder, &header)?;
     log(solve::as_text(&inspection.survey.record).trim_end());
     print(&format!("{}\n", folder.join(inspect::PAGE).display()))?;
-    Ok(exit::SUCCESS)
+    Ok(Ok(()))
+}
+
+/// Where the value of a parameter of a job comes from, in a word.
+fn origin(args: &Args, study: &Study, job: &SelectedJob, parameter: &Parameter) -> &'static str {
+    let is_set =
+        |(name, _): &(String, Value)| name == parameter.name && !job.from_scene.contains(&name.as_str());
+    if job.parameters.iter().any(is_set) {
+        return "job";
+    }
+    match study.origin(parameter) {
+        _ if args.preset.is_some() && is_set_by_presets(parameter) => Origin::Preset.name(),
+        // The grid was not asked for a value.
+        Origin::Grid => Origin::Study.name(),
+        other => other.name(),
+    }
 }
 
 /// Creates the folder of the results before the work, so that an error is noticed early. If the work fails, the folders
@@ -127,7 +207,7 @@ fn in_folder<T>(
 }
 
 /// The requested job of a study: by its key, or by parameters.
-fn select(args: &Args, study: &Study, job: &[String]) -> Result<SelectedJob, CliError> {
+fn select(args: &Args, study: &Study, job: &[String], db: &Location) -> Result<SelectedJob, CliError> {
     if let [key] = job
         && !key.contains('=')
     {
@@ -143,14 +223,15 @@ fn select(args: &Args, study: &Study, job: &[String]) -> Result<SelectedJob, Cli
                 "JOB: expected a job's key or NAME=VALUE, for example {name}=…; got `{key}`"
             )));
         }
-        return Ok(sweep::select_by_key(study, key)?);
+        return Ok(sweep::block_on(sweep::select_by_key(study, &args.study, db, key))?);
     }
-    let settings: Vec<(String, String)> = job
-        .iter()
-        .map(|text| foreground::parse_setting(text))
-        .collect::<Result<_, _>>()
-        .map_err(|error| CliError::Usage(format!("JOB: {error}, or one key")))?;
-    Ok(sweep::select_by_parameters(study, SETTINGS, args.preset, &settings)?)
+    Ok(sweep::select_by_parameters(study, SETTINGS, args.preset, &settings(job)?)?)
+}
+
+/// The settings of a job.
+fn settings(job: &[String]) -> Result<Vec<(String, String)>, CliError> {
+    let settings = job.iter().map(|text| foreground::parse_setting(text)).collect::<Result<_, _>>();
+    settings.map_err(|error| CliError::Usage(format!("JOB: {error}, or one key")))
 }
 
 fn exit_code(error: InspectionError) -> Result<u8, CliError> {
@@ -191,7 +272,7 @@ impl ProgressDisplay {
 }
 
 /// Runs the jobs of an overlay on all cores and writes a figure for each node.
-fn overlay(args: &Args, study: &Study) -> Result<u8, CliError> {
+fn overlay(args: &Args, study: &Study, db: &Location) -> Result<u8, CliError> {
     let Some((name, list)) = &args.overlay else { return Ok(exit::SUCCESS) };
     let mut texts: Vec<&str> = Vec::new();
     for text in list.split(',').map(str::trim).filter(|text| !text.is_empty()) {
@@ -209,7 +290,7 @@ fn overlay(args: &Args, study: &Study) -> Result<u8, CliError> {
         .iter()
         .map(|text| {
             let job: Vec<String> = args.job.iter().cloned().chain([format!("{name}={text}")]).collect();
-            select(args, study, &job)
+            select(args, study, &job, db)
         })
         .collect::<Result<_, _>>()?;
     log_scene_values(&jobs[0]);
@@ -257,6 +338,12 @@ impl Args {
     fn out(&self, study: &Study, parts: &[&str]) -> PathBuf {
         let parts: Vec<&str> = parts.iter().copied().filter(|part| !part.is_empty()).collect();
         let name = if parts.is_empty() { "job".to_owned() } else { value::file_name_part(&parts.join("_")) };
-        self.folder.clone().unwrap_or_else(|| Path::new("reports").join(study.name()).join(name))
+        self.folder.clone().unwrap_or_else(|| self.folder_of(study).join(name))
+    }
+
+    /// The requested folder, or the folder of the study's inspections, where its report finds them.
+    fn folder_of(&self, study: &Study) -> PathBuf {
+        let usual = || Path::new("reports").join(study.name()).join(report::INSPECTIONS);
+        self.folder.clone().unwrap_or_else(usual)
     }
 }

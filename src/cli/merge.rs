@@ -3,6 +3,7 @@
 use super::error::CliError;
 use super::output::print;
 use crate::exit;
+use crate::publish::value::count;
 use crate::queue::{Absorbed, Location};
 use crate::sweep::{self, Transfer};
 use clap::builder::{OsStringValueParser, TypedValueParser};
@@ -49,9 +50,10 @@ fn transfer(sources: &[Location], target: &Location, study: Option<&str>) -> Res
 
 fn line(Transfer { source, absorbed }: &Transfer) -> String {
     let Absorbed { studies, rows, added, ended, open } = absorbed;
-    let still = if *open > 0 { format!("; {open} are still to be run") } else { String::new() };
+    let still = if *open > 0 { format!("; still to be run: {open}") } else { String::new() };
     format!(
-        "{source}: {studies} studies with {rows} rows; {added} jobs are new here, {ended} have their results from \
-         there{still}\n"
+        "{source}: {} with {}; jobs that are new here: {added}, jobs with their results from there: {ended}{still}\n",
+        count(*studies, "study"),
+        count(*rows, "row")
     )
 }

@@ -1,20 +1,28 @@
 //! The command line: arguments, messages and exit codes. Each subcommand has a file. Results go to standard output,
 //! everything else to standard error. The work is done by [`sweep`](crate::sweep).
 
+mod aligned;
 mod cancel;
+mod columns;
 mod completions;
+mod diff;
 mod display;
 mod doctor;
+mod document;
 mod error;
 mod export;
+mod forecast;
 mod foreground;
 mod gc;
 mod inspect;
 mod merge;
+mod missing;
 mod outlook;
 mod output;
 mod pareto;
 mod presets;
+mod rename;
+mod replace;
 mod report;
 mod retry;
 mod rm;
@@ -25,8 +33,10 @@ mod signals;
 mod slurm;
 mod solve;
 mod status;
+mod study_args;
 mod submit;
 mod validate;
+mod warnings;
 mod work;
 mod workers;
 
@@ -40,7 +50,7 @@ use clap::{Parser, Subcommand};
 /// A study file describes a scene and a grid of parameters. `run` plans the jobs, solves them and writes a report.
 #[derive(Debug, Parser)]
 #[command(
-    version,
+    version = env!("TRIBOSWEEP_VERSION"),
     max_term_width = 100,
     after_help = "Exit codes: 0 all jobs succeeded, 1 some jobs failed, 2 error (bad input, usage or environment), 3 jobs are left."
 )]
@@ -65,13 +75,15 @@ enum Command {
     Slurm(slurm::Args),
     /// Show the progress of the studies.
     Status(status::Args),
-    /// Write a study's page, tables and figures.
+    /// Write the page, tables and figures of a study, or of several side by side.
     Report(report::Args),
     /// Compare jobs that differ in their numerics: error against run time.
     Pareto(pareto::Args),
-    /// Write one row per job as CSV or JSON lines.
+    /// Write one row per job of one, several or all studies as CSV or JSON lines.
     Export(export::Args),
-    /// Show the state of a job and how its result was obtained.
+    /// Print the columns of the export with their units and meanings.
+    Columns(columns::Args),
+    /// Show everything about a job: its inputs, its whole result, and how the result was obtained.
     Show(show::Args),
     /// Make failed and cancelled jobs of a study pending again.
     Retry(retry::Args),
@@ -80,7 +92,13 @@ enum Command {
     /// Remove a study; its results stay in the database until `gc`.
     Rm(rm::Args),
     /// Delete jobs that no study needs, with their results.
-    Gc,
+    Gc(gc::Args),
+    /// Give a study another name in the database.
+    Rename(rename::Args),
+    /// Compare two studies: inputs that differ, and jobs that only one of them has.
+    Diff(diff::Args),
+    /// Print the file of a study in the database, as it was submitted.
+    Document(document::Args),
     /// Add the studies and results of other databases, for example shards, to the one that --db names.
     Merge(merge::Args),
     /// Copy one or all studies with their results from one database to another; each is a file or on a server.
@@ -91,7 +109,7 @@ enum Command {
     Solve(solve::Args),
     /// Run one job again and show it in detail: histories, cycles, snapshots, fields for ParaView.
     Inspect(inspect::Args),
-    /// Check a study file without running it.
+    /// Check a study file and all that a run needs, and say what its jobs take, without running it.
     Validate(validate::Args),
     /// Show the accuracy presets with their settings and measured errors.
     Presets(presets::Args),
@@ -113,17 +131,21 @@ pub fn main(cli: Cli) -> u8 {
         Command::Report(args) => report::run(&args, db),
         Command::Pareto(args) => pareto::run(&args, db),
         Command::Export(args) => export::run(&args, db),
+        Command::Columns(args) => columns::run(&args),
         Command::Show(args) => show::run(&args, db),
         Command::Retry(args) => retry::run(&args, db),
         Command::Cancel(args) => cancel::run(&args, db),
         Command::Rm(args) => rm::run(&args, db),
-        Command::Gc => gc::run(db),
+        Command::Gc(args) => gc::run(&args, db),
+        Command::Rename(args) => rename::run(&args, db),
+        Command::Diff(args) => diff::run(&args, db),
+        Command::Document(args) => document::run(&args, db),
         Command::Merge(args) => merge::run(&args, db),
         Command::Copy(args) => merge::copy(&args, db),
         Command::Doctor => doctor::run(db),
         Command::Solve(args) => solve::run(&args),
         Command::Inspect(args) => inspect::run(&args, db),
-        Command::Validate(args) => validate::run(&args),
+        Command::Validate(args) => validate::run(&args, db),
         Command::Presets(args) => presets::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::Completions(args) => completions::run(&args),
@@ -132,6 +154,9 @@ pub fn main(cli: Cli) -> u8 {
         Ok(code) => code,
         Err(error) => {
             output::log(format_args!("error: {error}"));
+            for line in missing::advice(&error, db) {
+                output::log(format_args!("  help: {line}"));
+            }
             exit::ERROR
         }
     }

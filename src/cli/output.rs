@@ -28,7 +28,44 @@ pub(crate) fn stream(fill: impl FnOnce(&mut dyn Write) -> Result<(), CliError>) 
 
 /// Characters per line of the terminal that shows standard output; 100 if it is not a terminal.
 pub(crate) fn width() -> usize {
-    terminal_size::terminal_size_of(io::stdout()).map_or(100, |(width, _)| usize::from(width.0))
+    terminal_width().unwrap_or(100)
+}
+
+/// Characters per line of the terminal that shows standard output, if it is a terminal.
+pub(crate) fn terminal_width() -> Option<usize> {
+    terminal_size::terminal_size_of(io::stdout()).map(|(width, _)| usize::from(width.0))
+}
+
+/// Breaks the lines that are wider than the terminal which shows standard output between words. Text that goes elsewhere is
+/// left as it is, for programs that read it line by line.
+pub(crate) fn fitted(text: String) -> String {
+    match terminal_size::terminal_size_of(io::stdout()) {
+        Some((width, _)) => broken(&text, usize::from(width.0)),
+        None => text,
+    }
+}
+
+/// Breaks the lines that are longer than `width` characters, colours not counted, between words.
+fn broken(text: &str, width: usize) -> String {
+    let fits = |line: &str| anstream::adapter::strip_str(line).to_string().chars().count() <= width;
+    let lines =
+        text.lines().flat_map(|line| if fits(line) { vec![line.to_owned()] } else { wrapped(line, width) });
+    lines.fold(String::new(), |text, line| text + &line + "\n")
+}
+
+/// Breaks a text into lines of at most `width` characters. A longer word has a line of its own.
+pub(crate) fn wrapped(text: &str, width: usize) -> Vec<String> {
+    let mut lines: Vec<String> = Vec::new();
+    for word in text.split(' ') {
+        match lines.last_mut() {
+            Some(line) if line.chars().count() + 1 + word.chars().count() <= width => {
+                line.push(' ');
+                line.push_str(word);
+            }
+            _ => lines.push(word.to_owned()),
+        }
+    }
+    lines
 }
 
 /// Removes the colours from a text unless standard output shows them: on a terminal, and without `NO_COLOR`.
@@ -70,5 +107,18 @@ pub(crate) fn fill_file(
     match failure {
         Some(error) => Err(error),
         None => written.map_err(|source| CliError::file(path, source)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::broken;
+
+    /// Protects: long lines are broken between words, and lines that fit are not changed, also if their colours make them long.
+    #[test]
+    fn only_long_lines_are_broken() {
+        let coloured = "\u{1b}[32m█████\u{1b}[0m  33 %";
+        let text = format!("a  b\n{coloured}\n12 jobs: 3 done, 9 pending\n");
+        assert_eq!(broken(&text, 16), format!("a  b\n{coloured}\n12 jobs: 3 done,\n9 pending\n"));
     }
 }

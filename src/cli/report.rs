@@ -1,12 +1,11 @@
-//! `tribosweep report`: the page, tables and figures of a study, once or whenever the study changes.
+//! `tribosweep report`: the page, tables and figures of one or several studies, once or whenever a study changes.
 
 use super::error::CliError;
 use super::output::{log, print};
 use super::signals::raise_on_signal;
 use crate::exit;
 use crate::queue::{Location, Queue};
-use crate::report;
-use crate::sweep::{self, Revision};
+use crate::sweep::{self, ReportContent, ReportRequest, Revision};
 use crate::worker::Interrupt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -14,8 +13,16 @@ use std::time::Duration;
 /// Arguments of `report`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// The study's name or file.
-    study: String,
+    /// Names or files of the studies. Several are compared with each other: figures and tables show them side by side, and
+    /// the first one is the reference of the differences.
+    #[arg(required = true, value_name = "STUDY")]
+    studies: Vec<String>,
+    /// A CSV file of measured points to compare with, with the columns omega_rpm, mu_star, frequency_hz, their errors
+    /// mu_star_error and frequency_error_hz, and parameters such as mu; may be repeated.
+    #[arg(long = "data", value_name = "FILE")]
+    data: Vec<PathBuf>,
+    #[command(flatten)]
+    axes: Axes,
     #[command(flatten)]
     out: OutFolder,
     /// Check every so many seconds whether the study has changed, and then write the report again, until no job is
@@ -25,10 +32,24 @@ pub(crate) struct Args {
     watch: Option<u32>,
 }
 
+/// The axes of a report.
+#[derive(Debug, clap::Args)]
+struct Axes {
+    /// The parameter along the axis of figures and the rows of tables; default: that of the study's file, or omega_rpm.
+    #[arg(long, value_name = "NAME")]
+    x: Option<String>,
+    /// The parameter that tells curves and columns apart, or `source`; default: that of the study's file, or mu.
+    #[arg(long, value_name = "NAME")]
+    by: Option<String>,
+    /// Quantities with figures and tables besides the usual ones, by their names in the export, such as n_over_f_max.
+    #[arg(long, value_name = "QUANTITY", num_args = 1.., value_delimiter = ',')]
+    y: Vec<String>,
+}
+
 /// The folder of a report.
 #[derive(Debug, clap::Args)]
 pub(crate) struct OutFolder {
-    /// Folder for the report; default: reports/STUDY.
+    /// Folder for the report; default: reports/STUDY, and reports/A-vs-B for a comparison.
     #[arg(long = "out", value_name = "DIR")]
     folder: Option<PathBuf>,
 }
@@ -42,44 +63,46 @@ impl OutFolder {
 
 /// Writes the report and prints the path of its page.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let name = sweep::study_name(&args.study)?;
+    let studies = args.studies.iter().map(|study| sweep::study_name(study)).collect::<Result<_, _>>()?;
+    let Axes { x, by, y } = &args.axes;
+    let request =
+        ReportRequest { studies, data: args.data.clone(), x: x.clone(), by: by.clone(), y: y.clone() };
+    let folder = args.out.of(&request.folder_name());
     sweep::block_on(async {
         let mut queue = sweep::open_to_read(db.clone()).await?;
         if let Some(interval_s) = args.watch {
-            watch(&mut queue, &name, &args.out, interval_s).await?;
+            watch(&mut queue, &request, &folder, interval_s).await?;
         } else {
-            read_and_write(&mut queue, &name, &args.out, None).await?;
-            print_page(&name, &args.out)?;
+            read_and_write(&mut queue, &request, &folder, None).await?;
+            print_page(&folder)?;
         }
         queue.close().await?;
         Ok(exit::SUCCESS)
     })
 }
 
-fn print_page(name: &str, out: &OutFolder) -> Result<(), CliError> {
-    print(&format!("{}\n", out.of(name).join("report.html").display()))
+fn print_page(folder: &Path) -> Result<(), CliError> {
+    print(&format!("{}\n", folder.join("report.html").display()))
 }
 
 async fn read_and_write(
     queue: &mut Queue,
-    name: &str,
-    out: &OutFolder,
+    request: &ReportRequest,
+    folder: &Path,
     refresh_s: Option<u32>,
 ) -> Result<(), CliError> {
-    let rows = sweep::read_rows(queue, name).await?;
-    write(queue, &rows, name, out, refresh_s).await
+    let content = sweep::read_report(queue, request).await?;
+    write(queue, &content, folder, refresh_s).await
 }
 
-/// Writes the report of a study's rows and logs where it is.
+/// Writes a report and logs where it is.
 pub(crate) async fn write(
     queue: &mut Queue,
-    rows: &[report::JobRow],
-    name: &str,
-    out: &OutFolder,
+    content: &ReportContent,
+    folder: &Path,
     refresh_s: Option<u32>,
 ) -> Result<(), CliError> {
-    let folder = out.of(name);
-    sweep::write_refreshing_report(queue, name, rows, &folder, refresh_s).await?;
+    sweep::write_content(queue, content, folder, refresh_s).await?;
     log(format_args!("report written to {}", folder.display()));
     Ok(())
 }
@@ -87,21 +110,29 @@ pub(crate) async fn write(
 /// The longest time between a signal and the reaction to it.
 const TICK: Duration = Duration::from_millis(100);
 
-/// Writes the report whenever the study has changed, until the study is finished or a signal asks to stop.
-async fn watch(queue: &mut Queue, name: &str, out: &OutFolder, interval_s: u32) -> Result<(), CliError> {
+/// Writes the report whenever a study has changed, until all studies are finished or a signal asks to stop.
+async fn watch(
+    queue: &mut Queue,
+    request: &ReportRequest,
+    folder: &Path,
+    interval_s: u32,
+) -> Result<(), CliError> {
     let interrupt = Interrupt::default();
     let listener =
         tokio::spawn(raise_on_signal(interrupt.clone(), "the report will not be updated any more"));
-    let mut last: Option<Revision> = None;
+    let mut last: Option<Vec<Revision>> = None;
     loop {
         // The revision is read before the rows: a change in between leads to another report.
-        let revision = Revision::read(queue, name).await?;
-        let is_last = revision.is_finished() || interrupt.is_raised();
+        let mut revision = Vec::new();
+        for study in &request.studies {
+            revision.push(Revision::read(queue, study).await?);
+        }
+        let is_last = revision.iter().all(Revision::is_finished) || interrupt.is_raised();
         if is_last || last.as_ref() != Some(&revision) {
-            read_and_write(queue, name, out, Some(interval_s).filter(|_| !is_last)).await?;
+            read_and_write(queue, request, folder, Some(interval_s).filter(|_| !is_last)).await?;
         }
         if last.is_none() {
-            print_page(name, out)?;
+            print_page(folder)?;
         }
         if is_last {
             break;
@@ -116,6 +147,14 @@ async fn watch(queue: &mut Queue, name: &str, out: &OutFolder, interval_s: u32) 
     }
     listener.abort();
     Ok(())
+}
+
+/// Checks whether the folder of a report can be created and written to, and creates nothing.
+pub(crate) fn check_folder(name: &str, out: &OutFolder) -> Result<(), CliError> {
+    let folder = out.of(name);
+    // The nearest folder that exists; a relative path begins in the current one.
+    let existing = folder.ancestors().find(|path| path.symlink_metadata().is_ok()).unwrap_or(Path::new("."));
+    tempfile::tempfile_in(existing).map(drop).map_err(|source| CliError::file(&folder, source))
 }
 
 /// Creates the folder of a report, so that an error is noticed before the work.

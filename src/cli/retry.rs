@@ -2,7 +2,9 @@
 
 use super::error::CliError;
 use super::output::log;
+use super::work::log_taken_back;
 use crate::exit;
+use crate::publish::value;
 use crate::queue::{Location, Retry};
 use crate::sweep;
 
@@ -26,8 +28,10 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         queue.close().await?;
         Ok::<_, CliError>(retried)
     })?;
-    let failed = format!("{} failed", retried.failed);
-    let cancelled = if args.failed { String::new() } else { format!(" and {} cancelled", retried.cancelled) };
-    log(format_args!("{name}: {failed}{cancelled} jobs are pending again; `tribosweep work` runs them"));
+    log_taken_back(retried.taken_back);
+    let failed = value::count(retried.failed, "failed job");
+    let cancelled = value::count(retried.cancelled, "cancelled job");
+    let jobs = if args.failed { failed } else { format!("{failed} and {cancelled}") };
+    log(format_args!("{name}: `retry` makes {jobs} pending again; `tribosweep work` runs pending jobs"));
     Ok(exit::SUCCESS)
 }

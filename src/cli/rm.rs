@@ -1,9 +1,10 @@
 //! `tribosweep rm`: remove a study.
 
 use super::error::CliError;
-use super::output::log;
+use super::output::{log, print};
 use crate::exit;
-use crate::queue::Location;
+use crate::publish::value::count;
+use crate::queue::{Location, Removed};
 use crate::sweep;
 
 /// Arguments of `rm`.
@@ -11,11 +12,24 @@ use crate::sweep;
 pub(crate) struct Args {
     /// The study's name or file.
     study: String,
+    /// Only print what would be removed.
+    #[arg(long)]
+    dry_run: bool,
 }
 
 /// Removes the study.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let name = sweep::study_name(&args.study)?;
+    if args.dry_run {
+        let removed = sweep::block_on(async {
+            let mut queue = sweep::open_to_read(db.clone()).await?;
+            let removed = queue.preview_removal(&name).await?;
+            queue.close().await?;
+            Ok::<_, CliError>(removed)
+        })?;
+        print(&format!("{name}: `rm` would remove {}; nothing has been changed\n", in_words(&removed)))?;
+        return Ok(exit::SUCCESS);
+    }
     let removed = sweep::block_on(async {
         let mut queue = sweep::open_to_change(db.clone()).await?;
         let removed = queue.remove(&name).await?;
@@ -23,9 +37,19 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         Ok::<_, CliError>(removed)
     })?;
     log(format_args!(
-        "{name}: removed with {} rows; {} pending jobs that no other study needs are cancelled; results stay in the \
-         database until `tribosweep gc`",
-        removed.rows, removed.cancelled
+        "{name}: removed {}; results stay in the database until `tribosweep gc`",
+        in_words(&removed)
     ));
     Ok(exit::SUCCESS)
+}
+
+/// What a removal comprises.
+fn in_words(&Removed { rows, jobs, done, shared_done, cancelled }: &Removed) -> String {
+    format!(
+        "{} of {} (results out of view: {}; results that other studies have too: {shared_done}; pending jobs cancelled: \
+         {cancelled})",
+        count(rows, "row"),
+        count(jobs, "job"),
+        done - shared_done
+    )
 }

@@ -1,20 +1,22 @@
 //! `tribosweep run`: submit, work and report.
 
 use super::error::CliError;
+use super::forecast;
 use super::output::print;
+use super::replace::Replacement;
 use super::report::{self, OutFolder};
+use super::study_args::StudyArgs;
 use super::submit::{Priority, submit};
 use super::work::{Checkpoints, Retries, Threads, options, work};
 use crate::queue::{Clock, Location, Queue, Scope, Shard};
-use crate::report::tables::{Quantity, markdown};
-use crate::sweep::{self, Plan};
-use std::path::PathBuf;
+use crate::report::tables::{self, Quantity};
+use crate::sweep::{self, Forecast, ReportRequest};
 
 /// Arguments of `run`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// The study file.
-    study: PathBuf,
+    #[command(flatten)]
+    study: StudyArgs,
     #[command(flatten)]
     threads: Threads,
     #[command(flatten)]
@@ -24,22 +26,29 @@ pub(crate) struct Args {
     #[command(flatten)]
     priority: Priority,
     #[command(flatten)]
+    replacement: Replacement,
+    #[command(flatten)]
     out: OutFolder,
 }
 
 /// Runs the whole sweep. If it is interrupted, the report has the jobs that are done.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let plan = Plan::load(&args.study)?;
+    let plan = args.study.plan()?;
     let name = plan.name();
     report::create_folder(name, &args.out)?;
     sweep::block_on(async {
         let mut queue = Queue::open_with(db.clone(), Clock::OfDatabase, args.retries.settings()).await?;
-        submit(&plan, &args.priority, Shard::WHOLE, &mut queue).await?;
-        let options = options(&args.threads, &args.checkpoints);
+        submit(&plan, &args.priority, Shard::WHOLE, &args.replacement, &mut queue).await?;
+        let mut options = options(&args.threads, &args.checkpoints);
+        let forecast = Forecast::new(&plan, Some(&mut queue), options.threads).await?;
+        forecast::announce(&forecast);
+        if let Some(time) = forecast.time {
+            options.expected_s_per_cost = time.per_cost_s;
+        }
         let code = work(&mut queue, &Scope::Study(name.to_owned()), options).await?;
-        let rows = sweep::read_rows(&mut queue, name).await?;
-        print(&markdown(&rows, Quantity::MuStar))?;
-        report::write(&mut queue, &rows, name, &args.out, None).await?;
+        let content = sweep::read_report(&mut queue, &ReportRequest::of_study(name)).await?;
+        print(&tables::page(&content.rows, &content.view, Quantity::MuStar, name))?;
+        report::write(&mut queue, &content, &args.out.of(name), None).await?;
         queue.close().await?;
         Ok(code)
     })

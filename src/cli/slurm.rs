@@ -7,10 +7,10 @@ mod settings;
 pub(crate) use args::Args;
 
 use super::error::CliError;
-use super::output::{log, print};
+use super::output::{log, print, write_file};
 use crate::exit;
 use crate::queue::Location;
-use crate::sweep::Plan;
+use crate::study::StudyText;
 use scripts::Scripts;
 use settings::Database;
 use std::path::{Path, PathBuf};
@@ -19,7 +19,7 @@ use std::process::Command;
 /// Writes the scripts, and submits them with `--submit`.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let database = Database::of(db)?;
-    let plan = Plan::load(&args.study)?;
+    let plan = args.study.plan()?;
     let name = plan.name();
     if args.workers as usize > plan.jobs().len() {
         return Err(CliError::Usage(format!(
@@ -29,8 +29,14 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         )));
     }
     let folder = args.folder.clone().unwrap_or_else(|| PathBuf::from(format!("{name}.slurm")));
-    let scripts = Scripts::new(args, name, &database, &folder)?;
+    // The array reads the study later, and on other machines.
+    let is_own = args.study.is_changed() || StudyText::is_stdin(&args.study.file);
+    let study = if is_own { folder.join("study.json") } else { args.study.file.clone() };
+    let scripts = Scripts::new(args, &study, name, &database, &folder)?;
     scripts.write()?;
+    if is_own {
+        write_file(&study, plan.document().as_bytes())?;
+    }
     if args.submit {
         return submit(&scripts.submit());
     }

@@ -3,8 +3,11 @@
 use super::error::CliError;
 use super::foreground;
 use super::output::{log, print, write_file};
+use super::warnings;
 use crate::analysis::{self, ElasticDisk, JobObserver, JobRecord, Moment};
 use crate::exit;
+use crate::publish::value::quantity;
+use crate::spec::{JobSpec, Scene};
 use crate::study::{Preset, Study};
 use crate::sweep::History;
 use crate::worker::Interrupt;
@@ -14,7 +17,7 @@ use std::path::PathBuf;
 /// Arguments of `solve`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// The study file that gives the scene.
+    /// The study file that gives the scene, or - for standard input.
     study: PathBuf,
     /// Set a parameter of the grid or any other parameter; may be repeated.
     #[arg(long = "set", value_name = "NAME=VALUE", value_parser = foreground::parse_setting)]
@@ -38,6 +41,7 @@ pub(crate) struct Args {
 /// Solves the job and prints its figures; nothing is stored.
 pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
     let spec = Study::load(&args.study)?.single_with_preset(args.preset, &args.settings)?;
+    warnings::of_job(&spec);
     let interrupt = foreground::interrupt();
     let mut recorder =
         Recorder { interrupt, history: args.history.as_ref().map(|_| History::new(args.every)) };
@@ -50,7 +54,7 @@ pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
     }
     match solved {
         Ok(record) => {
-            print(&if args.json { as_json(&record)? } else { as_text(&record) })?;
+            print(&if args.json { as_json(&record)? } else { job_line(&spec) + &as_text(&record) })?;
             Ok(exit::SUCCESS)
         }
         Err(error) => foreground::exit_code(error),
@@ -77,6 +81,19 @@ impl JobObserver for Recorder {
 
 fn as_json(record: &JobRecord) -> Result<String, CliError> {
     Ok(serde_json::to_string_pretty(record)? + "\n")
+}
+
+/// The most important inputs of a job.
+fn job_line(spec: &JobSpec) -> String {
+    let Scene { pin, disk, contact, load, .. } = &spec.scene;
+    let [nx, ny, nz] = pin.elements;
+    format!(
+        "job                    ω = {}, μ = {}, F = {}, E = {}, {nx} × {ny} × {nz} elements\n",
+        quantity(disk.omega_rpm, "rpm"),
+        quantity(contact.mu, ""),
+        quantity(load.force_n, "N"),
+        quantity(pin.young_modulus_pa, "Pa"),
+    )
 }
 
 /// The most important figures of a record.

@@ -4,6 +4,7 @@ use super::error::CliError;
 use super::output::{self, print};
 use super::{outlook, workers};
 use crate::exit;
+use crate::publish::value::count;
 use crate::queue::{Counts, Location, Queue, Scope};
 use crate::report::overview::overview;
 use crate::report::trouble::{Region, sentences};
@@ -37,7 +38,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         queue.close().await?;
         Ok::<_, CliError>(text)
     })?;
-    print(&output::coloured(text))?;
+    print(&output::coloured(output::fitted(text)))?;
     Ok(exit::SUCCESS)
 }
 
@@ -82,7 +83,8 @@ async fn one_study(queue: &mut Queue, name: &str, as_json: bool) -> Result<Strin
         text.push_str(&overview(&sweep::read_rows(queue, name).await?, output::width()));
     }
     if not_periodic > 0 {
-        let _ = writeln!(text, "{not_periodic} done jobs reached their time limit without becoming periodic");
+        let jobs = count(not_periodic, "done job");
+        let _ = writeln!(text, "{jobs} reached the time limit without becoming periodic");
     }
     for line in sentences(&regions) {
         let _ = writeln!(text, "{line}");
@@ -132,8 +134,8 @@ fn counts_text(counts: Counts) -> String {
     let cancelled =
         if counts.cancelled > 0 { format!(", {} cancelled", counts.cancelled) } else { String::new() };
     format!(
-        "{} jobs: {} done, {} failed, {} running, {} pending{cancelled}",
-        counts.total(),
+        "{}: {} done, {} failed, {} running, {} pending{cancelled}",
+        count(counts.total(), "job"),
         counts.done,
         counts.failed,
         counts.running,

@@ -1,23 +1,35 @@
 //! `tribosweep submit`: plan the jobs of a study and store them.
 
 use super::error::CliError;
-use super::output::log;
+use super::forecast;
+use super::output::{log, print};
+use super::replace::{self, Replacement};
+use super::study_args::StudyArgs;
+use super::warnings;
 use crate::exit;
+use crate::publish::value;
 use crate::queue::{Location, Queue, Shard};
-use crate::sweep::{self, Plan};
-use std::path::PathBuf;
+use crate::sweep::{self, Plan, Submission};
 
 /// Arguments of `submit`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// The study file.
-    study: PathBuf,
+    #[command(flatten)]
+    study: StudyArgs,
     #[command(flatten)]
     priority: Priority,
     /// Submit only shard I of N equal ones (1/4, 2/4 …), for a study that is split between several databases; `merge`
     /// combines them.
     #[arg(long, value_name = "I/N", value_parser = parse_shard)]
     shard: Option<Shard>,
+    #[command(flatten)]
+    replacement: Replacement,
+    /// Submit nothing, and say what the jobs take: nodes, time step, memory, disk, time on this machine.
+    #[arg(long, conflicts_with = "shard")]
+    dry_run: bool,
+    /// With --dry-run: print JSON.
+    #[arg(long, requires = "dry_run")]
+    json: bool,
 }
 
 fn parse_shard(text: &str) -> Result<Shard, String> {
@@ -42,13 +54,33 @@ pub(crate) struct Priority {
 /// Submits the study.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     // The study is read before the database is opened: an invalid study creates no database.
-    let plan = Plan::load(&args.study)?;
+    let plan = args.study.plan()?;
+    if args.dry_run {
+        return dry_run(&plan, args, db);
+    }
     sweep::block_on(async {
         let mut queue = sweep::open(db.clone()).await?;
-        submit(&plan, &args.priority, args.shard.unwrap_or(Shard::WHOLE), &mut queue).await?;
+        let shard = args.shard.unwrap_or(Shard::WHOLE);
+        submit(&plan, &args.priority, shard, &args.replacement, &mut queue).await?;
         queue.close().await?;
         Ok(exit::SUCCESS)
     })
+}
+
+/// Prints what the jobs of a study take. Changes nothing.
+fn dry_run(plan: &Plan, args: &Args, db: &Location) -> Result<u8, CliError> {
+    warnings::of_study(plan.study());
+    let (forecast, replaced) = forecast::read(plan, sweep::available_threads(), db)?;
+    forecast::warn(&forecast);
+    let name = plan.name();
+    print(&if args.json {
+        format!("{}\n", forecast::as_json(&forecast, replaced.as_ref(), plan))
+    } else {
+        let jobs = value::count(forecast.jobs, "job");
+        format!("{name}: {jobs}, nothing was submitted\n{}", forecast::as_text(&forecast, db))
+    })?;
+    replace::check(plan, &args.replacement, replaced)?;
+    Ok(exit::SUCCESS)
 }
 
 /// Submits a study and logs what has changed.
@@ -56,25 +88,23 @@ pub(crate) async fn submit(
     plan: &Plan,
     priority: &Priority,
     shard: Shard,
+    replacement: &Replacement,
     queue: &mut Queue,
 ) -> Result<(), CliError> {
-    let submitted = plan.submit_shard(queue, shard, priority.value.map(i64::from)).await?;
+    warnings::of_study(plan.study());
+    let submission =
+        Submission { shard, priority: priority.value.map(i64::from), replace: replacement.policy() };
+    let submitted = replace::submit(plan, submission, queue).await?;
+    let failed = match submitted.already_failed {
+        0 => String::new(),
+        failed => format!(", {failed} failed before"),
+    };
     log(format_args!(
-        "{}: {} jobs, {} new, {} already done{}{}",
+        "{}: {}, {} new, {} already done{failed}",
         plan.name(),
-        submitted.jobs,
+        value::count(submitted.jobs, "job"),
         submitted.added,
         submitted.already_done,
-        if submitted.already_failed > 0 {
-            format!(", {} failed before", submitted.already_failed)
-        } else {
-            String::new()
-        },
-        if submitted.cancelled > 0 {
-            format!(", {} of the replaced study cancelled", submitted.cancelled)
-        } else {
-            String::new()
-        }
     ));
     Ok(())
 }

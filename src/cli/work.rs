@@ -5,6 +5,7 @@ use super::error::CliError;
 use super::output::log;
 use super::signals::raise_on_signal;
 use crate::exit;
+use crate::publish::value::count;
 use crate::queue::{Clock, Location, Queue, Scope, Settings, TakenBack};
 use crate::sweep;
 use crate::worker::{self, Interrupt, WorkError, WorkOptions};
@@ -55,6 +56,13 @@ pub(crate) struct Threads {
     threads: Option<u16>,
 }
 
+impl Threads {
+    /// Their number.
+    pub(crate) fn number(&self) -> usize {
+        self.threads.map_or_else(sweep::available_threads, usize::from)
+    }
+}
+
 /// How often the states of long jobs are stored.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Checkpoints {
@@ -80,7 +88,8 @@ fn parse_seconds(text: &str) -> Result<f64, String> {
 /// The options of a worker without an idle exit.
 pub(crate) fn options(threads: &Threads, checkpoints: &Checkpoints) -> WorkOptions {
     WorkOptions {
-        threads: threads.threads.map_or_else(sweep::available_threads, usize::from),
+        threads: threads.number(),
+        expected_s_per_cost: sweep::expected_s_per_cost(threads.number()),
         checkpoint_interval: Some(Duration::from_secs_f64(checkpoints.seconds))
             .filter(|interval| !interval.is_zero()),
         idle_exit: None,
@@ -140,6 +149,18 @@ async fn interruptible(work: impl AsyncFnOnce(&Interrupt) -> Result<u8, CliError
     worked
 }
 
+/// Says how many jobs of processes that died have become pending or have failed, if there were any.
+pub(crate) fn log_taken_back(TakenBack { pending, failed }: TakenBack) {
+    if pending > 0 {
+        let (jobs, were) = (count(pending, "job"), if pending == 1 { "was" } else { "were" });
+        log(format_args!("{jobs} left running by an interrupted process {were} taken back"));
+    }
+    if failed > 0 {
+        let (jobs, has) = (count(failed, "job"), if failed == 1 { "has" } else { "have" });
+        log(format_args!("{jobs} {has} failed because the process died several times in a row"));
+    }
+}
+
 async fn work_and_log(
     interrupt: &Interrupt,
     queue: &mut Queue,
@@ -153,22 +174,17 @@ async fn work_and_log(
         }
         worked => worked?,
     };
-    let TakenBack { pending, failed } = summary.taken_back;
-    if pending > 0 {
-        log(format_args!("{pending} jobs left running by an interrupted process were taken back"));
-    }
-    if failed > 0 {
-        log(format_args!("{failed} jobs have failed because their process died several times in a row"));
-    }
+    log_taken_back(summary.taken_back);
     let counts = summary.counts;
     let is_cancelled = counts.cancelled > 0 && *scope != Scope::All;
     if is_cancelled {
-        log(format_args!("{} jobs were cancelled in the meantime", counts.cancelled));
+        let were = if counts.cancelled == 1 { "was" } else { "were" };
+        log(format_args!("{} {were} cancelled in the meantime", count(counts.cancelled, "job")));
     }
     if counts.running > 0 && !summary.interrupted && counts.pending == 0 {
         log(format_args!(
-            "no job is left for this worker; other workers are running {} jobs",
-            counts.running
+            "no job is left for this worker; other workers are running {}",
+            count(counts.running, "job")
         ));
     } else if counts.pending + counts.running > 0 || is_cancelled {
         log("interrupted; run the same command again to continue");

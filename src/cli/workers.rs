@@ -1,6 +1,7 @@
 //! The workers of a database as text and JSON, for `status`.
 
-use super::outlook::wrapped;
+use super::output::wrapped;
+use crate::publish::value::count;
 use crate::queue::{WorkerPresence, WorkerStatus};
 use serde_json::{Value, json};
 use std::time::Duration;
@@ -16,11 +17,15 @@ pub(crate) fn as_text(workers: &[WorkerStatus], width: usize) -> String {
     if present.len() > 1 {
         let per_s: f64 = present.iter().filter_map(|worker| worker.jobs_per_s).sum();
         let threads: u64 = present.iter().map(|worker| worker.threads).sum();
-        lines.insert(0, format!("{} workers with {threads} threads, {}", present.len(), rate(per_s)));
+        lines.insert(
+            0,
+            format!("{} workers with {}, {}", present.len(), count(threads, "thread"), rate(per_s)),
+        );
     }
     let taken_back: u64 = lost.iter().map(|worker| worker.taken_back).sum();
     if lost.len() > MOST_LOST_LISTED {
-        lines.push(format!("{} workers were lost, and {taken_back} jobs taken back from them", lost.len()));
+        let jobs = count(taken_back, "job");
+        lines.push(format!("{} workers were lost, and {jobs} taken back from them", lost.len()));
     } else {
         lines.extend(
             lost.iter()
@@ -40,7 +45,7 @@ fn present_line(worker: &WorkerStatus) -> String {
     };
     let pace = worker.jobs_per_s.map_or_else(String::new, |per_s| format!(", {}", rate(per_s)));
     let lost = if *taken_back > 0 { format!(", {taken_back} taken back from it") } else { String::new() };
-    let threads = if *threads == 1 { "1 thread".to_owned() } else { format!("{threads} threads") };
+    let threads = count(*threads, "thread");
     format!(
         "worker {pid} on {host}: {threads}, {doing}, {finished} done{pace}{lost}, seen {} ago",
         ago(*silent_ms)
@@ -51,8 +56,9 @@ fn lost_line(worker: &WorkerStatus) -> String {
     let WorkerStatus { host, pid, running, taken_back, silent_ms, .. } = worker;
     let waiting = if *running > 0 { format!(", {running} still to be taken back") } else { String::new() };
     format!(
-        "worker {pid} on {host}: lost {} ago, {taken_back} jobs taken back from it{waiting}",
-        ago(*silent_ms)
+        "worker {pid} on {host}: lost {} ago, {} taken back from it{waiting}",
+        ago(*silent_ms),
+        count(*taken_back, "job")
     )
 }
 

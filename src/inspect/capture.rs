@@ -5,13 +5,14 @@ use super::nodes::ObservedNode;
 use super::survey::TimeWindows;
 use crate::analysis::sample::{NodeSample, Sample};
 use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment};
+use crate::solver::energy::Energies;
 use crate::solver::{Drive, Model};
 use crate::spec::JobSpec;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
 
 /// Largest number of steps whose totals are recorded: the last ones.
-const MAX_TOTALS: usize = 1 << 20;
+pub(super) const MAX_TOTALS: usize = 1 << 20;
 
 /// What the second run recorded.
 #[derive(Debug, Clone)]
@@ -28,8 +29,19 @@ pub struct Capture {
     pub nodes: Vec<Vec<NodeStep>>,
     /// The contact face at every step of [`TimeWindows::cycle_s`].
     pub face: Vec<FaceStep>,
+    /// The energies at every audit of that cycle.
+    pub audits: Vec<Audit>,
     /// The pin at equally spaced times of that cycle.
     pub frames: Vec<Frame>,
+}
+
+/// The energies at an audit of the energy balance.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Audit {
+    /// t_n \[s\].
+    pub time_s: f64,
+    /// Energies \[J\] at t_n.
+    pub energies: Energies,
 }
 
 /// One observed node during one step.
@@ -89,6 +101,8 @@ pub fn capture(
         totals: VecDeque::new(),
         histories: vec![Vec::new(); nodes.len()],
         face: Vec::new(),
+        energies: Energies::default(),
+        audits: Vec::new(),
         frames: Vec::new(),
         on_progress,
     };
@@ -105,6 +119,7 @@ pub fn capture(
         nodes: histories.map(history).collect(),
         model,
         face: recorder.face,
+        audits: recorder.audits,
         frames: recorder.frames,
     })
 }
@@ -135,6 +150,9 @@ struct Recorder<'a> {
     totals: VecDeque<Sample>,
     histories: Vec<Vec<(f64, NodeSample)>>,
     face: Vec<FaceStep>,
+    /// The energies at the last audit.
+    energies: Energies,
+    audits: Vec<Audit>,
     frames: Vec<Frame>,
     on_progress: &'a mut dyn FnMut(f64) -> ControlFlow<()>,
 }
@@ -147,6 +165,8 @@ impl JobObserver for Recorder<'_> {
             self.model = Some(moment.model.clone());
             self.gain = moment.sampler.gain();
         }
+        let is_audit = *moment.energies != self.energies;
+        self.energies = *moment.energies;
         if time_s >= self.windows.totals_from_s {
             if self.totals.len() == MAX_TOTALS {
                 self.totals.pop_front();
@@ -164,6 +184,9 @@ impl JobObserver for Recorder<'_> {
             return;
         }
         self.face.push(FaceStep { time_s, nodes: self.face_of(moment) });
+        if is_audit {
+            self.audits.push(Audit { time_s, energies: self.energies });
+        }
         let due = |next_s: &mut f64| time_s >= *next_s;
         if self.frame_times_s.pop_if(due).is_some() {
             // A cycle may have fewer steps than frames.

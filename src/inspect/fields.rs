@@ -1,7 +1,7 @@
 //! The fields of the pin over a cycle as VTK files, which ParaView reads.
 
 use super::capture::{Capture, Frame};
-use super::vtu::{self, PointData, Values};
+use super::vtu::{self, GridInfo, PointData, Values};
 use crate::analysis::sample::NodeSample;
 use crate::publish::{Folder, PublishError};
 use crate::solver::body::block::BlockMesh;
@@ -13,6 +13,30 @@ const VTK_CORNERS: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
 /// The folder of the files that `fields.pvd` lists.
 pub(super) const FRAMES_FOLDER: &str = "fields";
+
+/// The names of the principal stresses, largest first.
+const PRINCIPAL: [&str; 3] = ["I", "II", "III"];
+
+/// The meaning of the numbers of `contact_state`. Every file has it as field data.
+const CODES: [(i8, &str); 4] =
+    [(NO_CONTACT_NODE, "no contact node"), (0, "separated"), (1, "stick"), (2, "slip")];
+const NO_CONTACT_NODE: i8 = -1;
+
+/// The fields of the files, each with its meaning and unit.
+pub(super) const FIELDS: [(&str, &str); 9] = [
+    ("displacement_m", "displacement [m]"),
+    ("velocity_m_s", "velocity over the step that led to the displacement [m/s]"),
+    ("contact_force_n", "contact force on the pin: friction in x and y, normal force in z [N]"),
+    ("normal_contact_stress_pa", "normal contact force over the area of the node [Pa]"),
+    ("gap_m", "gap between the node and the disk [m]"),
+    (
+        "contact_state",
+        "−1 no contact node, 0 separated, 1 stick, 2 slip; the files repeat this as field data",
+    ),
+    ("von_mises_pa", "von Mises stress [Pa]"),
+    ("principal_stress_pa", "principal stresses I ≥ II ≥ III [Pa]; the largest shear stress is (I − III)/2"),
+    ("stress_pa", "stress in the order xx, yy, zz, xy, yz, xz [Pa]"),
+];
 
 /// Writes `fields.pvd` and a folder with a file for each frame.
 ///
@@ -28,16 +52,15 @@ pub fn write(capture: &Capture, folder: &mut Folder) -> Result<(), PublishError>
             VTK_CORNERS.map(|corner| corners[corner])
         })
         .collect();
-    let path = folder.path_of(FRAMES_FOLDER);
-    let mut parts = Folder::create(&path)?;
+    folder.create_inside(FRAMES_FOLDER)?;
     let mut names = Vec::new();
     for (number, frame) in capture.frames.iter().enumerate() {
-        let name = format!("pin_{number:04}.vtu");
+        let name = format!("{FRAMES_FOLDER}/pin_{number:04}.vtu");
         let data = point_data(capture, mesh, frame);
-        parts.write_with(&name, |out| vtu::write_grid(&points_m, &cells, &data, out))?;
-        names.push(format!("{FRAMES_FOLDER}/{name}"));
+        let info = GridInfo { time_s: frame.time_s, codes: ("contact_state_codes", &CODES) };
+        folder.write_with(&name, |out| vtu::write_grid(&points_m, &cells, &data, &info, out))?;
+        names.push(name);
     }
-    folder.written.append(&mut parts.written);
     let times_s = capture.frames.iter().map(|frame| frame.time_s);
     folder
         .write_with("fields.pvd", |out| vtu::write_series(times_s.zip(names.iter().map(String::as_str)), out))
@@ -58,8 +81,9 @@ fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointDa
         all
     };
     let mut codes: Vec<i8> = frame.face.iter().map(|node| code(node.state)).collect();
-    codes.resize(mesh.node_count(), -1);
+    codes.resize(mesh.node_count(), NO_CONTACT_NODE);
     let stress = stress::nodal_pa(mesh, capture.model.pin().material(), &frame.u_m);
+    let principal: Vec<f64> = stress.iter().flat_map(|at| stress::principal_pa(*at)).collect();
     vec![
         numbers("displacement_m", 3, &[], frame.u_m.clone()),
         numbers("velocity_m_s", 3, &[], frame.velocity_m_s.clone()),
@@ -72,6 +96,8 @@ fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointDa
         ),
         numbers("gap_m", 1, &[], of_face(1, &|node, _| vec![node.gap_m])),
         PointData { name: "contact_state", components: &[], values: Values::Codes(codes) },
+        numbers("von_mises_pa", 1, &[], stress.iter().map(|at| stress::von_mises_pa(*at)).collect()),
+        numbers("principal_stress_pa", 3, &PRINCIPAL, principal),
         numbers("stress_pa", 6, &stress::COMPONENTS, stress.into_iter().flatten().collect()),
     ]
 }

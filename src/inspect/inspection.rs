@@ -109,6 +109,11 @@ impl Inspection {
         Ok(Self { spec: spec.clone(), survey, capture, observed, spectrum })
     }
 
+    /// The rate of the disk \[rad/s\].
+    pub(super) fn disk_rate(&self) -> f64 {
+        rad_per_s_from_rpm(self.spec.scene.disk.omega_rpm)
+    }
+
     /// The mesh of the pin.
     pub fn mesh(&self) -> &BlockMesh {
         self.capture.model.mesh()

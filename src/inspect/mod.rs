@@ -12,15 +12,18 @@
 //! to be useless, and the code that solves jobs does not know that it is observed.
 
 mod capture;
+mod energies;
 mod envelope;
 mod fields;
 mod figures;
 mod inspection;
+mod loops;
 mod low_pass;
 mod nodes;
 mod overlay;
 mod page;
 mod phases;
+mod spectra;
 mod spectrum;
 mod summary;
 mod survey;
@@ -30,16 +33,18 @@ mod vtu;
 mod waves;
 mod write;
 
-pub use capture::{Capture, FaceStep, Frame, NodeStep};
+pub use capture::{Audit, Capture, FaceStep, Frame, NodeStep};
 pub use figures::InspectionFigure;
 pub use inspection::{Inspection, InspectionError, NodeFindings, Options};
+pub use loops::{AuditedFriction, LoopEnergies, LoopSummary};
 pub use nodes::{NodeSelector, ObservedNode};
 pub use overlay::write_overlay;
 pub use page::PageHeader;
 pub use phases::{Instants, Phase};
+pub use spectra::JobSpectrum;
 pub use spectrum::Spectrum;
 pub use summary::Summary;
 pub use survey::{Survey, TimeWindows};
 pub use trace::Trace;
 pub use waves::{Change, Wave};
-pub use write::{PAGE, write};
+pub use write::{PAGE, has_spectrum, key_of, write};

@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 /// The first file that could not be written.
 pub fn write_overlay(title: &str, traces: &[Trace], out_dir: &Path) -> Result<Vec<PathBuf>, PublishError> {
     let node = traces.first().map_or("", |trace| trace.node.name.as_str());
-    let mut folder = Folder::create(out_dir)?;
+    let mut folder = Folder::create(out_dir, "overlay")?;
     let name = format!("figure8_{node}.svg");
     let svg = figures::overlay(title, traces)
         .map_err(|source| PublishError::Figure { path: folder.path_of(&name), source })?;
@@ -32,5 +32,6 @@ pub fn write_overlay(title: &str, traces: &[Trace], out_dir: &Path) -> Result<Ve
         });
         csv(&header, lines, out)
     })?;
-    Ok(folder.written)
+    // The other nodes of the same jobs are in the same folder.
+    folder.finish_beside_earlier()
 }

@@ -1,20 +1,32 @@
 //! The page of an inspection: one file with all of it except for the tables that are too large.
 
+use super::energies;
+use super::fields::FIELDS;
 use super::figures::InspectionFigure;
 use super::inspection::Inspection;
 use super::summary::{NodeSummary, Summary};
+use crate::publish::Sheet;
 use crate::publish::html::{self, download, figure, navigation, section, table, tiles, warning};
+use crate::publish::rounding::{at_place, last_place};
 use crate::publish::value::{MISSING, fixed, number, significant};
 use maud::{Markup, html};
 use std::collections::BTreeMap;
 
 /// The title of the page, and the program that made it.
-#[derive(Debug, Clone, PartialEq, Eq, Default)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub struct PageHeader {
     /// The study and the job's parameters.
     pub title: String,
     /// The program that ran the job.
     pub made_with: String,
+    /// The job's key; empty if it is not known. A report finds the inspections of its jobs by it.
+    pub key: String,
+    /// What was simulated: drawings and all inputs.
+    pub sheet: Sheet,
+    /// The largest error of μ\* that mesh and time step make, relative to μ\*, if it was measured with such a mesh.
+    pub mu_star_relative_error: Option<f64>,
+    /// What is known about the error that mesh and time step make, in a sentence; may be empty.
+    pub accuracy: String,
 }
 
 /// The page. `tables` are the CSV files that it contains, by name.
@@ -26,16 +38,20 @@ pub fn of(
     header: &PageHeader,
 ) -> String {
     let links = figures.iter().map(|figure| (figure.stem, figure.heading));
+    let first = [("scene", "What was simulated")];
     let last = [("nodes", "Nodes in numbers"), ("files", "Files")];
-    let sections: Vec<(&str, &str)> = links.chain(last).collect();
+    let sections: Vec<(&str, &str)> = first.into_iter().chain(links).chain(last).collect();
     let body = html! {
-        (head(inspection, summary))
+        (head(inspection, summary, header))
+        @if !header.accuracy.is_empty() { div.accuracy { p { strong { "Accuracy. " } (header.accuracy) } } }
         (navigation(sections))
+        (section("scene", first[0].1, &html::sheet(&header.sheet)))
         @for drawn in figures {
             (section(drawn.stem, drawn.heading, &html! {
                 (figure(&drawn.svg, &drawn.caption, None))
                 p { "Data: " @for name in &drawn.data { (data(name, tables)) " " } }
                 @if drawn.stem == "wave" { (waves(summary)) }
+                @if drawn.stem == "loops" { (energies::table_of(summary)) }
             }))
         }
         (section("nodes", last[0].1, &nodes(summary)))
@@ -44,14 +60,23 @@ pub fn of(
     html::page(&header.title, None, &body)
 }
 
-fn head(inspection: &Inspection, summary: &Summary) -> Markup {
+fn head(inspection: &Inspection, summary: &Summary, header: &PageHeader) -> Markup {
     let record = &summary.record;
+    // As on the page of a report: numbers end at the digit in which the larger error begins.
+    let error =
+        record.mu_star_se.abs().max(header.mu_star_relative_error.unwrap_or(0.0) * record.mu_star.abs());
+    let finest = if header.mu_star_relative_error.is_some() { -4 } else { -3 };
+    let place = last_place(error).unwrap_or(finest).clamp(finest, -1);
     let frequency = record.frequency_hz.map_or_else(|| "none".to_owned(), |f| format!("{f:.0} Hz"));
     let numbers = [
         (
             "μ*",
-            fixed(record.mu_star, 4),
-            format!("± {} at μ = {}", fixed(record.mu_star_se, 4), number(summary.job.scene.contact.mu)),
+            at_place(record.mu_star, place),
+            format!(
+                "at μ = {}; standard error {}",
+                number(summary.job.scene.contact.mu),
+                significant(record.mu_star_se, 2)
+            ),
         ),
         ("frequency", frequency, "of the total normal force".to_owned()),
         ("regime", record.regime.name().replace('_', "–"), record.outcome.name().replace('_', " ")),
@@ -188,10 +213,20 @@ fn files() -> Markup {
             li { code { "inspection.json" } " – all numbers of this page, with the job's specification and record" }
             li { code { "node_*.csv" } " – histories of the observed nodes; " code { "phases.csv" } ", " code { "instants.csv" } }
             li { code { "face.csv" } " – every contact node at every step of a cycle; " code { "wave.csv" } }
+            li { code { "loops.csv" } " – friction over slip and displacement, of the observed nodes and of the whole face" }
             li { code { "totals.csv" } ", " code { "run.csv" } ", " code { "cycles.csv" } ", " code { "spectrum.csv" } }
-            li { code { "fields.pvd" } " – the pin over a cycle, for ParaView: displacement, velocity, contact force, "
-                "normal contact stress (force over tributary area), gap, contact state (−1 no contact node, 0 separated, "
-                "1 stick, 2 slip) and stress; velocities are those over the step that led to the displacements" }
+            li { code { "fields.pvd" } " – the pin over a cycle, for ParaView, with these fields at the nodes:" }
         }
+        (fields())
     }
+}
+
+/// The fields of the files for ParaView, with the colours of the contact states.
+fn fields() -> Markup {
+    let header = ["field", "meaning"].map(str::to_owned);
+    let lines: Vec<Vec<Markup>> = FIELDS
+        .iter()
+        .map(|(name, meaning)| vec![html! { (name) }, html! { span.words { (meaning) } }])
+        .collect();
+    table(&header, &lines)
 }

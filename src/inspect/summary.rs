@@ -1,6 +1,7 @@
 //! The numbers of an inspection, as one JSON document.
 
 use super::inspection::{Inspection, NodeFindings, loop_area_m2, node_loop};
+use super::loops::{self, LoopSummary};
 use super::phases::Phase;
 use super::waves::{Wave, stations, waves};
 use crate::analysis::JobRecord;
@@ -11,6 +12,8 @@ use serde::Serialize;
 /// The numbers of an inspection.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {
+    /// The job's key; empty if it is not known.
+    pub key: String,
     /// Everything that determines the run.
     pub job: JobSpec,
     /// The job's record.
@@ -27,6 +30,8 @@ pub struct Summary {
     pub nodes: Vec<NodeSummary>,
     /// All nodes of the contact face over the cycle.
     pub face: FaceSummary,
+    /// Energies of the hysteresis loops over a cycle.
+    pub loops: LoopSummary,
     /// The waves of state changes along the middle of the contact face, one for each run of neighbouring nodes with the
     /// change.
     pub waves: Vec<Wave>,
@@ -103,6 +108,7 @@ impl Summary {
     pub fn of(inspection: &Inspection) -> Self {
         let windows = &inspection.survey.windows;
         Self {
+            key: String::new(),
             job: inspection.spec.clone(),
             record: inspection.survey.record.clone(),
             cycles: windows.has_cycles,
@@ -111,6 +117,7 @@ impl Summary {
             cycle_s: windows.cycle_s,
             nodes: (0..inspection.observed.len()).map(|number| node(inspection, number)).collect(),
             face: face(inspection),
+            loops: loops::summary(inspection),
             waves: waves(&stations(inspection), windows.cycle_s[0], windows.period_s),
             spectrum_peaks: inspection.spectrum.peaks(5),
         }

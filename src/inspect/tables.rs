@@ -2,7 +2,9 @@
 
 use super::capture::NodeStep;
 use super::inspection::Inspection;
+use super::loops::{self, LoopPoint};
 use super::phases::Instants;
+use super::spectrum::Spectrum;
 use super::waves::{Change, stations};
 use crate::analysis::sample::{NodeSample, Sample};
 use crate::publish::value::number;
@@ -31,11 +33,7 @@ pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<BTreeMap<St
     add("run.csv", &RUN, &mut run_lines(inspection))?;
     add("cycles.csv", &CYCLES, &mut cycle_lines(inspection))?;
     add("totals.csv", &TOTALS, &mut inspection.capture.totals.iter().map(totals_line))?;
-    add(
-        "spectrum.csv",
-        &SPECTRUM,
-        &mut inspection.spectrum.lines().map(|(f, a)| vec![number(f), number(a)]),
-    )?;
+    add(SPECTRUM_FILE, &SPECTRUM, &mut spectrum_lines(&inspection.spectrum))?;
     for (observed, steps) in inspection.observed.iter().zip(&inspection.capture.nodes) {
         let name = format!("node_{}.csv", observed.node.name);
         add(&name, &history_header(), &mut steps.iter().map(history_line))?;
@@ -48,6 +46,7 @@ pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<BTreeMap<St
     header.push("sigma_n_delayed_pa");
     add("face.csv", &header, &mut face_lines(inspection))?;
     add("wave.csv", &WAVE, &mut wave_lines(inspection))?;
+    add("loops.csv", &LOOPS, &mut loop_lines(inspection))?;
     Ok(tables)
 }
 
@@ -82,7 +81,21 @@ fn cycle_lines(inspection: &Inspection) -> impl Iterator<Item = Vec<String>> {
     passages.map(|(at, [start_s, end_s])| vec![at.to_string(), number(*start_s), number(*end_s)])
 }
 
+/// The file of the spectrum.
+pub const SPECTRUM_FILE: &str = "spectrum.csv";
 const SPECTRUM: [&str; 2] = ["frequency_hz", "normal_amplitude_n"];
+
+fn spectrum_lines(spectrum: &Spectrum) -> impl Iterator<Item = Vec<String>> {
+    spectrum.lines().map(|(frequency_hz, amplitude_n)| vec![number(frequency_hz), number(amplitude_n)])
+}
+
+/// Writes a spectrum as CSV.
+///
+/// # Errors
+/// Those of the writer.
+pub fn spectrum(spectrum: &Spectrum, out: &mut Vec<u8>) -> io::Result<()> {
+    csv(&SPECTRUM, spectrum_lines(spectrum), out)
+}
 
 const TOTALS: [&str; 11] = [
     "time_s",
@@ -211,4 +224,27 @@ fn wave_lines(inspection: &Inspection) -> impl Iterator<Item = Vec<String>> {
         let [contact, stick, slip, separation] = Change::ALL.map(of);
         vec![number(station.y_m), contact, stick, peak, slip, separation]
     })
+}
+
+const LOOPS: [&str; 7] =
+    ["place", "time_s", "slip_y_m", "displacement_y_m", "friction_y_n", "clamp_tangential_n", "state"];
+
+fn loop_lines(inspection: &Inspection) -> impl Iterator<Item = Vec<String>> {
+    let line = |place: &str, point: &LoopPoint| {
+        let LoopPoint { time_s, slip_m, y_m, friction_n, state, clamp_n } = *point;
+        vec![
+            place.to_owned(),
+            number(time_s),
+            number(slip_m),
+            optional(y_m),
+            number(friction_n),
+            optional(clamp_n),
+            state.map_or_else(String::new, |state| state.name().to_owned()),
+        ]
+    };
+    let nodes = inspection.observed.iter().enumerate().flat_map(move |(number, observed)| {
+        let points = loops::of_node(inspection, number);
+        points.into_iter().map(move |point| line(&observed.node.name, &point))
+    });
+    nodes.chain(loops::of_face(inspection).into_iter().map(move |point| line("face", &point)))
 }

@@ -27,6 +27,14 @@ pub struct PointData {
     pub values: Values,
 }
 
+/// What a file says about all of its grid.
+pub struct GridInfo<'a> {
+    /// The time [s], which ParaView shows.
+    pub time_s: f64,
+    /// Name of the array with the codes of a field, and each code with its meaning.
+    pub codes: (&'a str, &'a [(i8, &'a str)]),
+}
+
 /// Writes a grid of hexahedra: points [m], cells of eight points in the order of VTK, and values at the points.
 ///
 /// # Errors
@@ -35,13 +43,15 @@ pub fn write_grid(
     points_m: &[[f64; 3]],
     cells: &[[usize; 8]],
     data: &[PointData],
+    info: &GridInfo,
     out: &mut impl Write,
 ) -> io::Result<()> {
     let mut arrays = Arrays::default();
     let mut header = format!(
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">\n\
-         <UnstructuredGrid>\n<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
+         <UnstructuredGrid>\n{}<Piece NumberOfPoints=\"{}\" NumberOfCells=\"{}\">\n<PointData>\n",
+        field_data(info),
         points_m.len(),
         cells.len()
     );
@@ -70,6 +80,25 @@ pub fn write_grid(
     out.write_all(header.as_bytes())?;
     out.write_all(&arrays.bytes)?;
     out.write_all(b"\n</AppendedData>\n</VTKFile>\n")
+}
+
+/// The element with the time and the codes. VTK takes an array called `TimeValue` for the time of a file. The codes are the
+/// components of one array, because programs show the names of components, and because meshio reads no texts.
+fn field_data(info: &GridInfo) -> String {
+    let (name, codes) = info.codes;
+    let mut element = format!(
+        "<FieldData>\n\
+         <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{:e}</DataArray>\n\
+         <DataArray type=\"Int8\" Name=\"{name}\" NumberOfTuples=\"1\" NumberOfComponents=\"{}\"",
+        info.time_s,
+        codes.len()
+    );
+    for (number, (_, meaning)) in codes.iter().enumerate() {
+        let _ = write!(element, " ComponentName{number}=\"{meaning}\"");
+    }
+    let numbers: Vec<String> = codes.iter().map(|(code, _)| code.to_string()).collect();
+    let _ = write!(element, " format=\"ascii\">{}</DataArray>\n</FieldData>\n", numbers.join(" "));
+    element
 }
 
 /// Writes the list of the files of a series, each with its time [s].
@@ -117,8 +146,9 @@ mod tests {
     fn elements_are_those_of_the_format() {
         let values = Values::Codes(vec![0; 8]);
         let data = [PointData { name: "state", components: &[], values }];
+        let info = GridInfo { time_s: 1.25e-3, codes: ("codes", &[(-1, "none"), (2, "slip")]) };
         let mut file = Vec::new();
-        write_grid(&[[0.0; 3]; 8], &[[0, 1, 2, 3, 4, 5, 6, 7]], &data, &mut file).unwrap();
+        write_grid(&[[0.0; 3]; 8], &[[0, 1, 2, 3, 4, 5, 6, 7]], &data, &info, &mut file).unwrap();
         // The appended data are no text.
         let text = String::from_utf8_lossy(&file);
         let header = format!("{}</VTKFile>", text.split_once("<AppendedData").unwrap().0);
@@ -131,12 +161,19 @@ mod tests {
         let arrays = document.descendants().filter(|node| node.has_tag_name("DataArray"));
         let found: Vec<_> =
             arrays.map(|array| (path(array.parent().unwrap()), array.attribute("Name").unwrap())).collect();
+        let inline = document.descendants().filter(|node| node.attribute("format") == Some("ascii"));
+        let inline: Vec<_> =
+            inline.map(|array| (array.text().unwrap(), array.attribute("ComponentName1"))).collect();
+        assert_eq!(inline, [("1.25e-3", None), ("-1 2", Some("slip"))]);
+        let field_data = "/VTKFile/UnstructuredGrid/FieldData".to_owned();
         let piece = "/VTKFile/UnstructuredGrid/Piece";
         let [point_data, points, cells] =
             ["PointData", "Points", "Cells"].map(|name| format!("{piece}/{name}"));
         assert_eq!(
             found,
             [
+                (field_data.clone(), "TimeValue"),
+                (field_data, "codes"),
                 (point_data, "state"),
                 (points, "points"),
                 (cells.clone(), "connectivity"),

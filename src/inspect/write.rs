@@ -5,10 +5,15 @@ use super::page::PageHeader;
 use super::summary::Summary;
 use super::{fields, figures, page, tables};
 use crate::publish::{Folder, PublishError};
+use serde::{Deserialize, Serialize};
+use std::io;
 use std::path::{Path, PathBuf};
 
+/// The kind of a folder of an inspection, whole or of the spectrum alone.
+pub(super) const KIND: &str = "inspection";
+
 /// The file with all numbers.
-const SUMMARY: &str = "inspection.json";
+pub(super) const SUMMARY: &str = "inspection.json";
 
 /// The file name of the page, which links the other files.
 pub const PAGE: &str = "index.html";
@@ -16,7 +21,8 @@ pub const PAGE: &str = "index.html";
 /// Writes figures, tables, fields, the summary `inspection.json` and the page `index.html` into `out_dir`; returns the
 /// files.
 ///
-/// Each file is replaced as a whole. Files of the same name are replaced, and others are left alone.
+/// Each file is replaced as a whole. Files of an earlier inspection that this one does not have are removed, and others are
+/// left alone.
 ///
 /// # Errors
 /// The first file that could not be written. Files before it are complete.
@@ -25,24 +31,47 @@ pub fn write(
     out_dir: &Path,
     header: &PageHeader,
 ) -> Result<Vec<PathBuf>, PublishError> {
-    let mut folder = Folder::create(out_dir)?;
-    remove_stale_files(out_dir);
+    let mut folder = Folder::create(out_dir, KIND)?;
+    if !folder.has_list() {
+        remove_files_of_older_versions(out_dir);
+    }
     let tables = tables::write(inspection, &mut folder)?;
     let figures = figures::write(inspection, &mut folder)?;
+    for drawing in &header.sheet.drawings {
+        folder.write_text(&format!("{}.svg", drawing.stem), &drawing.svg)?;
+    }
     fields::write(&inspection.capture, &mut folder)?;
-    let summary = Summary::of(inspection);
-    folder.write_with(SUMMARY, |out| {
-        serde_json::to_writer_pretty(&mut *out, &summary)?;
-        out.push(b'\n');
-        Ok(())
-    })?;
+    let summary = Summary { key: header.key.clone(), ..Summary::of(inspection) };
+    folder.write_with(SUMMARY, |out| json(&summary, out))?;
     folder.write_text(PAGE, &page::of(inspection, &summary, &figures, &tables, header))?;
-    Ok(folder.written)
+    folder.finish(|_| false)
 }
 
-/// Removes the files of single nodes and frames that an earlier inspection left. Their number may differ, and the rest
-/// would look like files of this inspection. Errors are ignored: a file that has to be replaced fails when it is written.
-fn remove_stale_files(out_dir: &Path) {
+/// Writes a document as JSON.
+pub(super) fn json(document: &impl Serialize, out: &mut Vec<u8>) -> io::Result<()> {
+    serde_json::to_writer_pretty(&mut *out, document)?;
+    out.push(b'\n');
+    Ok(())
+}
+
+/// The key of the job whose inspection is in a folder; none if there is no inspection.
+pub fn key_of(folder: &Path) -> Option<String> {
+    #[derive(Deserialize)]
+    struct Keyed {
+        key: String,
+    }
+    let summary = std::fs::read(folder.join(SUMMARY)).ok()?;
+    serde_json::from_slice::<Keyed>(&summary).ok().map(|found| found.key)
+}
+
+/// Whether a folder holds the spectrum of the job with this key, from an inspection of any kind.
+pub fn has_spectrum(folder: &Path, key: &str) -> bool {
+    key_of(folder).is_some_and(|found| found == key) && folder.join(tables::SPECTRUM_FILE).is_file()
+}
+
+/// Removes the files of single nodes and frames that an inspection of an older version left, which had no list of its
+/// files. Their number may differ, and the rest would look like files of this inspection. Errors are ignored: a file that has to be replaced fails when it is written.
+fn remove_files_of_older_versions(out_dir: &Path) {
     if !out_dir.join(SUMMARY).is_file() {
         return;
     }

@@ -21,6 +21,14 @@ pub enum PublishError {
         /// Why not.
         source: std::io::Error,
     },
+    /// A file of an earlier result could not be removed.
+    #[error("cannot remove {}, which the result does not have any more: {source}", path.display())]
+    Removal {
+        /// The file.
+        path: PathBuf,
+        /// Why not.
+        source: std::io::Error,
+    },
     /// A figure could not be drawn.
     #[error("cannot draw {}: {source}", path.display())]
     Figure {

@@ -3,26 +3,36 @@
 use super::error::PublishError;
 use std::fs;
 use std::io::{self, BufWriter, Write};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 
 /// A folder that files are written into, each with [`write_atomically`].
+///
+/// The folder has a hidden file that lists what was written. The next time, files of that list that were not written
+/// again are removed, so that the folder has exactly the files of one result. Other files are never touched.
 pub struct Folder<'a> {
     path: &'a Path,
-    /// The files written so far.
-    pub written: Vec<PathBuf>,
+    kind: &'static str,
+    /// The files written so far, relative to the folder.
+    written: Vec<String>,
+    /// The files that were written the last time; none if there is no list.
+    earlier: Option<Vec<String>>,
 }
 
 impl<'a> Folder<'a> {
-    /// Creates the folder and its parents if they do not exist.
+    /// Creates the folder and its parents if they do not exist. Results of another `kind` in the same folder have a list
+    /// of their own.
     ///
     /// # Errors
     /// If it cannot be created.
-    pub fn create(path: &'a Path) -> Result<Self, PublishError> {
+    pub fn create(path: &'a Path, kind: &'static str) -> Result<Self, PublishError> {
         fs::create_dir_all(path).map_err(|source| PublishError::Folder { path: path.to_owned(), source })?;
-        Ok(Self { path, written: Vec::new() })
+        let earlier = fs::read_to_string(path.join(list_name(kind))).ok();
+        let earlier =
+            earlier.map(|text| text.lines().filter(|line| is_inside(line)).map(str::to_owned).collect());
+        Ok(Self { path, kind, written: Vec::new(), earlier })
     }
 
-    /// The path of the file with this name, which need not exist.
+    /// The path of the file with this name, which need not exist. A name may have folders in it, separated by `/`.
     pub fn path_of(&self, name: &str) -> PathBuf {
         self.path.join(name)
     }
@@ -51,12 +61,102 @@ impl<'a> Folder<'a> {
         let mut contents = Vec::new();
         match fill(&mut contents).and_then(|()| write_atomically(&path, |out| out.write_all(&contents))) {
             Ok(()) => {
-                self.written.push(path);
+                self.written.push(name.to_owned());
                 Ok(())
             }
             Err(source) => Err(PublishError::File { path, source }),
         }
     }
+
+    /// Creates a folder inside this one. Its files have names with the folder's name before them.
+    ///
+    /// # Errors
+    /// If it cannot be created.
+    pub fn create_inside(&self, name: &str) -> Result<(), PublishError> {
+        let path = self.path_of(name);
+        fs::create_dir_all(&path).map_err(|source| PublishError::Folder { path, source })
+    }
+
+    /// Removes the files of the last time that were not written again, and stores the list of those that were; returns
+    /// their paths. If there is no list because an older version wrote the folder, the files for which `is_old` is true are
+    /// removed.
+    ///
+    /// # Errors
+    /// If a file cannot be removed, or the list cannot be written.
+    pub fn finish(mut self, is_old: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>, PublishError> {
+        let old = |name: &String| is_old(name);
+        let earlier = self.earlier.clone().unwrap_or_else(|| self.names().filter(old).collect());
+        for name in earlier.iter().filter(|name| !self.written.contains(name)) {
+            let path = self.path_of(name);
+            // Somebody may have removed the file, or put a folder in its place.
+            if path.symlink_metadata().is_ok_and(|found| !found.is_dir()) {
+                fs::remove_file(&path).map_err(|source| PublishError::Removal { path, source })?;
+            }
+        }
+        self.earlier = None;
+        self.store(&self.written)?;
+        Ok(self.paths())
+    }
+
+    /// Stores the list of files, with those of the last time that are still there; returns the paths of the files that
+    /// were written.
+    ///
+    /// # Errors
+    /// If the list cannot be written.
+    pub fn finish_beside_earlier(mut self) -> Result<Vec<PathBuf>, PublishError> {
+        let earlier = self.earlier.take().unwrap_or_default();
+        let others =
+            earlier.into_iter().filter(|name| !self.written.contains(name) && self.path_of(name).is_file());
+        let all: Vec<String> = others.chain(self.written.iter().cloned()).collect();
+        self.store(&all)?;
+        Ok(self.paths())
+    }
+
+    /// Whether the folder had a list of files.
+    pub fn has_list(&self) -> bool {
+        self.earlier.is_some()
+    }
+
+    fn paths(&self) -> Vec<PathBuf> {
+        self.written.iter().map(|name| self.path.join(name)).collect()
+    }
+
+    /// The names of the files in the folder.
+    fn names(&self) -> impl Iterator<Item = String> {
+        let entries = fs::read_dir(self.path).into_iter().flatten().flatten();
+        entries.filter_map(|entry| entry.file_name().into_string().ok())
+    }
+
+    fn store(&self, names: &[String]) -> Result<(), PublishError> {
+        let path = self.path.join(list_name(self.kind));
+        let text: String = names.iter().flat_map(|name| [name.as_str(), "\n"]).collect();
+        write_atomically(&path, |out| out.write_all(text.as_bytes()))
+            .map_err(|source| PublishError::File { path, source })
+    }
+}
+
+impl Drop for Folder<'_> {
+    /// If the result was not finished, the folder has files of both times, and the list names both. This is not possible
+    /// where the folder cannot be written, which has been reported already.
+    fn drop(&mut self) {
+        if let Some(mut names) = self.earlier.take().filter(|_| !self.written.is_empty()) {
+            names.extend(
+                self.written.iter().filter(|name| !names.contains(name)).cloned().collect::<Vec<_>>(),
+            );
+            let _ = self.store(&names);
+        }
+    }
+}
+
+/// The name of the hidden file that lists the files of a result.
+fn list_name(kind: &str) -> String {
+    format!(".tribosweep-{kind}")
+}
+
+/// Whether a line of a list is the name of a file inside the folder. A list that somebody edited must not lead outside.
+fn is_inside(name: &str) -> bool {
+    let path = Path::new(name);
+    !name.is_empty() && path.components().all(|part| matches!(part, Component::Normal(_)))
 }
 
 /// Writes a file so that readers see the old contents or the new ones, and never a part of them.
@@ -100,6 +200,64 @@ mod tests {
         let mut names: Vec<String> = entries.map(|name| name.into_string().unwrap()).collect();
         names.sort();
         names
+    }
+
+    /// Protects: a folder has the files of the last result alone, also in a folder inside; files of others stay, and a list
+    /// that was tampered with does not lead outside.
+    #[test]
+    fn stale_files_are_removed() {
+        let outside = tempfile::tempdir().unwrap();
+        let path = outside.path().join("result");
+        fs::write(outside.path().join("other"), "").unwrap();
+        let write = |names: &[&str]| {
+            let mut folder = Folder::create(&path, "test").unwrap();
+            folder.create_inside("frames").unwrap();
+            for name in names {
+                folder.write_text(name, name).unwrap();
+            }
+            folder.finish(|_| false).unwrap()
+        };
+        assert_eq!(write(&["a", "b", "frames/1", "frames/2"]).len(), 4);
+        fs::write(path.join("notes"), "mine").unwrap();
+        write(&["b", "c", "frames/1"]);
+        assert_eq!(names(&path), [".tribosweep-test", "b", "c", "frames", "notes"]);
+        assert_eq!(names(&path.join("frames")), ["1"]);
+
+        fs::write(path.join(".tribosweep-test"), "b\n../other\n/etc/passwd\n\n").unwrap();
+        write(&["c"]);
+        assert_eq!(names(&path), [".tribosweep-test", "c", "frames", "notes"]);
+        assert!(outside.path().join("other").is_file());
+    }
+
+    /// Protects: a result that is interrupted removes nothing, and the next one removes the files of both.
+    #[test]
+    fn an_interrupted_result_is_cleared_by_the_next() {
+        let path = tempfile::tempdir().unwrap();
+        let begin = || Folder::create(path.path(), "test").unwrap();
+        let mut folder = begin();
+        folder.write_text("a", "").unwrap();
+        folder.finish(|_| false).unwrap();
+        let mut folder = begin();
+        folder.write_text("b", "").unwrap();
+        drop(folder);
+        assert_eq!(names(path.path()), [".tribosweep-test", "a", "b"]);
+        let mut folder = begin();
+        folder.write_text("c", "").unwrap();
+        folder.finish(|_| false).unwrap();
+        assert_eq!(names(path.path()), [".tribosweep-test", "c"]);
+    }
+
+    /// Protects: in a folder without a list only the named files are removed.
+    #[test]
+    fn a_folder_of_an_older_version_loses_its_old_files_alone() {
+        let path = tempfile::tempdir().unwrap();
+        for name in ["old", "mine"] {
+            fs::write(path.path().join(name), "").unwrap();
+        }
+        let mut folder = Folder::create(path.path(), "test").unwrap();
+        folder.write_text("new", "").unwrap();
+        folder.finish(|name| name == "old").unwrap();
+        assert_eq!(names(path.path()), [".tribosweep-test", "mine", "new"]);
     }
 
     /// Protects: if writing fails half-way, the old file stays as it was and no temporary file is left.

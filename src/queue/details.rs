@@ -1,6 +1,7 @@
 use super::engine::query;
 use super::error::QueueError;
 use super::handle::Queue;
+use super::lookup;
 use super::state::JobState;
 
 /// Everything about a job.
@@ -41,7 +42,7 @@ pub struct JobDetails {
 }
 
 /// Keys that begin with $1. The range condition makes the database use the index. `substr` is used instead of LIKE
-/// because a key may contain wildcards.
+/// because a key may contain wildcards. If $3 is not null, only jobs of that study.
 const JOBS: &str = "
     SELECT j.id, j.key, j.state, j.priority, j.cost, j.batch, j.attempt, j.crashes, j.note, j.started_ms,
            r.error, r.wall_s, r.finished_ms, r.provenance, p.payload, r.record
@@ -49,6 +50,8 @@ const JOBS: &str = "
     JOIN payloads AS p ON p.job_id = j.id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
     WHERE j.key >= $1 AND substr(j.key, 1, length($1)) = $1
+      AND ($3 IS NULL OR EXISTS (
+          SELECT 1 FROM study_jobs AS m JOIN studies AS s ON s.id = m.study_id WHERE m.job_id = j.id AND s.name = $3))
     ORDER BY j.key LIMIT $2";
 
 const STUDIES: &str = "
@@ -79,7 +82,30 @@ impl Queue {
     /// # Errors
     /// If the database cannot be read.
     pub async fn jobs(&mut self, key: &str, limit: u32) -> Result<Vec<JobDetails>, QueueError> {
-        let found = query(JOBS).bind(key).bind(limit);
+        self.jobs_of(None, key, limit).await
+    }
+
+    /// As [`Queue::jobs`], but only jobs of a study.
+    ///
+    /// # Errors
+    /// [`QueueError::UnknownStudy`], or if the database cannot be read.
+    pub async fn jobs_in(
+        &mut self,
+        study: &str,
+        key: &str,
+        limit: u32,
+    ) -> Result<Vec<JobDetails>, QueueError> {
+        lookup::require(&mut self.connection, study).await?;
+        self.jobs_of(Some(study), key, limit).await
+    }
+
+    async fn jobs_of(
+        &mut self,
+        study: Option<&str>,
+        key: &str,
+        limit: u32,
+    ) -> Result<Vec<JobDetails>, QueueError> {
+        let found = query(JOBS).bind(key).bind(limit).bind(study);
         let found: Vec<Columns> = found.all(&mut self.connection).await?;
         let mut jobs = Vec::with_capacity(found.len());
         for columns in found {

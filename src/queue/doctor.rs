@@ -90,7 +90,7 @@ async fn workers(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), Q
         let ago_s = (now_ms - owner.heartbeat_ms) / 1000;
         let Owner { id, host, pid, version, .. } = owner;
         let text = format!(
-            "{id}: process {pid} on {host}, version {version}, {word}, {own} jobs, last seen {ago_s} s ago"
+            "{id}: process {pid} on {host}, version {version}, {word}, running jobs: {own}, last seen {ago_s} s ago"
         );
         findings.push(Finding::good("worker", text));
     }
@@ -98,7 +98,7 @@ async fn workers(queue: &mut Queue, findings: &mut Vec<Finding>) -> Result<(), Q
         findings.push(Finding::good("worker", "none at work"));
     }
     // This is no problem: the next worker takes the jobs back.
-    let text = format!("{running} running jobs, {stale} of them left by processes that are gone");
+    let text = format!("running jobs: {running}, of which processes that are gone have left {stale}");
     let advice = if stale > 0 { "; the next `tribosweep work` takes them back" } else { "" };
     findings.push(Finding::good("leases", text + advice));
     Ok(())

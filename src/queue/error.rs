@@ -2,6 +2,7 @@ use std::error::Error;
 use std::path::PathBuf;
 
 use super::location::Location;
+use super::replace::Replaced;
 
 /// The error of the database library beneath. The library itself is no part of the queue's interface.
 type Source = Box<dyn Error + Send + Sync>;
@@ -139,6 +140,28 @@ pub enum QueueError {
          submit one under another name"
     )]
     OtherStudy {
+        /// The name.
+        name: String,
+    },
+
+    /// A study of that name exists, and replacing it would take results out of view.
+    #[error(
+        "the database has another study `{name}`, and replacing it would take results out of view ({}); allow that with \
+         --replace, or give this study another \"name\" (--name NAME)",
+        .replaced.dropped_done
+    )]
+    ResultsWouldBeDropped {
+        /// The name.
+        name: String,
+        /// The study that exists, against the new one.
+        replaced: Box<Replaced>,
+    },
+
+    /// A study has the name already.
+    #[error(
+        "there is a study `{name}` already; give another name, or remove that study with `tribosweep rm {name}`"
+    )]
+    NameTaken {
         /// The name.
         name: String,
     },

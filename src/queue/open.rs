@@ -64,6 +64,22 @@ impl Queue {
         }
     }
 
+    /// Opens the database at `location` if it exists; otherwise checks whether it can be created, and creates nothing.
+    ///
+    /// # Errors
+    /// As [`Queue::open`].
+    pub async fn open_if_exists(
+        location: impl Into<Location>,
+        clock: Clock,
+    ) -> Result<Option<Self>, QueueError> {
+        match Self::open_existing(location, clock, Settings::default()).await {
+            Err(QueueError::NoDatabase { database }) => {
+                database.path().map_or(Ok(None), |path| sqlite::check_new(path).map(|()| None))
+            }
+            opened => opened.map(Some),
+        }
+    }
+
     /// Opens the database at `location`, which must exist, for reading. A file may be read-only.
     ///
     /// # Errors

@@ -2,6 +2,7 @@ use super::engine::query;
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
+use super::take_back::TakenBack;
 
 /// Which jobs to run again.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -15,6 +16,8 @@ pub enum Retry {
 /// What a retry changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Retried {
+    /// Jobs of workers that are gone, of any study. They were taken back first.
+    pub taken_back: TakenBack,
     /// Failed jobs that became pending.
     pub failed: u64,
     /// Cancelled jobs that became pending.
@@ -31,14 +34,17 @@ const PENDING_AGAIN: &str = "
 const NOTE: &str = "to be tried again: asked for by its user";
 
 impl Queue {
-    /// Makes failed, or failed and cancelled, jobs of a study pending again and resets their crash counts.
+    /// Makes failed, or failed and cancelled, jobs of a study pending again and resets their crash counts. Before that,
+    /// it takes back the jobs of workers that are gone ([`Queue::take_back`]): a job may count as failed only then.
     ///
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be written.
     pub async fn retry(&mut self, study: &str, which: Retry) -> Result<Retried, QueueError> {
+        lookup::require(&mut self.connection, study).await?;
+        let taken_back = self.take_back().await?;
         self.write(async |connection, _| {
             let study_id = lookup::require(connection, study).await?;
-            let mut retried = Retried::default();
+            let mut retried = Retried { taken_back, ..Retried::default() };
             let again = |state: &'static str| query(PENDING_AGAIN).bind(study_id).bind(state).bind(NOTE);
             retried.failed = again("failed").run(connection).await?;
             if which == Retry::All {

@@ -29,6 +29,8 @@ pub struct StudyRow {
     pub crashes: u32,
     /// Why the job last went back to pending, if it ever did.
     pub note: Option<String>,
+    /// What the executor needs to run the job, if it was asked for.
+    pub payload: Option<String>,
 }
 
 /// The result of the job's last attempt. A job that is pending again may have results of earlier attempts, which do not
@@ -37,10 +39,12 @@ pub struct StudyRow {
 /// The short values are one column in JSON, because reading a column costs more than the value in it. (Except the time:
 /// in JSON it would have 15 digits only.)
 ///
-/// If $4 is not null, only rows whose jobs are in that state; if $5 is not null, only those whose jobs have that label.
+/// If $4 is not null, only rows whose jobs are in that state; if $5 is not null, only those whose jobs have that label. The
+/// payloads are read only if $6 is 1.
 const ROWS: Statement = Statement::each(
     "
-    SELECT json_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note), m.parameters, r.record, r.wall_s
+    SELECT json_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note), m.parameters, r.record, r.wall_s,
+           CASE WHEN $6 = 1 THEN (SELECT p.payload FROM payloads AS p WHERE p.job_id = j.id) END
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
@@ -50,7 +54,8 @@ const ROWS: Statement = Statement::each(
     LIMIT $3",
     "
     SELECT json_build_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note)::text,
-           m.parameters, r.record, r.wall_s
+           m.parameters, r.record, r.wall_s,
+           CASE WHEN $6 = 1 THEN (SELECT p.payload FROM payloads AS p WHERE p.job_id = j.id) END
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
@@ -59,6 +64,15 @@ const ROWS: Statement = Statement::each(
     ORDER BY m.ordinal
     LIMIT $3",
 );
+
+/// The first row of study $1 with the job $2.
+const PARAMETERS_OF_JOB: &str = "
+    SELECT m.parameters
+    FROM study_jobs AS m
+    JOIN studies AS s ON s.id = m.study_id
+    JOIN jobs AS j ON j.id = m.job_id
+    WHERE s.name = $1 AND j.key = $2
+    ORDER BY m.ordinal LIMIT 1";
 
 const PARAMETERS: &str = "
     SELECT ordinal, parameters FROM study_jobs WHERE study_id = $1 AND ordinal >= $2 ORDER BY ordinal LIMIT $3";
@@ -104,6 +118,29 @@ impl Queue {
         &mut self,
         study: &str,
         which: Rows<'_>,
+        visit: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
+    ) -> Result<(), QueueError> {
+        self.pages(study, which, false, visit).await
+    }
+
+    /// As [`Queue::each_page`], with the payloads of the jobs.
+    ///
+    /// # Errors
+    /// As [`Queue::rows`].
+    pub async fn each_page_with_payloads(
+        &mut self,
+        study: &str,
+        which: Rows<'_>,
+        visit: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
+    ) -> Result<(), QueueError> {
+        self.pages(study, which, true, visit).await
+    }
+
+    async fn pages(
+        &mut self,
+        study: &str,
+        which: Rows<'_>,
+        with_payloads: bool,
         mut visit: impl FnMut(Vec<StudyRow>) -> ControlFlow<()>,
     ) -> Result<(), QueueError> {
         let study_id = lookup::require(&mut self.connection, study).await?;
@@ -115,7 +152,7 @@ impl Queue {
         let mut next = 0_i64;
         loop {
             let page = query(ROWS).bind(study_id).bind(next).bind(PAGE);
-            let page = page.bind(state.map(JobState::as_str)).bind(label);
+            let page = page.bind(state.map(JobState::as_str)).bind(label).bind(i64::from(with_payloads));
             let page: Vec<Columns> = page.all(&mut self.connection).await?;
             let page = page.into_iter().map(StudyRow::from_columns).collect::<Result<Vec<_>, _>>()?;
             let Some(last) = page.last() else { return Ok(()) };
@@ -124,6 +161,15 @@ impl Queue {
                 return Ok(());
             }
         }
+    }
+
+    /// The parameters of a job in a study: those of its first row there, if it has one.
+    ///
+    /// # Errors
+    /// If the database cannot be read.
+    pub async fn parameters(&mut self, study: &str, key: &str) -> Result<Option<String>, QueueError> {
+        let found = query(PARAMETERS_OF_JOB).bind(study).bind(key);
+        Ok(found.optional(&mut self.connection).await?.map(|(parameters,)| parameters))
     }
 
     /// Calls `visit` with the parameters of each row of a study, in the order of its document. It does not read the
@@ -150,15 +196,15 @@ impl Queue {
     }
 }
 
-/// The short values, parameters, record and time.
-type Columns = (String, String, Option<String>, Option<f64>);
+/// The short values, parameters, record, time and payload.
+type Columns = (String, String, Option<String>, Option<f64>, Option<String>);
 
 impl StudyRow {
-    fn from_columns((short, parameters, record, wall_s): Columns) -> Result<Self, QueueError> {
+    fn from_columns((short, parameters, record, wall_s, payload): Columns) -> Result<Self, QueueError> {
         type Short = (u64, String, String, Option<String>, u32, u32, Option<String>);
         let (ordinal, key, state, error, attempt, crashes, note): Short =
             serde_json::from_str(&short).map_err(|error| QueueError::Database(error.into()))?;
         let state = JobState::from_column(&state);
-        Ok(Self { ordinal, key, parameters, state, record, error, wall_s, attempt, crashes, note })
+        Ok(Self { ordinal, key, parameters, state, record, error, wall_s, attempt, crashes, note, payload })
     }
 }

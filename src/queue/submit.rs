@@ -1,11 +1,11 @@
-use std::collections::HashSet;
+use std::collections::{BTreeSet, HashSet};
 
 use super::bulk::json;
 use super::counts;
 use super::engine::{Connection, Statement, query};
 use super::error::QueueError;
 use super::handle::Queue;
-use super::lookup;
+use super::replace::{Replace, Replaced};
 
 /// A study to be submitted.
 #[derive(Debug, Clone, PartialEq)]
@@ -55,10 +55,10 @@ impl Shard {
 }
 
 /// What a submission changed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Submitted {
-    /// Whether a study of that name existed and was replaced.
-    pub replaced: bool,
+    /// The study that had the name before; absent if there was none.
+    pub replaced: Option<Replaced>,
     /// Rows of the study.
     pub rows: u64,
     /// Different jobs that the rows point to.
@@ -71,8 +71,6 @@ pub struct Submitted {
     pub already_done: u64,
     /// Jobs that existed and have failed.
     pub already_failed: u64,
-    /// Pending jobs of the replaced study that became cancelled because no study requests them any more.
-    pub cancelled: u64,
 }
 
 /// Rows per JSON parameter. Rows in one JSON text are inserted twice as fast as row by row, but the text of a million
@@ -144,9 +142,26 @@ const CANCEL_UNREQUESTED: &str = "
 
 const NOTE: &str = "cancelled: its study was replaced by one without it";
 
+/// The study that has the name: number, document and number of jobs.
+const OLD: &str = "
+    SELECT s.id, s.document, (SELECT COUNT(DISTINCT m.job_id) FROM study_jobs AS m WHERE m.study_id = s.id)
+    FROM studies AS s WHERE s.name = $1";
+
 /// Deletes rows beyond the end of the new document, and rows of other shards.
-const DELETE_SURPLUS: &str =
-    "DELETE FROM study_jobs WHERE study_id = $1 AND (ordinal >= $2 OR ordinal % $3 <> $4)";
+const DELETE_SURPLUS: &str = "
+    DELETE FROM study_jobs WHERE study_id = $1 AND (ordinal >= $2 OR ordinal % $3 <> $4) RETURNING job_id";
+
+/// How many of these jobs the study does not have any more, and how many of them are done.
+const DROPPED: Statement = Statement::each(
+    "
+    SELECT COUNT(*), COUNT(*) FILTER (WHERE j.state = 'done')
+    FROM json_each($1) AS e CROSS JOIN jobs AS j ON j.id = e.value
+    WHERE NOT EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $2)",
+    "
+    SELECT COUNT(*), COUNT(*) FILTER (WHERE j.state = 'done')
+    FROM json_array_elements_text($1::json) AS e (id) JOIN jobs AS j ON j.id = e.id::bigint
+    WHERE NOT EXISTS (SELECT 1 FROM study_jobs AS m WHERE m.job_id = j.id AND m.study_id = $2)",
+);
 
 /// The array indices of rows that are missing or different in the database. An existing row has its job and its
 /// payload.
@@ -170,11 +185,14 @@ const CHANGED: Statement = Statement::each(
 
 const DELETE_ROWS: Statement = Statement::each(
     "
-    DELETE FROM study_jobs WHERE study_id = $2 AND ordinal IN (SELECT e.value ->> 0 FROM json_each($1) AS e)",
+    DELETE FROM study_jobs
+    WHERE study_id = $2 AND ordinal IN (SELECT e.value ->> 0 FROM json_each($1) AS e)
+    RETURNING job_id",
     "
     DELETE FROM study_jobs
     WHERE study_id = $2
-      AND ordinal IN (SELECT (e.value ->> 0)::bigint FROM json_array_elements($1::json) AS e (value))",
+      AND ordinal IN (SELECT (e.value ->> 0)::bigint FROM json_array_elements($1::json) AS e (value))
+    RETURNING job_id",
 );
 
 const INSERT_ROWS: Statement = Statement::each(
@@ -189,7 +207,7 @@ const INSERT_ROWS: Statement = Statement::each(
 );
 
 impl Queue {
-    /// Adds a study, or replaces the document and rows of the one with its name.
+    /// Adds a study, or replaces the document and rows of the one with its name, whatever that one has.
     ///
     /// Existing jobs keep their results, and cancelled ones are pending again. Jobs that no study refers to any more
     /// also stay, because the next edit may request their results again; the pending ones among them are cancelled.
@@ -197,26 +215,34 @@ impl Queue {
     /// # Errors
     /// [`QueueError::BadCost`], or if the database cannot be written; then nothing has changed.
     pub async fn submit(&mut self, study: &NewStudy) -> Result<Submitted, QueueError> {
-        self.submit_shard(study, Shard::WHOLE).await
+        self.submit_shard(study, Shard::WHOLE, &Replace::Always).await
     }
 
-    /// As [`Queue::submit`], for the rows of one shard only. Each row keeps its number in the study.
+    /// As [`Queue::submit`], for the rows of one shard only, and only if `replace` permits it. Each row keeps its number
+    /// in the study.
     ///
     /// # Errors
-    /// As [`Queue::submit`].
+    /// As [`Queue::submit`], and [`QueueError::ResultsWouldBeDropped`]; then nothing has changed.
     ///
     /// # Panics
     /// If the shard's index is not less than the number of shards.
-    pub async fn submit_shard(&mut self, study: &NewStudy, shard: Shard) -> Result<Submitted, QueueError> {
+    pub async fn submit_shard(
+        &mut self,
+        study: &NewStudy,
+        shard: Shard,
+        replace: &Replace,
+    ) -> Result<Submitted, QueueError> {
         assert!(shard.index < shard.of, "{shard:?}");
         // JSON cannot represent NaN and infinity; they would become null.
         if let Some(job) = study.jobs.iter().find(|job| !job.cost.is_finite()) {
             return Err(QueueError::BadCost { key: job.key.clone(), cost: job.cost });
         }
         let rows: Vec<_> = (0_i64..).zip(&study.jobs).filter(|(ordinal, _)| shard.has(*ordinal)).collect();
-        let (replaced, added, cancelled, counts) = self
+        let jobs = rows.iter().map(|(_, job)| &job.key).collect::<HashSet<_>>().len() as u64;
+        let (replaced, added, counts) = self
             .write(async |connection, now_ms| {
-                let replaced = lookup::find(connection, &study.name).await?.is_some();
+                let old: Option<(i64, String, i64)> =
+                    query(OLD).bind(&study.name).optional(connection).await?;
                 let study_id: i64 = query(UPSERT_STUDY)
                     .bind(&study.name)
                     .bind(&study.document)
@@ -224,18 +250,20 @@ impl Queue {
                     .scalar(connection)
                     .await?;
                 let end = i64::try_from(study.jobs.len()).unwrap_or(i64::MAX);
-                query(DELETE_SURPLUS)
+                let surplus: Vec<i64> = query(DELETE_SURPLUS)
                     .bind(study_id)
                     .bind(end)
                     .bind(shard.of.cast_signed())
                     .bind(shard.index.cast_signed())
-                    .run(connection)
+                    .scalars(connection)
                     .await?;
+                // Jobs of deleted rows. Other rows of the study may have them still.
+                let mut deleted: BTreeSet<i64> = surplus.into_iter().collect();
                 let before = count_jobs(connection).await?;
                 for chunk in rows.chunks(CHUNK) {
-                    if replaced {
+                    if old.is_some() {
                         let changed = changed(connection, study_id, chunk).await?;
-                        delete_rows(connection, study_id, &changed).await?;
+                        deleted.extend(delete_rows(connection, study_id, &changed).await?);
                         insert(connection, study_id, &changed, now_ms).await?;
                     } else {
                         insert(connection, study_id, chunk, now_ms).await?;
@@ -244,14 +272,23 @@ impl Queue {
                 }
                 let added = count_jobs(connection).await? - before;
                 query(UNDO_CANCELLATION).bind(study_id).run(connection).await?;
-                let cancelled =
-                    if replaced { query(CANCEL_UNREQUESTED).bind(NOTE).run(connection).await? } else { 0 };
+                let mut replaced = None;
+                if let Some((_, document, old_jobs)) = old {
+                    let (dropped, dropped_done) = count_dropped(connection, study_id, deleted).await?;
+                    let cancelled = query(CANCEL_UNREQUESTED).bind(NOTE).run(connection).await?;
+                    let kept = old_jobs.unsigned_abs() - dropped;
+                    let old = Replaced { document, kept, new: jobs - kept, dropped, dropped_done, cancelled };
+                    if !replace.permits(&old) {
+                        let name = study.name.clone();
+                        return Err(QueueError::ResultsWouldBeDropped { name, replaced: Box::new(old) });
+                    }
+                    replaced = Some(old);
+                }
                 let counts = counts::of_study(connection, study_id).await?;
-                Ok((replaced, added, cancelled, counts))
+                Ok((replaced, added, counts))
             })
             .await?;
 
-        let jobs = rows.iter().map(|(_, job)| &job.key).collect::<HashSet<_>>().len() as u64;
         Ok(Submitted {
             replaced,
             rows: rows.len() as u64,
@@ -260,9 +297,24 @@ impl Queue {
             already_known: jobs - added,
             already_done: counts.done,
             already_failed: counts.failed,
-            cancelled,
         })
     }
+}
+
+/// Of the jobs with these numbers, how many the study does not have any more, and how many of those are done.
+async fn count_dropped(
+    connection: &mut Connection,
+    study_id: i64,
+    deleted: BTreeSet<i64>,
+) -> Result<(u64, u64), QueueError> {
+    let deleted: Vec<i64> = deleted.into_iter().collect();
+    let (mut dropped, mut done) = (0, 0);
+    for chunk in deleted.chunks(CHUNK) {
+        let counts: (i64, i64) = query(DROPPED).bind(json(&chunk)).bind(study_id).one(connection).await?;
+        dropped += counts.0.unsigned_abs();
+        done += counts.1.unsigned_abs();
+    }
+    Ok((dropped, done))
 }
 
 async fn count_jobs(connection: &mut Connection) -> Result<u64, QueueError> {
@@ -284,13 +336,13 @@ pub(super) async fn changed<'a>(
     Ok(changed.into_iter().map(|place| rows[place as usize]).collect())
 }
 
+/// Deletes the rows with these numbers. Returns the numbers of the jobs that they pointed to.
 pub(super) async fn delete_rows(
     connection: &mut Connection,
     study_id: i64,
     rows: &[Row<'_>],
-) -> Result<(), QueueError> {
-    query(DELETE_ROWS).bind(as_rows(rows)).bind(study_id).run(connection).await?;
-    Ok(())
+) -> Result<Vec<i64>, QueueError> {
+    query(DELETE_ROWS).bind(as_rows(rows)).bind(study_id).scalars(connection).await
 }
 
 pub(super) async fn insert(

@@ -1,53 +1,21 @@
 //! One line per job, for other programs: CSV and JSON lines with the same fields.
 
+use super::columns::{Column, plain};
 use super::parameters::is_further;
-use super::row::{JobRow, RowState};
-use crate::analysis::JobRecord;
+use super::row::JobRow;
 use crate::publish::value;
 use serde::Serializer;
 use serde::ser::SerializeMap;
 use serde_json::Value;
 use std::io::{self, Write};
 
-/// The fields that every study has. Grid parameters other than ω and μ follow them.
-pub const HEADER: [&str; 25] = [
-    "study",
-    "job",
-    "omega_rpm",
-    "mu",
-    "status",
-    "regime",
-    "mu_star",
-    "mu_star_se",
-    "mu_star_contact",
-    "frequency_hz",
-    "stick_share",
-    "slip_share",
-    "separated_share",
-    "n_over_f_min",
-    "n_over_f_max",
-    "sigma_n_max_pa",
-    "slip_speed_max_m_s",
-    "cycles",
-    "simulated_s",
-    "steps",
-    "time_step_s",
-    "energy_residual",
-    "identity_residual",
-    "wall_s",
-    "error",
-];
-
-/// Number of the fields that come from the record: `regime` to `identity_residual`.
-const RECORD_FIELDS: usize = 18;
-
 /// Writes one CSV line per job below a header. A cell without a value is empty.
 ///
 /// # Errors
 /// Those of the writer.
 pub fn csv<W: Write>(rows: &[JobRow], out: W) -> io::Result<()> {
-    let mut export = Export::csv(owned(further_names(rows)), out)?;
-    rows.iter().try_for_each(|row| export.write(row))?;
+    let mut export = Export::csv(plain(&owned(further_names(rows))), out)?;
+    rows.iter().try_for_each(|row| export.write(row, &[]))?;
     export.finish()
 }
 
@@ -56,52 +24,54 @@ pub fn csv<W: Write>(rows: &[JobRow], out: W) -> io::Result<()> {
 /// # Errors
 /// Those of the writer.
 pub fn json_lines<W: Write>(rows: &[JobRow], out: W) -> io::Result<()> {
-    let mut export = Export::json_lines(owned(further_names(rows)), out);
-    rows.iter().try_for_each(|row| export.write(row))?;
+    let mut export = Export::json_lines(plain(&owned(further_names(rows))), out);
+    rows.iter().try_for_each(|row| export.write(row, &[]))?;
     export.finish()
 }
 
 /// An export that is written row by row, so that the rows of a large study need not be in memory all at once.
 pub struct Export<W: Write> {
-    further: Vec<String>,
+    columns: Vec<Column>,
     lines: Lines<W>,
 }
 
 enum Lines<W: Write> {
     Csv(Box<::csv::Writer<W>>),
-    Json { out: W, names: Vec<String> },
+    Json(W),
 }
 
 impl<W: Write> Export<W> {
-    /// CSV, with `further` parameters besides ω and μ; writes the header.
+    /// CSV with these columns; writes the header.
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn csv(further: Vec<String>, out: W) -> io::Result<Self> {
+    pub fn csv(columns: Vec<Column>, out: W) -> io::Result<Self> {
         let mut writer = ::csv::Writer::from_writer(out);
-        writer.write_record(field_names(&further)).map_err(io_error)?;
-        Ok(Self { further, lines: Lines::Csv(Box::new(writer)) })
+        writer.write_record(columns.iter().map(|column| column.name.as_bytes())).map_err(io_error)?;
+        Ok(Self { columns, lines: Lines::Csv(Box::new(writer)) })
     }
 
-    /// JSON lines, with `further` parameters besides ω and μ.
-    pub fn json_lines(further: Vec<String>, out: W) -> Self {
-        let names = field_names(&further);
-        Self { further, lines: Lines::Json { out, names } }
+    /// JSON lines with these columns.
+    pub fn json_lines(columns: Vec<Column>, out: W) -> Self {
+        Self { columns, lines: Lines::Json(out) }
     }
 
-    /// Writes a job.
+    /// Writes a job. `inputs` are the values of the columns' inputs, and may be empty if the columns have none.
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn write(&mut self, row: &JobRow) -> io::Result<()> {
-        let fields = fields(row, &self.further);
+    pub fn write(&mut self, row: &JobRow, inputs: &[Value]) -> io::Result<()> {
+        let columns = &self.columns;
         match &mut self.lines {
-            Lines::Csv(writer) => writer.write_record(fields.iter().map(value::text)).map_err(io_error),
-            Lines::Json { out, names } => {
+            Lines::Csv(writer) => {
+                let cells = columns.iter().map(|column| value::text(&column.value(row, inputs)));
+                writer.write_record(cells).map_err(io_error)
+            }
+            Lines::Json(out) => {
                 let mut line = serde_json::Serializer::new(&mut *out);
-                let mut map = line.serialize_map(Some(names.len()))?;
-                for (name, value) in names.iter().zip(fields) {
-                    map.serialize_entry(name, &value)?;
+                let mut map = line.serialize_map(Some(columns.len()))?;
+                for column in columns {
+                    map.serialize_entry(&column.name, &column.value(row, inputs))?;
                 }
                 map.end()?;
                 out.write_all(b"\n")
@@ -116,7 +86,7 @@ impl<W: Write> Export<W> {
     pub fn finish(self) -> io::Result<()> {
         match self.lines {
             Lines::Csv(mut writer) => writer.flush(),
-            Lines::Json { mut out, .. } => out.flush(),
+            Lines::Json(mut out) => out.flush(),
         }
     }
 }
@@ -128,18 +98,16 @@ pub(super) fn selection<'a>(
     further: &[&str],
     columns: &[&str],
 ) -> io::Result<Vec<u8>> {
+    let names = ["job", "omega_rpm", "mu"].iter().chain(columns).chain(&["status"]);
     let further: Vec<String> = further.iter().map(|&name| name.to_owned()).collect();
-    let names = field_names(&further);
-    let selected = ["job", "omega_rpm", "mu"].iter().chain(columns).chain(&["status"]);
-    let indices: Vec<usize> = selected
-        .filter_map(|name| HEADER.iter().position(|own| own == name))
-        .chain(HEADER.len()..names.len())
-        .collect();
+    let parameters = plain(&further).split_off(plain(&[]).len());
+    let selected: Vec<Column> =
+        names.filter_map(|name| Column::find(name)).cloned().chain(parameters).collect();
     let mut writer = ::csv::Writer::from_writer(Vec::new());
-    writer.write_record(indices.iter().map(|&index| &names[index])).map_err(io_error)?;
+    writer.write_record(selected.iter().map(|column| column.name.as_bytes())).map_err(io_error)?;
     for row in rows {
-        let fields = fields(row, &further);
-        writer.write_record(indices.iter().map(|&index| value::text(&fields[index]))).map_err(io_error)?;
+        let cells = selected.iter().map(|column| value::text(&column.value(row, &[])));
+        writer.write_record(cells).map_err(io_error)?;
     }
     writer.into_inner().map_err(|error| io::Error::other(error.to_string()))
 }
@@ -153,7 +121,7 @@ pub(super) fn io_error(error: ::csv::Error) -> io::Error {
 }
 
 /// Names of the parameters other than ω and μ, in the order in which they first appear.
-pub(super) fn further_names(rows: &[JobRow]) -> Vec<&str> {
+pub(super) fn further_names<'a>(rows: impl IntoIterator<Item = &'a JobRow>) -> Vec<&'a str> {
     let mut names = Vec::new();
     for row in rows {
         add_further_names(&mut names, &row.parameters);
@@ -175,54 +143,4 @@ where
 
 fn owned(names: Vec<&str>) -> Vec<String> {
     names.into_iter().map(str::to_owned).collect()
-}
-
-fn field_names(further: &[String]) -> Vec<String> {
-    // A parameter may have the name of a result. Then both have a column.
-    let unique = |name: &String| {
-        if HEADER.contains(&name.as_str()) { format!("parameter_{name}") } else { name.clone() }
-    };
-    HEADER.iter().map(|&name| name.to_owned()).chain(further.iter().map(unique)).collect()
-}
-
-fn fields(row: &JobRow, further: &[String]) -> Vec<Value> {
-    let error = match &row.state {
-        RowState::Failed { error } => Value::from(error.as_str()),
-        _ => Value::Null,
-    };
-    let mut fields: Vec<Value> = vec![
-        row.study.as_str().into(),
-        row.job.as_str().into(),
-        row.omega_rpm.into(),
-        row.mu.into(),
-        row.status().into(),
-    ];
-    fields.extend(row.record().map_or([const { Value::Null }; RECORD_FIELDS], record_fields));
-    fields.extend([row.wall_s.into(), error]);
-    fields.extend(further.iter().map(|name| row.parameter(name)));
-    fields
-}
-
-/// A number that is not finite becomes null, because JSON has no such numbers.
-fn record_fields(record: &JobRecord) -> [Value; RECORD_FIELDS] {
-    [
-        record.regime.name().into(),
-        record.mu_star.into(),
-        record.mu_star_se.into(),
-        record.mu_star_contact.into(),
-        record.frequency_hz.into(),
-        record.stick_share.into(),
-        record.slip_share.into(),
-        record.separated_share.into(),
-        record.n_over_f_min.into(),
-        record.n_over_f_max.into(),
-        record.sigma_n_max_pa.into(),
-        record.slip_speed_max_m_s.into(),
-        record.cycles.into(),
-        record.simulated_s.into(),
-        record.steps.into(),
-        record.time_step_s.into(),
-        record.energy_residual.into(),
-        record.identity_residual().into(),
-    ]
 }

@@ -1,11 +1,16 @@
 //! The report as a folder of files.
 
+use super::comparison::{self, Comparison};
 use super::export;
 use super::figure::{self, DataFile, Figure, Plot, RESIDUALS, RUN_TIMES};
 use super::html::{self, Parts};
 use super::input::Report;
+use super::inspections::inspections;
 use super::layout::Layout;
 use super::page::{self, FigureLink, Table};
+use super::row::JobRow;
+use super::spectra;
+use super::stale::could_be_of_a_report;
 use super::tables::{self, Quantity};
 use crate::publish::{FigureError, Folder, PublishError};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
@@ -17,18 +22,31 @@ const QUANTITIES: [(Quantity, &str); 3] =
 /// Writes the page `report.html`, tables, figures with the data behind them, the export and `report.md` into `out_dir`;
 /// returns the files.
 ///
-/// Each file is replaced as a whole. The folder may exist: files of the same name are replaced, and others are left
-/// alone.
+/// Each file is replaced as a whole. The folder may exist: files of an earlier report that this one does not have are
+/// removed, and files that are no report's are left alone. A hidden file in the folder lists the report's files.
 ///
 /// # Errors
-/// The first file that could not be written. Files before it are complete.
+/// The first file that could not be written. Files before it are complete, and nothing is removed.
 pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishError> {
-    let mut folder = Folder::create(out_dir)?;
-    let Report { title, rows, .. } = *report;
+    let mut folder = Folder::create(out_dir, "report")?;
+    let Report { title, rows, view, .. } = *report;
 
-    let layout = Layout::new(rows);
-    let tables = || QUANTITIES.into_par_iter().map(|(quantity, stem)| table(&layout, quantity, stem));
-    let figures = || Plot::ALL.into_par_iter().map(|plot| (plot, figure::figures_of(&layout, plot)));
+    let layout = Layout::of(rows, view);
+    let spectra = spectra::read(out_dir, rows);
+    let jobs_alone = || Layout::of(rows.iter().filter(|row| !row.is_measured()), view);
+    let has_measured = rows.iter().any(JobRow::is_measured);
+    let jobs_layout = has_measured.then(jobs_alone);
+    let jobs_layout = jobs_layout.as_ref().unwrap_or(&layout);
+    let layout_of = |plot: Plot| if plot.shows_measured() { &layout } else { jobs_layout };
+    let plots: Vec<Plot> =
+        Plot::ALL.into_iter().chain(view.y.iter().map(|scalar| Plot::Of(scalar))).collect();
+    let quantities =
+        QUANTITIES.into_iter().chain(view.y.iter().map(|scalar| (Quantity::Of(scalar), scalar.name)));
+    let quantities: Vec<(Quantity, &'static str)> = quantities.collect();
+
+    let tables = || quantities.into_par_iter().map(|(quantity, stem)| table(&layout, quantity, stem));
+    let draw = |plot: Plot| (plot, figure::figures_of(layout_of(plot), plot, &spectra));
+    let figures = || plots.clone().into_par_iter().map(draw);
     let jobs = || {
         let mut out = Vec::new();
         export::csv(rows, &mut out).map(|()| out)
@@ -38,6 +56,9 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         || rayon::join(|| tables().collect(), || figures().collect()),
         || rayon::join(jobs, residuals),
     );
+    for drawing in report.sheet.iter().flat_map(|sheet| &sheet.drawings) {
+        folder.write_text(&format!("{}.svg", drawing.stem), &drawing.svg)?;
+    }
     for table in &tables {
         folder.write_text(&format!("{}.md", table.stem), &page::of_table(table, title))?;
         folder
@@ -55,30 +76,54 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         }
         drawn.push((plot, figures));
     }
-    let residuals = residuals.map_err(|source| cannot_draw(out_dir, RESIDUALS.stem, source))?;
+    let residuals = residuals.map_err(|source| cannot_draw(out_dir, &RESIDUALS.stem, source))?;
     folder.write_text(&format!("{}.svg", RESIDUALS.stem), &residuals)?;
 
     let mut data_files = Vec::new();
-    for DataFile { stem, columns } in Plot::ALL.map(Plot::data).into_iter().chain([RESIDUALS, RUN_TIMES]) {
+    let behind_figures = plots.iter().map(|plot| plot.data());
+    for DataFile { stem, columns } in behind_figures.chain([RESIDUALS, RUN_TIMES]) {
         let file = format!("{stem}.csv");
         // Two figures may share a file of data.
         if data_files.contains(&file) {
             continue;
         }
         folder.write_with(&file, |out| {
-            *out = export::selection(rows, &layout.further, columns)?;
+            *out = export::selection(rows, &layout.further, &columns)?;
             Ok(())
         })?;
         data_files.push(file);
+    }
+    if !spectra.is_empty() {
+        folder.write_with("waterfall.csv", |out| {
+            *out = figure::waterfall::csv(&layout, &spectra)?;
+            Ok(())
+        })?;
+        data_files.push("waterfall.csv".to_owned());
     }
     folder.write_with("jobs.csv", |out| {
         *out = jobs?;
         Ok(())
     })?;
-    folder.write_text("report.md", &page::of_report(rows, &tables, &links, &data_files, title))?;
-    let parts = Parts { report, layout: &layout, figures: &drawn, residuals: &residuals };
+    let comparison = Comparison::of(&layout, view);
+    if let Some(comparison) = &comparison {
+        folder.write_with("differences.csv", |out| comparison::csv(comparison, out))?;
+    }
+    let differences = comparison.as_ref();
+    folder.write_text("report.md", &page::of_report(report, &tables, &links, &data_files, differences))?;
+    let pages = inspections(out_dir).into_iter().filter_map(|found| Some((found.job.clone(), found.page()?)));
+    let pages = pages.collect();
+    let parts = Parts {
+        report,
+        layout: &layout,
+        jobs: jobs_layout,
+        figures: &drawn,
+        comparison: differences,
+        residuals: &residuals,
+        spectra: &spectra,
+        pages,
+    };
     folder.write_text("report.html", &html::page(&parts))?;
-    Ok(folder.written)
+    folder.finish(|name| could_be_of_a_report(name, out_dir))
 }
 
 fn cannot_draw(out_dir: &Path, stem: &str, source: FigureError) -> PublishError {

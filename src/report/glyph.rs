@@ -45,6 +45,7 @@ pub(super) fn status_glyph(row: &JobRow) -> StatusGlyph {
         RowState::Cancelled => return glyph('-', "cancelled", AnsiColor::BrightBlack, LIGHT),
         RowState::Failed { .. } => return glyph('!', "failed", AnsiColor::Red, palette::VERMILLION),
         RowState::Done(record) => record,
+        RowState::Measured(_) => return glyph('M', "measured", AnsiColor::White, GREY),
     };
     let is_settled = record.outcome != Outcome::NotPeriodic;
     let (letter, colour, fill) = match record.regime {

@@ -2,16 +2,26 @@
 
 use super::provenance::Provenance;
 use super::row::JobRow;
+use super::view::View;
+use crate::publish::Sheet;
 
 /// What a report is written from.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub struct Report<'a> {
     /// Its title: the study's name.
     pub title: &'a str,
+    /// What the study is for, in its author's words.
+    pub description: Option<&'a str>,
     /// The study's jobs.
     pub rows: &'a [JobRow],
+    /// How they are laid out.
+    pub view: &'a View,
+    /// What was simulated: drawings and all inputs, if they are known.
+    pub sheet: Option<&'a Sheet>,
     /// Where they come from, if that is known.
     pub provenance: Option<&'a Provenance>,
+    /// What is doubtful about the study's inputs, each in words.
+    pub warnings: &'a [String],
     /// When it is written, in milliseconds since 1970-01-01 UTC.
     pub written_ms: i64,
     /// After how many seconds the page reloads itself; none for a page that is not going to be written again.

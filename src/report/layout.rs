@@ -1,25 +1,57 @@
-//! How tables and figures lay out the parameters of a study: one parameter along the rows, μ over the columns, and a
-//! table or figure for each combination of the others.
+//! How tables and figures lay out the parameters of a study: one parameter along the rows, one over the columns, and a
+//! table or panel for each combination of the others.
+//!
+//! Usually ω is along the rows and μ over the columns; a [`View`] chooses others. If rows have several sources (studies,
+//! files of measured points), each source has columns of its own.
 
+use super::dimension::Dimension;
 use super::export::further_names;
-use super::parameters::{MU, OMEGA, assignments};
-use super::row::JobRow;
+use super::parameters::{MU, OMEGA, SOURCE};
+use super::row::{JobRow, RowState};
+use super::view::View;
+use crate::publish::plot::axis::Axis;
 use crate::publish::value;
 use serde_json::Value;
 use std::collections::HashMap;
+
+pub(super) use super::words::parameters_in_words;
 
 /// A study laid out in two dimensions, once per combination of its further parameters.
 pub(super) struct Layout<'a> {
     /// The parameter along the rows of a table and the abscissa of a figure: ω if it varies, or if nothing else does.
     pub axis: &'a str,
-    /// The other parameters that vary, without μ.
+    /// The parameter over the columns of a table, and of the curves of a figure: μ if it varies.
+    pub by: &'a str,
+    /// The other parameters that vary.
     pub further: Vec<&'a str>,
     /// The parameters that are the same in every job.
     pub constants: Vec<(&'a str, Value)>,
-    /// All friction coefficients, ascending.
-    pub mus: Vec<f64>,
+    /// The columns of a table and the curves of a figure: the values of `by`, ascending, each once for every source that
+    /// has it.
+    pub series: Vec<Series>,
+    /// The studies and files that the rows come from, in the order of the rows.
+    pub sources: Vec<Source<'a>>,
     /// One group per combination of `further`, in the order of the study.
     pub groups: Vec<Group<'a>>,
+    dimensions: HashMap<&'a str, Dimension>,
+}
+
+/// A study, or a file of measured points.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Source<'a> {
+    pub name: &'a str,
+    pub is_measured: bool,
+}
+
+/// A column of a table, or a curve of a figure.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Series {
+    /// The value of [`Layout::by`]; null if it is not known.
+    pub value: Value,
+    /// Index of the value among the different ones.
+    pub value_index: usize,
+    /// Index in [`Layout::sources`].
+    pub source: usize,
 }
 
 /// The jobs with one combination of the further parameters.
@@ -30,52 +62,260 @@ pub(super) struct Group<'a> {
     pub jobs: Vec<PlacedJob<'a>>,
     /// The values along the axis: ascending if they are numbers, otherwise in the order of the study.
     pub axis_values: Vec<Value>,
+    words: String,
 }
 
 /// A job with its position in the layout.
+#[derive(Clone, Copy)]
 pub(super) struct PlacedJob<'a> {
     pub row: &'a JobRow,
     /// Index of its value in [`Group::axis_values`].
     pub axis_index: usize,
-    /// Index of its friction coefficient in [`Layout::mus`].
-    pub mu_index: usize,
+    /// Index in [`Layout::series`].
+    pub series: usize,
 }
 
-impl<'a> Layout<'a> {
-    /// Lays out a study. This compares the values of all jobs as text, which is slow: a report shares one layout between
-    /// all its tables and figures.
-    pub fn new(rows: &'a [JobRow]) -> Self {
+/// The rows of a layout with the names of their parameters that differ.
+struct Varying<'a> {
+    rows: Vec<&'a JobRow>,
+    names: Vec<&'a str>,
+    sources: Vec<Source<'a>>,
+}
+
+impl<'a> Varying<'a> {
+    fn new(rows: Vec<&'a JobRow>) -> (Self, Vec<&'a str>) {
         let varies = |name: &str| {
             let mut texts = rows.iter().map(|row| value::text(&row.parameter(name)));
             let first = texts.next();
             texts.any(|text| Some(text) != first)
         };
-        let (mut further, constant): (Vec<&str>, Vec<&str>) =
-            further_names(rows).into_iter().partition(|name| varies(name));
-        let axis = if varies(OMEGA) || further.is_empty() { OMEGA } else { further.remove(0) };
-        let fixed_speed = (axis != OMEGA && !rows.is_empty()).then_some(OMEGA);
-        let constants =
-            fixed_speed.into_iter().chain(constant).map(|name| (name, rows[0].parameter(name))).collect();
-        let mut mus: Vec<f64> = rows.iter().map(|row| row.mu).collect();
-        mus.sort_by(f64::total_cmp);
-        mus.dedup();
-        let groups = groups(rows, axis, &further, &mus);
-        Self { axis, further, constants, mus, groups }
+        let all = [OMEGA, MU].into_iter().chain(further_names(rows.iter().copied()));
+        let (names, constant) = all.partition(|name| varies(name));
+        let mut sources: Vec<Source> = Vec::new();
+        for row in &rows {
+            if !sources.iter().rev().any(|source| source.name == row.study) {
+                sources.push(Source { name: &row.study, is_measured: row.is_measured() });
+            }
+        }
+        (Self { rows, names, sources }, constant)
+    }
+
+    fn varies(&self, name: &str) -> bool {
+        if name == SOURCE { self.sources.len() > 1 } else { self.names.contains(&name) }
+    }
+
+    /// The parameter along the axis.
+    fn axis(&self) -> &'a str {
+        let further = self.names.iter().find(|name| **name != OMEGA && **name != MU);
+        if self.varies(OMEGA) { OMEGA } else { further.copied().unwrap_or(OMEGA) }
+    }
+
+    /// The parameter of the curves.
+    fn by(&self, axis: &str) -> &'a str {
+        let varying = [MU, OMEGA].into_iter().chain(self.names.iter().copied()).chain([SOURCE]);
+        let usual = if axis == MU { OMEGA } else { MU };
+        varying.into_iter().find(|name| *name != axis && self.varies(name)).unwrap_or(usual)
+    }
+}
+
+impl<'a> Layout<'a> {
+    /// The usual layout of a study.
+    pub fn new(rows: &'a [JobRow]) -> Self {
+        Self::of(rows, &View::DEFAULT)
+    }
+
+    /// Lays out rows. This compares the values of all jobs as text, which is slow: a report shares one layout between all
+    /// its tables and figures.
+    pub fn of(rows: impl IntoIterator<Item = &'a JobRow>, view: &View) -> Self {
+        let (varying, constant) = Varying::new(rows.into_iter().collect());
+        let known = |name: &Option<String>| {
+            let own = varying.names.iter().chain(&constant).chain(&[SOURCE]);
+            let name = name.as_deref()?;
+            own.copied().find(|own| *own == name)
+        };
+        let axis = known(&view.x).unwrap_or_else(|| varying.axis());
+        let by = known(&view.by).filter(|by| *by != axis).unwrap_or_else(|| varying.by(axis));
+        let is_placed = |name: &str| name == axis || name == by;
+        let further: Vec<&str> = varying.names.iter().copied().filter(|name| !is_placed(name)).collect();
+        let constants = varying.rows.first().map_or_else(Vec::new, |row| {
+            // A constant ω or μ is in the heads of tables, if it has no other place.
+            let named = constant.iter().filter(|name| !is_placed(name));
+            named.map(|&name| (name, row.parameter(name))).collect()
+        });
+        let names = [OMEGA, MU, SOURCE].into_iter().chain(further.iter().copied()).chain([axis, by]);
+        let dimensions = names
+            .map(|name| {
+                let description = view.descriptions.get(name).map(String::as_str);
+                (name, Dimension::new(name, description, &varying.rows))
+            })
+            .collect();
+        let (series, series_of) = series(&varying, by);
+        let mut layout = Self {
+            axis,
+            by,
+            further,
+            constants,
+            series,
+            sources: varying.sources,
+            groups: Vec::new(),
+            dimensions,
+        };
+        layout.groups = layout.group(&varying.rows, &series_of);
+        layout
     }
 
     /// What is the same in all jobs, in words; may be empty.
     pub fn constants_in_words(&self) -> String {
-        assignments(self.constants.iter().cloned())
+        super::parameters::assignments(self.constants.iter().cloned())
+    }
+
+    /// How the values of a parameter are written.
+    pub fn dimension(&self, name: &str) -> &Dimension {
+        // Every name of this layout is in the map.
+        self.dimensions.get(name).unwrap_or_else(|| &self.dimensions[OMEGA])
     }
 
     /// Name and unit of the axis.
-    pub fn axis_name(&self) -> &'a str {
-        if self.axis == OMEGA { "disk speed ω [rpm]" } else { self.axis }
+    pub fn axis_name(&self) -> &str {
+        &self.dimension(self.axis).title
+    }
+
+    /// The parameter of the curves in words: `μ`, `clamp_width [mm]`, `source`.
+    pub fn by_words(&self) -> String {
+        let words = &self.dimension(self.by).label;
+        if self.has_sources() { format!("{words} and source") } else { words.clone() }
     }
 
     /// Symbol and unit of the axis.
-    pub fn axis_label(&self) -> &'a str {
-        if self.axis == OMEGA { "ω [rpm]" } else { self.axis }
+    pub fn axis_label(&self) -> &str {
+        &self.dimension(self.axis).label
+    }
+
+    /// A value along the axis as text, in the unit of the axis.
+    pub fn axis_text(&self, value: &Value) -> String {
+        self.dimension(self.axis).text(value)
+    }
+
+    /// The axis of a figure, which is the same in all its panels. Its numbers are in the unit of [`Layout::axis_name`].
+    pub fn x_axis(&self) -> Axis {
+        self.dimension(self.axis).axis(self.axis == OMEGA)
+    }
+
+    /// The position of a value on [`Layout::x_axis`].
+    pub fn position(&self, axis: &Axis, value: &Value) -> Option<f64> {
+        self.dimension(self.axis).position(axis, value)
+    }
+
+    /// A column of a table or a curve of a figure in words: `μ = 0.4`, with the source if there are several.
+    pub fn series_name(&self, series: &Series) -> String {
+        let source = self.sources.get(series.source).map_or("", |source| source.name);
+        if self.by == SOURCE {
+            return source.to_owned();
+        }
+        let words = self.dimension(self.by).assignment(&series.value);
+        match (self.has_sources(), series.value.is_null()) {
+            (false, _) => words,
+            (true, true) => source.to_owned(),
+            (true, false) => format!("{words}, {source}"),
+        }
+    }
+
+    /// The value of a column or curve in words, without the parameter's name: `0.4`, with the source if there are several.
+    pub fn series_value(&self, series: &Series) -> String {
+        let source = self.sources.get(series.source).map_or("", |source| source.name);
+        let words = self.dimension(self.by).text(&series.value);
+        match (self.has_sources(), series.value.is_null()) {
+            (false, _) => words,
+            (true, true) => source.to_owned(),
+            (true, false) => format!("{words} {source}"),
+        }
+    }
+
+    /// Whether a source is more than the value of [`Layout::by`].
+    pub fn has_sources(&self) -> bool {
+        self.sources.len() > 1 && self.by != SOURCE
+    }
+
+    fn group(&self, rows: &[&'a JobRow], series_of: &[usize]) -> Vec<Group<'a>> {
+        let mut groups = Groups::default();
+        for (row, &series) in rows.iter().zip(series_of) {
+            let key: Vec<_> = self.further.iter().map(|&name| (name, row.parameter(name))).collect();
+            groups.place(row, key, series, row.parameter(self.axis));
+        }
+        groups.finish(self)
+    }
+}
+
+/// Groups in the making.
+#[derive(Default)]
+struct Groups<'a> {
+    found: Vec<Group<'a>>,
+    /// Values are compared as they are shown: 1 and 1.0 are equal.
+    known: HashMap<Vec<String>, usize>,
+    axis_indices: Vec<HashMap<String, usize>>,
+    /// Measured points that are not known to belong to one group.
+    anywhere: Vec<Unplaced<'a>>,
+}
+
+/// A row with the parameters of its group, some of which are not known, its series, and its value along the axis.
+type Unplaced<'a> = (&'a JobRow, Vec<(&'a str, Value)>, usize, Value);
+
+impl<'a> Groups<'a> {
+    fn place(&mut self, row: &'a JobRow, key: Vec<(&'a str, Value)>, series: usize, at: Value) {
+        let is_unknown = key.iter().any(|(_, value)| value.is_null());
+        if is_unknown && matches!(row.state, RowState::Measured(_)) {
+            self.anywhere.push((row, key, series, at));
+            return;
+        }
+        let number = self.number(key);
+        self.add(number, row, series, at);
+    }
+
+    fn number(&mut self, key: Vec<(&'a str, Value)>) -> usize {
+        let texts = key.iter().map(|(_, value)| value::text(value)).collect();
+        let number = *self.known.entry(texts).or_insert(self.found.len());
+        if number == self.found.len() {
+            self.found.push(Group { key, jobs: Vec::new(), axis_values: Vec::new(), words: String::new() });
+            self.axis_indices.push(HashMap::new());
+        }
+        number
+    }
+
+    fn add(&mut self, number: usize, row: &'a JobRow, series: usize, at: Value) {
+        let (group, indices) = (&mut self.found[number], &mut self.axis_indices[number]);
+        let axis_index = *indices.entry(value::text(&at)).or_insert(group.axis_values.len());
+        if axis_index == group.axis_values.len() {
+            group.axis_values.push(at);
+        }
+        group.jobs.push(PlacedJob { row, axis_index, series });
+    }
+
+    fn finish(mut self, layout: &Layout) -> Vec<Group<'a>> {
+        for (row, key, series, at) in std::mem::take(&mut self.anywhere) {
+            let agrees = |group: &Group| {
+                let pairs = group.key.iter().zip(&key);
+                pairs.clone().all(|((_, a), (_, b))| b.is_null() || value::text(a) == value::text(b))
+            };
+            let fitting: Vec<usize> = (0..self.found.len()).filter(|&i| agrees(&self.found[i])).collect();
+            if fitting.is_empty() {
+                let number = self.number(key);
+                self.add(number, row, series, at);
+                continue;
+            }
+            for number in fitting {
+                self.add(number, row, series, at.clone());
+            }
+        }
+        if self.found.is_empty() {
+            // A study without jobs has empty tables and figures.
+            self.number(Vec::new());
+        }
+        for group in &mut self.found {
+            group.sort_axis();
+            let words = group.key.iter().map(|(name, value)| layout.dimension(name).assignment(value));
+            group.words = words.collect::<Vec<_>>().join(", ");
+        }
+        self.found
     }
 }
 
@@ -83,14 +323,9 @@ impl<'a> Layout<'a> {
 pub(super) const MAX_TOOLTIPS: usize = 2_000;
 
 impl Group<'_> {
-    /// Whether figures have a tooltip for each job.
-    pub fn has_tooltips(&self) -> bool {
-        self.jobs.len() <= MAX_TOOLTIPS
-    }
-
     /// The combination in words; empty if there are no further parameters.
     pub fn caption(&self) -> String {
-        assignments(self.key.iter().cloned())
+        self.words.clone()
     }
 
     fn sort_axis(&mut self) {
@@ -101,38 +336,31 @@ impl Group<'_> {
     }
 }
 
-fn groups<'a>(rows: &'a [JobRow], axis: &str, further: &[&'a str], mus: &[f64]) -> Vec<Group<'a>> {
-    let mut groups: Vec<Group<'a>> = Vec::new();
-    // Values are compared as they are shown: 1 and 1.0 are equal.
-    let mut known: HashMap<Vec<String>, usize> = HashMap::new();
-    let mut axis_indices: Vec<HashMap<String, usize>> = Vec::new();
-    for row in rows {
-        let key: Vec<_> = further.iter().map(|&name| (name, row.parameter(name))).collect();
-        let texts = key.iter().map(|(_, value)| value::text(value)).collect();
-        let number = *known.entry(texts).or_insert(groups.len());
-        if number == groups.len() {
-            groups.push(Group { key, jobs: Vec::new(), axis_values: Vec::new() });
-            axis_indices.push(HashMap::new());
+/// The series of the rows, and the index of each row's series.
+fn series(varying: &Varying, by: &str) -> (Vec<Series>, Vec<usize>) {
+    let mut values: Vec<Value> = Vec::new();
+    let mut indices: HashMap<String, usize> = HashMap::new();
+    let mut of_rows = Vec::with_capacity(varying.rows.len());
+    for row in &varying.rows {
+        let value = row.parameter(by);
+        let index = *indices.entry(value::text(&value)).or_insert(values.len());
+        if index == values.len() {
+            values.push(value);
         }
-        let (group, indices) = (&mut groups[number], &mut axis_indices[number]);
-        let value = row.parameter(axis);
-        let axis_index = *indices.entry(value::text(&value)).or_insert(group.axis_values.len());
-        if axis_index == group.axis_values.len() {
-            group.axis_values.push(value);
-        }
-        let mu_index = mus.partition_point(|&mu| mu < row.mu);
-        group.jobs.push(PlacedJob { row, axis_index, mu_index });
+        let source = varying.sources.iter().position(|source| source.name == row.study).unwrap_or(0);
+        of_rows.push((index, source));
     }
-    if groups.is_empty() {
-        // A study without jobs has empty tables and figures.
-        groups.push(Group { key: Vec::new(), jobs: Vec::new(), axis_values: Vec::new() });
+    let rank = value::sort_known(&mut values);
+    for (index, _) in &mut of_rows {
+        *index = rank[*index];
     }
-    groups.iter_mut().for_each(Group::sort_axis);
-    groups
-}
-
-/// All parameters of a job in words, ω and μ first.
-pub(super) fn parameters_in_words(row: &JobRow) -> String {
-    let further = row.further().map(|(name, value)| (name, value.clone()));
-    assignments([OMEGA, MU].map(|name| (name, row.parameter(name))).into_iter().chain(further))
+    let mut found = of_rows.clone();
+    found.sort_unstable();
+    found.dedup();
+    let numbers: HashMap<(usize, usize), usize> = found.iter().enumerate().map(|(n, at)| (*at, n)).collect();
+    let series = found
+        .iter()
+        .map(|&(value_index, source)| Series { value: values[value_index].clone(), value_index, source })
+        .collect();
+    (series, of_rows.iter().map(|at| numbers[at]).collect())
 }

@@ -3,7 +3,7 @@
 //! Everything here reads [`JobRow`]s: one job with its grid parameters and its state. A study that is still running is
 //! reported like a finished one, and the report names what is missing.
 //!
-//! * [`export`] – one line per job, for other programs.
+//! * [`export`] – one line per job, for other programs, with [`columns`].
 //! * [`tables`] – speed by friction coefficient, as Markdown and CSV.
 //! * [`figure`] – curves against speed, maps over speed and friction, shares and residuals, as SVG.
 //! * [`overview`] – a letter for every job, for a terminal.
@@ -11,29 +11,48 @@
 //! * [`trouble`] – where in the grid jobs fail or do not become periodic, and why.
 //! * [`write()`] – a folder with all of it, and a page for a browser that contains all of it.
 
+mod accuracy;
+pub mod columns;
+mod comparison;
+mod digits;
+mod dimension;
+mod discretisation;
 pub mod export;
 pub mod figure;
 mod files;
 mod glyph;
 mod html;
 mod input;
+mod inspections;
 mod layout;
 mod markdown;
+mod measurement;
 pub mod overview;
 mod page;
 mod parameters;
 pub mod pareto;
 mod provenance;
 mod row;
+mod scalar;
+mod spectra;
+mod stale;
 mod summary;
 pub mod tables;
 mod times;
 mod tooltip;
 pub mod trouble;
+mod view;
+mod words;
 
+pub use discretisation::{Discretisation, MeshError};
 pub use files::write;
 pub use input::Report;
+pub use inspections::{FoundInspection, INSPECTIONS, inspections};
+pub use measurement::{MeasuredValue, Measurement};
 #[cfg(feature = "cli")]
 pub(crate) use parameters::assignment;
+pub use parameters::name_and_unit;
 pub use provenance::{BuildInfo, Provenance, ResultGroup};
 pub use row::{JobNumerics, JobRow, RowState};
+pub use scalar::{SCALARS, Scalar};
+pub use view::View;

@@ -4,7 +4,6 @@
 use super::glyph::{SEVERAL_JOBS, StatusGlyph, status_glyph};
 use super::layout::{Group, Layout};
 use super::row::JobRow;
-use crate::publish::value;
 use anstyle::Style;
 use std::fmt::Write;
 
@@ -52,14 +51,14 @@ fn grid(
     used: &mut Vec<StatusGlyph>,
     text: &mut String,
 ) {
-    let columns: Vec<String> = group.axis_values.iter().map(value::text).collect();
-    let corner = format!("μ \\ {}", layout.axis_label());
-    let labels: Vec<String> = layout.mus.iter().map(|mu| value::number(*mu)).collect();
+    let columns: Vec<String> = group.axis_values.iter().map(|value| layout.axis_text(value)).collect();
+    let corner = format!("{} \\ {}", layout.dimension(layout.by).label, layout.axis_label());
+    let labels: Vec<String> = layout.series.iter().map(|series| layout.series_value(series)).collect();
     let label_width = labels.iter().chain([&corner]).map(|label| label.chars().count()).max().unwrap_or(0);
     let cell_width = columns.iter().map(|label| label.chars().count()).max().unwrap_or(0) + 1;
     let mut glyphs: Vec<Vec<Option<StatusGlyph>>> = vec![vec![None; columns.len()]; labels.len()];
     for job in &group.jobs {
-        let cell = &mut glyphs[job.mu_index][job.axis_index];
+        let cell = &mut glyphs[job.series][job.axis_index];
         *cell = Some(if cell.is_some() { SEVERAL_JOBS } else { status_glyph(job.row) });
     }
     for glyph in glyphs.iter().flatten().flatten() {

@@ -1,13 +1,15 @@
 //! The Markdown pages: one per table, and `report.md` for the whole report.
 
 use super::figure::Plot;
+use super::input::Report;
 use super::layout::parameters_in_words;
 use super::row::{JobRow, RowState};
 use super::summary::{self, Summary};
-use super::tables::Quantity;
-use super::{markdown, trouble};
+use super::tables::{self, Quantity};
+use super::{accuracy, comparison, digits, markdown, trouble};
 use crate::analysis::{JobRecord, Outcome};
-use crate::publish::value;
+use crate::publish::{Sheet, SheetLine, value};
+use std::fmt::Write;
 
 /// Largest number of jobs in a list. The others are in the export.
 const MAX_LISTED: usize = 20;
@@ -28,22 +30,35 @@ pub(super) struct Table {
 
 /// The page of one table.
 pub(super) fn of_table(table: &Table, title: &str) -> String {
-    format!("# {}: {}\n\n{}", markdown::escape(title), table.quantity.title(), table.markdown)
+    tables::titled(title, table.quantity, &table.markdown)
 }
 
 /// The page of the whole report.
 pub(super) fn of_report(
-    rows: &[JobRow],
+    report: &Report,
     tables: &[Table],
     figures: &[FigureLink],
     data: &[String],
-    title: &str,
+    differences: Option<&comparison::Comparison>,
 ) -> String {
+    let rows = report.rows;
+    let description =
+        report.description.map_or_else(String::new, |text| format!("{}\n\n", markdown::escape(text)));
     let mut page = format!(
-        "# {}\n\nAs a page for a browser, with all figures and tables in it: [report.html](report.html).\n\n{}\n",
-        markdown::escape(title),
+        "# {}\n\n{description}As a page for a browser, with all figures and tables in it: [report.html](report.html).\n\n{}\n",
+        markdown::escape(report.title),
         summary(rows)
     );
+    if !report.warnings.is_empty() {
+        let lines = report.warnings.iter().map(|warning| format!("- {}\n", markdown::escape(warning)));
+        let lines = lines.collect::<Vec<_>>().concat();
+        page += "**Check these inputs before you use the results:**\n\n";
+        page += &lines;
+        page.push('\n');
+    }
+    page += &differences.map_or_else(String::new, comparison::markdown);
+    page += &errors(rows);
+    page += &report.sheet.map_or_else(String::new, scene);
     for table in tables {
         page += &section(table, figures);
     }
@@ -59,12 +74,39 @@ pub(super) fn of_report(
     )
 }
 
+/// The errors of the results.
+fn errors(rows: &[JobRow]) -> String {
+    let sentences = accuracy::in_words(rows);
+    if sentences.is_empty() {
+        return String::new();
+    }
+    let lines = sentences.iter().map(|sentence| format!("- {}\n", markdown::escape(sentence)));
+    format!("\n## Accuracy\n\n{}", lines.collect::<String>())
+}
+
+/// What was simulated: the drawings, and all inputs.
+fn scene(sheet: &Sheet) -> String {
+    let mut text = "\n## What was simulated\n\n".to_owned();
+    for drawing in &sheet.drawings {
+        let _ = write!(text, "![{0}]({1}.svg)\n\n{0}\n\n", markdown::escape(&drawing.caption), drawing.stem);
+    }
+    let header = ["symbol", "quantity", "value", "name in files", "from"].map(str::to_owned);
+    for group in &sheet.groups {
+        let line = |line: &SheetLine| -> Vec<String> {
+            [line.symbol, &line.name, &line.value, line.key, line.origin].map(str::to_owned).into()
+        };
+        let lines: Vec<Vec<String>> = group.lines.iter().map(line).collect();
+        let _ = writeln!(text, "### {}\n\n{}", group.heading, markdown::table(&header, &lines, false));
+    }
+    text
+}
+
 fn summary(rows: &[JobRow]) -> String {
     let summary = Summary::of(rows);
     let mut text = format!(
-        "{} of {} jobs done ({}), {} failed, {} missing ({}).\n",
+        "{} of {} done ({}), {} failed, {} missing ({}).\n",
         summary.done(),
-        summary.total,
+        value::count(summary.total, "job"),
         summary.done_in_words(),
         summary.failed,
         summary.missing(),
@@ -87,10 +129,16 @@ fn worst(name: &str, rows: &[JobRow], residual: impl Fn(&JobRecord) -> f64) -> S
 
 fn section(table: &Table, figures: &[FigureLink]) -> String {
     let Table { quantity, stem, markdown: lines } = table;
-    let (heading, plots): (_, &[Plot]) = match quantity {
-        Quantity::MuStar => ("Macroscopic friction", &[Plot::MuStar]),
-        Quantity::Frequency => ("Frequency", &[Plot::Frequency, Plot::FrequencyMap]),
-        Quantity::Regime => ("Contact regime", &[Plot::RegimeMap, Plot::Shares]),
+    let (heading, plots) = match *quantity {
+        Quantity::MuStar => ("Macroscopic friction".into(), vec![Plot::MuStar, Plot::Bifurcation]),
+        Quantity::Frequency => {
+            ("Frequency".into(), vec![Plot::Frequency, Plot::FrequencyMap, Plot::Waterfall])
+        }
+        Quantity::Regime => (
+            "Contact regime".into(),
+            vec![Plot::RegimeMap, Plot::RegimePlane, Plot::GrowthRate, Plot::Shares],
+        ),
+        Quantity::Of(scalar) => (quantity.title(), vec![Plot::Of(scalar)]),
     };
     let mut parts = vec![format!("\n## {heading}\n\n")];
     for figure in figures.iter().filter(|figure| plots.contains(&figure.plot)) {
@@ -141,11 +189,10 @@ fn failed(row: &JobRow) -> Option<String> {
 fn not_periodic(row: &JobRow) -> Option<String> {
     let record = row.record().filter(|record| record.outcome == Outcome::NotPeriodic)?;
     let reason = format!(
-        "time limit reached after {} s without a periodic state; {}, μ\\* = {} ± {} over {} cycles",
+        "time limit reached after {} s without a periodic state; {}, μ\\* = {} over {} cycles",
         value::significant(record.simulated_s, 4),
         record.regime.name(),
-        value::fixed(record.mu_star, 4),
-        value::fixed(record.mu_star_se, 4),
+        digits::mu_star_with_error(row, record),
         record.cycles,
     );
     Some(entry(row, &reason))

@@ -1,22 +1,26 @@
 //! One job as a report sees it.
 
-use super::parameters::{MU, OMEGA, is_further};
+use super::discretisation::Discretisation;
+use super::measurement::Measurement;
+use super::parameters::{MU, OMEGA, SOURCE, is_further};
 use crate::analysis::JobRecord;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-/// One job of a study: its parameters and its state.
+/// One job of a study, or one measured point: its parameters and its state.
 #[derive(Debug, Clone, PartialEq)]
 pub struct JobRow {
-    /// Name of the study.
+    /// Name of its source: of the study, or of the file of measured points.
     pub study: String,
-    /// Key of the job.
+    /// Key of the job; file and line of a measured point.
     pub job: String,
-    /// The grid parameters by name, in the order of the study.
+    /// The grid parameters by name, in the order of the study. A parameter of a measured point that is not known is null.
     pub parameters: Vec<(String, Value)>,
-    /// Disk speed ω of the job in revolutions per minute, whether or not it is a parameter of the grid.
+    /// Disk speed ω of the job in revolutions per minute, whether or not it is a parameter of the grid. It is NaN for a
+    /// measured point of unknown speed.
     pub omega_rpm: f64,
-    /// Local friction coefficient μ of the job, whether or not it is a parameter of the grid.
+    /// Local friction coefficient μ of the job, whether or not it is a parameter of the grid. It is NaN for a measured
+    /// point of unknown μ.
     pub mu: f64,
     /// The state of the job.
     pub state: RowState,
@@ -24,6 +28,8 @@ pub struct JobRow {
     pub wall_s: Option<f64>,
     /// The job's numerics; none in studies submitted by a version that did not store them.
     pub numerics: Option<JobNumerics>,
+    /// What is known about the error of its mesh, time step and detection.
+    pub discretisation: Discretisation,
 }
 
 /// What a job's accuracy and cost depend on besides the physics.
@@ -73,10 +79,13 @@ pub enum RowState {
     },
     /// It has a result.
     Done(Box<JobRecord>),
+    /// It is no job but a point from a file, for comparison.
+    Measured(Measurement),
 }
 
 impl JobRow {
-    /// The name of the job's state in CSV: `pending`, `running`, `cancelled`, `failed` or the outcome of its run.
+    /// The name of the job's state in CSV: `pending`, `running`, `cancelled`, `failed`, `measured` or the outcome of
+    /// its run.
     pub fn status(&self) -> &'static str {
         match &self.state {
             RowState::Pending => "pending",
@@ -84,6 +93,7 @@ impl JobRow {
             RowState::Cancelled => "cancelled",
             RowState::Failed { .. } => "failed",
             RowState::Done(record) => record.outcome.name(),
+            RowState::Measured(_) => "measured",
         }
     }
 
@@ -93,6 +103,16 @@ impl JobRow {
             RowState::Done(record) => Some(record),
             _ => None,
         }
+    }
+
+    /// Whether there is a result: of a job that is done, or a measured one.
+    pub(super) fn has_result(&self) -> bool {
+        matches!(self.state, RowState::Done(_) | RowState::Measured(_))
+    }
+
+    /// Whether this is a measured point and no job.
+    pub fn is_measured(&self) -> bool {
+        matches!(self.state, RowState::Measured(_))
     }
 
     /// The parameters other than ω and μ.
@@ -108,6 +128,7 @@ impl JobRow {
         match name {
             OMEGA => self.omega_rpm.into(),
             MU => self.mu.into(),
+            SOURCE => self.study.as_str().into(),
             _ => self.further().find(|(own, _)| *own == name).map_or(Value::Null, |(_, value)| value.clone()),
         }
     }

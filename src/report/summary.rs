@@ -18,13 +18,16 @@ pub(super) struct Summary {
 
 impl Summary {
     pub fn of(rows: &[JobRow]) -> Self {
-        let mut summary = Self { total: rows.len(), ..Self::default() };
-        for row in rows {
+        // Measured points are no jobs.
+        let jobs = rows.iter().filter(|row| !row.is_measured());
+        let mut summary = Self { total: jobs.clone().count(), ..Self::default() };
+        for row in jobs {
             *match &row.state {
                 RowState::Pending => &mut summary.pending,
                 RowState::Running => &mut summary.running,
                 RowState::Cancelled => &mut summary.cancelled,
                 RowState::Failed { .. } => &mut summary.failed,
+                RowState::Measured(_) => continue,
                 RowState::Done(record) => match record.outcome {
                     Outcome::Periodic => &mut summary.periodic,
                     Outcome::Decayed => &mut summary.decayed,

@@ -1,12 +1,16 @@
-//! Tables of the same layout as Figure 7: speed by friction coefficient, one cell per job.
+//! Tables of the same layout as the curves: speed by friction coefficient, one cell per job.
 
+use super::digits;
 use super::export::io_error;
 use super::layout::{Group, Layout};
 use super::markdown;
 use super::row::{JobRow, RowState};
+use super::scalar::{FREQUENCY, MU_STAR, Scalar};
+use super::view::View;
 use crate::analysis::{JobRecord, Outcome, Regime};
-use crate::publish::value;
-use crate::publish::value::MISSING;
+use crate::publish::value::{self, MISSING};
+use serde_json::Value;
+use std::borrow::Cow;
 use std::io::{self, Write};
 
 /// What a table shows.
@@ -18,64 +22,119 @@ pub enum Quantity {
     Frequency,
     /// Contact regime.
     Regime,
+    /// Another number of the record.
+    Of(&'static Scalar),
 }
+
+/// The mark of several jobs in one cell, in a legend.
+const SEVERAL: &str = "a / b";
 
 impl Quantity {
     /// The quantity with its symbol and unit.
-    pub fn title(self) -> &'static str {
+    pub fn title(self) -> Cow<'static, str> {
         match self {
-            Self::MuStar => "macroscopic friction coefficient μ*",
-            Self::Frequency => "frequency [Hz]",
-            Self::Regime => "contact regime",
+            Self::MuStar => "macroscopic friction coefficient μ*".into(),
+            Self::Frequency => "frequency [Hz]".into(),
+            Self::Regime => "contact regime".into(),
+            Self::Of(scalar) => scalar.title().into(),
         }
     }
 
-    /// The marks in its cells with their meaning.
-    pub(super) fn legend(self) -> impl Iterator<Item = (&'static str, &'static str)> {
+    /// What a mark in a cell means, for the marks that are in `cells`.
+    fn legend<'a>(self, cells: impl Iterator<Item = &'a str>) -> Vec<(&'static str, &'static str)> {
         let own: &[_] = match self {
             Self::MuStar => &[("~", "not periodic: an average over the last part of the run")],
             Self::Frequency => &[
                 ("", "fundamental frequency of the total normal contact force"),
                 ("stable", "the oscillation decays"),
                 ("none", "no frequency found"),
-                ("~", "not periodic"),
+                ("~", "not periodic: the mean rate of its cycles"),
             ],
-            Self::Regime => &[("~", "not periodic: from the last part of the run")],
+            Self::Regime | Self::Of(_) => &[("~", "not periodic: from the last part of the run")],
         };
         let common = [
+            ("±", "error of the measured point"),
             ("failed", "no result"),
-            ("–", "no result yet, or no such job"),
-            ("a / b", "several jobs at this point"),
+            (MISSING, "no result yet, or no such job"),
+            (SEVERAL, "several jobs at this point"),
         ];
-        own.iter().copied().chain(common)
+        let mut entries: Vec<_> = own.iter().copied().chain(common).map(|entry| (entry, false)).collect();
+        for cell in cells {
+            for ((mark, _), occurs) in &mut entries {
+                let sign = if *mark == SEVERAL { " / " } else { mark };
+                *occurs = *occurs || cell.contains(sign);
+            }
+        }
+        entries.into_iter().filter(|(_, occurs)| *occurs).map(|(entry, _)| entry).collect()
     }
 
-    fn result(self, record: &JobRecord) -> String {
+    fn result(self, row: &JobRow, record: &JobRecord, digits: Digits) -> String {
         let text = match self {
             Self::MuStar if !record.mu_star.is_finite() => return MISSING.to_owned(),
-            Self::MuStar => value::fixed(record.mu_star, 4),
+            Self::MuStar if digits == Digits::Fixed => value::fixed(record.mu_star, 4),
+            Self::MuStar => digits::mu_star(row, record),
             Self::Frequency => match record.frequency_hz.filter(|f| f.is_finite()) {
-                Some(frequency) => format!("{frequency:.0}"),
+                Some(frequency) if digits == Digits::Fixed => format!("{frequency:.0}"),
+                Some(_) => digits::frequency_hz(row, record).unwrap_or_default(),
                 None if record.regime == Regime::Stable => "stable".to_owned(),
                 None => "none".to_owned(),
             },
             Self::Regime => record.regime.name().to_owned(),
+            Self::Of(scalar) => match scalar.value(row) {
+                Some(x) => scalar.text(x),
+                None => return MISSING.to_owned(),
+            },
         };
         if record.outcome == Outcome::NotPeriodic { text + "~" } else { text }
     }
 
-    fn cell(self, row: &JobRow) -> String {
+    fn measured(self, row: &JobRow) -> String {
+        let scalar = match self {
+            Self::MuStar => *MU_STAR,
+            Self::Frequency => *FREQUENCY,
+            Self::Of(scalar) => scalar,
+            Self::Regime => return MISSING.to_owned(),
+        };
+        let text = |x: f64| scalar.text(x);
+        match (scalar.value(row), scalar.error(row)) {
+            (Some(x), Some(error)) => format!("{} ± {}", text(x), scalar.error_text(error)),
+            (Some(x), None) => text(x),
+            (None, _) => MISSING.to_owned(),
+        }
+    }
+
+    fn cell(self, row: &JobRow, digits: Digits) -> String {
         match &row.state {
             RowState::Pending | RowState::Running | RowState::Cancelled => MISSING.to_owned(),
             RowState::Failed { .. } => "failed".to_owned(),
-            RowState::Done(record) => self.result(record),
+            RowState::Done(record) => self.result(row, record, digits),
+            RowState::Measured(_) => self.measured(row),
         }
     }
 }
 
-/// The tables of one quantity as Markdown: one per combination of further parameters, and a legend.
+/// The digits of a result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Digits {
+    /// Those that its errors leave, for a reader.
+    ByError,
+    /// Always the same number, for a program.
+    Fixed,
+}
+
+/// The tables of one quantity as Markdown: one per combination of further parameters, and a legend of the marks that occur.
 pub fn markdown(rows: &[JobRow], quantity: Quantity) -> String {
     markdown_of(&Layout::new(rows), quantity)
+}
+
+/// The tables of one quantity as a page in Markdown: below a title, and with the axes of a `view`.
+pub fn page(rows: &[JobRow], view: &View, quantity: Quantity, title: &str) -> String {
+    titled(title, quantity, &markdown_of(&Layout::of(rows, view), quantity))
+}
+
+/// Tables in Markdown below a title.
+pub(super) fn titled(title: &str, quantity: Quantity, tables: &str) -> String {
+    format!("# {}: {}\n\n{tables}", markdown::escape(title), quantity.title())
 }
 
 pub(super) fn markdown_of(layout: &Layout, quantity: Quantity) -> String {
@@ -85,23 +144,30 @@ pub(super) fn markdown_of(layout: &Layout, quantity: Quantity) -> String {
         if !group.key.is_empty() {
             parts.push(format!("### {}\n\n", markdown::escape(&group.caption())));
         }
-        let lines: Vec<Vec<String>> = lines(layout, group, quantity)
-            .map(|(at, cells)| std::iter::once(at).chain(cells).collect())
+        let lines: Vec<Vec<String>> = lines(layout, group, quantity, Digits::ByError)
+            .map(|(at, cells)| std::iter::once(layout.axis_text(at)).chain(cells).collect())
             .collect();
         parts.push(markdown::table(&header, &lines, quantity != Quantity::Regime));
         parts.push("\n".to_owned());
     }
-    parts.extend(quantity.legend().map(|(mark, meaning)| match mark {
+    parts.extend(legend(layout, quantity).into_iter().map(|(mark, meaning)| match mark {
         "" => format!("- {meaning}\n"),
         mark => format!("- `{mark}` {meaning}\n"),
     }));
     parts.concat()
 }
 
+/// The marks that occur in the tables of a quantity with their meaning.
+pub(super) fn legend(layout: &Layout, quantity: Quantity) -> Vec<(&'static str, &'static str)> {
+    let lines = layout.groups.iter().flat_map(|group| lines(layout, group, quantity, Digits::ByError));
+    let cells: Vec<String> = lines.flat_map(|(_, cells)| cells).collect();
+    quantity.legend(cells.iter().map(String::as_str))
+}
+
 /// The tables of one quantity as one CSV: columns for further parameters, one for the parameter along the rows, and one
 /// for each μ.
 ///
-/// The cells are those of [`markdown`]. A missing result is an empty cell.
+/// The cells are those of [`markdown`], but μ\* has four decimals and a frequency none, whatever their errors are. A missing result is an empty cell.
 ///
 /// # Errors
 /// Those of the writer.
@@ -111,18 +177,18 @@ pub fn csv<W: Write>(rows: &[JobRow], quantity: Quantity, out: W) -> io::Result<
 
 pub(super) fn csv_of<W: Write>(layout: &Layout, quantity: Quantity, out: W) -> io::Result<()> {
     let mut writer = ::csv::Writer::from_writer(out);
-    let header = layout
-        .further
-        .iter()
-        .chain([&layout.axis])
-        .map(|&name| name.to_owned())
-        .chain(layout.mus.iter().map(|&mu| format!("mu={}", value::rounded(mu))));
-    writer.write_record(header).map_err(io_error)?;
+    let columns = layout.series.iter().map(|series| {
+        let of_source = layout.sources.get(series.source).filter(|_| layout.has_sources());
+        let source = of_source.map_or_else(String::new, |source| format!(" {}", source.name));
+        format!("{}={}{source}", layout.by, value::rounded_text(&series.value))
+    });
+    let names = layout.further.iter().chain([&layout.axis]).map(|&name| name.to_owned());
+    writer.write_record(names.chain(columns)).map_err(io_error)?;
     for group in &layout.groups {
-        for (at, cells) in lines(layout, group, quantity) {
+        for (at, cells) in lines(layout, group, quantity, Digits::Fixed) {
             let key = group.key.iter().map(|(_, value)| value::text(value));
             let cells = cells.into_iter().map(|cell| if cell == MISSING { String::new() } else { cell });
-            writer.write_record(key.chain([at]).chain(cells)).map_err(io_error)?;
+            writer.write_record(key.chain([value::rounded_text(at)]).chain(cells)).map_err(io_error)?;
         }
     }
     writer.flush()
@@ -130,27 +196,27 @@ pub(super) fn csv_of<W: Write>(layout: &Layout, quantity: Quantity, out: W) -> i
 
 /// The headings of all columns.
 pub(super) fn header(layout: &Layout) -> Vec<String> {
-    let mus = layout.mus.iter().map(|&mu| format!("μ = {}", value::rounded(mu)));
-    std::iter::once(layout.axis_label().to_owned()).chain(mus).collect()
+    let columns = layout.series.iter().map(|series| layout.series_name(series));
+    std::iter::once(layout.axis_label().to_owned()).chain(columns).collect()
 }
 
-/// Each value along the axis with its cells, one for each μ.
+/// Each value along the axis with its cells, one for each series.
 pub(super) fn lines<'a>(
     layout: &'a Layout,
     group: &'a Group,
     quantity: Quantity,
-) -> impl Iterator<Item = (String, Vec<String>)> + 'a {
-    let mut cells: Vec<Vec<Option<String>>> = vec![vec![None; layout.mus.len()]; group.axis_values.len()];
+    digits: Digits,
+) -> impl Iterator<Item = (&'a Value, Vec<String>)> + 'a {
+    let mut cells: Vec<Vec<Option<String>>> = vec![vec![None; layout.series.len()]; group.axis_values.len()];
     for job in &group.jobs {
-        let here = quantity.cell(job.row);
-        match &mut cells[job.axis_index][job.mu_index] {
+        let here = quantity.cell(job.row, digits);
+        match &mut cells[job.axis_index][job.series] {
             Some(others) => others.extend([" / ", &here]),
             empty => *empty = Some(here),
         }
     }
     group.axis_values.iter().zip(cells).map(|(at, cells)| {
-        let line = cells.into_iter().map(|cell| cell.unwrap_or_else(|| MISSING.to_owned())).collect();
-        (value::rounded_text(at), line)
+        (at, cells.into_iter().map(|cell| cell.unwrap_or_else(|| MISSING.to_owned())).collect())
     })
 }
 

@@ -59,6 +59,7 @@ mod tests {
             state: RowState::Pending,
             wall_s,
             numerics: None,
+            discretisation: crate::report::Discretisation::NotMeasured,
         }
     }
 

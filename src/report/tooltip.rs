@@ -1,10 +1,13 @@
 //! The text of the tooltip of a job.
 
+use super::digits;
 use super::glyph::regime_label;
 use super::layout::parameters_in_words;
+use super::measurement::MeasuredValue;
+use super::parameters::name_and_unit;
 use super::row::{JobRow, RowState};
 use crate::analysis::{JobRecord, Outcome};
-use crate::publish::value::{fixed, number};
+use crate::publish::value::{fixed, number, short, significant};
 
 /// Number of characters of a job's key that are shown. They are unique in practice, and `show` accepts them.
 const KEY_LENGTH: usize = 12;
@@ -15,15 +18,26 @@ const MAX_ERROR_LENGTH: usize = 240;
 pub(super) fn tooltip_text(row: &JobRow) -> String {
     let mut lines = vec![parameters_in_words(row)];
     match &row.state {
-        RowState::Done(record) => lines.extend(results(record)),
+        RowState::Done(record) => lines.extend(results(row, record)),
         RowState::Failed { error } => {
             let reason: String = error.chars().take(MAX_ERROR_LENGTH).collect();
             lines.push(format!("failed: {reason}"));
         }
         RowState::Pending | RowState::Running | RowState::Cancelled => lines.push(row.status().to_owned()),
+        RowState::Measured(measured) => {
+            lines.extend(measured.values.iter().map(in_words));
+            lines.push(format!("measured: {}", row.job));
+            return lines.join("\n");
+        }
     }
     lines.push(format!("job {}", short_key(row)));
     lines.join("\n")
+}
+
+fn in_words(measured: &MeasuredValue) -> String {
+    let (name, unit) = name_and_unit(&measured.name);
+    let error = measured.error.map_or_else(String::new, |error| format!(" ± {}", short(error)));
+    format!("{name} = {}{error} {unit}", short(measured.value)).trim_end().to_owned()
 }
 
 /// The beginning of a job's key.
@@ -40,10 +54,10 @@ pub(super) fn outcome_label(outcome: Outcome) -> &'static str {
     }
 }
 
-fn results(record: &JobRecord) -> Vec<String> {
+fn results(row: &JobRow, record: &JobRecord) -> Vec<String> {
     let percent = |share: f64| fixed(100.0 * share, 1);
     let mut lines = vec![
-        format!("μ* = {} ± {}", fixed(record.mu_star, 4), fixed(record.mu_star_se, 4)),
+        format!("μ* = {}", digits::mu_star_with_error(row, record)),
         format!("{}, {}", regime_label(record.regime), outcome_label(record.outcome)),
         format!(
             "stick {} %, slip {} %, separated {} %",
@@ -52,15 +66,25 @@ fn results(record: &JobRecord) -> Vec<String> {
             percent(record.separated_share)
         ),
     ];
-    if let Some(frequency) = record.frequency_hz {
-        lines.insert(1, format!("{} Hz", fixed(frequency, 0)));
+    if let Some(frequency) = digits::frequency_hz(row, record) {
+        lines.insert(1, format!("{frequency} Hz"));
     }
+    lines.push(errors(row, record));
     lines.push(format!(
         "residuals: energy {}, identities {}",
         residual_text(record.energy_residual),
         residual_text(record.identity_residual())
     ));
     lines
+}
+
+/// Both errors of μ\*.
+fn errors(row: &JobRow, record: &JobRecord) -> String {
+    let mesh = match row.discretisation.error() {
+        Some(error) => format!("{} %", significant(100.0 * error.mu_star_relative, 2)),
+        None => "not measured".to_owned(),
+    };
+    format!("errors of μ*: statistics {}, mesh and step {mesh}", significant(record.mu_star_se, 2))
 }
 
 /// A residual with two digits. More digits say nothing about a number that should be zero.

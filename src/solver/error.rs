@@ -1,5 +1,6 @@
 //! Errors of the solver: models that it refuses, and runs that fail.
 
+use crate::spec::short;
 use thiserror::Error;
 
 /// A model that is refused before the first step, or a run that fails.
@@ -21,7 +22,8 @@ pub enum SolverError {
     /// The mesh has no node row near the clamp's width.
     #[error(
         "scene.clamp.width_m = {width_m} m has no node row near it: with {elements} elements over \
-         {length_m} m the nearest widths are {below_m} m and {above_m} m; choose one of these or a finer mesh"
+         {length_m} m the nearest widths are {} m and {} m; choose one of these or a finer mesh",
+        short(*.below_m), short(*.above_m)
     )]
     ClampOffMesh {
         /// The requested width \[m\].

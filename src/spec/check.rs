@@ -78,6 +78,11 @@ pub(super) fn readable(value: f64) -> String {
     }
 }
 
+/// A computed number with at most four significant digits, which are enough to choose a value by.
+pub(crate) fn short(value: f64) -> String {
+    readable(format!("{value:.3e}").parse().unwrap_or(value))
+}
+
 impl fmt::Display for Violations {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, violation) in self.0.iter().enumerate() {

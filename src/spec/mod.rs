@@ -19,6 +19,7 @@ mod pin;
 mod ring;
 mod scene;
 
+pub(crate) use check::short;
 pub use check::{FieldError, Violations};
 pub use detection::Detection;
 pub use numerics::{Numerics, RunControl};

@@ -40,8 +40,8 @@ impl Default for Pin {
 }
 
 impl Pin {
-    /// Time [s] in which a shear wave crosses the pin's height; NaN for an unphysical material.
-    pub(super) fn shear_transit_s(&self) -> f64 {
+    /// Time \[s\] in which a shear wave crosses the pin's height; NaN for an unphysical material.
+    pub fn shear_transit_s(&self) -> f64 {
         self.size_m[2]
             / elasticity::shear_wave_speed_m_s(self.young_modulus_pa, self.poisson_ratio, self.density_kg_m3)
     }

@@ -1,6 +1,7 @@
 //! The scene: pin, disk, contact law, boundary conditions and load.
 
 use super::check::Violations;
+use super::elasticity;
 use super::pin::Pin;
 use super::ring::Ring;
 use schemars::JsonSchema;
@@ -112,6 +113,15 @@ impl ClampSide {
     pub fn name(self) -> &'static str {
         self.into()
     }
+
+    /// The direction, 0 for x and 1 for y, across which the strip has its width; none for the whole top.
+    pub fn axis_across(self) -> Option<usize> {
+        match self {
+            Self::InnerSide | Self::OuterSide | Self::BothSides => Some(0),
+            Self::LeadingEnd | Self::TrailingEnd | Self::BothEnds => Some(1),
+            Self::WholeTop => None,
+        }
+    }
 }
 
 /// A clamp: the nodes of the top face within a strip are held in x and y.
@@ -150,7 +160,8 @@ pub enum TopFace {
 pub struct Load {
     /// Total normal load F (N), pressing the pin towards the disk.
     pub force_n: f64,
-    /// Duration (s) of the linear ramp; 0 is a sudden load.
+    /// Duration (s) of the linear ramp; 0 is a sudden load. Absent in a study: 0.0005 for the pin of the reference scene, in
+    /// proportion to their slowest vibrations for other pins; half of `limit_s` if it would not be shorter than that.
     pub ramp_s: f64,
 }
 
@@ -161,6 +172,26 @@ impl Default for Load {
 }
 
 impl Scene {
+    /// Time \[s\] that the pin's slowest vibrations scale with: the time in which a shear wave crosses the pin's longest
+    /// edge, or the longest length ℓ²/h of a part that bends. NaN for an unphysical material.
+    ///
+    /// A part of length ℓ and thickness h in the direction of bending has its lowest frequency at about 0.16 c h/ℓ², with
+    /// the wave speed c: a slender pin swings more slowly than any wave runs through it. The pin's height bends below
+    /// its top face, in x and in y. What is beside a clamped strip bends across it, in the face's plane. In z nothing bends,
+    /// because the disk and the top face guide it.
+    pub fn vibration_time_s(&self) -> f64 {
+        let pin = &self.pin;
+        let [x, y, z] = pin.size_m;
+        let beside_strip_m = match self.clamp.side.axis_across() {
+            Some(0) => x * x / y,
+            Some(_) => y * y / x,
+            None => 0.0,
+        };
+        let longest_m = x.max(y).max(z).max(z * z / x.min(y)).max(beside_strip_m);
+        longest_m
+            / elasticity::shear_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3)
+    }
+
     /// Adds every violated limit to `found`.
     pub(super) fn check(&self, found: &mut Violations) {
         let pin = &self.pin;

@@ -1,12 +1,12 @@
 //! One axis of a grid: a list of values or a range. Every value is checked for its type.
 
 use super::error::Problem;
-use super::json::decode;
-use super::limits::MAX_JOBS;
+use super::file::StudyFile;
+use super::json::{Decoded, decode, decode_all};
+use super::locate::join;
 use super::parameter::{Kind, Parameter};
-use super::range::{Range, Spacing};
+use super::range::{Range, Unusable};
 use super::source::SourceText;
-use crate::spec::JobSpec;
 use serde_json::{Value, json};
 use std::collections::HashMap;
 
@@ -18,6 +18,8 @@ pub(super) struct Axis {
     pub values: Vec<Value>,
     /// Whether the file lists the values one by one, so that each has a position of its own.
     pub is_listed: bool,
+    /// The range as given, if it is one.
+    range: Option<Value>,
 }
 
 impl Axis {
@@ -26,7 +28,12 @@ impl Axis {
         format!("grid.{}", self.parameter.name)
     }
 
-    /// Reads the axis `grid.<parameter>`; `template` is the serialised base job.
+    /// The axis as a study file has it.
+    pub(super) fn written(&self) -> Value {
+        self.range.clone().unwrap_or_else(|| Value::Array(self.values.clone()))
+    }
+
+    /// Reads the axis `grid.<parameter>`; `template` is that of a study file.
     pub(super) fn read(
         parameter: &'static Parameter,
         given: &Value,
@@ -48,6 +55,7 @@ impl Axis {
             parameter,
             values: values.into_iter().map(|value| parameter.normalise(value)).collect(),
             is_listed: given.is_array(),
+            range: given.is_object().then(|| given.clone()),
         };
         let problems = axis.problems(template, source);
         if problems.is_empty() { Ok(axis) } else { Err(problems) }
@@ -84,15 +92,16 @@ impl Axis {
     }
 }
 
-/// Checks that `value` has the type of the parameter; the error says what is expected. `template` is a serialised job.
+/// Checks that `value` has the type of the parameter; the error says what is expected. `template` is that of a study
+/// file.
 pub(super) fn check_type(parameter: &Parameter, value: &Value, template: &Value) -> Result<(), String> {
     if value.is_null() {
         // An optional field would accept null, as if it were absent.
         return Err("expected a value; leave the parameter out to use its default".to_owned());
     }
-    let mut job = template.clone();
-    parameter.set(&mut job, value);
-    decode::<JobSpec>(&job, template).map(drop).map_err(|mismatch| match mismatch.suggestion {
+    let mut study = template.clone();
+    parameter.set(&mut study, value);
+    decode::<StudyFile>(&study, template).map(drop).map_err(|mismatch| match mismatch.suggestion {
         Some(name) => format!("{} (did you mean `{name}`?)", mismatch.message),
         None => mismatch.message,
     })
@@ -102,7 +111,7 @@ pub(super) fn check_type(parameter: &Parameter, value: &Value, template: &Value)
 fn axis_form(parameter: &Parameter) -> &'static str {
     match parameter.kind {
         Kind::Number | Kind::Count => {
-            "a list of values or a range { \"from\": a, \"to\": b, \"count\": n, \"spacing\": \"linear\" or \"log\" }"
+            "a list of values or a range { \"from\": a, \"to\": b, \"count\": n, \"spacing\": \"linear\" or \"log\" } or { \"from\": a, \"to\": b, \"step\": s }"
         }
         Kind::Counts => "a list of meshes, each [nx, ny, nz]",
         Kind::Flag | Kind::Name(_) => "a list of values",
@@ -119,26 +128,14 @@ fn range_values(
     if !matches!(parameter.kind, Kind::Number | Kind::Count) {
         return Err(vec![source.problem(path, format!("expected {}", axis_form(parameter)))]);
     }
-    let range: Range = decode(given, &json!({ "spacing": "linear" }))
-        .map_err(|mismatch| vec![source.mismatch(path, mismatch)])?;
-    let field = |name: &str, message: String| Err(vec![source.problem(&format!("{path}.{name}"), message)]);
-    if range.count > MAX_JOBS {
-        return field("count", format!("expected at most {MAX_JOBS} values"));
-    }
-    if range.from == range.to && range.count != 1 {
-        return field("count", "expected 1, because from equals to".to_owned());
-    }
-    if range.from != range.to && range.count < 2 {
-        return field("count", "expected at least 2, one for each end".to_owned());
-    }
-    if range.spacing == Spacing::Log {
-        for (name, end) in [("from", range.from), ("to", range.to)] {
-            if end <= 0.0 {
-                return field(name, "expected a number > 0, because the spacing is logarithmic".to_owned());
-            }
-        }
-    }
-    let values = range.values();
+    let Decoded { value, mismatches } = decode_all::<Range>(given, &json!({ "spacing": "linear" }));
+    let (Some(range), true) = (value, mismatches.is_empty()) else {
+        return Err(mismatches.into_iter().map(|mismatch| source.mismatch(path, mismatch)).collect());
+    };
+    let values = range.values().map_err(|Unusable { field, expected }| {
+        let field = if field.is_empty() { path.to_owned() } else { join(path, field) };
+        vec![source.problem(&field, expected)]
+    })?;
     if matches!(parameter.kind, Kind::Count)
         && let Some(fraction) = values.iter().find(|value| value.fract() != 0.0)
     {

@@ -1,7 +1,10 @@
 //! A study that has been read and checked.
 
+use super::document;
+use super::error::Problem;
 use super::grid::Grid;
 use super::parameter::Parameter;
+use super::report_axes::ReportAxes;
 use super::source::SourceText;
 use crate::spec::JobSpec;
 use serde_json::Value;
@@ -12,9 +15,12 @@ pub struct Study {
     pub(super) name: String,
     pub(super) description: Option<String>,
     pub(super) base: JobSpec,
+    /// What the file says, with the changes of the command line.
+    pub(super) document: Value,
     pub(super) grid: Grid,
-    /// The job of every grid point, decoded once for the check and for the expansion.
+    /// The job of every grid point, made once for the check and for the expansion.
     pub(super) specs: Vec<JobSpec>,
+    pub(super) report: ReportAxes,
     pub(super) source: SourceText,
 }
 
@@ -29,7 +35,12 @@ impl Study {
         self.description.as_deref()
     }
 
-    /// The job on which the grid's parameters are set.
+    /// The text of the study file, or of one that says the same as the file with the changes of [`Study::parse_changed`].
+    pub fn document(&self) -> String {
+        document::text(&self.document, &self.grid, &self.source)
+    }
+
+    /// The job without the values of the grid.
     pub fn base(&self) -> &JobSpec {
         &self.base
     }
@@ -37,6 +48,16 @@ impl Study {
     /// The grid's parameters and their values, in the order of the file.
     pub fn axes(&self) -> impl Iterator<Item = (&'static Parameter, &[Value])> {
         self.grid.axes.iter().map(|axis| (axis.parameter, axis.values.as_slice()))
+    }
+
+    /// Axes and quantities of the report.
+    pub fn report(&self) -> &ReportAxes {
+        &self.report
+    }
+
+    /// A problem with the value of a field such as `report.y[0]`, at its place in the file, with lines of advice.
+    pub fn problem(&self, field: &str, message: &str, help: Vec<String>) -> Problem {
+        Problem { help, ..self.source.problem(field, message) }
     }
 
     /// Number of grid points; 1 without a grid.

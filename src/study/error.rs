@@ -2,6 +2,7 @@
 
 use super::limits::MAX_JOBS;
 use super::locate::Position;
+use serde::Serialize;
 use std::fmt;
 
 /// Largest number of problems in a message; further ones are only counted.
@@ -59,7 +60,7 @@ impl From<Problem> for StudyError {
 }
 
 /// One thing to correct. Displayed as `file:line:column: field = value: message`, one help per line below.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Problem {
     /// The study file, or `--set` for an override.
     pub file: String,

@@ -1,6 +1,5 @@
 //! From a study to its jobs.
 
-use super::cost;
 use super::definition::Study;
 use super::error::StudyError;
 use super::key::job_key;
@@ -19,8 +18,6 @@ pub struct Job {
     pub spec: JobSpec,
     /// The grid's parameters and their values in this job, in the grid's order.
     pub parameters: Vec<(String, Value)>,
-    /// Estimated cost, in nodes × time steps, to compare jobs and to estimate the remaining time.
-    pub cost: f64,
 }
 
 impl Study {
@@ -36,7 +33,6 @@ impl Study {
     pub fn expand(&self, solver_version: &str) -> Result<Vec<Job>, StudyError> {
         let job = |(point, spec): (usize, &JobSpec)| Job {
             key: job_key(spec, solver_version),
-            cost: cost::node_steps(spec),
             parameters: self.grid.parameters_at(point),
             spec: spec.clone(),
         };

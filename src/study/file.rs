@@ -1,10 +1,13 @@
 //! The shape of a study file.
 
+use super::damping::Damping;
 use super::grid_schema::grid_schema;
+use super::json::present;
 use super::preset::Preset;
+use super::report_axes::ReportAxes;
 use crate::spec::{Detection, Numerics, RunControl, Scene};
 use schemars::JsonSchema;
-use serde::{Deserialize, Deserializer};
+use serde::Deserialize;
 use serde_json::{Map, Value};
 
 /// A study: a base job and a grid of parameters to vary. Whatever is not given has the value of the
@@ -13,6 +16,9 @@ use serde_json::{Map, Value};
 #[serde(deny_unknown_fields, default)]
 #[schemars(title = "tribosweep study")]
 pub(super) struct StudyFile {
+    /// Where the JSON schema of studies is, for editors; it has no effect.
+    #[serde(rename = "$schema", skip_serializing_if = "Option::is_none")]
+    pub schema: Option<String>,
     /// Name of the study; the file's stem when absent.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(regex(pattern = "^[A-Za-z0-9_-]+$"))]
@@ -24,6 +30,10 @@ pub(super) struct StudyFile {
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(with = "Preset")]
     pub preset: Option<Preset>,
+    /// Damping as it is measured, instead of `numerics.beta_r_s`.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(with = "Damping")]
+    pub damping: Option<Damping>,
     /// Bodies, contact law, boundary conditions and load.
     pub scene: Scene,
     /// Integrator and time step.
@@ -36,17 +46,21 @@ pub(super) struct StudyFile {
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(schema_with = "grid_schema")]
     pub grid: Option<Map<String, Value>>,
+    /// Axes and quantities of the report.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(with = "ReportAxes")]
+    pub report: Option<ReportAxes>,
 }
 
 impl StudyFile {
     /// An example that has every object and every name that a study file can have, for checks of its shape.
     pub(super) fn template() -> Value {
-        let file = Self { preset: Some(Preset::Standard), ..Self::default() };
+        let file = Self {
+            preset: Some(Preset::Standard),
+            damping: Some(Damping::default()),
+            report: Some(ReportAxes::template()),
+            ..Self::default()
+        };
         serde_json::to_value(file).expect("a study is plain data with string keys")
     }
-}
-
-/// `"grid": null` is a mistake and not the absence of a grid.
-fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(deserializer: D) -> Result<Option<T>, D::Error> {
-    T::deserialize(deserializer).map(Some)
 }

@@ -1,8 +1,7 @@
 //! The grid of a study: all combinations of the values of its axes.
 
 use super::axis::Axis;
-use super::json;
-use crate::spec::JobSpec;
+use super::draft::{Draft, Resolved};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use serde_json::Value;
 
@@ -18,15 +17,17 @@ impl Grid {
         self.axes.iter().map(|axis| axis.values.len()).product()
     }
 
-    /// The job of every point: `base` with the values of the point.
-    pub(super) fn specs(&self, base: &JobSpec) -> Vec<JobSpec> {
-        let set_values = |job: &mut Value, point| {
+    /// The job of every point: `draft` with the values of the point.
+    pub(super) fn resolve(&self, draft: &Draft) -> Vec<Resolved> {
+        let mut draft = draft.clone();
+        self.axes.iter().for_each(|axis| draft.mark(axis.parameter));
+        let at_point = |draft: &mut Draft, point| {
             for (axis, index) in self.axes.iter().zip(self.indices_of(point)) {
-                axis.parameter.set(job, &axis.values[index]);
+                draft.put(axis.parameter, &axis.values[index]);
             }
-            json::decode_checked(job)
+            draft.resolve()
         };
-        (0..self.size()).into_par_iter().map_init(|| json::encode(base), set_values).collect()
+        (0..self.size()).into_par_iter().map_init(|| draft.clone(), at_point).collect()
     }
 
     /// The parameters and their values at a point.

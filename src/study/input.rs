@@ -14,12 +14,17 @@ pub struct Input {
     pub value: Value,
 }
 
+/// The parameters that are the inputs of a job, each once: all that are fields of a job, and the mesh by its components.
+pub fn input_parameters() -> impl Iterator<Item = &'static Parameter> {
+    let is_input = |parameter: &&Parameter| parameter.part().is_some() && parameter.name != "elements";
+    PARAMETERS.iter().filter(is_input)
+}
+
 /// All inputs of a job that have an effect, the defaults among them, each once: the mesh and the size by their components,
 /// no ring of a rigid disk, no width of a clamp that holds the whole top, and no safety factor beside a given time step.
 pub fn inputs(spec: &JobSpec) -> Vec<Input> {
     let job = encode(spec);
-    let has_effect = |parameter: &Parameter| match parameter.name {
-        "elements" => false,
+    let has_effect = |parameter: &&'static Parameter| match parameter.name {
         "clamp_width_m" => spec.scene.clamp.side != ClampSide::WholeTop,
         "safety_factor" => spec.numerics.time_step_s.is_none(),
         _ => spec.scene.disk.kind == DiskKind::Elastic || !parameter.pointer.starts_with("/scene/disk/ring/"),
@@ -28,5 +33,5 @@ pub fn inputs(spec: &JobSpec) -> Vec<Input> {
         let value = job.pointer(parameter.pointer)?.clone();
         Some(Input { parameter, value })
     };
-    PARAMETERS.iter().filter(|parameter| has_effect(parameter)).filter_map(input).collect()
+    input_parameters().filter(has_effect).filter_map(input).collect()
 }

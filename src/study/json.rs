@@ -3,8 +3,8 @@
 use super::locate::join;
 use super::suggest;
 use crate::spec::JobSpec;
-use serde::Deserialize;
 use serde::de::DeserializeOwned;
+use serde::{Deserialize, Deserializer};
 use serde_json::Value;
 
 /// Why a value does not have the required type.
@@ -19,19 +19,71 @@ pub(super) struct TypeMismatch {
     pub is_name: bool,
 }
 
-/// The job as JSON, in which [`Parameter::set`](super::Parameter) sets fields.
+/// The job as JSON.
 pub(super) fn encode(job: &JobSpec) -> Value {
     serde_json::to_value(job).expect("a job is plain data with string keys")
 }
 
-/// Decodes a job from [`encode`] in which only values of checked types were set.
-pub(super) fn decode_checked(value: &Value) -> JobSpec {
-    JobSpec::deserialize(value).expect("each value was checked for its type on this job")
+/// Reads an optional field that is present: `"grid": null` is a mistake and not the absence of a grid.
+pub(super) fn present<'de, T: Deserialize<'de>, D: Deserializer<'de>>(
+    deserializer: D,
+) -> Result<Option<T>, D::Error> {
+    T::deserialize(deserializer).map(Some)
 }
 
-/// Decodes `value`, which must have objects and names where `template` has them.
+/// What was read from a JSON value.
+pub(super) struct Decoded<T> {
+    /// The data, in which fields that cannot be read have the template's values; absent if that was not possible.
+    pub value: Option<T>,
+    /// One entry for each field that cannot be read.
+    pub mismatches: Vec<TypeMismatch>,
+}
+
+/// Decodes `value`, which must have objects and names where `template` has them. The error is the first one that is found.
 pub(super) fn decode<T: DeserializeOwned>(value: &Value, template: &Value) -> Result<T, TypeMismatch> {
-    same_shape(value, template, "")?;
+    let mut mismatches = Vec::new();
+    same_shape(value, template, "", &mut mismatches);
+    match mismatches.into_iter().next() {
+        Some(mismatch) => Err(mismatch),
+        None => deserialize(value),
+    }
+}
+
+/// Largest number of problems that are looked for: each one costs an attempt to read the whole value.
+const MOST_MISMATCHES: usize = 1000;
+
+/// As [`decode`], but finds all fields that cannot be read.
+pub(super) fn decode_all<T: DeserializeOwned>(value: &Value, template: &Value) -> Decoded<T> {
+    let mut mismatches = Vec::new();
+    same_shape(value, template, "", &mut mismatches);
+    if mismatches.is_empty()
+        && let Ok(value) = deserialize(value)
+    {
+        return Decoded { value: Some(value), mismatches };
+    }
+    let mut value = value.clone();
+    for mismatch in &mismatches {
+        replace(&mut value, template, &mismatch.path);
+    }
+    // serde stops at the first error. The field that it refuses is replaced, so that it finds the next one.
+    loop {
+        match deserialize(&value) {
+            Ok(value) => return Decoded { value: Some(value), mismatches },
+            Err(mismatch) => {
+                let is_replaced = replace(&mut value, template, &mismatch.path);
+                // What is not replaced is a missing field. It may be missing because it was refused.
+                if is_replaced || mismatches.is_empty() {
+                    mismatches.push(mismatch);
+                }
+                if !is_replaced || mismatches.len() >= MOST_MISMATCHES {
+                    return Decoded { value: None, mismatches };
+                }
+            }
+        }
+    }
+}
+
+fn deserialize<T: DeserializeOwned>(value: &Value) -> Result<T, TypeMismatch> {
     serde_path_to_error::deserialize(value).map_err(|error| {
         let path = error.path().to_string();
         let path = if path == "." { String::new() } else { path };
@@ -39,21 +91,58 @@ pub(super) fn decode<T: DeserializeOwned>(value: &Value, template: &Value) -> Re
     })
 }
 
-/// Refuses two forms that serde accepts and a reader would not understand: a list of a structure's values without their
+/// Gives the field at `path` (`scene.pin.size_m[0]`) the value that it has in `template`, or removes it if the template
+/// does not have it. Returns whether the value has changed; otherwise serde would find the same error again.
+fn replace(value: &mut Value, template: &Value, path: &str) -> bool {
+    let (list, index) = match path.strip_suffix(']').and_then(|path| path.rsplit_once('[')) {
+        Some((list, index)) => (list, index.parse::<usize>().ok()),
+        None => (path, None),
+    };
+    let (mut outer, mut template, mut rest) = (value, Some(template), list);
+    loop {
+        let Some(object) = outer.as_object_mut() else { return false };
+        // A key may contain a dot. Then it is no field of any structure, and it is the last part of the path.
+        let is_last = object.contains_key(rest);
+        let (name, below) = if is_last { (rest, "") } else { rest.split_once('.').unwrap_or((rest, "")) };
+        let usual = template.and_then(|template| template.get(name));
+        if !below.is_empty() {
+            let Some(inner) = object.get_mut(name) else { return false };
+            (outer, template, rest) = (inner, usual, below);
+            continue;
+        }
+        let entry = index.and_then(|index| object.get_mut(name)?.get_mut(index).zip(usual?.get(index)));
+        if let Some((entry, usual)) = entry {
+            let has_changed = entry != usual;
+            *entry = usual.clone();
+            return has_changed;
+        }
+        let old = match usual {
+            Some(usual) => object.insert(name.to_owned(), usual.clone()),
+            None => object.remove(name),
+        };
+        return old.is_some_and(|old| usual != Some(&old));
+    }
+}
+
+/// Finds two forms that serde accepts and a reader would not understand: a list of a structure's values without their
 /// names, and a name written as `{"inner_side": null}`.
-fn same_shape(value: &Value, template: &Value, path: &str) -> Result<(), TypeMismatch> {
-    let refuse = |message: &str| {
+fn same_shape(value: &Value, template: &Value, path: &str, found: &mut Vec<TypeMismatch>) {
+    let mut refuse = |message: &str| {
         let (path, message) = (path.to_owned(), message.to_owned());
-        Err(TypeMismatch { path, message, suggestion: None, is_name: false })
+        found.push(TypeMismatch { path, message, suggestion: None, is_name: false });
     };
     match (template, value) {
-        (Value::Object(fields), Value::Object(given)) => given.iter().try_for_each(|(name, inner)| {
-            fields.get(name).map_or(Ok(()), |field| same_shape(inner, field, &join(path, name)))
-        }),
+        (Value::Object(fields), Value::Object(given)) => {
+            for (name, inner) in given {
+                if let Some(field) = fields.get(name) {
+                    same_shape(inner, field, &join(path, name), found);
+                }
+            }
+        }
         (Value::Object(_), _) => refuse("expected an object { … }"),
-        (Value::String(_), Value::String(_)) => Ok(()),
+        (Value::String(_), Value::String(_)) => {}
         (Value::String(_), _) => refuse("expected a name, as a string"),
-        _ => Ok(()),
+        _ => {}
     }
 }
 

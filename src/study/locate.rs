@@ -1,20 +1,22 @@
-//! Where each field stands in a JSON text, and which keys an object repeats.
+//! Reads the text of a study: its value, where each field stands in it, and which keys an object repeats.
 //!
-//! `serde_json` forgets positions once it has read a text, and of two equal keys it keeps the last. Messages need the
-//! position of any field later on, and a repeated axis must not be lost silently. So `jsonc-parser` reads the text a
-//! second time, with all its extensions of JSON switched off.
+//! The text is JSON with comments (`//` and `/* */`) and trailing commas, as editors know it (JSONC). Messages need the
+//! position of any field later on, and a repeated axis must not be lost silently. So `jsonc-parser` makes a tree with
+//! positions, which becomes a value here. Numbers are read by `serde_json`, to the last bit.
 
-use jsonc_parser::ast::Value;
+use jsonc_parser::ast;
 use jsonc_parser::common::Ranged;
-use jsonc_parser::errors::ParseError;
+use jsonc_parser::errors::ParseErrorKind;
 use jsonc_parser::{CollectOptions, ParseOptions, parse_to_ast};
+use serde::Serialize;
+use serde_json::{Map, Number, Value};
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 use std::ops::Range;
 
 /// Line and column of a character.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]
 pub struct Position {
     /// Line, from 1.
     pub line: usize,
@@ -46,6 +48,13 @@ pub(super) struct RepeatedKey {
     pub span: FieldSpan,
 }
 
+/// A text that is not JSON: where reading stopped, and why.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(super) struct NotJson {
+    pub position: Position,
+    pub message: String,
+}
+
 /// All fields of a JSON text by their path (`scene.pin.size_m[0]`; the whole text has the empty path).
 #[derive(Debug, Clone, Default)]
 pub(super) struct FieldSpans {
@@ -53,25 +62,45 @@ pub(super) struct FieldSpans {
     pub repeated: Vec<RepeatedKey>,
 }
 
-impl FieldSpans {
-    /// Locates the fields of a text that `serde_json` has accepted, which limits its nesting.
-    ///
-    /// # Errors
-    /// If `jsonc-parser` does not take the text for JSON.
-    pub(super) fn of(text: &str) -> Result<Self, ParseError> {
-        let mut locator = Locator { cursor: Cursor::new(text), found: Self::default() };
-        let parsed = parse_to_ast(text, &CollectOptions::default(), &STRICT_JSON)?;
-        if let Some(value) = parsed.value {
-            locator.visit(&value, "", None);
+/// The value of a text and the locations of its fields. Of two equal keys of an object the value has the last.
+///
+/// # Errors
+/// If the text is not JSON with comments and trailing commas, or is nested more than [`DEEPEST`] deep.
+pub(super) fn read(text: &str) -> Result<(Value, FieldSpans), NotJson> {
+    let mut reader = Reader { text, cursor: Cursor::new(text), found: FieldSpans::default() };
+    let parsed = parse_to_ast(text, &CollectOptions::default(), &JSON_WITH_COMMENTS)
+        .map_err(|error| not_json(text, error.range().start, describe(error.kind())))?;
+    let Some(tree) = parsed.value else { return Err(not_json(text, 0, "the text is empty".to_owned())) };
+    let (value, _) = reader.visit(&tree, "", None, 0)?;
+    Ok((value, reader.found))
+}
+
+fn not_json(text: &str, offset: usize, message: String) -> NotJson {
+    NotJson { position: Cursor::new(text).advance_to(offset), message }
+}
+
+/// What is wrong, in the words of a study's author.
+fn describe(kind: &ParseErrorKind) -> String {
+    match kind {
+        ParseErrorKind::UnterminatedObject => "no } closes this object".to_owned(),
+        ParseErrorKind::UnterminatedArray => "no ] closes this list".to_owned(),
+        ParseErrorKind::UnterminatedCommentBlock => "no */ closes this comment".to_owned(),
+        ParseErrorKind::ExpectedComma => "expected a comma".to_owned(),
+        ParseErrorKind::ExpectedStringObjectProperty => "expected a name in double quotes".to_owned(),
+        ParseErrorKind::SingleQuotedStringsNotAllowed => "expected double quotes".to_owned(),
+        ParseErrorKind::MultipleRootJsonValues => "expected nothing after the end of the study".to_owned(),
+        kind => {
+            let text = kind.to_string();
+            let mut chars = text.chars();
+            chars.next().map_or_else(String::new, |first| first.to_lowercase().chain(chars).collect())
         }
-        Ok(locator.found)
     }
 }
 
-const STRICT_JSON: ParseOptions = ParseOptions {
-    allow_comments: false,
+const JSON_WITH_COMMENTS: ParseOptions = ParseOptions {
+    allow_comments: true,
     allow_loose_object_property_names: false,
-    allow_trailing_commas: false,
+    allow_trailing_commas: true,
     allow_missing_commas: false,
     allow_single_quoted_strings: false,
     allow_hexadecimal_numbers: false,
@@ -80,6 +109,9 @@ const STRICT_JSON: ParseOptions = ParseOptions {
     allow_non_finite_numbers: false,
     allow_extended_string_escapes: false,
 };
+
+/// The deepest nesting of a text. Values of a deeper one could exhaust the stack.
+const DEEPEST: usize = 128;
 
 /// Fields with longer paths are not located. No study has them, and a text with a long key above many values would take
 /// memory with the square of its length.
@@ -95,43 +127,79 @@ pub(super) fn join(path: &str, key: &str) -> String {
     if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") }
 }
 
-struct Locator<'t> {
+struct Reader<'t> {
+    text: &'t str,
     cursor: Cursor<'t>,
     found: FieldSpans,
 }
 
-impl Locator<'_> {
+impl Reader<'_> {
     /// Visits the value at `path` and all below it in the order of the text; `key` is the start of its key.
-    fn visit(&mut self, value: &Value<'_>, path: &str, key: Option<Position>) -> FieldSpan {
-        let start = self.cursor.advance_to(value.start());
-        match value {
-            Value::Object(object) => {
+    fn visit(
+        &mut self,
+        tree: &ast::Value<'_>,
+        path: &str,
+        key: Option<Position>,
+        depth: usize,
+    ) -> Result<(Value, FieldSpan), NotJson> {
+        let start = self.cursor.advance_to(tree.start());
+        let refuse = |message: String| Err(NotJson { position: start, message });
+        let value = match tree {
+            ast::Value::Object(_) | ast::Value::Array(_) if depth == DEEPEST => {
+                return refuse(format!("nested more than {DEEPEST} deep"));
+            }
+            ast::Value::Object(object) => {
                 let mut seen = HashSet::new();
+                let mut fields = Map::new();
                 for property in &object.properties {
                     let key_start = self.cursor.advance_to(property.start());
                     // Decoded: "mu" and "m\u0075" are the same key.
                     let key = property.name.as_str();
                     let field = below(path, || join(path, key));
-                    let span = self.visit(&property.value, &field, Some(key_start));
+                    let (value, span) = self.visit(&property.value, &field, Some(key_start), depth + 1)?;
                     if !seen.insert(key) {
                         let path = field.chars().take(LONGEST_PATH).collect();
                         self.found.repeated.push(RepeatedKey { path, span });
                     }
+                    fields.insert(key.to_owned(), value);
                 }
+                Value::Object(fields)
             }
-            Value::Array(array) => {
+            ast::Value::Array(array) => {
+                let mut entries = Vec::with_capacity(array.elements.len());
                 for (index, entry) in array.elements.iter().enumerate() {
-                    self.visit(entry, &below(path, || format!("{path}[{index}]")), None);
+                    let path = below(path, || format!("{path}[{index}]"));
+                    entries.push(self.visit(entry, &path, None, depth + 1)?.0);
                 }
+                Value::Array(entries)
             }
-            _ => {}
-        }
-        let span = FieldSpan { key: key.unwrap_or(start), value: start, bytes: value.start()..value.end() };
+            ast::Value::NumberLit(number) => match number.value.parse::<Number>() {
+                Ok(number) => Value::Number(number),
+                Err(error) => return refuse(without_place(&error.to_string()).to_owned()),
+            },
+            // Other programs that read JSON refuse such a text.
+            ast::Value::StringLit(string)
+                if self.text[string.start()..string.end()].contains(char::is_control) =>
+            {
+                return refuse(
+                    "expected a string without line breaks, tabs and other control characters".to_owned(),
+                );
+            }
+            ast::Value::StringLit(string) => Value::from(string.value.as_ref()),
+            ast::Value::BooleanLit(flag) => Value::Bool(flag.value),
+            ast::Value::NullKeyword(_) => Value::Null,
+        };
+        let span = FieldSpan { key: key.unwrap_or(start), value: start, bytes: tree.start()..tree.end() };
         if path.len() <= LONGEST_PATH {
             self.found.by_path.entry(path.to_owned()).or_insert_with(|| span.clone());
         }
-        span
+        Ok((value, span))
     }
+}
+
+/// A message of `serde_json` about a single number, without its position in that number.
+fn without_place(message: &str) -> &str {
+    message.rsplit_once(" at line ").map_or(message, |(message, _)| message)
 }
 
 /// Turns byte offsets that only grow into positions, so that a text of one long line is read once.

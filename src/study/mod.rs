@@ -1,17 +1,25 @@
 //! Studies as data: a JSON file that names a base job and a grid of parameters to vary.
 //!
 //! ```text
-//! text ──► locate (positions, repeated keys) ──► file (serde) ──► preset ──► axis (values) ──► validate (every job)
-//!                                                                     │
-//!                                              single (one job) ◄── Study ──► expand (all jobs, keys, costs)
+//! text ──► locate (value, positions) ──► file (serde), axis (values) ──► outline ◄── change (--preset, --set, --name)
+//!                                                                                  │
+//!                        draft + values of a grid point ──► preset, damping, time_defaults ──► validate (every job)
+//!                                                                                                │
+//!                                                         single (one job) ◄── Study ──► expand (all jobs, keys)
 //! ```
+//!
+//! An outline is what the study says; the command line changes it and nothing else. A draft is what the outline and a grid
+//! point say about one job, with the knowledge of which fields are given. The rest is filled in for each job of its own.
 //!
 //! [`Study::parse`] finds everything that is wrong, so that every [`Study`] expands into usable jobs.
 //! Messages name the file, line and column, the field, its value and what is expected.
 
 mod axis;
-mod cost;
+mod change;
+mod damping;
 mod definition;
+mod document;
+mod draft;
 mod error;
 mod expand;
 mod file;
@@ -22,23 +30,38 @@ mod json;
 mod key;
 mod limits;
 mod locate;
+mod name;
+mod origin;
+mod outline;
 mod parameter;
 mod parse;
+mod plausibility;
 mod preset;
 mod range;
+mod report_axes;
 mod schema;
 mod single;
 mod source;
 mod suggest;
+mod text;
+mod time_defaults;
 mod validate;
 
+pub use change::Changes;
 pub use definition::Study;
 pub use error::{Problem, StudyError};
 pub use expand::Job;
-pub use input::{Input, inputs};
+pub use input::{Input, input_parameters, inputs};
 pub use key::{SharedKeys, job_key};
 pub use limits::MAX_JOBS;
 pub use locate::Position;
+pub use name::{is_study_name, renamed};
+pub use origin::{Origin, is_set_by_presets};
 pub use parameter::{PARAMETERS, Parameter};
-pub use preset::{CaseEvidence, Evidence, Preset, PresetEvidence, ReferenceEvidence};
+pub use plausibility::{LOCKING_POISSON_RATIO, Warning, job_warnings};
+pub use preset::{CaseEvidence, Evidence, Preset, PresetError, PresetEvidence, ReferenceEvidence};
+pub use report_axes::ReportAxes;
 pub use schema::schema;
+pub use single::SingleJob;
+pub use suggest::nearest_name;
+pub use text::{StudyText, json_value};

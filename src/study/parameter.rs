@@ -1,9 +1,10 @@
 //! The registry of parameters: what a grid or an override can set, by short name.
 
+use super::preset::Preset;
 use super::suggest;
 use crate::spec::{ClampSide, DiskKind, DiskTimeStep, TargetSurface, TopFace};
 use schemars::{Schema, SchemaGenerator};
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// The kind of values of a parameter: how they are written, whether ranges make sense, and their schema. Types are
 /// checked by deserialising the job, not by the kind.
@@ -26,7 +27,8 @@ pub(super) enum Kind {
 pub struct Parameter {
     /// Short name, unique.
     pub name: &'static str,
-    /// JSON pointer into a [`JobSpec`](crate::spec::JobSpec).
+    /// JSON pointer into a study, and so into a [`JobSpec`](crate::spec::JobSpec): a job has every field that a parameter
+    /// sets, except for `preset` and `damping`, which stand for values of other fields.
     pub pointer: &'static str,
     /// Description, with the unit in brackets.
     pub doc: &'static str,
@@ -41,6 +43,7 @@ const CLAMP_SIDE: Kind = Kind::Name(SchemaGenerator::subschema_for::<ClampSide>)
 const TOP_FACE: Kind = Kind::Name(SchemaGenerator::subschema_for::<TopFace>);
 const DISK_KIND: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskKind>);
 const TARGET: Kind = Kind::Name(SchemaGenerator::subschema_for::<TargetSurface>);
+const PRESET: Kind = Kind::Name(SchemaGenerator::subschema_for::<Preset>);
 const DISK_TIME_STEP: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskTimeStep>);
 
 /// All parameters, in the order in which help and messages list them.
@@ -76,8 +79,12 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("clamp_side", "/scene/clamp/side", CLAMP_SIDE, "where on the top face the clamp is [name]"),
     parameter("clamp_width_m", "/scene/clamp/width_m", Kind::Number, "width of the clamp's strip [m]"),
     parameter("top", "/scene/top", TOP_FACE, "how the top face moves in z [name]"),
+    parameter("preset", "/preset", PRESET, "accuracy of mesh, time step and detection [name]"),
     parameter("beta2", "/numerics/beta2", Kind::Number, "β₂ of the time scheme, 0.5 to 1 [-]"),
     parameter("beta_r_s", "/numerics/beta_r_s", Kind::Number, "stiffness-proportional damping β_R [s]"),
+    parameter("damping_ratio", "/damping/ratio", Kind::Number, "damping ratio ζ at damping_frequency_hz, instead of beta_r_s [-]"),
+    parameter("loss_factor", "/damping/loss_factor", Kind::Number, "loss factor η = 2ζ at damping_frequency_hz, instead of beta_r_s [-]"),
+    parameter("damping_frequency_hz", "/damping/frequency_hz", Kind::Number, "frequency at which damping_ratio or loss_factor holds [Hz]"),
     parameter("safety_factor", "/numerics/safety_factor", Kind::Number, "time step as a fraction of the stability limit [-]"),
     parameter("time_step_s", "/numerics/time_step_s", Kind::Number, "time step, instead of safety_factor [s]"),
     parameter("limit_s", "/run/limit_s", Kind::Number, "simulated time after which a run ends [s]"),
@@ -107,6 +114,11 @@ impl Parameter {
         Some(unit).filter(|unit| !matches!(*unit, "-" | "name" | "true or false"))
     }
 
+    /// Whether its values are single numbers.
+    pub fn is_number(&self) -> bool {
+        matches!(self.kind, Kind::Number | Kind::Count)
+    }
+
     /// The path of the field that it sets, as in messages: `scene.pin.size_m[0]`.
     pub fn field(&self) -> String {
         let write = |path: String, step: &str| match step.parse::<usize>() {
@@ -114,6 +126,23 @@ impl Parameter {
             Err(_) => super::locate::join(&path, step),
         };
         self.pointer[1..].split('/').fold(String::new(), write)
+    }
+
+    /// The part of a job that it belongs to: `scene`, `numerics`, `run` or `detection`; none if it is not a field of a job.
+    pub fn part(&self) -> Option<&'static str> {
+        let part = self.pointer.split('/').nth(1)?;
+        Some(part).filter(|part| matches!(*part, "scene" | "numerics" | "run" | "detection"))
+    }
+
+    /// The name of the column that holds it in data of jobs. It is the parameter's name, except that the numbers of elements
+    /// are named like the edges: `elements_x` beside `size_x_m`.
+    pub fn column(&self) -> &'static str {
+        match self.name {
+            "nx" => "elements_x",
+            "ny" => "elements_y",
+            "nz" => "elements_z",
+            name => name,
+        }
     }
 
     /// A line of help: name and description.
@@ -131,9 +160,35 @@ impl Parameter {
         self.sets(&other.field()) || other.sets(&self.field())
     }
 
-    /// Puts `value` into a serialised job.
+    /// Names of the parameters that say the same in another way, so that setting this one later on sets them aside.
+    pub(super) fn displaces(&self) -> &'static [&'static str] {
+        match self.name {
+            "preset" => Preset::COVERS,
+            "damping_ratio" => &["loss_factor", "beta_r_s"],
+            "loss_factor" => &["damping_ratio", "beta_r_s"],
+            "damping_frequency_hz" => &["beta_r_s"],
+            "beta_r_s" => &["damping_ratio", "loss_factor", "damping_frequency_hz"],
+            "safety_factor" => &["time_step_s"],
+            _ => &[],
+        }
+    }
+
+    /// Whether it sets an entry of a list and not a field.
+    pub(super) fn is_entry(&self) -> bool {
+        self.pointer.rsplit_once('/').is_some_and(|(_, last)| last.parse::<usize>().is_ok())
+    }
+
+    /// Puts `value` into a study or a serialised job. Objects that are absent are added; an entry of a list that is absent
+    /// is not.
     pub(super) fn set(&self, job: &mut Value, value: &Value) {
         let (parent, last) = self.pointer.rsplit_once('/').unwrap_or(("", self.pointer));
+        if job.pointer(parent).is_none() && !self.is_entry() {
+            let mut object = &mut *job;
+            for step in parent.split('/').skip(1) {
+                let Value::Object(fields) = object else { return };
+                object = fields.entry(step).or_insert_with(|| Value::Object(Map::new()));
+            }
+        }
         match job.pointer_mut(parent) {
             // Insert rather than replace: an optional field may be absent from the serialised job.
             Some(Value::Object(fields)) => _ = fields.insert(last.to_owned(), value.clone()),

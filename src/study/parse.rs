@@ -1,31 +1,33 @@
 //! From the text of a study file to a checked study.
 
 use super::axis::Axis;
+use super::change::{Changes, Forms};
 use super::definition::Study;
 use super::error::{Problem, StudyError};
 use super::file::StudyFile;
 use super::grid::Grid;
-use super::json::{self, decode};
+use super::json::{Decoded, decode_all};
 use super::limits::MAX_JOBS;
-use super::locate::{Position, join};
+use super::locate::join;
+use super::name::{EXPECTED, is_study_name};
+use super::outline::Outline;
 use super::parameter::{Parameter, unknown_help};
-use super::preset::Preset;
-use super::source::SourceText;
+use super::range;
+use super::report_axes::ReportAxes;
+use super::source::{Change, SourceText};
+use super::text::{STDIN, StudyText};
 use super::validate::check_jobs;
-use crate::spec::JobSpec;
-use jsonc_parser::errors::ParseError;
 use serde_json::{Map, Value};
 use std::path::Path;
 
 impl Study {
-    /// Reads and checks a study file.
+    /// Reads and checks a study file; `-` is standard input.
     ///
     /// # Errors
     /// The file cannot be read, or anything that [`Study::parse`] refuses.
     pub fn load(path: &Path) -> Result<Self, StudyError> {
-        let text = std::fs::read_to_string(path)
-            .map_err(|reason| StudyError::Read { file: path.display().to_string(), reason })?;
-        Self::parse(&text, &path.display().to_string())
+        let StudyText { text, source_name } = StudyText::read(path)?;
+        Self::parse(&text, &source_name)
     }
 
     /// Checks the text of a study file; `source_name` stands for the file in messages, and its stem
@@ -33,83 +35,121 @@ impl Study {
     ///
     /// # Errors
     /// Broken JSON, repeated keys, unknown fields or parameters, wrong types, unusable axes, more
-    /// than [`MAX_JOBS`] jobs, or jobs that violate a limit of [`JobSpec::check`].
+    /// than [`MAX_JOBS`] jobs, or jobs that violate a limit of [`JobSpec::check`](crate::spec::JobSpec::check).
     pub fn parse(text: &str, source_name: &str) -> Result<Self, StudyError> {
-        let value: Value = serde_json::from_str(text).map_err(|error| not_json(source_name, &error))?;
-        let source = SourceText::new(text, source_name).map_err(|error| not_located(source_name, &error))?;
-        refuse(source.repeated_keys())?;
-        let file: StudyFile =
-            decode(&value, &StudyFile::template()).map_err(|mismatch| source.mismatch("", mismatch))?;
+        Self::parse_changed(text, source_name, &Changes::default())
+    }
 
-        let name = name(file.name, &source)?;
-        let given =
-            JobSpec { scene: file.scene, numerics: file.numerics, run: file.run, detection: file.detection };
-        let base = with_preset(given, file.preset, &source);
-        check_size(file.grid.as_ref(), &source)?;
-        let grid = Grid { axes: axes(file.grid, &base, &source).map_err(StudyError::Invalid)? };
-        let specs = grid.specs(&base);
-        let study = Self { name, description: file.description, base, grid, specs, source };
-        refuse(check_jobs(&study))?;
+    /// As [`Study::parse`], with the changes that a command makes. The text may lack what the changes give: only the jobs of
+    /// the changed study are checked against their limits.
+    ///
+    /// # Errors
+    /// Those of [`Study::parse`], and changes with unknown, repeated or overlapping names or values of the wrong type.
+    pub fn parse_changed(text: &str, source_name: &str, changes: &Changes) -> Result<Self, StudyError> {
+        let (value, source) = SourceText::read(text, source_name)?;
+        refuse(source.repeated_keys())?;
+        let template = StudyFile::template();
+        let Decoded { value: file, mismatches } = decode_all::<StudyFile>(&value, &template);
+        let mut problems: Vec<_> =
+            mismatches.into_iter().map(|mismatch| source.mismatch("", mismatch)).collect();
+        let Some(file) = file else { return Err(StudyError::Invalid(problems)) };
+        if let Err(error) = check_size(file.grid.as_ref(), &source) {
+            return Err(if problems.is_empty() { error } else { StudyError::Invalid(problems) });
+        }
+        let axes = axes(file.grid, &template, &source).unwrap_or_else(|found| {
+            problems.extend(found);
+            Vec::new()
+        });
+        let mut outline = Outline { document: value, grid: Grid { axes }, source };
+        let name = outline.rename(changes).and_then(|()| outline.name());
+        if !problems.iter().any(|problem| problem.field == "name") {
+            problems.extend(name.err().into_iter().flatten());
+        }
+        problems.extend(outline.set("--set", changes.preset, &changes.settings, Forms::AxesToo));
+        // The jobs are judged only when every field has been read: a limit may depend on several of them.
+        if problems.is_empty() {
+            return Self::of(outline, file.report.unwrap_or_default());
+        }
+        // A problem of a field that the file does not give has no position; it comes last.
+        problems.sort_by_key(|problem| (problem.position.is_none(), problem.position));
+        Err(StudyError::Invalid(problems))
+    }
+
+    /// The study with all its jobs.
+    pub(super) fn of(outline: Outline, report: ReportAxes) -> Result<Self, StudyError> {
+        outline.check_size()?;
+        let name = outline.name().map_err(StudyError::Invalid)?;
+        refuse(report.problems(&outline.source))?;
+        let draft = outline.draft();
+        let Outline { document, grid, source } = outline;
+        let (specs, violations): (Vec<_>, Vec<_>) =
+            grid.resolve(&draft).into_iter().map(|job| (job.spec, job.violations)).unzip();
+        let description = document.get("description").and_then(Value::as_str).map(str::to_owned);
+        let base = draft.resolve().spec;
+        let study = Self { name, description, base, document, grid, specs, report, source };
+        refuse(check_jobs(&study, &violations))?;
         Ok(study)
     }
 }
 
-/// The job with the preset's settings in all fields that the file does not give itself.
-fn with_preset(given: JobSpec, preset: Option<Preset>, source: &SourceText) -> JobSpec {
-    let Some(preset) = preset else { return given };
-    let mut job = json::encode(&given);
-    preset.apply(&given.scene, &mut job, |parameter| source.gives(&parameter.field()));
-    json::decode_checked(&job)
+impl Outline {
+    /// The study's name: as given, or the stem of the file's name.
+    fn name(&self) -> Result<String, Vec<Problem>> {
+        name(self.document.get("name").and_then(Value::as_str).map(str::to_owned), &self.source)
+    }
+
+    /// Gives the study another name, or appends that of the preset.
+    fn rename(&mut self, changes: &Changes) -> Result<(), Vec<Problem>> {
+        let (place, name) = match (&changes.name, changes.preset) {
+            (Some(name), _) => ("--name", name.clone()),
+            (None, Some(preset)) => ("--preset", format!("{}-{}", self.name()?, preset.name())),
+            (None, None) if changes.settings.is_empty() => return Ok(()),
+            // The changed study is written down, perhaps in a file of another name.
+            (None, None) => ("", self.name()?),
+        };
+        if !place.is_empty() {
+            self.source.changes.push(Change::of_name(place, &name));
+        }
+        if let Value::Object(fields) = &mut self.document {
+            fields.insert("name".to_owned(), name.into());
+        }
+        Ok(())
+    }
+
+    /// Refuses a grid that has become too large.
+    fn check_size(&self) -> Result<(), StudyError> {
+        let axes = self.grid.axes.iter().map(|axis| (axis.parameter.name, axis.values.len()));
+        limit_size(&axes.collect::<Vec<_>>(), &self.source)
+    }
 }
 
 fn refuse(problems: Vec<Problem>) -> Result<(), StudyError> {
     if problems.is_empty() { Ok(()) } else { Err(StudyError::Invalid(problems)) }
 }
 
-fn not_json(file: &str, error: &serde_json::Error) -> StudyError {
-    let message = error.to_string();
-    let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(message, _)| message);
-    StudyError::Syntax {
-        file: file.to_owned(),
-        // serde_json reports column 0 for an empty file; editors count from 1.
-        position: Position { line: error.line(), column: error.column().max(1) },
-        message: message.to_owned(),
-    }
-}
-
-/// For a text that only one of the two readers takes for JSON; none is known.
-fn not_located(file: &str, error: &ParseError) -> StudyError {
-    StudyError::Syntax {
-        file: file.to_owned(),
-        position: Position { line: error.line_display(), column: error.column_display() },
-        message: error.kind().to_string(),
-    }
-}
-
-fn name(given: Option<String>, source: &SourceText) -> Result<String, StudyError> {
-    let usable = |name: &str| {
-        let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
-        !name.is_empty() && name.chars().all(allowed)
-    };
-    let expected = "expected a name of letters A-Z a-z, digits, _ and -";
+fn name(given: Option<String>, source: &SourceText) -> Result<String, Vec<Problem>> {
     match given {
-        Some(name) if usable(&name) => Ok(name),
-        Some(_) => Err(source.problem("name", expected).into()),
+        Some(name) if is_study_name(&name) => Ok(name),
+        Some(_) => Err(vec![source.problem("name", EXPECTED)]),
         None => {
             let stem = Path::new(&source.file).file_stem().unwrap_or_default().to_string_lossy();
-            if usable(&stem) {
+            if is_study_name(&stem) {
                 return Ok(stem.into_owned());
             }
+            if source.file == STDIN {
+                let help = "add \"name\": \"…\" to the study, which has no file with a name";
+                return Err(vec![source.problem("name", EXPECTED).with_help(help)]);
+            }
             let help = "add \"name\": \"…\" to the file, or rename it";
-            let problem = source.problem("name", expected).with_help(help);
-            Err(Problem { value: Some(format!("{stem:?} (from the file's name)")), ..problem }.into())
+            let problem = source.problem("name", EXPECTED).with_help(help);
+            Err(vec![Problem { value: Some(format!("{stem:?} (from the file's name)")), ..problem }])
         }
     }
 }
 
 fn axes(
     grid: Option<Map<String, Value>>,
-    base: &JobSpec,
+    template: &Value,
     source: &SourceText,
 ) -> Result<Vec<Axis>, Vec<Problem>> {
     let Some(grid) = grid else { return Ok(Vec::new()) };
@@ -121,7 +161,6 @@ fn axes(
     let mut entries: Vec<_> = grid.iter().collect();
     entries.sort_by_key(|(name, _)| source.key_position(&join("grid", name)));
 
-    let template = json::encode(base);
     let mut axes: Vec<Axis> = Vec::new();
     let mut problems = Vec::new();
     for (name, given) in entries {
@@ -136,7 +175,7 @@ fn axes(
             let message = format!("sets the same field as grid.{other}; expected only one of the two");
             problems.push(source.problem_with_name(&path, message));
         }
-        match Axis::read(parameter, given, &template, source) {
+        match Axis::read(parameter, given, template, source) {
             Ok(axis) => axes.push(axis),
             Err(found) => problems.extend(found),
         }
@@ -147,26 +186,17 @@ fn axes(
 /// Refuses a grid that is too large. This comes before any value is read: a few axes of a million values each would
 /// take minutes to be refused.
 fn check_size(grid: Option<&Map<String, Value>>, source: &SourceText) -> Result<(), StudyError> {
-    let mut axes: Vec<_> = grid.into_iter().flatten().map(|(name, given)| (name, length(given))).collect();
+    let mut axes: Vec<_> =
+        grid.into_iter().flatten().map(|(name, given)| (name.as_str(), range::axis_length(given))).collect();
+    axes.sort_by_key(|(name, _)| source.key_position(&join("grid", name)));
+    limit_size(&axes, source)
+}
+
+fn limit_size(axes: &[(&str, usize)], source: &SourceText) -> Result<(), StudyError> {
     let points = axes.iter().fold(1, |n: u128, (_, length)| n.saturating_mul(*length as u128));
     if points <= MAX_JOBS as u128 {
         return Ok(());
     }
-    axes.sort_by_key(|(name, _)| source.key_position(&join("grid", name)));
     let factors: Vec<_> = axes.iter().map(|(name, length)| format!("{name} {length}")).collect();
     Err(StudyError::TooManyJobs { file: source.file.clone(), points, factors: factors.join(" × ") })
-}
-
-/// Number of values of an axis as written. It is 1 for anything that is not an axis, and for a range that is too long
-/// by itself: reading the axis gives a better message.
-fn length(given: &Value) -> usize {
-    match given {
-        Value::Array(list) => list.len().max(1),
-        _ => given
-            .get("count")
-            .and_then(Value::as_u64)
-            .and_then(|count| usize::try_from(count).ok())
-            .filter(|count| (1..=MAX_JOBS).contains(count))
-            .unwrap_or(1),
-    }
 }

@@ -1,12 +1,14 @@
 //! One job of a study, selected by `name=value` overrides.
 
-use super::axis::{Axis, check_type};
+use super::axis::Axis;
+use super::change::Forms;
 use super::definition::Study;
 use super::error::{Problem, StudyError};
+use super::grid::Grid;
 use super::json;
-use super::parameter::{Kind, Parameter, unknown_help};
+use super::outline::Outline;
+use super::parameter::Parameter;
 use super::preset::Preset;
-use super::source::shorten;
 use crate::spec::JobSpec;
 use serde_json::Value;
 
@@ -15,6 +17,18 @@ const SOURCE: &str = "--set";
 
 /// Largest number of values that a message lists to choose from.
 const MAX_LISTED: usize = 40;
+
+/// One job of a study.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SingleJob {
+    /// The job.
+    pub spec: JobSpec,
+    /// The parameters of the grid and those that were overridden, each once, with their values in this job. A parameter
+    /// of the grid that nobody gives a value here, such as a preset, is left out.
+    pub parameters: Vec<(String, Value)>,
+    /// Names of the parameters of the grid that have the base job's value.
+    pub left_open: Vec<&'static str>,
+}
 
 impl Study {
     /// The job with `overrides` (name, value) on top of the base job and the grid.
@@ -41,18 +55,18 @@ impl Study {
     ) -> Result<JobSpec, StudyError> {
         let (found, left_open) = self.select(SOURCE, preset, overrides);
         if left_open.is_empty() {
-            return found;
+            return found.map(|mut study| study.specs.swap_remove(0));
         }
         let mut problems = match found {
             Err(StudyError::Invalid(problems)) => problems,
             _ => Vec::new(),
         };
-        problems.extend(left_open.into_iter().map(|axis| self.left_open(axis)));
+        problems.extend(left_open.iter().map(|axis| self.left_open(axis)));
         Err(StudyError::Invalid(problems))
     }
 
-    /// As [`Study::single_with_preset`], but parameters of the grid that are left open have the base job's value. Also
-    /// returns the names of these parameters. `source` stands for the origin of the overrides in messages.
+    /// As [`Study::single_with_preset`], but parameters of the grid that are left open have the base job's value. `source`
+    /// stands for the origin of the overrides in messages.
     ///
     /// # Errors
     /// Those of [`Study::single`] except for open parameters.
@@ -61,59 +75,47 @@ impl Study {
         source: &str,
         preset: Option<Preset>,
         overrides: &[(String, String)],
-    ) -> Result<(JobSpec, Vec<&'static str>), StudyError> {
-        let (spec, left_open) = self.select(source, preset, overrides);
-        Ok((spec?, left_open.into_iter().map(|axis| axis.parameter.name).collect()))
+    ) -> Result<SingleJob, StudyError> {
+        let (found, left_open) = self.select(source, preset, overrides);
+        let single = found?;
+        let job = json::encode(&single.specs[0]);
+        let at_point = single.grid.parameters_at(0);
+        let in_grid = self.grid.axes.iter().map(|axis| axis.parameter);
+        let named = overrides.iter().filter_map(|(name, _)| Parameter::find(name));
+        let mut parameters: Vec<(String, Value)> = Vec::new();
+        for parameter in in_grid.chain(named) {
+            // A job has no preset and no damping.
+            let on_axis = || Some(&at_point.iter().find(|(name, _)| name == parameter.name)?.1);
+            let value = job.pointer(parameter.pointer).or_else(on_axis);
+            if let Some(value) = value.or_else(|| single.document.pointer(parameter.pointer))
+                && !parameters.iter().any(|(known, _)| known == parameter.name)
+            {
+                parameters.push((parameter.name.to_owned(), value.clone()));
+            }
+        }
+        let left_open = left_open.into_iter().map(|axis| axis.parameter.name).collect();
+        Ok(SingleJob { spec: single.specs[0].clone(), parameters, left_open })
     }
 
-    /// The job with these overrides, and the axes of the grid that they leave open. In these the job has the base job's
-    /// value.
+    /// The study of the one job with these overrides, and the axes of the grid that they leave open. In these the job has
+    /// the base job's value.
     fn select(
         &self,
         source: &str,
         preset: Option<Preset>,
         overrides: &[(String, String)],
-    ) -> (Result<JobSpec, StudyError>, Vec<&Axis>) {
-        let mut job = json::encode(&self.base);
-        let mut problems = Vec::new();
-        let mut overridden: Vec<&Parameter> = Vec::new();
-        let mut settings = Vec::new();
-        for (name, text) in overrides {
-            let problem = |message| problem(source, name, text, message);
-            let Some(parameter) = Parameter::find(name) else {
-                problems.push(Problem { help: unknown_help(name), ..problem("no such parameter".into()) });
-                continue;
-            };
-            if let Some(other) = overridden.iter().find(|other| other.overlaps(parameter)) {
-                let message = format!("{} is already set; expected only one of the two", other.name);
-                problems.push(problem(message));
-            }
-            overridden.push(parameter);
-            let value = parameter.normalise(parse_value(parameter, text));
-            match check_type(parameter, &value, &job) {
-                Ok(()) => settings.push((parameter, value)),
-                Err(message) => problems.push(problem(message).with_help(parameter.help())),
-            }
-        }
-        let mut left_open = Vec::new();
-        for axis in &self.grid.axes {
-            match axis.values.as_slice() {
-                [only] => axis.parameter.set(&mut job, only),
-                _ if overridden.iter().any(|parameter| parameter.sets(&axis.parameter.field())) => {}
-                _ if preset.is_some() && Preset::covers(axis.parameter) => {}
-                _ => left_open.push(axis),
-            }
-        }
-        if !problems.is_empty() {
-            return (Err(StudyError::Invalid(problems)), left_open);
-        }
-        for (parameter, value) in &settings {
-            parameter.set(&mut job, value);
-        }
-        if let Some(preset) = preset {
-            preset.override_job(&mut job, &overridden);
-        }
-        (self.checked(source, &job, &overridden), left_open)
+    ) -> (Result<Self, StudyError>, Vec<Axis>) {
+        let (document, grid, source_text) = (self.document.clone(), self.grid.clone(), self.source.clone());
+        let mut outline = Outline { document, grid, source: source_text };
+        let problems = outline.set(source, preset, overrides, Forms::Single);
+        let (fixed, left_open) = outline.grid.axes.into_iter().partition(|axis| axis.values.len() == 1);
+        outline.grid = Grid { axes: fixed };
+        let single = if problems.is_empty() {
+            Self::of(outline, self.report.clone())
+        } else {
+            Err(StudyError::Invalid(problems))
+        };
+        (single, left_open)
     }
 
     fn left_open(&self, axis: &Axis) -> Problem {
@@ -126,41 +128,4 @@ impl Study {
         Problem { value: Some(format!("[{}]", values.join(", "))), ..problem }
             .with_help(format!("pick one with --set {name}={}", values[0].trim_matches('"')))
     }
-
-    fn checked(&self, source: &str, job: &Value, overridden: &[&Parameter]) -> Result<JobSpec, StudyError> {
-        let spec = json::decode_checked(job);
-        let Err(violations) = spec.check() else { return Ok(spec) };
-        let describe = |violation: &crate::spec::FieldError| {
-            let message = format!("expected {}", violation.expected);
-            let problem = if overridden.iter().any(|parameter| parameter.sets(&violation.field)) {
-                problem(source, &violation.field, &violation.value, message)
-            } else {
-                self.source.problem(&violation.field, message)
-            };
-            Problem { value: Some(violation.value.clone()), ..problem }
-        };
-        Err(StudyError::Invalid(violations.0.iter().map(describe).collect()))
-    }
-}
-
-fn problem(source: &str, field: &str, value: &str, message: String) -> Problem {
-    Problem {
-        file: source.to_owned(),
-        position: None,
-        field: field.to_owned(),
-        value: Some(shorten(value)),
-        message,
-        help: Vec::new(),
-    }
-}
-
-/// Reads the text of an override: counts as `12x15x10`, then JSON, otherwise a string.
-fn parse_value(parameter: &Parameter, text: &str) -> Value {
-    if matches!(parameter.kind, Kind::Counts) {
-        let counts: Result<Vec<u64>, _> = text.split(['x', '×']).map(|n| n.trim().parse()).collect();
-        if let Ok(counts) = counts {
-            return Value::from(counts);
-        }
-    }
-    serde_json::from_str(text).unwrap_or_else(|_| Value::from(text))
 }

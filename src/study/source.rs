@@ -1,9 +1,10 @@
 //! The text of a study file: turns field paths into positions and values for messages.
 
-use super::error::Problem;
+use super::error::{Problem, StudyError};
 use super::json::TypeMismatch;
-use super::locate::{FieldSpan, FieldSpans, Position, RepeatedKey, join};
-use jsonc_parser::errors::ParseError;
+use super::locate::{self, FieldSpan, FieldSpans, NotJson, Position, RepeatedKey, join};
+use super::parameter::Parameter;
+use serde_json::Value;
 
 /// Longer values are shortened in messages.
 const SHOWN_CHARS: usize = 60;
@@ -15,22 +16,77 @@ const LONGEST_FIELD: usize = 200;
 #[derive(Debug, Clone)]
 pub(super) struct SourceText {
     pub file: String,
-    text: String,
+    pub text: String,
     spans: FieldSpans,
+    /// What the command line has changed of it.
+    pub changes: Vec<Change>,
+}
+
+/// One value that the command line sets.
+#[derive(Debug, Clone)]
+pub(super) struct Change {
+    /// Stands for the file in messages.
+    place: String,
+    /// The fields that have their value from it.
+    fields: Vec<String>,
+    /// The value as given.
+    text: String,
+}
+
+impl Change {
+    /// A value of a parameter, for its field or its axis. The fields of the parameters that it sets aside have their values
+    /// from it too.
+    pub(super) fn of_parameter(parameter: &Parameter, place: &str, text: &str) -> Self {
+        let displaced = parameter.displaces().iter().filter_map(|name| Parameter::find(name));
+        let mut fields: Vec<String> = displaced.map(Parameter::field).collect();
+        fields.extend([parameter.field(), format!("grid.{}", parameter.name)]);
+        Self { place: place.to_owned(), fields, text: text.to_owned() }
+    }
+
+    /// The study's name.
+    pub(super) fn of_name(place: &str, text: &str) -> Self {
+        Self { place: place.to_owned(), fields: vec!["name".to_owned()], text: text.to_owned() }
+    }
+
+    fn covers(&self, path: &str) -> bool {
+        let is_within = |field: &String| {
+            path.strip_prefix(field).is_some_and(|rest| rest.is_empty() || rest.starts_with(['[', '.']))
+        };
+        self.fields.iter().any(is_within)
+    }
+}
+
+impl Problem {
+    /// A problem with a value that the command line sets at `place`.
+    pub(super) fn of_change(place: &str, field: &str, text: &str, message: impl Into<String>) -> Self {
+        Self {
+            file: place.to_owned(),
+            position: None,
+            field: field.to_owned(),
+            value: Some(shorten(text)),
+            message: message.into(),
+            help: Vec::new(),
+        }
+    }
 }
 
 impl SourceText {
-    /// The text of `file`, which `serde_json` has accepted.
+    /// Reads the text of `file`. Also returns its value.
     ///
     /// # Errors
-    /// Those of [`FieldSpans::of`].
-    pub(super) fn new(text: &str, file: &str) -> Result<Self, ParseError> {
-        Ok(Self { file: file.to_owned(), text: text.to_owned(), spans: FieldSpans::of(text)? })
+    /// [`StudyError::Syntax`] if the text is not JSON; comments and trailing commas are allowed.
+    pub(super) fn read(text: &str, file: &str) -> Result<(Value, Self), StudyError> {
+        // Some editors begin a file with a byte order mark, which is not a part of the text.
+        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+        let (value, spans) = locate::read(text).map_err(|NotJson { position, message }| {
+            StudyError::Syntax { file: file.to_owned(), position, message }
+        })?;
+        Ok((value, Self { file: file.to_owned(), text: text.to_owned(), spans, changes: Vec::new() }))
     }
 
-    /// Whether the file itself gives `field`.
+    /// Whether the file or the command line gives `field`.
     pub(super) fn gives(&self, field: &str) -> bool {
-        self.spans.by_path.contains_key(field)
+        self.spans.by_path.contains_key(field) || self.changes.iter().any(|change| change.covers(field))
     }
 
     /// Where the key of `field` stands, if the file gives it.
@@ -38,8 +94,20 @@ impl SourceText {
         self.spans.by_path.get(field).map(|span| span.key)
     }
 
+    /// The text with another value of `field`, if the text gives that field.
+    pub(super) fn with_value(&self, field: &str, value: &Value) -> Option<String> {
+        let span = self.spans.by_path.get(field)?;
+        let mut text = self.text.clone();
+        text.replace_range(span.bytes.clone(), &value.to_string());
+        Some(text)
+    }
+
     /// A problem with the value of `field`.
     pub(super) fn problem(&self, field: &str, message: impl Into<String>) -> Problem {
+        // The latest change is the one that has an effect.
+        if let Some(change) = self.changes.iter().rev().find(|change| change.covers(field)) {
+            return Problem::of_change(&change.place, field, &change.text, message);
+        }
         let span = self.spans.by_path.get(field);
         Problem {
             file: self.file.clone(),
@@ -57,7 +125,8 @@ impl SourceText {
 
     /// A problem with the name of `field`; its position is that of the key.
     pub(super) fn problem_with_name(&self, field: &str, message: impl Into<String>) -> Problem {
-        Problem { position: self.key_position(field), ..self.problem(field, message) }
+        let problem = self.problem(field, message);
+        Problem { position: problem.position.and_then(|_| self.key_position(field)), ..problem }
     }
 
     /// A problem with the type of a field; the path in `mismatch` is relative to `path`.

@@ -21,3 +21,8 @@ pub(super) fn nearest<'a>(
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(name, _)| name)
 }
+
+/// The name most similar to `wrong`, if one is similar enough.
+pub fn nearest_name<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    nearest(wrong, names.into_iter().map(|name| (name, vec![name.to_owned()])))
+}

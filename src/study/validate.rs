@@ -3,7 +3,6 @@
 use super::definition::Study;
 use super::error::Problem;
 use crate::spec::FieldError;
-use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde_json::Value;
 use std::collections::HashMap;
 
@@ -14,40 +13,33 @@ struct SharedViolation {
     points: usize,
 }
 
-/// The problems of all jobs; the same violation in many jobs is one problem.
-pub(super) fn check_jobs(study: &Study) -> Vec<Problem> {
+/// The problems of all jobs, from the violations at each point of the grid; the same violation in many jobs is one problem.
+pub(super) fn check_jobs(study: &Study, violations: &[Vec<FieldError>]) -> Vec<Problem> {
     let mut found: Vec<SharedViolation> = Vec::new();
     let mut index_of: HashMap<(String, String, String), usize> = HashMap::new();
-    let violations =
-        study.specs.par_iter().enumerate().filter_map(|(point, spec)| Some((point, spec.check().err()?)));
-    for (point, violations) in violations.collect::<Vec<_>>() {
-        for violation in violations.0 {
+    for (point, violations) in violations.iter().enumerate() {
+        for violation in violations {
             let FieldError { field, value, expected } = violation.clone();
             let index = *index_of.entry((field, value, expected)).or_insert(found.len());
             if index == found.len() {
-                found.push(SharedViolation { violation, first_point: point, points: 0 });
+                found.push(SharedViolation { violation: violation.clone(), first_point: point, points: 0 });
             }
             found[index].points += 1;
         }
     }
-    found.iter().map(|found| study.describe(found)).collect()
+    let refused: Vec<&str> = found.iter().map(|found| found.violation.field.as_str()).collect();
+    // A modulus in GPa makes times and speeds unusable. Then the modulus is the reason, and it comes first.
+    let mut problems = if found.is_empty() { Vec::new() } else { study.wrong_units(&refused) };
+    problems.extend(found.iter().map(|found| study.describe(found)));
+    problems
 }
 
 impl Study {
     fn describe(&self, found: &SharedViolation) -> Problem {
         let FieldError { field, value, expected } = &found.violation;
-        let axis = self.grid.axes.iter().position(|axis| axis.parameter.sets(field));
-        let message = format!("expected {expected}");
-        let (problem, points_with_value) = match axis {
-            Some(position) => {
-                let axis = &self.grid.axes[position];
-                let (path, words) = axis.value_path(self.grid.indices_of(found.first_point)[position]);
-                let problem = self.source.problem(&path, message).with_help(format!("set by {words}"));
-                (problem, self.grid_size() / axis.values.len())
-            }
-            None => (self.source.problem(field, message), self.grid_size()),
-        };
-        let mut problem = Problem { field: field.clone(), value: Some(value.clone()), ..problem };
+        let (problem, points_with_value) =
+            self.problem_at(field, &format!("expected {expected}"), found.first_point);
+        let mut problem = Problem { value: Some(value.clone()), ..problem };
         // Not all jobs with this value violate the limit: another parameter contributes.
         if found.points < points_with_value {
             let job = assignments(&self.grid.parameters_at(found.first_point));
@@ -56,10 +48,22 @@ impl Study {
         }
         problem
     }
+
+    /// A problem with the value of a field at a grid point. Also returns the number of points with this value.
+    pub(super) fn problem_at(&self, field: &str, message: &str, point: usize) -> (Problem, usize) {
+        let axis = self.grid.axes.iter().position(|axis| axis.parameter.sets(field));
+        let Some(position) = axis else { return (self.source.problem(field, message), self.grid_size()) };
+        let axis = &self.grid.axes[position];
+        let index = self.grid.indices_of(point)[position];
+        let (path, words) = axis.value_path(index);
+        let problem = self.source.problem(&path, message).with_help(format!("set by {words}"));
+        let value = Some(axis.values[index].to_string());
+        (Problem { field: field.to_owned(), value, ..problem }, self.grid_size() / axis.values.len())
+    }
 }
 
 /// `mu = 0.4, omega_rpm = 7`.
-fn assignments(parameters: &[(String, Value)]) -> String {
+pub(super) fn assignments(parameters: &[(String, Value)]) -> String {
     let each: Vec<_> = parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
     each.join(", ")
 }

@@ -62,15 +62,25 @@ pub async fn load_study(study: &str, database: &Location) -> Result<Study, Sweep
         return Ok(Study::load(path)?);
     }
     let mut queue = open_to_read(database.clone()).await?;
-    let Some(found) = queue.study(study).await? else {
-        let known = queue.studies().await?.into_iter().map(|study| study.name).collect();
-        return Err(QueueError::UnknownStudy { name: study.to_owned(), known }.into());
-    };
+    let document = document(&mut queue, study).await?;
     queue.close().await?;
-    Ok(Study::parse(&found.document, study)?)
+    Ok(Study::parse(&document, study)?)
 }
 
-fn study_file(study: &str) -> Option<&Path> {
+/// The document of a study in the database, as it was submitted.
+///
+/// # Errors
+/// [`QueueError::UnknownStudy`]; if the database cannot be read.
+pub async fn document(queue: &mut Queue, study: &str) -> Result<String, SweepError> {
+    if let Some(found) = queue.study(study).await? {
+        return Ok(found.document);
+    }
+    let known = queue.studies().await?.into_iter().map(|study| study.name).collect();
+    Err(QueueError::UnknownStudy { name: study.to_owned(), known }.into())
+}
+
+/// The path of a study that is given as its file. What ends in `.json` is a file.
+pub(super) fn study_file(study: &str) -> Option<&Path> {
     let path = Path::new(study);
     path.extension().is_some_and(|extension| extension == "json").then_some(path)
 }

@@ -1,8 +1,9 @@
 //! What can go wrong in a sweep.
 
+use super::measured::MeasuredError;
+use crate::analysis::JobError;
 use crate::publish::PublishError;
 use crate::queue::{Location, QueueError};
-use crate::solver::SolverError;
 use crate::study::StudyError;
 use crate::worker::WorkError;
 use thiserror::Error;
@@ -14,15 +15,19 @@ pub enum SweepError {
     /// The study or the selection of one of its jobs.
     #[error(transparent)]
     Study(#[from] StudyError),
-    /// The solver refuses a job of the study before its first step.
-    #[error("{source_name}: {reason}{}", at(.point))]
+    /// A job of the study would be refused before its first step.
+    #[error("{source_name}: {reason}{}", at(.point, *.jobs, *.of))]
     RefusedJob {
         /// The study's file as given.
         source_name: String,
-        /// Why the solver refuses the job.
-        reason: Box<SolverError>,
+        /// Why the job is refused.
+        reason: Box<JobError>,
         /// Grid parameters of the job as `name = value`, with commas between them; empty without a grid.
         point: String,
+        /// Number of jobs that are refused.
+        jobs: usize,
+        /// Number of all jobs.
+        of: usize,
     },
     /// The database.
     #[error(transparent)]
@@ -33,6 +38,9 @@ pub enum SweepError {
     /// A report or a comparison could not be written.
     #[error(transparent)]
     Publish(#[from] PublishError),
+    /// A study cannot have this name.
+    #[error("`{0}` is no name for a study: expected letters A-Z a-z, digits, _ and -")]
+    BadName(String),
     /// The database is both the source and the target of a transfer.
     #[error("{0} is both what is read and what is written; give two databases")]
     SameDatabase(Location),
@@ -74,6 +82,22 @@ pub enum SweepError {
     /// A value cannot be written as JSON.
     #[error("cannot write a job as JSON: {0}")]
     Encode(serde_json::Error),
+    /// A file of measured points.
+    #[error(transparent)]
+    Measured(#[from] MeasuredError),
+    /// An axis or a quantity of a report that does not exist.
+    #[error("{option} {name}: {message}")]
+    NoSuchAxis {
+        /// The option: `--x`, `--by` or `--y`.
+        option: &'static str,
+        /// The name as given.
+        name: String,
+        /// What is wrong and which names there are.
+        message: String,
+    },
+    /// A source of a comparison is given twice.
+    #[error("{0} is given twice; expected different studies and files")]
+    RepeatedSource(String),
     /// The output of an export cannot be written.
     #[error("cannot write the export: {0}")]
     Output(std::io::Error),
@@ -82,8 +106,12 @@ pub enum SweepError {
     Runtime(std::io::Error),
 }
 
-fn at(point: &str) -> String {
-    if point.is_empty() { String::new() } else { format!(" (at {point})") }
+fn at(point: &str, jobs: usize, of: usize) -> String {
+    match (point, jobs) {
+        ("", _) => String::new(),
+        (point, 1) => format!(" (at {point})"),
+        (point, jobs) => format!(" (in {jobs} of {of} jobs, first at {point})"),
+    }
 }
 
 fn of(study: Option<&str>) -> String {

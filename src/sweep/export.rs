@@ -1,9 +1,11 @@
 //! One row per job, for other programs.
 
 use super::error::SweepError;
-use super::rows::{for_each_row, further_names};
+use super::rows::{add_further_names, for_each_row, for_each_row_with_inputs};
 use crate::queue::{Queue, Rows};
+use crate::report::columns::{self, Column, InputColumn};
 use crate::report::export::Export;
+use crate::study::{Parameter, input_parameters};
 use std::io::Write;
 
 /// The format of an export.
@@ -16,22 +18,75 @@ pub enum ExportFormat {
     JsonLines,
 }
 
-/// Writes one row per job of a study to `out`. The study is read twice, first for the names of its parameters, so that
-/// its rows need not be held in memory.
+/// The columns of an export.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum ExportColumns {
+    /// The most important figures, and the grid parameters.
+    #[default]
+    Plain,
+    /// These, every input and the whole record.
+    All,
+}
+
+/// The columns of an export of studies with these `grid` parameters other than ω and μ.
+pub fn columns(which: ExportColumns, grid: &[String]) -> Vec<Column> {
+    match which {
+        ExportColumns::Plain => columns::plain(grid),
+        ExportColumns::All => {
+            // A parameter that sets an input in another way has no column of its own: the input has the value.
+            let is_input = |name: &str| Parameter::find(name).is_some_and(|own| own.part().is_some());
+            let grid: Vec<String> = grid.iter().filter(|name| !is_input(name)).cloned().collect();
+            columns::all(&input_columns(), &grid)
+        }
+    }
+}
+
+fn input_columns() -> Vec<InputColumn> {
+    let column = |parameter: &Parameter| InputColumn {
+        name: parameter.column().to_owned(),
+        unit: parameter.unit().unwrap_or_default().to_owned(),
+        meaning: parameter.description().to_owned(),
+    };
+    input_parameters().map(column).collect()
+}
+
+/// Writes one row per job of the studies to `out`, study after study. Each study is read twice, first for the names of its
+/// parameters, so that its rows need not be held in memory. A grid parameter of any study is a column of all of them.
 ///
 /// # Errors
-/// If the database has no such study or cannot be read, and [`SweepError::Output`] if `out` fails.
+/// If the database does not have one of the studies or cannot be read, and [`SweepError::Output`] if `out` fails. An unknown
+/// study is noticed before anything is written.
 pub async fn export(
     queue: &mut Queue,
-    study: &str,
+    studies: &[String],
+    which: ExportColumns,
     format: ExportFormat,
     out: &mut dyn Write,
 ) -> Result<(), SweepError> {
-    let further = further_names(queue, study).await?;
+    let mut grid = Vec::new();
+    for study in studies {
+        add_further_names(queue, study, &mut grid).await?;
+    }
+    let columns = columns(which, &grid);
     let mut export = match format {
-        ExportFormat::Csv => Export::csv(further, out).map_err(SweepError::Output)?,
-        ExportFormat::JsonLines => Export::json_lines(further, out),
+        ExportFormat::Csv => Export::csv(columns, out).map_err(SweepError::Output)?,
+        ExportFormat::JsonLines => Export::json_lines(columns, out),
     };
-    for_each_row(queue, study, Rows::All, |_, row| export.write(&row).map_err(SweepError::Output)).await?;
+    for study in studies {
+        match which {
+            ExportColumns::Plain => {
+                for_each_row(queue, study, Rows::All, |_, row| {
+                    export.write(&row, &[]).map_err(SweepError::Output)
+                })
+                .await?;
+            }
+            ExportColumns::All => {
+                for_each_row_with_inputs(queue, study, |row, inputs| {
+                    export.write(&row, &inputs).map_err(SweepError::Output)
+                })
+                .await?;
+            }
+        }
+    }
     export.finish().map_err(SweepError::Output)
 }

@@ -3,6 +3,7 @@
 //!
 //! ```text
 //! study ──► Plan ──► submit ──► queue ◄──► work
+//!            └──► Forecast: what it takes here
 //!                                 │
 //!                                 ├──► read_rows ──► write_report
 //!                                 ├──► export
@@ -14,29 +15,45 @@
 //! the database may be open.
 
 mod database;
+mod difference;
+mod discretisation;
 mod error;
 mod export;
+mod forecast;
 mod history;
+mod measured;
 mod numerics;
 mod outlook;
 mod plan;
 mod provenance;
+mod rename;
 mod report;
+mod request;
 mod rows;
 mod selection;
+mod sheet;
 mod transfer;
 mod trouble;
 mod work;
 
-pub use database::{block_on, load_study, open, open_to_change, open_to_read, study_name};
+pub use database::{block_on, document, load_study, open, open_to_change, open_to_read, study_name};
+pub use difference::{Difference, InputDifference};
+pub use discretisation::discretisation_of;
 pub use error::SweepError;
-pub use export::{ExportFormat, export};
+pub use export::{ExportColumns, ExportFormat, columns, export};
+pub use forecast::{Forecast, Group, Kind, Known, Speed, TimeRange, expected_s_per_cost};
 pub use history::History;
+pub use measured::MeasuredError;
 pub use outlook::{Outlook, available_threads};
-pub use plan::Plan;
-pub use report::{Revision, write_refreshing_report, write_report};
-pub use rows::{for_each_row, read_rows};
-pub use selection::{SelectedJob, StoredJob, find_job, select_by_key, select_by_parameters};
+pub use plan::{Plan, Submission};
+pub use rename::rename;
+pub use report::{Revision, write_content, write_refreshing_report, write_report};
+pub use request::{ReportContent, ReportRequest, read_report};
+pub use rows::{for_each_row, for_each_row_with_inputs, read_rows};
+pub use selection::{
+    SelectedJob, StoredJob, StudyOfJob, find_job, select_all, select_by_key, select_by_parameters,
+};
+pub use sheet::sheet_of_job;
 pub use transfer::{Transfer, transfer};
 pub use trouble::Trouble;
 pub use work::work;

@@ -1,6 +1,7 @@
 //! How far a study is, and when it will be finished.
 
 use super::error::SweepError;
+use super::forecast::expected_s_per_cost;
 use crate::queue::{ActiveWorkers, Counts, Queue, Scope};
 use crate::worker::Eta;
 use std::num::NonZeroUsize;
@@ -14,9 +15,8 @@ pub struct Outlook {
     pub alive: ActiveWorkers,
     /// Number of threads that this machine can run at once.
     pub threads_here: usize,
-    /// The remaining time with the workers that are running, or on this machine if none is; `None` while too few jobs
-    /// have finished for an estimate.
-    pub eta: Option<Eta>,
+    /// The remaining time with the workers that are running, or on this machine if none is.
+    pub eta: Eta,
 }
 
 impl Outlook {
@@ -35,7 +35,8 @@ impl Outlook {
         let cost = queue.remaining_cost(&Scope::Study(study.to_owned())).await?;
         let finished = queue.timings(study).await?;
         // A second thread does not make a single job faster.
-        let eta = Eta::estimate(&finished, cost, left, threads.min(left) as usize);
+        let threads = threads.min(left) as usize;
+        let eta = Eta::estimate(&finished, expected_s_per_cost(threads_here), cost, left, threads);
         Ok(Some(Self { counts, alive, threads_here, eta }))
     }
 

@@ -1,37 +1,69 @@
 //! From a study to jobs in the queue.
 
+use super::difference::Difference;
 use super::error::SweepError;
 use super::numerics::numerics;
+use super::request::check_quantities;
 use super::rows::RowParameters;
-use crate::queue::{NewJob, NewStudy, Queue, Shard, Submitted};
-use crate::solver::{self, Model};
-use crate::study::{Job, SharedKeys, Study, StudyError};
+use crate::analysis::{Ending, JobError, Workload};
+use crate::publish::value;
+use crate::queue::{NewJob, NewStudy, Queue, Replace, Replaced, Shard, Submitted};
+use crate::solver;
+use crate::spec::{DiskKind, JobSpec};
+use crate::study::{Changes, Job, SharedKeys, Study, StudyText};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
-use std::collections::BTreeSet;
+use std::collections::BTreeMap;
 use std::path::Path;
 
-/// A study that has been read, expanded into jobs and checked: the solver accepts every job.
+/// A study that has been read, expanded into jobs and checked: no job is refused before its first step.
 #[derive(Debug)]
 pub struct Plan {
     study: Study,
     jobs: Vec<Job>,
     /// For each job the key of its batch: jobs of one batch can be run together.
     batches: Vec<String>,
+    /// What the jobs of each batch take.
+    workloads: Vec<Workload>,
+    /// For each job the number of its workload.
+    workload_of: Vec<usize>,
     document: String,
 }
 
+/// How a plan is submitted.
+#[derive(Debug, Clone)]
+pub struct Submission {
+    /// The part of the jobs that is submitted. The default is all of them.
+    pub shard: Shard,
+    /// Jobs of a higher priority are run first. Without it, new jobs have priority 0, and jobs that exist keep theirs.
+    pub priority: Option<i64>,
+    /// Whether a study of the same name may be replaced. By default it may if no result goes out of view.
+    pub replace: Replace,
+}
+
+impl Default for Submission {
+    fn default() -> Self {
+        Self { shard: Shard::WHOLE, priority: None, replace: Replace::default() }
+    }
+}
+
 impl Plan {
-    /// Reads and checks a study file.
+    /// Reads and checks a study file; `-` is standard input.
     ///
     /// # Errors
     /// If the file cannot be read, and those of [`Plan::parse`].
     pub fn load(path: &Path) -> Result<Self, SweepError> {
+        Self::load_changed(path, &Changes::default())
+    }
+
+    /// Reads and checks a study file with the changes of a command.
+    ///
+    /// # Errors
+    /// If the file cannot be read, and those of [`Plan::parse_changed`].
+    pub fn load_changed(path: &Path, changes: &Changes) -> Result<Self, SweepError> {
         // The file is read once: what is stored is what was checked, even if it is a pipe or edited meanwhile.
-        let source_name = path.display().to_string();
-        let document = std::fs::read_to_string(path)
-            .map_err(|reason| StudyError::Read { file: source_name.clone(), reason })?;
-        Self::parse(&document, &source_name)
+        let StudyText { text, source_name } = StudyText::read(path)?;
+        Self::parse_changed(&text, &source_name, changes)
     }
 
     /// Checks the text of a study file. Messages call the file `source_name`, and its stem is the study's name unless
@@ -40,14 +72,23 @@ impl Plan {
     /// # Errors
     /// Those of [`Study::parse`], and [`SweepError::RefusedJob`].
     pub fn parse(text: &str, source_name: &str) -> Result<Self, SweepError> {
-        let study = Study::parse(text, source_name)?;
+        Self::parse_changed(text, source_name, &Changes::default())
+    }
+
+    /// As [`Plan::parse`], with the changes of a command. The document that is stored has them.
+    ///
+    /// # Errors
+    /// Those of [`Study::parse_changed`], and [`SweepError::RefusedJob`].
+    pub fn parse_changed(text: &str, source_name: &str, changes: &Changes) -> Result<Self, SweepError> {
+        let study = Study::parse_changed(text, source_name, changes)?;
+        check_quantities(&study)?;
         let jobs = study.expand(solver::VERSION)?;
         let batches: Vec<String> = jobs
             .par_iter()
             .map_init(|| SharedKeys::new(solver::VERSION), |keys, job| keys.key(job.spec.shared_part()))
             .collect();
-        preflight(source_name, &jobs, &batches)?;
-        Ok(Self { study, jobs, batches, document: text.to_owned() })
+        let (workloads, workload_of) = preflight(source_name, &jobs, &batches)?;
+        Ok(Self { document: study.document(), study, jobs, batches, workloads, workload_of })
     }
 
     /// The study.
@@ -60,34 +101,65 @@ impl Plan {
         self.study.name()
     }
 
+    /// The study as it is stored: its text.
+    pub fn document(&self) -> &str {
+        &self.document
+    }
+
     /// The jobs, in the order of the grid.
     pub fn jobs(&self) -> &[Job] {
         &self.jobs
     }
 
-    /// Submits all jobs to the database. Jobs that it has already are not added again.
-    ///
-    /// # Errors
-    /// If the database cannot be written.
-    pub async fn submit(&self, queue: &mut Queue) -> Result<Submitted, SweepError> {
-        self.submit_shard(queue, Shard::WHOLE, None).await
+    /// For each job what its batch takes, in the order of the grid.
+    pub fn workloads(&self) -> impl Iterator<Item = &Workload> {
+        self.workload_of.iter().map(|&number| &self.workloads[number])
     }
 
-    /// Submits the jobs of one shard. Jobs of a higher priority are run first; without a `priority` new jobs get 0, and
-    /// jobs that exist keep theirs.
+    /// How this study differs from the one of the same name with that document, which is the first one of the comparison.
+    ///
+    /// # Errors
+    /// If this version cannot read the document.
+    pub fn difference_from(&self, document: &str) -> Result<Difference, SweepError> {
+        let old = Study::parse(document, self.name())?.expand(solver::VERSION)?;
+        Ok(Difference::between(&old, &self.jobs))
+    }
+
+    /// What [`Plan::submit`] would replace; `None` if no study has the name. Nothing is changed.
+    ///
+    /// # Errors
+    /// If the database cannot be read.
+    pub async fn preview_replacement(&self, queue: &mut Queue) -> Result<Option<Replaced>, SweepError> {
+        let keys = self.jobs.iter().map(|job| job.key.as_str()).collect();
+        Ok(queue.preview_replacement(self.name(), &keys).await?)
+    }
+
+    /// Submits all jobs to the database. Jobs that it has already are not added again.
+    ///
+    /// A study of the same name is replaced if no result goes out of view: if this study has all its jobs that are done.
+    /// [`Plan::submit_with`] can replace any study.
+    ///
+    /// # Errors
+    /// [`QueueError::ResultsWouldBeDropped`](crate::queue::QueueError::ResultsWouldBeDropped); if the database cannot be
+    /// written. Then nothing has changed.
+    pub async fn submit(&self, queue: &mut Queue) -> Result<Submitted, SweepError> {
+        self.submit_with(queue, &Submission::default()).await
+    }
+
+    /// As [`Plan::submit`], in the way that `submission` describes.
     ///
     /// # Errors
     /// As [`Plan::submit`].
     ///
     /// # Panics
     /// If the shard's index is not below the number of shards.
-    pub async fn submit_shard(
+    pub async fn submit_with(
         &self,
         queue: &mut Queue,
-        shard: Shard,
-        priority: Option<i64>,
+        submission: &Submission,
     ) -> Result<Submitted, SweepError> {
-        Ok(queue.submit_shard(&self.new_study(priority)?, shard).await?)
+        let study = self.new_study(submission.priority)?;
+        Ok(queue.submit_shard(&study, submission.shard, &submission.replace).await?)
     }
 
     /// The study in the form that the queue takes.
@@ -96,9 +168,10 @@ impl Plan {
             .jobs
             .par_iter()
             .zip(&self.batches)
+            .zip(&self.workload_of)
             .map_init(
                 || SharedKeys::new(""),
-                |cases, (job, batch)| {
+                |cases, ((job, batch), &workload)| {
                     let parameters = RowParameters {
                         omega_rpm: job.spec.scene.disk.omega_rpm,
                         mu: job.spec.scene.contact.mu,
@@ -109,7 +182,7 @@ impl Plan {
                         key: job.key.clone(),
                         payload: encode(&job.spec)?,
                         parameters: encode(&parameters)?,
-                        cost: job.cost,
+                        cost: self.workloads[workload].node_steps(Ending::of(&job.spec).likely_s),
                         batch: batch.clone(),
                         priority,
                     })
@@ -124,23 +197,60 @@ fn encode(value: &impl Serialize) -> Result<String, SweepError> {
     serde_json::to_string(value).map_err(SweepError::Encode)
 }
 
-/// Refuses a study with a job that the solver would refuse before its first step. One job of each batch is enough: the
-/// others have the same model.
-fn preflight(source_name: &str, jobs: &[Job], batches: &[String]) -> Result<(), SweepError> {
-    let mut seen = BTreeSet::new();
+/// Up to so many batches are examined. A study with more, such as a sweep over the modulus, would take minutes.
+const EXAMINED: usize = 200;
+
+/// A batch is examined in any case if its run has more steps than this share of what is allowed, by an estimate.
+const MANY_STEPS: f64 = 0.1;
+
+/// What the jobs take: the workload of each batch, and for each job its number. Refuses a study with a job that a worker
+/// would refuse before its first step. One job of each batch shows whether the solver refuses the model.
+fn preflight(
+    source_name: &str,
+    jobs: &[Job],
+    batches: &[String],
+) -> Result<(Vec<Workload>, Vec<usize>), SweepError> {
+    let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
+    let mut firsts: Vec<&JobSpec> = Vec::new();
+    let mut workload_of = Vec::with_capacity(jobs.len());
     for (job, batch) in jobs.iter().zip(batches) {
-        if !seen.insert(batch) {
-            continue;
+        let number = *numbers.entry(batch).or_insert(firsts.len());
+        if number == firsts.len() {
+            firsts.push(&job.spec);
         }
-        Model::preflight(&job.spec.scene, &job.spec.numerics).map_err(|reason| {
-            let point: Vec<String> =
-                job.parameters.iter().map(|(name, value)| format!("{name} = {value}")).collect();
-            SweepError::RefusedJob {
-                source_name: source_name.to_owned(),
-                reason: Box::new(reason),
-                point: point.join(", "),
-            }
-        })?;
+        workload_of.push(number);
     }
-    Ok(())
+    let examines_all = firsts.len() <= EXAMINED;
+    let mut workloads: Vec<Result<Workload, JobError>> = firsts
+        .par_iter()
+        .map(|spec| {
+            let estimate = Workload::estimate(spec)?;
+            let is_certain = spec.numerics.time_step_s.is_none()
+                && spec.scene.disk.kind == DiskKind::Rigid
+                && estimate.steps(spec.run.limit_s / MANY_STEPS).is_ok();
+            if examines_all || !is_certain { Workload::examine(spec) } else { Ok(estimate) }
+        })
+        .collect();
+    let is_refused = |(job, &number): (&Job, &usize)| match &workloads[number] {
+        Ok(workload) => workload.steps(job.spec.run.limit_s).is_err(),
+        Err(_) => true,
+    };
+    let refused: Vec<bool> = jobs.iter().zip(&workload_of).map(is_refused).collect();
+    let Some(first) = refused.iter().position(|&is_refused| is_refused) else {
+        return Ok((workloads.into_iter().flatten().collect(), workload_of));
+    };
+    let job = &jobs[first];
+    let workload = workloads.swap_remove(workload_of[first]);
+    let Err(reason) = workload.and_then(|workload| workload.steps(job.spec.run.limit_s)) else {
+        unreachable!("the job is refused");
+    };
+    let point: Vec<String> =
+        job.parameters.iter().map(|(name, value)| format!("{name} = {}", value::text(value))).collect();
+    Err(SweepError::RefusedJob {
+        source_name: source_name.to_owned(),
+        reason: Box::new(reason),
+        point: point.join(", "),
+        jobs: refused.iter().filter(|&&is_refused| is_refused).count(),
+        of: jobs.len(),
+    })
 }

@@ -19,11 +19,16 @@ struct StoredProvenance {
     threads: u64,
 }
 
-/// The study's document and the provenance of its results; `None` if the study has been removed meanwhile.
-pub(super) async fn read(queue: &mut Queue, study: &str) -> Result<Option<Provenance>, SweepError> {
-    let Some(document) = queue.study(study).await? else { return Ok(None) };
-    let groups = queue.provenance_groups(study).await?;
-    Ok(Some(Provenance::grouped(document.document, document.submitted_ms, groups.iter().map(report_group))))
+/// The documents of the studies and the provenance of their results; `None` if they have been removed meanwhile.
+pub(super) async fn read(queue: &mut Queue, studies: &[String]) -> Result<Option<Provenance>, SweepError> {
+    let (mut documents, mut submitted_ms, mut groups) = (Vec::new(), None, Vec::new());
+    for study in studies {
+        let Some(document) = queue.study(study).await? else { continue };
+        groups.extend(queue.provenance_groups(study).await?.iter().map(report_group));
+        submitted_ms = submitted_ms.max(Some(document.submitted_ms));
+        documents.push(document.document);
+    }
+    Ok(submitted_ms.map(|submitted_ms| Provenance::grouped(documents.join("\n"), submitted_ms, groups)))
 }
 
 fn report_group(group: &ProvenanceGroup) -> ResultGroup {

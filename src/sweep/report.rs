@@ -1,9 +1,11 @@
 //! The report of a study, and whether it has to be written again.
 
 use super::error::SweepError;
-use super::provenance;
+use super::request::{ReportContent, ReportRequest};
+use super::{provenance, sheet};
 use crate::queue::{Counts, Queue, Scope};
-use crate::report::{JobRow, Report, write};
+use crate::report::{JobRow, Report, View, write};
+use crate::study::{Study, Warning};
 use std::path::{Path, PathBuf};
 
 /// Writes the page, tables and figures of a study's `rows` into a folder, which is created if it does not exist. Returns
@@ -31,10 +33,90 @@ pub async fn write_refreshing_report(
     folder: &Path,
     refresh_s: Option<u32>,
 ) -> Result<Vec<PathBuf>, SweepError> {
-    let provenance = provenance::read(queue, study).await?;
+    let request = ReportRequest::of_study(study);
+    let view = request.view_of_study(queue, rows).await?;
+    write_viewed(queue, study, &request.studies, rows, &view, folder, refresh_s).await
+}
+
+/// Writes the page, tables and figures of a report's content into a folder, as [`write_refreshing_report`].
+///
+/// # Errors
+/// As [`write_report`].
+pub async fn write_content(
+    queue: &mut Queue,
+    content: &ReportContent,
+    folder: &Path,
+    refresh_s: Option<u32>,
+) -> Result<Vec<PathBuf>, SweepError> {
+    let ReportContent { title, studies, rows, view } = content;
+    write_viewed(queue, title, studies, rows, view, folder, refresh_s).await
+}
+
+async fn write_viewed(
+    queue: &mut Queue,
+    title: &str,
+    studies: &[String],
+    rows: &[JobRow],
+    view: &View,
+    folder: &Path,
+    refresh_s: Option<u32>,
+) -> Result<Vec<PathBuf>, SweepError> {
+    let provenance = provenance::read(queue, studies).await?;
     let written_ms = queue.now_ms().await?;
-    let report = Report { title: study, rows, provenance: provenance.as_ref(), written_ms, refresh_s };
+    let warnings = warnings(queue, studies).await?;
+    let definitions = definitions(queue, studies).await?;
+    let sheet = sheet::read(queue, studies, &definitions, rows).await?;
+    let description = description(&definitions);
+    let report = Report {
+        title,
+        description: description.as_deref(),
+        rows,
+        view,
+        sheet: sheet.as_ref(),
+        provenance: provenance.as_ref(),
+        warnings: &warnings,
+        written_ms,
+        refresh_s,
+    };
     Ok(write(&report, folder)?)
+}
+
+/// Stored studies that this version can read.
+async fn definitions(queue: &mut Queue, studies: &[String]) -> Result<Vec<Study>, SweepError> {
+    let mut definitions = Vec::new();
+    for name in studies {
+        let document = queue.study(name).await?.map(|found| found.document);
+        definitions.extend(document.and_then(|text| Study::parse(&text, name).ok()));
+    }
+    Ok(definitions)
+}
+
+/// What the studies are for, in their authors' words. With several studies, each text names its study.
+fn description(definitions: &[Study]) -> Option<String> {
+    let own = definitions.iter().filter_map(|study| Some((study.name(), study.description()?)));
+    let texts: Vec<String> = match definitions {
+        [_] => own.map(|(_, text)| text.to_owned()).collect(),
+        _ => own.map(|(name, text)| format!("{name}: {text}")).collect(),
+    };
+    (!texts.is_empty()).then(|| texts.join(" "))
+}
+
+/// What is doubtful about the inputs of stored studies. With several studies, each warning names its study.
+async fn warnings(queue: &mut Queue, studies: &[String]) -> Result<Vec<String>, SweepError> {
+    let mut warnings = Vec::new();
+    for name in studies {
+        // A study may have been removed in between.
+        let Some(found) = queue.study(name).await? else { continue };
+        let own: Vec<String> = match Study::parse(&found.document, name) {
+            Ok(study) => study.warnings().iter().map(Warning::in_words).collect(),
+            Err(error) => {
+                vec![format!("this version cannot read the study, so its inputs are not checked: {error}")]
+            }
+        };
+        let named = |warning: String| if studies.len() > 1 { format!("{name}: {warning}") } else { warning };
+        warnings.extend(own.into_iter().map(named));
+    }
+    Ok(warnings)
 }
 
 /// Changes whenever the report of a study would: reading this is much faster than reading the rows.

@@ -1,10 +1,14 @@
 //! From the queue's rows to the report's rows.
 
+use super::discretisation::MeasuredErrors;
 use super::error::SweepError;
 use crate::queue::{JobState, Queue, Rows, StudyRow};
-use crate::report::{JobNumerics, JobRow, RowState, export};
+use crate::report::{Discretisation, JobNumerics, JobRow, RowState, export};
+use crate::spec::JobSpec;
+use crate::study::{Parameter, input_parameters, inputs};
 use rayon::iter::{IntoParallelRefIterator, ParallelIterator};
 use serde::{Deserialize, Serialize};
+use serde_json::Value;
 use std::ops::ControlFlow;
 
 /// The parameters of a job that are stored with its row, so that tables need not read the payload.
@@ -15,24 +19,49 @@ pub(super) struct RowParameters {
     /// Local friction coefficient μ of the job.
     pub mu: f64,
     /// The grid parameters, in the study's order.
-    pub grid: Vec<(String, serde_json::Value)>,
+    pub grid: Vec<(String, Value)>,
     /// What accuracy and cost depend on; absent in databases of versions that did not store it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub numerics: Option<JobNumerics>,
 }
 
-/// Reads all rows of a study, in the order of the grid.
+/// Reads all rows of a study, in the order of the grid, with what is known about the error of their discretisation.
 ///
 /// # Errors
 /// If the database has no such study or cannot be read.
 pub async fn read_rows(queue: &mut Queue, study: &str) -> Result<Vec<JobRow>, SweepError> {
+    let errors = MeasuredErrors::new();
+    let mut read = Ok(());
     let mut rows = Vec::new();
-    for_each_row(queue, study, Rows::All, |_, row| {
+    let convert = |row: &StudyRow| {
+        // A specification of another version that this one cannot read has no known error.
+        let spec = job_spec(&row.key, row.payload.as_deref().unwrap_or_default()).ok();
+        let discretisation = spec.map_or(Discretisation::NotMeasured, |spec| errors.of(&spec));
+        Ok(JobRow { discretisation, ..report_row(study, row)? })
+    };
+    let visit_page = page_visitor(&mut read, convert, |row| {
         rows.push(row);
         Ok(())
-    })
-    .await?;
-    Ok(rows)
+    });
+    queue.each_page_with_payloads(study, Rows::All, visit_page).await?;
+    read.map(|()| rows)
+}
+
+/// Calls `visit` with the specification of the job of each row of a study, as it was stored when the job was submitted.
+/// Specifications of other versions that this one cannot read are left out.
+pub(super) async fn for_each_spec(
+    queue: &mut Queue,
+    study: &str,
+    mut visit: impl FnMut(&JobSpec),
+) -> Result<(), SweepError> {
+    let mut read = Ok(());
+    let convert = |row: &StudyRow| Ok(job_spec(&row.key, row.payload.as_deref().unwrap_or_default()).ok());
+    let visit_page = page_visitor(&mut read, convert, |spec| {
+        spec.iter().for_each(&mut visit);
+        Ok(())
+    });
+    queue.each_page_with_payloads(study, Rows::All, visit_page).await?;
+    read
 }
 
 /// Calls `visit` with the ordinal and the content of each of `which` rows of a study, up to the first error. The records
@@ -48,26 +77,82 @@ pub async fn for_each_row(
     mut visit: impl FnMut(u64, JobRow) -> Result<(), SweepError>,
 ) -> Result<(), SweepError> {
     let mut visited = Ok(());
-    let read = queue.each_page(study, which, |page| {
-        let rows: Vec<_> = page.par_iter().map(|row| (row.ordinal, report_row(study, row))).collect();
-        visited = rows.into_iter().try_for_each(|(ordinal, row)| visit(ordinal, row?));
-        if visited.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
-    });
-    read.await?;
+    let convert = |row: &StudyRow| Ok((row.ordinal, report_row(study, row)?));
+    let visit_page = page_visitor(&mut visited, convert, |(ordinal, row)| visit(ordinal, row));
+    queue.each_page(study, which, visit_page).await?;
     visited
 }
 
-/// The names of a study's parameters other than ω and μ, in the order in which they first appear.
-pub(super) async fn further_names(queue: &mut Queue, study: &str) -> Result<Vec<String>, SweepError> {
-    let mut names = Vec::new();
+/// As [`for_each_row`] for all rows, with the values of all inputs of each job, in the order of
+/// [`input_parameters`](crate::study::input_parameters). Inputs without an effect are null.
+///
+/// # Errors
+/// As [`for_each_row`].
+pub async fn for_each_row_with_inputs(
+    queue: &mut Queue,
+    study: &str,
+    mut visit: impl FnMut(JobRow, Vec<Value>) -> Result<(), SweepError>,
+) -> Result<(), SweepError> {
+    let mut visited = Ok(());
+    let convert = |row: &StudyRow| {
+        let spec = job_spec(&row.key, row.payload.as_deref().unwrap_or_default())?;
+        Ok((report_row(study, row)?, input_values(&spec)))
+    };
+    let visit_page = page_visitor(&mut visited, convert, |(row, inputs)| visit(row, inputs));
+    queue.each_page_with_payloads(study, Rows::All, visit_page).await?;
+    visited
+}
+
+/// Passes the rows of a page to `visit` as `convert` makes them, up to the first error, which it puts into `visited`.
+fn page_visitor<T: Send>(
+    visited: &mut Result<(), SweepError>,
+    convert: impl Fn(&StudyRow) -> Result<T, SweepError> + Sync,
+    mut visit: impl FnMut(T) -> Result<(), SweepError>,
+) -> impl FnMut(Vec<StudyRow>) -> ControlFlow<()> {
+    move |page| {
+        let rows: Vec<_> = page.par_iter().map(&convert).collect();
+        *visited = rows.into_iter().try_for_each(|row| row.and_then(&mut visit));
+        if visited.is_ok() { ControlFlow::Continue(()) } else { ControlFlow::Break(()) }
+    }
+}
+
+/// The job that a payload of the database describes.
+pub(super) fn job_spec(key: &str, payload: &str) -> Result<JobSpec, SweepError> {
+    let unreadable =
+        |reason| SweepError::Unreadable { subject: format!("job {key}"), what: "payload", reason };
+    serde_json::from_str(payload).map_err(unreadable)
+}
+
+fn input_values(spec: &JobSpec) -> Vec<Value> {
+    let inputs = inputs(spec);
+    let value = |parameter: &Parameter| {
+        let own = inputs.iter().find(|input| input.parameter == parameter);
+        own.map_or(Value::Null, |input| input.value.clone())
+    };
+    input_parameters().map(value).collect()
+}
+
+/// The grid parameters of a row with their values.
+pub(super) fn grid_parameters(key: &str, parameters: &str) -> Result<Vec<(String, Value)>, SweepError> {
+    let unreadable =
+        |reason| SweepError::Unreadable { subject: format!("job {key}"), what: "parameters", reason };
+    serde_json::from_str::<RowParameters>(parameters).map(|row| row.grid).map_err(unreadable)
+}
+
+/// Adds to `names` a study's parameters other than ω and μ, in the order in which they first appear, each once.
+pub(super) async fn add_further_names(
+    queue: &mut Queue,
+    study: &str,
+    names: &mut Vec<String>,
+) -> Result<(), SweepError> {
     // Parameters that cannot be read are an error when their row is converted.
     let read = queue.each_parameters(study, |parameters| {
         if let Ok(RowParameters { grid, .. }) = serde_json::from_str(parameters) {
-            export::add_further_names(&mut names, &grid);
+            export::add_further_names(names, &grid);
         }
     });
     read.await?;
-    Ok(names)
+    Ok(())
 }
 
 fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepError> {
@@ -78,16 +163,8 @@ fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepError> {
     };
     let parameters: RowParameters =
         serde_json::from_str(&row.parameters).map_err(|reason| unreadable("parameters", reason))?;
-    let state = match (row.state, &row.record) {
-        (JobState::Pending, _) => RowState::Pending,
-        (JobState::Running, _) => RowState::Running,
-        (JobState::Done, Some(record)) => {
-            RowState::Done(serde_json::from_str(record).map_err(|reason| unreadable("record", reason))?)
-        }
-        (JobState::Done, None) => RowState::Failed { error: "the record is missing".to_owned() },
-        (JobState::Cancelled, _) => RowState::Cancelled,
-        (JobState::Failed, _) => RowState::Failed { error: row.error.clone().unwrap_or_default() },
-    };
+    let state = row_state(row.state, row.record.as_deref(), row.error.as_deref())
+        .map_err(|reason| unreadable("record", reason))?;
     Ok(JobRow {
         study: study.to_owned(),
         job: row.key.clone(),
@@ -97,5 +174,22 @@ fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepError> {
         state,
         wall_s: row.wall_s,
         numerics: parameters.numerics,
+        discretisation: Discretisation::default(),
+    })
+}
+
+/// The state of a job with its record or its error.
+pub(super) fn row_state(
+    state: JobState,
+    record: Option<&str>,
+    error: Option<&str>,
+) -> Result<RowState, serde_json::Error> {
+    Ok(match (state, record) {
+        (JobState::Pending, _) => RowState::Pending,
+        (JobState::Running, _) => RowState::Running,
+        (JobState::Done, Some(record)) => RowState::Done(serde_json::from_str(record)?),
+        (JobState::Done, None) => RowState::Failed { error: "the record is missing".to_owned() },
+        (JobState::Cancelled, _) => RowState::Cancelled,
+        (JobState::Failed, _) => RowState::Failed { error: error.unwrap_or_default().to_owned() },
     })
 }

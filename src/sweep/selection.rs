@@ -1,15 +1,21 @@
 //! One job of a study or of a database.
 
+use super::database::{open_to_read, study_file};
+use super::discretisation::discretisation_of;
 use super::error::SweepError;
-use crate::queue::{JobDetails, Queue, StudyDocument};
+use super::rows::{grid_parameters, job_spec, row_state};
+use crate::queue::{JobDetails, Location, Queue, StudyDocument};
+use crate::report::JobRow;
 use crate::solver;
 use crate::spec::JobSpec;
-use crate::study::{Parameter, Preset, Study};
+use crate::study::{Job, Parameter, Preset, SingleJob, Study, job_key};
 use serde_json::Value;
 
 /// A job of a study, with the parameters that tell it from the others.
 #[derive(Debug, Clone)]
 pub struct SelectedJob {
+    /// Its key.
+    pub key: String,
     /// The job.
     pub spec: JobSpec,
     /// The parameters of the grid and those that were set, each once, with their values in this job.
@@ -18,27 +24,65 @@ pub struct SelectedJob {
     pub from_scene: Vec<&'static str>,
 }
 
-/// The job of a study whose key begins with `prefix`.
+/// How to name a job of a study.
+const ADVICE: &str = "`tribosweep export` lists keys, or name the job by its parameters: omega_rpm=7 mu=0.4";
+
+/// The job of a study whose key begins with `prefix`. `study` is what [`load_study`](super::load_study) has read for `given`,
+/// a file or a name. A job of a study in the database is taken as it was submitted: another version may have expanded the same
+/// document into other jobs.
 ///
 /// # Errors
-/// [`SweepError::NoSuchJob`] and [`SweepError::AmbiguousJob`].
-pub fn select_by_key(study: &Study, prefix: &str) -> Result<SelectedJob, SweepError> {
+/// [`SweepError::NoSuchJob`] and [`SweepError::AmbiguousJob`]; if the database cannot be read.
+pub async fn select_by_key(
+    study: &Study,
+    given: &str,
+    database: &Location,
+    prefix: &str,
+) -> Result<SelectedJob, SweepError> {
+    if study_file(given).is_some() {
+        return expanded(study, prefix);
+    }
+    let mut queue = open_to_read(database.clone()).await?;
+    let job = only(queue.jobs_in(given, prefix, 2).await?, Some(given), prefix)?;
+    let parameters = queue.parameters(given, &job.key).await?;
+    queue.close().await?;
+    let parameters = parameters.map_or_else(|| Ok(Vec::new()), |text| grid_parameters(&job.key, &text))?;
+    let spec = job_spec(&job.key, &job.payload)?;
+    Ok(SelectedJob { key: job.key, spec, parameters, from_scene: Vec::new() })
+}
+
+/// The job of a study in a file whose key begins with `prefix`.
+fn expanded(study: &Study, prefix: &str) -> Result<SelectedJob, SweepError> {
     let jobs = study.expand(solver::VERSION)?;
     let mut found = jobs.into_iter().filter(|job| job.key.starts_with(prefix));
     match (found.next(), found.next()) {
-        (Some(job), None) => {
-            Ok(SelectedJob { spec: job.spec, parameters: job.parameters, from_scene: Vec::new() })
-        }
-        (None, _) => Err(SweepError::NoSuchJob {
-            study: Some(study.name().to_owned()),
-            prefix: prefix.to_owned(),
-            advice: "`tribosweep export` lists keys, or name the job by its parameters: omega_rpm=7 mu=0.4",
-        }),
-        (Some(one), Some(other)) => Err(SweepError::AmbiguousJob {
-            study: Some(study.name().to_owned()),
-            prefix: prefix.to_owned(),
-            keys: [one.key, other.key],
-        }),
+        (Some(job), None) => Ok(SelectedJob::of_study(job)),
+        (None, _) => Err(no_such_job(Some(study.name()), prefix)),
+        (Some(one), Some(other)) => Err(ambiguous_job(Some(study.name()), prefix, [one.key, other.key])),
+    }
+}
+
+fn no_such_job(study: Option<&str>, prefix: &str) -> SweepError {
+    SweepError::NoSuchJob {
+        study: study.map(str::to_owned),
+        prefix: prefix.to_owned(),
+        advice: if study.is_some() { ADVICE } else { "`tribosweep export` lists keys" },
+    }
+}
+
+fn ambiguous_job(study: Option<&str>, prefix: &str, keys: [String; 2]) -> SweepError {
+    SweepError::AmbiguousJob { study: study.map(str::to_owned), prefix: prefix.to_owned(), keys }
+}
+
+/// The job that is meant by `prefix`, of at least the first two `found` jobs of a study or of the database.
+fn only(found: Vec<JobDetails>, study: Option<&str>, prefix: &str) -> Result<JobDetails, SweepError> {
+    let mut found = found.into_iter();
+    match (found.next(), found.next()) {
+        (Some(job), None) => Ok(job),
+        // A whole key may be the beginning of another one. Keys are sorted, so it comes first.
+        (Some(job), Some(_)) if job.key == prefix => Ok(job),
+        (None, _) => Err(no_such_job(study, prefix)),
+        (Some(one), Some(other)) => Err(ambiguous_job(study, prefix, [one.key, other.key])),
     }
 }
 
@@ -53,14 +97,48 @@ pub fn select_by_parameters(
     preset: Option<Preset>,
     settings: &[(String, String)],
 ) -> Result<SelectedJob, SweepError> {
-    let (spec, from_scene) = study.single_on_base(source_name, preset, settings)?;
-    let in_grid = study.axes().map(|(parameter, _)| parameter.name);
-    let names = in_grid.chain(settings.iter().map(|(name, _)| name.as_str()));
-    Ok(SelectedJob { parameters: values(&spec, names)?, spec, from_scene })
+    let SingleJob { spec, parameters, left_open } = study.single_on_base(source_name, preset, settings)?;
+    let key = job_key(&spec, solver::VERSION);
+    Ok(SelectedJob { key, parameters, spec, from_scene: left_open })
+}
+
+/// The jobs of a study that have these `settings` (name, value) of parameters, in the order of the study. Messages call the
+/// settings `source_name`.
+///
+/// # Errors
+/// As [`select_by_parameters`].
+pub fn select_all(
+    study: &Study,
+    source_name: &str,
+    settings: &[(String, String)],
+) -> Result<Vec<SelectedJob>, SweepError> {
+    // It has the values of the settings, read and checked as for a single job.
+    let wanted = study.single_on_base(source_name, None, settings)?.parameters;
+    let names = || settings.iter().map(|(name, _)| name.as_str());
+    let mut selected = Vec::new();
+    for job in study.expand(solver::VERSION)? {
+        let own = values(&job.spec, names())?.into_iter().chain(job.parameters.clone());
+        // A job has no preset and no damping: they are among the parameters of the grid alone.
+        let own: Vec<(String, Value)> = own.filter(|(_, value)| !value.is_null()).collect();
+        let fits = |name: &str| {
+            let in_list = |list: &[(String, Value)]| list.iter().find(|(known, _)| known == name).cloned();
+            in_list(&own) == in_list(&wanted)
+        };
+        if names().all(fits) {
+            selected.push(SelectedJob::of_study(job));
+        }
+    }
+    Ok(selected)
+}
+
+impl SelectedJob {
+    fn of_study(job: Job) -> Self {
+        Self { key: job.key, spec: job.spec, parameters: job.parameters, from_scene: Vec::new() }
+    }
 }
 
 /// The values of parameters in a job, each once.
-fn values<'a>(
+pub(super) fn values<'a>(
     spec: &JobSpec,
     names: impl Iterator<Item = &'a str>,
 ) -> Result<Vec<(String, Value)>, SweepError> {
@@ -83,7 +161,49 @@ pub struct StoredJob {
     /// Its state and how its result was obtained.
     pub details: JobDetails,
     /// The studies that have the job.
-    pub studies: Vec<StudyDocument>,
+    pub studies: Vec<StudyOfJob>,
+}
+
+/// A study that has a job.
+#[derive(Debug, Clone)]
+pub struct StudyOfJob {
+    /// The study as it was submitted.
+    pub study: StudyDocument,
+    /// The grid parameters of the job in this study.
+    pub parameters: Vec<(String, Value)>,
+}
+
+impl StoredJob {
+    /// The job as it was submitted.
+    ///
+    /// # Errors
+    /// [`SweepError::Unreadable`].
+    pub fn spec(&self) -> Result<JobSpec, SweepError> {
+        job_spec(&self.details.key, &self.details.payload)
+    }
+
+    /// The job as a row of a report, without parameters of a study.
+    ///
+    /// # Errors
+    /// [`SweepError::Unreadable`].
+    pub fn row(&self) -> Result<JobRow, SweepError> {
+        let JobDetails { key, state, record, error, wall_s, .. } = &self.details;
+        let spec = self.spec()?;
+        let state = row_state(*state, record.as_deref(), error.as_deref()).map_err(|reason| {
+            SweepError::Unreadable { subject: format!("job {key}"), what: "record", reason }
+        })?;
+        Ok(JobRow {
+            study: self.studies.first().map(|own| own.study.name.clone()).unwrap_or_default(),
+            job: key.clone(),
+            parameters: Vec::new(),
+            omega_rpm: spec.scene.disk.omega_rpm,
+            mu: spec.scene.contact.mu,
+            state,
+            wall_s: *wall_s,
+            numerics: None,
+            discretisation: discretisation_of(&spec),
+        })
+    }
 }
 
 /// The job in a database whose key is `prefix` or begins with it.
@@ -92,30 +212,16 @@ pub struct StoredJob {
 /// [`SweepError::NoSuchJob`] and [`SweepError::AmbiguousJob`]; if the database cannot be read.
 pub async fn find_job(queue: &mut Queue, prefix: &str) -> Result<StoredJob, SweepError> {
     // Two jobs are enough to know that there are several.
-    let mut found = queue.jobs(prefix, 2).await?.into_iter();
-    let details = match (found.next(), found.next()) {
-        (Some(job), None) => job,
-        // A whole key may be the beginning of another one. Keys are sorted, so it comes first.
-        (Some(job), Some(_)) if job.key == prefix => job,
-        (None, _) => {
-            return Err(SweepError::NoSuchJob {
-                study: None,
-                prefix: prefix.to_owned(),
-                advice: "`tribosweep export` lists keys",
-            });
-        }
-        (Some(one), Some(other)) => {
-            return Err(SweepError::AmbiguousJob {
-                study: None,
-                prefix: prefix.to_owned(),
-                keys: [one.key, other.key],
-            });
-        }
-    };
+    let details = only(queue.jobs(prefix, 2).await?, None, prefix)?;
     let mut studies = Vec::new();
     for name in &details.studies {
         // A study may have been removed in between.
-        studies.extend(queue.study(name).await?);
+        let (Some(study), Some(parameters)) =
+            (queue.study(name).await?, queue.parameters(name, &details.key).await?)
+        else {
+            continue;
+        };
+        studies.push(StudyOfJob { study, parameters: grid_parameters(&details.key, &parameters)? });
     }
     Ok(StoredJob { details, studies })
 }

@@ -2,10 +2,11 @@
 
 use super::checkpoint::SealedCheckpoint;
 use super::interrupt::Interrupt;
+use crate::analysis::Ending;
 use crate::queue::{ClaimedJob, Finished, FinishedOutcome};
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvError};
+use std::sync::{Arc, OnceLock};
 use std::time::Duration;
 use tokio::sync::mpsc::UnboundedSender;
 
@@ -13,6 +14,8 @@ use tokio::sync::mpsc::UnboundedSender;
 #[derive(Debug, Default)]
 pub struct JobProgress {
     simulated_ns: AtomicU64,
+    /// When the job is likely to end, known from its beginning.
+    ending: OnceLock<Ending>,
     /// Whether a checkpoint is on its way to the database. There is one at a time: a database that is locked for an
     /// hour must not fill the memory.
     checkpoint_in_flight: AtomicBool,
@@ -27,6 +30,21 @@ impl JobProgress {
     /// Sets the simulated time [s].
     pub fn set_simulated_s(&self, simulated_s: f64) {
         self.simulated_ns.store((simulated_s * 1e9) as u64, Ordering::Relaxed);
+    }
+
+    /// Notes when the job is likely to end.
+    pub fn set_ending(&self, ending: Ending) {
+        let _ = self.ending.set(ending);
+    }
+
+    /// The simulated time [s] at which it ends at the latest; `None` before it has begun.
+    pub fn limit_s(&self) -> Option<f64> {
+        self.ending.get().map(|ending| ending.limit_s)
+    }
+
+    /// The share of its work that is likely to be left, from 0 to 1.
+    pub fn share_left(&self) -> f64 {
+        self.ending.get().map_or(1.0, |ending| ending.share_left(self.simulated_s()))
     }
 
     /// Marks a checkpoint as on its way; false if another one still is.

@@ -44,6 +44,7 @@ pub struct Dispatcher<'a> {
     heartbeat: Heartbeat,
     idle: IdleTimer,
     idle_exit: Option<Duration>,
+    expected_s_per_cost: [f64; 2],
     /// Whether the database knows that this worker was asked to stop.
     is_stopping: bool,
     taken_back: TakenBack,
@@ -77,6 +78,7 @@ impl<'a> Dispatcher<'a> {
             heartbeat,
             idle: IdleTimer::default(),
             idle_exit: options.idle_exit,
+            expected_s_per_cost: options.expected_s_per_cost,
             is_stopping: false,
             taken_back,
             tally,
@@ -343,11 +345,23 @@ impl<'a> Dispatcher<'a> {
     /// The state of the jobs now.
     pub fn snapshot(&self) -> Snapshot {
         let Tally { counts, remaining_cost, .. } = self.tally;
-        let eta = Eta::estimate(&self.timings, remaining_cost, counts.pending + counts.running, self.threads);
+        let begun: f64 =
+            self.running.values().map(|(cost, progress)| cost * (1.0 - progress.share_left())).sum();
+        let eta = Eta::estimate(
+            &self.timings,
+            self.expected_s_per_cost,
+            (remaining_cost - begun).max(0.0),
+            counts.pending + counts.running,
+            self.threads,
+        );
         let running = self
             .running
             .iter()
-            .map(|(key, (_, progress))| RunningJob { key: key.clone(), simulated_s: progress.simulated_s() })
+            .map(|(key, (_, progress))| RunningJob {
+                key: key.clone(),
+                simulated_s: progress.simulated_s(),
+                limit_s: progress.limit_s(),
+            })
             .collect();
         Snapshot { counts, running, eta }
     }

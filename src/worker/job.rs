@@ -1,7 +1,7 @@
 //! A job on its thread: its payload is parsed once, and its end becomes an outcome for the queue.
 
 use super::channel::{Assignment, WorkerChannel};
-use crate::analysis::{JobError, JobRecord};
+use crate::analysis::{Ending, JobError, JobRecord};
 use crate::queue::FinishedOutcome;
 use crate::spec::JobSpec;
 use std::any::Any;
@@ -19,7 +19,10 @@ impl ParsedJob {
     /// Parses the payload. If it is no job, reports that the job failed.
     pub fn parse(assignment: Assignment, channel: &WorkerChannel) -> Option<Self> {
         match serde_json::from_str(&assignment.job.payload) {
-            Ok(spec) => Some(Self { assignment, spec }),
+            Ok(spec) => {
+                assignment.progress.set_ending(Ending::of(&spec));
+                Some(Self { assignment, spec })
+            }
             Err(error) => {
                 let failure = FinishedOutcome::Failed { error: format!("unreadable job: {error}") };
                 channel.finish(&assignment.job, failure, 0.0);

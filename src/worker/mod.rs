@@ -41,5 +41,5 @@ pub use interrupt::Interrupt;
 pub use open::open;
 pub use options::WorkOptions;
 pub use progress::{Progress, RunningJob, SilentProgress, Snapshot};
-pub use provenance::program;
+pub use provenance::{machine, program};
 pub use work::{WorkError, WorkSummary, work};

@@ -1,9 +1,10 @@
 //! Settings of a worker.
 
+use super::eta::TYPICAL_S_PER_COST;
 use std::time::Duration;
 
 /// Settings of a worker.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub struct WorkOptions {
     /// Number of threads.
     pub threads: usize,
@@ -13,6 +14,9 @@ pub struct WorkOptions {
     /// How long the worker stays when it has no job, because new jobs may come. Then it exits even if other workers are
     /// still running jobs, unless one of them has missed a heartbeat. `None`: it exits when all jobs have ended.
     pub idle_exit: Option<Duration>,
+    /// The range of seconds of a thread per unit of a job's cost that is expected. The remaining time is estimated from it
+    /// until jobs have finished.
+    pub expected_s_per_cost: [f64; 2],
 }
 
 impl WorkOptions {
@@ -21,6 +25,11 @@ impl WorkOptions {
 
     /// Settings with that number of threads and defaults otherwise.
     pub fn new(threads: usize) -> Self {
-        Self { threads, checkpoint_interval: Some(Self::CHECKPOINT_INTERVAL), idle_exit: None }
+        Self {
+            threads,
+            checkpoint_interval: Some(Self::CHECKPOINT_INTERVAL),
+            idle_exit: None,
+            expected_s_per_cost: TYPICAL_S_PER_COST,
+        }
     }
 }

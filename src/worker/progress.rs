@@ -10,6 +10,8 @@ pub struct RunningJob {
     pub key: String,
     /// Simulated time so far \[s\].
     pub simulated_s: f64,
+    /// Simulated time at which it ends at the latest \[s\]; `None` before it has begun.
+    pub limit_s: Option<f64>,
 }
 
 /// The state of a worker's jobs at one moment.
@@ -19,8 +21,8 @@ pub struct Snapshot {
     pub counts: Counts,
     /// The jobs that this worker runs.
     pub running: Vec<RunningJob>,
-    /// Remaining time, once it can be estimated.
-    pub eta: Option<Eta>,
+    /// Remaining time.
+    pub eta: Eta,
 }
 
 /// Receives the progress of a worker, on the thread that runs [`work`](super::work).

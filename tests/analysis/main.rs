@@ -11,5 +11,6 @@ mod on_elastic_disk;
 #[path = "../support/random.rs"]
 mod random;
 mod signals;
+mod similarity;
 mod statistics;
 mod steady;

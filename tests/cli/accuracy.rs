@@ -53,7 +53,7 @@ fn nothing_to_compare_is_refused() {
         assert_eq!(stdout(&end), "");
         stderr(&end)
     };
-    assert!(refused("pareto mine").contains("mine: 0 of 2 jobs are done"), "{}", refused("pareto mine"));
+    assert!(refused("pareto mine").contains("jobs done: 0 of 2"), "{}", refused("pareto mine"));
     folder.ok("work");
     assert!(refused("pareto mine").contains("same physical case"), "{}", refused("pareto mine"));
     assert!(refused("pareto other").contains("other"), "{}", refused("pareto other"));

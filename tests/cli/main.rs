@@ -2,8 +2,12 @@
 
 mod accuracy;
 mod commands;
+mod comparison;
+mod data;
 mod determinism;
 mod exit_codes;
+mod forecast;
+mod guards;
 mod inspect;
 mod interruption;
 #[path = "../support/mount.rs"]
@@ -25,6 +29,7 @@ mod streams;
 mod support;
 mod surroundings;
 mod sweep;
+mod texts;
 #[path = "../support/tools.rs"]
 mod tools;
 mod upkeep;

@@ -20,7 +20,7 @@ fn shards_are_the_whole_study() {
         }
     }
     let merged = folder.ok("merge 1.db 2.db 3.db 4.db --db merged.db");
-    assert!(merged.lines().last().unwrap().contains("1 are still to be run"), "{merged}");
+    assert!(merged.lines().last().unwrap().contains("still to be run: 1"), "{merged}");
     let partly = folder.ok("export study --db merged.db");
     assert_eq!(rows(&partly).iter().filter(|row| row["status"] == "pending").count(), 1);
     folder.ok("work --db merged.db");

@@ -55,7 +55,7 @@ fn a_larger_study_simulates_only_new_jobs() {
     let before = wall_times(&folder.ok("export mine"));
     folder.add("mine", &small(&json!({ "mu": [0.2], "omega_rpm": [2, 5, 7] })));
     let run = folder.command("run mine.json").assert().code(0);
-    assert!(stderr(&run).starts_with("mine: 3 jobs, 1 new, 2 already done\n"), "{}", stderr(&run));
+    assert!(stderr(&run).contains("\nmine: 3 jobs, 1 new, 2 already done\n"), "{}", stderr(&run));
     let after = wall_times(&folder.ok("export mine"));
     assert_eq!(after.len(), 3);
     assert!(before.iter().all(|(job, wall_s)| after[job] == *wall_s), "{before:?} {after:?}");

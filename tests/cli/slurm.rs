@@ -124,6 +124,23 @@ fn options_that_are_not_given_are_left_to_slurm() {
     }
 }
 
+/// Protects: `--replace` reaches every submission of the scripts, and none has it without the option.
+#[test]
+fn a_replacement_is_passed_on() {
+    for (option, expected) in [("", ""), ("--replace", "--replace")] {
+        let folder = Folder::with("mine", &six_jobs());
+        folder.ok(&format!("slurm mine.json --workers 1 {option}"));
+        for script in SCRIPTS {
+            let file = folder.path("mine.slurm").join(script);
+            assert_eq!(settings(&file)["replace"], expected, "{script}");
+            let text = std::fs::read_to_string(file).unwrap();
+            let (submissions, passing) =
+                (text.matches("\" submit --db").count(), text.matches("${replace:+\"$replace\"} --").count());
+            assert_eq!((submissions, passing), (1, 1), "{script}: {text}");
+        }
+    }
+}
+
 /// Protects: paths with characters that a shell interprets are kept, and relative paths are made absolute.
 #[test]
 fn paths_are_quoted() {

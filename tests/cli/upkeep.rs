@@ -16,7 +16,7 @@ fn cancelled_jobs_are_not_run_until_requested() {
     assert!(folder.ok("status mine").contains("0 pending, 2 cancelled"));
     assert!(rows(&folder.ok("export mine")).iter().all(|row| row["status"] == "cancelled"));
     let retried = folder.command("retry mine.json").assert().code(0);
-    assert!(stderr(&retried).contains("0 failed and 2 cancelled jobs are pending again"));
+    assert!(stderr(&retried).contains("0 failed jobs and 2 cancelled jobs pending again"));
     folder.ok("cancel mine");
     folder.ok("run mine.json");
     assert_eq!(folder.counts("mine")["done"], 2);
@@ -35,7 +35,7 @@ fn failed_jobs_are_retried() {
     let export = folder.ok("export bad");
     assert_eq!(done(&export), before);
     let shown: Value =
-        serde_json::from_str(&folder.ok(&format!("show {}", rows(&export)[1]["job"]))).unwrap();
+        serde_json::from_str(&folder.ok(&format!("show {} --json", rows(&export)[1]["job"]))).unwrap();
     assert_eq!((shown["state"].as_str(), shown["attempt"].as_u64()), (Some("failed"), Some(2)));
 }
 
@@ -49,7 +49,7 @@ fn removed_studies_leave_no_garbage() {
     folder.ok("rm mine");
     folder.command("status mine").assert().code(2);
     let collected = folder.ok("gc");
-    assert!(collected.starts_with("dropped 1 jobs, 1 results and "), "{collected}");
+    assert!(collected.starts_with("dropped 1 job, 1 result and "), "{collected}");
     assert!(folder.ok("gc").starts_with("dropped 0 jobs, 0 results and 0 "));
     assert_eq!(folder.counts("other")["done"], 1, "the job is shared with the removed study");
     assert_eq!(folder.command("rm mine").assert().get_output().status.code(), Some(2));
@@ -69,7 +69,8 @@ fn an_urgent_study_goes_first() {
     folder.ok("work --threads 1");
     let ended = |study: &str| {
         let jobs = rows(&folder.ok(&format!("export {study}")));
-        let shown = |job: &str| serde_json::from_str::<Value>(&folder.ok(&format!("show {job}"))).unwrap();
+        let shown =
+            |job: &str| serde_json::from_str::<Value>(&folder.ok(&format!("show {job} --json"))).unwrap();
         jobs.iter().map(|row| shown(&row["job"])["finished_ms"].as_i64().unwrap()).collect::<Vec<_>>()
     };
     assert!(ended("urgent")[0] <= *ended("slow").iter().min().unwrap());
@@ -81,7 +82,7 @@ fn results_have_a_provenance() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4] })));
     folder.ok("run mine.json --threads 2");
     let job = rows(&folder.ok("export mine"))[0]["job"].clone();
-    let shown: Value = serde_json::from_str(&folder.ok(&format!("show {}", &job[..10]))).unwrap();
+    let shown: Value = serde_json::from_str(&folder.ok(&format!("show {} --json", &job[..10]))).unwrap();
     assert_eq!(shown["job"].as_str(), Some(job.as_str()));
     let study = &shown["studies"][0];
     let submitted: Value = serde_json::from_str(&folder.read("mine.json")).unwrap();

@@ -5,7 +5,8 @@ use std::collections::BTreeSet;
 use std::ops::ControlFlow;
 use tribosweep::analysis::{JobError, Outcome, Regime, Unobserved, solve};
 use tribosweep::inspect::{
-    Change, Inspection, InspectionError, NodeSelector, Options, PageHeader, Summary, write,
+    Change, Inspection, InspectionError, JobSpectrum, NodeSelector, Options, PageHeader, Summary,
+    has_spectrum, write,
 };
 use tribosweep::solver::interface::ContactState;
 use tribosweep::spec::DiskKind;
@@ -259,4 +260,104 @@ fn an_elastic_disk_moves_under_sticking_nodes() {
     let ratio = spec.scene.pin.young_modulus_pa / spec.scene.disk.ring.young_modulus_pa;
     let bound_m_s = 10.0 * ratio * node.relative_speed_max_m_s;
     assert!(node.stick_speed_error_m_s > 0.0 && node.stick_speed_error_m_s < bound_m_s, "{node:?}");
+}
+
+/// Protects: the friction energies of the loops of all nodes add up to the solver's own, which the record has, to rounding.
+/// So the area under friction over slip is the dissipated energy. Over a closed cycle on a rigid disk, the work of the disk is
+/// dissipated, goes into the pin, or is lost where nodes begin to stick.
+#[test]
+fn loops_have_the_energy_of_the_balance() {
+    let inspection = inspect(&coarse(), &Options::default());
+    let loops = Summary::of(&inspection).loops;
+    let audited = loops.audited.unwrap();
+    let [from_s, to_s] = audited.from_to_s;
+    let period_s = inspection.survey.windows.period_s;
+    // Audits are 16 steps apart.
+    assert!(to_s - from_s > period_s - 33.0 * inspection.survey.record.time_step_s, "nearly a cycle");
+    // Both are sums over nodes and steps. The balance is a difference of sums since the start of the run.
+    let terms = inspection.survey.record.steps as f64 * inspection.capture.model.slaves().len() as f64;
+    let rounding_j = terms * f64::EPSILON * inspection.survey.record.energy.friction_j;
+    assert!((audited.loops_j - audited.balance_j).abs() <= rounding_j, "{audited:?} {rounding_j:e}");
+    assert!(audited.balance_j > 1e6 * rounding_j, "{audited:?} {rounding_j:e}");
+
+    let face = loops.face;
+    let lost_j = face.drive_j - face.friction_j - face.into_pin_j;
+    let [first, .., last] = inspection.capture.audits.as_slice() else { panic!("audits") };
+    let balance_lost_j = last.energies.contact_loss_j - first.energies.contact_loss_j;
+    // The loss of the balance has the impacts too, and lacks up to 32 steps of the cycle. A closed loop has an error of the
+    // one step from its end to its start.
+    let step_j = face.drive_j * 33.0 * inspection.survey.record.time_step_s / period_s;
+    assert!(lost_j > -step_j && lost_j < balance_lost_j + step_j, "{lost_j:e} {balance_lost_j:e} {step_j:e}");
+    assert!(face.friction_j > 0.3 * face.drive_j && face.into_pin_j > 0.0, "{face:?}");
+    // The work of the disk over a cycle, from the macroscopic coefficient. Cycles differ by the tolerance of the job.
+    let record = &inspection.survey.record;
+    let spec = coarse();
+    let track_m_s = inspection.observed[0].target_velocity_m_s;
+    let work_j = record.mu_star * spec.scene.load.force_n * track_m_s * period_s;
+    // Under the pin the velocity of the disk varies with the radius, by half of the pin's width over the track radius.
+    let varies = 0.5 * spec.scene.pin.size_m[0] / spec.scene.disk.track_radius_m;
+    let tolerated = 2.0 * spec.detection.tolerance + varies;
+    assert!((face.drive_j / work_j - 1.0).abs() < tolerated, "{} {work_j}", face.drive_j);
+}
+
+/// Protects: nodes, too, share out the work of the disk; the loop of a node begins at zero in every cycle, does not slip while
+/// it sticks, and slips by the way of the disk in a cycle.
+#[test]
+fn loops_of_nodes_are_their_histories() {
+    let inspection = inspect(&coarse(), &Options::default());
+    let folder = tempfile::tempdir().unwrap();
+    write(&inspection, folder.path(), &PageHeader::default()).unwrap();
+    let table = std::fs::read_to_string(folder.path().join("loops.csv")).unwrap();
+    let lines: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+    assert_eq!(
+        lines[0],
+        ["place", "time_s", "slip_y_m", "displacement_y_m", "friction_y_n", "clamp_tangential_n", "state"]
+    );
+    let of = |place: &str| -> Vec<&Vec<&str>> { lines.iter().filter(|line| line[0] == place).collect() };
+    let number = |cell: &str| cell.parse::<f64>().unwrap();
+    let front = of("front_centre");
+    assert_eq!(front.len(), inspection.capture.nodes[0].len());
+    let zeros = front.iter().filter(|line| number(line[2]) == 0.0).count();
+    assert!(zeros >= inspection.survey.windows.cycle_count, "{zeros} cycles begin at zero");
+    let way_m = inspection.observed[0].target_velocity_m_s * inspection.survey.windows.period_s;
+    // The steps of the largest displacement of a cycle are within one step of the disk and of the node.
+    let reach_m = front.iter().map(|line| number(line[2])).fold(0.0, f64::max);
+    assert!(reach_m > 0.9 * way_m, "{reach_m} {way_m}");
+    for pair in front.windows(2).filter(|pair| pair[0][6] == "stick" && number(pair[1][2]) != 0.0) {
+        // A node that sticks has the disk's velocity to the rounding of its displacement.
+        assert!((number(pair[1][2]) - number(pair[0][2])).abs() <= 1e-6 * way_m, "{pair:?}");
+    }
+    let face = of("face");
+    assert_eq!(face.len(), inspection.capture.face.len());
+    assert!(face.iter().all(|line| !line[5].is_empty() && line[6].is_empty()));
+    let energies = Summary::of(&inspection).loops.nodes;
+    for node in energies {
+        // What is lost at the beginning of stick is a part of it.
+        let sum = node.friction_j + node.into_pin_j;
+        assert!((sum / node.drive_j - 1.0).abs() < 0.1, "{node:?}");
+    }
+}
+
+/// Protects: a spectrum that is stored alone, from one run, is that of the whole inspection, and its folder is known by the
+/// job's key.
+#[test]
+fn a_spectrum_alone_is_the_same() {
+    let spec = coarse();
+    let inspection = inspect(&spec, &Options::default());
+    let alone = JobSpectrum::of_job(&spec, &mut |_| ControlFlow::Continue(())).unwrap();
+    assert_eq!(alone.record, inspection.survey.record);
+    // The averaging window has more cycles than are shown, so both spectra are over that window.
+    assert_eq!(alone.spectrum, inspection.spectrum);
+    let folder = tempfile::tempdir().unwrap();
+    let [short, full] = ["short", "full"].map(|name| folder.path().join(name));
+    alone.write(&spec, "abc", &short).unwrap();
+    write(&inspection, &full, &PageHeader { key: "abc".to_owned(), ..PageHeader::default() }).unwrap();
+    let read = |path: &std::path::Path| std::fs::read(path.join("spectrum.csv")).unwrap();
+    assert_eq!(read(&short), read(&full));
+    for path in [&short, &full] {
+        assert!(has_spectrum(path, "abc") && !has_spectrum(path, "abd"));
+    }
+    assert!(!has_spectrum(folder.path(), "abc"));
+    let stopped = JobSpectrum::of_job(&spec, &mut |_| ControlFlow::Break(()));
+    assert!(matches!(stopped, Err(JobError::Interrupted)));
 }

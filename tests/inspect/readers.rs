@@ -1,7 +1,7 @@
 //! The fields as other programs read them: VTK, on which ParaView is based, and meshio.
 
 use crate::{coarse, inspect, tools};
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::path::Path;
 use std::process::Command;
 use tribosweep::analysis::sample::NodeSample;
@@ -41,7 +41,11 @@ def read(path):
     sizes.Update()
     volumes = vtk_to_numpy(sizes.GetOutput().GetCellData().GetArray("Volume")).tolist()
     points = vtk_to_numpy(grid.GetPoints().GetData()).tolist()
-    return {"points": points, "volumes": volumes, "arrays": arrays}
+    fields = grid.GetFieldData()
+    time = fields.GetArray("TimeValue").GetValue(0)
+    codes = fields.GetArray("contact_state_codes")
+    codes = [[codes.GetComponentName(i), codes.GetComponent(0, i)] for i in range(codes.GetNumberOfComponents())]
+    return {"points": points, "volumes": volumes, "arrays": arrays, "time": time, "codes": codes}
 "#;
 
 /// Reads a file with meshio.
@@ -56,7 +60,9 @@ def read(path):
     edges = [a[:, i] - a[:, 0] for i in (1, 3, 4)]
     volumes = numpy.einsum("ij,ij->i", numpy.cross(edges[0], edges[1]), edges[2])
     arrays = {name: values.tolist() for name, values in mesh.point_data.items()}
-    return {"points": mesh.points.tolist(), "volumes": volumes.tolist(), "arrays": arrays}
+    time = float(mesh.field_data["TimeValue"][0])
+    codes = mesh.field_data["contact_state_codes"].flatten().tolist()
+    return {"points": mesh.points.tolist(), "volumes": volumes.tolist(), "arrays": arrays, "time": time, "codes": codes}
 "#;
 
 fn python() -> String {
@@ -125,7 +131,14 @@ fn assert_is_the_inspection(read: &Value, inspection: &Inspection) {
     assert_eq!(files.len(), frames.len());
     let [hx, hy, hz] = mesh.element_size_m();
     let points: Vec<f64> = (0..mesh.node_count()).flat_map(|node| mesh.coordinates_m(node)).collect();
-    for file in files {
+    for (file, frame) in files.iter().zip(frames) {
+        assert_eq!(file["time"].as_f64(), Some(frame.time_s));
+        // meshio does not read the names of components.
+        if file["codes"][0].is_array() {
+            let expected =
+                json!([["no contact node", -1.0], ["separated", 0.0], ["stick", 1.0], ["slip", 2.0]]);
+            assert_eq!(file["codes"], expected);
+        }
         assert_eq!(numbers(&file["points"]), points);
         // With the corners in another order, the cells would be twisted and have other volumes.
         let volumes = numbers(&file["volumes"]);
@@ -142,6 +155,12 @@ fn assert_is_the_inspection(read: &Value, inspection: &Inspection) {
     compare("velocity_m_s", &|frame| frame.velocity_m_s.clone());
     compare("stress_pa", &|frame| {
         stress::nodal_pa(mesh, inspection.capture.model.pin().material(), &frame.u_m).concat()
+    });
+    let stress =
+        |frame: &Frame| stress::nodal_pa(mesh, inspection.capture.model.pin().material(), &frame.u_m);
+    compare("von_mises_pa", &|frame| stress(frame).into_iter().map(stress::von_mises_pa).collect());
+    compare("principal_stress_pa", &|frame| {
+        stress(frame).into_iter().flat_map(stress::principal_pa).collect()
     });
     compare("contact_force_n", &on_face(nodes, 0.0, |node| node.force_n.to_vec()));
     compare("normal_contact_stress_pa", &|frame| {

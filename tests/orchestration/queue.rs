@@ -3,6 +3,7 @@
 mod absorb;
 mod claims;
 mod exchange;
+mod guards;
 mod lost;
 mod migrate;
 mod open;

@@ -99,13 +99,13 @@ fn points_are_where_their_values_are() {
     let (folder, page) = written(&study());
     browser.resize(1200, 900, false);
     browser.open(&page);
-    let figure = figure_of(&mut browser, "figure7.csv");
+    let figure = figure_of(&mut browser, "mu_star_points.csv");
     assert_eq!(
         figure["csv"].as_str().unwrap(),
-        fs::read_to_string(folder.path().join("figure7.csv")).unwrap()
+        fs::read_to_string(folder.path().join("mu_star_points.csv")).unwrap()
     );
 
-    let mut lines = csv(folder.path(), "figure7.csv");
+    let mut lines = csv(folder.path(), "mu_star_points.csv");
     lines.retain(|line| !line["mu_star"].is_empty());
     let targets = figure["targets"].as_array().unwrap();
     assert_eq!(targets.len(), lines.len());
@@ -215,7 +215,7 @@ fn pointing_at_a_job_shows_its_values() {
     let (_folder, page) = written(&study());
     browser.resize(1200, 900, false);
     browser.open(&page);
-    let figure = figure_of(&mut browser, "figure7.csv");
+    let figure = figure_of(&mut browser, "mu_star_points.csv");
     let find = |figure: &Value, job: &str| {
         figure["targets"].as_array().unwrap().iter().find(|target| target["job"] == job).unwrap()["at"]
             .clone()
@@ -273,7 +273,7 @@ fn phones_and_printers_show_the_whole_page() {
         browser.evaluate("[innerWidth, document.documentElement.scrollWidth, document.body.scrollWidth]");
     assert_eq!(widths, serde_json::json!([390, 390, 390]));
     save_picture(&mut browser, "report-phone.png");
-    let figure = figure_of(&mut browser, "figure7.csv");
+    let figure = figure_of(&mut browser, "mu_star_points.csv");
     let smallest = figure["texts"].as_array().unwrap().iter().map(|text| number(&text["size"]));
     assert!(smallest.clone().fold(f64::MAX, f64::min) > 10.0, "{:?}", smallest.collect::<Vec<_>>());
 

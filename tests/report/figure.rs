@@ -3,16 +3,17 @@
 use crate::svg::{self, Element};
 use crate::synthetic::{done, partial_study, periodic, record, row, with};
 use std::collections::HashSet;
+use std::sync::Arc;
 use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::report::figure::{Figure, Plot, figures};
-use tribosweep::report::{JobRow, RowState};
+use tribosweep::report::figure::{Plot, figures};
+use tribosweep::report::{Discretisation, JobRow, MeshError, RowState, View};
 
 /// The first colours of the palette, in the order of ascending μ.
 const COLOURS: [&str; 3] = ["#0072B2", "#D55E00", "#009E73"];
 const CURVE_WIDTH: &str = "4";
 
 fn only(rows: &[JobRow], plot: Plot) -> Vec<Element> {
-    let mut all = figures(rows, plot).expect("a string takes everything");
+    let mut all = figures(rows, &View::default(), plot).expect("a string takes everything");
     assert_eq!(all.len(), 1);
     svg::parse(&all.remove(0).svg)
 }
@@ -215,24 +216,41 @@ fn a_result_that_is_not_finite_is_not_drawn() {
     let mut rows = partial_study();
     let before = all_markers(&only(&rows, Plot::MuStar), COLOURS[1]);
     rows[6].state = done(Outcome::NotPeriodic, Regime::Undecided, f64::NAN);
-    let all = figures(&rows, Plot::MuStar).expect("a string takes everything");
+    let all = figures(&rows, &View::default(), Plot::MuStar).expect("a string takes everything");
     assert!(!all[0].svg.contains("NaN") && !all[0].svg.contains("inf"));
     assert_eq!(all_markers(&svg::parse(&all[0].svg), COLOURS[1]), before - 1);
 }
 
-/// Protects: every combination has a figure with a unique file name and its own caption.
+/// Protects: every combination has its panel with its own caption in one figure, and all panels have the same axes. With
+/// more than twelve combinations there are more figures, each with a name of its own.
 #[test]
-fn each_combination_has_its_figure() {
-    let rows: Vec<JobRow> = ["a/b", "a b", "<&\u{1}\">"]
-        .into_iter()
-        .flat_map(|name| partial_study().into_iter().map(move |row| with(row, "note", name)))
-        .collect();
-    let all: Vec<Figure> = figures(&rows, Plot::MuStar).expect("a string takes everything");
-    let suffixes: Vec<&str> = all.iter().map(|figure| figure.suffix.as_str()).collect();
-    assert_eq!(suffixes, ["-note-a-b", "-note-a-b-2", "-note------"]);
-    for (figure, caption) in all.iter().zip(["note = a/b", "note = a b", "note = <& \">"]) {
-        assert!(texts(&svg::parse(&figure.svg)).contains(&caption), "{caption}");
+fn each_combination_has_its_panel() {
+    let named = |names: &[String]| -> Vec<JobRow> {
+        let rows = names
+            .iter()
+            .map(|name| partial_study().into_iter().map(move |row| with(row, "note", name.as_str())));
+        rows.flatten().collect()
+    };
+    let names = ["a/b", "a b", "<&\u{1}\">"].map(str::to_owned);
+    let elements = only(&named(&names), Plot::MuStar);
+    let texts = texts(&elements);
+    for caption in ["note = a/b", "note = a b", "note = <& \">"] {
+        assert!(texts.contains(&caption), "{caption} in {texts:?}");
     }
+    assert_eq!(all_markers(&elements, COLOURS[1]), 3 * 5, "the results of every panel");
+    assert_eq!(texts.iter().filter(|text| **text == "100").count(), 3, "the same ticks in every panel");
+    assert_eq!(texts.iter().filter(|text| **text == "disk speed ω [rpm]").count(), 1);
+
+    let many: Vec<String> = (0..25).map(|number| format!("n{number}")).collect();
+    let all = figures(&named(&many), &View::default(), Plot::MuStar).expect("a string takes everything");
+    let parts: Vec<(&str, &str)> =
+        all.iter().map(|figure| (figure.suffix.as_str(), figure.caption.as_str())).collect();
+    let expected = [
+        ("", "combinations 1 to 12 of 25"),
+        ("-2", "combinations 13 to 24 of 25"),
+        ("-3", "combinations 25 to 25 of 25"),
+    ];
+    assert_eq!(parts, expected);
 }
 
 /// Protects: a study without speeds has the names of another parameter on the axis, in the order of the study.
@@ -272,4 +290,34 @@ fn a_study_without_results_says_so() {
             assert!(texts(&elements).iter().any(|text| text.contains("no results yet")));
         }
     }
+}
+
+/// Protects: a curve has a band as wide as the error of mesh and step, a single point has one too, and there is none where
+/// the error is not measured.
+#[test]
+fn the_error_of_the_mesh_is_a_band() {
+    let error = MeshError { mu_star_relative: 0.1, ..MeshError::default() };
+    let job = |omega, mu, discretisation: &Discretisation| {
+        let mut row = row(omega, mu, periodic(0.8 * mu));
+        row.discretisation = discretisation.clone();
+        row
+    };
+    let opacity = |element: &Element| element.attribute("opacity").and_then(|text| text.parse::<f64>().ok());
+    let bands = |discretisation: Discretisation| {
+        let rows = [(2.0, 0.2), (7.0, 0.2), (7.0, 0.4)].map(|(omega, mu)| job(omega, mu, &discretisation));
+        let elements = only(&rows, Plot::MuStar);
+        let of_curve = |name: &str, colour: &str| -> Vec<Element> {
+            let is_band =
+                |e: &&Element| e.name == name && e.is("fill", colour) && opacity(e).is_some_and(|o| o < 0.5);
+            elements.iter().filter(is_band).cloned().collect()
+        };
+        let legend = texts(&elements).contains(&"error of mesh and step");
+        (of_curve("polygon", COLOURS[0]), of_curve("rect", COLOURS[1]), legend)
+    };
+    let (curve, point, legend) = bands(Discretisation::Measured(Arc::new(error.clone())));
+    assert_eq!((curve.len(), point.len(), legend), (1, 1, true));
+    let (pale, _, _) = bands(Discretisation::Indicative(Arc::new(error)));
+    assert!(opacity(&pale[0]) < opacity(&curve[0]));
+    let (curve, point, legend) = bands(Discretisation::NotMeasured);
+    assert_eq!((curve.len(), point.len(), legend), (0, 0, false));
 }

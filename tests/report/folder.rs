@@ -1,6 +1,6 @@
 //! The report as a folder: it has all files, and a page that says what is missing.
 
-use crate::report_files::REPORT;
+use crate::report_files::{LIST, REPORT};
 use crate::synthetic::{failed, partial_study, periodic, report, row, with};
 use std::collections::BTreeSet;
 use std::fs;
@@ -25,14 +25,16 @@ fn writes_exactly_the_documented_files() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let inside = folder.path().join("new").join("deeper");
     let written = write(&report(&partial_study()), &inside).expect("the report is written");
-    let expected: BTreeSet<String> = REPORT.map(str::to_owned).into();
+    let mut expected: BTreeSet<String> = REPORT.map(str::to_owned).into();
     assert_eq!(names(&inside), expected);
+    // The list of the files is for the program, and no part of the report.
+    expected.remove(LIST);
     let returned: BTreeSet<String> = written
         .iter()
         .map(|path| path.strip_prefix(&inside).expect("inside").display().to_string())
         .collect();
     assert_eq!(returned, expected);
-    assert_eq!(written.len(), REPORT.len());
+    assert_eq!(written.len(), expected.len());
 }
 
 /// Protects: a second report in the same folder replaces the files of the first one, and leaves other files alone.
@@ -81,18 +83,49 @@ fn the_page_links_every_file() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     let written = write(&report(&rows), folder.path()).expect("the report is written");
     let page = fs::read_to_string(folder.path().join("report.md")).expect("the page is there");
-    assert_eq!(written.len(), REPORT.len() + 5, "five figures twice");
+    let message = "both combinations are panels of the same figures, but for three that fill a sheet";
+    assert_eq!(written.len(), REPORT.len() - 1 + 3, "{message}");
     for path in written.iter().filter(|path| !path.ends_with("report.md")) {
         let name = path.file_name().expect("a name").to_string_lossy();
         assert!(page.contains(&format!("]({name})")), "{name}");
     }
 }
 
+/// Protects: after a report with fewer figures the folder has the files of that report alone, and the files of others. The
+/// same holds for a folder that an older version wrote.
+#[test]
+fn figures_of_an_earlier_grid_are_removed() {
+    let many: Vec<JobRow> = (0..30)
+        .flat_map(|load| {
+            [row(7.0, 0.4, periodic(0.35)), row(9.0, 0.3, periodic(0.25))]
+                .map(|row| with(row, "load_n", load))
+        })
+        .collect();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    write(&report(&many), folder.path()).expect("the first report");
+    assert!(folder.path().join("mu_star-3.svg").is_file(), "{:?}", names(folder.path()));
+    let foreign = ["shares-new.svg", "mu_star-9.svg", "notes.txt"];
+    let old = ["figure7.svg", "figure7-beta2-0.5.svg"];
+    for name in foreign {
+        fs::write(folder.path().join(name), "mine").expect("a file");
+    }
+    let expected = || REPORT.into_iter().chain(foreign).map(str::to_owned).collect::<BTreeSet<_>>();
+    write(&report(&partial_study()), folder.path()).expect("the second report");
+    assert_eq!(names(folder.path()), expected());
+
+    fs::remove_file(folder.path().join(LIST)).expect("a list");
+    for name in old {
+        fs::write(folder.path().join(name), "of an older version").expect("a file");
+    }
+    write(&report(&partial_study()), folder.path()).expect("the third report");
+    assert_eq!(names(folder.path()), expected());
+}
+
 /// Protects: the report of a complete study has no warning.
 #[test]
 fn a_complete_study_has_nothing_missing() {
     let page = page(&[row(7.0, 0.4, periodic(0.35))]);
-    assert!(page.contains("1 of 1 jobs done"), "{page}");
+    assert!(page.contains("1 of 1 job done"), "{page}");
     for absent in ["incomplete", "## Failed", "## Not periodic", "## Missing"] {
         assert!(!page.contains(absent), "{absent}");
     }

@@ -2,7 +2,11 @@
 
 use crate::synthetic::{failed, partial_study, periodic, report, row, with};
 use std::fs;
-use tribosweep::report::{BuildInfo, JobRow, Provenance, Report, ResultGroup, RowState, write};
+use std::sync::Arc;
+use tribosweep::report::{
+    BuildInfo, Discretisation, JobRow, MeshError, Provenance, Report, ResultGroup, RowState, inspections,
+    write,
+};
 
 fn page_of(report: &Report) -> String {
     let folder = tempfile::tempdir().expect("a temporary folder");
@@ -52,8 +56,17 @@ fn a_partial_study_says_what_is_missing() {
     at("the mesh has no node row at the clamp's width");
     // 18 jobs of 12.5 s.
     at("3.8 min");
-    assert_eq!(page.matches("<svg ").count(), 6);
-    for file in ["figure7", "frequency_map", "regime_map", "shares", "residuals", "run_times"] {
+    assert_eq!(page.matches("<svg ").count(), 9 + 2, "with the drawings of the scene");
+    for file in [
+        "mu_star_points",
+        "frequency_map",
+        "regime_map",
+        "bifurcation",
+        "growth_rate",
+        "shares",
+        "residuals",
+        "run_times",
+    ] {
         assert!(page.contains(&format!("download=\"{file}.csv\"")), "{file}");
     }
 }
@@ -94,6 +107,20 @@ fn what_a_study_says_is_text() {
     assert_eq!(page.matches("<script").count(), 1, "the page's own");
     assert_eq!(page.matches("</svg>").count(), page.matches("<svg ").count());
     assert!(text(&page).matches("alert(1)").count() > 5);
+}
+
+/// Protects: doubtful inputs stand on the page before the navigation, as text.
+#[test]
+fn doubtful_inputs_stand_at_the_head() {
+    let rows = [row(7.0, 0.4, periodic(0.35))];
+    let warnings = ["scene.load.force_n = 30000: <much>".to_owned()];
+    let page = page_of(&Report { warnings: &warnings, ..report(&rows) });
+    let (head, _) = page.split_once("<nav").unwrap();
+    assert!(
+        text(head)
+            .contains("Check these inputs before you use the results:scene.load.force_n = 30000: <much>"),
+        "{head}"
+    );
 }
 
 /// Protects: a page that is going to be written again reloads itself, and the last one does not.
@@ -156,9 +183,11 @@ fn many_combinations_are_left_out() {
         .flat_map(|load| partial_study().into_iter().map(move |row| with(row, "load_n", load)))
         .collect();
     let page = page(&rows);
-    assert_eq!(page.matches("data-value=\"K\"").count(), 6 * 5, "six maps of regimes");
-    assert!(text(&page).contains("34 more combinations of parameters, 612 jobs, are left out of this page"));
-    assert!(page.contains("<h3>load_n = 5</h3>") && !page.contains("<h3>load_n = 6</h3>"));
+    let message = "two figures with twelve maps of regimes, and two maps on true axes";
+    assert_eq!(page.matches("data-value=\"K\"").count(), (24 + 2) * 5, "{message}");
+    assert!(text(&page).contains("left out of this page: 16 more combinations of parameters, 288 jobs"));
+    assert!(text(&page).contains("left out of this page: 34 more combinations of parameters, 612 jobs"));
+    assert!(page.contains("<h3>load = 5 N</h3>") && !page.contains("<h3>load = 6 N</h3>"));
 }
 
 /// Protects: the page of a study of a hundred thousand jobs is small enough for a browser. It has no figures, and says
@@ -181,6 +210,171 @@ fn a_large_study_is_drawn() {
         (0..5_000).map(|i| row(f64::from(i % 100), 0.1 + f64::from(i / 100) * 0.01, periodic(0.3))).collect();
     let page = page(&rows);
     assert!(page.len() < 12_000_000, "{} bytes", page.len());
-    assert!(page.matches("<svg ").count() == 6 && !page.contains("data-job"));
+    assert!(page.matches("<svg ").count() == 9 + 2 && !page.contains("data-job"));
     assert!(text(&page).contains("There are too many jobs for tooltips"));
+}
+
+/// Protects: the page says what the study is for and what was simulated, as text, in both forms.
+#[test]
+fn what_was_simulated_is_on_the_page() {
+    let rows = partial_study();
+    let described = Report { description: Some("Softer pins, <i>for brakes</i>"), ..report(&rows) };
+    let page = text(&page_of(&described));
+    for part in [
+        "Softer pins, <i>for brakes</i>",
+        "What was simulated",
+        "drawing of scene",
+        "drawing of track",
+        "Ed",
+        "Young's modulus <b>",
+        "0.5 GPa",
+        "disk_young_modulus_pa",
+    ] {
+        assert!(page.contains(part), "{part} in {page}");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    write(&described, folder.path()).unwrap();
+    let markdown = fs::read_to_string(folder.path().join("report.md")).unwrap();
+    for part in ["Softer pins, &lt;i>for brakes", "![drawing of scene](scene.svg)", "| 0.5 GPa"] {
+        assert!(markdown.contains(part), "{part} in {markdown}");
+    }
+    assert!(fs::read_to_string(folder.path().join("track.svg")).unwrap().starts_with("<svg"));
+}
+
+fn with_error(mut row: JobRow, discretisation: Discretisation) -> JobRow {
+    row.discretisation = discretisation;
+    row
+}
+
+/// An error of 5 % of μ* and 0.25 % of the frequency.
+fn coarse() -> Arc<MeshError> {
+    Arc::new(MeshError {
+        mu_star_relative: 0.05,
+        frequency_relative: 0.0025,
+        preset: "draft".to_owned(),
+        measured_at: "on a scene".to_owned(),
+    })
+}
+
+/// Protects: the error of mesh and step is in the head, and tables do not promise digits that it does not leave. The CSV
+/// keeps them.
+#[test]
+fn digits_follow_the_error() {
+    let job = |omega| row(omega, 0.4, periodic(0.263_429));
+    let cases = [
+        // 5 % are 0.013, and 0.25 % of 14512 Hz are 36 Hz.
+        (
+            Discretisation::Measured(coarse()),
+            "0.263",
+            "14510",
+            "of μ*, measured on this scene",
+            "up to 5 % of μ* and 0.25 %",
+        ),
+        (
+            Discretisation::Indicative(coarse()),
+            "0.263",
+            "14510",
+            "of μ*, indicative",
+            "This is indicative only",
+        ),
+        (Discretisation::NotMeasured, "0.263", "14510", "not measured", "the error is not measured"),
+        (
+            Discretisation::Measured(Arc::default()),
+            "0.2634",
+            "14512",
+            "measured on this scene",
+            "up to 0 % of μ*",
+        ),
+    ];
+    for (error, mu_star, frequency, tile, sentence) in cases {
+        let rows = [7.0, 9.0].map(|omega| with_error(job(omega), error.clone()));
+        let page = page(&rows);
+        for part in [format!("<td>{mu_star}</td>"), format!("<td>{frequency}</td>")] {
+            assert_eq!(page.matches(&part).count(), 2, "{part}");
+        }
+        let text = text(&page);
+        assert!(text.contains(tile) && text.contains(sentence), "{text}");
+        let folder = tempfile::tempdir().unwrap();
+        write(&report(&rows), folder.path()).unwrap();
+        let read = |file: &str| fs::read_to_string(folder.path().join(file)).unwrap();
+        assert!(read("jobs.csv").contains("0.263429") && read("mu_star.csv").contains("7,0.2634"));
+        let sentence = sentence.replace('*', "\\*");
+        assert!(read("report.md").contains(&sentence), "{sentence}");
+        assert!(read("mu_star.md").contains(&format!(" {mu_star} |")));
+    }
+}
+
+/// Protects: a study whose jobs have different errors says how many have which.
+#[test]
+fn several_errors_are_counted() {
+    let errors = [
+        Discretisation::Measured(coarse()),
+        Discretisation::Indicative(coarse()),
+        Discretisation::NotMeasured,
+    ];
+    let rows: Vec<JobRow> = (2_u8..)
+        .zip(errors)
+        .map(|(omega, error)| with_error(row(omega.into(), 0.4, periodic(0.3)), error))
+        .collect();
+    let text = text(&page(&rows));
+    for part in [
+        "Mesh and time step of 2 of 3 jobs: up to 5 % of μ*",
+        "For 1 job it is indicative only",
+        "Mesh and time step of 1 of 3 jobs: the error is not measured",
+        "≤ 5 %",
+        "in some jobs not measured",
+    ] {
+        assert!(text.contains(part), "{part} in {text}");
+    }
+}
+
+/// Protects: a table explains the marks that it has, and no others.
+#[test]
+fn only_marks_that_occur_are_explained() {
+    let complete = text(&page(&[row(7.0, 0.4, periodic(0.35)), row(9.0, 0.4, periodic(0.35))]));
+    let partial = text(&page(&partial_study()));
+    for words in
+        ["the last part of the run", "no result yet", "the oscillation decays", "did not become periodic"]
+    {
+        assert!(!complete.contains(words) && partial.contains(words), "{words}");
+    }
+}
+
+/// Protects: the cells and marks of a job lead to its inspection if the folder has one, with an address that no folder's
+/// name can break out of. Other inspections and unreadable files are no error.
+#[test]
+fn jobs_lead_to_their_inspections() {
+    let folder = tempfile::tempdir().unwrap();
+    let add = |at: &str, summary: &str| {
+        let inside = folder.path().join(at);
+        fs::create_dir_all(&inside).unwrap();
+        fs::write(inside.join("inspection.json"), summary).unwrap();
+        fs::write(inside.join("index.html"), "").unwrap();
+    };
+    add("mu-0.4", r#"{ "job": {}, "key": "job-7-0.4" }"#);
+    add("inspect/a \"><b>", r#"{ "key": "job-9-0.4" }"#);
+    add("broken", "{");
+    add("old", r#"{ "job": {} }"#);
+    add("other", r#"{ "key": "of another study" }"#);
+    let found: Vec<String> = inspections(folder.path()).into_iter().map(|found| found.job).collect();
+    assert_eq!(found, ["job-9-0.4", "job-7-0.4", "of another study"]);
+
+    let rows = [7.0, 9.0, 12.0].map(|omega| row(omega, 0.4, periodic(0.35)));
+    write(&report(&rows), folder.path()).unwrap();
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    let links: Vec<&str> = page.split("<a href=\"").skip(1).filter(|link| !link.starts_with('#')).collect();
+    assert_eq!(links.len(), 3 * 2, "two jobs in three tables: {links:?}");
+    for address in ["mu-0.4/index.html", "inspect/a%20%22%3E%3Cb%3E/index.html"] {
+        assert_eq!(links.iter().filter(|link| link.starts_with(&format!("{address}\""))).count(), 3);
+    }
+    for (job, address) in
+        [("job-7-0.4", "mu-0.4/index.html"), ("job-9-0.4", "inspect/a%20%22%3E%3Cb%3E/index.html")]
+    {
+        let mark = format!("data-job=\"{job}\"");
+        let with_page = format!("{mark} data-page=\"{address}\"");
+        assert!(
+            page.matches(&mark).count() > 5
+                && page.matches(&mark).count() == page.matches(&with_page).count()
+        );
+    }
 }

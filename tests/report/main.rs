@@ -1,8 +1,11 @@
 //! Reports from synthetic records: what a reader or a program finds in the files.
 
+mod axes;
 mod browser;
 #[path = "../support/browser.rs"]
 mod chromium;
+mod columns;
+mod comparison;
 mod export;
 mod figure;
 mod folder;
@@ -10,6 +13,7 @@ mod html;
 mod maps;
 mod overview;
 mod pareto;
+mod planes;
 #[path = "../support/random.rs"]
 mod random;
 #[path = "../support/report_files.rs"]

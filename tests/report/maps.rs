@@ -4,10 +4,10 @@ use crate::svg::{self, Element};
 use crate::synthetic::{done, failed, partial_study, periodic, row, with};
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::figure::{Plot, figures};
-use tribosweep::report::{JobRow, RowState};
+use tribosweep::report::{JobRow, RowState, View};
 
 fn only(rows: &[JobRow], plot: Plot) -> Vec<Element> {
-    let mut all = figures(rows, plot).expect("a string takes everything");
+    let mut all = figures(rows, &View::default(), plot).expect("a string takes everything");
     assert_eq!(all.len(), 1);
     svg::parse(&all.remove(0).svg)
 }

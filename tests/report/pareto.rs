@@ -287,7 +287,7 @@ fn a_partial_study_says_so() {
     rows[8].state = RowState::Pending;
     rows[7].state = failed("diverged");
     let text = markdown(&compare(&rows).unwrap());
-    assert!(text.contains("**Incomplete**: 1 jobs are not done and 1 failed"), "{text}");
+    assert!(text.contains("**Incomplete**: 1 job not done and 1 failed"), "{text}");
     let comparison = compare(&rows).unwrap();
     let case = &comparison.cases[0];
     assert_eq!(case.jobs[case.reference.job].numerics.safety_factor, Some(0.8));
@@ -297,7 +297,7 @@ fn a_partial_study_says_so() {
     rows.push(JobRow { numerics: Some(JobNumerics { case: "lone".into(), ..numerics(4, 0.8) }), ..lone });
     let text = markdown(&compare(&rows).unwrap());
     assert!(
-        text.contains("Left out") && text.contains("ω = 9 rpm") && text.contains("0 of 1 jobs done"),
+        text.contains("Left out") && text.contains("ω = 9 rpm") && text.contains("0 of 1 job done"),
         "{text}"
     );
 }

@@ -1,12 +1,46 @@
 //! Synthetic jobs: plausible results without a simulation.
 
 use serde_json::Value;
+use std::sync::{Arc, LazyLock};
 use tribosweep::analysis::{EnergyTotals, JobRecord, Outcome, Regime};
-use tribosweep::report::{JobRow, Report, RowState};
+use tribosweep::publish::{Drawing, Sheet, SheetGroup, SheetLine};
+use tribosweep::report::{
+    Discretisation, JobRow, MeasuredValue, Measurement, MeshError, Report, RowState, View,
+};
+
+/// The usual axes.
+pub static VIEW: LazyLock<View> = LazyLock::new(View::default);
+
+/// Two drawings and an input.
+static SHEET: LazyLock<Sheet> = LazyLock::new(|| {
+    let drawing =
+        |stem| Drawing { stem, svg: "<svg ></svg>".to_owned(), caption: format!("drawing of {stem}") };
+    let line = SheetLine {
+        symbol: "E_d",
+        name: "Young's modulus <b>".to_owned(),
+        value: "0.5 GPa".to_owned(),
+        key: "disk_young_modulus_pa",
+        origin: "study",
+    };
+    let group = SheetGroup { heading: "Disk", lines: vec![line] };
+    Sheet { drawings: ["scene", "track"].map(drawing).into(), groups: vec![group] }
+});
 
 /// The report of these rows, without provenance.
 pub fn report(rows: &[JobRow]) -> Report<'_> {
-    Report { title: "Reference", rows, provenance: None, written_ms: 0, refresh_s: None }
+    Report { title: "Reference", rows, view: &VIEW, sheet: Some(&SHEET), ..Report::default() }
+}
+
+/// A measured point of the file `rig.csv`.
+pub fn measured(omega_rpm: f64, mu: f64, mu_star: f64, error: Option<f64>) -> JobRow {
+    let value = MeasuredValue { name: "mu_star".to_owned(), value: mu_star, error };
+    JobRow {
+        study: "rig".to_owned(),
+        job: format!("rig.csv:{omega_rpm}"),
+        parameters: Vec::new(),
+        discretisation: Discretisation::NotMeasured,
+        ..row(omega_rpm, mu, RowState::Measured(Measurement { values: vec![value] }))
+    }
 }
 
 pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
@@ -69,6 +103,8 @@ pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> JobRow {
         state,
         wall_s: Some(12.5),
         numerics: None,
+        // An error that leaves all digits.
+        discretisation: Discretisation::Measured(Arc::new(MeshError::default())),
     }
 }
 

@@ -59,16 +59,24 @@ fn frequency_and_regime_cells() {
     assert_eq!(regime[5], ["50", "stable", "failed", "–"]);
 }
 
-/// Protects: the legend below a table explains every mark.
+/// Protects: the legend below a table explains the marks that are in it, and no others.
 #[test]
-fn every_mark_is_explained() {
+fn the_marks_that_occur_are_explained() {
+    let legend = |rows: &[JobRow], quantity| {
+        let text = tables::markdown(rows, quantity);
+        text.rsplit_once("|\n").expect("a table").1.to_owned()
+    };
     for quantity in [Quantity::MuStar, Quantity::Frequency, Quantity::Regime] {
-        let text = tables::markdown(&partial_study(), quantity);
-        let legend = text.rsplit_once("|\n").expect("a table").1;
-        for mark in ["`~`", "`failed`", "`–`", "`a / b`"] {
+        let legend = legend(&partial_study(), quantity);
+        for mark in ["`~`", "`failed`", "`–`"] {
             assert!(legend.contains(mark), "{mark} of {quantity:?}");
         }
+        assert!(!legend.contains("`a / b`"), "{legend}");
     }
+    let complete = [row(7.0, 0.4, periodic(0.35)), row(9.0, 0.4, periodic(0.36))];
+    assert_eq!(legend(&complete, Quantity::MuStar).trim(), "");
+    let twice = [row(7.0, 0.4, periodic(0.35)), row(7.0, 0.4, periodic(0.36))];
+    assert!(legend(&twice, Quantity::MuStar).contains("`a / b` several jobs"));
 }
 
 /// Protects: all lines of a table have the same width, so that it is readable in a terminal.
@@ -102,15 +110,19 @@ fn duplicates_share_a_cell() {
     assert_eq!(csv(&rows, Quantity::MuStar)[1], "7,0.3500 / 0.3600 / –");
 }
 
-/// Protects: every combination of further parameters has its own table.
+/// Protects: where μ is the same in all jobs, another parameter makes the columns, and every combination of the rest has
+/// its own table. Values have the units that people use; the CSV has those of the names.
 #[test]
 fn one_table_per_combination() {
     let mut rows = Vec::new();
-    for (side, shift) in [("inner_side", 0.0), ("outer_side", 0.1)] {
-        for beta in [0.0, 1e-7] {
-            for omega in [5.0, 7.0] {
-                let job = row(omega, 0.4, periodic(0.2 + shift + beta * 1e5));
-                rows.push(with(with(with(job, "clamp_side", side), "beta_r_s", beta), "force_n", 30.0));
+    for beta in [0.0, 1e-7] {
+        for top in ["free_in_z", "tied_in_z"] {
+            for (side, shift) in [("inner_side", 0.0), ("outer_side", 0.1)] {
+                for omega in [5.0, 7.0] {
+                    let job = row(omega, 0.4, periodic(0.2 + shift + beta * 1e5));
+                    let job = with(with(job, "clamp_side", side), "beta_r_s", beta);
+                    rows.push(with(with(job, "top", top), "force_n", 30.0));
+                }
             }
         }
     }
@@ -119,17 +131,21 @@ fn one_table_per_combination() {
     assert_eq!(
         headings,
         [
-            "### clamp_side = inner_side, beta_r_s = 0",
-            "### clamp_side = inner_side, beta_r_s = 1e-7",
-            "### clamp_side = outer_side, beta_r_s = 0",
-            "### clamp_side = outer_side, beta_r_s = 1e-7",
+            "### beta_r = 0 µs, top = free_in_z",
+            "### beta_r = 0 µs, top = tied_in_z",
+            "### beta_r = 0.1 µs, top = free_in_z",
+            "### beta_r = 0.1 µs, top = tied_in_z",
         ]
     );
-    assert!(text.starts_with("In all jobs: force_n = 30.\n"), "{text}");
+    assert!(text.starts_with("In all jobs: μ = 0.4, force = 30 N.\n"), "{text}");
+    assert_eq!(
+        cells(&rows, Quantity::MuStar)[0],
+        ["ω [rpm]", "clamp_side = inner_side", "clamp_side = outer_side"]
+    );
     let table = csv(&rows, Quantity::MuStar);
-    assert_eq!(table[0], "clamp_side,beta_r_s,omega_rpm,mu=0.4");
-    assert_eq!(table[1], "inner_side,0,5,0.2000");
-    assert_eq!(table[8], "outer_side,1e-7,7,0.3100");
+    assert_eq!(table[0], "beta_r_s,top,omega_rpm,clamp_side=inner_side,clamp_side=outer_side");
+    assert_eq!(table[1], "0,free_in_z,5,0.2000,0.3000");
+    assert_eq!(table[8], "1e-7,tied_in_z,7,0.2100,0.3100");
 }
 
 /// Protects: in a study at one speed, the first parameter that varies is along the rows.
@@ -140,11 +156,10 @@ fn without_speeds_the_first_varying_parameter_makes_the_rows() {
         with(with(job, "elements", elements.clone()), "beta_r_s", elements[0].clone())
     });
     let table = cells(&rows, Quantity::MuStar);
-    assert_eq!(table[0], ["elements", "μ = 0.4"]);
-    assert_eq!(table[1], ["8x10x6", "0.3500"]);
+    assert_eq!(table[0], ["elements", "beta_r = 8 s", "beta_r = 12 s"]);
+    assert_eq!(table[1], ["8x10x6", "0.3500", "–"]);
     let text = tables::markdown(&rows, Quantity::MuStar);
-    assert!(text.starts_with("In all jobs: ω = 7 rpm, top = tied_in_z.\n"), "{text}");
-    assert!(text.contains("### beta_r_s = 12\n"), "{text}");
+    assert!(text.starts_with("In all jobs: ω = 7 rpm, μ = 0.4, top = tied_in_z.\n"), "{text}");
 }
 
 /// Protects: studies with one job and with none have tables.

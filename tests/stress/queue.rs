@@ -22,41 +22,34 @@ fn study() -> Value {
     })
 }
 
-/// Protects: hostile jobs in the queue end with figures in the database, or with an error and without
-/// figures. No job is lost or left unfinished, and no figure is null because it is not a number.
+/// Protects: a study with jobs of too many steps is refused before any job runs. The other hostile jobs end with figures in
+/// the database: none is lost or left unfinished, and no figure is null because it is not a number.
 #[test]
 fn hostile_jobs_come_out_of_the_database() {
     let folder = tempfile::TempDir::new().unwrap();
     std::fs::write(folder.path().join("corners.json"), study().to_string()).unwrap();
     let run = |arguments: &[&str]| {
         let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_tribosweep"));
-        command.current_dir(&folder).env_remove("TRIBOSWEEP_DB").args(arguments);
-        command.timeout(std::time::Duration::from_mins(5)).output().unwrap()
+        command.current_dir(&folder).env_remove("TRIBOSWEEP_DB").env("XDG_CACHE_HOME", folder.path());
+        command.args(arguments).timeout(std::time::Duration::from_mins(5)).output().unwrap()
     };
-    let status = run(&["run", "corners.json"]).status;
-    assert_eq!(status.code(), Some(1), "some jobs have too many steps");
-    let exported = run(&["export", "corners.json", "--format", "json"]);
+    let refused = run(&["run", "corners.json"]);
+    let message = String::from_utf8(refused.stderr).unwrap();
+    assert_eq!(refused.status.code(), Some(2), "{message}");
+    assert!(message.contains("run.limit_s") && message.contains("beta_r_s"), "{message}");
+    assert!(!folder.path().join("tribosweep.db").exists());
+
+    let status = run(&["run", "corners.json", "--set", "beta_r_s=[0, 1e-5]"]).status;
+    assert_eq!(status.code(), Some(0));
+    let exported = run(&["export", "corners", "--format", "json"]);
     let text = String::from_utf8(exported.stdout).unwrap();
     let rows: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
-    assert_eq!(rows.len(), 2_usize.pow(7) * 3);
-    let mut failed = 0;
+    assert_eq!(rows.len(), 2_usize.pow(8));
     for row in &rows {
-        match row["status"].as_str().unwrap() {
-            "failed" => {
-                failed += 1;
-                assert!(row["error"].as_str().unwrap().contains("run.limit_s"), "{row}");
-                assert!(row["mu_star"].is_null(), "a failed job has no result: {row}");
-            }
-            "periodic" | "decayed" | "not_periodic" => {
-                for figure in
-                    ["mu_star", "mu_star_contact", "n_over_f_max", "energy_residual", "slip_speed_max_m_s"]
-                {
-                    assert!(row[figure].is_f64(), "{figure}: {row}");
-                }
-            }
-            other => panic!("a job was left {other}: {row}"),
+        assert!(["periodic", "decayed", "not_periodic"].contains(&row["status"].as_str().unwrap()), "{row}");
+        for figure in ["mu_star", "mu_star_contact", "n_over_f_max", "energy_residual", "slip_speed_max_m_s"]
+        {
+            assert!(row[figure].is_f64(), "{figure}: {row}");
         }
     }
-    // Exactly the jobs with the strongest damping fail.
-    assert_eq!(failed, rows.len() / 3);
 }

@@ -59,7 +59,9 @@ fn every_field_changes_the_key_even_by_one_ulp() {
     let job = serde_json::to_value(full()).unwrap();
     let mut pointers = Vec::new();
     leaves(&job, "", &mut pointers);
-    for parameter in PARAMETERS {
+    // A preset and a damping stand for values of other fields.
+    let in_job = |pointer: &str| pointer != "/preset" && !pointer.starts_with("/damping/");
+    for parameter in PARAMETERS.iter().filter(|parameter| in_job(parameter.pointer)) {
         let is_walked = |pointer: &String| {
             pointer
                 .strip_prefix(parameter.pointer)

@@ -1,9 +1,12 @@
 //! Studies as data: what is refused and with which message, what a grid expands into, what a key means.
 
+mod changes;
+mod damping;
 mod expansion;
 mod keys;
 mod mini_schema;
 mod mutations;
+mod plausibility;
 mod presets;
 #[path = "../support/random.rs"]
 mod random;
@@ -11,6 +14,8 @@ mod refusals;
 mod schema;
 mod shipped;
 mod single;
+mod text;
+mod time_defaults;
 
 use tribosweep::study::{Study, StudyError};
 

@@ -9,7 +9,7 @@ pub const KNOWN: &[&str] = &[
     "$schema", "$defs", "title", "description", "default", "format",
     // Keywords that do.
     "$ref", "type", "const", "enum", "anyOf", "oneOf", "properties", "additionalProperties", "required",
-    "minProperties", "items", "minItems", "maxItems", "uniqueItems", "minimum", "pattern",
+    "minProperties", "items", "minItems", "maxItems", "uniqueItems", "minimum", "maximum", "pattern",
 ];
 
 /// Where and why `value` violates `schema`, if it does.
@@ -70,6 +70,7 @@ pub fn violation(root: &Value, schema: &Value, value: &Value, at: &str) -> Optio
                 if repeated { fail("repeated entry".into()) } else { None }
             }
             ("minimum", Value::Number(_)) if number(value) < number(rule) => fail("too small".into()),
+            ("maximum", Value::Number(_)) if number(value) > number(rule) => fail("too large".into()),
             ("pattern", Value::String(text)) => {
                 assert_eq!(rule, "^[A-Za-z0-9_-]+$", "only the pattern of names is supported");
                 let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';

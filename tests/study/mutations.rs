@@ -13,7 +13,7 @@ use tribosweep::study::Study;
 const MUTANTS: usize = 400;
 
 /// Pieces of the mutants, besides pieces of the seeds.
-const PIECES: [&str; 24] = [
+const PIECES: [&str; 27] = [
     "null",
     "true",
     "0",
@@ -31,6 +31,9 @@ const PIECES: [&str; 24] = [
     "\"grid\":",
     "\"elements\"",
     "\"count\": 3",
+    "\"step\": 1",
+    "// é\n",
+    "/* , */",
     "\"spacing\": \"log\"",
     ",",
     ":",
@@ -133,4 +136,7 @@ fn a_grid_of_many_long_axes_is_refused_at_once() {
     let text = format!("{{ \"name\": \"x\", \"grid\": {{ {} }} }}", names.map(axis).join(", "));
     let error = Study::parse(&text, "x.json").unwrap_err().to_string();
     assert!(error.contains("mu 1000000 × omega_rpm 1000000") && error.contains("at most 1000000"), "{error}");
+    let text = text.replace("\"count\": 1000000", "\"step\": 0.000002");
+    let error = Study::parse(&text, "x.json").unwrap_err().to_string();
+    assert!(error.contains("mu 500001 × omega_rpm 500001"), "{error}");
 }

@@ -4,8 +4,8 @@
 use super::{assert_contains, parse, refusal};
 use serde_json::{Value, json};
 use tribosweep::analysis::{Unobserved, solve};
-use tribosweep::spec::{ClampSide, JobSpec};
-use tribosweep::study::{CaseEvidence, Evidence, Preset, Study, job_key};
+use tribosweep::spec::{ClampSide, DiskKind, JobSpec};
+use tribosweep::study::{CaseEvidence, Evidence, Parameter, Preset, Study, job_key};
 
 fn base(preset: &str, more: &str) -> JobSpec {
     parse(&format!(r#"{{ "preset": "{preset}"{more} }}"#)).base().clone()
@@ -81,7 +81,10 @@ fn unknown_presets_are_refused() {
         let text = refusal(&format!(r#"{{ "preset": {wrong} }}"#));
         assert_contains(&text, &["preset", "expected a name, as a string"]);
     }
-    refusal(r#"{ "grid": { "preset": ["draft"] } }"#);
+    assert_contains(
+        &refusal(r#"{ "grid": { "preset": ["draft", "drafty"] } }"#),
+        &["studies/x.json:1:33: grid.preset[1] = \"drafty\": expected", "did you mean `draft`?"],
+    );
 }
 
 /// Protects: on the command line a preset takes precedence over the study and its grid, and `--set` over the preset.
@@ -100,11 +103,47 @@ fn a_preset_for_one_job() {
     assert_eq!(spec.numerics.time_step_s, None, "the preset's step is a fraction of the limit");
     let spec =
         single(&[("mu", "0.2"), ("nx", "6"), ("clamp_width_m", "0.002"), ("time_step_s", "2e-8")]).unwrap();
-    assert_eq!((spec.scene.pin.elements, spec.numerics.time_step_s), ([6, 30, 20], Some(2.0e-8)));
+    // The preset gives what the override leaves open of the mesh.
+    assert_eq!((spec.scene.pin.elements, spec.numerics.time_step_s), ([6, 15, 10], Some(2.0e-8)));
     // The mesh is made for the clamp that the override sets.
     let spec = single(&[("mu", "0.2"), ("clamp_width_m", "0.002")]).unwrap();
     assert_eq!(spec.scene.pin.elements, [12, 15, 10]);
     assert_contains(&single(&[]).unwrap_err().to_string(), &["grid.mu = [0.2, 0.4]: expected one value"]);
+}
+
+/// Protects: as a parameter of the grid each preset gives the jobs that it gives as the study's preset, and the name of the
+/// preset is a parameter of the job like any other.
+#[test]
+fn a_preset_can_be_varied() {
+    let study = parse(r#"{ "grid": { "preset": ["draft", "standard"], "mu": [0.2, 0.4] } }"#);
+    let jobs = study.expand("1").unwrap();
+    let names: Vec<&str> = jobs.iter().map(|job| job.parameters[0].1.as_str().unwrap()).collect();
+    assert_eq!(names, ["draft", "draft", "standard", "standard"]);
+    assert!(jobs.iter().all(|job| job.parameters[0].0 == "preset"));
+    let alone =
+        |preset: &str| parse(&format!(r#"{{ "preset": "{preset}", "grid": {{ "mu": [0.2, 0.4] }} }}"#));
+    let expected = ["draft", "standard"].map(|preset| alone(preset).expand("1").unwrap()).concat();
+    assert!(jobs.iter().map(|job| &job.key).eq(expected.iter().map(|job| &job.key)));
+    // What is given takes precedence over each of the presets: these are one job.
+    let given = r#"{ "scene": { "pin": { "elements": [6, 8, 5] } }, "numerics": { "safety_factor": 0.5 },
+        "grid": { "preset": ["draft", "standard"], "tolerance": [0.1], "drift_tolerance": [0.01] } }"#;
+    assert_eq!(parse(given).expand("1").unwrap().len(), 1);
+}
+
+/// Protects: the mesh of a preset fits the pin and the clamp of each job, not those of the study's scene, and the parts of
+/// the mesh that the grid does not vary are the preset's.
+#[test]
+fn the_mesh_fits_every_job() {
+    let meshes = |grid: &str| {
+        let jobs = parse(&format!(r#"{{ "preset": "draft", "grid": {{ {grid} }} }}"#)).expand("1").unwrap();
+        jobs.iter().map(|job| job.spec.scene.pin.elements).collect::<Vec<_>>()
+    };
+    assert_eq!(meshes(r#""size_z_m": [0.005, 0.01, 0.02]"#), [[24, 30, 10], [12, 15, 10], [12, 12, 17]]);
+    assert_eq!(
+        meshes(r#""clamp_side": ["both_sides"], "clamp_width_m": [0.001, 0.0015]"#),
+        [[12, 15, 10], [16, 15, 10]]
+    );
+    assert_eq!(meshes(r#""nx": [6, 24]"#), [[6, 15, 10], [24, 15, 10]]);
 }
 
 /// Protects: the measured errors shipped with the program are those of the presets as they are now. If this fails,
@@ -186,4 +225,63 @@ fn the_schema_knows_the_presets() {
     }
     assert!(problem(&json!({ "preset": "exact" })).is_some());
     assert!(problem(&json!({ "preset": null })).is_some());
+}
+
+/// Protects: a measured error is claimed for jobs that are as fine as the preset, as measured only on the scene, at the
+/// friction and between the speeds of the measurement, and never on an elastic disk or for a given time step.
+#[test]
+fn the_measured_error_belongs_to_jobs_that_are_as_fine() {
+    let evidence = Evidence::measured();
+    let error = |change: &dyn Fn(&mut JobSpec)| {
+        let mut spec = base("standard", "");
+        change(&mut spec);
+        evidence.error_of(&spec).map(|found| (found.preset.name.as_str(), found.on_this_scene))
+    };
+    assert_eq!(error(&|_| ()), Some(("standard", true)));
+    for preset in Preset::ALL {
+        let found = evidence.error_of(&base(preset.name(), "")).unwrap();
+        assert_eq!(found.preset.name, preset.name());
+    }
+    assert_eq!(error(&|spec| spec.scene.pin.elements = [24, 40, 30]), Some(("standard", true)));
+    assert_eq!(error(&|spec| spec.scene.pin.elements = [24, 29, 20]), Some(("draft", true)));
+    assert_eq!(error(&|spec| spec.numerics.safety_factor = 0.8), Some(("draft", true)));
+    assert_eq!(error(&|spec| spec.detection.drift_tolerance = 0.002), Some(("draft", true)));
+    assert_eq!(error(&|spec| spec.scene.pin.elements = [6, 8, 5]), None);
+    assert_eq!(error(&|spec| spec.numerics.time_step_s = Some(1e-7)), None);
+    assert_eq!(error(&|spec| spec.scene.disk.kind = DiskKind::Elastic), None);
+    let others: [&dyn Fn(&mut JobSpec); 6] = [
+        &|spec| spec.scene.contact.mu = 0.3,
+        &|spec| spec.scene.disk.omega_rpm = 1.0,
+        &|spec| spec.scene.disk.omega_rpm = 36.0,
+        &|spec| spec.scene.load.force_n = 31.0,
+        &|spec| spec.scene.pin.young_modulus_pa = 2.0e9,
+        &|spec| spec.numerics.beta_r_s = 0.0,
+    ];
+    for other in others {
+        assert_eq!(error(other), Some(("standard", false)));
+    }
+}
+
+/// Protects: an input is said to come from where it was given.
+#[test]
+fn inputs_know_who_gave_them() {
+    let study = parse(
+        r#"{ "preset": "draft", "scene": { "pin": { "size_m": [0.012, 0.015, 0.01] }, "load": { "force_n": 30 } },
+             "detection": { "tolerance": 0.02 }, "grid": { "mu": [0.2, 0.4] } }"#,
+    );
+    let origin = |name: &str| study.origin(Parameter::find(name).unwrap()).name();
+    for (name, expected) in [
+        ("mu", "grid"),
+        ("load_n", "study"),
+        ("size_y_m", "study"),
+        ("tolerance", "study"),
+        ("nx", "preset"),
+        ("safety_factor", "preset"),
+        ("density_kg_m3", "default"),
+        ("omega_rpm", "default"),
+    ] {
+        assert_eq!(origin(name), expected, "{name}");
+    }
+    let meshes = parse(r#"{ "grid": { "elements": [[6, 8, 5], [12, 15, 10]] } }"#);
+    assert_eq!(meshes.origin(Parameter::find("ny").unwrap()).name(), "grid");
 }

@@ -81,6 +81,58 @@ fn wrong_types_are_refused() {
     }
 }
 
+/// Protects: unknown fields, wrong types and wrong axes of a file come at once, in the order of the file, each once and
+/// without problems that follow from another one.
+#[test]
+fn all_problems_of_a_file_come_at_once() {
+    let text = r#"{
+        "name": 7,
+        "scene": {
+            "contact": { "mu": "high", "nu": 1 },
+            "pin": { "poison_ratio": 0.3, "size_m": ["a", 0.01, "c"], "elements": [1, 2] },
+            "clamp": []
+        },
+        "numerics": { "time_step_s": "small" },
+        "grid": { "mu": ["x"], "omga": [1], "load_n": { "from": "a", "to": 2, "cout": 3 } },
+        "more.dots": 1
+    }"#;
+    let StudyError::Invalid(problems) = Study::parse(text, "studies/my study.json").unwrap_err() else {
+        panic!("{text}");
+    };
+    let fields: Vec<_> = problems.iter().map(|problem| problem.field.as_str()).collect();
+    assert_eq!(
+        fields,
+        [
+            "name",
+            "scene.contact.mu",
+            "scene.contact.nu",
+            "scene.pin.poison_ratio",
+            "scene.pin.size_m[0]",
+            "scene.pin.size_m[2]",
+            "scene.pin.elements",
+            "scene.clamp",
+            "numerics.time_step_s",
+            "grid.mu[0]",
+            "grid.omga",
+            "grid.load_n.from",
+            "grid.load_n.cout",
+            "more.dots",
+        ]
+    );
+    assert!(problems.windows(2).all(|pair| pair[0].position < pair[1].position), "{problems:?}");
+    // A missing field is a problem only where no other field of the object is wrong.
+    assert_contains(
+        &refusal(r#"{ "grid": { "mu": { "from": 0.1, "to": 0.2 } } }"#),
+        &["expected `count` or `step`"],
+    );
+    assert!(!refusal(r#"{ "grid": { "mu": { "from": 0.1, "to": 0.2, "cout": 2 } } }"#).contains("missing"));
+    let many: Vec<String> = (0..3000).map(|number| format!("\"x{number}\": 1")).collect();
+    assert_contains(
+        &refusal(&format!("{{ {} }}", many.join(", "))),
+        &["x0 = 1: no such field", "more problems"],
+    );
+}
+
 /// serde would read a list as the fields of a structure in their order of declaration.
 #[test]
 fn lists_in_place_of_objects_are_refused() {
@@ -190,7 +242,43 @@ fn unusable_ranges_are_refused() {
         (r#"{ "from": 1, "to": 1, "count": 2 }"#, "grid.mu.count = 2: expected 1"),
         (r#"{ "from": 1, "to": 2, "count": 1000001 }"#, "grid.mu.count = 1000001: expected at most 1000000"),
         (r#"{ "from": 1, "to": 2, "count": 2.5 }"#, "grid.mu.count = 2.5: expected a whole number"),
-        (r#"{ "from": 1, "to": 2 }"#, "missing field `count`"),
+        (r#"{ "from": 1, "to": 2 }"#, "expected `count` or `step`"),
+        (r#"{ "from": 1, "to": 2, "count": null }"#, "grid.mu.count = null: expected a whole number"),
+        (
+            r#"{ "from": 1, "to": 2, "count": 2, "step": 1 }"#,
+            "grid.mu.step = 1: expected either count or step",
+        ),
+        (r#"{ "from": 1, "to": 2, "step": 0 }"#, "grid.mu.step = 0: expected a step > 0 and at most 1,"),
+        (
+            r#"{ "from": 1, "to": 2, "step": -0.5 }"#,
+            "grid.mu.step = -0.5: expected a step > 0 and at most 1,",
+        ),
+        (
+            r#"{ "from": 2, "to": 1, "step": 0.5 }"#,
+            "grid.mu.step = 0.5: expected a step < 0 and at least -1,",
+        ),
+        (r#"{ "from": 1, "to": 2, "step": 1.5 }"#, "grid.mu.step = 1.5: expected a step > 0 and at most 1,"),
+        (r#"{ "from": 1, "to": 1, "step": 1 }"#, "grid.mu.step = 1: expected count = 1 instead"),
+        (
+            r#"{ "from": 0, "to": 1, "step": 1e-7 }"#,
+            "grid.mu.step = 1e-7: expected a larger step, for at most 1000000",
+        ),
+        (
+            r#"{ "from": 1, "to": 2, "step": 1, "spacing": "log" }"#,
+            "grid.mu.step = 1: expected count instead",
+        ),
+        (
+            r#"{ "from": 1, "to": 2, "count": 9, "digits": 1 }"#,
+            "grid.mu.digits = 1: after 1 comes 1; expected more digits",
+        ),
+        (
+            r#"{ "from": 1, "to": 2, "count": 3, "digits": 13 }"#,
+            "grid.mu.digits = 13: expected a number of digits from 1",
+        ),
+        (
+            r#"{ "from": 1.04, "to": 1.06, "count": 3, "digits": 2 }"#,
+            "grid.mu.digits = 2: after 1.1 comes 1.06",
+        ),
         (r#"{ "from": 1, "to": 2, "cuont": 3 }"#, "grid.mu.cuont = 3: no such field"),
         (r#"{ "from": 1, "to": 2, "count": 3, "spacing": "lin" }"#, "did you mean `linear`?"),
         (r#"{ "from": 1, "to": 1.0000000000000002, "count": 5 }"#, "the same value as grid.mu, value 1 of 5"),
@@ -274,9 +362,11 @@ fn non_physical_grid_values_are_reported_once_each_and_named() {
 
 #[test]
 fn incompatible_values_are_reported_with_a_job_that_has_them() {
-    let text = refusal(r#"{ "grid": { "mu": [0.2, 0.4, 0.6], "limit_s": [0.1, 0.0001] } }"#);
+    let ramp = r#""scene": { "load": { "ramp_s": 0.0005 } }"#;
+    let text =
+        refusal(&format!(r#"{{ {ramp}, "grid": {{ "mu": [0.2, 0.4, 0.6], "limit_s": [0.1, 0.0001] }} }}"#));
     let expected = [
-        "studies/x.json: scene.load.ramp_s = 0.0005: expected less than the run's time limit (run.limit_s = 0.0001)",
+        "studies/x.json:1:34: scene.load.ramp_s = 0.0005: expected less than the run's time limit (run.limit_s = 0.0001)",
         "in 3 of 6 jobs, first in the one with mu = 0.2, limit_s = 0.0001",
     ];
     assert_contains(&text, &expected);
@@ -340,4 +430,25 @@ fn disks_that_do_not_fit_are_refused() {
     parse(&ring("elastic", r#""inner_radius_m": 0.0829, "outer_radius_m": 0.100189"#, ""));
     parse(&ring("elastic", r#""track_arc_deg": 24"#, r#", "grid": { "omega_rpm": [100] }"#));
     parse(&ring("rigid", r#""inner_radius_m": 0.09"#, r#", "numerics": { "beta2": 0.6 }"#));
+}
+
+/// Protects: a report's axes are parameters, and a misspelt one is refused at its place with a suggestion.
+#[test]
+fn axes_of_the_report_are_parameters() {
+    let study = parse(
+        r#"{ "report": { "x": "mu", "by": "clamp_side", "y": ["n_over_f_max"] }, "grid": { "mu": [0.1, 0.2] } }"#,
+    );
+    let report = study.report();
+    assert_eq!((report.x.as_deref(), report.by.as_deref()), (Some("mu"), Some("clamp_side")));
+    assert_eq!(report.y, ["n_over_f_max"]);
+    assert_contains(
+        &refusal(r#"{ "report": { "x": "omega_rpn" } }"#),
+        &[r#"studies/x.json:1:20: report.x = "omega_rpn": no such parameter"#, "did you mean `omega_rpm`?"],
+    );
+    assert_contains(
+        &refusal(r#"{ "report": { "x": "mu", "by": "mu" } }"#),
+        &["report.by", "expected another parameter"],
+    );
+    assert_contains(&refusal(r#"{ "report": { "z": "mu" } }"#), &["report.z", "no such field", "`x`"]);
+    assert_contains(&refusal(r#"{ "report": { "x": 3 } }"#), &["report.x = 3: expected a name"]);
 }

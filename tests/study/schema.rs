@@ -41,7 +41,7 @@ fn a_complete_job_fits() {
     assert_eq!(problem(&job), None);
     let schema = schema();
     let mut parts = schema["properties"].as_object().unwrap().clone();
-    for part in ["name", "description", "preset", "grid"] {
+    for part in ["$schema", "name", "description", "preset", "damping", "grid", "report"] {
         assert!(parts.remove(part).is_some(), "{part}");
     }
     assert_same_fields(&schema, &json!({ "properties": parts }), &job, "");
@@ -86,6 +86,9 @@ fn wrong_names_and_types_are_rejected() {
         json!({ "grid": { "mu": { "from": 0.1, "to": 0.2 } } }),
         json!({ "grid": { "mu": { "from": 0.1, "to": 0.2, "count": 2, "step": 1 } } }),
         json!({ "grid": { "mu": { "from": 0.1, "to": 0.2, "count": 2, "spacing": "cubic" } } }),
+        json!({ "grid": { "mu": { "from": 0.1, "to": 0.2, "count": 2, "digits": 0 } } }),
+        json!({ "grid": { "mu": { "from": 0.1, "to": 0.2, "count": 2, "digits": 13 } } }),
+        json!({ "$schema": 3 }),
         json!({ "grid": { "nx": [2.5] } }),
         json!({ "grid": { "nx": [0] } }),
         json!({ "grid": { "elements": [[1, 2]] } }),
@@ -109,6 +112,8 @@ fn wrong_names_and_types_are_rejected() {
 fn every_form_of_axis_is_accepted() {
     for (study, points) in [
         (json!({}), 1),
+        (json!({ "$schema": "https://example.org/study.schema.json" }), 1),
+        (json!({ "grid": { "mu": { "from": 0.1, "to": 0.5, "step": 0.2, "digits": 3 } } }), 3),
         (json!({ "name": "a-B_1", "description": "x" }), 1),
         (
             json!({ "grid": { "mu": [0.1, 1], "nx": [2, 4], "stop_early": [true, false], "top": ["free_in_z"] } }),
@@ -121,6 +126,27 @@ fn every_form_of_axis_is_accepted() {
         assert_eq!(problem(&study), None, "{study}");
         assert_eq!(Study::parse(&study.to_string(), "x").unwrap().grid_size(), points, "{study}");
     }
+}
+
+/// Protects: an editor offers no fixed default for a time that depends on the pin.
+#[test]
+fn times_that_depend_on_the_pin_have_no_default() {
+    let schema = schema();
+    let mut found = 0;
+    for_each(&schema, "", &mut |part: &Value, at: &str| {
+        for name in ["limit_s", "decay_observation_s", "ramp_s"] {
+            assert_eq!(part.pointer(&format!("/default/{name}")), None, "{at}/{name}");
+            if let Some(field) = part.pointer(&format!("/properties/{name}"))
+                && !at.contains("grid")
+            {
+                assert_eq!(field.get("default"), None, "{at}/{name}");
+                let text: Vec<_> = field["description"].as_str().unwrap().split_whitespace().collect();
+                assert!(text.join(" ").contains("Absent in a study: 0.0"), "{at}/{name}");
+                found += 1;
+            }
+        }
+    });
+    assert_eq!(found, 3);
 }
 
 #[test]

@@ -1,26 +1,37 @@
 //! The files of a report.
 
+/// The hidden file that lists the files of a report.
+pub const LIST: &str = ".tribosweep-report";
+
 /// Every file of the report of a study over ω and μ, sorted.
-pub const REPORT: [&str; 21] = [
-    "figure7.csv",
-    "figure7.svg",
+pub const REPORT: [&str; 29] = [
+    LIST,
+    "bifurcation.csv",
+    "bifurcation.svg",
     "frequency.csv",
     "frequency.md",
     "frequency.svg",
     "frequency_map.csv",
     "frequency_map.svg",
+    "growth_rate.csv",
+    "growth_rate.svg",
     "jobs.csv",
     "mu_star.csv",
     "mu_star.md",
+    "mu_star.svg",
+    "mu_star_points.csv",
     "regime.csv",
     "regime.md",
     "regime_map.csv",
     "regime_map.svg",
+    "regime_plane.svg",
     "report.html",
     "report.md",
     "residuals.csv",
     "residuals.svg",
     "run_times.csv",
+    "scene.svg",
     "shares.csv",
     "shares.svg",
+    "track.svg",
 ];

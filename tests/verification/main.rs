@@ -26,6 +26,7 @@ mod held;
 mod hysteresis;
 mod integrator;
 mod invariance;
+mod locking;
 mod mode_coupling;
 mod modes;
 mod on_elastic_disk;

@@ -1,13 +1,15 @@
 //! The arguments of `tribosweep slurm`.
 
 use super::settings;
+use crate::cli::replace::Replacement;
+use crate::cli::study_args::StudyArgs;
 use std::path::PathBuf;
 
 /// Arguments of `slurm`.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Args {
-    /// The study file.
-    pub(super) study: PathBuf,
+    #[command(flatten)]
+    pub(super) study: StudyArgs,
     /// Number of workers, each of which is a task of the job array.
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(super) workers: u32,
@@ -30,6 +32,8 @@ pub(crate) struct Args {
     /// Folder for scripts, logs and results, which all nodes must see; default: STUDY.slurm.
     #[arg(long = "out", value_name = "FOLDER")]
     pub(super) folder: Option<PathBuf>,
+    #[command(flatten)]
+    pub(super) replacement: Replacement,
     /// Also submit the job array, by running the folder's submit.sh.
     #[arg(long)]
     pub(super) submit: bool,

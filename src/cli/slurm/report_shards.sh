@@ -17,7 +17,7 @@ if [ "${#shards[@]}" -gt 0 ]; then
     "$tribosweep" merge --db "$db" -- "${shards[@]}" || exit 2
 fi
 # This adds the rows of shards that were never started.
-"$tribosweep" submit --db "$db" -- "$study" || exit 2
+"$tribosweep" submit --db "$db" ${replace:+"$replace"} -- "$study" || exit 2
 if [ ! -e "$db-wal" ] && cp "$db" "$folder/.$merged.partial"; then
     mv -f "$folder/.$merged.partial" "$folder/$merged" || exit 2
 else

@@ -34,9 +34,15 @@ pub(crate) struct Scripts {
 
 impl Scripts {
     /// Creates the texts of the scripts; nothing is written.
-    pub(crate) fn new(args: &Args, name: &str, database: &Database, folder: &Path) -> Result<Self, CliError> {
+    pub(crate) fn new(
+        args: &Args,
+        study: &Path,
+        name: &str,
+        database: &Database,
+        folder: &Path,
+    ) -> Result<Self, CliError> {
         let folder = std::path::absolute(folder).map_err(|source| CliError::file(folder, source))?;
-        let study = std::path::absolute(&args.study).map_err(|source| CliError::file(&args.study, source))?;
+        let study = std::path::absolute(study).map_err(|source| CliError::file(study, source))?;
         let program = program();
         let workers = args.workers.to_string();
         let common = [
@@ -47,13 +53,14 @@ impl Scripts {
             ("workers", &workers),
         ];
         let mode = Mode::of(database);
+        let replace = ("replace", if args.replacement.is_wanted { "--replace" } else { "" });
         let script = |head: String, what: &str, own: &[(&str, &str)], body: &[&str]| {
             let settings = settings(common.iter().chain(own))?;
             let about = format!("# {what} of the study {name}; written by `tribosweep slurm`.\n");
             Ok::<_, CliError>(format!("{head}{about}\n{settings}{}", body.concat()))
         };
         let array = sbatch(args, name, Some(args.workers));
-        let own = [mode.database, mode.waiting, ("starts", STARTS)];
+        let own = [mode.database, mode.waiting, ("starts", STARTS), replace];
         let texts = [
             (WORKERS, script(array, "A worker", &own, &[include_str!("stop.sh"), mode.work])?),
             (
@@ -61,7 +68,7 @@ impl Scripts {
                 script(
                     sbatch(args, name, None),
                     "The report",
-                    &[mode.database],
+                    &[mode.database, replace],
                     &[include_str!("report.sh"), mode.report],
                 )?,
             ),
@@ -70,7 +77,7 @@ impl Scripts {
                 script(
                     BASH.to_owned(),
                     "Submits the workers and the report",
-                    &[("db", mode.url)],
+                    &[("db", mode.url), replace],
                     &[include_str!("submit.sh")],
                 )?,
             ),

@@ -21,7 +21,7 @@ if [ -z "$db" ] && [ -e jobs ]; then
     [ -z "$alive" ] || fail "array $earlier of this folder has not ended: wait for it, or scancel $earlier"
 fi
 if [ -n "$db" ]; then
-    "$tribosweep" submit --db "$db" -- "$study" || fail "the study was not planned, and nothing was submitted to Slurm"
+    "$tribosweep" submit --db "$db" ${replace:+"$replace"} -- "$study" || fail "the study was not planned, and nothing was submitted to Slurm"
 else
     "$tribosweep" validate -- "$study" || fail "nothing was submitted to Slurm"
 fi

@@ -13,7 +13,9 @@ if [ ! -O "$node_folder" ] || ! mkdir -p "$folder/shards"; then
     exit 2
 fi
 
-plan() { uninterrupted "$tribosweep" submit --db "$db" --shard "$((SLURM_ARRAY_TASK_ID + 1))/$workers" -- "$study"; }
+plan() {
+    uninterrupted "$tribosweep" submit --db "$db" --shard "$((SLURM_ARRAY_TASK_ID + 1))/$workers" ${replace:+"$replace"} -- "$study"
+}
 
 # Takes the newer one of the database on this node and the copy in the shared folder. A copy has the time of its original,
 # so the clock of the file server does not matter. A killed worker leaves its last changes in the -wal file.
@@ -41,7 +43,7 @@ store_shard() {
 
 say "worker for shard $((SLURM_ARRAY_TASK_ID + 1)) of $workers of $name on $(hostname)"
 if ! fetch_shard || ! plan; then
-    say "the database of the shard cannot be opened"
+    say "the shard was not planned; the lines above say why"
     exit 2
 fi
 while [ -z "$reason" ]; do

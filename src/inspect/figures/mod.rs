@@ -2,6 +2,7 @@
 
 mod face;
 mod histories;
+mod loops;
 mod overlay;
 mod snapshots;
 mod style;
@@ -33,14 +34,30 @@ pub struct InspectionFigure {
 /// # Errors
 /// The first figure that could not be drawn or written.
 pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<Vec<InspectionFigure>, PublishError> {
+    let mut figures = Vec::new();
+    for (stem, heading, caption, data, draw) in of_nodes(inspection).into_iter().chain(of_all(inspection)) {
+        let name = format!("{stem}.svg");
+        let svg = draw().map_err(|source| PublishError::Figure { path: folder.path_of(&name), source })?;
+        folder.write_text(&name, &svg)?;
+        figures.push(InspectionFigure { stem, heading, caption, data, svg });
+    }
+    Ok(figures)
+}
+
+/// A figure before it is drawn: stem, heading, caption, data, drawing.
+type Part<'a> = (&'static str, &'static str, String, Vec<String>, Drawing<'a>);
+
+fn only(names: &[&str]) -> Vec<String> {
+    names.iter().map(|&name| name.to_owned()).collect()
+}
+
+/// The figures of the motion of nodes.
+fn of_nodes(inspection: &Inspection) -> Vec<Part<'_>> {
     let histories: Vec<String> =
         inspection.observed.iter().map(|observed| format!("node_{}.csv", observed.node.name)).collect();
-    let with = |more: &[&str]| -> Vec<String> {
-        histories.iter().cloned().chain(more.iter().map(|&name| name.to_owned())).collect()
-    };
-    let only = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
+    let with = |more: &[&str]| -> Vec<String> { histories.iter().cloned().chain(only(more)).collect() };
     let mu = inspection.spec.scene.contact.mu;
-    let parts: [(&'static str, &'static str, String, Vec<String>, Drawing); 9] = [
+    vec![
         (
             "figure2a",
             "Displacements and velocity",
@@ -86,6 +103,12 @@ pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<Vec<Inspect
             with(&["instants.csv"]),
             Box::new(|| stack(&histories::cycles(inspection))),
         ),
+    ]
+}
+
+/// The figures of the pin, of its contact face and of forces.
+fn of_all(inspection: &Inspection) -> Vec<Part<'_>> {
+    vec![
         (
             "figure5",
             "Snapshots",
@@ -105,6 +128,16 @@ pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<Vec<Inspect
             Box::new(|| stack(&[face::waves(inspection)])),
         ),
         (
+            "loops",
+            "Hysteresis loops",
+            "Friction force over the slip and over the displacement of the observed nodes in the last cycles, and of the \
+             whole contact face in one cycle. The area under friction over slip is the energy that friction dissipates. \
+             The area inside friction over displacement is the energy that friction gives to the pin."
+                .to_owned(),
+            only(&["loops.csv"]),
+            Box::new(|| stack(&loops::loops(inspection))),
+        ),
+        (
             "totals",
             "Total forces",
             "Total normal contact force N and tangential force T at the clamp: the whole run, and the last cycles \
@@ -120,15 +153,7 @@ pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<Vec<Inspect
             only(&["spectrum.csv"]),
             Box::new(|| stack(&[totals::spectrum(inspection)])),
         ),
-    ];
-    let mut figures = Vec::new();
-    for (stem, heading, caption, data, draw) in parts {
-        let name = format!("{stem}.svg");
-        let svg = draw().map_err(|source| PublishError::Figure { path: folder.path_of(&name), source })?;
-        folder.write_text(&name, &svg)?;
-        figures.push(InspectionFigure { stem, heading, caption, data, svg });
-    }
-    Ok(figures)
+    ]
 }
 
 type Drawing<'a> = Box<dyn Fn() -> Result<String, FigureError> + 'a>;

@@ -21,6 +21,15 @@ pub(super) fn csv(text: &str) -> String {
     format!("data:text/csv;charset=utf-8,{}", utf8_percent_encode(text, CODED))
 }
 
+/// What is coded in the path of a file: all bytes but letters, digits and these.
+const CODED_IN_PATHS: &AsciiSet =
+    &NON_ALPHANUMERIC.remove(b'-').remove(b'_').remove(b'.').remove(b'~').remove(b'/');
+
+/// The address of a file beside a page, from its relative path.
+pub(super) fn of_path(path: &str) -> String {
+    utf8_percent_encode(path, CODED_IN_PATHS).to_string()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -9,6 +9,9 @@
 //! inserted as they are. Without the script the browser shows the same tooltips after a delay.
 
 mod data_uri;
+mod sheet;
+
+pub use sheet::sheet;
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -91,6 +94,11 @@ pub fn download(file: &str, csv: &str) -> Markup {
     html! { a.download download=(file) href=(data_uri::csv(csv)) { (file) } }
 }
 
+/// The address of a file beside the page, from its relative path.
+pub fn address(path: &str) -> String {
+    data_uri::of_path(path)
+}
+
 /// A table in a box, in which it scrolls if the page is narrow. The first cell of a line is its heading.
 pub fn table(header: &[String], lines: &[Vec<Markup>]) -> Markup {
     html! {
@@ -109,6 +117,11 @@ pub fn table(header: &[String], lines: &[Vec<Markup>]) -> Markup {
             }
         }
     }
+}
+
+/// As [`table`], but its cells may be broken into lines.
+pub fn wrapping_table(header: &[String], lines: &[Vec<Markup>]) -> Markup {
+    html! { div.wrapping { (table(header, lines)) } }
 }
 
 /// The main numbers: name, value, and a note that may be empty.

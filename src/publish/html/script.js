@@ -43,7 +43,8 @@
     hits.forEach((hit, index) => {
       // With the title, the browser would show a second tooltip.
       const title = hit.querySelector("title");
-      hit.setAttribute("aria-label", title.textContent);
+      const more = hit.dataset.page ? "\nclick: what happens in this job" : "";
+      hit.setAttribute("aria-label", title.textContent + more);
       hit.setAttribute("role", "img");
       hit.setAttribute("tabindex", index ? "-1" : "0");
       title.remove();
@@ -57,9 +58,19 @@
     }
     group.addEventListener("pointerout", (event) => { if (event.pointerType !== "touch") hide(); });
     group.addEventListener("focusout", hide);
+    // A mark may lead to a page of its own. The first touch shows the tooltip only.
+    const open = (event) => {
+      const hit = hitOf(event);
+      if (hit && hit.dataset.page && !(event.pointerType === "touch" && hit !== touched)) location.href = hit.dataset.page;
+    };
+    let touched = null;
+    let before = null;
+    group.addEventListener("pointerdown", () => { touched = before; }, { capture: true });
+    group.addEventListener("click", (event) => { open(event); before = hitOf(event); });
     group.addEventListener("keydown", (event) => {
       const step = { ArrowRight: 1, ArrowDown: 1, ArrowLeft: -1, ArrowUp: -1 }[event.key];
       if (event.key === "Escape") hide();
+      if (event.key === "Enter") open(event);
       const next = step && hits[hits.indexOf(hitOf(event)) + step];
       if (!next) return;
       event.preventDefault();
@@ -70,6 +81,21 @@
   }
   for (const box of document.querySelectorAll(".scroll")) {
     const markOverflow = () => box.classList.toggle("more", box.scrollLeft + box.clientWidth < box.scrollWidth - 2);
+    const caption = box.parentElement.querySelector("figcaption");
+    if (caption) {
+      // A wide figure can also be seen as a whole, with small text.
+      const fit = document.createElement("button");
+      fit.type = "button";
+      fit.className = "fit";
+      const label = () => {
+        fit.textContent = box.classList.contains("whole") ? "large text, scroll sideways" : "fit to the screen";
+      };
+      fit.addEventListener("click", () => { box.classList.toggle("whole"); label(); markOverflow(); });
+      label();
+      caption.prepend(fit);
+      const offer = () => { fit.hidden = !box.classList.contains("whole") && box.scrollWidth <= box.clientWidth + 2; };
+      new ResizeObserver(offer).observe(box);
+    }
     box.addEventListener("scroll", markOverflow, { passive: true });
     new ResizeObserver(markOverflow).observe(box);
   }

@@ -48,14 +48,6 @@ impl Axis {
         Self::Linear(low - widen - margin..high + widen + margin)
     }
 
-    /// The position of a value on this axis, in the units of the axis; none if it is not on it.
-    pub fn position(&self, value: &Value) -> Option<f64> {
-        match self {
-            Self::Names(names) => names.iter().position(|name| *name == value::text(value)).map(|i| i as f64),
-            _ => value.as_f64(),
-        }
-    }
-
     fn ticks(&self) -> Vec<f64> {
         match self {
             Self::Log(range) => log_ticks(range),

@@ -130,6 +130,17 @@ pub fn frame(chart: &Chart) -> Result<(), DrawError> {
     area.draw(&PathElement::new([(0, 0), (right, 0), (right, bottom)], BLACK.stroke_width(2)))
 }
 
+/// Draws the frame around a chart on all sides, for a chart without an axis below.
+///
+/// # Errors
+/// Those of the drawing library.
+pub fn whole_frame(chart: &Chart) -> Result<(), DrawError> {
+    let area = chart.plotting_area().strip_coord_spec();
+    let (right, bottom) = (area.dim_in_pixel().0 as i32 - 1, area.dim_in_pixel().1 as i32 - 1);
+    let corners = [(0, 0), (right, 0), (right, bottom), (0, bottom), (0, 0)];
+    area.draw(&PathElement::new(corners, BLACK.stroke_width(2)))
+}
+
 /// Fills a rectangle from its upper left to its lower right corner.
 ///
 /// # Errors

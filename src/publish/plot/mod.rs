@@ -7,9 +7,10 @@ pub mod axis;
 pub mod canvas;
 pub mod palette;
 pub mod panel;
+pub mod sketch;
 pub mod tooltip;
 
-use plotters::prelude::RGBColor;
+pub use plotters::prelude::RGBColor;
 
 /// An error of the drawing library.
 pub type DrawError = plotters::drawing::DrawingAreaErrorKind<std::io::Error>;

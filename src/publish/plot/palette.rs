@@ -45,6 +45,11 @@ pub fn sequential(share: f64) -> RGBColor {
     mix(from, to, share)
 }
 
+/// The colour of a value on both sides of zero, from −1 (blue) over 0 (white) to 1 (vermillion).
+pub fn diverging(share: f64) -> RGBColor {
+    mix(WHITE, if share < 0.0 { BLUE } else { VERMILLION }, share.abs().min(1.0))
+}
+
 /// A colour between two: `from` for a share of 0 and `to` for a share of 1.
 pub fn mix(from: RGBColor, to: RGBColor, share: f64) -> RGBColor {
     let channel = |a: u8, b: u8| (f64::from(a) + share * (f64::from(b) - f64::from(a))).round() as u8;

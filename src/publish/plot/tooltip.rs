@@ -62,7 +62,7 @@ pub fn append(svg: &str, targets: &[TooltipTarget]) -> String {
 }
 
 /// Text for XML, in an element or an attribute.
-fn escape(text: &str) -> String {
+pub(super) fn escape(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in text.chars() {
         match c {

@@ -80,6 +80,14 @@ fn check_path(path: &Path) -> Result<(), QueueError> {
     Ok(())
 }
 
+/// Checks whether a database can be created at `path`, without creating it.
+pub(in crate::queue) fn check_new(path: &Path) -> Result<(), QueueError> {
+    let path = resolve(path)?;
+    check_path(&path)?;
+    let folder = path.parent().unwrap_or(Path::new("/"));
+    tempfile::tempfile_in(folder).map(drop).map_err(|source| QueueError::File { path, source })
+}
+
 /// Whether the database file and files beside it can be written.
 pub(in crate::queue) fn is_writable(path: &Path) -> bool {
     let refused = |error: &std::io::Error| {

@@ -2,21 +2,32 @@
 
 #![expect(clippy::cast_possible_wrap, reason = "pixels and legend lines: thousands, not billions")]
 
+mod band;
+mod bifurcation;
 mod chart;
 mod colour_key;
 mod data;
+mod growth;
 mod legend;
 mod map;
 mod marker;
+mod panels;
+mod places;
+mod plane;
 pub(super) mod residuals;
 mod shares;
+mod style;
+pub(super) mod waterfall;
 
-use super::layout::{Group, Layout};
+use super::layout::{Layout, MAX_TOOLTIPS};
 use super::row::JobRow;
+use super::scalar::{FREQUENCY, MU_STAR, Scalar};
+use super::spectra::Spectra;
+use super::view::View;
 use crate::publish::FigureError;
-use crate::publish::value;
-use data::Ordinate;
-use std::collections::HashSet;
+use panels::MAX_PANELS;
+use std::borrow::Cow;
+use std::ops::Range;
 
 /// What a figure shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,37 +42,76 @@ pub enum Plot {
     FrequencyMap,
     /// Shares of stick, slip and separation over the disk speed, for each friction coefficient.
     Shares,
+    /// Range of the normal force and amplitudes of nodes over the disk speed.
+    Bifurcation,
+    /// Contact regimes on true axes of disk speed and friction coefficient.
+    RegimePlane,
+    /// Growth rates of steady sliding on the same axes.
+    GrowthRate,
+    /// Stored spectra of the normal force over the disk speed.
+    Waterfall,
+    /// Another number of the record, over the disk speed.
+    Of(&'static Scalar),
 }
 
 /// A file with the data behind a figure.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct DataFile {
     /// Its name without the ending.
-    pub stem: &'static str,
+    pub stem: Cow<'static, str>,
     /// The fields of the export that it has, besides the parameters and the status.
-    pub columns: &'static [&'static str],
+    pub columns: Cow<'static, [&'static str]>,
+}
+
+impl DataFile {
+    const fn new(stem: &'static str, columns: &'static [&'static str]) -> Self {
+        Self { stem: Cow::Borrowed(stem), columns: Cow::Borrowed(columns) }
+    }
 }
 
 /// The data behind the figure of residuals.
-pub(super) const RESIDUALS: DataFile =
-    DataFile { stem: "residuals", columns: &["energy_residual", "identity_residual"] };
+pub(super) const RESIDUALS: DataFile = DataFile::new("residuals", &["energy_residual", "identity_residual"]);
 /// The data behind the statistics of run times.
 pub(super) const RUN_TIMES: DataFile =
-    DataFile { stem: "run_times", columns: &["wall_s", "steps", "simulated_s", "time_step_s"] };
+    DataFile::new("run_times", &["wall_s", "steps", "simulated_s", "time_step_s"]);
+
+/// The columns behind the bifurcation diagram.
+const BIFURCATION: [&str; 6] = [
+    "n_over_f_min",
+    "n_over_f_max",
+    "front_centre_y_peak_to_peak_m",
+    "rear_centre_y_peak_to_peak_m",
+    "lift_max_m",
+    "regime",
+];
 
 impl Plot {
-    /// All of them.
-    pub const ALL: [Self; 5] =
-        [Self::MuStar, Self::Frequency, Self::RegimeMap, Self::FrequencyMap, Self::Shares];
+    /// Those of every report.
+    pub const ALL: [Self; 9] = [
+        Self::MuStar,
+        Self::Frequency,
+        Self::RegimeMap,
+        Self::FrequencyMap,
+        Self::Shares,
+        Self::Bifurcation,
+        Self::RegimePlane,
+        Self::GrowthRate,
+        Self::Waterfall,
+    ];
 
     /// The name of its files without the ending.
     pub fn stem(self) -> &'static str {
         match self {
-            Self::MuStar => "figure7",
+            Self::MuStar => "mu_star",
             Self::Frequency => "frequency",
             Self::RegimeMap => "regime_map",
             Self::FrequencyMap => "frequency_map",
             Self::Shares => "shares",
+            Self::Bifurcation => "bifurcation",
+            Self::RegimePlane => "regime_plane",
+            Self::GrowthRate => "growth_rate",
+            Self::Waterfall => "waterfall",
+            Self::Of(scalar) => scalar.name,
         }
     }
 
@@ -69,76 +119,125 @@ impl Plot {
     pub(super) fn data(self) -> DataFile {
         match self {
             Self::MuStar => {
-                DataFile { stem: "figure7", columns: &["mu_star", "mu_star_se", "mu_star_contact", "regime"] }
+                DataFile::new("mu_star_points", &["mu_star", "mu_star_se", "mu_star_contact", "regime"])
             }
             Self::Frequency | Self::FrequencyMap => {
-                DataFile { stem: "frequency_map", columns: &["frequency_hz", "regime"] }
+                DataFile::new("frequency_map", &["frequency_hz", "regime"])
             }
-            Self::RegimeMap => DataFile { stem: "regime_map", columns: &["regime", "error"] },
-            Self::Shares => DataFile {
-                stem: "shares",
-                columns: &["stick_share", "slip_share", "separated_share", "regime"],
+            Self::RegimeMap | Self::RegimePlane => DataFile::new("regime_map", &["regime", "error"]),
+            Self::Shares => {
+                DataFile::new("shares", &["stick_share", "slip_share", "separated_share", "regime"])
+            }
+            Self::Bifurcation => DataFile::new("bifurcation", &BIFURCATION),
+            Self::GrowthRate => DataFile::new("growth_rate", &["growth_rate_per_s", "regime"]),
+            // The lines of the spectra are in a file of their own; these columns are those of the dots.
+            Self::Waterfall => DataFile::new("frequency_map", &["frequency_hz", "regime"]),
+            Self::Of(scalar) => DataFile {
+                stem: format!("{}_points", scalar.name).into(),
+                columns: vec![scalar.name, "regime"].into(),
             },
         }
     }
 
     /// What it shows, in words.
-    pub fn title(self) -> &'static str {
+    pub fn title(self) -> Cow<'static, str> {
         match self {
-            Self::MuStar => "macroscopic friction coefficient μ*",
-            Self::Frequency => "frequency",
-            Self::RegimeMap => "contact regimes",
-            Self::FrequencyMap => "map of frequencies",
-            Self::Shares => "shares of stick, slip and separation",
+            Self::MuStar => "macroscopic friction coefficient μ*".into(),
+            Self::Frequency => "frequency".into(),
+            Self::RegimeMap => "contact regimes".into(),
+            Self::FrequencyMap => "map of frequencies".into(),
+            Self::Shares => "shares of stick, slip and separation".into(),
+            Self::Bifurcation => "bifurcation diagram: range of N/F and amplitudes".into(),
+            Self::RegimePlane => "contact regimes on true axes".into(),
+            Self::GrowthRate => "growth rates of steady sliding".into(),
+            Self::Waterfall => "spectra of the normal force".into(),
+            Self::Of(scalar) => scalar.title().into(),
         }
+    }
+
+    /// Why a study has no figure of this kind, in a sentence; none if it has.
+    pub(super) fn absence(self, layout: &Layout, spectra: &Spectra) -> Option<&'static str> {
+        let has_spectrum =
+            |group: &super::layout::Group| group.jobs.iter().any(|job| spectra.contains_key(&job.row.job));
+        match self {
+            Self::RegimePlane | Self::GrowthRate if !plane::exists(layout) => {
+                Some("There is no map on true axes, because an axis has names and no numbers.")
+            }
+            Self::Waterfall if !layout.groups.iter().any(has_spectrum) => Some(
+                "There is no waterfall of spectra, because no spectrum is stored. `tribosweep inspect STUDY --all --only \
+                 spectrum` stores them; write the report again afterwards.",
+            ),
+            _ => None,
+        }
+    }
+
+    /// Whether it can show measured points beside jobs.
+    pub(super) fn shows_measured(self) -> bool {
+        matches!(self, Self::MuStar | Self::Frequency | Self::Of(_))
     }
 }
 
-/// One figure: the jobs with one combination of the further parameters.
-#[derive(Debug, Clone, PartialEq)]
+/// One figure: a panel for each of some combinations of the further parameters.
+#[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Figure {
-    /// The part of its file name that is unique to this combination, e.g. `-clamp_side-inner_side`; may be empty.
+    /// The part of its file name after the stem: empty for the first figure, then `-2`, `-3` …
     pub suffix: String,
-    /// The combination in words; may be empty.
+    /// Which combinations it shows; empty if there is only one figure.
     pub caption: String,
+    /// The combinations by their numbers.
+    pub groups: Range<usize>,
     /// The drawing as SVG.
     pub svg: String,
 }
 
-/// Draws one figure per combination of the further parameters.
+/// Draws the combinations of the further parameters, up to twelve in one figure, with the same axes and colours. There is no
+/// figure if the plot does not exist for these rows: a map on true axes needs numbers on both axes, and a waterfall needs
+/// stored spectra.
 ///
 /// # Errors
 /// [`FigureError`].
-pub fn figures(rows: &[JobRow], plot: Plot) -> Result<Vec<Figure>, FigureError> {
-    figures_of(&Layout::new(rows), plot)
+pub fn figures(rows: &[JobRow], view: &View, plot: Plot) -> Result<Vec<Figure>, FigureError> {
+    figures_of(&Layout::of(rows, view), plot, &Spectra::new())
 }
 
-pub(super) fn figures_of(layout: &Layout, plot: Plot) -> Result<Vec<Figure>, FigureError> {
-    let mut taken = HashSet::new();
-    let draw = |group: &Group| {
-        let svg = match plot {
-            Plot::MuStar => chart::draw(layout, group, Ordinate::MuStar),
-            Plot::Frequency => chart::draw(layout, group, Ordinate::Frequency),
-            Plot::RegimeMap => map::regimes(layout, group),
-            Plot::FrequencyMap => map::frequencies(layout, group),
-            Plot::Shares => shares::draw(layout, group),
-        }?;
-        Ok(Figure { suffix: unique_suffix(group, &mut taken), caption: group.caption(), svg })
+pub(super) fn figures_of(layout: &Layout, plot: Plot, spectra: &Spectra) -> Result<Vec<Figure>, FigureError> {
+    if plot.absence(layout, spectra).is_some() {
+        return Ok(Vec::new());
+    }
+    let of_sheet = match plot {
+        // The shares have a panel for each curve of each group.
+        Plot::Shares => (MAX_PANELS / layout.series.len().max(1)).max(1),
+        // These fill a sheet.
+        Plot::Bifurcation | Plot::RegimePlane | Plot::GrowthRate | Plot::Waterfall => 1,
+        _ => MAX_PANELS,
     };
-    layout.groups.iter().map(draw).collect()
-}
-
-/// Largest length of the part of a file name that comes from parameters. File systems allow 255 bytes in all.
-const MAX_SUFFIX: usize = 120;
-
-/// The combination as a part of a file name that is unique.
-fn unique_suffix(group: &Group, taken: &mut HashSet<String>) -> String {
-    let words: Vec<String> =
-        group.key.iter().map(|(name, value)| format!("-{name}-{}", value::text(value))).collect();
-    let slug: String = value::file_name_part(&words.concat()).chars().take(MAX_SUFFIX).collect();
-    let numbered = (2..).map(|n| format!("{slug}-{n}"));
-    std::iter::once(slug.clone())
-        .chain(numbered)
-        .find(|candidate| taken.insert(candidate.to_lowercase()))
-        .unwrap_or(slug)
+    let count = layout.groups.len();
+    let draw = |(number, groups): (usize, &[super::layout::Group])| {
+        let svg = match plot {
+            Plot::MuStar => chart::draw(layout, groups, &MU_STAR),
+            Plot::Frequency => chart::draw(layout, groups, &FREQUENCY),
+            Plot::Of(scalar) => chart::draw(layout, groups, scalar),
+            Plot::RegimeMap => map::regimes(layout, groups),
+            Plot::FrequencyMap => map::frequencies(layout, groups),
+            Plot::Shares => shares::draw(layout, groups),
+            Plot::Bifurcation => bifurcation::draw(layout, &groups[0]),
+            Plot::RegimePlane => plane::regimes(layout, &groups[0]),
+            Plot::GrowthRate => growth::draw(layout, &groups[0]),
+            Plot::Waterfall => waterfall::draw(layout, &groups[0], spectra),
+        }?;
+        let first = number * of_sheet;
+        let (suffix, caption) = if count <= of_sheet {
+            (String::new(), String::new())
+        } else {
+            let suffix = if number == 0 { String::new() } else { format!("-{}", number + 1) };
+            let caption = if of_sheet == 1 {
+                groups[0].caption()
+            } else {
+                format!("combinations {} to {} of {count}", first + 1, first + groups.len())
+            };
+            (suffix, caption)
+        };
+        Ok(Figure { suffix, caption, groups: first..first + groups.len(), svg })
+    };
+    layout.groups.chunks(of_sheet).enumerate().map(draw).collect()
 }

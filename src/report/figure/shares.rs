@@ -1,6 +1,8 @@
-//! The shares of stick, slip and separation in the time of all contact nodes: a panel for every friction coefficient.
+//! The shares of stick, slip and separation in the time of all contact nodes: a panel for every friction coefficient of
+//! every group.
 
 use super::colour_key::{self, KeyEntry, Swatch};
+use super::panels::{self, SMALL};
 use crate::analysis::JobRecord;
 use crate::publish::FigureError;
 use crate::publish::plot::axis::Axis;
@@ -8,8 +10,7 @@ use crate::publish::plot::canvas::{self, Area, Chart};
 use crate::publish::plot::tooltip::{Shape, TooltipTarget};
 use crate::publish::plot::{DrawError, FONT, MARGIN, TEXT, palette};
 use crate::publish::value;
-use crate::report::layout::{Group, Layout};
-use crate::report::parameters::OMEGA;
+use crate::report::layout::{Group, Layout, Series};
 use crate::report::row::JobRow;
 use crate::report::tooltip::tooltip_text;
 use plotters::chart::ChartBuilder;
@@ -23,10 +24,8 @@ use serde_json::Value;
 const LAYERS: [(&str, RGBColor); 3] =
     [("stick", palette::BLUE), ("slip", RGBColor(0xE0, 0xE0, 0xE0)), ("separated", palette::VERMILLION)];
 /// Height of a panel [px].
-const PANEL: u32 = 400;
+const PANEL: u32 = 426;
 const HEAD: u32 = 72;
-const TITLE: u32 = 54;
-const SMALL: i32 = 28;
 
 /// A job in a panel.
 struct Column<'a> {
@@ -38,13 +37,16 @@ struct Column<'a> {
     ends: [f64; 4],
 }
 
-/// Draws all panels of a group.
-pub(super) fn draw(layout: &Layout, group: &Group) -> Result<String, FigureError> {
-    let panels = layout.mus.len().max(1);
+/// Draws all panels of some groups.
+pub(super) fn draw(layout: &Layout, groups: &[Group]) -> Result<String, FigureError> {
+    let series: Vec<Option<&Series>> =
+        if layout.series.is_empty() { vec![None] } else { layout.series.iter().map(Some).collect() };
+    let panels = series.len() * groups.len();
     let columns = if panels <= 6 { panels.min(3) } else { 4 };
     let rows = panels.div_ceil(columns);
-    let caption = group.caption();
+    let caption = if let [group] = groups { group.caption() } else { String::new() };
     let height = canvas::caption_height(&caption) + HEAD + rows as u32 * PANEL + MARGIN as u32 + 40;
+    let has_tooltips = groups.iter().map(|group| group.jobs.len()).sum::<usize>() <= super::MAX_TOOLTIPS;
     canvas::sheet((canvas::WIDTH, height), |root| {
         let below = canvas::caption(root, &caption)?;
         let (head, below) = below.split_vertically(HEAD);
@@ -56,11 +58,15 @@ pub(super) fn draw(layout: &Layout, group: &Group) -> Result<String, FigureError
         colour_key::draw_row(&head, MARGIN + 90, 520, &entries)?;
         let parts = below.split_evenly((rows, columns));
         let mut targets = Vec::new();
-        for ((index, mu), part) in layout.mus.iter().enumerate().zip(&parts) {
-            targets.extend(draw_panel(part, layout, group, index, *mu)?);
+        let each = groups.iter().flat_map(|group| series.iter().enumerate().map(move |own| (group, own)));
+        for ((group, (index, series)), part) in each.zip(&parts) {
+            let own = series.map(|series| layout.series_name(series));
+            let of_group = Some(group.caption()).filter(|_| groups.len() > 1);
+            let title = of_group.into_iter().chain(own).collect::<Vec<_>>().join(", ");
+            targets.extend(draw_panel(part, layout, group, index, &title)?);
         }
         canvas::write(&foot, layout.axis_name(), (canvas::WIDTH as i32 / 2, 24), TEXT, HPos::Center)?;
-        Ok(if group.has_tooltips() { targets } else { Vec::new() })
+        Ok(if has_tooltips { targets } else { Vec::new() })
     })
 }
 
@@ -68,17 +74,16 @@ fn draw_panel(
     area: &Area,
     layout: &Layout,
     group: &Group,
-    index: usize,
-    mu: f64,
+    series: usize,
+    title: &str,
 ) -> Result<Vec<TooltipTarget>, DrawError> {
-    let x_axis = Axis::for_values(&group.axis_values, layout.axis == OMEGA);
-    let columns = columns(group, index, &x_axis);
+    let x_axis = layout.x_axis();
+    let columns = columns(layout, group, series, &x_axis);
     let width = area.dim_in_pixel().0 as i32;
     let names = if let Axis::Names(names) = &x_axis { names.len() } else { 1 };
     let x_text =
         canvas::fitting_size(x_axis.longest_label() + 1, (width - 120) / names.max(1) as i32).min(SMALL);
-    let (top, below) = area.split_vertically(TITLE);
-    canvas::write(&top, &format!("μ = {}", value::rounded(mu)), (width / 2 + 30, 30), TEXT, HPos::Center)?;
+    let below = panels::title(area, title, width / 2 + 30)?;
     let mut chart = ChartBuilder::on(&below)
         .margin_right(24)
         .margin_left(12)
@@ -106,15 +111,15 @@ fn draw_panel(
     Ok(targets(&chart, &columns))
 }
 
-fn columns<'a>(group: &'a Group, mu: usize, x_axis: &Axis) -> Vec<Column<'a>> {
+fn columns<'a>(layout: &Layout, group: &'a Group, series: usize, x_axis: &Axis) -> Vec<Column<'a>> {
     let mut columns: Vec<Column> = group
         .jobs
         .iter()
-        .filter(|job| job.mu_index == mu)
+        .filter(|job| job.series == series)
         .filter_map(|job| {
             let value = &group.axis_values[job.axis_index];
             let ends = ends(job.row.record()?)?;
-            Some(Column { row: job.row, at: job.axis_index, value, x: x_axis.position(value)?, ends })
+            Some(Column { row: job.row, at: job.axis_index, value, x: layout.position(x_axis, value)?, ends })
         })
         .collect();
     columns.sort_by_key(|column| column.at);

@@ -5,8 +5,10 @@ use crate::publish::{html, value};
 use crate::report::input::Report;
 use crate::report::layout::parameters_in_words;
 use crate::report::row::JobRow;
+use crate::report::scalar::FREQUENCY;
 use crate::report::summary::{self, Summary};
 use crate::report::tooltip::residual_text;
+use crate::report::{Discretisation, digits};
 use maud::{Markup, html};
 
 /// Warnings about missing and failed jobs, and the main numbers below them.
@@ -23,12 +25,17 @@ pub(super) fn summary(report: &Report) -> Markup {
         ),
     ];
     tiles.extend(drop_of_friction(rows));
+    tiles.extend(error_of_friction(rows));
     tiles.extend(frequencies(rows));
     tiles.extend(residuals(rows));
     html! {
         @if summary.missing() > 0 {
             (html::warning(&html! {
-                strong { "This report is incomplete: " (summary.missing()) " of " (summary.total) " jobs are missing" }
+                @let verb = if summary.missing() == 1 { "is" } else { "are" };
+                strong {
+                    "This report is incomplete: " (summary.missing()) " of " (value::count(summary.total, "job")) " " (verb)
+                    " missing"
+                }
                 " (" (summary.missing_in_words()) "). Figures and tables hold only the jobs that are done."
             }))
         }
@@ -50,12 +57,42 @@ type Tile = (&'static str, String, String);
 fn drop_of_friction(rows: &[JobRow]) -> Option<Tile> {
     let ratio = |row: &JobRow| Some(row.record()?.mu_star / row.mu).filter(|ratio| ratio.is_finite());
     let ratios = rows.iter().filter_map(|row| Some((ratio(row)?, row)));
-    let (ratio, row) = ratios.min_by(|a, b| a.0.total_cmp(&b.0))?;
-    Some(("lowest μ*/μ", value::fixed(ratio, 3), parameters_in_words(row)))
+    let (_, row) = ratios.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some(("lowest μ*/μ", digits::ratio(row, row.record()?), parameters_in_words(row)))
+}
+
+/// The largest error of μ\* that mesh and step make, or that it is not measured.
+fn error_of_friction(rows: &[JobRow]) -> Option<Tile> {
+    let done = || rows.iter().filter(|row| row.record().is_some());
+    let errors: Vec<Option<f64>> =
+        done().map(|row| Some(row.discretisation.error()?.mu_star_relative)).collect();
+    if errors.is_empty() {
+        return None;
+    }
+    let Some(largest) = errors.iter().flatten().copied().max_by(f64::total_cmp) else {
+        return Some(("error of mesh and step", "not measured".to_owned(), String::new()));
+    };
+    let is_indicative = |row: &JobRow| matches!(row.discretisation, Discretisation::Indicative(_));
+    let note = if errors.contains(&None) {
+        "of μ*; in some jobs not measured"
+    } else if done().all(is_indicative) {
+        "of μ*, indicative: of another scene, friction or speed"
+    } else if done().any(is_indicative) {
+        "of μ*; indicative in some jobs"
+    } else {
+        "of μ*, measured on this scene"
+    };
+    Some((
+        "error of mesh and step",
+        format!("≤ {} %", value::significant(100.0 * largest, 2)),
+        note.to_owned(),
+    ))
 }
 
 fn frequencies(rows: &[JobRow]) -> Option<Tile> {
-    let found = rows.iter().filter_map(|row| row.record()?.frequency_hz).filter(|f| f.is_finite());
+    // The mean rate of a run that is not periodic is no frequency of a limit cycle.
+    let settled = rows.iter().filter(|row| !row.is_measured() && FREQUENCY.is_settled(row));
+    let found = settled.filter_map(|row| FREQUENCY.value(row));
     let (low, high) =
         found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), f| (low.min(f), high.max(f)));
     let [low_khz, high_khz] = [low, high].map(|f| value::fixed(f / 1e3, 1));

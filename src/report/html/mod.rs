@@ -3,11 +3,14 @@
 //! The page contains all drawings, tables and the data behind them. If a study is too large for that, the page shows a
 //! part of it, says what is left out, and names the files that have it.
 
+mod comparison;
 mod grids;
 mod head;
 mod parts;
 mod provenance;
+mod scene;
 mod trouble;
+mod warnings;
 
 pub(super) use parts::Parts;
 
@@ -17,18 +20,28 @@ use maud::{Markup, html};
 /// The page.
 pub(super) fn page(parts: &Parts) -> String {
     let report = parts.report;
-    let mut sections: Vec<(&str, &str, Markup)> = vec![
+    let mut sections: Vec<(&str, &str, Markup)> = Vec::new();
+    sections.extend(parts.comparison.map(|found| ("comparison", "Comparison", comparison::section(found))));
+    sections.extend(report.sheet.map(|sheet| ("scene", "What was simulated", scene::section(sheet))));
+    sections.extend([
         ("friction", "Macroscopic friction", grids::friction(parts)),
         ("frequency", "Frequency", grids::frequency(parts)),
         ("regimes", "Contact regimes", grids::regimes(parts)),
+        ("bifurcation", "Amplitudes", grids::bifurcation(parts)),
         ("shares", "Stick, slip and separation", grids::shares(parts)),
-        ("residuals", "Residuals", grids::residuals(parts)),
-    ];
+    ]);
+    let quantities =
+        report.view.y.iter().map(|scalar| (scalar.name, scalar.meaning, grids::quantity(parts, scalar)));
+    sections.extend(quantities);
+    sections.push(("residuals", "Residuals", grids::residuals(parts)));
     sections.extend(trouble::section(report.rows).map(|content| ("trouble", "Trouble", content)));
     sections.push(("times", "Run times", grids::times(parts)));
     sections.extend(report.provenance.map(|from| ("provenance", "Provenance", provenance::section(from))));
     let body = html! {
+        @if let Some(description) = report.description { p.description { (description) } }
         (head::summary(report))
+        (warnings::list(report.warnings))
+        (scene::errors(report.rows))
         (html::navigation(sections.iter().map(|(id, heading, _)| (*id, *heading))))
         @for (id, heading, content) in &sections { (html::section(id, heading, content)) }
         (head::foot(report))

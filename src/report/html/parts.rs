@@ -1,15 +1,34 @@
 //! What the page is made from.
 
+use crate::report::comparison::Comparison;
 use crate::report::figure::{Figure, Plot};
 use crate::report::input::Report;
 use crate::report::layout::Layout;
+use crate::report::spectra::Spectra;
+use std::collections::HashMap;
 
 /// What the page is made from.
 pub(in crate::report) struct Parts<'a> {
     pub report: &'a Report<'a>,
+    /// All rows: jobs and measured points.
     pub layout: &'a Layout<'a>,
-    /// The figures of every kind, one for each group.
+    /// The jobs alone, for figures that cannot show measured points.
+    pub jobs: &'a Layout<'a>,
+    /// The figures of every kind.
     pub figures: &'a [(Plot, Vec<Figure>)],
+    /// The differences between several sources.
+    pub comparison: Option<&'a Comparison>,
     /// The figure of residuals, as SVG.
     pub residuals: &'a str,
+    /// The stored spectra of jobs.
+    pub spectra: &'a Spectra,
+    /// For jobs that were inspected, the address of the page, relative to the folder of the report.
+    pub pages: HashMap<String, String>,
+}
+
+impl<'a> Parts<'a> {
+    /// The rows that the figures of a kind show.
+    pub fn layout_of(&self, plot: Plot) -> &'a Layout<'a> {
+        if plot.shows_measured() { self.layout } else { self.jobs }
+    }
 }

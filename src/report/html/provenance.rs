@@ -15,7 +15,7 @@ pub(super) fn section(provenance: &Provenance) -> Markup {
     html! {
         @for warning in &warnings { (html::warning(&html! { (warning) })) }
         p { "Submitted " (value::utc_minute(provenance.submitted_ms)) "." }
-        @if lines.is_empty() { p { "There are no results yet." } } @else { (html::table(&header, &lines)) }
+        @if lines.is_empty() { p { "There are no results yet." } } @else { (html::wrapping_table(&header, &lines)) }
         (html::details("The study as it was submitted", &html! { pre { code { (provenance.document) } } }))
     }
 }

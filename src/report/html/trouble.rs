@@ -2,6 +2,7 @@
 
 use crate::analysis::Outcome;
 use crate::publish::{html, value};
+use crate::report::digits;
 use crate::report::layout::parameters_in_words;
 use crate::report::row::{JobRow, RowState};
 use crate::report::tooltip::short_key;
@@ -61,8 +62,8 @@ fn not_periodic(row: &JobRow) -> Option<Markup> {
     let why = trouble::cause(row)?.why;
     Some(html! {
         span.words {
-            (why) "; after " (value::significant(record.simulated_s, 4)) " s μ* = " (value::fixed(record.mu_star, 4)) " ± "
-            (value::fixed(record.mu_star_se, 4)) " over " (record.cycles) " cycles"
+            (why) "; after " (value::quantity(record.simulated_s, "s")) " μ* = " (digits::mu_star_with_error(row, record))
+            " over " (record.cycles) " cycles"
         }
     })
 }

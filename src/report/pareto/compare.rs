@@ -3,6 +3,7 @@
 use super::case::Case;
 use super::done::DoneJob;
 use super::error::ParetoError;
+use crate::publish::value::count;
 use crate::report::row::JobRow;
 
 /// All physical cases with at least two finished jobs.
@@ -45,7 +46,11 @@ pub fn compare(rows: &[JobRow]) -> Result<Comparison<'_>, ParetoError> {
             let jobs: Vec<DoneJob> = part.iter().filter_map(|row| DoneJob::of(row)).collect();
             if jobs.len() < 2 {
                 let words = super::settings::physics_in_words(part[0]);
-                comparison.left_out.push(format!("{words}: {} of {} jobs done", jobs.len(), part.len()));
+                comparison.left_out.push(format!(
+                    "{words}: {} of {} done",
+                    jobs.len(),
+                    count(part.len(), "job")
+                ));
             } else {
                 comparison.cases.push(Case::new(jobs, &part, by_damping));
             }

@@ -5,7 +5,7 @@
 pub enum ParetoError {
     /// Too few results.
     #[error(
-        "{done} of {jobs} jobs are done: expected at least two done jobs of one physical case; \
+        "jobs done: {done} of {jobs}; expected at least two done jobs of one physical case; \
          finish the study with `tribosweep run` first"
     )]
     TooFewDone {
@@ -22,7 +22,7 @@ pub enum ParetoError {
     NoNumerics,
     /// Every physical case has a single job.
     #[error(
-        "no two of the {done} done jobs are the same physical case: expected a study that varies numerics \
+        "no two of the done jobs ({done}) are the same physical case: expected a study that varies numerics \
          (elements, safety_factor, time_step_s, beta2, stop_early, tolerance …) at fixed physics"
     )]
     OneJobACase {
@@ -31,7 +31,7 @@ pub enum ParetoError {
     },
     /// No run times.
     #[error(
-        "none of the {done} done jobs has a run time (wall_s): expected one per job to compare errors with"
+        "none of the done jobs ({done}) has a run time (wall_s): expected one per job to compare errors with"
     )]
     NoRunTimes {
         /// Jobs with a result.

@@ -55,7 +55,7 @@ use std::path::{Path, PathBuf};
 /// # Errors
 /// The first file that could not be written.
 pub fn write(comparison: &Comparison, out_dir: &Path, title: &str) -> Result<Vec<PathBuf>, PublishError> {
-    let mut folder = Folder::create(out_dir)?;
+    let mut folder = Folder::create(out_dir, "pareto")?;
     let mut figures = Vec::new();
     for (index, case) in comparison.cases.iter().enumerate() {
         let name = if index == 0 { "pareto.svg".to_owned() } else { format!("pareto-{}.svg", index + 1) };
@@ -67,5 +67,5 @@ pub fn write(comparison: &Comparison, out_dir: &Path, title: &str) -> Result<Vec
     folder.write_with("pareto.csv", |out| csv::write(comparison, out))?;
     folder.write_with("refinement.csv", |out| csv::write_refinement(comparison, out))?;
     folder.write_text("pareto.md", &page::page(comparison, &figures, title))?;
-    Ok(folder.written)
+    folder.finish(|_| false)
 }

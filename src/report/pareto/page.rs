@@ -47,8 +47,9 @@ fn body(case: &Case) -> String {
         String::new()
     } else {
         format!(
-            "**Incomplete**: {} jobs are not done and {} failed; the reference is the finest of those that are done.\n\n",
-            case.waiting, case.failed
+            "**Incomplete**: {} not done and {} failed; the reference is the finest of those that are done.\n\n",
+            value::count(case.waiting, "job"),
+            case.failed
         )
     };
     [incomplete, reference_in_words(case), jobs_table(case), LEGEND.to_owned(), early_table(case)].concat()

@@ -2,7 +2,7 @@
 
 use super::cause::Cause;
 use crate::publish::value;
-use crate::report::parameters::{MU, OMEGA, assignment, is_further};
+use crate::report::parameters::{MU, OMEGA, assignment, is_further, range};
 use serde_json::Value;
 use std::cmp::Reverse;
 use std::collections::{BTreeMap, HashMap};
@@ -202,9 +202,7 @@ impl Grid {
             let [first, last] = [&axis.values[low], &axis.values[high]];
             match axis.name.as_str() {
                 _ if low == high => assignment(&axis.name, first),
-                OMEGA => format!("ω = {} … {} rpm", value::rounded_text(first), value::rounded_text(last)),
-                MU => format!("μ = {} … {}", value::rounded_text(first), value::rounded_text(last)),
-                name => format!("{name} = {} … {}", value::rounded_text(first), value::rounded_text(last)),
+                name => range(name, first, last),
             }
         });
         words.collect::<Vec<_>>().join(", ")

@@ -10,6 +10,7 @@ pub use cause::{Cause, cause};
 pub use grid::{Grid, Region, Regions};
 
 use super::row::JobRow;
+use crate::publish::value;
 use std::fmt::Write;
 
 /// Largest number of regions that are described one by one.
@@ -18,10 +19,11 @@ pub const MAX_LISTED: usize = 12;
 /// The regions of a study.
 pub fn regions(rows: &[JobRow]) -> Regions {
     let mut grid = Grid::default();
-    for row in rows {
+    let jobs: Vec<&JobRow> = rows.iter().filter(|row| !row.is_measured()).collect();
+    for row in &jobs {
         grid.add(row.omega_rpm, row.mu, &row.parameters);
     }
-    let troubled = rows.iter().enumerate();
+    let troubled = jobs.iter().enumerate();
     grid.regions(troubled.filter_map(|(index, row)| Some((index, row.job.clone(), cause(row)?))), MAX_LISTED)
 }
 
@@ -30,8 +32,9 @@ pub fn sentences(regions: &Regions) -> Vec<String> {
     let mut sentences: Vec<String> = regions.largest.iter().map(sentence).collect();
     if regions.omitted > 0 {
         sentences.push(format!(
-            "and {} more jobs in {} smaller regions",
-            regions.jobs_in_omitted, regions.omitted
+            "and {} in {}",
+            value::count(regions.jobs_in_omitted, "more job"),
+            value::count(regions.omitted, "smaller region")
         ));
     }
     sentences

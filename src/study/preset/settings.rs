@@ -1,11 +1,8 @@
-//! The presets and the parameters that they set.
+//! The presets and the settings that they stand for.
 
-use crate::spec::{Clamp, ClampSide, Pin, Scene};
-use crate::study::json;
-use crate::study::parameter::Parameter;
+use crate::spec::{Clamp, JobSpec, Pin};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 use strum::{EnumString, IntoStaticStr};
 
 /// The accuracy of a study by one word. `tribosweep presets` prints settings and measured errors.
@@ -22,12 +19,6 @@ pub enum Preset {
     /// Two thirds of the element size and a smaller step than the standard, to check it by.
     Reference,
 }
-
-/// The parameters that presets set.
-const PRESET_PARAMETERS: [&str; 4] = ["elements", "safety_factor", "tolerance", "drift_tolerance"];
-
-/// The parameter and field that takes precedence over the safety factor.
-const TIME_STEP: &str = "time_step_s";
 
 /// Largest refinement, relative to the desired element count, to get a node row at the clamp's edge.
 const MAX_REFINEMENT: usize = 4;
@@ -97,7 +88,7 @@ impl Preset {
         let size_m = shortest_m / self.elements_along_shortest_edge() as f64;
         // Halves are rounded up: 15 mm in 2 mm elements give 8. The scene's check refuses counts out of bounds.
         let mut elements = pin.size_m.map(|edge_m| ((edge_m / size_m + 0.5) as usize).max(1));
-        if let Some(axis) = clamped_axis(clamp.side) {
+        if let Some(axis) = clamp.side.axis_across() {
             let desired = elements[axis];
             elements[axis] = (desired..=MAX_REFINEMENT.saturating_mul(desired))
                 .take(MAX_TRIED_COUNTS)
@@ -107,60 +98,29 @@ impl Preset {
         elements
     }
 
-    /// The values of [`PRESET_PARAMETERS`] for a scene.
-    fn settings(self, scene: &Scene) -> Vec<(&'static str, Value)> {
-        vec![
-            ("elements", self.elements(&scene.pin, &scene.clamp).to_vec().into()),
-            ("safety_factor", self.safety_factor().into()),
-            ("tolerance", self.tolerance().into()),
-            ("drift_tolerance", self.drift_tolerance().into()),
-        ]
-    }
+    /// Parameters that have no effect beside a preset that takes precedence: those that it sets, and the time step, which
+    /// takes precedence over the safety factor.
+    pub(in crate::study) const COVERS: &'static [&'static str] =
+        &["elements", "safety_factor", "time_step_s", "tolerance", "drift_tolerance"];
 
-    /// Whether presets set a parameter, or the whole field of which it sets a part.
-    pub(in crate::study) fn covers(parameter: &Parameter) -> bool {
-        PRESET_PARAMETERS
-            .iter()
-            .filter_map(|name| Parameter::find(name))
-            .any(|own| own.sets(&parameter.field()))
-            || parameter.name == TIME_STEP
-    }
-
-    /// Sets the parameters in a serialised job, except those that the `overrides` of the command line set.
-    ///
-    /// The preset's time step is a fraction of the stability limit, so a time step from the file is removed.
-    pub(in crate::study) fn override_job(self, job: &mut Value, overrides: &[&Parameter]) {
-        let scene = json::decode_checked(job).scene;
-        self.apply(&scene, job, |parameter| overrides.iter().any(|other| other.overlaps(parameter)));
-        if !overrides.iter().any(|parameter| parameter.name == TIME_STEP)
-            && let Some(Value::Object(numerics)) = job.get_mut("numerics")
-        {
-            numerics.remove(TIME_STEP);
-        }
-    }
-
-    /// Sets the parameters in a serialised job, except those for which `is_set_elsewhere` holds.
-    pub(in crate::study) fn apply(
-        self,
-        scene: &Scene,
-        job: &mut Value,
-        is_set_elsewhere: impl Fn(&Parameter) -> bool,
-    ) {
-        for (name, value) in self.settings(scene) {
-            let parameter = Parameter::find(name).expect("presets set parameters of the registry");
-            if !is_set_elsewhere(parameter) {
-                parameter.set(job, &value);
+    /// Sets mesh, time step and detection of a job, except for the parameters that something else `gives` by name. The
+    /// mesh is made for the job's own pin and clamp.
+    pub(in crate::study) fn fill(self, job: &mut JobSpec, gives: impl Fn(&str) -> bool) {
+        let elements = self.elements(&job.scene.pin, &job.scene.clamp);
+        for (axis, name) in ["nx", "ny", "nz"].into_iter().enumerate() {
+            if !gives(name) {
+                job.scene.pin.elements[axis] = elements[axis];
             }
         }
-    }
-}
-
-/// The direction across which the clamp's strip has its width.
-fn clamped_axis(side: ClampSide) -> Option<usize> {
-    match side {
-        ClampSide::InnerSide | ClampSide::OuterSide | ClampSide::BothSides => Some(0),
-        ClampSide::LeadingEnd | ClampSide::TrailingEnd | ClampSide::BothEnds => Some(1),
-        ClampSide::WholeTop => None,
+        for (name, field, value) in [
+            ("safety_factor", &mut job.numerics.safety_factor, self.safety_factor()),
+            ("tolerance", &mut job.detection.tolerance, self.tolerance()),
+            ("drift_tolerance", &mut job.detection.drift_tolerance, self.drift_tolerance()),
+        ] {
+            if !gives(name) {
+                *field = value;
+            }
+        }
     }
 }
 

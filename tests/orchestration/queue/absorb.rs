@@ -1,6 +1,6 @@
 //! Copying studies from one database into another.
 
-use tribosweep::queue::{Absorbed, JobState, QueueError, Scope, Shard, StudyRow};
+use tribosweep::queue::{Absorbed, JobState, QueueError, Replace, Scope, Shard, StudyRow};
 
 use crate::support::{Sandbox, claim, counts, done, failed, finish, job, labelled, of, study};
 
@@ -85,12 +85,14 @@ async fn shards_make_up_the_whole(sandbox: &Sandbox) {
     for index in 0..3 {
         let part = Sandbox::new();
         let mut queue = part.open().await;
-        let submitted = queue.submit_shard(&whole, Shard { index, of: 3 }).await.unwrap();
+        let submitted =
+            queue.submit_shard(&whole, Shard { index, of: 3 }, &Replace::KeepingResults).await.unwrap();
         assert_eq!((submitted.rows, submitted.added), ([3, 2, 2][index as usize], [3, 2, 2][index as usize]));
         let rows = queue.rows("a").await.unwrap();
         assert!(rows.iter().all(|row| row.ordinal % 3 == index), "{rows:?}");
         // Submitting the shard again does not change it.
-        assert_eq!(queue.submit_shard(&whole, Shard { index, of: 3 }).await.unwrap().added, 0);
+        let again = queue.submit_shard(&whole, Shard { index, of: 3 }, &Replace::KeepingResults).await;
+        assert_eq!(again.unwrap().added, 0);
         assert_eq!(queue.rows("a").await.unwrap(), rows);
         for job in claim(&mut queue, Scope::All, 9).await {
             assert!(finish(&mut queue, &job.key, 1, done(&format!("record of {}", job.key))).await);

@@ -12,6 +12,8 @@ on_both_databases! {
     studies_are_listed_with_their_counts,
     the_document_is_kept,
     rows_are_complete_and_in_order,
+    rows_are_read_with_their_payloads,
+    jobs_are_found_in_one_study,
     remaining_cost,
     an_unknown_study_is_an_error_with_the_known_ones,
     rows_are_found_by_their_label,
@@ -70,6 +72,7 @@ async fn rows_are_complete_and_in_order(sandbox: &Sandbox) {
         attempt,
         crashes: 0,
         note: None,
+        payload: None,
     };
     let ended = |row| StudyRow { wall_s: Some(2.5), ..row };
     let expected = [
@@ -79,6 +82,46 @@ async fn rows_are_complete_and_in_order(sandbox: &Sandbox) {
         row(3, "w", JobState::Pending, 0),
     ];
     assert_eq!(queue.rows("a").await.unwrap(), expected);
+}
+
+/// Protects: payloads are read with the rows if they are asked for, and nothing else changes.
+async fn rows_are_read_with_their_payloads(sandbox: &Sandbox) {
+    let mut queue = sandbox.open().await;
+    queue.submit(&study("a", &["y", "x", "y"])).await.unwrap();
+    claim(&mut queue, Scope::All, 1).await;
+    let mut rows = Vec::new();
+    let visit = |page: Vec<StudyRow>| {
+        rows.extend(page);
+        ControlFlow::Continue(())
+    };
+    queue.each_page_with_payloads("a", Rows::All, visit).await.unwrap();
+    let payloads: Vec<_> = rows.iter_mut().map(|row| row.payload.take().unwrap()).collect();
+    assert_eq!(payloads, ["payload of y", "payload of x", "payload of y"]);
+    assert_eq!(rows, queue.rows("a").await.unwrap());
+}
+
+/// Protects: a job is looked for in one study only, whatever other studies have, with its parameters there.
+async fn jobs_are_found_in_one_study(sandbox: &Sandbox) {
+    let mut queue = sandbox.open().await;
+    queue.submit(&study("a", &["k1", "k2", "m"])).await.unwrap();
+    let mut b = study("b", &["k2", "k3"]);
+    b.jobs[0].parameters = "k2 in b".into();
+    queue.submit(&b).await.unwrap();
+    for (study, prefix, keys) in [
+        ("a", "k", vec!["k1", "k2"]),
+        ("b", "k", vec!["k2", "k3"]),
+        ("b", "m", vec![]),
+        ("a", "", vec!["k1", "k2", "m"]),
+    ] {
+        let found = queue.jobs_in(study, prefix, 9).await.unwrap();
+        assert_eq!(found.iter().map(|job| job.key.as_str()).collect::<Vec<_>>(), keys, "{prefix} in {study}");
+    }
+    assert_eq!(queue.jobs("k", 9).await.unwrap().len(), 3);
+    assert_eq!(queue.jobs_in("a", "", 2).await.unwrap().len(), 2);
+    assert!(matches!(queue.jobs_in("c", "k", 9).await, Err(QueueError::UnknownStudy { .. })));
+    assert_eq!(queue.parameters("b", "k2").await.unwrap().as_deref(), Some("k2 in b"));
+    assert_eq!(queue.parameters("a", "k2").await.unwrap().as_deref(), Some("parameters of k2"));
+    assert_eq!(queue.parameters("b", "k1").await.unwrap(), None);
 }
 
 /// Protects: the remaining cost is that of the pending and running jobs.

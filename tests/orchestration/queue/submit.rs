@@ -1,6 +1,6 @@
 //! Submitting, resubmitting and sharing.
 
-use tribosweep::queue::{Counts, QueueError, Scope, Submitted};
+use tribosweep::queue::{Counts, QueueError, Replaced, Scope, Submitted};
 
 use crate::support::{Sandbox, claim, counts, done, failed, finish, job, of, study};
 
@@ -19,14 +19,13 @@ async fn submitting_twice_adds_nothing(sandbox: &Sandbox) {
     let study = study("a", &["x", "y", "z"]);
     let first = queue.submit(&study).await.unwrap();
     let expected = Submitted {
-        replaced: false,
+        replaced: None,
         rows: 3,
         jobs: 3,
         added: 3,
         already_known: 0,
         already_done: 0,
         already_failed: 0,
-        cancelled: 0,
     };
     assert_eq!(first, expected);
     claim(&mut queue, Scope::All, 2).await;
@@ -35,7 +34,14 @@ async fn submitting_twice_adds_nothing(sandbox: &Sandbox) {
 
     let second = queue.submit(&study).await.unwrap();
     let expected = Submitted {
-        replaced: true,
+        replaced: Some(Replaced {
+            document: "document of a".into(),
+            kept: 3,
+            new: 0,
+            dropped: 0,
+            dropped_done: 0,
+            cancelled: 0,
+        }),
         added: 0,
         already_known: 3,
         already_done: 1,
@@ -79,9 +85,11 @@ async fn an_edited_study_is_replaced(sandbox: &Sandbox) {
     let mut edited = study("a", &["w", "z"]);
     edited.document = "edited".into();
     let submitted = queue.submit(&edited).await.unwrap();
-    assert!(submitted.replaced);
     assert_eq!((submitted.jobs, submitted.added, submitted.already_known), (2, 1, 1));
-    assert_eq!(submitted.cancelled, 1, "no study requests y");
+    let replaced = submitted.replaced.unwrap();
+    assert_eq!((replaced.document.as_str(), replaced.kept, replaced.new), ("document of a", 1, 1));
+    assert_eq!((replaced.dropped, replaced.dropped_done), (2, 1));
+    assert_eq!(replaced.cancelled, 1, "no study requests y");
     let document = queue.study("a").await.unwrap().unwrap();
     assert_eq!((document.document.as_str(), document.submitted_ms), ("edited", 2_000));
     let rows = queue.rows("a").await.unwrap();
@@ -90,7 +98,8 @@ async fn an_edited_study_is_replaced(sandbox: &Sandbox) {
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), Counts { cancelled: 1, ..counts(2, 0, 1, 0) });
 
     let submitted = queue.submit(&study("a", &["x", "y"])).await.unwrap();
-    assert_eq!((submitted.added, submitted.already_done, submitted.cancelled), (0, 1, 2));
+    assert_eq!((submitted.added, submitted.already_done), (0, 1));
+    assert_eq!(submitted.replaced.unwrap().cancelled, 2);
     assert_eq!(queue.counts(&of("a")).await.unwrap(), counts(1, 0, 1, 0), "y is requested again");
 }
 

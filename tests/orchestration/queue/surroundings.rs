@@ -145,9 +145,13 @@ async fn the_examination_sees_workers() {
     claim(&mut alive, Scope::All, 1).await;
     let findings = examine(&sandbox.location(), sandbox.clock.clock()).await.unwrap();
     let text: Vec<_> = findings.iter().map(|finding| finding.text.as_str()).collect();
-    assert!(text.iter().any(|text| text.starts_with("3 running jobs, 2 of them left")), "{text:#?}");
-    assert!(text.iter().any(|text| text.contains("gone, 2 jobs")), "{text:#?}");
-    assert!(text.iter().any(|text| text.contains("alive, 1 jobs")), "{text:#?}");
+    assert!(
+        text.iter()
+            .any(|text| text.starts_with("running jobs: 3, of which processes that are gone have left 2")),
+        "{text:#?}"
+    );
+    assert!(text.iter().any(|text| text.contains("gone, running jobs: 2")), "{text:#?}");
+    assert!(text.iter().any(|text| text.contains("alive, running jobs: 1")), "{text:#?}");
     let missing =
         examine(&sandbox.folder.path().join("none.db").into(), sandbox.clock.clock()).await.unwrap_err();
     assert!(matches!(missing, QueueError::NoDatabase { .. }), "{missing:?}");

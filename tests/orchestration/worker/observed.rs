@@ -1,5 +1,7 @@
 //! What a worker shows and what it stores.
 
+use std::time::Duration;
+
 use tribosweep::analysis::{self, JobRecord, Unobserved};
 use tribosweep::queue::Scope;
 use tribosweep::spec::JobSpec;
@@ -30,11 +32,11 @@ async fn progress_only_grows() {
             assert!(snapshot.running.len() <= 8 * threads);
             assert_eq!(snapshot.running.len() as u64, snapshot.counts.running);
             assert!(snapshot.running.iter().all(|job| (0.0..=0.0021).contains(&job.simulated_s)));
+            assert!(snapshot.running.iter().all(|job| job.limit_s.is_none_or(|limit_s| limit_s == 0.002)));
         }
-        // The remaining time is estimated as soon as three jobs are done.
-        for snapshot in &recorder.snapshots {
-            assert_eq!(snapshot.eta.is_some(), snapshot.counts.done >= 3, "{snapshot:?}");
-        }
+        // The remaining time is estimated from the beginning.
+        assert!(recorder.snapshots[0].eta.high > Duration::ZERO, "{:?}", recorder.snapshots[0]);
+        assert_eq!(recorder.stopped[0].eta.high, Duration::ZERO);
     }
 }
 

@@ -48,6 +48,20 @@ pub fn nodal_pa(mesh: &BlockMesh, material: &Material, u_m: &[f64]) -> Vec<[f64;
     (0..mesh.node_count()).map(stress_at).collect()
 }
 
+/// Von Mises stress \[Pa\] of a stress in the order of [`COMPONENTS`].
+pub fn von_mises_pa([xx, yy, zz, xy, yz, xz]: [f64; 6]) -> f64 {
+    let normal = (xx - yy).powi(2) + (yy - zz).powi(2) + (zz - xx).powi(2);
+    (normal / 2.0 + 3.0 * (xy * xy + yz * yz + xz * xz)).sqrt()
+}
+
+/// Principal stresses \[Pa\], largest first, of a stress in the order of [`COMPONENTS`].
+pub fn principal_pa([xx, yy, zz, xy, yz, xz]: [f64; 6]) -> [f64; 3] {
+    let tensor = nalgebra::Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
+    let mut principal: [f64; 3] = tensor.symmetric_eigenvalues().into();
+    principal.sort_by(|a, b| b.total_cmp(a));
+    principal
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -79,6 +93,26 @@ mod tests {
                 let rounding = 16.0 * f64::EPSILON * 0.05 / 0.003 * (lambda + 2.0 * shear);
                 assert!((f - e).abs() <= rounding, "node {node}: {found:?} instead of {exact:?}");
             }
+        }
+    }
+
+    /// Protects: the measures of a stress are those of tension, of pure shear, and of a pressure, in any axes.
+    #[test]
+    fn measures_of_a_stress_are_those_of_known_states() {
+        let root = 3f64.sqrt();
+        let cases = [
+            ([5.0, 0.0, 0.0, 0.0, 0.0, 0.0], 5.0, [5.0, 0.0, 0.0]),
+            ([0.0, 0.0, 0.0, 2.0, 0.0, 0.0], 2.0 * root, [2.0, 0.0, -2.0]),
+            ([0.0, 0.0, 0.0, 0.0, -2.0, 0.0], 2.0 * root, [2.0, 0.0, -2.0]),
+            ([-3.0, -3.0, -3.0, 0.0, 0.0, 0.0], 0.0, [-3.0, -3.0, -3.0]),
+            // Tension of 4 along the diagonal of x and z.
+            ([2.0, 0.0, 2.0, 0.0, 0.0, 2.0], 4.0, [4.0, 0.0, 0.0]),
+        ];
+        for (stress, von_mises, principal) in cases {
+            assert!((von_mises_pa(stress) - von_mises).abs() < 1e-14, "{stress:?}");
+            // The eigenvalues are found to some roundings of the largest stress.
+            let found = principal_pa(stress);
+            assert!(found.iter().zip(principal).all(|(f, e)| (f - e).abs() < 1e-14), "{stress:?}: {found:?}");
         }
     }
 }

@@ -1,0 +1,259 @@
+//! What a study takes as text and JSON, for `validate`, `submit --dry-run` and `run`.
+
+use super::error::CliError;
+use super::output::log;
+use crate::publish::value::{count, quantity, significant};
+use crate::queue::{Clock, Location, Queue, Replaced};
+use crate::sweep::{self, Forecast, Group, Plan, TimeRange};
+use crate::worker::Eta;
+use serde_json::{Value, json};
+use std::time::Duration;
+
+/// The largest number of groups that the text lists.
+const MOST_GROUPS: usize = 8;
+
+/// Shorter times are not told apart.
+const SHORT: Duration = Duration::from_secs(2);
+
+/// Reads the forecast of a study with the states of its jobs in the database, if there is one, and the study of its
+/// name that it would replace. Creates nothing.
+pub(crate) fn read(
+    plan: &Plan,
+    threads: usize,
+    db: &Location,
+) -> Result<(Forecast, Option<Replaced>), CliError> {
+    sweep::block_on(async {
+        let mut queue = Queue::open_if_exists(db.clone(), Clock::OfDatabase).await?;
+        let forecast = Forecast::new(plan, queue.as_mut(), threads).await?;
+        let Some(mut queue) = queue else { return Ok((forecast, None)) };
+        let replaced = plan.preview_replacement(&mut queue).await?;
+        queue.close().await?;
+        Ok((forecast, replaced))
+    })
+}
+
+/// The forecast in lines of at most 80 characters, if the path of the database is short.
+pub(crate) fn as_text(forecast: &Forecast, db: &Location) -> String {
+    let mut lines = table(&forecast.groups);
+    lines.push(format!("memory    {}", memory(forecast)));
+    let states = forecast.checkpoints_bytes;
+    let states =
+        if states > 0.0 { format!(", and {} for states of long jobs", bytes(states)) } else { String::new() };
+    lines.push(format!("disk      about {} of results{states}", bytes(forecast.results_bytes)));
+    lines.push(match forecast.known {
+        None => format!("database  {db} does not exist yet"),
+        Some(known) => {
+            let failed = if known.failed > 0 { format!(", {} failed", known.failed) } else { String::new() };
+            let open =
+                if known.open > 0 { format!(", {} pending or running", known.open) } else { String::new() };
+            format!("database  {} of {} done{failed}{open}", known.done, count(forecast.jobs, "job"))
+        }
+    });
+    lines.push(format!("time      {}", time(forecast)));
+    lines.join("\n") + "\n"
+}
+
+fn memory(forecast: &Forecast) -> String {
+    let here = forecast
+        .memory_here_bytes
+        .map_or_else(String::new, |here| format!("; this machine has {}", bytes(here as f64)));
+    format!("about {} with {}{here}", bytes(forecast.memory_bytes), with(forecast.threads))
+}
+
+/// `60 s to 3 min with 2 threads here (7 min if all jobs run to their limits)`.
+fn time(forecast: &Forecast) -> String {
+    let with = with(forecast.threads);
+    let Some(TimeRange { low, high, limit, .. }) = forecast.time else {
+        return "none: no job is left".to_owned();
+    };
+    if limit < SHORT {
+        return format!("less than {} s with {with} here", SHORT.as_secs());
+    }
+    let single = |time: Duration| Eta { low: time, high: time }.to_string().replacen("about ", "", 1);
+    let range = if low < SHORT { format!("up to {}", single(high)) } else { Eta { low, high }.to_string() };
+    // Most jobs end before their limits, unless they may not.
+    if limit > high.mul_f64(1.1) {
+        return format!("{range} with {with} here ({} if all jobs run to their limits)", single(limit));
+    }
+    format!("{range} with {with} here")
+}
+
+fn with(threads: usize) -> String {
+    count(threads, "thread")
+}
+
+/// A table of the groups with a head.
+fn table(groups: &[Group]) -> Vec<String> {
+    let mut rows =
+        vec![["mesh", "nodes", "jobs", "time step", "its limit", "steps", "memory"].map(str::to_owned)];
+    let listed = if groups.len() > MOST_GROUPS { MOST_GROUPS - 1 } else { groups.len() };
+    rows.extend(groups[..listed].iter().map(row));
+    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let widths: [usize; 7] = std::array::from_fn(width);
+    let line = |row: &[String; 7]| {
+        let [mesh, others @ ..] = row;
+        let cells = others.iter().zip(&widths[1..]).map(|(cell, &width)| format!("  {cell:>width$}"));
+        format!("{mesh:0$}{1}", widths[0], cells.collect::<String>())
+    };
+    let mut lines: Vec<String> = rows.iter().map(line).collect();
+    if listed < groups.len() {
+        let jobs: usize = groups[listed..].iter().map(|group| group.jobs).sum();
+        let jobs = count(jobs, "job");
+        lines.push(format!("… and {} more meshes or time steps with {jobs}", groups.len() - listed));
+    }
+    lines
+}
+
+fn row(group: &Group) -> [String; 7] {
+    let workload = &group.workload;
+    let about = if workload.is_estimate { "~" } else { "" };
+    let [nx, ny, nz] = workload.elements;
+    let disk = if workload.disk_nodes > 0 {
+        format!(" + {}", grouped(workload.disk_nodes as u64))
+    } else {
+        String::new()
+    };
+    [
+        format!("{nx}×{ny}×{nz}"),
+        format!("{}{disk}", grouped(workload.pin_nodes as u64)),
+        group.jobs.to_string(),
+        format!("{about}{}", quantity(workload.time_step_s, "s")),
+        format!("{about}{}", quantity(workload.time_step_limit_s, "s")),
+        format!("{about}{}", grouped(group.steps)),
+        bytes(group.memory_bytes),
+    ]
+}
+
+/// `16 275`.
+fn grouped(number: u64) -> String {
+    let digits = number.to_string();
+    let mut text = String::new();
+    for (place, digit) in digits.chars().enumerate() {
+        if place > 0 && (digits.len() - place).is_multiple_of(3) {
+            text.push(' ');
+        }
+        text.push(digit);
+    }
+    text
+}
+
+/// A size with two digits: `39 MB`, `1.2 GB`.
+fn bytes(size: f64) -> String {
+    let (factor, unit) = match size {
+        1e9.. => (1e9, "GB"),
+        1e6.. => (1e6, "MB"),
+        _ => (1e3, "kB"),
+    };
+    let size = size / factor;
+    if size < 10.0 { format!("{} {unit}", significant(size, 2)) } else { format!("{size:.0} {unit}") }
+}
+
+/// Warns if the jobs need more memory than this machine has.
+pub(crate) fn warn(forecast: &Forecast) {
+    if forecast.exceeds_memory() {
+        log(format_args!(
+            "warning: the jobs need {}; take fewer threads or a coarser mesh, or run them on another machine",
+            memory(forecast)
+        ));
+    }
+}
+
+/// Says before the work how long it takes, unless it is short.
+pub(crate) fn announce(forecast: &Forecast) {
+    warn(forecast);
+    if forecast.time.is_some_and(|time| time.limit >= SHORT) {
+        log(format_args!("expected time: {}", time(forecast)));
+    }
+}
+
+/// The forecast for programs.
+pub(crate) fn as_json(forecast: &Forecast, replaced: Option<&Replaced>, plan: &Plan) -> Value {
+    let seconds = |time: Duration| time.as_secs_f64();
+    let group = |group: &Group| {
+        let workload = &group.workload;
+        json!({
+            "elements": workload.elements,
+            "nodes": workload.pin_nodes,
+            "disk_nodes": workload.disk_nodes,
+            "jobs": group.jobs,
+            "jobs_together": group.together,
+            "time_step_s": workload.time_step_s,
+            "time_step_limit_s": workload.time_step_limit_s,
+            "is_estimate": workload.is_estimate,
+            "limit_s": group.limit_s,
+            "steps": group.steps,
+            "thread_memory_bytes": group.memory_bytes,
+        })
+    };
+    json!({
+        "study": plan.name(),
+        "warnings": plan.study().warnings(),
+        "jobs": forecast.jobs,
+        "database": forecast.known.map(|known| {
+            json!({ "done": known.done, "failed": known.failed, "open": known.open })
+        }),
+        "replaced": replaced.map(|replaced| {
+            json!({
+                "kept": replaced.kept,
+                "new": replaced.new,
+                "dropped": replaced.dropped,
+                "dropped_done": replaced.dropped_done,
+                "cancelled": replaced.cancelled,
+            })
+        }),
+        "groups": forecast.groups.iter().map(group).collect::<Vec<_>>(),
+        "threads": forecast.threads,
+        "memory_bytes": forecast.memory_bytes,
+        "memory_here_bytes": forecast.memory_here_bytes,
+        "results_bytes": forecast.results_bytes,
+        "checkpoints_bytes": forecast.checkpoints_bytes,
+        "time_s": forecast.time.map(|time| {
+            json!({ "low": seconds(time.low), "high": seconds(time.high), "limit": seconds(time.limit) })
+        }),
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sweep::SweepError;
+
+    fn forecast(study: &str) -> Forecast {
+        let plan = Plan::parse(study, "study.json").unwrap();
+        sweep::block_on::<_, SweepError>(Forecast::new(&plan, None, 2)).unwrap()
+    }
+
+    /// Protects: the text says mesh, steps, memory, disk and time in lines of at most 80 characters, and lists no more than
+    /// eight groups, however many there are.
+    #[test]
+    fn the_text_fits_eighty_columns() {
+        let one = r#"{ "scene": { "pin": { "elements": [3, 4, 3] }, "clamp": { "width_m": 0.004 } } }"#;
+        let text = as_text(&forecast(one), &Location::parse("none.db".into()));
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+        for word in [
+            "3×4×3",
+            "80",
+            "memory",
+            "disk",
+            "none.db does not exist yet",
+            "less than 2 s with 1 thread here",
+        ] {
+            assert!(text.contains(word), "{word}: {text}");
+        }
+        let many = r#"{ "scene": { "pin": { "elements": [3, 4, 3] }, "clamp": { "side": "whole_top" } },
+                        "disk": {}, "run": { "limit_s": 0.03 },
+                        "grid": { "young_modulus_pa": { "from": 1e9, "to": 4e9, "count": 20, "spacing": "log" } } }"#;
+        let many = many.replace("\"disk\": {},", "");
+        let text = as_text(&forecast(&many), &Location::parse("none.db".into()));
+        assert!(text.contains("… and 13 more meshes or time steps with 13 jobs"), "{text}");
+        assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
+    }
+
+    /// Protects: numbers and sizes are written with spaces and in units that people read.
+    #[test]
+    fn numbers_are_readable() {
+        assert_eq!([7, 999, 16_275, 1_845_726].map(grouped), ["7", "999", "16 275", "1 845 726"]);
+        let sizes = [250.0, 4.26e3, 39.4e6, 9.96e9, 1.26e9].map(bytes);
+        assert_eq!(sizes, ["0.25 kB", "4.3 kB", "39 MB", "10 GB", "1.3 GB"]);
+    }
+}

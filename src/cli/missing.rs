@@ -1,0 +1,49 @@
+//! Advice for a study file that does not exist.
+
+use super::error::CliError;
+use crate::queue::Location;
+use crate::study::{StudyError, is_study_name};
+use crate::sweep::{self, SweepError};
+use std::io::ErrorKind;
+use std::path::Path;
+
+/// What the user may have meant; empty unless the error is a missing study file.
+pub(crate) fn advice(error: &CliError, db: &Location) -> Vec<String> {
+    let (CliError::Study(study) | CliError::Sweep(SweepError::Study(study))) = error else {
+        return Vec::new();
+    };
+    match study {
+        StudyError::Read { file, reason } if reason.kind() == ErrorKind::NotFound => of_file(file, db),
+        _ => Vec::new(),
+    }
+}
+
+fn of_file(file: &str, db: &Location) -> Vec<String> {
+    let mut lines = Vec::new();
+    let with_ending = format!("{file}.json");
+    if Path::new(&with_ending).is_file() {
+        lines.push(format!("did you mean {with_ending}?"));
+    }
+    let name = file.strip_suffix(".json").unwrap_or(file);
+    if is_study_name(name) && has_study(name, db) {
+        lines.push(format!(
+            "the database {db} has a study {name}: `tribosweep work` runs its pending jobs, `tribosweep report {name}` \
+             writes its report, `tribosweep document {name} > {name}.json` writes its file"
+        ));
+    }
+    if lines.is_empty() {
+        lines.push("expected the path of a study file, which ends in .json".to_owned());
+    }
+    lines
+}
+
+/// Whether the database has a study of that name; not if it cannot be read.
+fn has_study(name: &str, db: &Location) -> bool {
+    let found = sweep::block_on(async {
+        let mut queue = sweep::open_to_read(db.clone()).await?;
+        let found = queue.study(name).await?.is_some();
+        queue.close().await?;
+        Ok::<_, CliError>(found)
+    });
+    found.unwrap_or(false)
+}

@@ -1,0 +1,81 @@
+//! `tribosweep show`: one job with its inputs, its result and the provenance of the result.
+
+mod text;
+
+use super::error::CliError;
+use super::output::{print, terminal_width};
+use crate::exit;
+use crate::publish::value::utc_iso;
+use crate::queue::Location;
+use crate::study::{inputs, json_value};
+use crate::sweep::{self, StoredJob, StudyOfJob};
+use serde_json::{Map, Value, json};
+
+/// Arguments of `show`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    /// The job's key as in the export, or its first characters.
+    job: String,
+    /// Print JSON: the job as it was submitted, its inputs by name, its record, and all that is known of its run.
+    #[arg(long)]
+    json: bool,
+}
+
+/// Prints the job.
+pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
+    let job = sweep::block_on(async {
+        let mut queue = sweep::open_to_read(db.clone()).await?;
+        let job = sweep::find_job(&mut queue, &args.job).await?;
+        queue.close().await?;
+        Ok::<_, CliError>(job)
+    })?;
+    let text =
+        if args.json { format!("{:#}\n", as_json(&job)) } else { text::of_job(&job, terminal_width()) };
+    print(&text)?;
+    Ok(exit::SUCCESS)
+}
+
+fn as_json(job: &StoredJob) -> Value {
+    let StoredJob { details, studies } = job;
+    let study = |StudyOfJob { study, parameters }: &StudyOfJob| {
+        json!({
+            "name": study.name,
+            "submitted_ms": study.submitted_ms,
+            "submitted": utc_iso(study.submitted_ms),
+            "parameters": parameters.iter().cloned().collect::<Map<_, _>>(),
+            "document": json_value(&study.document, &study.name)
+                .unwrap_or_else(|_| Value::from(study.document.as_str())),
+        })
+    };
+    let inputs = job.spec().ok().map(|spec| {
+        let values =
+            inputs(&spec).into_iter().map(|input| (input.parameter.column().to_owned(), input.value));
+        values.collect::<Map<_, _>>()
+    });
+    json!({
+        "job": details.key,
+        "studies": studies.iter().map(study).collect::<Vec<_>>(),
+        "state": details.state.as_str(),
+        "attempt": details.attempt,
+        "crashes": details.crashes,
+        "priority": details.priority,
+        "cost": details.cost,
+        "batch": details.batch,
+        "note": details.note,
+        "error": details.error,
+        "wall_s": details.wall_s,
+        "started_ms": details.started_ms,
+        "started": details.started_ms.map(utc_iso),
+        "finished_ms": details.finished_ms,
+        "finished": details.finished_ms.map(utc_iso),
+        "provenance": details.provenance.as_deref().map(parsed),
+        "inputs": inputs,
+        "spec": parsed(&details.payload),
+        "record": details.record.as_deref().map(parsed),
+    })
+}
+
+/// A text as JSON, or as a string if it is not JSON.
+fn parsed(text: &str) -> Value {
+    serde_json::from_str(text).unwrap_or_else(|_| Value::from(text))
+}

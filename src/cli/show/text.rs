@@ -1,0 +1,170 @@
+//! A job as text.
+
+use super::parsed;
+use crate::cli::aligned;
+use crate::publish::value::{self, MISSING};
+use crate::report::columns::{Column, FURTHER, Group, PLAIN};
+use crate::report::{JobRow, assignment};
+use crate::study::{Input, inputs};
+use crate::sweep::{StoredJob, StudyOfJob};
+use serde_json::Value;
+use std::fmt::Write;
+
+/// Significant digits of a result. Inputs have all of theirs.
+const DIGITS: usize = 6;
+
+/// The parts of a job's inputs, with their headings.
+const PARTS: [(&str, &str); 4] = [
+    ("scene", "Inputs: scene"),
+    ("numerics", "Inputs: numerics"),
+    ("run", "Inputs: run"),
+    ("detection", "Inputs: detection"),
+];
+
+/// The columns that the head or the provenance of the text has.
+const ELSEWHERE: [&str; 6] = ["study", "job", "omega_rpm", "mu", "status", "wall_s"];
+
+/// Everything about a job, for a terminal of `width` characters or for a file.
+pub(super) fn of_job(job: &StoredJob, width: Option<usize>) -> String {
+    let mut text = aligned::lines(0, &head(job), width);
+    let mut add = |heading: &str, lines: &[[String; 3]]| {
+        if !lines.is_empty() {
+            let _ = write!(text, "\n{heading}\n{}", aligned::lines(2, lines, width));
+        }
+    };
+    match job.spec() {
+        Ok(spec) => {
+            let inputs = inputs(&spec);
+            for (part, heading) in PARTS {
+                let of_part = inputs.iter().filter(|input| input.parameter.part() == Some(part));
+                add(heading, &of_part.map(input_cells).collect::<Vec<_>>());
+            }
+        }
+        Err(error) => add("Inputs", &[[error.to_string(), String::new(), String::new()]]),
+    }
+    match job.row() {
+        Ok(row) if row.record().is_some() => {
+            for group in Group::ALL {
+                add(heading(group), &figures(&row, group));
+            }
+        }
+        Ok(_) => {}
+        Err(error) => add("Result", &[[error.to_string(), String::new(), String::new()]]),
+    }
+    let _ = write!(text, "\nProvenance\n{}", aligned::lines(2, &provenance(job), width));
+    text
+}
+
+/// The heading of a group of figures.
+fn heading(group: Group) -> &'static str {
+    match group {
+        Group::Job => "Job",
+        Group::Input => "Inputs",
+        Group::Result => "Result",
+        Group::Contact => "Contact, over the window",
+        Group::Nodes => "Observed nodes, over the window",
+        Group::Energies => "Energies, with their shares of the work of load and drive",
+        Group::Run => "Run",
+        Group::Residuals => "Residuals",
+        Group::Disk => "Elastic disk",
+    }
+}
+
+fn head(job: &StoredJob) -> Vec<[String; 2]> {
+    let details = &job.details;
+    let line = |name: &str, text: String| [name.to_owned(), text];
+    let outcome = job.row().ok().filter(|row| row.record().is_some()).map(|row| row.status());
+    let state = details.state.as_str();
+    let mut lines = vec![
+        line("job", details.key.clone()),
+        line("state", outcome.map_or_else(|| state.to_owned(), |outcome| format!("{state}: {outcome}"))),
+    ];
+    lines.extend(details.error.iter().map(|error| line("error", error.clone())));
+    lines.extend(details.note.iter().map(|note| line("note", note.clone())));
+    for StudyOfJob { study, parameters } in &job.studies {
+        let point: Vec<String> = parameters.iter().map(|(name, value)| assignment(name, value)).collect();
+        let point = if point.is_empty() { String::new() } else { format!(": {}", point.join(", ")) };
+        lines.push(line("study", format!("{}{point}", study.name)));
+    }
+    if job.studies.is_empty() {
+        lines.push(line("study", "none: `gc` deletes this job".to_owned()));
+    }
+    lines
+}
+
+/// An input with its value as people write it.
+fn input_cells(Input { parameter, value }: &Input) -> [String; 3] {
+    let unit = parameter.unit().unwrap_or_default();
+    [parameter.column().to_owned(), written(value, unit, None), parameter.description().to_owned()]
+}
+
+/// The figures of a group that the record has.
+fn figures(row: &JobRow, group: Group) -> Vec<[String; 3]> {
+    let columns = PLAIN.iter().chain(&FURTHER).filter(|column| column.group == group);
+    let shown = columns.filter(|column| !ELSEWHERE.contains(&&*column.name));
+    let cells = shown.map(|column| (column, column.value(row, &[]))).filter(|(_, value)| !value.is_null());
+    let line = |(column, value): (&Column, Value)| {
+        let share = share_of_input(row, group, &value);
+        let text = written(&value, &column.unit, Some(DIGITS)) + &share;
+        [column.name.to_string(), text, column.meaning.to_string()]
+    };
+    cells.map(line).collect()
+}
+
+/// The share that an energy has of the energy put in, as text; empty for other figures.
+fn share_of_input(row: &JobRow, group: Group, value: &Value) -> String {
+    let put_in_j =
+        row.record().map(|record| record.energy.load_work_j.abs() + record.energy.drive_work_j.abs());
+    match (value.as_f64(), put_in_j) {
+        (Some(energy_j), Some(put_in_j)) if group == Group::Energies && put_in_j > 0.0 => {
+            format!(" ({} %)", value::significant(100.0 * energy_j / put_in_j, 3))
+        }
+        _ => String::new(),
+    }
+}
+
+/// A value with its unit as people write it, with so many significant digits or with all that tell it from others.
+fn written(value: &Value, unit: &str, digits: Option<usize>) -> String {
+    match value {
+        Value::Number(number) if number.is_f64() => {
+            let x = number.as_f64().unwrap_or_default();
+            let (factor, name) = value::multiple(unit, x);
+            let scaled = x / factor;
+            let text =
+                digits.map_or_else(|| value::rounded(scaled), |digits| value::significant(scaled, digits));
+            if name.is_empty() { text } else { format!("{text} {name}") }
+        }
+        Value::Null => MISSING.to_owned(),
+        value if unit.is_empty() => value::text(value),
+        value => format!("{} {unit}", value::text(value)),
+    }
+}
+
+fn provenance(job: &StoredJob) -> Vec<[String; 2]> {
+    let details = &job.details;
+    let mut lines = Vec::new();
+    let mut add = |name: &str, text: String| lines.push([name.to_owned(), text]);
+    for own in &job.studies {
+        add("submitted", format!("{} ({})", value::utc_second(own.study.submitted_ms), own.study.name));
+    }
+    let moment = |ms: Option<i64>| ms.map_or_else(|| MISSING.to_owned(), value::utc_second);
+    add("started", moment(details.started_ms));
+    add("finished", moment(details.finished_ms));
+    add("run time", details.wall_s.map_or_else(|| MISSING.to_owned(), value::duration));
+    add("attempt", details.attempt.to_string());
+    add("crashes", details.crashes.to_string());
+    add("priority", details.priority.to_string());
+    add("cost", format!("about {} node-steps, for the order of jobs", value::significant(details.cost, 3)));
+    add("batch", details.batch.clone());
+    match details.provenance.as_deref().map(parsed) {
+        Some(Value::Object(fields)) => {
+            // Program, machine and threads, as the worker declared them.
+            for (name, value) in fields.iter().filter(|(_, value)| !value.is_null()) {
+                add(name, value::text(value));
+            }
+        }
+        Some(other) => add("made with", value::text(&other)),
+        None => {}
+    }
+    lines
+}

@@ -1,0 +1,42 @@
+//! The study of a command, with changes that the file need not have.
+
+use super::error::CliError;
+use super::foreground::{parse_preset, parse_setting};
+use crate::study::{Changes, Preset};
+use crate::sweep::Plan;
+use std::path::PathBuf;
+
+/// A study file and what to change of it. What is stored in the database is the changed study.
+#[derive(Debug, clap::Args)]
+pub(crate) struct StudyArgs {
+    /// The study file, or - for standard input.
+    #[arg(value_name = "STUDY")]
+    pub(crate) file: PathBuf,
+    /// Set a parameter of the grid or any other parameter; may be repeated. A list or a range becomes an axis of the grid:
+    /// 'mu=[0.2,0.4]'.
+    #[arg(long = "set", value_name = "NAME=VALUE", value_parser = parse_setting)]
+    settings: Vec<(String, String)>,
+    /// Take mesh, time step and detection from a preset instead of the study, whose name becomes STUDY-NAME; `--set`
+    /// overrides the preset.
+    #[arg(long, value_name = "NAME", value_parser = parse_preset)]
+    preset: Option<Preset>,
+    /// Give the study this name, so that it stands beside the one in the file.
+    #[arg(long, value_name = "NAME")]
+    name: Option<String>,
+}
+
+impl StudyArgs {
+    /// Reads and checks the study with its changes.
+    pub(crate) fn plan(&self) -> Result<Plan, CliError> {
+        Ok(Plan::load_changed(&self.file, &self.changes())?)
+    }
+
+    /// Whether anything of the file is changed.
+    pub(crate) fn is_changed(&self) -> bool {
+        self.changes() != Changes::default()
+    }
+
+    fn changes(&self) -> Changes {
+        Changes { name: self.name.clone(), preset: self.preset, settings: self.settings.clone() }
+    }
+}

@@ -1,0 +1,48 @@
+use std::collections::HashSet;
+
+use super::engine::query;
+use super::error::QueueError;
+use super::handle::Queue;
+use super::lookup;
+use super::replace::Replaced;
+use super::state::JobState;
+
+/// The jobs of a study: key, state, and 1 if no other study has the job.
+const OLD_JOBS: &str = "
+    SELECT j.key, j.state,
+           CAST(CASE WHEN EXISTS (SELECT 1 FROM study_jobs AS o WHERE o.job_id = j.id AND o.study_id <> $1)
+                THEN 0 ELSE 1 END AS BIGINT)
+    FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = $1) AS m
+    JOIN jobs AS j ON j.id = m.job_id";
+
+impl Queue {
+    /// What a submission of a study with this name and these jobs would replace; `None` if no study has the name. Nothing
+    /// is changed.
+    ///
+    /// # Errors
+    /// If the database cannot be read.
+    pub async fn preview_replacement(
+        &mut self,
+        name: &str,
+        keys: &HashSet<&str>,
+    ) -> Result<Option<Replaced>, QueueError> {
+        let Some(old) = self.study(name).await? else { return Ok(None) };
+        let study_id = lookup::require(&mut self.connection, name).await?;
+        let jobs: Vec<(String, String, i64)> =
+            query(OLD_JOBS).bind(study_id).all(&mut self.connection).await?;
+        let mut replaced =
+            Replaced { document: old.document, kept: 0, new: 0, dropped: 0, dropped_done: 0, cancelled: 0 };
+        for (key, state, is_only_here) in jobs {
+            if keys.contains(key.as_str()) {
+                replaced.kept += 1;
+                continue;
+            }
+            let state = JobState::from_column(&state);
+            replaced.dropped += 1;
+            replaced.dropped_done += u64::from(state == JobState::Done);
+            replaced.cancelled += u64::from(state == JobState::Pending && is_only_here == 1);
+        }
+        replaced.new = keys.len() as u64 - replaced.kept;
+        Ok(Some(replaced))
+    }
+}

@@ -1,0 +1,140 @@
+//! The columns of a job and of its record.
+
+use super::{Column, Group};
+use crate::analysis::sample::OBSERVED_NAMES;
+use crate::analysis::{ElasticDisk, JobRecord, ObservedNode, Obstacle};
+use crate::publish::value::number;
+use crate::report::row::{JobRow, RowState};
+use Group::{Contact, Disk, Energies, Job, Nodes, Residuals, Result, Run};
+use serde_json::Value;
+
+/// The columns of every export. Older versions have them too, in this order.
+#[rustfmt::skip]
+pub static PLAIN: [Column; 25] = [
+    Column::of_row("study", "", Job, "name of the study", |row| row.study.as_str().into()),
+    Column::of_row("job", "", Job, "key of the job", |row| row.job.as_str().into()),
+    Column::of_row("omega_rpm", "rpm", Job, "rotation speed ω of the disk", |row| row.omega_rpm.into()),
+    Column::of_row("mu", "", Job, "local (Coulomb) friction coefficient μ", |row| row.mu.into()),
+    Column::of_row("status", "", Job, "how far the job is, or how its run ended: pending, running, cancelled, failed, periodic, decayed, not_periodic", |row| row.status().into()),
+    Column::of_row("regime", "", Result, "contact regime: stable, stick_slip, stick_slip_separation, slip_separation, undecided", |row| of(row, |record| record.regime.name())),
+    Column::of_row("mu_star", "", Result, "macroscopic friction coefficient μ* = ⟨T⟩/⟨F⟩ with the tangential force T at the clamp", |row| of(row, |record| record.mu_star)),
+    Column::of_row("mu_star_se", "", Result, "standard error of mu_star over the cycles; of a stable job, over equal parts of the window", |row| of(row, |record| record.mu_star_se)),
+    Column::of_row("mu_star_contact", "", Result, "the same ratio from the contact forces, as a check", |row| of(row, |record| record.mu_star_contact)),
+    Column::of_row("frequency_hz", "Hz", Result, "fundamental frequency of the total normal contact force N; of a run that is not periodic, the mean rate of its cycles", |row| of(row, |record| record.frequency_hz)),
+    Column::of_row("stick_share", "", Contact, "share of the node-time in stick", |row| of(row, |record| record.stick_share)),
+    Column::of_row("slip_share", "", Contact, "share of the node-time in slip", |row| of(row, |record| record.slip_share)),
+    Column::of_row("separated_share", "", Contact, "share of the node-time separated", |row| of(row, |record| record.separated_share)),
+    Column::of_row("n_over_f_min", "", Contact, "smallest N over the load F, smoothed", |row| of(row, |record| record.n_over_f_min)),
+    Column::of_row("n_over_f_max", "", Contact, "largest N over the load F, smoothed", |row| of(row, |record| record.n_over_f_max)),
+    Column::of_row("sigma_n_max_pa", "Pa", Contact, "largest normal contact stress of a node, smoothed", |row| of(row, |record| record.sigma_n_max_pa)),
+    Column::of_row("slip_speed_max_m_s", "m/s", Contact, "largest slip speed of a node in contact", |row| of(row, |record| record.slip_speed_max_m_s)),
+    Column::of_row("cycles", "", Run, "whole limit cycles in the window; 0 if sliding is stable", |row| of(row, |record| record.cycles)),
+    Column::of_row("simulated_s", "s", Run, "simulated time at the end of the run", |row| of(row, |record| record.simulated_s)),
+    Column::of_row("steps", "", Run, "time steps taken", |row| of(row, |record| record.steps)),
+    Column::of_row("time_step_s", "s", Run, "the time step used", |row| of(row, |record| record.time_step_s)),
+    Column::of_row("energy_residual", "", Residuals, "imbalance of the energies of the run over the energy put in", |row| of(row, |record| record.energy_residual)),
+    Column::of_row("identity_residual", "", Residuals, "the larger of the residuals of the two identities", |row| of(row, JobRecord::identity_residual)),
+    Column::of_row("wall_s", "s", Run, "run time of the job: its share of its thread's time, because a thread advances up to eight jobs together", |row| row.wall_s.into()),
+    Column::of_row("error", "", Job, "why the job failed", error),
+];
+
+/// The rest of the record.
+#[rustfmt::skip]
+pub static FURTHER: [Column; 43] = [
+    Column::of_row("growth_rate_per_s", "1/s", Result, "growth rate of the fastest growing strong line, if the run ended in steady sliding; negative: sliding is stable", |row| of(row, |record| record.growth_rate_per_s)),
+    Column::of_row("obstacle", "", Result, "why the run is not periodic", |row| of(row, |record| record.obstacle.as_ref().map(in_words))),
+    Column::of_row("obstacle_figure", "", Result, "the figure that is not the same from cycle to cycle", |row| unsteady(row, |figure, _, _| figure.into())),
+    Column::of_row("obstacle_spread", "", Result, "its largest minus its smallest value over the cycles; of period, stress and amplitude, over the mean", |row| unsteady(row, |_, spread, _| spread.into())),
+    Column::of_row("obstacle_drift", "", Result, "the difference of its means over the two halves of the cycles, likewise", |row| unsteady(row, |_, _, drift| drift.into())),
+    Column::of_row("obstacle_cycles_found", "", Result, "section crossings of a run that has too few of them", |row| few_cycles(row, |found, _| found)),
+    Column::of_row("obstacle_cycles_needed", "", Result, "section crossings that would have to repeat in such a run", |row| few_cycles(row, |_, needed| needed)),
+    Column::of_row("mu_reduction_stick", "", Result, "part of μ − μ* that is due to sticking nodes", |row| of(row, |record| record.mu_reduction_stick)),
+    Column::of_row("mu_reduction_slip", "", Result, "part of μ − μ* that is due to nodes that slip sideways or backwards", |row| of(row, |record| record.mu_reduction_slip)),
+    Column::of_row("lift_max_m", "m", Contact, "largest gap of a node", |row| of(row, |record| record.lift_max_m)),
+    Column::of_row("contact_loss_share", "", Residuals, "contact loss in the window over the work of the drive", |row| of(row, |record| record.contact_loss_share)),
+    Column::of_row("macroscopic_identity_residual", "", Residuals, "residual of the identity μ − μ* = mean friction deficit of the nodes over F", |row| of(row, |record| record.macroscopic_identity_residual)),
+    Column::of_row("energy_identity_residual", "", Residuals, "residual of the energy identity over the window, relative to the work of the drive", |row| of(row, |record| record.energy_identity_residual)),
+    Column::of_row("window_start_s", "s", Run, "simulated time at which the window of all averages begins; it ends with the run", |row| of(row, |record| record.window_start_s)),
+    Column::of_row("crossings_per_cycle", "", Run, "section crossings that make up one limit cycle", |row| of(row, |record| record.crossings_per_cycle)),
+    Column::of_row("time_step_limit_s", "s", Run, "stability limit of the time step", |row| of(row, |record| record.time_step_limit_s)),
+    Column::of_row("clamp_width_on_mesh_m", "m", Run, "width of the clamp's strip on the mesh, which may differ from the given one", |row| of(row, |record| record.clamp_width_m)),
+    Column::of_row("energy_kinetic_j", "J", Energies, "kinetic energy at the end of the run", |row| of(row, |record| record.energy.kinetic_j)),
+    Column::of_row("energy_elastic_j", "J", Energies, "elastic energy at the end of the run", |row| of(row, |record| record.energy.elastic_j)),
+    Column::of_row("energy_load_work_j", "J", Energies, "work of the load since the start", |row| of(row, |record| record.energy.load_work_j)),
+    Column::of_row("energy_drive_work_j", "J", Energies, "work of the disk's drive on the pin since the start", |row| of(row, |record| record.energy.drive_work_j)),
+    Column::of_row("energy_friction_j", "J", Energies, "dissipated by friction since the start", |row| of(row, |record| record.energy.friction_j)),
+    Column::of_row("energy_damping_j", "J", Energies, "dissipated by the damping β_R and by β₂ > ½ since the start", |row| of(row, |record| record.energy.damping_j)),
+    Column::of_row("energy_contact_loss_j", "J", Energies, "lost since the start by nodes that close or begin to stick", |row| of(row, |record| record.energy.contact_loss_j)),
+    Column::of_row("front_centre_y_peak_to_peak_m", "m", Nodes, "centre of the leading end: peak-to-peak displacement in y", |row| front(row, |node| node.y_peak_to_peak_m)),
+    Column::of_row("front_centre_lift_max_m", "m", Nodes, "centre of the leading end: largest gap", |row| front(row, |node| node.lift_max_m)),
+    Column::of_row("front_centre_sigma_n_max_pa", "Pa", Nodes, "centre of the leading end: largest normal contact stress, smoothed", |row| front(row, |node| node.sigma_n_max_pa)),
+    Column::of_row("front_centre_slip_speed_max_m_s", "m/s", Nodes, "centre of the leading end: largest slip speed in contact", |row| front(row, |node| node.slip_speed_max_m_s)),
+    Column::of_row("rear_centre_y_peak_to_peak_m", "m", Nodes, "centre of the trailing end: peak-to-peak displacement in y", |row| rear(row, |node| node.y_peak_to_peak_m)),
+    Column::of_row("rear_centre_lift_max_m", "m", Nodes, "centre of the trailing end: largest gap", |row| rear(row, |node| node.lift_max_m)),
+    Column::of_row("rear_centre_sigma_n_max_pa", "Pa", Nodes, "centre of the trailing end: largest normal contact stress, smoothed", |row| rear(row, |node| node.sigma_n_max_pa)),
+    Column::of_row("rear_centre_slip_speed_max_m_s", "m/s", Nodes, "centre of the trailing end: largest slip speed in contact", |row| rear(row, |node| node.slip_speed_max_m_s)),
+    Column::of_row("disk_elements_theta", "", Disk, "elements of the elastic disk around the axis", |row| disk(row, |disk| disk.elements[0])),
+    Column::of_row("disk_elements_r", "", Disk, "elements of the elastic disk along the radius", |row| disk(row, |disk| disk.elements[1])),
+    Column::of_row("disk_elements_z", "", Disk, "elements of the elastic disk through its thickness", |row| disk(row, |disk| disk.elements[2])),
+    Column::of_row("disk_track_element_theta_m", "m", Disk, "longest edge of the elements under the track around the axis", |row| disk(row, |disk| disk.track_element_m[0])),
+    Column::of_row("disk_track_element_r_m", "m", Disk, "longest edge of the elements under the track along the radius", |row| disk(row, |disk| disk.track_element_m[1])),
+    Column::of_row("disk_track_element_z_m", "m", Disk, "longest edge of the elements under the track through the thickness", |row| disk(row, |disk| disk.track_element_m[2])),
+    Column::of_row("disk_longest_edge_m", "m", Disk, "longest edge of the elements elsewhere", |row| disk(row, |disk| disk.longest_edge_m)),
+    Column::of_row("disk_stages", "", Disk, "stages that the disk takes in a time step", |row| disk(row, |disk| disk.stages)),
+    Column::of_row("disk_sweeps_mean", "", Disk, "mean number of sweeps of a contact solve", |row| disk(row, |disk| disk.sweeps_mean)),
+    Column::of_row("disk_sweeps_max", "", Disk, "largest number of sweeps of a contact solve", |row| disk(row, |disk| disk.sweeps_max)),
+    Column::of_row("disk_residual_max", "", Disk, "largest residual of a contact solve over the largest force", |row| disk(row, |disk| disk.residual_max)),
+];
+
+/// A figure of the record; null without a record, without that figure, and if it is not finite.
+fn of<'a, T: Into<Value>>(row: &'a JobRow, read: impl FnOnce(&'a JobRecord) -> T) -> Value {
+    row.record().map_or(Value::Null, |record| read(record).into())
+}
+
+fn error(row: &JobRow) -> Value {
+    match &row.state {
+        RowState::Failed { error } => error.as_str().into(),
+        _ => Value::Null,
+    }
+}
+
+fn front(row: &JobRow, read: impl FnOnce(&ObservedNode) -> f64) -> Value {
+    node(row, OBSERVED_NAMES[0], read)
+}
+
+fn rear(row: &JobRow, read: impl FnOnce(&ObservedNode) -> f64) -> Value {
+    node(row, OBSERVED_NAMES[1], read)
+}
+
+fn node(row: &JobRow, name: &str, read: impl FnOnce(&ObservedNode) -> f64) -> Value {
+    of(row, |record| record.nodes.iter().find(|node| node.name == name).map(read))
+}
+
+fn disk<T: Into<Value>>(row: &JobRow, read: impl FnOnce(&ElasticDisk) -> T) -> Value {
+    of(row, |record| record.disk.as_ref().map(read))
+}
+
+fn unsteady(row: &JobRow, read: impl FnOnce(&str, f64, f64) -> Value) -> Value {
+    match row.record().and_then(|record| record.obstacle.as_ref()) {
+        Some(Obstacle::Unsteady { figure, spread, drift }) => read(figure, *spread, *drift),
+        _ => Value::Null,
+    }
+}
+
+fn few_cycles(row: &JobRow, read: impl FnOnce(usize, usize) -> usize) -> Value {
+    match row.record().and_then(|record| record.obstacle.as_ref()) {
+        Some(&Obstacle::FewCycles { found, needed }) => read(found, needed).into(),
+        _ => Value::Null,
+    }
+}
+
+/// The obstacle in words, with its numbers as they are.
+fn in_words(obstacle: &Obstacle) -> String {
+    match obstacle {
+        Obstacle::FewCycles { found, needed } => format!("few cycles: {found} of {needed}"),
+        Obstacle::SlipOnly => "all nodes slip all the time".to_owned(),
+        Obstacle::Unsteady { figure, spread, drift } => {
+            format!("{figure} is not steady: spread {}, drift {}", number(*spread), number(*drift))
+        }
+    }
+}

@@ -1,0 +1,425 @@
+//! The differences between several sources: studies, and files of measured points.
+//!
+//! The first source is the reference. A point of another source is compared with the reference at the same parameters. If
+//! the reference has no job at its place on the axis, but neighbours on both sides, it is interpolated between them, along
+//! the line that the figures show.
+
+use super::export::io_error;
+use super::layout::{Group, Layout, PlacedJob};
+use super::markdown;
+use super::parameters::SOURCE;
+use super::row::JobRow;
+use super::scalar::{FREQUENCY, MU_STAR, Scalar};
+use super::view::View;
+use crate::publish::plot::axis::Axis;
+use crate::publish::value;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::io;
+
+/// Largest number of differences on a page. All of them are in `differences.csv`.
+pub(super) const MAX_LISTED: usize = 60;
+
+/// The differences between the sources of a report.
+pub(super) struct Comparison {
+    /// The name of the first source.
+    pub reference: String,
+    /// What a reader must know, one sentence each: inputs that differ, points without a counterpart.
+    pub notes: Vec<String>,
+    /// All differences.
+    pub differences: Vec<Difference>,
+    /// Names of the parameters: those of the groups, of the curves and of the axis.
+    names: Vec<String>,
+    /// Short names with units of the same parameters.
+    labels: Vec<String>,
+}
+
+/// One quantity of a point, and of the reference at the same place.
+pub(super) struct Difference {
+    source: String,
+    scalar: &'static Scalar,
+    /// Values of the parameters, as in [`Comparison::names`], and their texts.
+    parameters: Vec<Value>,
+    texts: Vec<String>,
+    /// The curve of the reference in words.
+    curve: String,
+    value: f64,
+    error: Option<f64>,
+    reference: f64,
+    reference_error: Option<f64>,
+    interpolated: bool,
+}
+
+/// What a source has at the points of the reference.
+#[derive(Default)]
+struct Matches {
+    /// Points at the place of a job of the reference.
+    equal: usize,
+    /// Points between two jobs.
+    between: usize,
+    /// Other points.
+    elsewhere: usize,
+}
+
+/// A point of the reference.
+struct ReferencePoint {
+    value: f64,
+    error: Option<f64>,
+    interpolated: bool,
+}
+
+impl Comparison {
+    /// The differences; none if there is only one source.
+    pub fn of(layout: &Layout, view: &View) -> Option<Self> {
+        if layout.sources.len() < 2 {
+            return None;
+        }
+        let scalars: Vec<&'static Scalar> =
+            [*MU_STAR, *FREQUENCY].into_iter().chain(view.y.iter().copied()).collect();
+        let by = Some(layout.by).filter(|by| *by != SOURCE);
+        let names: Vec<&str> = layout.further.iter().copied().chain(by).chain([layout.axis]).collect();
+        let mut comparison = Self {
+            reference: layout.sources[0].name.to_owned(),
+            notes: view.notes.clone(),
+            differences: Vec::new(),
+            labels: names.iter().map(|name| layout.dimension(name).label.clone()).collect(),
+            names: names.iter().map(|&name| name.to_owned()).collect(),
+        };
+        let x_axis = layout.x_axis();
+        for (index, source) in layout.sources.iter().enumerate().skip(1) {
+            let mut matches = Matches::default();
+            let mut found = 0;
+            for group in &layout.groups {
+                let curves = reference_curves(layout, group, &x_axis);
+                found += curves.values().map(Vec::len).sum::<usize>();
+                for job in group.jobs.iter().filter(|job| layout.series[job.series].source == index) {
+                    comparison.compare(layout, group, job, &curves, &x_axis, &scalars, &mut matches);
+                }
+            }
+            comparison.notes.extend(matches.in_words(
+                source.name,
+                &layout.sources[0],
+                source.is_measured,
+                found,
+            ));
+        }
+        let order = |source: &str| layout.sources.iter().position(|own| own.name == source);
+        comparison.differences.sort_by_key(|found| {
+            let scalar = scalars.iter().position(|scalar| *scalar == found.scalar);
+            (order(&found.source), scalar, found.curve.clone())
+        });
+        Some(comparison)
+    }
+
+    #[expect(clippy::too_many_arguments, reason = "the state of one loop")]
+    fn compare(
+        &mut self,
+        layout: &Layout,
+        group: &Group,
+        job: &PlacedJob,
+        curves: &Curves,
+        x_axis: &Axis,
+        scalars: &[&'static Scalar],
+        matches: &mut Matches,
+    ) {
+        let at = &group.axis_values[job.axis_index];
+        let Some(x) = layout.position(x_axis, at) else { return };
+        let own = &layout.series[job.series].value;
+        let is_own =
+            |value: &&Value| layout.by == SOURCE || own.is_null() || value::text(value) == value::text(own);
+        let mut place = None;
+        for (index, curve) in curves {
+            let by = &layout.series[*index].value;
+            if !is_own(&by) {
+                continue;
+            }
+            place = place.max(position_in(curve, x, x_axis));
+            for scalar in scalars.iter().filter(|scalar| scalar.is_settled(job.row)) {
+                let Some(value) = scalar.value(job.row) else { continue };
+                let Some(reference) = reference_at(curve, x, x_axis, scalar) else { continue };
+                let by = Some(by).filter(|_| layout.by != SOURCE);
+                let parameters: Vec<Value> =
+                    group.key.iter().map(|(_, value)| value).chain(by).chain([at]).cloned().collect();
+                let texts = self.names.iter().zip(&parameters);
+                let words = [group.caption(), layout.series_name(&layout.series[*index])];
+                self.differences.push(Difference {
+                    source: job.row.study.clone(),
+                    scalar,
+                    texts: texts.map(|(name, value)| layout.dimension(name).text(value)).collect(),
+                    parameters,
+                    curve: words.into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>().join(", "),
+                    value,
+                    error: scalar.error(job.row),
+                    reference: reference.value,
+                    reference_error: reference.error,
+                    interpolated: reference.interpolated,
+                });
+            }
+        }
+        *match place {
+            Some(Place::Equal) => &mut matches.equal,
+            Some(Place::Between) => &mut matches.between,
+            None => &mut matches.elsewhere,
+        } += 1;
+    }
+
+    /// A summary for each curve of the reference: heads and lines of a table.
+    pub fn summary(&self) -> (Vec<String>, Vec<Vec<String>>) {
+        let head = [
+            "source",
+            "quantity",
+            "reference",
+            "points",
+            "mean difference",
+            "root mean square",
+            "largest",
+            "rms over statistical error",
+        ];
+        let same = |a: &Difference, b: &Difference| {
+            a.source == b.source && a.scalar == b.scalar && a.curve == b.curve
+        };
+        let line = |part: &[Difference]| {
+            let first = &part[0];
+            let text = |x: f64| first.scalar.text(x);
+            let count = part.len() as f64;
+            let mean = part.iter().map(Difference::difference).sum::<f64>() / count;
+            let square = part.iter().map(|found| found.difference().powi(2)).sum::<f64>() / count;
+            let largest = part.iter().map(Difference::difference).max_by(|a, b| a.abs().total_cmp(&b.abs()));
+            let ratios: Option<Vec<f64>> = part
+                .iter()
+                .map(|found| Some(found.difference() / found.combined_error().filter(|error| *error > 0.0)?))
+                .collect();
+            let over = ratios.map(|ratios| (ratios.iter().map(|r| r * r).sum::<f64>() / count).sqrt());
+            vec![
+                first.source.clone(),
+                first.scalar.short_title(),
+                first.curve.clone(),
+                part.len().to_string(),
+                text(mean),
+                text(square.sqrt()),
+                largest.map_or_else(String::new, text),
+                over.map_or_else(|| value::MISSING.to_owned(), |x| value::significant(x, 3)),
+            ]
+        };
+        (head.map(str::to_owned).into(), self.differences.chunk_by(same).map(line).collect())
+    }
+
+    /// The first differences: heads and lines of a table.
+    pub fn table(&self) -> (Vec<String>, Vec<Vec<String>>) {
+        let head = ["source", "quantity"].map(str::to_owned).into_iter().chain(self.labels.iter().cloned());
+        let results = ["value", &self.reference, "difference", "error", "relative"];
+        let head = head.chain(results.map(str::to_owned)).collect();
+        let line = |found: &Difference| {
+            let with_error = |x: f64, error: Option<f64>| {
+                let error =
+                    error.map_or_else(String::new, |error| format!(" ± {}", found.scalar.error_text(error)));
+                found.scalar.text(x) + &error
+            };
+            let mark = if found.interpolated { "*" } else { "" };
+            let own = [found.source.clone(), found.scalar.short_title()];
+            own.into_iter()
+                .chain(found.texts.iter().cloned())
+                .chain([
+                    with_error(found.value, found.error),
+                    with_error(found.reference, found.reference_error) + mark,
+                    found.scalar.text(found.difference()),
+                    found
+                        .combined_error()
+                        .map_or_else(|| value::MISSING.to_owned(), |x| found.scalar.error_text(x)),
+                    found.relative().map_or_else(
+                        || value::MISSING.to_owned(),
+                        |share| format!("{} %", value::fixed(100.0 * share, 1)),
+                    ),
+                ])
+                .collect()
+        };
+        (head, self.differences.iter().take(MAX_LISTED).map(line).collect())
+    }
+
+    /// What the tables mean.
+    pub fn explanation(&self) -> String {
+        format!(
+            "Difference: value minus {}. Error: the known errors of both, combined as the root of the sum of their squares; \
+             of a simulated μ* the standard error over its cycles, without that of mesh and time step. *: interpolated \
+             between the two neighbours on the axis. The values here have more digits than the error of mesh and time step \
+             leaves.",
+            self.reference
+        )
+    }
+}
+
+impl Difference {
+    fn difference(&self) -> f64 {
+        self.value - self.reference
+    }
+
+    fn relative(&self) -> Option<f64> {
+        Some(self.difference() / self.reference.abs()).filter(|share| share.is_finite())
+    }
+
+    fn combined_error(&self) -> Option<f64> {
+        match (self.error, self.reference_error) {
+            (None, None) => None,
+            (a, b) => Some(a.unwrap_or(0.0).hypot(b.unwrap_or(0.0))),
+        }
+    }
+}
+
+impl Matches {
+    fn in_words(
+        &self,
+        source: &str,
+        reference: &super::layout::Source,
+        is_measured: bool,
+        of_reference: usize,
+    ) -> Vec<String> {
+        let Self { equal, between, elsewhere } = *self;
+        let all = equal + between + elsewhere;
+        let mut words = Vec::new();
+        if equal < all {
+            words.push(format!(
+                "{equal} of the {all} points of {source} are at the parameters of a job of {0}; {between} are between two \
+                 jobs of {0}, and {elsewhere} have no counterpart there.",
+                reference.name
+            ));
+        }
+        if !is_measured && equal < of_reference {
+            words.push(format!(
+                "{} of the {of_reference} jobs of {} have no counterpart in {source}.",
+                of_reference - equal,
+                reference.name
+            ));
+        }
+        words
+    }
+}
+
+/// The curves of the reference in a group by the index of their series: rows from left to right.
+type Curves<'a> = BTreeMap<usize, Vec<(f64, &'a JobRow)>>;
+
+fn reference_curves<'a>(layout: &Layout, group: &Group<'a>, x_axis: &Axis) -> Curves<'a> {
+    let mut curves = Curves::new();
+    for job in group.jobs.iter().filter(|job| layout.series[job.series].source == 0) {
+        if let Some(x) = layout.position(x_axis, &group.axis_values[job.axis_index]) {
+            curves.entry(job.series).or_default().push((x, job.row));
+        }
+    }
+    for curve in curves.values_mut() {
+        curve.sort_by(|a, b| a.0.total_cmp(&b.0));
+    }
+    curves
+}
+
+/// Where a point is on a curve.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+enum Place {
+    Between,
+    Equal,
+}
+
+/// Positions on the axis that differ by less than this share are equal.
+const SAME: f64 = 1e-9;
+
+fn is_same(a: f64, b: f64) -> bool {
+    (a - b).abs() <= SAME * a.abs().max(b.abs())
+}
+
+fn position_in(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis) -> Option<Place> {
+    if curve.iter().any(|(at, _)| is_same(*at, x)) {
+        return Some(Place::Equal);
+    }
+    neighbours(curve, x, x_axis).map(|_| Place::Between)
+}
+
+/// The positions of the next jobs on both sides; none if values cannot be interpolated.
+fn neighbours(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis) -> Option<(f64, f64)> {
+    if let Axis::Names(_) = x_axis {
+        return None;
+    }
+    let left = curve.iter().rev().find(|(at, _)| *at < x)?.0;
+    let right = curve.iter().find(|(at, _)| *at > x)?.0;
+    Some((left, right))
+}
+
+/// The reference at a position: the mean of the jobs there, or interpolated between the neighbours, if both have a value.
+fn reference_at(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis, scalar: &Scalar) -> Option<ReferencePoint> {
+    if curve.iter().any(|(at, _)| is_same(*at, x)) {
+        return mean_at(curve, x, scalar);
+    }
+    let (left, right) = neighbours(curve, x, x_axis)?;
+    let (from, to) = (mean_at(curve, left, scalar)?, mean_at(curve, right, scalar)?);
+    let share = match x_axis {
+        Axis::Log(_) => (x / left).ln() / (right / left).ln(),
+        _ => (x - left) / (right - left),
+    };
+    let error = from.error.zip(to.error).map(|(a, b)| ((1.0 - share) * a).hypot(share * b));
+    Some(ReferencePoint { value: from.value + share * (to.value - from.value), error, interpolated: true })
+}
+
+fn mean_at(curve: &[(f64, &JobRow)], x: f64, scalar: &Scalar) -> Option<ReferencePoint> {
+    let here =
+        || curve.iter().filter(|(at, row)| is_same(*at, x) && scalar.is_settled(row)).map(|(_, row)| *row);
+    let values: Vec<f64> = here().filter_map(|row| scalar.value(row)).collect();
+    let count = values.len() as f64;
+    let errors: Option<Vec<f64>> = here().map(|row| scalar.error(row)).collect();
+    // The error of a mean of independent values.
+    let error = errors.map(|errors| errors.iter().map(|e| e * e).sum::<f64>().sqrt() / count);
+    (count > 0.0).then(|| ReferencePoint {
+        value: values.iter().sum::<f64>() / count,
+        error,
+        interpolated: false,
+    })
+}
+
+/// The section of `report.md`.
+pub(super) fn markdown(comparison: &Comparison) -> String {
+    let notes = comparison.notes.iter().map(|note| format!("- {}\n", markdown::escape(note)));
+    let mut text = format!("\n## Comparison\n\n{}", notes.collect::<String>());
+    let (head, lines) = comparison.summary();
+    if !lines.is_empty() {
+        text += "\n";
+        text += &markdown::table(&head, &lines, false);
+        let (head, lines) = comparison.table();
+        text += "\n";
+        text += &markdown::table(&head, &lines, false);
+    }
+    text + &format!(
+        "\n{} All differences: [differences.csv](differences.csv).\n",
+        markdown::escape(&comparison.explanation())
+    )
+}
+
+/// All differences as CSV, one line each, with numbers in full and in the units of their names.
+pub(super) fn csv(comparison: &Comparison, out: &mut Vec<u8>) -> io::Result<()> {
+    let mut writer = ::csv::Writer::from_writer(out);
+    let results = [
+        "value",
+        "error",
+        "reference_value",
+        "reference_error",
+        "difference",
+        "combined_error",
+        "relative_difference",
+        "interpolated",
+    ];
+    let head = ["source", "reference", "quantity"].into_iter();
+    writer
+        .write_record(head.chain(comparison.names.iter().map(String::as_str)).chain(results))
+        .map_err(io_error)?;
+    for found in &comparison.differences {
+        let optional = |x: Option<f64>| x.map_or_else(String::new, value::number);
+        let own = [found.source.clone(), comparison.reference.clone(), found.scalar.name.to_owned()];
+        let line = own.into_iter().chain(found.parameters.iter().map(value::text)).chain([
+            value::number(found.value),
+            optional(found.error),
+            value::number(found.reference),
+            optional(found.reference_error),
+            value::number(found.difference()),
+            optional(found.combined_error()),
+            optional(found.relative()),
+            (if found.interpolated { "yes" } else { "no" }).to_owned(),
+        ]);
+        writer.write_record(line).map_err(io_error)?;
+    }
+    writer.flush()
+}

@@ -1,0 +1,16 @@
+//! What is doubtful about the study's inputs.
+
+use crate::publish::html;
+use maud::{Markup, html};
+
+/// The doubts in a box at the beginning of the page; nothing if there are none.
+pub(super) fn list(warnings: &[String]) -> Markup {
+    html! {
+        @if !warnings.is_empty() {
+            (html::warning(&html! {
+                strong { "Check these inputs before you use the results:" }
+                ul { @for warning in warnings { li { (warning) } } }
+            }))
+        }
+    }
+}

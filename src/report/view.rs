@@ -1,0 +1,33 @@
+//! What a reader wants to see: the axes, the quantities, and the names of parameters.
+
+use super::scalar::Scalar;
+use std::collections::BTreeMap;
+
+/// How a report lays out its jobs. The default is ω along the axis and a curve for each μ.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct View {
+    /// The parameter along the axis of figures and the rows of tables. A name that no job has is ignored.
+    pub x: Option<String>,
+    /// The parameter that tells the curves of a figure and the columns of a table apart; `source` for the study or file.
+    pub by: Option<String>,
+    /// Quantities that get figures and tables besides μ\*, the frequency and the regime.
+    pub y: Vec<&'static Scalar>,
+    /// Parameters in words, by name, for the titles of axes: `pin's Young's modulus`, without the unit.
+    pub descriptions: BTreeMap<String, String>,
+    /// What a reader must know to compare the sources, one sentence each.
+    pub notes: Vec<String>,
+}
+
+impl View {
+    /// The default, for a layout that outlives its caller.
+    pub(super) const DEFAULT: Self =
+        Self { x: None, by: None, y: Vec::new(), descriptions: BTreeMap::new(), notes: Vec::new() };
+}
+
+static DEFAULT: View = View::DEFAULT;
+
+impl Default for &View {
+    fn default() -> Self {
+        &DEFAULT
+    }
+}

@@ -1,0 +1,178 @@
+//! Changes of a study by the command line: `--preset`, `--set` and `--name`.
+
+use super::axis::{Axis, check_type};
+use super::error::Problem;
+use super::file::StudyFile;
+use super::outline::Outline;
+use super::parameter::{Kind, Parameter, unknown_help};
+use super::preset::Preset;
+use super::source::Change;
+use serde_json::Value;
+
+/// What a command changes of a study before its jobs are made.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Changes {
+    /// The study's name; without it a `preset` appends its own name to that of the study.
+    pub name: Option<String>,
+    /// A preset that takes precedence over the file and the grid.
+    pub preset: Option<Preset>,
+    /// Names of parameters with values as text. A value takes precedence over the preset, the file and the grid; a list or
+    /// a range of values becomes an axis of the grid.
+    pub settings: Vec<(String, String)>,
+}
+
+/// What values may be.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Forms {
+    /// One value each.
+    Single,
+    /// One value, or the values of an axis.
+    AxesToo,
+}
+
+/// A setting whose name and type have been checked.
+struct Setting {
+    parameter: &'static Parameter,
+    place: String,
+    text: String,
+    value: Value,
+    is_axis: bool,
+}
+
+impl Outline {
+    /// Sets a preset, and then parameters (name, value as text), above everything that the study itself gives. `place`
+    /// stands for the file in messages about the parameters. Returns what is wrong; then the outline is of no use.
+    pub(super) fn set(
+        &mut self,
+        place: &str,
+        preset: Option<Preset>,
+        settings: &[(String, String)],
+        forms: Forms,
+    ) -> Vec<Problem> {
+        let preset = preset.map(|preset| ("--preset", "preset", preset.name()));
+        let settings = settings.iter().map(|(name, text)| (place, name.as_str(), text.as_str()));
+        let template = StudyFile::template();
+        let mut problems = Vec::new();
+        let mut accepted: Vec<Setting> = Vec::new();
+        let mut named: Vec<&Parameter> = Vec::new();
+        for (place, name, text) in preset.into_iter().chain(settings) {
+            let problem = |message: String| Problem::of_change(place, name, text, message);
+            let Some(parameter) = Parameter::find(name) else {
+                problems.push(Problem { help: unknown_help(name), ..problem("no such parameter".into()) });
+                continue;
+            };
+            if let Some(other) = named.iter().find(|other| other.overlaps(parameter)) {
+                let message = format!("{} is already set; expected only one of the two", other.name);
+                problems.push(problem(message));
+            }
+            named.push(parameter);
+            let value = parse_value(parameter, text);
+            let is_axis = forms == Forms::AxesToo && is_axis(parameter, &value);
+            let value = if is_axis { value } else { parameter.normalise(value) };
+            match if is_axis { Ok(()) } else { check_type(parameter, &value, &template) } {
+                Ok(()) => accepted.push(Setting {
+                    parameter,
+                    place: place.to_owned(),
+                    text: text.to_owned(),
+                    value,
+                    is_axis,
+                }),
+                Err(message) => problems.push(problem(message).with_help(parameter.help())),
+            }
+        }
+        for setting in &accepted {
+            self.source.changes.push(Change::of_parameter(setting.parameter, &setting.place, &setting.text));
+            let displaced = setting.parameter.displaces().iter();
+            displaced.filter_map(|name| Parameter::find(name)).for_each(|other| self.forget(other));
+        }
+        for setting in &accepted {
+            problems.extend(self.apply(setting, forms, &template));
+        }
+        problems
+    }
+
+    /// Removes what the study says about a parameter.
+    fn forget(&mut self, parameter: &Parameter) {
+        self.grid.axes.retain(|axis| !axis.parameter.overlaps(parameter));
+        let (parent, name) = parameter.pointer.rsplit_once('/').unwrap_or_default();
+        if let Some(Value::Object(fields)) = self.document.pointer_mut(parent) {
+            fields.remove(name);
+            // Without any field it would be a damping that says nothing.
+            if parent == "/damping" && fields.is_empty() {
+                self.document.as_object_mut().map(|study| study.remove("damping"));
+            }
+        }
+    }
+
+    fn apply(&mut self, setting: &Setting, forms: Forms, template: &Value) -> Vec<Problem> {
+        let Setting { parameter, value, .. } = setting;
+        // An axis of whole meshes with a single mesh is that mesh, of which a part is set now.
+        while let Some(place) = self.grid.axes.iter().position(|axis| {
+            axis.values.len() == 1
+                && axis.parameter.overlaps(parameter)
+                && !parameter.sets(&axis.parameter.field())
+        }) {
+            let axis = self.grid.axes.remove(place);
+            axis.parameter.set(&mut self.document, &axis.values[0]);
+        }
+        let place = self.grid.axes.iter().position(|axis| axis.parameter == *parameter);
+        let place = place.unwrap_or(self.grid.axes.len());
+        self.grid.axes.retain(|axis| !parameter.sets(&axis.parameter.field()));
+        let place = place.min(self.grid.axes.len());
+        if forms == Forms::AxesToo
+            && let Some(axis) = self.grid.axes.iter().find(|axis| axis.parameter.overlaps(parameter))
+        {
+            let message =
+                format!("grid.{0} varies the same field; expected {0} instead", axis.parameter.name);
+            return vec![Problem::of_change(&setting.place, parameter.name, &setting.text, message)];
+        }
+        let list_is_absent = || {
+            let (list, _) = parameter.pointer.rsplit_once('/').unwrap_or_default();
+            parameter.is_entry() && self.document.pointer(list).is_none()
+        };
+        if setting.is_axis {
+            return self.insert_axis(place, parameter, value, template);
+        }
+        if list_is_absent() {
+            // A file cannot give one entry of a list without the others, which a preset may set.
+            return self.insert_axis(place, parameter, &Value::from(vec![value.clone()]), template);
+        }
+        parameter.set(&mut self.document, value);
+        Vec::new()
+    }
+
+    fn insert_axis(
+        &mut self,
+        place: usize,
+        parameter: &'static Parameter,
+        given: &Value,
+        template: &Value,
+    ) -> Vec<Problem> {
+        match Axis::read(parameter, given, template, &self.source) {
+            Ok(axis) => {
+                self.grid.axes.insert(place, axis);
+                Vec::new()
+            }
+            Err(problems) => problems,
+        }
+    }
+}
+
+/// Whether a value stands for the values of an axis.
+fn is_axis(parameter: &Parameter, value: &Value) -> bool {
+    match (value, parameter.kind) {
+        (Value::Array(list), Kind::Counts) => list.first().is_none_or(Value::is_array),
+        (value, _) => value.is_array() || value.is_object(),
+    }
+}
+
+/// Reads the text of a value: counts as `12x15x10`, then JSON, otherwise a string.
+fn parse_value(parameter: &Parameter, text: &str) -> Value {
+    if matches!(parameter.kind, Kind::Counts) {
+        let counts: Result<Vec<u64>, _> = text.split(['x', '×']).map(|n| n.trim().parse()).collect();
+        if let Ok(counts) = counts {
+            return Value::from(counts);
+        }
+    }
+    serde_json::from_str(text).unwrap_or_else(|_| Value::from(text))
+}

@@ -1,0 +1,78 @@
+//! The draft of a job: values of fields as JSON, and which of them are given.
+
+use super::file::StudyFile;
+use super::parameter::{PARAMETERS, Parameter};
+use super::time_defaults;
+use crate::spec::{FieldError, JobSpec};
+use serde::Deserialize;
+use serde_json::{Map, Value};
+use std::collections::HashSet;
+
+/// The parts of a study that describe a job.
+pub(super) const PARTS: [&str; 6] = ["preset", "damping", "scene", "numerics", "run", "detection"];
+
+/// A job before it has all its values: everything that a study says about it, before presets, damping and the defaults
+/// that depend on other values give the rest.
+#[derive(Debug, Clone)]
+pub(super) struct Draft {
+    /// All fields of a job with their values or defaults; `preset` and `damping` where they are given.
+    values: Value,
+    /// Names of the parameters whose fields are given.
+    given: HashSet<&'static str>,
+}
+
+/// The job of a draft.
+#[derive(Debug, Clone)]
+pub(super) struct Resolved {
+    pub spec: JobSpec,
+    /// What makes the job unusable; empty for a good one.
+    pub violations: Vec<FieldError>,
+}
+
+impl Draft {
+    /// The draft that a study's object gives; its types have been checked.
+    pub(super) fn of(study: &Value) -> Self {
+        let parts: Map<String, Value> =
+            PARTS.iter().filter_map(|&part| Some((part.to_owned(), study.get(part)?.clone()))).collect();
+        let given = PARAMETERS
+            .iter()
+            .filter(|parameter| study.pointer(parameter.pointer).is_some_and(|value| !value.is_null()))
+            .map(|parameter| parameter.name)
+            .collect();
+        let file = decode(&Value::Object(parts));
+        Self { values: serde_json::to_value(file).expect("a study is plain data with string keys"), given }
+    }
+
+    /// Says that a parameter is given.
+    pub(super) fn mark(&mut self, parameter: &Parameter) {
+        let set = PARAMETERS.iter().filter(|other| parameter.sets(&other.field()));
+        self.given.extend(set.map(|other| other.name));
+    }
+
+    /// Gives a [marked](Self::mark) parameter a value of its type.
+    pub(super) fn put(&mut self, parameter: &Parameter, value: &Value) {
+        parameter.set(&mut self.values, value);
+    }
+
+    /// The job: what is given comes before the preset and the damping, and these before the defaults.
+    pub(super) fn resolve(&self) -> Resolved {
+        let StudyFile { preset, damping, scene, numerics, run, detection, .. } = decode(&self.values);
+        let mut spec = JobSpec { scene, numerics, run, detection };
+        let gives = |name: &str| self.given.contains(name);
+        let mut violations = Vec::new();
+        if let Some(preset) = preset {
+            preset.fill(&mut spec, gives);
+        }
+        if let Some(damping) = damping {
+            violations.extend(damping.fill(&mut spec.numerics, gives("beta_r_s")).err());
+        }
+        time_defaults::fill(&mut spec, gives);
+        violations.extend(spec.check().err().into_iter().flat_map(|found| found.0));
+        Resolved { spec, violations }
+    }
+}
+
+/// Decodes values whose types have been checked.
+fn decode(values: &Value) -> StudyFile {
+    StudyFile::deserialize(values).expect("each value was checked for its type")
+}

@@ -1,0 +1,60 @@
+//! Where the value of a parameter comes from.
+
+use super::definition::Study;
+use super::parameter::Parameter;
+use super::preset::Preset;
+
+/// Where the value of a parameter comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// The grid of the study.
+    Grid,
+    /// A field of the study.
+    Study,
+    /// The preset that the study names.
+    Preset,
+    /// Nobody gave it.
+    Default,
+}
+
+impl Origin {
+    /// The origin in a word.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Grid => "grid",
+            Self::Study => "study",
+            Self::Preset => "preset",
+            Self::Default => "default",
+        }
+    }
+}
+
+/// Whether presets set a parameter, or the whole field of which it sets a part.
+pub fn is_set_by_presets(parameter: &Parameter) -> bool {
+    let covered = Preset::COVERS.iter().filter_map(|name| Parameter::find(name));
+    covered.into_iter().any(|own| own.sets(&parameter.field()))
+}
+
+impl Study {
+    /// Where the value of a parameter comes from.
+    pub fn origin(&self, parameter: &Parameter) -> Origin {
+        let field = parameter.field();
+        let is_preset_given =
+            self.source.gives("preset") || self.axes().any(|(axis, _)| axis.name == "preset");
+        let in_grid = |axis: &Parameter| axis.overlaps(parameter);
+        // `scene.pin.elements` gives `scene.pin.elements[0]` too.
+        let list = field.split('[').next().unwrap_or_default();
+        if self.axes().any(|(axis, _)| in_grid(axis)) {
+            Origin::Grid
+        } else if self.source.gives(&field)
+            || self.source.gives(list)
+            || parameter.name == "beta_r_s" && self.source.gives("damping")
+        {
+            Origin::Study
+        } else if is_preset_given && is_set_by_presets(parameter) {
+            Origin::Preset
+        } else {
+            Origin::Default
+        }
+    }
+}

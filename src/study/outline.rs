@@ -1,0 +1,24 @@
+//! What a study says: the values of fields and the grid, before any job is made.
+
+use super::draft::Draft;
+use super::grid::Grid;
+use super::source::SourceText;
+use serde_json::Value;
+
+/// The content of a study file, with the changes that the command line makes.
+#[derive(Debug, Clone)]
+pub(super) struct Outline {
+    /// The study's object; its types have been checked.
+    pub document: Value,
+    /// The axes of its `grid`.
+    pub grid: Grid,
+    /// The file's text, for messages.
+    pub source: SourceText,
+}
+
+impl Outline {
+    /// The draft of the job without the grid's values.
+    pub(super) fn draft(&self) -> Draft {
+        Draft::of(&self.document)
+    }
+}

@@ -1,0 +1,164 @@
+//! Warnings about studies that can be run, but hardly mean what their author wants: strains beyond the linear model,
+//! values in another unit, grids whose jobs repeat each other. A warning never keeps a study from running.
+
+mod physics;
+mod similarity;
+mod units;
+
+use super::definition::Study;
+use super::error::Problem;
+use super::json::encode;
+use super::validate::assignments;
+use crate::spec::JobSpec;
+use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
+use serde::Serialize;
+use std::fmt;
+
+pub use physics::LOCKING_POISSON_RATIO;
+
+/// Something in a study that is allowed and yet doubtful. Displayed like a [`Problem`].
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Warning {
+    /// What is doubtful, in one word: `unit`, `strain`, `speed`, `locking`, `damping` or `repetition`.
+    pub kind: &'static str,
+    /// Number of jobs that it concerns; a job that appears twice in the grid counts twice.
+    pub jobs: usize,
+    /// Place, value, message and advice.
+    #[serde(flatten)]
+    pub problem: Problem,
+}
+
+impl Warning {
+    /// The warning on one line and without its place in the file, for readers who do not edit the file now.
+    pub fn in_words(&self) -> String {
+        let Problem { field, value, message, help, .. } = &self.problem;
+        let value = value.as_ref().map_or_else(String::new, |value| format!(" = {value}"));
+        let help: Vec<String> = help.iter().map(|line| format!("; {line}")).collect();
+        format!("{field}{value}: {message}{}", help.concat())
+    }
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.problem.fmt(f)
+    }
+}
+
+/// A doubt about one job.
+#[derive(Debug)]
+struct Doubt {
+    kind: &'static str,
+    /// Paths of the fields that may have to be changed, the most likely one first.
+    fields: &'static [&'static str],
+    /// How doubtful the job is, to find the worst job of a kind; without a unit.
+    size: f64,
+    message: String,
+    help: String,
+}
+
+/// The doubts about one job. A value in another unit is not followed by its consequences.
+fn doubts(spec: &JobSpec) -> Vec<Doubt> {
+    let mut found = units::doubts(spec);
+    let is_in_doubt = |field: &&str| found.iter().any(|doubt| doubt.fields.contains(field));
+    let further: Vec<Doubt> =
+        physics::doubts(spec).into_iter().filter(|doubt| !doubt.fields.iter().any(is_in_doubt)).collect();
+    found.extend(further);
+    found
+}
+
+/// What is doubtful about one job.
+pub fn job_warnings(spec: &JobSpec) -> Vec<Warning> {
+    let warning = |Doubt { kind, fields, message, help, .. }: Doubt| {
+        let (field, value) = (fields[0].to_owned(), value_of(fields[0], spec));
+        let problem =
+            Problem { file: String::new(), position: None, field, value, message, help: vec![help] };
+        Warning { kind, jobs: 1, problem }
+    };
+    doubts(spec).into_iter().map(warning).collect()
+}
+
+/// The doubts of one kind about one field in all jobs.
+struct Shared {
+    doubt: Doubt,
+    worst: usize,
+    first: usize,
+    jobs: usize,
+}
+
+impl Study {
+    /// What is doubtful about the study: each kind once for a field, with the number of jobs, the first and the worst.
+    pub fn warnings(&self) -> Vec<Warning> {
+        let mut warnings: Vec<Warning> =
+            self.shared_doubts(doubts).iter().map(|it| self.warning(it)).collect();
+        warnings.extend(self.repetition());
+        warnings
+    }
+
+    /// The values that look like another unit, except in the `refused` fields. They are the likely causes of violations.
+    pub(super) fn wrong_units(&self, refused: &[&str]) -> Vec<Problem> {
+        let shared = self.shared_doubts(units::doubts);
+        let is_refused = |shared: &&Shared| shared.doubt.fields.iter().any(|field| refused.contains(field));
+        let other = shared.iter().filter(|shared| !is_refused(shared));
+        other.map(|shared| self.warning(shared).problem).collect()
+    }
+
+    fn shared_doubts(&self, of: impl Fn(&JobSpec) -> Vec<Doubt> + Sync) -> Vec<Shared> {
+        let mut found: Vec<Shared> = Vec::new();
+        let all = self.specs.par_iter().enumerate().map(|(point, spec)| (point, of(spec)));
+        for (point, doubts) in all.filter(|(_, doubts)| !doubts.is_empty()).collect::<Vec<_>>() {
+            for doubt in doubts {
+                let same = |other: &&mut Shared| {
+                    (other.doubt.kind, other.doubt.fields) == (doubt.kind, doubt.fields)
+                };
+                match found.iter_mut().find(same) {
+                    None => found.push(Shared { doubt, worst: point, first: point, jobs: 1 }),
+                    Some(shared) => {
+                        shared.jobs += 1;
+                        if doubt.size > shared.doubt.size {
+                            (shared.doubt, shared.worst) = (doubt, point);
+                        }
+                    }
+                }
+            }
+        }
+        found
+    }
+
+    fn warning(&self, Shared { doubt, worst, first, jobs }: &Shared) -> Warning {
+        // The study's author can change what the study gives, and only knows that.
+        let gives = |field: &&&str| {
+            self.source.gives(field) || self.grid.axes.iter().any(|axis| axis.parameter.sets(field))
+        };
+        let field = doubt.fields.iter().find(gives).unwrap_or(&doubt.fields[0]);
+        let (mut problem, _) = self.problem_at(field, &doubt.message, *worst);
+        problem.value = problem.value.or_else(|| value_of(field, &self.specs[*worst]));
+        problem.help.push(doubt.help.clone());
+        if *jobs < self.grid_size() {
+            let [first, worst] = [first, worst].map(|point| assignments(&self.grid.parameters_at(*point)));
+            let most = if first == worst { String::new() } else { format!(", the worst is {worst}") };
+            problem.help.push(format!("in {jobs} of {} jobs, first at {first}{most}", self.grid_size()));
+        }
+        Warning { kind: doubt.kind, jobs: *jobs, problem }
+    }
+}
+
+/// The value of a field of a job as JSON.
+fn value_of(field: &str, spec: &JobSpec) -> Option<String> {
+    let pointer = format!("/{}", field.replace(['.', '['], "/").replace(']', ""));
+    encode(spec).pointer(&pointer).map(ToString::to_string)
+}
+
+/// A number for a message, with three significant digits.
+fn short(x: f64) -> String {
+    let rounded: f64 = format!("{x:.2e}").parse().unwrap_or(x);
+    if rounded == 0.0 || (1.0e-3..1.0e6).contains(&rounded.abs()) {
+        rounded.to_string()
+    } else {
+        format!("{rounded:e}")
+    }
+}
+
+/// A share as per cent, with three significant digits.
+fn percent(share: f64) -> String {
+    format!("{} %", short(100.0 * share))
+}

@@ -1,0 +1,128 @@
+//! Jobs outside of what the model and its elements describe.
+
+use super::{Doubt, percent, short};
+use crate::spec::{DiskKind, JobSpec, elasticity};
+use std::f64::consts::PI;
+
+/// Mean strain of the pin from which on the linear model is in doubt.
+const LARGE_STRAIN: f64 = 0.01;
+/// Mean strain at which no material is linear elastic.
+const HUGE_STRAIN: f64 = 0.1;
+/// Sliding speed as a fraction of the speed of surface waves from which on the linear model is in doubt. A node that sticks
+/// moves with the disk, and this fraction is of the order of the strain in the wave that it sends out.
+const FAST: f64 = 0.1;
+/// Poisson's ratio from which on the elements are noticeably too stiff; `tests/verification/locking.rs` has measured it.
+pub const LOCKING_POISSON_RATIO: f64 = 0.48;
+/// The time step with damping over the one without, below which damping decides about the cost.
+const SHORT_STEP: f64 = 0.5;
+
+pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
+    let (pin, disk) = (&spec.scene.pin, &spec.scene.disk);
+    let mut found = Vec::new();
+
+    let strain = spec.scene.load.force_n / (pin.young_modulus_pa * pin.size_m[0] * pin.size_m[1]);
+    if strain > LARGE_STRAIN {
+        let meaning = if strain > HUGE_STRAIN {
+            "no material is linear elastic at this strain, so the result means nothing"
+        } else {
+            "the model is linear elastic and holds for small strains"
+        };
+        found.push(Doubt {
+            kind: "strain",
+            fields: &[
+                "scene.load.force_n",
+                "scene.pin.young_modulus_pa",
+                "scene.pin.size_m",
+                "scene.pin.size_m[0]",
+                "scene.pin.size_m[1]",
+            ],
+            size: strain,
+            message: format!("the mean strain F/(E A) of the pin is {}; {meaning}", percent(strain)),
+            help: "check the units of the load [N], Young's modulus [Pa] and the size [m]".to_owned(),
+        });
+    }
+
+    let speed_m_s = disk.omega_rpm * 2.0 * PI / 60.0 * disk.track_radius_m;
+    let mut wave_m_s = surface_wave_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
+    if disk.kind == DiskKind::Elastic {
+        let ring = &disk.ring;
+        wave_m_s =
+            wave_m_s.min(surface_wave_m_s(ring.young_modulus_pa, ring.poisson_ratio, ring.density_kg_m3));
+    }
+    if speed_m_s > FAST * wave_m_s {
+        found.push(Doubt {
+            kind: "speed",
+            fields: &[
+                "scene.disk.omega_rpm",
+                "scene.disk.track_radius_m",
+                "scene.pin.young_modulus_pa",
+                "scene.pin.density_kg_m3",
+            ],
+            size: speed_m_s / wave_m_s,
+            message: format!(
+                "the disk's surface moves at {} m/s, {} of the speed of surface waves ({} m/s)",
+                short(speed_m_s),
+                percent(speed_m_s / wave_m_s),
+                short(wave_m_s)
+            ),
+            help: "a node that sticks moves with the disk and sends out a wave with a strain of that order, which is \
+                   outside the linear model"
+                .to_owned(),
+        });
+    }
+
+    if pin.poisson_ratio >= LOCKING_POISSON_RATIO {
+        found.push(locking(&["scene.pin.poisson_ratio"], pin.poisson_ratio));
+    }
+    if disk.kind == DiskKind::Elastic && disk.ring.poisson_ratio >= LOCKING_POISSON_RATIO {
+        found.push(locking(&["scene.disk.ring.poisson_ratio"], disk.ring.poisson_ratio));
+    }
+
+    // With the damping β_R ω/2 of the fastest oscillation, ω = 2 c_p/h, the limit of the step is (√(1 + ζ²) − ζ) 2/ω.
+    let wave_m_s =
+        elasticity::pressure_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
+    let edges = pin.size_m.iter().zip(pin.elements).map(|(size, n)| size / n as f64);
+    let shortest_m = edges.fold(f64::INFINITY, f64::min);
+    let zeta = spec.numerics.beta_r_s * wave_m_s / shortest_m;
+    let step = (1.0 + zeta * zeta).sqrt() - zeta;
+    if step < SHORT_STEP {
+        found.push(Doubt {
+            kind: "damping",
+            fields: &[
+                "numerics.beta_r_s",
+                "damping.ratio",
+                "damping.loss_factor",
+                "scene.pin.elements",
+                "scene.pin.young_modulus_pa",
+                "scene.pin.density_kg_m3",
+            ],
+            size: zeta,
+            message: format!(
+                "damping shortens the time step to {} of the step without damping, because β_R c/h is {}",
+                percent(step),
+                short(zeta)
+            ),
+            help: "a smaller β_R or a coarser mesh makes the run shorter".to_owned(),
+        });
+    }
+    found
+}
+
+/// Speed of Rayleigh waves \[m/s\], by the approximation of Viktorov, which is within 0.5 % for ν from 0 to ½.
+fn surface_wave_m_s(young_modulus_pa: f64, poisson_ratio: f64, density_kg_m3: f64) -> f64 {
+    let shear_m_s = elasticity::shear_wave_speed_m_s(young_modulus_pa, poisson_ratio, density_kg_m3);
+    shear_m_s * (0.87 + 1.12 * poisson_ratio) / (1.0 + poisson_ratio)
+}
+
+fn locking(fields: &'static [&'static str], nu: f64) -> Doubt {
+    Doubt {
+        kind: "locking",
+        fields,
+        size: nu,
+        message: "close to ½, where the elements are too stiff (volumetric locking)".to_owned(),
+        help: "measured on the reference pin: on 12 × 15 × 10 elements it deflects 5.9 % too little at ν = 0.3, 9.1 % at \
+               0.48 and 13.2 % at 0.499, on 24 × 30 × 20 elements 2.0 %, 3.3 % and 6.0 %; μ* differs by 6 to 10 % between \
+               these meshes at 0.48, by 2 to 4 % at 0.3 (docs/accuracy.md); compare two meshes"
+            .to_owned(),
+    }
+}

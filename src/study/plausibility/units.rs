@@ -1,0 +1,111 @@
+//! Values that look as if they were given in another unit.
+
+use super::{Doubt, short};
+use crate::spec::{ClampSide, DiskKind, JobSpec};
+use std::f64::consts::PI;
+
+/// Softest material that is not taken for a mistake \[Pa\]. Gels begin above it.
+const SOFTEST_PA: f64 = 1.0e4;
+/// Stiffest \[Pa\]: diamond has 1.1e12 Pa.
+const STIFFEST_PA: f64 = 1.5e12;
+/// Lightest solid that is not taken for a mistake \[kg/m³\]. Cork and balsa are above it.
+const LIGHTEST_KG_M3: f64 = 100.0;
+/// Heaviest \[kg/m³\]: osmium has 22 600 kg/m³.
+const HEAVIEST_KG_M3: f64 = 25_000.0;
+/// Lengths from which on millimetres are suspected \[m\].
+const LONGEST_M: f64 = 1.0;
+/// Sliding speeds above this are suspected \[m/s\]; brakes of racing cars reach 100 m/s.
+const FASTEST_M_S: f64 = 100.0;
+/// Friction coefficients above this are suspected.
+const ROUGHEST: f64 = 2.0;
+/// Time limits are suspected that are longer than this \[s\] and than so many times of the slowest
+/// waves, `Scene::vibration_time_s`.
+const LONGEST_S: f64 = 1.0;
+const LONGEST_TRANSITS: f64 = 1.0e5;
+
+type Fields = &'static [&'static str];
+
+pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
+    let mut found = Vec::new();
+    let scene = &spec.scene;
+    let (pin, disk, ring) = (&scene.pin, &scene.disk, &scene.disk.ring);
+    let is_elastic = disk.kind == DiskKind::Elastic;
+
+    young_modulus(&["scene.pin.young_modulus_pa"], pin.young_modulus_pa, &mut found);
+    density(&["scene.pin.density_kg_m3"], pin.density_kg_m3, &mut found);
+    length(&["scene.pin.size_m[0]"], pin.size_m[0], &mut found);
+    length(&["scene.pin.size_m[1]"], pin.size_m[1], &mut found);
+    length(&["scene.pin.size_m[2]"], pin.size_m[2], &mut found);
+    if is_elastic {
+        young_modulus(&["scene.disk.ring.young_modulus_pa"], ring.young_modulus_pa, &mut found);
+        density(&["scene.disk.ring.density_kg_m3"], ring.density_kg_m3, &mut found);
+        length(&["scene.disk.ring.inner_radius_m"], ring.inner_radius_m, &mut found);
+        length(&["scene.disk.ring.outer_radius_m"], ring.outer_radius_m, &mut found);
+        length(&["scene.disk.ring.thickness_m"], ring.thickness_m, &mut found);
+    }
+    length(&["scene.disk.track_radius_m"], disk.track_radius_m, &mut found);
+    if scene.clamp.side != ClampSide::WholeTop {
+        length(&["scene.clamp.width_m"], scene.clamp.width_m, &mut found);
+    }
+    // The speed follows from a radius that is in doubt itself.
+    let speed_m_s = disk.omega_rpm * 2.0 * PI / 60.0 * disk.track_radius_m;
+    if speed_m_s > FASTEST_M_S && disk.track_radius_m < LONGEST_M {
+        let message =
+            format!("the disk's surface moves at {} m/s; expected revolutions per minute", short(speed_m_s));
+        let help = "1 rad/s is 9.55 rpm, and 1 Hz is 60 rpm";
+        add(&mut found, &["scene.disk.omega_rpm"], speed_m_s, message, help);
+    }
+    let base_m = pin.size_m[0].max(pin.size_m[1]);
+    if disk.track_radius_m < base_m && base_m < LONGEST_M {
+        let message = format!("less than the longest edge of the pin's base, {} m", short(base_m));
+        let help = "expected the distance in metres of the pin's centre from the disk's axis";
+        add(&mut found, &["scene.disk.track_radius_m"], base_m / disk.track_radius_m, message, help);
+    }
+    let mu = scene.contact.mu;
+    if mu > ROUGHEST {
+        let message = "an unusually large friction coefficient".to_owned();
+        add(&mut found, &["scene.contact.mu"], mu, message, "expected a number, not per cent");
+    }
+    let limit_s = spec.run.limit_s;
+    let transits = limit_s / scene.vibration_time_s();
+    if limit_s >= LONGEST_S && transits > LONGEST_TRANSITS {
+        let message = format!(
+            "{} times as long as the pin's slowest waves take through it; expected seconds",
+            short(transits)
+        );
+        add(&mut found, &["run.limit_s"], transits, message, "1 ms is 0.001 s");
+    }
+    found
+}
+
+fn young_modulus(fields: Fields, modulus_pa: f64, found: &mut Vec<Doubt>) {
+    let help = "1 GPa is 1e9 Pa, and 1 MPa (1 N/mm²) is 1e6 Pa";
+    if modulus_pa < SOFTEST_PA {
+        let message = "softer than any gel, as if it were in GPa or MPa; expected Pa".to_owned();
+        add(found, fields, 1.0 / modulus_pa, message, help);
+    } else if modulus_pa > STIFFEST_PA {
+        add(found, fields, modulus_pa, "stiffer than diamond (1.1e12 Pa); expected Pa".to_owned(), help);
+    }
+}
+
+fn density(fields: Fields, density_kg_m3: f64, found: &mut Vec<Doubt>) {
+    let help = "1 g/cm³ is 1000 kg/m³";
+    if density_kg_m3 < LIGHTEST_KG_M3 {
+        let message = "lighter than cork, as if it were in g/cm³; expected kg/m³".to_owned();
+        add(found, fields, 1.0 / density_kg_m3, message, help);
+    } else if density_kg_m3 > HEAVIEST_KG_M3 {
+        let message = "heavier than osmium (22 600 kg/m³); expected kg/m³".to_owned();
+        add(found, fields, density_kg_m3, message, help);
+    }
+}
+
+fn length(fields: Fields, length_m: f64, found: &mut Vec<Doubt>) {
+    if length_m >= LONGEST_M {
+        let message = "a length of a metre or more, as if it were in mm; expected m".to_owned();
+        add(found, fields, length_m, message, "1 mm is 0.001 m");
+    }
+}
+
+fn add(found: &mut Vec<Doubt>, fields: Fields, size: f64, message: String, help: &str) {
+    found.push(Doubt { kind: "unit", fields, size, message, help: help.to_owned() });
+}

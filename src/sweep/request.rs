@@ -1,0 +1,313 @@
+//! What a report is asked to show: studies and measured points side by side, and the axes.
+
+use super::difference::{Difference, InputDifference};
+use super::error::SweepError;
+use super::measured::{self, MeasuredFile};
+use super::rows::read_rows;
+use super::selection::values;
+use crate::publish::value;
+use crate::queue::Queue;
+use crate::report::{JobRow, SCALARS, Scalar, View};
+use crate::solver;
+use crate::spec::JobSpec;
+use crate::study::{PARAMETERS, Study, StudyError, nearest_name};
+use serde_json::Value;
+use std::collections::HashMap;
+use std::path::PathBuf;
+
+/// The studies, files and axes of a report.
+#[derive(Debug, Clone, Default)]
+pub struct ReportRequest {
+    /// Names of the studies; the first one is the reference of a comparison.
+    pub studies: Vec<String>,
+    /// Files of measured points.
+    pub data: Vec<PathBuf>,
+    /// The parameter along the axis; the study's own choice if absent.
+    pub x: Option<String>,
+    /// The parameter of the curves; the study's own choice if absent.
+    pub by: Option<String>,
+    /// Further quantities; the study's own choice if empty.
+    pub y: Vec<String>,
+}
+
+/// What a report shows.
+#[derive(Debug)]
+pub struct ReportContent {
+    /// Its title: the names of its sources.
+    pub title: String,
+    /// The names of its studies.
+    pub studies: Vec<String>,
+    /// Jobs and measured points.
+    pub rows: Vec<JobRow>,
+    /// How they are laid out.
+    pub view: View,
+}
+
+/// A study of the database as it was submitted.
+struct StoredStudy {
+    name: String,
+    /// None if this version cannot read the study's document.
+    study: Option<Study>,
+}
+
+/// The parameters that every row has besides the grid's.
+const OWN: [&str; 2] = ["omega_rpm", "mu"];
+/// Stands for the study or file of a row among the parameters.
+const SOURCE: &str = "source";
+
+impl ReportRequest {
+    /// The usual report of one study.
+    pub fn of_study(name: &str) -> Self {
+        Self { studies: vec![name.to_owned()], ..Self::default() }
+    }
+
+    /// The names of the sources: the studies, and the stems of the files, with their endings if a study has the same name.
+    fn sources(&self) -> Vec<String> {
+        let mut names = self.studies.clone();
+        for path in &self.data {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+            let taken = names.contains(&stem);
+            names.push(if taken { path.display().to_string() } else { stem });
+        }
+        names
+    }
+
+    /// The title of the report, `A vs B`, or the name of its only study.
+    pub fn title(&self) -> String {
+        self.sources().join(" vs ")
+    }
+
+    /// The name of the report's usual folder.
+    pub fn folder_name(&self) -> String {
+        value::file_name_part(&self.sources().join("-vs-"))
+    }
+
+    /// How the rows of the only study are laid out.
+    ///
+    /// # Errors
+    /// If the database cannot be read, and [`SweepError::NoSuchAxis`].
+    pub(super) async fn view_of_study(&self, queue: &mut Queue, rows: &[JobRow]) -> Result<View, SweepError> {
+        let studies = self.stored(queue).await?;
+        self.view(&studies, rows)
+    }
+
+    async fn stored(&self, queue: &mut Queue) -> Result<Vec<StoredStudy>, SweepError> {
+        let mut studies = Vec::new();
+        for name in &self.studies {
+            let document = queue.study(name).await?;
+            let study = document.and_then(|found| Study::parse(&found.document, name).ok());
+            studies.push(StoredStudy { name: name.clone(), study });
+        }
+        Ok(studies)
+    }
+
+    fn view(&self, studies: &[StoredStudy], rows: &[JobRow]) -> Result<View, SweepError> {
+        let own = studies.iter().find_map(|stored| stored.study.as_ref()).map(Study::report);
+        let own = own.cloned().unwrap_or_default();
+        let mut known: Vec<&str> = OWN.to_vec();
+        for (name, _) in rows.iter().flat_map(|row| &row.parameters) {
+            if !known.contains(&name.as_str()) {
+                known.push(name);
+            }
+        }
+        if self.sources().len() > 1 {
+            known.push(SOURCE);
+        }
+        let asked = |option, name: &Option<String>| match name {
+            Some(name) if !known.contains(&name.as_str()) => Err(no_such_name(option, name, &known)),
+            name => Ok(name.clone()),
+        };
+        // A name in the study's file may be that of a parameter that does not vary any more. It is then ignored.
+        let (x, by) = (asked("--x", &self.x)?.or(own.x), asked("--by", &self.by)?.or(own.by));
+        if self.by.is_some() && x == by {
+            let name = by.unwrap_or_default();
+            let message = "expected another parameter than that of the axis".to_owned();
+            return Err(SweepError::NoSuchAxis { option: "--by", name, message });
+        }
+        let quantities = if self.y.is_empty() { &own.y } else { &self.y };
+        let mut y: Vec<&'static Scalar> = Vec::new();
+        for name in quantities {
+            let scalar = Scalar::find(name).ok_or_else(|| {
+                no_such_name("--y", name, &SCALARS.iter().map(|scalar| scalar.name).collect::<Vec<_>>())
+            })?;
+            // These two have their figures in every report.
+            if !matches!(scalar.name, "mu_star" | "frequency_hz") && !y.contains(&scalar) {
+                y.push(scalar);
+            }
+        }
+        Ok(View { x, by, y, descriptions: descriptions(), notes: different_inputs(studies, &known)? })
+    }
+}
+
+fn no_such_name(option: &'static str, name: &str, known: &[&str]) -> SweepError {
+    let nearest = nearest_name(name, known.iter().copied());
+    let advice = nearest.map_or_else(String::new, |name| format!("; did you mean `{name}`?"));
+    let message = format!("no such name{advice}\n  help: expected one of {}", known.join(", "));
+    SweepError::NoSuchAxis { option, name: name.to_owned(), message }
+}
+
+/// Refuses quantities in a study's file that no record has.
+pub(super) fn check_quantities(study: &Study) -> Result<(), SweepError> {
+    let names = SCALARS.iter().map(|scalar| scalar.name).collect::<Vec<_>>();
+    let unknown = study.report().y.iter().enumerate().filter(|(_, name)| Scalar::find(name).is_none());
+    let problems: Vec<_> = unknown
+        .map(|(index, name)| {
+            let nearest =
+                nearest_name(name, names.iter().copied()).map(|name| format!("did you mean `{name}`?"));
+            let all = format!("the quantities are {}", names.join(", "));
+            study.problem(
+                &format!("report.y[{index}]"),
+                "no such quantity",
+                nearest.into_iter().chain([all]).collect(),
+            )
+        })
+        .collect();
+    if problems.is_empty() { Ok(()) } else { Err(StudyError::Invalid(problems).into()) }
+}
+
+/// The parameters that are numbers in words, for the titles of axes.
+fn descriptions() -> std::collections::BTreeMap<String, String> {
+    let numbers = PARAMETERS.iter().filter(|parameter| parameter.is_number());
+    let in_words = numbers.map(|parameter| {
+        let words = parameter.description();
+        (parameter.name.to_owned(), words.split_once(", ").map_or(words, |(words, _)| words).to_owned())
+    });
+    in_words.collect()
+}
+
+/// Reads what a report shows.
+///
+/// # Errors
+/// If the database has no such study or cannot be read, a file of measured points cannot be used, a source is given twice,
+/// or an axis does not exist.
+pub async fn read_report(queue: &mut Queue, request: &ReportRequest) -> Result<ReportContent, SweepError> {
+    let sources = request.sources();
+    if let Some(repeated) = (1..sources.len()).find(|&index| sources[..index].contains(&sources[index])) {
+        return Err(SweepError::RepeatedSource(sources[repeated].clone()));
+    }
+    let files: Vec<MeasuredFile> = request
+        .data
+        .iter()
+        .zip(&sources[request.studies.len()..])
+        .map(|(path, name)| measured::read(path, name))
+        .collect::<Result<_, _>>()?;
+    let studies = request.stored(queue).await?;
+    let mut of_studies = Vec::new();
+    for study in &request.studies {
+        of_studies.push(read_rows(queue, study).await?);
+    }
+    // Every parameter that a grid or a file has is one of all jobs, so that equal points of different sources are found.
+    let mut names: Vec<String> = Vec::new();
+    let in_grids =
+        of_studies.iter().flatten().flat_map(|row| row.parameters.iter().map(|(name, _)| name.as_str()));
+    for name in in_grids.chain(files.iter().flat_map(|file| file.parameters.iter().copied())) {
+        if !OWN.contains(&name) && !names.iter().any(|known| known == name) {
+            names.push(name.to_owned());
+        }
+    }
+    for (rows, stored) in of_studies.iter_mut().zip(&studies) {
+        add_parameters(rows, stored, &names)?;
+    }
+    let mut rows: Vec<JobRow> = of_studies.into_iter().flatten().collect();
+    let jobs = rows.len();
+    for file in files {
+        rows.extend(completed(file, &rows[..jobs], &names));
+    }
+    let view = request.view(&studies, &rows)?;
+    Ok(ReportContent { title: request.title(), studies: request.studies.clone(), rows, view })
+}
+
+/// Gives the rows of a study the parameters that its grid does not have, with the values of the jobs.
+fn add_parameters(rows: &mut [JobRow], stored: &StoredStudy, names: &[String]) -> Result<(), SweepError> {
+    let in_grid = |row: &JobRow, name: &str| row.parameters.iter().any(|(own, _)| own == name);
+    let Some(study) =
+        stored.study.as_ref().filter(|_| rows.iter().any(|row| names.iter().any(|name| !in_grid(row, name))))
+    else {
+        return Ok(());
+    };
+    let jobs = study.expand(solver::VERSION)?;
+    let specs: HashMap<&str, &JobSpec> = jobs.iter().map(|job| (job.key.as_str(), &job.spec)).collect();
+    for row in rows {
+        let missing: Vec<&str> =
+            names.iter().map(String::as_str).filter(|name| !in_grid(row, name)).collect();
+        // An older version may have given the job another key; the parameters outside of the grid are those of all jobs.
+        let spec = specs.get(row.job.as_str()).copied().unwrap_or_else(|| study.base());
+        row.parameters.extend(values(spec, missing.into_iter())?);
+    }
+    Ok(())
+}
+
+/// The points of a file with all parameters: what the file does not say is taken from the jobs, if it is the same in all of
+/// them, and otherwise not known.
+fn completed(file: MeasuredFile, jobs: &[JobRow], names: &[String]) -> Vec<JobRow> {
+    let constant = |of: &dyn Fn(&JobRow) -> Value| {
+        let mut all = jobs.iter().map(of);
+        let first = all.next()?;
+        all.all(|value| value::text(&value) == value::text(&first)).then_some(first)
+    };
+    let number = |value: Option<Value>| value.and_then(|value| value.as_f64()).unwrap_or(f64::NAN);
+    let omega_rpm = number(constant(&|row| row.omega_rpm.into()));
+    let mu = number(constant(&|row| row.mu.into()));
+    let usual: Vec<(String, Value)> = names
+        .iter()
+        .map(|name| {
+            let of = |row: &JobRow| {
+                let found = row.parameters.iter().find(|(own, _)| own == name);
+                found.map_or(Value::Null, |(_, value)| value.clone())
+            };
+            (name.clone(), constant(&of).unwrap_or(Value::Null))
+        })
+        .collect();
+    let complete = |mut row: JobRow| {
+        if row.omega_rpm.is_nan() {
+            row.omega_rpm = omega_rpm;
+        }
+        if row.mu.is_nan() {
+            row.mu = mu;
+        }
+        let given = std::mem::take(&mut row.parameters);
+        let known = |name: &str| given.iter().find(|(own, value)| own == name && !value.is_null());
+        row.parameters = usual
+            .iter()
+            .map(|(name, value)| {
+                (name.clone(), known(name).map_or_else(|| value.clone(), |(_, own)| own.clone()))
+            })
+            .collect();
+        row
+    };
+    file.rows.into_iter().map(complete).collect()
+}
+
+/// The inputs in which the studies differ, apart from the `varied` parameters, which tables and figures show: one sentence
+/// for each study after the first.
+fn different_inputs(studies: &[StoredStudy], varied: &[&str]) -> Result<Vec<String>, SweepError> {
+    if studies.len() < 2 {
+        return Ok(Vec::new());
+    }
+    let (read, unreadable): (Vec<_>, Vec<_>) = studies.iter().partition(|stored| stored.study.is_some());
+    let mut notes: Vec<String> = unreadable
+        .iter()
+        .map(|stored| {
+            let name = &stored.name;
+            format!("This version cannot read the document of {name}, so its inputs are not compared.")
+        })
+        .collect();
+    let mut jobs = Vec::new();
+    for StoredStudy { name, study } in read {
+        jobs.extend(
+            study.as_ref().map(|study| study.expand(solver::VERSION)).transpose()?.map(|jobs| (name, jobs)),
+        );
+    }
+    let Some(((first, reference), others)) = jobs.split_first() else { return Ok(notes) };
+    for (name, own) in others {
+        let difference = Difference::between(reference, own);
+        let inputs = difference.inputs.iter().filter(|input| !varied.contains(&input.parameter.name));
+        let words: Vec<String> = inputs.map(InputDifference::in_words).collect();
+        notes.push(if words.is_empty() {
+            format!("{first} and {name} have the same inputs apart from the parameters of their grids.")
+        } else {
+            format!("{first} → {name}: inputs outside of their grids differ: {}.", words.join("; "))
+        });
+    }
+    Ok(notes)
+}

@@ -1,0 +1,271 @@
+//! The drawing of the pin on the disk, seen obliquely from above.
+
+use super::lines;
+use super::survey::Survey;
+use crate::publish::Drawing;
+use crate::publish::plot::RGBColor;
+use crate::publish::plot::palette::{BLUE, VERMILLION};
+use crate::publish::plot::sketch::{Anchor, At, Line, Sketch};
+use crate::spec::{ClampSide, DiskKind, JobSpec, TopFace};
+
+const SIZE: (u32, u32) = (560, 470);
+/// The part of the sheet for the bodies: left, top, right, bottom [px]. The rest is for texts.
+const FRAME: [f64; 4] = [70.0, 92.0, 500.0, 400.0];
+/// Length of the arrows of the load [px].
+const LOAD_ARROW: f64 = 46.0;
+/// With more elements along an edge the mesh would be a grey area, and is not drawn.
+const MAX_DRAWN_ELEMENTS: usize = 60;
+
+const INK: RGBColor = RGBColor(0x1B, 0x1F, 0x24);
+const MESH: RGBColor = RGBColor(0x9A, 0xAB, 0xBC);
+const DISK: RGBColor = RGBColor(0xE9, 0xEC, 0xEF);
+const DISK_EDGE: RGBColor = RGBColor(0x8A, 0x93, 0x9C);
+const TOP: RGBColor = RGBColor(0xF4, 0xF8, 0xFC);
+const SIDE: RGBColor = RGBColor(0xE0, 0xEA, 0xF4);
+const FRONT: RGBColor = RGBColor(0xCD, 0xDC, 0xEA);
+
+/// From positions in the scene [m] to positions on the sheet.
+struct View {
+    scale: f64,
+    shift: At,
+}
+
+/// The directions of x, y and z on the sheet, for an eye above the +x side and somewhat before the −y end.
+const DIRECTIONS: [At; 3] = [(0.57, 0.35), (0.82, -0.24), (0.0, -0.91)];
+
+fn oblique([x, y, z]: [f64; 3]) -> At {
+    let along =
+        |pick: fn(At) -> f64| x * pick(DIRECTIONS[0]) + y * pick(DIRECTIONS[1]) + z * pick(DIRECTIONS[2]);
+    (along(|d| d.0), along(|d| d.1))
+}
+
+impl View {
+    /// The view in which these positions fill the frame.
+    fn of(points: &[[f64; 3]]) -> Self {
+        let flat: Vec<At> = points.iter().map(|point| oblique(*point)).collect();
+        let ends = |pick: fn(&At) -> f64| {
+            flat.iter()
+                .map(pick)
+                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
+        };
+        let ((left, right), (top, bottom)) = (ends(|at| at.0), ends(|at| at.1));
+        let scale = ((FRAME[2] - FRAME[0]) / (right - left)).min((FRAME[3] - FRAME[1]) / (bottom - top));
+        let middle = |low: f64, high: f64| f64::midpoint(low, high);
+        Self {
+            scale,
+            shift: (
+                middle(FRAME[0], FRAME[2]) - scale * middle(left, right),
+                middle(FRAME[1], FRAME[3]) - scale * middle(top, bottom),
+            ),
+        }
+    }
+
+    fn at(&self, point: [f64; 3]) -> At {
+        let (u, v) = oblique(point);
+        (u * self.scale + self.shift.0, v * self.scale + self.shift.1)
+    }
+}
+
+/// Draws the pin of a job. Texts give the values of all jobs.
+pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
+    let [x, y, h] = spec.scene.pin.size_m;
+    let (x, y) = (x / 2.0, y / 2.0);
+    let margin = 0.45 * x.max(y).min(2.5 * x.min(y));
+    // The arrow of the motion is before the +x side.
+    let before = 3.2 * margin;
+    let elastic = spec.scene.disk.kind == DiskKind::Elastic;
+    let depth = if elastic { spec.scene.disk.ring.thickness_m.min(1.5 * margin) } else { 0.0 };
+    let disk = [
+        [-x - margin, -y - margin],
+        [x + before, -y - margin],
+        [x + before, y + margin],
+        [-x - margin, y + margin],
+    ];
+    let on = |z: f64, corners: [[f64; 2]; 4]| corners.map(|[x, y]| [x, y, z]);
+    let view =
+        View::of(&[on(0.0, disk), on(-depth, disk), on(h, [[-x, -y], [x, -y], [x, y], [-x, y]])].concat());
+    let place = |points: &[[f64; 3]]| -> Vec<At> { points.iter().map(|point| view.at(*point)).collect() };
+
+    let mut sketch = Sketch::new(SIZE);
+    draw_disk(&mut sketch, &view, disk, depth);
+    let outline = Some(Line::solid(INK, 1.6));
+    sketch.polygon(&place(&[[x, -y, 0.0], [x, y, 0.0], [x, y, h], [x, -y, h]]), (SIDE, 1.0), None);
+    sketch.polygon(&place(&[[-x, -y, 0.0], [x, -y, 0.0], [x, -y, h], [-x, -y, h]]), (FRONT, 1.0), None);
+    sketch.polygon(&place(&[[-x, -y, h], [x, -y, h], [x, y, h], [-x, y, h]]), (TOP, 1.0), None);
+    draw_clamp(&mut sketch, &view, spec);
+    draw_mesh(&mut sketch, &view, spec);
+    for face in [
+        [[x, -y, 0.0], [x, y, 0.0], [x, y, h], [x, -y, h]],
+        [[-x, -y, 0.0], [x, -y, 0.0], [x, -y, h], [-x, -y, h]],
+        [[-x, -y, h], [x, -y, h], [x, y, h], [-x, y, h]],
+    ] {
+        sketch.polygon(&place(&face), (TOP, 0.0), outline);
+    }
+    draw_load(&mut sketch, &view, [x, y, h], survey);
+    draw_dimensions(&mut sketch, &view, [x, y, h], survey);
+    draw_motion(&mut sketch, &view, [x + 0.72 * before, y], elastic);
+    draw_axes(&mut sketch);
+    Drawing { stem: "scene", svg: sketch.finish(), caption: caption(spec, survey) }
+}
+
+fn draw_disk(sketch: &mut Sketch, view: &View, disk: [[f64; 2]; 4], depth: f64) {
+    let corner = |index: usize, z: f64| view.at([disk[index][0], disk[index][1], z]);
+    let line = Line::solid(DISK_EDGE, 1.2);
+    if depth > 0.0 {
+        for (from, to) in [(0, 1), (1, 2)] {
+            let side = [corner(from, 0.0), corner(to, 0.0), corner(to, -depth), corner(from, -depth)];
+            sketch.polygon(&side, (DISK_EDGE, 0.35), Some(line));
+        }
+    }
+    sketch.polygon(&[0, 1, 2, 3].map(|index| corner(index, 0.0)), (DISK, 1.0), Some(line));
+    if depth == 0.0 {
+        // Strokes below an edge are the sign of a rigid body.
+        for (from, to) in [(corner(0, 0.0), corner(1, 0.0)), (corner(1, 0.0), corner(2, 0.0))] {
+            let strokes = ((to.0 - from.0).hypot(to.1 - from.1) / 11.0) as u32;
+            for number in 1..=strokes {
+                let share = f64::from(number) / f64::from(strokes);
+                let at = (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1));
+                sketch.lines(&[at, (at.0 - 7.0, at.1 + 8.0)], Line::solid(DISK_EDGE, 1.0));
+            }
+        }
+    }
+}
+
+/// The rectangles of the top face that are held: from and to, in x and y.
+fn clamped(spec: &JobSpec) -> Vec<[[f64; 2]; 2]> {
+    let [x, y, _] = spec.scene.pin.size_m.map(|edge| edge / 2.0);
+    // A clamp of no width holds one row of nodes, which is drawn as a narrow strip.
+    let width = spec.scene.clamp.width_m;
+    let wide = |edge: f64| width.max(0.03 * edge).min(2.0 * edge);
+    let inner = [[-x, -x + wide(x)], [-y, y]];
+    let outer = [[x - wide(x), x], [-y, y]];
+    let leading = [[-x, x], [-y, -y + wide(y)]];
+    let trailing = [[-x, x], [y - wide(y), y]];
+    match spec.scene.clamp.side {
+        ClampSide::InnerSide => vec![inner],
+        ClampSide::OuterSide => vec![outer],
+        ClampSide::LeadingEnd => vec![leading],
+        ClampSide::TrailingEnd => vec![trailing],
+        ClampSide::BothSides => vec![inner, outer],
+        ClampSide::BothEnds => vec![leading, trailing],
+        ClampSide::WholeTop => vec![[[-x, x], [-y, y]]],
+    }
+}
+
+fn draw_clamp(sketch: &mut Sketch, view: &View, spec: &JobSpec) {
+    let h = spec.scene.pin.size_m[2];
+    for [[left, right], [near, far]] in clamped(spec) {
+        let strip = [[left, near, h], [right, near, h], [right, far, h], [left, far, h]];
+        sketch.polygon(&strip.map(|point| view.at(point)), (VERMILLION, 0.75), None);
+    }
+}
+
+fn draw_mesh(sketch: &mut Sketch, view: &View, spec: &JobSpec) {
+    let counts = spec.scene.pin.elements;
+    if counts.iter().any(|&count| count > MAX_DRAWN_ELEMENTS) {
+        return;
+    }
+    let size = spec.scene.pin.size_m;
+    let thin = Line::solid(MESH, 0.6);
+    // Each visible face is at one end of an axis, and has lines of constant coordinate along the two others.
+    for (normal, end) in [(0, size[0] / 2.0), (1, -size[1] / 2.0), (2, size[2])] {
+        for across in (0..3).filter(|axis| *axis != normal) {
+            let along = 3 - normal - across;
+            let start = |axis: usize| if axis == 2 { 0.0 } else { -size[axis] / 2.0 };
+            for row in 1..counts[across] {
+                let mut from = [0.0; 3];
+                from[normal] = end;
+                from[across] = start(across) + size[across] * row as f64 / counts[across] as f64;
+                from[along] = start(along);
+                let mut to = from;
+                to[along] += size[along];
+                sketch.lines(&[view.at(from), view.at(to)], thin);
+            }
+        }
+    }
+}
+
+fn draw_load(sketch: &mut Sketch, view: &View, [x, y, h]: [f64; 3], survey: &Survey) {
+    for (share_x, share_y) in [(-0.6, -0.6), (0.6, -0.6), (0.0, 0.0), (-0.6, 0.6), (0.6, 0.6)] {
+        let tip = view.at([share_x * x, share_y * y, h]);
+        sketch.arrow(&[(tip.0, tip.1 - LOAD_ARROW), tip], Line::solid(BLUE, 2.2));
+    }
+    let (at_x, at_y) = view.at([0.0, 0.0, h]);
+    let text = format!("F = {}", lines::values(survey.values("load_n"), "N"));
+    sketch.text((at_x, (at_y - LOAD_ARROW - 34.0).max(14.0)), Anchor::Middle, BLUE, &text);
+}
+
+fn draw_dimensions(sketch: &mut Sketch, view: &View, [x, y, h]: [f64; 3], survey: &Survey) {
+    let text = |symbol: &str, name: &str| format!("{symbol} = {}", lines::values(survey.values(name), "m"));
+    // Dimensions are so many pixels away from their edges, whatever the size of the pin.
+    let away = |px: f64| px / view.scale;
+    let (near, side) = (-y - away(20.0), x + away(20.0));
+    let (from, to) = (view.at([-x, near, 0.0]), view.at([x, near, 0.0]));
+    let beside = (f64::midpoint(from.0, to.0) - 12.0, f64::midpoint(from.1, to.1) + 12.0);
+    sketch.dimension(from, to, INK, &text("l_x", "size_x_m"), (beside, Anchor::End));
+    let (from, to) = (view.at([side, -y, 0.0]), view.at([side, y, 0.0]));
+    let below = (f64::midpoint(from.0, to.0) + 8.0, f64::midpoint(from.1, to.1) + 12.0);
+    sketch.dimension(from, to, INK, &text("l_y", "size_y_m"), (below, Anchor::Start));
+    let (from, to) = (view.at([-x, -y, 0.0]), view.at([-x, -y, h]));
+    let (from, to) = ((from.0 - 16.0, from.1), (to.0 - 16.0, to.1));
+    let left = (from.0 - 8.0, f64::midpoint(from.1, to.1));
+    sketch.dimension(from, to, INK, &text("h", "size_z_m"), (left, Anchor::End));
+    let leading = view.at([0.0, -y, 0.45 * h]);
+    sketch.text(leading, Anchor::Middle, INK, "leading end");
+}
+
+fn draw_motion(sketch: &mut Sketch, view: &View, [x, y]: [f64; 2], elastic: bool) {
+    let (from, to) = (view.at([x, -y, 0.0]), view.at([x, y, 0.0]));
+    sketch.arrow(&[from, to], Line::solid(BLUE, 3.0));
+    let text = if elastic { "surface of the ring, moves in +y" } else { "rigid disk, moves in +y" };
+    let below = (f64::midpoint(from.0, to.0) + 16.0, f64::midpoint(from.1, to.1) + 20.0);
+    sketch.text(below, Anchor::Middle, BLUE, text);
+}
+
+/// The directions of the axes, in the lower left corner.
+fn draw_axes(sketch: &mut Sketch) {
+    let origin = (34.0, f64::from(SIZE.1) - 42.0);
+    for ((dx, dy), name) in DIRECTIONS.into_iter().zip(["x", "y", "z"]) {
+        let tip = (origin.0 + 40.0 * dx, origin.1 + 40.0 * dy);
+        sketch.arrow(&[origin, tip], Line::solid(INK, 1.6));
+        sketch.text((origin.0 + 52.0 * dx, origin.1 + 52.0 * dy), Anchor::Middle, INK, name);
+    }
+}
+
+fn caption(spec: &JobSpec, survey: &Survey) -> String {
+    let drawn =
+        ["size_x_m", "size_y_m", "size_z_m", "nx", "ny", "nz", "clamp_side", "clamp_width_m", "disk_kind"];
+    let first = if drawn.iter().any(|name| survey.varies(name)) { " Drawn is the first job." } else { "" };
+    let clamp = match spec.scene.clamp.side {
+        ClampSide::WholeTop => "the whole top face is held in x and y".to_owned(),
+        side => {
+            let width = lines::values(survey.values("clamp_width_m"), "m");
+            format!("a strip of {width} at the {} of the top face is held in x and y", name(side))
+        }
+    };
+    let top = match spec.scene.top {
+        TopFace::TiedInZ => "its nodes have one common displacement in z",
+        TopFace::FreeInZ => "its nodes move freely in z",
+    };
+    let [nx, ny, nz] = spec.scene.pin.elements;
+    let disk = match spec.scene.disk.kind {
+        DiskKind::Rigid => "a rigid plane (strokes at its edges)",
+        DiskKind::Elastic => "the surface of an elastic ring",
+    };
+    format!(
+        "The pin, {nx} × {ny} × {nz} elements, on {disk}. The pin is drawn to scale. Red: {clamp}. The load F acts on the \
+         top face; {top}. x is the radial direction, away from the disk's axis.{first}"
+    )
+}
+
+fn name(side: ClampSide) -> &'static str {
+    match side {
+        ClampSide::InnerSide => "inner side (−x)",
+        ClampSide::OuterSide => "outer side (+x)",
+        ClampSide::LeadingEnd => "leading end (−y)",
+        ClampSide::TrailingEnd => "trailing end (+y)",
+        ClampSide::BothSides => "inner and the outer side",
+        ClampSide::BothEnds => "leading and the trailing end",
+        ClampSide::WholeTop => "whole",
+    }
+}

@@ -1,0 +1,104 @@
+//! The drawing of the disk with the pin's track, seen from above.
+
+use super::derived::SLIDING_SPEED;
+use super::lines;
+use super::survey::Survey;
+use crate::publish::Drawing;
+use crate::publish::plot::RGBColor;
+use crate::publish::plot::palette::BLUE;
+use crate::publish::plot::sketch::{Anchor, At, Line, Sketch};
+use crate::spec::{DiskKind, JobSpec};
+
+const SIZE: (u32, u32) = (470, 470);
+const CENTRE: At = (225.0, 215.0);
+/// Radius of the largest circle [px].
+const RADIUS: f64 = 180.0;
+/// Smallest edge of the pin's footprint on the sheet [px].
+const SMALLEST: f64 = 5.0;
+
+const INK: RGBColor = RGBColor(0x1B, 0x1F, 0x24);
+const DISK: RGBColor = RGBColor(0xE9, 0xEC, 0xEF);
+const DISK_EDGE: RGBColor = RGBColor(0x8A, 0x93, 0x9C);
+const PIN: RGBColor = RGBColor(0xCD, 0xDC, 0xEA);
+const WHITE: RGBColor = RGBColor(0xFF, 0xFF, 0xFF);
+
+/// Draws the disk of a job. Texts give the values of all jobs.
+pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
+    let (disk, pin) = (&spec.scene.disk, &spec.scene.pin);
+    let track_m = disk.track_radius_m;
+    let elastic = disk.kind == DiskKind::Elastic;
+    let reach_m = track_m + pin.size_m[0];
+    let largest_m = if elastic { disk.ring.outer_radius_m } else { reach_m };
+    let scale = RADIUS / largest_m;
+    let on_circle = |radius: f64, degrees: f64| {
+        let angle = degrees.to_radians();
+        (CENTRE.0 + radius * angle.cos(), CENTRE.1 - radius * angle.sin())
+    };
+
+    let mut sketch = Sketch::new(SIZE);
+    let edge = Line { dashed: !elastic, ..Line::solid(DISK_EDGE, 1.2) };
+    sketch.circle(CENTRE, RADIUS, Some(DISK), edge);
+    if elastic {
+        sketch.circle(CENTRE, disk.ring.inner_radius_m * scale, Some(WHITE), edge);
+    }
+    sketch.circle(CENTRE, track_m * scale, None, Line { dashed: true, ..Line::solid(INK, 1.0) });
+    let half = [0, 1].map(|axis| (pin.size_m[axis] * scale / 2.0).max(SMALLEST / 2.0));
+    let at = on_circle(track_m * scale, 0.0);
+    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+    let footprint = corners.map(|(x, y)| (at.0 + x * half[0], at.1 + y * half[1]));
+    sketch.polygon(&footprint, (PIN, 1.0), Some(Line::solid(INK, 1.6)));
+
+    let radius = format!("R = {}", lines::values(survey.values("track_radius_m"), "m"));
+    let beside = ((CENTRE.0 + at.0) / 2.0, CENTRE.1 - 13.0);
+    sketch.dimension(CENTRE, (at.0 - half[0], at.1), INK, &radius, (beside, Anchor::Middle));
+    sketch.circle(CENTRE, 3.5, Some(INK), Line::solid(INK, 1.0));
+    sketch.text((CENTRE.0, CENTRE.1 + 18.0), Anchor::Middle, INK, "disk axis");
+
+    // Seen from above, the disk turns counter-clockwise: its surface moves towards +y under the pin.
+    let arc: Vec<At> = (0..=30).map(|step| on_circle(0.45 * RADIUS, 110.0 + 4.0 * f64::from(step))).collect();
+    sketch.arrow(&arc, Line::solid(BLUE, 2.4));
+    sketch.text(on_circle(0.45 * RADIUS, 100.0), Anchor::Start, BLUE, "ω");
+    let beside_pin = at.0 + half[0] + 14.0;
+    sketch.arrow(&[(beside_pin, at.1 + 30.0), (beside_pin, at.1 - 30.0)], Line::solid(BLUE, 2.4));
+    sketch.text((beside_pin + 9.0, at.1 - 22.0), Anchor::Start, BLUE, "V");
+    draw_axes(&mut sketch);
+    let below = f64::from(SIZE.1);
+    let speed = survey.derived.iter().find(|(derived, _)| derived.name == SLIDING_SPEED);
+    let omega = lines::values(survey.values("omega_rpm"), "rpm");
+    sketch.text((90.0, below - 44.0), Anchor::Start, BLUE, &format!("ω = {omega}"));
+    if let Some((_, [low, high])) = speed {
+        let speed = format!("V = ωR = {}", lines::range(*low, *high, "m/s"));
+        sketch.text((90.0, below - 22.0), Anchor::Start, BLUE, &speed);
+    }
+    Drawing { stem: "track", svg: sketch.finish(), caption: caption(spec, survey) }
+}
+
+fn draw_axes(sketch: &mut Sketch) {
+    let origin = (22.0, f64::from(SIZE.1) - 22.0);
+    for ((dx, dy), name) in [((1.0, 0.0), "x"), ((0.0, -1.0), "y")] {
+        sketch.arrow(&[origin, (origin.0 + 36.0 * dx, origin.1 + 36.0 * dy)], Line::solid(INK, 1.6));
+        sketch.text((origin.0 + 46.0 * dx, origin.1 + 46.0 * dy), Anchor::Middle, INK, name);
+    }
+}
+
+fn caption(spec: &JobSpec, survey: &Survey) -> String {
+    let ring = match spec.scene.disk.kind {
+        DiskKind::Rigid => "The disk is a rigid plane, which has no edge.".to_owned(),
+        DiskKind::Elastic => {
+            let radius = |name| lines::values(survey.values(name), "m");
+            format!(
+                "The disk is an elastic ring from r = {} to r = {}, {} thick.",
+                radius("disk_inner_radius_m"),
+                radius("disk_outer_radius_m"),
+                radius("disk_thickness_m")
+            )
+        }
+    };
+    let drawn =
+        ["size_x_m", "size_y_m", "track_radius_m", "disk_kind", "disk_inner_radius_m", "disk_outer_radius_m"];
+    let first = if drawn.iter().any(|name| survey.varies(name)) { " Drawn is the first job." } else { "" };
+    format!(
+        "The disk from above, with the footprint of the pin and its track (dashed), to scale. {ring} It turns under the pin \
+         towards +y.{first}"
+    )
+}

@@ -1,0 +1,150 @@
+//! The axes of tables and figures: any parameter along the axis, over the columns and in panels, in units that people use.
+
+use crate::svg;
+use crate::synthetic::{partial_study, periodic, record, row, with};
+use tribosweep::analysis::{Outcome, Regime};
+use tribosweep::report::figure::{Plot, figures};
+use tribosweep::report::tables::{self, Quantity};
+use tribosweep::report::{JobRow, RowState, SCALARS, Scalar, View, name_and_unit};
+use tribosweep::study::PARAMETERS;
+
+/// Two speeds, two μ and three stiffnesses of the pin.
+fn study() -> Vec<JobRow> {
+    let mut rows = Vec::new();
+    for young in [5e8, 1e9, 2e9] {
+        for mu in [0.3, 0.4] {
+            for omega in [2.0, 7.0] {
+                let job = row(omega, mu, periodic(mu * (0.5 + young / 1e10 + omega / 100.0)));
+                rows.push(with(job, "young_modulus_pa", young));
+            }
+        }
+    }
+    rows
+}
+
+fn view(x: Option<&str>, by: Option<&str>) -> View {
+    View { x: x.map(str::to_owned), by: by.map(str::to_owned), ..View::default() }
+}
+
+fn heads(rows: &[JobRow], view: &View) -> Vec<String> {
+    let page = tables::page(rows, view, Quantity::MuStar, "t");
+    page.lines().filter(|line| line.starts_with('#') || line.starts_with("| ")).map(str::to_owned).collect()
+}
+
+fn texts(rows: &[JobRow], view: &View, plot: Plot) -> Vec<String> {
+    let all = figures(rows, view, plot).expect("a string takes everything");
+    assert_eq!(all.len(), 1);
+    let elements = svg::parse(&all[0].svg);
+    elements.into_iter().filter(|element| element.name == "text").map(|element| element.text).collect()
+}
+
+/// Protects: a view puts any parameter along the axis and over the columns; the others make the groups, and no job is lost.
+#[test]
+fn any_parameter_can_be_an_axis() {
+    let rows = study();
+    let found = heads(&rows, &view(Some("young_modulus_pa"), Some("omega_rpm")));
+    assert_eq!(found[1], "### μ = 0.3");
+    assert_eq!(found[2], "| young_modulus [GPa] | ω = 2 rpm | ω = 7 rpm |");
+    assert!(found[4].starts_with("|                 0.5 |    0.1710 |    0.1860 |"), "{found:?}");
+    let found = heads(&rows, &view(Some("mu"), Some("young_modulus_pa")));
+    assert_eq!(
+        found[2],
+        "|    μ | young_modulus = 0.5 GPa | young_modulus = 1 GPa | young_modulus = 2 GPa |"
+    );
+    // A name that no job has is ignored.
+    assert_eq!(heads(&rows, &view(Some("load_n"), Some("omega_rpm"))), heads(&rows, &View::default()));
+    for (x, by) in [("mu", "omega_rpm"), ("young_modulus_pa", "mu"), ("omega_rpm", "young_modulus_pa")] {
+        let all =
+            figures(&rows, &view(Some(x), Some(by)), Plot::RegimeMap).expect("a string takes everything");
+        let cells: usize = all.iter().map(|figure| figure.svg.matches("data-job").count()).sum();
+        assert_eq!(cells, rows.len(), "{x} {by}");
+    }
+}
+
+/// Protects: the title of an axis has the description and the unit, ticks have that unit, and panels say their values.
+#[test]
+fn figures_have_the_units_that_people_use() {
+    let mut view = view(Some("young_modulus_pa"), None);
+    view.descriptions.insert("young_modulus_pa".to_owned(), "Young's modulus of the pin".to_owned());
+    let texts = texts(&study(), &view, Plot::MuStar);
+    assert!(texts.iter().any(|text| text == "Young's modulus of the pin [GPa]"), "{texts:?}");
+    assert!(
+        texts.iter().any(|text| text == "0.5") && !texts.iter().any(|text| text.contains("00000")),
+        "{texts:?}"
+    );
+    assert!(texts.iter().any(|text| text == "ω = 7 rpm"), "{texts:?}");
+}
+
+/// Protects: the axis is that of the frequencies of periodic jobs, and the others are at its edge. Colours and curves without
+/// a frequency are not in the legend.
+#[test]
+fn only_periodic_jobs_set_the_axis_of_frequencies() {
+    let at = |omega: f64, mu: f64, outcome, frequency: Option<f64>| {
+        let regime = if frequency.is_some() { Regime::StickSlip } else { Regime::Stable };
+        let mut own = record(outcome, regime, 0.3);
+        own.frequency_hz = frequency;
+        row(omega, mu, RowState::Done(Box::new(own)))
+    };
+    let rows = [
+        at(1.0, 0.4, Outcome::Periodic, Some(15_000.0)),
+        at(2.0, 0.4, Outcome::Periodic, Some(15_400.0)),
+        at(5.0, 0.4, Outcome::NotPeriodic, Some(113_000.0)),
+        at(1.0, 0.1, Outcome::Decayed, None),
+        at(2.0, 0.1, Outcome::Decayed, None),
+    ];
+    let found = texts(&rows, &View::default(), Plot::Frequency);
+    let ticks: Vec<f64> =
+        found.iter().filter_map(|text| text.parse().ok()).filter(|tick| *tick > 1000.0).collect();
+    assert!(ticks.iter().all(|tick| (14_000.0..16_500.0).contains(tick)), "{ticks:?}");
+    assert!(found.iter().any(|text| text == "outside of the axis"), "{found:?}");
+    assert!(found.iter().any(|text| text == "0.4") && !found.iter().any(|text| text == "0.1"), "{found:?}");
+    let map = texts(&rows, &View::default(), Plot::FrequencyMap);
+    assert!(map.iter().any(|text| text == "113.0~"), "{map:?}");
+    assert!(!map.iter().any(|text| text == "100" || text == "60"), "no tick of the colour scale: {map:?}");
+}
+
+/// Protects: every number of the record can be drawn and tabulated, and its title has the unit.
+#[test]
+fn every_scalar_has_a_figure_and_a_table() {
+    for scalar in SCALARS.iter() {
+        let rows = partial_study();
+        let all = figures(&rows, &View::default(), Plot::Of(scalar)).expect("a string takes everything");
+        let points = all[0].svg.matches("data-job").count();
+        // These are not in every record.
+        let is_optional = ["frequency", "growth_rate", "disk", "front", "rear"]
+            .iter()
+            .any(|beginning| scalar.name.starts_with(beginning));
+        assert!(points == 14 || is_optional, "{}: {points}", scalar.name);
+        let table = tables::page(&rows, &View::default(), Quantity::Of(scalar), "t");
+        assert!(table.starts_with(&format!("# t: {}\n", scalar.title())), "{table}");
+    }
+    assert_eq!(
+        Scalar::find("sigma_n_max_pa").expect("a stress").title(),
+        "largest normal contact stress [Pa]"
+    );
+}
+
+/// Protects: the unit at the end of a parameter's name is its unit in the registry, so that values are shown in it.
+#[test]
+fn names_end_with_their_units() {
+    for parameter in PARAMETERS {
+        assert_eq!(
+            name_and_unit(parameter.name).1,
+            parameter.unit().unwrap_or_default(),
+            "{}",
+            parameter.name
+        );
+    }
+}
+
+/// Protects: the values of a logarithmic range have short and different heads.
+#[test]
+fn computed_ranges_have_short_heads() {
+    let rows: Vec<JobRow> =
+        (0..5).map(|k| row(1.425_102_670_3 * 1.37f64.powi(k), 0.4, periodic(0.3))).collect();
+    let speeds: Vec<String> = heads(&rows, &View::default())[3..]
+        .iter()
+        .map(|line| line.split('|').nth(1).expect("a cell").trim().to_owned())
+        .collect();
+    assert_eq!(speeds, ["1.43", "1.95", "2.67", "3.66", "5.02"]);
+}

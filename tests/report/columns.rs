@@ -1,0 +1,125 @@
+//! The columns of the export: each figure of a record has one, and names mean one thing.
+
+use crate::synthetic::{record, row};
+use serde_json::{Value, json};
+use std::collections::BTreeSet;
+use tribosweep::analysis::{ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Obstacle, Outcome, Regime};
+use tribosweep::report::columns::{Column, InputColumn, all, plain};
+use tribosweep::report::{RowState, SCALARS, name_and_unit};
+
+/// A record in which every optional figure is present.
+fn full(obstacle: Obstacle) -> JobRecord {
+    let node = |name: &str| ObservedNode {
+        name: name.to_owned(),
+        y_peak_to_peak_m: 0.0,
+        lift_max_m: 0.0,
+        sigma_n_max_pa: 0.0,
+        slip_speed_max_m_s: 0.0,
+    };
+    JobRecord {
+        growth_rate_per_s: Some(-200.0),
+        obstacle: Some(obstacle),
+        disk: Some(ElasticDisk {
+            elements: [1, 2, 3],
+            track_element_m: [0.0; 3],
+            longest_edge_m: 0.0,
+            stages: 2,
+            sweeps_mean: 0.0,
+            sweeps_max: 0.0,
+            residual_max: 0.0,
+        }),
+        energy: EnergyTotals::default(),
+        nodes: vec![node("front_centre"), node("rear_centre")],
+        ..record(Outcome::NotPeriodic, Regime::StickSlip, 0.3)
+    }
+}
+
+/// Gives every number in a value another one, and collects them. They are larger than those that are not in the record.
+fn number_all(value: &mut Value, numbers: &mut BTreeSet<u64>) {
+    match value {
+        Value::Number(number) => {
+            let next = 1000 + numbers.len() as u64;
+            numbers.insert(next);
+            *value = if number.is_f64() { json!(next as f64) } else { json!(next) };
+        }
+        Value::Array(values) => values.iter_mut().for_each(|value| number_all(value, numbers)),
+        Value::Object(fields) => fields.values_mut().for_each(|value| number_all(value, numbers)),
+        _ => {}
+    }
+}
+
+fn inputs(names: &[&str]) -> Vec<InputColumn> {
+    let input =
+        |name: &&str| InputColumn {
+            name: (*name).to_owned(), unit: "m".to_owned(), meaning: "…".to_owned()
+        };
+    names.iter().map(input).collect()
+}
+
+fn names(columns: &[Column]) -> Vec<&str> {
+    columns.iter().map(|column| &*column.name).collect()
+}
+
+/// Protects: every number that a record stores is in a column of its own, whatever its kind of obstacle.
+#[test]
+fn every_number_of_a_record_has_a_column() {
+    let unsteady = Obstacle::Unsteady { figure: "period".to_owned(), spread: 0.1, drift: 0.2 };
+    for obstacle in [unsteady, Obstacle::FewCycles { found: 1, needed: 2 }] {
+        let mut stored = serde_json::to_value(full(obstacle)).unwrap();
+        let mut numbers = BTreeSet::new();
+        number_all(&mut stored, &mut numbers);
+        let record: JobRecord = serde_json::from_value(stored).unwrap();
+        let row = row(7.0, 0.4, RowState::Done(Box::new(record)));
+        let values = all(&[], &[]).into_iter().map(|column| (column.value(&row, &[]).as_f64(), column));
+        for number in numbers {
+            let own = values.clone().filter(|(value, _)| *value == Some(number as f64));
+            // The figure of both identities is the larger one of the two.
+            let own = own.filter(|(_, column)| column.name != "identity_residual");
+            assert_eq!(own.count(), 1, "{number}");
+        }
+    }
+}
+
+/// Protects: the columns of the plain export come first, no name occurs twice, and an input or a parameter with the name of
+/// a result has a name of its own, the same in both exports. Each column has a meaning.
+#[test]
+fn names_are_unique() {
+    let parameters = ["load_n", "cycles", "preset"].map(str::to_owned);
+    let all = all(&inputs(&["omega_rpm", "mu", "load_n", "cycles", "time_step_s"]), &parameters);
+    let plain = plain(&parameters);
+    let fixed = plain.len() - parameters.len();
+    assert_eq!(names(&all)[..fixed], names(&plain)[..fixed]);
+    assert_eq!(names(&plain)[fixed..], ["load_n", "parameter_cycles", "preset"]);
+    let further = ["load_n", "parameter_cycles", "parameter_time_step_s", "preset"];
+    assert_eq!(names(&all)[all.len() - further.len()..], further);
+    assert_eq!(names(&all).iter().collect::<BTreeSet<_>>().len(), all.len());
+    assert!(all.iter().all(|column| !column.meaning.is_empty()));
+}
+
+/// Protects: the unit of a column is the one at the end of its name, and figures and tables can show numbers of the export
+/// only.
+#[test]
+fn units_are_those_of_the_names() {
+    for column in all(&[], &[]) {
+        assert_eq!(name_and_unit(&column.name).1, column.unit, "{}", column.name);
+    }
+    let row = row(7.0, 0.4, RowState::Done(Box::new(full(Obstacle::SlipOnly))));
+    for scalar in SCALARS.iter() {
+        let column = Column::find(scalar.name).unwrap_or_else(|| panic!("no column {}", scalar.name));
+        assert!(column.value(&row, &[]).is_number(), "{}", scalar.name);
+    }
+}
+
+/// Protects: the values of inputs are in their columns, beside those of the row.
+#[test]
+fn inputs_are_in_their_columns() {
+    let columns = all(&inputs(&["mu", "size_x_m", "cycles"]), &[]);
+    let row = row(7.0, 0.4, RowState::Pending);
+    let value = |name: &str| {
+        let column = columns.iter().find(|column| column.name == name).unwrap();
+        column.value(&row, &[json!(0.4), json!(0.012), json!(20)])
+    };
+    assert_eq!(value("size_x_m"), json!(0.012));
+    assert_eq!(value("parameter_cycles"), json!(20));
+    assert_eq!((value("cycles"), value("mu")), (Value::Null, json!(0.4)));
+}

@@ -1,0 +1,124 @@
+//! Several sources side by side: studies, and measured points.
+
+use crate::svg;
+use crate::synthetic::{measured, periodic, report, row};
+use std::fs;
+use tribosweep::report::figure::{Plot, figures};
+use tribosweep::report::tables::{self, Quantity};
+use tribosweep::report::{JobRow, Report, RowState, View, write};
+
+/// A study called `name` at 1, 10 and 100 rpm, with μ* = `offset` + 0.01 log₁₀ ω and an error of 0.0005.
+fn study(name: &str, offset: f64) -> Vec<JobRow> {
+    let at = |omega: f64| {
+        let job = row(omega, 0.4, periodic(offset + 0.01 * omega.log10()));
+        JobRow { study: name.to_owned(), job: format!("{name}-{omega}"), ..job }
+    };
+    [1.0, 10.0, 100.0].map(at).into()
+}
+
+fn differences(rows: &[JobRow], view: &View) -> (Vec<csv::StringRecord>, String) {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    write(&Report { view, ..report(rows) }, folder.path()).expect("the report is written");
+    let mut reader =
+        csv::Reader::from_path(folder.path().join("differences.csv")).expect("a file of differences");
+    let lines = reader.records().map(|line| line.expect("a line")).collect();
+    (lines, fs::read_to_string(folder.path().join("report.md")).expect("a page"))
+}
+
+/// Protects: measured points are compared at equal speeds, and between neighbours with the value on the line that the figure
+/// draws, with the error of both. A point outside is not compared, and this is said.
+#[test]
+fn measured_points_are_compared_with_the_study() {
+    let mut rows = study("simulated", 0.3);
+    let between = 10f64.sqrt();
+    rows.extend([
+        measured(10.0, 0.4, 0.33, Some(0.0012)),
+        measured(between, 0.4, 0.3, None),
+        measured(500.0, 0.4, 0.3, None),
+    ]);
+    let (lines, page) = differences(&rows, &View::default());
+    let number = |line: &csv::StringRecord, column: usize| line[column].parse::<f64>().expect("a number");
+    let mu_star: Vec<_> = lines.iter().filter(|line| &line[2] == "mu_star").collect();
+    // source, reference, quantity, omega_rpm or mu …: the study has one μ, so only ω varies.
+    let [first, second] = mu_star.as_slice() else { panic!("{lines:?}") };
+    assert_eq!((&first[0], &first[1]), ("rig", "simulated"));
+    let x = 3;
+    assert_eq!(number(first, x), 10.0);
+    assert!((number(first, x + 5) - 0.02).abs() < 1e-12, "{first:?}");
+    assert!((number(first, x + 6) - 0.0012f64.hypot(0.0005)).abs() < 1e-12, "{first:?}");
+    assert_eq!(&first[x + 8], "no");
+    // Half-way between 1 and 10 rpm on the logarithmic axis.
+    assert!((number(second, x + 3) - 0.305).abs() < 1e-12, "{second:?}");
+    assert!((number(second, x + 4) - 0.0005 * 0.5f64.sqrt()).abs() < 1e-12, "{second:?}");
+    assert_eq!(&second[x + 8], "yes");
+    assert!(
+        page.contains(
+            "1 of the 3 points of rig are at the parameters of a job of simulated; 1 are between two jobs"
+        ),
+        "{page}"
+    );
+    assert!(page.contains("## Comparison"), "{page}");
+}
+
+/// Protects: two studies are compared at equal points, each with columns, curves and an entry in the legend of its own. Jobs
+/// without a counterpart are said.
+#[test]
+fn studies_are_compared() {
+    let mut rows = study("a", 0.3);
+    rows.extend(study("b", 0.31).into_iter().take(2));
+    let (lines, page) = differences(&rows, &View::default());
+    let mu_star = lines.iter().filter(|line| &line[2] == "mu_star");
+    let found: Vec<f64> = mu_star.map(|line| line[line.len() - 4].parse().expect("a number")).collect();
+    assert!(
+        found.len() == 2 && found.iter().all(|difference| (difference - 0.01).abs() < 1e-12),
+        "{found:?}"
+    );
+    assert!(page.contains("1 of the 3 jobs of a have no counterpart in b"), "{page}");
+    let table = tables::markdown(&rows, Quantity::MuStar);
+    assert!(
+        table.contains("|      a |      b |") && table.contains("|     100 | 0.3200 |      – |"),
+        "{table}"
+    );
+    let all = figures(&rows, &View::default(), Plot::MuStar).expect("a string takes everything");
+    let elements = svg::parse(&all[0].svg);
+    let texts: Vec<&str> = elements.iter().filter(|e| e.name == "text").map(|e| e.text.as_str()).collect();
+    assert!(texts.contains(&"source") && texts.contains(&"a") && texts.contains(&"b"), "{texts:?}");
+    let curves = |colour: &str| {
+        elements
+            .iter()
+            .filter(|e| e.name == "polyline" && e.is("stroke", colour) && e.is("stroke-width", "4"))
+            .count()
+    };
+    assert!(curves("#0072B2") > 0 && curves("#D55E00") > 0, "a colour for each study");
+}
+
+/// Protects: with several μ the colour is μ, and each source has a line or mark of its own. A measured point of unknown μ is
+/// compared with every curve. Maps show the jobs alone.
+#[test]
+fn a_point_of_unknown_friction_is_compared_with_every_curve() {
+    let mut rows = study("simulated", 0.3);
+    rows.extend(study("simulated", 0.2).into_iter().map(|job| JobRow {
+        mu: 0.3,
+        job: format!("{}-low", job.job),
+        ..job
+    }));
+    rows.push(measured(10.0, f64::NAN, 0.25, Some(0.01)));
+    let (lines, _) = differences(&rows, &View::default());
+    let mus: Vec<&str> = lines.iter().filter(|line| &line[2] == "mu_star").map(|line| &line[3]).collect();
+    assert_eq!(mus, ["0.3", "0.4"]);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    write(&report(&rows), folder.path()).expect("the report is written");
+    let read = |name: &str| fs::read_to_string(folder.path().join(name)).expect(name);
+    assert_eq!(read("mu_star.svg").matches("data-job").count(), 7);
+    assert_eq!(read("regime_map.svg").matches("data-job").count(), 6);
+    assert!(read("mu_star.md").contains("0.2500 ± 0.0100"), "{}", read("mu_star.md"));
+    assert!(read("report.md").contains("6 of 6 jobs done"), "a measured point is no job");
+}
+
+/// Protects: a report of one source has no comparison.
+#[test]
+fn one_study_has_no_comparison() {
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    write(&report(&[row(7.0, 0.4, RowState::Pending)]), folder.path()).expect("the report is written");
+    assert!(!folder.path().join("differences.csv").exists());
+}

@@ -1,0 +1,90 @@
+//! Protects: a damping ratio or a loss factor at a frequency is the β_R that gives it, and contradictions are refused.
+
+use super::{assert_contains, parse, refusal};
+use std::f64::consts::PI;
+use tribosweep::study::{Study, job_key};
+
+fn damped(damping: &str) -> Study {
+    parse(&format!(r#"{{ "damping": {{ {damping} }} }}"#))
+}
+
+/// Damping in proportion to the stiffness has ζ = β_R ω / 2 at the angular frequency ω, and a loss factor η = β_R ω. The
+/// tolerance is a few roundings.
+#[test]
+fn the_ratio_holds_at_its_frequency() {
+    for (frequency_hz, ratio) in [(15_000.0, 0.02), (250.0, 0.3), (1.0e5, 0.0)] {
+        let omega = 2.0 * PI * frequency_hz;
+        let by_ratio = damped(&format!(r#""ratio": {ratio}, "frequency_hz": {frequency_hz}"#));
+        let beta_r_s = by_ratio.base().numerics.beta_r_s;
+        assert!((beta_r_s * omega / 2.0 - ratio).abs() <= 1e-15, "{beta_r_s}");
+        let by_loss = damped(&format!(r#""loss_factor": {}, "frequency_hz": {frequency_hz}"#, 2.0 * ratio));
+        assert_eq!(by_loss.base().numerics.beta_r_s, beta_r_s);
+        // The job has only β_R, so it is the job of a study that gives β_R itself.
+        let explicit = parse(&format!(r#"{{ "numerics": {{ "beta_r_s": {beta_r_s:e} }} }}"#));
+        assert_eq!(job_key(by_ratio.base(), "1"), job_key(explicit.base(), "1"));
+    }
+}
+
+#[test]
+fn damping_can_be_varied() {
+    let study = parse(
+        r#"{ "damping": { "frequency_hz": 15000 }, "grid": { "loss_factor": [0, 0.04], "omega_rpm": [2, 7] } }"#,
+    );
+    let jobs = study.expand("1").unwrap();
+    let found: Vec<f64> = jobs.iter().map(|job| job.spec.numerics.beta_r_s).collect();
+    let other = 0.02 / (PI * 15_000.0);
+    assert_eq!(found, [0.0, 0.0, other, other]);
+    let frequencies =
+        parse(r#"{ "damping": { "ratio": 0.01 }, "grid": { "damping_frequency_hz": [1e4, 2e4] } }"#);
+    let found: Vec<f64> =
+        frequencies.expand("1").unwrap().iter().map(|job| job.spec.numerics.beta_r_s).collect();
+    assert_eq!(found, [0.01 / (PI * 1.0e4), 0.01 / (PI * 2.0e4)]);
+}
+
+#[test]
+fn contradictions_and_gaps_are_refused() {
+    for (text, expected) in [
+        (
+            r#"{ "damping": { "ratio": 0.02, "frequency_hz": 15000 }, "numerics": { "beta_r_s": 5e-8 } }"#,
+            "studies/x.json:1:82: numerics.beta_r_s = 0.00000005: expected either this or damping",
+        ),
+        (
+            r#"{ "damping": { "ratio": 0.02, "loss_factor": 0.04, "frequency_hz": 15000 } }"#,
+            "studies/x.json:1:46: damping.loss_factor = 0.04: expected either this or damping.ratio",
+        ),
+        (
+            r#"{ "damping": { "frequency_hz": 15000 } }"#,
+            "1:32: damping.frequency_hz = 15000: expected a damping ratio or a loss factor too",
+        ),
+        (r#"{ "damping": { "ratio": 0.02 } }"#, "1:25: damping.ratio = 0.02: expected the frequency too"),
+        (r#"{ "damping": {} }"#, "1:14: damping = {}: expected a ratio or a loss_factor"),
+        (
+            r#"{ "damping": { "ratio": 2, "frequency_hz": 1 } }"#,
+            "1:25: damping.ratio = 2: expected a fraction of critical",
+        ),
+        (
+            r#"{ "damping": { "ratio": -0.1, "frequency_hz": 1 } }"#,
+            "damping.ratio = -0.1: expected a fraction of critical",
+        ),
+        (
+            r#"{ "damping": { "loss_factor": 2, "frequency_hz": 1 } }"#,
+            "damping.loss_factor = 2: expected twice a",
+        ),
+        (
+            r#"{ "damping": { "ratio": 0.1, "frequency_hz": 0 } }"#,
+            "1:46: damping.frequency_hz = 0: expected a frequency > 0",
+        ),
+        (r#"{ "damping": { "zeta": 0.1 } }"#, "damping.zeta = 0.1: no such field"),
+        (r#"{ "damping": { "ratio": null } }"#, "damping.ratio = null: expected a number"),
+        (r#"{ "damping": 0.02 }"#, "1:14: damping = 0.02: expected an object"),
+        (
+            r#"{ "grid": { "damping_ratio": [0.01] } }"#,
+            "1:31: damping.ratio = 0.01: expected the frequency too",
+        ),
+    ] {
+        assert_contains(&refusal(text), &[expected]);
+    }
+    let grid = r#"{ "damping": { "frequency_hz": 15000 }, "grid": { "mu": [0.2, 0.4], "damping_ratio": [0.5, 1] } }"#;
+    let expected = ["1:92: damping.ratio = 1: expected a fraction", "set by grid.damping_ratio[1]"];
+    assert_contains(&refusal(grid), &expected);
+}

@@ -1,0 +1,199 @@
+//! Protects: doubtful studies are accepted with a warning that names the reason, and ordinary ones have no warning.
+
+use super::{assert_contains, parse, refusal, shipped};
+use tribosweep::study::{LOCKING_POISSON_RATIO, Study, Warning, job_warnings};
+
+fn warnings(text: &str) -> Vec<Warning> {
+    parse(text).warnings()
+}
+
+/// A study of a scene, with a time that serves heavy and soft pins.
+fn of_scene(scene: &str) -> String {
+    format!(r#"{{ "scene": {{ {scene} }}, "detection": {{ "decay_observation_s": 0.1 }} }}"#)
+}
+
+/// The only warning about a scene.
+fn only(scene: &str) -> Warning {
+    let mut found = warnings(&of_scene(scene));
+    assert_eq!(found.len(), 1, "{scene}: {found:#?}");
+    found.remove(0)
+}
+
+/// Protects: no study that comes with the program is doubtful.
+#[test]
+fn shipped_studies_are_not_doubtful() {
+    for file in shipped::files() {
+        let study = Study::load(&file).unwrap();
+        assert_eq!(study.warnings(), [], "{}", file.display());
+    }
+    assert_eq!(warnings("{}"), []);
+}
+
+/// Protects: large strains are named with their size, from one per cent on and not below.
+#[test]
+fn large_strains_are_named() {
+    // F/(E A) with A = 1.8e-4 m².
+    let warning = only(r#""load": { "force_n": 30000 }"#);
+    assert_eq!((warning.kind, warning.jobs), ("strain", 1));
+    let expected = "studies/x.json:1:35: scene.load.force_n = 30000: the mean strain F/(E A) of the pin is 16.7 %; \
+                    no material is linear elastic";
+    assert_contains(&warning.to_string(), &[expected, "check the units of the load [N]"]);
+    assert_contains(&warning.in_words(), &["scene.load.force_n = 30000: the mean strain"]);
+    assert!(!warning.in_words().contains("x.json"));
+    assert_contains(
+        &only(r#""load": { "force_n": 1810 }"#).to_string(),
+        &["1.01 %", "holds for small strains"],
+    );
+    assert_eq!(warnings(r#"{ "scene": { "load": { "force_n": 1790 } } }"#), []);
+    // A soft pin: what the study gives is named, and not the load that it leaves out.
+    let soft = only(r#""pin": { "young_modulus_pa": 1e7 }"#).to_string();
+    assert_contains(&soft, &["1:43: scene.pin.young_modulus_pa = 1e7: the mean strain", "1.67 %"]);
+}
+
+/// Protects: values that look like another unit are named with the unit that is expected, one warning for each.
+#[test]
+fn other_units_are_named() {
+    for (scene, expected) in [
+        (
+            r#""pin": { "young_modulus_pa": 5e12 }"#,
+            ["young_modulus_pa = 5e12: stiffer than diamond", "expected Pa"],
+        ),
+        (r#""pin": { "density_kg_m3": 2.5 }"#, ["density_kg_m3 = 2.5: lighter than cork", "expected kg/m³"]),
+        (r#""pin": { "density_kg_m3": 30000 }"#, ["density_kg_m3 = 30000: heavier", "expected kg/m³"]),
+        (r#""disk": { "track_radius_m": 91.4 }"#, ["track_radius_m = 91.4: a length of a metre", "mm"]),
+        (
+            r#""disk": { "track_radius_m": 0.009 }"#,
+            ["track_radius_m = 0.009: less than the longest edge", "0.015 m"],
+        ),
+        (r#""contact": { "mu": 40 }"#, ["contact.mu = 40: an unusually large", "per cent"]),
+        (r#""disk": { "omega_rpm": 70000, "track_radius_m": 0.02 }"#, ["omega_rpm = 70000: ", "147 m/s"]),
+    ] {
+        let found = warnings(&of_scene(scene));
+        assert_eq!(
+            found.iter().map(|warning| warning.kind).collect::<Vec<_>>(),
+            ["unit"],
+            "{scene}: {found:?}"
+        );
+        assert_contains(&found[0].to_string(), &expected);
+    }
+}
+
+/// Protects: a modulus in GPa is the reason that is named first, although it also makes a time too short, and no
+/// consequence of it becomes a warning.
+#[test]
+fn a_modulus_in_gpa_is_named_as_the_reason() {
+    let gpa = |given: &str| format!(r#"{{ "scene": {{ "pin": {{ "young_modulus_pa": {given} }} }} }}"#);
+    let named = |text: &str| -> String {
+        match Study::parse(text, "studies/x.json") {
+            Ok(study) => study.warnings().iter().map(ToString::to_string).collect::<Vec<_>>().join("\n"),
+            Err(error) => error.to_string(),
+        }
+    };
+    for given in ["1", "210", "2400"] {
+        let text = named(&gpa(given));
+        let expected = format!(
+            "studies/x.json:1:43: scene.pin.young_modulus_pa = {given}: softer than any gel, as if it were in GPa or MPa; \
+             expected Pa"
+        );
+        assert!(text.starts_with(&expected), "{text}");
+        assert!(!text.contains("strain") && !text.contains("surface waves"), "{text}");
+    }
+    // What is refused anyway has no second message.
+    let text = refusal(&gpa("-1"));
+    assert_eq!(text.matches("young_modulus_pa").count(), 1, "{text}");
+}
+
+/// Protects: a disk that is fast compared with waves in the pin is named, whether the speed or the material is the reason.
+#[test]
+fn sliding_near_a_wave_speed_is_named() {
+    // The surface waves of the reference pin run at 364 m/s, and 36 m/s are 3800 rpm.
+    let warning = only(r#""disk": { "omega_rpm": 4000 }"#);
+    assert_eq!(warning.kind, "speed");
+    assert_contains(
+        &warning.to_string(),
+        &["omega_rpm = 4000: the disk's surface moves at 38.3 m/s, 10.5 %"],
+    );
+    assert_eq!(warnings(r#"{ "scene": { "disk": { "omega_rpm": 3700 } } }"#), []);
+}
+
+/// Protects: Poisson's ratios near ½ are named from the measured threshold on, for both bodies.
+#[test]
+fn nearly_incompressible_bodies_are_named() {
+    let pin = |nu: f64| format!(r#"{{ "scene": {{ "pin": {{ "poisson_ratio": {nu} }} }} }}"#);
+    assert_eq!(warnings(&pin(LOCKING_POISSON_RATIO - 0.001)), []);
+    let found = warnings(&pin(LOCKING_POISSON_RATIO));
+    assert_eq!(found.iter().map(|warning| warning.kind).collect::<Vec<_>>(), ["locking"]);
+    let disk = only(r#""disk": { "kind": "elastic", "ring": { "poisson_ratio": 0.495 } }"#);
+    assert_contains(&disk.to_string(), &["scene.disk.ring.poisson_ratio = 0.495: ", "too stiff"]);
+}
+
+/// Protects: damping that decides about the time step is named with its effect on it.
+#[test]
+fn damping_that_shortens_the_step_is_named() {
+    // β_R c/h with c = 734 m/s and h = 1 mm: 0.75 halves the step.
+    let damped = |beta_r_s: f64| warnings(&format!(r#"{{ "numerics": {{ "beta_r_s": {beta_r_s:e} }} }}"#));
+    assert_eq!(damped(1.0e-6), []);
+    let found = damped(2.0e-6);
+    assert_eq!(found.len(), 1, "{found:?}");
+    // 2e-6 × 733.8 / 0.001 = 1.468, and √(1 + 1.468²) − 1.468 = 0.308.
+    assert_contains(&found[0].to_string(), &["beta_r_s = 2e-6: ", "30.8 %", "β_R c/h is 1.47"]);
+}
+
+/// Protects: a doubt of many jobs is one warning with their number, the first and the worst, at the worst one's place.
+#[test]
+fn a_grid_has_one_warning_of_a_kind() {
+    let found = warnings("{ \"grid\": { \"mu\": [0.2, 0.4],\n \"load_n\": [30, 3000, 6000] } }");
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_eq!(found[0].jobs, 4);
+    let expected = [
+        "studies/x.json:2:23: scene.load.force_n = 6000.0: the mean strain F/(E A) of the pin is 3.33 %",
+        "set by grid.load_n[2]",
+        "in 4 of 6 jobs, first at mu = 0.2, load_n = 3000.0, the worst is mu = 0.2, load_n = 6000.0",
+    ];
+    assert_contains(&found[0].to_string(), &expected);
+}
+
+/// Protects: jobs on a rigid disk that repeat others are counted, exactly those with the same ω/F and nothing else different.
+#[test]
+fn grids_that_repeat_themselves_are_counted() {
+    let repeats = |grid: &str| -> Option<Warning> {
+        let found = warnings(&format!(r#"{{ "grid": {{ {grid} }} }}"#));
+        assert!(found.iter().all(|warning| warning.kind == "repetition") && found.len() < 2, "{found:?}");
+        found.into_iter().next()
+    };
+    // ω/F: ⅓, ⅙, ⅑; ⅔, ⅓, 2/9; 1, ½, ⅓: the diagonal repeats twice. Twice that for two μ.
+    let found = repeats(r#""mu": [0.2, 0.4], "omega_rpm": [10, 20, 30], "load_n": [30, 60, 90]"#).unwrap();
+    assert_eq!(found.jobs, 4);
+    let expected = [
+        "studies/x.json:1:58: grid.omega_rpm × load_n: 4 of 18 jobs repeat others",
+        "depend on ω/F alone",
+        "mu = 0.2, omega_rpm = 20.0, load_n = 60.0 repeats mu = 0.2, omega_rpm = 10.0, load_n = 30.0",
+        "stresses, displacements and speeds are in proportion to F",
+    ];
+    assert_contains(&found.to_string(), &expected);
+    // Not in proportion, or only one of the two, or an elastic disk.
+    assert_eq!(repeats(r#""omega_rpm": [10, 20], "load_n": [30, 50]"#), None);
+    assert_eq!(repeats(r#""omega_rpm": [10, 20], "clamp_side": ["inner_side", "outer_side"]"#), None);
+    assert_eq!(repeats(r#""disk_kind": ["elastic"], "omega_rpm": [10, 20], "load_n": [30, 60]"#), None);
+    // Values whose quotients differ by rounding only.
+    assert_eq!(repeats(r#""omega_rpm": [0.1, 0.3], "load_n": [10, 30]"#).unwrap().jobs, 1);
+    // The modulus joins the group: ω E/F and ρ/E.
+    let found =
+        repeats(r#""young_modulus_pa": [1e9, 2e9], "density_kg_m3": [2500, 5000], "load_n": [30, 60]"#)
+            .unwrap();
+    assert_eq!(found.jobs, 1);
+    assert_contains(&found.to_string(), &["ω E/F and ρ/E", "density_kg_m3 = 5000.0, load_n = 60.0 repeats"]);
+}
+
+/// Protects: a job by itself has the same doubts as a study of it, without a place.
+#[test]
+fn a_job_has_the_doubts_of_its_study() {
+    let study = parse(r#"{ "scene": { "load": { "force_n": 30000 }, "pin": { "density_kg_m3": 2.5 } } }"#);
+    let of_study: Vec<_> = study.warnings().iter().map(Warning::in_words).collect();
+    let of_job: Vec<_> = job_warnings(study.base()).iter().map(Warning::in_words).collect();
+    assert_eq!(of_study.len(), 2);
+    assert_eq!(
+        of_job.iter().map(|words| words.split(": ").nth(1)).collect::<Vec<_>>(),
+        of_study.iter().map(|words| words.split(": ").nth(1)).collect::<Vec<_>>()
+    );
+}
