@@ -70,7 +70,8 @@ pub fn has_spectrum(folder: &Path, key: &str) -> bool {
 }
 
 /// Removes the files of single nodes and frames that an inspection of an older version left, which had no list of its
-/// files. Their number may differ, and the rest would look like files of this inspection. Errors are ignored: a file that has to be replaced fails when it is written.
+/// files. Their number may differ, and the rest would look like files of this inspection. Errors are ignored: a file that
+/// has to be replaced fails when it is written.
 fn remove_files_of_older_versions(out_dir: &Path) {
     if !out_dir.join(SUMMARY).is_file() {
         return;

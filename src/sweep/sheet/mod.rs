@@ -5,6 +5,7 @@
 //!                                                              └────► pin, track: drawings
 //! ```
 
+mod colours;
 mod derived;
 mod lines;
 mod pin;

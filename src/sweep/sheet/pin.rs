@@ -1,5 +1,6 @@
 //! The drawing of the pin on the disk, seen obliquely from above.
 
+use super::colours::{DISK, DISK_EDGE, INK};
 use super::lines;
 use super::survey::Survey;
 use crate::publish::Drawing;
@@ -16,10 +17,7 @@ const LOAD_ARROW: f64 = 46.0;
 /// With more elements along an edge the mesh would be a grey area, and is not drawn.
 const MAX_DRAWN_ELEMENTS: usize = 60;
 
-const INK: RGBColor = RGBColor(0x1B, 0x1F, 0x24);
 const MESH: RGBColor = RGBColor(0x9A, 0xAB, 0xBC);
-const DISK: RGBColor = RGBColor(0xE9, 0xEC, 0xEF);
-const DISK_EDGE: RGBColor = RGBColor(0x8A, 0x93, 0x9C);
 const TOP: RGBColor = RGBColor(0xF4, 0xF8, 0xFC);
 const SIDE: RGBColor = RGBColor(0xE0, 0xEA, 0xF4);
 const FRONT: RGBColor = RGBColor(0xCD, 0xDC, 0xEA);

@@ -1,5 +1,6 @@
 //! The drawing of the disk with the pin's track, seen from above.
 
+use super::colours::{DISK, DISK_EDGE, INK};
 use super::derived::SLIDING_SPEED;
 use super::lines;
 use super::survey::Survey;
@@ -16,9 +17,6 @@ const RADIUS: f64 = 180.0;
 /// Smallest edge of the pin's footprint on the sheet [px].
 const SMALLEST: f64 = 5.0;
 
-const INK: RGBColor = RGBColor(0x1B, 0x1F, 0x24);
-const DISK: RGBColor = RGBColor(0xE9, 0xEC, 0xEF);
-const DISK_EDGE: RGBColor = RGBColor(0x8A, 0x93, 0x9C);
 const PIN: RGBColor = RGBColor(0xCD, 0xDC, 0xEA);
 const WHITE: RGBColor = RGBColor(0xFF, 0xFF, 0xFF);
 
