@@ -208,6 +208,38 @@ def clamps():
     return runs.table(["clamp", *(f"{speed:g} rpm" for speed in speeds)], lines)
 
 
+STABILITY = """
+## Linear stability of steady sliding
+
+*Steady sliding* is the equilibrium in which all nodes in contact slip with the disk. `tribosweep stability` computes its modes, and
+[eigenvalues.md](eigenvalues.md) says how accurate they are and which jobs they decide.
+
+**Equilibrium.** A node in contact has the normal force N and the friction μN along d, the unit vector of the disk's velocity
+there. The displacements u solve K u = F + Σ (N n + μ N d), with the load F and the normal n. Which nodes are in contact is a
+complementarity problem: N ≥ 0, gap ≥ 0, and one of them is zero. An active set solves it. The equilibrium is proportional to
+the load, and it does not depend on the speed.
+
+**Small vibrations.** Let q be a small displacement from the equilibrium that keeps the nodes in contact at z = 0. Then
+
+```text
+M q̈ + [β K_μ + D] q̇ + K_μ q = 0
+K_μ = K − μ d ⊗ K_z
+D   = μ N₀/|v| (1 − d ⊗ d)
+```
+
+The second and the third line hold at each node in contact, and D acts on the tangential plane. K_z is the row of K that gives the
+node's normal force. So K_μ has the friction that follows the normal force, and it is not symmetric: two modes can couple, and one
+of them grows. β is the stiffness-proportional damping; it acts on the normal force, too. D is positive. It is the turning of the
+friction force N₀ when a node slips sideways at the disk's speed |v|, and it is large on a slow disk. With q = Re(q̂ exp(λt)), Re λ is
+the growth rate [1/s] and Im λ/2π the frequency [Hz]. Sliding is stable if all growth rates are negative.
+
+**What it neglects.** Vibrations are small: no node sticks, none lifts off, none closes. So the modes say whether vibrations grow
+from steady sliding. They do not say how large vibrations become, and they do not give the frequency or μ\\* of the limit cycle.
+The disk is rigid. An elastic disk is not covered: its jobs are simulated, and the points of `tribosweep stability` fail with
+an error that says so.
+"""
+
+
 def leading_end():
     """The clamp that stands out, on a quarter of the time step and on a mesh twice as fine."""
     settings = {"clamp_side": "leading_end", "omega_rpm": 2}
@@ -251,7 +283,8 @@ def main():
         + "\n## Clamps\n\nμ* and frequency at μ = 0.4 for every named clamp, 1 mm wide (`studies/clamps.json`, 12 × 15 × 10 elements; `~` not periodic).\n\n"
         + clamps()
         + "\n"
-        + leading_end(),
+        + leading_end()
+        + STABILITY,
     )
 
 

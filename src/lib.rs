@@ -43,7 +43,7 @@
 //!
 //! ```text
 //! cli ──► sweep ──► worker ──► queue
-//!  │        │          └─────► analysis ──► solver ──► spec
+//!  │        │          └─────► analysis ──► stability ──► solver ──► spec
 //!  │        ├─────► report ──► publish, analysis::record
 //!  │        └─────► study ───► spec
 //!  └──────────────► inspect ─► publish, analysis, solver
@@ -51,6 +51,7 @@
 //!
 //! * [`spec`] – the definition of a job: scene, numerics and run control as plain data with their physical limits.
 //! * [`solver`] – explicit dynamics of the pin in unilateral frictional contact with the disk.
+//! * [`stability`] – the linear stability of steady sliding: equilibrium and complex modes.
 //! * [`analysis`] – the evaluation of a run: cycles, periodic state, decay, regime, μ*, identities.
 //! * [`study`] – studies as data: parse, check, expand into jobs, key, schema.
 //! * [`queue`] – jobs in a database, a SQLite file or a PostgreSQL server; payloads are opaque strings without mechanics.
@@ -62,7 +63,8 @@
 //! * [`cli`] – the command line: arguments, messages and exit codes.
 //!
 //! # Features
-//! All of them are on by default. Without any there are [`spec`], [`solver`], [`analysis`], [`study`] and [`units`].
+//! All of them are on by default. Without any there are [`spec`], [`solver`], [`stability`], [`analysis`], [`study`] and
+//! [`units`].
 //!
 //! * `queue` – [`queue`] and [`worker`].
 //! * `postgres` – the queue on a PostgreSQL server too.
@@ -85,6 +87,7 @@ pub mod queue;
 pub mod report;
 pub mod solver;
 pub mod spec;
+pub mod stability;
 pub mod study;
 #[cfg(feature = "sweep")]
 pub mod sweep;

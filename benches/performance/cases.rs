@@ -11,7 +11,7 @@ use tribosweep::solver::body::hexahedron;
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, State, step};
-use tribosweep::spec::{JobSpec, TopFace};
+use tribosweep::spec::{JobSpec, StabilityMethod, TopFace};
 
 /// Additions and multiplications of an inner node in a step, counted in
 /// `solver::body::block::operator::tensor::pass` (100) and `solver::body::block::motion` (6 for u + β_R p, 21
@@ -39,7 +39,7 @@ pub struct MeshCase {
 const MESHES: [[usize; 3]; 5] = [[6, 8, 5], [12, 15, 10], [18, 22, 15], [24, 30, 20], [48, 60, 40]];
 
 fn spec(elements: [usize; 3]) -> JobSpec {
-    let mut spec = JobSpec::default();
+    let mut spec = JobSpec { stability: StabilityMethod::Simulate, ..JobSpec::default() };
     spec.scene.pin.elements = elements;
     // All meshes can represent this width.
     spec.scene.clamp.width_m = 0.002;

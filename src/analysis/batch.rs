@@ -3,6 +3,8 @@
 use super::checkpoint::Unreadable;
 use super::error::JobError;
 use super::lanes::{Ended, Lanes};
+use super::record::JobRecord;
+use super::stability::{Structures, Verdict, judge};
 use super::workload::Workload;
 use crate::solver::Model;
 use crate::spec::JobSpec;
@@ -16,6 +18,16 @@ pub struct Batch {
     shared: JobSpec,
     widest: usize,
     lanes: AnyLanes,
+    structures: Structures,
+}
+
+/// What became of a job that was to begin.
+#[derive(Debug)]
+pub enum Begun {
+    /// It runs in a lane.
+    Runs,
+    /// The eigenvalues of steady sliding decided it, and it takes no lane.
+    Decided(Box<JobRecord>),
 }
 
 enum AnyLanes {
@@ -55,12 +67,21 @@ impl Batch {
     /// If the specification is not physical or the solver refuses the model. The solver would then refuse it
     /// for every job of the batch.
     pub fn new(spec: &JobSpec) -> Result<Self, JobError> {
+        Self::sharing(spec, Structures::default())
+    }
+
+    /// As [`Batch::new`], with structures that other batches use too.
+    ///
+    /// # Errors
+    /// As [`Batch::new`].
+    pub fn sharing(spec: &JobSpec, structures: Structures) -> Result<Self, JobError> {
         spec.check()?;
         let model = Model::from_scene(&spec.scene, &spec.numerics)?;
         Ok(Self {
             shared: spec.shared_part(),
             widest: Workload::of(&model).widest(),
             lanes: AnyLanes::One(Box::new(Lanes::new(Arc::new(model)))),
+            structures,
         })
     }
 
@@ -84,20 +105,30 @@ impl Batch {
         each!(&self.lanes, lanes => lanes.jobs())
     }
 
-    /// Begins a job. Its owner identifies it by `ticket`.
+    /// Begins a job, unless the eigenvalues of steady sliding decide it at once. Its owner identifies it by `ticket`.
     ///
     /// # Errors
-    /// If the specification is not physical or asks for too many steps.
+    /// If the specification is not physical or asks for too many steps, or if a job without a run has no eigenvalues.
     ///
     /// # Panics
     /// If the job has another model, or if the batch is full.
-    pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Result<(), JobError> {
+    pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Result<Begun, JobError> {
         spec.check()?;
+        assert!(self.takes(&spec), "a job of another model");
+        let verdict = each!(&self.lanes, lanes => judge(&spec, lanes.model(), &self.structures))?;
+        let stability = match verdict {
+            Verdict::Decided(record) => return Ok(Begun::Decided(record)),
+            Verdict::Undecided(stability) => stability,
+        };
         self.make_room(&spec);
         each!(&mut self.lanes, lanes => {
             let lane = lanes.free_lane().expect("a lane was made");
-            lanes.begin(lane, ticket, spec)
-        })
+            lanes.begin(lane, ticket, spec)?;
+            if let Some(stability) = stability {
+                lanes.note(lane, stability);
+            }
+        });
+        Ok(Begun::Runs)
     }
 
     /// Continues a job from its [`Batch::checkpoint`]. The result has the same bits as that of an

@@ -2,6 +2,7 @@
 
 use crate::solver::SolverError;
 use crate::spec::Violations;
+use crate::stability::StabilityError;
 use thiserror::Error;
 
 /// Largest number of steps of a run. It is a thousand times the steps of the reference scene's longest jobs.
@@ -16,6 +17,9 @@ pub enum JobError {
     /// The solver refused the scene or the run diverged.
     #[error(transparent)]
     Solver(#[from] SolverError),
+    /// A job without a run has no eigenvalues.
+    #[error(transparent)]
+    Stability(#[from] StabilityError),
     /// The time step is too small for the length of the run.
     #[error(
         "run.limit_s = {limit_s:e} s takes {steps:.1e} steps of {time_step_s:.3e} s, more than the {MAX_STEPS:.0e} \

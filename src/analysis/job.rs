@@ -3,6 +3,7 @@
 use super::error::JobError;
 use super::lanes::{Lanes, Moment};
 use super::record::JobRecord;
+use super::stability::{Structures, Verdict, judge};
 use crate::solver::Model;
 use crate::spec::JobSpec;
 use std::ops::ControlFlow;
@@ -28,7 +29,7 @@ pub struct Unobserved;
 
 impl JobObserver for Unobserved {}
 
-/// Solves one job.
+/// Solves one job. If the eigenvalues of steady sliding decide it, there is no run, and `observer` receives nothing.
 ///
 /// # Errors
 /// If the specification is not physical, the solver refuses it, the run takes too many steps or diverges, a
@@ -37,7 +38,14 @@ pub fn solve(spec: &JobSpec, observer: &mut dyn JobObserver) -> Result<JobRecord
     spec.check()?;
     let model = Model::from_scene(&spec.scene, &spec.numerics)?;
     let mut lanes = Lanes::<1>::new(Arc::new(model));
+    let stability = match judge(spec, lanes.model(), &Structures::default())? {
+        Verdict::Decided(record) => return Ok(*record),
+        Verdict::Undecided(stability) => stability,
+    };
     lanes.begin(0, 0, spec.clone())?;
+    if let Some(stability) = stability {
+        lanes.note(0, stability);
+    }
     loop {
         let ended = lanes.advance(&mut |moment| observer.step(moment));
         if let Some(ended) = ended.into_iter().next() {

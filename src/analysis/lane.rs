@@ -4,7 +4,7 @@ use super::cycles::{Cycle, CycleCutter};
 use super::decay::{self, DecayMonitor};
 use super::figures::Figures;
 use super::lines;
-use super::record::{ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
+use super::record::{ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability};
 use super::sample::{OBSERVED_NAMES, Sample};
 use super::steady::{self, SteadyState};
 use super::window::{LateWindow, Trailing, Window};
@@ -29,6 +29,8 @@ pub struct LaneAnalysis {
     decays: bool,
     late: LateWindow,
     trailing: Trailing,
+    /// The eigenvalues that left the decision to the run, if they were computed.
+    stability: Option<SlidingStability>,
 }
 
 impl LaneAnalysis {
@@ -47,8 +49,14 @@ impl LaneAnalysis {
             decays: false,
             late: LateWindow::from((1.0 - spec.run.average_last_fraction) * spec.run.limit_s),
             trailing: Trailing::new(spec.detection.decay_observation_s, model.time_step_s()),
+            stability: None,
             spec,
         }
+    }
+
+    /// Adds the eigenvalues of steady sliding to the record.
+    pub fn note(&mut self, stability: SlidingStability) {
+        self.stability = Some(stability);
     }
 
     /// Adds the job's specification to an analysis that was read from a checkpoint, which does not contain
@@ -129,6 +137,7 @@ impl LaneAnalysis {
             growth_rate_per_s: self.monitor.as_ref().and_then(DecayMonitor::growth_rate_per_s),
             obstacle: (outcome == Outcome::NotPeriodic)
                 .then(|| steady::obstacle(&self.cycles, &self.spec.detection)),
+            stability: self.stability.clone(),
             disk: model.ring().zip(solves).map(|(body, solves)| elastic_disk(body, solves, steps)),
             energy: totals(energies),
             nodes: observed_nodes(figures),
@@ -218,7 +227,8 @@ fn contact_loss_share(start: &Energies, end: &Energies) -> f64 {
     if drive_j == 0.0 { 0.0 } else { (end.contact_loss_j - start.contact_loss_j) / drive_j }
 }
 
-fn elastic_disk(body: &RingBody, solves: &Solves, steps: u64) -> ElasticDisk {
+/// The mesh of an elastic disk, and its contact solves in so many steps.
+pub(super) fn elastic_disk(body: &RingBody, solves: &Solves, steps: u64) -> ElasticDisk {
     let made = body.mesh().report();
     ElasticDisk {
         elements: made.elements,

@@ -9,7 +9,7 @@ use super::checkpoint::{self, Unreadable};
 use super::drive::{IDLE, drive};
 use super::error::{JobError, step_count};
 use super::lane::LaneAnalysis;
-use super::record::JobRecord;
+use super::record::{JobRecord, SlidingStability};
 use super::sample::{Sample, Sampler};
 use crate::solver::energy::{Energies, EnergyLedger};
 use crate::solver::lane::LaneState;
@@ -134,6 +134,13 @@ impl<const L: usize> Lanes<L> {
         self.runs[lane] =
             Some(Run { ticket, steps, stop_early, analysis: Box::new(LaneAnalysis::new(&self.model, spec)) });
         Ok(())
+    }
+
+    /// Adds the eigenvalues that were computed before its run to the record of the job in a lane.
+    pub fn note(&mut self, lane: usize, stability: SlidingStability) {
+        if let Some(run) = &mut self.runs[lane] {
+            run.analysis.note(stability);
+        }
     }
 
     /// Continues a job in a lane from its [`Lanes::checkpoint`]. The result has the same bits as that of an

@@ -6,6 +6,8 @@
 //!                     └───► figures (means, extremes) ────┘
 //! ```
 //!
+//! Before a run, [`stability`] may decide the job by the eigenvalues of steady sliding. Then there is no run.
+//!
 //! # Definitions
 //! * **μ*** = ⟨T⟩/⟨F⟩ over whole limit cycles. T is the tangential force in y that the clamp carries, F the
 //!   normal load.
@@ -16,6 +18,7 @@
 //! * Stresses and the extremes of N are taken after a short low-pass filter ([`sample::STRESS_SMOOTHING`]).
 
 pub mod batch;
+pub mod branches;
 mod checkpoint;
 pub mod cycles;
 pub mod decay;
@@ -28,6 +31,7 @@ pub mod lanes;
 pub mod lines;
 pub mod record;
 pub mod sample;
+pub mod stability;
 pub mod steady;
 mod window;
 mod workload;
@@ -37,6 +41,9 @@ pub use drive::drive;
 pub use error::JobError;
 pub use job::{JobObserver, Unobserved, solve};
 pub use lanes::Moment;
-pub use record::{ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime};
+pub use record::{
+    ComplexMode, ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
+};
+pub use stability::Structures;
 pub use steady::Obstacle;
 pub use workload::{Ending, Workload};

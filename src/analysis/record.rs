@@ -3,7 +3,7 @@
 use super::steady::Obstacle;
 use serde::{Deserialize, Serialize};
 
-/// How a run ended.
+/// How a run ended, or what the eigenvalues say about a job without a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
 #[serde(rename_all = "snake_case")]
 #[strum(serialize_all = "snake_case")]
@@ -14,6 +14,8 @@ pub enum Outcome {
     Decayed,
     /// The run reached its time limit first. The figures are averages over the last part of the run.
     NotPeriodic,
+    /// A mode of steady sliding grows, and there was no run. The figures are those of steady sliding.
+    Unstable,
 }
 
 impl Outcome {
@@ -101,6 +103,25 @@ pub struct ElasticDisk {
     pub residual_max: f64,
 }
 
+impl SlidingStability {
+    fn figures(&self) -> impl Iterator<Item = (String, f64)> {
+        let Self { decided: _, contact_nodes: _, lifted_nodes: _, mu_star, band_hz, modes } = self;
+        let of_mode = |(index, mode): (usize, &ComplexMode)| {
+            let ComplexMode { frequency_hz, growth_rate_per_s, damping_ratio, residual, is_converged: _ } =
+                *mode;
+            let figures = [
+                ("frequency_hz", frequency_hz),
+                ("growth_rate_per_s", growth_rate_per_s),
+                ("damping_ratio", damping_ratio),
+                ("residual", residual),
+            ];
+            figures.map(|(name, value)| (format!("modes[{index}].{name}"), value))
+        };
+        let own = [("mu_star".to_owned(), *mu_star), ("band_hz".to_owned(), *band_hz)];
+        own.into_iter().chain(modes.iter().enumerate().flat_map(of_mode))
+    }
+}
+
 impl EnergyTotals {
     fn figures(&self) -> impl Iterator<Item = (&'static str, f64)> {
         let Self { kinetic_j, elastic_j, load_work_j, drive_work_j, friction_j, damping_j, contact_loss_j } =
@@ -153,6 +174,38 @@ impl ElasticDisk {
         ];
         figures.into_iter()
     }
+}
+
+/// A complex mode of small vibrations about steady sliding.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct ComplexMode {
+    /// Frequency \[Hz\].
+    pub frequency_hz: f64,
+    /// Growth rate \[1/s\]; negative if the mode decays.
+    pub growth_rate_per_s: f64,
+    /// Damping ratio ζ = −Re λ/|λ|.
+    pub damping_ratio: f64,
+    /// Residual of the full problem, relative.
+    pub residual: f64,
+    /// Whether the residual is within the tolerance.
+    pub is_converged: bool,
+}
+
+/// What the eigenvalues of steady sliding say.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct SlidingStability {
+    /// Whether they decided the outcome, without a run.
+    pub decided: bool,
+    /// Slave nodes in contact in steady sliding.
+    pub contact_nodes: usize,
+    /// Slave nodes that are lifted in steady sliding.
+    pub lifted_nodes: usize,
+    /// Macroscopic friction coefficient of steady sliding.
+    pub mu_star: f64,
+    /// Frequency \[Hz\] up to which modes were looked for.
+    pub band_hz: f64,
+    /// The leading modes, largest growth rate first.
+    pub modes: Vec<ComplexMode>,
 }
 
 /// The results of one run.
@@ -225,6 +278,9 @@ pub struct JobRecord {
     /// Why the run is not periodic; none if it is periodic or decays.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub obstacle: Option<Obstacle>,
+    /// The eigenvalues of steady sliding; none if they were not computed.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub stability: Option<SlidingStability>,
     /// The elastic disk; none if the disk is rigid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disk: Option<ElasticDisk>,
@@ -281,6 +337,7 @@ impl JobRecord {
             mu_reduction_slip,
             growth_rate_per_s,
             obstacle,
+            stability,
             disk,
             energy,
             nodes,
@@ -314,6 +371,10 @@ impl JobRecord {
         if let Some(Obstacle::Unsteady { figure: _, spread, drift }) = obstacle {
             figures.push(("obstacle.spread".to_owned(), *spread));
             figures.push(("obstacle.drift".to_owned(), *drift));
+        }
+        if let Some(stability) = stability {
+            let own = stability.figures();
+            figures.extend(own.map(|(path, value)| (format!("stability.{path}"), value)));
         }
         if let Some(disk) = disk {
             figures.extend(disk.figures().map(|(path, value)| (format!("disk.{path}"), value)));
@@ -380,6 +441,20 @@ mod tests {
             mu_reduction_slip: 0.02,
             growth_rate_per_s: Some(-200.0),
             obstacle: Some(Obstacle::Unsteady { figure: "period".to_owned(), spread: 0.1, drift: 0.2 }),
+            stability: Some(SlidingStability {
+                decided: false,
+                contact_nodes: 4,
+                lifted_nodes: 0,
+                mu_star: 0.4,
+                band_hz: 5e4,
+                modes: vec![ComplexMode {
+                    frequency_hz: 1.5e4,
+                    growth_rate_per_s: 100.0,
+                    damping_ratio: -1e-3,
+                    residual: 1e-9,
+                    is_converged: true,
+                }],
+            }),
             disk: Some(disk),
             energy: EnergyTotals::default(),
             nodes: vec![node.clone(), node],

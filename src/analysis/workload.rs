@@ -3,7 +3,7 @@
 use super::error::{JobError, step_count};
 use crate::solver::Model;
 use crate::solver::scheme;
-use crate::spec::{DiskKind, JobSpec, elasticity};
+use crate::spec::{DiskKind, JobSpec, StabilityMethod, elasticity};
 
 /// What the jobs of one model take.
 #[derive(Debug, Clone, PartialEq)]
@@ -155,9 +155,17 @@ const OBSERVATIONS: [f64; 3] = [0.4, 0.9, 1.7];
 /// a block that is clamped on one side.
 const PERIOD: f64 = 2.6;
 
+/// The time that complex modes take, as that of a run, in decay observations. It orders jobs and predicts times roughly.
+const MODES: f64 = 0.1;
+
 impl Ending {
     /// When a job is likely to end.
     pub fn of(spec: &JobSpec) -> Self {
+        if spec.stability == StabilityMethod::Modes {
+            // There is no run, but modes take as long as a short one.
+            let limit_s = MODES * spec.detection.decay_observation_s;
+            return Self { early_s: limit_s, likely_s: limit_s, late_s: limit_s, limit_s };
+        }
         let limit_s = spec.run.limit_s;
         if !spec.run.stop_early {
             return Self { early_s: limit_s, likely_s: limit_s, late_s: limit_s, limit_s };
@@ -260,5 +268,10 @@ mod tests {
         let ending = Ending::of(&spec);
         assert_eq!((ending.early_s, ending.late_s), (0.04, 0.04));
         assert_eq!(ending.share_left(0.01), 0.75);
+        // Modes take no run, but some time.
+        spec.stability = StabilityMethod::Modes;
+        let ending = Ending::of(&spec);
+        assert!(ending.likely_s > 0.0 && ending.limit_s < 0.04, "{ending:?}");
+        assert_eq!([0.0, ending.limit_s].map(|seconds| ending.share_left(seconds)), [1.0, 0.0]);
     }
 }

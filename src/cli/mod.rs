@@ -32,6 +32,7 @@ mod show;
 mod signals;
 mod slurm;
 mod solve;
+mod stability;
 mod status;
 mod study_args;
 mod submit;
@@ -107,6 +108,8 @@ enum Command {
     Doctor,
     /// Solve one job in the foreground.
     Solve(solve::Args),
+    /// Compute the complex modes of steady sliding at every point of a study, and the μ at which sliding becomes unstable.
+    Stability(stability::Args),
     /// Run one job again and show it in detail: histories, cycles, snapshots, fields for ParaView.
     Inspect(inspect::Args),
     /// Check a study file and all that a run needs, and say what its jobs take, without running it.
@@ -144,6 +147,7 @@ pub fn main(cli: Cli) -> u8 {
         Command::Copy(args) => merge::copy(&args, db),
         Command::Doctor => doctor::run(db),
         Command::Solve(args) => solve::run(&args),
+        Command::Stability(args) => stability::run(&args, db),
         Command::Inspect(args) => inspect::run(&args, db),
         Command::Validate(args) => validate::run(&args, db),
         Command::Presets(args) => presets::run(&args),

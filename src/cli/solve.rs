@@ -4,10 +4,10 @@ use super::error::CliError;
 use super::foreground;
 use super::output::{log, print, write_file};
 use super::warnings;
-use crate::analysis::{self, ElasticDisk, JobObserver, JobRecord, Moment};
+use crate::analysis::{self, ElasticDisk, JobObserver, JobRecord, Moment, SlidingStability};
 use crate::exit;
 use crate::publish::value::quantity;
-use crate::spec::{JobSpec, Scene};
+use crate::spec::{JobSpec, Scene, StabilityMethod};
 use crate::study::{Preset, Study};
 use crate::sweep::History;
 use crate::worker::Interrupt;
@@ -40,7 +40,11 @@ pub(crate) struct Args {
 
 /// Solves the job and prints its figures; nothing is stored.
 pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
-    let spec = Study::load(&args.study)?.single_with_preset(args.preset, &args.settings)?;
+    let mut spec = Study::load(&args.study)?.single_with_preset(args.preset, &args.settings)?;
+    if args.history.is_some() {
+        // A job that is decided without a run has no history.
+        spec.stability = StabilityMethod::Simulate;
+    }
     warnings::of_job(&spec);
     let interrupt = foreground::interrupt();
     let mut recorder =
@@ -104,8 +108,19 @@ pub(crate) fn as_text(record: &JobRecord) -> String {
         .growth_rate_per_s
         .map_or_else(String::new, |rate| format!("growth rate            {rate:.0} 1/s\n"));
     let disk = record.disk.as_ref().map_or_else(String::new, disk_lines);
+    let end = match record.steps {
+        0 => "without a run".to_owned(),
+        steps => {
+            format!(
+                "after {:.3} ms ({steps} steps of {:.4e} s)",
+                record.simulated_s * 1e3,
+                record.time_step_s
+            )
+        }
+    };
+    let sliding = record.stability.as_ref().map_or_else(String::new, sliding_lines);
     format!(
-        "outcome                {} after {:.3} ms ({} steps of {:.4e} s)\n\
+        "outcome                {} {}\n\
          regime                 {}\n\
          mu*                    {:.5} ± {:.5} (at the contact {:.5})\n\
          frequency              {frequency}\n\
@@ -115,11 +130,9 @@ pub(crate) fn as_text(record: &JobRecord) -> String {
          largest normal stress  {:.4} MPa\n\
          largest slip speed     {:.1} mm/s\n\
          residuals              energy {:.1e}, identities {:.1e}\n\
-         {disk}",
+         {sliding}{disk}",
         record.outcome.name(),
-        record.simulated_s * 1e3,
-        record.steps,
-        record.time_step_s,
+        end,
         record.regime.name(),
         record.mu_star,
         record.mu_star_se,
@@ -134,6 +147,18 @@ pub(crate) fn as_text(record: &JobRecord) -> String {
         record.energy_residual,
         record.identity_residual(),
     )
+}
+
+/// Who decided the outcome, and the leading mode of steady sliding.
+fn sliding_lines(stability: &SlidingStability) -> String {
+    let decided = if stability.decided { "the eigenvalues, without a run" } else { "the run" };
+    let leading = stability.modes.first().map_or_else(String::new, |mode| {
+        format!(
+            "leading mode           {:.1} Hz, growth rate {:.1} 1/s, ζ = {:.2e}\n",
+            mode.frequency_hz, mode.growth_rate_per_s, mode.damping_ratio
+        )
+    });
+    format!("decided by             {decided}\n{leading}")
 }
 
 /// The mesh of the elastic disk and the convergence of its contact solves.

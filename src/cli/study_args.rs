@@ -36,7 +36,13 @@ impl StudyArgs {
         self.changes() != Changes::default()
     }
 
+    /// Reads and checks the study of the complex modes at the points of the study.
+    pub(crate) fn plan_of_modes(&self) -> Result<Plan, CliError> {
+        Ok(Plan::load_changed(&self.file, &Changes { is_of_modes: true, ..self.changes() })?)
+    }
+
     fn changes(&self) -> Changes {
-        Changes { name: self.name.clone(), preset: self.preset, settings: self.settings.clone() }
+        let (name, settings) = (self.name.clone(), self.settings.clone());
+        Changes { name, preset: self.preset, settings, is_of_modes: false }
     }
 }

@@ -44,7 +44,7 @@ fn parse_shard(text: &str) -> Result<Shard, String> {
 }
 
 /// The order of jobs.
-#[derive(Debug, clap::Args)]
+#[derive(Debug, Default, clap::Args)]
 pub(crate) struct Priority {
     /// Run jobs of a higher priority before others, of whatever study. The default is 0; jobs that exist keep theirs.
     #[arg(long = "priority", value_name = "N", allow_negative_numbers = true)]

@@ -44,26 +44,29 @@ pub(super) const FIELDS: [(&str, &str); 9] = [
 /// The first file that could not be written.
 pub fn write(capture: &Capture, folder: &mut Folder) -> Result<(), PublishError> {
     let mesh = capture.model.mesh();
-    let points_m: Vec<[f64; 3]> = (0..mesh.node_count()).map(|node| mesh.coordinates_m(node)).collect();
-    let cells: Vec<[usize; 8]> = mesh
-        .element_positions()
-        .map(|[i, j, k]| {
-            let corners = mesh.element_nodes(i, j, k);
-            VTK_CORNERS.map(|corner| corners[corner])
-        })
-        .collect();
+    let (points_m, cells) = grid(mesh);
     folder.create_inside(FRAMES_FOLDER)?;
     let mut names = Vec::new();
     for (number, frame) in capture.frames.iter().enumerate() {
         let name = format!("{FRAMES_FOLDER}/pin_{number:04}.vtu");
         let data = point_data(capture, mesh, frame);
-        let info = GridInfo { time_s: frame.time_s, codes: ("contact_state_codes", &CODES) };
+        let info = GridInfo { time_s: frame.time_s, codes: Some(("contact_state_codes", &CODES)) };
         folder.write_with(&name, |out| vtu::write_grid(&points_m, &cells, &data, &info, out))?;
         names.push(name);
     }
     let times_s = capture.frames.iter().map(|frame| frame.time_s);
     folder
         .write_with("fields.pvd", |out| vtu::write_series(times_s.zip(names.iter().map(String::as_str)), out))
+}
+
+/// The nodes [m] of the pin, and its elements with their corners in the order of VTK.
+pub(super) fn grid(mesh: &BlockMesh) -> (Vec<[f64; 3]>, Vec<[usize; 8]>) {
+    let points_m = (0..mesh.node_count()).map(|node| mesh.coordinates_m(node)).collect();
+    let corners = |[i, j, k]: [usize; 3]| {
+        let corners = mesh.element_nodes(i, j, k);
+        VTK_CORNERS.map(|corner| corners[corner])
+    };
+    (points_m, mesh.element_positions().map(corners).collect())
 }
 
 fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointData> {

@@ -7,7 +7,7 @@ use super::spectrum::Spectrum;
 use super::survey::{FEWEST_CYCLES, Survey, survey};
 use crate::analysis::JobError;
 use crate::solver::body::block::BlockMesh;
-use crate::spec::JobSpec;
+use crate::spec::{JobSpec, StabilityMethod};
 use crate::units::rad_per_s_from_rpm;
 use std::ops::ControlFlow;
 
@@ -87,10 +87,12 @@ impl Inspection {
         on_progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Self, InspectionError> {
         let nodes = nodes_of(spec, &options.nodes)?;
-        let survey = survey(spec, options.cycles.max(Options::FEWEST_CYCLES), on_progress)?;
+        // What happens in a run is shown, whatever the eigenvalues say.
+        let simulated = JobSpec { stability: StabilityMethod::Simulate, ..spec.clone() };
+        let survey = survey(&simulated, options.cycles.max(Options::FEWEST_CYCLES), on_progress)?;
         let windows = &survey.windows;
         let capture =
-            capture(spec, windows, &nodes, options.frames.max(Options::FEWEST_FRAMES), on_progress)?;
+            capture(&simulated, windows, &nodes, options.frames.max(Options::FEWEST_FRAMES), on_progress)?;
         let rate = rad_per_s_from_rpm(spec.scene.disk.omega_rpm);
         let observed = nodes
             .into_iter()

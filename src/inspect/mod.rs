@@ -7,6 +7,8 @@
 //!                                                                                      └─► fields (VTK)
 //! ```
 //!
+//! The shape of a complex mode of steady sliding becomes fields of the same kind, over one period of its vibration.
+//!
 //! Every run of a job has the same result to the last bit. So the job is run twice: the first run finds the times of the
 //! last limit cycles, and the second run records everything within them. No run has to record states that may turn out
 //! to be useless, and the code that solves jobs does not know that it is observed.
@@ -19,6 +21,7 @@ mod figures;
 mod inspection;
 mod loops;
 mod low_pass;
+mod mode_shapes;
 mod nodes;
 mod overlay;
 mod page;
@@ -37,6 +40,7 @@ pub use capture::{Audit, Capture, FaceStep, Frame, NodeStep};
 pub use figures::InspectionFigure;
 pub use inspection::{Inspection, InspectionError, NodeFindings, Options};
 pub use loops::{AuditedFriction, LoopEnergies, LoopSummary};
+pub use mode_shapes::write_mode;
 pub use nodes::{NodeSelector, ObservedNode};
 pub use overlay::write_overlay;
 pub use page::PageHeader;

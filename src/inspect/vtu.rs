@@ -31,8 +31,8 @@ pub struct PointData {
 pub struct GridInfo<'a> {
     /// The time [s], which ParaView shows.
     pub time_s: f64,
-    /// Name of the array with the codes of a field, and each code with its meaning.
-    pub codes: (&'a str, &'a [(i8, &'a str)]),
+    /// Name of the array with the codes of a field, and each code with its meaning; none without such a field.
+    pub codes: Option<(&'a str, &'a [(i8, &'a str)])>,
 }
 
 /// Writes a grid of hexahedra: points [m], cells of eight points in the order of VTK, and values at the points.
@@ -85,12 +85,15 @@ pub fn write_grid(
 /// The element with the time and the codes. VTK takes an array called `TimeValue` for the time of a file. The codes are the
 /// components of one array, because programs show the names of components, and because meshio reads no texts.
 fn field_data(info: &GridInfo) -> String {
-    let (name, codes) = info.codes;
     let mut element = format!(
         "<FieldData>\n\
-         <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{:e}</DataArray>\n\
-         <DataArray type=\"Int8\" Name=\"{name}\" NumberOfTuples=\"1\" NumberOfComponents=\"{}\"",
-        info.time_s,
+         <DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">{:e}</DataArray>\n",
+        info.time_s
+    );
+    let Some((name, codes)) = info.codes else { return element + "</FieldData>\n" };
+    let _ = write!(
+        element,
+        "<DataArray type=\"Int8\" Name=\"{name}\" NumberOfTuples=\"1\" NumberOfComponents=\"{}\"",
         codes.len()
     );
     for (number, (_, meaning)) in codes.iter().enumerate() {
@@ -146,7 +149,7 @@ mod tests {
     fn elements_are_those_of_the_format() {
         let values = Values::Codes(vec![0; 8]);
         let data = [PointData { name: "state", components: &[], values }];
-        let info = GridInfo { time_s: 1.25e-3, codes: ("codes", &[(-1, "none"), (2, "slip")]) };
+        let info = GridInfo { time_s: 1.25e-3, codes: Some(("codes", &[(-1, "none"), (2, "slip")])) };
         let mut file = Vec::new();
         write_grid(&[[0.0; 3]; 8], &[[0, 1, 2, 3, 4, 5, 6, 7]], &data, &info, &mut file).unwrap();
         // The appended data are no text.

@@ -10,6 +10,7 @@ use super::layout::Layout;
 use super::page::{self, FigureLink, Table};
 use super::row::JobRow;
 use super::spectra;
+use super::stability::{self, Analysis};
 use super::stale::could_be_of_a_report;
 use super::tables::{self, Quantity};
 use crate::publish::{FigureError, Folder, PublishError};
@@ -45,7 +46,7 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
     let quantities: Vec<(Quantity, &'static str)> = quantities.collect();
 
     let tables = || quantities.into_par_iter().map(|(quantity, stem)| table(&layout, quantity, stem));
-    let draw = |plot: Plot| (plot, figure::figures_of(layout_of(plot), plot, &spectra));
+    let draw = |plot: Plot| (plot, figure::figures_of(layout_of(plot), plot, &spectra, report.stability));
     let figures = || plots.clone().into_par_iter().map(draw);
     let jobs = || {
         let mut out = Vec::new();
@@ -100,6 +101,12 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         })?;
         data_files.push("waterfall.csv".to_owned());
     }
+    let stability_rows = stability::rows(report.stability);
+    let analysis =
+        (!report.stability.is_empty()).then(|| Analysis::of(report.stability, &stability_rows, view));
+    let of_stability = analysis.as_ref().map(|own| stability::write_files(own, &mut folder)).transpose()?;
+    let stability = analysis.as_ref().zip(of_stability.as_ref());
+    data_files.extend(of_stability.iter().flat_map(|files| &files.data).map(|(file, _)| (*file).to_owned()));
     folder.write_with("jobs.csv", |out| {
         *out = jobs?;
         Ok(())
@@ -109,7 +116,9 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         folder.write_with("differences.csv", |out| comparison::csv(comparison, out))?;
     }
     let differences = comparison.as_ref();
-    folder.write_text("report.md", &page::of_report(report, &tables, &links, &data_files, differences))?;
+    let section = stability.map_or_else(String::new, |(own, files)| stability::markdown(own, files));
+    let markdown = page::of_report(report, &tables, &links, &data_files, differences, &section);
+    folder.write_text("report.md", &markdown)?;
     let pages = inspections(out_dir).into_iter().filter_map(|found| Some((found.job.clone(), found.page()?)));
     let pages = pages.collect();
     let parts = Parts {
@@ -120,6 +129,7 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         comparison: differences,
         residuals: &residuals,
         spectra: &spectra,
+        stability,
         pages,
     };
     folder.write_text("report.html", &html::page(&parts))?;

@@ -47,6 +47,9 @@ pub(super) fn status_glyph(row: &JobRow) -> StatusGlyph {
         RowState::Done(record) => record,
         RowState::Measured(_) => return glyph('M', "measured", AnsiColor::White, GREY),
     };
+    if record.outcome == Outcome::Unstable {
+        return glyph('U', "unstable, without a run", AnsiColor::Red, palette::YELLOW);
+    }
     let is_settled = record.outcome != Outcome::NotPeriodic;
     let (letter, colour, fill) = match record.regime {
         Regime::Stable => ('S', AnsiColor::Blue, palette::SKY),

@@ -2,6 +2,7 @@
 
 use super::provenance::Provenance;
 use super::row::JobRow;
+use super::stability_point::StabilityPoint;
 use super::view::View;
 use crate::publish::Sheet;
 
@@ -22,6 +23,8 @@ pub struct Report<'a> {
     pub provenance: Option<&'a Provenance>,
     /// What is doubtful about the study's inputs, each in words.
     pub warnings: &'a [String],
+    /// The complex modes of steady sliding at the grid points of one study and between them; empty if they were not computed.
+    pub stability: &'a [StabilityPoint],
     /// When it is written, in milliseconds since 1970-01-01 UTC.
     pub written_ms: i64,
     /// After how many seconds the page reloads itself; none for a page that is not going to be written again.

@@ -328,6 +328,16 @@ impl Group<'_> {
         self.words.clone()
     }
 
+    /// The group with some of its jobs alone.
+    pub fn only(&self, is_kept: impl Fn(&JobRow) -> bool) -> Self {
+        Self {
+            key: self.key.clone(),
+            jobs: self.jobs.iter().filter(|job| is_kept(job.row)).copied().collect(),
+            axis_values: self.axis_values.clone(),
+            words: self.words.clone(),
+        }
+    }
+
     fn sort_axis(&mut self) {
         let rank = value::sort_numbers(&mut self.axis_values);
         for job in &mut self.jobs {

@@ -9,6 +9,7 @@
 //! * [`overview`] – a letter for every job, for a terminal.
 //! * [`pareto`] – error against run time of jobs that differ in their numerics only.
 //! * [`trouble`] – where in the grid jobs fail or do not become periodic, and why.
+//! * [`write_stability`] – the linear stability of steady sliding: maps, branches of modes, thresholds.
 //! * [`write()`] – a folder with all of it, and a page for a browser that contains all of it.
 
 mod accuracy;
@@ -35,6 +36,8 @@ mod provenance;
 mod row;
 mod scalar;
 mod spectra;
+mod stability;
+mod stability_point;
 mod stale;
 mod summary;
 pub mod tables;
@@ -55,4 +58,8 @@ pub use parameters::name_and_unit;
 pub use provenance::{BuildInfo, Provenance, ResultGroup};
 pub use row::{JobNumerics, JobRow, RowState};
 pub use scalar::{SCALARS, Scalar};
+pub use stability::{
+    PAGE as STABILITY_PAGE, SHAPES, StabilityTable, modes_table, thresholds_table, write_stability,
+};
+pub use stability_point::StabilityPoint;
 pub use view::View;

@@ -57,7 +57,8 @@ const TITLES: [(&str, &str); 28] = [
 
 /// Whether a column has the numbers of runs: neither text, nor what only some runs that are not periodic have.
 fn is_scalar(column: &Column) -> bool {
-    column.group != columns::Group::Job && column.name != "regime" && !column.name.starts_with("obstacle")
+    let is_text = matches!(&*column.name, "regime" | "decided_by");
+    column.group != columns::Group::Job && !is_text && !column.name.starts_with("obstacle")
 }
 
 /// All of them: the columns of the export that are numbers of a record.

@@ -10,6 +10,7 @@ pub(super) struct Summary {
     pub periodic: usize,
     pub decayed: usize,
     pub not_periodic: usize,
+    pub unstable: usize,
     pub failed: usize,
     pub running: usize,
     pub pending: usize,
@@ -32,6 +33,7 @@ impl Summary {
                     Outcome::Periodic => &mut summary.periodic,
                     Outcome::Decayed => &mut summary.decayed,
                     Outcome::NotPeriodic => &mut summary.not_periodic,
+                    Outcome::Unstable => &mut summary.unstable,
                 },
             } += 1;
         }
@@ -39,7 +41,7 @@ impl Summary {
     }
 
     pub fn done(&self) -> usize {
-        self.periodic + self.decayed + self.not_periodic
+        self.periodic + self.decayed + self.not_periodic + self.unstable
     }
 
     pub fn missing(&self) -> usize {
@@ -55,8 +57,9 @@ impl Summary {
 
     /// The jobs that are done by outcome, in words.
     pub fn done_in_words(&self) -> String {
-        let Self { periodic, decayed, not_periodic, .. } = self;
-        format!("{periodic} periodic, {decayed} decayed, {not_periodic} not periodic")
+        let Self { periodic, decayed, not_periodic, unstable, .. } = self;
+        let without_run = if *unstable > 0 { format!(", {unstable} unstable") } else { String::new() };
+        format!("{periodic} periodic, {decayed} decayed, {not_periodic} not periodic{without_run}")
     }
 }
 

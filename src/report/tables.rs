@@ -46,6 +46,7 @@ impl Quantity {
             Self::MuStar => &[("~", "not periodic: an average over the last part of the run")],
             Self::Frequency => &[
                 ("", "fundamental frequency of the total normal contact force"),
+                ("growing", "a mode of steady sliding grows, and there was no run"),
                 ("stable", "the oscillation decays"),
                 ("none", "no frequency found"),
                 ("~", "not periodic: the mean rate of its cycles"),
@@ -77,8 +78,10 @@ impl Quantity {
                 Some(frequency) if digits == Digits::Fixed => format!("{frequency:.0}"),
                 Some(_) => digits::frequency_hz(row, record).unwrap_or_default(),
                 None if record.regime == Regime::Stable => "stable".to_owned(),
+                None if record.outcome == Outcome::Unstable => "growing".to_owned(),
                 None => "none".to_owned(),
             },
+            Self::Regime if record.outcome == Outcome::Unstable => record.outcome.name().to_owned(),
             Self::Regime => record.regime.name().to_owned(),
             Self::Of(scalar) => match scalar.value(row) {
                 Some(x) => scalar.text(x),

@@ -53,5 +53,5 @@ pub use state::State;
 pub use step::step;
 
 /// Version of everything that can change the bits of a result. It is part of every job's key. Raise it with any
-/// change of the scheme, of the operator's rounding or of the analysis.
+/// change of the scheme, of the operator's rounding, of the analysis, or of the eigenvalues of steady sliding.
 pub const VERSION: &str = "3";

@@ -18,6 +18,7 @@ mod numerics;
 mod pin;
 mod ring;
 mod scene;
+mod stability;
 
 pub(crate) use check::short;
 pub use check::{FieldError, Violations};
@@ -26,6 +27,7 @@ pub use numerics::{Numerics, RunControl};
 pub use pin::Pin;
 pub use ring::{DiskTimeStep, Ring, TargetSurface};
 pub use scene::{Clamp, ClampSide, Contact, Disk, DiskKind, Load, Scene, TopFace};
+pub use stability::StabilityMethod;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -42,6 +44,8 @@ pub struct JobSpec {
     pub run: RunControl,
     /// When a state counts as periodic or as decayed.
     pub detection: Detection,
+    /// How the job finds out whether its steady sliding is stable.
+    pub stability: StabilityMethod,
 }
 
 /// Shortest observation of a decay, in transit times of shear waves over the pin's height (2.5 ms in the reference
@@ -127,6 +131,7 @@ impl JobSpec {
             numerics: self.numerics.clone(),
             run: RunControl::default(),
             detection: Detection::default(),
+            stability: StabilityMethod::default(),
         }
     }
 }

@@ -19,6 +19,8 @@ pub struct Changes {
     /// Names of parameters with values as text. A value takes precedence over the preset, the file and the grid; a list or
     /// a range of values becomes an axis of the grid.
     pub settings: Vec<(String, String)>,
+    /// Whether the jobs compute complex modes without a run. The study is then called `NAME-stability`.
+    pub is_of_modes: bool,
 }
 
 /// What values may be.

@@ -22,6 +22,7 @@ pub struct Study {
     pub(super) specs: Vec<JobSpec>,
     pub(super) report: ReportAxes,
     pub(super) source: SourceText,
+    pub(super) allows_modes: bool,
 }
 
 impl Study {

@@ -6,8 +6,18 @@ use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::Value;
 
 /// The top-level fields in the order in which a document is written; others come before the grid.
-const ORDER: [&str; 9] =
-    ["$schema", "name", "description", "preset", "damping", "scene", "numerics", "run", "detection"];
+const ORDER: [&str; 10] = [
+    "$schema",
+    "name",
+    "description",
+    "preset",
+    "damping",
+    "scene",
+    "numerics",
+    "run",
+    "detection",
+    "stability",
+];
 
 /// The text of a study file that says what `document` and `grid` say: the text of `source` if the command line has not
 /// changed it.

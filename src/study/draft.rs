@@ -9,7 +9,8 @@ use serde_json::{Map, Value};
 use std::collections::HashSet;
 
 /// The parts of a study that describe a job.
-pub(super) const PARTS: [&str; 6] = ["preset", "damping", "scene", "numerics", "run", "detection"];
+pub(super) const PARTS: [&str; 7] =
+    ["preset", "damping", "scene", "numerics", "run", "detection", "stability"];
 
 /// A job before it has all its values: everything that a study says about it, before presets, damping and the defaults
 /// that depend on other values give the rest.
@@ -56,8 +57,9 @@ impl Draft {
 
     /// The job: what is given comes before the preset and the damping, and these before the defaults.
     pub(super) fn resolve(&self) -> Resolved {
-        let StudyFile { preset, damping, scene, numerics, run, detection, .. } = decode(&self.values);
-        let mut spec = JobSpec { scene, numerics, run, detection };
+        let StudyFile { preset, damping, scene, numerics, run, detection, stability, .. } =
+            decode(&self.values);
+        let mut spec = JobSpec { scene, numerics, run, detection, stability };
         let gives = |name: &str| self.given.contains(name);
         let mut violations = Vec::new();
         if let Some(preset) = preset {

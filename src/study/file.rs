@@ -5,7 +5,7 @@ use super::grid_schema::grid_schema;
 use super::json::present;
 use super::preset::Preset;
 use super::report_axes::ReportAxes;
-use crate::spec::{Detection, Numerics, RunControl, Scene};
+use crate::spec::{Detection, Numerics, RunControl, Scene, StabilityMethod};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -42,6 +42,8 @@ pub(super) struct StudyFile {
     pub run: RunControl,
     /// When a state counts as periodic or as decayed.
     pub detection: Detection,
+    /// How a job finds out whether its steady sliding is stable.
+    pub stability: StabilityMethod,
     /// Parameters to vary; the jobs are all combinations. Absent: a single job.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(schema_with = "grid_schema")]

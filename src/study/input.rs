@@ -2,7 +2,7 @@
 
 use super::json::encode;
 use super::parameter::{PARAMETERS, Parameter};
-use crate::spec::{ClampSide, DiskKind, JobSpec};
+use crate::spec::{ClampSide, DiskKind, JobSpec, StabilityMethod};
 use serde_json::Value;
 
 /// A parameter and its value in a job.
@@ -21,10 +21,15 @@ pub fn input_parameters() -> impl Iterator<Item = &'static Parameter> {
 }
 
 /// All inputs of a job that have an effect, the defaults among them, each once: the mesh and the size by their components,
-/// no ring of a rigid disk, no width of a clamp that holds the whole top, and no safety factor beside a given time step.
+/// no ring of a rigid disk, no width of a clamp that holds the whole top, no safety factor beside a given time step, nothing
+/// about the run of a job without one, and no method of stability where every run goes to its limit.
 pub fn inputs(spec: &JobSpec) -> Vec<Input> {
     let job = encode(spec);
+    let is_run = spec.stability != StabilityMethod::Modes;
     let has_effect = |parameter: &&'static Parameter| match parameter.name {
+        "ramp_s" | "time_step_s" | "safety_factor" if !is_run => false,
+        _ if !is_run && matches!(parameter.part(), Some("run" | "detection")) => false,
+        "stability" => !is_run || spec.run.stop_early,
         "clamp_width_m" => spec.scene.clamp.side != ClampSide::WholeTop,
         "safety_factor" => spec.numerics.time_step_s.is_none(),
         _ => spec.scene.disk.kind == DiskKind::Elastic || !parameter.pointer.starts_with("/scene/disk/ring/"),

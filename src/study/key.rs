@@ -1,7 +1,9 @@
 //! The key of a job: a hash of everything that determines its result.
 
 use super::json::encode;
-use crate::spec::{Clamp, ClampSide, DiskKind, JobSpec, Numerics};
+use crate::spec::{
+    Clamp, ClampSide, Detection, DiskKind, JobSpec, Load, Numerics, RunControl, StabilityMethod,
+};
 use serde_json::Value;
 use std::collections::VecDeque;
 use std::fmt::Write;
@@ -12,9 +14,10 @@ const HEX_DIGITS: usize = 32;
 /// The key of a job under a version of the solver: BLAKE3 of its canonical JSON, 32 hex digits.
 ///
 /// In canonical JSON the fields are sorted, there is no space, and numbers have their shortest exact form, with 0 for
-/// −0. Fields without effect do not enter: the clamp's width where no strip uses it and the safety factor where the
-/// time step is given have their defaults, and the ring of a rigid disk is left out. A new `solver_version` changes
-/// every key, so that old results are not taken for new ones.
+/// −0. Fields without effect do not enter. These have their defaults: the clamp's width where no strip uses it; the
+/// safety factor where the time step is given; the time step, the run, its detection and the load's ramp where there is
+/// no run; the method of stability where every run goes to its limit. The ring of a rigid disk is left out. A new
+/// `solver_version` changes every key, so that old results are not taken for new ones.
 pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     let mut spec = spec.clone();
     if spec.scene.clamp.side == ClampSide::WholeTop {
@@ -23,11 +26,26 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     if spec.numerics.time_step_s.is_some() {
         spec.numerics.safety_factor = Numerics::default().safety_factor;
     }
+    if spec.stability == StabilityMethod::Modes {
+        spec.numerics.safety_factor = Numerics::default().safety_factor;
+        spec.numerics.time_step_s = None;
+        spec.run = RunControl::default();
+        spec.detection = Detection::default();
+        spec.scene.load.ramp_s = Load::default().ramp_s;
+    } else if !spec.run.stop_early {
+        spec.stability = StabilityMethod::Simulate;
+    }
     let mut job = encode(&spec);
     if spec.scene.disk.kind == DiskKind::Rigid
         && let Some(disk) = job.pointer_mut("/scene/disk").and_then(Value::as_object_mut)
     {
         disk.remove("ring");
+    }
+    // Keys of jobs that always run are those of versions without eigenvalues: their results are the same.
+    if spec.stability == StabilityMethod::Simulate
+        && let Some(job) = job.as_object_mut()
+    {
+        job.remove("stability");
     }
     // The version cannot be confused with the job's text: it is quoted, and the job begins with a brace.
     let mut text = Value::from(solver_version).to_string();

@@ -14,6 +14,8 @@ pub(super) struct Outline {
     pub grid: Grid,
     /// The file's text, for messages.
     pub source: SourceText,
+    /// Whether its jobs may compute complex modes without a run. A study file cannot ask for that.
+    pub allows_modes: bool,
 }
 
 impl Outline {

@@ -2,7 +2,7 @@
 
 use super::preset::Preset;
 use super::suggest;
-use crate::spec::{ClampSide, DiskKind, DiskTimeStep, TargetSurface, TopFace};
+use crate::spec::{ClampSide, DiskKind, DiskTimeStep, StabilityMethod, TargetSurface, TopFace};
 use schemars::{Schema, SchemaGenerator};
 use serde_json::{Map, Value};
 
@@ -44,6 +44,7 @@ const TOP_FACE: Kind = Kind::Name(SchemaGenerator::subschema_for::<TopFace>);
 const DISK_KIND: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskKind>);
 const TARGET: Kind = Kind::Name(SchemaGenerator::subschema_for::<TargetSurface>);
 const PRESET: Kind = Kind::Name(SchemaGenerator::subschema_for::<Preset>);
+const STABILITY: Kind = Kind::Name(SchemaGenerator::subschema_for::<StabilityMethod>);
 const DISK_TIME_STEP: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskTimeStep>);
 
 /// All parameters, in the order in which help and messages list them.
@@ -95,6 +96,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("drift_tolerance", "/detection/drift_tolerance", Kind::Number, "largest drift of its mean between their halves [-]"),
     parameter("regime_threshold", "/detection/regime_threshold", Kind::Number, "share above which a contact state names the regime [-]"),
     parameter("decay_observation_s", "/detection/decay_observation_s", Kind::Number, "shortest steady sliding in which a decay is measured [s]"),
+    parameter("stability", "/stability", STABILITY, "whether eigenvalues or the run decide that sliding is stable [name]"),
 ];
 
 impl Parameter {
@@ -128,10 +130,11 @@ impl Parameter {
         self.pointer[1..].split('/').fold(String::new(), write)
     }
 
-    /// The part of a job that it belongs to: `scene`, `numerics`, `run` or `detection`; none if it is not a field of a job.
+    /// The part of a job that it belongs to: `scene`, `numerics`, `run`, `detection` or `stability`; none
+    /// if it is not a field of a job.
     pub fn part(&self) -> Option<&'static str> {
         let part = self.pointer.split('/').nth(1)?;
-        Some(part).filter(|part| matches!(*part, "scene" | "numerics" | "run" | "detection"))
+        Some(part).filter(|part| matches!(*part, "scene" | "numerics" | "run" | "detection" | "stability"))
     }
 
     /// The name of the column that holds it in data of jobs. It is the parameter's name, except that the numbers of elements

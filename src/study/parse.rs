@@ -17,6 +17,7 @@ use super::report_axes::ReportAxes;
 use super::source::{Change, SourceText};
 use super::text::{STDIN, StudyText};
 use super::validate::check_jobs;
+use crate::spec::{FieldError, JobSpec, StabilityMethod};
 use serde_json::{Map, Value};
 use std::path::Path;
 
@@ -46,6 +47,23 @@ impl Study {
     /// # Errors
     /// Those of [`Study::parse`], and changes with unknown, repeated or overlapping names or values of the wrong type.
     pub fn parse_changed(text: &str, source_name: &str, changes: &Changes) -> Result<Self, StudyError> {
+        Self::read(text, source_name, changes, changes.is_of_modes)
+    }
+
+    /// As [`Study::parse`], for the document of a study in a database. It may be one of complex modes.
+    ///
+    /// # Errors
+    /// Those of [`Study::parse`].
+    pub fn parse_stored(document: &str, name: &str) -> Result<Self, StudyError> {
+        Self::read(document, name, &Changes::default(), true)
+    }
+
+    fn read(
+        text: &str,
+        source_name: &str,
+        changes: &Changes,
+        allows_modes: bool,
+    ) -> Result<Self, StudyError> {
         let (value, source) = SourceText::read(text, source_name)?;
         refuse(source.repeated_keys())?;
         let template = StudyFile::template();
@@ -60,12 +78,15 @@ impl Study {
             problems.extend(found);
             Vec::new()
         });
-        let mut outline = Outline { document: value, grid: Grid { axes }, source };
+        let mut outline = Outline { document: value, grid: Grid { axes }, source, allows_modes };
         let name = outline.rename(changes).and_then(|()| outline.name());
         if !problems.iter().any(|problem| problem.field == "name") {
             problems.extend(name.err().into_iter().flatten());
         }
         problems.extend(outline.set("--set", changes.preset, &changes.settings, Forms::AxesToo));
+        if changes.is_of_modes && problems.is_empty() {
+            outline.ask_for_modes()?;
+        }
         // The jobs are judged only when every field has been read: a limit may depend on several of them.
         if problems.is_empty() {
             return Self::of(outline, file.report.unwrap_or_default());
@@ -81,12 +102,15 @@ impl Study {
         let name = outline.name().map_err(StudyError::Invalid)?;
         refuse(report.problems(&outline.source))?;
         let draft = outline.draft();
-        let Outline { document, grid, source } = outline;
-        let (specs, violations): (Vec<_>, Vec<_>) =
+        let Outline { document, grid, source, allows_modes } = outline;
+        let (specs, mut violations): (Vec<_>, Vec<_>) =
             grid.resolve(&draft).into_iter().map(|job| (job.spec, job.violations)).unzip();
+        if !allows_modes {
+            specs.iter().zip(&mut violations).for_each(|(spec, found)| found.extend(refused_modes(spec)));
+        }
         let description = document.get("description").and_then(Value::as_str).map(str::to_owned);
         let base = draft.resolve().spec;
-        let study = Self { name, description, base, document, grid, specs, report, source };
+        let study = Self { name, description, base, document, grid, specs, report, source, allows_modes };
         refuse(check_jobs(&study, &violations))?;
         Ok(study)
     }
@@ -116,11 +140,38 @@ impl Outline {
         Ok(())
     }
 
+    /// Makes it the study of the complex modes at its grid points.
+    fn ask_for_modes(&mut self) -> Result<(), StudyError> {
+        let name = format!("{}-stability", self.name().map_err(StudyError::Invalid)?);
+        self.source.changes.push(Change::of_name("", &name));
+        self.grid.axes.retain(|axis| axis.parameter.name != STABILITY);
+        if let Value::Object(fields) = &mut self.document {
+            fields.insert("name".to_owned(), name.into());
+            fields.insert(STABILITY.to_owned(), StabilityMethod::Modes.name().into());
+        }
+        Ok(())
+    }
+
     /// Refuses a grid that has become too large.
     fn check_size(&self) -> Result<(), StudyError> {
         let axes = self.grid.axes.iter().map(|axis| (axis.parameter.name, axis.values.len()));
         limit_size(&axes.collect::<Vec<_>>(), &self.source)
     }
+}
+
+/// The field and the parameter of [`StabilityMethod`].
+const STABILITY: &str = "stability";
+
+/// Why a study file cannot have this job, if it computes complex modes without a run.
+fn refused_modes(spec: &JobSpec) -> Option<FieldError> {
+    (spec.stability == StabilityMethod::Modes).then(|| FieldError {
+        field: STABILITY.to_owned(),
+        value: Value::from(StabilityMethod::Modes.name()).to_string(),
+        expected: format!(
+            "`{}`; the command `tribosweep stability` computes modes without a run",
+            StabilityMethod::OF_FILES.join("` or `")
+        ),
+    })
 }
 
 fn refuse(problems: Vec<Problem>) -> Result<(), StudyError> {

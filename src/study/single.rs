@@ -106,7 +106,8 @@ impl Study {
         overrides: &[(String, String)],
     ) -> (Result<Self, StudyError>, Vec<Axis>) {
         let (document, grid, source_text) = (self.document.clone(), self.grid.clone(), self.source.clone());
-        let mut outline = Outline { document, grid, source: source_text };
+        let allows_modes = self.allows_modes;
+        let mut outline = Outline { document, grid, source: source_text, allows_modes };
         let problems = outline.set(source, preset, overrides, Forms::Single);
         let (fixed, left_open) = outline.grid.axes.into_iter().partition(|axis| axis.values.len() == 1);
         outline.grid = Grid { axes: fixed };

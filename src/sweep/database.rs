@@ -64,7 +64,7 @@ pub async fn load_study(study: &str, database: &Location) -> Result<Study, Sweep
     let mut queue = open_to_read(database.clone()).await?;
     let document = document(&mut queue, study).await?;
     queue.close().await?;
-    Ok(Study::parse(&document, study)?)
+    Ok(Study::parse_stored(&document, study)?)
 }
 
 /// The document of a study in the database, as it was submitted.

@@ -32,6 +32,7 @@ mod request;
 mod rows;
 mod selection;
 mod sheet;
+mod stability;
 mod transfer;
 mod trouble;
 mod work;
@@ -47,13 +48,14 @@ pub use measured::MeasuredError;
 pub use outlook::{Outlook, available_threads};
 pub use plan::{Plan, Submission};
 pub use rename::rename;
-pub use report::{Revision, write_content, write_refreshing_report, write_report};
+pub use report::{Revision, write_content, write_refreshing_report, write_report, write_stability_report};
 pub use request::{ReportContent, ReportRequest, read_report};
 pub use rows::{for_each_row, for_each_row_with_inputs, read_rows};
 pub use selection::{
     SelectedJob, StoredJob, StudyOfJob, find_job, select_all, select_by_key, select_by_parameters,
 };
 pub use sheet::sheet_of_job;
+pub use stability::{StabilitySweep, WAVES, name_of_modes, read_stability};
 pub use transfer::{Transfer, transfer};
 pub use trouble::Trouble;
 pub use work::work;

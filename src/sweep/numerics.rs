@@ -1,12 +1,12 @@
 //! What the accuracy and the cost of a job depend on besides the physics.
 
 use crate::report::JobNumerics;
-use crate::spec::{Detection, JobSpec, Numerics, RunControl};
+use crate::spec::{Detection, JobSpec, Numerics, RunControl, StabilityMethod};
 use crate::study::SharedKeys;
 
 /// The numerics of a job, as reports compare them. `cases` makes the keys of physical cases.
 pub(super) fn numerics(spec: &JobSpec, cases: &mut SharedKeys) -> JobNumerics {
-    let JobSpec { scene, numerics, run, detection } = spec;
+    let JobSpec { scene, numerics, run, detection, stability: _ } = spec;
     let elements = scene.pin.elements;
     let element_volume_m3: f64 = (0..3).map(|axis| scene.pin.size_m[axis] / elements[axis] as f64).product();
     JobNumerics {
@@ -34,6 +34,7 @@ fn case_key(spec: &JobSpec, cases: &mut SharedKeys) -> String {
         numerics: Numerics::default(),
         run: RunControl::default(),
         detection: Detection::default(),
+        stability: StabilityMethod::default(),
     };
     case.scene.pin.elements = [1, 1, 1];
     cases.key(case)

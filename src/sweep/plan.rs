@@ -13,7 +13,7 @@ use crate::spec::{DiskKind, JobSpec};
 use crate::study::{Changes, Job, SharedKeys, Study, StudyText};
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 
 /// A study that has been read, expanded into jobs and checked: no job is refused before its first step.
@@ -91,6 +91,25 @@ impl Plan {
         Ok(Self { document: study.document(), study, jobs, batches, workloads, workload_of })
     }
 
+    /// Adds jobs that are not points of the study's grid, but share the models of its jobs. Jobs that the plan has are not
+    /// added again, and neither are jobs of other models.
+    pub(super) fn extend(&mut self, further: Vec<Job>) {
+        let mut keys: HashSet<String> = self.jobs.iter().map(|job| job.key.clone()).collect();
+        let places = self.batches.iter().cloned().zip(self.workload_of.iter().copied());
+        let workload_of: HashMap<String, usize> = places.collect();
+        let mut batches = SharedKeys::new(solver::VERSION);
+        for job in further {
+            let batch = batches.key(job.spec.shared_part());
+            if let Some(&workload) = workload_of.get(&batch)
+                && keys.insert(job.key.clone())
+            {
+                self.jobs.push(job);
+                self.batches.push(batch);
+                self.workload_of.push(workload);
+            }
+        }
+    }
+
     /// The study.
     pub fn study(&self) -> &Study {
         &self.study
@@ -121,7 +140,7 @@ impl Plan {
     /// # Errors
     /// If this version cannot read the document.
     pub fn difference_from(&self, document: &str) -> Result<Difference, SweepError> {
-        let old = Study::parse(document, self.name())?.expand(solver::VERSION)?;
+        let old = Study::parse_stored(document, self.name())?.expand(solver::VERSION)?;
         Ok(Difference::between(&old, &self.jobs))
     }
 

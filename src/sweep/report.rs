@@ -2,9 +2,12 @@
 
 use super::error::SweepError;
 use super::request::{ReportContent, ReportRequest};
+use super::rows::read_rows;
+use super::stability::{name_of_modes, read_stability};
 use super::{provenance, sheet};
+use crate::publish::Sheet;
 use crate::queue::{Counts, Queue, Scope};
-use crate::report::{JobRow, Report, View, write};
+use crate::report::{JobRow, Provenance, Report, StabilityPoint, View, write, write_stability};
 use crate::study::{Study, Warning};
 use std::path::{Path, PathBuf};
 
@@ -61,24 +64,61 @@ async fn write_viewed(
     folder: &Path,
     refresh_s: Option<u32>,
 ) -> Result<Vec<PathBuf>, SweepError> {
-    let provenance = provenance::read(queue, studies).await?;
-    let written_ms = queue.now_ms().await?;
-    let warnings = warnings(queue, studies).await?;
-    let definitions = definitions(queue, studies).await?;
-    let sheet = sheet::read(queue, studies, &definitions, rows).await?;
-    let description = description(&definitions);
-    let report = Report {
-        title,
-        description: description.as_deref(),
-        rows,
-        view,
-        sheet: sheet.as_ref(),
-        provenance: provenance.as_ref(),
-        warnings: &warnings,
-        written_ms,
-        refresh_s,
-    };
+    let surroundings = Surroundings::read(queue, studies, rows).await?;
+    let stability = stability(queue, studies).await?;
+    let report = Report { title, rows, view, stability: &stability, refresh_s, ..surroundings.report() };
     Ok(write(&report, folder)?)
+}
+
+/// Writes the page, tables and figures of a study of complex modes, whose `points` were read, into a folder, which is created
+/// if it does not exist. Returns the paths of the files.
+///
+/// # Errors
+/// As [`write_report`].
+pub async fn write_stability_report(
+    queue: &mut Queue,
+    study: &str,
+    points: &[StabilityPoint],
+    folder: &Path,
+) -> Result<Vec<PathBuf>, SweepError> {
+    let rows = read_rows(queue, study).await?;
+    let request = ReportRequest::of_study(study);
+    let view = request.view_of_study(queue, &rows).await?;
+    let surroundings = Surroundings::read(queue, &request.studies, &rows).await?;
+    let report = Report { title: study, view: &view, stability: points, ..surroundings.report() };
+    Ok(write_stability(&report, folder)?)
+}
+
+/// What a report says about its studies beside their results.
+struct Surroundings {
+    description: Option<String>,
+    sheet: Option<Sheet>,
+    provenance: Option<Provenance>,
+    warnings: Vec<String>,
+    written_ms: i64,
+}
+
+impl Surroundings {
+    async fn read(queue: &mut Queue, studies: &[String], rows: &[JobRow]) -> Result<Self, SweepError> {
+        let provenance = provenance::read(queue, studies).await?;
+        let written_ms = queue.now_ms().await?;
+        let warnings = warnings(queue, studies).await?;
+        let definitions = definitions(queue, studies).await?;
+        let sheet = sheet::read(queue, studies, &definitions, rows).await?;
+        Ok(Self { description: description(&definitions), sheet, provenance, warnings, written_ms })
+    }
+
+    /// A report without title and results.
+    fn report(&self) -> Report<'_> {
+        Report {
+            description: self.description.as_deref(),
+            sheet: self.sheet.as_ref(),
+            provenance: self.provenance.as_ref(),
+            warnings: &self.warnings,
+            written_ms: self.written_ms,
+            ..Report::default()
+        }
+    }
 }
 
 /// Stored studies that this version can read.
@@ -86,9 +126,23 @@ async fn definitions(queue: &mut Queue, studies: &[String]) -> Result<Vec<Study>
     let mut definitions = Vec::new();
     for name in studies {
         let document = queue.study(name).await?.map(|found| found.document);
-        definitions.extend(document.and_then(|text| Study::parse(&text, name).ok()));
+        definitions.extend(document.and_then(|text| Study::parse_stored(&text, name).ok()));
     }
     Ok(definitions)
+}
+
+/// The complex modes of the only study, if the database has them.
+async fn stability(queue: &mut Queue, studies: &[String]) -> Result<Vec<StabilityPoint>, SweepError> {
+    let [study] = studies else { return Ok(Vec::new()) };
+    let modes = name_of_modes(study);
+    if queue.study(&modes).await?.is_none() {
+        return Ok(Vec::new());
+    }
+    match read_stability(queue, &modes).await {
+        // Modes of a version whose study this one cannot read are left out.
+        Err(SweepError::Study(_)) => Ok(Vec::new()),
+        read => read,
+    }
 }
 
 /// What the studies are for, in their authors' words. With several studies, each text names its study.
@@ -107,7 +161,7 @@ async fn warnings(queue: &mut Queue, studies: &[String]) -> Result<Vec<String>, 
     for name in studies {
         // A study may have been removed in between.
         let Some(found) = queue.study(name).await? else { continue };
-        let own: Vec<String> = match Study::parse(&found.document, name) {
+        let own: Vec<String> = match Study::parse_stored(&found.document, name) {
             Ok(study) => study.warnings().iter().map(Warning::in_words).collect(),
             Err(error) => {
                 vec![format!("this version cannot read the study, so its inputs are not checked: {error}")]

@@ -95,7 +95,7 @@ impl ReportRequest {
         let mut studies = Vec::new();
         for name in &self.studies {
             let document = queue.study(name).await?;
-            let study = document.and_then(|found| Study::parse(&found.document, name).ok());
+            let study = document.and_then(|found| Study::parse_stored(&found.document, name).ok());
             studies.push(StoredStudy { name: name.clone(), study });
         }
         Ok(studies)

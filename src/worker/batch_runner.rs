@@ -5,8 +5,9 @@ use super::checkpoint;
 use super::isolate::isolate_panic;
 use super::job::{ParsedJob, outcome, panic_outcome};
 use super::schedule::CheckpointSchedule;
-use crate::analysis::batch::Batch;
+use crate::analysis::batch::{Batch, Begun};
 use crate::queue::FinishedOutcome;
+use crate::spec::JobSpec;
 use std::collections::{BTreeMap, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::time::{Duration, Instant};
@@ -27,6 +28,8 @@ pub struct BatchRunner<'a> {
     has_open_request: bool,
     last_request: Instant,
     ended_since_request: usize,
+    /// Whether the eigenvalues decided the last job that began.
+    was_decided: bool,
     /// Jobs of another model that came under this batch's name.
     mismatched: Vec<ParsedJob>,
 }
@@ -43,7 +46,9 @@ impl<'a> BatchRunner<'a> {
     /// Runs `first` and all other jobs of its batch that the dispatcher sends. Returns the jobs that cannot be advanced
     /// with this batch.
     pub fn run(channel: &'a WorkerChannel, first: ParsedJob) -> Vec<ParsedJob> {
-        let failure = match catch_unwind(|| Batch::new(&first.spec)) {
+        let failure = match catch_unwind(AssertUnwindSafe(|| {
+            Batch::sharing(&first.spec, channel.structures.clone())
+        })) {
             Ok(Ok(batch)) => return Self::new(channel, batch, first).run_to_end(),
             Ok(Err(error)) => outcome(Err(error)),
             Err(panic) => panic_outcome(&*panic),
@@ -64,6 +69,7 @@ impl<'a> BatchRunner<'a> {
             last_request: Instant::now(),
             // So that the first request is made at once.
             ended_since_request: 1,
+            was_decided: false,
             mismatched: Vec::new(),
         }
     }
@@ -86,7 +92,7 @@ impl<'a> BatchRunner<'a> {
             self.fill_lanes();
             self.request_more();
             if self.running.is_empty() {
-                if self.has_open_request {
+                if self.has_open_request || !self.waiting.is_empty() {
                     continue;
                 }
                 return;
@@ -133,7 +139,8 @@ impl<'a> BatchRunner<'a> {
 
     /// Begins waiting jobs in free lanes.
     fn fill_lanes(&mut self) {
-        while self.batch.jobs() < self.batch.widest() {
+        // Eigenvalues may take a second or more, so that an interruption must not wait for all jobs.
+        while self.batch.jobs() < self.batch.widest() && !self.channel.interrupt.is_raised() {
             let Some(mut job) = self.waiting.pop_front() else { return };
             if !self.batch.takes(&job.spec) {
                 self.mismatched.push(job);
@@ -148,9 +155,22 @@ impl<'a> BatchRunner<'a> {
             if checkpoint.is_some_and(|sealed| self.resume(&sealed)) {
                 continue;
             }
-            if let Err(error) = self.batch.begin(self.last_ticket, spec) {
-                self.end(self.last_ticket, outcome(Err(error)));
-            }
+            self.begin(spec);
+        }
+    }
+
+    /// Begins the newest job. It ends at once if it is refused, or if the eigenvalues decide it.
+    fn begin(&mut self, spec: JobSpec) {
+        let begun = Instant::now();
+        let result = self.batch.begin(self.last_ticket, spec);
+        if let Some(running) = self.running.get_mut(&self.last_ticket) {
+            running.share_s = begun.elapsed().as_secs_f64();
+        }
+        self.was_decided = matches!(result, Ok(Begun::Decided(_)));
+        match result {
+            Ok(Begun::Runs) => {}
+            Ok(Begun::Decided(record)) => self.end(self.last_ticket, outcome(Ok(*record))),
+            Err(error) => self.end(self.last_ticket, outcome(Err(error))),
         }
     }
 
@@ -175,7 +195,9 @@ impl<'a> BatchRunner<'a> {
             let is_frequent = self.last_request.elapsed() < PREFETCH_BELOW;
             let prefetched =
                 if is_frequent { (self.ended_since_request - 1).min(self.batch.widest()) } else { 0 };
-            self.channel.request(Some(self.name.clone()), free + prefetched);
+            // Jobs without a run follow one after the other: other threads may take them.
+            let wanted = if self.was_decided { 1 } else { free };
+            self.channel.request(Some(self.name.clone()), wanted + prefetched);
             self.has_open_request = true;
             self.last_request = Instant::now();
             self.ended_since_request = 0;

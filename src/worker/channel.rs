@@ -2,7 +2,7 @@
 
 use super::checkpoint::SealedCheckpoint;
 use super::interrupt::Interrupt;
-use crate::analysis::Ending;
+use crate::analysis::{Ending, Structures};
 use crate::queue::{ClaimedJob, Finished, FinishedOutcome};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::sync::mpsc::{Receiver, RecvError};
@@ -103,6 +103,8 @@ pub struct WorkerChannel {
     pub interrupt: Interrupt,
     /// How often the state of a running job is stored; `None` if never.
     pub checkpoint_interval: Option<Duration>,
+    /// The structures of models, which all threads of the worker share.
+    pub structures: Structures,
 }
 
 impl WorkerChannel {

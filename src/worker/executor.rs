@@ -8,6 +8,7 @@ use super::channel::{Assignment, Report, WorkerChannel};
 use super::interrupt::Interrupt;
 use super::job::ParsedJob;
 use super::options::WorkOptions;
+use crate::analysis::Structures;
 use std::sync::mpsc::{Sender, channel};
 use tokio::sync::mpsc::UnboundedSender;
 
@@ -33,6 +34,7 @@ impl Executor {
             .num_threads(threads)
             .thread_name(|i| format!("solver-{i}"))
             .build()?;
+        let structures = Structures::default();
         let replies = (0..threads).map(|thread| {
             let (sender, replies) = channel();
             let channel = WorkerChannel {
@@ -41,6 +43,7 @@ impl Executor {
                 reports: reports.clone(),
                 interrupt: interrupt.clone(),
                 checkpoint_interval,
+                structures: structures.clone(),
             };
             pool.spawn(move || run_jobs(&channel));
             sender

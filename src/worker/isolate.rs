@@ -2,7 +2,7 @@
 
 use super::channel::WorkerChannel;
 use super::job::{ParsedJob, outcome, panic_outcome};
-use crate::analysis::batch::Batch;
+use crate::analysis::batch::{Batch, Begun};
 use crate::queue::FinishedOutcome;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
@@ -13,12 +13,13 @@ pub fn isolate_panic(job: &ParsedJob, channel: &WorkerChannel) -> FinishedOutcom
 }
 
 fn solve_alone(job: &ParsedJob, channel: &WorkerChannel) -> FinishedOutcome {
-    let started = Batch::new(&job.spec).and_then(|mut batch| {
-        batch.begin(0, job.spec.clone())?;
-        Ok(batch)
+    let started = Batch::sharing(&job.spec, channel.structures.clone()).and_then(|mut batch| {
+        let begun = batch.begin(0, job.spec.clone())?;
+        Ok((batch, begun))
     });
     let mut batch = match started {
-        Ok(batch) => batch,
+        Ok((batch, Begun::Runs)) => batch,
+        Ok((_, Begun::Decided(record))) => return outcome(Ok(*record)),
         Err(error) => return outcome(Err(error)),
     };
     loop {

@@ -63,7 +63,7 @@ fn companions_change_nothing_on(disk: DiskKind) {
         // steps.
         if turns % 3 == 0 && batch.jobs() < batch.widest() {
             match waiting.next() {
-                Some((ticket, job)) => batch.begin(ticket as u64, job.clone()).unwrap(),
+                Some((ticket, job)) => _ = batch.begin(ticket as u64, job.clone()).unwrap(),
                 None => batch.narrow(),
             }
         }

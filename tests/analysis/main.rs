@@ -12,5 +12,6 @@ mod on_elastic_disk;
 mod random;
 mod signals;
 mod similarity;
+mod stability;
 mod statistics;
 mod steady;

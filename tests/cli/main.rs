@@ -25,6 +25,7 @@ mod several;
 mod shards;
 mod sharing;
 mod slurm;
+mod stability;
 mod streams;
 mod support;
 mod surroundings;

@@ -3,7 +3,10 @@
 use crate::synthetic::{record, row};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use tribosweep::analysis::{ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Obstacle, Outcome, Regime};
+use tribosweep::analysis::{
+    ComplexMode, ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Obstacle, Outcome, Regime,
+    SlidingStability,
+};
 use tribosweep::report::columns::{Column, InputColumn, all, plain};
 use tribosweep::report::{RowState, SCALARS, name_and_unit};
 
@@ -103,7 +106,23 @@ fn units_are_those_of_the_names() {
     for column in all(&[], &[]) {
         assert_eq!(name_and_unit(&column.name).1, column.unit, "{}", column.name);
     }
-    let row = row(7.0, 0.4, RowState::Done(Box::new(full(Obstacle::SlipOnly))));
+    let mode = ComplexMode {
+        frequency_hz: 1.5e4,
+        growth_rate_per_s: -20.0,
+        damping_ratio: 2e-4,
+        residual: 1e-9,
+        is_converged: true,
+    };
+    let stability = SlidingStability {
+        decided: true,
+        contact_nodes: 20,
+        lifted_nodes: 0,
+        mu_star: 0.3,
+        band_hz: 5e4,
+        modes: vec![mode],
+    };
+    let record = JobRecord { stability: Some(stability), ..full(Obstacle::SlipOnly) };
+    let row = row(7.0, 0.4, RowState::Done(Box::new(record)));
     for scalar in SCALARS.iter() {
         let column = Column::find(scalar.name).unwrap_or_else(|| panic!("no column {}", scalar.name));
         assert!(column.value(&row, &[]).is_number(), "{}", scalar.name);

@@ -18,6 +18,7 @@ mod planes;
 mod random;
 #[path = "../support/report_files.rs"]
 mod report_files;
+mod stability;
 mod svg;
 mod synthetic;
 mod tables;

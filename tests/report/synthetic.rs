@@ -75,6 +75,7 @@ pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
         mu_reduction_slip: 0.02,
         growth_rate_per_s: None,
         obstacle: None,
+        stability: None,
         disk: None,
         energy: EnergyTotals::default(),
         nodes: Vec::new(),

@@ -12,7 +12,7 @@ const FILE: &str = r#"{
 
 fn changes(preset: Option<Preset>, settings: &[(&str, &str)]) -> Changes {
     let settings = settings.iter().map(|(n, v)| ((*n).to_owned(), (*v).to_owned())).collect();
-    Changes { name: None, preset, settings }
+    Changes { preset, settings, ..Changes::default() }
 }
 
 /// The changed study. Its document is parsed again and must say the same.

@@ -14,6 +14,7 @@ mod refusals;
 mod schema;
 mod shipped;
 mod single;
+mod stability;
 mod text;
 mod time_defaults;
 

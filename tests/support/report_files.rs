@@ -35,3 +35,8 @@ pub const REPORT: [&str; 29] = [
     "shares.svg",
     "track.svg",
 ];
+
+/// The files that a report has besides, if it has points of the linear stability; sorted.
+#[allow(dead_code, reason = "not every test crate has such points")]
+pub const STABILITY: [&str; 5] =
+    ["lock_in.svg", "modes.csv", "stability_map.svg", "thresholds.csv", "thresholds.svg"];

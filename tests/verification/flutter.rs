@@ -31,13 +31,13 @@ use tribosweep::analysis::{Outcome, Unobserved, drive, solve};
 use tribosweep::solver::field::Field;
 use tribosweep::solver::interface::ContactState;
 use tribosweep::solver::{Drive, Model, State, step};
-use tribosweep::spec::JobSpec;
+use tribosweep::spec::{JobSpec, StabilityMethod};
 
 const SOURCE: &str = "complex eigenvalues of the linearised sliding problem, dense";
 
-/// A coarse pin on a disk that is so fast that all nodes are pressed on it in steady sliding.
+/// A coarse pin on a disk that is so fast that all nodes are pressed on it in steady sliding. Every job runs.
 fn spec(mu: f64, safety_factor: f64) -> JobSpec {
-    let mut spec = JobSpec::default();
+    let mut spec = JobSpec { stability: StabilityMethod::Simulate, ..JobSpec::default() };
     spec.scene.pin.elements = [3, 4, 2];
     spec.scene.clamp.width_m = 0.004;
     spec.scene.load.ramp_s = 0.0;

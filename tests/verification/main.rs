@@ -43,5 +43,7 @@ mod ritz;
 mod saturated_flutter;
 mod shear;
 mod sideways;
+mod sliding_in_time;
+mod sliding_modes;
 mod two_bodies;
 mod wedge;

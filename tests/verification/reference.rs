@@ -12,11 +12,11 @@
 //!   rest to rounding counts as sticking.
 
 use tribosweep::analysis::{JobRecord, Outcome, Unobserved, solve};
-use tribosweep::spec::JobSpec;
+use tribosweep::spec::{JobSpec, StabilityMethod};
 
-/// The independent solver's scene at `omega_rpm` and μ.
+/// The independent solver's scene, which also runs if it is stable, at `omega_rpm` and μ.
 fn spec(omega_rpm: f64, mu: f64) -> JobSpec {
-    let mut spec = JobSpec::default();
+    let mut spec = JobSpec { stability: StabilityMethod::Simulate, ..JobSpec::default() };
     spec.scene.pin.elements = [6, 8, 5];
     spec.scene.clamp.width_m = 0.002;
     spec.scene.disk.omega_rpm = omega_rpm;

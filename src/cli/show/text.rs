@@ -1,6 +1,7 @@
 //! A job as text.
 
 use super::parsed;
+use crate::analysis::{ComplexMode, SlidingStability};
 use crate::cli::aligned;
 use crate::publish::value::{self, MISSING};
 use crate::report::columns::{Column, FURTHER, Group, PLAIN};
@@ -14,11 +15,12 @@ use std::fmt::Write;
 const DIGITS: usize = 6;
 
 /// The parts of a job's inputs, with their headings.
-const PARTS: [(&str, &str); 4] = [
+const PARTS: [(&str, &str); 5] = [
     ("scene", "Inputs: scene"),
     ("numerics", "Inputs: numerics"),
     ("run", "Inputs: run"),
     ("detection", "Inputs: detection"),
+    ("stability", "Inputs: stability"),
 ];
 
 /// The columns that the head or the provenance of the text has.
@@ -47,6 +49,9 @@ pub(super) fn of_job(job: &StoredJob, width: Option<usize>) -> String {
             for group in Group::ALL {
                 add(heading(group), &figures(&row, group));
             }
+            if let Some(table) = row.record().and_then(|record| record.stability.as_ref()).map(modes) {
+                text += &table;
+            }
         }
         Ok(_) => {}
         Err(error) => add("Result", &[[error.to_string(), String::new(), String::new()]]),
@@ -61,6 +66,7 @@ fn heading(group: Group) -> &'static str {
         Group::Job => "Job",
         Group::Input => "Inputs",
         Group::Result => "Result",
+        Group::Stability => "Steady sliding",
         Group::Contact => "Contact, over the window",
         Group::Nodes => "Observed nodes, over the window",
         Group::Energies => "Energies, with their shares of the work of load and drive",
@@ -109,6 +115,25 @@ fn figures(row: &JobRow, group: Group) -> Vec<[String; 3]> {
         [column.name.to_string(), text, column.meaning.to_string()]
     };
     cells.map(line).collect()
+}
+
+/// The modes of steady sliding as a table.
+fn modes(stability: &SlidingStability) -> String {
+    let head = ["mode", "frequency", "growth rate", "damping ratio", "residual"].map(str::to_owned);
+    let line = |(index, mode): (usize, &ComplexMode)| {
+        let doubt = if mode.is_converged { "" } else { ", not converged" };
+        [
+            (index + 1).to_string(),
+            value::quantity(mode.frequency_hz, "Hz"),
+            format!("{} 1/s", value::significant(mode.growth_rate_per_s, 4)),
+            value::significant(mode.damping_ratio, 3),
+            format!("{:.1e}{doubt}", mode.residual),
+        ]
+    };
+    let lines: Vec<[String; 5]> =
+        std::iter::once(head).chain(stability.modes.iter().enumerate().map(line)).collect();
+    let band = value::quantity(stability.band_hz, "Hz");
+    format!("\nModes of steady sliding below {band}\n{}", aligned::lines(2, &lines, None))
 }
 
 /// The share that an energy has of the energy put in, as text; empty for other figures.

@@ -2,10 +2,10 @@
 
 use super::{Column, Group};
 use crate::analysis::sample::OBSERVED_NAMES;
-use crate::analysis::{ElasticDisk, JobRecord, ObservedNode, Obstacle};
+use crate::analysis::{ComplexMode, ElasticDisk, JobRecord, ObservedNode, Obstacle, SlidingStability};
 use crate::publish::value::number;
 use crate::report::row::{JobRow, RowState};
-use Group::{Contact, Disk, Energies, Job, Nodes, Residuals, Result, Run};
+use Group::{Contact, Disk, Energies, Job, Nodes, Residuals, Result, Run, Stability};
 use serde_json::Value;
 
 /// The columns of every export. Older versions have them too, in this order.
@@ -15,7 +15,7 @@ pub static PLAIN: [Column; 25] = [
     Column::of_row("job", "", Job, "key of the job", |row| row.job.as_str().into()),
     Column::of_row("omega_rpm", "rpm", Job, "rotation speed ω of the disk", |row| row.omega_rpm.into()),
     Column::of_row("mu", "", Job, "local (Coulomb) friction coefficient μ", |row| row.mu.into()),
-    Column::of_row("status", "", Job, "how far the job is, or how its run ended: pending, running, cancelled, failed, periodic, decayed, not_periodic", |row| row.status().into()),
+    Column::of_row("status", "", Job, "how far the job is, or how its run ended: pending, running, cancelled, failed, periodic, decayed, not_periodic, unstable", |row| row.status().into()),
     Column::of_row("regime", "", Result, "contact regime: stable, stick_slip, stick_slip_separation, slip_separation, undecided", |row| of(row, |record| record.regime.name())),
     Column::of_row("mu_star", "", Result, "macroscopic friction coefficient μ* = ⟨T⟩/⟨F⟩ with the tangential force T at the clamp", |row| of(row, |record| record.mu_star)),
     Column::of_row("mu_star_se", "", Result, "standard error of mu_star over the cycles; of a stable job, over equal parts of the window", |row| of(row, |record| record.mu_star_se)),
@@ -40,8 +40,8 @@ pub static PLAIN: [Column; 25] = [
 
 /// The rest of the record.
 #[rustfmt::skip]
-pub static FURTHER: [Column; 43] = [
-    Column::of_row("growth_rate_per_s", "1/s", Result, "growth rate of the fastest growing strong line, if the run ended in steady sliding; negative: sliding is stable", |row| of(row, |record| record.growth_rate_per_s)),
+pub static FURTHER: [Column; 50] = [
+    Column::of_row("growth_rate_per_s", "1/s", Result, "growth rate of the fastest growing strong line, if the run ended in steady sliding, and of the leading mode without a run; negative: sliding is stable", |row| of(row, |record| record.growth_rate_per_s)),
     Column::of_row("obstacle", "", Result, "why the run is not periodic", |row| of(row, |record| record.obstacle.as_ref().map(in_words))),
     Column::of_row("obstacle_figure", "", Result, "the figure that is not the same from cycle to cycle", |row| unsteady(row, |figure, _, _| figure.into())),
     Column::of_row("obstacle_spread", "", Result, "its largest minus its smallest value over the cycles; of period, stress and amplitude, over the mean", |row| unsteady(row, |_, spread, _| spread.into())),
@@ -50,6 +50,13 @@ pub static FURTHER: [Column; 43] = [
     Column::of_row("obstacle_cycles_needed", "", Result, "section crossings that would have to repeat in such a run", |row| few_cycles(row, |_, needed| needed)),
     Column::of_row("mu_reduction_stick", "", Result, "part of μ − μ* that is due to sticking nodes", |row| of(row, |record| record.mu_reduction_stick)),
     Column::of_row("mu_reduction_slip", "", Result, "part of μ − μ* that is due to nodes that slip sideways or backwards", |row| of(row, |record| record.mu_reduction_slip)),
+    Column::of_row("decided_by", "", Stability, "what decided the outcome: run, or eigenvalues, and then there was no run", |row| of(row, decided_by)),
+    Column::of_row("mode_frequency_hz", "Hz", Stability, "frequency of the leading mode of steady sliding, which grows fastest or decays most slowly", |row| mode(row, |mode| mode.frequency_hz)),
+    Column::of_row("mode_growth_rate_per_s", "1/s", Stability, "growth rate of the leading mode; negative: it decays", |row| mode(row, |mode| mode.growth_rate_per_s)),
+    Column::of_row("mode_damping_ratio", "", Stability, "damping ratio ζ of the leading mode; negative: it grows", |row| mode(row, |mode| mode.damping_ratio)),
+    Column::of_row("mode_residual", "", Stability, "relative residual of the leading mode in the full problem", |row| mode(row, |mode| mode.residual)),
+    Column::of_row("contact_nodes", "", Stability, "nodes of the contact face that are in contact in steady sliding", |row| sliding(row, |sliding| sliding.contact_nodes)),
+    Column::of_row("lifted_nodes", "", Stability, "nodes of the contact face that are lifted in steady sliding", |row| sliding(row, |sliding| sliding.lifted_nodes)),
     Column::of_row("lift_max_m", "m", Contact, "largest gap of a node", |row| of(row, |record| record.lift_max_m)),
     Column::of_row("contact_loss_share", "", Residuals, "contact loss in the window over the work of the drive", |row| of(row, |record| record.contact_loss_share)),
     Column::of_row("macroscopic_identity_residual", "", Residuals, "residual of the identity μ − μ* = mean friction deficit of the nodes over F", |row| of(row, |record| record.macroscopic_identity_residual)),
@@ -108,6 +115,20 @@ fn rear(row: &JobRow, read: impl FnOnce(&ObservedNode) -> f64) -> Value {
 
 fn node(row: &JobRow, name: &str, read: impl FnOnce(&ObservedNode) -> f64) -> Value {
     of(row, |record| record.nodes.iter().find(|node| node.name == name).map(read))
+}
+
+/// Records of versions without eigenvalues are those of runs.
+fn decided_by(record: &JobRecord) -> &'static str {
+    let is_decided = record.stability.as_ref().is_some_and(|sliding| sliding.decided);
+    if is_decided { "eigenvalues" } else { "run" }
+}
+
+fn sliding<T: Into<Value>>(row: &JobRow, read: impl FnOnce(&SlidingStability) -> T) -> Value {
+    of(row, |record| record.stability.as_ref().map(read))
+}
+
+fn mode(row: &JobRow, read: impl FnOnce(&ComplexMode) -> f64) -> Value {
+    of(row, |record| record.stability.as_ref().and_then(|sliding| sliding.modes.first()).map(read))
 }
 
 fn disk<T: Into<Value>>(row: &JobRow, read: impl FnOnce(&ElasticDisk) -> T) -> Value {

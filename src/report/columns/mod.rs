@@ -48,6 +48,9 @@ pub enum Group {
     /// Balances that would close in an exact solution.
     #[strum(serialize = "residuals")]
     Residuals,
+    /// Steady sliding and its leading mode.
+    #[strum(serialize = "stability")]
+    Stability,
     /// The mesh and the contact solves of an elastic disk.
     #[strum(serialize = "elastic disk")]
     Disk,
@@ -58,10 +61,11 @@ pub enum Group {
 
 impl Group {
     /// All of them, in the order in which a job is described.
-    pub const ALL: [Self; 9] = [
+    pub const ALL: [Self; 10] = [
         Self::Job,
         Self::Input,
         Self::Result,
+        Self::Stability,
         Self::Contact,
         Self::Nodes,
         Self::Energies,

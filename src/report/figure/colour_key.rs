@@ -33,7 +33,8 @@ impl Swatch {
 
 /// Side of a swatch [px].
 const SIDE: i32 = 44;
-const PITCH: i32 = 54;
+/// Distance of the entries of a column [px].
+pub(super) const PITCH: i32 = 54;
 
 /// Draws the entries below one another, starting at height `top` [px].
 pub(super) fn draw_column(area: &Area, top: i32, entries: &[KeyEntry]) -> Result<(), DrawError> {

@@ -15,11 +15,11 @@ use plotters::prelude::RGBColor;
 use plotters::style::text_anchor::HPos;
 
 /// Height of the colour scale with its heading [px].
-const SCALE: i32 = 430;
+pub(super) const SCALE: i32 = 430;
 /// Number of colours in it.
 const STEPS: i32 = 60;
 /// The colour of a job without a growth rate.
-const NO_VALUE: RGBColor = RGBColor(0xEC, 0xEC, 0xEC);
+pub(super) const NO_VALUE: RGBColor = RGBColor(0xEC, 0xEC, 0xEC);
 
 fn growth_rate(row: &JobRow) -> Option<f64> {
     row.record()?.growth_rate_per_s.filter(|rate| rate.is_finite())
@@ -32,38 +32,46 @@ pub(super) fn draw(layout: &Layout, group: &Group) -> Result<String, FigureError
     let rates = || jobs.clone().filter_map(|job| growth_rate(job.row));
     let largest = rates().map(f64::abs).fold(0.0, f64::max);
     let style = |row: &JobRow| match growth_rate(row) {
-        Some(rate) => CellStyle {
-            fill: palette::diverging(share(rate, largest)),
-            text: value::significant(rate, 3).replace('-', "−"),
-            value: value::number(rate),
-        },
-        None => {
-            CellStyle { fill: NO_VALUE, text: status_glyph(row).letter.to_string(), value: String::new() }
+        Some(rate) => {
+            CellStyle::new(palette::diverging(share(rate, largest)), rate_text(rate), value::number(rate))
         }
+        None => CellStyle::new(NO_VALUE, status_glyph(row).letter.to_string(), String::new()),
     };
     let others = group.jobs.iter().map(|job| job.row).filter(|row| growth_rate(row).is_none());
     let mut entries = glyph_key(others);
     for entry in &mut entries {
         entry.swatch = Swatch::filled(NO_VALUE, entry.swatch.symbol);
     }
-    plane::draw(layout, group, style, |area| {
-        let top = if largest > 0.0 {
-            draw_scale(area, largest)?;
-            MARGIN + SCALE
-        } else {
-            canvas::write(area, "no growth rates", (0, MARGIN + 20), TEXT, HPos::Left)?;
-            MARGIN + 60
-        };
-        colour_key::draw_column(area, top, &entries)
-    })
+    plane::draw(
+        layout,
+        group,
+        style,
+        |_| Ok(()),
+        |area| {
+            let top = if largest > 0.0 {
+                draw_scale(area, largest)?;
+                MARGIN + SCALE
+            } else {
+                canvas::write(area, "no growth rates", (0, MARGIN + 20), TEXT, HPos::Left)?;
+                MARGIN + 60
+            };
+            colour_key::draw_column(area, top, &entries)
+        },
+    )
+}
+
+/// A growth rate in a cell.
+pub(super) fn rate_text(rate: f64) -> String {
+    value::significant(rate, 3).replace('-', "−")
 }
 
 /// The place of a rate in the colours from −1 to 1. The root shows the sign of small rates beside large ones.
-fn share(rate: f64, largest: f64) -> f64 {
+pub(super) fn share(rate: f64, largest: f64) -> f64 {
     if largest > 0.0 { rate.signum() * (rate.abs() / largest).sqrt() } else { 0.0 }
 }
 
-fn draw_scale(area: &Area, largest: f64) -> Result<(), DrawError> {
+/// Draws the colours of the growth rates from −`largest` to `largest`.
+pub(super) fn draw_scale(area: &Area, largest: f64) -> Result<(), DrawError> {
     canvas::write(area, "growth rate [1/s]", (0, MARGIN + 10), TEXT, HPos::Left)?;
     let (top, bottom, width) = (MARGIN + 50, MARGIN + SCALE - 40, 56);
     let y = |share: f64| bottom - ((share + 1.0) / 2.0 * f64::from(bottom - top)).round() as i32;

@@ -16,6 +16,7 @@ mod places;
 mod plane;
 pub(super) mod residuals;
 mod shares;
+pub(super) mod stability;
 mod style;
 pub(super) mod waterfall;
 
@@ -23,6 +24,7 @@ use super::layout::{Layout, MAX_TOOLTIPS};
 use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
 use super::spectra::Spectra;
+use super::stability_point::StabilityPoint;
 use super::view::View;
 use crate::publish::FigureError;
 use panels::MAX_PANELS;
@@ -190,6 +192,25 @@ pub struct Figure {
     pub svg: String,
 }
 
+impl Figure {
+    /// The figure on sheet `number` of a layout with `of_sheet` combinations on a sheet.
+    fn of_sheet(layout: &Layout, number: usize, of_sheet: usize, svg: String) -> Self {
+        let count = layout.groups.len();
+        let first = number * of_sheet;
+        let groups = first..(first + of_sheet).min(count);
+        if count <= of_sheet {
+            return Self { suffix: String::new(), caption: String::new(), groups, svg };
+        }
+        let suffix = if number == 0 { String::new() } else { format!("-{}", number + 1) };
+        let caption = if of_sheet == 1 {
+            layout.groups[first].caption()
+        } else {
+            format!("combinations {} to {} of {count}", first + 1, groups.end)
+        };
+        Self { suffix, caption, groups, svg }
+    }
+}
+
 /// Draws the combinations of the further parameters, up to twelve in one figure, with the same axes and colours. There is no
 /// figure if the plot does not exist for these rows: a map on true axes needs numbers on both axes, and a waterfall needs
 /// stored spectra.
@@ -197,10 +218,15 @@ pub struct Figure {
 /// # Errors
 /// [`FigureError`].
 pub fn figures(rows: &[JobRow], view: &View, plot: Plot) -> Result<Vec<Figure>, FigureError> {
-    figures_of(&Layout::of(rows, view), plot, &Spectra::new())
+    figures_of(&Layout::of(rows, view), plot, &Spectra::new(), &[])
 }
 
-pub(super) fn figures_of(layout: &Layout, plot: Plot, spectra: &Spectra) -> Result<Vec<Figure>, FigureError> {
+pub(super) fn figures_of(
+    layout: &Layout,
+    plot: Plot,
+    spectra: &Spectra,
+    points: &[StabilityPoint],
+) -> Result<Vec<Figure>, FigureError> {
     if plot.absence(layout, spectra).is_some() {
         return Ok(Vec::new());
     }
@@ -211,7 +237,6 @@ pub(super) fn figures_of(layout: &Layout, plot: Plot, spectra: &Spectra) -> Resu
         Plot::Bifurcation | Plot::RegimePlane | Plot::GrowthRate | Plot::Waterfall => 1,
         _ => MAX_PANELS,
     };
-    let count = layout.groups.len();
     let draw = |(number, groups): (usize, &[super::layout::Group])| {
         let svg = match plot {
             Plot::MuStar => chart::draw(layout, groups, &MU_STAR),
@@ -221,23 +246,11 @@ pub(super) fn figures_of(layout: &Layout, plot: Plot, spectra: &Spectra) -> Resu
             Plot::FrequencyMap => map::frequencies(layout, groups),
             Plot::Shares => shares::draw(layout, groups),
             Plot::Bifurcation => bifurcation::draw(layout, &groups[0]),
-            Plot::RegimePlane => plane::regimes(layout, &groups[0]),
+            Plot::RegimePlane => plane::regimes(layout, &groups[0], points),
             Plot::GrowthRate => growth::draw(layout, &groups[0]),
             Plot::Waterfall => waterfall::draw(layout, &groups[0], spectra),
         }?;
-        let first = number * of_sheet;
-        let (suffix, caption) = if count <= of_sheet {
-            (String::new(), String::new())
-        } else {
-            let suffix = if number == 0 { String::new() } else { format!("-{}", number + 1) };
-            let caption = if of_sheet == 1 {
-                groups[0].caption()
-            } else {
-                format!("combinations {} to {} of {count}", first + 1, first + groups.len())
-            };
-            (suffix, caption)
-        };
-        Ok(Figure { suffix, caption, groups: first..first + groups.len(), svg })
+        Ok(Figure::of_sheet(layout, number, of_sheet, svg))
     };
     layout.groups.chunks(of_sheet).enumerate().map(draw).collect()
 }

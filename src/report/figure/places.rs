@@ -40,18 +40,23 @@ pub(super) fn places<'a>(layout: &Layout, group: &'a Group, x_axis: &Axis) -> Ve
 
 /// All series of a study.
 pub(super) fn series(layout: &Layout) -> Vec<SeriesLook> {
-    let dimension = layout.dimension(layout.by);
-    let axis = dimension.axis(false);
-    let position = |value: &Value| match axis {
-        Axis::Names(_) => None,
-        _ => dimension.position(&axis, value),
-    };
+    let y_of = y_of(layout);
     let look = |series| SeriesLook {
         name: layout.series_name(series),
         colour: style::colour(layout, series),
-        y: position(&series.value),
+        y: y_of(&series.value),
     };
     layout.series.iter().map(look).collect()
+}
+
+/// The position of a value of the parameter that has colours, on an axis of its own; none if it is no number.
+pub(super) fn y_of(layout: &Layout) -> impl Fn(&Value) -> Option<f64> {
+    let dimension = layout.dimension(layout.by);
+    let axis = dimension.axis(false);
+    move |value| match axis {
+        Axis::Names(_) => None,
+        _ => dimension.position(&axis, value),
+    }
 }
 
 /// Name and unit of the parameter that has colours.

@@ -4,6 +4,7 @@
 use super::colour_key::{self, KeyEntry};
 use super::map::glyph_key;
 use super::places::{self, Place};
+use super::stability::boundary::{self, Sign};
 use crate::publish::FigureError;
 use crate::publish::plot::axis::Axis;
 use crate::publish::plot::canvas::{self, Area, Chart, X_LABELS};
@@ -13,12 +14,15 @@ use crate::publish::value;
 use crate::report::glyph::status_glyph;
 use crate::report::layout::{Group, Layout};
 use crate::report::row::JobRow;
+use crate::report::stability::{Verdict, Verdicts};
+use crate::report::stability_point::StabilityPoint;
 use crate::report::tooltip::tooltip_text;
 use plotters::chart::ChartBuilder;
 use plotters::prelude::{Circle, RGBColor};
 use plotters::style::Color;
 use plotters::style::text_anchor::HPos;
 use serde_json::Value;
+use std::cell::Cell;
 
 const LEGEND_WIDTH: u32 = 500;
 const Y_LABELS: u32 = 150;
@@ -37,6 +41,19 @@ pub(super) struct CellStyle {
     pub text: String,
     /// The value in full precision, for the attribute `data-value`.
     pub value: String,
+    /// The tooltip, if it is not that of the job.
+    pub title: Option<String>,
+    /// A mark in the corner.
+    pub mark: Option<Verdict>,
+    /// Whether the row is a job, whose key a program may want.
+    pub is_job: bool,
+}
+
+impl CellStyle {
+    /// A cell with the tooltip of its job.
+    pub fn new(fill: RGBColor, text: String, value: String) -> Self {
+        Self { fill, text, value, title: None, mark: None, is_job: true }
+    }
 }
 
 /// Whether a layout has numbers on both axes. Otherwise there is no plane.
@@ -49,14 +66,39 @@ pub(super) fn exists(layout: &Layout) -> bool {
     !has_jobs || is_numeric()
 }
 
-/// The contact regimes.
-pub(super) fn regimes(layout: &Layout, group: &Group) -> Result<String, FigureError> {
+/// The contact regimes. If the linear stability of steady sliding is known, its boundary is drawn into them, and the jobs that
+/// it does not explain are marked.
+pub(super) fn regimes(
+    layout: &Layout,
+    group: &Group,
+    points: &[StabilityPoint],
+) -> Result<String, FigureError> {
+    // Points of one study say nothing about the jobs of another one.
+    let points = if layout.sources.len() > 1 { &[] } else { points };
+    let verdicts = Verdicts::new(points);
     let style = |row: &JobRow| {
         let glyph = status_glyph(row);
-        CellStyle { fill: glyph.fill, text: glyph.letter.to_string(), value: glyph.letter.to_string() }
+        let mark = verdicts.of(row);
+        let title = mark.map(|verdict| format!("{}\n{}", tooltip_text(row), verdict.words()));
+        let letter = glyph.letter.to_string();
+        CellStyle { title, mark, ..CellStyle::new(glyph.fill, letter.clone(), letter) }
     };
-    let entries: Vec<KeyEntry> = glyph_key(group.jobs.iter().map(|job| job.row));
-    draw(layout, group, style, |area| colour_key::draw_column(area, MARGIN, &entries))
+    let rows = || group.jobs.iter().map(|job| job.row);
+    let entries: Vec<KeyEntry> = glyph_key(rows());
+    let nodes = boundary::nodes(layout, group, points);
+    let occurs = |verdict: &Verdict| rows().any(|row| verdicts.of(row) == Some(*verdict));
+    let has_line = Cell::new(false);
+    let overlay = |chart: &mut Chart| {
+        has_line.set(boundary::draw(chart, &nodes)?);
+        Ok(())
+    };
+    draw(layout, group, style, overlay, |area| {
+        colour_key::draw_column(area, MARGIN, &entries)?;
+        let line = has_line.get().then_some(Sign::ZeroLine);
+        let marks = Verdict::ALL.into_iter().filter(occurs).map(Sign::Verdict);
+        let signs: Vec<Sign> = line.into_iter().chain(marks).collect();
+        boundary::draw_signs(area, MARGIN + colour_key::PITCH * (entries.len() as i32 + 1), &signs)
+    })
 }
 
 /// The values along one axis, ascending, and the boundaries of their cells.
@@ -105,18 +147,19 @@ impl CellEdges {
 }
 
 /// A job in the plane.
-struct Cell<'a> {
+struct JobCell<'a> {
     place: Place<'a>,
     y: f64,
     column: usize,
     row: usize,
 }
 
-/// Draws the cells of a group's jobs and the legend beside them.
+/// Draws the cells of a group's jobs, what lies over them, and the legend beside them.
 pub(super) fn draw(
     layout: &Layout,
     group: &Group,
     style: impl Fn(&JobRow) -> CellStyle,
+    overlay: impl FnOnce(&mut Chart) -> Result<(), DrawError>,
     legend: impl FnOnce(&Area) -> Result<(), DrawError>,
 ) -> Result<String, FigureError> {
     let caption = group.caption();
@@ -127,8 +170,8 @@ pub(super) fn draw(
     let placed = || places.iter().filter_map(|place| Some((*place, looks[place.series].y?)));
     let columns = CellEdges::of(placed().map(|(place, _)| place.x), matches!(x_axis, Axis::Log(_)));
     let rows = CellEdges::of(placed().map(|(_, y)| y), false);
-    let mut cells: Vec<Cell> = placed()
-        .map(|(place, y)| Cell { column: columns.index(place.x), row: rows.index(y), place, y })
+    let mut cells: Vec<JobCell> = placed()
+        .map(|(place, y)| JobCell { column: columns.index(place.x), row: rows.index(y), place, y })
         .collect();
     cells.sort_by_key(|cell| (cell.row, cell.column));
     canvas::sheet((canvas::WIDTH, HEIGHT + offset), |root| {
@@ -146,6 +189,7 @@ pub(super) fn draw(
             .y_desc(places::series_title(layout))
             .draw()?;
         let targets = draw_cells(&left, &chart, &cells, &columns, &rows, style)?;
+        overlay(&mut chart)?;
         canvas::frame(&chart)?;
         legend(&right)?;
         Ok(if places::has_tooltips(group) { targets } else { Vec::new() })
@@ -155,13 +199,13 @@ pub(super) fn draw(
 fn draw_cells(
     area: &Area,
     chart: &Chart,
-    cells: &[Cell],
+    cells: &[JobCell],
     columns: &CellEdges,
     rows: &CellEdges,
     style: impl Fn(&JobRow) -> CellStyle,
 ) -> Result<Vec<TooltipTarget>, DrawError> {
     let base = area.get_base_pixel();
-    let points: Vec<&[Cell]> = cells.chunk_by(|a, b| (a.row, a.column) == (b.row, b.column)).collect();
+    let points: Vec<&[JobCell]> = cells.chunk_by(|a, b| (a.row, a.column) == (b.row, b.column)).collect();
     // Points that are not on a grid have no neighbours in rows and columns. A cell of theirs would say nothing.
     let is_grid = 2 * points.len() >= columns.values.len() * rows.values.len();
     let mut targets = Vec::with_capacity(cells.len());
@@ -181,21 +225,22 @@ fn draw_cells(
         for (number, cell) in here.iter().enumerate() {
             let left = from.0 + number as i32 * width;
             let right = if number + 1 == here.len() { to.0 } else { left + width };
-            let CellStyle { fill, text, value } = style(cell.place.row);
+            let CellStyle { fill, text, value, title, mark, is_job } = style(cell.place.row);
             let own = |(x, y): (i32, i32)| (x - base.0, y - base.1);
             let (upper, lower) = (own((left, from.1)), own((right, to.1)));
             canvas::fill_rectangle(area, upper, lower, fill)?;
             let middle = if here.len() == 1 { own(at) } else { (i32::midpoint(upper.0, lower.0), own(at).1) };
             write_text(area, &text, middle, (upper, lower), palette::contrasting(fill), is_grid)?;
+            if let Some(verdict) = mark {
+                boundary::draw_mark_in(area, verdict, upper, lower)?;
+            }
+            let mut data = Vec::from_iter(is_job.then(|| ("job", cell.place.row.job.clone())));
+            data.extend([("x", value::text(cell.place.at)), ("y", value::number(cell.y)), ("value", value)]);
+            data.extend(mark.map(|verdict| ("mark", verdict.name().to_owned())));
             targets.push(TooltipTarget {
                 shape: Shape::Cell { from: (left, from.1), to: (right.max(left + 1), to.1) },
-                title: tooltip_text(cell.place.row),
-                data: vec![
-                    ("job", cell.place.row.job.clone()),
-                    ("x", value::text(cell.place.at)),
-                    ("y", value::number(cell.y)),
-                    ("value", value),
-                ],
+                title: title.unwrap_or_else(|| tooltip_text(cell.place.row)),
+                data,
             });
         }
     }

@@ -105,8 +105,16 @@ pub(super) fn regimes(parts: &Parts) -> Markup {
     );
     let axis = parts.layout.axis_label();
     let by = parts.layout.by_words();
+    let boundary = if parts.report.stability.is_empty() {
+        ""
+    } else {
+        " The black line is the threshold of linear stability: on its unstable side, a mode of steady sliding grows. A triangle marks a \
+         limit cycle where every mode decays. A diamond marks a job in which a mode grows, but μ* is within 0.1 % of that of \
+         steady sliding."
+    };
     let plane = format!(
-        "The same regimes with {axis} and {by} on true axes. A dot is a job; its cell ends half-way to its neighbours."
+        "The same regimes with {axis} and {by} on true axes. A dot is a job; its cell ends half-way to its \
+         neighbours.{boundary}"
     );
     let growth = format!(
         "Growth rate of the fastest growing, or slowest decaying, strong line of jobs that ended in steady sliding, over \

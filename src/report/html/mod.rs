@@ -14,8 +14,40 @@ mod warnings;
 
 pub(super) use parts::Parts;
 
-use crate::publish::html;
+use crate::publish::{html, value};
+use crate::report::input::Report;
+use crate::report::stability::{self, Analysis, Files};
 use maud::{Markup, html};
+
+const STABILITY: &str = "Linear stability";
+
+/// The page of the stability alone. If it has shapes of modes, they are in a folder beside the page.
+pub(super) fn stability_page(
+    report: &Report,
+    analysis: &Analysis,
+    files: &Files,
+    has_shapes: bool,
+) -> String {
+    let mut sections = vec![("stability", STABILITY, stability::markup(analysis, files))];
+    sections.extend(report.sheet.map(|sheet| ("scene", "What was analysed", scene::section(sheet))));
+    sections.extend(report.provenance.map(|from| ("provenance", "Provenance", provenance::section(from))));
+    let body = html! {
+        @if let Some(description) = report.description { p.description { (description) } }
+        (warnings::list(report.warnings))
+        @if sections.len() > 1 { (html::navigation(sections.iter().map(|(id, heading, _)| (*id, *heading)))) }
+        @for (id, heading, content) in &sections { (html::section(id, heading, content)) }
+        footer {
+            p.note {
+                "Written " (value::utc_minute(report.written_ms)) " by tribosweep. The folder of this page has the figures as "
+                "SVG, all modes in " code { "modes.csv" } " and the thresholds in " code { "thresholds.csv" } "."
+                @if has_shapes {
+                    " The shapes of modes, for ParaView, are in the folder " a href="modes/" { code { "modes" } } "."
+                }
+            }
+        }
+    };
+    html::page(report.title, report.refresh_s, &body)
+}
 
 /// The page.
 pub(super) fn page(parts: &Parts) -> String {
@@ -30,6 +62,9 @@ pub(super) fn page(parts: &Parts) -> String {
         ("bifurcation", "Amplitudes", grids::bifurcation(parts)),
         ("shares", "Stick, slip and separation", grids::shares(parts)),
     ]);
+    sections.extend(
+        parts.stability.map(|(analysis, files)| ("stability", STABILITY, stability::markup(analysis, files))),
+    );
     let quantities =
         report.view.y.iter().map(|scalar| (scalar.name, scalar.meaning, grids::quantity(parts, scalar)));
     sections.extend(quantities);

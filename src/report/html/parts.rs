@@ -5,6 +5,7 @@ use crate::report::figure::{Figure, Plot};
 use crate::report::input::Report;
 use crate::report::layout::Layout;
 use crate::report::spectra::Spectra;
+use crate::report::stability::{Analysis, Files};
 use std::collections::HashMap;
 
 /// What the page is made from.
@@ -22,6 +23,8 @@ pub(in crate::report) struct Parts<'a> {
     pub residuals: &'a str,
     /// The stored spectra of jobs.
     pub spectra: &'a Spectra,
+    /// The linear stability of steady sliding with its figures, if it is known.
+    pub stability: Option<(&'a Analysis<'a>, &'a Files)>,
     /// For jobs that were inspected, the address of the page, relative to the folder of the report.
     pub pages: HashMap<String, String>,
 }

@@ -3,7 +3,7 @@
 use crate::analysis::batch::Batch;
 use crate::analysis::{JobError, Workload};
 use crate::publish::write_atomically;
-use crate::spec::{DiskKind, JobSpec};
+use crate::spec::{DiskKind, JobSpec, StabilityMethod};
 use crate::worker;
 use etcetera::BaseStrategy;
 use serde::{Deserialize, Serialize};
@@ -135,6 +135,8 @@ fn samples(spec: &JobSpec, jobs: usize, all: &Barrier) -> Result<Vec<f64>, JobEr
     let workload = batch.workload();
     for ticket in 0..jobs {
         let mut spec = spec.clone();
+        // Steps are measured.
+        spec.stability = StabilityMethod::Simulate;
         spec.scene.disk.omega_rpm = 1.0 + 3.0 * ticket as f64;
         batch.begin(ticket as u64, spec)?;
     }

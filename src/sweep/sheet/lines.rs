@@ -112,6 +112,8 @@ pub(super) fn of_derived(survey: &Survey, rows: &[JobRow]) -> SheetGroup {
     let of_runs = of_runs.into_iter().filter_map(|(symbol, name, unit, figure)| {
         let (low, high) = records()
             .map(figure)
+            // Modes without a run have no time step.
+            .filter(|x| *x > 0.0)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
         (low <= high).then(|| line(symbol, name, range(low, high, unit)))
     });

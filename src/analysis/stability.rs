@@ -1,0 +1,327 @@
+//! Steady sliding and its eigenvalues: what they say about a job, and the record of a job that they decide without a run.
+
+use super::drive::drive;
+use super::error::{JobError, step_count};
+use super::lane::elastic_disk;
+use super::record::{ComplexMode, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability};
+use super::sample::OBSERVED_NAMES;
+use crate::solver::interface::SlaveNode;
+use crate::solver::interface::solve::Solves;
+use crate::solver::{Drive, Model};
+use crate::spec::{JobSpec, StabilityMethod};
+use crate::stability::{Equilibrium, Mode, SlidingPoint, StabilityError, Structure};
+use nalgebra::Complex;
+use std::f64::consts::TAU;
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
+
+/// Modes of a job that computes modes without a run.
+pub const MODES: usize = 12;
+
+/// Modes of a job whose run may be spared.
+const DECIDING_MODES: usize = 8;
+
+/// Structures that are kept. The threads of a worker rarely need more at a time.
+const KEPT: usize = 8;
+
+type Shared = Arc<OnceLock<Result<Structure, StabilityError>>>;
+
+/// The structures of models, shared by threads.
+///
+/// A [`Structure`] takes seconds. It is made when a job needs it for the first time. Threads that need the same one
+/// meanwhile wait for it. The most recent ones are kept.
+#[derive(Debug, Clone, Default)]
+pub struct Structures {
+    /// By [`JobSpec::shared_part`], the most recent first.
+    recent: Arc<Mutex<Vec<(JobSpec, Shared)>>>,
+}
+
+impl Structures {
+    fn of(&self, spec: &JobSpec) -> Shared {
+        let part = spec.shared_part();
+        let mut recent = self.recent.lock().unwrap_or_else(PoisonError::into_inner);
+        let known = recent.iter().position(|(known, _)| *known == part);
+        let entry = known.map_or_else(|| (part, Shared::default()), |place| recent.remove(place));
+        let structure = Arc::clone(&entry.1);
+        recent.insert(0, entry);
+        recent.truncate(KEPT);
+        structure
+    }
+
+    /// Asks the structure of a job of this model.
+    fn with<T>(
+        &self,
+        spec: &JobSpec,
+        model: &Model,
+        ask: impl FnOnce(&Structure) -> Result<T, StabilityError>,
+    ) -> Result<T, StabilityError> {
+        let shared = self.of(spec);
+        match shared.get_or_init(|| Structure::new(model)) {
+            Ok(structure) => ask(structure),
+            Err(error) => Err(error.clone()),
+        }
+    }
+}
+
+/// What the eigenvalues say about a job before its run.
+#[derive(Debug)]
+pub enum Verdict {
+    /// They decide its outcome: there is no run.
+    Decided(Box<JobRecord>),
+    /// The run decides. The record gets the eigenvalues, if they were computed.
+    Undecided(Option<SlidingStability>),
+}
+
+/// Decides a job without a run, if its method of stability allows that and its eigenvalues are clear.
+///
+/// # Errors
+/// If the run would take too many steps; if a job that has no run has no eigenvalues either, or a figure overflows.
+pub fn judge(spec: &JobSpec, model: &Model, structures: &Structures) -> Result<Verdict, JobError> {
+    // A job is refused for what it asks, not for what its eigenvalues say.
+    step_count(spec.run.limit_s, model.time_step_s())?;
+    match spec.stability {
+        StabilityMethod::Modes => {
+            let point =
+                structures.with(spec, model, |structure| structure.point(model, &drive(spec), MODES))?;
+            let is_stable = point.modes.first().is_some_and(|mode| growth(mode) < 0.0);
+            let outcome = if is_stable { Outcome::Decayed } else { Outcome::Unstable };
+            let record = record(spec, model, &point, outcome);
+            match record.non_finite_figure() {
+                None => Ok(Verdict::Decided(Box::new(record))),
+                Some(figure) => Err(JobError::NotFinite { figure }),
+            }
+        }
+        StabilityMethod::Eigenvalues if spec.run.stop_early => {
+            // Without an equilibrium or eigenvalues the run decides.
+            let decide = |structure: &Structure| structure.decide(model, &drive(spec), DECIDING_MODES);
+            let Ok((point, is_safely_stable)) = structures.with(spec, model, decide) else {
+                return Ok(Verdict::Undecided(None));
+            };
+            let record = record(spec, model, &point, Outcome::Decayed);
+            Ok(match (record.non_finite_figure(), is_safely_stable) {
+                (None, true) => Verdict::Decided(Box::new(record)),
+                (None, false) => Verdict::Undecided(Some(sliding_stability(&point, false))),
+                (Some(_), _) => Verdict::Undecided(None),
+            })
+        }
+        StabilityMethod::Eigenvalues | StabilityMethod::Simulate => Ok(Verdict::Undecided(None)),
+    }
+}
+
+/// A mode of steady sliding with its shape: complex amplitudes of the pin, three per node, the largest of which is 1.
+pub type Shape = (ComplexMode, Vec<Complex<f64>>);
+
+/// The `count` leading modes of steady sliding at the point of a job, at most [`MODES`], with their shapes.
+///
+/// # Errors
+/// If there is no equilibrium, or if an iteration does not converge.
+pub fn shapes(
+    spec: &JobSpec,
+    model: &Model,
+    structures: &Structures,
+    count: usize,
+) -> Result<Vec<Shape>, JobError> {
+    // The number of modes is that of the record, so that both have the same ones.
+    let point = structures.with(spec, model, |structure| structure.point(model, &drive(spec), MODES))?;
+    Ok(point.modes.into_iter().take(count).map(|mode| (complex_mode(&mode), mode.shape)).collect())
+}
+
+fn growth(mode: &Mode) -> f64 {
+    mode.eigenvalue_per_s.re
+}
+
+fn complex_mode(mode: &Mode) -> ComplexMode {
+    let eigenvalue = mode.eigenvalue_per_s;
+    let size = eigenvalue.re.hypot(eigenvalue.im);
+    ComplexMode {
+        frequency_hz: eigenvalue.im / TAU,
+        growth_rate_per_s: eigenvalue.re,
+        damping_ratio: if size == 0.0 { 0.0 } else { -eigenvalue.re / size },
+        residual: mode.residual,
+        is_converged: mode.is_converged,
+    }
+}
+
+/// What the eigenvalues of a point say, and whether they `decided` the job.
+fn sliding_stability(point: &SlidingPoint, decided: bool) -> SlidingStability {
+    let Equilibrium { in_contact, mu_star, .. } = &point.equilibrium;
+    let contact_nodes = in_contact.iter().filter(|&&is_closed| is_closed).count();
+    SlidingStability {
+        decided,
+        contact_nodes,
+        lifted_nodes: in_contact.len() - contact_nodes,
+        mu_star: *mu_star,
+        band_hz: point.band_hz,
+        modes: point.modes.iter().map(complex_mode).collect(),
+    }
+}
+
+/// A node of the contact face in steady sliding.
+#[derive(Debug, Clone, Copy)]
+struct SlidingNode {
+    sigma_n_pa: f64,
+    /// Speed of the disk under it; 0 if it is lifted.
+    slip_speed_m_s: f64,
+    /// Distance from the undeformed disk; 0 if it is in contact.
+    lift_m: f64,
+    /// Part of μN that friction lacks in y: N(1 − cos φ), with the angle φ of the disk's motion from +y.
+    misaligned_n: f64,
+}
+
+impl SlidingNode {
+    fn of(slave: usize, node: &SlaveNode, equilibrium: &Equilibrium, drive: &Drive) -> Self {
+        let [x, y] = node.surface_motion;
+        let motion = x.hypot(y);
+        if !equilibrium.in_contact[slave] {
+            let gap_m = node.initial_gap_m + equilibrium.u_m[3 * node.node + 2];
+            let lift_m = gap_m.max(0.0);
+            return Self { sigma_n_pa: 0.0, slip_speed_m_s: 0.0, lift_m, misaligned_n: 0.0 };
+        }
+        let normal_n = equilibrium.normal_n[slave];
+        let misalignment = if motion == 0.0 { 0.0 } else { 1.0 - y / motion };
+        Self {
+            sigma_n_pa: normal_n / node.area_m2,
+            slip_speed_m_s: (motion * drive.rate).abs(),
+            lift_m: 0.0,
+            misaligned_n: normal_n * misalignment,
+        }
+    }
+}
+
+/// The record of a job that has no run: steady sliding, with the `outcome` that the eigenvalues say.
+fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome) -> JobRecord {
+    let drive = drive(spec);
+    let stability = sliding_stability(point, true);
+    let of = |(slave, node)| SlidingNode::of(slave, node, &point.equilibrium, &drive);
+    let nodes: Vec<SlidingNode> = model.slaves().iter().enumerate().map(of).collect();
+    let largest = |value: fn(&SlidingNode) -> f64| nodes.iter().map(value).fold(0.0, f64::max);
+    let mu = spec.scene.contact.mu;
+    let mu_star = stability.mu_star;
+    let slip_reduction = mu * nodes.iter().map(|node| node.misaligned_n).sum::<f64>() / drive.force_n;
+    let all = nodes.len() as f64;
+    let observed = OBSERVED_NAMES.iter().zip(model.interface().edge_centres());
+    JobRecord {
+        outcome,
+        regime: if outcome == Outcome::Decayed { Regime::Stable } else { Regime::Undecided },
+        mu_star,
+        mu_star_se: 0.0,
+        mu_star_contact: mu_star,
+        frequency_hz: None,
+        stick_share: 0.0,
+        slip_share: stability.contact_nodes as f64 / all,
+        separated_share: stability.lifted_nodes as f64 / all,
+        n_over_f_min: 1.0,
+        n_over_f_max: 1.0,
+        sigma_n_max_pa: largest(|node| node.sigma_n_pa),
+        slip_speed_max_m_s: largest(|node| node.slip_speed_m_s),
+        lift_max_m: largest(|node| node.lift_m),
+        cycles: 0,
+        crossings_per_cycle: 1,
+        simulated_s: 0.0,
+        window_start_s: 0.0,
+        steps: 0,
+        // Modes alone do not depend on the time step, so that it is not in the key of such a job.
+        time_step_s: if spec.stability == StabilityMethod::Modes { 0.0 } else { model.time_step_s() },
+        time_step_limit_s: model.time_step_limit_s(),
+        clamp_width_m: model.clamp_width_m(),
+        energy_residual: 0.0,
+        macroscopic_identity_residual: mu - mu_star - slip_reduction,
+        energy_identity_residual: 0.0,
+        contact_loss_share: 0.0,
+        mu_reduction_stick: 0.0,
+        mu_reduction_slip: slip_reduction,
+        growth_rate_per_s: point.modes.first().map(growth),
+        obstacle: None,
+        stability: Some(stability),
+        disk: model.ring().map(|body| elastic_disk(body, &Solves::default(), 1)),
+        energy: EnergyTotals::default(),
+        nodes: observed.map(|(name, slave)| observed_node(name, &nodes[slave])).collect(),
+    }
+}
+
+fn observed_node(name: &str, node: &SlidingNode) -> ObservedNode {
+    ObservedNode {
+        name: name.to_owned(),
+        y_peak_to_peak_m: 0.0,
+        lift_max_m: node.lift_m,
+        sigma_n_max_pa: node.sigma_n_pa,
+        slip_speed_max_m_s: node.slip_speed_m_s,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn spec() -> JobSpec {
+        let mut spec = JobSpec::default();
+        spec.scene.pin.elements = [3, 4, 3];
+        spec.scene.clamp.width_m = 0.004;
+        spec
+    }
+
+    fn point(model: &Model, growth_per_s: f64) -> SlidingPoint {
+        let slaves = model.slaves();
+        let mut in_contact = vec![true; slaves.len()];
+        in_contact[0] = false;
+        let area_m2: f64 = slaves[1..].iter().map(|node| node.area_m2).sum();
+        let normal_n = |node: &SlaveNode| 30.0 * node.area_m2 / area_m2;
+        let mut normal_n: Vec<f64> = slaves.iter().map(normal_n).collect();
+        normal_n[0] = 0.0;
+        let mut u_m = vec![0.0; 3 * model.mesh().node_count()];
+        u_m[3 * slaves[0].node + 2] = 2.0e-6;
+        let misaligned = slaves.iter().zip(&normal_n).map(|(node, n)| {
+            n * node.surface_motion[1] / node.surface_motion[0].hypot(node.surface_motion[1])
+        });
+        let mu_star = 0.4 * misaligned.sum::<f64>() / 30.0;
+        let mode = Mode {
+            eigenvalue_per_s: Complex::new(growth_per_s, 300.0),
+            eigenvalue_in_steps_per_s: Complex::new(growth_per_s, 300.0),
+            residual: 1.0e-10,
+            is_converged: true,
+            shape: Vec::new(),
+        };
+        SlidingPoint {
+            equilibrium: Equilibrium { u_m, normal_n, in_contact, mu_star },
+            modes: vec![mode],
+            band_hz: 5.0e4,
+            basis: 40,
+            has_all_modes: true,
+        }
+    }
+
+    /// Protects: the record of a job without a run describes steady sliding: its shares, stress, lift and the part of
+    /// μ − μ* that the disk's curved motion makes, with which the macroscopic identity closes.
+    #[test]
+    fn a_decided_record_describes_steady_sliding() {
+        let spec = spec();
+        let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
+        let record = record(&spec, &model, &point(&model, -400.0), Outcome::Decayed);
+        assert_eq!((record.regime, record.steps, record.frequency_hz), (Regime::Stable, 0, None));
+        assert_eq!((record.slip_share, record.separated_share), (19.0 / 20.0, 1.0 / 20.0));
+        assert_eq!((record.lift_max_m, record.growth_rate_per_s), (2.0e-6, Some(-400.0)));
+        let pressure_pa = 30.0 / model.slaves()[1..].iter().map(|node| node.area_m2).sum::<f64>();
+        assert!((record.sigma_n_max_pa / pressure_pa - 1.0).abs() < 1.0e-12);
+        assert!(record.mu_reduction_slip > 0.0 && record.macroscopic_identity_residual.abs() < 1.0e-12);
+        assert_eq!(record.non_finite_figure(), None);
+        let stability = record.stability.unwrap();
+        assert!(stability.decided && stability.modes[0].damping_ratio == 0.8);
+        assert_eq!((stability.contact_nodes, stability.lifted_nodes), (19, 1));
+    }
+
+    /// Protects: threads share the structure of a model, whatever the friction, speed, load and run of their jobs.
+    #[test]
+    fn structures_are_shared_by_model() {
+        let structures = Structures::default();
+        let own = structures.of(&spec());
+        let mut other = spec();
+        other.scene.contact.mu = 0.7;
+        other.run.limit_s = 0.01;
+        other.stability = StabilityMethod::Modes;
+        assert!(Arc::ptr_eq(&own, &structures.clone().of(&other)));
+        for nz in 4..4 + KEPT {
+            other.scene.pin.elements[2] = nz;
+            assert!(!Arc::ptr_eq(&own, &structures.of(&other)));
+        }
+        assert!(!Arc::ptr_eq(&own, &structures.of(&spec())), "the oldest is forgotten");
+    }
+}

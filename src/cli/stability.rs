@@ -1,0 +1,116 @@
+//! `tribosweep stability`: the complex modes of steady sliding over a study's grid, and the thresholds of stability.
+
+mod shapes;
+
+use super::error::CliError;
+use super::forecast;
+use super::output::{fill_file, log, print, stream};
+use super::replace::Replacement;
+use super::report::{self, OutFolder};
+use super::study_args::StudyArgs;
+use super::submit::{Priority, submit};
+use super::work::{Threads, work};
+use crate::analysis::stability::MODES;
+use crate::exit;
+use crate::publish::value;
+use crate::queue::{Location, Queue, Scope, Shard};
+use crate::report::{SHAPES, STABILITY_PAGE, modes_table, thresholds_table};
+use crate::sweep::{self, Forecast, StabilitySweep, WAVES, read_stability, write_stability_report};
+use crate::worker::WorkOptions;
+use std::path::PathBuf;
+
+/// Arguments of `stability`.
+#[derive(Debug, clap::Args)]
+pub(crate) struct Args {
+    #[command(flatten)]
+    study: StudyArgs,
+    /// Write the table to this file too, as CSV.
+    #[arg(long = "csv", value_name = "FILE")]
+    csv: Option<PathBuf>,
+    /// Print the table as JSON, one object per line, and no thresholds.
+    #[arg(long)]
+    json: bool,
+    /// Number of modes at each point in the table, the fastest growing first.
+    #[arg(long, value_name = "N", default_value = "4", value_parser = clap::value_parser!(u8).range(1..=MODES as i64))]
+    modes: u8,
+    /// Write the shapes of the modes in the table for ParaView, into the folder `modes` of the report. The grid may have 50
+    /// points at most.
+    #[arg(long)]
+    shapes: bool,
+    /// Compute the points of the grid alone, and do not look for the μ at which sliding becomes unstable.
+    #[arg(long)]
+    no_thresholds: bool,
+    #[command(flatten)]
+    threads: Threads,
+    #[command(flatten)]
+    replacement: Replacement,
+    #[command(flatten)]
+    out: OutFolder,
+}
+
+/// Computes the modes. If it is interrupted, the tables have the points that are done.
+pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
+    let plan = args.study.plan_of_modes()?;
+    let on_grid = if args.shapes { shapes::points(&plan)? } else { Vec::new() };
+    let name = plan.name().to_owned();
+    report::create_folder(&name, &args.out)?;
+    let mut sweep = StabilitySweep::new(plan, !args.no_thresholds);
+    sweep::block_on(async {
+        let mut queue = sweep::open(db.clone()).await?;
+        sweep.add_stored(&mut queue).await?;
+        submit(sweep.plan(), &Priority::default(), Shard::WHOLE, &args.replacement, &mut queue).await?;
+        let mut code = compute(&mut sweep, args, &mut queue).await?;
+        let points = read_stability(&mut queue, &name).await?;
+        let table = modes_table(points.iter().filter(|point| point.on_grid), args.modes.into());
+        if let Some(path) = &args.csv {
+            fill_file(path, |out| Ok(table.write_csv(out)?))?;
+        }
+        if args.json {
+            stream(|out| Ok(table.write_json_lines(out)?))?;
+        } else {
+            print(&table.as_text())?;
+            if sweep.has_thresholds() && !points.is_empty() {
+                print(&format!("\nThresholds\n{}", thresholds_table(&points).as_text()))?;
+            }
+        }
+        let folder = args.out.of(&name);
+        // Who interrupts the computation does not wait for the shapes.
+        if code != exit::WORK_LEFT && !on_grid.is_empty() {
+            let written =
+                shapes::write(&on_grid, args.modes.into(), args.threads.number(), &folder.join(SHAPES))?;
+            code = code.max(written);
+        }
+        // The page comes last, because it names the shapes.
+        write_stability_report(&mut queue, &name, &points, &folder).await?;
+        queue.close().await?;
+        log(format_args!("report written to {}", folder.join(STABILITY_PAGE).display()));
+        Ok(code)
+    })
+}
+
+/// Runs the jobs, and then the waves of jobs that narrow the thresholds down.
+async fn compute(sweep: &mut StabilitySweep, args: &Args, queue: &mut Queue) -> Result<u8, CliError> {
+    let threads = args.threads.number();
+    // There are no long runs whose state could be stored.
+    let mut options = WorkOptions { checkpoint_interval: None, ..WorkOptions::new(threads) };
+    let forecast = Forecast::new(sweep.plan(), Some(&mut *queue), threads).await?;
+    forecast::announce(&forecast);
+    if let Some(time) = forecast.time {
+        options.expected_s_per_cost = time.per_cost_s;
+    }
+    let scope = Scope::Study(sweep.plan().name().to_owned());
+    let mut code = work(queue, &scope, options).await?;
+    for _ in 0..WAVES {
+        if code == exit::WORK_LEFT {
+            break;
+        }
+        let added = sweep.add_wave(queue).await?;
+        if added == 0 {
+            break;
+        }
+        log(format_args!("{} near the thresholds", value::count(added, "more point")));
+        sweep.plan().submit(queue).await?;
+        code = work(queue, &scope, options).await?;
+    }
+    Ok(code)
+}

@@ -1,0 +1,22 @@
+//! The linear stability of steady sliding: where small vibrations about it grow, and which modes do.
+//!
+//! ```text
+//! points ──► analysis (branches over μ, onsets, families over ω) ──► figures, table, section ──► write (a page of its own)
+//!    └─────► contour (zero line of the leading growth rate) ───────► map, regime map
+//!    └─────► verdict (what linear stability says about a job) ─────► regime map
+//! ```
+
+mod analysis;
+mod contour;
+mod section;
+mod table;
+mod verdict;
+mod write;
+
+pub(super) use analysis::{Analysis, GroupModes, Onset, Speed, rows};
+pub(super) use contour::{Node, zero_line};
+pub(super) use section::{markdown, markup};
+pub use table::{StabilityTable, modes_table, thresholds_table};
+pub(super) use verdict::{Verdict, Verdicts};
+pub(super) use write::{Files, write_files};
+pub use write::{PAGE, SHAPES, write_stability};

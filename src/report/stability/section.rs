@@ -1,0 +1,139 @@
+//! The section on linear stability of a page, in HTML and in Markdown.
+
+use super::analysis::{Analysis, GroupModes, Speed};
+use super::write::Files;
+use crate::publish::{html, value};
+use crate::report::figure::stability::StabilityPlot;
+use crate::report::markdown;
+use crate::report::parameters::OMEGA;
+use maud::{Markup, html};
+use std::fmt::Write;
+
+/// Largest number of figures of a kind, and of tables.
+const MAX_SHEETS: usize = 2;
+const MAX_GROUPS: usize = 6;
+/// Longer files of data are not in the page [bytes].
+const MAX_DATA: usize = 1_000_000;
+
+/// What the section is about.
+const MEANING: [&str; 3] = [
+    "The figures show the linear stability of steady sliding. Small vibrations about steady sliding are complex modes. Each mode \
+     has a frequency and a growth rate: the imaginary part of its eigenvalue over 2π, and the real part.",
+    "If a growth rate is positive, the vibration grows, and steady sliding is unstable. The friction coefficient at which this \
+     begins is the threshold μ_c.",
+    "The eigenvalues say nothing about the size that the vibration reaches. A limit cycle can also exist below the threshold, \
+     because stable sliding and a stick–slip cycle exist side by side; the start of a run decides which of them it reaches.",
+];
+
+fn caption(plot: StabilityPlot) -> &'static str {
+    match plot {
+        StabilityPlot::Map => {
+            "Growth rate of the leading mode, which grows fastest or decays slowest, over ω and μ. Blue decays, red grows. The \
+             line is the threshold, interpolated between the points."
+        }
+        StabilityPlot::LockIn => {
+            "Frequencies of the modes over μ and, below them, their growth rates. Where two frequencies meet and the growth \
+             rates part, two modes lock in. At most six speeds are shown."
+        }
+        StabilityPlot::Thresholds => {
+            "Thresholds μ_c over ω: the friction coefficient at which the growth rate of a mode becomes positive. Above the \
+             lowest threshold steady sliding is unstable."
+        }
+    }
+}
+
+/// The section of a page.
+pub(in crate::report) fn markup(analysis: &Analysis, files: &Files) -> Markup {
+    let shown = analysis.groups.len().min(MAX_GROUPS);
+    let left_out = analysis.groups.len() - shown;
+    let unclear = not_converged(analysis);
+    let has_sheets_left = files.figures.iter().any(|(_, figures)| figures.len() > MAX_SHEETS);
+    html! {
+        @for paragraph in MEANING { p { (paragraph) } }
+        @if let Some(sentence) = &unclear { p { (sentence) } }
+        @for (plot, figures) in &files.figures {
+            @for (number, figure) in figures.iter().take(MAX_SHEETS).enumerate() {
+                @if !figure.caption.is_empty() { h3 { (figure.caption) } }
+                (html::figure(&figure.svg, caption(*plot), data_of(*plot, files).filter(|_| number == 0)))
+            }
+        }
+        @if has_sheets_left { p.note { "… more combinations of parameters: see the figures in the folder of this page." } }
+        @if analysis.points().is_empty() { p { "There are no points." } } @else { h3 { "Thresholds" } }
+        @for (group, modes) in analysis.layout.groups.iter().zip(&analysis.groups).take(shown) {
+            @if !group.key.is_empty() { p { (group.caption()) } }
+            (table(analysis, modes))
+        }
+        @if left_out > 0 {
+            p.note { "… left out: " (value::count(left_out, "combination")) " of parameters; see " code { "thresholds.csv" } "." }
+        }
+    }
+}
+
+/// The data below a figure.
+fn data_of(plot: StabilityPlot, files: &Files) -> Option<(&str, &str)> {
+    let name = match plot {
+        StabilityPlot::Map => return None,
+        StabilityPlot::LockIn => "modes.csv",
+        StabilityPlot::Thresholds => "thresholds.csv",
+    };
+    let (file, text) = files.data.iter().find(|(file, _)| *file == name)?;
+    (text.len() <= MAX_DATA).then_some((file, text))
+}
+
+/// How many modes are not converged, in a sentence; none if all are.
+fn not_converged(analysis: &Analysis) -> Option<String> {
+    let modes = || analysis.points().iter().flat_map(|point| &point.stability.modes);
+    let count = modes().filter(|mode| !mode.is_converged).count();
+    let all = value::count(modes().count(), "mode");
+    let verb = if count == 1 { "is" } else { "are" };
+    (count > 0).then(|| format!("Of {all}, {count} {verb} not converged. They are drawn grey or hollow."))
+}
+
+const NUMBERS: [&str; 2] = ["μ_c", "frequency"];
+
+fn header(analysis: &Analysis) -> Vec<String> {
+    let omega = analysis.layout.dimension(OMEGA).label.clone();
+    [omega].into_iter().chain(NUMBERS.map(str::to_owned)).chain(["note".to_owned()]).collect()
+}
+
+/// The lines of the table of a group: ω, the lowest threshold, the frequency of its mode, and what else there is to say.
+fn lines(analysis: &Analysis, modes: &GroupModes) -> Vec<Vec<String>> {
+    let line = |speed: &Speed| {
+        let omega = analysis.layout.dimension(OMEGA).text(&speed.omega);
+        [omega].into_iter().chain(analysis.words(speed)).collect()
+    };
+    modes.speeds.iter().map(line).collect()
+}
+
+fn table(analysis: &Analysis, modes: &GroupModes) -> Markup {
+    let cells = |line: Vec<String>| line.into_iter().map(|text| html! { (text) }).collect();
+    html::table(
+        &header(analysis),
+        &lines(analysis, modes).into_iter().map(cells).collect::<Vec<Vec<Markup>>>(),
+    )
+}
+
+/// The section of a Markdown page.
+pub(in crate::report) fn markdown(analysis: &Analysis, files: &Files) -> String {
+    let mut text = "\n## Linear stability\n\n".to_owned();
+    for paragraph in MEANING {
+        let _ = write!(text, "{}\n\n", markdown::escape(paragraph));
+    }
+    let unclear = not_converged(analysis).map(|sentence| format!("{sentence}\n\n"));
+    text += unclear.as_deref().unwrap_or_default();
+    for (plot, figures) in &files.figures {
+        for figure in figures {
+            if !figure.caption.is_empty() {
+                let _ = write!(text, "{}:\n\n", markdown::escape(&figure.caption));
+            }
+            let _ = write!(text, "![{}]({}{}.svg)\n\n", plot.title(), plot.stem(), figure.suffix);
+        }
+    }
+    for (group, modes) in analysis.layout.groups.iter().zip(&analysis.groups) {
+        if !group.key.is_empty() {
+            let _ = write!(text, "### {}\n\n", markdown::escape(&group.caption()));
+        }
+        let _ = writeln!(text, "{}", markdown::table(&header(analysis), &lines(analysis, modes), false));
+    }
+    text
+}

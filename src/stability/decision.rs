@@ -1,0 +1,129 @@
+//! Whether eigenvalues alone may say that a run decays.
+//!
+//! Just below the threshold a limit cycle can exist beside stable sliding, and the start of a run decides between them. So
+//! eigenvalues decide only at a distance in μ from the threshold: sliding must be stable at μ and at a larger μ
+//! ([`further_mu`]). The slower the disk, the lower cycles reach: docs/eigenvalues.md has the runs.
+//!
+//! Sliding counts as stable at a point if four things hold there:
+//!
+//! * the growth rates of all known modes are negative by more than their errors, in continuous time and with the time step
+//!   of the run,
+//! * an error is 3|λ|η² with the relative residual η: the residuals of the right and the left eigenvector multiply. Errors
+//!   that corrections removed were at most half of that,
+//! * the basis has all modes up to a frequency above which damping wins: with the largest gain g = (Re λ + βω²/2)/ω of a
+//!   known mode, gω < βω²/2 beyond the band,
+//! * every number is finite.
+
+use super::point::error_per_s;
+use super::sliding::SlidingPoint;
+use std::f64::consts::TAU;
+
+/// The distance from the threshold, over μ, that a fast disk needs.
+const DISTANCE: f64 = 0.08;
+
+/// A larger μ at which sliding must be stable, too.
+///
+/// `speed` is the disk's speed over the pin's natural speed μp/(ρc_s), at which friction drives shear waves as fast as the
+/// disk moves. Cycles were found up to 13 % below the threshold at a speed of 1/20, 5 % at 1/5, and 1 % above 1
+/// (docs/eigenvalues.md). The distance is more than three times as large: 8 % (1 + speed^(−½)).
+pub fn further_mu(mu: f64, speed: f64) -> f64 {
+    mu * (1.0 + DISTANCE * (1.0 + 1.0 / speed.sqrt()))
+}
+
+/// What the eigenvalues of a point say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// All modes decay.
+    Stable,
+    /// A mode grows.
+    Unstable,
+    /// Errors are larger than the growth rates, or modes beyond the band may grow.
+    Open,
+}
+
+/// What the eigenvalues of a point say, with a damping β \[s\].
+pub fn verdict(point: &SlidingPoint, damping_s: f64) -> Verdict {
+    let mut gain: f64 = 0.0;
+    let mut verdict = Verdict::Stable;
+    for mode in &point.modes {
+        let (value, in_steps) = (mode.eigenvalue_per_s, mode.eigenvalue_in_steps_per_s);
+        let error = error_per_s(value, mode.residual);
+        let [least, most] = [value.re.min(in_steps.re) - error, value.re.max(in_steps.re) + error];
+        if least > 0.0 {
+            return Verdict::Unstable;
+        }
+        // This is false for NaN.
+        let decays = most < 0.0;
+        if !decays {
+            verdict = Verdict::Open;
+        }
+        if value.im > 0.0 {
+            gain = gain.max((value.re + error) / value.im + damping_s * value.im / 2.0);
+        }
+    }
+    let is_covered = point.has_all_modes || 2.0 * gain < damping_s * TAU * point.band_hz;
+    if point.modes.is_empty() || !is_covered { Verdict::Open } else { verdict }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::stability::{Equilibrium, Mode};
+    use nalgebra::Complex;
+
+    fn point(modes: &[(f64, f64, f64)], band_hz: f64) -> SlidingPoint {
+        let mode = |&(growth_per_s, in_steps_per_s, residual): &(f64, f64, f64)| Mode {
+            eigenvalue_per_s: Complex::new(growth_per_s, 1.0e5),
+            eigenvalue_in_steps_per_s: Complex::new(in_steps_per_s, 1.0e5),
+            residual,
+            is_converged: true,
+            shape: Vec::new(),
+        };
+        let equilibrium =
+            Equilibrium { u_m: Vec::new(), normal_n: Vec::new(), in_contact: Vec::new(), mu_star: 0.4 };
+        SlidingPoint {
+            equilibrium,
+            modes: modes.iter().map(mode).collect(),
+            band_hz,
+            has_all_modes: false,
+            basis: 0,
+        }
+    }
+
+    /// Protects: only growth rates that are negative by more than their error make sliding stable, in continuous time and in
+    /// steps, and one that is positive by more makes it unstable. The error is 3|λ|η², here 300 1/s for η = 1/√1000.
+    #[test]
+    fn a_sign_needs_more_than_the_error() {
+        let residual = 1.0e-3_f64.sqrt();
+        let of = |growth_per_s, in_steps_per_s| {
+            verdict(&point(&[(-500.0, -500.0, 0.0), (growth_per_s, in_steps_per_s, residual)], 5.0e4), 1.0e-6)
+        };
+        assert_eq!(of(-310.0, -310.0), Verdict::Stable);
+        assert_eq!(of(-290.0, -310.0), Verdict::Open);
+        assert_eq!(of(-310.0, -290.0), Verdict::Open);
+        assert_eq!(of(310.0, 310.0), Verdict::Unstable);
+        assert_eq!(of(310.0, 290.0), Verdict::Open);
+        assert_eq!(of(f64::NAN, -310.0), Verdict::Open);
+        assert_eq!(verdict(&point(&[], 5.0e4), 1.0e-6), Verdict::Open);
+    }
+
+    /// Protects: without enough damping, modes beyond the band of the basis may grow. A mode at 10⁵ rad/s that decays with
+    /// 100 1/s has the gain β·10⁵/2 − 10⁻³, which a band of 20 kHz covers for β = 10⁻⁷ s and not for β = 0.
+    #[test]
+    fn modes_beyond_the_band_must_be_damped() {
+        let at = |damping_s, band_hz| verdict(&point(&[(-100.0, -100.0, 0.0)], band_hz), damping_s);
+        assert_eq!(at(1.0e-7, 2.0e4), Verdict::Stable);
+        assert_eq!(at(0.0, 2.0e4), Verdict::Open);
+        // The gain is 0.004, so the band has to reach 2·0.004/10⁻⁷ rad/s = 12.7 kHz.
+        assert_eq!(at(1.0e-7, 1.2e4), Verdict::Open);
+        assert_eq!(at(1.0e-7, 1.35e4), Verdict::Stable);
+    }
+
+    /// Protects: the slower the disk, the farther from the threshold a job must be.
+    #[test]
+    fn a_slow_disk_needs_a_larger_distance() {
+        assert!((further_mu(0.2, 1.0) - 0.232).abs() < 1e-12);
+        assert!((further_mu(0.2, 0.25) - 0.248).abs() < 1e-12);
+        assert_eq!(further_mu(0.0, f64::INFINITY), 0.0);
+    }
+}

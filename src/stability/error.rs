@@ -1,0 +1,27 @@
+//! Why there are no modes.
+
+use thiserror::Error;
+
+/// Why there are no modes.
+#[derive(Debug, Clone, PartialEq, Error)]
+pub enum StabilityError {
+    /// The contact of the pin with the disk has no equilibrium that was found.
+    #[error("steady sliding has no equilibrium at mu = {mu}")]
+    NoEquilibrium {
+        /// The local friction coefficient.
+        mu: f64,
+    },
+    /// The disk is elastic.
+    #[error(
+        "eigenvalues of steady sliding are for a rigid disk, and scene.disk.kind is elastic: simulate this job"
+    )]
+    ElasticDisk,
+    /// An iteration did not converge.
+    #[error("{what} did not converge within {iterations} iterations")]
+    NotConverged {
+        /// What did not converge.
+        what: &'static str,
+        /// Number of iterations.
+        iterations: usize,
+    },
+}

@@ -1,0 +1,151 @@
+//! Vectors that are added to the basis for some modes of one point.
+
+use super::basis::Basis;
+use super::pencil::Pencil;
+use super::space::{Elasticity, LANES, Space, Vectors};
+use super::vibration::Vibration;
+use faer::Mat;
+
+/// Smallest share (of squares) of a vector that is not in the others.
+const INDEPENDENT: f64 = 1e-10;
+
+/// Vectors that were added to the basis for some modes of one point.
+pub struct Extension {
+    /// Orthogonal to each other in the mass.
+    pub vectors: Vec<Vec<f64>>,
+    /// Slip along and across the disk's velocity and normal forces: vector → slave node.
+    forward: Vec<Vec<f64>>,
+    sideways: Vec<Vec<f64>>,
+    normal: Vec<Vec<f64>>,
+}
+
+impl Extension {
+    pub fn none() -> Self {
+        Self { vectors: Vec::new(), forward: Vec::new(), sideways: Vec::new(), normal: Vec::new() }
+    }
+
+    /// Adds the first `lanes` vectors, made orthogonal in the mass to the basis and to those that were added before.
+    fn add_independent(&mut self, space: &Space, basis: &Basis, response: &Vectors, lanes: usize) {
+        let masses = space.masses_kg();
+        let mut given = Mat::from_fn(space.len(), lanes, |i, lane| response.blocks()[i / 3].0[i % 3][lane]);
+        let own: Vec<f64> = (0..lanes).map(|lane| column_dot(masses, &given, lane)).collect();
+        for _ in 0..2 {
+            let weighted = Mat::from_fn(space.len(), lanes, |i, lane| masses[i / 3] * given[(i, lane)]);
+            let shares = basis.vectors.transpose() * &weighted;
+            given -= &basis.vectors * &shares;
+        }
+        for lane in 0..lanes {
+            let mut x: Vec<f64> = given.col(lane).iter().copied().collect();
+            for _ in 0..2 {
+                for v in &self.vectors {
+                    let share = mass_dot(masses, v, &x);
+                    for (x, v) in x.iter_mut().zip(v) {
+                        *x -= share * v;
+                    }
+                }
+            }
+            let left = mass_dot(masses, &x, &x);
+            if left > INDEPENDENT * own[lane] && left > 0.0 {
+                let norm = left.sqrt();
+                self.vectors.push(x.iter().map(|x| x / norm).collect());
+            }
+        }
+    }
+
+    /// Adds the lanes of `responses`, and gives P(λ) in the larger basis.
+    pub fn extend(
+        &mut self,
+        basis: &Basis,
+        vibration: &Vibration<'_>,
+        elasticity: &mut Elasticity<'_>,
+        before: &Pencil,
+        responses: &[Vectors; 2],
+        pairs: usize,
+    ) -> Pencil {
+        let space = vibration.bilateral.space;
+        let on = vibration.bilateral.contact.in_contact;
+        let r = basis.len();
+        let old = before.stiffness.nrows();
+        let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+        let first = self.vectors.len();
+        for response in responses {
+            self.add_independent(space, basis, response, 2 * pairs);
+        }
+        let added = self.vectors.len() - first;
+        let size = old + added;
+        let enlarged = |of: &Mat<f64>| {
+            Mat::from_fn(size, size, |i, j| if i < old && j < old { of[(i, j)] } else { 0.0 })
+        };
+        let (mut stiffness, mut sideways) = (enlarged(&before.stiffness), enlarged(&before.sideways));
+        for at in (first..self.vectors.len()).step_by(LANES) {
+            let lanes = LANES.min(self.vectors.len() - at);
+            let views: Vec<&[f64]> = self.vectors[at..at + lanes].iter().map(Vec::as_slice).collect();
+            let x = space.gather(&views);
+            let mut product = space.zeros();
+            elasticity.product(&x, &mut product);
+            let kx = Mat::from_fn(space.len(), lanes, |i, lane| product.blocks()[i / 3].0[i % 3][lane]);
+            let with_basis = basis.vectors.transpose() * &kx;
+            for lane in 0..lanes {
+                let column = old + (at - first) + lane;
+                for i in 0..r {
+                    stiffness[(i, column)] = with_basis[(i, lane)];
+                    stiffness[(column, i)] = with_basis[(i, lane)];
+                }
+                let kx: Vec<f64> = kx.col(lane).iter().copied().collect();
+                for (k, v) in self.vectors.iter().enumerate().take(at + lane + 1) {
+                    let value = dot(v, &kx);
+                    stiffness[(r + k, column)] = value;
+                    stiffness[(column, r + k)] = value;
+                }
+                let of_nodes = |value: &dyn Fn(usize) -> f64| -> Vec<f64> {
+                    (0..on.len()).map(|i| if on[i] { value(i) } else { 0.0 }).collect()
+                };
+                let slave = |i: usize| &space.sliding()[i];
+                let v = views[lane];
+                self.forward.push(of_nodes(&|i| {
+                    let [dx, dy] = slave(i).forward;
+                    dx * v[3 * slave(i).node] + dy * v[3 * slave(i).node + 1]
+                }));
+                self.sideways.push(of_nodes(&|i| {
+                    let [dx, dy] = slave(i).forward;
+                    dx * v[3 * slave(i).node + 1] - dy * v[3 * slave(i).node]
+                }));
+                self.normal.push(of_nodes(&|i| kx[3 * slave(i).node + 2]));
+            }
+        }
+        // The unsymmetric part and the damping of the new rows and columns.
+        let column_of = |of: &Mat<f64>, j: usize| -> Vec<f64> {
+            (0..on.len()).map(|i| if on[i] { of[(i, j)] } else { 0.0 }).collect()
+        };
+        let get = |of: &Mat<f64>, own: &[Vec<f64>], j: usize| {
+            if j < r { column_of(of, j) } else { own[j - r].clone() }
+        };
+        let weighted: Vec<Vec<f64>> = (old..size)
+            .map(|j| self.sideways[j - r].iter().zip(vibration.sideways_n_s_m).map(|(a, b)| a * b).collect())
+            .collect();
+        for i in 0..size {
+            let forward = get(&basis.forward, &self.forward, i);
+            let normal = get(&basis.normal, &self.normal, i);
+            let across = get(&basis.sideways, &self.sideways, i);
+            for j in old..size {
+                stiffness[(i, j)] -= vibration.mu * dot(&forward, &self.normal[j - r]);
+                if i < old {
+                    stiffness[(j, i)] -= vibration.mu * dot(&self.forward[j - r], &normal);
+                }
+                let damping = dot(&across, &weighted[j - old]);
+                sideways[(i, j)] = damping;
+                sideways[(j, i)] = damping;
+            }
+        }
+        Pencil { stiffness, sideways, damping_s: before.damping_s }
+    }
+}
+
+fn column_dot(masses: &[f64], x: &Mat<f64>, column: usize) -> f64 {
+    x.col(column).iter().enumerate().map(|(i, x)| masses[i / 3] * x * x).sum()
+}
+
+fn mass_dot(masses: &[f64], a: &[f64], b: &[f64]) -> f64 {
+    let (a, b) = (a.as_chunks::<3>().0, b.as_chunks::<3>().0);
+    a.iter().zip(b).zip(masses).map(|((a, b), m)| m * (a[0] * b[0] + a[1] * b[1] + a[2] * b[2])).sum()
+}

@@ -1,0 +1,192 @@
+//! The displacements that the constraints allow, and what acts on them.
+//!
+//! Eight vectors are treated together, one in each lane of a [`Field`]. All vectors have three components per node of the
+//! pin. The constraints are a projection: fixed components are zero, the members of a tie have their mean.
+
+use crate::solver::Model;
+use crate::solver::body::Freedom;
+use crate::solver::body::block::operator::Scratch;
+use crate::solver::body::hexahedron;
+use crate::solver::field::{Field, Layout};
+use crate::solver::support::Support;
+
+/// Number of vectors that are treated together.
+pub const LANES: usize = 8;
+
+/// Eight vectors.
+pub type Vectors = Field<LANES>;
+
+/// A slave node in steady sliding.
+#[derive(Debug, Clone, Copy)]
+pub struct SlidingNode {
+    /// Index in the pin's mesh.
+    pub node: usize,
+    /// Direction of the disk's velocity.
+    pub forward: [f64; 2],
+    /// Disk speed per unit of the drive's rate.
+    pub speed_per_rate: f64,
+    /// Tributary area \[m²\].
+    pub area_m2: f64,
+    /// Diagonal entry of K in z \[N/m\], with which a lifted node is preconditioned.
+    pub stiffness_n_m: f64,
+}
+
+/// The part of the constraints that does not depend on the contact.
+#[derive(Debug)]
+pub struct Space {
+    layout: Layout,
+    masses_kg: Vec<f64>,
+    fixed: Vec<usize>,
+    ties: Vec<(usize, Vec<usize>)>,
+    sliding: Vec<SlidingNode>,
+}
+
+/// The contact as constraints of small vibrations.
+#[derive(Debug, Clone, Copy)]
+pub struct Contact<'a> {
+    /// Whether each slave node is in contact, which holds it in z.
+    pub in_contact: &'a [bool],
+    /// Whether nodes in contact cannot slip sideways.
+    pub is_locked_sideways: bool,
+}
+
+impl Space {
+    pub fn new(model: &Model) -> Self {
+        let pin = model.pin();
+        let freedoms = pin.freedoms();
+        let ties = model.supports().iter().filter_map(|support| match support {
+            Support::Tied(tied) => Some((tied.component, tied.nodes.clone())),
+            Support::Fixed(_) => None,
+        });
+        let element = hexahedron::stiffness(pin.material(), pin.mesh().element_size_m());
+        let [hx, hy, _] = pin.mesh().element_size_m();
+        let sliding = model.slaves().iter().map(|slave| {
+            let [x, y] = slave.surface_motion;
+            let speed = libm::hypot(x, y);
+            SlidingNode {
+                node: slave.node,
+                forward: [x / speed, y / speed],
+                speed_per_rate: speed,
+                area_m2: slave.area_m2,
+                stiffness_n_m: element[(2, 2)] * slave.area_m2 / (hx * hy / 4.0),
+            }
+        });
+        Self {
+            layout: pin.mesh().layout(),
+            masses_kg: pin.masses_kg().to_vec(),
+            fixed: (0..freedoms.len()).filter(|&dof| freedoms[dof] == Freedom::Fixed).collect(),
+            ties: ties.collect(),
+            sliding: sliding.collect(),
+        }
+    }
+
+    /// Number of components of a vector: three per node.
+    pub fn len(&self) -> usize {
+        3 * self.masses_kg.len()
+    }
+
+    pub fn sliding(&self) -> &[SlidingNode] {
+        &self.sliding
+    }
+
+    pub fn masses_kg(&self) -> &[f64] {
+        &self.masses_kg
+    }
+
+    pub fn zeros(&self) -> Vectors {
+        Vectors::zeros(self.layout)
+    }
+
+    /// Projects displacements or forces on what the constraints allow.
+    pub fn project(&self, contact: Contact<'_>, x: &mut Vectors) {
+        let blocks = x.blocks_mut();
+        for &dof in &self.fixed {
+            blocks[dof / 3].0[dof % 3] = [0.0; LANES];
+        }
+        for (slave, &in_contact) in self.sliding.iter().zip(contact.in_contact) {
+            if !in_contact {
+                continue;
+            }
+            let [x, y, z] = &mut blocks[slave.node].0;
+            *z = [0.0; LANES];
+            if contact.is_locked_sideways {
+                let [dx, dy] = slave.forward;
+                for lane in 0..LANES {
+                    let along = dx * x[lane] + dy * y[lane];
+                    (x[lane], y[lane]) = (dx * along, dy * along);
+                }
+            }
+        }
+        for (component, nodes) in &self.ties {
+            let mut mean = [0.0; LANES];
+            for &node in nodes {
+                for (mean, value) in mean.iter_mut().zip(&blocks[node].0[*component]) {
+                    *mean += value;
+                }
+            }
+            let mean = mean.map(|sum| sum / nodes.len() as f64);
+            for &node in nodes {
+                blocks[node].0[*component] = mean;
+            }
+        }
+    }
+
+    /// M x.
+    pub fn mass_times(&self, x: &Vectors) -> Vectors {
+        let mut product = x.clone();
+        for (block, mass) in product.blocks_mut().iter_mut().zip(&self.masses_kg) {
+            for row in &mut block.0 {
+                for value in row {
+                    *value *= mass;
+                }
+            }
+        }
+        product
+    }
+
+    /// Up to eight vectors of numbers in the order node → component. Missing ones are zero.
+    pub fn gather(&self, columns: &[&[f64]]) -> Vectors {
+        let mut x = self.zeros();
+        for (lane, column) in columns.iter().enumerate() {
+            for (block, values) in x.blocks_mut().iter_mut().zip(column.as_chunks::<3>().0) {
+                for c in 0..3 {
+                    block.0[c][lane] = values[c];
+                }
+            }
+        }
+        x
+    }
+
+    /// One lane as numbers in the order node → component.
+    pub fn lane(x: &Vectors, lane: usize) -> Vec<f64> {
+        x.blocks().iter().flat_map(|block| block.0.map(|row| row[lane])).collect()
+    }
+}
+
+/// The stiffness of the pin with its scratch memory.
+pub struct Elasticity<'a> {
+    model: &'a Model,
+    scratch: Scratch<LANES>,
+}
+
+impl<'a> Elasticity<'a> {
+    pub fn new(model: &'a Model) -> Self {
+        Self { model, scratch: Scratch::new(model.mesh()) }
+    }
+
+    /// y = K x, reactions of constraints included.
+    pub fn product(&mut self, x: &Vectors, y: &mut Vectors) {
+        self.model.pin().operator().product(x, y, &mut self.scratch);
+    }
+}
+
+/// y += factor·x, with a factor for each lane.
+pub fn add(y: &mut Vectors, factor: &[f64; LANES], x: &Vectors) {
+    for (y, x) in y.blocks_mut().iter_mut().zip(x.blocks()) {
+        for c in 0..3 {
+            for lane in 0..LANES {
+                y.0[c][lane] += factor[lane] * x.0[c][lane];
+            }
+        }
+    }
+}

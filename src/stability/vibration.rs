@@ -1,0 +1,116 @@
+//! The full problem of small vibrations about steady sliding, and the corrections of approximate modes.
+//!
+//! ```text
+//! M q̈ + [β K_μ + D] q̇ + K_μ q = 0        K_μ = K − μ d ⊗ K_z        D = μ N₀/|v| (1 − d ⊗ d)
+//! ```
+//!
+//! with the direction d of the disk's velocity v at each node in contact. K_z q is the change of the normal contact forces.
+//! Friction follows it, so K_μ is not symmetric. D comes from the turn of the friction's direction by sideways slip.
+
+use super::solve::Bilateral;
+use super::space::{Elasticity, LANES, Vectors, add};
+use faer::c64;
+
+/// Number of complex vectors in eight lanes: real and imaginary parts beside each other.
+pub const PAIRS: usize = LANES / 2;
+
+/// Small vibrations about steady sliding.
+pub struct Vibration<'a> {
+    pub bilateral: Bilateral<'a>,
+    pub mu: f64,
+    /// μN₀/|v| \[N·s/m\] of each slave node.
+    pub sideways_n_s_m: &'a [f64],
+    /// β \[s\].
+    pub damping_s: f64,
+}
+
+/// An approximate eigenvector in the full space, and its residual.
+pub struct Residuals {
+    /// P(λ) q, projected on the space of the constraints.
+    pub force: Vectors,
+    /// qᴴ K q \[N·m\] of each vector.
+    pub energy: [f64; PAIRS],
+}
+
+impl Vibration<'_> {
+    /// Residuals of right eigenvectors, or of left ones.
+    pub fn residuals(
+        &self,
+        elasticity: &mut Elasticity<'_>,
+        values: &[c64; PAIRS],
+        q: &Vectors,
+        is_left: bool,
+    ) -> Residuals {
+        let Bilateral { space, contact, .. } = self.bilateral;
+        let values = if is_left { values.map(|value| value.conj()) } else { *values };
+        let elastic = values.map(|value| c64::new(1.0, 0.0) + value * self.damping_s);
+        let nodes = || space.sliding().iter().zip(contact.in_contact).enumerate().filter(|(_, (_, on))| **on);
+        let mut moved = q.clone();
+        if is_left {
+            // A virtual displacement along d comes with −μ times itself in z, through friction.
+            for (_, (slave, _)) in nodes() {
+                let block = &mut moved.blocks_mut()[slave.node].0;
+                let [dx, dy] = slave.forward;
+                block[2] = std::array::from_fn(|l| -self.mu * (dx * block[0][l] + dy * block[1][l]));
+            }
+        }
+        let mut product = space.zeros();
+        elasticity.product(&moved, &mut product);
+        let mut elastic_force = product.clone();
+        space.project(contact, &mut elastic_force);
+        let energies = q.dot(&elastic_force);
+        let mut force = space.zeros();
+        add_complex(&mut force, &elastic, &product);
+        let inertia = space.mass_times(q);
+        add_complex(&mut force, &values.map(|value| value * value), &inertia);
+        for (i, (slave, _)) in nodes() {
+            let [dx, dy] = slave.forward;
+            let block = &mut force.blocks_mut()[slave.node].0;
+            if !is_left {
+                for lane in 0..LANES {
+                    let friction = self.mu * block[2][lane];
+                    block[0][lane] -= dx * friction;
+                    block[1][lane] -= dy * friction;
+                }
+            }
+            let x = &q.blocks()[slave.node].0;
+            for (pair, value) in values.iter().enumerate() {
+                let across = |lane: usize| dx * x[1][lane] - dy * x[0][lane];
+                let damping =
+                    *value * c64::new(across(2 * pair), across(2 * pair + 1)) * self.sideways_n_s_m[i];
+                for (lane, part) in [(2 * pair, damping.re), (2 * pair + 1, damping.im)] {
+                    block[0][lane] -= dy * part;
+                    block[1][lane] += dx * part;
+                }
+            }
+        }
+        space.project(contact, &mut force);
+        let energy = std::array::from_fn(|pair| energies[2 * pair] + energies[2 * pair + 1]);
+        Residuals { force, energy }
+    }
+
+    /// The residuals relative to the elastic forces. Both are measured by the energy that they have in the
+    /// preconditioner and in K.
+    pub fn relative(&self, residuals: &Residuals) -> [f64; PAIRS] {
+        let energies = residuals.force.dot(&self.bilateral.precondition(&residuals.force));
+        std::array::from_fn(|pair| {
+            let error = energies[2 * pair] + energies[2 * pair + 1];
+            // An empty lane has no energy.
+            if residuals.energy[pair] > 0.0 { (error / residuals.energy[pair]).sqrt() } else { 0.0 }
+        })
+    }
+}
+
+/// y += factor·x with complex numbers in pairs of lanes.
+fn add_complex(y: &mut Vectors, factor: &[c64; PAIRS], x: &Vectors) {
+    let real = std::array::from_fn(|lane| factor[lane / 2].re);
+    add(y, &real, x);
+    for (y, x) in y.blocks_mut().iter_mut().zip(x.blocks()) {
+        for c in 0..3 {
+            for pair in 0..PAIRS {
+                y.0[c][2 * pair] -= factor[pair].im * x.0[c][2 * pair + 1];
+                y.0[c][2 * pair + 1] += factor[pair].im * x.0[c][2 * pair];
+            }
+        }
+    }
+}

@@ -1,0 +1,84 @@
+//! The points of a stored study of complex modes.
+
+use crate::queue::Queue;
+use crate::report::{JobRow, StabilityPoint};
+use crate::solver;
+use crate::study::Study;
+use crate::sweep::database::document;
+use crate::sweep::error::SweepError;
+use crate::sweep::rows::for_each_row;
+use serde_json::Value;
+use std::collections::HashSet;
+
+/// The name of the study of the complex modes of the study called `name`.
+pub fn name_of_modes(name: &str) -> String {
+    format!("{name}-stability")
+}
+
+/// Reads the points of a study of complex modes that are done, in the order of its jobs: those of the grid come first.
+///
+/// # Errors
+/// If the database has no such study or cannot be read, or this version cannot read the study.
+pub async fn read_stability(queue: &mut Queue, study: &str) -> Result<Vec<StabilityPoint>, SweepError> {
+    let stored = Study::parse_stored(&document(queue, study).await?, study)?;
+    let on_grid: HashSet<String> = stored.expand(solver::VERSION)?.into_iter().map(|job| job.key).collect();
+    let mut points = Vec::new();
+    for_each_row(queue, study, crate::queue::Rows::All, |_, row| {
+        points.extend(point(&row, on_grid.contains(&row.job)));
+        Ok(())
+    })
+    .await?;
+    Ok(points)
+}
+
+fn point(row: &JobRow, on_grid: bool) -> Option<StabilityPoint> {
+    Some(StabilityPoint {
+        omega_rpm: row.omega_rpm,
+        mu: row.mu,
+        parameters: further(&row.parameters),
+        on_grid,
+        stability: row.record()?.stability.clone()?,
+    })
+}
+
+/// The parameters other than ω and μ.
+pub(super) fn further(parameters: &[(String, Value)]) -> Vec<(String, Value)> {
+    parameters.iter().filter(|(name, _)| !matches!(name.as_str(), "omega_rpm" | "mu")).cloned().collect()
+}
+
+/// What all points share that differ in μ alone: the speed and the further parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub(super) struct Series {
+    pub omega_rpm: f64,
+    pub parameters: Vec<(String, Value)>,
+}
+
+impl Series {
+    pub fn of(point: &StabilityPoint) -> Self {
+        Self { omega_rpm: point.omega_rpm, parameters: point.parameters.clone() }
+    }
+
+    /// A name that no other series has.
+    fn id(&self) -> String {
+        let values: Value = self.parameters.iter().map(|(_, value)| value.clone()).collect();
+        format!("{} {values}", self.omega_rpm)
+    }
+}
+
+/// The points of each series, from the smallest μ to the largest. The series are in the order of their first points.
+pub(super) fn by_series(points: &[StabilityPoint]) -> Vec<(Series, Vec<&StabilityPoint>)> {
+    let mut places = std::collections::HashMap::new();
+    let mut found: Vec<(Series, Vec<&StabilityPoint>)> = Vec::new();
+    for point in points {
+        let series = Series::of(point);
+        let place = *places.entry(series.id()).or_insert(found.len());
+        if place == found.len() {
+            found.push((series, Vec::new()));
+        }
+        found[place].1.push(point);
+    }
+    for (_, points) in &mut found {
+        points.sort_by(|a, b| a.mu.total_cmp(&b.mu));
+    }
+    found
+}
