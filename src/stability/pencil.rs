@@ -73,6 +73,20 @@ impl Pencil {
         found.into_iter().map(|(value, k)| (value, (0..n).map(|i| eigen.U()[(i, k)]).collect())).collect()
     }
 
+    /// The eigenpairs that continue those of a smaller basis: each the one whose vector is most alike, and none twice. The
+    /// nearest eigenvalue may belong to another mode.
+    pub fn followed(&self, pairs: &[Pair]) -> Vec<(c64, Vec<c64>)> {
+        let mut all = self.eigenpairs();
+        let follow = |pair: &Pair| {
+            let alike = all.iter().map(|(_, right)| likeness(&pair.right, right)).enumerate();
+            match alike.max_by(|(_, a), (_, b)| a.total_cmp(b)) {
+                Some((at, _)) => all.swap_remove(at),
+                None => (pair.value, pair.right.clone()),
+            }
+        };
+        pairs.iter().map(follow).collect()
+    }
+
     /// The factors of P and those of its derivative.
     fn factors(&self, clock: Clock, value: c64) -> [Factors; 2] {
         let one = c64::new(1.0, 0.0);
@@ -166,6 +180,13 @@ impl Pencil {
         let vector = |x: &Mat<c64>| (0..n).map(|i| x[(i, 0)]).collect();
         Pair { value, right: vector(&x), left: vector(&left) }
     }
+}
+
+/// The cosine between two vectors, of which one may have more components.
+fn likeness(a: &[c64], b: &[c64]) -> f64 {
+    let norm = |x: &[c64]| x.iter().map(c64::norm_sqr).sum::<f64>().sqrt();
+    let product: c64 = a.iter().zip(b).map(|(a, b)| a.conj() * b).sum();
+    product.norm() / (norm(a) * norm(b))
 }
 
 /// Divides by the component of the largest modulus.

@@ -212,8 +212,11 @@ impl Point<'_> {
                 response
             });
             pencil = extension.extend(self.basis, vibration, elasticity, &pencil, &responses, pairs.len());
-            pairs =
-                pairs.iter().map(|pair| pencil.polish(Clock::Continuous, pair.value, &pair.right)).collect();
+            pairs = pencil
+                .followed(&pairs)
+                .into_iter()
+                .map(|(value, right)| pencil.polish(Clock::Continuous, value, &right))
+                .collect();
         }
         unreachable!("the last round returns")
     }
