@@ -374,7 +374,7 @@ stable jobs only pays: `clamps` differs by {clamps} %, because its mesh is coars
 * **A mode can be lost.** A correction can move to another mode. In one scene (whole top clamped, μ 0.5, 100 rpm, β_R 2·10⁻⁷ s, 6 × 8 × 5
   elements) the leading mode at 28 kHz is missing from the list. An ignored test in `tests/verification/sliding_modes.rs` has it.
 * **The distance in μ.** It rests on runs, not on a theorem. The runs have one pin, one mesh and one load, and one way to start.
-* **An elastic disk.** Its jobs are always simulated. The points of `tribosweep stability` fail, and the error says why.
+* **An elastic disk.** Its jobs are always simulated. `tribosweep stability` refuses such a study.
 * **Large vibrations, stick and lift-off.** Modes are small vibrations about steady sliding. They do not give the amplitude,
   frequency or μ\\* of a limit cycle.
 """

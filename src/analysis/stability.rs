@@ -277,6 +277,7 @@ mod tests {
             eigenvalue_per_s: Complex::new(growth_per_s, 300.0),
             eigenvalue_in_steps_per_s: Complex::new(growth_per_s, 300.0),
             residual: 1.0e-10,
+            growth_error_per_s: 0.0,
             is_converged: true,
             shape: Vec::new(),
         };

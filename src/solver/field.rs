@@ -148,6 +148,16 @@ impl<const L: usize> Field<L> {
         &mut self.blocks
     }
 
+    /// Sets the padding to zero, which a product leaves arbitrary.
+    pub fn clear_padding(&mut self) {
+        let numbers = self.nodes_per_line * L;
+        for line in self.blocks.chunks_exact_mut(self.blocks_per_line) {
+            for row in line[numbers / WIDTH..].iter_mut().take(1).flat_map(|block| &mut block.0) {
+                row[numbers % WIDTH..].fill(0.0);
+            }
+        }
+    }
+
     /// Position of a node's lanes.
     pub fn place(&self, node: usize) -> LaneSlot {
         let along = node % self.nodes_per_line * L;

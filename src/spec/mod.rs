@@ -106,6 +106,13 @@ impl JobSpec {
                 ),
             );
         }
+        if self.stability == StabilityMethod::Modes {
+            found.add(
+                "scene.disk.kind",
+                "elastic",
+                "rigid: the complex modes of steady sliding are those of a pin on a rigid disk",
+            );
+        }
         if self.numerics.beta2 != 0.5 {
             found.add(
                 "numerics.beta2",

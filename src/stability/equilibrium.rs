@@ -7,8 +7,9 @@
 use super::error::StabilityError;
 use super::separable::Separable;
 use super::solve::Bilateral;
-use super::space::{Contact, Elasticity, Space, Vectors};
+use super::space::{Contact, Elasticity, Space};
 use crate::solver::Model;
+use crate::solver::field::{Field, LaneSlot};
 
 /// Largest number of changes of the nodes in contact.
 const MOST_CHANGES: usize = 60;
@@ -16,6 +17,8 @@ const MOST_CHANGES: usize = 60;
 const MOST_ITERATIONS: usize = 120;
 /// Residual of a linear solve, relative to the load.
 const TOLERANCE: f64 = 1e-11;
+/// Residual while the nodes in contact still change.
+const SEARCH_TOLERANCE: f64 = 1e-5;
 
 /// The equilibrium under a load of 1 N.
 #[derive(Debug, Clone)]
@@ -36,7 +39,8 @@ impl UnitEquilibrium {
             load[share.dof] += share.share;
         }
         let mut in_contact = vec![true; slaves.len()];
-        let mut u = space.zeros();
+        let mut u: Field<1> = space.zeros();
+        let mut tolerance = SEARCH_TOLERANCE;
         for _ in 0..MOST_CHANGES {
             let contact = Contact { in_contact: &in_contact, is_locked_sideways: false };
             let mut problem = Sliding {
@@ -45,21 +49,24 @@ impl UnitEquilibrium {
                 mu,
             };
             space.project(contact, &mut u);
-            let mut force = space.gather(&[&load]);
+            let mut force = space.one(&load);
             space.project(contact, &mut force);
-            problem.solve(&force, &mut u)?;
+            problem.solve(&force, &mut u, tolerance)?;
             let mut product = space.zeros();
             problem.elasticity.product(&u, &mut product);
-            let of = |vectors: &Vectors, node: usize| vectors.blocks()[node].0[2][0];
+            let of = |field: &Field<1>, node: usize| field.at(field.place(node), 2)[0];
             let normal: Vec<f64> = slaves.iter().map(|slave| of(&product, slave.node)).collect();
             let next: Vec<bool> = (0..slaves.len())
                 .map(|i| if in_contact[i] { normal[i] >= 0.0 } else { of(&u, slaves[i].node) < 0.0 })
                 .collect();
-            if next == in_contact {
+            if next != in_contact {
+                in_contact = next;
+            } else if tolerance > TOLERANCE {
+                tolerance = TOLERANCE;
+            } else {
                 let normal = (0..slaves.len()).map(|i| if in_contact[i] { normal[i] } else { 0.0 }).collect();
-                return Ok(Self { u: Space::lane(&u, 0), normal, in_contact });
+                return Ok(Self { u: u.values().collect(), normal, in_contact });
             }
-            in_contact = next;
         }
         Err(StabilityError::NoEquilibrium { mu })
     }
@@ -75,20 +82,22 @@ impl UnitEquilibrium {
 /// K u − μ N d with the nodes in contact.
 struct Sliding<'a> {
     bilateral: Bilateral<'a>,
-    elasticity: Elasticity<'a>,
+    elasticity: Elasticity<'a, 1>,
     mu: f64,
 }
 
 impl Sliding<'_> {
-    fn apply(&mut self, u: &Vectors) -> Vectors {
+    fn apply(&mut self, u: &Field<1>) -> Field<1> {
         let Bilateral { space, contact, .. } = self.bilateral;
         let mut force = space.zeros();
         self.elasticity.product(u, &mut force);
+        force.clear_padding();
         for (slave, &in_contact) in space.sliding().iter().zip(contact.in_contact) {
             if in_contact {
-                let block = &mut force.blocks_mut()[slave.node].0;
+                let place: LaneSlot = force.place(slave.node);
+                let [normal] = *force.at(place, 2);
                 for c in 0..2 {
-                    block[c][0] -= self.mu * slave.forward[c] * block[2][0];
+                    force.at_mut(place, c)[0] -= self.mu * slave.forward[c] * normal;
                 }
             }
         }
@@ -97,29 +106,27 @@ impl Sliding<'_> {
     }
 
     /// GMRES (Saad and Schultz, 1986), preconditioned from the right, from the given u.
-    fn solve(&mut self, force: &Vectors, u: &mut Vectors) -> Result<(), StabilityError> {
+    fn solve(&mut self, force: &Field<1>, u: &mut Field<1>, tolerance: f64) -> Result<(), StabilityError> {
         let space = self.bilateral.space;
-        let scale = norm(&Space::lane(force, 0));
-        let product = Space::lane(&self.apply(u), 0);
-        let residual: Vec<f64> = Space::lane(force, 0).iter().zip(&product).map(|(f, p)| f - p).collect();
+        let scale = norm(force);
+        let mut residual = force.clone();
+        add(&mut residual, -1.0, &self.apply(u));
         let beta = norm(&residual);
-        if beta <= TOLERANCE * scale {
+        if beta <= tolerance * scale {
             return Ok(());
         }
-        let mut basis = vec![residual.iter().map(|r| r / beta).collect::<Vec<f64>>()];
+        divide(&mut residual, beta);
+        let mut basis = vec![residual];
         let mut columns: Vec<Vec<f64>> = Vec::new();
         let mut rotations: Vec<(f64, f64)> = Vec::new();
         let mut right = vec![beta];
         while columns.len() < MOST_ITERATIONS {
-            let last = &basis[basis.len() - 1];
-            let z = self.bilateral.precondition(&space.gather(&[last]));
-            let mut w = Space::lane(&self.apply(&z), 0);
+            let z = self.bilateral.precondition(&basis[basis.len() - 1]);
+            let mut w = self.apply(&z);
             let mut column = Vec::new();
             for v in &basis {
-                let h: f64 = v.iter().zip(&w).map(|(a, b)| a * b).sum();
-                for (w, v) in w.iter_mut().zip(v) {
-                    *w -= h * v;
-                }
+                let [h] = v.dot(&w);
+                add(&mut w, -h, v);
                 column.push(h);
             }
             let below = norm(&w);
@@ -135,10 +142,11 @@ impl Sliding<'_> {
             right.push(-sin * right[at]);
             right[at] *= cos;
             columns.push(column);
-            if right[at + 1].abs() <= TOLERANCE * scale {
+            if right[at + 1].abs() <= tolerance * scale {
                 break;
             }
-            basis.push(w.iter().map(|w| w / below).collect());
+            divide(&mut w, below);
+            basis.push(w);
         }
         let count = columns.len();
         let mut y = right[..count].to_vec();
@@ -148,16 +156,13 @@ impl Sliding<'_> {
             }
             y[i] /= columns[i][i];
         }
-        let mut sum = vec![0.0; space.len()];
+        let mut sum = space.zeros();
         for (y, v) in y.iter().zip(&basis) {
-            for (sum, v) in sum.iter_mut().zip(v) {
-                *sum += y * v;
-            }
+            add(&mut sum, *y, v);
         }
-        let step = self.bilateral.precondition(&space.gather(&[&sum]));
-        super::space::add(u, &[1.0; super::space::LANES], &step);
+        add(u, 1.0, &self.bilateral.precondition(&sum));
         // The residual stalls at rounding, which is larger than the tolerance on very fine meshes.
-        if right[count].abs() > 1e3 * TOLERANCE * scale {
+        if right[count].abs() > 1e3 * tolerance * scale {
             return Err(StabilityError::NotConverged {
                 what: "the equilibrium of steady sliding",
                 iterations: MOST_ITERATIONS,
@@ -167,6 +172,23 @@ impl Sliding<'_> {
     }
 }
 
-fn norm(x: &[f64]) -> f64 {
-    x.iter().map(|x| x * x).sum::<f64>().sqrt()
+fn norm(x: &Field<1>) -> f64 {
+    x.dot(x)[0].sqrt()
+}
+
+/// y += factor·x.
+fn add(y: &mut Field<1>, factor: f64, x: &Field<1>) {
+    for (y, x) in y.blocks_mut().iter_mut().zip(x.blocks()) {
+        for (y, x) in y.0.as_flattened_mut().iter_mut().zip(x.0.as_flattened()) {
+            *y += factor * x;
+        }
+    }
+}
+
+fn divide(x: &mut Field<1>, divisor: f64) {
+    for block in x.blocks_mut() {
+        for value in block.0.as_flattened_mut() {
+            *value /= divisor;
+        }
+    }
 }

@@ -107,6 +107,7 @@ impl Structure {
                 eigenvalue_per_s: mode.value,
                 eigenvalue_in_steps_per_s: mode.value_in_steps,
                 residual: mode.residual,
+                growth_error_per_s: mode.error_per_s,
                 is_converged: mode.residual <= accuracy.residual,
                 shape: mode.shape,
             })
@@ -152,15 +153,8 @@ impl Structure {
         drive: &Drive,
         modes: usize,
     ) -> Result<(SlidingPoint, Verdict), StabilityError> {
-        let full = Accuracy { aim: Aim::Signs, groups: 2, rounds: 3, ..Accuracy::default() };
-        for rounds in 0..full.rounds {
-            let point = self.point_with(model, drive, modes, Accuracy { rounds, ..full })?;
-            let verdict = verdict(&point, damping_s(model));
-            if verdict != Verdict::Open {
-                return Ok((point, verdict));
-            }
-        }
-        let point = self.point_with(model, drive, modes, full)?;
+        let signs = Accuracy { aim: Aim::Signs, rounds: 3, ..Accuracy::default() };
+        let point = self.point_with(model, drive, modes, signs)?;
         let verdict = verdict(&point, damping_s(model));
         Ok((point, verdict))
     }

@@ -4,7 +4,7 @@
 //! P(λ) = λ² + (1 + β λ) (K − μ AᵀB) + λ D
 //! ```
 
-use faer::linalg::solvers::Solve;
+use faer::linalg::solvers::{PartialPivLu, Solve};
 use faer::{Mat, c64};
 
 /// P(λ) in a basis, with real matrices.
@@ -43,12 +43,12 @@ pub struct Pair {
     pub left: Vec<c64>,
 }
 
-/// Steps of Newton's method for one eigenvalue.
-const STEPS: usize = 12;
-/// Steps of inverse iteration before them, which turn the vector to the nearest eigenvector.
-const TURNS: usize = 2;
-/// Relative change after which an eigenvalue is not improved further: the method is quadratic.
-const CHANGE: f64 = 1e-9;
+/// Largest number of steps for one eigenvalue.
+const STEPS: usize = 24;
+/// Steps with the same factors.
+const STEPS_OF_FACTORS: usize = 6;
+/// Relative change or residual below which an eigenvalue is not improved further.
+const CHANGE: f64 = 1e-12;
 
 impl Pencil {
     /// All eigenvalues with frequency ≥ 0 and their eigenvectors. The largest growth rate comes first.
@@ -126,60 +126,115 @@ impl Pencil {
         })
     }
 
-    /// dP/dλ applied to a vector.
-    fn slope(&self, clock: Clock, value: c64, x: &Mat<c64>) -> Mat<c64> {
-        let n = self.stiffness.nrows();
-        let [_, Factors { inertia, elastic, sideways }] = self.factors(clock, value);
-        let mut product = Mat::zeros(n, 1);
-        for j in 0..n {
-            let x = x[(j, 0)];
-            let (own, elastic, sideways) = (inertia * x, elastic * x, sideways * x);
-            product[(j, 0)] += own;
-            for i in 0..n {
-                product[(i, 0)] += elastic * self.stiffness[(i, j)] + sideways * self.sideways[(i, j)];
-            }
-        }
-        product
-    }
-
-    /// Improves an eigenvalue and its right eigenvector by inverse iteration with Newton's method, and finds its left
-    /// eigenvector.
+    /// Improves an eigenvalue and its right eigenvector by residual inverse iteration (Neumaier, 1985), and finds its left
+    /// eigenvector. One factorization serves if the given eigenvalue is close.
     pub fn polish(&self, clock: Clock, value: c64, right: &[c64]) -> Pair {
         let n = self.stiffness.nrows();
         let mut value = value;
         let mut x = Mat::from_fn(n, 1, |i, _| right.get(i).copied().unwrap_or(c64::new(0.0, 0.0)));
-        let mut factors = self.at(clock, value).partial_piv_lu();
-        for step in 0..TURNS + STEPS {
-            normalize(&mut x);
-            let y = factors.solve(self.slope(clock, value, &x));
-            let (mut xx, mut xy) = (c64::new(0.0, 0.0), c64::new(0.0, 0.0));
-            for i in 0..n {
-                xx += x[(i, 0)].conj() * x[(i, 0)];
-                xy += x[(i, 0)].conj() * y[(i, 0)];
-            }
-            let change = xx / xy;
-            x = y;
-            if step < TURNS {
-                continue;
-            }
-            if !(change.re.is_finite() && change.im.is_finite()) {
-                break;
-            }
-            value -= change;
-            if change.norm() <= CHANGE * value.norm() {
-                break;
-            }
-            factors = self.at(clock, value).partial_piv_lu();
-        }
         normalize(&mut x);
-        let mut left = Mat::from_fn(n, 1, |i, _| x[(i, 0)]);
-        for _ in 0..2 {
-            left = factors.solve_adjoint(&left);
-            normalize(&mut left);
+        let mut factors = self.at(clock, value).partial_piv_lu();
+        let mut left = left_vector(&factors, &x);
+        for step in 1..=STEPS {
+            let products = Products {
+                own: &x,
+                elastic: times(&self.stiffness, &x),
+                sideways: times(&self.sideways, &x),
+            };
+            let before = value;
+            value = self.root(clock, value, &products, &left);
+            let [at, _] = self.factors(clock, value);
+            let residual = products.combined(&at);
+            if !(value.re.is_finite() && value.im.is_finite()) {
+                break;
+            }
+            let is_exact = norm(&residual) <= CHANGE * at.inertia.norm() * norm(&x);
+            if is_exact || (step > 1 && (value - before).norm() <= CHANGE * value.norm()) {
+                break;
+            }
+            x -= factors.solve(&residual);
+            normalize(&mut x);
+            if step % STEPS_OF_FACTORS == 0 {
+                factors = self.at(clock, value).partial_piv_lu();
+                left = left_vector(&factors, &x);
+            }
         }
         let vector = |x: &Mat<c64>| (0..n).map(|i| x[(i, 0)]).collect();
         Pair { value, right: vector(&x), left: vector(&left) }
     }
+
+    /// yᴴ P′(λ) x of a pair.
+    pub fn slope_form(&self, pair: &Pair) -> c64 {
+        let column = |of: &[c64]| Mat::from_fn(of.len(), 1, |i, _| of[i]);
+        let (x, y) = (column(&pair.right), column(&pair.left));
+        let [_, Factors { inertia, elastic, sideways }] = self.factors(Clock::Continuous, pair.value);
+        inertia * dot(&y, &x)
+            + elastic * dot(&y, &times(&self.stiffness, &x))
+            + sideways * dot(&y, &times(&self.sideways, &x))
+    }
+
+    /// The root λ of yᴴ P(λ) x = 0 by Newton's method. Its error is that of x times that of y.
+    fn root(&self, clock: Clock, value: c64, x: &Products<'_>, y: &Mat<c64>) -> c64 {
+        let [own, elastic, sideways] = [x.own, &x.elastic, &x.sideways].map(|of| dot(y, of));
+        let mut value = value;
+        for _ in 0..STEPS {
+            let [at, slope] = self
+                .factors(clock, value)
+                .map(|f| f.inertia * own + f.elastic * elastic + f.sideways * sideways);
+            let change = at / slope;
+            value -= change;
+            // This is false for NaN.
+            let goes_on = change.norm() > CHANGE * value.norm();
+            if !goes_on {
+                break;
+            }
+        }
+        value
+    }
+}
+
+/// A vector with its products with K − μ AᵀB and D.
+struct Products<'a> {
+    own: &'a Mat<c64>,
+    elastic: Mat<c64>,
+    sideways: Mat<c64>,
+}
+
+impl Products<'_> {
+    /// P(λ) x.
+    fn combined(&self, factors: &Factors) -> Mat<c64> {
+        Mat::from_fn(self.own.nrows(), 1, |i, _| {
+            factors.inertia * self.own[(i, 0)]
+                + factors.elastic * self.elastic[(i, 0)]
+                + factors.sideways * self.sideways[(i, 0)]
+        })
+    }
+}
+
+/// A real matrix times a complex vector.
+fn times(matrix: &Mat<f64>, x: &Mat<c64>) -> Mat<c64> {
+    let parts = Mat::from_fn(x.nrows(), 2, |i, part| if part == 0 { x[(i, 0)].re } else { x[(i, 0)].im });
+    let product = matrix * &parts;
+    Mat::from_fn(matrix.nrows(), 1, |i, _| c64::new(product[(i, 0)], product[(i, 1)]))
+}
+
+/// The left eigenvector by inverse iteration, from the right one.
+fn left_vector(factors: &PartialPivLu<c64>, right: &Mat<c64>) -> Mat<c64> {
+    let mut left = right.clone();
+    for _ in 0..2 {
+        left = factors.solve_adjoint(&left);
+        normalize(&mut left);
+    }
+    left
+}
+
+/// xᴴ y.
+fn dot(x: &Mat<c64>, y: &Mat<c64>) -> c64 {
+    (0..x.nrows()).map(|i| x[(i, 0)].conj() * y[(i, 0)]).sum()
+}
+
+fn norm(x: &Mat<c64>) -> f64 {
+    (0..x.nrows()).map(|i| x[(i, 0)].norm_sqr()).sum::<f64>().sqrt()
 }
 
 /// The cosine between two vectors, of which one may have more components.

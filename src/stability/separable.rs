@@ -12,10 +12,9 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::space::{LANES, Vectors};
 use crate::solver::Model;
 use crate::solver::body::Freedom;
-use crate::solver::field::Row;
+use crate::solver::field::{Field, Row, WIDTH};
 use crate::solver::simd::dispatch;
 use fearless_simd::{Simd, f64x8, prelude::*};
 use nalgebra::{DMatrix, SymmetricEigen};
@@ -85,26 +84,36 @@ impl Separable {
     }
 
     /// y = A⁻¹ x.
-    pub fn solve(&self, x: &Vectors, y: &mut Vectors) {
-        let mut work = vec![Row::default(); x.blocks().len()];
+    pub fn solve<const L: usize>(&self, x: &Field<L>, y: &mut Field<L>) {
+        let line_numbers = self.nodes[0] * L;
+        let mut work = vec![0.0; line_numbers * self.nodes[1] * self.nodes[2]];
         for (c, component) in self.components.iter().enumerate() {
-            for (row, block) in work.iter_mut().zip(x.blocks()) {
-                row.0 = block.0[c];
+            let lines = work.chunks_exact_mut(line_numbers);
+            for (line, blocks) in lines.zip(x.blocks().chunks_exact(x.blocks_per_line())) {
+                for (numbers, block) in line.chunks_mut(WIDTH).zip(blocks) {
+                    numbers.copy_from_slice(&block.0[c][..numbers.len()]);
+                }
             }
-            let mut stride = 1;
+            let mut stride = L;
             for (axis, line) in component.lines.iter().enumerate() {
                 dispatch!(simd => transform(simd, &line.transposed, self.nodes[axis], stride, &mut work));
                 stride *= self.nodes[axis];
             }
-            for (row, inverse) in work.iter_mut().zip(&component.inverse) {
-                row.0 = row.0.map(|value| value * inverse);
+            for (lanes, inverse) in work.chunks_exact_mut(L).zip(&component.inverse) {
+                for value in lanes {
+                    *value *= inverse;
+                }
             }
             for (axis, line) in component.lines.iter().enumerate().rev() {
                 stride /= self.nodes[axis];
                 dispatch!(simd => transform(simd, &line.vectors, self.nodes[axis], stride, &mut work));
             }
-            for (row, block) in work.iter().zip(y.blocks_mut()) {
-                block.0[c] = row.0;
+            let blocks_per_line = y.blocks_per_line();
+            let lines = work.chunks_exact(line_numbers);
+            for (line, blocks) in lines.zip(y.blocks_mut().chunks_exact_mut(blocks_per_line)) {
+                for (numbers, block) in line.chunks(WIDTH).zip(blocks) {
+                    block.0[c][..numbers.len()].copy_from_slice(numbers);
+                }
             }
         }
     }
@@ -150,19 +159,21 @@ impl Line {
 /// Number of results that are computed together.
 const TILE: usize = 4;
 
-/// Multiplies every line of `length` nodes, `stride` apart, with a matrix (row → column).
+/// Multiplies every line of `length` numbers, `stride` apart, with a matrix (row → column).
 #[inline(always)]
-fn transform<S: Simd>(simd: S, matrix: &[f64], length: usize, stride: usize, work: &mut [Row]) {
-    let mut line = vec![Row::default(); length];
+fn transform<S: Simd>(simd: S, matrix: &[f64], length: usize, stride: usize, work: &mut [f64]) {
+    let mut lines = vec![Row::default(); length];
     for block in work.chunks_exact_mut(stride * length) {
-        for offset in 0..stride {
-            for (at, row) in line.iter_mut().enumerate() {
-                *row = block[offset + at * stride];
+        for first in (0..stride).step_by(WIDTH) {
+            let width = WIDTH.min(stride - first);
+            for (at, row) in lines.iter_mut().enumerate() {
+                let start = first + at * stride;
+                row.0[..width].copy_from_slice(&block[start..start + width]);
             }
             for (tile, rows) in matrix.chunks(TILE * length).enumerate() {
                 let mut sums = [f64x8::splat(simd, 0.0); TILE];
                 if rows.len() == TILE * length {
-                    for (at, value) in line.iter().enumerate() {
+                    for (at, value) in lines.iter().enumerate() {
                         let value = f64x8::from_slice(simd, &value.0);
                         for t in 0..TILE {
                             sums[t] += value * f64x8::splat(simd, rows[t * length + at]);
@@ -170,16 +181,18 @@ fn transform<S: Simd>(simd: S, matrix: &[f64], length: usize, stride: usize, wor
                     }
                 } else {
                     for (t, row) in rows.chunks_exact(length).enumerate() {
-                        for (factor, value) in row.iter().zip(&line) {
+                        for (factor, value) in row.iter().zip(&lines) {
                             sums[t] += f64x8::from_slice(simd, &value.0) * f64x8::splat(simd, *factor);
                         }
                     }
                 }
+                let mut sum = Row::default();
                 for t in 0..rows.len() / length {
-                    sums[t].store_slice(&mut block[offset + (tile * TILE + t) * stride].0);
+                    let start = first + (tile * TILE + t) * stride;
+                    sums[t].store_slice(&mut sum.0);
+                    block[start..start + width].copy_from_slice(&sum.0[..width]);
                 }
             }
         }
     }
-    const { assert!(LANES == 8, "a row is one vector") };
 }

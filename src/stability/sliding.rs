@@ -24,6 +24,8 @@ pub struct Mode {
     pub eigenvalue_in_steps_per_s: Complex<f64>,
     /// Residual of the full problem, relative.
     pub residual: f64,
+    /// Estimated largest error \[1/s\] of the growth rate.
+    pub growth_error_per_s: f64,
     /// Whether the residual is within the tolerance.
     pub is_converged: bool,
     /// q of the pin, three per node. The largest component is 1.

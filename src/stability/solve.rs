@@ -2,6 +2,7 @@
 
 use super::separable::Separable;
 use super::space::{Contact, Elasticity, LANES, Space, Vectors, add};
+use crate::solver::field::Field;
 
 /// The pin with the nodes in contact held in z.
 pub struct Bilateral<'a> {
@@ -43,14 +44,14 @@ impl Bilateral<'_> {
     }
 
     /// The preconditioner on the space of the constraints.
-    pub fn precondition(&self, residual: &Vectors) -> Vectors {
+    pub fn precondition<const L: usize>(&self, residual: &Field<L>) -> Field<L> {
         let mut z = self.space.zeros();
         self.separable.solve(residual, &mut z);
         // The separable operator holds all slave nodes in z.
         for (slave, &in_contact) in self.space.sliding().iter().zip(self.contact.in_contact) {
             if !in_contact {
-                let force = residual.blocks()[slave.node].0[2];
-                z.blocks_mut()[slave.node].0[2] = force.map(|force| force / slave.stiffness_n_m);
+                let place = z.place(slave.node);
+                *z.at_mut(place, 2) = residual.at(place, 2).map(|force| force / slave.stiffness_n_m);
             }
         }
         self.space.project(self.contact, &mut z);

@@ -1,6 +1,6 @@
 //! The displacements that the constraints allow, and what acts on them.
 //!
-//! Eight vectors are treated together, one in each lane of a [`Field`]. All vectors have three components per node of the
+//! Up to eight vectors are treated together, one in each lane of a [`Field`]. All vectors have three components per node of the
 //! pin. The constraints are a projection: fixed components are zero, the members of a tie have their mean.
 
 use crate::solver::Model;
@@ -93,40 +93,39 @@ impl Space {
         &self.masses_kg
     }
 
-    pub fn zeros(&self) -> Vectors {
-        Vectors::zeros(self.layout)
+    pub fn zeros<const L: usize>(&self) -> Field<L> {
+        Field::zeros(self.layout)
     }
 
     /// Projects displacements or forces on what the constraints allow.
-    pub fn project(&self, contact: Contact<'_>, x: &mut Vectors) {
-        let blocks = x.blocks_mut();
+    pub fn project<const L: usize>(&self, contact: Contact<'_>, field: &mut Field<L>) {
         for &dof in &self.fixed {
-            blocks[dof / 3].0[dof % 3] = [0.0; LANES];
+            *field.at_mut(field.place(dof / 3), dof % 3) = [0.0; L];
         }
         for (slave, &in_contact) in self.sliding.iter().zip(contact.in_contact) {
             if !in_contact {
                 continue;
             }
-            let [x, y, z] = &mut blocks[slave.node].0;
-            *z = [0.0; LANES];
+            let place = field.place(slave.node);
+            *field.at_mut(place, 2) = [0.0; L];
             if contact.is_locked_sideways {
                 let [dx, dy] = slave.forward;
-                for lane in 0..LANES {
-                    let along = dx * x[lane] + dy * y[lane];
-                    (x[lane], y[lane]) = (dx * along, dy * along);
-                }
+                let [x, y] = [0, 1].map(|c| *field.at(place, c));
+                let along: [f64; L] = std::array::from_fn(|lane| dx * x[lane] + dy * y[lane]);
+                *field.at_mut(place, 0) = along.map(|along| dx * along);
+                *field.at_mut(place, 1) = along.map(|along| dy * along);
             }
         }
         for (component, nodes) in &self.ties {
-            let mut mean = [0.0; LANES];
+            let mut mean = [0.0; L];
             for &node in nodes {
-                for (mean, value) in mean.iter_mut().zip(&blocks[node].0[*component]) {
+                for (mean, value) in mean.iter_mut().zip(field.at(field.place(node), *component)) {
                     *mean += value;
                 }
             }
             let mean = mean.map(|sum| sum / nodes.len() as f64);
             for &node in nodes {
-                blocks[node].0[*component] = mean;
+                *field.at_mut(field.place(node), *component) = mean;
             }
         }
     }
@@ -157,6 +156,11 @@ impl Space {
         x
     }
 
+    /// One vector of numbers in the order node → component.
+    pub fn one(&self, values: &[f64]) -> Field<1> {
+        Field::from_values(self.layout, values)
+    }
+
     /// One lane as numbers in the order node → component.
     pub fn lane(x: &Vectors, lane: usize) -> Vec<f64> {
         x.blocks().iter().flat_map(|block| block.0.map(|row| row[lane])).collect()
@@ -164,18 +168,18 @@ impl Space {
 }
 
 /// The stiffness of the pin with its scratch memory.
-pub struct Elasticity<'a> {
+pub struct Elasticity<'a, const L: usize = LANES> {
     model: &'a Model,
-    scratch: Scratch<LANES>,
+    scratch: Scratch<L>,
 }
 
-impl<'a> Elasticity<'a> {
+impl<'a, const L: usize> Elasticity<'a, L> {
     pub fn new(model: &'a Model) -> Self {
         Self { model, scratch: Scratch::new(model.mesh()) }
     }
 
     /// y = K x, reactions of constraints included.
-    pub fn product(&mut self, x: &Vectors, y: &mut Vectors) {
+    pub fn product(&mut self, x: &Field<L>, y: &mut Field<L>) {
         self.model.pin().operator().product(x, y, &mut self.scratch);
     }
 }

@@ -90,15 +90,34 @@ impl Vibration<'_> {
     }
 
     /// The residuals relative to the elastic forces. Both are measured by the energy that they have in the
-    /// preconditioner and in K.
-    pub fn relative(&self, residuals: &Residuals) -> [f64; PAIRS] {
-        let energies = residuals.force.dot(&self.bilateral.precondition(&residuals.force));
-        std::array::from_fn(|pair| {
+    /// preconditioner and in K. And sᴴ B r, with the preconditioner B and the residuals s of left eigenvectors.
+    pub fn measure(&self, residuals: &Residuals, left: &Vectors) -> ([f64; PAIRS], [c64; PAIRS]) {
+        let responses = self.bilateral.precondition(&residuals.force);
+        let energies = residuals.force.dot(&responses);
+        let relative = std::array::from_fn(|pair| {
             let error = energies[2 * pair] + energies[2 * pair + 1];
             // An empty lane has no energy.
             if residuals.energy[pair] > 0.0 { (error / residuals.energy[pair]).sqrt() } else { 0.0 }
-        })
+        });
+        let straight = left.dot(&responses);
+        let crossed = with_parts_exchanged(left).dot(&responses);
+        let product = |pair: usize| {
+            let [re, im] = [2 * pair, 2 * pair + 1];
+            c64::new(straight[re] + straight[im], crossed[im] - crossed[re])
+        };
+        (relative, std::array::from_fn(product))
     }
+}
+
+/// Complex vectors in pairs of lanes with their real and imaginary parts exchanged.
+fn with_parts_exchanged(x: &Vectors) -> Vectors {
+    let mut exchanged = x.clone();
+    for row in exchanged.blocks_mut().iter_mut().flat_map(|block| &mut block.0) {
+        for pair in row.as_chunks_mut::<2>().0 {
+            pair.swap(0, 1);
+        }
+    }
+    exchanged
 }
 
 /// y += factor·x with complex numbers in pairs of lanes.

@@ -240,3 +240,13 @@ fn eigenvalues_and_runs_agree() {
     let simulated = rows(&folder.ok("export simulated --all"));
     assert!(simulated.iter().all(|row| row["decided_by"] == "run"), "{simulated:?}");
 }
+
+/// Protects: modes are those of a rigid disk, and a study of another disk is refused before any point is submitted.
+#[test]
+fn an_elastic_disk_is_refused() {
+    let folder = Folder::with("study", &small(&json!({ "mu": [0.1, 0.4] })));
+    let refused = folder.command("stability study.json --set disk_kind=elastic").assert().code(2);
+    let message = stderr(&refused);
+    assert!(message.contains("scene.disk.kind") && message.contains("rigid"), "{message}");
+    folder.command("export study-stability").assert().code(2);
+}

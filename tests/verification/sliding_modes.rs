@@ -281,3 +281,38 @@ fn points_do_not_depend_on_each_other() {
     }
     assert_eq!(bits(&used), bits(&Structure::new(&model).unwrap()));
 }
+
+/// Protects: the stated error of a growth rate bounds its change by corrections, where it is used: for the leading modes below
+/// the threshold. The factor of two is what was found to be left over 107 modes.
+#[test]
+fn growth_rates_are_as_exact_as_stated() {
+    for side in [ClampSide::InnerSide, ClampSide::TrailingEnd] {
+        for (mu, omega_rpm) in [(0.1, 35.0), (0.2, 7.0), (0.2, 35.0)] {
+            let mut spec = scene([8, 10, 7], 0.0025, mu, omega_rpm);
+            spec.scene.clamp.side = side;
+            let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
+            let structure = Structure::new(&model).unwrap();
+            let drive = analysis::drive(&spec);
+            let rough = Accuracy { rounds: 0, ..Accuracy::default() };
+            let rough = structure.point_with(&model, &drive, 4, rough).unwrap();
+            assert!(!rough.has_all_modes);
+            let exact = structure.point_with(&model, &drive, 8, EXACT).unwrap();
+            for mode in &rough.modes {
+                let distance = |other: &&Mode| (other.eigenvalue_per_s - mode.eigenvalue_per_s).norm();
+                let same = exact.modes.iter().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap();
+                let change = (same.eigenvalue_per_s.re - mode.eigenvalue_per_s.re).abs();
+                let stated = mode.growth_error_per_s;
+                println!(
+                    "{} {mu} {omega_rpm}: {:?} {change:.2} of {stated:.2}",
+                    side.name(),
+                    mode.eigenvalue_per_s
+                );
+                assert!(
+                    change <= stated,
+                    "{} mu {mu}, {omega_rpm} rpm: {change} 1/s, {stated} stated",
+                    side.name()
+                );
+            }
+        }
+    }
+}
