@@ -235,8 +235,14 @@ the growth rate [1/s] and Im λ/2π the frequency [Hz]. Sliding is stable if all
 
 **What it neglects.** Vibrations are small: no node sticks, none lifts off, none closes. So the modes say whether vibrations grow
 from steady sliding. They do not say how large vibrations become, and they do not give the frequency or μ\\* of the limit cycle.
-The disk is rigid. An elastic disk is not covered: its jobs are simulated, and the points of `tribosweep stability` fail with
-an error that says so.
+The disk is rigid. An elastic disk is not covered: its jobs are simulated, and `tribosweep stability` refuses
+such a study.
+
+## More than one limit cycle
+
+At some points two limit cycles, or a limit cycle and stable sliding, exist side by side on one mesh. Which of them a run reaches
+depends on what it starts from. All runs of this page start from rest. A run that starts from the limit cycle of a coarser mesh
+(`"start": "nested"`, [studies.md](studies.md#a-start-from-a-coarser-mesh)) may reach another one.
 """
 
 

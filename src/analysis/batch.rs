@@ -3,11 +3,16 @@
 use super::checkpoint::Unreadable;
 use super::error::JobError;
 use super::lanes::{Ended, Lanes};
-use super::record::JobRecord;
+use super::nested::{Beginning, COST, CoarseStart, coarser};
+use super::record::{JobRecord, SlidingStability};
 use super::stability::{Structures, Verdict, judge};
 use super::workload::Workload;
 use crate::solver::Model;
-use crate::spec::JobSpec;
+use crate::solver::body::block::BlockMesh;
+use crate::spec::{JobSpec, Start};
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Jobs that share a model, advanced together.
@@ -19,6 +24,8 @@ pub struct Batch {
     widest: usize,
     lanes: AnyLanes,
     structures: Structures,
+    /// The jobs that run on the coarser mesh from which they start.
+    coarser: Option<CoarserBatch>,
 }
 
 /// What became of a job that was to begin.
@@ -82,6 +89,7 @@ impl Batch {
             widest: Workload::of(&model).widest(),
             lanes: AnyLanes::One(Box::new(Lanes::new(Arc::new(model)))),
             structures,
+            coarser: None,
         })
     }
 
@@ -102,6 +110,11 @@ impl Batch {
 
     /// Number of jobs.
     pub fn jobs(&self) -> usize {
+        self.own_jobs() + self.coarser.as_ref().map_or(0, CoarserBatch::jobs)
+    }
+
+    /// Number of jobs on their own mesh.
+    fn own_jobs(&self) -> usize {
         each!(&self.lanes, lanes => lanes.jobs())
     }
 
@@ -120,15 +133,39 @@ impl Batch {
             Verdict::Decided(record) => return Ok(Begun::Decided(record)),
             Verdict::Undecided(stability) => stability,
         };
+        assert!(self.jobs() < self.widest, "no more jobs than the widest");
+        let rest = Ready { ticket, spec, stability, beginning: Beginning::REST };
+        let ready = match self.coarser_of(&rest.spec) {
+            Some(coarser) => coarser.begin(ticket, rest.spec, rest.stability),
+            None => Some(rest),
+        };
+        ready.map_or(Ok(()), |ready| self.begin_ready(ready))?;
+        Ok(Begun::Runs)
+    }
+
+    /// The batch on the coarser mesh from which a job starts; none if it starts from rest.
+    fn coarser_of(&mut self, spec: &JobSpec) -> Option<&mut CoarserBatch> {
+        if spec.run.start == Start::Rest {
+            return None;
+        }
+        if self.coarser.is_none() {
+            self.coarser = CoarserBatch::of(spec);
+        }
+        self.coarser.as_mut()
+    }
+
+    /// Begins a job on its own mesh.
+    fn begin_ready(&mut self, ready: Ready) -> Result<(), JobError> {
+        let Ready { ticket, spec, stability, beginning } = ready;
         self.make_room(&spec);
         each!(&mut self.lanes, lanes => {
             let lane = lanes.free_lane().expect("a lane was made");
-            lanes.begin(lane, ticket, spec)?;
+            lanes.begin_from(lane, ticket, spec, beginning)?;
             if let Some(stability) = stability {
                 lanes.note(lane, stability);
             }
         });
-        Ok(Begun::Runs)
+        Ok(())
     }
 
     /// Continues a job from its [`Batch::checkpoint`]. The result has the same bits as that of an
@@ -140,29 +177,42 @@ impl Batch {
     /// # Panics
     /// As [`Batch::begin`].
     pub fn resume(&mut self, ticket: u64, spec: JobSpec, checkpoint: &[u8]) -> Result<(), Unreadable> {
+        assert!(self.takes(&spec), "a job of another model");
+        assert!(self.jobs() < self.widest, "no more jobs than the widest");
+        let Some((stage, bytes)) = checkpoint.split_last() else { return Err(Unreadable) };
+        if *stage == COARSER {
+            let coarser = self.coarser_of(&spec).ok_or(Unreadable)?;
+            return coarser.resume(ticket, spec, bytes);
+        }
         self.make_room(&spec);
         each!(&mut self.lanes, lanes => {
             let lane = lanes.free_lane().expect("a lane was made");
-            lanes.resume(lane, ticket, spec, checkpoint)
+            lanes.resume(lane, ticket, spec, bytes)
         })
     }
 
     /// The checkpoint of a job, for [`Batch::resume`] of the same program; none if there is no such job.
     pub fn checkpoint(&self, ticket: u64) -> Option<Vec<u8>> {
-        each!(&self.lanes, lanes => lanes.checkpoint(ticket))
+        let with = |mut bytes: Vec<u8>, stage: u8| {
+            bytes.push(stage);
+            bytes
+        };
+        let coarser = || Some(with(self.coarser.as_ref()?.checkpoint(ticket)?, COARSER));
+        let own = each!(&self.lanes, lanes => lanes.checkpoint(ticket));
+        own.map(|bytes| with(bytes, OWN)).or_else(coarser)
     }
 
     fn make_room(&mut self, spec: &JobSpec) {
         assert!(self.takes(spec), "a job of another model");
-        assert!(self.jobs() < self.widest, "no more jobs than the widest");
         if each!(&self.lanes, lanes => lanes.free_lane()).is_none() {
-            self.fit(self.jobs() + 1);
+            self.fit(self.own_jobs() + 1);
         }
     }
 
     /// Moves the jobs to as few lanes as possible. This is useful when no other job will come.
     pub fn narrow(&mut self) {
-        self.fit(self.jobs());
+        self.fit(self.own_jobs());
+        self.coarser.iter_mut().for_each(CoarserBatch::narrow);
     }
 
     /// Changes the number of lanes to the smallest that holds `jobs` jobs.
@@ -181,11 +231,176 @@ impl Batch {
 
     /// Advances all jobs by a few steps and returns those that ended.
     pub fn advance(&mut self) -> Vec<Ended> {
-        each!(&mut self.lanes, lanes => lanes.advance(&mut |_| {}))
+        let mut ended = Vec::new();
+        for ready in self.coarser.as_mut().map(CoarserBatch::advance).unwrap_or_default() {
+            let ticket = ready.ticket;
+            if let Err(error) = self.begin_ready(ready) {
+                ended.push(Ended { ticket, result: Err(error), motion: None });
+            }
+        }
+        if self.own_jobs() > 0 {
+            ended.extend(each!(&mut self.lanes, lanes => lanes.advance(&mut |_| {})));
+        }
+        ended
     }
 
-    /// Simulated time \[s\] of every job, by its ticket.
+    /// Simulated time \[s\] of every job, by its ticket. That on a coarser mesh counts by its cost.
     pub fn simulated(&self) -> Vec<(u64, f64)> {
-        each!(&self.lanes, lanes => lanes.simulated().collect())
+        let own: Vec<_> = each!(&self.lanes, lanes => lanes.simulated().collect());
+        own.into_iter().chain(self.coarser.iter().flat_map(CoarserBatch::simulated)).collect()
+    }
+}
+
+/// The last byte of the checkpoint of a job on its own mesh.
+const OWN: u8 = 0;
+
+/// The last byte of the checkpoint of a job on the coarser mesh.
+const COARSER: u8 = 1;
+
+/// Turns of a coarser batch in one turn of the batch: they take about the same time.
+const TURNS: usize = 8;
+
+/// Runs a job on its coarser mesh, if it has one. `progress` receives the time \[s\] that it could have simulated meanwhile,
+/// and can interrupt the run.
+///
+/// # Errors
+/// [`JobError::Interrupted`].
+pub fn beginning(
+    spec: &JobSpec,
+    progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
+) -> Result<Beginning, JobError> {
+    let Some(mut coarser) = CoarserBatch::of(spec) else { return Ok(Beginning::REST) };
+    if let Some(ready) = coarser.begin(0, spec.clone(), None) {
+        return Ok(ready.beginning);
+    }
+    loop {
+        if let Some(ready) = coarser.advance().pop() {
+            return Ok(ready.beginning);
+        }
+        let spent_s = coarser.simulated().map(|(_, spent_s)| spent_s).fold(0.0, f64::max);
+        if progress(spent_s).is_break() {
+            return Err(JobError::Interrupted);
+        }
+    }
+}
+
+/// The jobs of a batch that run on the coarser mesh.
+struct CoarserBatch {
+    batch: Box<Batch>,
+    jobs: BTreeMap<u64, Preparing>,
+}
+
+/// A job on the coarser mesh.
+struct Preparing {
+    spec: JobSpec,
+    coarse: JobSpec,
+    /// What the eigenvalues on its own mesh say.
+    stability: Option<SlidingStability>,
+}
+
+/// A job that can begin on its own mesh.
+struct Ready {
+    pub ticket: u64,
+    pub spec: JobSpec,
+    pub stability: Option<SlidingStability>,
+    pub beginning: Beginning,
+}
+
+/// The checkpoint of a job on the coarser mesh.
+#[derive(Serialize, Deserialize)]
+struct Kept {
+    stability: Option<SlidingStability>,
+    coarse: Vec<u8>,
+}
+
+impl CoarserBatch {
+    /// The batch on the coarser mesh of a job; none if the job starts from rest.
+    pub fn of(spec: &JobSpec) -> Option<Self> {
+        let batch = Batch::new(&coarser(spec)?).ok()?;
+        Some(Self { batch: Box::new(batch), jobs: BTreeMap::new() })
+    }
+
+    /// Number of jobs.
+    pub fn jobs(&self) -> usize {
+        self.jobs.len()
+    }
+
+    /// Begins a job. Returns it if the coarser mesh refuses it: it is ready to begin from rest.
+    pub fn begin(
+        &mut self,
+        ticket: u64,
+        spec: JobSpec,
+        stability: Option<SlidingStability>,
+    ) -> Option<Ready> {
+        let job = Preparing { coarse: coarser(&spec)?, spec, stability };
+        match self.batch.begin(ticket, job.coarse.clone()) {
+            Ok(Begun::Runs) => {
+                self.jobs.insert(ticket, job);
+                None
+            }
+            // Nothing decides a coarser job without a run.
+            Ok(Begun::Decided(record)) => {
+                Some(job.ready(Ended { ticket, result: Ok(*record), motion: None }))
+            }
+            Err(error) => Some(job.ready(Ended { ticket, result: Err(error), motion: None })),
+        }
+    }
+
+    /// Advances all jobs and returns those that ended.
+    pub fn advance(&mut self) -> Vec<Ready> {
+        for _ in 0..TURNS {
+            let ended = self.batch.advance();
+            if !ended.is_empty() {
+                let ready = |end: Ended| Some(self.jobs.remove(&end.ticket)?.ready(end));
+                return ended.into_iter().filter_map(ready).collect();
+            }
+        }
+        Vec::new()
+    }
+
+    /// Moves the jobs to as few lanes as possible.
+    pub fn narrow(&mut self) {
+        self.batch.narrow();
+    }
+
+    /// The checkpoint of a job; none if there is no such job.
+    pub fn checkpoint(&self, ticket: u64) -> Option<Vec<u8>> {
+        let stability = self.jobs.get(&ticket)?.stability.clone();
+        let kept = Kept { stability, coarse: self.batch.checkpoint(ticket)? };
+        Some(postcard::to_allocvec(&kept).expect("numbers and their lists have a form in bytes"))
+    }
+
+    /// Continues a job from its [`Self::checkpoint`].
+    pub fn resume(&mut self, ticket: u64, spec: JobSpec, bytes: &[u8]) -> Result<(), Unreadable> {
+        let Kept { stability, coarse: bytes } = postcard::from_bytes(bytes).map_err(|_| Unreadable)?;
+        let job = Preparing { coarse: coarser(&spec).ok_or(Unreadable)?, spec, stability };
+        self.batch.resume(ticket, job.coarse.clone(), &bytes)?;
+        self.jobs.insert(ticket, job);
+        Ok(())
+    }
+
+    /// The time \[s\] of every job, by its ticket, that it could have simulated on its own mesh meanwhile.
+    pub fn simulated(&self) -> impl Iterator<Item = (u64, f64)> + '_ {
+        self.batch.simulated().into_iter().map(|(ticket, simulated_s)| (ticket, COST * simulated_s))
+    }
+}
+
+impl Preparing {
+    fn ready(self, end: Ended) -> Ready {
+        let [from, to] = [&self.coarse, &self.spec].map(|spec| {
+            let pin = &spec.scene.pin;
+            BlockMesh::new(pin.size_m, pin.elements)
+        });
+        let record = end.result.as_ref().ok();
+        let start = CoarseStart {
+            elements: from.elements(),
+            outcome: record.map(|record| record.outcome),
+            simulated_s: record.map_or(0.0, |record| record.simulated_s),
+            mu_star: record.map(|record| record.mu_star),
+            frequency_hz: record.and_then(|record| record.frequency_hz),
+        };
+        let motion = end.motion.filter(|_| start.is_used()).map(|motion| motion.interpolated(&from, &to));
+        let beginning = Beginning { motion, start: Some(start) };
+        Ready { ticket: end.ticket, spec: self.spec, stability: self.stability, beginning }
     }
 }

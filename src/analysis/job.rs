@@ -1,5 +1,6 @@
 //! One job from its specification to its record.
 
+use super::batch::beginning;
 use super::error::JobError;
 use super::lanes::{Lanes, Moment};
 use super::record::JobRecord;
@@ -29,7 +30,8 @@ pub struct Unobserved;
 
 impl JobObserver for Unobserved {}
 
-/// Solves one job. If the eigenvalues of steady sliding decide it, there is no run, and `observer` receives nothing.
+/// Solves one job. If the eigenvalues of steady sliding decide it, there is no run, and `observer` receives nothing. It
+/// receives no steps on a coarser mesh.
 ///
 /// # Errors
 /// If the specification is not physical, the solver refuses it, the run takes too many steps or diverges, a
@@ -42,7 +44,8 @@ pub fn solve(spec: &JobSpec, observer: &mut dyn JobObserver) -> Result<JobRecord
         Verdict::Decided(record) => return Ok(*record),
         Verdict::Undecided(stability) => stability,
     };
-    lanes.begin(0, 0, spec.clone())?;
+    let beginning = beginning(spec, &mut |spent_s| observer.progress(spent_s))?;
+    lanes.begin_from(0, 0, spec.clone(), beginning)?;
     if let Some(stability) = stability {
         lanes.note(0, stability);
     }

@@ -4,6 +4,7 @@ use super::cycles::{Cycle, CycleCutter};
 use super::decay::{self, DecayMonitor};
 use super::figures::Figures;
 use super::lines;
+use super::nested::CoarseStart;
 use super::record::{ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability};
 use super::sample::{OBSERVED_NAMES, Sample};
 use super::steady::{self, SteadyState};
@@ -31,6 +32,8 @@ pub struct LaneAnalysis {
     trailing: Trailing,
     /// The eigenvalues that left the decision to the run, if they were computed.
     stability: Option<SlidingStability>,
+    /// The run on a coarser mesh, if there was one.
+    start: Option<CoarseStart>,
 }
 
 impl LaneAnalysis {
@@ -50,6 +53,7 @@ impl LaneAnalysis {
             late: LateWindow::from((1.0 - spec.run.average_last_fraction) * spec.run.limit_s),
             trailing: Trailing::new(spec.detection.decay_observation_s, model.time_step_s()),
             stability: None,
+            start: None,
             spec,
         }
     }
@@ -57,6 +61,16 @@ impl LaneAnalysis {
     /// Adds the eigenvalues of steady sliding to the record.
     pub fn note(&mut self, stability: SlidingStability) {
         self.stability = Some(stability);
+    }
+
+    /// Adds the run on a coarser mesh to the record.
+    pub fn start_from(&mut self, start: Option<CoarseStart>) {
+        self.start = start;
+    }
+
+    /// The run on a coarser mesh, if there was one.
+    pub fn start(&self) -> Option<&CoarseStart> {
+        self.start.as_ref()
     }
 
     /// Adds the job's specification to an analysis that was read from a checkpoint, which does not contain
@@ -138,6 +152,7 @@ impl LaneAnalysis {
             obstacle: (outcome == Outcome::NotPeriodic)
                 .then(|| steady::obstacle(&self.cycles, &self.spec.detection)),
             stability: self.stability.clone(),
+            start: self.start.clone(),
             disk: model.ring().zip(solves).map(|(body, solves)| elastic_disk(body, solves, steps)),
             energy: totals(energies),
             nodes: observed_nodes(figures),

@@ -9,11 +9,12 @@ use super::checkpoint::{self, Unreadable};
 use super::drive::{IDLE, drive};
 use super::error::{JobError, step_count};
 use super::lane::LaneAnalysis;
-use super::record::{JobRecord, SlidingStability};
+use super::nested::{Beginning, CoarseStart, under_way};
+use super::record::{JobRecord, Outcome, SlidingStability};
 use super::sample::{Sample, Sampler};
 use crate::solver::energy::{Energies, EnergyLedger};
 use crate::solver::lane::LaneState;
-use crate::solver::{Drive, Model, State, guard, step};
+use crate::solver::{Drive, Model, PinMotion, State, guard, step};
 use crate::spec::JobSpec;
 use std::sync::Arc;
 
@@ -68,6 +69,8 @@ pub struct Ended {
     pub ticket: u64,
     /// The job's record, or the reason why it has none.
     pub result: Result<JobRecord, JobError>,
+    /// The motion at its end, if that was a limit cycle.
+    pub motion: Option<PinMotion>,
 }
 
 impl<const L: usize> Lanes<L> {
@@ -136,6 +139,31 @@ impl<const L: usize> Lanes<L> {
         Ok(())
     }
 
+    /// Puts a job into a lane, as [`Lanes::begin`], from what it begins with.
+    ///
+    /// # Errors
+    /// As [`Lanes::begin`].
+    ///
+    /// # Panics
+    /// As [`Lanes::begin`], and if the motion is not one of the lanes' mesh.
+    pub fn begin_from(
+        &mut self,
+        lane: usize,
+        ticket: u64,
+        spec: JobSpec,
+        beginning: Beginning,
+    ) -> Result<(), JobError> {
+        let Beginning { motion, start } = beginning;
+        self.begin(lane, ticket, under_way(spec, start.as_ref()))?;
+        if let Some(motion) = motion {
+            self.state.begin_in_motion(&self.model, lane, &motion);
+        }
+        if let Some(run) = &mut self.runs[lane] {
+            run.analysis.start_from(start);
+        }
+        Ok(())
+    }
+
     /// Adds the eigenvalues that were computed before its run to the record of the job in a lane.
     pub fn note(&mut self, lane: usize, stability: SlidingStability) {
         if let Some(run) = &mut self.runs[lane] {
@@ -159,6 +187,7 @@ impl<const L: usize> Lanes<L> {
         bytes: &[u8],
     ) -> Result<(), Unreadable> {
         let (numbers, analysis) = checkpoint::decode(bytes, self.save(lane).len())?;
+        let spec = under_way(spec, analysis.start());
         self.begin(lane, ticket, spec.clone()).expect("a job that has begun before");
         self.load(lane, &mut numbers.into_iter());
         if let Some(run) = &mut self.runs[lane] {
@@ -196,12 +225,14 @@ impl<const L: usize> Lanes<L> {
         self.drives[lane] = IDLE;
     }
 
-    /// Simulated time \[s\] of every job, by its ticket.
+    /// Simulated time \[s\] of every job, by its ticket. That on a coarser mesh counts by its cost.
     pub fn simulated(&self) -> impl Iterator<Item = (u64, f64)> + '_ {
         let dt = self.model.time_step_s();
         let runs = self.runs.iter().enumerate();
         runs.filter_map(move |(lane, run)| {
-            run.as_ref().map(|run| (run.ticket, self.state.steps_done(lane) as f64 * dt))
+            let run = run.as_ref()?;
+            let spent_s = run.analysis.start().map_or(0.0, CoarseStart::spent_s);
+            Some((run.ticket, spent_s + self.state.steps_done(lane) as f64 * dt))
         })
     }
 
@@ -228,7 +259,11 @@ impl<const L: usize> Lanes<L> {
                         energies: self.ledger.energies(lane),
                     });
                     if let Some(result) = self.result(lane, audited) {
-                        ended.extend(self.runs[lane].take().map(|run| Ended { ticket: run.ticket, result }));
+                        let is_periodic =
+                            result.as_ref().is_ok_and(|record| record.outcome == Outcome::Periodic);
+                        let motion = is_periodic.then(|| self.state.motion_of(&self.model, lane));
+                        let run = self.runs[lane].take();
+                        ended.extend(run.map(|run| Ended { ticket: run.ticket, result, motion }));
                         self.clear(lane);
                     }
                 }

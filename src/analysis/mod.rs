@@ -7,6 +7,7 @@
 //! ```
 //!
 //! Before a run, [`stability`] may decide the job by the eigenvalues of steady sliding. Then there is no run.
+//! A run starts from rest or, in [`nested`], from the limit cycle of a coarser mesh.
 //!
 //! # Definitions
 //! * **μ*** = ⟨T⟩/⟨F⟩ over whole limit cycles. T is the tangential force in y that the clamp carries, F the
@@ -29,6 +30,8 @@ mod job;
 pub mod lane;
 pub mod lanes;
 pub mod lines;
+pub mod nested;
+mod outcome;
 pub mod record;
 pub mod sample;
 pub mod stability;
@@ -41,6 +44,7 @@ pub use drive::drive;
 pub use error::JobError;
 pub use job::{JobObserver, Unobserved, solve};
 pub use lanes::Moment;
+pub use nested::CoarseStart;
 pub use record::{
     ComplexMode, ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
 };

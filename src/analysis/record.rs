@@ -1,53 +1,9 @@
 //! The record of one job: all results of its run.
 
+use super::nested::CoarseStart;
+pub use super::outcome::{Outcome, Regime};
 use super::steady::Obstacle;
 use serde::{Deserialize, Serialize};
-
-/// How a run ended, or what the eigenvalues say about a job without a run.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
-#[serde(rename_all = "snake_case")]
-#[strum(serialize_all = "snake_case")]
-pub enum Outcome {
-    /// A periodic steady state was reached.
-    Periodic,
-    /// The oscillation decays at a measured negative growth rate: sliding is stable.
-    Decayed,
-    /// The run reached its time limit first. The figures are averages over the last part of the run.
-    NotPeriodic,
-    /// A mode of steady sliding grows, and there was no run. The figures are those of steady sliding.
-    Unstable,
-}
-
-impl Outcome {
-    /// The name used in tables and CSV.
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-}
-
-/// The contact regime, from the shares of node-time spent in each state over whole cycles.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, strum::IntoStaticStr)]
-#[serde(rename_all = "snake_case")]
-#[strum(serialize_all = "snake_case")]
-pub enum Regime {
-    /// All nodes in contact slip, and the oscillation decays.
-    Stable,
-    /// Stick and slip, (almost) no separation.
-    StickSlip,
-    /// Stick, slip and separation.
-    StickSlipSeparation,
-    /// Slip and separation, (almost) no stick.
-    SlipSeparation,
-    /// (Almost) all nodes slip, but neither a decay nor a limit cycle was established.
-    Undecided,
-}
-
-impl Regime {
-    /// The name used in tables and CSV.
-    pub fn name(self) -> &'static str {
-        self.into()
-    }
-}
 
 /// Energies \[J\] of a run: those stored at its end, and the work and the losses since its start.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
@@ -281,6 +237,9 @@ pub struct JobRecord {
     /// The eigenvalues of steady sliding; none if they were not computed.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stability: Option<SlidingStability>,
+    /// The run on a coarser mesh from which this one started; none if there was none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub start: Option<CoarseStart>,
     /// The elastic disk; none if the disk is rigid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disk: Option<ElasticDisk>,
@@ -338,6 +297,7 @@ impl JobRecord {
             growth_rate_per_s,
             obstacle,
             stability,
+            start,
             disk,
             energy,
             nodes,
@@ -375,6 +335,9 @@ impl JobRecord {
         if let Some(stability) = stability {
             let own = stability.figures();
             figures.extend(own.map(|(path, value)| (format!("stability.{path}"), value)));
+        }
+        if let Some(start) = start {
+            figures.extend(start.figures().map(|(path, value)| (format!("start.{path}"), value)));
         }
         if let Some(disk) = disk {
             figures.extend(disk.figures().map(|(path, value)| (format!("disk.{path}"), value)));
@@ -455,6 +418,7 @@ mod tests {
                     is_converged: true,
                 }],
             }),
+            start: Some(CoarseStart::of_tests()),
             disk: Some(disk),
             energy: EnergyTotals::default(),
             nodes: vec![node.clone(), node],

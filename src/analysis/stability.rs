@@ -232,6 +232,7 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
         growth_rate_per_s: point.modes.first().map(growth),
         obstacle: None,
         stability: Some(stability),
+        start: None,
         disk: model.ring().map(|body| elastic_disk(body, &Solves::default(), 1)),
         energy: EnergyTotals::default(),
         nodes: observed.map(|(name, slave)| observed_node(name, &nodes[slave])).collect(),

@@ -57,7 +57,7 @@ const TITLES: [(&str, &str); 28] = [
 
 /// Whether a column has the numbers of runs: neither text, nor what only some runs that are not periodic have.
 fn is_scalar(column: &Column) -> bool {
-    let is_text = matches!(&*column.name, "regime" | "decided_by");
+    let is_text = matches!(&*column.name, "regime" | "decided_by" | "start_outcome");
     column.group != columns::Group::Job && !is_text && !column.name.starts_with("obstacle")
 }
 

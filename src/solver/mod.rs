@@ -14,6 +14,7 @@
 //! * [`interface`] – contact: slave nodes, friction laws, targets, and the two contact solves.
 //! * [`scheme`] – the β₂ method and its stability limit, from which the time step follows.
 //! * [`energy`] – the balance, a sum over bodies, supports and the interface. [`guard`] stops a run that diverges.
+//! * [`PinMotion`] – the motion of a pin on another mesh, with which a run can begin.
 //! * [`field`] and [`lane`] – nodal vectors of all lanes; a lane as a list of numbers.
 //!
 //! # Conventions
@@ -44,6 +45,7 @@ pub(crate) mod simd;
 mod state;
 mod step;
 pub mod support;
+mod transfer;
 
 pub use drive::Drive;
 pub use error::SolverError;
@@ -51,6 +53,7 @@ pub use model::{Model, ModelDefinition};
 pub use scheme::TimeStep;
 pub use state::State;
 pub use step::step;
+pub use transfer::PinMotion;
 
 /// Version of everything that can change the bits of a result. It is part of every job's key. Raise it with any
 /// change of the scheme, of the operator's rounding, of the analysis, or of the eigenvalues of steady sliding.

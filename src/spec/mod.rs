@@ -23,7 +23,7 @@ mod stability;
 pub(crate) use check::short;
 pub use check::{FieldError, Violations};
 pub use detection::Detection;
-pub use numerics::{Numerics, RunControl};
+pub use numerics::{Numerics, RunControl, Start};
 pub use pin::Pin;
 pub use ring::{DiskTimeStep, Ring, TargetSurface};
 pub use scene::{Clamp, ClampSide, Contact, Disk, DiskKind, Load, Scene, TopFace};
@@ -118,6 +118,13 @@ impl JobSpec {
                 "numerics.beta2",
                 self.numerics.beta2,
                 "0.5 with an elastic disk, whose energies are kept for the central difference only; damp with beta_r_s",
+            );
+        }
+        if self.run.start != Start::Rest {
+            found.add(
+                "run.start",
+                self.run.start.name(),
+                "rest with an elastic disk, whose motion is not carried over from one mesh to another",
             );
         }
     }

@@ -3,6 +3,7 @@
 use super::check::Violations;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use strum::IntoStaticStr;
 
 /// The β₂ integrator, its damping and its time step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -50,7 +51,27 @@ impl Numerics {
     }
 }
 
-/// How long a run lasts and what it averages over.
+/// What state a run starts from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema, IntoStaticStr)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum Start {
+    /// The pin is at rest and undeformed, and the load rises.
+    #[default]
+    Rest,
+    /// The limit cycle that the same scene reaches on a mesh of half as many elements in each direction. The run starts from
+    /// rest if there is no such cycle. If two limit cycles are possible, the run may reach another one than from rest.
+    Nested,
+}
+
+impl Start {
+    /// The name used in study files, for example `nested`.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+}
+
+/// How long a run lasts, what it starts from and what it averages over.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct RunControl {
@@ -61,11 +82,13 @@ pub struct RunControl {
     pub stop_early: bool,
     /// A run that ends at `limit_s` averages over this last fraction of it.
     pub average_last_fraction: f64,
+    /// What state the run starts from.
+    pub start: Start,
 }
 
 impl Default for RunControl {
     fn default() -> Self {
-        Self { limit_s: 0.04, stop_early: true, average_last_fraction: 0.4 }
+        Self { limit_s: 0.04, stop_early: true, average_last_fraction: 0.4, start: Start::Rest }
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::json::encode;
 use crate::spec::{
-    Clamp, ClampSide, Detection, DiskKind, JobSpec, Load, Numerics, RunControl, StabilityMethod,
+    Clamp, ClampSide, Detection, DiskKind, JobSpec, Load, Numerics, RunControl, StabilityMethod, Start,
 };
 use serde_json::Value;
 use std::collections::VecDeque;
@@ -46,6 +46,12 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
         && let Some(job) = job.as_object_mut()
     {
         job.remove("stability");
+    }
+    // Likewise for runs that start from rest.
+    if spec.run.start == Start::Rest
+        && let Some(run) = job.pointer_mut("/run").and_then(Value::as_object_mut)
+    {
+        run.remove("start");
     }
     // The version cannot be confused with the job's text: it is quoted, and the job begins with a brace.
     let mut text = Value::from(solver_version).to_string();

@@ -2,7 +2,7 @@
 
 use super::preset::Preset;
 use super::suggest;
-use crate::spec::{ClampSide, DiskKind, DiskTimeStep, StabilityMethod, TargetSurface, TopFace};
+use crate::spec::{ClampSide, DiskKind, DiskTimeStep, StabilityMethod, Start, TargetSurface, TopFace};
 use schemars::{Schema, SchemaGenerator};
 use serde_json::{Map, Value};
 
@@ -45,6 +45,7 @@ const DISK_KIND: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskKind>);
 const TARGET: Kind = Kind::Name(SchemaGenerator::subschema_for::<TargetSurface>);
 const PRESET: Kind = Kind::Name(SchemaGenerator::subschema_for::<Preset>);
 const STABILITY: Kind = Kind::Name(SchemaGenerator::subschema_for::<StabilityMethod>);
+const START: Kind = Kind::Name(SchemaGenerator::subschema_for::<Start>);
 const DISK_TIME_STEP: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskTimeStep>);
 
 /// All parameters, in the order in which help and messages list them.
@@ -91,6 +92,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("limit_s", "/run/limit_s", Kind::Number, "simulated time after which a run ends [s]"),
     parameter("stop_early", "/run/stop_early", Kind::Flag, "stop once periodic or decayed [true or false]"),
     parameter("average_last_fraction", "/run/average_last_fraction", Kind::Number, "last fraction of the run that is averaged [-]"),
+    parameter("start", "/run/start", START, "whether a run starts from rest or from the limit cycle of a coarser mesh [name]"),
     parameter("cycles", "/detection/cycles", Kind::Count, "consecutive limit cycles that must repeat [-]"),
     parameter("tolerance", "/detection/tolerance", Kind::Number, "largest spread of a per-cycle figure over them [-]"),
     parameter("drift_tolerance", "/detection/drift_tolerance", Kind::Number, "largest drift of its mean between their halves [-]"),

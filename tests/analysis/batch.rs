@@ -3,8 +3,8 @@
 use crate::signals::coarse;
 use std::collections::BTreeMap;
 use tribosweep::analysis::batch::Batch;
-use tribosweep::analysis::{Unobserved, solve};
-use tribosweep::spec::{DiskKind, JobSpec};
+use tribosweep::analysis::{CoarseStart, Unobserved, solve};
+use tribosweep::spec::{DiskKind, JobSpec, Start};
 
 /// Jobs of one model. They differ in everything that may differ: friction, speed, load, ramp, length, and
 /// early stop.
@@ -34,6 +34,21 @@ fn jobs(disk: DiskKind) -> Vec<JobSpec> {
         .collect()
 }
 
+/// Jobs that start from a limit cycle of a coarser mesh, or find none there, beside jobs that start from rest. Their detection is
+/// so tolerant that most of them soon end as periodic.
+fn nested_jobs() -> Vec<JobSpec> {
+    let mut jobs = jobs(DiskKind::Rigid);
+    for (i, job) in jobs.iter_mut().enumerate() {
+        job.scene.pin.elements = [11, 12, 11];
+        job.run.start = if i % 4 == 1 { Start::Rest } else { Start::Nested };
+        job.run.limit_s = 0.002 + 1.0e-4 * i as f64;
+        job.detection.cycles = 4;
+        job.detection.tolerance = 0.3;
+        job.detection.drift_tolerance = 0.2;
+    }
+    jobs
+}
+
 fn alone(job: &JobSpec) -> String {
     serde_json::to_string(&solve(job, &mut Unobserved).unwrap()).unwrap()
 }
@@ -42,17 +57,28 @@ fn alone(job: &JobSpec) -> String {
 /// are in the middle of their runs. They move to more lanes when others begin, and to fewer when others end.
 #[test]
 fn companions_change_nothing() {
-    companions_change_nothing_on(DiskKind::Rigid);
+    companions_change_nothing_in(&jobs(DiskKind::Rigid));
 }
 
 /// Protects: the same on an elastic disk. Lanes of different speed have their pins at different places on it.
 #[test]
 fn companions_change_nothing_on_an_elastic_disk() {
-    companions_change_nothing_on(DiskKind::Elastic);
+    companions_change_nothing_in(&jobs(DiskKind::Elastic));
 }
 
-fn companions_change_nothing_on(disk: DiskKind) {
-    let jobs = jobs(disk);
+/// Protects: the same if jobs first run on a coarser mesh, and come from there to their own mesh while others run on it.
+#[test]
+fn companions_change_nothing_after_a_coarser_mesh() {
+    let jobs = nested_jobs();
+    companions_change_nothing_in(&jobs);
+    let starts: Vec<_> = jobs.iter().map(|job| solve(job, &mut Unobserved).unwrap().start).collect();
+    let is_used = |start: &Option<CoarseStart>| start.as_ref().map(CoarseStart::is_used);
+    for expected in [None, Some(false), Some(true)] {
+        assert!(starts.iter().any(|start| is_used(start) == expected), "{expected:?} in {starts:?}");
+    }
+}
+
+fn companions_change_nothing_in(jobs: &[JobSpec]) {
     let mut batch = Batch::new(&jobs[0]).unwrap();
     assert_eq!(batch.widest(), 8, "a small mesh");
     let mut found = BTreeMap::new();
@@ -84,22 +110,41 @@ fn companions_change_nothing_on(disk: DiskKind) {
 /// decay monitor, averages) continues, too.
 #[test]
 fn a_resumed_job_has_the_same_bits() {
-    resumed_jobs_have_the_same_bits(DiskKind::Rigid);
+    resumed_jobs_have_the_same_bits(&observed(DiskKind::Rigid), &[0, 2, 3, 7]);
+    assert!(alone(&observed(DiskKind::Rigid)[3]).contains("decayed"), "the watch for a decay was among it");
 }
 
 /// Protects: the same on an elastic disk, whose state is part of the checkpoint.
 #[test]
 fn a_resumed_job_on_an_elastic_disk_has_the_same_bits() {
-    resumed_jobs_have_the_same_bits(DiskKind::Elastic);
+    resumed_jobs_have_the_same_bits(&observed(DiskKind::Elastic), &[0, 2, 3, 7]);
+    assert!(alone(&observed(DiskKind::Elastic)[3]).contains("decayed"), "the watch for a decay was among it");
 }
 
-fn resumed_jobs_have_the_same_bits(disk: DiskKind) {
+/// Protects: the same if the job is on a coarser mesh, or has come from there; also if that mesh is reached from one that is
+/// still coarser.
+#[test]
+fn a_resumed_job_after_coarser_meshes_has_the_same_bits() {
+    let mut jobs = nested_jobs();
+    resumed_jobs_have_the_same_bits(&jobs, &[0, 3]);
+    for job in &mut jobs {
+        job.scene.pin.elements = [21, 21, 21];
+        job.numerics.beta2 = 0.5;
+    }
+    resumed_jobs_have_the_same_bits(&jobs, &[2]);
+}
+
+/// Jobs of which one is found stable after an observation that is interrupted.
+fn observed(disk: DiskKind) -> Vec<JobSpec> {
     let mut jobs = jobs(disk);
-    // This job is found stable after an observation that is interrupted.
     jobs[3].detection.decay_observation_s = 0.0026;
     jobs[3].run.limit_s = 0.012;
     jobs[3].scene.contact.mu = 0.2;
-    for job in [0, 2, 3, 7] {
+    jobs
+}
+
+fn resumed_jobs_have_the_same_bits(jobs: &[JobSpec], resumed: &[usize]) {
+    for &job in resumed {
         let mut records = Vec::new();
         for pause in [1, 5, 13] {
             let mut batch = Batch::new(&jobs[job]).unwrap();
@@ -130,7 +175,6 @@ fn resumed_jobs_have_the_same_bits(disk: DiskKind) {
         let whole = alone(&jobs[job]);
         assert!(records.iter().all(|record| *record == whole), "job {job}");
     }
-    assert!(alone(&jobs[3]).contains("decayed"), "the watch for a decay was among it");
 }
 
 /// Protects: a checkpoint of another model is refused, and the batch can still run the job from its
@@ -156,6 +200,20 @@ fn a_foreign_checkpoint_is_refused() {
         ended = batch.advance();
     }
     assert_eq!(serde_json::to_string(&ended.remove(0).result.unwrap()).unwrap(), alone(&job));
+}
+
+/// Protects: a checkpoint on the coarser mesh is refused for a job that starts from rest.
+#[test]
+fn a_checkpoint_of_another_start_is_refused() {
+    let nested = nested_jobs().remove(0);
+    let mut rest = nested.clone();
+    rest.run.start = Start::Rest;
+    let mut batch = Batch::new(&nested).unwrap();
+    batch.begin(1, nested).unwrap();
+    batch.advance();
+    let kept = batch.checkpoint(1).unwrap();
+    batch.resume(2, rest, &kept).unwrap_err();
+    assert_eq!(batch.jobs(), 1);
 }
 
 /// Protects: a job that is refused at its beginning ends with the same error as alone, and its lane is free

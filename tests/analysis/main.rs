@@ -7,6 +7,7 @@ mod figures;
 mod frequency;
 mod identities;
 mod interruption;
+mod nested;
 mod on_elastic_disk;
 #[path = "../support/random.rs"]
 mod random;

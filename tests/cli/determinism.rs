@@ -20,6 +20,36 @@ fn threads_change_no_byte() {
     assert_eq!(export(5), one);
 }
 
+/// Protects: the same for jobs that start from the limit cycle of a coarser mesh. `show` and the export say what they started
+/// from.
+#[test]
+fn threads_change_no_byte_after_a_coarser_mesh() {
+    let study = json!({
+        "name": "nested",
+        "scene": { "pin": { "elements": [12, 12, 11] }, "clamp": { "width_m": 0.002 } },
+        "run": { "limit_s": 0.004 },
+        "detection": { "cycles": 4, "tolerance": 0.3, "drift_tolerance": 0.2 },
+        "grid": { "mu": [0.1, 0.4], "omega_rpm": [7, 20], "start": ["rest", "nested"] }
+    });
+    let export = |threads: usize| {
+        let folder = Folder::with("nested", &study);
+        folder.ok(&format!("run nested.json --threads {threads}"));
+        let all = folder.ok("export nested --all");
+        for row in rows(&all) {
+            let shown = folder.ok(&format!("show {}", row["job"]));
+            let is_nested = row["start"] == "nested";
+            assert_eq!(
+                (!row["start_outcome"].is_empty(), shown.contains("start_outcome")),
+                (is_nested, is_nested)
+            );
+        }
+        without_wall_times(&folder.ok("export nested"))
+    };
+    let one = export(1);
+    assert_eq!(rows(&one).len(), 8);
+    assert_eq!(export(3), one);
+}
+
 /// Protects: a job's figures do not depend on which other jobs are in the study, nor in which order.
 #[test]
 fn other_jobs_change_no_byte() {

@@ -4,7 +4,7 @@ use crate::synthetic::{record, row};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use tribosweep::analysis::{
-    ComplexMode, ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Obstacle, Outcome, Regime,
+    CoarseStart, ComplexMode, ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Obstacle, Outcome, Regime,
     SlidingStability,
 };
 use tribosweep::report::columns::{Column, InputColumn, all, plain};
@@ -22,6 +22,13 @@ fn full(obstacle: Obstacle) -> JobRecord {
     JobRecord {
         growth_rate_per_s: Some(-200.0),
         obstacle: Some(obstacle),
+        start: Some(CoarseStart {
+            elements: [1, 2, 3],
+            outcome: Some(Outcome::Periodic),
+            simulated_s: 0.0,
+            mu_star: Some(0.0),
+            frequency_hz: Some(0.0),
+        }),
         disk: Some(ElasticDisk {
             elements: [1, 2, 3],
             track_element_m: [0.0; 3],

@@ -76,6 +76,7 @@ pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
         growth_rate_per_s: None,
         obstacle: None,
         stability: None,
+        start: None,
         disk: None,
         energy: EnergyTotals::default(),
         nodes: Vec::new(),

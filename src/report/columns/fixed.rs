@@ -2,7 +2,9 @@
 
 use super::{Column, Group};
 use crate::analysis::sample::OBSERVED_NAMES;
-use crate::analysis::{ComplexMode, ElasticDisk, JobRecord, ObservedNode, Obstacle, SlidingStability};
+use crate::analysis::{
+    CoarseStart, ComplexMode, ElasticDisk, JobRecord, ObservedNode, Obstacle, Outcome, SlidingStability,
+};
 use crate::publish::value::number;
 use crate::report::row::{JobRow, RowState};
 use Group::{Contact, Disk, Energies, Job, Nodes, Residuals, Result, Run, Stability};
@@ -40,7 +42,7 @@ pub static PLAIN: [Column; 25] = [
 
 /// The rest of the record.
 #[rustfmt::skip]
-pub static FURTHER: [Column; 50] = [
+pub static FURTHER: [Column; 57] = [
     Column::of_row("growth_rate_per_s", "1/s", Result, "growth rate of the fastest growing strong line, if the run ended in steady sliding, and of the leading mode without a run; negative: sliding is stable", |row| of(row, |record| record.growth_rate_per_s)),
     Column::of_row("obstacle", "", Result, "why the run is not periodic", |row| of(row, |record| record.obstacle.as_ref().map(in_words))),
     Column::of_row("obstacle_figure", "", Result, "the figure that is not the same from cycle to cycle", |row| unsteady(row, |figure, _, _| figure.into())),
@@ -65,6 +67,13 @@ pub static FURTHER: [Column; 50] = [
     Column::of_row("crossings_per_cycle", "", Run, "section crossings that make up one limit cycle", |row| of(row, |record| record.crossings_per_cycle)),
     Column::of_row("time_step_limit_s", "s", Run, "stability limit of the time step", |row| of(row, |record| record.time_step_limit_s)),
     Column::of_row("clamp_width_on_mesh_m", "m", Run, "width of the clamp's strip on the mesh, which may differ from the given one", |row| of(row, |record| record.clamp_width_m)),
+    Column::of_row("start_outcome", "", Run, "how the run on a coarser mesh ended, from which the run was to start: periodic, and otherwise it started from rest", |row| start(row, coarse_outcome)),
+    Column::of_row("start_elements_x", "", Run, "elements of the coarser mesh in x", |row| start(row, |start| start.elements[0])),
+    Column::of_row("start_elements_y", "", Run, "elements of the coarser mesh in y", |row| start(row, |start| start.elements[1])),
+    Column::of_row("start_elements_z", "", Run, "elements of the coarser mesh in z", |row| start(row, |start| start.elements[2])),
+    Column::of_row("start_simulated_s", "s", Run, "simulated time on the coarser mesh, which simulated_s does not contain", |row| start(row, |start| start.simulated_s)),
+    Column::of_row("start_mu_star", "", Run, "μ* on the coarser mesh", |row| start(row, |start| start.mu_star)),
+    Column::of_row("start_frequency_hz", "Hz", Run, "fundamental frequency on the coarser mesh", |row| start(row, |start| start.frequency_hz)),
     Column::of_row("energy_kinetic_j", "J", Energies, "kinetic energy at the end of the run", |row| of(row, |record| record.energy.kinetic_j)),
     Column::of_row("energy_elastic_j", "J", Energies, "elastic energy at the end of the run", |row| of(row, |record| record.energy.elastic_j)),
     Column::of_row("energy_load_work_j", "J", Energies, "work of the load since the start", |row| of(row, |record| record.energy.load_work_j)),
@@ -129,6 +138,15 @@ fn sliding<T: Into<Value>>(row: &JobRow, read: impl FnOnce(&SlidingStability) ->
 
 fn mode(row: &JobRow, read: impl FnOnce(&ComplexMode) -> f64) -> Value {
     of(row, |record| record.stability.as_ref().and_then(|sliding| sliding.modes.first()).map(read))
+}
+
+fn start<T: Into<Value>>(row: &JobRow, read: impl FnOnce(&CoarseStart) -> T) -> Value {
+    of(row, |record| record.start.as_ref().map(read))
+}
+
+/// The name of the outcome on the coarser mesh.
+fn coarse_outcome(start: &CoarseStart) -> &'static str {
+    start.outcome.map_or("failed", Outcome::name)
 }
 
 fn disk<T: Into<Value>>(row: &JobRow, read: impl FnOnce(&ElasticDisk) -> T) -> Value {
