@@ -23,7 +23,7 @@ mod stability;
 pub(crate) use check::short;
 pub use check::{FieldError, Violations};
 pub use detection::Detection;
-pub use numerics::{Numerics, RunControl};
+pub use numerics::{Numerics, Precision, RunControl};
 pub use pin::Pin;
 pub use ring::{DiskTimeStep, Ring, TargetSurface};
 pub use scene::{Clamp, ClampSide, Contact, Disk, DiskKind, Load, Scene, TopFace};
@@ -89,8 +89,8 @@ impl JobSpec {
         found.into_result()
     }
 
-    /// Limits that an elastic disk sets: its mesh is fine only where the pin passes, and its energy balance holds for
-    /// the central difference only.
+    /// Limits that an elastic disk sets: its mesh is fine only where the pin passes, its energy balance holds for the
+    /// central difference only, and it has double precision only.
     fn check_elastic_disk(&self, found: &mut Violations) {
         let swept_deg = self.scene.disk.omega_rpm * 6.0 * self.run.limit_s;
         let arc_deg = self.scene.disk.ring.track_arc_deg;
@@ -111,6 +111,13 @@ impl JobSpec {
                 "numerics.beta2",
                 self.numerics.beta2,
                 "0.5 with an elastic disk, whose energies are kept for the central difference only; damp with beta_r_s",
+            );
+        }
+        if self.numerics.precision == Precision::Single {
+            found.add(
+                "numerics.precision",
+                self.numerics.precision.name(),
+                "double with an elastic disk; single precision is for rigid disks",
             );
         }
     }

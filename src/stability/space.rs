@@ -166,12 +166,12 @@ impl Space {
 /// The stiffness of the pin with its scratch memory.
 pub struct Elasticity<'a> {
     model: &'a Model,
-    scratch: Scratch<LANES>,
+    scratch: Scratch,
 }
 
 impl<'a> Elasticity<'a> {
     pub fn new(model: &'a Model) -> Self {
-        Self { model, scratch: Scratch::new(model.mesh()) }
+        Self { model, scratch: Scratch::new(model.mesh(), LANES) }
     }
 
     /// y = K x, reactions of constraints included.

@@ -4,11 +4,11 @@ use crate::signals::coarse;
 use std::collections::BTreeMap;
 use tribosweep::analysis::batch::Batch;
 use tribosweep::analysis::{Unobserved, solve};
-use tribosweep::spec::{DiskKind, JobSpec};
+use tribosweep::spec::{DiskKind, JobSpec, Precision};
 
 /// Jobs of one model. They differ in everything that may differ: friction, speed, load, ramp, length, and
 /// early stop.
-fn jobs(disk: DiskKind) -> Vec<JobSpec> {
+fn jobs(disk: DiskKind, precision: Precision) -> Vec<JobSpec> {
     (0..11)
         .map(|i| {
             let mut job = coarse();
@@ -19,6 +19,7 @@ fn jobs(disk: DiskKind) -> Vec<JobSpec> {
             job.run.limit_s = 0.001 * (2 + i % 5) as f64 + 1.7e-5 * i as f64;
             job.run.stop_early = i % 2 == 0;
             job.scene.disk.kind = disk;
+            job.numerics.precision = precision;
             match disk {
                 DiskKind::Rigid => job.numerics.beta2 = 0.6,
                 // The bits of a few elements are as hard to keep as those of many. The faster jobs pass edges.
@@ -42,17 +43,23 @@ fn alone(job: &JobSpec) -> String {
 /// are in the middle of their runs. They move to more lanes when others begin, and to fewer when others end.
 #[test]
 fn companions_change_nothing() {
-    companions_change_nothing_on(DiskKind::Rigid);
+    companions_change_nothing_on(DiskKind::Rigid, Precision::Double);
+}
+
+/// Protects: the same in single precision, where a vector holds the nodes of twice as many lanes.
+#[test]
+fn companions_change_nothing_in_single_precision() {
+    companions_change_nothing_on(DiskKind::Rigid, Precision::Single);
 }
 
 /// Protects: the same on an elastic disk. Lanes of different speed have their pins at different places on it.
 #[test]
 fn companions_change_nothing_on_an_elastic_disk() {
-    companions_change_nothing_on(DiskKind::Elastic);
+    companions_change_nothing_on(DiskKind::Elastic, Precision::Double);
 }
 
-fn companions_change_nothing_on(disk: DiskKind) {
-    let jobs = jobs(disk);
+fn companions_change_nothing_on(disk: DiskKind, precision: Precision) {
+    let jobs = jobs(disk, precision);
     let mut batch = Batch::new(&jobs[0]).unwrap();
     assert_eq!(batch.widest(), 8, "a small mesh");
     let mut found = BTreeMap::new();
@@ -84,17 +91,23 @@ fn companions_change_nothing_on(disk: DiskKind) {
 /// decay monitor, averages) continues, too.
 #[test]
 fn a_resumed_job_has_the_same_bits() {
-    resumed_jobs_have_the_same_bits(DiskKind::Rigid);
+    resumed_jobs_have_the_same_bits(DiskKind::Rigid, Precision::Double);
+}
+
+/// Protects: the same in single precision. Checkpoints hold f64, in which every f32 is exact.
+#[test]
+fn a_resumed_job_in_single_precision_has_the_same_bits() {
+    resumed_jobs_have_the_same_bits(DiskKind::Rigid, Precision::Single);
 }
 
 /// Protects: the same on an elastic disk, whose state is part of the checkpoint.
 #[test]
 fn a_resumed_job_on_an_elastic_disk_has_the_same_bits() {
-    resumed_jobs_have_the_same_bits(DiskKind::Elastic);
+    resumed_jobs_have_the_same_bits(DiskKind::Elastic, Precision::Double);
 }
 
-fn resumed_jobs_have_the_same_bits(disk: DiskKind) {
-    let mut jobs = jobs(disk);
+fn resumed_jobs_have_the_same_bits(disk: DiskKind, precision: Precision) {
+    let mut jobs = jobs(disk, precision);
     // This job is found stable after an observation that is interrupted.
     jobs[3].detection.decay_observation_s = 0.0026;
     jobs[3].run.limit_s = 0.012;
@@ -193,4 +206,5 @@ fn jobs_of_other_models_are_not_taken() {
     assert!(!changed(|job| job.scene.disk.track_radius_m = 0.08));
     assert!(!changed(|job| job.scene.clamp.width_m *= 0.9));
     assert!(!changed(|job| job.numerics.beta_r_s = 0.0));
+    assert!(!changed(|job| job.numerics.precision = Precision::Single));
 }

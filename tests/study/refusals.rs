@@ -422,6 +422,11 @@ fn disks_that_do_not_fit_are_refused() {
             vec!["ring.track_arc_deg = 10", "at least 24.0000", "100 rpm", "limit_s = 0.04"],
         ),
         ("", r#", "numerics": { "beta2": 0.6 }"#, vec!["numerics.beta2 = 0.6", "0.5 with an elastic disk"]),
+        (
+            "",
+            r#", "numerics": { "precision": "single" }"#,
+            vec!["numerics.precision = single: expected double with an elastic disk"],
+        ),
         (r#""elements": [1, 2, 3]"#, "", vec!["scene.disk.ring.elements", "no such field"]),
     ] {
         assert_contains(&refusal(&ring("elastic", values, rest)), &expected);
@@ -429,7 +434,11 @@ fn disks_that_do_not_fit_are_refused() {
     // One element beyond the pin on either side is enough, and so is an arc exactly as long as the swept one.
     parse(&ring("elastic", r#""inner_radius_m": 0.0829, "outer_radius_m": 0.100189"#, ""));
     parse(&ring("elastic", r#""track_arc_deg": 24"#, r#", "grid": { "omega_rpm": [100] }"#));
-    parse(&ring("rigid", r#""inner_radius_m": 0.09"#, r#", "numerics": { "beta2": 0.6 }"#));
+    parse(&ring(
+        "rigid",
+        r#""inner_radius_m": 0.09"#,
+        r#", "numerics": { "beta2": 0.6, "precision": "single" }"#,
+    ));
 }
 
 /// Protects: a report's axes are parameters, and a misspelt one is refused at its place with a suggestion.
