@@ -105,7 +105,7 @@ fn mesh<const L: usize>(elements: [usize; 3], machine: &Machine) -> MeshCase {
     settle(&spec, || (0..STEPS).for_each(|_| step(&model, &drives, &mut state)));
     let x = state.u.clone();
     let mut y = state.u.clone();
-    let mut scratch = Scratch::new(model.mesh());
+    let mut scratch = Scratch::new(model.mesh(), L);
     let product_s = seconds(&name("product"), || model.pin().operator().product(&x, &mut y, &mut scratch));
     let step_s = seconds(&name("step"), || step(&model, &drives, &mut state));
     let mut lanes = lanes::<L>(&spec, L);
@@ -247,7 +247,7 @@ fn round_of_pairs() -> Vec<Pair> {
     ];
     let x = state.u.clone();
     let mut y = state.u.clone();
-    let mut scratch = Scratch::new(model.mesh());
+    let mut scratch = Scratch::new(model.mesh(), 8);
     let [assembled, tensor] = forms.map(|(name, operator)| {
         per_node(&model, 8, 1, seconds(name, || operator.product(&x, &mut y, &mut scratch)))
     });

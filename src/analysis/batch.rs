@@ -2,14 +2,14 @@
 
 use super::checkpoint::Unreadable;
 use super::error::JobError;
-use super::lanes::{Ended, Lanes};
+use super::lanes::{Ended, LanesOf};
 use super::nested::{Beginning, COST, CoarseStart, coarser};
 use super::record::{JobRecord, SlidingStability};
 use super::stability::{Structures, Verdict, judge};
 use super::workload::Workload;
-use crate::solver::Model;
 use crate::solver::body::block::BlockMesh;
-use crate::spec::{JobSpec, Start};
+use crate::solver::{Model, RunNumber};
+use crate::spec::{JobSpec, Precision, Start};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -38,31 +38,71 @@ pub enum Begun {
 }
 
 enum AnyLanes {
-    One(Box<Lanes<1>>),
-    Two(Box<Lanes<2>>),
-    Four(Box<Lanes<4>>),
-    Eight(Box<Lanes<8>>),
+    Double(LanesIn<f64>),
+    Single(LanesIn<f32>),
+}
+
+/// Lanes in one precision.
+enum LanesIn<R: RunNumber> {
+    One(Box<LanesOf<1, R>>),
+    Two(Box<LanesOf<2, R>>),
+    Four(Box<LanesOf<4, R>>),
+    Eight(Box<LanesOf<8, R>>),
+}
+
+/// Calls the same method for every number of lanes in one precision.
+macro_rules! each_in {
+    ($lanes:expr, $of:ident => $call:expr) => {
+        match $lanes {
+            LanesIn::One($of) => $call,
+            LanesIn::Two($of) => $call,
+            LanesIn::Four($of) => $call,
+            LanesIn::Eight($of) => $call,
+        }
+    };
 }
 
 /// Calls the same method for every number of lanes.
 macro_rules! each {
     ($lanes:expr, $of:ident => $call:expr) => {
         match $lanes {
-            AnyLanes::One($of) => $call,
-            AnyLanes::Two($of) => $call,
-            AnyLanes::Four($of) => $call,
-            AnyLanes::Eight($of) => $call,
+            AnyLanes::Double(lanes) => each_in!(lanes, $of => $call),
+            AnyLanes::Single(lanes) => each_in!(lanes, $of => $call),
         }
     };
 }
 
 impl AnyLanes {
-    fn taken_over<const L: usize>(from: &mut Lanes<L>, lanes: usize) -> Self {
+    fn new(model: Model, precision: Precision) -> Self {
+        let model = Arc::new(model);
+        match precision {
+            Precision::Double => Self::Double(LanesIn::One(Box::new(LanesOf::new(model)))),
+            Precision::Single => Self::Single(LanesIn::One(Box::new(LanesOf::new(model)))),
+        }
+    }
+
+    /// Moves the jobs to this number of lanes.
+    fn fit(&mut self, lanes: usize) {
+        match self {
+            Self::Double(now) => now.fit(lanes),
+            Self::Single(now) => now.fit(lanes),
+        }
+    }
+}
+
+impl<R: RunNumber> LanesIn<R> {
+    fn fit(&mut self, lanes: usize) {
+        if each_in!(self, now => now.lanes()) != lanes {
+            *self = each_in!(self, from => Self::taken_over(from, lanes));
+        }
+    }
+
+    fn taken_over<const L: usize>(from: &mut LanesOf<L, R>, lanes: usize) -> Self {
         match lanes {
-            1 => Self::One(Box::new(Lanes::taken_over(from))),
-            2 => Self::Two(Box::new(Lanes::taken_over(from))),
-            4 => Self::Four(Box::new(Lanes::taken_over(from))),
-            _ => Self::Eight(Box::new(Lanes::taken_over(from))),
+            1 => Self::One(Box::new(LanesOf::taken_over(from))),
+            2 => Self::Two(Box::new(LanesOf::taken_over(from))),
+            4 => Self::Four(Box::new(LanesOf::taken_over(from))),
+            _ => Self::Eight(Box::new(LanesOf::taken_over(from))),
         }
     }
 }
@@ -87,7 +127,7 @@ impl Batch {
         Ok(Self {
             shared: spec.shared_part(),
             widest: Workload::of(&model).widest(),
-            lanes: AnyLanes::One(Box::new(Lanes::new(Arc::new(model)))),
+            lanes: AnyLanes::new(model, spec.numerics.precision),
             structures,
             coarser: None,
         })
@@ -217,16 +257,7 @@ impl Batch {
 
     /// Changes the number of lanes to the smallest that holds `jobs` jobs.
     fn fit(&mut self, jobs: usize) {
-        let lanes = jobs.max(1).next_power_of_two().min(8);
-        let now = match &self.lanes {
-            AnyLanes::One(_) => 1,
-            AnyLanes::Two(_) => 2,
-            AnyLanes::Four(_) => 4,
-            AnyLanes::Eight(_) => 8,
-        };
-        if lanes != now {
-            self.lanes = each!(&mut self.lanes, from => AnyLanes::taken_over(from, lanes));
-        }
+        self.lanes.fit(jobs.max(1).next_power_of_two().min(8));
     }
 
     /// Advances all jobs by a few steps and returns those that ended.

@@ -2,18 +2,18 @@
 
 use super::batch::beginning;
 use super::error::JobError;
-use super::lanes::{Lanes, Moment};
+use super::lanes::{LanesOf, Moment};
 use super::record::JobRecord;
 use super::stability::{Structures, Verdict, judge};
-use crate::solver::Model;
-use crate::spec::JobSpec;
+use crate::solver::{Model, RunNumber};
+use crate::spec::{JobSpec, Precision};
 use std::ops::ControlFlow;
 use std::sync::Arc;
 
 /// Receives the steps and the progress of a running job.
 pub trait JobObserver {
     /// Is called after every step.
-    fn step(&mut self, moment: &Moment<'_, 1>) {
+    fn step(&mut self, moment: &Moment<'_>) {
         let _ = moment;
     }
 
@@ -39,7 +39,18 @@ impl JobObserver for Unobserved {}
 pub fn solve(spec: &JobSpec, observer: &mut dyn JobObserver) -> Result<JobRecord, JobError> {
     spec.check()?;
     let model = Model::from_scene(&spec.scene, &spec.numerics)?;
-    let mut lanes = Lanes::<1>::new(Arc::new(model));
+    match spec.numerics.precision {
+        Precision::Double => solve_in::<f64>(spec, model, observer),
+        Precision::Single => solve_in::<f32>(spec, model, observer),
+    }
+}
+
+fn solve_in<R: RunNumber>(
+    spec: &JobSpec,
+    model: Model,
+    observer: &mut dyn JobObserver,
+) -> Result<JobRecord, JobError> {
+    let mut lanes = LanesOf::<1, R>::new(Arc::new(model));
     let stability = match judge(spec, lanes.model(), &Structures::default())? {
         Verdict::Decided(record) => return Ok(*record),
         Verdict::Undecided(stability) => stability,

@@ -13,7 +13,7 @@ use crate::solver::Model;
 use crate::solver::body::ring::RingBody;
 use crate::solver::energy::Energies;
 use crate::solver::interface::solve::Solves;
-use crate::spec::JobSpec;
+use crate::spec::{JobSpec, Precision};
 use serde::{Deserialize, Serialize};
 
 /// Evaluates the run of one job and creates its record.
@@ -45,8 +45,9 @@ impl LaneAnalysis {
         let observes = spec.detection.decay_observation_s <= slidable_s;
         Self {
             cutter: CycleCutter::new(model, ramp_s),
-            monitor: observes
-                .then(|| DecayMonitor::new(model.time_step_s(), ramp_s, &spec.detection, decay_floor(model))),
+            monitor: observes.then(|| {
+                DecayMonitor::new(model.time_step_s(), ramp_s, &spec.detection, decay_floor(model, &spec))
+            }),
             cycles: Vec::new(),
             steady: None,
             decays: false,
@@ -212,8 +213,12 @@ impl LaneAnalysis {
 }
 
 /// Amplitude, over F, below which growth and decay cannot be measured.
-fn decay_floor(model: &Model) -> f64 {
-    if model.ring().is_some() { decay::ELASTIC_FLOOR } else { lines::ROUNDING }
+fn decay_floor(model: &Model, spec: &JobSpec) -> f64 {
+    match spec.numerics.precision {
+        Precision::Single => decay::SINGLE_FLOOR,
+        Precision::Double if model.ring().is_some() => decay::ELASTIC_FLOOR,
+        Precision::Double => lines::ROUNDING,
+    }
 }
 
 /// The regime that follows from the outcome and the shares of stick and separation.

@@ -11,10 +11,10 @@ use super::error::{JobError, step_count};
 use super::lane::LaneAnalysis;
 use super::nested::{Beginning, CoarseStart, under_way};
 use super::record::{JobRecord, Outcome, SlidingStability};
-use super::sample::{Sample, Sampler};
+use super::sample::{NodeSample, Sample, Sampler};
 use crate::solver::energy::{Energies, EnergyLedger};
 use crate::solver::lane::LaneState;
-use crate::solver::{Drive, Model, PinMotion, State, guard, step};
+use crate::solver::{Drive, Model, PinMotion, RunNumber, StateOf, guard, step};
 use crate::spec::JobSpec;
 use std::sync::Arc;
 
@@ -26,12 +26,15 @@ use std::sync::Arc;
 /// does not suppress.
 pub const AUDIT_INTERVAL: u64 = 16;
 
-/// Up to `L` jobs of one model.
-pub struct Lanes<const L: usize> {
+/// Up to `L` jobs of one model in double precision.
+pub type Lanes<const L: usize> = LanesOf<L, f64>;
+
+/// Up to `L` jobs of one model, with fields of the number type `R`.
+pub struct LanesOf<const L: usize, R: RunNumber> {
     model: Arc<Model>,
-    state: State<L>,
-    ledger: EnergyLedger<L>,
-    sampler: Sampler<L>,
+    state: StateOf<L, R>,
+    ledger: EnergyLedger<L, R>,
+    sampler: Sampler<L, R>,
     drives: [Drive; L],
     runs: [Option<Run>; L],
 }
@@ -45,7 +48,7 @@ struct Run {
 }
 
 /// The data of a job after a step, for observers.
-pub struct Moment<'a, const L: usize> {
+pub struct Moment<'a> {
     /// The number by which the job's owner identifies it.
     pub ticket: u64,
     /// The lane of the job.
@@ -54,12 +57,46 @@ pub struct Moment<'a, const L: usize> {
     pub sample: &'a Sample,
     /// The model that the lanes share.
     pub model: &'a Model,
-    /// The state after the step.
-    pub state: &'a State<L>,
-    /// The sampler that computed the sample. It has the smoothed stress of every contact node.
-    pub sampler: &'a Sampler<L>,
+    /// The nodes after the step.
+    pub nodes: &'a dyn Nodes,
     /// The energies at the last audit.
     pub energies: &'a Energies,
+}
+
+/// The nodes of one job after a step, in either precision.
+pub trait Nodes {
+    /// A slave node during the step.
+    fn slave(&self, slave: usize) -> NodeSample;
+    /// Displacements \[m\] in the order node → component.
+    fn u_m(&self) -> Vec<f64>;
+    /// Velocities \[m/s\] over the step, in the same order.
+    fn velocity_m_s(&self) -> Vec<f64>;
+    /// The gain of the stress smoothers, 1 − exp(−Δt/τ).
+    fn stress_gain(&self) -> f64;
+}
+
+struct NodesOfLane<'a, const L: usize, R: RunNumber> {
+    lanes: &'a LanesOf<L, R>,
+    lane: usize,
+}
+
+impl<const L: usize, R: RunNumber> Nodes for NodesOfLane<'_, L, R> {
+    fn slave(&self, slave: usize) -> NodeSample {
+        let LanesOf { model, state, sampler, drives, .. } = self.lanes;
+        sampler.node(slave, model, &drives[self.lane], state, self.lane)
+    }
+
+    fn u_m(&self) -> Vec<f64> {
+        self.lanes.state.u.values().skip(self.lane).step_by(L).collect()
+    }
+
+    fn velocity_m_s(&self) -> Vec<f64> {
+        self.lanes.state.p.values().skip(self.lane).step_by(L).collect()
+    }
+
+    fn stress_gain(&self) -> f64 {
+        self.lanes.sampler.gain()
+    }
 }
 
 /// A job that has ended.
@@ -73,11 +110,11 @@ pub struct Ended {
     pub motion: Option<PinMotion>,
 }
 
-impl<const L: usize> Lanes<L> {
+impl<const L: usize, R: RunNumber> LanesOf<L, R> {
     /// Empty lanes.
     pub fn new(model: Arc<Model>) -> Self {
         Self {
-            state: State::at_rest(&model),
+            state: StateOf::at_rest(&model),
             ledger: EnergyLedger::new(&model, AUDIT_INTERVAL),
             sampler: Sampler::new(&model),
             drives: [IDLE; L],
@@ -90,7 +127,7 @@ impl<const L: usize> Lanes<L> {
     ///
     /// # Panics
     /// If there are more jobs than lanes.
-    pub fn taken_over<const M: usize>(from: &mut Lanes<M>) -> Self {
+    pub fn taken_over<const M: usize>(from: &mut LanesOf<M, R>) -> Self {
         let mut lanes = Self::new(Arc::clone(&from.model));
         lanes.state.step = from.state.step;
         let mut free = 0..L;
@@ -108,6 +145,11 @@ impl<const L: usize> Lanes<L> {
     /// The model that the lanes share.
     pub fn model(&self) -> &Model {
         &self.model
+    }
+
+    /// Number of lanes.
+    pub fn lanes(&self) -> usize {
+        L
     }
 
     /// The first lane without a job, if there is one.
@@ -238,7 +280,7 @@ impl<const L: usize> Lanes<L> {
 
     /// Advances all jobs until just before the next audit, and returns those that ended on the way. Calls
     /// `observe` after every step of every job.
-    pub fn advance(&mut self, observe: &mut dyn FnMut(&Moment<'_, L>)) -> Vec<Ended> {
+    pub fn advance(&mut self, observe: &mut dyn FnMut(&Moment<'_>)) -> Vec<Ended> {
         let mut ended = Vec::new();
         loop {
             let audited = self.ledger.audits(self.state.step);
@@ -254,8 +296,7 @@ impl<const L: usize> Lanes<L> {
                         lane,
                         sample: &samples[lane],
                         model: &self.model,
-                        state: &self.state,
-                        sampler: &self.sampler,
+                        nodes: &NodesOfLane { lanes: self, lane },
                         energies: self.ledger.energies(lane),
                     });
                     if let Some(result) = self.result(lane, audited) {

@@ -2,13 +2,12 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use crate::solver::body::block::operator::load_all;
-use crate::solver::field::{Field, WIDTH, add_slots};
+use crate::solver::field::{Block, FieldOf, add_slots, fold_slots};
 use crate::solver::interface::{ContactState, Contacts, LIMIT, Status};
 use crate::solver::lane::{LaneState, next};
-use crate::solver::simd::dispatch;
-use crate::solver::{Drive, Model, State};
-use fearless_simd::{Simd, f64x8, prelude::*};
+use crate::solver::simd::{dispatch, load, load_all, splat};
+use crate::solver::{Drive, Model, Number, RunNumber, StateOf};
+use fearless_simd::{Simd, prelude::*};
 use serde::{Deserialize, Serialize};
 
 /// Totals and extremes over the contact face during one step (forces at `t_n`).
@@ -129,13 +128,13 @@ pub const STRESS_SMOOTHING: f64 = 0.15;
 
 /// Computes the [`Sample`]s of all lanes.
 #[derive(Debug, Clone)]
-pub struct Sampler<const L: usize> {
+pub struct Sampler<const L: usize, R: Number = f64> {
     gain: f64,
     /// 1/area, x/lx and y/ly of every slave node.
-    nodes: Field<L>,
+    nodes: FieldOf<L, R>,
     /// For every slave node after the last step: its smoothed stress, whether it was closed and whether it
     /// slipped.
-    last: Field<L>,
+    last: FieldOf<L, R>,
     normal: [Smoother; L],
     /// The slave nodes that are always observed.
     observed: [usize; OBSERVED],
@@ -172,7 +171,7 @@ const SIGMA_N: usize = 0;
 const CLOSED: usize = 1;
 const SLIPS: usize = 2;
 
-impl<const L: usize> Sampler<L> {
+impl<const L: usize, R: RunNumber> Sampler<L, R> {
     /// A sampler of jobs that begin at rest.
     pub fn new(model: &Model) -> Self {
         let interface = model.interface();
@@ -185,16 +184,16 @@ impl<const L: usize> Sampler<L> {
         Self {
             gain: smoothing_gain(model.time_step_s(), STRESS_SMOOTHING * transit_s),
             nodes,
-            last: Field::zeros(interface.layout()),
+            last: FieldOf::zeros(interface.layout()),
             normal: [Smoother::default(); L],
             observed: interface.edge_centres(),
         }
     }
 
     /// The samples of the last step of `state`.
-    pub fn sample(&mut self, model: &Model, drives: &[Drive; L], state: &State<L>) -> [Sample; L] {
+    pub fn sample(&mut self, model: &Model, drives: &[Drive; L], state: &StateOf<L, R>) -> [Sample; L] {
         let dt = model.time_step_s();
-        let Totals { sums, maxima } = dispatch!(simd => self.add_up(simd, &state.contacts));
+        let Totals { sums, maxima } = self.totals(&state.contacts);
         std::array::from_fn(|l| Sample {
             time_s: (state.steps_done(l) - 1) as f64 * dt,
             load_n: state.load_n[l],
@@ -230,7 +229,7 @@ impl<const L: usize> Sampler<L> {
         slave: usize,
         model: &Model,
         drive: &Drive,
-        state: &State<L>,
+        state: &StateOf<L, R>,
         lane: usize,
     ) -> NodeSample {
         let dt = model.time_step_s();
@@ -241,55 +240,96 @@ impl<const L: usize> Sampler<L> {
         let slips = contact_state == ContactState::Slip;
         let [_, of_target, _] = state.target.increment_of(slave, lane);
         NodeSample {
-            u_m: std::array::from_fn(|c| state.u.at(place, c)[lane]),
+            u_m: std::array::from_fn(|c| state.u.at(place, c)[lane].to_f64()),
             slip_m: [x, y],
             y_velocity_m_s: (y + of_target) / dt + model.slaves()[slave].surface_motion[1] * drive.rate,
             gap_m: contacts.gap_of(slave, lane),
             force_n: contacts.force_of(slave, lane),
-            sigma_n_pa: self.last.at(place, SIGMA_N)[lane],
+            sigma_n_pa: self.last.at(place, SIGMA_N)[lane].to_f64(),
             slip_speed_m_s: if slips { (x * x + y * y).sqrt() / dt } else { 0.0 },
             state: contact_state,
         }
     }
 
-    #[inline(always)]
-    fn add_up<S: Simd>(&mut self, simd: S, contacts: &Contacts<L>) -> Totals<L> {
-        let zero = f64x8::splat(simd, 0.0);
-        let one = f64x8::splat(simd, 1.0);
-        let gain = f64x8::splat(simd, self.gain);
-        let stride = self.nodes.blocks_per_line();
+    fn totals(&mut self, contacts: &Contacts<L, R>) -> Totals<L> {
         let mut totals = Totals { sums: [[0.0; L]; SUMS], maxima: [[0.0; L]; MAXIMA] };
-        for along in 0..stride {
+        let mut face = FaceSample {
+            gain: R::from_f64(self.gain),
+            stride: self.nodes.blocks_per_line(),
+            nodes: self.nodes.blocks(),
+            last: self.last.blocks_mut(),
+            force_n: contacts.force_n.blocks(),
+            increment_m: contacts.increment_m.blocks(),
+            status: contacts.status.blocks(),
+            friction: contacts.friction.blocks(),
+        };
+        face.add_up(
+            &mut totals.sums.each_mut().map(<[f64; L]>::as_mut_slice),
+            &mut totals.maxima.each_mut().map(<[f64; L]>::as_mut_slice),
+        );
+        totals
+    }
+}
+
+/// The blocks of the contact face, for any number of lanes.
+struct FaceSample<'a, R: Number> {
+    gain: R,
+    stride: usize,
+    nodes: &'a [Block<R>],
+    last: &'a mut [Block<R>],
+    force_n: &'a [Block<R>],
+    increment_m: &'a [Block<R>],
+    status: &'a [Block<R>],
+    friction: &'a [Block<R>],
+}
+
+impl<R: Number> FaceSample<'_, R> {
+    /// Adds the face to the sums and the maxima of the lanes.
+    fn add_up(&mut self, sums: &mut [&mut [f64]; SUMS], maxima: &mut [&mut [f64]; MAXIMA]) {
+        dispatch!(simd => self.add_up_in(simd, sums, maxima));
+    }
+
+    #[inline(always)]
+    fn add_up_in<S: Simd>(
+        &mut self,
+        simd: S,
+        face_sums: &mut [&mut [f64]; SUMS],
+        face_maxima: &mut [&mut [f64]; MAXIMA],
+    ) {
+        let zero = splat::<R, S>(simd, 0.0);
+        let one = splat::<R, S>(simd, 1.0);
+        let gain = R::Vector::<S>::splat(simd, self.gain);
+        for along in 0..self.stride {
             let mut sums = [zero; SUMS];
             let mut maxima = [zero; MAXIMA];
-            for at in (along..self.nodes.blocks().len()).step_by(stride) {
-                let (node, last) = (&self.nodes.blocks()[at].0, &mut self.last.blocks_mut()[at].0);
-                let force = load_all(simd, &contacts.force_n.blocks()[at].0);
-                let status = load_all(simd, &contacts.status.blocks()[at].0);
+            for at in (along..self.nodes.len()).step_by(self.stride) {
+                let (node, last) = (&self.nodes[at].0, &mut self.last[at].0);
+                let force = load_all::<R, S>(simd, &self.force_n[at].0);
+                let status = load_all::<R, S>(simd, &self.status[at].0);
                 let (gap, closed, slips) = (
                     status[Status::Gap as usize],
                     status[Status::Closed as usize],
                     status[Status::Slips as usize],
                 );
-                let before = load_all(simd, last);
+                let before = load_all::<R, S>(simd, last);
                 let sigma_n =
-                    before[SIGMA_N] + gain * (force[2] * f64x8::from_slice(simd, &node[0]) - before[SIGMA_N]);
+                    before[SIGMA_N] + gain * (force[2] * load::<R, S>(simd, &node[0]) - before[SIGMA_N]);
                 let changed = closed.simd_ne(before[CLOSED]) | slips.simd_ne(before[SLIPS]);
-                sigma_n.store_slice(&mut last[SIGMA_N]);
-                closed.store_slice(&mut last[CLOSED]);
-                slips.store_slice(&mut last[SLIPS]);
-                let increment = &contacts.increment_m.blocks()[at].0;
-                let (x, y) = (f64x8::from_slice(simd, &increment[0]), f64x8::from_slice(simd, &increment[1]));
+                sigma_n.store_array(&mut last[SIGMA_N]);
+                closed.store_array(&mut last[CLOSED]);
+                slips.store_array(&mut last[SLIPS]);
+                let increment = &self.increment_m[at].0;
+                let (x, y) = (load::<R, S>(simd, &increment[0]), load::<R, S>(simd, &increment[1]));
                 let slipping = slips.simd_gt(zero);
                 let slipped = slipping.select((x * x + y * y).sqrt(), zero);
-                let limit = f64x8::from_slice(simd, &contacts.friction.blocks()[at].0[LIMIT]);
+                let limit = load::<R, S>(simd, &self.friction[at].0[LIMIT]);
                 // Friction points along −slip, so cos φ = −s_y/|s|.
                 let misaligned = limit * (one + y / slipped);
                 sums[NORMAL] += force[2];
                 sums[TANGENTIAL] += force[1];
                 sums[SIDEWAYS] += force[0];
-                sums[X_MOMENT] += force[2] * f64x8::from_slice(simd, &node[1]);
-                sums[Y_MOMENT] += force[2] * f64x8::from_slice(simd, &node[2]);
+                sums[X_MOMENT] += force[2] * load::<R, S>(simd, &node[1]);
+                sums[Y_MOMENT] += force[2] * load::<R, S>(simd, &node[2]);
                 sums[STICK_DEFICIT] += slipping.select(zero, limit - force[1]);
                 sums[SLIP_DEFICIT] += slipped.simd_gt(zero).select(misaligned, zero);
                 sums[ALL_CLOSED] += closed;
@@ -299,25 +339,20 @@ impl<const L: usize> Sampler<L> {
                 maxima[SLIPPED] = slipped.simd_gt(maxima[SLIPPED]).select(slipped, maxima[SLIPPED]);
                 maxima[GAP] = gap.simd_gt(maxima[GAP]).select(gap, maxima[GAP]);
             }
-            let mut slots = [0.0; WIDTH];
-            for i in 0..SUMS {
-                sums[i].store_slice(&mut slots);
-                add_slots(&mut totals.sums[i], &slots);
+            for (totals, sum) in face_sums.iter_mut().zip(&sums) {
+                let row: &R::Row = sum.as_array();
+                add_slots(totals, row.as_ref());
             }
-            for i in 0..MAXIMA {
-                maxima[i].store_slice(&mut slots);
-                for (slot, value) in slots.iter().enumerate() {
-                    let largest = &mut totals.maxima[i][slot % L];
-                    *largest = value.max(*largest);
-                }
+            for (largest, found) in face_maxima.iter_mut().zip(&maxima) {
+                let row: &R::Row = found.as_array();
+                fold_slots(largest, row.as_ref(), |largest, value| value.max(largest));
             }
         }
-        totals
     }
 }
 
 /// A lane of zeros has no history.
-impl<const L: usize> LaneState for Sampler<L> {
+impl<const L: usize, R: Number> LaneState for Sampler<L, R> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
         self.last.save_lane(lane, saved);
         saved.push(self.normal[lane].value);

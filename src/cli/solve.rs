@@ -72,7 +72,7 @@ struct Recorder {
 }
 
 impl JobObserver for Recorder {
-    fn step(&mut self, moment: &Moment<'_, 1>) {
+    fn step(&mut self, moment: &Moment<'_>) {
         if let Some(history) = &mut self.history {
             history.add(moment.sample);
         }

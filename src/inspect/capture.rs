@@ -5,8 +5,8 @@ use super::nodes::ObservedNode;
 use super::survey::TimeWindows;
 use crate::analysis::sample::{NodeSample, Sample};
 use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment};
+use crate::solver::Model;
 use crate::solver::energy::Energies;
-use crate::solver::{Drive, Model};
 use crate::spec::JobSpec;
 use std::collections::VecDeque;
 use std::ops::ControlFlow;
@@ -94,7 +94,6 @@ pub fn capture(
     let mut recorder = Recorder {
         windows,
         nodes,
-        drive: analysis::drive(spec),
         frame_times_s: frame_times_s(windows, frames),
         model: None,
         gain: 0.0,
@@ -143,7 +142,6 @@ fn frame_times_s(windows: &TimeWindows, frames: usize) -> Vec<f64> {
 struct Recorder<'a> {
     windows: &'a TimeWindows,
     nodes: &'a [ObservedNode],
-    drive: Drive,
     frame_times_s: Vec<f64>,
     model: Option<Model>,
     gain: f64,
@@ -158,12 +156,12 @@ struct Recorder<'a> {
 }
 
 impl JobObserver for Recorder<'_> {
-    fn step(&mut self, moment: &Moment<'_, 1>) {
+    fn step(&mut self, moment: &Moment<'_>) {
         let time_s = moment.sample.time_s;
         let within = |[start_s, end_s]: [f64; 2]| time_s >= start_s && time_s < end_s;
         if self.model.is_none() {
             self.model = Some(moment.model.clone());
-            self.gain = moment.sampler.gain();
+            self.gain = moment.nodes.stress_gain();
         }
         let is_audit = *moment.energies != self.energies;
         self.energies = *moment.energies;
@@ -176,14 +174,14 @@ impl JobObserver for Recorder<'_> {
         if within(self.windows.shown_s) {
             for (observed, history) in self.nodes.iter().zip(&mut self.histories) {
                 let slave = observed.slave;
-                let node = moment.sampler.node(slave, moment.model, &self.drive, moment.state, moment.lane);
+                let node = moment.nodes.slave(slave);
                 history.push((time_s, node));
             }
         }
         if !within(self.windows.cycle_s) {
             return;
         }
-        self.face.push(FaceStep { time_s, nodes: self.face_of(moment) });
+        self.face.push(FaceStep { time_s, nodes: face_of(moment) });
         if is_audit {
             self.audits.push(Audit { time_s, energies: self.energies });
         }
@@ -193,9 +191,9 @@ impl JobObserver for Recorder<'_> {
             while self.frame_times_s.pop_if(due).is_some() {}
             self.frames.push(Frame {
                 time_s,
-                u_m: moment.state.u.values().collect(),
-                velocity_m_s: moment.state.p.values().collect(),
-                face: self.face_of(moment),
+                u_m: moment.nodes.u_m(),
+                velocity_m_s: moment.nodes.velocity_m_s(),
+                face: face_of(moment),
             });
         }
     }
@@ -205,9 +203,6 @@ impl JobObserver for Recorder<'_> {
     }
 }
 
-impl Recorder<'_> {
-    fn face_of(&self, moment: &Moment<'_, 1>) -> Vec<NodeSample> {
-        let node = |slave| moment.sampler.node(slave, moment.model, &self.drive, moment.state, moment.lane);
-        (0..moment.model.slaves().len()).map(node).collect()
-    }
+fn face_of(moment: &Moment<'_>) -> Vec<NodeSample> {
+    (0..moment.model.slaves().len()).map(|slave| moment.nodes.slave(slave)).collect()
 }

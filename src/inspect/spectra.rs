@@ -75,7 +75,7 @@ struct Recorder<'a> {
 }
 
 impl JobObserver for Recorder<'_> {
-    fn step(&mut self, moment: &Moment<'_, 1>) {
+    fn step(&mut self, moment: &Moment<'_>) {
         if self.normal.len() == MAX_TOTALS {
             self.normal.pop_front();
         }

@@ -119,7 +119,7 @@ struct Surveyor<'a> {
 }
 
 impl JobObserver for Surveyor<'_> {
-    fn step(&mut self, moment: &Moment<'_, 1>) {
+    fn step(&mut self, moment: &Moment<'_>) {
         let cutter = self.cutter.get_or_insert_with(|| {
             self.quarter_wave_s = quarter_wave_s(moment.model);
             CycleCutter::new(moment.model, self.spec.scene.load.ramp_s)

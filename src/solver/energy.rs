@@ -32,9 +32,10 @@ use super::body::block::BlockAudit;
 use super::body::ring::RingAudit;
 use super::drive::Drive;
 use super::interface::InterfaceWork;
+use super::interface::solve::RunNumber;
 use super::lane::{LaneState, next};
 use super::model::Model;
-use super::state::State;
+use super::state::StateOf;
 use serde::{Deserialize, Serialize};
 
 /// Energies \[J\] of one lane: stored at the last audit; done as work or lost since the start.
@@ -107,16 +108,16 @@ struct LaneSums {
 /// Sums the energies of all lanes. Call [`EnergyLedger::before_step`] and [`EnergyLedger::after_step`] around every
 /// step from the first one on.
 #[derive(Debug, Clone)]
-pub struct EnergyLedger<const L: usize> {
+pub struct EnergyLedger<const L: usize, R: RunNumber = f64> {
     interval: u64,
     sums: [LaneSums; L],
     energies: [Energies; L],
-    interface: InterfaceWork<L>,
-    pin: BlockAudit<L>,
+    interface: InterfaceWork<L, R>,
+    pin: BlockAudit<L, R>,
     ring: Option<RingAudit<L>>,
 }
 
-impl<const L: usize> EnergyLedger<L> {
+impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
     /// A ledger that evaluates stored energies and damping every `interval` steps, from step 0 on.
     ///
     /// # Panics
@@ -146,7 +147,7 @@ impl<const L: usize> EnergyLedger<L> {
     /// Stores what the audit of the coming step needs of the state at `t_n`.
     ///
     /// All lanes count their steps together, so a job must begin at an audit.
-    pub fn before_step(&mut self, model: &Model, state: &State<L>) {
+    pub fn before_step(&mut self, model: &Model, state: &StateOf<L, R>) {
         let (scheme, steps_done) = (model.scheme(), state.steps_of_lanes());
         let before = state.motion(&steps_done);
         if self.keeps(model, state.step) {
@@ -161,7 +162,7 @@ impl<const L: usize> EnergyLedger<L> {
     }
 
     /// Adds the works of the step just done and, at an audit, evaluates the energies at the `t_n` of that step.
-    pub fn after_step(&mut self, model: &Model, drives: &[Drive; L], state: &State<L>) {
+    pub fn after_step(&mut self, model: &Model, drives: &[Drive; L], state: &StateOf<L, R>) {
         let done = state.step - 1;
         let works = self.interface.of_step(model.time_step_s(), drives, &state.contacts, &state.target);
         let [before_last, last, next] = &state.load_stroke_m;
@@ -201,7 +202,7 @@ impl<const L: usize> EnergyLedger<L> {
 
     /// Evaluates the energies at `t_n`. Returns the damping work \[J\] over the increment after `t_n`, times the
     /// interval.
-    fn evaluate(&mut self, model: &Model, state: &State<L>) -> [f64; L] {
+    fn evaluate(&mut self, model: &Model, state: &StateOf<L, R>) -> [f64; L] {
         let (scheme, steps_done) = (model.scheme(), state.steps_of_lanes());
         let gamma = scheme.beta2;
         let samples = self.interval as f64;
@@ -236,7 +237,7 @@ impl<const L: usize> EnergyLedger<L> {
 
 /// A lane must be saved just before an audit, and loaded just before an audit of another ledger. Zeros clear a
 /// lane.
-impl<const L: usize> LaneState for EnergyLedger<L> {
+impl<const L: usize, R: RunNumber> LaneState for EnergyLedger<L, R> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
         let LaneSums { load, drive, friction, contact_loss, damping, numerical_j } = self.sums[lane];
         for work in [load, drive, friction, contact_loss, damping] {

@@ -3,10 +3,11 @@
 use super::drive::Drive;
 use super::energy::Energies;
 use super::error::SolverError;
-use super::field::Field;
+use super::field::FieldOf;
+use super::interface::solve::RunNumber;
 use super::interface::solve::sweeps::{MAX_SWEEPS, TOLERANCE};
 use super::model::Model;
-use super::state::State;
+use super::state::StateOf;
 
 /// A run counts as diverged if its stored energy exceeds the energy put in by more than this factor.
 ///
@@ -27,10 +28,10 @@ const MAGNITUDE_FACTOR: f64 = 100.0;
 ///
 /// # Errors
 /// [`SolverError::Diverged`] if the energy is not finite or exceeds one of the two factors above.
-pub fn check<const L: usize>(
+pub fn check<const L: usize, R: RunNumber>(
     model: &Model,
     drive: &Drive,
-    state: &State<L>,
+    state: &StateOf<L, R>,
     lane: usize,
     energies: &Energies,
 ) -> Result<(), SolverError> {
@@ -59,8 +60,12 @@ pub fn check<const L: usize>(
 ///
 /// # Errors
 /// [`SolverError::Diverged`] if one of them is not.
-pub fn check_finite<const L: usize>(model: &Model, state: &State<L>, lane: usize) -> Result<(), SolverError> {
-    let finite = |field: &Field<L>| field.values().skip(lane).step_by(L).all(f64::is_finite);
+pub fn check_finite<const L: usize, R: RunNumber>(
+    model: &Model,
+    state: &StateOf<L, R>,
+    lane: usize,
+) -> Result<(), SolverError> {
+    let finite = |field: &FieldOf<L, R>| field.values().skip(lane).step_by(L).all(f64::is_finite);
     if finite(&state.u) && finite(&state.p) && state.target.is_finite(lane) {
         Ok(())
     } else {
@@ -72,9 +77,9 @@ pub fn check_finite<const L: usize>(model: &Model, state: &State<L>, lane: usize
 ///
 /// # Errors
 /// [`SolverError::ContactNotSolved`] if one has not.
-pub fn check_contact<const L: usize>(
+pub fn check_contact<const L: usize, R: RunNumber>(
     model: &Model,
-    state: &State<L>,
+    state: &StateOf<L, R>,
     lane: usize,
 ) -> Result<(), SolverError> {
     let Some(solves) = state.target.solves_of(lane) else { return Ok(()) };
@@ -95,7 +100,12 @@ const AT_THE_LIMIT: f64 = 0.99;
 
 const NOT_FINITE: &str = "displacements or velocities are no longer finite";
 
-fn diverged<const L: usize>(model: &Model, state: &State<L>, lane: usize, what: String) -> SolverError {
+fn diverged<const L: usize, R: RunNumber>(
+    model: &Model,
+    state: &StateOf<L, R>,
+    lane: usize,
+    what: String,
+) -> SolverError {
     let node = worst_node(model, state, lane);
     let ratio = model.time_step_s() / model.time_step_limit_s();
     // The limit itself is allowed; the tolerance covers the rounding of its computation.
@@ -123,9 +133,9 @@ fn diverged<const L: usize>(model: &Model, state: &State<L>, lane: usize, what: 
 }
 
 /// The node with a velocity that is not finite; if there is none, the node with the largest speed.
-fn worst_node<const L: usize>(model: &Model, state: &State<L>, lane: usize) -> usize {
+fn worst_node<const L: usize, R: RunNumber>(model: &Model, state: &StateOf<L, R>, lane: usize) -> usize {
     let speed_squared = |node: usize| -> f64 {
-        let sum: f64 = (0..3).map(|c| state.p[(3 * node + c) * L + lane].powi(2)).sum();
+        let sum: f64 = (0..3).map(|c| state.p[(3 * node + c) * L + lane].to_f64().powi(2)).sum();
         if sum.is_nan() { f64::INFINITY } else { sum }
     };
     (0..model.mesh().node_count())

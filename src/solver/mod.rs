@@ -20,11 +20,12 @@
 //! # Conventions
 //! * In the block, node indices run x fastest, then y, then z. Components are x = 0, y = 1, z = 2.
 //! * **Fields are indexed node → component → lane**, `u[(3·node + component)·L + lane]`. They are stored in blocks
-//!   of eight numbers for SIMD ([`field`]).
+//!   of 64 bytes for SIMD ([`field`]).
 //! * The `L` lanes are independent jobs. They share one [`Model`] (mesh, material, supports, damping, time step)
 //!   and differ in their [`Drive`] (friction law, ω, load). Every lane goes through the same operations in the same
 //!   order, so its bits do not depend on the other lanes.
-//! * All arithmetic is plain f64. Multiply and add are never fused, and every sum has a fixed order. So the bits do
+//! * Fields are f64, or f32 in single precision ([`Number`]). Totals of a step, energies and works are f64. Multiply
+//!   and add are never fused, and every sum has a fixed order. So the bits do
 //!   not depend on the vector width.
 //! * The gap is positive when open. The normal contact force N on the pin is ≥ 0 (N = −λ_n, with the multiplier
 //!   λ_n).
@@ -39,6 +40,8 @@ pub mod interface;
 pub mod lane;
 pub mod material;
 pub mod model;
+mod number;
+mod real;
 mod scene;
 pub mod scheme;
 pub(crate) mod simd;
@@ -49,9 +52,11 @@ mod transfer;
 
 pub use drive::Drive;
 pub use error::SolverError;
+pub use interface::solve::RunNumber;
 pub use model::{Model, ModelDefinition};
+pub use number::Number;
 pub use scheme::TimeStep;
-pub use state::State;
+pub use state::{State, StateOf};
 pub use step::step;
 pub use transfer::PinMotion;
 

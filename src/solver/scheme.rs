@@ -21,8 +21,9 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::field::{WIDTH, in_slots};
-use fearless_simd::{Simd, f64x8, prelude::*};
+use super::field::in_slots_of;
+use super::number::Number;
+use fearless_simd::{Simd, prelude::*};
 
 /// How the time step is chosen.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -48,13 +49,15 @@ pub struct Scheme {
 
 /// Factors of the acceleration in one step of all lanes. The factors of a lane's first step differ from the others.
 #[derive(Debug, Clone, Copy)]
-pub(in crate::solver) struct StepFactors {
+pub struct StepFactors<R: Number = f64> {
+    /// Time step Δt \[s\].
     pub time_step_s: f64,
+    /// Stiffness-proportional damping `β_R` \[s\].
     pub beta_r_s: f64,
     /// Factor of a in `u_{n+1}` \[s²\], one per slot.
-    pub u_scale: [f64; WIDTH],
+    pub u_scale: R::Row,
     /// Factor of a in `p_{n+1}` \[s\], one per slot.
-    pub p_scale: [f64; WIDTH],
+    pub p_scale: R::Row,
 }
 
 impl Scheme {
@@ -64,7 +67,10 @@ impl Scheme {
     }
 
     /// The factors of a step before which each lane has done `steps_done` steps.
-    pub(in crate::solver) fn step_factors<const L: usize>(&self, steps_done: &[u64; L]) -> StepFactors {
+    pub(in crate::solver) fn step_factors<const L: usize, R: Number>(
+        &self,
+        steps_done: &[u64; L],
+    ) -> StepFactors<R> {
         let dt = self.time_step_s;
         let (mut u_scale, mut p_scale) = ([0.0; L], [0.0; L]);
         for lane in 0..L {
@@ -74,28 +80,29 @@ impl Scheme {
         StepFactors {
             time_step_s: dt,
             beta_r_s: self.beta_r_s,
-            u_scale: in_slots(&u_scale),
-            p_scale: in_slots(&p_scale),
+            u_scale: in_slots_of::<R>(&u_scale),
+            p_scale: in_slots_of::<R>(&p_scale),
         }
     }
 }
 
-impl StepFactors {
+impl<R: Number> StepFactors<R> {
     /// Returns u + Δt p + cΔt² a and p + dΔt a for a = −force/m, where cΔt² and dΔt are the two scales.
     #[inline(always)]
     pub fn moved<S: Simd>(
         &self,
         simd: S,
-        force: f64x8<S>,
-        inverse_mass: &[f64; WIDTH],
-        u: &[f64; WIDTH],
-        p: &[f64; WIDTH],
-    ) -> [f64x8<S>; 2] {
-        let a = force * f64x8::from_slice(simd, inverse_mass);
-        let before = f64x8::from_slice(simd, p);
-        let stroke =
-            before * f64x8::splat(simd, self.time_step_s) - a * f64x8::from_slice(simd, &self.u_scale);
-        [f64x8::from_slice(simd, u) + stroke, before - a * f64x8::from_slice(simd, &self.p_scale)]
+        force: R::Vector<S>,
+        inverse_mass: &R::Row,
+        u: &R::Row,
+        p: &R::Row,
+    ) -> [R::Vector<S>; 2] {
+        let load = |row| R::Vector::<S>::load_array_ref(simd, row);
+        let a = force * load(inverse_mass);
+        let before = load(p);
+        let dt = R::Vector::<S>::splat(simd, R::from_f64(self.time_step_s));
+        let stroke = before * dt - a * load(&self.u_scale);
+        [load(u) + stroke, before - a * load(&self.p_scale)]
     }
 }
 

@@ -1,5 +1,10 @@
 //! Code for the vector instructions of the machine that runs it.
 
+#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+
+use super::number::Number;
+use fearless_simd::{Simd, prelude::*};
+
 /// Runs `$op` with the widest vectors of `$level`. Every level gives the same bits.
 ///
 /// `fearless_simd::dispatch!` does the same, but compiles `$op` for SSE4.2, too. Its code was more
@@ -36,3 +41,22 @@ macro_rules! dispatch {
 }
 
 pub(crate) use dispatch;
+
+/// Loads a row as a vector.
+#[inline(always)]
+pub(crate) fn load<R: Number, S: Simd>(simd: S, row: &R::Row) -> R::Vector<S> {
+    R::Vector::<S>::load_array_ref(simd, row)
+}
+
+/// Loads three rows as vectors. `map` on the array would compile to a call, across which vectors do not stay in
+/// registers.
+#[inline(always)]
+pub(crate) fn load_all<R: Number, S: Simd>(simd: S, rows: &[R::Row; 3]) -> [R::Vector<S>; 3] {
+    [load::<R, S>(simd, &rows[0]), load::<R, S>(simd, &rows[1]), load::<R, S>(simd, &rows[2])]
+}
+
+/// The same number in all slots of a vector.
+#[inline(always)]
+pub(crate) fn splat<R: Number, S: Simd>(simd: S, value: f64) -> R::Vector<S> {
+    R::Vector::<S>::splat(simd, R::from_f64(value))
+}

@@ -1,17 +1,17 @@
 //! What changes during a run.
 
 use super::body::block::{BlockMotion, Motion};
-use super::field::Field;
+use super::field::FieldOf;
 use super::interface::Contacts;
-use super::interface::solve::TargetState;
+use super::interface::solve::{RunNumber, TargetState};
 use super::lane::{LaneState, next};
 use super::model::Model;
 use super::support::AppliedSupports;
 use super::support::load::AppliedLoad;
 
-/// The state of `L` jobs, each at its own t_n.
+/// The state of `L` jobs, each at its own t_n, with fields of the number type `R`.
 #[derive(Debug, Clone)]
-pub struct State<const L: usize> {
+pub struct StateOf<const L: usize, R: RunNumber> {
     /// Steps that the lanes have taken together.
     pub step: u64,
     /// Value of `step` at which the job in a lane began. The job is at t_n with n = `step` − `begun`. The
@@ -19,40 +19,46 @@ pub struct State<const L: usize> {
     /// state.
     pub begun: [u64; L],
     /// Displacements `u_n` of the pin \[m\].
-    pub u: Field<L>,
+    pub u: FieldOf<L, R>,
     /// `p_n = v_{n−1} + (1−β₂)Δt a_{n−1}` of the pin \[m/s\]; at n = 0 the initial velocity.
-    pub p: Field<L>,
+    pub p: FieldOf<L, R>,
     /// Contact during the last step, from `t_{n−1}` to `t_n`.
-    pub contacts: Contacts<L>,
+    pub contacts: Contacts<L, R>,
     /// The target, on which the pin slides.
-    pub target: TargetState<L>,
+    pub target: TargetState<L, R>,
     /// Sum of the reaction forces \[N\] of the supports on the pin at `t_{n−1}`: x, y and z.
     pub reaction_n: [[f64; L]; 3],
     /// Load \[N\] at `t_{n−1}`.
     pub load_n: [f64; L],
     /// Displacement \[m\] that is work-conjugate to the total load, at `t_{n−2}`, `t_{n−1}` and `t_n`.
     pub load_stroke_m: [[f64; L]; 3],
-    pub(super) workspace: Workspace<L>,
+    pub(super) workspace: Workspace<L, R>,
 }
+
+/// The state of `L` jobs in double precision.
+pub type State<const L: usize> = StateOf<L, f64>;
 
 /// The parts of the model that move the pin, prepared for all lanes, and scratch memory. Nothing in it is carried
 /// from step to step.
 #[derive(Debug, Clone)]
-pub(super) struct Workspace<const L: usize> {
-    pub pin: BlockMotion<L>,
-    pub supports: AppliedSupports<L>,
-    pub load: AppliedLoad<L>,
+pub(super) struct Workspace<const L: usize, R: RunNumber> {
+    pub pin: BlockMotion<L, R>,
+    pub supports: AppliedSupports<L, R>,
+    pub load: AppliedLoad<R>,
 }
 
-impl<const L: usize> State<L> {
+impl<const L: usize, R: RunNumber> StateOf<L, R> {
     /// All lanes at rest and undeformed.
+    ///
+    /// # Panics
+    /// If the target is an elastic disk and the precision is single.
     pub fn at_rest(model: &Model) -> Self {
         let pin = model.pin();
         Self {
             step: 0,
             begun: [0; L],
-            u: Field::zeros(pin.mesh().layout()),
-            p: Field::zeros(pin.mesh().layout()),
+            u: FieldOf::zeros(pin.mesh().layout()),
+            p: FieldOf::zeros(pin.mesh().layout()),
             contacts: Contacts::separated(model.interface().layout()),
             target: TargetState::at_rest(model.interface(), model.target()),
             reaction_n: [[0.0; L]; 3],
@@ -61,7 +67,7 @@ impl<const L: usize> State<L> {
             workspace: Workspace {
                 pin: BlockMotion::new(pin),
                 supports: AppliedSupports::new(model.supports(), pin.mesh(), pin.masses_kg()),
-                load: AppliedLoad::new(model.load(), pin.mesh()),
+                load: AppliedLoad::new(model.load(), pin.mesh(), L),
             },
         }
     }
@@ -77,13 +83,13 @@ impl<const L: usize> State<L> {
     }
 
     /// The motion of the pin.
-    pub(super) fn motion<'a>(&'a self, steps_done: &'a [u64; L]) -> Motion<'a, L> {
+    pub(super) fn motion<'a>(&'a self, steps_done: &'a [u64; L]) -> Motion<'a, L, R> {
         Motion { u: &self.u, p: &self.p, steps_done }
     }
 }
 
 /// The saved numbers are all that a job needs to continue. Zeros are a job that begins at rest.
-impl<const L: usize> LaneState for State<L> {
+impl<const L: usize, R: RunNumber> LaneState for StateOf<L, R> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
         // The conversion is exact below 2⁵³ steps.
         saved.push(self.steps_done(lane) as f64);

@@ -1,13 +1,13 @@
 //! One time step of the β₂ method ([`scheme`](super::scheme)) with contact.
 
 use super::drive::Drive;
-use super::interface::solve::StepData;
+use super::interface::solve::{RunNumber, StepData};
 use super::model::Model;
-use super::state::State;
+use super::state::StateOf;
 use super::support::Supported;
 
 /// Advances all lanes from `t_n` to `t_{n+1}`.
-pub fn step<const L: usize>(model: &Model, drives: &[Drive; L], state: &mut State<L>) {
+pub fn step<const L: usize, R: RunNumber>(model: &Model, drives: &[Drive; L], state: &mut StateOf<L, R>) {
     let steps_done = state.steps_of_lanes();
     for lane in 0..L {
         state.load_n[lane] = drives[lane].load_n(steps_done[lane] as f64 * model.time_step_s());
@@ -36,7 +36,7 @@ pub fn step<const L: usize>(model: &Model, drives: &[Drive; L], state: &mut Stat
 }
 
 /// Sets the load's displacements of lanes at their first step: a pin that begins deformed has not moved before.
-fn begin_load_strokes<const L: usize>(steps_done: &[u64; L], state: &mut State<L>) {
+fn begin_load_strokes<const L: usize, R: RunNumber>(steps_done: &[u64; L], state: &mut StateOf<L, R>) {
     if steps_done.iter().all(|&steps| steps > 0) {
         return;
     }
@@ -53,6 +53,7 @@ fn begin_load_strokes<const L: usize>(steps_done: &[u64; L], state: &mut State<L
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::State;
     use crate::solver::interface::law::Law;
     use crate::spec::JobSpec;
 

@@ -2,8 +2,9 @@
 
 use super::body::Freedom;
 use super::body::block::BlockMesh;
+use super::interface::solve::RunNumber;
 use super::model::Model;
-use super::state::State;
+use super::state::StateOf;
 
 /// Displacements and velocities of all nodes of a pin at one time, in the order node → component.
 #[derive(Debug, Clone, PartialEq)]
@@ -49,15 +50,15 @@ impl PinMotion {
     }
 }
 
-impl<const L: usize> State<L> {
+impl<const L: usize, R: RunNumber> StateOf<L, R> {
     /// The motion of the pin in a lane at the time of its velocities, `t_n − β₂Δt`.
     pub fn motion_of(&self, model: &Model, lane: usize) -> PinMotion {
         let scheme = model.scheme();
         let back_s = scheme.beta2 * scheme.time_step_s;
         let dofs = 0..3 * model.mesh().node_count();
-        let velocity_m_s: Vec<f64> = dofs.map(|dof| self.p[dof * L + lane]).collect();
+        let velocity_m_s: Vec<f64> = dofs.map(|dof| self.p[dof * L + lane].to_f64()).collect();
         let u_m = velocity_m_s.iter().enumerate();
-        let u_m = u_m.map(|(dof, velocity)| self.u[dof * L + lane] - back_s * velocity).collect();
+        let u_m = u_m.map(|(dof, velocity)| self.u[dof * L + lane].to_f64() - back_s * velocity).collect();
         PinMotion { u_m, velocity_m_s }
     }
 
@@ -72,8 +73,8 @@ impl<const L: usize> State<L> {
         let PinMotion { u_m, velocity_m_s } = motion.constrained(model);
         assert_eq!(u_m.len() * L, self.u.len(), "a motion on the mesh of the model");
         for (dof, (u, velocity)) in u_m.iter().zip(&velocity_m_s).enumerate() {
-            self.u[dof * L + lane] = *u;
-            self.p[dof * L + lane] = *velocity;
+            self.u[dof * L + lane] = R::from_f64(*u);
+            self.p[dof * L + lane] = R::from_f64(*velocity);
         }
     }
 }
@@ -109,7 +110,7 @@ mod tests {
     use super::*;
     use crate::solver::energy::EnergyLedger;
     use crate::solver::interface::law::Law;
-    use crate::solver::{Drive, step};
+    use crate::solver::{Drive, State, step};
     use crate::spec::JobSpec;
 
     fn model(elements: [usize; 3]) -> Model {

@@ -23,7 +23,7 @@ mod stability;
 pub(crate) use check::short;
 pub use check::{FieldError, Violations};
 pub use detection::Detection;
-pub use numerics::{Numerics, RunControl, Start};
+pub use numerics::{Numerics, Precision, RunControl, Start};
 pub use pin::Pin;
 pub use ring::{DiskTimeStep, Ring, TargetSurface};
 pub use scene::{Clamp, ClampSide, Contact, Disk, DiskKind, Load, Scene, TopFace};
@@ -89,8 +89,8 @@ impl JobSpec {
         found.into_result()
     }
 
-    /// Limits that an elastic disk sets: its mesh is fine only where the pin passes, and its energy balance holds for
-    /// the central difference only.
+    /// Limits that an elastic disk sets: its mesh is fine only where the pin passes, its energy balance holds for the
+    /// central difference only, and it has double precision only.
     fn check_elastic_disk(&self, found: &mut Violations) {
         let swept_deg = self.scene.disk.omega_rpm * 6.0 * self.run.limit_s;
         let arc_deg = self.scene.disk.ring.track_arc_deg;
@@ -125,6 +125,13 @@ impl JobSpec {
                 "run.start",
                 self.run.start.name(),
                 "rest with an elastic disk, whose motion is not carried over from one mesh to another",
+            );
+        }
+        if self.numerics.precision == Precision::Single {
+            found.add(
+                "numerics.precision",
+                self.numerics.precision.name(),
+                "double with an elastic disk; single precision is for rigid disks",
             );
         }
     }

@@ -3,7 +3,39 @@
 use super::check::Violations;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use strum::IntoStaticStr;
+use strum::{EnumString, IntoStaticStr, VariantArray};
+
+/// The numbers of the pin's displacements, velocities and contact forces.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    Serialize,
+    Deserialize,
+    JsonSchema,
+    EnumString,
+    IntoStaticStr,
+    VariantArray,
+)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum Precision {
+    /// 64-bit numbers: 16 digits.
+    #[default]
+    Double,
+    /// 32-bit numbers: 7 digits, in about half the time. Rigid disks only. docs/studies.md says what it can do.
+    Single,
+}
+
+impl Precision {
+    /// The name used in study files, for example `single`.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+}
 
 /// The β₂ integrator, its damping and its time step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -18,11 +50,20 @@ pub struct Numerics {
     /// The time step (s); checked against the stability limit. Absent: `safety_factor` × limit.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time_step_s: Option<f64>,
+    /// Precision of the run: `double`, or `single` with a rigid disk. The eigenvalues of steady sliding are always in double
+    /// precision.
+    pub precision: Precision,
 }
 
 impl Default for Numerics {
     fn default() -> Self {
-        Self { beta2: 0.5, beta_r_s: 5.0e-8, safety_factor: 0.7, time_step_s: None }
+        Self {
+            beta2: 0.5,
+            beta_r_s: 5.0e-8,
+            safety_factor: 0.7,
+            time_step_s: None,
+            precision: Precision::Double,
+        }
     }
 }
 

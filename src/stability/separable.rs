@@ -162,7 +162,7 @@ const TILE: usize = 4;
 /// Multiplies every line of `length` numbers, `stride` apart, with a matrix (row → column).
 #[inline(always)]
 fn transform<S: Simd>(simd: S, matrix: &[f64], length: usize, stride: usize, work: &mut [f64]) {
-    let mut lines = vec![Row::default(); length];
+    let mut lines = vec![Row::<f64>::default(); length];
     for block in work.chunks_exact_mut(stride * length) {
         for first in (0..stride).step_by(WIDTH) {
             let width = WIDTH.min(stride - first);
@@ -186,7 +186,7 @@ fn transform<S: Simd>(simd: S, matrix: &[f64], length: usize, stride: usize, wor
                         }
                     }
                 }
-                let mut sum = Row::default();
+                let mut sum = Row::<f64>::default();
                 for t in 0..rows.len() / length {
                     let start = first + (tile * TILE + t) * stride;
                     sums[t].store_slice(&mut sum.0);

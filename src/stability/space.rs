@@ -170,12 +170,12 @@ impl Space {
 /// The stiffness of the pin with its scratch memory.
 pub struct Elasticity<'a, const L: usize = LANES> {
     model: &'a Model,
-    scratch: Scratch<L>,
+    scratch: Scratch,
 }
 
 impl<'a, const L: usize> Elasticity<'a, L> {
     pub fn new(model: &'a Model) -> Self {
-        Self { model, scratch: Scratch::new(model.mesh()) }
+        Self { model, scratch: Scratch::new(model.mesh(), L) }
     }
 
     /// y = K x, reactions of constraints included.

@@ -27,7 +27,7 @@ pub fn inputs(spec: &JobSpec) -> Vec<Input> {
     let job = encode(spec);
     let is_run = spec.stability != StabilityMethod::Modes;
     let has_effect = |parameter: &&'static Parameter| match parameter.name {
-        "ramp_s" | "time_step_s" | "safety_factor" if !is_run => false,
+        "ramp_s" | "time_step_s" | "safety_factor" | "precision" if !is_run => false,
         _ if !is_run && matches!(parameter.part(), Some("run" | "detection")) => false,
         "stability" => !is_run || spec.run.stop_early,
         "clamp_width_m" => spec.scene.clamp.side != ClampSide::WholeTop,

@@ -2,7 +2,8 @@
 
 use super::json::encode;
 use crate::spec::{
-    Clamp, ClampSide, Detection, DiskKind, JobSpec, Load, Numerics, RunControl, StabilityMethod, Start,
+    Clamp, ClampSide, Detection, DiskKind, JobSpec, Load, Numerics, Precision, RunControl, StabilityMethod,
+    Start,
 };
 use serde_json::Value;
 use std::collections::VecDeque;
@@ -15,8 +16,8 @@ const HEX_DIGITS: usize = 32;
 ///
 /// In canonical JSON the fields are sorted, there is no space, and numbers have their shortest exact form, with 0 for
 /// −0. Fields without effect do not enter. These have their defaults: the clamp's width where no strip uses it; the
-/// safety factor where the time step is given; the time step, the run, its detection and the load's ramp where there is
-/// no run; the method of stability where every run goes to its limit. The ring of a rigid disk is left out. A new
+/// safety factor where the time step is given; the time step, the precision, the run, its detection and the load's ramp where
+/// there is no run; the method of stability where every run goes to its limit. The ring of a rigid disk is left out. A new
 /// `solver_version` changes every key, so that old results are not taken for new ones.
 pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     let mut spec = spec.clone();
@@ -29,6 +30,7 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     if spec.stability == StabilityMethod::Modes {
         spec.numerics.safety_factor = Numerics::default().safety_factor;
         spec.numerics.time_step_s = None;
+        spec.numerics.precision = Precision::Double;
         spec.run = RunControl::default();
         spec.detection = Detection::default();
         spec.scene.load.ramp_s = Load::default().ramp_s;
@@ -40,6 +42,12 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
         && let Some(disk) = job.pointer_mut("/scene/disk").and_then(Value::as_object_mut)
     {
         disk.remove("ring");
+    }
+    // Keys of jobs in double precision are those of versions without single precision: their results are the same.
+    if spec.numerics.precision == Precision::Double
+        && let Some(numerics) = job.pointer_mut("/numerics").and_then(Value::as_object_mut)
+    {
+        numerics.remove("precision");
     }
     // Keys of jobs that always run are those of versions without eigenvalues: their results are the same.
     if spec.stability == StabilityMethod::Simulate

@@ -2,7 +2,9 @@
 
 use super::preset::Preset;
 use super::suggest;
-use crate::spec::{ClampSide, DiskKind, DiskTimeStep, StabilityMethod, Start, TargetSurface, TopFace};
+use crate::spec::{
+    ClampSide, DiskKind, DiskTimeStep, Precision, StabilityMethod, Start, TargetSurface, TopFace,
+};
 use schemars::{Schema, SchemaGenerator};
 use serde_json::{Map, Value};
 
@@ -44,6 +46,7 @@ const TOP_FACE: Kind = Kind::Name(SchemaGenerator::subschema_for::<TopFace>);
 const DISK_KIND: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskKind>);
 const TARGET: Kind = Kind::Name(SchemaGenerator::subschema_for::<TargetSurface>);
 const PRESET: Kind = Kind::Name(SchemaGenerator::subschema_for::<Preset>);
+const PRECISION: Kind = Kind::Name(SchemaGenerator::subschema_for::<Precision>);
 const STABILITY: Kind = Kind::Name(SchemaGenerator::subschema_for::<StabilityMethod>);
 const START: Kind = Kind::Name(SchemaGenerator::subschema_for::<Start>);
 const DISK_TIME_STEP: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskTimeStep>);
@@ -89,6 +92,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("damping_frequency_hz", "/damping/frequency_hz", Kind::Number, "frequency at which damping_ratio or loss_factor holds [Hz]"),
     parameter("safety_factor", "/numerics/safety_factor", Kind::Number, "time step as a fraction of the stability limit [-]"),
     parameter("time_step_s", "/numerics/time_step_s", Kind::Number, "time step, instead of safety_factor [s]"),
+    parameter("precision", "/numerics/precision", PRECISION, "precision of the run's numbers, on a rigid disk [name]"),
     parameter("limit_s", "/run/limit_s", Kind::Number, "simulated time after which a run ends [s]"),
     parameter("stop_early", "/run/stop_early", Kind::Flag, "stop once periodic or decayed [true or false]"),
     parameter("average_last_fraction", "/run/average_last_fraction", Kind::Number, "last fraction of the run that is averaged [-]"),

@@ -4,11 +4,11 @@ use crate::signals::coarse;
 use std::collections::BTreeMap;
 use tribosweep::analysis::batch::Batch;
 use tribosweep::analysis::{CoarseStart, Unobserved, solve};
-use tribosweep::spec::{DiskKind, JobSpec, Start};
+use tribosweep::spec::{DiskKind, JobSpec, Precision, Start};
 
 /// Jobs of one model. They differ in everything that may differ: friction, speed, load, ramp, length, and
 /// early stop.
-fn jobs(disk: DiskKind) -> Vec<JobSpec> {
+fn jobs(disk: DiskKind, precision: Precision) -> Vec<JobSpec> {
     (0..11)
         .map(|i| {
             let mut job = coarse();
@@ -19,6 +19,7 @@ fn jobs(disk: DiskKind) -> Vec<JobSpec> {
             job.run.limit_s = 0.001 * (2 + i % 5) as f64 + 1.7e-5 * i as f64;
             job.run.stop_early = i % 2 == 0;
             job.scene.disk.kind = disk;
+            job.numerics.precision = precision;
             match disk {
                 DiskKind::Rigid => job.numerics.beta2 = 0.6,
                 // The bits of a few elements are as hard to keep as those of many. The faster jobs pass edges.
@@ -36,8 +37,8 @@ fn jobs(disk: DiskKind) -> Vec<JobSpec> {
 
 /// Jobs that start from a limit cycle of a coarser mesh, or find none there, beside jobs that start from rest. Their detection is
 /// so tolerant that most of them soon end as periodic.
-fn nested_jobs() -> Vec<JobSpec> {
-    let mut jobs = jobs(DiskKind::Rigid);
+fn nested_jobs(precision: Precision) -> Vec<JobSpec> {
+    let mut jobs = jobs(DiskKind::Rigid, precision);
     for (i, job) in jobs.iter_mut().enumerate() {
         job.scene.pin.elements = [11, 12, 11];
         job.run.start = if i % 4 == 1 { Start::Rest } else { Start::Nested };
@@ -57,25 +58,37 @@ fn alone(job: &JobSpec) -> String {
 /// are in the middle of their runs. They move to more lanes when others begin, and to fewer when others end.
 #[test]
 fn companions_change_nothing() {
-    companions_change_nothing_in(&jobs(DiskKind::Rigid));
+    companions_change_nothing_in(&jobs(DiskKind::Rigid, Precision::Double));
+}
+
+/// Protects: the same in single precision, where a vector holds the nodes of twice as many lanes.
+#[test]
+fn companions_change_nothing_in_single_precision() {
+    companions_change_nothing_in(&jobs(DiskKind::Rigid, Precision::Single));
 }
 
 /// Protects: the same on an elastic disk. Lanes of different speed have their pins at different places on it.
 #[test]
 fn companions_change_nothing_on_an_elastic_disk() {
-    companions_change_nothing_in(&jobs(DiskKind::Elastic));
+    companions_change_nothing_in(&jobs(DiskKind::Elastic, Precision::Double));
 }
 
 /// Protects: the same if jobs first run on a coarser mesh, and come from there to their own mesh while others run on it.
 #[test]
 fn companions_change_nothing_after_a_coarser_mesh() {
-    let jobs = nested_jobs();
+    let jobs = nested_jobs(Precision::Double);
     companions_change_nothing_in(&jobs);
     let starts: Vec<_> = jobs.iter().map(|job| solve(job, &mut Unobserved).unwrap().start).collect();
     let is_used = |start: &Option<CoarseStart>| start.as_ref().map(CoarseStart::is_used);
     for expected in [None, Some(false), Some(true)] {
         assert!(starts.iter().any(|start| is_used(start) == expected), "{expected:?} in {starts:?}");
     }
+}
+
+/// Protects: the same with both, a coarser mesh and single precision.
+#[test]
+fn companions_change_nothing_after_a_coarser_mesh_in_single_precision() {
+    companions_change_nothing_in(&nested_jobs(Precision::Single));
 }
 
 fn companions_change_nothing_in(jobs: &[JobSpec]) {
@@ -110,22 +123,30 @@ fn companions_change_nothing_in(jobs: &[JobSpec]) {
 /// decay monitor, averages) continues, too.
 #[test]
 fn a_resumed_job_has_the_same_bits() {
-    resumed_jobs_have_the_same_bits(&observed(DiskKind::Rigid), &[0, 2, 3, 7]);
-    assert!(alone(&observed(DiskKind::Rigid)[3]).contains("decayed"), "the watch for a decay was among it");
+    let jobs = observed(DiskKind::Rigid, Precision::Double);
+    resumed_jobs_have_the_same_bits(&jobs, &[0, 2, 3, 7]);
+    assert!(alone(&jobs[3]).contains("decayed"), "the watch for a decay was among it");
+}
+
+/// Protects: the same in single precision. Checkpoints hold f64, in which every f32 is exact.
+#[test]
+fn a_resumed_job_in_single_precision_has_the_same_bits() {
+    resumed_jobs_have_the_same_bits(&observed(DiskKind::Rigid, Precision::Single), &[0, 2, 3, 7]);
 }
 
 /// Protects: the same on an elastic disk, whose state is part of the checkpoint.
 #[test]
 fn a_resumed_job_on_an_elastic_disk_has_the_same_bits() {
-    resumed_jobs_have_the_same_bits(&observed(DiskKind::Elastic), &[0, 2, 3, 7]);
-    assert!(alone(&observed(DiskKind::Elastic)[3]).contains("decayed"), "the watch for a decay was among it");
+    let jobs = observed(DiskKind::Elastic, Precision::Double);
+    resumed_jobs_have_the_same_bits(&jobs, &[0, 2, 3, 7]);
+    assert!(alone(&jobs[3]).contains("decayed"), "the watch for a decay was among it");
 }
 
 /// Protects: the same if the job is on a coarser mesh, or has come from there; also if that mesh is reached from one that is
 /// still coarser.
 #[test]
 fn a_resumed_job_after_coarser_meshes_has_the_same_bits() {
-    let mut jobs = nested_jobs();
+    let mut jobs = nested_jobs(Precision::Double);
     resumed_jobs_have_the_same_bits(&jobs, &[0, 3]);
     for job in &mut jobs {
         job.scene.pin.elements = [21, 21, 21];
@@ -135,8 +156,8 @@ fn a_resumed_job_after_coarser_meshes_has_the_same_bits() {
 }
 
 /// Jobs of which one is found stable after an observation that is interrupted.
-fn observed(disk: DiskKind) -> Vec<JobSpec> {
-    let mut jobs = jobs(disk);
+fn observed(disk: DiskKind, precision: Precision) -> Vec<JobSpec> {
+    let mut jobs = jobs(disk, precision);
     jobs[3].detection.decay_observation_s = 0.0026;
     jobs[3].run.limit_s = 0.012;
     jobs[3].scene.contact.mu = 0.2;
@@ -205,7 +226,7 @@ fn a_foreign_checkpoint_is_refused() {
 /// Protects: a checkpoint on the coarser mesh is refused for a job that starts from rest.
 #[test]
 fn a_checkpoint_of_another_start_is_refused() {
-    let nested = nested_jobs().remove(0);
+    let nested = nested_jobs(Precision::Double).remove(0);
     let mut rest = nested.clone();
     rest.run.start = Start::Rest;
     let mut batch = Batch::new(&nested).unwrap();
@@ -251,4 +272,5 @@ fn jobs_of_other_models_are_not_taken() {
     assert!(!changed(|job| job.scene.disk.track_radius_m = 0.08));
     assert!(!changed(|job| job.scene.clamp.width_m *= 0.9));
     assert!(!changed(|job| job.numerics.beta_r_s = 0.0));
+    assert!(!changed(|job| job.numerics.precision = Precision::Single));
 }

@@ -14,7 +14,7 @@ struct StopsAt {
 }
 
 impl JobObserver for StopsAt {
-    fn step(&mut self, moment: &Moment<'_, 1>) {
+    fn step(&mut self, moment: &Moment<'_>) {
         let sample = moment.sample;
         assert!(self.steps == 0 || sample.time_s > self.last_s, "time runs forwards");
         self.last_s = sample.time_s;

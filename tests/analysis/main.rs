@@ -13,6 +13,7 @@ mod on_elastic_disk;
 mod random;
 mod signals;
 mod similarity;
+mod single;
 mod stability;
 mod statistics;
 mod steady;

@@ -59,7 +59,7 @@ struct Watch {
 }
 
 impl JobObserver for Watch {
-    fn step(&mut self, _: &Moment<'_, 1>) {
+    fn step(&mut self, _: &Moment<'_>) {
         self.steps += 1;
     }
 

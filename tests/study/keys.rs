@@ -2,7 +2,7 @@
 
 use super::parse;
 use serde_json::Value;
-use tribosweep::spec::{ClampSide, DiskKind, JobSpec};
+use tribosweep::spec::{ClampSide, DiskKind, JobSpec, Precision};
 use tribosweep::study::{PARAMETERS, job_key};
 
 fn key(spec: &JobSpec) -> String {
@@ -50,6 +50,7 @@ fn another(value: &Value, pointer: &str) -> Option<Value> {
             "/scene/disk/ring/clock" => Some(Value::from("common")),
             "/run/start" => Some(Value::from("nested")),
             "/stability" => Some(Value::from("eigenvalues")),
+            "/numerics/precision" => Some(Value::from("single")),
             other => panic!("{other} = {value}: this test needs another value for it"),
         },
     }
@@ -92,6 +93,16 @@ fn every_field_changes_the_key_even_by_one_ulp() {
         assert_ne!(key(&changed), key(&full()), "{pointer}");
     }
     assert_ne!(key(&full()), key(&JobSpec::default()), "a given time step is not the automatic one");
+}
+
+/// Protects: jobs in double precision have the keys of versions without single precision, so their results are found.
+#[test]
+fn double_precision_keeps_the_keys_of_before() {
+    assert_eq!(key(&JobSpec::default()), "4f665e793cdc54798186f5795bd1d6b9");
+    assert_eq!(key(&full()), "b70e786637642d06da75ce2639575b54");
+    let mut single = JobSpec::default();
+    single.numerics.precision = Precision::Single;
+    assert_ne!(key(&single), key(&JobSpec::default()));
 }
 
 #[test]

@@ -423,6 +423,11 @@ fn disks_that_do_not_fit_are_refused() {
         ),
         ("", r#", "numerics": { "beta2": 0.6 }"#, vec!["numerics.beta2 = 0.6", "0.5 with an elastic disk"]),
         ("", r#", "run": { "start": "nested" }"#, vec!["run.start = nested", "rest with an elastic disk"]),
+        (
+            "",
+            r#", "numerics": { "precision": "single" }"#,
+            vec!["numerics.precision = single: expected double with an elastic disk"],
+        ),
         (r#""elements": [1, 2, 3]"#, "", vec!["scene.disk.ring.elements", "no such field"]),
     ] {
         assert_contains(&refusal(&ring("elastic", values, rest)), &expected);
@@ -433,7 +438,7 @@ fn disks_that_do_not_fit_are_refused() {
     parse(&ring(
         "rigid",
         r#""inner_radius_m": 0.09"#,
-        r#", "numerics": { "beta2": 0.6 }, "run": { "start": "nested" }"#,
+        r#", "numerics": { "beta2": 0.6, "precision": "single" }, "run": { "start": "nested" }"#,
     ));
 }
 

@@ -2,7 +2,7 @@
 //! command `stability` alone.
 
 use super::{assert_contains, parse, refusal};
-use tribosweep::spec::{JobSpec, StabilityMethod};
+use tribosweep::spec::{JobSpec, Precision, StabilityMethod};
 use tribosweep::study::{Changes, Study, inputs, job_key};
 
 fn method(text: &str) -> StabilityMethod {
@@ -78,12 +78,13 @@ fn the_run_is_not_in_the_key_of_modes() {
         change(&mut spec);
         job_key(&spec, "1")
     };
-    let run: [fn(&mut JobSpec); 6] = [
+    let run: [fn(&mut JobSpec); 7] = [
         |spec| spec.run.limit_s = 0.07,
         |spec| spec.run.stop_early = false,
         |spec| spec.detection.tolerance = 0.02,
         |spec| spec.numerics.safety_factor = 0.6,
         |spec| spec.numerics.time_step_s = Some(1.0e-7),
+        |spec| spec.numerics.precision = Precision::Single,
         |spec| spec.scene.load.ramp_s = 0.001,
     ];
     for change in run {

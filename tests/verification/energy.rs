@@ -15,7 +15,8 @@ use tribosweep::solver::interface::target::TargetDefinition;
 use tribosweep::solver::support::clamp;
 use tribosweep::solver::support::load;
 use tribosweep::solver::{
-    Drive, Model, ModelDefinition, SolverError, State, TimeStep, guard, material::Material, step,
+    Drive, Model, ModelDefinition, RunNumber, SolverError, State, StateOf, TimeStep, guard,
+    material::Material, step,
 };
 use tribosweep::spec::{Clamp, JobSpec, TopFace};
 
@@ -29,10 +30,15 @@ fn spec() -> JobSpec {
 }
 
 fn run(spec: &JobSpec, interval: u64) -> (EnergyLedger<1>, u64) {
+    run_in(spec, interval)
+}
+
+/// The same run with fields of the number type `R`.
+fn run_in<R: RunNumber>(spec: &JobSpec, interval: u64) -> (EnergyLedger<1, R>, u64) {
     let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
     let drives =
         [Drive { law: Law::Coulomb { mu: 0.5 }, rate: 1.2, force_n: 30.0, ramp_s: spec.scene.load.ramp_s }];
-    let mut state = State::at_rest(&model);
+    let mut state = StateOf::at_rest(&model);
     let mut ledger = EnergyLedger::new(&model, interval);
     let steps = 3000;
     for _ in 0..steps {
@@ -72,6 +78,24 @@ fn closes_to_rounding_when_every_step_is_audited() {
     }
     // Every step adds works of forces. Each force is rounded like a row of K u.
     evidence.judge_exact(ROUNDINGS_PER_FORCE * most_steps);
+}
+
+/// Protects: the balance in single precision. Each step rounds every force like a row of K u, in f32, and independent roundings
+/// add up like the root of their number. The works and energies are summed in f64, so that no rounding of a sum remains.
+#[test]
+fn closes_to_rounding_in_single_precision() {
+    for beta2 in [0.5, 0.6] {
+        for beta_r_s in [0.0, 5.0e-8] {
+            let mut spec = spec();
+            spec.numerics.beta2 = beta2;
+            spec.numerics.beta_r_s = beta_r_s;
+            let (ledger, steps) = run_in::<f32>(&spec, 1);
+            let residual = ledger.energies(0).relative_residual();
+            let bound = (ROUNDINGS_PER_FORCE * steps as f64).sqrt() * f64::from(f32::EPSILON);
+            println!("β₂ = {beta2}, β_R = {beta_r_s} s: {residual:.1e} of {bound:.1e}");
+            assert!(residual < bound, "β₂ = {beta2}, β_R = {beta_r_s} s: {residual:e} of {bound:e}");
+        }
+    }
 }
 
 /// Protects: sampling changes the damping's work only within its sampling error, and nothing else. The power

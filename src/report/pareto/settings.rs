@@ -5,7 +5,7 @@ use crate::report::parameters::{MU, OMEGA, assignments};
 use crate::report::row::{JobNumerics, JobRow};
 
 /// Grid parameters that change the numerics and not the physical case.
-const NUMERICS: [&str; 16] = [
+const NUMERICS: [&str; 17] = [
     "elements",
     "nx",
     "ny",
@@ -14,6 +14,7 @@ const NUMERICS: [&str; 16] = [
     "beta_r_s",
     "safety_factor",
     "time_step_s",
+    "precision",
     "limit_s",
     "stop_early",
     "average_last_fraction",

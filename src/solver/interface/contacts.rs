@@ -1,7 +1,8 @@
 //! Results of a contact solve at the slave nodes.
 
-use crate::solver::field::{Field, Layout};
+use crate::solver::field::{FieldOf, Layout};
 use crate::solver::lane::LaneState;
+use crate::solver::number::Number;
 
 /// State of a slave node during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, strum::IntoStaticStr)]
@@ -25,18 +26,18 @@ impl ContactState {
 
 /// Contact of all slave nodes during the last step. Slave nodes are numbered like the nodes of the contact face.
 #[derive(Debug, Clone)]
-pub struct Contacts<const L: usize> {
+pub struct Contacts<const L: usize, R: Number = f64> {
     /// Contact force \[N\] on the pin at t_n: x, y, and N ≥ 0 in z (the multipliers are minus these forces).
-    pub force_n: Field<L>,
+    pub force_n: FieldOf<L, R>,
     /// Displacement increment \[m\] relative to the target over the step: x, y, and in z the change of the gap.
-    pub increment_m: Field<L>,
+    pub increment_m: FieldOf<L, R>,
     /// The increment \[m\] over the step before.
-    pub previous_increment_m: Field<L>,
+    pub previous_increment_m: FieldOf<L, R>,
     /// Gap and state; [`Status`] names the components.
-    pub status: Field<L>,
+    pub status: FieldOf<L, R>,
     /// In the first component, the limit \[N\] of the friction force at t_n that the law gave; 0 without contact. The
     /// other components are 0.
-    pub friction: Field<L>,
+    pub friction: FieldOf<L, R>,
 }
 
 /// The component of [`Contacts::friction`] that holds the limit.
@@ -53,10 +54,10 @@ pub enum Status {
     Slips = 2,
 }
 
-impl<const L: usize> Contacts<L> {
+impl<const L: usize, R: Number> Contacts<L, R> {
     /// No contact at the slave nodes of a face with this layout.
     pub fn separated(layout: Layout) -> Self {
-        let face = || Field::zeros(layout);
+        let face = || FieldOf::zeros(layout);
         Self {
             force_n: face(),
             increment_m: face(),
@@ -71,11 +72,11 @@ impl<const L: usize> Contacts<L> {
         std::mem::swap(&mut self.increment_m, &mut self.previous_increment_m);
     }
 
-    fn fields(&self) -> [&Field<L>; 5] {
+    fn fields(&self) -> [&FieldOf<L, R>; 5] {
         [&self.force_n, &self.increment_m, &self.previous_increment_m, &self.status, &self.friction]
     }
 
-    fn fields_mut(&mut self) -> [&mut Field<L>; 5] {
+    fn fields_mut(&mut self) -> [&mut FieldOf<L, R>; 5] {
         [
             &mut self.force_n,
             &mut self.increment_m,
@@ -102,12 +103,12 @@ impl<const L: usize> Contacts<L> {
 
     /// The limit \[N\] of the friction force on a slave node of a lane at t_n.
     pub fn friction_limit_of(&self, slave: usize, lane: usize) -> f64 {
-        self.friction.at(self.friction.place(slave), LIMIT)[lane]
+        self.friction.at(self.friction.place(slave), LIMIT)[lane].to_f64()
     }
 
     /// Gap \[m\] of a slave node of a lane at t_{n+1}.
     pub fn gap_of(&self, slave: usize, lane: usize) -> f64 {
-        self.status.at(self.status.place(slave), Status::Gap as usize)[lane]
+        self.status.at(self.status.place(slave), Status::Gap as usize)[lane].to_f64()
     }
 
     /// State of a slave node of a lane during the step.
@@ -134,7 +135,7 @@ impl<const L: usize> Contacts<L> {
 }
 
 /// Zeros are a lane without contact.
-impl<const L: usize> LaneState for Contacts<L> {
+impl<const L: usize, R: Number> LaneState for Contacts<L, R> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
         for field in self.fields() {
             field.save_lane(lane, saved);
@@ -148,7 +149,7 @@ impl<const L: usize> LaneState for Contacts<L> {
     }
 }
 
-fn vector<const L: usize>(field: &Field<L>, node: usize, lane: usize) -> [f64; 3] {
+fn vector<const L: usize, R: Number>(field: &FieldOf<L, R>, node: usize, lane: usize) -> [f64; 3] {
     let place = field.place(node);
-    std::array::from_fn(|c| field.at(place, c)[lane])
+    std::array::from_fn(|c| field.at(place, c)[lane].to_f64())
 }

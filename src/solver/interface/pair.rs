@@ -3,7 +3,8 @@
 use super::target::SurfaceMotion;
 use crate::solver::body::Freedom;
 use crate::solver::body::block::{BlockBody, BlockMesh};
-use crate::solver::field::{Field, Layout};
+use crate::solver::field::{FieldOf, Layout};
+use crate::solver::number::Number;
 
 /// A node of the contact face.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,12 +99,12 @@ impl Interface {
     }
 
     /// A field with three values per slave node, the same in all lanes.
-    pub fn field<const L: usize>(&self, values: impl Fn(&SlaveNode) -> [f64; 3]) -> Field<L> {
-        let mut field = Field::zeros(self.layout);
+    pub fn field<const L: usize, R: Number>(&self, values: impl Fn(&SlaveNode) -> [f64; 3]) -> FieldOf<L, R> {
+        let mut field = FieldOf::zeros(self.layout);
         for (slave, node) in self.slaves.iter().enumerate() {
             let place = field.place(slave);
             for (component, value) in values(node).into_iter().enumerate() {
-                *field.at_mut(place, component) = [value; L];
+                *field.at_mut(place, component) = [R::from_f64(value); L];
             }
         }
         field

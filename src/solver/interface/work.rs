@@ -2,18 +2,19 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::solve::TargetState;
+use super::solve::{RunNumber, TargetState};
 use super::{Contacts, Interface, Status};
 use crate::solver::drive::Drive;
-use crate::solver::field::{Block, Field, WIDTH, add_slots};
-use crate::solver::simd::dispatch;
-use fearless_simd::{Simd, f64x8, prelude::*};
+use crate::solver::field::{Block, FieldOf, add_slots};
+use crate::solver::number::Number;
+use crate::solver::simd::{dispatch, load, splat};
+use fearless_simd::{Simd, prelude::*};
 
 /// Computes the work of the contact forces.
 #[derive(Debug, Clone)]
-pub(in crate::solver) struct InterfaceWork<const L: usize> {
+pub(in crate::solver) struct InterfaceWork<const L: usize, R: Number> {
     /// Velocity of the target per unit of the drive's rate under every slave node, x and y.
-    motion: Field<L>,
+    motion: FieldOf<L, R>,
 }
 
 /// Work \[J\] of the forces at t_n over the increments after and before t_n.
@@ -30,7 +31,7 @@ pub(in crate::solver) struct StepWorks<const L: usize> {
     pub contact_loss_before_j: [f64; L],
 }
 
-impl<const L: usize> InterfaceWork<L> {
+impl<const L: usize, R: RunNumber> InterfaceWork<L, R> {
     pub fn new(interface: &Interface) -> Self {
         let motion = interface.field(|node| [node.surface_motion[0], node.surface_motion[1], 0.0]);
         Self { motion }
@@ -41,10 +42,19 @@ impl<const L: usize> InterfaceWork<L> {
         &self,
         time_step_s: f64,
         drives: &[Drive; L],
-        contacts: &Contacts<L>,
-        target: &TargetState<L>,
+        contacts: &Contacts<L, R>,
+        target: &TargetState<L, R>,
     ) -> StepWorks<L> {
-        let sums = dispatch!(simd => self.add_up(simd, contacts));
+        let mut sums = [[0.0; L]; SUMS];
+        let face = FaceForces {
+            stride: self.motion.blocks_per_line(),
+            motion: self.motion.blocks(),
+            force_n: contacts.force_n.blocks(),
+            increment_m: contacts.increment_m.blocks(),
+            previous_increment_m: contacts.previous_increment_m.blocks(),
+            status: contacts.status.blocks(),
+        };
+        face.add_up(&mut sums.each_mut().map(<[f64; L]>::as_mut_slice));
         let [mut drive_j, friction_after_j, friction_before_j, contact_loss_after_j, contact_loss_before_j] =
             sums;
         for (drive_j, drive) in drive_j.iter_mut().zip(drives) {
@@ -61,21 +71,38 @@ impl<const L: usize> InterfaceWork<L> {
             contact_loss_before_j,
         }
     }
+}
+
+/// Number of sums.
+const SUMS: usize = 5;
+
+/// The blocks of the contact face, for any number of lanes.
+struct FaceForces<'a, R: Number> {
+    stride: usize,
+    motion: &'a [Block<R>],
+    force_n: &'a [Block<R>],
+    increment_m: &'a [Block<R>],
+    previous_increment_m: &'a [Block<R>],
+    status: &'a [Block<R>],
+}
+
+impl<R: Number> FaceForces<'_, R> {
+    /// Adds the works to the sums of the lanes.
+    fn add_up(&self, sums: &mut [&mut [f64]; SUMS]) {
+        dispatch!(simd => self.add_up_in(simd, sums));
+    }
 
     #[inline(always)]
-    fn add_up<S: Simd>(&self, simd: S, contacts: &Contacts<L>) -> [[f64; L]; 5] {
-        let stride = self.motion.blocks_per_line();
-        let zero = f64x8::splat(simd, 0.0);
-        let mut sums = [[0.0; L]; 5];
-        for along in 0..stride {
-            let mut totals = [zero; 5];
-            for at in (along..self.motion.blocks().len()).step_by(stride) {
-                let force = &contacts.force_n.blocks()[at];
-                let now = work(simd, force, &contacts.increment_m.blocks()[at]);
-                let before = work(simd, force, &contacts.previous_increment_m.blocks()[at]);
-                let motion = &self.motion.blocks()[at];
-                let slips = f64x8::from_slice(simd, &contacts.status.blocks()[at].0[Status::Slips as usize]);
-                let slips = slips.simd_gt(zero);
+    fn add_up_in<S: Simd>(&self, simd: S, sums: &mut [&mut [f64]; SUMS]) {
+        let zero = splat::<R, S>(simd, 0.0);
+        for along in 0..self.stride {
+            let mut totals = [zero; SUMS];
+            for at in (along..self.motion.len()).step_by(self.stride) {
+                let force = &self.force_n[at];
+                let now = work(simd, force, &self.increment_m[at]);
+                let before = work(simd, force, &self.previous_increment_m[at]);
+                let motion = &self.motion[at];
+                let slips = load::<R, S>(simd, &self.status[at].0[Status::Slips as usize]).simd_gt(zero);
                 totals[0] += product(simd, force, motion, 0) + product(simd, force, motion, 1);
                 // The tangential work of slipping nodes is friction. All other work is contact loss.
                 totals[1] -= slips.select(now[0], zero);
@@ -83,19 +110,17 @@ impl<const L: usize> InterfaceWork<L> {
                 totals[3] -= slips.select(zero, now[0]) + now[1];
                 totals[4] -= slips.select(zero, before[0]) + before[1];
             }
-            for (sum, total) in sums.iter_mut().zip(totals) {
-                let mut slots = [0.0; WIDTH];
-                total.store_slice(&mut slots);
-                add_slots(sum, &slots);
+            for (sum, total) in sums.iter_mut().zip(&totals) {
+                let row: &R::Row = total.as_array();
+                add_slots(sum, row.as_ref());
             }
         }
-        sums
     }
 }
 
 /// Work of a force over an increment: its tangential part and its normal part.
 #[inline(always)]
-fn work<S: Simd>(simd: S, force: &Block, increment: &Block) -> [f64x8<S>; 2] {
+fn work<R: Number, S: Simd>(simd: S, force: &Block<R>, increment: &Block<R>) -> [R::Vector<S>; 2] {
     [
         product(simd, force, increment, 0) + product(simd, force, increment, 1),
         product(simd, force, increment, 2),
@@ -103,6 +128,6 @@ fn work<S: Simd>(simd: S, force: &Block, increment: &Block) -> [f64x8<S>; 2] {
 }
 
 #[inline(always)]
-fn product<S: Simd>(simd: S, a: &Block, b: &Block, component: usize) -> f64x8<S> {
-    f64x8::from_slice(simd, &a.0[component]) * f64x8::from_slice(simd, &b.0[component])
+fn product<R: Number, S: Simd>(simd: S, a: &Block<R>, b: &Block<R>, component: usize) -> R::Vector<S> {
+    load::<R, S>(simd, &a.0[component]) * load::<R, S>(simd, &b.0[component])
 }

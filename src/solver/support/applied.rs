@@ -1,35 +1,38 @@
 //! What a support does in every lane.
 
 use crate::solver::body::EnergySums;
-use crate::solver::field::Field;
+use crate::solver::field::FieldOf;
+use crate::solver::number::Number;
 use crate::solver::scheme::Scheme;
 use std::fmt::Debug;
 
 /// A support in every lane. It may store within a step what [`AppliedSupport::add_energies`] needs. Nothing is
 /// carried from step to step.
-pub(in crate::solver) trait AppliedSupport<const L: usize>: Debug + Send + Sync {
+pub(in crate::solver) trait AppliedSupport<const L: usize, R: Number>:
+    Debug + Send + Sync
+{
     /// Acts on the pin at t_n, and adds its reaction force on the pin \[N\] to `reaction_n`. A compliant support adds its
     /// force to the residual, a tie replaces the residual, and a fixed support only reads it.
-    fn act(&mut self, pin: &mut Supported<'_, L>, reaction_n: &mut [[f64; L]; 3]);
+    fn act(&mut self, pin: &mut Supported<'_, L, R>, reaction_n: &mut [[f64; L]; 3]);
 
     /// Adds the energy stored at t_n, and the work of damping in the step from there to `u_after`. A rigid support
     /// has neither.
     ///
     /// The work of damping over the increment before t_n can be given for β₂ = ½ only, where that increment is Δt p_n.
-    fn add_energies(&self, _scheme: &Scheme, _u_after: &Field<L>, _total: &mut EnergySums<L>) {}
+    fn add_energies(&self, _scheme: &Scheme, _u_after: &FieldOf<L, R>, _total: &mut EnergySums<L>) {}
 
     /// A copy.
-    fn boxed(&self) -> Box<dyn AppliedSupport<L>>;
+    fn boxed(&self) -> Box<dyn AppliedSupport<L, R>>;
 }
 
 /// The pin at t_n, on which supports act.
-pub(in crate::solver) struct Supported<'a, const L: usize> {
+pub(in crate::solver) struct Supported<'a, const L: usize, R: Number> {
     /// Displacements \[m\] at t_n, on the planes of nodes on which supports and loads act; the others have been moved. Rigid supports do not need them, nor `p`.
     #[expect(dead_code, reason = "for supports whose force depends on the motion")]
-    pub u: &'a Field<L>,
+    pub u: &'a FieldOf<L, R>,
     /// p_n \[m/s\].
     #[expect(dead_code, reason = "for supports whose force depends on the motion")]
-    pub p: &'a Field<L>,
+    pub p: &'a FieldOf<L, R>,
     /// K (u + β_R p) − external forces \[N\].
-    pub residual: &'a mut Field<L>,
+    pub residual: &'a mut FieldOf<L, R>,
 }

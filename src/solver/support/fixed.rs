@@ -3,7 +3,7 @@
 use super::applied::{AppliedSupport, Supported};
 use super::weights::{Weights, ones};
 use crate::solver::body::block::BlockMesh;
-use crate::solver::simd::dispatch;
+use crate::solver::number::Number;
 
 /// Degrees of freedom that never move.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -15,25 +15,25 @@ pub struct Fixed {
 /// Fixed degrees of freedom in every lane. Their inverse mass is zero, so the pin's motion does not change them.
 /// Here their reactions are summed.
 #[derive(Debug, Clone)]
-pub(super) struct AppliedFixed<const L: usize> {
-    held: Vec<Weights>,
+pub(super) struct AppliedFixed<R: Number> {
+    held: Vec<Weights<R>>,
 }
 
-impl<const L: usize> AppliedFixed<L> {
-    pub fn new(fixed: &Fixed, mesh: &BlockMesh) -> Self {
-        Self { held: ones::<L>(mesh, &fixed.dofs) }
+impl<R: Number> AppliedFixed<R> {
+    /// For fields with `lanes` lanes.
+    pub fn new(fixed: &Fixed, mesh: &BlockMesh, lanes: usize) -> Self {
+        Self { held: ones(mesh, lanes, &fixed.dofs) }
     }
 }
 
-impl<const L: usize> AppliedSupport<L> for AppliedFixed<L> {
-    fn act(&mut self, pin: &mut Supported<'_, L>, reaction_n: &mut [[f64; L]; 3]) {
+impl<const L: usize, R: Number> AppliedSupport<L, R> for AppliedFixed<R> {
+    fn act(&mut self, pin: &mut Supported<'_, L, R>, reaction_n: &mut [[f64; L]; 3]) {
         for held in &self.held {
-            let total = &mut reaction_n[held.component];
-            dispatch!(simd => held.add_up(simd, pin.residual, total));
+            held.add_up(pin.residual.blocks(), &mut reaction_n[held.component]);
         }
     }
 
-    fn boxed(&self) -> Box<dyn AppliedSupport<L>> {
+    fn boxed(&self) -> Box<dyn AppliedSupport<L, R>> {
         Box::new(self.clone())
     }
 }

@@ -4,9 +4,10 @@
 
 use super::weights::{Weights, weights};
 use crate::solver::body::block::BlockMesh;
-use crate::solver::field::{Field, in_slots};
-use crate::solver::simd::dispatch;
-use fearless_simd::{Simd, f64x8, prelude::*};
+use crate::solver::field::{Block, FieldOf, in_slots_of};
+use crate::solver::number::Number;
+use crate::solver::simd::{dispatch, load};
+use fearless_simd::{Simd, prelude::*};
 
 /// A nodal force per unit of the total load (dimensionless).
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -27,38 +28,43 @@ pub fn normal_load(mesh: &BlockMesh) -> Vec<LoadShare> {
 
 /// The distribution of the load in every lane.
 #[derive(Debug, Clone)]
-pub(in crate::solver) struct AppliedLoad<const L: usize> {
-    shares: Vec<Weights>,
+pub(in crate::solver) struct AppliedLoad<R: Number> {
+    shares: Vec<Weights<R>>,
 }
 
-impl<const L: usize> AppliedLoad<L> {
-    pub fn new(load: &[LoadShare], mesh: &BlockMesh) -> Self {
+impl<R: Number> AppliedLoad<R> {
+    /// For fields with `lanes` lanes.
+    pub fn new(load: &[LoadShare], mesh: &BlockMesh, lanes: usize) -> Self {
         let shares: Vec<_> = load.iter().map(|load| (load.dof, load.share)).collect();
-        Self { shares: weights::<L>(mesh, &shares) }
+        Self { shares: weights(mesh, lanes, &shares) }
     }
 
     /// Subtracts the load \[N\] from the residual \[N\].
-    pub fn act(&self, load_n: &[f64; L], residual: &mut Field<L>) {
+    pub fn act<const L: usize>(&self, load_n: &[f64; L], residual: &mut FieldOf<L, R>) {
+        self.act_on(&in_slots_of::<R>(load_n), residual.blocks_mut());
+    }
+
+    fn act_on(&self, load_n: &R::Row, residual: &mut [Block<R>]) {
         dispatch!(simd => self.act_in(simd, load_n, residual));
     }
 
     #[inline(always)]
-    fn act_in<S: Simd>(&self, simd: S, load_n: &[f64; L], residual: &mut Field<L>) {
-        let load_n = f64x8::from_slice(simd, &in_slots(load_n));
-        for load in &self.shares {
-            let first = load.plane * load.rows.len();
-            for (block, share) in residual.blocks_mut()[first..].iter_mut().zip(&load.rows) {
-                let row = &mut block.0[load.component];
-                (f64x8::from_slice(simd, row) - f64x8::from_slice(simd, &share.0) * load_n).store_slice(row);
+    fn act_in<S: Simd>(&self, simd: S, load_n: &R::Row, residual: &mut [Block<R>]) {
+        let load_n = load::<R, S>(simd, load_n);
+        for share in &self.shares {
+            let first = share.plane * share.rows.len();
+            for (block, per_load) in residual[first..].iter_mut().zip(&share.rows) {
+                let row = &mut block.0[share.component];
+                (load::<R, S>(simd, row) - load::<R, S>(simd, &per_load.0) * load_n).store_array(row);
             }
         }
     }
 
     /// Displacement \[m\] that is work-conjugate to the total load: Σ share·u.
-    pub fn stroke_m(&self, u: &Field<L>) -> [f64; L] {
+    pub fn stroke_m<const L: usize>(&self, u: &FieldOf<L, R>) -> [f64; L] {
         let mut stroke = [0.0; L];
-        for load in &self.shares {
-            dispatch!(simd => load.add_up(simd, u, &mut stroke));
+        for share in &self.shares {
+            share.add_up(u.blocks(), &mut stroke);
         }
         stroke
     }

@@ -24,7 +24,8 @@ pub use tied::Tied;
 use super::body::block::BlockMesh;
 use super::body::{EnergySums, Freedom};
 use super::error::SolverError;
-use super::field::Field;
+use super::field::FieldOf;
+use super::number::Number;
 use super::scheme::{Bound, Scheme};
 use fixed::AppliedFixed;
 use tied::AppliedTie;
@@ -65,10 +66,14 @@ impl Support {
         }
     }
 
-    fn applied<const L: usize>(&self, mesh: &BlockMesh, masses_kg: &[f64]) -> Box<dyn AppliedSupport<L>> {
+    fn applied<const L: usize, R: Number>(
+        &self,
+        mesh: &BlockMesh,
+        masses_kg: &[f64],
+    ) -> Box<dyn AppliedSupport<L, R>> {
         match self {
-            Self::Fixed(fixed) => Box::new(AppliedFixed::new(fixed, mesh)),
-            Self::Tied(tied) => Box::new(AppliedTie::new(tied, mesh, masses_kg)),
+            Self::Fixed(fixed) => Box::new(AppliedFixed::new(fixed, mesh, L)),
+            Self::Tied(tied) => Box::new(AppliedTie::new(tied, mesh, L, masses_kg)),
         }
     }
 }
@@ -117,9 +122,9 @@ pub fn freedoms(supports: &[Support], mesh: &BlockMesh) -> Result<Vec<Freedom>, 
 
 /// All supports in every lane, ties last.
 #[derive(Debug)]
-pub(in crate::solver) struct AppliedSupports<const L: usize>(Vec<Box<dyn AppliedSupport<L>>>);
+pub(in crate::solver) struct AppliedSupports<const L: usize, R: Number>(Vec<Box<dyn AppliedSupport<L, R>>>);
 
-impl<const L: usize> AppliedSupports<L> {
+impl<const L: usize, R: Number> AppliedSupports<L, R> {
     /// Prepares the supports of a pin with these lumped masses \[kg\].
     pub fn new(supports: &[Support], mesh: &BlockMesh, masses_kg: &[f64]) -> Self {
         // A tie replaces the residual, so everything that adds to the residual acts before.
@@ -129,7 +134,7 @@ impl<const L: usize> AppliedSupports<L> {
     }
 
     /// Lets all supports act on the pin. Returns the sum of their reaction forces on the pin \[N\]: x, y and z.
-    pub fn act(&mut self, pin: &mut Supported<'_, L>) -> [[f64; L]; 3] {
+    pub fn act(&mut self, pin: &mut Supported<'_, L, R>) -> [[f64; L]; 3] {
         let mut reaction_n = [[0.0; L]; 3];
         for support in &mut self.0 {
             support.act(pin, &mut reaction_n);
@@ -138,14 +143,14 @@ impl<const L: usize> AppliedSupports<L> {
     }
 
     /// Adds the energies of all supports to those of the bodies.
-    pub fn add_energies(&self, scheme: &Scheme, u_after: &Field<L>, total: &mut EnergySums<L>) {
+    pub fn add_energies(&self, scheme: &Scheme, u_after: &FieldOf<L, R>, total: &mut EnergySums<L>) {
         for support in &self.0 {
             support.add_energies(scheme, u_after, total);
         }
     }
 }
 
-impl<const L: usize> Clone for AppliedSupports<L> {
+impl<const L: usize, R: Number> Clone for AppliedSupports<L, R> {
     fn clone(&self) -> Self {
         Self(self.0.iter().map(|support| support.boxed()).collect())
     }

@@ -5,9 +5,10 @@
 use super::applied::{AppliedSupport, Supported};
 use super::weights::{Weights, ones};
 use crate::solver::body::block::BlockMesh;
-use crate::solver::field::{Field, in_slots};
-use crate::solver::simd::dispatch;
-use fearless_simd::{Simd, f64x8, prelude::*};
+use crate::solver::field::{Block, in_slots_of};
+use crate::solver::number::Number;
+use crate::solver::simd::{dispatch, load, splat};
+use fearless_simd::{Simd, prelude::*};
 
 /// Nodes that share one displacement in one component.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -27,49 +28,54 @@ impl Tied {
 
 /// A tie in every lane.
 #[derive(Debug, Clone)]
-pub(super) struct AppliedTie<const L: usize> {
-    members: Vec<Weights>,
+pub(super) struct AppliedTie<R: Number> {
+    members: Vec<Weights<R>>,
     /// 1/(mass of the group) \[1/kg\].
     inverse_mass: f64,
 }
 
-impl<const L: usize> AppliedTie<L> {
-    pub fn new(tied: &Tied, mesh: &BlockMesh, masses_kg: &[f64]) -> Self {
+impl<R: Number> AppliedTie<R> {
+    /// For fields with `lanes` lanes.
+    pub fn new(tied: &Tied, mesh: &BlockMesh, lanes: usize, masses_kg: &[f64]) -> Self {
         Self {
-            members: ones::<L>(mesh, &tied.dofs().collect::<Vec<_>>()),
+            members: ones(mesh, lanes, &tied.dofs().collect::<Vec<_>>()),
             inverse_mass: 1.0 / tied.nodes.iter().map(|&node| masses_kg[node]).sum::<f64>(),
         }
     }
 
     /// Replaces the residual of every member by Σ residual/Σ mass, which is minus the acceleration of the group.
     /// Tied degrees of freedom have the inverse mass 1, so every member then moves with this acceleration.
-    #[inline(always)]
-    fn share<S: Simd>(&self, simd: S, residual: &mut Field<L>) {
-        let mut sum = [0.0; L];
+    fn share(&self, residual: &mut [Block<R>], sums: &mut [f64]) {
         for member in &self.members {
-            member.add_up(simd, residual, &mut sum);
+            member.add_up(residual, sums);
         }
-        for total in &mut sum {
+        for total in &mut *sums {
             *total *= self.inverse_mass;
         }
-        let common = f64x8::from_slice(simd, &in_slots(&sum));
+        let common = in_slots_of::<R>(sums);
+        dispatch!(simd => self.set(simd, residual, &common));
+    }
+
+    #[inline(always)]
+    fn set<S: Simd>(&self, simd: S, residual: &mut [Block<R>], common: &R::Row) {
+        let common = load::<R, S>(simd, common);
         for member in &self.members {
             let first = member.plane * member.rows.len();
-            for (block, mask) in residual.blocks_mut()[first..].iter_mut().zip(&member.rows) {
+            for (block, mask) in residual[first..].iter_mut().zip(&member.rows) {
                 let row = &mut block.0[member.component];
-                let tied = f64x8::from_slice(simd, &mask.0).simd_gt(f64x8::splat(simd, 0.0));
-                tied.select(common, f64x8::from_slice(simd, row)).store_slice(row);
+                let tied = load::<R, S>(simd, &mask.0).simd_gt(splat::<R, S>(simd, 0.0));
+                tied.select(common, load::<R, S>(simd, row)).store_array(row);
             }
         }
     }
 }
 
-impl<const L: usize> AppliedSupport<L> for AppliedTie<L> {
-    fn act(&mut self, pin: &mut Supported<'_, L>, _reaction_n: &mut [[f64; L]; 3]) {
-        dispatch!(simd => self.share(simd, pin.residual));
+impl<const L: usize, R: Number> AppliedSupport<L, R> for AppliedTie<R> {
+    fn act(&mut self, pin: &mut Supported<'_, L, R>, _reaction_n: &mut [[f64; L]; 3]) {
+        self.share(pin.residual.blocks_mut(), &mut [0.0; L]);
     }
 
-    fn boxed(&self) -> Box<dyn AppliedSupport<L>> {
+    fn boxed(&self) -> Box<dyn AppliedSupport<L, R>> {
         Box::new(self.clone())
     }
 }

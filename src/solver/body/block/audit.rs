@@ -6,48 +6,49 @@ use super::BlockBody;
 use super::line_table::LineTable;
 use super::operator::Scratch;
 use crate::solver::body::{EnergySums, add_lanes};
-use crate::solver::field::{Field, Row, WIDTH, add_slots, in_slots};
+use crate::solver::field::{Block, FieldOf, add_slots, in_slots_of};
 use crate::solver::lane::LaneState;
+use crate::solver::number::Number;
 use crate::solver::scheme::Scheme;
-use crate::solver::simd::dispatch;
-use fearless_simd::{Simd, f64x8, prelude::*};
+use crate::solver::simd::{dispatch, load, splat};
+use fearless_simd::Simd;
 
 /// Displacements \[m\] and p \[m/s\] of a block at one time, and the number of steps that each lane has done.
 #[derive(Clone, Copy)]
-pub(in crate::solver) struct Motion<'a, const L: usize> {
-    pub u: &'a Field<L>,
-    pub p: &'a Field<L>,
+pub(in crate::solver) struct Motion<'a, const L: usize, R: Number> {
+    pub u: &'a FieldOf<L, R>,
+    pub p: &'a FieldOf<L, R>,
     pub steps_done: &'a [u64; L],
 }
 
 /// Evaluates the energies of a block. It stores values from before the audited step.
 #[derive(Debug, Clone)]
-pub(in crate::solver) struct BlockAudit<const L: usize> {
-    mass: LineTable<L>,
-    p: Field<L>,
+pub(in crate::solver) struct BlockAudit<const L: usize, R: Number> {
+    mass: LineTable<R>,
+    p: FieldOf<L, R>,
     /// K p.
-    kp: Field<L>,
-    scratch: Scratch<L>,
+    kp: FieldOf<L, R>,
+    scratch: Scratch<R>,
     /// ½uKu before the step.
     elastic_j: [f64; L],
     /// Work of damping over the increment before t_n.
     damping_before_j: [f64; L],
     /// Sums of the columns of blocks.
-    columns: Vec<[Row; SUMS]>,
+    columns: Vec<[R::Totals; SUMS]>,
     /// Present for β₂ > ½ only.
-    jumps: Option<Jumps<L>>,
+    jumps: Option<Jumps<L, R>>,
 }
 
 /// The additional fields for β₂ > ½.
 #[derive(Debug, Clone)]
-struct Jumps<const L: usize> {
+struct Jumps<const L: usize, R: Number> {
     /// Displacements before the step. With β₂ = 1 the first step does not change p, so its acceleration follows
     /// from the displacements alone.
-    u: Field<L>,
-    acceleration: Field<L>,
-    previous_acceleration: Field<L>,
+    u: FieldOf<L, R>,
+    acceleration: FieldOf<L, R>,
+    previous_acceleration: FieldOf<L, R>,
     /// Increment of the displacements over the step before.
-    increment: Field<L>,
+    increment: FieldOf<L, R>,
 }
 
 /// Number of sums: kinetic energy, work of damping after t_n, and ΔaMΔa.
@@ -56,9 +57,9 @@ const KINETIC: usize = 0;
 const DAMPING_AFTER: usize = 1;
 const INERTIAL_JUMP: usize = 2;
 
-impl<const L: usize> BlockAudit<L> {
+impl<const L: usize, R: Number> BlockAudit<L, R> {
     pub fn new(block: &BlockBody, beta2: f64) -> Self {
-        let field = || Field::<L>::zeros(block.mesh().layout());
+        let field = || FieldOf::<L, R>::zeros(block.mesh().layout());
         let jumps = (beta2 > 0.5).then(|| Jumps {
             u: field(),
             acceleration: field(),
@@ -66,19 +67,19 @@ impl<const L: usize> BlockAudit<L> {
             increment: field(),
         });
         Self {
-            mass: LineTable::new(block.mesh(), |node| block.masses_kg()[node]),
+            mass: LineTable::new(block.mesh(), L, |node| block.masses_kg()[node]),
             p: field(),
             kp: field(),
-            scratch: Scratch::new(block.mesh()),
+            scratch: Scratch::new(block.mesh(), L),
             elastic_j: [0.0; L],
             damping_before_j: [0.0; L],
-            columns: vec![[Row::default(); SUMS]; field().blocks_per_line()],
+            columns: vec![[R::Totals::default(); SUMS]; field().blocks_per_line()],
             jumps,
         }
     }
 
     /// Stores the state before the step.
-    pub fn keep(&mut self, before: &Motion<'_, L>) {
+    pub fn keep(&mut self, before: &Motion<'_, L, R>) {
         self.p.clone_from(before.p);
         if let Some(jumps) = &mut self.jumps {
             jumps.u.clone_from(before.u);
@@ -86,7 +87,7 @@ impl<const L: usize> BlockAudit<L> {
     }
 
     /// Evaluates uKu and pKp before the step.
-    pub fn begin(&mut self, block: &BlockBody, scheme: &Scheme, before: &Motion<'_, L>) {
+    pub fn begin(&mut self, block: &BlockBody, scheme: &Scheme, before: &Motion<'_, L, R>) {
         let (operator, dt, beta_r) = (block.operator(), scheme.time_step_s, scheme.beta_r_s);
         // K p overwrites K u below.
         self.elastic_j = operator.product(before.u, &mut self.kp, &mut self.scratch).map(|form| 0.5 * form);
@@ -106,14 +107,15 @@ impl<const L: usize> BlockAudit<L> {
     }
 
     /// Computes `a_n` from the displacements of the step, contact forces included. It is needed for β₂ > ½.
-    pub fn find_acceleration(&mut self, scheme: &Scheme, after: &Motion<'_, L>) {
+    pub fn find_acceleration(&mut self, scheme: &Scheme, after: &Motion<'_, L, R>) {
         let Some(jumps) = &mut self.jumps else { return };
         let dt = scheme.time_step_s;
-        let scale = in_slots(&u_scales(scheme, after).map(|scale| 1.0 / scale));
+        let scale = in_slots_of::<R>(&u_scales(scheme, after).map(|scale| 1.0 / scale));
+        let dt = R::from_f64(dt);
         let after = after.u.blocks().iter().zip(jumps.u.blocks()).zip(self.p.blocks());
         for (a, ((after, u), p)) in jumps.acceleration.blocks_mut().iter_mut().zip(after) {
             for c in 0..3 {
-                for i in 0..WIDTH {
+                for i in 0..R::WIDTH {
                     a.0[c][i] = (after.0[c][i] - u.0[c][i] - dt * p.0[c][i]) * scale[i];
                 }
             }
@@ -133,13 +135,30 @@ impl<const L: usize> BlockAudit<L> {
         total: &mut EnergySums<L>,
         block: &BlockBody,
         scheme: &Scheme,
-        after: &Motion<'_, L>,
+        after: &Motion<'_, L, R>,
     ) {
-        dispatch!(simd => self.add_up(simd, block, scheme, after));
+        let dt = scheme.time_step_s;
+        let begins = after.steps_done.map(|steps| steps == 1);
+        let factors = Factors {
+            gain: in_slots_of::<R>(&begins.map(|begins| if begins { 0.0 } else { scheme.beta2 * dt })),
+            per_p: in_slots_of::<R>(&begins.map(|begins| 1.0 / (scheme.factors(begins).1 * dt))),
+            u_scale: in_slots_of::<R>(&u_scales(scheme, after)),
+            scheme,
+        };
+        let jumps = self.jumps.as_ref();
+        let motion = AuditedMotion {
+            nodes: block.mesh().nodes_per_axis(),
+            mass: &self.mass,
+            before_p: self.p.blocks(),
+            after_p: after.p.blocks(),
+            kp: self.kp.blocks(),
+            accelerations: jumps.map(|j| [j.acceleration.blocks(), j.previous_acceleration.blocks()]),
+        };
+        motion.add_up(&factors, &mut self.columns);
         let mut sums = [[0.0; L]; SUMS];
         for column in &self.columns {
             for (sum, slots) in sums.iter_mut().zip(column) {
-                add_slots(sum, &slots.0);
+                add_slots(sum, slots.as_ref());
             }
         }
         let numerical_j = self.numerical_loss(block, scheme, &sums[INERTIAL_JUMP]);
@@ -150,66 +169,16 @@ impl<const L: usize> BlockAudit<L> {
         add_lanes(&mut total.numerical_j, &numerical_j);
     }
 
-    /// Forms the sums over all nodes that need the state after the step.
-    #[inline(always)]
-    fn add_up<S: Simd>(&mut self, simd: S, block: &BlockBody, scheme: &Scheme, after: &Motion<'_, L>) {
-        let [_, my, mz] = block.mesh().nodes_per_axis();
-        let (dt, gamma) = (scheme.time_step_s, scheme.beta2);
-        let damps = scheme.beta_r_s > 0.0;
-        let begins = after.steps_done.map(|steps| steps == 1);
-        let gain = in_slots(&begins.map(|begins| if begins { 0.0 } else { gamma * dt }));
-        let per_p = in_slots(&begins.map(|begins| 1.0 / (scheme.factors(begins).1 * dt)));
-        let u_scale = in_slots(&u_scales(scheme, after));
-        let (gain, per_p) = (f64x8::from_slice(simd, &gain), f64x8::from_slice(simd, &per_p));
-        let u_scale = f64x8::from_slice(simd, &u_scale);
-        let half = f64x8::splat(simd, 0.5);
-        let beta_r = f64x8::splat(simd, scheme.beta_r_s);
-        let of_a2 = f64x8::splat(simd, 0.5 * gamma * dt * dt);
-        let dt = f64x8::splat(simd, dt);
-        let zero = f64x8::splat(simd, 0.0);
-        let blocks = self.columns.len();
-        self.columns.fill([Row::default(); SUMS]);
-        for k in 0..mz {
-            for along in 0..blocks {
-                let mut sums = [zero; SUMS];
-                for j in 0..my {
-                    let line = j + my * k;
-                    let at = line * blocks + along;
-                    let half_mass = half * f64x8::from_slice(simd, self.mass.row(line, along));
-                    for c in 0..3 {
-                        let p = load(simd, &self.p, at, c);
-                        let a = match &self.jumps {
-                            None => (load(simd, after.p, at, c) - p) * per_p,
-                            Some(jumps) => load(simd, &jumps.acceleration, at, c),
-                        };
-                        let v = p + gain * a;
-                        sums[KINETIC] += half_mass * (v * v - of_a2 * (a * a));
-                        if damps {
-                            let stroke = dt * p + u_scale * a;
-                            sums[DAMPING_AFTER] += (beta_r * load(simd, &self.kp, at, c)) * stroke;
-                        }
-                        if let Some(jumps) = &self.jumps {
-                            let jump = a - load(simd, &jumps.previous_acceleration, at, c);
-                            sums[INERTIAL_JUMP] += (half_mass + half_mass) * (jump * jump);
-                        }
-                    }
-                }
-                for (total, sum) in self.columns[along].iter_mut().zip(sums) {
-                    (f64x8::from_slice(simd, &total.0) + sum).store_slice(&mut total.0);
-                }
-            }
-        }
-    }
-
     /// (γ−½)\[ΔuKΔu − ½γΔt² ΔaMΔa\] \[J\] of the step before `t_n`. It overwrites K p, which is no longer needed.
     fn numerical_loss(&mut self, block: &BlockBody, scheme: &Scheme, inertial_jump_j: &[f64; L]) -> [f64; L] {
         let Some(jumps) = &mut self.jumps else { return [0.0; L] };
         let (dt, gamma) = (scheme.time_step_s, scheme.beta2);
         let before = self.p.blocks().iter().zip(jumps.previous_acceleration.blocks());
+        let (per_p, per_a) = (R::from_f64(dt), R::from_f64((gamma - 0.5) * dt * dt));
         for (increment, (p, a)) in jumps.increment.blocks_mut().iter_mut().zip(before) {
             for c in 0..3 {
-                for i in 0..WIDTH {
-                    increment.0[c][i] = dt * p.0[c][i] + (gamma - 0.5) * dt * dt * a.0[c][i];
+                for i in 0..R::WIDTH {
+                    increment.0[c][i] = per_p * p.0[c][i] + per_a * a.0[c][i];
                 }
             }
         }
@@ -221,7 +190,7 @@ impl<const L: usize> BlockAudit<L> {
 }
 
 /// Only the acceleration of the step before is carried from step to step.
-impl<const L: usize> LaneState for BlockAudit<L> {
+impl<const L: usize, R: Number> LaneState for BlockAudit<L, R> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
         if let Some(jumps) = &self.jumps {
             jumps.previous_acceleration.save_lane(lane, saved);
@@ -235,13 +204,78 @@ impl<const L: usize> LaneState for BlockAudit<L> {
     }
 }
 
-/// Factor \[s²\] of a in the displacements of the step that each lane has just done.
-fn u_scales<const L: usize>(scheme: &Scheme, after: &Motion<'_, L>) -> [f64; L] {
-    let dt = scheme.time_step_s;
-    after.steps_done.map(|steps| scheme.factors(steps == 1).0 * dt * dt)
+/// Factors of the audited step.
+struct Factors<'a, R: Number> {
+    gain: R::Row,
+    per_p: R::Row,
+    u_scale: R::Row,
+    scheme: &'a Scheme,
 }
 
-#[inline(always)]
-fn load<S: Simd, const L: usize>(simd: S, field: &Field<L>, at: usize, component: usize) -> f64x8<S> {
-    f64x8::from_slice(simd, &field.blocks()[at].0[component])
+/// The blocks of an audited step, for any number of lanes.
+struct AuditedMotion<'a, R: Number> {
+    nodes: [usize; 3],
+    mass: &'a LineTable<R>,
+    before_p: &'a [Block<R>],
+    after_p: &'a [Block<R>],
+    kp: &'a [Block<R>],
+    /// The acceleration, and that of the step before. Present for β₂ > ½ only.
+    accelerations: Option<[&'a [Block<R>]; 2]>,
+}
+
+impl<R: Number> AuditedMotion<'_, R> {
+    /// Forms the sums over all nodes that need the state after the step.
+    fn add_up(&self, factors: &Factors<'_, R>, columns: &mut [[R::Totals; SUMS]]) {
+        dispatch!(simd => self.add_up_in(simd, factors, columns));
+    }
+
+    #[inline(always)]
+    fn add_up_in<S: Simd>(&self, simd: S, factors: &Factors<'_, R>, columns: &mut [[R::Totals; SUMS]]) {
+        let [_, my, mz] = self.nodes;
+        let Scheme { time_step_s: dt, beta2: gamma, beta_r_s } = *factors.scheme;
+        let damps = beta_r_s > 0.0;
+        let all = |value| splat::<R, S>(simd, value);
+        let row = |row| load::<R, S>(simd, row);
+        let [gain, per_p, u_scale] = [row(&factors.gain), row(&factors.per_p), row(&factors.u_scale)];
+        let [half, beta_r, of_a2] = [all(0.5), all(beta_r_s), all(0.5 * gamma * dt * dt)];
+        let [dt, zero] = [all(dt), all(0.0)];
+        let blocks = columns.len();
+        columns.fill([R::Totals::default(); SUMS]);
+        for k in 0..mz {
+            for along in 0..blocks {
+                let mut sums = [zero; SUMS];
+                for j in 0..my {
+                    let line = j + my * k;
+                    let at = line * blocks + along;
+                    let half_mass = half * row(self.mass.row(line, along));
+                    for c in 0..3 {
+                        let p = row(&self.before_p[at].0[c]);
+                        let a = match &self.accelerations {
+                            None => (row(&self.after_p[at].0[c]) - p) * per_p,
+                            Some([now, _]) => row(&now[at].0[c]),
+                        };
+                        let v = p + gain * a;
+                        sums[KINETIC] += half_mass * (v * v - of_a2 * (a * a));
+                        if damps {
+                            let stroke = dt * p + u_scale * a;
+                            sums[DAMPING_AFTER] += (beta_r * row(&self.kp[at].0[c])) * stroke;
+                        }
+                        if let Some([_, before]) = &self.accelerations {
+                            let jump = a - row(&before[at].0[c]);
+                            sums[INERTIAL_JUMP] += (half_mass + half_mass) * (jump * jump);
+                        }
+                    }
+                }
+                for (totals, sum) in columns[along].iter_mut().zip(sums) {
+                    R::add_to_totals::<S>(totals, sum);
+                }
+            }
+        }
+    }
+}
+
+/// Factor \[s²\] of a in the displacements of the step that each lane has just done.
+fn u_scales<const L: usize, R: Number>(scheme: &Scheme, after: &Motion<'_, L, R>) -> [f64; L] {
+    let dt = scheme.time_step_s;
+    after.steps_done.map(|steps| scheme.factors(steps == 1).0 * dt * dt)
 }

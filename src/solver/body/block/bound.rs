@@ -177,7 +177,7 @@ mod tests {
             let bound = omega_max_bound(&mesh, &element, material.density_kg_m3, &freedoms);
 
             let operator = TensorOperator::new(&mesh, &material);
-            let mut scratch = Scratch::new(&mesh);
+            let mut scratch = Scratch::new(&mesh, 1);
             let masses = mesh.lumped_masses_kg(material.density_kg_m3);
             let start: Vec<f64> = (0..3 * masses.len()).map(|i| ((i * 7919) % 101) as f64 - 50.0).collect();
             let mut x = Field::<1>::from_values(mesh.layout(), &start);

@@ -16,7 +16,7 @@ pub mod stress;
 pub(in crate::solver) use audit::{BlockAudit, Motion};
 use bound::{omega_max_bound, omega_max_bound_of_springs};
 pub use mesh::BlockMesh;
-pub(in crate::solver) use motion::{BlockMotion, Face};
+pub(in crate::solver) use motion::{BlockMotion, Face, move_nodes};
 
 use super::Freedom;
 use super::hexahedron;
@@ -128,7 +128,7 @@ impl BlockBody {
     pub fn stiffness_times(&self, x: &[f64]) -> Vec<f64> {
         let layout = self.mesh.layout();
         let mut product = Field::<1>::zeros(layout);
-        let scratch = &mut Scratch::new(&self.mesh);
+        let scratch = &mut Scratch::new(&self.mesh, 1);
         self.operator.product(&Field::from_values(layout, x), &mut product, scratch);
         product.values().collect()
     }

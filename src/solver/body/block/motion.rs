@@ -12,81 +12,82 @@
 
 use super::BlockBody;
 use super::line_table::LineTable;
-use super::operator::{AssembledOperator, BlockIndex, Operator, Pass, Scratch, TensorOperator, load_all};
+use super::operator::{AssembledOperator, BlockIndex, Operator, Pass, Scratch, TensorOperator};
 use crate::solver::body::Freedom;
-use crate::solver::field::{Block, Field};
+use crate::solver::field::{Block, FieldOf};
+use crate::solver::number::Number;
 use crate::solver::scheme::StepFactors;
-use crate::solver::simd::dispatch;
-use fearless_simd::{Simd, f64x8, prelude::*};
+use crate::solver::simd::{dispatch, load, load_all, splat};
+use fearless_simd::{Simd, prelude::*};
 
 /// The slave nodes at t_n, which the contact solve moves to t_{n+1}.
-pub(in crate::solver) struct Face<'a, const L: usize> {
-    pub u: &'a mut Field<L>,
-    pub p: &'a mut Field<L>,
+pub struct Face<'a, const L: usize, R: Number = f64> {
+    pub u: &'a mut FieldOf<L, R>,
+    pub p: &'a mut FieldOf<L, R>,
     /// K (u + β_R p) − external forces \[N\].
-    pub residual: &'a Field<L>,
+    pub residual: &'a FieldOf<L, R>,
     /// 1/m \[1/kg\] of every degree of freedom, 0 where it is fixed.
-    pub inverse_mass: &'a [Block],
+    pub inverse_mass: &'a [Block<R>],
 }
 
 /// Moves the nodes of a block in every lane. Nothing in it is carried from step to step.
 #[derive(Debug, Clone)]
-pub(in crate::solver) struct BlockMotion<const L: usize> {
-    inverse_masses: InverseMasses<L>,
+pub(in crate::solver) struct BlockMotion<const L: usize, R: Number> {
+    inverse_masses: InverseMasses<R>,
     /// Scratch of the product with K.
-    scratch: Scratch<L>,
+    scratch: Scratch<R>,
     /// K (u + β_R p) − external forces \[N\] on the constrained planes.
-    residual: Field<L>,
+    residual: FieldOf<L, R>,
 }
 
 /// The inverse masses, which are constant during a run.
 #[derive(Debug, Clone)]
-struct InverseMasses<const L: usize> {
+struct InverseMasses<R: Number> {
     /// 1/m \[1/kg\] of every node.
-    free: LineTable<L>,
+    free: LineTable<R>,
     /// 1/m \[1/kg\] of every degree of freedom of a constrained plane. It is 0 where the degree of freedom is
     /// fixed. It is 1 where it is tied, because there the support replaces the residual by minus the acceleration
     /// of the group.
-    constrained: Vec<Vec<Block>>,
+    constrained: Vec<Vec<Block<R>>>,
     constrained_planes: Vec<bool>,
     blocks_per_plane: usize,
 }
 
-impl<const L: usize> BlockMotion<L> {
+impl<const L: usize, R: Number> BlockMotion<L, R> {
     pub fn new(block: &BlockBody) -> Self {
         let mesh = block.mesh();
-        let mut per_dof = Field::<L>::zeros(mesh.layout());
+        let mut per_dof = FieldOf::<L, R>::zeros(mesh.layout());
         for (dof, freedom) in block.freedoms().iter().enumerate() {
             let value = match freedom {
                 Freedom::Free => 1.0 / block.masses_kg()[dof / 3],
                 Freedom::Fixed => 0.0,
                 Freedom::Tied(_) => 1.0,
             };
-            *per_dof.at_mut(per_dof.place(dof / 3), dof % 3) = [value; L];
+            *per_dof.at_mut(per_dof.place(dof / 3), dof % 3) = [R::from_f64(value); L];
         }
         let blocks_per_plane = per_dof.blocks_per_line() * mesh.nodes_per_axis()[1];
         let planes = per_dof.blocks().chunks_exact(blocks_per_plane).zip(block.constrained_planes());
         Self {
             inverse_masses: InverseMasses {
-                free: LineTable::new(mesh, |node| 1.0 / block.masses_kg()[node]),
+                free: LineTable::new(mesh, L, |node| 1.0 / block.masses_kg()[node]),
                 constrained: planes
                     .map(|(plane, constrained)| if *constrained { plane.to_vec() } else { Vec::new() })
                     .collect(),
                 constrained_planes: block.constrained_planes().to_vec(),
                 blocks_per_plane,
             },
-            scratch: Scratch::new(mesh),
-            residual: Field::zeros(mesh.layout()),
+            scratch: Scratch::new(mesh, L),
+            residual: FieldOf::zeros(mesh.layout()),
         }
     }
 
     /// The residual on the constrained planes. The load and the supports change it.
-    pub fn residual_mut(&mut self) -> &mut Field<L> {
+    pub fn residual_mut(&mut self) -> &mut FieldOf<L, R> {
         &mut self.residual
     }
 
     /// The contact face, for the contact solve.
-    pub fn face<'a>(&'a self, u: &'a mut Field<L>, p: &'a mut Field<L>) -> Face<'a, L> {
+    pub fn face<'a>(&'a self, u: &'a mut FieldOf<L, R>, p: &'a mut FieldOf<L, R>) -> Face<'a, L, R> {
         Face { u, p, residual: &self.residual, inverse_mass: &self.inverse_masses.constrained[0] }
     }
 
@@ -94,9 +95,9 @@ impl<const L: usize> BlockMotion<L> {
     pub fn advance_free_planes(
         &mut self,
         block: &BlockBody,
-        factors: &StepFactors,
-        u: &mut Field<L>,
-        p: &mut Field<L>,
+        factors: &StepFactors<R>,
+        u: &mut FieldOf<L, R>,
+        p: &mut FieldOf<L, R>,
     ) {
         match block.operator() {
             Operator::Tensor(operator) => self.pass(operator, factors, u, p),
@@ -104,7 +105,13 @@ impl<const L: usize> BlockMotion<L> {
         }
     }
 
-    fn pass(&mut self, operator: &TensorOperator, factors: &StepFactors, u: &mut Field<L>, p: &mut Field<L>) {
+    fn pass(
+        &mut self,
+        operator: &TensorOperator,
+        factors: &StepFactors<R>,
+        u: &mut FieldOf<L, R>,
+        p: &mut FieldOf<L, R>,
+    ) {
         let mut advance = Advance {
             inverse_masses: &self.inverse_masses,
             factors,
@@ -112,37 +119,33 @@ impl<const L: usize> BlockMotion<L> {
             p: p.blocks_mut(),
             residual: self.residual.blocks_mut(),
         };
-        dispatch!(simd => operator.pass(simd, &mut advance, &mut self.scratch));
+        advance.run(operator, &mut self.scratch);
     }
 
     fn assembled_forces(
         &mut self,
         operator: &AssembledOperator,
-        factors: &StepFactors,
-        u: &Field<L>,
-        p: &Field<L>,
+        factors: &StepFactors<R>,
+        u: &FieldOf<L, R>,
+        p: &FieldOf<L, R>,
     ) {
         let mut strained = u.clone();
         for (s, p) in strained.blocks_mut().iter_mut().zip(p.blocks()) {
-            for (s, p) in s.0.as_flattened_mut().iter_mut().zip(p.0.as_flattened()) {
-                *s += factors.beta_r_s * p;
+            for c in 0..3 {
+                for i in 0..R::WIDTH {
+                    s.0[c][i] += R::from_f64(factors.beta_r_s) * p.0[c][i];
+                }
             }
         }
         operator.product(&strained, &mut self.residual);
     }
 
     /// Moves the constrained planes above the contact face by their residual.
-    pub fn advance_constrained_planes(&self, factors: &StepFactors, u: &mut Field<L>, p: &mut Field<L>) {
-        dispatch!(simd => self.advance_constrained(simd, factors, u, p));
-    }
-
-    #[inline(always)]
-    fn advance_constrained<S: Simd>(
+    pub fn advance_constrained_planes(
         &self,
-        simd: S,
-        factors: &StepFactors,
-        u: &mut Field<L>,
-        p: &mut Field<L>,
+        factors: &StepFactors<R>,
+        u: &mut FieldOf<L, R>,
+        p: &mut FieldOf<L, R>,
     ) {
         let InverseMasses { constrained, blocks_per_plane, .. } = &self.inverse_masses;
         for (plane, inverse) in constrained.iter().enumerate().skip(1) {
@@ -151,34 +154,63 @@ impl<const L: usize> BlockMotion<L> {
             }
             let range = plane * blocks_per_plane..(plane + 1) * blocks_per_plane;
             let residual = &self.residual.blocks()[range.clone()];
-            let moved = u.blocks_mut()[range.clone()].iter_mut().zip(&mut p.blocks_mut()[range]);
-            for (((u, p), residual), inverse) in moved.zip(residual).zip(inverse) {
-                for c in 0..3 {
-                    let force = f64x8::from_slice(simd, &residual.0[c]);
-                    let [next_u, next_p] = factors.moved(simd, force, &inverse.0[c], &u.0[c], &p.0[c]);
-                    next_u.store_slice(&mut u.0[c]);
-                    next_p.store_slice(&mut p.0[c]);
-                }
-            }
+            let (u, p) = (&mut u.blocks_mut()[range.clone()], &mut p.blocks_mut()[range]);
+            move_nodes(factors, residual, inverse, u, p);
         }
     }
 }
 
-struct Advance<'a, const L: usize> {
-    inverse_masses: &'a InverseMasses<L>,
-    factors: &'a StepFactors,
-    u: &'a mut [Block],
-    p: &'a mut [Block],
-    residual: &'a mut [Block],
+/// Moves nodes by their residual.
+pub(in crate::solver) fn move_nodes<R: Number>(
+    factors: &StepFactors<R>,
+    residual: &[Block<R>],
+    inverse_mass: &[Block<R>],
+    u: &mut [Block<R>],
+    p: &mut [Block<R>],
+) {
+    dispatch!(simd => move_nodes_in(simd, factors, residual, inverse_mass, u, p));
 }
 
-impl<S: Simd, const L: usize> Pass<S> for Advance<'_, L> {
+#[inline(always)]
+fn move_nodes_in<R: Number, S: Simd>(
+    simd: S,
+    factors: &StepFactors<R>,
+    residual: &[Block<R>],
+    inverse_mass: &[Block<R>],
+    u: &mut [Block<R>],
+    p: &mut [Block<R>],
+) {
+    for (((u, p), residual), inverse) in u.iter_mut().zip(p).zip(residual).zip(inverse_mass) {
+        for c in 0..3 {
+            let force = load::<R, S>(simd, &residual.0[c]);
+            let [next_u, next_p] = factors.moved(simd, force, &inverse.0[c], &u.0[c], &p.0[c]);
+            next_u.store_array(&mut u.0[c]);
+            next_p.store_array(&mut p.0[c]);
+        }
+    }
+}
+
+struct Advance<'a, R: Number> {
+    inverse_masses: &'a InverseMasses<R>,
+    factors: &'a StepFactors<R>,
+    u: &'a mut [Block<R>],
+    p: &'a mut [Block<R>],
+    residual: &'a mut [Block<R>],
+}
+
+impl<R: Number> Advance<'_, R> {
+    fn run(&mut self, operator: &TensorOperator, scratch: &mut Scratch<R>) {
+        dispatch!(simd => operator.pass(simd, self, scratch));
+    }
+}
+
+impl<S: Simd, R: Number> Pass<S, R> for Advance<'_, R> {
     #[inline(always)]
-    fn input(&self, simd: S, at: usize) -> [f64x8<S>; 3] {
-        let mut strained = load_all(simd, &self.u[at].0);
+    fn input(&self, simd: S, at: usize) -> [R::Vector<S>; 3] {
+        let mut strained = load_all::<R, S>(simd, &self.u[at].0);
         if self.factors.beta_r_s != 0.0 {
-            let beta_r = f64x8::splat(simd, self.factors.beta_r_s);
-            let p = load_all(simd, &self.p[at].0);
+            let beta_r = splat::<R, S>(simd, self.factors.beta_r_s);
+            let p = load_all::<R, S>(simd, &self.p[at].0);
             for c in 0..3 {
                 strained[c] += beta_r * p[c];
             }
@@ -187,10 +219,10 @@ impl<S: Simd, const L: usize> Pass<S> for Advance<'_, L> {
     }
 
     #[inline(always)]
-    fn output(&mut self, simd: S, index: BlockIndex, kx: [f64x8<S>; 3]) {
+    fn output(&mut self, simd: S, index: BlockIndex, kx: [R::Vector<S>; 3]) {
         if self.inverse_masses.constrained_planes[index.plane] {
             for c in 0..3 {
-                kx[c].store_slice(&mut self.residual[index.at].0[c]);
+                kx[c].store_array(&mut self.residual[index.at].0[c]);
             }
             return;
         }
@@ -198,8 +230,8 @@ impl<S: Simd, const L: usize> Pass<S> for Advance<'_, L> {
         let (u, p) = (&mut self.u[index.at].0, &mut self.p[index.at].0);
         for c in 0..3 {
             let [next_u, next_p] = self.factors.moved(simd, kx[c], inverse_mass, &u[c], &p[c]);
-            next_u.store_slice(&mut u[c]);
-            next_p.store_slice(&mut p[c]);
+            next_u.store_array(&mut u[c]);
+            next_p.store_array(&mut p[c]);
         }
     }
 }

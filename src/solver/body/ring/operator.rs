@@ -160,7 +160,7 @@ impl RingOperator {
     ) {
         let [columns, rows, planes] = self.nodes;
         self.stage(simd, x, scratch);
-        let blocks = blocks_per_line::<L>(columns);
+        let blocks = blocks_per_line::<f64>(columns, L);
         for k in 0..planes {
             for i in 0..rows {
                 for along in 0..blocks {
@@ -347,7 +347,7 @@ impl<const L: usize> RingScratch<L> {
     /// Scratch for products with an operator.
     pub fn new(operator: &RingOperator) -> Self {
         let [columns, rows, planes] = operator.nodes;
-        let blocks = blocks_per_line::<L>(columns);
+        let blocks = blocks_per_line::<f64>(columns, L);
         let mut kinds: Vec<Vec<Kind>> = vec![Vec::new(); blocks];
         for along in 0..columns * L {
             let class = operator.classes[along / L];

@@ -7,9 +7,9 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::real::Real;
+use crate::solver::real::Real;
 
-/// Friction of one node or of eight.
+/// Friction of one node, or of the nodes of a vector.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::solver) struct Friction<R: Real> {
     /// Components of the friction force \[N\], x and y.

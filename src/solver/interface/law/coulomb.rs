@@ -3,9 +3,9 @@
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
 use super::friction_law::FrictionLaw;
-use super::real::Real;
+use crate::solver::real::Real;
 
-/// Coulomb's law with the friction coefficient μ of one node or of eight.
+/// Coulomb's law with the friction coefficient μ of one node, or of the nodes of a vector.
 #[derive(Debug, Clone, Copy)]
 pub(in crate::solver) struct Coulomb<R> {
     pub mu: R,

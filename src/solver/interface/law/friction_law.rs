@@ -1,8 +1,8 @@
 //! What a friction law gives.
 
-use super::real::Real;
+use crate::solver::real::Real;
 
-/// A friction law for one node (`R` = `f64`) or for eight.
+/// A friction law for one node (`R` = `f64`), or for the nodes of a vector.
 pub(in crate::solver) trait FrictionLaw<R: Real>: Copy {
     /// False if the limit is always zero. Then no trial force is computed.
     const TRANSMITS: bool = true;

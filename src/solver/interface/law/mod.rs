@@ -5,7 +5,7 @@
 //! force of the size of the limit opposes its slip.
 //!
 //! To add a law, write a file that implements `FrictionLaw` for it, add a variant to [`Law`], and an arm to each
-//! `match` on it. The macro `with_law_of_lanes` must serve lanes with different laws, because a lane without a job has
+//! `match` on it. `LawOfLanes` must serve lanes with different laws, because a lane without a job has
 //! Coulomb's law with μ = 0.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
@@ -13,11 +13,13 @@
 mod cone;
 mod coulomb;
 mod friction_law;
-mod real;
 
 pub(in crate::solver) use cone::project;
 pub(in crate::solver) use coulomb::{Coulomb, Frictionless};
 pub(in crate::solver) use friction_law::FrictionLaw;
+
+use crate::solver::field::in_slots_of;
+use crate::solver::number::Number;
 
 /// A friction law with the coefficients of one lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,24 +41,42 @@ impl Law {
     }
 }
 
+/// The laws of all lanes, in the slots of a vector.
+#[derive(Debug, Clone, Copy)]
+pub(in crate::solver) enum LawOfLanes<R: Number> {
+    /// Coulomb's law with μ = 0 in all lanes.
+    Frictionless,
+    /// Coulomb's law with these coefficients.
+    Coulomb(R::Row),
+}
+
+impl<R: Number> LawOfLanes<R> {
+    pub fn new<const L: usize>(laws: [Law; L]) -> Self {
+        let coefficients = laws.map(|Law::Coulomb { mu }| mu);
+        if coefficients.iter().all(|mu| *mu == 0.0) {
+            Self::Frictionless
+        } else {
+            Self::Coulomb(in_slots_of::<R>(&coefficients))
+        }
+    }
+}
+
 /// Calls SIMD code with the law of all lanes. The code is compiled for each law and for each SIMD level.
 macro_rules! with_law_of_lanes {
-    ($drives:expr, $simd:ident, $law:ident => $call:expr) => {{
-        let coefficients = $drives.map(|drive| match drive.law {
-            $crate::solver::interface::law::Law::Coulomb { mu } => mu,
-        });
-        if coefficients.iter().all(|mu| *mu == 0.0) {
-            let $law = $crate::solver::interface::law::Frictionless;
-            $crate::solver::simd::dispatch!($simd => $call)
-        } else {
-            let mu = $crate::solver::field::in_slots(&coefficients);
-            $crate::solver::simd::dispatch!($simd => {
-                let $law = $crate::solver::interface::law::Coulomb {
-                    mu: fearless_simd::f64x8::from_slice($simd, &mu),
-                };
-                $call
-            })
+    ($laws:expr, $simd:ident, $law:ident => $call:expr) => {
+        match $laws {
+            $crate::solver::interface::law::LawOfLanes::Frictionless => {
+                let $law = $crate::solver::interface::law::Frictionless;
+                $crate::solver::simd::dispatch!($simd => $call)
+            }
+            $crate::solver::interface::law::LawOfLanes::Coulomb(mu) => {
+                $crate::solver::simd::dispatch!($simd => {
+                    let mu = $crate::solver::simd::load::<R, _>($simd, &mu);
+                    let $law = $crate::solver::interface::law::Coulomb { mu };
+                    $call
+                })
+            }
         }
-    }};
+    };
 }
 pub(in crate::solver) use with_law_of_lanes;

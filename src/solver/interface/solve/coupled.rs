@@ -18,26 +18,21 @@
 //! disk that is under the node at t_{n+1}. So it has no jump where a node passes from one patch to the next. The
 //! normal is that of the undeformed top face, because slopes are 10⁻⁶.
 
-#![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
-
 use super::step_data::StepData;
 use super::sweeps::{ContactRow, Solves, TargetNode, TargetNodes};
-use crate::solver::body::block::Face;
+use crate::solver::body::block::{Face, move_nodes};
 use crate::solver::body::ring::{RingBody, RingState};
 use crate::solver::field::{Field, LaneSlot, WIDTH, add_slots};
 use crate::solver::interface::LIMIT;
 use crate::solver::interface::target::patch::{Grid, PatchCoord, Share};
 use crate::solver::interface::{Contacts, Interface, Status};
 use crate::solver::lane::LaneState;
-use crate::solver::scheme::StepFactors;
-use crate::solver::simd::dispatch;
 use crate::spec::TargetSurface;
-use fearless_simd::{Simd, f64x8, prelude::*};
 use std::sync::Arc;
 
 /// The elastic disk under the pin, in every lane.
 #[derive(Debug, Clone)]
-pub(super) struct RingTarget<const L: usize> {
+pub struct RingTarget<const L: usize> {
     body: Arc<RingBody>,
     state: RingState<L>,
     /// Increment \[m\] of the disk's surface under each slave node over the step: x and y. In z it is the height of
@@ -51,7 +46,7 @@ pub(super) struct RingTarget<const L: usize> {
 }
 
 impl<const L: usize> RingTarget<L> {
-    pub fn new(interface: &Interface, body: &Arc<RingBody>) -> Self {
+    pub(super) fn new(interface: &Interface, body: &Arc<RingBody>) -> Self {
         Self {
             state: RingState::at_rest(body),
             increment_m: Field::zeros(interface.layout()),
@@ -62,24 +57,24 @@ impl<const L: usize> RingTarget<L> {
         }
     }
 
-    pub fn body(&self) -> &RingBody {
+    pub(super) fn body(&self) -> &RingBody {
         &self.body
     }
 
-    pub fn state(&self) -> &RingState<L> {
+    pub(super) fn state(&self) -> &RingState<L> {
         &self.state
     }
 
-    pub fn increment_of(&self, slave: usize, lane: usize) -> [f64; 3] {
+    pub(super) fn increment_of(&self, slave: usize, lane: usize) -> [f64; 3] {
         let place = self.increment_m.place(slave);
         std::array::from_fn(|c| self.increment_m.at(place, c)[lane])
     }
 
-    pub fn solves_of(&self, lane: usize) -> &Solves {
+    pub(super) fn solves_of(&self, lane: usize) -> &Solves {
         &self.solves[lane]
     }
 
-    pub fn slope_works_j(&self, contacts: &Contacts<L>) -> [[f64; L]; 2] {
+    pub(super) fn works_on_slopes_j(&self, contacts: &Contacts<L>) -> [[f64; L]; 2] {
         [&self.increment_m, &self.previous_increment_m].map(|increment| normal_work(contacts, increment))
     }
 }
@@ -225,13 +220,19 @@ impl<const L: usize> CoupledSolve<L> {
 
 impl<const L: usize> RingTarget<L> {
     /// Moves the slave nodes and the disk to t_{n+1}.
-    pub fn solve(&mut self, given: &StepData<'_, L>, face: &mut Face<'_, L>, contacts: &mut Contacts<L>) {
+    pub(super) fn move_both(
+        &mut self,
+        given: &StepData<'_, L>,
+        face: &mut Face<'_, L>,
+        contacts: &mut Contacts<L>,
+    ) {
         std::mem::swap(&mut self.increment_m, &mut self.previous_increment_m);
         self.solve.face_before.keep(face.u, face.p);
         self.solve.top_before.keep(&self.state.u, &self.state.p);
         let count = self.solve.face_before.u.blocks().len();
         self.state.predict(&self.body, given.factors);
-        dispatch!(simd => predict(simd, given.factors, face, count));
+        let (u, p) = (&mut face.u.blocks_mut()[..count], &mut face.p.blocks_mut()[..count]);
+        move_nodes(given.factors, face.residual.blocks(), face.inverse_mass, u, p);
         let dt = given.factors.time_step_s;
         for lane in 0..L {
             let turned_rad = given.drives[lane].rate * ((given.steps_done[lane] + 1) as f64 * dt);
@@ -348,20 +349,6 @@ impl<const L: usize> RingTarget<L> {
         }
         for source in targets.reactions() {
             self.state.add_force(body, lane, &source, u_scale, p_scale);
-        }
-    }
-}
-
-/// Moves the slave nodes without contact.
-#[inline(always)]
-fn predict<S: Simd, const L: usize>(simd: S, factors: &StepFactors, face: &mut Face<'_, L>, count: usize) {
-    let moving = face.u.blocks_mut()[..count].iter_mut().zip(&mut face.p.blocks_mut()[..count]);
-    for ((u, p), (residual, inverse)) in moving.zip(face.residual.blocks().iter().zip(face.inverse_mass)) {
-        for c in 0..3 {
-            let force = f64x8::from_slice(simd, &residual.0[c]);
-            let [next_u, next_p] = factors.moved(simd, force, &inverse.0[c], &u.0[c], &p.0[c]);
-            next_u.store_slice(&mut u.0[c]);
-            next_p.store_slice(&mut p.0[c]);
         }
     }
 }

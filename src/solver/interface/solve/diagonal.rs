@@ -16,27 +16,30 @@
 use super::held::HeldNode;
 use super::step_data::StepData;
 use crate::solver::body::block::Face;
-use crate::solver::field::{Field, in_slots};
+use crate::solver::field::{Block, FieldOf, in_slots_of};
 use crate::solver::interface::LIMIT;
-use crate::solver::interface::law::{FrictionLaw, project, with_law_of_lanes};
+use crate::solver::interface::law::{FrictionLaw, LawOfLanes, project, with_law_of_lanes};
 use crate::solver::interface::{Contacts, Interface, SlaveNode, Status};
-use fearless_simd::{Simd, f64x8, prelude::*};
+use crate::solver::number::Number;
+use crate::solver::scheme::StepFactors;
+use crate::solver::simd::{load, splat};
+use fearless_simd::{Simd, prelude::*};
 
 /// The constants of a run.
 #[derive(Debug, Clone)]
-pub(super) struct DiagonalSolve<const L: usize> {
+pub(super) struct DiagonalSolve<const L: usize, R: Number> {
     /// Per slave node: velocity of the target per unit of the drive's rate in x and y, and the mass \[kg\]. The
     /// mass is zero if the pass does not solve the node.
-    nodes: Field<L>,
+    nodes: FieldOf<L, R>,
     /// Initial gap \[m\] of every slave node, in the first component.
-    initial_gap_m: Field<L>,
+    initial_gap_m: FieldOf<L, R>,
     held: Vec<HeldNode<L>>,
 }
 
-impl<const L: usize> DiagonalSolve<L> {
+impl<const L: usize, R: Number> DiagonalSolve<L, R> {
     pub fn new(interface: &Interface) -> Self {
         let is_free = |node: &SlaveNode| node.mobile == [true; 3];
-        let nodes: Field<L> = interface.field(|node| {
+        let nodes: FieldOf<L, R> = interface.field(|node| {
             let [x, y] = node.surface_motion;
             [x, y, if is_free(node) { node.mass_kg } else { 0.0 }]
         });
@@ -50,14 +53,15 @@ impl<const L: usize> DiagonalSolve<L> {
     /// supports carry.
     pub fn solve(
         &mut self,
-        given: &StepData<'_, L>,
-        face: &mut Face<'_, L>,
-        contacts: &mut Contacts<L>,
+        given: &StepData<'_, L, R>,
+        face: &mut Face<'_, L, R>,
+        contacts: &mut Contacts<L, R>,
     ) -> [[f64; L]; 3] {
         for held in &mut self.held {
             held.keep(face, contacts);
         }
-        with_law_of_lanes!(given.drives, simd, law => self.pass(simd, law, given, face, contacts));
+        let laws = LawOfLanes::new(given.drives.map(|drive| drive.law));
+        self.pass(given, face, contacts).run(&laws);
         let mut carried_n = [[0.0; L]; 3];
         for held in &self.held {
             held.solve(given, face, contacts, &mut carried_n);
@@ -65,34 +69,75 @@ impl<const L: usize> DiagonalSolve<L> {
         carried_n
     }
 
+    /// The pass over all nodes without a fixed component.
+    pub(super) fn pass<'a>(
+        &'a self,
+        given: &StepData<'a, L, R>,
+        face: &'a mut Face<'_, L, R>,
+        contacts: &'a mut Contacts<L, R>,
+    ) -> FacePass<'a, R> {
+        let travel_m = given.drives.map(|drive| drive.rate * given.factors.time_step_s);
+        let count = self.nodes.blocks().len();
+        FacePass {
+            travel_m: in_slots_of::<R>(&travel_m),
+            factors: given.factors,
+            nodes: self.nodes.blocks(),
+            initial_gap_m: self.initial_gap_m.blocks(),
+            residual: &face.residual.blocks()[..count],
+            inverse_mass: face.inverse_mass,
+            u: &mut face.u.blocks_mut()[..count],
+            p: &mut face.p.blocks_mut()[..count],
+            force_n: contacts.force_n.blocks_mut(),
+            increment_m: contacts.increment_m.blocks_mut(),
+            previous_increment_m: contacts.previous_increment_m.blocks(),
+            status: contacts.status.blocks_mut(),
+            friction: contacts.friction.blocks_mut(),
+        }
+    }
+}
+
+/// The blocks of the contact face, for any number of lanes.
+pub(super) struct FacePass<'a, R: Number> {
+    /// Displacement \[m\] of the target over the step per unit of its motion.
+    travel_m: R::Row,
+    factors: &'a StepFactors<R>,
+    nodes: &'a [Block<R>],
+    initial_gap_m: &'a [Block<R>],
+    residual: &'a [Block<R>],
+    inverse_mass: &'a [Block<R>],
+    u: &'a mut [Block<R>],
+    p: &'a mut [Block<R>],
+    force_n: &'a mut [Block<R>],
+    increment_m: &'a mut [Block<R>],
+    previous_increment_m: &'a [Block<R>],
+    status: &'a mut [Block<R>],
+    friction: &'a mut [Block<R>],
+}
+
+impl<R: Number> FacePass<'_, R> {
+    fn run(self, laws: &LawOfLanes<R>) {
+        with_law_of_lanes!(laws, simd, law => self.solve(simd, law));
+    }
+
     /// Predicts and corrects all nodes without a fixed component. If the law transmits no force, the square root
     /// and the division of the projection are left out.
     #[inline(always)]
-    pub(super) fn pass<S: Simd, W: FrictionLaw<f64x8<S>>>(
-        &self,
-        simd: S,
-        law: W,
-        given: &StepData<'_, L>,
-        face: &mut Face<'_, L>,
-        contacts: &mut Contacts<L>,
-    ) {
-        let (factors, drives) = (given.factors, given.drives);
-        let zero = f64x8::splat(simd, 0.0);
-        let one = f64x8::splat(simd, 1.0);
-        let travel = in_slots(&drives.map(|drive| drive.rate * factors.time_step_s));
-        let travel = f64x8::from_slice(simd, &travel);
-        let u_scale = f64x8::from_slice(simd, &factors.u_scale);
-        let p_scale = f64x8::from_slice(simd, &factors.p_scale);
+    pub(super) fn solve<S: Simd, W: FrictionLaw<R::Vector<S>>>(self, simd: S, law: W) {
+        let factors = self.factors;
+        let zero = splat::<R, S>(simd, 0.0);
+        let one = splat::<R, S>(simd, 1.0);
+        let travel = load::<R, S>(simd, &self.travel_m);
+        let u_scale = load::<R, S>(simd, &factors.u_scale);
+        let p_scale = load::<R, S>(simd, &factors.p_scale);
         let per_mass = one / u_scale;
-        let count = self.nodes.blocks().len();
-        let moving = face.u.blocks_mut()[..count].iter_mut().zip(&mut face.p.blocks_mut()[..count]);
-        let nodes = self.nodes.blocks().iter().zip(self.initial_gap_m.blocks());
-        let fixed = nodes.zip(&face.residual.blocks()[..count]).zip(face.inverse_mass);
-        let found = (contacts.force_n.blocks_mut().iter_mut())
-            .zip(contacts.increment_m.blocks_mut())
-            .zip(contacts.previous_increment_m.blocks())
-            .zip(contacts.status.blocks_mut())
-            .zip(contacts.friction.blocks_mut());
+        let moving = self.u.iter_mut().zip(self.p);
+        let nodes = self.nodes.iter().zip(self.initial_gap_m);
+        let fixed = nodes.zip(self.residual).zip(self.inverse_mass);
+        let found = (self.force_n.iter_mut())
+            .zip(self.increment_m)
+            .zip(self.previous_increment_m)
+            .zip(self.status)
+            .zip(self.friction);
         for (((u, p), (((node, initial_gap), residual), inverse_mass)), found) in moving.zip(fixed).zip(found)
         {
             let ((((force, increment), previous_increment), status), friction) = found;
@@ -100,24 +145,21 @@ impl<const L: usize> DiagonalSolve<L> {
             let mut next_u = [zero; 3];
             let mut next_p = [zero; 3];
             for c in 0..3 {
-                before[c] = f64x8::from_slice(simd, &u.0[c]);
-                let residual = f64x8::from_slice(simd, &residual.0[c]);
+                before[c] = load::<R, S>(simd, &u.0[c]);
+                let residual = load::<R, S>(simd, &residual.0[c]);
                 [next_u[c], next_p[c]] = factors.moved(simd, residual, &inverse_mass.0[c], &u.0[c], &p.0[c]);
             }
-            let carried =
-                [f64x8::from_slice(simd, &node.0[0]) * travel, f64x8::from_slice(simd, &node.0[1]) * travel];
-            let mass = f64x8::from_slice(simd, &node.0[2]);
+            let carried = [load::<R, S>(simd, &node.0[0]) * travel, load::<R, S>(simd, &node.0[1]) * travel];
+            let mass = load::<R, S>(simd, &node.0[2]);
             let stiffness = mass * per_mass;
-            let initial_gap = f64x8::from_slice(simd, &initial_gap.0[0]);
+            let initial_gap = load::<R, S>(simd, &initial_gap.0[0]);
             let gap = next_u[2] + initial_gap;
             let closed = gap.simd_lt(zero) & mass.simd_gt(zero);
             let normal = closed.select(zero - gap * stiffness, zero);
             let slip = [(next_u[0] - before[0]) - carried[0], (next_u[1] - before[1]) - carried[1]];
-            let last_increment = [
-                f64x8::from_slice(simd, &previous_increment.0[0]),
-                f64x8::from_slice(simd, &previous_increment.0[1]),
-            ];
-            let slipped = f64x8::from_slice(simd, &status.0[Status::Slips as usize]);
+            let last_increment =
+                [load::<R, S>(simd, &previous_increment.0[0]), load::<R, S>(simd, &previous_increment.0[1])];
+            let slipped = load::<R, S>(simd, &status.0[Status::Slips as usize]);
             let limit = law.limit_n(normal, last_increment, slipped);
             let (mut tangential, sticks) = if W::TRANSMITS {
                 let trial = [zero - stiffness * slip[0], zero - stiffness * slip[1]];
@@ -126,7 +168,7 @@ impl<const L: usize> DiagonalSolve<L> {
             } else {
                 ([zero; 2], slip[0].simd_eq(zero) & slip[1].simd_eq(zero) & closed)
             };
-            let inverse = f64x8::from_slice(simd, &inverse_mass.0[2]);
+            let inverse = load::<R, S>(simd, &inverse_mass.0[2]);
             // Constrained displacements are set, not corrected. The rounding of a correction would let a sticking
             // node creep and a closed node sink.
             for c in 0..2 {
@@ -137,22 +179,22 @@ impl<const L: usize> DiagonalSolve<L> {
                 if W::TRANSMITS {
                     next_p[c] += (p_scale * inverse) * tangential[c];
                 }
-                tangential[c].store_slice(&mut force.0[c]);
-                ((next_u[c] - before[c]) - carried[c]).store_slice(&mut increment.0[c]);
+                tangential[c].store_array(&mut force.0[c]);
+                ((next_u[c] - before[c]) - carried[c]).store_array(&mut increment.0[c]);
             }
             next_u[2] = closed.select(zero - initial_gap, next_u[2]);
             next_p[2] += (p_scale * inverse) * normal;
-            normal.store_slice(&mut force.0[2]);
-            (next_u[2] - before[2]).store_slice(&mut increment.0[2]);
+            normal.store_array(&mut force.0[2]);
+            (next_u[2] - before[2]).store_array(&mut increment.0[2]);
             for c in 0..3 {
-                next_u[c].store_slice(&mut u.0[c]);
-                next_p[c].store_slice(&mut p.0[c]);
+                next_u[c].store_array(&mut u.0[c]);
+                next_p[c].store_array(&mut p.0[c]);
             }
             let is_closed = closed.select(one, zero);
-            closed.select(zero, gap).store_slice(&mut status.0[Status::Gap as usize]);
-            closed.select(limit, zero).store_slice(&mut friction.0[LIMIT]);
-            is_closed.store_slice(&mut status.0[Status::Closed as usize]);
-            sticks.select(zero, is_closed).store_slice(&mut status.0[Status::Slips as usize]);
+            closed.select(zero, gap).store_array(&mut status.0[Status::Gap as usize]);
+            closed.select(limit, zero).store_array(&mut friction.0[LIMIT]);
+            is_closed.store_array(&mut status.0[Status::Closed as usize]);
+            sticks.select(zero, is_closed).store_array(&mut status.0[Status::Slips as usize]);
         }
     }
 }

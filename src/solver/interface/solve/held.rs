@@ -2,7 +2,7 @@
 //!
 //! If a node is fixed in a tangential direction in which the target moves, it slips there in any case. Friction
 //! opposes the whole slip vector, so the free direction gets only a part of the friction limit
-//! ([`partially_held_friction`]). Such nodes are rare.
+//! ([`partially_held_friction`]). Such nodes are rare, and they are solved in f64 in both precisions.
 
 use super::step_data::StepData;
 use crate::solver::body::block::Face;
@@ -10,6 +10,7 @@ use crate::solver::field::LaneSlot;
 use crate::solver::interface::LIMIT;
 use crate::solver::interface::law::project;
 use crate::solver::interface::{Contacts, SlaveNode, Status};
+use crate::solver::number::Number;
 
 /// A slave node with a fixed component.
 #[derive(Debug, Clone)]
@@ -28,80 +29,83 @@ impl<const L: usize> HeldNode<L> {
     }
 
     /// Stores the values that the pass will overwrite.
-    pub fn keep(&mut self, face: &Face<'_, L>, contacts: &Contacts<L>) {
+    pub fn keep<R: Number>(&mut self, face: &Face<'_, L, R>, contacts: &Contacts<L, R>) {
         for c in 0..3 {
-            self.u_m[c] = *face.u.at(self.place, c);
+            self.u_m[c] = face.u.at(self.place, c).map(R::to_f64);
         }
-        self.slipped = *contacts.status.at(self.place, Status::Slips as usize);
+        self.slipped = contacts.status.at(self.place, Status::Slips as usize).map(R::to_f64);
     }
 
     /// Corrects the node in all lanes, after the pass has predicted it. Adds the contact forces \[N\] on its fixed
     /// components to `carried_n`.
-    pub fn solve(
+    pub fn solve<R: Number>(
         &self,
-        given: &StepData<'_, L>,
-        face: &mut Face<'_, L>,
-        contacts: &mut Contacts<L>,
+        given: &StepData<'_, L, R>,
+        face: &mut Face<'_, L, R>,
+        contacts: &mut Contacts<L, R>,
         carried_n: &mut [[f64; L]; 3],
     ) {
         for lane in 0..L {
             self.solve_lane(lane, given, face, contacts);
             for c in 0..2 {
                 if !self.node.mobile[c] {
-                    carried_n[c][lane] += contacts.force_n.at(self.place, c)[lane];
+                    carried_n[c][lane] += contacts.force_n.at(self.place, c)[lane].to_f64();
                 }
             }
         }
     }
 
-    fn solve_lane(
+    fn solve_lane<R: Number>(
         &self,
         lane: usize,
-        given: &StepData<'_, L>,
-        face: &mut Face<'_, L>,
-        contacts: &mut Contacts<L>,
+        given: &StepData<'_, L, R>,
+        face: &mut Face<'_, L, R>,
+        contacts: &mut Contacts<L, R>,
     ) {
         let (factors, drive) = (given.factors, &given.drives[lane]);
         let place = self.place;
         // Slot `lane` of the scales belongs to that lane.
-        let (u_scale, p_scale) = (factors.u_scale[lane], factors.p_scale[lane]);
+        let (u_scale, p_scale) = (factors.u_scale[lane].to_f64(), factors.p_scale[lane].to_f64());
         let stiffness = self.node.mass_kg * (1.0 / u_scale);
         let carried = self.node.surface_motion.map(|motion| motion * (drive.rate * factors.time_step_s));
         let initial_gap = self.node.initial_gap_m;
-        let gap = face.u.at(place, 2)[lane] + initial_gap;
+        let predicted = [0, 1, 2].map(|c| face.u.at(place, c)[lane].to_f64());
+        let gap = predicted[2] + initial_gap;
         let mut force = [0.0; 3];
         let mut limit = 0.0;
         let (mut closed, mut slips) = (false, false);
         if gap < 0.0 && self.node.mobile[2] {
             closed = true;
             force[2] = -gap * stiffness;
-            let increment_m = [0, 1].map(|c| contacts.previous_increment_m.at(place, c)[lane]);
+            let increment_m = [0, 1].map(|c| contacts.previous_increment_m.at(place, c)[lane].to_f64());
             limit = drive.law.limit_n(force[2], increment_m, self.slipped[lane]);
-            let slip = [0, 1].map(|c| (face.u.at(place, c)[lane] - self.u_m[c][lane]) - carried[c]);
+            let slip = [0, 1].map(|c| (predicted[c] - self.u_m[c][lane]) - carried[c]);
             ([force[0], force[1]], slips) = tangential(self.node.mobile, slip, stiffness, limit);
             for c in (0..3).filter(|&c| self.node.mobile[c]) {
                 let inverse = 1.0 / self.node.mass_kg;
-                let u = &mut face.u.at_mut(place, c)[lane];
-                *u = match c {
+                let end = match c {
                     // Not −0 where there is no gap.
                     2 => 0.0 - initial_gap,
-                    _ if slips => *u + (u_scale * inverse) * force[c],
+                    _ if slips => predicted[c] + (u_scale * inverse) * force[c],
                     _ => self.u_m[c][lane] + carried[c],
                 };
-                face.p.at_mut(place, c)[lane] += (p_scale * inverse) * force[c];
+                face.u.at_mut(place, c)[lane] = R::from_f64(end);
+                let p = &mut face.p.at_mut(place, c)[lane];
+                *p = R::from_f64(p.to_f64() + (p_scale * inverse) * force[c]);
             }
         }
-        let end = [0, 1, 2].map(|c| face.u.at(place, c)[lane]);
+        let end = [0, 1, 2].map(|c| face.u.at(place, c)[lane].to_f64());
         let target = [carried[0], carried[1], 0.0];
         for c in 0..3 {
-            contacts.force_n.at_mut(place, c)[lane] = force[c];
-            contacts.increment_m.at_mut(place, c)[lane] = (end[c] - self.u_m[c][lane]) - target[c];
+            contacts.force_n.at_mut(place, c)[lane] = R::from_f64(force[c]);
+            contacts.increment_m.at_mut(place, c)[lane] =
+                R::from_f64((end[c] - self.u_m[c][lane]) - target[c]);
         }
-        contacts.friction.at_mut(place, LIMIT)[lane] = limit;
+        contacts.friction.at_mut(place, LIMIT)[lane] = R::from_f64(limit);
         let gap = if closed { 0.0 } else { gap };
         let status = [gap, f64::from(u8::from(closed)), f64::from(u8::from(slips))];
         for c in 0..3 {
-            contacts.status.at_mut(place, c)[lane] = status[c];
+            contacts.status.at_mut(place, c)[lane] = R::from_f64(status[c]);
         }
     }
 }

@@ -1,14 +1,18 @@
 //! The two solves for the contact forces of a step.
 //!
 //! * `diagonal` – on a rigid target: node by node, in closed form.
-//! * `coupled` – on an elastic disk, where constraints share target nodes: by Gauss–Seidel (`sweeps`).
+//! * `coupled` – on an elastic disk, where constraints share target nodes: by Gauss–Seidel (`sweeps`). Single precision
+//!   has no elastic disk (`elastic`).
 
 mod coupled;
 mod diagonal;
+mod elastic;
 mod held;
 mod step_data;
 pub(in crate::solver) mod sweeps;
 
+use elastic::ElasticTarget;
+pub use elastic::RunNumber;
 pub(in crate::solver) use step_data::StepData;
 pub use sweeps::Solves;
 
@@ -17,25 +21,30 @@ use super::{Contacts, Interface};
 use crate::solver::body::block::Face;
 use crate::solver::body::ring::{RingBody, RingState};
 use crate::solver::lane::LaneState;
-use coupled::RingTarget;
 use diagonal::DiagonalSolve;
 
 /// The target in every lane, with its contact solve.
 #[derive(Debug, Clone)]
-pub struct TargetState<const L: usize>(Kind<L>);
+pub struct TargetState<const L: usize, R: RunNumber = f64>(Kind<L, R>);
 
 #[derive(Debug, Clone)]
-enum Kind<const L: usize> {
-    Rigid(DiagonalSolve<L>),
-    Ring(Box<RingTarget<L>>),
+enum Kind<const L: usize, R: RunNumber> {
+    Rigid(DiagonalSolve<L, R>),
+    Ring(Box<R::Elastic<L>>),
 }
 
-impl<const L: usize> TargetState<L> {
+impl<const L: usize, R: RunNumber> TargetState<L, R> {
     /// The target at rest.
+    ///
+    /// # Panics
+    /// If it is an elastic disk in single precision. `JobSpec::check` refuses such a scene.
     pub(in crate::solver) fn at_rest(interface: &Interface, target: &Target) -> Self {
         Self(match target {
             Target::Rigid => Kind::Rigid(DiagonalSolve::new(interface)),
-            Target::Ring(ring) => Kind::Ring(Box::new(RingTarget::new(interface, ring))),
+            Target::Ring(ring) => {
+                let ring = <R::Elastic<L>>::at_rest(interface, ring);
+                Kind::Ring(Box::new(ring.expect("an elastic disk has double precision")))
+            }
         })
     }
 
@@ -43,9 +52,9 @@ impl<const L: usize> TargetState<L> {
     /// degrees of freedom of the pin, which its supports carry: x, y and z.
     pub(in crate::solver) fn solve(
         &mut self,
-        given: &StepData<'_, L>,
-        face: &mut Face<'_, L>,
-        contacts: &mut Contacts<L>,
+        given: &StepData<'_, L, R>,
+        face: &mut Face<'_, L, R>,
+        contacts: &mut Contacts<L, R>,
     ) -> [[f64; L]; 3] {
         contacts.swap_increments();
         match &mut self.0 {
@@ -58,25 +67,11 @@ impl<const L: usize> TargetState<L> {
         }
     }
 
-    /// [`TargetState::solve`] on a rigid target with a friction law of the tests.
-    #[cfg(test)]
-    pub(super) fn solve_with(
-        &mut self,
-        law: super::tests::ExposingLaw,
-        given: &StepData<'_, L>,
-        face: &mut Face<'_, L>,
-        contacts: &mut Contacts<L>,
-    ) {
-        contacts.swap_increments();
-        let Kind::Rigid(solve) = &self.0 else { panic!("a rigid target") };
-        crate::solver::simd::dispatch!(simd => solve.pass(simd, law, given, face, contacts));
-    }
-
     /// The elastic disk and its state, if the target is one.
     pub fn ring(&self) -> Option<(&RingBody, &RingState<L>)> {
         match &self.0 {
             Kind::Rigid(_) => None,
-            Kind::Ring(ring) => Some((ring.body(), ring.state())),
+            Kind::Ring(ring) => Some((ring.ring().body(), ring.ring().state())),
         }
     }
 
@@ -85,7 +80,7 @@ impl<const L: usize> TargetState<L> {
     pub fn increment_of(&self, slave: usize, lane: usize) -> [f64; 3] {
         match &self.0 {
             Kind::Rigid(_) => [0.0; 3],
-            Kind::Ring(ring) => ring.increment_of(slave, lane),
+            Kind::Ring(ring) => ring.ring().increment_of(slave, lane),
         }
     }
 
@@ -93,13 +88,13 @@ impl<const L: usize> TargetState<L> {
     pub fn solves_of(&self, lane: usize) -> Option<&Solves> {
         match &self.0 {
             Kind::Rigid(_) => None,
-            Kind::Ring(ring) => Some(ring.solves_of(lane)),
+            Kind::Ring(ring) => Some(ring.ring().solves_of(lane)),
         }
     }
 
     /// Works \[J\] of the drive on the slopes of the target, over the increments after and before the time of the
     /// forces. A rigid target has no slopes.
-    pub(in crate::solver) fn slope_works_j(&self, contacts: &Contacts<L>) -> [[f64; L]; 2] {
+    pub(in crate::solver) fn slope_works_j(&self, contacts: &Contacts<L, R>) -> [[f64; L]; 2] {
         match &self.0 {
             Kind::Rigid(_) => [[0.0; L]; 2],
             Kind::Ring(ring) => ring.slope_works_j(contacts),
@@ -112,7 +107,24 @@ impl<const L: usize> TargetState<L> {
     }
 }
 
-impl<const L: usize> LaneState for TargetState<L> {
+#[cfg(test)]
+impl<const L: usize> TargetState<L> {
+    /// [`TargetState::solve`] on a rigid target with a friction law of the tests.
+    pub(super) fn solve_with(
+        &mut self,
+        law: super::tests::ExposingLaw,
+        given: &StepData<'_, L>,
+        face: &mut Face<'_, L>,
+        contacts: &mut Contacts<L>,
+    ) {
+        contacts.swap_increments();
+        let Kind::Rigid(solve) = &self.0 else { panic!("a rigid target") };
+        let pass = solve.pass(given, face, contacts);
+        crate::solver::simd::dispatch!(simd => pass.solve(simd, law));
+    }
+}
+
+impl<const L: usize, R: RunNumber> LaneState for TargetState<L, R> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
         if let Kind::Ring(ring) = &self.0 {
             ring.save_lane(lane, saved);

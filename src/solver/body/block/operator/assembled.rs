@@ -3,7 +3,8 @@
 use crate::solver::body::block::BlockMesh;
 use crate::solver::body::hexahedron::ElementStiffness;
 use crate::solver::error::SolverError;
-use crate::solver::field::Field;
+use crate::solver::field::FieldOf;
+use crate::solver::number::Number;
 use std::collections::BTreeMap;
 
 /// K, stored row by row with columns in ascending order.
@@ -80,17 +81,17 @@ impl AssembledOperator {
         self.columns[range.clone()].iter().copied().zip(self.values[range].iter().copied())
     }
 
-    /// Computes `y = K x` for `L` lanes.
-    pub fn product<const L: usize>(&self, x: &Field<L>, y: &mut Field<L>) {
+    /// Computes `y = K x` for `L` lanes. Rows are summed in f64.
+    pub fn product<const L: usize, R: Number>(&self, x: &FieldOf<L, R>, y: &mut FieldOf<L, R>) {
         for row in 0..self.dofs() {
             let mut sum = [0.0; L];
             for (column, value) in self.row(row) {
                 let x = x.at(x.place(column / 3), column % 3);
                 for l in 0..L {
-                    sum[l] += value * x[l];
+                    sum[l] += value * x[l].to_f64();
                 }
             }
-            *y.at_mut(y.place(row / 3), row % 3) = sum;
+            *y.at_mut(y.place(row / 3), row % 3) = sum.map(R::from_f64);
         }
     }
 }
@@ -98,6 +99,7 @@ impl AssembledOperator {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::field::Field;
 
     /// Protects: entries at the same place are added, and rows are applied lane by lane.
     #[test]

@@ -8,11 +8,11 @@ mod assembled;
 mod tensor;
 
 pub use assembled::AssembledOperator;
-pub(crate) use tensor::load_all;
 pub(in crate::solver) use tensor::{BlockIndex, Pass};
 pub use tensor::{Scratch, TensorOperator};
 
-use crate::solver::field::Field;
+use crate::solver::field::FieldOf;
+use crate::solver::number::Number;
 
 /// K in one of its forms.
 #[derive(Debug, Clone)]
@@ -25,11 +25,11 @@ pub enum Operator {
 
 impl Operator {
     /// Computes `y = K x` for `L` lanes and returns x·y.
-    pub fn product<const L: usize>(
+    pub fn product<const L: usize, R: Number>(
         &self,
-        x: &Field<L>,
-        y: &mut Field<L>,
-        scratch: &mut Scratch<L>,
+        x: &FieldOf<L, R>,
+        y: &mut FieldOf<L, R>,
+        scratch: &mut Scratch<R>,
     ) -> [f64; L] {
         match self {
             Self::Tensor(operator) => operator.product(x, y, scratch),

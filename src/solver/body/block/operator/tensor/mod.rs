@@ -24,14 +24,14 @@ mod pass;
 mod tests;
 
 pub use pass::Scratch;
-pub(crate) use pass::load_all;
 pub(in crate::solver) use pass::{BlockIndex, Pass};
 
 use crate::solver::body::block::BlockMesh;
-use crate::solver::field::{Block, Field, Row, add_slots};
+use crate::solver::field::{Block, FieldOf, add_slots};
 use crate::solver::material::Material;
-use crate::solver::simd::dispatch;
-use fearless_simd::{Simd, f64x8, prelude::*};
+use crate::solver::number::Number;
+use crate::solver::simd::{dispatch, load_all};
+use fearless_simd::{Simd, prelude::*};
 
 /// K of a block of equal elements.
 #[derive(Debug, Clone)]
@@ -73,46 +73,48 @@ impl TensorOperator {
     }
 
     /// Computes `y = K x` for `L` lanes and returns x·y.
-    pub fn product<const L: usize>(
+    pub fn product<const L: usize, R: Number>(
         &self,
-        x: &Field<L>,
-        y: &mut Field<L>,
-        scratch: &mut Scratch<L>,
+        x: &FieldOf<L, R>,
+        y: &mut FieldOf<L, R>,
+        scratch: &mut Scratch<R>,
     ) -> [f64; L] {
         let mut forms = scratch.take_forms();
-        let mut product = Product { x: x.blocks(), y: y.blocks_mut(), forms: &mut forms };
-        dispatch!(simd => self.pass(simd, &mut product, scratch));
+        self.multiply(&mut Product { x: x.blocks(), y: y.blocks_mut(), forms: &mut forms }, scratch);
         let mut total = [0.0; L];
         for slots in &forms {
-            add_slots(&mut total, &slots.0);
+            add_slots(&mut total, slots.as_ref());
         }
         scratch.give_forms(forms);
         total
     }
+
+    fn multiply<R: Number>(&self, product: &mut Product<'_, R>, scratch: &mut Scratch<R>) {
+        dispatch!(simd => self.pass(simd, product, scratch));
+    }
 }
 
-struct Product<'a> {
-    x: &'a [Block],
-    y: &'a mut [Block],
+struct Product<'a, R: Number> {
+    x: &'a [Block<R>],
+    y: &'a mut [Block<R>],
     /// x·y, summed by columns of blocks.
-    forms: &'a mut [Row],
+    forms: &'a mut [R::Totals],
 }
 
 #[expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
-impl<S: Simd> Pass<S> for Product<'_> {
+impl<S: Simd, R: Number> Pass<S, R> for Product<'_, R> {
     #[inline(always)]
-    fn input(&self, simd: S, at: usize) -> [f64x8<S>; 3] {
-        load_all(simd, &self.x[at].0)
+    fn input(&self, simd: S, at: usize) -> [R::Vector<S>; 3] {
+        load_all::<R, S>(simd, &self.x[at].0)
     }
 
     #[inline(always)]
-    fn output(&mut self, simd: S, index: BlockIndex, kx: [f64x8<S>; 3]) {
-        let x = load_all(simd, &self.x[index.at].0);
+    fn output(&mut self, simd: S, index: BlockIndex, kx: [R::Vector<S>; 3]) {
+        let x = load_all::<R, S>(simd, &self.x[index.at].0);
         let form = x[0] * kx[0] + x[1] * kx[1] + x[2] * kx[2];
-        let total = &mut self.forms[index.along].0;
-        (f64x8::from_slice(simd, total) + form).store_slice(total);
+        R::add_to_totals::<S>(&mut self.forms[index.along], form);
         for c in 0..3 {
-            kx[c].store_slice(&mut self.y[index.at].0[c]);
+            kx[c].store_array(&mut self.y[index.at].0[c]);
         }
     }
 }

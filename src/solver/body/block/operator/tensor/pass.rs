@@ -13,8 +13,10 @@
 
 use super::TensorOperator;
 use crate::solver::body::block::BlockMesh;
-use crate::solver::field::{Row, WIDTH, blocks_per_line};
-use fearless_simd::{Simd, f64x8, prelude::*};
+use crate::solver::field::blocks_per_line;
+use crate::solver::number::Number;
+use crate::solver::simd::{load, load_all, splat};
+use fearless_simd::{Simd, prelude::*};
 
 /// Position of a block.
 #[derive(Debug, Clone, Copy)]
@@ -30,98 +32,104 @@ pub(in crate::solver) struct BlockIndex {
 }
 
 /// The input and the output of a product, block by block.
-pub(in crate::solver) trait Pass<S: Simd> {
+pub(in crate::solver) trait Pass<S: Simd, R: Number> {
     /// The three components of x in block `at`.
-    fn input(&self, simd: S, at: usize) -> [f64x8<S>; 3];
+    fn input(&self, simd: S, at: usize) -> [R::Vector<S>; 3];
     /// Takes the three components of K x in a block. The inputs of its plane and of those below are not read again,
     /// so it may overwrite them. Planes come in their order, the blocks of a plane column by column.
-    fn output(&mut self, simd: S, index: BlockIndex, kx: [f64x8<S>; 3]);
+    fn output(&mut self, simd: S, index: BlockIndex, kx: [R::Vector<S>; 3]);
 }
 
 /// Scratch of a pass.
 #[derive(Debug)]
-pub struct Scratch<const L: usize> {
+pub struct Scratch<R: Number = f64> {
+    /// Number of lanes. It is no constant of the code, which is compiled once for all lane counts.
+    lanes: usize,
     /// x of the current plane: line → component → a vector that ends with a zero node, the nodes, a vector of
     /// zeros.
-    staged: Vec<f64>,
+    staged: Vec<R>,
     /// Number of values per component of a line in `staged`.
     pitch: usize,
     /// Partial sums: block along the line → line.
-    columns: Vec<PlaneSums>,
-    ends: Vec<Ends>,
+    columns: Vec<PlaneSums<R>>,
+    ends: Vec<Ends<R>>,
     /// Room for x·Kx by columns.
-    forms: Vec<Row>,
+    forms: Vec<R::Totals>,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
-struct PlaneSums {
+struct PlaneSums<R: Number> {
     /// Sum of the plane before, without the contribution of the current plane.
-    before: [[f64; WIDTH]; 3],
+    before: [R::Row; 3],
     /// Contribution of the plane before to the current plane.
-    ahead: [[f64; WIDTH]; 3],
+    ahead: [R::Row; 3],
 }
 
 /// Diagonal entries along x in a block: of Ŝ (`centre`), of M̂ (`double`), and of B̂ (`outward`).
 #[derive(Debug, Clone, Copy, Default)]
 #[repr(align(64))]
-struct Ends {
-    centre: [f64; WIDTH],
-    double: [f64; WIDTH],
-    outward: [f64; WIDTH],
+struct Ends<R: Number> {
+    centre: R::Row,
+    double: R::Row,
+    outward: R::Row,
 }
 
-impl Ends {
+impl<R: Number> Ends<R> {
     /// Whether the block holds an end of the line.
     fn any(&self) -> bool {
-        self.outward.iter().any(|b| *b != 0.0)
+        self.outward.as_ref().iter().any(|b| *b != R::default())
     }
 }
 
 /// Number of bytes of a cache line. Vectors begin at its boundaries.
 const ALIGNMENT: usize = 64;
 
-impl<const L: usize> Scratch<L> {
-    /// Scratch for products on `mesh`.
-    pub fn new(mesh: &BlockMesh) -> Self {
+impl<R: Number> Scratch<R> {
+    /// Scratch for products of fields with `lanes` lanes on `mesh`.
+    pub fn new(mesh: &BlockMesh, lanes: usize) -> Self {
         let [mx, my, _] = mesh.nodes_per_axis();
-        let blocks = blocks_per_line::<L>(mx);
-        let mut ends =
-            vec![Ends { centre: [2.0; WIDTH], double: [4.0; WIDTH], outward: [0.0; WIDTH] }; blocks];
-        for along in 0..mx * L {
-            let (block, slot, node) = (along / WIDTH, along % WIDTH, along / L);
+        let blocks = blocks_per_line::<R>(mx, lanes);
+        let mut inside = Ends::<R>::default();
+        inside.centre.as_mut().fill(R::from_f64(2.0));
+        inside.double.as_mut().fill(R::from_f64(4.0));
+        let mut ends = vec![inside; blocks];
+        for along in 0..mx * lanes {
+            let (block, slot, node) = (along / R::WIDTH, along % R::WIDTH, along / lanes);
             let centre = if node == 0 || node + 1 == mx { 1.0 } else { 2.0 };
-            ends[block].centre[slot] = centre;
-            ends[block].double[slot] = 2.0 * centre;
-            ends[block].outward[slot] = outward(node, mx);
+            ends[block].centre[slot] = R::from_f64(centre);
+            ends[block].double[slot] = R::from_f64(2.0 * centre);
+            ends[block].outward[slot] = R::from_f64(outward(node, mx));
         }
-        let pitch = WIDTH * (blocks + 2);
+        let pitch = R::WIDTH * (blocks + 2);
         Self {
-            staged: vec![0.0; 3 * my * pitch + WIDTH],
+            lanes,
+            staged: vec![R::default(); 3 * my * pitch + R::WIDTH],
             pitch,
             columns: vec![PlaneSums::default(); blocks * my],
             ends,
-            forms: vec![Row::default(); blocks],
+            forms: vec![R::Totals::default(); blocks],
         }
     }
 
     /// Takes the room for x·Kx, set to zero. [`Scratch::give_forms`] returns it.
-    pub(super) fn take_forms(&mut self) -> Vec<Row> {
+    pub(super) fn take_forms(&mut self) -> Vec<R::Totals> {
         let mut forms = std::mem::take(&mut self.forms);
-        forms.fill(Row::default());
+        forms.fill(R::Totals::default());
         forms
     }
 
-    pub(super) fn give_forms(&mut self, forms: Vec<Row>) {
+    pub(super) fn give_forms(&mut self, forms: Vec<R::Totals>) {
         self.forms = forms;
     }
 }
 
-impl<const L: usize> Clone for Scratch<L> {
+impl<R: Number> Clone for Scratch<R> {
     /// Makes fresh scratch. The offset of the copy to its cache line differs, so its zero nodes have other indices.
     fn clone(&self) -> Self {
         Self {
-            staged: vec![0.0; self.staged.len()],
+            lanes: self.lanes,
+            staged: vec![R::default(); self.staged.len()],
             pitch: self.pitch,
             columns: vec![PlaneSums::default(); self.columns.len()],
             ends: self.ends.clone(),
@@ -144,53 +152,47 @@ fn outward(index: usize, nodes: usize) -> f64 {
 /// x-sums of a block of a line, for each component: M̂x (`m`), Ŝx (`s`), and the Â and B̂ terms of the couplings
 /// (`a`).
 #[derive(Clone, Copy)]
-struct LineSums<S: Simd> {
-    m: [f64x8<S>; 3],
-    s: [f64x8<S>; 3],
-    a: [f64x8<S>; 3],
+struct LineSums<V> {
+    m: [V; 3],
+    s: [V; 3],
+    a: [V; 3],
 }
 
 /// A column of blocks of a plane.
-struct Column<'a, const L: usize> {
-    staged: &'a [f64],
+struct Column<'a, R: Number> {
+    /// Number of lanes, at most the width of a vector.
+    lanes: usize,
+    staged: &'a [R],
     pitch: usize,
     along: usize,
-    ends: &'a Ends,
+    ends: &'a Ends<R>,
 }
 
-/// A vector of a line with the vectors before and after it.
-type Window = [f64; 3 * WIDTH];
-
-impl<const L: usize> Column<'_, L> {
-    /// The windows of one component, line by line.
+impl<R: Number> Column<'_, R> {
+    /// The windows of one component, line by line: a vector with the vectors before and after it.
     #[inline(always)]
-    fn windows(&self, c: usize) -> impl Iterator<Item = &Window> {
-        let start = c * self.pitch + WIDTH * self.along;
-        self.staged[start..].chunks(3 * self.pitch).map_while(<[f64]>::first_chunk)
+    fn windows(&self, c: usize) -> impl Iterator<Item = &[R]> {
+        let start = c * self.pitch + R::WIDTH * self.along;
+        self.staged[start..].chunks(3 * self.pitch).map_while(|line| line.get(..3 * R::WIDTH))
     }
 
     /// B̂x of the block of line `j`, component `c`.
     #[inline(always)]
-    fn outward<S: Simd>(&self, simd: S, j: usize, c: usize) -> f64x8<S> {
-        let start = (3 * j + c) * self.pitch + WIDTH * (self.along + 1);
-        let here = f64x8::from_slice(simd, &self.staged[start..start + WIDTH]);
-        f64x8::from_slice(simd, &self.ends.outward) * here
+    fn outward<S: Simd>(&self, simd: S, j: usize, c: usize) -> R::Vector<S> {
+        let start = (3 * j + c) * self.pitch + R::WIDTH * (self.along + 1);
+        let here = R::Vector::<S>::from_slice(simd, &self.staged[start..start + R::WIDTH]);
+        load::<R, S>(simd, &self.ends.outward) * here
     }
-}
-
-#[inline(always)]
-fn here<S: Simd>(simd: S, window: &Window) -> f64x8<S> {
-    f64x8::from_slice(simd, &window[WIDTH..2 * WIDTH])
 }
 
 impl TensorOperator {
     /// One pass over the mesh.
     #[inline(always)]
-    pub(in crate::solver) fn pass<S: Simd, const L: usize>(
+    pub(in crate::solver) fn pass<S: Simd, R: Number>(
         &self,
         simd: S,
-        pass: &mut impl Pass<S>,
-        scratch: &mut Scratch<L>,
+        pass: &mut impl Pass<S, R>,
+        scratch: &mut Scratch<R>,
     ) {
         let [_, my, mz] = self.nodes;
         let blocks = scratch.ends.len();
@@ -198,10 +200,10 @@ impl TensorOperator {
             self.stage(simd, pass, k, scratch);
             for along in 0..blocks {
                 match (outward(k, mz) != 0.0, scratch.ends[along].any()) {
-                    (false, false) => self.march::<S, L, false, false>(simd, pass, k, along, scratch),
-                    (true, false) => self.march::<S, L, true, false>(simd, pass, k, along, scratch),
-                    (false, true) => self.march::<S, L, false, true>(simd, pass, k, along, scratch),
-                    (true, true) => self.march::<S, L, true, true>(simd, pass, k, along, scratch),
+                    (false, false) => self.march::<S, R, false, false>(simd, pass, k, along, scratch),
+                    (true, false) => self.march::<S, R, true, false>(simd, pass, k, along, scratch),
+                    (false, true) => self.march::<S, R, false, true>(simd, pass, k, along, scratch),
+                    (true, true) => self.march::<S, R, true, true>(simd, pass, k, along, scratch),
                 }
             }
         }
@@ -209,20 +211,14 @@ impl TensorOperator {
             for (j, sums) in column.iter().enumerate() {
                 let line = j + my * (mz - 1);
                 let index = BlockIndex { plane: mz - 1, line, along, at: line * blocks + along };
-                pass.output(simd, index, load_all(simd, &sums.before));
+                pass.output(simd, index, load_all::<R, S>(simd, &sums.before));
             }
         }
     }
 
     /// Stores x of plane `k` in `staged`.
     #[inline(always)]
-    fn stage<S: Simd, const L: usize>(
-        &self,
-        simd: S,
-        pass: &impl Pass<S>,
-        k: usize,
-        scratch: &mut Scratch<L>,
-    ) {
+    fn stage<S: Simd, R: Number>(&self, simd: S, pass: &impl Pass<S, R>, k: usize, scratch: &mut Scratch<R>) {
         let my = self.nodes[1];
         let blocks = scratch.ends.len();
         let first = scratch.staged.as_ptr().align_offset(ALIGNMENT);
@@ -233,8 +229,8 @@ impl TensorOperator {
             for along in 0..blocks {
                 let x = pass.input(simd, at + along);
                 for c in 0..3 {
-                    let start = c * scratch.pitch + WIDTH * (along + 1);
-                    x[c].store_slice(&mut line[start..start + WIDTH]);
+                    let start = c * scratch.pitch + R::WIDTH * (along + 1);
+                    x[c].store_slice(&mut line[start..start + R::WIDTH]);
                 }
             }
         }
@@ -242,36 +238,43 @@ impl TensorOperator {
 
     /// Forms the sums over y and z of a column of blocks of plane `k`, and completes that column of plane `k` − 1.
     #[inline(always)]
-    fn march<S: Simd, const L: usize, const Z: bool, const ENDS: bool>(
+    fn march<S: Simd, R: Number, const Z: bool, const ENDS: bool>(
         &self,
         simd: S,
-        pass: &mut impl Pass<S>,
+        pass: &mut impl Pass<S, R>,
         k: usize,
         along: usize,
-        scratch: &mut Scratch<L>,
+        scratch: &mut Scratch<R>,
     ) {
         let [_, my, mz] = self.nodes;
         let blocks = scratch.ends.len();
         let first = scratch.staged.as_ptr().align_offset(ALIGNMENT);
         let staged = &scratch.staged[first..];
-        let column = Column::<L> { staged, pitch: scratch.pitch, along, ends: &scratch.ends[along] };
+        let column = Column {
+            // The bound lets the compiler leave out checks of every window.
+            lanes: scratch.lanes.min(R::WIDTH),
+            staged,
+            pitch: scratch.pitch,
+            along,
+            ends: &scratch.ends[along],
+        };
         let sums = &mut scratch.columns[along * my..(along + 1) * my];
-        let zero = [f64x8::splat(simd, 0.0); 3];
+        let zero = [splat::<R, S>(simd, 0.0); 3];
         let none = LineSums { m: zero, s: zero, a: zero };
         let out_z = outward(k, mz);
         let mut windows = column.windows(0).zip(column.windows(1)).zip(column.windows(2));
         let mut lines = [none; 3];
         if let Some(((x, y), z)) = windows.next() {
-            lines[1] = self.sum_along_x::<S, L, ENDS>(simd, column.ends, [x, y, z]);
+            lines[1] = self.sum_along_x::<S, R, ENDS>(simd, &column, [x, y, z]);
         }
         for (j, sums) in sums.iter_mut().enumerate() {
             if let Some(((x, y), z)) = windows.next() {
-                lines[2] = self.sum_along_x::<S, L, ENDS>(simd, column.ends, [x, y, z]);
+                lines[2] = self.sum_along_x::<S, R, ENDS>(simd, &column, [x, y, z]);
             }
             let below = if j == 0 || j + 1 == my {
-                self.combine::<S, L, true, Z, ENDS>(simd, &column, j, out_z, &lines, sums)
+                self.combine::<S, R, true, Z, ENDS>(simd, &column, j, out_z, &lines, sums)
             } else {
-                self.combine::<S, L, false, Z, ENDS>(simd, &column, j, out_z, &lines, sums)
+                self.combine::<S, R, false, Z, ENDS>(simd, &column, j, out_z, &lines, sums)
             };
             if k > 0 {
                 let line = j + my * (k - 1);
@@ -282,28 +285,30 @@ impl TensorOperator {
     }
 
     #[inline(always)]
-    fn sum_along_x<S: Simd, const L: usize, const ENDS: bool>(
+    fn sum_along_x<S: Simd, R: Number, const ENDS: bool>(
         &self,
         simd: S,
-        ends: &Ends,
-        windows: [&Window; 3],
-    ) -> LineSums<S> {
-        let zero = [f64x8::splat(simd, 0.0); 3];
+        column: &Column<'_, R>,
+        windows: [&[R]; 3],
+    ) -> LineSums<R::Vector<S>> {
+        let all = |value| splat::<R, S>(simd, value);
+        let zero = [all(0.0); 3];
         let mut sums = LineSums { m: zero, s: zero, a: zero };
         let skew = [self.skew[0], self.skew[0], self.skew[1]];
         let edge = [self.edge[0], -self.edge[0], -self.edge[1]];
         for c in 0..3 {
-            let window = windows[c];
-            let low = f64x8::from_slice(simd, &window[WIDTH - L..2 * WIDTH - L]);
-            let here = here(simd, window);
-            let high = f64x8::from_slice(simd, &window[WIDTH + L..2 * WIDTH + L]);
+            let from = |start: usize| R::Vector::<S>::from_slice(simd, &windows[c][start..start + R::WIDTH]);
+            let low = from(R::WIDTH - column.lanes);
+            let here = from(R::WIDTH);
+            let high = from(R::WIDTH + column.lanes);
             let both = low + high;
-            sums.a[c] = f64x8::splat(simd, skew[c]) * (low - high);
+            sums.a[c] = all(skew[c]) * (low - high);
             let (single, double) = if ENDS {
-                sums.a[c] += f64x8::splat(simd, edge[c]) * (f64x8::from_slice(simd, &ends.outward) * here);
-                (f64x8::from_slice(simd, &ends.centre) * here, f64x8::from_slice(simd, &ends.double) * here)
+                let ends = column.ends;
+                sums.a[c] += all(edge[c]) * (load::<R, S>(simd, &ends.outward) * here);
+                (load::<R, S>(simd, &ends.centre) * here, load::<R, S>(simd, &ends.double) * here)
             } else {
-                (f64x8::splat(simd, self.powers[1]) * here, f64x8::splat(simd, self.powers[2]) * here)
+                (all(self.powers[1]) * here, all(self.powers[2]) * here)
             };
             sums.m[c] = double + both;
             sums.s[c] = single - both;
@@ -315,21 +320,22 @@ impl TensorOperator {
     /// the lines j − 1, j, j + 1. The code is compiled for a line on a face in y or not (`Y`), a plane on a face in
     /// z or not (`Z`), and a block with an end in x or not (`ENDS`). Returns the completed K x of the plane before.
     #[inline(always)]
-    fn combine<S: Simd, const L: usize, const Y: bool, const Z: bool, const ENDS: bool>(
+    fn combine<S: Simd, R: Number, const Y: bool, const Z: bool, const ENDS: bool>(
         &self,
         simd: S,
-        column: &Column<'_, L>,
+        column: &Column<'_, R>,
         j: usize,
         out_z: f64,
-        lines: &[LineSums<S>; 3],
-        plane: &mut PlaneSums,
-    ) -> [f64x8<S>; 3] {
+        lines: &[LineSums<R::Vector<S>>; 3],
+        plane: &mut PlaneSums<R>,
+    ) -> [R::Vector<S>; 3] {
+        let all = |value| splat::<R, S>(simd, value);
         let [low, here, high] = lines;
         let my = self.nodes[1];
-        let zero = f64x8::splat(simd, 0.0);
-        let [single_y, double_y] = self.centre::<S, Y>(simd);
-        let [single_z, double_z] = self.centre::<S, Z>(simd);
-        let skew_yz = f64x8::splat(simd, self.skew[2]);
+        let zero = all(0.0);
+        let [single_y, double_y] = self.centre::<S, R, Y>(simd);
+        let [single_z, double_z] = self.centre::<S, R, Z>(simd);
+        let skew_yz = all(self.skew[2]);
         let out_y = outward(j, my);
         let mut p = [zero; 3];
         let mut b = [zero; 3];
@@ -338,26 +344,29 @@ impl TensorOperator {
             let sy_m = single_y * here.m[c] - both;
             let my_m = double_y * here.m[c] + both;
             let my_s = double_y * here.s[c] + (low.s[c] + high.s[c]);
-            p[c] = f64x8::splat(simd, self.own[c][0]) * my_s + f64x8::splat(simd, self.own[c][1]) * sy_m;
-            b[c] = f64x8::splat(simd, self.own[c][2]) * my_m;
+            p[c] = all(self.own[c][0]) * my_s + all(self.own[c][1]) * sy_m;
+            b[c] = all(self.own[c][2]) * my_m;
         }
         p[0] += low.a[1] - high.a[1];
         p[1] += low.a[0] - high.a[0];
-        let ratio = f64x8::splat(simd, self.skew[1] / self.skew[0]);
-        let from_x = ratio * spread(double_y, low.a[0], here.a[0], high.a[0]);
+        let ratio = all(self.skew[1] / self.skew[0]);
+        let from_x = ratio * spread::<R, S>(double_y, low.a[0], here.a[0], high.a[0]);
         let mut from_y = skew_yz * (low.m[1] - high.m[1]);
-        let mut e =
-            [spread(double_y, low.a[2], here.a[2], high.a[2]), skew_yz * (low.m[2] - high.m[2]), zero];
+        let mut e = [
+            spread::<R, S>(double_y, low.a[2], here.a[2], high.a[2]),
+            skew_yz * (low.m[2] - high.m[2]),
+            zero,
+        ];
         if Y {
-            let share = f64x8::splat(simd, out_y * self.share);
+            let share = all(out_y * self.share);
             p[0] -= share * here.a[1];
             p[1] += share * here.a[0];
             if ENDS {
-                let corner = f64x8::splat(simd, out_y * self.corner[0]);
+                let corner = all(out_y * self.corner[0]);
                 p[0] += corner * column.outward(simd, j, 1);
                 p[1] += corner * column.outward(simd, j, 0);
             }
-            let edge = f64x8::splat(simd, out_y * self.edge[2]);
+            let edge = all(out_y * self.edge[2]);
             from_y += edge * here.m[1];
             e[1] -= edge * here.m[2];
         }
@@ -367,69 +376,67 @@ impl TensorOperator {
             centre[c] = double_z * p[c] + single_z * b[c];
         }
         if Z {
-            let share = f64x8::splat(simd, out_z * self.share);
+            let share = all(out_z * self.share);
             centre[0] -= share * e[0];
             centre[1] -= share * e[1];
             centre[2] += share * e[2];
             if ENDS {
-                let corner = f64x8::splat(simd, out_z * self.corner[1]);
-                centre[0] += corner * self.spread_outward::<S, L>(simd, column, j, 2, double_y);
-                centre[2] += corner * self.spread_outward::<S, L>(simd, column, j, 0, double_y);
+                let corner = all(out_z * self.corner[1]);
+                centre[0] += corner * self.spread_outward::<S, R>(simd, column, j, 2, double_y);
+                centre[2] += corner * self.spread_outward::<S, R>(simd, column, j, 0, double_y);
             }
             if Y {
-                let corner = f64x8::splat(simd, out_z * out_y * self.corner[2]);
+                let corner = all(out_z * out_y * self.corner[2]);
                 centre[1] += corner * here.m[2];
                 centre[2] += corner * here.m[1];
             }
         }
         // The first plane reads zeros from `ahead`, because the last plane of a pass stores zeros there.
-        let before = load_all(simd, &plane.before);
-        let ahead = load_all(simd, &plane.ahead);
+        let before = load_all::<R, S>(simd, &plane.before);
+        let ahead = load_all::<R, S>(simd, &plane.ahead);
         let is_last = Z && out_z > 0.0;
         let mut below = [zero; 3];
         for c in 0..3 {
             let level = p[c] - b[c];
             below[c] = before[c] + (level - e[c]);
-            (centre[c] + ahead[c]).store_slice(&mut plane.before[c]);
+            (centre[c] + ahead[c]).store_array(&mut plane.before[c]);
             let next = if is_last { zero } else { level + e[c] };
-            next.store_slice(&mut plane.ahead[c]);
+            next.store_array(&mut plane.ahead[c]);
         }
         below
     }
 
     /// Diagonal entries of Ŝ and M̂ in a direction, for a node on a face or inside.
     #[inline(always)]
-    fn centre<S: Simd, const FACE: bool>(&self, simd: S) -> [f64x8<S>; 2] {
+    fn centre<S: Simd, R: Number, const FACE: bool>(&self, simd: S) -> [R::Vector<S>; 2] {
         let first = usize::from(!FACE);
-        [f64x8::splat(simd, self.powers[first]), f64x8::splat(simd, self.powers[first + 1])]
+        [splat::<R, S>(simd, self.powers[first]), splat::<R, S>(simd, self.powers[first + 1])]
     }
 
     /// M̂y B̂x of one component.
     #[inline(always)]
-    fn spread_outward<S: Simd, const L: usize>(
+    fn spread_outward<S: Simd, R: Number>(
         &self,
         simd: S,
-        column: &Column<'_, L>,
+        column: &Column<'_, R>,
         j: usize,
         c: usize,
-        double_y: f64x8<S>,
-    ) -> f64x8<S> {
-        let zero = f64x8::splat(simd, 0.0);
+        double_y: R::Vector<S>,
+    ) -> R::Vector<S> {
+        let zero = splat::<R, S>(simd, 0.0);
         let low = if j > 0 { column.outward(simd, j - 1, c) } else { zero };
         let high = if j + 1 < self.nodes[1] { column.outward(simd, j + 1, c) } else { zero };
-        spread(double_y, low, column.outward(simd, j, c), high)
+        spread::<R, S>(double_y, low, column.outward(simd, j, c), high)
     }
-}
-
-/// Loads three rows as vectors. `map` on the array would compile to a call, across which vectors do not stay in
-/// registers.
-#[inline(always)]
-pub(crate) fn load_all<S: Simd>(simd: S, rows: &[[f64; WIDTH]; 3]) -> [f64x8<S>; 3] {
-    [f64x8::from_slice(simd, &rows[0]), f64x8::from_slice(simd, &rows[1]), f64x8::from_slice(simd, &rows[2])]
 }
 
 /// centre·here + (low + high).
 #[inline(always)]
-fn spread<S: Simd>(centre: f64x8<S>, low: f64x8<S>, here: f64x8<S>, high: f64x8<S>) -> f64x8<S> {
+fn spread<R: Number, S: Simd>(
+    centre: R::Vector<S>,
+    low: R::Vector<S>,
+    here: R::Vector<S>,
+    high: R::Vector<S>,
+) -> R::Vector<S> {
     centre * here + (low + high)
 }

@@ -1,6 +1,7 @@
 use super::super::AssembledOperator;
 use super::*;
 use crate::solver::body::hexahedron::stiffness;
+use crate::solver::field::Field;
 use fearless_simd::Level;
 
 /// A deterministic pseudo-random field.
@@ -14,17 +15,22 @@ fn values(n: usize, seed: u64) -> Vec<f64> {
         .collect()
 }
 
-fn product<const L: usize>(mesh: &BlockMesh, material: &Material, x: &[f64]) -> Field<L> {
-    let mut y = Field::zeros(mesh.layout());
-    let x = Field::from_values(mesh.layout(), x);
-    TensorOperator::new(mesh, material).product(&x, &mut y, &mut Scratch::new(mesh));
+fn product<const L: usize, R: Number>(mesh: &BlockMesh, material: &Material, x: &[f64]) -> FieldOf<L, R> {
+    let mut y = FieldOf::zeros(mesh.layout());
+    let x = FieldOf::from_values(mesh.layout(), x);
+    TensorOperator::new(mesh, material).product(&x, &mut y, &mut Scratch::new(mesh, L));
     y
 }
 
 /// Protects: the tensor form equals the assembled K on every kind of node, down to meshes of one element, for every
-/// sign of λ − G.
+/// sign of λ − G, in both precisions.
 #[test]
 fn equals_element_by_element_assembly() {
+    equals_assembly_in::<f64>(f64::EPSILON);
+    equals_assembly_in::<f32>(f64::from(f32::EPSILON));
+}
+
+fn equals_assembly_in<R: Number>(epsilon: f64) {
     for poisson_ratio in [0.3, 0.0, 0.25, 0.45, -0.4] {
         let material = Material { young_modulus_pa: 1e9, poisson_ratio, density_kg_m3: 2500.0 };
         for elements in [[1, 1, 1], [1, 2, 3], [3, 1, 2], [2, 3, 1], [4, 3, 3], [8, 2, 5], [17, 3, 2]] {
@@ -35,32 +41,37 @@ fn equals_element_by_element_assembly() {
             let mut reference = Field::<1>::zeros(mesh.layout());
             AssembledOperator::of_block(&mesh, &ke)
                 .product(&Field::from_values(mesh.layout(), &x), &mut reference);
-            let y = product::<1>(&mesh, &material, &x);
+            let y = product::<1, R>(&mesh, &material, &x);
             // The assembled form has at most 8·24 terms of the size |ke|·½, the tensor form 110 sums of such terms.
-            let bound = 400.0 * f64::EPSILON * ke.amax();
+            let bound = 400.0 * epsilon * ke.amax();
             for (i, b) in reference.values().enumerate() {
+                let found = y[i].to_f64();
                 assert!(
-                    (y[i] - b).abs() < bound,
-                    "{elements:?} ν {poisson_ratio}: {i}: {} instead of {b}",
-                    y[i]
+                    (found - b).abs() < bound,
+                    "{elements:?} ν {poisson_ratio}: {i}: {found} instead of {b}"
                 );
             }
         }
     }
 }
 
-/// Protects: the result has the same bits on every vector width that this machine has.
+/// Protects: the result has the same bits on every vector width that this machine has, in both precisions.
 #[test]
 fn vector_widths_agree_to_the_last_bit() {
+    vector_widths_agree_in::<f64>();
+    vector_widths_agree_in::<f32>();
+}
+
+fn vector_widths_agree_in<R: Number>() {
     let material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
     let mesh = BlockMesh::new([0.012, 0.015, 0.010], [9, 4, 3]);
     let operator = TensorOperator::new(&mesh, &material);
-    let x = Field::<1>::from_values(mesh.layout(), &values(3 * mesh.node_count(), 5));
+    let x = FieldOf::<1, R>::from_values(mesh.layout(), &values(3 * mesh.node_count(), 5));
     let at = |level: Level| {
-        let mut y = Field::<1>::zeros(mesh.layout());
-        let mut forms = vec![Row::default(); x.blocks_per_line()];
+        let mut y = FieldOf::<1, R>::zeros(mesh.layout());
+        let mut forms = vec![Default::default(); x.blocks_per_line()];
         let mut product = Product { x: x.blocks(), y: y.blocks_mut(), forms: &mut forms };
-        let mut scratch = Scratch::<1>::new(&mesh);
+        let mut scratch = Scratch::new(&mesh, 1);
         dispatch!(level, simd => operator.pass(simd, &mut product, &mut scratch));
         y.values().map(f64::to_bits).collect::<Vec<_>>()
     };
@@ -72,10 +83,10 @@ fn vector_widths_agree_to_the_last_bit() {
     }
 }
 
-/// Protects: a lane's bits do not depend on the lane count or on the other lanes.
+/// Protects: a lane's bits do not depend on the lane count or on the other lanes, in both precisions.
 #[test]
 fn lanes_do_not_see_each_other() {
-    fn compare<const L: usize>(mesh: &BlockMesh, material: &Material) {
+    fn compare<const L: usize, R: Number>(mesh: &BlockMesh, material: &Material) {
         let n = 3 * mesh.node_count();
         let mut x = vec![0.0; L * n];
         for lane in 0..L {
@@ -83,18 +94,22 @@ fn lanes_do_not_see_each_other() {
                 x[L * i + lane] = v;
             }
         }
-        let together = product::<L>(mesh, material, &x);
+        let together = product::<L, R>(mesh, material, &x);
         for lane in 0..L {
-            let alone = product::<1>(mesh, material, &values(n, lane as u64));
-            assert!((0..n).all(|i| alone[i].to_bits() == together[L * i + lane].to_bits()), "{lane} of {L}");
+            let alone = product::<1, R>(mesh, material, &values(n, lane as u64));
+            let bits = |field: R| field.to_f64().to_bits();
+            assert!((0..n).all(|i| bits(alone[i]) == bits(together[L * i + lane])), "{lane} of {L}");
         }
     }
     let material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
     for elements in [[4, 5, 3], [12, 3, 2]] {
         let mesh = BlockMesh::new([0.012, 0.015, 0.010], elements);
-        compare::<2>(&mesh, &material);
-        compare::<4>(&mesh, &material);
-        compare::<8>(&mesh, &material);
+        compare::<2, f64>(&mesh, &material);
+        compare::<4, f64>(&mesh, &material);
+        compare::<8, f64>(&mesh, &material);
+        compare::<2, f32>(&mesh, &material);
+        compare::<4, f32>(&mesh, &material);
+        compare::<8, f32>(&mesh, &material);
     }
 }
 
@@ -105,15 +120,15 @@ fn copied_scratch_is_as_good_as_new() {
     let mesh = BlockMesh::new([0.012, 0.015, 0.010], [4, 3, 3]);
     let operator = TensorOperator::new(&mesh, &material);
     let x = Field::<1>::from_values(mesh.layout(), &values(3 * mesh.node_count(), 7));
-    let product = |scratch: &mut Scratch<1>| {
+    let product = |scratch: &mut Scratch| {
         let mut y = Field::<1>::zeros(mesh.layout());
         operator.product(&x, &mut y, scratch);
         y.values().map(f64::to_bits).collect::<Vec<_>>()
     };
-    let mut used = Scratch::<1>::new(&mesh);
+    let mut used = Scratch::new(&mesh, 1);
     let expected = product(&mut used);
     // The copies are kept, so that each has another address.
-    let copies: Vec<Scratch<1>> = (0..50)
+    let copies: Vec<Scratch> = (0..50)
         .map(|odd| {
             let _shift = vec![0_u8; 16 * odd + 1];
             let mut copy = used.clone();
