@@ -180,7 +180,8 @@ impl Point<'_> {
         let pencil =
             Pencil { stiffness: self.friction.stiffness.clone(), sideways, damping_s: self.damping_s };
         let mut found = pencil.eigenpairs();
-        found.truncate(count.max(CANDIDATES));
+        let candidates = if accuracy.aim == Aim::Signs { count } else { count.max(CANDIDATES) };
+        found.truncate(candidates);
         let sideways_of_nodes: Vec<f64> =
             self.friction.sideways_of_nodes.iter().map(|d| d * self.load_over_rate).collect();
         let Bilateral { space, separable, contact } = self.bilateral;
@@ -228,7 +229,7 @@ impl Point<'_> {
         let mut finished = Vec::new();
         for group in modes.chunks_mut(PAIRS) {
             let pairs: Vec<Pair> = group.iter().map(|mode| mode.pair.clone()).collect();
-            let right = self.expand(&Extension::none(), &pairs, |pair| &pair.right);
+            let [right, _] = self.expand(&Extension::none(), &pairs);
             finished.extend(group.iter_mut().enumerate().map(|(at, mode)| {
                 let report = || self.report(&pencil, &mode.pair, &right, at, mode.residual, mode.error_per_s);
                 mode.corrected.take().unwrap_or_else(report)
@@ -280,8 +281,7 @@ impl Point<'_> {
     ) -> Seen {
         let values: [c64; PAIRS] =
             std::array::from_fn(|at| pairs.get(at).map_or(c64::new(0.0, 0.0), |pair| pair.value));
-        let right = self.expand(extension, pairs, |pair| &pair.right);
-        let left = self.expand(extension, pairs, |pair| &pair.left);
+        let [right, left] = self.expand(extension, pairs);
         let residuals = vibration.residuals(elasticity, &values, &right, false);
         let of_left = vibration.residuals(elasticity, &values, &left, true).force;
         let (relative, products) = vibration.measure(&residuals, &of_left);
@@ -314,30 +314,29 @@ impl Point<'_> {
         FullMode { value: pair.value, value_in_steps, residual, error_per_s, shape }
     }
 
-    /// Vectors of the basis and its extension from their coordinates: real and imaginary parts in pairs of lanes.
-    fn expand<'p>(
-        &self,
-        extension: &Extension,
-        pairs: &'p [Pair],
-        of: impl Fn(&'p Pair) -> &'p Vec<c64>,
-    ) -> Vectors {
+    /// Right and left eigenvectors in the full space: real and imaginary parts in pairs of lanes. One product for both reads
+    /// the basis once, which takes longer than the arithmetic.
+    fn expand(&self, extension: &Extension, pairs: &[Pair]) -> [Vectors; 2] {
         let r = self.basis.len();
-        let coordinate = |i: usize, lane: usize| {
-            let value = of(&pairs[lane / 2])[i];
-            if lane.is_multiple_of(2) { value.re } else { value.im }
-        };
         let lanes = 2 * pairs.len();
-        let own = Mat::from_fn(r, lanes, coordinate);
+        let coordinate = |i: usize, column: usize| {
+            let pair = &pairs[column % lanes / 2];
+            let value = if column < lanes { pair.right[i] } else { pair.left[i] };
+            if column.is_multiple_of(2) { value.re } else { value.im }
+        };
+        let own = Mat::from_fn(r, 2 * lanes, coordinate);
         let mut sum = &self.basis.vectors * &own;
         if !extension.vectors.is_empty() {
-            let added = Mat::from_fn(extension.vectors.len(), lanes, |i, lane| coordinate(r + i, lane));
+            let added =
+                Mat::from_fn(extension.vectors.len(), 2 * lanes, |i, column| coordinate(r + i, column));
             let vectors =
                 Mat::from_fn(self.space.len(), extension.vectors.len(), |i, j| extension.vectors[j][i]);
             sum += &vectors * &added;
         }
-        let columns: Vec<Vec<f64>> = (0..lanes).map(|lane| sum.col(lane).iter().copied().collect()).collect();
+        let columns: Vec<Vec<f64>> =
+            (0..2 * lanes).map(|column| sum.col(column).iter().copied().collect()).collect();
         let views: Vec<&[f64]> = columns.iter().map(Vec::as_slice).collect();
-        self.space.gather(&views)
+        [self.space.gather(&views[..lanes]), self.space.gather(&views[lanes..])]
     }
 }
 
