@@ -53,8 +53,8 @@ pub fn verdict(point: &SlidingPoint, damping_s: f64) -> Verdict {
         if least > 0.0 {
             return Verdict::Unstable;
         }
-        // This is false for NaN.
-        let decays = most < 0.0;
+        // The minimum and the maximum with NaN are the other number.
+        let decays = most < 0.0 && value.re.is_finite() && in_steps.re.is_finite();
         if !decays {
             verdict = Verdict::Open;
         }

@@ -18,9 +18,9 @@ use tribosweep::stability::{Accuracy, Aim, Mode, SlidingPoint, Structure};
 
 /// Largest amplitude of the vibration over that of the equilibrium. Nodes near the edge press with a hundredth of the mean.
 const AMPLITUDE: f64 = 1.0e-5;
-/// Corrections of the leading mode for a threshold: errors are of the order |λ|η² = 10⁻⁶ |λ|, which is 0.1 1/s. Rates change
-/// by 40 1/s over 1 % of μ.
-const CLOSE: Accuracy = Accuracy { corrected: 1, aim: Aim::Leading, groups: 2, residual: 1.0e-3, rounds: 8 };
+/// Corrections of the leading mode for a threshold: errors are of the order |λ|η² = 10⁻⁵ |λ|, which is 2 1/s. Rates change by
+/// 40 1/s over 1 % of μ.
+const CLOSE: Accuracy = Accuracy { corrected: 1, aim: Aim::Leading, groups: 2, residual: 3.0e-3, rounds: 4 };
 
 /// A model for small vibrations.
 struct Pin {
@@ -94,7 +94,7 @@ impl Vibration<'_> {
     }
 }
 
-/// The zero of an increasing function by the Illinois method, to 0.1 %.
+/// The zero of an increasing function by the Illinois method, to 0.2 %.
 fn zero(of: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
     let (mut at_low, mut at_high) = (of(low), of(high));
     assert!(at_low < 0.0 && at_high > 0.0, "{at_low} at {low}, {at_high} at {high}");
@@ -107,7 +107,7 @@ fn zero(of: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> f64 {
         } else {
             (high, at_high, at_low) = (next, value, at_low / 2.0);
         }
-        if change < 0.001 * next || high - low < 0.001 * next {
+        if change < 0.002 * next || high - low < 0.002 * next {
             return next;
         }
     }
@@ -172,26 +172,35 @@ fn runs_grow_and_decay_like_their_modes() {
 /// by 25 1/s even at a tenth of the limit. The shape of the start is that without a time step. The other modes that this
 /// excites are smaller by the square of the step, and their beats average out over many periods.
 #[test]
-fn thresholds_are_those_of_runs() {
-    for side in [ClampSide::InnerSide, ClampSide::TrailingEnd, ClampSide::BothSides] {
-        for beta_r_s in [2.0e-8, 5.0e-8, 2.0e-7] {
-            let at = |mu: f64| {
-                let mut spec = scene([5, 6, 5], 0.0024, mu, 7.0);
-                spec.scene.clamp.side = side;
-                spec.numerics.beta_r_s = beta_r_s;
-                spec
-            };
-            let pin = Pin::new(&at(0.1), 0.1);
-            let growth = |mu: f64| pin.vibration(&at(mu), CLOSE).leading().eigenvalue_in_steps_per_s.re;
-            let mu_c = zero(growth, 0.15, 0.5);
-            let [below, above] =
-                [0.99, 1.01].map(|factor| pin.vibration(&at(factor * mu_c), CLOSE).run(40.0).0);
-            let mode = pin.vibration(&at(mu_c), CLOSE).leading().eigenvalue_in_steps_per_s;
-            println!(
-                "{} {beta_r_s:e}: mu_c {mu_c:.4} {mode}, runs {below:.1} and {above:.1} 1/s",
-                side.name()
-            );
-            assert!(below < 0.0 && above > 0.0, "{} {beta_r_s}: {mu_c}: {below}, {above}", side.name());
-        }
+fn thresholds_of_the_inner_side_are_those_of_runs() {
+    thresholds_are_those_of_runs(ClampSide::InnerSide);
+}
+
+/// Protects: the same with another clamp.
+#[test]
+fn thresholds_of_the_trailing_end_are_those_of_runs() {
+    thresholds_are_those_of_runs(ClampSide::TrailingEnd);
+}
+
+/// Protects: the same with a third clamp.
+#[test]
+fn thresholds_of_both_sides_are_those_of_runs() {
+    thresholds_are_those_of_runs(ClampSide::BothSides);
+}
+
+fn thresholds_are_those_of_runs(side: ClampSide) {
+    for beta_r_s in [2.0e-8, 5.0e-8, 2.0e-7] {
+        let at = |mu: f64| {
+            let mut spec = scene([5, 6, 5], 0.0024, mu, 7.0);
+            spec.scene.clamp.side = side;
+            spec.numerics.beta_r_s = beta_r_s;
+            spec
+        };
+        let pin = Pin::new(&at(0.1), 0.1);
+        let growth = |mu: f64| pin.vibration(&at(mu), CLOSE).leading().eigenvalue_in_steps_per_s.re;
+        let mu_c = zero(growth, 0.15, 0.5);
+        let [below, above] = [0.99, 1.01].map(|factor| pin.vibration(&at(factor * mu_c), CLOSE).run(40.0).0);
+        println!("{} {beta_r_s:e}: mu_c {mu_c:.4}, runs {below:.1} and {above:.1} 1/s", side.name());
+        assert!(below < 0.0 && above > 0.0, "{} {beta_r_s}: {mu_c}: {below}, {above}", side.name());
     }
 }
