@@ -308,10 +308,11 @@ The pin, the load and the damping are those of `studies/figure7.json`, and every
 
 ## How a job is decided
 
-With `"stability": "eigenvalues"` the program computes the modes of steady sliding before a job runs. The job is *decayed* without a run if all modes decay at
-its μ and at a larger μ. The larger μ is needed because a limit cycle can exist beside stable sliding, just below the threshold
-μ_c. The distance in μ is 8 % (1 + s^(−1/2)), and the larger μ is rounded up to a multiple of 0.01. Here s is the disk's speed over the natural speed μp/(ρ c_s), with the mean contact
-pressure p, the density ρ and the speed c_s of shear waves. For the reference pin and μ = 0.3 the natural speed is
+With `"stability": "eigenvalues"` the program computes the modes of steady sliding before a job runs. The job is *decayed*
+without a run if all modes decay at its μ and at a larger μ. The larger μ is needed because a limit cycle can exist beside stable
+sliding, just below the threshold μ_c. The distance in μ is 8 % (1 + s^(−1/2)), and the larger μ is rounded up to a multiple of
+0.01. Here s is the disk's speed over the natural speed μp/(ρ c_s), with the mean contact pressure p, the density ρ and the speed
+c_s of shear waves. For the reference pin and μ = 0.3 the natural speed is
 {natural} m/s, which is {at_natural} rpm.
 
 A growth rate counts as negative only if it is so by more than its error, in continuous time and with the time step of the run.
