@@ -1,16 +1,15 @@
 //! Jobs of one model in as many lanes as they need.
 
 use super::checkpoint::Unreadable;
-use super::error::JobError;
+use super::error::{JobError, step_count};
 use super::lanes::{Ended, LanesOf};
 use super::nested::{Beginning, COST, CoarseStart, coarser};
-use super::record::{JobRecord, SlidingStability};
+use super::record::JobRecord;
 use super::stability::{Structures, Verdict, judge};
 use super::workload::Workload;
 use crate::solver::body::block::BlockMesh;
 use crate::solver::{Model, RunNumber};
-use crate::spec::{JobSpec, Precision, Start};
-use serde::{Deserialize, Serialize};
+use crate::spec::{JobSpec, Precision, StabilityMethod, Start};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -160,6 +159,8 @@ impl Batch {
 
     /// Begins a job, unless the eigenvalues of steady sliding decide it at once. Its owner identifies it by `ticket`.
     ///
+    /// A job that starts from a coarser mesh is judged after the run there, and only if that found no limit cycle.
+    ///
     /// # Errors
     /// If the specification is not physical or asks for too many steps, or if a job without a run has no eigenvalues.
     ///
@@ -168,24 +169,19 @@ impl Batch {
     pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Result<Begun, JobError> {
         spec.check()?;
         assert!(self.takes(&spec), "a job of another model");
-        let verdict = each!(&self.lanes, lanes => judge(&spec, lanes.model(), &self.structures))?;
-        let stability = match verdict {
-            Verdict::Decided(record) => return Ok(Begun::Decided(record)),
-            Verdict::Undecided(stability) => stability,
-        };
         assert!(self.jobs() < self.widest, "no more jobs than the widest");
-        let rest = Ready { ticket, spec, stability, beginning: Beginning::REST };
+        step_count(spec.run.limit_s, self.workload().time_step_s)?;
+        let rest = Ready { ticket, spec, beginning: Beginning::REST };
         let ready = match self.coarser_of(&rest.spec) {
-            Some(coarser) => coarser.begin(ticket, rest.spec, rest.stability),
+            Some(coarser) => coarser.begin(ticket, rest.spec),
             None => Some(rest),
         };
-        ready.map_or(Ok(()), |ready| self.begin_ready(ready))?;
-        Ok(Begun::Runs)
+        ready.map_or(Ok(Begun::Runs), |ready| self.begin_ready(ready))
     }
 
     /// The batch on the coarser mesh from which a job starts; none if it starts from rest.
     fn coarser_of(&mut self, spec: &JobSpec) -> Option<&mut CoarserBatch> {
-        if spec.run.start == Start::Rest {
+        if spec.run.start == Start::Rest || spec.stability == StabilityMethod::Modes {
             return None;
         }
         if self.coarser.is_none() {
@@ -194,9 +190,20 @@ impl Batch {
         self.coarser.as_mut()
     }
 
-    /// Begins a job on its own mesh.
-    fn begin_ready(&mut self, ready: Ready) -> Result<(), JobError> {
-        let Ready { ticket, spec, stability, beginning } = ready;
+    /// Begins a job on its own mesh, unless eigenvalues decide it.
+    fn begin_ready(&mut self, ready: Ready) -> Result<Begun, JobError> {
+        let Ready { ticket, spec, beginning } = ready;
+        let stability = if beginning.motion.is_some() {
+            None
+        } else {
+            match each!(&self.lanes, lanes => judge(&spec, lanes.model(), &self.structures))? {
+                Verdict::Decided(mut record) => {
+                    record.start = beginning.start;
+                    return Ok(Begun::Decided(record));
+                }
+                Verdict::Undecided(stability) => stability,
+            }
+        };
         self.make_room(&spec);
         each!(&mut self.lanes, lanes => {
             let lane = lanes.free_lane().expect("a lane was made");
@@ -205,7 +212,7 @@ impl Batch {
                 lanes.note(lane, stability);
             }
         });
-        Ok(())
+        Ok(Begun::Runs)
     }
 
     /// Continues a job from its [`Batch::checkpoint`]. The result has the same bits as that of an
@@ -265,9 +272,12 @@ impl Batch {
         let mut ended = Vec::new();
         for ready in self.coarser.as_mut().map(CoarserBatch::advance).unwrap_or_default() {
             let ticket = ready.ticket;
-            if let Err(error) = self.begin_ready(ready) {
-                ended.push(Ended { ticket, result: Err(error), motion: None });
-            }
+            let result = match self.begin_ready(ready) {
+                Ok(Begun::Runs) => continue,
+                Ok(Begun::Decided(record)) => Ok(*record),
+                Err(error) => Err(error),
+            };
+            ended.push(Ended { ticket, result, motion: None });
         }
         if self.own_jobs() > 0 {
             ended.extend(each!(&mut self.lanes, lanes => lanes.advance(&mut |_| {})));
@@ -301,7 +311,7 @@ pub fn beginning(
     progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
 ) -> Result<Beginning, JobError> {
     let Some(mut coarser) = CoarserBatch::of(spec) else { return Ok(Beginning::REST) };
-    if let Some(ready) = coarser.begin(0, spec.clone(), None) {
+    if let Some(ready) = coarser.begin(0, spec.clone()) {
         return Ok(ready.beginning);
     }
     loop {
@@ -325,23 +335,13 @@ struct CoarserBatch {
 struct Preparing {
     spec: JobSpec,
     coarse: JobSpec,
-    /// What the eigenvalues on its own mesh say.
-    stability: Option<SlidingStability>,
 }
 
 /// A job that can begin on its own mesh.
 struct Ready {
     pub ticket: u64,
     pub spec: JobSpec,
-    pub stability: Option<SlidingStability>,
     pub beginning: Beginning,
-}
-
-/// The checkpoint of a job on the coarser mesh.
-#[derive(Serialize, Deserialize)]
-struct Kept {
-    stability: Option<SlidingStability>,
-    coarse: Vec<u8>,
 }
 
 impl CoarserBatch {
@@ -357,13 +357,8 @@ impl CoarserBatch {
     }
 
     /// Begins a job. Returns it if the coarser mesh refuses it: it is ready to begin from rest.
-    pub fn begin(
-        &mut self,
-        ticket: u64,
-        spec: JobSpec,
-        stability: Option<SlidingStability>,
-    ) -> Option<Ready> {
-        let job = Preparing { coarse: coarser(&spec)?, spec, stability };
+    pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Option<Ready> {
+        let job = Preparing { coarse: coarser(&spec)?, spec };
         match self.batch.begin(ticket, job.coarse.clone()) {
             Ok(Begun::Runs) => {
                 self.jobs.insert(ticket, job);
@@ -396,16 +391,13 @@ impl CoarserBatch {
 
     /// The checkpoint of a job; none if there is no such job.
     pub fn checkpoint(&self, ticket: u64) -> Option<Vec<u8>> {
-        let stability = self.jobs.get(&ticket)?.stability.clone();
-        let kept = Kept { stability, coarse: self.batch.checkpoint(ticket)? };
-        Some(postcard::to_allocvec(&kept).expect("numbers and their lists have a form in bytes"))
+        self.batch.checkpoint(ticket)
     }
 
     /// Continues a job from its [`Self::checkpoint`].
     pub fn resume(&mut self, ticket: u64, spec: JobSpec, bytes: &[u8]) -> Result<(), Unreadable> {
-        let Kept { stability, coarse: bytes } = postcard::from_bytes(bytes).map_err(|_| Unreadable)?;
-        let job = Preparing { coarse: coarser(&spec).ok_or(Unreadable)?, spec, stability };
-        self.batch.resume(ticket, job.coarse.clone(), &bytes)?;
+        let job = Preparing { coarse: coarser(&spec).ok_or(Unreadable)?, spec };
+        self.batch.resume(ticket, job.coarse.clone(), bytes)?;
         self.jobs.insert(ticket, job);
         Ok(())
     }
@@ -432,6 +424,6 @@ impl Preparing {
         };
         let motion = end.motion.filter(|_| start.is_used()).map(|motion| motion.interpolated(&from, &to));
         let beginning = Beginning { motion, start: Some(start) };
-        Ready { ticket: end.ticket, spec: self.spec, stability: self.stability, beginning }
+        Ready { ticket: end.ticket, spec: self.spec, beginning }
     }
 }

@@ -54,6 +54,10 @@ pub struct StepFactors<R: Number = f64> {
     pub time_step_s: f64,
     /// Stiffness-proportional damping `β_R` \[s\].
     pub beta_r_s: f64,
+    /// Δt \[s\] in the numbers of the fields.
+    pub rounded_time_step_s: R,
+    /// `β_R` \[s\] in the numbers of the fields.
+    pub rounded_beta_r_s: R,
     /// Factor of a in `u_{n+1}` \[s²\], one per slot.
     pub u_scale: R::Row,
     /// Factor of a in `p_{n+1}` \[s\], one per slot.
@@ -80,6 +84,8 @@ impl Scheme {
         StepFactors {
             time_step_s: dt,
             beta_r_s: self.beta_r_s,
+            rounded_time_step_s: R::from_f64(dt),
+            rounded_beta_r_s: R::from_f64(self.beta_r_s),
             u_scale: in_slots_of::<R>(&u_scale),
             p_scale: in_slots_of::<R>(&p_scale),
         }
@@ -100,7 +106,7 @@ impl<R: Number> StepFactors<R> {
         let load = |row| R::Vector::<S>::load_array_ref(simd, row);
         let a = force * load(inverse_mass);
         let before = load(p);
-        let dt = R::Vector::<S>::splat(simd, R::from_f64(self.time_step_s));
+        let dt = R::Vector::<S>::splat(simd, self.rounded_time_step_s);
         let stroke = before * dt - a * load(&self.u_scale);
         [load(u) + stroke, before - a * load(&self.p_scale)]
     }

@@ -6,10 +6,11 @@
 //!
 //! Sliding counts as stable at a point if three things hold there:
 //!
-//! * the growth rates of all known modes are negative by more than their errors, in continuous time and with the time step
-//!   of the run; the errors are estimated from the residuals of right and left eigenvectors,
-//! * the basis has all modes up to a frequency above which damping wins: with the largest gain g = (Re λ + βω²/2)/ω of a
-//!   known mode, gω < βω²/2 beyond the band,
+//! * the growth rates of the known modes up to [`JUDGED`] of the basis's band are negative by more than their errors, in
+//!   continuous time and with the time step of the run; the errors are estimated from the residuals of right and left
+//!   eigenvectors,
+//! * above that frequency damping wins: with the largest gain g = (Re λ + βω²/2)/ω of a known mode, gω < βω²/2; near the end
+//!   of its band the basis has the modes badly, so that their gains are known but not their signs,
 //! * every number is finite.
 
 use super::sliding::SlidingPoint;
@@ -19,6 +20,9 @@ use std::f64::consts::TAU;
 const DISTANCE: f64 = 0.08;
 /// The larger μ is rounded up to a multiple of this, so that points of many speeds share an equilibrium.
 const STEP: f64 = 0.01;
+
+/// Share of the basis's band in which modes are judged one by one.
+pub const JUDGED: f64 = 0.85;
 
 /// A larger μ at which sliding must be stable, too.
 ///
@@ -44,6 +48,7 @@ pub enum Verdict {
 
 /// What the eigenvalues of a point say, with a damping β \[s\].
 pub fn verdict(point: &SlidingPoint, damping_s: f64) -> Verdict {
+    let judged_hz = JUDGED * point.band_hz;
     let mut gain: f64 = 0.0;
     let mut verdict = Verdict::Stable;
     for mode in &point.modes {
@@ -53,16 +58,18 @@ pub fn verdict(point: &SlidingPoint, damping_s: f64) -> Verdict {
         if least > 0.0 {
             return Verdict::Unstable;
         }
+        let is_judged = point.has_all_modes || value.im <= TAU * judged_hz;
         // The minimum and the maximum with NaN are the other number.
         let decays = most < 0.0 && value.re.is_finite() && in_steps.re.is_finite();
-        if !decays {
+        if is_judged && !decays {
             verdict = Verdict::Open;
         }
         if value.im > 0.0 {
-            gain = gain.max((value.re + error) / value.im + damping_s * value.im / 2.0);
+            let growth_per_s = value.re + if is_judged { error } else { 0.0 };
+            gain = gain.max(growth_per_s / value.im + damping_s * value.im / 2.0);
         }
     }
-    let is_covered = point.has_all_modes || 2.0 * gain < damping_s * TAU * point.band_hz;
+    let is_covered = point.has_all_modes || 2.0 * gain < damping_s * TAU * judged_hz;
     if point.modes.is_empty() || !is_covered { Verdict::Open } else { verdict }
 }
 
@@ -115,9 +122,27 @@ mod tests {
         let at = |damping_s, band_hz| verdict(&point(&[(-100.0, -100.0, 0.0)], band_hz), damping_s);
         assert_eq!(at(1.0e-7, 2.0e4), Verdict::Stable);
         assert_eq!(at(0.0, 2.0e4), Verdict::Open);
-        // The gain is 0.004, so the band has to reach 2·0.004/10⁻⁷ rad/s = 12.7 kHz.
-        assert_eq!(at(1.0e-7, 1.2e4), Verdict::Open);
-        assert_eq!(at(1.0e-7, 1.35e4), Verdict::Stable);
+        // The gain is 0.004, so 85 % of the band have to reach 2·0.004/10⁻⁷ rad/s = 12.7 kHz.
+        assert_eq!(at(1.0e-7, 1.45e4), Verdict::Open);
+        assert_eq!(at(1.0e-7, 1.55e4), Verdict::Stable);
+    }
+
+    /// Protects: a mode near the end of the band is not judged by its own growth rate, because the basis does not have it
+    /// well, unless the basis has all modes or the mode clearly grows.
+    #[test]
+    fn modes_near_the_end_of_the_band_are_left_to_damping() {
+        // At 15.9 kHz, 80 % and 90 % of the band, with an error larger than the growth rate, beside a judged mode.
+        let of = |band_hz, growth_per_s, has_all_modes| {
+            let modes = [(-800.0, -800.0, 0.0), (growth_per_s, growth_per_s, 300.0)];
+            let mut point = point(&modes, band_hz);
+            point.modes[0].eigenvalue_per_s.im = 0.5e5;
+            point.has_all_modes = has_all_modes;
+            verdict(&point, 1.0e-6)
+        };
+        assert_eq!(of(1.59e4 / 0.8, -200.0, false), Verdict::Open);
+        assert_eq!(of(1.59e4 / 0.9, -200.0, false), Verdict::Stable);
+        assert_eq!(of(1.59e4 / 0.9, -200.0, true), Verdict::Open);
+        assert_eq!(of(1.59e4 / 0.9, 400.0, false), Verdict::Unstable);
     }
 
     /// Protects: the slower the disk, the farther from the threshold a job must be. The distances are 16 % and 24 %, and 0.232

@@ -1,6 +1,7 @@
 //! The modes of one point: found in the basis, then corrected in the full space.
 
 use super::basis::Basis;
+use super::decision::JUDGED;
 use super::equilibrium::UnitEquilibrium;
 use super::extension::Extension;
 use super::pencil::{Clock, Pair, Pencil};
@@ -141,8 +142,9 @@ impl Accuracy {
         residual <= self.residual || (self.aim == Aim::Signs && value.re.abs() > error_per_s)
     }
 
-    /// Moves up to four modes that are to be corrected to the front. Returns their number.
-    fn choose(&self, modes: &mut [Candidate]) -> usize {
+    /// Moves up to four modes that are to be corrected to the front. Returns their number. Signs are needed up to
+    /// `judged_hz`.
+    fn choose(&self, modes: &mut [Candidate], judged_hz: f64) -> usize {
         modes.sort_by(|a, b| b.value().re.total_cmp(&a.value().re));
         let last = self.corrected.min(modes.len());
         let limit = match self.aim {
@@ -151,6 +153,7 @@ impl Accuracy {
         };
         let is_open = |mode: &Candidate| {
             mode.corrected.is_none()
+                && (self.aim == Aim::Leading || mode.value().im <= TAU * judged_hz)
                 && !self.is_met(mode.value(), mode.error_per_s, mode.residual)
                 && mode.value().re + mode.error_per_s >= limit
         };
@@ -205,8 +208,9 @@ impl Point<'_> {
                 break;
             }
         }
+        let judged_hz = if self.basis.is_complete { f64::INFINITY } else { JUDGED * self.basis.band_hz };
         for _ in 0..accuracy.groups {
-            let chosen = accuracy.choose(&mut modes);
+            let chosen = accuracy.choose(&mut modes, judged_hz);
             if chosen == 0 {
                 break;
             }

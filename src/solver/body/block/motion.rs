@@ -17,7 +17,7 @@ use crate::solver::body::Freedom;
 use crate::solver::field::{Block, FieldOf};
 use crate::solver::number::Number;
 use crate::solver::scheme::StepFactors;
-use crate::solver::simd::{dispatch, load, load_all, splat};
+use crate::solver::simd::{dispatch, load, load_all};
 use fearless_simd::{Simd, prelude::*};
 
 /// The slave nodes at t_n, which the contact solve moves to t_{n+1}.
@@ -133,7 +133,7 @@ impl<const L: usize, R: Number> BlockMotion<L, R> {
         for (s, p) in strained.blocks_mut().iter_mut().zip(p.blocks()) {
             for c in 0..3 {
                 for i in 0..R::WIDTH {
-                    s.0[c][i] += R::from_f64(factors.beta_r_s) * p.0[c][i];
+                    s.0[c][i] += factors.rounded_beta_r_s * p.0[c][i];
                 }
             }
         }
@@ -209,7 +209,7 @@ impl<S: Simd, R: Number> Pass<S, R> for Advance<'_, R> {
     fn input(&self, simd: S, at: usize) -> [R::Vector<S>; 3] {
         let mut strained = load_all::<R, S>(simd, &self.u[at].0);
         if self.factors.beta_r_s != 0.0 {
-            let beta_r = splat::<R, S>(simd, self.factors.beta_r_s);
+            let beta_r = R::Vector::<S>::splat(simd, self.factors.rounded_beta_r_s);
             let p = load_all::<R, S>(simd, &self.p[at].0);
             for c in 0..3 {
                 strained[c] += beta_r * p[c];

@@ -194,16 +194,55 @@ impl TensorOperator {
         pass: &mut impl Pass<S, R>,
         scratch: &mut Scratch<R>,
     ) {
+        Coefficients::of(self).pass(simd, pass, scratch);
+    }
+}
+
+/// The coefficients of a [`TensorOperator`] in the numbers of the fields. To round them where they are used would take as
+/// long as the products.
+struct Coefficients<R: Number> {
+    nodes: [usize; 3],
+    own: [[R; 3]; 3],
+    skew: [R; 3],
+    /// The second over the first coefficient in `skew`.
+    skew_ratio: R,
+    /// `edge` of the couplings in the x-sums of each component.
+    edge_along_x: [R; 3],
+    /// `edge` of the coupling yz.
+    edge_yz: R,
+    share: R,
+    corner: [R; 3],
+    powers: [R; 3],
+}
+
+impl<R: Number> Coefficients<R> {
+    fn of(operator: &TensorOperator) -> Self {
+        let TensorOperator { nodes, own, skew, edge, share, corner, powers } = operator;
+        Self {
+            nodes: *nodes,
+            own: own.map(|row| row.map(R::from_f64)),
+            skew: skew.map(R::from_f64),
+            skew_ratio: R::from_f64(skew[1] / skew[0]),
+            edge_along_x: [edge[0], -edge[0], -edge[1]].map(R::from_f64),
+            edge_yz: R::from_f64(edge[2]),
+            share: R::from_f64(*share),
+            corner: corner.map(R::from_f64),
+            powers: powers.map(R::from_f64),
+        }
+    }
+
+    #[inline(always)]
+    fn pass<S: Simd>(&self, simd: S, pass: &mut impl Pass<S, R>, scratch: &mut Scratch<R>) {
         let [_, my, mz] = self.nodes;
         let blocks = scratch.ends.len();
         for k in 0..mz {
             self.stage(simd, pass, k, scratch);
             for along in 0..blocks {
                 match (outward(k, mz) != 0.0, scratch.ends[along].any()) {
-                    (false, false) => self.march::<S, R, false, false>(simd, pass, k, along, scratch),
-                    (true, false) => self.march::<S, R, true, false>(simd, pass, k, along, scratch),
-                    (false, true) => self.march::<S, R, false, true>(simd, pass, k, along, scratch),
-                    (true, true) => self.march::<S, R, true, true>(simd, pass, k, along, scratch),
+                    (false, false) => self.march::<S, false, false>(simd, pass, k, along, scratch),
+                    (true, false) => self.march::<S, true, false>(simd, pass, k, along, scratch),
+                    (false, true) => self.march::<S, false, true>(simd, pass, k, along, scratch),
+                    (true, true) => self.march::<S, true, true>(simd, pass, k, along, scratch),
                 }
             }
         }
@@ -218,7 +257,7 @@ impl TensorOperator {
 
     /// Stores x of plane `k` in `staged`.
     #[inline(always)]
-    fn stage<S: Simd, R: Number>(&self, simd: S, pass: &impl Pass<S, R>, k: usize, scratch: &mut Scratch<R>) {
+    fn stage<S: Simd>(&self, simd: S, pass: &impl Pass<S, R>, k: usize, scratch: &mut Scratch<R>) {
         let my = self.nodes[1];
         let blocks = scratch.ends.len();
         let first = scratch.staged.as_ptr().align_offset(ALIGNMENT);
@@ -238,7 +277,7 @@ impl TensorOperator {
 
     /// Forms the sums over y and z of a column of blocks of plane `k`, and completes that column of plane `k` − 1.
     #[inline(always)]
-    fn march<S: Simd, R: Number, const Z: bool, const ENDS: bool>(
+    fn march<S: Simd, const Z: bool, const ENDS: bool>(
         &self,
         simd: S,
         pass: &mut impl Pass<S, R>,
@@ -265,16 +304,16 @@ impl TensorOperator {
         let mut windows = column.windows(0).zip(column.windows(1)).zip(column.windows(2));
         let mut lines = [none; 3];
         if let Some(((x, y), z)) = windows.next() {
-            lines[1] = self.sum_along_x::<S, R, ENDS>(simd, &column, [x, y, z]);
+            lines[1] = self.sum_along_x::<S, ENDS>(simd, &column, [x, y, z]);
         }
         for (j, sums) in sums.iter_mut().enumerate() {
             if let Some(((x, y), z)) = windows.next() {
-                lines[2] = self.sum_along_x::<S, R, ENDS>(simd, &column, [x, y, z]);
+                lines[2] = self.sum_along_x::<S, ENDS>(simd, &column, [x, y, z]);
             }
             let below = if j == 0 || j + 1 == my {
-                self.combine::<S, R, true, Z, ENDS>(simd, &column, j, out_z, &lines, sums)
+                self.combine::<S, true, Z, ENDS>(simd, &column, j, out_z, &lines, sums)
             } else {
-                self.combine::<S, R, false, Z, ENDS>(simd, &column, j, out_z, &lines, sums)
+                self.combine::<S, false, Z, ENDS>(simd, &column, j, out_z, &lines, sums)
             };
             if k > 0 {
                 let line = j + my * (k - 1);
@@ -285,17 +324,16 @@ impl TensorOperator {
     }
 
     #[inline(always)]
-    fn sum_along_x<S: Simd, R: Number, const ENDS: bool>(
+    fn sum_along_x<S: Simd, const ENDS: bool>(
         &self,
         simd: S,
         column: &Column<'_, R>,
         windows: [&[R]; 3],
     ) -> LineSums<R::Vector<S>> {
-        let all = |value| splat::<R, S>(simd, value);
-        let zero = [all(0.0); 3];
+        let all = |value: R| R::Vector::<S>::splat(simd, value);
+        let zero = [splat::<R, S>(simd, 0.0); 3];
         let mut sums = LineSums { m: zero, s: zero, a: zero };
         let skew = [self.skew[0], self.skew[0], self.skew[1]];
-        let edge = [self.edge[0], -self.edge[0], -self.edge[1]];
         for c in 0..3 {
             let from = |start: usize| R::Vector::<S>::from_slice(simd, &windows[c][start..start + R::WIDTH]);
             let low = from(R::WIDTH - column.lanes);
@@ -305,7 +343,7 @@ impl TensorOperator {
             sums.a[c] = all(skew[c]) * (low - high);
             let (single, double) = if ENDS {
                 let ends = column.ends;
-                sums.a[c] += all(edge[c]) * (load::<R, S>(simd, &ends.outward) * here);
+                sums.a[c] += all(self.edge_along_x[c]) * (load::<R, S>(simd, &ends.outward) * here);
                 (load::<R, S>(simd, &ends.centre) * here, load::<R, S>(simd, &ends.double) * here)
             } else {
                 (all(self.powers[1]) * here, all(self.powers[2]) * here)
@@ -320,7 +358,7 @@ impl TensorOperator {
     /// the lines j − 1, j, j + 1. The code is compiled for a line on a face in y or not (`Y`), a plane on a face in
     /// z or not (`Z`), and a block with an end in x or not (`ENDS`). Returns the completed K x of the plane before.
     #[inline(always)]
-    fn combine<S: Simd, R: Number, const Y: bool, const Z: bool, const ENDS: bool>(
+    fn combine<S: Simd, const Y: bool, const Z: bool, const ENDS: bool>(
         &self,
         simd: S,
         column: &Column<'_, R>,
@@ -329,14 +367,15 @@ impl TensorOperator {
         lines: &[LineSums<R::Vector<S>>; 3],
         plane: &mut PlaneSums<R>,
     ) -> [R::Vector<S>; 3] {
-        let all = |value| splat::<R, S>(simd, value);
+        let all = |value: R| R::Vector::<S>::splat(simd, value);
         let [low, here, high] = lines;
         let my = self.nodes[1];
-        let zero = all(0.0);
-        let [single_y, double_y] = self.centre::<S, R, Y>(simd);
-        let [single_z, double_z] = self.centre::<S, R, Z>(simd);
+        let zero = splat::<R, S>(simd, 0.0);
+        let [single_y, double_y] = self.centre::<S, Y>(simd);
+        let [single_z, double_z] = self.centre::<S, Z>(simd);
         let skew_yz = all(self.skew[2]);
         let out_y = outward(j, my);
+        let turned = |by: f64, value: R| splat::<R, S>(simd, by) * all(value);
         let mut p = [zero; 3];
         let mut b = [zero; 3];
         for c in 0..3 {
@@ -349,7 +388,7 @@ impl TensorOperator {
         }
         p[0] += low.a[1] - high.a[1];
         p[1] += low.a[0] - high.a[0];
-        let ratio = all(self.skew[1] / self.skew[0]);
+        let ratio = all(self.skew_ratio);
         let from_x = ratio * spread::<R, S>(double_y, low.a[0], here.a[0], high.a[0]);
         let mut from_y = skew_yz * (low.m[1] - high.m[1]);
         let mut e = [
@@ -358,15 +397,15 @@ impl TensorOperator {
             zero,
         ];
         if Y {
-            let share = all(out_y * self.share);
+            let share = turned(out_y, self.share);
             p[0] -= share * here.a[1];
             p[1] += share * here.a[0];
             if ENDS {
-                let corner = all(out_y * self.corner[0]);
+                let corner = turned(out_y, self.corner[0]);
                 p[0] += corner * column.outward(simd, j, 1);
                 p[1] += corner * column.outward(simd, j, 0);
             }
-            let edge = all(out_y * self.edge[2]);
+            let edge = turned(out_y, self.edge_yz);
             from_y += edge * here.m[1];
             e[1] -= edge * here.m[2];
         }
@@ -376,17 +415,17 @@ impl TensorOperator {
             centre[c] = double_z * p[c] + single_z * b[c];
         }
         if Z {
-            let share = all(out_z * self.share);
+            let share = turned(out_z, self.share);
             centre[0] -= share * e[0];
             centre[1] -= share * e[1];
             centre[2] += share * e[2];
             if ENDS {
-                let corner = all(out_z * self.corner[1]);
-                centre[0] += corner * self.spread_outward::<S, R>(simd, column, j, 2, double_y);
-                centre[2] += corner * self.spread_outward::<S, R>(simd, column, j, 0, double_y);
+                let corner = turned(out_z, self.corner[1]);
+                centre[0] += corner * self.spread_outward::<S>(simd, column, j, 2, double_y);
+                centre[2] += corner * self.spread_outward::<S>(simd, column, j, 0, double_y);
             }
             if Y {
-                let corner = all(out_z * out_y * self.corner[2]);
+                let corner = turned(out_z * out_y, self.corner[2]);
                 centre[1] += corner * here.m[2];
                 centre[2] += corner * here.m[1];
             }
@@ -408,14 +447,14 @@ impl TensorOperator {
 
     /// Diagonal entries of Ŝ and M̂ in a direction, for a node on a face or inside.
     #[inline(always)]
-    fn centre<S: Simd, R: Number, const FACE: bool>(&self, simd: S) -> [R::Vector<S>; 2] {
+    fn centre<S: Simd, const FACE: bool>(&self, simd: S) -> [R::Vector<S>; 2] {
         let first = usize::from(!FACE);
-        [splat::<R, S>(simd, self.powers[first]), splat::<R, S>(simd, self.powers[first + 1])]
+        [self.powers[first], self.powers[first + 1]].map(|power| R::Vector::<S>::splat(simd, power))
     }
 
     /// M̂y B̂x of one component.
     #[inline(always)]
-    fn spread_outward<S: Simd, R: Number>(
+    fn spread_outward<S: Simd>(
         &self,
         simd: S,
         column: &Column<'_, R>,
