@@ -280,6 +280,10 @@ impl Batch {
             ended.push(Ended { ticket, result, motion: None });
         }
         if self.own_jobs() > 0 {
+            // A lane without a job costs as much as one with a job. A job on the coarser mesh gets one when it is ready.
+            if self.coarser.as_ref().is_some_and(|coarser| coarser.jobs() > 0) {
+                self.fit(self.own_jobs());
+            }
             ended.extend(each!(&mut self.lanes, lanes => lanes.advance(&mut |_| {})));
         }
         ended

@@ -87,7 +87,9 @@ impl LaneAnalysis {
             self.cycles.push(cycle);
             self.steady = steady::find(&self.cycles, &self.spec.detection);
         }
-        self.decays = self.monitor.as_mut().is_some_and(|monitor| monitor.push(sample));
+        let decays = self.monitor.as_mut().is_some_and(|monitor| monitor.push(sample));
+        self.decays =
+            decays && !may_grow_from_rounding(self.spec.numerics.precision, self.stability.as_ref());
         self.late.push(sample, energies);
         self.trailing.push(sample, energies);
     }
@@ -287,11 +289,46 @@ fn observed_nodes(figures: &Figures) -> Vec<ObservedNode> {
         .collect()
 }
 
+/// Whether the eigenvalues know a growing mode that the run may not show yet: in single precision a growth that begins at
+/// rounding is hidden for a long time.
+fn may_grow_from_rounding(precision: Precision, stability: Option<&SlidingStability>) -> bool {
+    let mut modes = stability.into_iter().flat_map(|stability| &stability.modes);
+    precision == Precision::Single && modes.any(|mode| mode.growth_rate_per_s > 0.0)
+}
+
 #[cfg(test)]
 mod tests {
-    use super::{contact_loss_share, energy_identity, regime};
-    use crate::analysis::record::{Outcome, Regime};
+    use super::{contact_loss_share, energy_identity, may_grow_from_rounding, regime};
+    use crate::analysis::record::{ComplexMode, Outcome, Regime, SlidingStability};
     use crate::solver::energy::Energies;
+    use crate::spec::Precision;
+
+    /// Protects: where eigenvalues show a growing mode, a run in single precision is not believed to decay, because its
+    /// rounding hides a slow growth. In double precision the run decides.
+    #[test]
+    fn a_known_growth_is_not_hidden_by_rounding() {
+        let stability = |growth_rates_per_s: [f64; 2]| SlidingStability {
+            decided: false,
+            contact_nodes: 1,
+            lifted_nodes: 0,
+            mu_star: 0.2,
+            band_hz: 5.0e4,
+            modes: growth_rates_per_s
+                .map(|growth_rate_per_s| ComplexMode {
+                    frequency_hz: 1.5e4,
+                    growth_rate_per_s,
+                    damping_ratio: 0.0,
+                    residual: 1.0e-3,
+                    is_converged: true,
+                })
+                .to_vec(),
+        };
+        let (stable, unstable) = (stability([-20.0, -300.0]), stability([20.0, -300.0]));
+        assert!(may_grow_from_rounding(Precision::Single, Some(&unstable)));
+        assert!(!may_grow_from_rounding(Precision::Single, Some(&stable)));
+        assert!(!may_grow_from_rounding(Precision::Single, None));
+        assert!(!may_grow_from_rounding(Precision::Double, Some(&unstable)));
+    }
 
     /// Protects: stick and separation each count from the threshold on. A limit cycle with little of both is named after
     /// the larger share, another run is undecided, and decayed sliding is stable whatever the shares.

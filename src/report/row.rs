@@ -61,6 +61,17 @@ pub struct JobNumerics {
     pub tolerance: f64,
     /// Largest drift of its mean between their first and second half.
     pub drift_tolerance: f64,
+    /// Precision of the run.
+    pub precision: String,
+    /// What state the run starts from.
+    pub start: String,
+}
+
+impl JobNumerics {
+    /// The way in which the job is solved, in words.
+    pub fn way(&self) -> String {
+        format!("{}, from {}", self.precision, if self.start == "nested" { "a coarser mesh" } else { "rest" })
+    }
 }
 
 /// The state of a job.

@@ -68,6 +68,10 @@ impl Draft {
         if let Some(damping) = damping {
             violations.extend(damping.fill(&mut spec.numerics, gives("beta_r_s")).err());
         }
+        if let Some(preset) = preset {
+            // A job without damping is solved in another way.
+            preset.choose_way(&mut spec, gives);
+        }
         time_defaults::fill(&mut spec, gives);
         violations.extend(spec.check().err().into_iter().flat_map(|found| found.0));
         Resolved { spec, violations }

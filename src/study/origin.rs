@@ -31,7 +31,7 @@ impl Origin {
 
 /// Whether presets set a parameter, or the whole field of which it sets a part.
 pub fn is_set_by_presets(parameter: &Parameter) -> bool {
-    let covered = Preset::COVERS.iter().filter_map(|name| Parameter::find(name));
+    let covered = Preset::COVERS.iter().chain(Preset::CHOOSES).filter_map(|name| Parameter::find(name));
     covered.into_iter().any(|own| own.sets(&parameter.field()))
 }
 

@@ -23,6 +23,8 @@ pub(super) fn numerics(spec: &JobSpec, cases: &mut SharedKeys) -> JobNumerics {
         cycles: detection.cycles,
         tolerance: detection.tolerance,
         drift_tolerance: detection.drift_tolerance,
+        precision: numerics.precision.name().to_owned(),
+        start: run.start.name().to_owned(),
     }
 }
 

@@ -25,6 +25,8 @@ fn numerics(n: usize, safety_factor: f64) -> JobNumerics {
         cycles: 20,
         tolerance: 0.01,
         drift_tolerance: 0.001,
+        precision: "double".into(),
+        start: "rest".into(),
     }
 }
 

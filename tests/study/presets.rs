@@ -4,7 +4,7 @@
 use super::{assert_contains, parse, refusal};
 use serde_json::{Value, json};
 use tribosweep::analysis::{Unobserved, solve};
-use tribosweep::spec::{ClampSide, DiskKind, JobSpec};
+use tribosweep::spec::{ClampSide, DiskKind, JobSpec, Precision, StabilityMethod, Start};
 use tribosweep::study::{CaseEvidence, Evidence, Parameter, Preset, Study, job_key};
 
 fn base(preset: &str, more: &str) -> JobSpec {
@@ -24,14 +24,46 @@ fn presets_set_mesh_step_and_detection() {
         expected.numerics.safety_factor = safety_factor;
         expected.detection.tolerance = tolerance;
         expected.detection.drift_tolerance = drift_tolerance;
+        expected.numerics.precision = Precision::Single;
+        if name != "draft" {
+            expected.run.start = Start::Nested;
+            expected.stability = StabilityMethod::Eigenvalues;
+        }
         assert_eq!(base(name, ""), expected, "{name}");
     }
+}
+
+/// Protects: a preset chooses a fast way only where it works: not on an elastic disk, and in single precision not without
+/// damping. What the study gives stays, even if `--preset` takes precedence over its mesh.
+#[test]
+fn presets_choose_a_way_that_works() {
+    let way = |spec: &JobSpec| (spec.numerics.precision, spec.run.start, spec.stability);
+    let slow = (Precision::Double, Start::Rest, StabilityMethod::Simulate);
+    let fast = (Precision::Single, Start::Nested, StabilityMethod::Eigenvalues);
+    assert_eq!(way(parse("{}").base()), slow);
+    assert_eq!(way(&base("standard", "")), fast);
+    assert_eq!(way(&base("standard", r#", "scene": { "disk": { "kind": "elastic" } }"#)), slow);
+    for undamped in [r#""numerics": { "beta_r_s": 0 }"#, r#""damping": { "ratio": 0, "frequency_hz": 1e4 }"#]
+    {
+        assert_eq!(way(&base("standard", &format!(", {undamped}"))), (Precision::Double, fast.1, fast.2));
+    }
+    let given =
+        r#""numerics": { "precision": "double" }, "run": { "start": "rest" }, "stability": "simulate""#;
+    assert_eq!(way(&base("reference", &format!(", {given}"))), slow);
+    let study = parse(&format!("{{ {given} }}"));
+    let spec = study.single_with_preset(Some(Preset::Standard), &[]).unwrap();
+    assert_eq!((spec.scene.pin.elements, way(&spec)), ([24, 30, 20], slow));
+    let study = parse(r#"{ "preset": "standard", "grid": { "precision": ["double", "single"] } }"#);
+    let precisions: Vec<_> =
+        study.expand("1").unwrap().iter().map(|job| job.spec.numerics.precision).collect();
+    assert_eq!(precisions, [Precision::Double, Precision::Single]);
 }
 
 /// Protects: the same settings are the same job, whether a preset or the file names them.
 #[test]
 fn a_preset_has_the_key_of_its_settings() {
-    let explicit = r#"{ "scene": { "pin": { "elements": [12, 15, 10] } }, "numerics": { "safety_factor": 0.9 },
+    let explicit = r#"{ "scene": { "pin": { "elements": [12, 15, 10] } },
+        "numerics": { "safety_factor": 0.9, "precision": "single" },
         "detection": { "tolerance": 0.03, "drift_tolerance": 0.003 } }"#;
     assert_eq!(job_key(&base("draft", ""), "1"), job_key(parse(explicit).base(), "1"));
 }
@@ -212,6 +244,7 @@ fn figure7_has_the_standard_accuracy() {
     assert_eq!(figure7.base().scene.pin.elements, standard.scene.pin.elements);
     assert_eq!(figure7.base().numerics, standard.numerics);
     assert_eq!(figure7.base().detection, standard.detection);
+    assert_eq!((&figure7.base().run, figure7.base().stability), (&standard.run, standard.stability));
 }
 
 /// Protects: an editor that uses the schema offers exactly the presets.

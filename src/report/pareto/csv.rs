@@ -12,7 +12,7 @@ use crate::report::row::JobRow;
 use std::io::{self, Write};
 
 /// The fields of every line. Grid parameters that are not among them follow.
-const HEADER: [&str; 38] = [
+const HEADER: [&str; 40] = [
     "case",
     "study",
     "job",
@@ -31,6 +31,8 @@ const HEADER: [&str; 38] = [
     "cycles",
     "tolerance",
     "drift_tolerance",
+    "precision",
+    "start",
     "status",
     "mu_star",
     "mu_star_se",
@@ -139,6 +141,8 @@ fn fields(case_number: usize, case: &Case, index: usize, job: &DoneJob, score: &
         numerics.cycles.to_string(),
         number(numerics.tolerance),
         number(numerics.drift_tolerance),
+        numerics.precision.clone(),
+        numerics.start.clone(),
         row.status().to_owned(),
         number(record.mu_star),
         number(record.mu_star_se),

@@ -3,6 +3,7 @@
 #![expect(clippy::cast_possible_wrap, reason = "pixels and legend lines: thousands, not billions")]
 
 use super::case::Case;
+use super::front::on_front;
 use super::page::figure_title;
 use crate::publish::FigureError;
 use crate::publish::plot::axis::Axis;
@@ -17,6 +18,11 @@ use serde_json::Value;
 const LEGEND_WIDTH: u32 = 440;
 const Y_LABELS: u32 = 170;
 const RADIUS: i32 = 12;
+/// Where labels in the legend begin.
+const LABELS: i32 = 3 * RADIUS + 24;
+/// Colours of the fronts, by the way to solve a job.
+const FRONTS: [RGBColor; 4] =
+    [RGBColor(0, 0, 0), RGBColor(0x80, 0x80, 0x80), RGBColor(0x20, 0x60, 0xc0), RGBColor(0xc0, 0x40, 0x20)];
 const GREY: RGBColor = RGBColor(0x50, 0x50, 0x50);
 
 struct Point {
@@ -26,6 +32,7 @@ struct Point {
     early: bool,
     resolved: bool,
     on_front: bool,
+    way: String,
 }
 
 /// Draws a case. Jobs without a run time and jobs whose error and resolution are both zero are left out, because the axes
@@ -65,6 +72,7 @@ fn points(case: &Case, meshes: &[[usize; 3]]) -> Vec<Point> {
                 early: job.numerics.stop_early,
                 resolved: score.is_resolved(),
                 on_front: score.on_wall_front,
+                way: job.numerics.way(),
             })
         })
         .collect()
@@ -90,10 +98,15 @@ fn draw_plot(area: &Area, points: &[Point]) -> Result<(), DrawError> {
             axis(points.iter().map(|point| point.error)),
         )?;
     canvas::mesh(&mut chart).x_desc("solver time of the job [s]").y_desc(figure_title()).draw()?;
-    let mut front: Vec<(f64, f64)> =
-        points.iter().filter(|point| point.on_front).map(|point| (point.time_s, point.error)).collect();
-    front.sort_by(|a, b| a.0.total_cmp(&b.0));
-    chart.draw_series(DashedLineSeries::new(front, DASH, DASH / 2, BLACK.stroke_width(3)))?;
+    for (way, colour) in ways(points).iter().zip(FRONTS.into_iter().cycle()) {
+        let own = points.iter().filter(|point| point.way == *way);
+        let own: Vec<(f64, f64)> = own.map(|point| (point.time_s, point.error)).collect();
+        let on_front = on_front(&own).into_iter();
+        let mut front: Vec<(f64, f64)> =
+            own.into_iter().zip(on_front).filter_map(|(point, is_on)| is_on.then_some(point)).collect();
+        front.sort_by(|a, b| a.0.total_cmp(&b.0));
+        chart.draw_series(DashedLineSeries::new(front, DASH, DASH / 2, colour.stroke_width(3)))?;
+    }
     let (left, top) = area.get_base_pixel();
     for point in points {
         let (x, y) = chart.backend_coord(&(point.time_s, point.error));
@@ -136,6 +149,7 @@ fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(
         early,
         resolved,
         on_front,
+        way: String::new(),
     };
     let mut entries: Vec<(Option<Point>, String)> = vec![(None, "mesh".to_owned())];
     for (index, [nx, ny, nz]) in meshes.iter().enumerate() {
@@ -155,6 +169,18 @@ fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(
             entries.push((Some(point), label.to_owned()));
         }
     }
+    let ways = ways(points);
+    let mut lines_of_ways = Vec::new();
+    let mut front = any(|p| p.on_front).then(|| entries.len() - 1);
+    if ways.len() > 1 {
+        // Each way has a front of its own. The rings show the front of all.
+        front = None;
+        entries.push((None, "fronts by precision and start".to_owned()));
+        for way in ways {
+            lines_of_ways.push(entries.len());
+            entries.push((None, way));
+        }
+    }
     let room = area.dim_in_pixel().1 as i32 - 2 * MARGIN;
     let pitch = (room / entries.len() as i32).min(50);
     // A long legend gets smaller text, so that all of it is on the sheet.
@@ -164,13 +190,28 @@ fn draw_legend(area: &Area, meshes: &[[usize; 3]], points: &[Point]) -> Result<(
         if let Some(point) = marker {
             draw_marker(area, (RADIUS + 12, y), point)?;
         }
-        let x = if marker.is_some() { 3 * RADIUS + 24 } else { 0 };
+        let is_labelled = marker.is_some() || lines_of_ways.contains(&line);
+        let x = if is_labelled { LABELS } else { 0 };
         write(area, label, (x, y), size, HPos::Left)?;
     }
-    // The front is also drawn as a line.
-    if any(|p| p.on_front) {
-        let y = MARGIN + pitch / 2 + entries.len() as i32 * pitch - pitch;
-        area.draw(&PathElement::new([(0, y), (2 * (RADIUS + 12), y)], BLACK.stroke_width(3)))?;
+    let dash = |line: usize, colour: RGBColor| {
+        let y = MARGIN + pitch / 2 + line as i32 * pitch;
+        area.draw(&PathElement::new([(0, y), (2 * (RADIUS + 12), y)], colour.stroke_width(3)))
+    };
+    // The fronts are also drawn as lines.
+    if let Some(front) = front {
+        dash(front, BLACK)?;
+    }
+    for (way, colour) in lines_of_ways.into_iter().zip(FRONTS.into_iter().cycle()) {
+        dash(way, colour)?;
     }
     Ok(())
+}
+
+/// The ways to solve a job that occur.
+fn ways(points: &[Point]) -> Vec<String> {
+    let mut ways: Vec<String> = points.iter().map(|point| point.way.clone()).collect();
+    ways.sort_unstable();
+    ways.dedup();
+    ways
 }

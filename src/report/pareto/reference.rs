@@ -119,6 +119,9 @@ fn finer_first(a: &DoneJob, b: &DoneJob) -> Ordering {
         .then(n.tolerance.total_cmp(&m.tolerance))
         .then(n.drift_tolerance.total_cmp(&m.drift_tolerance))
         .then(m.cycles.cmp(&n.cycles))
+        // Double precision comes before single, and a start from rest is free of another mesh.
+        .then(n.precision.cmp(&m.precision))
+        .then(m.start.cmp(&n.start))
 }
 
 fn target(finest: &DoneJob, chains: &[Chain], figure: usize) -> Option<Target> {

@@ -5,7 +5,7 @@ use crate::report::parameters::{MU, OMEGA, assignments};
 use crate::report::row::{JobNumerics, JobRow};
 
 /// Grid parameters that change the numerics and not the physical case.
-const NUMERICS: [&str; 17] = [
+const NUMERICS: [&str; 19] = [
     "elements",
     "nx",
     "ny",
@@ -23,6 +23,8 @@ const NUMERICS: [&str; 17] = [
     "drift_tolerance",
     "regime_threshold",
     "decay_observation_s",
+    "start",
+    "stability",
 ];
 
 /// The physical parameters of a job in words, ω and μ first.
@@ -34,7 +36,7 @@ pub(super) fn physics_in_words(row: &JobRow) -> String {
 }
 
 /// Names of the settings, in the order of [`texts`].
-pub(super) const NAMES: [&str; 10] = [
+pub(super) const NAMES: [&str; 12] = [
     "elements",
     "safety factor",
     "β₂",
@@ -45,10 +47,12 @@ pub(super) const NAMES: [&str; 10] = [
     "cycles",
     "tolerance",
     "drift tolerance",
+    "precision",
+    "start",
 ];
 
 /// The settings of a job as text.
-pub(super) fn texts(numerics: &JobNumerics) -> [String; 10] {
+pub(super) fn texts(numerics: &JobNumerics) -> [String; 12] {
     let [nx, ny, nz] = numerics.elements;
     [
         format!("{nx}×{ny}×{nz}"),
@@ -61,5 +65,7 @@ pub(super) fn texts(numerics: &JobNumerics) -> [String; 10] {
         numerics.cycles.to_string(),
         value::rounded(numerics.tolerance),
         value::rounded(numerics.drift_tolerance),
+        numerics.precision.clone(),
+        numerics.start.clone(),
     ]
 }

@@ -1,6 +1,6 @@
 //! The presets and the settings that they stand for.
 
-use crate::spec::{Clamp, JobSpec, Pin};
+use crate::spec::{Clamp, DiskKind, JobSpec, Pin, Precision, StabilityMethod, Start};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::{EnumString, IntoStaticStr};
@@ -102,6 +102,32 @@ impl Preset {
     /// takes precedence over the safety factor.
     pub(in crate::study) const COVERS: &'static [&'static str] =
         &["elements", "safety_factor", "time_step_s", "tolerance", "drift_tolerance"];
+
+    /// Chooses how a job on a rigid disk is solved, except for the parameters that something else `gives` by name: in the
+    /// way that is fastest for the same errors (docs/performance.md). This is precision `single`, and, on meshes finer than
+    /// the draft's, start `nested` and stability `eigenvalues`.
+    ///
+    /// Without damping, nothing limits the rounding of single precision. Such a job stays in double precision.
+    pub(in crate::study) fn choose_way(self, job: &mut JobSpec, gives: impl Fn(&str) -> bool) {
+        if job.scene.disk.kind == DiskKind::Elastic {
+            return;
+        }
+        if !gives("precision") && job.numerics.beta_r_s > 0.0 {
+            job.numerics.precision = Precision::Single;
+        }
+        if self == Self::Draft {
+            return;
+        }
+        if !gives("start") {
+            job.run.start = Start::Nested;
+        }
+        if !gives("stability") {
+            job.stability = StabilityMethod::Eigenvalues;
+        }
+    }
+
+    /// Parameters of [`Self::choose_way`]. A preset that takes precedence leaves those alone that a study gives.
+    pub(in crate::study) const CHOOSES: &'static [&'static str] = &["precision", "start", "stability"];
 
     /// Sets mesh, time step and detection of a job, except for the parameters that something else `gives` by name. The
     /// mesh is made for the job's own pin and clamp.
