@@ -36,7 +36,7 @@ def sweep(study, database="docs.db", options=()):
     else:
         path = ROOT / study
     tribosweep("run", str(path), *options, database=database)
-    lines = tribosweep("export", str(path), "--format", "json", database=database).splitlines()
+    lines = tribosweep("export", str(path), "--all", "--format", "json", database=database).splitlines()
     return [json.loads(line) for line in lines]
 
 

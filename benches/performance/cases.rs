@@ -5,25 +5,26 @@ use crate::timing::{ROUNDS, seconds};
 use serde::Serialize;
 use std::sync::Arc;
 use tribosweep::analysis::batch::Batch;
-use tribosweep::analysis::lanes::{AUDIT_INTERVAL, Lanes};
+use tribosweep::analysis::lanes::{AUDIT_INTERVAL, LanesOf};
 use tribosweep::solver::body::block::operator::{AssembledOperator, Operator, Scratch, TensorOperator};
 use tribosweep::solver::body::hexahedron;
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, Model, State, step};
-use tribosweep::spec::{JobSpec, StabilityMethod, TopFace};
+use tribosweep::solver::{Drive, Model, RunNumber, State, StateOf, step};
+use tribosweep::spec::{JobSpec, Precision, StabilityMethod, TopFace};
 
 /// Additions and multiplications of an inner node in a step, counted in
 /// `solver::body::block::operator::tensor::pass` (100) and `solver::body::block::motion` (6 for u + β_R p, 21
 /// for the motion).
 const FLOPS: f64 = 127.0;
-/// Bytes of a node in a step. Displacements and velocities are read and written once.
-const BYTES: f64 = 4.0 * 3.0 * 8.0;
+/// Numbers of a node in a step. Displacements and velocities are read and written once.
+const NUMBERS: f64 = 4.0 * 3.0;
 
 /// One mesh with one number of lanes; times in ns per node, step and job.
 #[derive(Debug, Serialize)]
 pub struct MeshCase {
     elements: [usize; 3],
+    precision: &'static str,
     lanes: usize,
     /// The product y = K x alone.
     product_ns: f64,
@@ -68,11 +69,11 @@ fn per_node(model: &Model, jobs: usize, steps: usize, call_s: f64) -> f64 {
     call_s * 1e9 / (model.mesh().node_count() * jobs * steps) as f64
 }
 
-/// Steps per call of [`Lanes::advance`].
+/// Steps per call of [`LanesOf::advance`].
 const STEPS: usize = AUDIT_INTERVAL as usize;
 
-fn lanes<const L: usize>(spec: &JobSpec, count: usize) -> Lanes<L> {
-    let mut lanes = Lanes::new(Arc::new(model(spec)));
+fn lanes<const L: usize, R: RunNumber>(spec: &JobSpec, count: usize) -> LanesOf<L, R> {
+    let mut lanes = LanesOf::new(Arc::new(model(spec)));
     for (lane, job) in jobs(spec, count).into_iter().enumerate() {
         lanes.begin(lane, lane as u64, job).expect("not too many steps");
     }
@@ -88,12 +89,16 @@ fn settle(spec: &JobSpec, mut advance: impl FnMut()) {
     }
 }
 
-fn mesh<const L: usize>(elements: [usize; 3], machine: &Machine) -> MeshCase {
+fn mesh<const L: usize, R: RunNumber>(
+    elements: [usize; 3],
+    precision: Precision,
+    machine: &Machine,
+) -> MeshCase {
     let spec = spec(elements);
     let model = model(&spec);
     let name = |what: &str| {
         let [nx, ny, nz] = elements;
-        format!("mesh_{nx}x{ny}x{nz}_{what}_{L}")
+        format!("mesh_{nx}x{ny}x{nz}_{}_{what}_{L}", precision.name())
     };
     let drives: [Drive; L] = std::array::from_fn(|lane| Drive {
         law: Law::Coulomb { mu: 0.4 },
@@ -101,26 +106,29 @@ fn mesh<const L: usize>(elements: [usize; 3], machine: &Machine) -> MeshCase {
         force_n: 30.0,
         ramp_s: 5e-4,
     });
-    let mut state = State::<L>::at_rest(&model);
+    let mut state = StateOf::<L, R>::at_rest(&model);
     settle(&spec, || (0..STEPS).for_each(|_| step(&model, &drives, &mut state)));
     let x = state.u.clone();
     let mut y = state.u.clone();
-    let mut scratch = Scratch::new(model.mesh(), L);
+    let mut scratch = Scratch::<R>::new(model.mesh(), L);
     let product_s = seconds(&name("product"), || model.pin().operator().product(&x, &mut y, &mut scratch));
     let step_s = seconds(&name("step"), || step(&model, &drives, &mut state));
-    let mut lanes = lanes::<L>(&spec, L);
+    let mut lanes = lanes::<L, R>(&spec, L);
     let job_s = seconds(&name("job"), || _ = lanes.advance(&mut |_| {}));
-    let working_set = BYTES / 2.0 * (model.mesh().node_count() * L) as f64;
+    let bytes = NUMBERS * size_of::<R>() as f64;
+    let working_set = bytes / 2.0 * (model.mesh().node_count() * L) as f64;
     MeshCase {
         elements,
+        precision: precision.name(),
         lanes: L,
         product_ns: per_node(&model, L, 1, product_s),
         step_ns: per_node(&model, L, 1, step_s),
         job_ns: per_node(&model, L, STEPS, job_s),
         // Vectors of one lane are padded. The padding is not counted here: the bound is that of the work
         // itself.
-        arithmetic_bound_ns: FLOPS / machine.plain_gflops,
-        traffic_bound_ns: BYTES / machine.gb_per_s(working_set),
+        // The peak was measured in double precision. A vector has twice as many numbers in single.
+        arithmetic_bound_ns: FLOPS / machine.plain_gflops * size_of::<R>() as f64 / size_of::<f64>() as f64,
+        traffic_bound_ns: bytes / machine.gb_per_s(working_set),
     }
 }
 
@@ -137,15 +145,21 @@ impl MeshCase {
     }
 }
 
-/// All meshes with 1, 2, 4 and 8 lanes.
+/// A mesh with 1, 2, 4 and 8 lanes.
+fn lane_counts<R: RunNumber>(elements: [usize; 3], precision: Precision, machine: &Machine) -> [MeshCase; 4] {
+    [
+        mesh::<1, R>(elements, precision, machine),
+        mesh::<2, R>(elements, precision, machine),
+        mesh::<4, R>(elements, precision, machine),
+        mesh::<8, R>(elements, precision, machine),
+    ]
+}
+
+/// All meshes in both precisions.
 pub fn meshes(machine: &Machine) -> Vec<MeshCase> {
     let of = |elements| {
-        [
-            mesh::<1>(elements, machine),
-            mesh::<2>(elements, machine),
-            mesh::<4>(elements, machine),
-            mesh::<8>(elements, machine),
-        ]
+        let double = lane_counts::<f64>(elements, Precision::Double, machine);
+        double.into_iter().chain(lane_counts::<f32>(elements, Precision::Single, machine))
     };
     let round = || -> Vec<MeshCase> { MESHES.into_iter().flat_map(of).collect() };
     let mut best = round();
@@ -153,14 +167,15 @@ pub fn meshes(machine: &Machine) -> Vec<MeshCase> {
         best.iter_mut().zip(round()).for_each(|(best, case)| best.keep_faster(&case));
     }
     println!(
-        "\n{FLOPS} operations and {BYTES} bytes of u and p per node and step; ns per node, step and job:"
+        "\n{FLOPS} operations on {NUMBERS} numbers of u and p per node and step; ns per node, step and job:"
     );
-    println!("{:>16} lanes  product    step     job   bound  reached by step, job", "elements");
+    println!("{:>16} precision lanes  product    step     job   bound  reached by step, job", "elements");
     for case in &best {
         let bound_ns = case.bound_ns();
         println!(
-            "{:>16} {:5} {:8.2} {:7.2} {:7.2} {bound_ns:7.2} {:8.0} % {:5.0} %",
+            "{:>16} {:>9} {:5} {:8.2} {:7.2} {:7.2} {bound_ns:7.2} {:8.0} % {:5.0} %",
             format!("{:?}", case.elements),
+            case.precision,
             case.lanes,
             case.product_ns,
             case.step_ns,
@@ -232,7 +247,7 @@ fn round_of_pairs() -> Vec<Pair> {
         }
     });
     let audited = per_node(&model, 8, STEPS, audited_s);
-    let mut analysed = lanes::<8>(&base, 8);
+    let mut analysed = lanes::<8, f64>(&base, 8);
     let analysed_s = seconds("pair_analysis", || _ = analysed.advance(&mut |_| {}));
     let analysed_ns = per_node(&model, 8, STEPS, analysed_s);
     let mut history = Vec::new();
@@ -265,12 +280,12 @@ fn round_of_pairs() -> Vec<Pair> {
 }
 
 fn alone(base: &JobSpec) -> f64 {
-    let mut one = lanes::<1>(base, 1);
+    let mut one = lanes::<1, f64>(base, 1);
     per_node(&model(base), 1, STEPS, seconds("pair_alone", || _ = one.advance(&mut |_| {})))
 }
 
 fn sparse(base: &JobSpec) -> f64 {
-    let mut eight = lanes::<8>(base, 3);
+    let mut eight = lanes::<8, f64>(base, 3);
     per_node(&model(base), 3, STEPS, seconds("pair_sparse", || _ = eight.advance(&mut |_| {})))
 }
 

@@ -139,9 +139,9 @@ mod tests {
             point.has_all_modes = has_all_modes;
             verdict(&point, 1.0e-6)
         };
-        assert_eq!(of(1.59e4 / 0.8, -200.0, false), Verdict::Open);
-        assert_eq!(of(1.59e4 / 0.9, -200.0, false), Verdict::Stable);
-        assert_eq!(of(1.59e4 / 0.9, -200.0, true), Verdict::Open);
+        assert_eq!(of(1.59e4 / 0.8, -290.0, false), Verdict::Open);
+        assert_eq!(of(1.59e4 / 0.9, -290.0, false), Verdict::Stable);
+        assert_eq!(of(1.59e4 / 0.9, -290.0, true), Verdict::Open);
         assert_eq!(of(1.59e4 / 0.9, 400.0, false), Verdict::Unstable);
     }
 

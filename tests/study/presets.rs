@@ -158,6 +158,7 @@ fn a_preset_can_be_varied() {
     assert!(jobs.iter().map(|job| &job.key).eq(expected.iter().map(|job| &job.key)));
     // What is given takes precedence over each of the presets: these are one job.
     let given = r#"{ "scene": { "pin": { "elements": [6, 8, 5] } }, "numerics": { "safety_factor": 0.5 },
+        "run": { "start": "rest" }, "stability": "simulate",
         "grid": { "preset": ["draft", "standard"], "tolerance": [0.1], "drift_tolerance": [0.01] } }"#;
     assert_eq!(parse(given).expand("1").unwrap().len(), 1);
 }
