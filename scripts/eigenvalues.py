@@ -312,12 +312,18 @@ With `"stability": "eigenvalues"` the program computes the modes of steady slidi
 without a run if all modes decay at its μ and at a larger μ. The larger μ is needed because a limit cycle can exist beside stable
 sliding, just below the threshold μ_c. The distance in μ is 8 % (1 + s^(−1/2)), and the larger μ is rounded up to a multiple of
 0.01. Here s is the disk's speed over the natural speed μp/(ρ c_s), with the mean contact pressure p, the density ρ and the speed
-c_s of shear waves. For the reference pin and μ = 0.3 the natural speed is
-{natural} m/s, which is {at_natural} rpm.
+c_s of shear waves. For the reference pin and μ = 0.3 the natural speed is {natural} m/s, which is {at_natural} rpm.
 
 A growth rate counts as negative only if it is so by more than its error, in continuous time and with the time step of the run.
 The error is estimated from the residuals of the right and the left eigenvector in the full problem. A mode is corrected only
 until its sign is clear, and a job with a mode that clearly grows is simulated without further corrections.
+
+The basis has the modes of the pin up to a frequency, its *band*, and near the end of the band it has them badly. So modes are
+judged one by one up to 85 % of the band. Above that, damping must win with the largest gain of all modes that are known.
+
+A job that [starts from a coarser mesh](studies.md#a-start-from-a-coarser-mesh) is judged after its run there, and only if that run
+found no limit cycle.
+
 All other jobs are simulated. So eigenvalues never say that a job is periodic, and they give no limit cycle. `tribosweep stability`
 prints all growth rates, without this distance.
 
@@ -357,22 +363,21 @@ times vary by some percent.
 
 {economy}
 The next table has the mean time of a job (`wall_s` of the export). The time is wall time
-on a shared machine, so it is rougher than the CPU time. A job that is not decided by its eigenvalues is simulated as well, and
-pays for both.
+on a shared machine, so it is rougher than the CPU time. `figure7` has the way of its preset, with single precision and a start from
+a coarser mesh, so its periodic jobs pay nothing. `clamps` has the defaults, and each of its jobs pays for its modes and its run.
 
 {each}
 The last table compares the results. A job that is simulated has the same bits in both cases.
 
 {same}
-The default is `simulate`. Statuses and μ\\* are the same, and a stable job of `figure7` that eigenvalues decide takes {decided} % less
-time. But the CPU time of the whole `figure7` differs by {whole} % only, because the other jobs pay for their modes. A study without
-stable jobs only pays: `clamps` differs by {clamps} %, because its mesh is coarse and its runs are short.
+Without a preset the default is `simulate`. The presets `standard` and `reference` choose `eigenvalues`. Statuses and μ\\* are the
+same, and a stable job of `figure7` that eigenvalues decide takes {decided} % less time. The CPU time of the whole `figure7` differs
+by {whole} %. That of `clamps` differs by {clamps} %, because its mesh is coarse, its runs are short, and none of its jobs is stable.
 
 ## What is not covered
 
-* **Modes above the band of the basis.** The modes are found in a basis that has the pin's modes up to a frequency, its *band*.
-  The decision needs proof that damping wins above the band: the largest gain of the modes that are known is taken for all others.
-  This is an assumption, not a bound. `tribosweep stability` makes no such test. A weakly damped pin (small β_R) can have growing
+* **Modes above 85 % of the band.** That damping wins there follows from the largest gain of the modes that are known, which is
+  taken for all others. This is an assumption, not a bound. `tribosweep stability` makes no such test. A weakly damped pin (small β_R) can have growing
   modes there that it does not list. `tribosweep show JOB` prints the band.
 * **Modes follow their shapes.** A correction continues a mode by the eigenvector of the larger basis that is most like it. Of
   two modes that are nearly equal in shape and frequency, one can take the place of the other.

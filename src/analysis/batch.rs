@@ -9,7 +9,7 @@ use super::stability::{Structures, Verdict, judge};
 use super::workload::Workload;
 use crate::solver::body::block::BlockMesh;
 use crate::solver::{Model, RunNumber};
-use crate::spec::{JobSpec, Precision, StabilityMethod, Start};
+use crate::spec::{JobSpec, Precision};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::Arc;
@@ -125,7 +125,7 @@ impl Batch {
         let model = Model::from_scene(&spec.scene, &spec.numerics)?;
         Ok(Self {
             shared: spec.shared_part(),
-            widest: Workload::of(&model).widest(),
+            widest: Workload::of(&model, spec.numerics.precision).widest(),
             lanes: AnyLanes::new(model, spec.numerics.precision),
             structures,
             coarser: None,
@@ -144,7 +144,8 @@ impl Batch {
 
     /// What the jobs take.
     pub fn workload(&self) -> Workload {
-        each!(&self.lanes, lanes => Workload::of(lanes.model()))
+        let precision = self.shared.numerics.precision;
+        each!(&self.lanes, lanes => Workload::of(lanes.model(), precision))
     }
 
     /// Number of jobs.
@@ -181,9 +182,7 @@ impl Batch {
 
     /// The batch on the coarser mesh from which a job starts; none if it starts from rest.
     fn coarser_of(&mut self, spec: &JobSpec) -> Option<&mut CoarserBatch> {
-        if spec.run.start == Start::Rest || spec.stability == StabilityMethod::Modes {
-            return None;
-        }
+        coarser(spec)?;
         if self.coarser.is_none() {
             self.coarser = CoarserBatch::of(spec);
         }
@@ -193,16 +192,10 @@ impl Batch {
     /// Begins a job on its own mesh, unless eigenvalues decide it.
     fn begin_ready(&mut self, ready: Ready) -> Result<Begun, JobError> {
         let Ready { ticket, spec, beginning } = ready;
-        let stability = if beginning.motion.is_some() {
-            None
-        } else {
-            match each!(&self.lanes, lanes => judge(&spec, lanes.model(), &self.structures))? {
-                Verdict::Decided(mut record) => {
-                    record.start = beginning.start;
-                    return Ok(Begun::Decided(record));
-                }
-                Verdict::Undecided(stability) => stability,
-            }
+        let verdict = each!(&self.lanes, lanes => judge(&spec, lanes.model(), &beginning, &self.structures));
+        let stability = match verdict? {
+            Verdict::Decided(record) => return Ok(Begun::Decided(record)),
+            Verdict::Undecided(stability) => stability,
         };
         self.make_room(&spec);
         each!(&mut self.lanes, lanes => {

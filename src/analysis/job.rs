@@ -1,7 +1,7 @@
 //! One job from its specification to its record.
 
 use super::batch::beginning;
-use super::error::JobError;
+use super::error::{JobError, step_count};
 use super::lanes::{LanesOf, Moment};
 use super::record::JobRecord;
 use super::stability::{Structures, Verdict, judge};
@@ -30,8 +30,8 @@ pub struct Unobserved;
 
 impl JobObserver for Unobserved {}
 
-/// Solves one job. If the eigenvalues of steady sliding decide it, there is no run, and `observer` receives nothing. It
-/// receives no steps on a coarser mesh.
+/// Solves one job. If the eigenvalues of steady sliding decide it, there is no run on its own mesh. `observer` receives no
+/// steps on a coarser mesh, only the progress.
 ///
 /// # Errors
 /// If the specification is not physical, the solver refuses it, the run takes too many steps or diverges, a
@@ -51,11 +51,12 @@ fn solve_in<R: RunNumber>(
     observer: &mut dyn JobObserver,
 ) -> Result<JobRecord, JobError> {
     let mut lanes = LanesOf::<1, R>::new(Arc::new(model));
-    let stability = match judge(spec, lanes.model(), &Structures::default())? {
+    step_count(spec.run.limit_s, lanes.model().time_step_s())?;
+    let beginning = beginning(spec, &mut |spent_s| observer.progress(spent_s))?;
+    let stability = match judge(spec, lanes.model(), &beginning, &Structures::default())? {
         Verdict::Decided(record) => return Ok(*record),
         Verdict::Undecided(stability) => stability,
     };
-    let beginning = beginning(spec, &mut |spent_s| observer.progress(spent_s))?;
     lanes.begin_from(0, 0, spec.clone(), beginning)?;
     if let Some(stability) = stability {
         lanes.note(0, stability);

@@ -86,10 +86,11 @@ pub(super) fn under_way(mut spec: JobSpec, start: Option<&CoarseStart>) -> JobSp
     spec
 }
 
-/// The same job on the coarser mesh from which it starts; none if it starts from rest.
+/// The same job on the coarser mesh from which it starts; none if it starts from rest or has no run.
 pub fn coarser(spec: &JobSpec) -> Option<JobSpec> {
     let elements = spec.scene.pin.elements.map(|n| n.div_ceil(2));
-    if spec.run.start == Start::Rest || elements.iter().any(|&n| n < FEWEST_ELEMENTS) {
+    let has_no_run = spec.stability == StabilityMethod::Modes;
+    if has_no_run || spec.run.start == Start::Rest || elements.iter().any(|&n| n < FEWEST_ELEMENTS) {
         return None;
     }
     let mut coarse = spec.clone();

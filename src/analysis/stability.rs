@@ -3,6 +3,7 @@
 use super::drive::drive;
 use super::error::{JobError, step_count};
 use super::lane::elastic_disk;
+use super::nested::Beginning;
 use super::record::{ComplexMode, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability};
 use super::sample::OBSERVED_NAMES;
 use crate::solver::interface::SlaveNode;
@@ -71,13 +72,23 @@ pub enum Verdict {
     Undecided(Option<SlidingStability>),
 }
 
-/// Decides a job without a run, if its method of stability allows that and its eigenvalues are clear.
+/// Decides a job without a run on its own mesh, if its method of stability allows that and its eigenvalues are clear.
+///
+/// A job that begins in a limit cycle is not judged: it can only be simulated.
 ///
 /// # Errors
 /// If the run would take too many steps; if a job that has no run has no eigenvalues either, or a figure overflows.
-pub fn judge(spec: &JobSpec, model: &Model, structures: &Structures) -> Result<Verdict, JobError> {
+pub fn judge(
+    spec: &JobSpec,
+    model: &Model,
+    beginning: &Beginning,
+    structures: &Structures,
+) -> Result<Verdict, JobError> {
     // A job is refused for what it asks, not for what its eigenvalues say.
     step_count(spec.run.limit_s, model.time_step_s())?;
+    if beginning.motion.is_some() {
+        return Ok(Verdict::Undecided(None));
+    }
     match spec.stability {
         StabilityMethod::Modes => {
             let point =
@@ -96,7 +107,8 @@ pub fn judge(spec: &JobSpec, model: &Model, structures: &Structures) -> Result<V
             let Ok((point, is_safely_stable)) = structures.with(spec, model, decide) else {
                 return Ok(Verdict::Undecided(None));
             };
-            let record = record(spec, model, &point, Outcome::Decayed);
+            let mut record = record(spec, model, &point, Outcome::Decayed);
+            record.start.clone_from(&beginning.start);
             Ok(match (record.non_finite_figure(), is_safely_stable) {
                 (None, true) => Verdict::Decided(Box::new(record)),
                 (None, false) => Verdict::Undecided(Some(sliding_stability(&point, false))),

@@ -3,13 +3,15 @@
 use super::error::{JobError, step_count};
 use crate::solver::Model;
 use crate::solver::scheme;
-use crate::spec::{DiskKind, JobSpec, StabilityMethod, elasticity};
+use crate::spec::{DiskKind, JobSpec, Precision, StabilityMethod, elasticity};
 
 /// What the jobs of one model take.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Workload {
     /// Number of elements of the pin in x, y and z.
     pub elements: [usize; 3],
+    /// Number type of the fields.
+    pub precision: Precision,
     /// Number of nodes of the pin.
     pub pin_nodes: usize,
     /// Number of nodes of the disk; 0 if it is rigid.
@@ -28,6 +30,10 @@ pub struct Workload {
 /// ones. docs/elastic_disk.md has the times.
 const DISK_STAGE: f64 = 5.0;
 
+/// Time of a step of a node in single precision, relative to double precision, and the memory of a lane's fields.
+/// docs/performance.md has the times.
+const SINGLE: [f64; 2] = [0.6, 0.5];
+
 /// Largest angular frequency of a mesh of cubes, in wave speeds of pressure over edges: 2 over the limit of the time step.
 const LARGEST_FREQUENCY: f64 = 2.15;
 
@@ -36,6 +42,10 @@ const PIN_NODE_BYTES: [f64; 2] = [90.0, 135.0];
 
 /// Memory of a node of the disk \[byte\]: in a model, and in each lane.
 const DISK_NODE_BYTES: [f64; 2] = [1200.0, 400.0];
+
+/// Memory that complex modes of steady sliding take \[byte\] for each node of the pin: measured peaks of 18 to 20 kB for
+/// meshes from 12 × 15 × 10 to 36 × 45 × 30 elements. Threads share most of it.
+const MODES_NODE_BYTES: f64 = 19.0e3;
 
 /// Memory of a job's detection \[byte\] for each step of its decay observation.
 const OBSERVED_STEP_BYTES: f64 = 200.0;
@@ -50,14 +60,16 @@ impl Workload {
     /// If the specification is not physical, or the solver refuses the model.
     pub fn examine(spec: &JobSpec) -> Result<Self, JobError> {
         spec.check()?;
-        Ok(Self::of(&Model::from_scene(&spec.scene, &spec.numerics)?))
+        let model = Model::from_scene(&spec.scene, &spec.numerics)?;
+        Ok(Self::of(&model, spec.numerics.precision))
     }
 
-    /// The sizes of a model.
-    pub fn of(model: &Model) -> Self {
+    /// The sizes of a model whose jobs run in this precision.
+    pub fn of(model: &Model, precision: Precision) -> Self {
         let disk = model.ring();
         Self {
             elements: model.mesh().elements(),
+            precision,
             pin_nodes: model.mesh().node_count(),
             disk_nodes: disk.map_or(0, |disk| disk.mesh().node_count()),
             disk_stages: disk.map_or(0, |disk| disk.stages().count()),
@@ -88,6 +100,7 @@ impl Workload {
         };
         Ok(Self {
             elements: pin.elements,
+            precision: numerics.precision,
             pin_nodes: pin.elements.iter().map(|n| n + 1).product(),
             disk_nodes,
             disk_stages,
@@ -105,10 +118,19 @@ impl Workload {
         step_count(simulated_s, self.time_step_s)
     }
 
-    /// Cost of a run of `simulated_s` seconds: steps times nodes, in nodes of the pin.
+    /// Cost of a run of `simulated_s` seconds: steps times nodes, in nodes of the pin in double precision.
     pub fn node_steps(&self, simulated_s: f64) -> f64 {
         let disk = DISK_STAGE * (self.disk_nodes * self.disk_stages) as f64;
-        (self.pin_nodes as f64 + disk) * (simulated_s / self.time_step_s).ceil().max(1.0)
+        let [time, _] = self.over_double();
+        time * (self.pin_nodes as f64 + disk) * (simulated_s / self.time_step_s).ceil().max(1.0)
+    }
+
+    /// Time of a step and memory of a lane over those in double precision.
+    fn over_double(&self) -> [f64; 2] {
+        match self.precision {
+            Precision::Double => [1.0, 1.0],
+            Precision::Single => SINGLE,
+        }
     }
 
     /// The largest number of jobs for which it pays off to advance them together.
@@ -118,9 +140,16 @@ impl Workload {
 
     /// Memory \[byte\] of a thread that advances `jobs` jobs together, each with a decay observation of `observation_s`.
     pub fn memory_bytes(&self, jobs: usize, observation_s: f64) -> f64 {
+        let [_, lane_over_double] = self.over_double();
+        let lanes = lane_over_double * jobs.next_power_of_two() as f64;
         let [pin, disk] = [(PIN_NODE_BYTES, self.pin_nodes), (DISK_NODE_BYTES, self.disk_nodes)]
-            .map(|([model, lane], nodes)| (model + lane * jobs.next_power_of_two() as f64) * nodes as f64);
+            .map(|([model, lane], nodes)| (model + lane * lanes) * nodes as f64);
         pin + disk + jobs as f64 * OBSERVED_STEP_BYTES * observation_s / self.time_step_s
+    }
+
+    /// Memory \[byte\] that complex modes of steady sliding take.
+    pub fn modes_bytes(&self) -> f64 {
+        MODES_NODE_BYTES * self.pin_nodes as f64
     }
 
     /// Size \[byte\] of a checkpoint.
@@ -135,7 +164,8 @@ const NODES_TIMES_LANES: usize = 40_000;
 
 /// When a job is likely to end, in simulated time \[s\].
 ///
-/// A job ends when its state is periodic or decays, which is not known in advance. In the studies that docs/cost.md lists, the mean over a study's jobs was between `early_s` and `late_s`; single jobs end earlier or at their limit.
+/// A job ends when its state is periodic or decays, which is not known in advance. In the studies that docs/cost.md lists, the
+/// mean over a study's jobs was between `early_s` and `late_s`; single jobs end earlier or at their limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Ending {
     /// The mean of a study, if most of its jobs become periodic soon.

@@ -4,6 +4,7 @@ use super::error::CliError;
 use super::output::log;
 use crate::publish::value::{count, quantity, significant};
 use crate::queue::{Clock, Location, Queue, Replaced};
+use crate::spec::Precision;
 use crate::sweep::{self, Forecast, Group, Plan, TimeRange};
 use crate::worker::Eta;
 use serde_json::{Value, json};
@@ -99,7 +100,10 @@ fn table(groups: &[Group]) -> Vec<String> {
     if listed < groups.len() {
         let jobs: usize = groups[listed..].iter().map(|group| group.jobs).sum();
         let jobs = count(jobs, "job");
-        lines.push(format!("… and {} more meshes or time steps with {jobs}", groups.len() - listed));
+        lines.push(format!(
+            "… and {} more meshes, precisions or time steps with {jobs}",
+            groups.len() - listed
+        ));
     }
     lines
 }
@@ -108,13 +112,17 @@ fn row(group: &Group) -> [String; 7] {
     let workload = &group.workload;
     let about = if workload.is_estimate { "~" } else { "" };
     let [nx, ny, nz] = workload.elements;
+    let precision = match workload.precision {
+        Precision::Double => "",
+        Precision::Single => ", single",
+    };
     let disk = if workload.disk_nodes > 0 {
         format!(" + {}", grouped(workload.disk_nodes as u64))
     } else {
         String::new()
     };
     [
-        format!("{nx}×{ny}×{nz}"),
+        format!("{nx}×{ny}×{nz}{precision}"),
         format!("{}{disk}", grouped(workload.pin_nodes as u64)),
         group.jobs.to_string(),
         format!("{about}{}", quantity(workload.time_step_s, "s")),
@@ -173,6 +181,7 @@ pub(crate) fn as_json(forecast: &Forecast, replaced: Option<&Replaced>, plan: &P
         let workload = &group.workload;
         json!({
             "elements": workload.elements,
+            "precision": workload.precision,
             "nodes": workload.pin_nodes,
             "disk_nodes": workload.disk_nodes,
             "jobs": group.jobs,
@@ -183,6 +192,7 @@ pub(crate) fn as_json(forecast: &Forecast, replaced: Option<&Replaced>, plan: &P
             "limit_s": group.limit_s,
             "steps": group.steps,
             "thread_memory_bytes": group.memory_bytes,
+            "modes_memory_bytes": group.modes_bytes,
         })
     };
     json!({
@@ -245,7 +255,7 @@ mod tests {
                         "grid": { "young_modulus_pa": { "from": 1e9, "to": 4e9, "count": 20, "spacing": "log" } } }"#;
         let many = many.replace("\"disk\": {},", "");
         let text = as_text(&forecast(&many), &Location::parse("none.db".into()));
-        assert!(text.contains("… and 13 more meshes or time steps with 13 jobs"), "{text}");
+        assert!(text.contains("… and 13 more meshes, precisions or time steps with 13 jobs"), "{text}");
         assert!(text.lines().all(|line| line.chars().count() <= 80), "{text}");
     }
 

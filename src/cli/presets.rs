@@ -3,7 +3,7 @@
 use super::error::CliError;
 use super::output::print;
 use crate::exit;
-use crate::spec::Scene;
+use crate::spec::{JobSpec, Scene};
 use crate::study::{Evidence, Preset};
 use serde_json::{Value, json};
 use std::fmt::Write;
@@ -31,6 +31,7 @@ pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
 /// The settings of a preset, with its mesh for the reference scene.
 fn settings(preset: Preset) -> Value {
     let scene = Scene::default();
+    let job = preset.way(JobSpec::default());
     json!({
         "name": preset.name(),
         "elements_along_shortest_edge": preset.elements_along_shortest_edge(),
@@ -38,6 +39,9 @@ fn settings(preset: Preset) -> Value {
         "safety_factor": preset.safety_factor(),
         "tolerance": preset.tolerance(),
         "drift_tolerance": preset.drift_tolerance(),
+        "precision": job.numerics.precision,
+        "start": job.run.start,
+        "stability": job.stability,
     })
 }
 
@@ -71,15 +75,18 @@ fn as_text(evidence: &Evidence) -> String {
     let reference = &evidence.reference;
     let [nx, ny, nz] = reference.elements;
     let speeds: Vec<String> = reference.cases.iter().map(|case| case.omega_rpm.to_string()).collect();
+    let ways: String = Preset::ALL.map(way).concat();
     let _ = write!(
         text,
-        "\nelements: along the pin's shortest edge; the other directions get elements of about the same size, and as\n\
+        "\nOn a rigid disk with damping, jobs are solved so (no preset: precision double, start rest, stability simulate):\n{}\n\
+         elements: along the pin's shortest edge; the other directions get elements of about the same size, and as\n\
          many more as the clamp needs to end at a node row. safety: time step as a fraction of the stability limit.\n\
          tolerance, drift: of the periodic state. cost: nodes × steps, standard = 1.\n\n\
          Errors: the largest at {} rpm, μ = {}, {},\n\
          against {nx} × {ny} × {nz} elements with a safety factor of {}, beyond which may lie\n\
          up to {:.1} % (first order from the next coarser mesh). Other scenes have other errors: compare two presets there.\n\
          Written by {} with solver version {}.\n",
+        ways,
         speeds.join(", "),
         evidence.mu,
         evidence.scene,
@@ -89,4 +96,12 @@ fn as_text(evidence: &Evidence) -> String {
         evidence.solver_version,
     );
     text
+}
+
+/// A line with the way in which a preset solves jobs, by the names of the parameters that change it.
+fn way(preset: Preset) -> String {
+    let settings = settings(preset);
+    let value = |name: &str| format!("{name} {}", settings[name].as_str().unwrap_or_default());
+    let values = ["precision", "start", "stability"].map(value).join(", ");
+    format!("{:<11}{values}\n", preset.name())
 }

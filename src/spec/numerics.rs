@@ -12,6 +12,7 @@ use strum::{EnumString, IntoStaticStr, VariantArray};
     Copy,
     PartialEq,
     Eq,
+    Hash,
     Default,
     Serialize,
     Deserialize,

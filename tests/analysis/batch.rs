@@ -2,9 +2,9 @@
 
 use crate::signals::coarse;
 use std::collections::BTreeMap;
-use tribosweep::analysis::batch::Batch;
-use tribosweep::analysis::{CoarseStart, Unobserved, solve};
-use tribosweep::spec::{DiskKind, JobSpec, Precision, Start};
+use tribosweep::analysis::batch::{Batch, Begun};
+use tribosweep::analysis::{CoarseStart, JobRecord, Unobserved, solve};
+use tribosweep::spec::{DiskKind, JobSpec, Precision, StabilityMethod, Start};
 
 /// Jobs of one model. They differ in everything that may differ: friction, speed, load, ramp, length, and
 /// early stop.
@@ -85,6 +85,28 @@ fn companions_change_nothing_after_a_coarser_mesh() {
     }
 }
 
+/// Protects: the same if eigenvalues decide jobs after their run on the coarser mesh. Jobs that found a limit cycle there are
+/// not judged, alone or beside others.
+#[test]
+fn companions_change_nothing_where_eigenvalues_decide() {
+    let mut jobs = nested_jobs(Precision::Double);
+    for job in jobs.iter_mut().skip(3).step_by(4) {
+        job.scene.contact.mu = 0.0;
+        job.run.stop_early = true;
+    }
+    for job in &mut jobs {
+        job.stability = StabilityMethod::Eigenvalues;
+    }
+    companions_change_nothing_in(&jobs);
+    let records: Vec<_> = jobs.iter().map(|job| solve(job, &mut Unobserved).unwrap()).collect();
+    let is_used = |record: &JobRecord| record.start.as_ref().map(CoarseStart::is_used);
+    let is_decided = |record: &JobRecord| record.stability.as_ref().is_some_and(|modes| modes.decided);
+    assert!(records.iter().any(|record| is_decided(record) && is_used(record) == Some(false)));
+    for record in records.iter().filter(|record| is_used(record) == Some(true)) {
+        assert_eq!(record.stability, None);
+    }
+}
+
 /// Protects: the same with both, a coarser mesh and single precision.
 #[test]
 fn companions_change_nothing_after_a_coarser_mesh_in_single_precision() {
@@ -102,7 +124,11 @@ fn companions_change_nothing_in(jobs: &[JobSpec]) {
         // steps.
         if turns % 3 == 0 && batch.jobs() < batch.widest() {
             match waiting.next() {
-                Some((ticket, job)) => _ = batch.begin(ticket as u64, job.clone()).unwrap(),
+                Some((ticket, job)) => {
+                    if let Begun::Decided(record) = batch.begin(ticket as u64, job.clone()).unwrap() {
+                        found.insert(ticket as u64, serde_json::to_string(&record).unwrap());
+                    }
+                }
                 None => batch.narrow(),
             }
         }

@@ -1,7 +1,8 @@
 //! A job's run is repeated with its energies balanced at every step. A bound says how well they must close.
 //!
 //! The balance is an identity of the scheme (`solver::energy`), so in exact arithmetic the imbalance is zero.
-//! In floating point the result of every operation has a relative error of at most ε = 2⁻⁵². The standard
+//! In floating point the result of every operation has a relative error of at most ε = 2⁻⁵², and in single precision 2⁻²³.
+//! Sums over steps are always in double precision. The standard
 //! model of rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, ch. 3) turns this into a
 //! bound that is computed during the run:
 //!
@@ -14,7 +15,10 @@
 //!   numerical damping of β₂ > ½ includes one more.
 //! * The step and the ledger each evaluate these sums, so the error counts twice. A step contributes at most
 //!   C ε Σ w(|Δu_n| + |Δu_{n−1}| + |Δu_{n−2}|) with C = 200.
-//! * The sums of works are rounded once per step and term: 8 ε Σ|works so far|.
+//! * The sums of works are rounded once per step and term, in double precision: 8 ε Σ|works so far|.
+//! * The drive does its work T·VΔt, and friction takes T·(VΔt − Δu). VΔt, this difference, the direction of T and T itself are
+//!   numbers of the fields, so each work has some 16 roundings: 16 ε (work put in + friction). With a tiny load or a fast disk
+//!   this is all that counts.
 //! * At the end, ½uKu has an error of C ε ½|u||K||u|. The acceleration in the kinetic energy is a difference
 //!   of displacements, so that energy has an error of C ε Σ m g (g + |u|/Δt), where g = |p| + |Δu_n|/Δt +
 //!   |Δu_{n−1}|/Δt.
@@ -25,22 +29,39 @@ use tribosweep::solver::body::block::BlockMesh;
 use tribosweep::solver::body::block::operator::AssembledOperator;
 use tribosweep::solver::energy::{Energies, EnergyLedger};
 use tribosweep::solver::material::Material;
-use tribosweep::solver::{Drive, Model, State, step};
+use tribosweep::solver::{Drive, Model, RunNumber, StateOf, step};
+
+/// The numbers of a run's fields.
+pub trait Rounded: RunNumber {
+    /// Largest relative error of an operation.
+    const EPSILON: f64;
+}
+
+impl Rounded for f64 {
+    const EPSILON: f64 = Self::EPSILON;
+}
+
+impl Rounded for f32 {
+    const EPSILON: f64 = Self::EPSILON as f64;
+}
 
 /// Number of roundings of a force, in the step and in the ledger.
 const ROUNDINGS: f64 = 200.0;
+
+/// Number of roundings of the works of the drive and of friction.
+const FRICTION_ROUNDINGS: f64 = 16.0;
 
 /// Steps between two audits of a job.
 pub const JOB_INTERVAL: u64 = tribosweep::analysis::lanes::AUDIT_INTERVAL;
 
 /// A run whose energies are balanced at every step.
-pub struct Audited<'a> {
+pub struct Audited<'a, R: Rounded = f64> {
     model: &'a Model,
     drive: Drive,
     /// The state.
-    pub state: State<1>,
-    every: EnergyLedger<1>,
-    sampled: EnergyLedger<1>,
+    pub state: StateOf<1, R>,
+    every: EnergyLedger<1, R>,
+    sampled: EnergyLedger<1, R>,
     magnitudes: AssembledOperator,
     before: Vec<f64>,
     forces: Vec<f64>,
@@ -52,9 +73,9 @@ pub struct Audited<'a> {
     highest_magnitude: f64,
 }
 
-impl<'a> Audited<'a> {
+impl<'a, R: Rounded> Audited<'a, R> {
     /// A run from `state` (before its first step).
-    pub fn new(model: &'a Model, drive: Drive, state: State<1>) -> Self {
+    pub fn new(model: &'a Model, drive: Drive, state: StateOf<1, R>) -> Self {
         let mesh = model.mesh();
         let field = || vec![0.0; state.u.len()];
         Self {
@@ -133,7 +154,10 @@ impl<'a> Audited<'a> {
 
     /// Largest imbalance [J] that rounding can explain.
     pub fn rounding_bound_j(&self) -> f64 {
-        f64::EPSILON * (ROUNDINGS * (self.force_work_j + self.end_terms_j()) + 8.0 * self.sums_j)
+        let of_fields = R::EPSILON * ROUNDINGS * (self.force_work_j + self.end_terms_j());
+        let e = self.every.energies(0);
+        let of_friction = R::EPSILON * FRICTION_ROUNDINGS * (e.input_j() + e.friction_j.abs());
+        of_fields + of_friction + f64::EPSILON * 8.0 * self.sums_j
     }
 
     /// Computes w without the contact forces, which the step has not found yet.
@@ -144,7 +168,8 @@ impl<'a> Audited<'a> {
         self.forces = times(&self.magnitudes, &strained);
         for (i, force) in self.forces.iter_mut().enumerate() {
             let mass = self.model.pin().masses_kg()[i / 3];
-            *force += mass * (self.state.u[i].abs() + dt * self.state.p[i].abs()) / (dt * dt);
+            *force +=
+                mass * (self.state.u[i].to_f64().abs() + dt * self.state.p[i].to_f64().abs()) / (dt * dt);
         }
     }
 
@@ -162,7 +187,7 @@ impl<'a> Audited<'a> {
         self.increments.rotate_right(1);
         let mut work_j = 0.0;
         for i in 0..self.before.len() {
-            self.increments[0][i] = (self.state.u[i] - self.before[i]).abs();
+            self.increments[0][i] = (self.state.u[i].to_f64() - self.before[i]).abs();
             work_j +=
                 self.forces[i] * (self.increments[0][i] + self.increments[1][i] + self.increments[2][i]);
         }
@@ -177,7 +202,7 @@ impl<'a> Audited<'a> {
         let product = times(&self.magnitudes, &magnitude);
         let mut sum_j = 0.0;
         for i in 0..magnitude.len() {
-            let speed = self.state.p[i].abs() + (self.increments[0][i] + self.increments[1][i]) / dt;
+            let speed = self.state.p[i].to_f64().abs() + (self.increments[0][i] + self.increments[1][i]) / dt;
             let mass = self.model.pin().masses_kg()[i / 3];
             sum_j += 0.5 * magnitude[i] * product[i] + mass * speed * (speed + magnitude[i] / dt);
         }

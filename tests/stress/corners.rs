@@ -1,7 +1,7 @@
 //! The corners of the parameter space that the stress test must reach.
 
 use tribosweep::solver::Model;
-use tribosweep::spec::{ClampSide, JobSpec, TopFace};
+use tribosweep::spec::{ClampSide, JobSpec, Precision, TopFace};
 
 /// The name of a corner, and whether a job is in it.
 type Corner = (&'static str, fn(&JobSpec) -> bool);
@@ -32,7 +32,11 @@ fn given_over_limit(spec: &JobSpec) -> f64 {
 }
 
 /// All corners. The predicates are evaluated for legal cases only.
-pub const CORNERS: [Corner; 32] = [
+pub const CORNERS: [Corner; 34] = [
+    ("single precision", |s| s.numerics.precision == Precision::Single),
+    ("single precision, ν = 0.499", |s| {
+        s.numerics.precision == Precision::Single && s.scene.pin.poisson_ratio == 0.499
+    }),
     ("one element", |s| s.scene.pin.elements == [1, 1, 1]),
     ("ν ≥ 0.49", |s| s.scene.pin.poisson_ratio >= 0.49),
     ("ν = 0.499", |s| s.scene.pin.poisson_ratio == 0.499),

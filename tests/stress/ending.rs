@@ -1,12 +1,12 @@
 //! How a case ends, and whether this ending is allowed.
 
-use crate::audited::Audited;
+use crate::audited::{Audited, Rounded};
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tribosweep::analysis::{JobError, JobObserver, JobRecord, Moment, drive, solve};
-use tribosweep::solver::{Model, SolverError, State};
-use tribosweep::spec::JobSpec;
+use tribosweep::solver::{Model, SolverError, StateOf};
+use tribosweep::spec::{JobSpec, Precision};
 
 /// A legal ending.
 #[derive(Debug, Clone)]
@@ -80,7 +80,10 @@ pub fn examine(spec: &JobSpec) -> Result<Ending, String> {
     let Ok(solved) = solved else { return Err("it panicked".to_owned()) };
     require(!watch.ran_backwards, || "time ran backwards".to_owned())?;
     match solved {
-        Ok(record) => result(spec, &record, watch.steps),
+        Ok(record) => match spec.numerics.precision {
+            Precision::Double => result::<f64>(spec, &record, watch.steps),
+            Precision::Single => result::<f32>(spec, &record, watch.steps),
+        },
         Err(error) => failure(spec, &error, watch.steps),
     }
 }
@@ -110,12 +113,12 @@ fn failure(spec: &JobSpec, error: &JobError, steps: u64) -> Result<Ending, Strin
     Ok(Ending::Refused { by, message })
 }
 
-fn result(spec: &JobSpec, record: &JobRecord, steps: u64) -> Result<Ending, String> {
+fn result<R: Rounded>(spec: &JobSpec, record: &JobRecord, steps: u64) -> Result<Ending, String> {
     require(record.steps == steps && steps > 0, || format!("{} of {steps} steps", record.steps))?;
     stored_as_it_is(record)?;
-    plausible(spec, record)?;
+    plausible(spec, record, R::EPSILON)?;
     let model = Model::from_scene(&spec.scene, &spec.numerics).map_err(|error| error.to_string())?;
-    let mut run = Audited::new(&model, drive(spec), State::at_rest(&model));
+    let mut run = Audited::<R>::new(&model, drive(spec), StateOf::at_rest(&model));
     run.run(steps);
     same_energies(record, &run)?;
 
@@ -155,14 +158,14 @@ fn stored_as_it_is(record: &JobRecord) -> Result<(), String> {
 }
 
 /// Checks facts that hold for every record, whatever the scene.
-fn plausible(spec: &JobSpec, record: &JobRecord) -> Result<(), String> {
+fn plausible(spec: &JobSpec, record: &JobRecord, epsilon: f64) -> Result<(), String> {
     let shares = [record.stick_share, record.slip_share, record.separated_share];
     let rounding = 1.0e-9;
     let sum: f64 = shares.iter().sum();
     let within = shares.iter().all(|share| (0.0..=1.0 + rounding).contains(share));
     require(within && (sum - 1.0).abs() < rounding, || format!("shares {shares:?}"))?;
-    // By Coulomb's law no node's friction exceeds μN, so neither does the mean.
-    let most = spec.scene.contact.mu * (1.0 + rounding);
+    // By Coulomb's law no node's friction exceeds μN, so neither does the mean. The direction and the product are rounded.
+    let most = spec.scene.contact.mu * (1.0 + rounding + 8.0 * epsilon);
     require(record.mu_star_contact.abs() <= most, || {
         format!("mean contact friction {}", record.mu_star_contact)
     })?;
@@ -174,7 +177,7 @@ fn plausible(spec: &JobSpec, record: &JobRecord) -> Result<(), String> {
 }
 
 /// Checks that the audited run is the job's run: its sampled ledger has the same bits.
-fn same_energies(record: &JobRecord, run: &Audited<'_>) -> Result<(), String> {
+fn same_energies<R: Rounded>(record: &JobRecord, run: &Audited<'_, R>) -> Result<(), String> {
     let (job, again) = (&record.energy, run.sampled_energies());
     let pairs = [
         (job.kinetic_j, again.kinetic_j),

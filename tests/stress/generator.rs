@@ -6,7 +6,7 @@
 
 use crate::random::Random;
 use tribosweep::solver::Model;
-use tribosweep::spec::{ClampSide, JobSpec, StabilityMethod, TopFace};
+use tribosweep::spec::{ClampSide, JobSpec, Precision, StabilityMethod, TopFace};
 
 /// Largest number of nodes × steps of a case. With it 10 000 cases take minutes.
 const MOST_NODE_STEPS: f64 = 1.5e5;
@@ -20,6 +20,9 @@ pub fn job(seed: u64, index: u64) -> JobSpec {
     clamp(random, &mut spec);
     numerics(random, &mut spec);
     duration(random, &mut spec);
+    if random.chance(0.3) {
+        spec.numerics.precision = Precision::Single;
+    }
     if random.chance(0.06) {
         spoil(random, &mut spec);
     } else if random.chance(0.04) {

@@ -126,6 +126,12 @@ impl Preset {
         }
     }
 
+    /// A job with the way to solve it that the preset chooses.
+    pub fn way(self, mut job: JobSpec) -> JobSpec {
+        self.choose_way(&mut job, |_| false);
+        job
+    }
+
     /// Parameters of [`Self::choose_way`]. A preset that takes precedence leaves those alone that a study gives.
     pub(in crate::study) const CHOOSES: &'static [&'static str] = &["precision", "start", "stability"];
 

@@ -17,6 +17,7 @@ use super::error::SweepError;
 use super::plan::Plan;
 use crate::analysis::{Ending, Workload};
 use crate::queue::{JobState, Queue};
+use crate::spec::{Precision, StabilityMethod};
 use crate::study::Job;
 use memory::memory_here_bytes;
 use std::collections::HashMap;
@@ -57,7 +58,7 @@ pub struct Known {
     pub open: usize,
 }
 
-/// Jobs with the same mesh and time step.
+/// Jobs with the same mesh, precision and time step.
 #[derive(Debug, Clone)]
 pub struct Group {
     /// What they take.
@@ -72,6 +73,8 @@ pub struct Group {
     pub together: usize,
     /// Memory \[byte\] of a thread that advances them.
     pub memory_bytes: f64,
+    /// Memory \[byte\] that their complex modes take on all threads together; 0 if none are computed.
+    pub modes_bytes: f64,
     /// Their cost up to their limits, in node-steps.
     node_steps: f64,
 }
@@ -152,8 +155,10 @@ impl Forecast {
         let checkpoints_bytes: f64 =
             running.iter().map(|group| lanes(group) * group.0.workload.checkpoint_bytes()).sum();
         let [empty, each] = DATABASE_BYTES;
-        let memory_bytes: f64 =
-            running.iter().map(|(group, runners)| group.memory_bytes * *runners as f64).sum();
+        let memory_bytes: f64 = running
+            .iter()
+            .map(|(group, runners)| group.memory_bytes * *runners as f64 + group.modes_bytes)
+            .sum();
         Ok(Self {
             jobs: plan.jobs().len(),
             known: states.as_ref().map(|states| Known::count(plan.jobs(), states)),
@@ -173,16 +178,16 @@ impl Forecast {
     }
 }
 
-/// The jobs by mesh and time step. Steps that agree in three digits count as the same.
+/// The jobs by mesh, precision and time step. Steps that agree in three digits count as the same.
 fn groups(plan: &Plan, threads: usize) -> Vec<Group> {
-    type Key = ([usize; 3], usize, String, String);
+    type Key = ([usize; 3], Precision, usize, String, String);
     let mut number_of: HashMap<Key, usize> = HashMap::new();
     let mut groups: Vec<Group> = Vec::new();
     for (job, workload) in plan.jobs().iter().zip(plan.workloads()) {
         let [step, limit] =
             [workload.time_step_s, workload.time_step_limit_s].map(|seconds| format!("{seconds:.2e}"));
-        let number =
-            *number_of.entry((workload.elements, workload.disk_nodes, step, limit)).or_insert(groups.len());
+        let key = (workload.elements, workload.precision, workload.disk_nodes, step, limit);
+        let number = *number_of.entry(key).or_insert(groups.len());
         if number == groups.len() {
             groups.push(Group {
                 workload: workload.clone(),
@@ -191,6 +196,7 @@ fn groups(plan: &Plan, threads: usize) -> Vec<Group> {
                 steps: 0,
                 together: 1,
                 memory_bytes: 0.0,
+                modes_bytes: 0.0,
                 node_steps: 0.0,
             });
         }
@@ -198,6 +204,9 @@ fn groups(plan: &Plan, threads: usize) -> Vec<Group> {
         group.jobs += 1;
         group.limit_s = group.limit_s.max(job.spec.run.limit_s);
         group.node_steps += workload.node_steps(job.spec.run.limit_s);
+        if job.spec.stability != StabilityMethod::Simulate {
+            group.modes_bytes = workload.modes_bytes();
+        }
         let observation_s = job.spec.detection.decay_observation_s;
         group.memory_bytes = group.memory_bytes.max(observation_s);
     }
