@@ -74,6 +74,9 @@ impl JobSpec {
         if self.scene.disk.kind == DiskKind::Elastic {
             self.check_elastic_disk(&mut found);
         }
+        if self.numerics.precision == Precision::Single {
+            self.check_single_precision(&mut found);
+        }
         let observation_s = self.detection.decay_observation_s;
         let shortest_s = SHORTEST_OBSERVATION * self.scene.pin.shear_transit_s();
         if observation_s < shortest_s {
@@ -87,6 +90,24 @@ impl JobSpec {
             );
         }
         found.into_result()
+    }
+
+    /// Limits that the range of f32 sets: forces and stiffnesses must not overflow, and displacements must keep their digits.
+    fn check_single_precision(&self, found: &mut Violations) {
+        let Pin { size_m: [lx, ly, lz], young_modulus_pa, .. } = self.scene.pin;
+        if young_modulus_pa > STIFFEST_SINGLE_PA {
+            let right = format!("at most {STIFFEST_SINGLE_PA:e} in single precision");
+            found.add("scene.pin.young_modulus_pa", check::readable(young_modulus_pa), right);
+        }
+        let force_n = self.scene.load.force_n;
+        let compression_m = force_n * lz / (young_modulus_pa * lx * ly);
+        if compression_m < LEAST_SINGLE_M {
+            let least_n = LEAST_SINGLE_M / compression_m * force_n;
+            let right = format!(
+                "at least {least_n:.1e} in single precision, which presses the pin by {LEAST_SINGLE_M:e} m"
+            );
+            found.add("scene.load.force_n", check::readable(force_n), right);
+        }
     }
 
     /// Limits that an elastic disk sets: its mesh is fine only where the pin passes, its energy balance holds for the
@@ -156,3 +177,9 @@ impl JobSpec {
         }
     }
 }
+
+/// Largest Young's modulus in single precision.
+const STIFFEST_SINGLE_PA: f64 = 1.0e16;
+
+/// Least compression of the pin in single precision. What a step adds to a displacement can be 10⁻⁷ of it, and f32 ends at 10⁻³⁸.
+const LEAST_SINGLE_M: f64 = 1.0e-28;

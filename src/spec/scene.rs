@@ -220,7 +220,7 @@ impl Scene {
         found.require("scene.clamp.width_m", width, width >= 0.0, "a width >= 0 m (0 holds one node row)");
         found.limit_magnitude("scene.clamp.width_m", width);
         let force = self.load.force_n;
-        found.require("scene.load.force_n", force, force > 0.0, "a load > 0 N, pressing the pin on the disk");
+        found.require_magnitude("scene.load.force_n", force, "a load > 0 N, pressing the pin on the disk");
         let ramp = self.load.ramp_s;
         found.require("scene.load.ramp_s", ramp, ramp >= 0.0, "a duration >= 0 s (0 is a sudden load)");
     }
