@@ -37,7 +37,10 @@ def sweep(study, database="docs.db", options=()):
         path = ROOT / study
     tribosweep("run", str(path), *options, database=database)
     lines = tribosweep("export", str(path), "--all", "--format", "json", database=database).splitlines()
-    return [json.loads(line) for line in lines]
+    rows = [json.loads(line) for line in lines]
+    for row in rows:
+        row["elements"] = [row[f"elements_{axis}"] for axis in "xyz"]
+    return rows
 
 
 def shipped(study, /, **changes):

@@ -17,6 +17,11 @@ pub trait JobObserver {
         let _ = moment;
     }
 
+    /// Whether the steps are wanted even if eigenvalues could spare the run.
+    fn needs_run(&self) -> bool {
+        false
+    }
+
     /// Is called every few steps with the simulated time \[s\]. `Break` interrupts the job.
     fn progress(&mut self, simulated_s: f64) -> ControlFlow<()> {
         let _ = simulated_s;
@@ -30,7 +35,7 @@ pub struct Unobserved;
 
 impl JobObserver for Unobserved {}
 
-/// Solves one job. If the eigenvalues of steady sliding decide it, there is no run on its own mesh. `observer` receives no
+/// Solves one job. If the eigenvalues of steady sliding decide it, there is no run on its own mesh, unless `observer` needs it. `observer` receives no
 /// steps on a coarser mesh, only the progress.
 ///
 /// # Errors
@@ -53,7 +58,8 @@ fn solve_in<R: RunNumber>(
     let mut lanes = LanesOf::<1, R>::new(Arc::new(model));
     step_count(spec.run.limit_s, lanes.model().time_step_s())?;
     let beginning = beginning(spec, &mut |spent_s| observer.progress(spent_s))?;
-    let stability = match judge(spec, lanes.model(), &beginning, &Structures::default())? {
+    let verdict = judge(spec, lanes.model(), &beginning, &Structures::default())?;
+    let stability = match if observer.needs_run() { verdict.with_run() } else { verdict } {
         Verdict::Decided(record) => return Ok(*record),
         Verdict::Undecided(stability) => stability,
     };

@@ -10,8 +10,9 @@ use super::drive::{IDLE, drive};
 use super::error::{JobError, step_count};
 use super::lane::LaneAnalysis;
 use super::nested::{Beginning, CoarseStart, under_way};
-use super::record::{JobRecord, Outcome, SlidingStability};
+use super::record::{JobRecord, Outcome};
 use super::sample::{NodeSample, Sample, Sampler};
+use super::stability::Noted;
 use crate::solver::energy::{Energies, EnergyLedger};
 use crate::solver::lane::LaneState;
 use crate::solver::{Drive, Model, PinMotion, RunNumber, StateOf, guard, step};
@@ -207,9 +208,9 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
     }
 
     /// Adds the eigenvalues that were computed before its run to the record of the job in a lane.
-    pub fn note(&mut self, lane: usize, stability: SlidingStability) {
+    pub fn note(&mut self, lane: usize, noted: Noted) {
         if let Some(run) = &mut self.runs[lane] {
-            run.analysis.note(stability);
+            run.analysis.note(noted);
         }
     }
 

@@ -48,6 +48,6 @@ pub use nested::CoarseStart;
 pub use record::{
     ComplexMode, ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
 };
-pub use stability::Structures;
+pub use stability::{Noted, Structures};
 pub use steady::Obstacle;
 pub use workload::{Ending, Workload};

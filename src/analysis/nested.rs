@@ -5,12 +5,8 @@
 
 use super::outcome::Outcome;
 use crate::solver::{Model, PinMotion};
-use crate::spec::{JobSpec, Numerics, StabilityMethod, Start};
+use crate::spec::{JobSpec, Numerics, StabilityMethod};
 use serde::{Deserialize, Serialize};
-
-/// Fewest elements of a coarser mesh in each direction. From 6 × 8 × 5 elements to 12 × 15 × 10 the start saved hardly any time:
-/// the limit cycles differ too much.
-const FEWEST_ELEMENTS: usize = 6;
 
 /// Time of a run on a coarser mesh over the time of a run on the job's mesh that simulates as long: an eighth of the nodes
 /// and half of the steps.
@@ -88,11 +84,7 @@ pub(super) fn under_way(mut spec: JobSpec, start: Option<&CoarseStart>) -> JobSp
 
 /// The same job on the coarser mesh from which it starts; none if it starts from rest or has no run.
 pub fn coarser(spec: &JobSpec) -> Option<JobSpec> {
-    let elements = spec.scene.pin.elements.map(|n| n.div_ceil(2));
-    let has_no_run = spec.stability == StabilityMethod::Modes;
-    if has_no_run || spec.run.start == Start::Rest || elements.iter().any(|&n| n < FEWEST_ELEMENTS) {
-        return None;
-    }
+    let elements = spec.coarser_elements()?;
     let mut coarse = spec.clone();
     coarse.scene.pin.elements = elements;
     if coarse.numerics.time_step_s.take().is_some() {

@@ -9,8 +9,8 @@ use super::sample::OBSERVED_NAMES;
 use crate::solver::interface::SlaveNode;
 use crate::solver::interface::solve::Solves;
 use crate::solver::{Drive, Model};
-use crate::spec::{JobSpec, StabilityMethod};
-use crate::stability::{Equilibrium, Mode, SlidingPoint, StabilityError, Structure};
+use crate::spec::{JobSpec, Precision, StabilityMethod};
+use crate::stability::{Decision, Equilibrium, Mode, SlidingPoint, StabilityError, Structure};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
@@ -38,7 +38,9 @@ pub struct Structures {
 
 impl Structures {
     fn of(&self, spec: &JobSpec) -> Shared {
-        let part = spec.shared_part();
+        // A structure is the same for both precisions.
+        let mut part = spec.shared_part();
+        part.numerics.precision = Precision::Double;
         let mut recent = self.recent.lock().unwrap_or_else(PoisonError::into_inner);
         let known = recent.iter().position(|(known, _)| *known == part);
         let entry = known.map_or_else(|| (part, Shared::default()), |place| recent.remove(place));
@@ -69,7 +71,27 @@ pub enum Verdict {
     /// They decide its outcome: there is no run.
     Decided(Box<JobRecord>),
     /// The run decides. The record gets the eigenvalues, if they were computed.
-    Undecided(Option<SlidingStability>),
+    Undecided(Option<Noted>),
+}
+
+/// Eigenvalues of a job that runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Noted {
+    /// The eigenvalues.
+    pub stability: SlidingStability,
+    /// Whether a mode grows by more than its error.
+    pub grows: bool,
+}
+
+impl Verdict {
+    /// The verdict for a run that takes place in any case.
+    #[must_use]
+    pub fn with_run(self) -> Self {
+        let Self::Decided(record) = self else { return self };
+        let noted =
+            |stability| Noted { stability: SlidingStability { decided: false, ..stability }, grows: false };
+        Self::Undecided(record.stability.map(noted))
+    }
 }
 
 /// Decides a job without a run on its own mesh, if its method of stability allows that and its eigenvalues are clear.
@@ -101,17 +123,20 @@ pub fn judge(
                 Some(figure) => Err(JobError::NotFinite { figure }),
             }
         }
-        StabilityMethod::Eigenvalues if spec.run.stop_early => {
+        StabilityMethod::Eigenvalues if spec.run.stop_early && spec.has_sliding_modes() => {
             // Without an equilibrium or eigenvalues the run decides.
             let decide = |structure: &Structure| structure.decide(model, &drive(spec), DECIDING_MODES);
-            let Ok((point, is_safely_stable)) = structures.with(spec, model, decide) else {
+            let Ok((point, verdict, is_safely_stable)) = structures.with(spec, model, decide) else {
                 return Ok(Verdict::Undecided(None));
             };
             let mut record = record(spec, model, &point, Outcome::Decayed);
             record.start.clone_from(&beginning.start);
             Ok(match (record.non_finite_figure(), is_safely_stable) {
                 (None, true) => Verdict::Decided(Box::new(record)),
-                (None, false) => Verdict::Undecided(Some(sliding_stability(&point, false))),
+                (None, false) => Verdict::Undecided(Some(Noted {
+                    stability: sliding_stability(&point, false),
+                    grows: verdict == Decision::Unstable,
+                })),
                 (Some(_), _) => Verdict::Undecided(None),
             })
         }
@@ -206,6 +231,8 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
     let of = |(slave, node)| SlidingNode::of(slave, node, &point.equilibrium, &drive);
     let nodes: Vec<SlidingNode> = model.slaves().iter().enumerate().map(of).collect();
     let largest = |value: fn(&SlidingNode) -> f64| nodes.iter().map(value).fold(0.0, f64::max);
+    // The time step is not in the key of modes that do not depend on it.
+    let is_without_step = spec.stability == StabilityMethod::Modes && !spec.modes_need_time_step();
     let mu = spec.scene.contact.mu;
     let mu_star = stability.mu_star;
     let slip_reduction = mu * nodes.iter().map(|node| node.misaligned_n).sum::<f64>() / drive.force_n;
@@ -231,8 +258,7 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
         simulated_s: 0.0,
         window_start_s: 0.0,
         steps: 0,
-        // Modes alone do not depend on the time step, so that it is not in the key of such a job.
-        time_step_s: if spec.stability == StabilityMethod::Modes { 0.0 } else { model.time_step_s() },
+        time_step_s: if is_without_step { 0.0 } else { model.time_step_s() },
         time_step_limit_s: model.time_step_limit_s(),
         clamp_width_m: model.clamp_width_m(),
         energy_residual: 0.0,

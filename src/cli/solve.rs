@@ -7,7 +7,7 @@ use super::warnings;
 use crate::analysis::{self, ElasticDisk, JobObserver, JobRecord, Moment, SlidingStability};
 use crate::exit;
 use crate::publish::value::quantity;
-use crate::spec::{JobSpec, Scene, StabilityMethod};
+use crate::spec::{JobSpec, Scene};
 use crate::study::{Preset, Study};
 use crate::sweep::History;
 use crate::worker::Interrupt;
@@ -40,11 +40,7 @@ pub(crate) struct Args {
 
 /// Solves the job and prints its figures; nothing is stored.
 pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
-    let mut spec = Study::load(&args.study)?.single_with_preset(args.preset, &args.settings)?;
-    if args.history.is_some() {
-        // A job that is decided without a run has no history.
-        spec.stability = StabilityMethod::Simulate;
-    }
+    let spec = Study::load(&args.study)?.single_with_preset(args.preset, &args.settings)?;
     warnings::of_job(&spec);
     let interrupt = foreground::interrupt();
     let mut recorder =
@@ -76,6 +72,10 @@ impl JobObserver for Recorder {
         if let Some(history) = &mut self.history {
             history.add(moment.sample);
         }
+    }
+
+    fn needs_run(&self) -> bool {
+        self.history.is_some()
     }
 
     fn progress(&mut self, _: f64) -> ControlFlow<()> {

@@ -156,6 +156,10 @@ struct Recorder<'a> {
 }
 
 impl JobObserver for Recorder<'_> {
+    fn needs_run(&self) -> bool {
+        true
+    }
+
     fn step(&mut self, moment: &Moment<'_>) {
         let time_s = moment.sample.time_s;
         let within = |[start_s, end_s]: [f64; 2]| time_s >= start_s && time_s < end_s;

@@ -87,8 +87,11 @@ impl Inspection {
         on_progress: &mut dyn FnMut(f64) -> ControlFlow<()>,
     ) -> Result<Self, InspectionError> {
         let nodes = nodes_of(spec, &options.nodes)?;
-        // What happens in a run is shown, whatever the eigenvalues say.
-        let simulated = JobSpec { stability: StabilityMethod::Simulate, ..spec.clone() };
+        // What happens in a run is shown. The eigenvalues of a job may change when it ends.
+        let mut simulated = spec.clone();
+        if spec.stability == StabilityMethod::Modes {
+            simulated.stability = StabilityMethod::Simulate;
+        }
         let survey = survey(&simulated, options.cycles.max(Options::FEWEST_CYCLES), on_progress)?;
         let windows = &survey.windows;
         let capture =

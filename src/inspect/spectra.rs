@@ -75,6 +75,10 @@ struct Recorder<'a> {
 }
 
 impl JobObserver for Recorder<'_> {
+    fn needs_run(&self) -> bool {
+        true
+    }
+
     fn step(&mut self, moment: &Moment<'_>) {
         if self.normal.len() == MAX_TOTALS {
             self.normal.pop_front();

@@ -119,6 +119,10 @@ struct Surveyor<'a> {
 }
 
 impl JobObserver for Surveyor<'_> {
+    fn needs_run(&self) -> bool {
+        true
+    }
+
     fn step(&mut self, moment: &Moment<'_>) {
         let cutter = self.cutter.get_or_insert_with(|| {
             self.quarter_wave_s = quarter_wave_s(moment.model);

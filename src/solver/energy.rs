@@ -211,7 +211,7 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
         if let (Some(audit), Some((_, ring))) = (&self.ring, state.target.ring()) {
             audit.add_to(&mut found, scheme, ring, &steps_done.map(|steps| steps == 1));
         }
-        state.workspace.supports.add_energies(scheme, &state.u, &mut found);
+        state.workspace.supports.add_energies(scheme, &steps_done, &state.u, &mut found);
         for l in 0..L {
             let sums = &mut self.sums[l];
             let begins = state.steps_done(l) == 1;

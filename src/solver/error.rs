@@ -19,6 +19,17 @@ pub enum SolverError {
         /// Upper bound of the largest angular frequency \[rad/s\].
         omega_max_rad_s: f64,
     },
+    /// The numbers of a step do not fit into single precision.
+    #[error(
+        "numerics.precision = single: {what} = {value:e} is outside of the range of single precision; give \
+         numerics.precision = double"
+    )]
+    BeyondSinglePrecision {
+        /// The number, with its unit.
+        what: &'static str,
+        /// Its value.
+        value: f64,
+    },
     /// The mesh has no node row near the clamp's width.
     #[error(
         "scene.clamp.width_m = {width_m} m has no node row near it: with {elements} elements over \

@@ -11,22 +11,28 @@
 //!   direction. **The disk's surface moves towards +y**, so the pin meets fresh disk surface at its
 //!   −y end: −y is the *leading* end (the pin's front), +y the *trailing* end (its rear).
 
+mod base;
 mod check;
+mod contact;
 mod detection;
 pub mod elasticity;
+mod holder;
 mod numerics;
 mod pin;
 mod ring;
 mod scene;
 mod stability;
 
+pub use base::Base;
 pub(crate) use check::short;
 pub use check::{FieldError, Violations};
+pub use contact::{Contact, FrictionLaw};
 pub use detection::Detection;
+pub use holder::{Holder, HolderDirection};
 pub use numerics::{Numerics, Precision, RunControl, Start};
 pub use pin::Pin;
 pub use ring::{DiskTimeStep, Ring, TargetSurface};
-pub use scene::{Clamp, ClampSide, Contact, Disk, DiskKind, Load, Scene, TopFace};
+pub use scene::{Clamp, ClampSide, Disk, DiskKind, Load, Scene, TopFace};
 pub use stability::StabilityMethod;
 
 use schemars::JsonSchema;
@@ -77,6 +83,16 @@ impl JobSpec {
         if self.numerics.precision == Precision::Single {
             self.check_single_precision(&mut found);
         }
+        if self.stability == StabilityMethod::Modes {
+            self.check_modes(&mut found);
+        }
+        if !self.scene.holder.is_ideal() && self.numerics.beta2 != 0.5 {
+            found.add(
+                "numerics.beta2",
+                self.numerics.beta2,
+                "0.5 with a holder that moves, whose energies are kept for the central difference only",
+            );
+        }
         let observation_s = self.detection.decay_observation_s;
         let shortest_s = SHORTEST_OBSERVATION * self.scene.pin.shear_transit_s();
         if observation_s < shortest_s {
@@ -90,6 +106,74 @@ impl JobSpec {
             );
         }
         found.into_result()
+    }
+
+    /// Whether the modes of steady sliding depend on the time step: β₂ > ½ damps like (β₂ − ½)Δt.
+    pub fn modes_need_time_step(&self) -> bool {
+        self.numerics.beta2 != 0.5
+    }
+
+    /// Elements of the coarser mesh from which the job starts; none if it starts from rest, has no run, or has too few
+    /// elements for that.
+    pub fn coarser_elements(&self) -> Option<[usize; 3]> {
+        let elements = self.scene.pin.elements.map(|n| n.div_ceil(2));
+        let is_nested = self.run.start == Start::Nested && self.stability != StabilityMethod::Modes;
+        (is_nested && elements.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS)).then_some(elements)
+    }
+
+    /// Whether the equations of steady sliding cover the scene: Coulomb's law, a rigid disk, an ideal clamp and a flat base.
+    pub fn has_sliding_modes(&self) -> bool {
+        let mut found = Violations::default();
+        self.check_modes(&mut found);
+        found.into_result().is_ok()
+    }
+
+    /// What the equations of steady sliding do not cover.
+    fn check_modes(&self, found: &mut Violations) {
+        if self.scene.disk.kind == DiskKind::Elastic {
+            found.add(
+                "scene.disk.kind",
+                "elastic",
+                "rigid: the complex modes of steady sliding are those of a pin on a rigid disk",
+            );
+        }
+        let law = self.scene.contact.law;
+        if law != FrictionLaw::Coulomb {
+            let right = "coulomb: the complex modes of steady sliding are those of Coulomb's law";
+            found.add("scene.contact.law", law.name(), right);
+        }
+        if !self.scene.holder.is_ideal() {
+            found.add(
+                "scene.holder",
+                "a holder that moves",
+                "{}: the complex modes of steady sliding are those of an ideal clamp",
+            );
+        }
+        if !self.scene.pin.base.is_flat() {
+            found.add(
+                "scene.pin.base",
+                "not flat",
+                "{}: the complex modes of steady sliding are those of a flat base",
+            );
+        }
+    }
+
+    /// Whether single precision is known to keep the figures of the job (docs/studies.md): a rigid disk, ν below 0.48, a damping
+    /// of at least a tenth of the reference scene's in proportion to the pin, a speed above 0.1 rpm in the reference
+    /// scene in proportion to the load, and numbers within the range of f32.
+    pub fn suits_single_precision(&self) -> bool {
+        let Scene { pin, disk, load, .. } = &self.scene;
+        let shear_m_s =
+            elasticity::shear_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
+        let pressure_pa = load.force_n / (pin.size_m[0] * pin.size_m[1]);
+        let speed_m_s = crate::units::rad_per_s_from_rpm(disk.omega_rpm) * disk.track_radius_m;
+        let mut found = Violations::default();
+        self.check_single_precision(&mut found);
+        disk.kind == DiskKind::Rigid
+            && pin.poisson_ratio < 0.48
+            && self.numerics.beta_r_s >= LEAST_SINGLE_DAMPING * pin.shear_transit_s()
+            && speed_m_s * pin.density_kg_m3 * shear_m_s >= LEAST_SINGLE_SPEED * pressure_pa
+            && found.into_result().is_ok()
     }
 
     /// Limits that the range of f32 sets: forces and stiffnesses must not overflow, and displacements must keep their digits.
@@ -127,13 +211,6 @@ impl JobSpec {
                 ),
             );
         }
-        if self.stability == StabilityMethod::Modes {
-            found.add(
-                "scene.disk.kind",
-                "elastic",
-                "rigid: the complex modes of steady sliding are those of a pin on a rigid disk",
-            );
-        }
         if self.numerics.beta2 != 0.5 {
             found.add(
                 "numerics.beta2",
@@ -158,11 +235,12 @@ impl JobSpec {
     }
 
     /// The part of the job that all jobs of one batch share, because they are advanced with one model: bodies, meshes,
-    /// clamp, integrator and time step. Friction, load, speed, run length and detection have their defaults in it.
+    /// clamp, friction law, integrator and time step. Its coefficients, load, speed, run length and detection have their
+    /// defaults in it.
     #[must_use]
     pub fn shared_part(&self) -> Self {
         let mut scene = self.scene.clone();
-        scene.contact = Contact::default();
+        scene.contact = Contact { law: self.scene.contact.law, ..Contact::default() };
         scene.load = Load::default();
         scene.disk.omega_rpm = Disk::default().omega_rpm;
         if scene.disk.kind == DiskKind::Rigid {
@@ -178,8 +256,18 @@ impl JobSpec {
     }
 }
 
+/// Fewest elements of a coarser mesh in each direction. From 6 × 8 × 5 elements to 12 × 15 × 10 the start saved hardly any
+/// time: the limit cycles differ too much.
+const FEWEST_COARSER_ELEMENTS: usize = 6;
+
 /// Largest Young's modulus in single precision.
 const STIFFEST_SINGLE_PA: f64 = 1.0e16;
+
+/// Least β_R over the time in which a shear wave crosses the pin's height, for [`JobSpec::suits_single_precision`].
+const LEAST_SINGLE_DAMPING: f64 = 2.0e-4;
+
+/// Least speed of the disk over p/(ρ c_s), with the mean pressure p, likewise.
+const LEAST_SINGLE_SPEED: f64 = 5.0e-3;
 
 /// Least compression of the pin in single precision. What a step adds to a displacement can be 10⁻⁷ of it, and f32 ends at 10⁻³⁸.
 const LEAST_SINGLE_M: f64 = 1.0e-28;

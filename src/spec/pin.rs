@@ -1,5 +1,6 @@
 //! The pin.
 
+use super::base::Base;
 use super::check::Violations;
 use super::elasticity;
 use schemars::JsonSchema;
@@ -25,6 +26,8 @@ pub struct Pin {
     pub poisson_ratio: f64,
     /// Density [kg/m³].
     pub density_kg_m3: f64,
+    /// How its base differs from a plane.
+    pub base: Base,
 }
 
 impl Default for Pin {
@@ -35,6 +38,7 @@ impl Default for Pin {
             young_modulus_pa: 1.0e9,
             poisson_ratio: 0.3,
             density_kg_m3: 2500.0,
+            base: Base::default(),
         }
     }
 }
@@ -68,6 +72,8 @@ impl Pin {
                 format!("at most {MAX_TOTAL_ELEMENTS:e} elements in all"),
             );
         }
+        let [lx, ly, _] = self.size_m;
+        self.base.check([lx, ly], [self.elements[0], self.elements[1]], found);
         let e = self.young_modulus_pa;
         found.require_magnitude("scene.pin.young_modulus_pa", e, "a modulus > 0 Pa");
         let nu = self.poisson_ratio;

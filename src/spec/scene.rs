@@ -1,7 +1,9 @@
 //! The scene: pin, disk, contact law, boundary conditions and load.
 
 use super::check::Violations;
+use super::contact::Contact;
 use super::elasticity;
+use super::holder::Holder;
 use super::pin::Pin;
 use super::ring::Ring;
 use schemars::JsonSchema;
@@ -16,12 +18,14 @@ pub struct Scene {
     pub pin: Pin,
     /// The disk it slides on.
     pub disk: Disk,
-    /// The contact law.
+    /// Contact and friction.
     pub contact: Contact,
     /// Which nodes of the pin's top face are held in x and y.
     pub clamp: Clamp,
     /// How the pin's top face moves in z.
     pub top: TopFace,
+    /// The holder of the pin.
+    pub holder: Holder,
     /// The normal load on the pin's top face.
     pub load: Load,
 }
@@ -54,20 +58,6 @@ pub struct Disk {
 impl Default for Disk {
     fn default() -> Self {
         Self { kind: DiskKind::Rigid, omega_rpm: 7.0, track_radius_m: 0.0914, ring: Ring::default() }
-    }
-}
-
-/// Unilateral contact with Coulomb friction, the same coefficient at every node, no regularisation.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Contact {
-    /// Local (Coulomb) friction coefficient μ ≥ 0.
-    pub mu: f64,
-}
-
-impl Default for Contact {
-    fn default() -> Self {
-        Self { mu: 0.4 }
     }
 }
 
@@ -172,8 +162,8 @@ impl Default for Load {
 }
 
 impl Scene {
-    /// Time \[s\] that the pin's slowest vibrations scale with: the time in which a shear wave crosses the pin's longest
-    /// edge, or the longest length ℓ²/h of a part that bends. NaN for an unphysical material.
+    /// Time \[s\] that the slowest vibrations scale with: the time in which a shear wave crosses the pin's longest
+    /// edge, or the longest length ℓ²/h of a part that bends, or √(mass over stiffness) of the holder. NaN for an unphysical material.
     ///
     /// A part of length ℓ and thickness h in the direction of bending has its lowest frequency at about 0.16 c h/ℓ², with
     /// the wave speed c: a slender pin swings more slowly than any wave runs through it. The pin's height bends below
@@ -188,8 +178,11 @@ impl Scene {
             None => 0.0,
         };
         let longest_m = x.max(y).max(z).max(z * z / x.min(y)).max(beside_strip_m);
-        longest_m
-            / elasticity::shear_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3)
+        let wave_s = longest_m
+            / elasticity::shear_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
+        // The frequency 0.16 c/ℓ is that of an oscillator with √(m/k) = ℓ/c. NaN must remain.
+        let holder_s = self.holder.vibration_time_s();
+        if holder_s > wave_s { holder_s } else { wave_s }
     }
 
     /// Adds every violated limit to `found`.
@@ -213,9 +206,14 @@ impl Scene {
         if self.disk.kind == DiskKind::Elastic {
             self.disk.ring.check(pin, radius, found);
         }
-        let mu = self.contact.mu;
-        found.require("scene.contact.mu", mu, mu >= 0.0, "a friction coefficient >= 0");
-        found.limit_magnitude("scene.contact.mu", mu);
+        self.contact.check(found);
+        self.holder.check(found);
+        if self.top == TopFace::FreeInZ
+            && let Some(stiffness) = self.holder.stiffness_z_n_m
+        {
+            let right = "absent, or scene.top = tied_in_z: a rigid holder carries all top nodes alike";
+            found.add("scene.holder.stiffness_z_n_m", stiffness, right);
+        }
         let width = self.clamp.width_m;
         found.require("scene.clamp.width_m", width, width >= 0.0, "a width >= 0 m (0 holds one node row)");
         found.limit_magnitude("scene.clamp.width_m", width);

@@ -37,7 +37,7 @@ pub fn further_mu(mu: f64, speed: f64) -> f64 {
 
 /// What the eigenvalues of a point say.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Verdict {
+pub enum Decision {
     /// All modes decay.
     Stable,
     /// A mode grows.
@@ -47,22 +47,22 @@ pub enum Verdict {
 }
 
 /// What the eigenvalues of a point say, with a damping β \[s\].
-pub fn verdict(point: &SlidingPoint, damping_s: f64) -> Verdict {
+pub fn verdict(point: &SlidingPoint, damping_s: f64) -> Decision {
     let judged_hz = JUDGED * point.band_hz;
     let mut gain: f64 = 0.0;
-    let mut verdict = Verdict::Stable;
+    let mut verdict = Decision::Stable;
     for mode in &point.modes {
         let (value, in_steps) = (mode.eigenvalue_per_s, mode.eigenvalue_in_steps_per_s);
         let error = mode.growth_error_per_s;
         let [least, most] = [value.re.min(in_steps.re) - error, value.re.max(in_steps.re) + error];
         if least > 0.0 {
-            return Verdict::Unstable;
+            return Decision::Unstable;
         }
         let is_judged = point.has_all_modes || value.im <= TAU * judged_hz;
         // The minimum and the maximum with NaN are the other number.
         let decays = most < 0.0 && value.re.is_finite() && in_steps.re.is_finite();
         if is_judged && !decays {
-            verdict = Verdict::Open;
+            verdict = Decision::Open;
         }
         if value.im > 0.0 {
             let growth_per_s = value.re + if is_judged { error } else { 0.0 };
@@ -70,7 +70,7 @@ pub fn verdict(point: &SlidingPoint, damping_s: f64) -> Verdict {
         }
     }
     let is_covered = point.has_all_modes || 2.0 * gain < damping_s * TAU * judged_hz;
-    if point.modes.is_empty() || !is_covered { Verdict::Open } else { verdict }
+    if point.modes.is_empty() || !is_covered { Decision::Open } else { verdict }
 }
 
 #[cfg(test)]
@@ -106,13 +106,13 @@ mod tests {
         let of = |growth_per_s, in_steps_per_s| {
             verdict(&point(&[(-500.0, -500.0, 0.0), (growth_per_s, in_steps_per_s, 300.0)], 5.0e4), 1.0e-6)
         };
-        assert_eq!(of(-310.0, -310.0), Verdict::Stable);
-        assert_eq!(of(-290.0, -310.0), Verdict::Open);
-        assert_eq!(of(-310.0, -290.0), Verdict::Open);
-        assert_eq!(of(310.0, 310.0), Verdict::Unstable);
-        assert_eq!(of(310.0, 290.0), Verdict::Open);
-        assert_eq!(of(f64::NAN, -310.0), Verdict::Open);
-        assert_eq!(verdict(&point(&[], 5.0e4), 1.0e-6), Verdict::Open);
+        assert_eq!(of(-310.0, -310.0), Decision::Stable);
+        assert_eq!(of(-290.0, -310.0), Decision::Open);
+        assert_eq!(of(-310.0, -290.0), Decision::Open);
+        assert_eq!(of(310.0, 310.0), Decision::Unstable);
+        assert_eq!(of(310.0, 290.0), Decision::Open);
+        assert_eq!(of(f64::NAN, -310.0), Decision::Open);
+        assert_eq!(verdict(&point(&[], 5.0e4), 1.0e-6), Decision::Open);
     }
 
     /// Protects: without enough damping, modes beyond the band of the basis may grow. A mode at 10⁵ rad/s that decays with
@@ -120,11 +120,11 @@ mod tests {
     #[test]
     fn modes_beyond_the_band_must_be_damped() {
         let at = |damping_s, band_hz| verdict(&point(&[(-100.0, -100.0, 0.0)], band_hz), damping_s);
-        assert_eq!(at(1.0e-7, 2.0e4), Verdict::Stable);
-        assert_eq!(at(0.0, 2.0e4), Verdict::Open);
+        assert_eq!(at(1.0e-7, 2.0e4), Decision::Stable);
+        assert_eq!(at(0.0, 2.0e4), Decision::Open);
         // The gain is 0.004, so 85 % of the band have to reach 2·0.004/10⁻⁷ rad/s = 12.7 kHz.
-        assert_eq!(at(1.0e-7, 1.45e4), Verdict::Open);
-        assert_eq!(at(1.0e-7, 1.55e4), Verdict::Stable);
+        assert_eq!(at(1.0e-7, 1.45e4), Decision::Open);
+        assert_eq!(at(1.0e-7, 1.55e4), Decision::Stable);
     }
 
     /// Protects: a mode near the end of the band is not judged by its own growth rate, because the basis does not have it
@@ -139,10 +139,10 @@ mod tests {
             point.has_all_modes = has_all_modes;
             verdict(&point, 1.0e-6)
         };
-        assert_eq!(of(1.59e4 / 0.8, -290.0, false), Verdict::Open);
-        assert_eq!(of(1.59e4 / 0.9, -290.0, false), Verdict::Stable);
-        assert_eq!(of(1.59e4 / 0.9, -290.0, true), Verdict::Open);
-        assert_eq!(of(1.59e4 / 0.9, 400.0, false), Verdict::Unstable);
+        assert_eq!(of(1.59e4 / 0.8, -290.0, false), Decision::Open);
+        assert_eq!(of(1.59e4 / 0.9, -290.0, false), Decision::Stable);
+        assert_eq!(of(1.59e4 / 0.9, -290.0, true), Decision::Open);
+        assert_eq!(of(1.59e4 / 0.9, 400.0, false), Decision::Unstable);
     }
 
     /// Protects: the slower the disk, the farther from the threshold a job must be. The distances are 16 % and 24 %, and 0.232

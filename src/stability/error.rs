@@ -16,6 +16,15 @@ pub enum StabilityError {
         "eigenvalues of steady sliding are for a rigid disk, and scene.disk.kind is elastic: simulate this job"
     )]
     ElasticDisk,
+    /// The friction law is not Coulomb's.
+    #[error("eigenvalues of steady sliding are for Coulomb's law (scene.contact.law): simulate this job")]
+    FrictionLaw,
+    /// The holder moves.
+    #[error("eigenvalues of steady sliding are for an ideal clamp (scene.holder): simulate this job")]
+    Holder,
+    /// The base is not a plane.
+    #[error("eigenvalues of steady sliding are for a flat base (scene.pin.base): simulate this job")]
+    Base,
     /// An iteration did not converge.
     #[error("{what} did not converge within {iterations} iterations")]
     NotConverged {

@@ -17,9 +17,10 @@ mod vibration;
 pub use error::StabilityError;
 
 use crate::solver::interface::law::Law;
+use crate::solver::support::Support;
 use crate::solver::{Drive, Model};
 use basis::Basis;
-pub use decision::Verdict;
+pub use decision::Decision;
 use decision::{further_mu, verdict};
 use equilibrium::UnitEquilibrium;
 use pencil::Clock;
@@ -78,7 +79,7 @@ impl Structure {
         modes: usize,
         accuracy: Accuracy,
     ) -> Result<SlidingPoint, StabilityError> {
-        let Law::Coulomb { mu } = drive.law;
+        let mu = coulomb_on_a_plane(model, drive)?;
         let friction = self.friction(model, mu)?;
         let scheme = model.scheme();
         let point = Point {
@@ -126,7 +127,7 @@ impl Structure {
         })
     }
 
-    /// The modes of a point, and whether they show that a run decays: sliding is stable at such a distance from the
+    /// The modes of a point, what they say, and whether they show that a run decays: sliding is stable at such a distance from the
     /// threshold that no limit cycle was found beside it. The modes are exact only as far as this question needs it.
     ///
     /// # Errors
@@ -136,14 +137,16 @@ impl Structure {
         model: &Model,
         drive: &Drive,
         modes: usize,
-    ) -> Result<(SlidingPoint, bool), StabilityError> {
-        let Law::Coulomb { mu } = drive.law;
+    ) -> Result<(SlidingPoint, Decision, bool), StabilityError> {
+        let mu = coulomb_on_a_plane(model, drive)?;
         let mu = further_mu(mu, natural_speed_ratio(model, drive, mu));
         let further = Drive { law: Law::Coulomb { mu }, ..*drive };
         let (point, verdict) = self.resolve(model, drive, modes)?;
-        let is_safe =
-            verdict == Verdict::Stable && self.resolve(model, &further, modes)?.1 == Verdict::Stable;
-        Ok((point, is_safe))
+        let is_stable = |resolved: Result<(SlidingPoint, Decision), _>| {
+            resolved.is_ok_and(|(_, verdict)| verdict == Decision::Stable)
+        };
+        let is_safe = verdict == Decision::Stable && is_stable(self.resolve(model, &further, modes));
+        Ok((point, verdict, is_safe))
     }
 
     /// A point with as few corrections as its verdict needs.
@@ -152,7 +155,7 @@ impl Structure {
         model: &Model,
         drive: &Drive,
         modes: usize,
-    ) -> Result<(SlidingPoint, Verdict), StabilityError> {
+    ) -> Result<(SlidingPoint, Decision), StabilityError> {
         let signs = Accuracy { aim: Aim::Signs, rounds: 3, ..Accuracy::default() };
         let point = self.point_with(model, drive, modes, signs)?;
         let verdict = verdict(&point, damping_s(model));
@@ -193,4 +196,17 @@ fn natural_speed_ratio(model: &Model, drive: &Drive, mu: f64) -> f64 {
     let material = model.pin().material();
     let impedance = material.density_kg_m3 * material.shear_wave_speed_m_s();
     speed_m_s * impedance * area_m2 / (mu * drive.force_n)
+}
+
+/// The friction coefficient, if the equations of steady sliding hold: Coulomb's law, an ideal clamp, and a base without gaps,
+/// so that everything is proportional to the load.
+fn coulomb_on_a_plane(model: &Model, drive: &Drive) -> Result<f64, StabilityError> {
+    let Law::Coulomb { mu } = drive.law else { return Err(StabilityError::FrictionLaw) };
+    if model.slaves().iter().any(|slave| slave.initial_gap_m > 0.0) {
+        return Err(StabilityError::Base);
+    }
+    if model.supports().iter().any(|support| matches!(support, Support::Held(_))) {
+        return Err(StabilityError::Holder);
+    }
+    Ok(mu)
 }

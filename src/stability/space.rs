@@ -8,7 +8,6 @@ use crate::solver::body::Freedom;
 use crate::solver::body::block::operator::Scratch;
 use crate::solver::body::hexahedron;
 use crate::solver::field::{Field, Layout};
-use crate::solver::support::Support;
 
 /// Number of vectors that are treated together.
 pub const LANES: usize = 8;
@@ -54,9 +53,9 @@ impl Space {
     pub fn new(model: &Model) -> Self {
         let pin = model.pin();
         let freedoms = pin.freedoms();
-        let ties = model.supports().iter().filter_map(|support| match support {
-            Support::Tied(tied) => Some((tied.component, tied.nodes.clone())),
-            Support::Fixed(_) => None,
+        let ties = model.supports().iter().filter_map(|support| {
+            let tied = support.tie()?;
+            Some((tied.component, tied.nodes.clone()))
         });
         let element = hexahedron::stiffness(pin.material(), pin.mesh().element_size_m());
         let [hx, hy, _] = pin.mesh().element_size_m();

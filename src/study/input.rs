@@ -2,7 +2,7 @@
 
 use super::json::encode;
 use super::parameter::{PARAMETERS, Parameter};
-use crate::spec::{ClampSide, DiskKind, JobSpec, StabilityMethod};
+use crate::spec::{ClampSide, DiskKind, JobSpec, StabilityMethod, Start};
 use serde_json::Value;
 
 /// A parameter and its value in a job.
@@ -21,15 +21,19 @@ pub fn input_parameters() -> impl Iterator<Item = &'static Parameter> {
 }
 
 /// All inputs of a job that have an effect, the defaults among them, each once: the mesh and the size by their components,
-/// no ring of a rigid disk, no width of a clamp that holds the whole top, no safety factor beside a given time step, nothing
+/// no ring of a rigid disk, no coefficient that the friction law does not use, no width of a clamp that holds the whole top, no safety factor beside a given time step, nothing
 /// about the run of a job without one, and no method of stability where every run goes to its limit.
 pub fn inputs(spec: &JobSpec) -> Vec<Input> {
-    let job = encode(spec);
+    let mut spec = spec.clone();
+    spec.scene.contact = spec.scene.contact.in_use();
+    let job = encode(&spec);
     let is_run = spec.stability != StabilityMethod::Modes;
     let has_effect = |parameter: &&'static Parameter| match parameter.name {
-        "ramp_s" | "time_step_s" | "safety_factor" | "precision" if !is_run => false,
+        "time_step_s" | "safety_factor" if !is_run && !spec.modes_need_time_step() => false,
+        "ramp_s" | "precision" if !is_run => false,
         _ if !is_run && matches!(parameter.part(), Some("run" | "detection")) => false,
-        "stability" => !is_run || spec.run.stop_early,
+        "stability" => !is_run || (spec.run.stop_early && spec.has_sliding_modes()),
+        "start" => spec.run.start == Start::Rest || spec.coarser_elements().is_some(),
         "clamp_width_m" => spec.scene.clamp.side != ClampSide::WholeTop,
         "safety_factor" => spec.numerics.time_step_s.is_none(),
         _ => spec.scene.disk.kind == DiskKind::Elastic || !parameter.pointer.starts_with("/scene/disk/ring/"),

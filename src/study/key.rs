@@ -2,8 +2,8 @@
 
 use super::json::encode;
 use crate::spec::{
-    Clamp, ClampSide, Detection, DiskKind, JobSpec, Load, Numerics, Precision, RunControl, StabilityMethod,
-    Start,
+    Clamp, ClampSide, Detection, DiskKind, FrictionLaw, JobSpec, Load, Numerics, Precision, RunControl,
+    StabilityMethod, Start,
 };
 use serde_json::Value;
 use std::collections::VecDeque;
@@ -15,12 +15,15 @@ const HEX_DIGITS: usize = 32;
 /// The key of a job under a version of the solver: BLAKE3 of its canonical JSON, 32 hex digits.
 ///
 /// In canonical JSON the fields are sorted, there is no space, and numbers have their shortest exact form, with 0 for
-/// −0. Fields without effect do not enter. These have their defaults: the clamp's width where no strip uses it; the
+/// −0. Fields without effect do not enter. These have their defaults: coefficients that the friction law does not use; the
+/// clamp's width where no strip uses it; the
 /// safety factor where the time step is given; the time step, the precision, the run, its detection and the load's ramp where
-/// there is no run; the method of stability where every run goes to its limit. The ring of a rigid disk is left out. A new
+/// there is no run; the method of stability where every run goes to its limit or where eigenvalues do not exist; the start
+/// where the mesh is too coarse for a coarser one. The ring of a rigid disk is left out. A new
 /// `solver_version` changes every key, so that old results are not taken for new ones.
 pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     let mut spec = spec.clone();
+    spec.scene.contact = spec.scene.contact.in_use();
     if spec.scene.clamp.side == ClampSide::WholeTop {
         spec.scene.clamp.width_m = Clamp::default().width_m;
     }
@@ -28,14 +31,19 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
         spec.numerics.safety_factor = Numerics::default().safety_factor;
     }
     if spec.stability == StabilityMethod::Modes {
-        spec.numerics.safety_factor = Numerics::default().safety_factor;
-        spec.numerics.time_step_s = None;
+        if !spec.modes_need_time_step() {
+            spec.numerics.safety_factor = Numerics::default().safety_factor;
+            spec.numerics.time_step_s = None;
+        }
         spec.numerics.precision = Precision::Double;
         spec.run = RunControl::default();
         spec.detection = Detection::default();
         spec.scene.load.ramp_s = Load::default().ramp_s;
-    } else if !spec.run.stop_early {
+    } else if !spec.run.stop_early || !spec.has_sliding_modes() {
         spec.stability = StabilityMethod::Simulate;
+    }
+    if spec.coarser_elements().is_none() {
+        spec.run.start = Start::Rest;
     }
     let mut job = encode(&spec);
     if spec.scene.disk.kind == DiskKind::Rigid
@@ -60,6 +68,22 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
         && let Some(run) = job.pointer_mut("/run").and_then(Value::as_object_mut)
     {
         run.remove("start");
+    }
+    // Likewise for Coulomb's law, an ideal holder and a flat base.
+    if spec.scene.holder.is_ideal()
+        && let Some(scene) = job.pointer_mut("/scene").and_then(Value::as_object_mut)
+    {
+        scene.remove("holder");
+    }
+    if spec.scene.contact.law == FrictionLaw::Coulomb
+        && let Some(contact) = job.pointer_mut("/scene/contact").and_then(Value::as_object_mut)
+    {
+        contact.remove("law");
+    }
+    if spec.scene.pin.base.is_flat()
+        && let Some(pin) = job.pointer_mut("/scene/pin").and_then(Value::as_object_mut)
+    {
+        pin.remove("base");
     }
     // The version cannot be confused with the job's text: it is quoted, and the job begins with a brace.
     let mut text = Value::from(solver_version).to_string();

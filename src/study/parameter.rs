@@ -3,7 +3,7 @@
 use super::preset::Preset;
 use super::suggest;
 use crate::spec::{
-    ClampSide, DiskKind, DiskTimeStep, Precision, StabilityMethod, Start, TargetSurface, TopFace,
+    ClampSide, DiskKind, DiskTimeStep, FrictionLaw, Precision, StabilityMethod, Start, TargetSurface, TopFace,
 };
 use schemars::{Schema, SchemaGenerator};
 use serde_json::{Map, Value};
@@ -43,6 +43,7 @@ const fn parameter(name: &'static str, pointer: &'static str, kind: Kind, doc: &
 
 const CLAMP_SIDE: Kind = Kind::Name(SchemaGenerator::subschema_for::<ClampSide>);
 const TOP_FACE: Kind = Kind::Name(SchemaGenerator::subschema_for::<TopFace>);
+const FRICTION_LAW: Kind = Kind::Name(SchemaGenerator::subschema_for::<FrictionLaw>);
 const DISK_KIND: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskKind>);
 const TARGET: Kind = Kind::Name(SchemaGenerator::subschema_for::<TargetSurface>);
 const PRESET: Kind = Kind::Name(SchemaGenerator::subschema_for::<Preset>);
@@ -57,6 +58,11 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("omega_rpm", "/scene/disk/omega_rpm", Kind::Number, "rotation speed of the disk [rpm]"),
     parameter("mu", "/scene/contact/mu", Kind::Number, "local (Coulomb) friction coefficient [-]"),
     parameter("load_n", "/scene/load/force_n", Kind::Number, "total normal load [N]"),
+    parameter("friction_law", "/scene/contact/law", FRICTION_LAW, "friction law [name]"),
+    parameter("mu_static", "/scene/contact/mu_static", Kind::Number, "friction coefficient without slip [-]"),
+    parameter("friction_speed_m_s", "/scene/contact/speed_m_s", Kind::Number, "slip speed that scales a friction law [m/s]"),
+    parameter("friction_slope_s_m", "/scene/contact/slope_s_m", Kind::Number, "rise of the friction coefficient with the slip speed [s/m]"),
+    parameter("friction_length_m", "/scene/contact/length_m", Kind::Number, "slip in which friction follows the normal force [m]"),
     parameter("ramp_s", "/scene/load/ramp_s", Kind::Number, "duration of the load's linear ramp [s]"),
     parameter("track_radius_m", "/scene/disk/track_radius_m", Kind::Number, "distance of the pin's centre from the axis [m]"),
     parameter("disk_kind", "/scene/disk/kind", DISK_KIND, "what the disk is made of [name]"),
@@ -81,9 +87,23 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("size_x_m", "/scene/pin/size_m/0", Kind::Number, "edge of the pin in x, the radial direction [m]"),
     parameter("size_y_m", "/scene/pin/size_m/1", Kind::Number, "edge of the pin in y, the sliding direction [m]"),
     parameter("size_z_m", "/scene/pin/size_m/2", Kind::Number, "edge of the pin in z [m]"),
+    parameter("crown_radius_m", "/scene/pin/base/crown_radius_m", Kind::Number, "radius of a crowned base [m]"),
+    parameter("edge_radius_m", "/scene/pin/base/edge_radius_m", Kind::Number, "radius of rounded edges of the base [m]"),
+    parameter("chamfer_width_m", "/scene/pin/base/chamfer_width_m", Kind::Number, "width of a chamfer of the base [m]"),
+    parameter("chamfer_height_m", "/scene/pin/base/chamfer_height_m", Kind::Number, "height of that chamfer [m]"),
+    parameter("wave_height_m", "/scene/pin/base/wave_height_m", Kind::Number, "height of a wave on the base, from its mean [m]"),
+    parameter("wave_length_m", "/scene/pin/base/wave_length_m", Kind::Number, "wavelength of that wave [m]"),
+    parameter("wave_direction_deg", "/scene/pin/base/wave_direction_deg", Kind::Number, "direction of that wave, from +x towards +y [°]"),
     parameter("clamp_side", "/scene/clamp/side", CLAMP_SIDE, "where on the top face the clamp is [name]"),
     parameter("clamp_width_m", "/scene/clamp/width_m", Kind::Number, "width of the clamp's strip [m]"),
     parameter("top", "/scene/top", TOP_FACE, "how the top face moves in z [name]"),
+    parameter("holder_mass_kg", "/scene/holder/mass_kg", Kind::Number, "mass of the holder [kg]"),
+    parameter("holder_stiffness_x_n_m", "/scene/holder/stiffness_x_n_m", Kind::Number, "stiffness of the holder in x [N/m]"),
+    parameter("holder_stiffness_y_n_m", "/scene/holder/stiffness_y_n_m", Kind::Number, "stiffness of the holder in y, the sliding direction [N/m]"),
+    parameter("holder_stiffness_z_n_m", "/scene/holder/stiffness_z_n_m", Kind::Number, "stiffness of the holder in z [N/m]"),
+    parameter("holder_damping_x_n_s_m", "/scene/holder/damping_x_n_s_m", Kind::Number, "damper of the holder in x [N s/m]"),
+    parameter("holder_damping_y_n_s_m", "/scene/holder/damping_y_n_s_m", Kind::Number, "damper of the holder in y, the sliding direction [N s/m]"),
+    parameter("holder_damping_z_n_s_m", "/scene/holder/damping_z_n_s_m", Kind::Number, "damper of the holder in z [N s/m]"),
     parameter("preset", "/preset", PRESET, "accuracy of mesh, time step and detection [name]"),
     parameter("beta2", "/numerics/beta2", Kind::Number, "β₂ of the time scheme, 0.5 to 1 [-]"),
     parameter("beta_r_s", "/numerics/beta_r_s", Kind::Number, "stiffness-proportional damping β_R [s]"),

@@ -2,9 +2,10 @@
 
 use crate::signals::coarse;
 use std::collections::BTreeMap;
+use strum::VariantArray;
 use tribosweep::analysis::batch::{Batch, Begun};
 use tribosweep::analysis::{CoarseStart, JobRecord, Unobserved, solve};
-use tribosweep::spec::{DiskKind, JobSpec, Precision, StabilityMethod, Start};
+use tribosweep::spec::{DiskKind, FrictionLaw, JobSpec, Precision, StabilityMethod, Start};
 
 /// Jobs of one model. They differ in everything that may differ: friction, speed, load, ramp, length, and
 /// early stop.
@@ -82,6 +83,32 @@ fn companions_change_nothing_after_a_coarser_mesh() {
     let is_used = |start: &Option<CoarseStart>| start.as_ref().map(CoarseStart::is_used);
     for expected in [None, Some(false), Some(true)] {
         assert!(starts.iter().any(|start| is_used(start) == expected), "{expected:?} in {starts:?}");
+    }
+}
+
+/// Protects: the same with every friction law, in both precisions and with an elastic disk. One of them carries a state from
+/// step to step, which lanes and checkpoints must keep.
+#[test]
+fn companions_and_interruptions_change_nothing_with_other_laws() {
+    for law in FrictionLaw::VARIANTS {
+        for (disk, precision) in [
+            (DiskKind::Rigid, Precision::Double),
+            (DiskKind::Rigid, Precision::Single),
+            (DiskKind::Elastic, Precision::Double),
+        ] {
+            let mut jobs = jobs(disk, precision);
+            for (i, job) in jobs.iter_mut().enumerate() {
+                let contact = &mut job.scene.contact;
+                contact.law = *law;
+                contact.mu_static = Some([0.5, 0.1][i % 2]);
+                contact.speed_m_s = Some([0.01, 0.1, 1.0][i % 3]);
+                contact.slope_s_m = Some([0.0, 0.2][i % 2]);
+                contact.length_m = Some([1.0e-6, 1.0e-5][i % 2]);
+                job.run.limit_s = job.run.limit_s.min(0.003);
+            }
+            companions_change_nothing_in(&jobs);
+            resumed_jobs_have_the_same_bits(&jobs, &[2]);
+        }
     }
 }
 

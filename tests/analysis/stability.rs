@@ -2,10 +2,12 @@
 
 use super::signals::coarse;
 use std::sync::Arc;
-use tribosweep::analysis::lanes::Lanes;
-use tribosweep::analysis::{ComplexMode, JobRecord, Outcome, SlidingStability, Unobserved, solve};
-use tribosweep::solver::Model;
-use tribosweep::spec::{JobSpec, StabilityMethod};
+use tribosweep::analysis::lanes::{Lanes, LanesOf};
+use tribosweep::analysis::{
+    ComplexMode, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Unobserved, solve,
+};
+use tribosweep::solver::{Model, RunNumber};
+use tribosweep::spec::{JobSpec, Precision, StabilityMethod};
 
 fn short(method: StabilityMethod) -> JobSpec {
     let mut spec = JobSpec { stability: method, ..coarse() };
@@ -46,7 +48,7 @@ fn a_checkpoint_carries_the_eigenvalues() {
     };
     let mut lanes = Lanes::<1>::new(Arc::clone(&model));
     lanes.begin(0, 7, spec.clone()).unwrap();
-    lanes.note(0, eigenvalues());
+    lanes.note(0, Noted { stability: eigenvalues(), grows: false });
     lanes.advance(&mut |_| {});
     let checkpoint = lanes.checkpoint(7).unwrap();
     let whole = finish(&mut lanes);
@@ -71,4 +73,61 @@ fn some_jobs_always_run() {
         records.push(record);
     }
     assert_eq!(records[0], records[1]);
+}
+
+/// The outcome of a job of stable sliding whose eigenvalues are noted before its run.
+fn outcome_with<R: RunNumber>(precision: Precision, grows: bool) -> Outcome {
+    let mut spec = coarse();
+    spec.scene.contact.mu = 0.2;
+    spec.numerics.precision = precision;
+    spec.run.limit_s = 0.02;
+    let model = Arc::new(Model::from_scene(&spec.scene, &spec.numerics).unwrap());
+    let mut lanes = LanesOf::<1, R>::new(model);
+    lanes.begin(0, 1, spec).unwrap();
+    lanes.note(0, Noted { stability: eigenvalues(), grows });
+    loop {
+        if let Some(ended) = lanes.advance(&mut |_| {}).pop() {
+            return ended.result.unwrap().outcome;
+        }
+    }
+}
+
+/// Protects: where eigenvalues show a mode that grows by more than its error, a run in single precision is not believed to
+/// decay, because its rounding hides a slow growth. A growth within the error does not count, and in double precision the
+/// run decides.
+#[test]
+fn a_known_growth_is_not_hidden_by_rounding() {
+    assert_eq!(outcome_with::<f32>(Precision::Single, true), Outcome::NotPeriodic);
+    assert_eq!(outcome_with::<f32>(Precision::Single, false), Outcome::Decayed);
+    assert_eq!(outcome_with::<f64>(Precision::Double, true), Outcome::Decayed);
+}
+
+/// An observer that counts the steps that it needs.
+struct Counting(u64);
+
+impl JobObserver for Counting {
+    fn step(&mut self, _: &tribosweep::analysis::Moment<'_>) {
+        self.0 += 1;
+    }
+
+    fn needs_run(&self) -> bool {
+        true
+    }
+}
+
+/// Protects: an observer that needs the run sees it also where eigenvalues would spare it. The figures of the run are those
+/// of a job that always runs.
+#[test]
+fn an_observer_can_need_the_run() {
+    let mut spec = JobSpec { stability: StabilityMethod::Eigenvalues, ..coarse() };
+    spec.scene.contact.mu = 0.1;
+    let decided = solve(&spec, &mut Unobserved).unwrap();
+    assert!(decided.steps == 0 && decided.stability.as_ref().is_some_and(|modes| modes.decided));
+    let mut counting = Counting(0);
+    let observed = solve(&spec, &mut counting).unwrap();
+    assert!(observed.steps > 0 && counting.0 == observed.steps);
+    assert!(observed.stability.as_ref().is_some_and(|modes| !modes.decided));
+    let simulated =
+        solve(&JobSpec { stability: StabilityMethod::Simulate, ..spec }, &mut Unobserved).unwrap();
+    assert_eq!(JobRecord { stability: None, ..observed }, simulated);
 }

@@ -29,6 +29,7 @@ use tribosweep::solver::body::block::BlockMesh;
 use tribosweep::solver::body::block::operator::AssembledOperator;
 use tribosweep::solver::energy::{Energies, EnergyLedger};
 use tribosweep::solver::material::Material;
+use tribosweep::solver::support::{Held, Support};
 use tribosweep::solver::{Drive, Model, RunNumber, StateOf, step};
 
 /// The numbers of a run's fields.
@@ -171,6 +172,12 @@ impl<'a, R: Rounded> Audited<'a, R> {
             *force +=
                 mass * (self.state.u[i].to_f64().abs() + dt * self.state.p[i].to_f64().abs()) / (dt * dt);
         }
+        for held in holders(self.model) {
+            let dof = held.tied.dofs().next().expect("at least one node");
+            let [u, p] = [&self.state.u, &self.state.p].map(|field| field[dof].to_f64().abs());
+            let inertia = held.mass_kg * (u + dt * p) / (dt * dt);
+            self.forces[dof] += held.stiffness_n_m * u + held.damping_n_s_m * p + inertia;
+        }
     }
 
     fn add_up(&mut self) {
@@ -206,8 +213,23 @@ impl<'a, R: Rounded> Audited<'a, R> {
             let mass = self.model.pin().masses_kg()[i / 3];
             sum_j += 0.5 * magnitude[i] * product[i] + mass * speed * (speed + magnitude[i] / dt);
         }
+        for held in holders(self.model) {
+            let dof = held.tied.dofs().next().expect("at least one node");
+            let speed =
+                self.state.p[dof].to_f64().abs() + (self.increments[0][dof] + self.increments[1][dof]) / dt;
+            sum_j += 0.5 * held.stiffness_n_m * magnitude[dof] * magnitude[dof]
+                + held.mass_kg * speed * (speed + magnitude[dof] / dt);
+        }
         sum_j
     }
+}
+
+/// The holders among the supports.
+fn holders(model: &Model) -> impl Iterator<Item = &Held> {
+    model.supports().iter().filter_map(|support| match support {
+        Support::Held(held) => Some(held),
+        Support::Fixed(_) | Support::Tied(_) => None,
+    })
 }
 
 /// The magnitudes of all terms of K in its tensor form, element by element.

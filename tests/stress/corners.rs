@@ -1,7 +1,7 @@
 //! The corners of the parameter space that the stress test must reach.
 
 use tribosweep::solver::Model;
-use tribosweep::spec::{ClampSide, JobSpec, Precision, TopFace};
+use tribosweep::spec::{ClampSide, FrictionLaw, JobSpec, Precision, TopFace};
 
 /// The name of a corner, and whether a job is in it.
 type Corner = (&'static str, fn(&JobSpec) -> bool);
@@ -32,7 +32,13 @@ fn given_over_limit(spec: &JobSpec) -> f64 {
 }
 
 /// All corners. The predicates are evaluated for legal cases only.
-pub const CORNERS: [Corner; 34] = [
+pub const CORNERS: [Corner; 40] = [
+    ("a holder that moves", |s| !s.scene.holder.is_ideal()),
+    ("a static coefficient", |s| s.scene.contact.law == FrictionLaw::StaticKinetic),
+    ("an exponential law", |s| s.scene.contact.law == FrictionLaw::Exponential),
+    ("a regularised law", |s| s.scene.contact.law == FrictionLaw::Regularised),
+    ("a law with a state", |s| s.scene.contact.law == FrictionLaw::PrakashClifton),
+    ("a base with gaps", |s| !s.scene.pin.base.is_flat()),
     ("single precision", |s| s.numerics.precision == Precision::Single),
     ("single precision, ν = 0.499", |s| {
         s.numerics.precision == Precision::Single && s.scene.pin.poisson_ratio == 0.499
@@ -74,7 +80,7 @@ pub const CORNERS: [Corner; 34] = [
 ];
 
 /// Speed [m/s] of the disk under the pin's centre.
-fn speed_m_s(spec: &JobSpec) -> f64 {
+pub fn speed_m_s(spec: &JobSpec) -> f64 {
     spec.scene.disk.omega_rpm * std::f64::consts::PI / 30.0 * spec.scene.disk.track_radius_m
 }
 

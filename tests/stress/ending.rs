@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use tribosweep::analysis::{JobError, JobObserver, JobRecord, Moment, drive, solve};
 use tribosweep::solver::{Model, SolverError, StateOf};
-use tribosweep::spec::{JobSpec, Precision};
+use tribosweep::spec::{FrictionLaw, JobSpec, Precision};
 
 /// A legal ending.
 #[derive(Debug, Clone)]
@@ -98,6 +98,7 @@ fn failure(spec: &JobSpec, error: &JobError, steps: u64) -> Result<Ending, Strin
         JobError::Spec(_) => "JobSpec::check",
         JobError::Solver(SolverError::TimeStepTooLarge { .. }) => "time step above the limit",
         JobError::Solver(SolverError::ClampOffMesh { .. }) => "clamp off the mesh",
+        JobError::Solver(SolverError::BeyondSinglePrecision { .. }) => "beyond single precision",
         JobError::TooManySteps { .. } => "too many steps",
         JobError::Solver(SolverError::Diverged { step, node, .. }) => {
             let nodes: usize = spec.scene.pin.elements.iter().map(|n| n + 1).product();
@@ -164,8 +165,14 @@ fn plausible(spec: &JobSpec, record: &JobRecord, epsilon: f64) -> Result<(), Str
     let sum: f64 = shares.iter().sum();
     let within = shares.iter().all(|share| (0.0..=1.0 + rounding).contains(share));
     require(within && (sum - 1.0).abs() < rounding, || format!("shares {shares:?}"))?;
-    // By Coulomb's law no node's friction exceeds μN, so neither does the mean. The direction and the product are rounded.
-    let most = spec.scene.contact.mu * (1.0 + rounding + 8.0 * epsilon);
+    // Where no node's friction exceeds μN, neither does the mean. The direction and the product are rounded.
+    let contact = spec.scene.contact.in_use();
+    let most = match contact.law {
+        // Friction that rises with the speed, or that outlives a fall of the normal force, has no such limit.
+        FrictionLaw::Exponential if contact.slope_s_m.is_some() => f64::INFINITY,
+        FrictionLaw::PrakashClifton => f64::INFINITY,
+        _ => contact.mu.max(contact.mu_static.unwrap_or(0.0)) * (1.0 + rounding + 100.0 * epsilon),
+    };
     require(record.mu_star_contact.abs() <= most, || {
         format!("mean contact friction {}", record.mu_star_contact)
     })?;

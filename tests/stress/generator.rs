@@ -5,8 +5,9 @@
 //! cases must be refused.
 
 use crate::random::Random;
+use strum::VariantArray;
 use tribosweep::solver::Model;
-use tribosweep::spec::{ClampSide, JobSpec, Precision, StabilityMethod, TopFace};
+use tribosweep::spec::{ClampSide, FrictionLaw, JobSpec, Precision, StabilityMethod, TopFace};
 
 /// Largest number of nodes × steps of a case. With it 10 000 cases take minutes.
 const MOST_NODE_STEPS: f64 = 1.5e5;
@@ -18,6 +19,9 @@ pub fn job(seed: u64, index: u64) -> JobSpec {
     pin(random, &mut spec);
     contact(random, &mut spec);
     clamp(random, &mut spec);
+    law(random, &mut spec);
+    base(random, &mut spec);
+    holder(random, &mut spec);
     numerics(random, &mut spec);
     duration(random, &mut spec);
     if random.chance(0.3) {
@@ -77,6 +81,71 @@ fn contact(random: &mut Random, spec: &mut JobSpec) {
     spec.scene.top = random.pick(&[TopFace::TiedInZ, TopFace::FreeInZ]);
 }
 
+/// Another friction law, with scales far below and far above what the run reaches.
+fn law(random: &mut Random, spec: &mut JobSpec) {
+    let speed_m_s = crate::corners::speed_m_s(spec);
+    let contact = &mut spec.scene.contact;
+    if random.chance(0.5) {
+        contact.law = random.pick(FrictionLaw::VARIANTS);
+    }
+    let any = random.between(0.0, 2.0);
+    contact.mu_static = Some(if random.chance(0.3) { random.pick(&[0.0, 2.0]) } else { any });
+    contact.speed_m_s = Some(speed_m_s * random.log_between(1.0e-6, 1.0e6));
+    contact.slope_s_m =
+        Some(if random.chance(0.5) { 0.0 } else { random.log_between(1.0e-3, 10.0) / speed_m_s });
+    contact.length_m = Some(random.log_between(1.0e-12, 1.0));
+}
+
+/// A base that is not flat, with gaps far below and above what the load closes.
+fn base(random: &mut Random, spec: &mut JobSpec) {
+    if random.chance(0.6) {
+        return;
+    }
+    let pin = &mut spec.scene.pin;
+    let [lx, ly, lz] = pin.size_m;
+    let compression_m = spec.scene.load.force_n * lz / (pin.young_modulus_pa * lx * ly);
+    let height_m = (compression_m * random.log_between(1.0e-6, 1.0e6)).min(0.1 * lz);
+    let half_edge = 0.5 * lx.min(ly);
+    match random.whole(0, 3) {
+        0 => pin.base.crown_radius_m = Some(libm::hypot(lx, ly) * random.log_between(0.51, 1.0e6)),
+        1 => pin.base.edge_radius_m = Some(half_edge * random.between(0.001, 1.0)),
+        2 => {
+            pin.base.chamfer_width_m = Some(half_edge * random.between(0.001, 1.0));
+            pin.base.chamfer_height_m = Some(height_m);
+        }
+        _ => {
+            pin.base.wave_height_m = Some(height_m);
+            pin.base.wave_length_m = Some((lx + ly) * random.between(4.0, 10.0));
+            pin.base.wave_direction_deg = Some(random.between(-360.0, 360.0));
+        }
+    }
+}
+
+/// A holder, with masses and stiffnesses far below and far above those of the pin.
+fn holder(random: &mut Random, spec: &mut JobSpec) {
+    if random.chance(0.7) {
+        return;
+    }
+    let pin = &spec.scene.pin;
+    let [lx, ly, lz] = pin.size_m;
+    let pin_kg = pin.density_kg_m3 * lx * ly * lz;
+    let pin_n_m = pin.young_modulus_pa * lx * ly / lz;
+    let is_tied = spec.scene.top == TopFace::TiedInZ;
+    let holder = &mut spec.scene.holder;
+    holder.mass_kg = Some(if random.chance(0.2) { 0.0 } else { pin_kg * random.log_between(1.0e-3, 1.0e6) });
+    let mut direction = || {
+        let stiffness = if random.chance(0.2) { 0.0 } else { pin_n_m * random.log_between(1.0e-6, 1.0e2) };
+        let damping = (pin_n_m * pin_kg).sqrt() * random.log_between(1.0e-6, 1.0);
+        (Some(stiffness), random.chance(0.5).then_some(damping))
+    };
+    (holder.stiffness_y_n_m, holder.damping_y_n_s_m) = direction();
+    (holder.stiffness_x_n_m, holder.damping_x_n_s_m) = direction();
+    let along_z = direction();
+    if is_tied {
+        (holder.stiffness_z_n_m, holder.damping_z_n_s_m) = along_z;
+    }
+}
+
 fn clamp(random: &mut Random, spec: &mut JobSpec) {
     let pin = &spec.scene.pin;
     let side = random.pick(ClampSide::ALL);
@@ -92,6 +161,9 @@ fn clamp(random: &mut Random, spec: &mut JobSpec) {
 fn numerics(random: &mut Random, spec: &mut JobSpec) {
     let any = random.between(0.5, 1.0);
     spec.numerics.beta2 = if random.chance(0.6) { random.pick(&[0.5, 1.0]) } else { any };
+    if !spec.scene.holder.is_ideal() {
+        spec.numerics.beta2 = 0.5;
+    }
     let pin = &spec.scene.pin;
     // `fraction` is the fraction of critical damping, ½β_Rω, of the lowest shear mode of the height or of the
     // highest mode.

@@ -8,7 +8,7 @@ use tribosweep::solver::interface::target::TargetDefinition;
 use tribosweep::solver::support::clamp;
 use tribosweep::solver::support::load::{self, LoadShare};
 use tribosweep::solver::{Drive, ModelDefinition, State, TimeStep, material::Material};
-use tribosweep::spec::{Clamp, ClampSide, TopFace};
+use tribosweep::spec::{Clamp, ClampSide, Holder, TopFace};
 
 /// The reference pin's material.
 pub const MATERIAL: Material =
@@ -25,7 +25,7 @@ pub fn pin(elements: [usize; 3]) -> ModelDefinition {
     ModelDefinition {
         material: MATERIAL,
         stiffness: Stiffness::Elastic,
-        supports: clamp::supports(&mesh, &strip, TopFace::TiedInZ),
+        supports: clamp::supports(&mesh, &strip, TopFace::TiedInZ, &Holder::default()),
         load: load::normal_load(&mesh),
         target: TargetDefinition::Rigid(target::rotating_disk(&mesh, 0.0914)),
         beta2: 0.5,

@@ -2,7 +2,9 @@
 
 use super::parse;
 use serde_json::Value;
-use tribosweep::spec::{ClampSide, DiskKind, JobSpec, Precision};
+use tribosweep::spec::{
+    Base, ClampSide, Contact, DiskKind, FrictionLaw, Holder, JobSpec, Precision, StabilityMethod, Start,
+};
 use tribosweep::study::{PARAMETERS, job_key};
 
 fn key(spec: &JobSpec) -> String {
@@ -13,11 +15,42 @@ fn key_of(text: &str) -> String {
     parse(text).expand("1").unwrap().remove(0).key
 }
 
-/// A job in which every optional field is given.
-fn full() -> JobSpec {
+fn with_elastic_disk() -> JobSpec {
     let mut spec = JobSpec::default();
     spec.numerics.time_step_s = Some(1.0e-8);
     spec.scene.disk.kind = DiskKind::Elastic;
+    spec
+}
+
+/// A job in which every optional field is given.
+pub fn full() -> JobSpec {
+    let mut spec = with_elastic_disk();
+    spec.scene.contact = Contact {
+        mu: 0.4,
+        law: FrictionLaw::Exponential,
+        mu_static: Some(0.5),
+        speed_m_s: Some(0.01),
+        slope_s_m: Some(0.1),
+        length_m: Some(1.0e-6),
+    };
+    spec.scene.pin.base = Base {
+        crown_radius_m: Some(1.0),
+        edge_radius_m: Some(0.001),
+        chamfer_width_m: Some(0.002),
+        chamfer_height_m: Some(1.0e-5),
+        wave_height_m: Some(1.0e-6),
+        wave_length_m: Some(0.006),
+        wave_direction_deg: Some(30.0),
+    };
+    spec.scene.holder = Holder {
+        mass_kg: Some(0.1),
+        stiffness_x_n_m: Some(1.0e7),
+        stiffness_y_n_m: Some(2.0e7),
+        stiffness_z_n_m: Some(1.0e5),
+        damping_x_n_s_m: Some(1.0),
+        damping_y_n_s_m: Some(2.0),
+        damping_z_n_s_m: Some(3.0),
+    };
     spec
 }
 
@@ -51,6 +84,7 @@ fn another(value: &Value, pointer: &str) -> Option<Value> {
             "/run/start" => Some(Value::from("nested")),
             "/stability" => Some(Value::from("eigenvalues")),
             "/numerics/precision" => Some(Value::from("single")),
+            "/scene/contact/law" => Some(Value::from("static_kinetic")),
             other => panic!("{other} = {value}: this test needs another value for it"),
         },
     }
@@ -90,16 +124,72 @@ fn every_field_changes_the_key_even_by_one_ulp() {
             assert_ne!(automatic(&changed), automatic(&full()), "{pointer} of an automatic time step");
             continue;
         }
+        // The exponential law of this job does not use the length.
+        if pointer == "/scene/contact/length_m" {
+            assert_eq!(key(&changed), key(&full()), "{pointer}");
+            let with_memory = |spec: &JobSpec| {
+                let mut spec = spec.clone();
+                spec.scene.contact.law = FrictionLaw::PrakashClifton;
+                key(&spec)
+            };
+            assert_ne!(with_memory(&changed), with_memory(&full()), "{pointer} of a law that uses it");
+            continue;
+        }
         assert_ne!(key(&changed), key(&full()), "{pointer}");
     }
     assert_ne!(key(&full()), key(&JobSpec::default()), "a given time step is not the automatic one");
+}
+
+/// Protects: the time step is part of modes exactly where they depend on it, with β₂ > ½.
+#[test]
+fn the_time_step_counts_where_modes_depend_on_it() {
+    let with = |beta2, safety_factor| {
+        let mut spec = JobSpec { stability: StabilityMethod::Modes, ..JobSpec::default() };
+        (spec.numerics.beta2, spec.numerics.safety_factor) = (beta2, safety_factor);
+        key(&spec)
+    };
+    assert_eq!(with(0.5, 0.7), with(0.5, 0.35));
+    assert_ne!(with(0.6, 0.7), with(0.6, 0.35));
+}
+
+/// Protects: a start and a method of stability that have no effect are no part of a job: a mesh that is too coarse for a
+/// coarser one, and scenes without eigenvalues.
+#[test]
+fn ways_without_effect_do_not_change_the_key() {
+    let with = |elements, start, stability, kind| {
+        let mut spec = JobSpec { stability, ..JobSpec::default() };
+        (spec.scene.pin.elements, spec.run.start, spec.scene.disk.kind) = (elements, start, kind);
+        key(&spec)
+    };
+    let (simulate, rigid) = (StabilityMethod::Simulate, DiskKind::Rigid);
+    let nested = |elements, start| with(elements, start, simulate, rigid);
+    assert_eq!(nested([12, 15, 10], Start::Nested), nested([12, 15, 10], Start::Rest));
+    assert_ne!(nested([12, 15, 11], Start::Nested), nested([12, 15, 11], Start::Rest));
+    let decided = |kind, stability| with([12, 15, 10], Start::Rest, stability, kind);
+    let elastic = DiskKind::Elastic;
+    assert_eq!(decided(elastic, StabilityMethod::Eigenvalues), decided(elastic, simulate));
+    assert_ne!(decided(rigid, StabilityMethod::Eigenvalues), decided(rigid, simulate));
+}
+
+/// Protects: coefficients that a law does not use are no part of a job.
+#[test]
+fn unused_coefficients_do_not_change_the_key() {
+    let with = |law, mu_static, length_m| {
+        let mut spec = JobSpec::default();
+        spec.scene.contact = Contact { law, mu_static, length_m, ..Contact::default() };
+        key(&spec)
+    };
+    assert_eq!(with(FrictionLaw::Coulomb, Some(0.5), Some(1.0e-6)), key(&JobSpec::default()));
+    let two = |mu_static, length_m| with(FrictionLaw::StaticKinetic, mu_static, length_m);
+    assert_eq!(two(Some(0.5), Some(1.0e-6)), two(Some(0.5), None));
+    assert_ne!(two(Some(0.5), None), two(Some(0.6), None));
 }
 
 /// Protects: jobs in double precision have the keys of versions without single precision, so their results are found.
 #[test]
 fn double_precision_keeps_the_keys_of_before() {
     assert_eq!(key(&JobSpec::default()), "4f665e793cdc54798186f5795bd1d6b9");
-    assert_eq!(key(&full()), "b70e786637642d06da75ce2639575b54");
+    assert_eq!(key(&with_elastic_disk()), "b70e786637642d06da75ce2639575b54");
     let mut single = JobSpec::default();
     single.numerics.precision = Precision::Single;
     assert_ne!(key(&single), key(&JobSpec::default()));

@@ -1,10 +1,10 @@
 //! Protects: an editor that uses the schema and the program agree on names and types.
 
+use super::keys::full;
 use super::mini_schema::{KNOWN, for_each, violation};
 use super::{refusal, shipped};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use tribosweep::spec::JobSpec;
 use tribosweep::study::{PARAMETERS, Study, schema};
 
 fn problem(study: &Value) -> Option<String> {
@@ -35,9 +35,7 @@ fn assert_same_fields(root: &Value, schema: &Value, value: &Value, at: &str) {
 /// Protects: the schema has every field of a job, and besides these only what makes a study of a job.
 #[test]
 fn a_complete_job_fits() {
-    let mut spec = JobSpec::default();
-    spec.numerics.time_step_s = Some(1.0e-8);
-    let job = serde_json::to_value(spec).unwrap();
+    let job = serde_json::to_value(full()).unwrap();
     assert_eq!(problem(&job), None);
     let schema = schema();
     let mut parts = schema["properties"].as_object().unwrap().clone();

@@ -11,8 +11,7 @@
 //!   coefficient there is no stick–slip limit cycle**, and the amplitude V/ω remains.
 //!
 //! Source: integration of m ẍ = μN − k x (den Hartog, *Mechanical Vibrations*, 4th ed. 1956, § 7.1, discusses
-//! the mechanism). A static coefficient above the kinetic one does cause stick–slip. It is no part of the
-//! program's law and is not verified.
+//! the mechanism). A static coefficient above the kinetic one does cause stick–slip: see B17.
 //!
 //! **The discrete solution.** With y = x − x_s the central difference gives y_{n+1} − 2y_n + y_{n−1} = −W²
 //! y_n, W = ωΔt. So the motion from rest is exactly y_n = −x_s cos θn with sin(θ/2) = W/2. The error of its

@@ -18,7 +18,7 @@ use tribosweep::solver::{
     Drive, Model, ModelDefinition, RunNumber, SolverError, State, StateOf, TimeStep, guard,
     material::Material, step,
 };
-use tribosweep::spec::{Clamp, JobSpec, TopFace};
+use tribosweep::spec::{Clamp, Holder, JobSpec, TopFace};
 
 /// A small reference scene that sticks, slips and separates within a millisecond.
 fn spec() -> JobSpec {
@@ -125,7 +125,7 @@ fn beyond_the_limit(fraction: f64) -> Model {
     let definition = ModelDefinition {
         material: Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 },
         stiffness: Stiffness::Elastic,
-        supports: clamp::supports(&mesh, &strip, TopFace::TiedInZ),
+        supports: clamp::supports(&mesh, &strip, TopFace::TiedInZ, &Holder::default()),
         load: load::normal_load(&mesh),
         target: TargetDefinition::Rigid(target::rotating_disk(&mesh, 0.0914)),
         beta2: 0.5,

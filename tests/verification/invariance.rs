@@ -17,7 +17,7 @@ use tribosweep::solver::interface::target::TargetDefinition;
 use tribosweep::solver::support::clamp;
 use tribosweep::solver::support::load;
 use tribosweep::solver::{Drive, Model, ModelDefinition, RunNumber, State, StateOf, TimeStep, step};
-use tribosweep::spec::{Clamp, ClampSide, JobSpec, TopFace};
+use tribosweep::spec::{Clamp, ClampSide, Holder, JobSpec, TopFace};
 
 fn small_model() -> Model {
     let mut spec = JobSpec::default();
@@ -72,7 +72,7 @@ fn straight(size_m: [f64; 3], elements: [usize; 3], side: ClampSide, direction: 
     Model::new(ModelDefinition {
         material: pin_material(0.3),
         stiffness: Stiffness::Elastic,
-        supports: clamp::supports(&mesh, &strip, TopFace::TiedInZ),
+        supports: clamp::supports(&mesh, &strip, TopFace::TiedInZ, &Holder::default()),
         load: load::normal_load(&mesh),
         target: TargetDefinition::Rigid(vec![direction; mesh.bottom_nodes().len()]),
         beta2: 0.5,

@@ -1,6 +1,6 @@
 //! Tests of initial gaps and of the arguments of a friction law.
 
-use super::law::{FrictionLaw, Law};
+use super::law::{AtNode, FrictionLaw, Law};
 use super::solve::{StepData, TargetState};
 use super::{Contacts, LIMIT, Status};
 use crate::solver::body::block::BlockMotion;
@@ -116,16 +116,18 @@ fn only_nodes_that_have_closed_their_gap_touch() {
 pub(super) struct ExposingLaw;
 
 impl<S: Simd> FrictionLaw<f64x8<S>> for ExposingLaw {
-    fn limit_n(&self, normal_n: f64x8<S>, increment_m: [f64x8<S>; 2], slipped: f64x8<S>) -> f64x8<S> {
-        let simd = normal_n.simd;
-        normal_n
-            + f64x8::splat(simd, 1.0e3) * slipped
-            + f64x8::splat(simd, 1.0e9) * (increment_m[0] + increment_m[1])
+    fn limit_n(&self, node: &AtNode<f64x8<S>>) -> f64x8<S> {
+        let simd = node.normal_n.simd;
+        let [x, y] = node.last_increment_m;
+        node.normal_n
+            + f64x8::splat(simd, 1.0e3) * node.last_slipped
+            + f64x8::splat(simd, 1.0e9) * (x + y)
+            + f64x8::splat(simd, 1.0e2) * node.last_limit_n
     }
 }
 
-/// Protects: a law gets the normal force of this step, and the increment and the slip of the step before. The limit
-/// is stored with the force.
+/// Protects: a law gets the normal force of this step, and the increment, the slip and the limit of the step before. The
+/// limit is stored with the force.
 #[test]
 fn a_law_gets_the_step_before() {
     let model = model(DiskKind::Rigid);
@@ -148,7 +150,9 @@ fn a_law_gets_the_step_before() {
         let [x, y, _] = before.increment_of(slave, 0);
         let normal = state.contacts.force_of(slave, 0)[2];
         let limit = state.contacts.friction.at(place, LIMIT)[0];
-        let expected = if normal > 0.0 { (normal + 1.0e3 * slipped) + 1.0e9 * (x + y) } else { 0.0 };
+        let last_limit = before.friction_limit_of(slave, 0);
+        let exposed = ((normal + 1.0e3 * slipped) + 1.0e9 * (x + y)) + 1.0e2 * last_limit;
+        let expected = if normal > 0.0 { exposed } else { 0.0 };
         assert_eq!(limit, expected, "slave node {slave}");
         assert_eq!(limit, state.contacts.friction_limit_of(slave, 0));
         slipped_nodes += usize::from(slipped > 0.0);

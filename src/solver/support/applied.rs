@@ -15,11 +15,18 @@ pub(in crate::solver) trait AppliedSupport<const L: usize, R: Number>:
     /// force to the residual, a tie replaces the residual, and a fixed support only reads it.
     fn act(&mut self, pin: &mut Supported<'_, L, R>, reaction_n: &mut [[f64; L]; 3]);
 
-    /// Adds the energy stored at t_n, and the work of damping in the step from there to `u_after`. A rigid support
-    /// has neither.
+    /// Adds the energy stored at t_n, and the work of damping in the step from there to `u_after`, after which the lanes
+    /// have done `steps_done` steps. A rigid support has neither.
     ///
     /// The work of damping over the increment before t_n can be given for β₂ = ½ only, where that increment is Δt p_n.
-    fn add_energies(&self, _scheme: &Scheme, _u_after: &FieldOf<L, R>, _total: &mut EnergySums<L>) {}
+    fn add_energies(
+        &self,
+        _scheme: &Scheme,
+        _steps_done: &[u64; L],
+        _u_after: &FieldOf<L, R>,
+        _total: &mut EnergySums<L>,
+    ) {
+    }
 
     /// A copy.
     fn boxed(&self) -> Box<dyn AppliedSupport<L, R>>;
@@ -27,11 +34,10 @@ pub(in crate::solver) trait AppliedSupport<const L: usize, R: Number>:
 
 /// The pin at t_n, on which supports act.
 pub(in crate::solver) struct Supported<'a, const L: usize, R: Number> {
-    /// Displacements \[m\] at t_n, on the planes of nodes on which supports and loads act; the others have been moved. Rigid supports do not need them, nor `p`.
-    #[expect(dead_code, reason = "for supports whose force depends on the motion")]
+    /// Displacements \[m\] at t_n, on the planes of nodes on which supports and loads act; the others have been moved. Rigid
+    /// supports do not need them, nor `p`.
     pub u: &'a FieldOf<L, R>,
     /// p_n \[m/s\].
-    #[expect(dead_code, reason = "for supports whose force depends on the motion")]
     pub p: &'a FieldOf<L, R>,
     /// K (u + β_R p) − external forces \[N\].
     pub residual: &'a mut FieldOf<L, R>,

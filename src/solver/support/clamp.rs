@@ -1,9 +1,9 @@
 //! The clamp and the top face of a scene as supports on a mesh.
 
-use super::Support;
+use super::{Held, Support, Tied};
 use crate::solver::body::block::BlockMesh;
 use crate::solver::error::SolverError;
-use crate::spec::{Clamp, ClampSide, TopFace};
+use crate::spec::{Clamp, ClampSide, Holder, HolderDirection, TopFace};
 
 /// Largest distance of the nearest node row from the clamp's width, as a fraction of that width.
 const WIDTH_TOLERANCE: f64 = 0.25;
@@ -55,12 +55,32 @@ pub fn clamped_strip(mesh: &BlockMesh, clamp: &Clamp) -> Result<ClampedStrip, So
     Ok(ClampedStrip { nodes: mesh.top_nodes().filter(held).collect(), width_m })
 }
 
-/// The supports of a clamp (x and y of its nodes) and of the top face.
-pub fn supports(mesh: &BlockMesh, strip: &ClampedStrip, top: TopFace) -> Vec<Support> {
-    let mut supports = vec![Support::fixed(strip.nodes.iter().flat_map(|&node| [3 * node, 3 * node + 1]))];
-    match top {
-        TopFace::TiedInZ => supports.push(Support::tied(2, mesh.top_nodes())),
-        TopFace::FreeInZ => {}
+/// The supports of a clamp (x and y of its nodes) and of the top face, on a holder.
+pub fn supports(mesh: &BlockMesh, strip: &ClampedStrip, top: TopFace, holder: &Holder) -> Vec<Support> {
+    let held = |tied: Tied, direction: HolderDirection| {
+        let HolderDirection { mass_kg, stiffness_n_m, damping_n_s_m } = direction;
+        Support::Held(Held { tied, mass_kg, stiffness_n_m, damping_n_s_m })
+    };
+    let directions = holder.directions();
+    let is_rigid = |component: &usize| directions[*component].is_none();
+    let rigid: Vec<usize> = [0, 1].into_iter().filter(is_rigid).collect();
+    let mut supports = Vec::new();
+    if !rigid.is_empty() {
+        let fixed =
+            strip.nodes.iter().flat_map(|&node| rigid.iter().map(move |component| 3 * node + component));
+        supports.push(Support::fixed(fixed));
+    }
+    for component in [0, 1] {
+        if let Some(direction) = directions[component] {
+            supports.push(held(Tied { component, nodes: strip.nodes.clone() }, direction));
+        }
+    }
+    match (top, directions[2]) {
+        (TopFace::TiedInZ, None) => supports.push(Support::tied(2, mesh.top_nodes())),
+        (TopFace::TiedInZ, Some(direction)) => {
+            supports.push(held(Tied { component: 2, nodes: mesh.top_nodes().collect() }, direction));
+        }
+        (TopFace::FreeInZ, _) => {}
     }
     supports
 }

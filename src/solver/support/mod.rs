@@ -3,6 +3,7 @@
 //! * [`Fixed`] – degrees of freedom that never move. Their residual is the reaction force on the pin, from which T
 //!   is computed.
 //! * [`Tied`] – nodes that share one displacement in one component.
+//! * [`Held`] – nodes on a holder with a mass, a spring and a damper. The force on the frame is part of T.
 //! * [`clamp`] – the supports that represent a scene's clamp and top face.
 //! * [`load`] – the normal load, which acts on the same planes.
 //!
@@ -13,12 +14,14 @@
 mod applied;
 pub mod clamp;
 mod fixed;
+mod held;
 pub mod load;
 mod tied;
 mod weights;
 
 pub(in crate::solver) use applied::{AppliedSupport, Supported};
 pub use fixed::Fixed;
+pub use held::Held;
 pub use tied::Tied;
 
 use super::body::block::BlockMesh;
@@ -28,15 +31,18 @@ use super::field::FieldOf;
 use super::number::Number;
 use super::scheme::{Bound, Scheme};
 use fixed::AppliedFixed;
+use held::AppliedHeld;
 use tied::AppliedTie;
 
 /// A support in the definition of a model.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Support {
     /// Degrees of freedom that never move.
     Fixed(Fixed),
     /// Nodes that share a displacement.
     Tied(Tied),
+    /// Nodes on a holder.
+    Held(Held),
 }
 
 impl Support {
@@ -54,15 +60,24 @@ impl Support {
     pub fn dofs(&self) -> Vec<usize> {
         match self {
             Self::Fixed(fixed) => fixed.dofs.clone(),
-            Self::Tied(tied) => tied.dofs().collect(),
+            Self::Tied(tied) | Self::Held(Held { tied, .. }) => tied.dofs().collect(),
+        }
+    }
+
+    /// The nodes that share a displacement, if the support ties nodes.
+    pub fn tie(&self) -> Option<&Tied> {
+        match self {
+            Self::Fixed(_) => None,
+            Self::Tied(tied) | Self::Held(Held { tied, .. }) => Some(tied),
         }
     }
 
     /// Contribution to the stability limit of a pin with these lumped masses \[kg\]. A rigid support contributes
     /// nothing, because it can only lower the largest frequency.
-    pub fn bound(&self, _masses_kg: &[f64]) -> Bound {
+    pub fn bound(&self, masses_kg: &[f64]) -> Bound {
         match self {
             Self::Fixed(_) | Self::Tied(_) => Bound::default(),
+            Self::Held(held) => held.bound(masses_kg),
         }
     }
 
@@ -73,7 +88,8 @@ impl Support {
     ) -> Box<dyn AppliedSupport<L, R>> {
         match self {
             Self::Fixed(fixed) => Box::new(AppliedFixed::new(fixed, mesh, L)),
-            Self::Tied(tied) => Box::new(AppliedTie::new(tied, mesh, L, masses_kg)),
+            Self::Tied(tied) => Box::new(AppliedTie::new(tied, mesh, L, masses_kg, 0.0)),
+            Self::Held(held) => Box::new(AppliedHeld::<L, R>::new(held, mesh, masses_kg)),
         }
     }
 }
@@ -81,8 +97,8 @@ impl Support {
 /// How every degree of freedom (3·node + component) of `mesh` may move with these supports.
 ///
 /// # Errors
-/// If a support is out of range, if a degree of freedom is supported twice, or if a tie mixes nodes of the contact
-/// face with others. The contact solve uses the mass of each slave node alone. For a tied group this is right only
+/// If a support is out of range, if a degree of freedom is supported twice, if a tie mixes nodes of the contact
+/// face with others, or if a holder has nodes of the contact face. The contact solve uses the mass of each slave node alone. For a tied group this is right only
 /// if all its nodes are in contact alike.
 pub fn freedoms(supports: &[Support], mesh: &BlockMesh) -> Result<Vec<Freedom>, SolverError> {
     let mut freedoms = vec![Freedom::Free; 3 * mesh.node_count()];
@@ -102,7 +118,7 @@ pub fn freedoms(supports: &[Support], mesh: &BlockMesh) -> Result<Vec<Freedom>, 
                     set(dof, Freedom::Fixed)?;
                 }
             }
-            Support::Tied(tied) => {
+            Support::Tied(tied) | Support::Held(Held { tied, .. }) => {
                 for dof in tied.dofs() {
                     set(dof, Freedom::Tied(groups))?;
                 }
@@ -111,6 +127,11 @@ pub fn freedoms(supports: &[Support], mesh: &BlockMesh) -> Result<Vec<Freedom>, 
                 if tied.nodes.is_empty() || (on_contact_face > 0 && on_contact_face < tied.nodes.len()) {
                     return Err(SolverError::Constraints(format!(
                         "tie {groups} must hold at least one node, all or none of them on the contact face"
+                    )));
+                }
+                if on_contact_face > 0 && matches!(support, Support::Held(_)) {
+                    return Err(SolverError::Constraints(format!(
+                        "holder {groups} must not hold nodes of the contact face"
                     )));
                 }
                 groups += 1;
@@ -128,7 +149,7 @@ impl<const L: usize, R: Number> AppliedSupports<L, R> {
     /// Prepares the supports of a pin with these lumped masses \[kg\].
     pub fn new(supports: &[Support], mesh: &BlockMesh, masses_kg: &[f64]) -> Self {
         // A tie replaces the residual, so everything that adds to the residual acts before.
-        let is_tie = |support: &&Support| matches!(support, Support::Tied(_));
+        let is_tie = |support: &&Support| support.tie().is_some();
         let (ties, others): (Vec<_>, Vec<_>) = supports.iter().partition(is_tie);
         Self(others.into_iter().chain(ties).map(|support| support.applied(mesh, masses_kg)).collect())
     }
@@ -143,9 +164,15 @@ impl<const L: usize, R: Number> AppliedSupports<L, R> {
     }
 
     /// Adds the energies of all supports to those of the bodies.
-    pub fn add_energies(&self, scheme: &Scheme, u_after: &FieldOf<L, R>, total: &mut EnergySums<L>) {
+    pub fn add_energies(
+        &self,
+        scheme: &Scheme,
+        steps_done: &[u64; L],
+        u_after: &FieldOf<L, R>,
+        total: &mut EnergySums<L>,
+    ) {
         for support in &self.0 {
-            support.add_energies(scheme, u_after, total);
+            support.add_energies(scheme, steps_done, u_after, total);
         }
     }
 }

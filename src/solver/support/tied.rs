@@ -35,17 +35,20 @@ pub(super) struct AppliedTie<R: Number> {
 }
 
 impl<R: Number> AppliedTie<R> {
-    /// For fields with `lanes` lanes.
-    pub fn new(tied: &Tied, mesh: &BlockMesh, lanes: usize, masses_kg: &[f64]) -> Self {
+    /// For fields with `lanes` lanes. The group has a mass of `more_kg` besides that of its nodes.
+    pub fn new(tied: &Tied, mesh: &BlockMesh, lanes: usize, masses_kg: &[f64], more_kg: f64) -> Self {
+        let nodes_kg: f64 = tied.nodes.iter().map(|&node| masses_kg[node]).sum();
         Self {
             members: ones(mesh, lanes, &tied.dofs().collect::<Vec<_>>()),
-            inverse_mass: 1.0 / tied.nodes.iter().map(|&node| masses_kg[node]).sum::<f64>(),
+            inverse_mass: 1.0 / (nodes_kg + more_kg),
         }
     }
 
     /// Replaces the residual of every member by Σ residual/Σ mass, which is minus the acceleration of the group.
     /// Tied degrees of freedom have the inverse mass 1, so every member then moves with this acceleration.
-    fn share(&self, residual: &mut [Block<R>], sums: &mut [f64]) {
+    ///
+    /// `sums` are other forces \[N\] on the group at first, with the sign of a residual, and minus the acceleration at last.
+    pub fn share(&self, residual: &mut [Block<R>], sums: &mut [f64]) {
         for member in &self.members {
             member.add_up(residual, sums);
         }

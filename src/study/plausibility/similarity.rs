@@ -7,7 +7,7 @@
 //! all else equal, results depend on ω E/F and on ρ/E alone.
 
 use super::Warning;
-use crate::spec::{DiskKind, JobSpec};
+use crate::spec::{DiskKind, FrictionLaw, JobSpec};
 use crate::study::definition::Study;
 use crate::study::error::Problem;
 use crate::study::validate::assignments;
@@ -24,6 +24,14 @@ fn groups(spec: &JobSpec) -> [String; 2] {
     [speed, pin.density_kg_m3 / pin.young_modulus_pa].map(|group| format!("{group:.9e}"))
 }
 
+/// Whether the equations are those above. Gaps are lengths, some friction laws have a speed or a length, and a holder has a
+/// mass and a stiffness of its own.
+fn has_similarity(spec: &JobSpec) -> bool {
+    let scene = &spec.scene;
+    let has_scale = !matches!(scene.contact.law, FrictionLaw::Coulomb | FrictionLaw::StaticKinetic);
+    scene.disk.kind == DiskKind::Rigid && !has_scale && scene.pin.base.is_flat() && scene.holder.is_ideal()
+}
+
 impl Study {
     /// A warning if jobs on a rigid disk repeat others.
     pub(super) fn repetition(&self) -> Option<Warning> {
@@ -37,7 +45,7 @@ impl Study {
         let mut repeated = 0;
         let mut example = None;
         for (point, spec) in self.specs.iter().enumerate() {
-            if spec.scene.disk.kind != DiskKind::Rigid {
+            if !has_similarity(spec) {
                 continue;
             }
             let indices = self.grid.indices_of(point);

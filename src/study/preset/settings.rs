@@ -107,21 +107,21 @@ impl Preset {
     /// way that is fastest for the same errors (docs/performance.md). This is precision `single`, and, on meshes finer than
     /// the draft's, start `nested` and stability `eigenvalues`.
     ///
-    /// Without damping, nothing limits the rounding of single precision. Such a job stays in double precision.
+    /// A job that single precision does not suit stays in double precision.
     pub(in crate::study) fn choose_way(self, job: &mut JobSpec, gives: impl Fn(&str) -> bool) {
         if job.scene.disk.kind == DiskKind::Elastic {
             return;
         }
-        if !gives("precision") && job.numerics.beta_r_s > 0.0 {
+        if !gives("precision") && job.suits_single_precision() {
             job.numerics.precision = Precision::Single;
         }
         if self == Self::Draft {
             return;
         }
-        if !gives("start") {
+        if !gives("start") && job.run.stop_early {
             job.run.start = Start::Nested;
         }
-        if !gives("stability") {
+        if !gives("stability") && job.has_sliding_modes() {
             job.stability = StabilityMethod::Eigenvalues;
         }
     }

@@ -204,7 +204,10 @@ fn groups(plan: &Plan, threads: usize) -> Vec<Group> {
         group.jobs += 1;
         group.limit_s = group.limit_s.max(job.spec.run.limit_s);
         group.node_steps += workload.node_steps(job.spec.run.limit_s);
-        if job.spec.stability != StabilityMethod::Simulate {
+        let spares_runs = job.spec.run.stop_early && job.spec.has_sliding_modes();
+        if job.spec.stability == StabilityMethod::Modes
+            || (job.spec.stability == StabilityMethod::Eigenvalues && spares_runs)
+        {
             group.modes_bytes = workload.modes_bytes();
         }
         let observation_s = job.spec.detection.decay_observation_s;
@@ -223,7 +226,8 @@ fn groups(plan: &Plan, threads: usize) -> Vec<Group> {
 /// The groups that need most memory, and on how many threads they can run at once.
 fn running(groups: &[Group], threads: usize) -> Vec<(&Group, usize)> {
     let mut largest: Vec<&Group> = groups.iter().collect();
-    largest.sort_by(|a, b| b.memory_bytes.total_cmp(&a.memory_bytes));
+    let memory_bytes = |group: &Group| group.memory_bytes + group.modes_bytes;
+    largest.sort_by(|a, b| memory_bytes(b).total_cmp(&memory_bytes(a)));
     let mut free = threads;
     let mut running = Vec::new();
     for group in largest {

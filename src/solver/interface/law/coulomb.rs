@@ -2,7 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::friction_law::FrictionLaw;
+use super::friction_law::{AtNode, FrictionLaw};
 use crate::solver::real::Real;
 
 /// Coulomb's law with the friction coefficient μ of one node, or of the nodes of a vector.
@@ -13,8 +13,8 @@ pub(in crate::solver) struct Coulomb<R> {
 
 impl<R: Real> FrictionLaw<R> for Coulomb<R> {
     #[inline(always)]
-    fn limit_n(&self, normal_n: R, _increment_m: [R; 2], _slipped: R) -> R {
-        self.mu * normal_n
+    fn limit_n(&self, node: &AtNode<R>) -> R {
+        self.mu * node.normal_n
     }
 }
 
@@ -26,7 +26,7 @@ impl<R: Real> FrictionLaw<R> for Frictionless {
     const TRANSMITS: bool = false;
 
     #[inline(always)]
-    fn limit_n(&self, normal_n: R, _increment_m: [R; 2], _slipped: R) -> R {
-        normal_n.zero()
+    fn limit_n(&self, node: &AtNode<R>) -> R {
+        node.normal_n.constant(0.0)
     }
 }

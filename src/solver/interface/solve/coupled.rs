@@ -278,6 +278,7 @@ impl<const L: usize> RingTarget<L> {
                 limit_n: 0.0,
                 last_increment_m: [0, 1].map(|c| contacts.previous_increment_m.at(slave.place, c)[lane]),
                 slipped: contacts.status.at(slave.place, Status::Slips as usize)[lane],
+                last_limit_n: contacts.friction.at(slave.place, LIMIT)[lane],
             };
             for share in shares {
                 let node = targets.node(share);
@@ -287,10 +288,11 @@ impl<const L: usize> RingTarget<L> {
                 row.compliance += share.weight * share.weight * (u_scale * node.inverse_mass);
             }
         }
-        let sweeps = targets.sweep(body, u_scale, drive.law, rows, shares);
+        let law = (drive.law, given.factors.time_step_s);
+        let sweeps = targets.sweep(body, u_scale, law, rows, shares);
         targets.spread(rows, shares);
         targets.respond(body, u_scale);
-        let residual = targets.residual(drive.law, rows, shares);
+        let residual = targets.residual(law, rows, shares);
         self.solves[lane].add(step, sweeps, residual);
         for ((slave, row), shares) in slaves.iter().zip(&*rows).zip(shares) {
             let place = slave.place;

@@ -18,7 +18,7 @@ use super::step_data::StepData;
 use crate::solver::body::block::Face;
 use crate::solver::field::{Block, FieldOf, in_slots_of};
 use crate::solver::interface::LIMIT;
-use crate::solver::interface::law::{FrictionLaw, LawOfLanes, project, with_law_of_lanes};
+use crate::solver::interface::law::{AtNode, FrictionLaw, LawOfLanes, project, with_law_of_lanes};
 use crate::solver::interface::{Contacts, Interface, SlaveNode, Status};
 use crate::solver::number::Number;
 use crate::solver::scheme::StepFactors;
@@ -60,7 +60,7 @@ impl<const L: usize, R: Number> DiagonalSolve<L, R> {
         for held in &mut self.held {
             held.keep(face, contacts);
         }
-        let laws = LawOfLanes::new(given.drives.map(|drive| drive.law));
+        let laws = LawOfLanes::new(given.drives.map(|drive| drive.law), given.factors.time_step_s);
         self.pass(given, face, contacts).run(&laws);
         let mut carried_n = [[0.0; L]; 3];
         for held in &self.held {
@@ -160,9 +160,20 @@ impl<R: Number> FacePass<'_, R> {
             let last_increment =
                 [load::<R, S>(simd, &previous_increment.0[0]), load::<R, S>(simd, &previous_increment.0[1])];
             let slipped = load::<R, S>(simd, &status.0[Status::Slips as usize]);
-            let limit = law.limit_n(normal, last_increment, slipped);
+            let trial = if W::TRANSMITS {
+                [zero - stiffness * slip[0], zero - stiffness * slip[1]]
+            } else {
+                [zero; 2]
+            };
+            let limit = law.limit_n(&AtNode {
+                normal_n: normal,
+                trial_n: trial,
+                stiffness_n_m: stiffness,
+                last_increment_m: last_increment,
+                last_slipped: slipped,
+                last_limit_n: load::<R, S>(simd, &friction.0[LIMIT]),
+            });
             let (mut tangential, sticks) = if W::TRANSMITS {
-                let trial = [zero - stiffness * slip[0], zero - stiffness * slip[1]];
                 let projected = project(trial, limit);
                 (projected.force_n, projected.sticks & closed)
             } else {

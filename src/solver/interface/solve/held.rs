@@ -8,7 +8,7 @@ use super::step_data::StepData;
 use crate::solver::body::block::Face;
 use crate::solver::field::LaneSlot;
 use crate::solver::interface::LIMIT;
-use crate::solver::interface::law::project;
+use crate::solver::interface::law::{AtNode, project};
 use crate::solver::interface::{Contacts, SlaveNode, Status};
 use crate::solver::number::Number;
 
@@ -21,11 +21,13 @@ pub(super) struct HeldNode<const L: usize> {
     u_m: [[f64; L]; 3],
     /// Whether the node slipped in the step before (0 or 1).
     slipped: [f64; L],
+    /// Friction limit \[N\] of the step before.
+    limit_n: [f64; L],
 }
 
 impl<const L: usize> HeldNode<L> {
     pub fn new(place: LaneSlot, node: SlaveNode) -> Self {
-        Self { place, node, u_m: [[0.0; L]; 3], slipped: [0.0; L] }
+        Self { place, node, u_m: [[0.0; L]; 3], slipped: [0.0; L], limit_n: [0.0; L] }
     }
 
     /// Stores the values that the pass will overwrite.
@@ -34,6 +36,7 @@ impl<const L: usize> HeldNode<L> {
             self.u_m[c] = face.u.at(self.place, c).map(R::to_f64);
         }
         self.slipped = contacts.status.at(self.place, Status::Slips as usize).map(R::to_f64);
+        self.limit_n = contacts.friction.at(self.place, LIMIT).map(R::to_f64);
     }
 
     /// Corrects the node in all lanes, after the pass has predicted it. Adds the contact forces \[N\] on its fixed
@@ -77,9 +80,16 @@ impl<const L: usize> HeldNode<L> {
         if gap < 0.0 && self.node.mobile[2] {
             closed = true;
             force[2] = -gap * stiffness;
-            let increment_m = [0, 1].map(|c| contacts.previous_increment_m.at(place, c)[lane].to_f64());
-            limit = drive.law.limit_n(force[2], increment_m, self.slipped[lane]);
             let slip = [0, 1].map(|c| (predicted[c] - self.u_m[c][lane]) - carried[c]);
+            let at_node = AtNode {
+                normal_n: force[2],
+                trial_n: slip.map(|s| -stiffness * s),
+                stiffness_n_m: stiffness,
+                last_increment_m: [0, 1].map(|c| contacts.previous_increment_m.at(place, c)[lane].to_f64()),
+                last_slipped: self.slipped[lane],
+                last_limit_n: self.limit_n[lane],
+            };
+            limit = drive.law.limit_n(&at_node, factors.time_step_s);
             ([force[0], force[1]], slips) = tangential(self.node.mobile, slip, stiffness, limit);
             for c in (0..3).filter(|&c| self.node.mobile[c]) {
                 let inverse = 1.0 / self.node.mass_kg;

@@ -6,7 +6,7 @@
 //! one stage. With several stages the sweeps contract.
 
 use crate::solver::body::ring::{RingBody, TrackForce, times};
-use crate::solver::interface::law::{Law, project};
+use crate::solver::interface::law::{AtNode, Law, project};
 use crate::solver::interface::target::patch::Share;
 use crate::solver::lane::next;
 
@@ -68,6 +68,8 @@ pub(super) struct ContactRow {
     pub last_increment_m: [f64; 2],
     /// Whether the node slipped in the step before (0 or 1).
     pub slipped: f64,
+    /// Limit \[N\] of the friction force in the step before.
+    pub last_limit_n: f64,
 }
 
 /// The nodes of the disk's top face that the slave nodes of a lane can touch, column by column.
@@ -118,6 +120,9 @@ impl TargetNode {
     }
 }
 
+/// A law, and the time step \[s\].
+pub(super) type LawInStep = (Law, f64);
+
 /// Solution of one row while all other forces stay fixed.
 struct RowSolution {
     force_n: [f64; 3],
@@ -143,7 +148,7 @@ impl TargetNodes {
     }
 
     /// Solves one row while all other forces stay fixed.
-    fn solve_row(&self, row: &ContactRow, shares: &[Share], law: Law) -> RowSolution {
+    fn solve_row(&self, row: &ContactRow, shares: &[Share], (law, time_step_s): LawInStep) -> RowSolution {
         let relative = self.relative_m(row, shares);
         let stiffness = 1.0 / row.compliance;
         // NaN gives no force here; the guard detects it.
@@ -152,14 +157,27 @@ impl TargetNodes {
             return RowSolution { force_n: [0.0, 0.0, normal], limit_n: 0.0, sticks: false };
         }
         let trial = [0, 1].map(|c| row.force_n[c] - relative[c] * stiffness);
-        let limit_n = law.limit_n(normal, row.last_increment_m, row.slipped);
+        let at_node = AtNode {
+            normal_n: normal,
+            trial_n: trial,
+            stiffness_n_m: stiffness,
+            last_increment_m: row.last_increment_m,
+            last_slipped: row.slipped,
+            last_limit_n: row.last_limit_n,
+        };
+        let limit_n = law.limit_n(&at_node, time_step_s);
         let friction = project(trial, limit_n);
         let [x, y] = friction.force_n;
         RowSolution { force_n: [x, y, normal], limit_n, sticks: friction.sticks }
     }
 
     /// Residual of the current forces, relative to the largest force: max |f − solved(f)| / max N.
-    pub fn residual<const K: usize>(&self, law: Law, rows: &[ContactRow], shares: &[[Share; K]]) -> f64 {
+    pub fn residual<const K: usize>(
+        &self,
+        law: LawInStep,
+        rows: &[ContactRow],
+        shares: &[[Share; K]],
+    ) -> f64 {
         let (mut missed, mut largest) = (0.0_f64, 0.0_f64);
         for (row, shares) in rows.iter().zip(shares) {
             let force = self.solve_row(row, shares, law).force_n;
@@ -177,7 +195,7 @@ impl TargetNodes {
         &mut self,
         body: &RingBody,
         u_scale: f64,
-        law: Law,
+        law: LawInStep,
         rows: &mut [ContactRow],
         shares: &[[Share; K]],
     ) -> u32 {

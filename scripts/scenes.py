@@ -1,0 +1,93 @@
+#!/usr/bin/env python3
+"""Writes docs/scenes.md: what a holder, another friction law and a crowned base change of the reference scene.
+
+Runs studies/holder.json, studies/friction_laws.json and studies/crown.json, and the reference scene with an ideal clamp. The
+words describe what these studies are; every number in the page is computed.
+"""
+
+import runs
+
+
+def cell(row):
+    """μ* and the frequency of a job."""
+    if row["status"] == "decayed":
+        return f"{row['mu_star']:.3f}, stable"
+    mark = "" if row["status"] == "periodic" else " (not periodic)"
+    return f"{row['mu_star']:.3f}, {row['frequency_hz'] / 1000:.1f} kHz{mark}" if row["frequency_hz"] else \
+        f"{row['mu_star']:.3f}{mark}"
+
+
+def by(rows, *names):
+    return {tuple(row[name] for name in names): row for row in rows}
+
+
+def reference(speeds):
+    """The reference scene on the same mesh, with an ideal clamp, Coulomb's law and a flat base."""
+    study = {
+        "name": "scenes_reference",
+        "preset": "draft",
+        "scene": {"contact": {"mu": 0.4}, "clamp": {"width_m": 0.001}},
+        "grid": {"omega_rpm": speeds},
+    }
+    return by(runs.sweep(study), "omega_rpm")
+
+
+def main():
+    runs.build()
+    holder = runs.sweep("studies/holder.json")
+    laws = runs.sweep("studies/friction_laws.json")
+    crowns = runs.sweep("studies/crown.json")
+    all_speeds = sorted({row["omega_rpm"] for row in holder + laws + crowns})
+    ideal = reference(all_speeds)
+
+    def head(rows):
+        speeds = sorted({row["omega_rpm"] for row in rows})
+        return speeds, [f"{speed:g} rpm" for speed in speeds]
+
+    speeds, words = head(holder)
+    found = by(holder, "holder_mass_kg", "holder_stiffness_y_n_m", "omega_rpm")
+    pairs = sorted({key[:2] for key in found})
+    holder_rows = [["ideal", "", *(cell(ideal[(speed,)]) for speed in speeds)]]
+    holder_rows += [[f"{1000 * mass:g}", f"{stiffness / 1e6:g}", *(cell(found[(mass, stiffness, speed)]) for speed in speeds)]
+                    for mass, stiffness in pairs]
+    holder_table = runs.table(["mass [g]", "stiffness [MN/m]", *words], holder_rows)
+    share = [abs(found[key]["mu_star"] / ideal[key[2:]]["mu_star"] - 1) for key in found]
+
+    speeds, words = head(laws)
+    found_laws = by(laws, "friction_law", "omega_rpm")
+    names = list(dict.fromkeys(row["friction_law"] for row in laws))
+    law_table = runs.table(["law", *words], [[f"`{name}`", *(cell(found_laws[(name, speed)]) for speed in speeds)] for name in names])
+
+    speeds, words = head(crowns)
+    found_crowns = by(crowns, "crown_radius_m", "omega_rpm")
+    radii = sorted({key[0] for key in found_crowns})
+    crown_rows = [[f"{radius:g}", *(cell(found_crowns[(radius, speed)]) for speed in speeds)] for radius in radii]
+    crown_rows.append(["flat", *(cell(ideal[(speed,)]) for speed in speeds)])
+    crown_table = runs.table(["radius [m]", *words], crown_rows)
+
+    runs.write(
+        "scenes.md",
+        "# Holder, friction law and base\n\n"
+        "Written by `scripts/scenes.py`; do not edit. Solved by the studies `studies/holder.json`, `studies/friction_laws.json` and\n"
+        "`studies/crown.json`, all on the mesh of the preset `draft`. So the numbers compare scenes, and they are not converged.\n"
+        "Each cell has μ\\* and the frequency.\n\n"
+        "## The holder\n\n"
+        "The holder moves in the sliding direction on a spring with a damper of 20 N s/m. In x and z it is ideal.\n\n"
+        + holder_table
+        + f"\nThe largest change of μ\\* from the ideal clamp is {100 * max(share):.0f} %. For somebody who measures friction: the holder is a\n"
+        "part of the result. What counts is its mass and its stiffness at the frequency of the squeal, and not the stiffness that a\n"
+        "static test shows. A heavy holder behaves like an ideal clamp, however soft its spring is.\n\n"
+        "## The friction law\n\n"
+        "μ is 0.4 for fast slip, the static coefficient is 0.5, the speed of `exponential` and `regularised` is 20 mm/s, and the length\n"
+        "of `prakash_clifton` is 0.1 µm.\n\n"
+        + law_table
+        + "\nA fall of μ\\* with the disk's speed says little about the law: Coulomb's law with one constant coefficient has it, too.\n\n"
+        "## The base\n\n"
+        "The base has a spherical crown. The load is 30 N.\n\n"
+        + crown_table
+        + "\nA crown concentrates the pressure in the middle, and with a small radius only a part of the base touches.\n",
+    )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,136 @@
+//! Contact and friction between pin and disk.
+
+use super::check::Violations;
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use strum::{IntoStaticStr, VariantArray};
+
+/// How the largest friction force of a node depends on its normal force N, its slip speed v and its past.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Default,
+    Serialize,
+    Deserialize,
+    JsonSchema,
+    IntoStaticStr,
+    VariantArray,
+)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum FrictionLaw {
+    /// μN.
+    #[default]
+    Coulomb,
+    /// `mu_static` N for a node that begins to slip, μN for one that slips.
+    StaticKinetic,
+    /// μ + (`mu_static` − μ) exp(−v/`speed_m_s`) + `slope_s_m` v, times N.
+    Exponential,
+    /// μN v/(v + `speed_m_s`): Coulomb's law without stick.
+    Regularised,
+    /// Approaches μN within a slip of `length_m`.
+    PrakashClifton,
+}
+
+impl FrictionLaw {
+    /// The name used in study files, for example `static_kinetic`.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+}
+
+/// Unilateral contact with friction, the same at every node.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Contact {
+    /// Local friction coefficient μ ≥ 0: Coulomb's, or that of fast slip under a constant load in other laws.
+    pub mu: f64,
+    /// The friction law.
+    pub law: FrictionLaw,
+    /// Coefficient ≥ 0 without slip, for the laws `static_kinetic` and `exponential`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mu_static: Option<f64>,
+    /// Slip speed (m/s) that scales the laws `exponential` and `regularised`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub speed_m_s: Option<f64>,
+    /// Rise ≥ 0 of the coefficient with the slip speed (s/m) in the law `exponential`. Absent: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slope_s_m: Option<f64>,
+    /// Slip (m) in which the law `prakash_clifton` follows the normal force.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub length_m: Option<f64>,
+}
+
+impl Default for Contact {
+    fn default() -> Self {
+        Self {
+            mu: 0.4,
+            law: FrictionLaw::Coulomb,
+            mu_static: None,
+            speed_m_s: None,
+            slope_s_m: None,
+            length_m: None,
+        }
+    }
+}
+
+impl Contact {
+    /// The same contact without the coefficients that its law does not use.
+    #[must_use]
+    pub fn in_use(&self) -> Self {
+        let rest = Self { mu: self.mu, law: self.law, ..Self::default() };
+        match self.law {
+            FrictionLaw::Coulomb => rest,
+            FrictionLaw::StaticKinetic => Self { mu_static: self.mu_static, ..rest },
+            FrictionLaw::Exponential => Self {
+                mu_static: self.mu_static,
+                speed_m_s: self.speed_m_s,
+                slope_s_m: self.slope_s_m.filter(|slope| *slope != 0.0),
+                ..rest
+            },
+            FrictionLaw::Regularised => Self { speed_m_s: self.speed_m_s, ..rest },
+            FrictionLaw::PrakashClifton => Self { length_m: self.length_m, ..rest },
+        }
+    }
+
+    /// Adds every violated limit to `found`.
+    pub(super) fn check(&self, found: &mut Violations) {
+        let name = self.law.name();
+        let uses = |laws: &[FrictionLaw]| laws.contains(&self.law);
+        found.require("scene.contact.mu", self.mu, self.mu >= 0.0, "a friction coefficient >= 0");
+        found.limit_magnitude("scene.contact.mu", self.mu);
+        let missing = |found: &mut Violations, field: &str, what: &str| {
+            found.add(field, "absent", format!("{what} for the friction law {name}"));
+        };
+        let is_static = uses(&[FrictionLaw::StaticKinetic, FrictionLaw::Exponential]);
+        match self.mu_static {
+            Some(mu) => {
+                found.require("scene.contact.mu_static", mu, mu >= 0.0, "a friction coefficient >= 0");
+                found.limit_magnitude("scene.contact.mu_static", mu);
+            }
+            None if is_static => missing(found, "scene.contact.mu_static", "a friction coefficient >= 0"),
+            None => {}
+        }
+        match self.speed_m_s {
+            Some(speed) => found.require_magnitude("scene.contact.speed_m_s", speed, "a slip speed > 0 m/s"),
+            None if uses(&[FrictionLaw::Exponential, FrictionLaw::Regularised]) => {
+                missing(found, "scene.contact.speed_m_s", "a slip speed > 0 m/s");
+            }
+            None => {}
+        }
+        if let Some(slope) = self.slope_s_m {
+            found.require("scene.contact.slope_s_m", slope, slope >= 0.0, "a rise >= 0 s/m");
+            found.limit_magnitude("scene.contact.slope_s_m", slope);
+        }
+        match self.length_m {
+            Some(length) => found.require_magnitude("scene.contact.length_m", length, "a length > 0 m"),
+            None if uses(&[FrictionLaw::PrakashClifton]) => {
+                missing(found, "scene.contact.length_m", "a length > 0 m");
+            }
+            None => {}
+        }
+    }
+}

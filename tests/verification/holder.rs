@@ -1,0 +1,154 @@
+//! B19 A holder between the pin and the frame.
+//!
+//! * **Alone**, a holder of the mass M with a node of the mass m on a spring k is an oscillator. The central difference gives
+//!   u_n = v₀Δt sin nθ/sin θ exactly, with sin(θ/2) = ωΔt/2 and ω² = k/(M + m). A damper d makes it decay at d/(2(M + m)).
+//!   The scheme takes the damper's force with the velocity of half a step before, so the rate has an error of first order.
+//! * **Without mass** it is a spring to the frame. Two masses on a belt with such a spring slip and stick as the same masses with
+//!   a spring among the springs of the pin, and T is the force of that spring.
+//! * **With a large mass** it is an ideal clamp: it moves by at most ∫∫|T|/M, so the difference from the ideal clamp falls like
+//!   1/M.
+
+use crate::common::advance;
+use crate::evidence::Evidence;
+use crate::particles::{Particles, X, Y, Z, audited_step};
+use tribosweep::analysis::drive;
+use tribosweep::solver::energy::EnergyLedger;
+use tribosweep::solver::interface::law::Law;
+use tribosweep::solver::support::{Held, Support, Tied};
+use tribosweep::solver::{Drive, Model, State, TimeStep, step};
+use tribosweep::spec::JobSpec;
+
+const NODE_KG: f64 = 0.5;
+const HOLDER_KG: f64 = 1.5;
+const STIFFNESS_N_M: f64 = 50.0;
+const OMEGA: f64 = 5.0;
+const SPEED_M_S: f64 = 0.3;
+
+fn held(mass_kg: f64, damping_n_s_m: f64) -> Support {
+    let tied = Tied { component: Y, nodes: vec![4] };
+    Support::Held(Held { tied, mass_kg, stiffness_n_m: STIFFNESS_N_M, damping_n_s_m })
+}
+
+fn model(mut system: Particles, holder: Option<Support>, time_step_s: f64) -> Model {
+    system.release(4, Y);
+    let mut definition = system.definition(0.0, TimeStep::Given(time_step_s));
+    definition.supports.extend(holder);
+    Model::new(definition).unwrap()
+}
+
+const STILL: Drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
+
+/// Protects: mass, spring and damper of a holder, and its share of the energies.
+#[test]
+fn a_holder_alone_is_an_oscillator() {
+    let mut motion = Evidence::new(
+        "B19",
+        "displacement of a holder on a spring [m]",
+        "exact discrete solution v₀Δt sin nθ/sin θ, sin(θ/2) = ωΔt/2, ω² = k/(M + m)",
+    );
+    let mut decay = Evidence::new("B19", "decay rate of a holder with a damper [1/s]", "d/(2(M + m))");
+    let mut energy = Evidence::new(
+        "B19",
+        "energy balance of a holder with a damper, relative to the energy at the start",
+        "stored energy + work of the damper = energy at the start, an identity of the scheme",
+    );
+    for w in [0.2, 0.1, 0.05] {
+        let resolution = format!("ωΔt = {w}");
+        let dt = w / OMEGA;
+        let free = model(Particles::corners(NODE_KG), Some(held(HOLDER_KG, 0.0)), dt);
+        let mut state = State::at_rest(&free);
+        state.p[3 * 4 + Y] = SPEED_M_S;
+        let steps = (63.0 / w) as usize;
+        advance(&free, &STILL, &mut state, steps);
+        let theta = 2.0 * (w / 2.0).asin();
+        let exact_m = SPEED_M_S * dt * (steps as f64 * theta).sin() / theta.sin();
+        motion.found(&resolution, state.u[3 * 4 + Y], exact_m, SPEED_M_S / OMEGA);
+
+        let damping_n_s_m = 0.8;
+        let damped = model(Particles::corners(NODE_KG), Some(held(HOLDER_KG, damping_n_s_m)), dt);
+        let (mut state, mut ledger) = (State::at_rest(&damped), EnergyLedger::new(&damped, 1));
+        state.p[3 * 4 + Y] = SPEED_M_S;
+        let mut stored_j = Vec::new();
+        for _ in 0..steps {
+            audited_step(&damped, STILL, &mut state, &mut ledger);
+            stored_j.push(ledger.energies(0).kinetic_j + ledger.energies(0).elastic_j);
+        }
+        // The conserved form of the energy oscillates about its decay by W². A whole number of half periods cancels that.
+        let half_period = (std::f64::consts::PI / theta).round() as usize;
+        let mean = |from: usize| stored_j[from..from + half_period].iter().sum::<f64>();
+        let (first, last) = (half_period, stored_j.len() - half_period - 1);
+        let rate = -0.5 * (mean(last) / mean(first)).ln() / ((last - first) as f64 * dt);
+        let exact = damping_n_s_m / (2.0 * (HOLDER_KG + NODE_KG));
+        decay.found(&resolution, rate, exact, exact);
+        let residual = ledger.energies(0).relative_residual();
+        energy.bounded(&resolution, residual, 0.0, 1.0, 8.0 * steps as f64 * f64::EPSILON);
+    }
+    motion.judge_exact(100.0 * 63.0 / 0.05);
+    decay.judge_overall_order(1.0, 2.0, "the ends of the window fall anywhere in a period");
+    energy.judge_bounded("eight roundings a step");
+}
+
+/// Protects: a holder without mass acts on the pin as a spring does, in stick and slip, and T is the force of that spring.
+#[test]
+fn a_holder_without_mass_is_a_spring() {
+    let two_masses = |with_spring: bool| {
+        let mut system = Particles::corners(NODE_KG);
+        system.release(0, X).release(0, Y).release(0, Z).load(0, Z, -1.0);
+        system.spring(0, 4, [0.0, 1.0, 0.0], 200.0);
+        if with_spring {
+            system.spring(4, 6, [0.0, 1.0, 0.0], STIFFNESS_N_M);
+        }
+        system
+    };
+    let on_belt =
+        Drive { law: Law::StaticKinetic { mu: 0.3, mu_static: 0.5 }, rate: 0.2, force_n: 10.0, ramp_s: 0.0 };
+    let dt = 0.004;
+    let spring = model(two_masses(true), None, dt);
+    let holder = model(two_masses(false), Some(held(0.0, 0.0)), dt);
+    let (mut on_spring, mut on_holder) = (State::<1>::at_rest(&spring), State::<1>::at_rest(&holder));
+    let mut ledger = EnergyLedger::new(&holder, 1);
+    let (mut stuck, steps) = (0, 3000);
+    for n in 0..steps {
+        let before_m = on_holder.u[3 * 4 + Y];
+        step(&spring, &[on_belt], &mut on_spring);
+        audited_step(&holder, on_belt, &mut on_holder, &mut ledger);
+        // The sums are formed in another order. Stick removes what has accumulated before.
+        for dof in [Y, 3 * 4 + Y] {
+            let difference = (on_spring.u[dof] - on_holder.u[dof]).abs();
+            assert!(difference < 1.0e-12, "step {n}: {difference:e}");
+        }
+        let force_n = on_holder.reaction_n[Y][0];
+        assert!((force_n + STIFFNESS_N_M * before_m).abs() < 1.0e-12, "step {n}: {force_n}");
+        stuck += usize::from(on_holder.contacts.state_of(0, 0).name() == "stick");
+    }
+    assert!(stuck > steps / 10 && stuck < steps, "stick and slip: {stuck}");
+    assert!(ledger.energies(0).relative_residual() < steps as f64 * f64::EPSILON);
+}
+
+/// Protects: the pin on a holder of a large mass moves as under an ideal clamp.
+#[test]
+fn a_heavy_holder_is_an_ideal_clamp() {
+    let mut clamp = Evidence::new(
+        "B19",
+        "displacement of the leading edge on a holder of mass M, against an ideal clamp [m]",
+        "an ideal clamp; the difference falls like 1/M",
+    );
+    let mut spec = JobSpec::default();
+    spec.scene.pin.elements = [6, 8, 5];
+    spec.scene.clamp.width_m = 0.002;
+    spec.numerics.time_step_s = Some(8.0e-7);
+    let edge = |spec: &JobSpec| {
+        let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
+        let mut state = State::<1>::at_rest(&model);
+        advance(&model, &drive(spec), &mut state, 800);
+        state.u[3 * model.interface().edge_centres()[0] + Y]
+    };
+    let exact_m = edge(&spec);
+    for mass_kg in [10.0, 20.0, 40.0, 80.0] {
+        spec.scene.holder.mass_kg = Some(mass_kg);
+        spec.scene.holder.stiffness_x_n_m = Some(0.0);
+        spec.scene.holder.stiffness_y_n_m = Some(0.0);
+        clamp.found(format!("M = {mass_kg} kg"), edge(&spec), exact_m, exact_m);
+    }
+    clamp.judge_order(1.0, 2.0, 1.0e-12);
+}
