@@ -31,6 +31,7 @@ pub mod lane;
 pub mod lanes;
 pub mod lines;
 pub mod nested;
+mod noted;
 mod outcome;
 pub mod record;
 pub mod sample;
@@ -45,9 +46,10 @@ pub use error::JobError;
 pub use job::{JobObserver, Unobserved, solve};
 pub use lanes::Moment;
 pub use nested::CoarseStart;
+pub use noted::Noted;
 pub use record::{
     ComplexMode, ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
 };
-pub use stability::{Noted, Structures};
+pub use stability::Structures;
 pub use steady::Obstacle;
 pub use workload::{Ending, Workload};

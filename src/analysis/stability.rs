@@ -4,6 +4,7 @@ use super::drive::drive;
 use super::error::{JobError, step_count};
 use super::lane::elastic_disk;
 use super::nested::Beginning;
+use super::noted::Noted;
 use super::record::{ComplexMode, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability};
 use super::sample::OBSERVED_NAMES;
 use crate::solver::interface::SlaveNode;
@@ -72,15 +73,6 @@ pub enum Verdict {
     Decided(Box<JobRecord>),
     /// The run decides. The record gets the eigenvalues, if they were computed.
     Undecided(Option<Noted>),
-}
-
-/// Eigenvalues of a job that runs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Noted {
-    /// The eigenvalues.
-    pub stability: SlidingStability,
-    /// Whether a mode grows by more than its error.
-    pub grows: bool,
 }
 
 impl Verdict {

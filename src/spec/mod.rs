@@ -166,7 +166,7 @@ impl JobSpec {
         let shear_m_s =
             elasticity::shear_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
         let pressure_pa = load.force_n / (pin.size_m[0] * pin.size_m[1]);
-        let speed_m_s = crate::units::rad_per_s_from_rpm(disk.omega_rpm) * disk.track_radius_m;
+        let speed_m_s = disk.omega_rpm * std::f64::consts::TAU / 60.0 * disk.track_radius_m;
         let mut found = Violations::default();
         self.check_single_precision(&mut found);
         disk.kind == DiskKind::Rigid

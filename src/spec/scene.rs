@@ -1,6 +1,6 @@
 //! The scene: pin, disk, contact law, boundary conditions and load.
 
-use super::check::Violations;
+use super::check::{Violations, readable};
 use super::contact::Contact;
 use super::elasticity;
 use super::holder::Holder;
@@ -161,6 +161,9 @@ impl Default for Load {
     }
 }
 
+/// Least load.
+const LEAST_LOAD_N: f64 = 1.0e-20;
+
 impl Scene {
     /// Time \[s\] that the slowest vibrations scale with: the time in which a shear wave crosses the pin's longest
     /// edge, or the longest length ℓ²/h of a part that bends, or √(mass over stiffness) of the holder. NaN for an unphysical material.
@@ -218,7 +221,12 @@ impl Scene {
         found.require("scene.clamp.width_m", width, width >= 0.0, "a width >= 0 m (0 holds one node row)");
         found.limit_magnitude("scene.clamp.width_m", width);
         let force = self.load.force_n;
-        found.require_magnitude("scene.load.force_n", force, "a load > 0 N, pressing the pin on the disk");
+        found.require("scene.load.force_n", force, force > 0.0, "a load > 0 N, pressing the pin on the disk");
+        if force > 0.0 && force < LEAST_LOAD_N {
+            let right =
+                format!("at least {LEAST_LOAD_N:e} N: the energies of less are below the range of numbers");
+            found.add("scene.load.force_n", readable(force), right);
+        }
         let ramp = self.load.ramp_s;
         found.require("scene.load.ramp_s", ramp, ramp >= 0.0, "a duration >= 0 s (0 is a sudden load)");
     }

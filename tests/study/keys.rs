@@ -25,6 +25,7 @@ fn with_elastic_disk() -> JobSpec {
 /// A job in which every optional field is given.
 pub fn full() -> JobSpec {
     let mut spec = with_elastic_disk();
+    spec.scene.pin.elements = [12, 15, 11];
     spec.scene.contact = Contact {
         mu: 0.4,
         law: FrictionLaw::Exponential,
@@ -122,6 +123,11 @@ fn every_field_changes_the_key_even_by_one_ulp() {
                 key(&spec)
             };
             assert_ne!(automatic(&changed), automatic(&full()), "{pointer} of an automatic time step");
+            continue;
+        }
+        // There are no eigenvalues on an elastic disk.
+        if pointer == "/stability" {
+            assert_eq!(key(&changed), key(&full()), "{pointer}");
             continue;
         }
         // The exponential law of this job does not use the length.
