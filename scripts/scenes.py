@@ -93,8 +93,9 @@ def main():
         "## The base\n\n"
         "The base has a spherical crown. The load is 30 N.\n\n"
         + crown_table
-        + "\nA crown concentrates the pressure in the middle, and with a small radius only a part of the base touches. Sliding is then hardly\n"
-        "disturbed. A job that is not periodic rocks on its crown at the end of its time, and its μ\\* is that of sliding.\n",
+        + "\nA crown concentrates the pressure in the middle, and with a small radius only a part of the base touches. It does\n"
+        "not squeal then: all nodes in contact slip, N varies by a few percent only, and μ\\* is μ. Some of these jobs are not periodic\n"
+        "instead of stable, because a decay cannot be measured while nodes at the edge of the contact open and close.\n",
     )
 
 

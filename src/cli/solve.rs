@@ -7,7 +7,7 @@ use super::warnings;
 use crate::analysis::{self, ElasticDisk, JobObserver, JobRecord, Moment, SlidingStability};
 use crate::exit;
 use crate::publish::value::quantity;
-use crate::spec::{JobSpec, Scene};
+use crate::spec::{FrictionLaw, JobSpec, Scene};
 use crate::study::{Preset, Study};
 use crate::sweep::History;
 use crate::worker::Interrupt;
@@ -89,10 +89,18 @@ fn as_json(record: &JobRecord) -> Result<String, CliError> {
 
 /// The most important inputs of a job.
 fn job_line(spec: &JobSpec) -> String {
-    let Scene { pin, disk, contact, load, .. } = &spec.scene;
+    let Scene { pin, disk, contact, load, holder, .. } = &spec.scene;
     let [nx, ny, nz] = pin.elements;
+    let law = if contact.law == FrictionLaw::Coulomb {
+        String::new()
+    } else {
+        format!(", friction law {}", contact.law.name())
+    };
+    let others =
+        [(!pin.base.is_flat(), ", a base that is not flat"), (!holder.is_ideal(), ", a holder that moves")];
+    let others: String = others.into_iter().filter_map(|(holds, words)| holds.then_some(words)).collect();
     format!(
-        "job                    ω = {}, μ = {}, F = {}, E = {}, {nx} × {ny} × {nz} elements\n",
+        "job                    ω = {}, μ = {}, F = {}, E = {}, {nx} × {ny} × {nz} elements{law}{others}\n",
         quantity(disk.omega_rpm, "rpm"),
         quantity(contact.mu, ""),
         quantity(load.force_n, "N"),
