@@ -83,7 +83,7 @@ def main():
         + holder_table
         + f"\nThe largest change of μ\\* from the ideal clamp is {100 * max(share):.0f} %. For somebody who measures friction: the holder is a\n"
         "part of the result. It changes most where its own frequency √(stiffness/mass)/(2π) is near that of the squeal: "
-        f"{near}.\nA holder of 100 g behaves like an ideal clamp, however soft its spring is, because its mass hardly moves at the frequency of\n"
+        f"{near}.\nA holder of 100 g behaves like an ideal clamp with each of these springs, because its mass hardly moves at the frequency of\n"
         "the squeal. So a static test of the stiffness says little.\n\n"
         "## The friction law\n\n"
         "μ is 0.4 for fast slip, the static coefficient is 0.5, the speed of `exponential` and `regularised` is 20 mm/s, and the length\n"

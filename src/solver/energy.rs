@@ -53,7 +53,7 @@ pub struct Energies {
     pub drive_work_j: f64,
     /// Energy dissipated by friction.
     pub friction_j: f64,
-    /// Energy dissipated by `β_R` and by β₂ > ½.
+    /// Energy dissipated by `β_R`, by β₂ > ½ and by dampers of a holder.
     pub damping_j: f64,
     /// Energy lost in contact impacts.
     pub contact_loss_j: f64,

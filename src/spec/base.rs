@@ -21,7 +21,7 @@ pub struct Base {
     /// Height (m) of the chamfer.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub chamfer_height_m: Option<f64>,
-    /// Height (m) of a wave from its mean, a (1 + sin(2πs/λ)). Absent: no wave.
+    /// Amplitude (m) of a wave, a in a (1 + sin(2πs/λ)). Absent: no wave.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wave_height_m: Option<f64>,
     /// Wavelength λ (m).
@@ -38,7 +38,11 @@ const ELEMENTS_OF_WAVE: f64 = 4.0;
 impl Base {
     /// Whether the base is a plane.
     pub fn is_flat(&self) -> bool {
-        *self == Self::default()
+        let has_height = |height: Option<f64>| height.is_some_and(|height| height != 0.0);
+        self.crown_radius_m.is_none()
+            && self.edge_radius_m.is_none()
+            && !has_height(self.chamfer_height_m)
+            && !has_height(self.wave_height_m)
     }
 
     /// Adds every violated limit to `found`, for a base with these edges and elements.
@@ -83,6 +87,9 @@ impl Base {
             found.limit_magnitude("scene.pin.base.wave_length_m", length);
         }
         if let Some(direction) = self.wave_direction_deg {
+            if self.wave_height_m.is_none() {
+                found.add("scene.pin.base.wave_height_m", "absent", "a height beside wave_direction_deg");
+            }
             let holds = (-360.0..=360.0).contains(&direction);
             found.require(
                 "scene.pin.base.wave_direction_deg",

@@ -19,7 +19,7 @@ pub struct Holder {
     /// Stiffness (N/m) to the frame in y, the sliding direction. Absent: rigid.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stiffness_y_n_m: Option<f64>,
-    /// Stiffness (N/m) to the frame in z, 0 for a dead weight. Absent: no holder in z.
+    /// 0 for a mass that moves with the top face in z. A spring in z would carry a part of the load. Absent: no holder in z.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub stiffness_z_n_m: Option<f64>,
     /// Damper (N s/m) in x. Absent: 0.
@@ -71,9 +71,10 @@ impl Holder {
         })
     }
 
-    /// The longest √(mass over stiffness) \[s\] of its springs, without the pin; 0 without springs.
-    pub(super) fn vibration_time_s(&self) -> f64 {
-        let of = |direction: &HolderDirection| (direction.mass_kg / direction.stiffness_n_m).sqrt();
+    /// The longest √(mass over stiffness) \[s\] of its springs with a pin of this mass; 0 without springs.
+    pub(super) fn vibration_time_s(&self, pin_kg: f64) -> f64 {
+        let of =
+            |direction: &HolderDirection| ((direction.mass_kg + pin_kg) / direction.stiffness_n_m).sqrt();
         let has_spring = |direction: &HolderDirection| direction.stiffness_n_m > 0.0;
         self.directions()
             .iter()
@@ -111,6 +112,11 @@ impl Holder {
                 found.require(&field, damping, damping >= 0.0, "a damper >= 0 N s/m");
                 found.limit_magnitude(&field, damping);
             }
+        }
+        if let Some(stiffness) = self.stiffness_z_n_m.filter(|stiffness| *stiffness > 0.0) {
+            let right =
+                "0 N/m, a mass that moves with the load: a spring in z would carry a part of the load";
+            found.add("scene.holder.stiffness_z_n_m", stiffness, right);
         }
         if self.mass_kg.is_some() && self.is_ideal() {
             found.add(

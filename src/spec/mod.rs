@@ -113,12 +113,18 @@ impl JobSpec {
         self.numerics.beta2 != 0.5
     }
 
-    /// Elements of the coarser mesh from which the job starts; none if it starts from rest, has no run, or has too few
-    /// elements for that.
+    /// Elements of the coarser mesh from which the job starts; none if it starts from rest, has no run, has too few
+    /// elements for that, or a scene whose motion alone is not its state or means something else on another mesh: a law that uses
+    /// the past, a holder that moves, or a base that is not flat.
     pub fn coarser_elements(&self) -> Option<[usize; 3]> {
         let elements = self.scene.pin.elements.map(|n| n.div_ceil(2));
         let is_nested = self.run.start == Start::Nested && self.stability != StabilityMethod::Modes;
-        (is_nested && elements.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS)).then_some(elements)
+        let law = self.scene.contact.law;
+        let is_carried_over = matches!(law, FrictionLaw::Coulomb | FrictionLaw::Regularised)
+            && self.scene.holder.is_ideal()
+            && self.scene.pin.base.is_flat();
+        (is_nested && is_carried_over && elements.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS))
+            .then_some(elements)
     }
 
     /// Whether the equations of steady sliding cover the scene: Coulomb's law, a rigid disk, an ideal clamp and a flat base.
@@ -158,7 +164,7 @@ impl JobSpec {
         }
     }
 
-    /// Whether single precision is known to keep the figures of the job (docs/studies.md): a rigid disk, ν below 0.48, a damping
+    /// Whether single precision is known to keep the figures of the job (docs/studies.md): a scene of [`Self::has_sliding_modes`], ν below 0.48, a damping
     /// of at least a tenth of the reference scene's in proportion to the pin, a speed above 0.1 rpm in the reference
     /// scene in proportion to the load, and numbers within the range of f32.
     pub fn suits_single_precision(&self) -> bool {
@@ -169,7 +175,7 @@ impl JobSpec {
         let speed_m_s = disk.omega_rpm * std::f64::consts::TAU / 60.0 * disk.track_radius_m;
         let mut found = Violations::default();
         self.check_single_precision(&mut found);
-        disk.kind == DiskKind::Rigid
+        self.has_sliding_modes()
             && pin.poisson_ratio < 0.48
             && self.numerics.beta_r_s >= LEAST_SINGLE_DAMPING * pin.shear_transit_s()
             && speed_m_s * pin.density_kg_m3 * shear_m_s >= LEAST_SINGLE_SPEED * pressure_pa
@@ -182,6 +188,11 @@ impl JobSpec {
         if young_modulus_pa > STIFFEST_SINGLE_PA {
             let right = format!("at most {STIFFEST_SINGLE_PA:e} in single precision");
             found.add("scene.pin.young_modulus_pa", check::readable(young_modulus_pa), right);
+        }
+        let law = self.scene.contact.law;
+        if law == FrictionLaw::PrakashClifton {
+            let right = "another law, or numerics.precision = double: its changes in a step are below the digits of single precision";
+            found.add("scene.contact.law", law.name(), right);
         }
         let force_n = self.scene.load.force_n;
         let compression_m = force_n * lz / (young_modulus_pa * lx * ly);

@@ -184,7 +184,7 @@ impl Scene {
         let wave_s = longest_m
             / elasticity::shear_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
         // The frequency 0.16 c/ℓ is that of an oscillator with √(m/k) = ℓ/c. NaN must remain.
-        let holder_s = self.holder.vibration_time_s();
+        let holder_s = self.holder.vibration_time_s(pin.density_kg_m3 * x * y * z);
         if holder_s > wave_s { holder_s } else { wave_s }
     }
 

@@ -96,6 +96,13 @@ fn companions_and_interruptions_change_nothing_with_other_laws() {
             (DiskKind::Rigid, Precision::Single),
             (DiskKind::Elastic, Precision::Double),
         ] {
+            if precision == Precision::Single && *law == FrictionLaw::PrakashClifton {
+                assert!(jobs(disk, precision).pop().is_some_and(|mut job| {
+                    job.scene.contact.law = *law;
+                    job.check().is_err()
+                }));
+                continue;
+            }
             let mut jobs = jobs(disk, precision);
             for (i, job) in jobs.iter_mut().enumerate() {
                 let contact = &mut job.scene.contact;

@@ -142,7 +142,7 @@ fn holder(random: &mut Random, spec: &mut JobSpec) {
     (holder.stiffness_x_n_m, holder.damping_x_n_s_m) = direction();
     let along_z = direction();
     if is_tied {
-        (holder.stiffness_z_n_m, holder.damping_z_n_s_m) = along_z;
+        (holder.stiffness_z_n_m, holder.damping_z_n_s_m) = (Some(0.0), along_z.1);
     }
 }
 
