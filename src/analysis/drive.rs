@@ -18,7 +18,7 @@ pub fn drive(spec: &JobSpec) -> Drive {
     }
 }
 
-/// The law of a contact that passes its checks. A coefficient that is absent there is NaN, which a run refuses.
+/// The law of a contact. The check of a job refuses a law without its coefficients, so that NaN reaches no run.
 fn law(contact: &Contact) -> Law {
     let mu = contact.mu;
     let given = |value: Option<f64>| value.unwrap_or(f64::NAN);

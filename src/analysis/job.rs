@@ -35,8 +35,8 @@ pub struct Unobserved;
 
 impl JobObserver for Unobserved {}
 
-/// Solves one job. If the eigenvalues of steady sliding decide it, there is no run on its own mesh, unless `observer` needs it. `observer` receives no
-/// steps on a coarser mesh, only the progress.
+/// Solves one job. If the eigenvalues of steady sliding decide it, there is no run on its own mesh, unless `observer` needs
+/// it. `observer` receives no steps on a coarser mesh, only the progress.
 ///
 /// # Errors
 /// If the specification is not physical, the solver refuses it, the run takes too many steps or diverges, a

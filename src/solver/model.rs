@@ -105,7 +105,7 @@ impl Model {
     }
 
     /// The same model with other initial gaps \[m\].
-    pub(super) fn with_initial_gaps(self, gap_m: impl FnMut(&SlaveNode) -> f64) -> Self {
+    pub(super) fn with_initial_gaps(self, gap_m: impl Fn(&SlaveNode) -> f64) -> Self {
         Self { interface: self.interface.with_initial_gaps(gap_m), ..self }
     }
 

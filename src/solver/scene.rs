@@ -3,7 +3,7 @@
 use super::body::block::{BlockMesh, Stiffness};
 use super::body::ring::RingDefinition;
 use super::error::SolverError;
-use super::interface::initial_gaps_m;
+use super::interface::initial_gap_m;
 use super::interface::target::{TargetDefinition, rotating_disk};
 use super::material::Material;
 use super::model::{Model, ModelDefinition};
@@ -47,9 +47,9 @@ impl Model {
         if scene.pin.base.is_flat() {
             return Ok(model);
         }
-        let gaps = initial_gaps_m(&scene.pin, model.slaves().iter().map(|slave| slave.position_m));
-        let mut gaps = gaps.into_iter();
-        Ok(model.with_initial_gaps(|_| gaps.next().unwrap_or(0.0)))
+        let positions_m: Vec<_> = model.slaves().iter().map(|slave| slave.position_m).collect();
+        let gap_m = initial_gap_m(&scene.pin, &positions_m);
+        Ok(model.with_initial_gaps(|slave| gap_m(slave.position_m)))
     }
 
     /// Checks the numbers that a step multiplies with. Between them and the ends of the range, products keep their digits.

@@ -34,7 +34,7 @@ impl PinMotion {
             let moved = match *freedom {
                 Freedom::Free => own,
                 Freedom::Fixed => [0.0; 2],
-                // The scenes tie whole planes, so the members of a tie agree on the other mesh too.
+                // Without a holder that moves, scenes tie whole planes, so the members of a tie agree on the other mesh too.
                 Freedom::Tied(group) => {
                     of_groups.resize(of_groups.len().max(group + 1), None);
                     *of_groups[group].get_or_insert(own)
@@ -64,8 +64,8 @@ impl<const L: usize, R: RunNumber> StateOf<L, R> {
 
     /// Sets the motion with which the job in a lane begins. The lane is at rest and on a rigid target.
     ///
-    /// The contact forces of a step on a rigid target follow from the motion alone, so nothing else has to be set: the work
-    /// of the forces at n = 0 has no increment before it.
+    /// The contact forces of a step on a rigid target follow from the motion alone, if the friction law does not use the past.
+    /// So nothing else has to be set: the work of the forces at n = 0 has no increment before it.
     ///
     /// # Panics
     /// If the motion is not one of the model's mesh.

@@ -113,9 +113,8 @@ impl JobSpec {
         self.numerics.beta2 != 0.5
     }
 
-    /// Elements of the coarser mesh from which the job starts; none if it starts from rest, has no run, has too few
-    /// elements for that, or a scene whose motion alone is not its state or means something else on another mesh: a law that uses
-    /// the past, a holder that moves, or a base that is not flat.
+    /// Elements of the coarser mesh from which the job starts; none if it starts from rest, has no run or too few elements. A
+    /// motion on another mesh is not enough for a law that uses the past, a holder that moves, or a base that is not flat.
     pub fn coarser_elements(&self) -> Option<[usize; 3]> {
         let elements = self.scene.pin.elements.map(|n| n.div_ceil(2));
         let is_nested = self.run.start == Start::Nested && self.stability != StabilityMethod::Modes;
@@ -164,9 +163,9 @@ impl JobSpec {
         }
     }
 
-    /// Whether single precision is known to keep the figures of the job (docs/studies.md): a scene of [`Self::has_sliding_modes`], ν below 0.48, a damping
-    /// of at least a tenth of the reference scene's in proportion to the pin, a speed above 0.1 rpm in the reference
-    /// scene in proportion to the load, and numbers within the range of f32.
+    /// Whether single precision is known to keep the figures of the job (docs/studies.md): a scene of
+    /// [`Self::has_sliding_modes`], ν below 0.48, at least a tenth of the reference scene's damping in proportion to the pin, at
+    /// least 0.1 rpm of the reference scene in proportion to the load, and numbers within the range of f32.
     pub fn suits_single_precision(&self) -> bool {
         let Scene { pin, disk, load, .. } = &self.scene;
         let shear_m_s =

@@ -31,5 +31,5 @@ mod work;
 pub(crate) use contacts::LIMIT;
 pub use contacts::{ContactState, Contacts, Status};
 pub use pair::{Interface, SlaveNode};
-pub(in crate::solver) use profile::initial_gaps_m;
+pub(in crate::solver) use profile::initial_gap_m;
 pub(in crate::solver) use work::InterfaceWork;

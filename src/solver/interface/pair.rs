@@ -70,7 +70,7 @@ impl Interface {
     }
 
     /// The same slave nodes with other initial gaps \[m\].
-    pub(in crate::solver) fn with_initial_gaps(mut self, mut gap_m: impl FnMut(&SlaveNode) -> f64) -> Self {
+    pub(in crate::solver) fn with_initial_gaps(mut self, gap_m: impl Fn(&SlaveNode) -> f64) -> Self {
         for node in &mut self.slaves {
             node.initial_gap_m = gap_m(node);
         }

@@ -3,14 +3,13 @@
 use crate::spec::{Base, Pin};
 use std::f64::consts::TAU;
 
-/// The height \[m\] of the undeformed base over the plane that its deepest point touches, at a point from the pin's axis. The
-/// deepest point is that of the crown and the wave, not of the mesh.
+/// The height \[m\] of the undeformed base over the lowest point that its parts allow, at a point from the pin's axis.
 ///
 /// * Crown of radius R: R − √(R² − r²) at the distance r from the axis.
 /// * Rounded edge of radius ρ: ρ − √(ρ² − d²), where d is the distance from the flat part.
 /// * Chamfer of width w and height h: h d/w.
 /// * Wave: a (1 + sin(2πs/λ)).
-pub fn height_m(base: &Base, size_m: [f64; 2], [x, y]: [f64; 2]) -> f64 {
+fn height_m(base: &Base, size_m: [f64; 2], [x, y]: [f64; 2]) -> f64 {
     let arc = |radius: f64, distance: f64| {
         let inside = distance.min(radius);
         inside * inside / (radius + (radius * radius - inside * inside).max(0.0).sqrt())
@@ -30,12 +29,13 @@ pub fn height_m(base: &Base, size_m: [f64; 2], [x, y]: [f64; 2]) -> f64 {
     crown + rounded + chamfer + wave
 }
 
-/// The initial gaps \[m\] of the nodes of a pin's base at these positions \[m\] from its axis. The lowest is zero.
-pub fn initial_gaps_m(pin: &Pin, positions_m: impl Iterator<Item = [f64; 2]>) -> Vec<f64> {
+/// The initial gap \[m\] of a node of a pin's base, by its position \[m\] from the pin's axis. Of the nodes at `positions_m` the
+/// lowest has none.
+pub fn initial_gap_m<'a>(pin: &'a Pin, positions_m: &[[f64; 2]]) -> impl Fn([f64; 2]) -> f64 + use<'a> {
     let size_m = [pin.size_m[0], pin.size_m[1]];
-    let heights: Vec<f64> = positions_m.map(|position| height_m(&pin.base, size_m, position)).collect();
-    let lowest = heights.iter().copied().fold(f64::INFINITY, f64::min);
-    heights.into_iter().map(|height| height - lowest).collect()
+    let height = move |position_m| height_m(&pin.base, size_m, position_m);
+    let lowest_m = positions_m.iter().map(|position_m| height(*position_m)).fold(f64::INFINITY, f64::min);
+    move |position_m| height(position_m) - lowest_m
 }
 
 #[cfg(test)]
@@ -78,7 +78,8 @@ mod tests {
     fn the_lowest_node_has_no_gap() {
         let base = Base { wave_height_m: Some(1.0e-6), wave_length_m: Some(0.0075), ..Base::default() };
         let pin = Pin { base, ..Pin::default() };
-        let gaps = initial_gaps_m(&pin, [[0.0, 0.0], [0.0, 0.001], [0.0, 0.002]].into_iter());
+        let positions = [[0.0, 0.0], [0.0, 0.001], [0.0, 0.002]];
+        let gaps = positions.map(initial_gap_m(&pin, &positions));
         assert_eq!(gaps[0], 0.0);
         assert!(gaps[1] > 0.0 && gaps[2] > gaps[1] - 1.0e-6, "{gaps:?}");
     }
