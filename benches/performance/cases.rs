@@ -6,15 +6,15 @@ use serde::Serialize;
 use std::sync::Arc;
 use tribosweep::analysis::batch::Batch;
 use tribosweep::analysis::lanes::{AUDIT_INTERVAL, LanesOf};
-use tribosweep::solver::body::block::operator::{AssembledOperator, Operator, Scratch, TensorOperator};
 use tribosweep::solver::body::hexahedron;
+use tribosweep::solver::body::pin::operator::{AssembledOperator, Operator, TensorOperator};
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, RunNumber, State, StateOf, step};
-use tribosweep::spec::{JobSpec, Precision, StabilityMethod, TopFace};
+use tribosweep::spec::{JobSpec, Precision, Region, StabilityMethod, TopFace};
 
 /// Additions and multiplications of an inner node in a step, counted in
-/// `solver::body::block::operator::tensor::pass` (100) and `solver::body::block::motion` (6 for u + β_R p, 21
+/// `solver::body::pin::operator::tensor::pass` (100) and `solver::body::pin::motion` (6 for u + β_R p, 21
 /// for the motion).
 const FLOPS: f64 = 127.0;
 /// Numbers of a node in a step. Displacements and velocities are read and written once.
@@ -110,7 +110,7 @@ fn mesh<const L: usize, R: RunNumber>(
     settle(&spec, || (0..STEPS).for_each(|_| step(&model, &drives, &mut state)));
     let x = state.u.clone();
     let mut y = state.u.clone();
-    let mut scratch = Scratch::<R>::new(model.mesh(), L);
+    let mut scratch = model.pin().operator().scratch::<R>(model.mesh().layout(), L);
     let product_s = seconds(&name("product"), || model.pin().operator().product(&x, &mut y, &mut scratch));
     let step_s = seconds(&name("step"), || step(&model, &drives, &mut state));
     let mut lanes = lanes::<L, R>(&spec, L);
@@ -207,10 +207,10 @@ impl Pair {
 }
 
 /// Time of a step of one scene with eight lanes, in ns per node, step and job.
-fn stepping(name: &str, spec: &JobSpec, mu: f64) -> f64 {
+fn stepping<R: RunNumber>(name: &str, spec: &JobSpec, mu: f64) -> f64 {
     let model = model(spec);
     let drives = [Drive { law: Law::Coulomb { mu }, rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
-    let mut state = State::<8>::at_rest(&model);
+    let mut state = StateOf::<8, R>::at_rest(&model);
     settle(spec, || (0..STEPS).for_each(|_| step(&model, &drives, &mut state)));
     per_node(&model, 8, 1, seconds(name, || step(&model, &drives, &mut state)))
 }
@@ -230,7 +230,7 @@ pub fn pairs() -> Vec<Pair> {
 
 fn round_of_pairs() -> Vec<Pair> {
     let base = spec([12, 15, 10]);
-    let full = stepping("pair_full", &base, 0.4);
+    let full = stepping::<f64>("pair_full", &base, 0.4);
     let mut undamped = base.clone();
     undamped.numerics.beta_r_s = 0.0;
     let mut free = base.clone();
@@ -255,28 +255,46 @@ fn round_of_pairs() -> Vec<Pair> {
         history.clear();
         analysed.advance(&mut |moment| history.push(*moment.sample));
     });
-    let element = hexahedron::stiffness(model.pin().material(), model.mesh().element_size_m());
+    let block = model.mesh().block().expect("a block");
+    let element = hexahedron::stiffness(model.pin().material(), block.element_size_m());
     let forms = [
-        ("pair_assembled", Operator::Assembled(AssembledOperator::of_block(model.mesh(), &element))),
-        ("pair_tensor", Operator::Tensor(TensorOperator::new(model.mesh(), model.pin().material()))),
+        ("pair_assembled", Operator::Assembled(AssembledOperator::of_block(block, &element))),
+        ("pair_tensor", Operator::Tensor(TensorOperator::new(block, model.pin().material()))),
     ];
     let x = state.u.clone();
     let mut y = state.u.clone();
-    let mut scratch = Scratch::new(model.mesh(), 8);
     let [assembled, tensor] = forms.map(|(name, operator)| {
+        let mut scratch = operator.scratch(model.mesh().layout(), 8);
         per_node(&model, 8, 1, seconds(name, || operator.product(&x, &mut y, &mut scratch)))
     });
     vec![
-        Pair::new("damping: β_R > 0, or 0", full, stepping("pair_undamped", &undamped, 0.4)),
-        Pair::new("friction: μ > 0, or 0", full, stepping("pair_frictionless", &base, 0.0)),
-        Pair::new("top face: tied in z, or free", full, stepping("pair_free", &free, 0.4)),
+        Pair::new("damping: β_R > 0, or 0", full, stepping::<f64>("pair_undamped", &undamped, 0.4)),
+        Pair::new("friction: μ > 0, or 0", full, stepping::<f64>("pair_frictionless", &base, 0.0)),
+        Pair::new("top face: tied in z, or free", full, stepping::<f64>("pair_free", &free, 0.4)),
         Pair::new("energies and what the divergence guard compares, or none", audited, full),
         Pair::new("statistics and detection, or energies alone", analysed_ns, audited),
         Pair::new("history of every step, or none", per_node(&model, 8, STEPS, observed_s), analysed_ns),
         Pair::new("eight jobs in eight lanes, or each alone", alone(&base), analysed_ns),
         Pair::new("three jobs in eight lanes, or in four", sparse(&base), narrowed(&base)),
+        general::<f64>("a general mesh or a block of 9828 nodes, double precision"),
+        general::<f32>("a general mesh or a block of 9828 nodes, single precision"),
         Pair::new("product with the assembled rows, or by tensor products", assembled, tensor),
     ]
+}
+
+/// A step with the operator of general meshes, or with that of a block. The pin consists of two regions of the same material, so both
+/// compute the same motion.
+fn general<R: RunNumber>(what: &'static str) -> Pair {
+    let block = spec([20, 25, 17]);
+    let mut general = block.clone();
+    let pin = &mut general.scene.pin;
+    pin.regions = vec![Region {
+        above_m: pin.size_m[2] * 8.0 / 17.0,
+        young_modulus_pa: pin.young_modulus_pa,
+        poisson_ratio: pin.poisson_ratio,
+        density_kg_m3: pin.density_kg_m3,
+    }];
+    Pair::new(what, stepping::<R>("pair_general", &general, 0.4), stepping::<R>("pair_block", &block, 0.4))
 }
 
 fn alone(base: &JobSpec) -> f64 {

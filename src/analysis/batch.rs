@@ -7,7 +7,7 @@ use super::nested::{Beginning, COST, CoarseStart, coarser};
 use super::record::JobRecord;
 use super::stability::{Structures, Verdict, judge};
 use super::workload::Workload;
-use crate::solver::body::block::BlockMesh;
+use crate::solver::body::pin::BlockMesh;
 use crate::solver::{Model, RunNumber};
 use crate::spec::{JobSpec, Precision};
 use std::collections::BTreeMap;
@@ -409,7 +409,7 @@ impl Preparing {
     fn ready(self, end: Ended) -> Ready {
         let [from, to] = [&self.coarse, &self.spec].map(|spec| {
             let pin = &spec.scene.pin;
-            BlockMesh::new(pin.size_m, pin.elements)
+            BlockMesh::new(pin.extent_m(), pin.elements)
         });
         let record = end.result.as_ref().ok();
         let start = CoarseStart {

@@ -68,7 +68,7 @@ impl Workload {
     pub fn of(model: &Model, precision: Precision) -> Self {
         let disk = model.ring();
         Self {
-            elements: model.mesh().elements(),
+            elements: model.mesh().divisions(),
             precision,
             pin_nodes: model.mesh().node_count(),
             disk_nodes: disk.map_or(0, |disk| disk.mesh().node_count()),
@@ -88,7 +88,7 @@ impl Workload {
         let pin = &spec.scene.pin;
         let wave_speed =
             elasticity::pressure_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
-        let edges = pin.size_m.iter().zip(pin.elements).map(|(size, n)| size / n as f64);
+        let edges = pin.extent_m().into_iter().zip(pin.elements).map(|(size, n)| size / n as f64);
         let shortest = edges.fold(f64::INFINITY, f64::min);
         let omega_max = LARGEST_FREQUENCY * wave_speed / shortest;
         let numerics = &spec.numerics;
@@ -101,7 +101,7 @@ impl Workload {
         Ok(Self {
             elements: pin.elements,
             precision: numerics.precision,
-            pin_nodes: pin.elements.iter().map(|n| n + 1).product(),
+            pin_nodes: pin.node_count() as usize,
             disk_nodes,
             disk_stages,
             time_step_s: numerics.time_step_s.unwrap_or(numerics.safety_factor * limit_s),
@@ -203,7 +203,7 @@ impl Ending {
         let pin = &spec.scene.pin;
         let shear =
             elasticity::shear_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
-        let cycles_s = spec.detection.cycles as f64 * PERIOD * pin.size_m[2] / shear;
+        let cycles_s = spec.detection.cycles as f64 * PERIOD * pin.extent_m()[2] / shear;
         let [early_s, likely_s, late_s] = OBSERVATIONS.map(|observations| {
             let end = spec.scene.load.ramp_s + observations * spec.detection.decay_observation_s + cycles_s;
             end.min(limit_s)

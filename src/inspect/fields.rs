@@ -4,8 +4,8 @@ use super::capture::{Capture, Frame};
 use super::vtu::{self, GridInfo, PointData, Values};
 use crate::analysis::sample::NodeSample;
 use crate::publish::{Folder, PublishError};
-use crate::solver::body::block::BlockMesh;
-use crate::solver::body::block::stress;
+use crate::solver::body::pin::PinMesh;
+use crate::solver::body::pin::stress;
 use crate::solver::interface::ContactState;
 
 /// The corners of an element in the order of VTK, which goes around each face.
@@ -60,16 +60,13 @@ pub fn write(capture: &Capture, folder: &mut Folder) -> Result<(), PublishError>
 }
 
 /// The nodes [m] of the pin, and its elements with their corners in the order of VTK.
-pub(super) fn grid(mesh: &BlockMesh) -> (Vec<[f64; 3]>, Vec<[usize; 8]>) {
+pub(super) fn grid(mesh: &PinMesh) -> (Vec<[f64; 3]>, Vec<[usize; 8]>) {
     let points_m = (0..mesh.node_count()).map(|node| mesh.coordinates_m(node)).collect();
-    let corners = |[i, j, k]: [usize; 3]| {
-        let corners = mesh.element_nodes(i, j, k);
-        VTK_CORNERS.map(|corner| corners[corner])
-    };
-    (points_m, mesh.element_positions().map(corners).collect())
+    let corners = |corners: [usize; 8]| VTK_CORNERS.map(|corner| corners[corner]);
+    (points_m, mesh.element_nodes().into_iter().map(corners).collect())
 }
 
-fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointData> {
+fn point_data(capture: &Capture, mesh: &PinMesh, frame: &Frame) -> Vec<PointData> {
     let numbers = |name, count, components, values: Vec<f64>| PointData {
         name,
         components,
@@ -85,7 +82,7 @@ fn point_data(capture: &Capture, mesh: &BlockMesh, frame: &Frame) -> Vec<PointDa
     };
     let mut codes: Vec<i8> = frame.face.iter().map(|node| code(node.state)).collect();
     codes.resize(mesh.node_count(), NO_CONTACT_NODE);
-    let stress = stress::nodal_pa(mesh, capture.model.pin().material(), &frame.u_m);
+    let stress = stress::nodal_pa(mesh, capture.model.pin().materials(), &frame.u_m);
     let principal: Vec<f64> = stress.iter().flat_map(|at| stress::principal_pa(*at)).collect();
     vec![
         numbers("displacement_m", 3, &[], frame.u_m.clone()),

@@ -1,12 +1,14 @@
 //! The inspection of a job: both runs, and what their data show.
 
 use super::capture::{Capture, FaceStep, capture};
+use super::grid::FaceGrid;
 use super::nodes::{NodeSelector, ObservedNode};
 use super::phases::{Instants, Phase, phases};
 use super::spectrum::Spectrum;
 use super::survey::{FEWEST_CYCLES, Survey, survey};
 use crate::analysis::JobError;
-use crate::solver::body::block::BlockMesh;
+use crate::solver::Model;
+use crate::solver::body::pin::PinMesh;
 use crate::spec::{JobSpec, StabilityMethod};
 use crate::units::rad_per_s_from_rpm;
 use std::ops::ControlFlow;
@@ -120,15 +122,20 @@ impl Inspection {
     }
 
     /// The mesh of the pin.
-    pub fn mesh(&self) -> &BlockMesh {
+    pub fn mesh(&self) -> &PinMesh {
         self.capture.model.mesh()
+    }
+
+    /// Lines of nodes on the contact face.
+    pub(super) fn face_grid(&self) -> FaceGrid {
+        FaceGrid::new(self.mesh())
     }
 }
 
 /// The nodes that are selected, after a check of the job.
 pub fn nodes_of(spec: &JobSpec, nodes: &[NodeSelector]) -> Result<Vec<ObservedNode>, InspectionError> {
     spec.check().map_err(JobError::from)?;
-    let mesh = BlockMesh::new(spec.scene.pin.size_m, spec.scene.pin.elements);
+    let mesh = Model::mesh_of(&spec.scene).map_err(JobError::from)?;
     nodes
         .iter()
         .map(|selector| selector.resolve(&mesh))

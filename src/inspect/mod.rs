@@ -18,6 +18,7 @@ mod energies;
 mod envelope;
 mod fields;
 mod figures;
+mod grid;
 mod inspection;
 mod loops;
 mod low_pass;

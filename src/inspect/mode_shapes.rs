@@ -3,7 +3,7 @@
 use super::fields::grid;
 use super::vtu::{self, GridInfo, PointData, Values};
 use crate::publish::{Folder, PublishError};
-use crate::solver::body::block::BlockMesh;
+use crate::solver::body::pin::PinMesh;
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 
@@ -22,7 +22,7 @@ const PHASES: usize = 24;
 /// The first file that could not be written.
 pub fn write_mode(
     folder: &mut Folder,
-    mesh: &BlockMesh,
+    mesh: &PinMesh,
     name: &str,
     frequency_hz: f64,
     shape: &[Complex<f64>],
@@ -59,6 +59,7 @@ fn vector(name: &'static str, shape: &[Complex<f64>], of: impl Fn(Complex<f64>) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::body::pin::BlockMesh;
     use std::fs;
 
     /// The numbers of an array of single precision in a file.
@@ -83,7 +84,7 @@ mod tests {
     /// amplitude and the phase of every component.
     #[test]
     fn a_period_of_the_motion_is_written() {
-        let mesh = BlockMesh::new([1e-3, 2e-3, 3e-3], [1, 2, 1]);
+        let mesh: PinMesh = BlockMesh::new([1e-3, 2e-3, 3e-3], [1, 2, 1]).into();
         let q = |index: usize| Complex::from_polar(1.0 / (1.0 + index as f64), 0.3 * index as f64 - 3.0);
         let shape: Vec<Complex<f64>> = (0..3 * mesh.node_count()).map(q).collect();
         let path = tempfile::tempdir().unwrap();
@@ -115,7 +116,7 @@ mod tests {
     /// Protects: a mode that does not vibrate has finite times.
     #[test]
     fn a_mode_without_vibration_has_a_period_too() {
-        let mesh = BlockMesh::new([1e-3; 3], [1; 3]);
+        let mesh: PinMesh = BlockMesh::new([1e-3; 3], [1; 3]).into();
         let path = tempfile::tempdir().unwrap();
         let mut folder = Folder::create(path.path(), "modes").unwrap();
         write_mode(&mut folder, &mesh, "still", 0.0, &[Complex::new(1.0, 0.0); 24], 1.0).unwrap();

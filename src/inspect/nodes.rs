@@ -1,7 +1,7 @@
 //! Nodes of the contact face, selected by name or by coordinates.
 
 use crate::publish::value::rounded;
-use crate::solver::body::block::BlockMesh;
+use crate::solver::body::pin::PinMesh;
 
 /// The nodes that have names, with their positions across the sliding direction (x) and along it (y), from −1 to 1. The
 /// disk moves towards +y, so the front is at −1.
@@ -54,7 +54,7 @@ impl NodeSelector {
     ///
     /// # Errors
     /// A message if the coordinates are outside of the contact face.
-    pub fn resolve(&self, mesh: &BlockMesh) -> Result<ObservedNode, String> {
+    pub fn resolve(&self, mesh: &PinMesh) -> Result<ObservedNode, String> {
         let [lx, ly, _] = mesh.size_m();
         let [x, y] = match self {
             Self::At(at) => *at,
@@ -76,14 +76,8 @@ impl NodeSelector {
                 ly * 500.0
             ));
         }
-        let [nx, ny, _] = mesh.elements();
-        // With an odd number of elements no node is in the middle. The lower one is taken, as in the record.
-        let index = |at: f64, length: f64, n: usize| {
-            let exact = (at / length + 0.5) * n as f64;
-            ((exact - 0.5 - 1e-9).ceil().max(0.0) as usize).min(n)
-        };
-        let slave = mesh.node(index(x, lx, nx), index(y, ly, ny), 0);
-        let [x, y, _] = mesh.coordinates_m(slave);
+        let slave = nearest(mesh, [x, y]);
+        let [x, y, _] = mesh.own_coordinates_m(slave);
         let place = format!("x = {:.2} mm, y = {:.2} mm", x * 1e3, y * 1e3);
         let (name, title) = match self {
             Self::Named(name) => ((*name).to_owned(), format!("{} ({place})", name.replace('_', " "))),
@@ -91,6 +85,24 @@ impl NodeSelector {
         };
         Ok(ObservedNode { name, title, slave, at_m: [x, y] })
     }
+}
+
+/// The slave node nearest to a position \[m\]. With an odd number of elements no node of a block is in the middle. The lower one is
+/// taken, as in the record.
+fn nearest(mesh: &PinMesh, [x, y]: [f64; 2]) -> usize {
+    if let Some(block) = mesh.block() {
+        let ([lx, ly, _], [nx, ny, _]) = (block.size_m(), block.elements());
+        let index = |at: f64, length: f64, n: usize| {
+            let exact = (at / length + 0.5) * n as f64;
+            ((exact - 0.5 - 1e-9).ceil().max(0.0) as usize).min(n)
+        };
+        return block.node(index(x, lx, nx), index(y, ly, ny), 0);
+    }
+    let distance = |slave: &usize| {
+        let [sx, sy, _] = mesh.own_coordinates_m(*slave);
+        (sx - x).hypot(sy - y)
+    };
+    mesh.bottom_nodes().min_by(|a, b| distance(a).total_cmp(&distance(b))).unwrap_or_default()
 }
 
 /// A node of the contact face whose history is recorded.
@@ -109,6 +121,7 @@ pub struct ObservedNode {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::body::pin::BlockMesh;
 
     fn mesh() -> BlockMesh {
         BlockMesh::new([0.012, 0.015, 0.010], [12, 15, 10])
@@ -118,23 +131,23 @@ mod tests {
     /// even if no node is exactly in the middle of a side.
     #[test]
     fn names_mean_what_records_mean() {
-        let mesh = mesh();
+        let pin = mesh().into();
         let found: Vec<_> =
-            NodeSelector::DEFAULT.iter().map(|selector| selector.resolve(&mesh).unwrap().slave).collect();
-        assert_eq!(found, [mesh.node(6, 0, 0), mesh.node(6, 15, 0)]);
-        let centre = NodeSelector::parse("centre").unwrap().resolve(&mesh).unwrap();
-        assert_eq!(centre.slave, mesh.node(6, 7, 0));
-        let corner = NodeSelector::parse("rear_outer").unwrap().resolve(&mesh).unwrap();
-        assert_eq!((corner.slave, corner.at_m), (mesh.node(12, 15, 0), [0.006, 0.0075]));
+            NodeSelector::DEFAULT.iter().map(|selector| selector.resolve(&pin).unwrap().slave).collect();
+        assert_eq!(found, [mesh().node(6, 0, 0), mesh().node(6, 15, 0)]);
+        let centre = NodeSelector::parse("centre").unwrap().resolve(&pin).unwrap();
+        assert_eq!(centre.slave, mesh().node(6, 7, 0));
+        let corner = NodeSelector::parse("rear_outer").unwrap().resolve(&pin).unwrap();
+        assert_eq!((corner.slave, corner.at_m), (mesh().node(12, 15, 0), [0.006, 0.0075]));
     }
 
     /// Protects: coordinates select the nearest node, and the name of the node has its own coordinates.
     #[test]
     fn coordinates_give_the_nearest_node() {
-        let node = NodeSelector::parse("-2.4,3.1").unwrap().resolve(&mesh()).unwrap();
+        let node = NodeSelector::parse("-2.4,3.1").unwrap().resolve(&mesh().into()).unwrap();
         assert_eq!(node.slave, mesh().node(4, 11, 0));
         assert_eq!(node.name, "x-2.000_y+3.500mm");
-        let edge = NodeSelector::parse("6,-7.5").unwrap().resolve(&mesh()).unwrap();
+        let edge = NodeSelector::parse("6,-7.5").unwrap().resolve(&mesh().into()).unwrap();
         assert_eq!(edge.slave, mesh().node(12, 0, 0));
     }
 
@@ -145,7 +158,7 @@ mod tests {
             let error = NodeSelector::parse(text).unwrap_err();
             assert!(error.contains("front_centre") && error.contains("millimetres"), "{error}");
         }
-        let error = NodeSelector::parse("7,0").unwrap().resolve(&mesh()).unwrap_err();
+        let error = NodeSelector::parse("7,0").unwrap().resolve(&mesh().into()).unwrap_err();
         assert!(error.contains("7,0 mm") && error.contains("x from -6 to 6"), "{error}");
     }
 }

@@ -105,11 +105,15 @@ fn head(inspection: &Inspection, summary: &Summary, header: &PageHeader) -> Mark
 
 /// Mesh, step and disk in a line.
 fn numerics(inspection: &Inspection) -> String {
-    let [nx, ny, nz] = inspection.mesh().elements();
+    let elements = inspection.mesh().element_count();
+    let elements = match inspection.mesh().block() {
+        Some(block) => block.elements().map(|n| n.to_string()).join(" × "),
+        None => elements.to_string(),
+    };
     let record = &inspection.survey.record;
     let disk = if inspection.capture.model.ring().is_some() { "an elastic disk" } else { "a rigid disk" };
     format!(
-        "{nx} × {ny} × {nz} elements on {disk}, {} steps of {} s; {} cycles are shown.",
+        "{elements} elements on {disk}, {} steps of {} s; {} cycles are shown.",
         record.steps,
         significant(record.time_step_s, 3),
         inspection.survey.windows.cycle_count

@@ -80,12 +80,10 @@ impl Wave {
 /// The instants along that line, from front to rear. They are found in the recorded cycle, repeated three times.
 pub fn stations(inspection: &Inspection) -> Vec<Station> {
     let mesh = inspection.mesh();
-    let [nx, ny, _] = mesh.elements();
     let [start_s, end_s] = inspection.survey.windows.cycle_s;
     let period_s = end_s - start_s;
     let face = &inspection.capture.face;
-    let station = |j: usize| {
-        let slave = mesh.node(nx / 2, j, 0);
+    let station = |slave: usize| {
         let three_cycles = || {
             (0..3).flat_map(|cycle| {
                 face.iter().map(move |step| (step.time_s + f64::from(cycle) * period_s, &step.nodes[slave]))
@@ -102,7 +100,7 @@ pub fn stations(inspection: &Inspection) -> Vec<Station> {
         let instants = Instants::find(&phases, &stress, start_s, period_s);
         Station { y_m: mesh.coordinates_m(slave)[1], instants }
     };
-    (0..=ny).map(station).collect()
+    inspection.face_grid().middle().map(station).collect()
 }
 
 /// The waves of a cycle that starts at `start_s`: every change over every run of two or more neighbouring stations that

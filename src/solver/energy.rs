@@ -28,7 +28,7 @@
 //! target.
 
 use super::body::EnergySums;
-use super::body::block::BlockAudit;
+use super::body::pin::PinAudit;
 use super::body::ring::RingAudit;
 use super::drive::Drive;
 use super::interface::InterfaceWork;
@@ -113,7 +113,7 @@ pub struct EnergyLedger<const L: usize, R: RunNumber = f64> {
     sums: [LaneSums; L],
     energies: [Energies; L],
     interface: InterfaceWork<L, R>,
-    pin: BlockAudit<L, R>,
+    pin: PinAudit<L, R>,
     ring: Option<RingAudit<L>>,
 }
 
@@ -129,7 +129,7 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
             sums: [LaneSums::default(); L],
             energies: [Energies::default(); L],
             interface: InterfaceWork::new(model.interface()),
-            pin: BlockAudit::new(model.pin(), model.scheme().beta2),
+            pin: PinAudit::new(model.pin(), model.scheme().beta2),
             ring: model.ring().map(RingAudit::new),
         }
     }

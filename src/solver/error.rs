@@ -48,6 +48,9 @@ pub enum SolverError {
         /// Nearest width above \[m\].
         above_m: f64,
     },
+    /// The mesh of the pin cannot be used.
+    #[error("scene.pin: the mesh is not usable: {0}")]
+    Mesh(String),
     /// The supports contradict each other, or the target does not allow them.
     #[error("inconsistent constraints: {0}")]
     Constraints(String),

@@ -22,19 +22,37 @@ pub struct Block<R: Number = f64>(pub [R::Row; 3]);
 #[repr(align(64))]
 pub struct Row<R: Number = f64>(pub R::Row);
 
-/// Number of lines of a field, and number of nodes per line.
+/// Nodes in lines, and lines in planes. The last line may have fewer nodes than the others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Layout {
     /// Number of nodes per line.
     pub nodes_per_line: usize,
-    /// Number of lines.
-    pub lines: usize,
+    /// Number of lines per plane.
+    pub lines_per_plane: usize,
+    /// Number of nodes.
+    pub nodes: usize,
 }
 
 impl Layout {
-    /// Number of nodes.
-    pub fn nodes(&self) -> usize {
-        self.nodes_per_line * self.lines
+    /// Number of lines.
+    pub fn lines(&self) -> usize {
+        self.nodes.div_ceil(self.nodes_per_line)
+    }
+
+    /// Number of planes.
+    pub fn planes(&self) -> usize {
+        self.lines().div_ceil(self.lines_per_plane)
+    }
+
+    /// The plane of a node.
+    pub fn plane_of(&self, node: usize) -> usize {
+        node / (self.nodes_per_line * self.lines_per_plane)
+    }
+
+    /// The layout of the first plane.
+    #[must_use]
+    pub fn first_plane(&self) -> Self {
+        Self { nodes: self.nodes_per_line * self.lines_per_plane, ..*self }
     }
 }
 
@@ -53,6 +71,7 @@ pub struct LaneSlot {
 #[derive(Debug, Clone)]
 pub struct FieldOf<const L: usize, R: Number> {
     nodes_per_line: usize,
+    nodes: usize,
     blocks_per_line: usize,
     blocks: Vec<Block<R>>,
 }
@@ -124,9 +143,10 @@ impl<const L: usize, R: Number> FieldOf<L, R> {
     /// A field of zeros.
     pub fn zeros(layout: Layout) -> Self {
         let () = Self::LANES_FILL_BLOCKS;
-        let Layout { nodes_per_line, lines } = layout;
+        let Layout { nodes_per_line, nodes, .. } = layout;
         let blocks_per_line = blocks_per_line::<R>(nodes_per_line, L);
-        Self { nodes_per_line, blocks_per_line, blocks: vec![Block::default(); blocks_per_line * lines] }
+        let blocks = vec![Block::default(); blocks_per_line * layout.lines()];
+        Self { nodes_per_line, nodes, blocks_per_line, blocks }
     }
 
     /// A field of `values` in the order node → component → lane.
@@ -134,7 +154,7 @@ impl<const L: usize, R: Number> FieldOf<L, R> {
     /// # Panics
     /// If there is not one value per node, component and lane.
     pub fn from_values(layout: Layout, values: &[f64]) -> Self {
-        assert_eq!(values.len(), 3 * L * layout.nodes(), "3 components of {L} lanes per node");
+        assert_eq!(values.len(), 3 * L * layout.nodes, "3 components of {L} lanes per node");
         let mut field = Self::zeros(layout);
         for (index, value) in values.iter().enumerate() {
             field[index] = R::from_f64(*value);
@@ -149,7 +169,7 @@ impl<const L: usize, R: Number> FieldOf<L, R> {
 
     /// Number of values: three components of `L` lanes per node.
     pub fn len(&self) -> usize {
-        3 * L * self.nodes_per_line * (self.blocks.len() / self.blocks_per_line)
+        3 * L * self.nodes
     }
 
     /// Whether the field has no values. This is never true, because a mesh has nodes.
@@ -191,10 +211,14 @@ impl<const L: usize, R: Number> FieldOf<L, R> {
 
     /// Sets the padding to zero, which a product leaves arbitrary.
     pub fn clear_padding(&mut self) {
-        let numbers = self.nodes_per_line * L;
-        for line in self.blocks.chunks_exact_mut(self.blocks_per_line) {
-            for row in line[numbers / R::WIDTH..].iter_mut().take(1).flat_map(|block| &mut block.0) {
-                row.as_mut()[numbers % R::WIDTH..].fill(R::default());
+        for (number, line) in self.blocks.chunks_exact_mut(self.blocks_per_line).enumerate() {
+            let numbers = L * self.nodes_per_line.min(self.nodes - number * self.nodes_per_line);
+            let mut from = numbers % R::WIDTH;
+            for block in &mut line[numbers / R::WIDTH..] {
+                for row in &mut block.0 {
+                    row.as_mut()[from..].fill(R::default());
+                }
+                from = 0;
             }
         }
     }

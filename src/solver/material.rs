@@ -1,6 +1,6 @@
 //! Linear isotropic elasticity.
 
-use crate::spec::{Pin, elasticity};
+use crate::spec::{Pin, Region, elasticity};
 
 /// A linear elastic isotropic material.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -20,6 +20,15 @@ impl Material {
             young_modulus_pa: pin.young_modulus_pa,
             poisson_ratio: pin.poisson_ratio,
             density_kg_m3: pin.density_kg_m3,
+        }
+    }
+
+    /// The material of a region.
+    pub fn of_region(region: &Region) -> Self {
+        Self {
+            young_modulus_pa: region.young_modulus_pa,
+            poisson_ratio: region.poisson_ratio,
+            density_kg_m3: region.density_kg_m3,
         }
     }
 

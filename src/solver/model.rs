@@ -1,6 +1,6 @@
 //! The immutable part of a run, shared by all lanes: the pin, its supports and load, and its target.
 
-use super::body::block::{BlockBody, BlockMesh, Stiffness};
+use super::body::pin::{PinBody, PinMesh, Stiffness};
 use super::body::ring::{RingBody, RingDefinition, UnsteppedRing};
 use super::error::SolverError;
 use super::interface::target::{SurfaceMotion, Target, TargetDefinition, UnsteppedTarget, rotating_disk};
@@ -14,9 +14,9 @@ use super::support::{self, Support};
 #[derive(Debug, Clone)]
 pub struct ModelDefinition {
     /// The mesh of the pin.
-    pub mesh: BlockMesh,
-    /// The material of the pin.
-    pub material: Material,
+    pub mesh: PinMesh,
+    /// The materials of the pin. Elements have their numbers, and a block consists of the first one.
+    pub materials: Vec<Material>,
     /// The stiffness of the pin: elastic, or springs.
     pub stiffness: Stiffness,
     /// The supports of the pin.
@@ -36,7 +36,7 @@ pub struct ModelDefinition {
 /// The immutable part of a run.
 #[derive(Debug, Clone)]
 pub struct Model {
-    pin: BlockBody,
+    pin: PinBody,
     supports: Vec<Support>,
     load: Vec<LoadShare>,
     interface: Interface,
@@ -57,13 +57,22 @@ impl Model {
     /// # Panics
     /// If a rigid target does not have one surface velocity per node of the contact face.
     pub fn new(definition: ModelDefinition) -> Result<Self, SolverError> {
-        let ModelDefinition { mesh, material, stiffness, supports, load, target, beta2, beta_r_s, time_step } =
-            definition;
+        let ModelDefinition {
+            mesh,
+            materials,
+            stiffness,
+            supports,
+            load,
+            target,
+            beta2,
+            beta_r_s,
+            time_step,
+        } = definition;
         let (target, surface_motion) = unstepped(target, &mesh, &supports, beta2)?;
         let freedoms = support::freedoms(&supports, &mesh)?;
         let supported = supports.iter().flat_map(Support::dofs);
         let acted_on = supported.chain(load.iter().map(|share| share.dof));
-        let pin = BlockBody::new(mesh, material, stiffness, freedoms, acted_on)?;
+        let pin = PinBody::new(mesh, materials, stiffness, freedoms, acted_on)?;
         let interface = Interface::new(&pin, &surface_motion);
 
         let of_block = Bound { omega_max_rad_s: pin.omega_max_rad_s(), ..Bound::default() };
@@ -110,12 +119,12 @@ impl Model {
     }
 
     /// The pin.
-    pub fn pin(&self) -> &BlockBody {
+    pub fn pin(&self) -> &PinBody {
         &self.pin
     }
 
     /// The mesh of the pin.
-    pub fn mesh(&self) -> &BlockMesh {
+    pub fn mesh(&self) -> &PinMesh {
         self.pin.mesh()
     }
 
@@ -173,7 +182,7 @@ impl Model {
 /// The target before the time step is known, and the velocity of its surface under the slave nodes.
 fn unstepped(
     target: TargetDefinition,
-    mesh: &BlockMesh,
+    mesh: &PinMesh,
     supports: &[Support],
     beta2: f64,
 ) -> Result<(UnsteppedTarget, SurfaceMotion), SolverError> {

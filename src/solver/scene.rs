@@ -1,15 +1,15 @@
 //! Builds the model of a scene.
 
-use super::body::block::{BlockMesh, Stiffness};
+use super::body::pin::{BlockMesh, GeneralMesh, MeshParts, PinMesh, Stiffness, Tilt, cylinder};
 use super::body::ring::RingDefinition;
 use super::error::SolverError;
-use super::interface::initial_gap_m;
+use super::interface::base_height_m;
 use super::interface::target::{TargetDefinition, rotating_disk};
 use super::material::Material;
 use super::model::{Model, ModelDefinition};
 use super::scheme::TimeStep;
 use super::support::{clamp, load};
-use crate::spec::{DiskKind, Numerics, Precision, Scene};
+use crate::spec::{DiskKind, Numerics, Pin, Precision, Scene, Shape};
 use std::ops::RangeInclusive;
 
 /// Numbers with which a step in single precision multiplies. Its range is 10⁻³⁸ to 3·10³⁸.
@@ -22,10 +22,11 @@ impl Model {
     /// If the mesh has no node row near the clamp's width, the time step is above the limit, or the numbers of a step do not
     /// fit into the precision.
     pub fn from_scene(scene: &Scene, numerics: &Numerics) -> Result<Self, SolverError> {
-        let mesh = BlockMesh::new(scene.pin.size_m, scene.pin.elements);
+        let mesh = pin_mesh(&scene.pin)?;
         let strip = clamp::clamped_strip(&mesh, &scene.clamp)?;
+        let regions = scene.pin.regions.iter().map(Material::of_region);
         let definition = ModelDefinition {
-            material: Material::of_pin(&scene.pin),
+            materials: std::iter::once(Material::of_pin(&scene.pin)).chain(regions).collect(),
             stiffness: Stiffness::Elastic,
             supports: clamp::supports(&mesh, &strip, scene.top, &scene.holder),
             load: load::normal_load(&mesh),
@@ -44,12 +45,18 @@ impl Model {
         if numerics.precision == Precision::Single {
             model.check_single_precision()?;
         }
-        if scene.pin.base.is_flat() {
+        let tilt = tilt(&scene.pin);
+        if scene.pin.base.is_flat() && tilt == Tilt::default() {
             return Ok(model);
         }
-        let positions_m: Vec<_> = model.slaves().iter().map(|slave| slave.position_m).collect();
-        let gap_m = initial_gap_m(&scene.pin, &positions_m);
-        Ok(model.with_initial_gaps(|slave| gap_m(slave.position_m)))
+        let mesh = model.mesh().clone();
+        let height_m = |node: usize| {
+            let [x, y, _] = mesh.own_coordinates_m(node);
+            let [_, _, z] = tilt.turned([x, y, base_height_m(&scene.pin, [x, y])]);
+            z
+        };
+        let lowest_m = mesh.bottom_nodes().map(height_m).fold(f64::INFINITY, f64::min);
+        Ok(model.with_initial_gaps(|slave| height_m(slave.node) - lowest_m))
     }
 
     /// Checks the numbers that a step multiplies with. Between them and the ends of the range, products keep their digits.
@@ -71,12 +78,53 @@ impl Model {
         }
     }
 
+    /// The mesh of the scene's pin.
+    ///
+    /// # Errors
+    /// If it cannot be used.
+    pub fn mesh_of(scene: &Scene) -> Result<PinMesh, SolverError> {
+        pin_mesh(&scene.pin)
+    }
+
     /// Checks whether the mesh of the scene's pin has a node row near the clamp's width, without building the model.
     ///
     /// # Errors
     /// If it has none.
     pub fn check_clamp(scene: &Scene) -> Result<(), SolverError> {
-        let mesh = BlockMesh::new(scene.pin.size_m, scene.pin.elements);
-        clamp::clamped_strip(&mesh, &scene.clamp).map(drop)
+        clamp::clamped_strip(&pin_mesh(&scene.pin)?, &scene.clamp).map(drop)
+    }
+}
+
+/// The mesh of a pin. An upright block of one material is a [`PinMesh::Block`].
+fn pin_mesh(pin: &Pin) -> Result<PinMesh, SolverError> {
+    let tilt = tilt(pin);
+    let [across, _, along] = pin.elements;
+    let parts = match pin.shape {
+        Shape::Block => {
+            let block = BlockMesh::new(pin.extent_m(), pin.elements);
+            if tilt == Tilt::default() && pin.regions.is_empty() {
+                return Ok(block.into());
+            }
+            MeshParts::of_block(&block)
+        }
+        Shape::Cylinder => cylinder(pin.extent_m(), across, along),
+    };
+    Ok(GeneralMesh::new(&with_regions(parts, pin), tilt)?.into())
+}
+
+/// Numbers the materials of the elements: 0 is that of the pin, region i has i + 1. Of several regions the last one holds.
+fn with_regions(mut parts: MeshParts, pin: &Pin) -> MeshParts {
+    for element in &mut parts.elements {
+        let centre_m = element.nodes.iter().map(|&node| parts.coordinates_m[node][2]).sum::<f64>() / 8.0;
+        let region = pin.regions.iter().rposition(|region| centre_m > region.above_m);
+        element.material = region.map_or(0, |region| region + 1);
+    }
+    parts
+}
+
+fn tilt(pin: &Pin) -> Tilt {
+    Tilt {
+        x_rad: pin.tilt_x_deg.unwrap_or(0.0).to_radians(),
+        y_rad: pin.tilt_y_deg.unwrap_or(0.0).to_radians(),
     }
 }

@@ -1,6 +1,6 @@
 //! What changes during a run.
 
-use super::body::block::{BlockMotion, Motion};
+use super::body::pin::{Motion, NodeMotion};
 use super::field::FieldOf;
 use super::interface::Contacts;
 use super::interface::solve::{RunNumber, TargetState};
@@ -42,7 +42,7 @@ pub type State<const L: usize> = StateOf<L, f64>;
 /// from step to step.
 #[derive(Debug, Clone)]
 pub(super) struct Workspace<const L: usize, R: RunNumber> {
-    pub pin: BlockMotion<L, R>,
+    pub pin: NodeMotion<L, R>,
     pub supports: AppliedSupports<L, R>,
     pub load: AppliedLoad<R>,
 }
@@ -65,9 +65,9 @@ impl<const L: usize, R: RunNumber> StateOf<L, R> {
             load_n: [0.0; L],
             load_stroke_m: [[0.0; L]; 3],
             workspace: Workspace {
-                pin: BlockMotion::new(pin),
-                supports: AppliedSupports::new(model.supports(), pin.mesh(), pin.masses_kg()),
-                load: AppliedLoad::new(model.load(), pin.mesh(), L),
+                pin: NodeMotion::new(pin),
+                supports: AppliedSupports::new(model.supports(), pin.mesh().layout(), pin.masses_kg()),
+                load: AppliedLoad::new(model.load(), pin.mesh().layout(), L),
             },
         }
     }

@@ -1,7 +1,7 @@
 //! The motion of a pin from one mesh to another, and a run that begins in motion.
 
 use super::body::Freedom;
-use super::body::block::BlockMesh;
+use super::body::pin::BlockMesh;
 use super::interface::solve::RunNumber;
 use super::model::Model;
 use super::state::StateOf;
@@ -121,6 +121,10 @@ mod tests {
     }
 
     /// A motion that is linear in the coordinates.
+    fn block(model: &Model) -> &BlockMesh {
+        model.mesh().block().unwrap()
+    }
+
     fn linear(mesh: &BlockMesh) -> PinMotion {
         let of_node = |node| {
             let [x, y, z] = mesh.coordinates_m(node);
@@ -135,18 +139,18 @@ mod tests {
     #[test]
     fn linear_motions_are_exact() {
         let from = model([6, 8, 5]);
-        let motion = linear(from.mesh());
+        let motion = linear(block(&from));
         for elements in [[12, 16, 10], [7, 9, 11], [6, 4, 3]] {
-            let to = BlockMesh::new(from.mesh().size_m(), elements);
-            let (found, expected) = (motion.interpolated(from.mesh(), &to), linear(&to));
+            let to = BlockMesh::new(block(&from).size_m(), elements);
+            let (found, expected) = (motion.interpolated(block(&from), &to), linear(&to));
             let pairs = found.u_m.iter().zip(&expected.u_m);
             for (a, b) in pairs.chain(found.velocity_m_s.iter().zip(&expected.velocity_m_s)) {
                 assert!((a - b).abs() < 100.0 * f64::EPSILON, "{a} {b}");
             }
-            let constant = vec![0.1; 3 * from.mesh().node_count()];
-            assert!(interpolated(&constant, from.mesh(), &to).iter().all(|&value| value == 0.1));
+            let constant = vec![0.1; 3 * block(&from).node_count()];
+            assert!(interpolated(&constant, block(&from), &to).iter().all(|&value| value == 0.1));
         }
-        assert_eq!(motion.interpolated(from.mesh(), from.mesh()), motion);
+        assert_eq!(motion.interpolated(block(&from), block(&from)), motion);
     }
 
     /// Protects: a run that begins in motion keeps the constraints: no slave node is inside the disk, fixed degrees of freedom
@@ -155,7 +159,7 @@ mod tests {
     fn a_motion_keeps_the_constraints() {
         let model = model([6, 8, 5]);
         let mut state = State::<2>::at_rest(&model);
-        state.begin_in_motion(&model, 1, &linear(model.mesh()));
+        state.begin_in_motion(&model, 1, &linear(block(&model)));
         assert!(state.u.values().step_by(2).all(|u| u == 0.0), "the other lane is at rest");
         let of = |dof: usize| [state.u[2 * dof + 1], state.p[2 * dof + 1]];
         let mut tied = Vec::new();
@@ -181,7 +185,7 @@ mod tests {
         for _ in 0..2000 {
             step(&coarse, &[drive], &mut before);
         }
-        let motion = before.motion_of(&coarse, 0).interpolated(coarse.mesh(), fine.mesh());
+        let motion = before.motion_of(&coarse, 0).interpolated(block(&coarse), block(&fine));
         let mut state = State::<1>::at_rest(&fine);
         state.begin_in_motion(&fine, 0, &motion);
         let mut ledger = EnergyLedger::<1>::new(&fine, 1);

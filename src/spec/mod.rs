@@ -30,7 +30,7 @@ pub use contact::{Contact, FrictionLaw};
 pub use detection::Detection;
 pub use holder::{Holder, HolderDirection};
 pub use numerics::{Numerics, Precision, RunControl, Start};
-pub use pin::Pin;
+pub use pin::{FEWEST_ACROSS, Pin, Region, Shape, core_elements};
 pub use ring::{DiskTimeStep, Ring, TargetSurface};
 pub use scene::{Clamp, ClampSide, Disk, DiskKind, Load, Scene, TopFace};
 pub use stability::StabilityMethod;
@@ -114,19 +114,22 @@ impl JobSpec {
     }
 
     /// Elements of the coarser mesh from which the job starts; none if it starts from rest, has no run or too few elements. A
-    /// motion on another mesh is not enough for a law that uses the past, a holder that moves, or a base that is not flat.
+    /// motion on another mesh is not enough for a law that uses the past, a holder that moves, or a base that is not flat. It is
+    /// carried over between upright blocks of one material.
     pub fn coarser_elements(&self) -> Option<[usize; 3]> {
         let elements = self.scene.pin.elements.map(|n| n.div_ceil(2));
         let is_nested = self.run.start == Start::Nested && self.stability != StabilityMethod::Modes;
         let law = self.scene.contact.law;
         let is_carried_over = matches!(law, FrictionLaw::Coulomb | FrictionLaw::Regularised)
             && self.scene.holder.is_ideal()
-            && self.scene.pin.base.is_flat();
+            && self.scene.pin.base.is_flat()
+            && self.scene.pin.is_plain_block();
         (is_nested && is_carried_over && elements.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS))
             .then_some(elements)
     }
 
-    /// Whether the equations of steady sliding cover the scene: Coulomb's law, a rigid disk, an ideal clamp and a flat base.
+    /// Whether the equations of steady sliding cover the scene: Coulomb's law, a rigid disk, an ideal clamp and a flat base of an
+    /// upright block of one material.
     pub fn has_sliding_modes(&self) -> bool {
         let mut found = Violations::default();
         self.check_modes(&mut found);
@@ -154,6 +157,13 @@ impl JobSpec {
                 "{}: the complex modes of steady sliding are those of an ideal clamp",
             );
         }
+        if !self.scene.pin.is_plain_block() {
+            found.add(
+                "scene.pin",
+                "another shape, tilted, or with regions",
+                "an upright block of one material: the complex modes of steady sliding are those of such a pin",
+            );
+        }
         if !self.scene.pin.base.is_flat() {
             found.add(
                 "scene.pin.base",
@@ -170,7 +180,7 @@ impl JobSpec {
         let Scene { pin, disk, load, .. } = &self.scene;
         let shear_m_s =
             elasticity::shear_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
-        let pressure_pa = load.force_n / (pin.size_m[0] * pin.size_m[1]);
+        let pressure_pa = load.force_n / pin.base_area_m2();
         let speed_m_s = disk.omega_rpm * std::f64::consts::TAU / 60.0 * disk.track_radius_m;
         let mut found = Violations::default();
         self.check_single_precision(&mut found);
@@ -183,7 +193,8 @@ impl JobSpec {
 
     /// Limits that the range of f32 sets: forces and stiffnesses must not overflow, and displacements must keep their digits.
     fn check_single_precision(&self, found: &mut Violations) {
-        let Pin { size_m: [lx, ly, lz], young_modulus_pa, .. } = self.scene.pin;
+        let pin = &self.scene.pin;
+        let (lz, young_modulus_pa) = (pin.size_m[2], pin.young_modulus_pa);
         if young_modulus_pa > STIFFEST_SINGLE_PA {
             let right = format!("at most {STIFFEST_SINGLE_PA:e} in single precision");
             found.add("scene.pin.young_modulus_pa", check::readable(young_modulus_pa), right);
@@ -194,7 +205,7 @@ impl JobSpec {
             found.add("scene.contact.law", law.name(), right);
         }
         let force_n = self.scene.load.force_n;
-        let compression_m = force_n * lz / (young_modulus_pa * lx * ly);
+        let compression_m = force_n * lz / (young_modulus_pa * pin.base_area_m2());
         if compression_m < LEAST_SINGLE_M {
             let least_n = LEAST_SINGLE_M / compression_m * force_n;
             let right = format!(

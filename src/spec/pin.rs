@@ -5,6 +5,7 @@ use super::check::Violations;
 use super::elasticity;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use strum::IntoStaticStr;
 
 /// Largest number of elements per direction: more are taken for a typing error.
 const MAX_ELEMENTS: usize = 1000;
@@ -12,11 +13,69 @@ const MAX_ELEMENTS: usize = 1000;
 /// Largest number of elements in all: about a gigabyte of fields, and days of run time.
 const MAX_TOTAL_ELEMENTS: f64 = 2.0e6;
 
-/// The pin: a linear elastic block meshed with nx × ny × nz trilinear hexahedra.
+/// Fewest elements over the diameter of a cylinder: a core and a ring around it.
+pub const FEWEST_ACROSS: usize = 3;
+
+/// Largest angle (°) of a tilt. The contact is that of small tilts: nodes touch with their base only.
+const MAX_TILT_DEG: f64 = 30.0;
+
+/// The shape of a pin.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema, IntoStaticStr)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum Shape {
+    /// A block of nx × ny × nz equal hexahedra.
+    #[default]
+    Block,
+    /// A cylinder of the diameter `diameter_m` whose axis is z. Elements in x and y are the same number, that over the diameter.
+    Cylinder,
+}
+
+impl Shape {
+    /// The name used in study files.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+
+    /// Whether it is a block.
+    #[expect(clippy::trivially_copy_pass_by_ref, reason = "the form that serde calls")]
+    fn is_block(&self) -> bool {
+        *self == Self::Block
+    }
+}
+
+/// A region of the pin with another material, for example the backing plate of a pad.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Region {
+    /// Height (m) above the base from which the region reaches to the top, or to the next region. It must be a plane of nodes.
+    pub above_m: f64,
+    /// Young's modulus (Pa).
+    pub young_modulus_pa: f64,
+    /// Poisson's ratio, −1 < ν < 0.5.
+    pub poisson_ratio: f64,
+    /// Density [kg/m³].
+    pub density_kg_m3: f64,
+}
+
+/// Elements of the core of a cylinder in x and in y, for this number of elements over the diameter. About a quarter of them, and at
+/// least one, are rings on each side.
+pub fn core_elements(across: usize) -> usize {
+    let rings = ((across + 2) / 4).clamp(1, (across.max(3) - 1) / 2);
+    across.saturating_sub(2 * rings)
+}
+
+/// The pin: a linear elastic body meshed with trilinear hexahedra.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Pin {
-    /// Edge lengths (m) in x (radial), y (sliding direction) and z.
+    /// Its shape.
+    #[serde(skip_serializing_if = "Shape::is_block")]
+    pub shape: Shape,
+    /// Diameter (m) of a cylinder.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub diameter_m: Option<f64>,
+    /// Edge lengths (m) in x (radial), y (sliding direction) and z. A cylinder uses z only.
     pub size_m: [f64; 3],
     /// Number of elements in x, y and z.
     pub elements: [usize; 3],
@@ -28,6 +87,15 @@ pub struct Pin {
     pub density_kg_m3: f64,
     /// How its base differs from a plane.
     pub base: Base,
+    /// Angle (°) by which the pin is turned about x. A positive angle lifts its trailing end. Absent: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tilt_x_deg: Option<f64>,
+    /// Angle (°) by which the pin is turned about y, before that about x. A positive angle lifts its inner side. Absent: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub tilt_y_deg: Option<f64>,
+    /// Regions of other materials, from the base upwards.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub regions: Vec<Region>,
 }
 
 impl Default for Pin {
@@ -39,6 +107,11 @@ impl Default for Pin {
             poisson_ratio: 0.3,
             density_kg_m3: 2500.0,
             base: Base::default(),
+            shape: Shape::Block,
+            diameter_m: None,
+            tilt_x_deg: None,
+            tilt_y_deg: None,
+            regions: Vec::new(),
         }
     }
 }
@@ -48,6 +121,58 @@ impl Pin {
     pub fn shear_transit_s(&self) -> f64 {
         self.size_m[2]
             / elasticity::shear_wave_speed_m_s(self.young_modulus_pa, self.poisson_ratio, self.density_kg_m3)
+    }
+
+    /// Whether the pin is an upright block of one material, for which there is a faster form of the stiffness.
+    pub fn is_plain_block(&self) -> bool {
+        let is_turned = |angle: Option<f64>| angle.is_some_and(|angle| angle != 0.0);
+        self.shape == Shape::Block
+            && self.regions.is_empty()
+            && !is_turned(self.tilt_x_deg)
+            && !is_turned(self.tilt_y_deg)
+    }
+
+    /// Extent \[m\] in x, y and z, without tilt.
+    pub fn extent_m(&self) -> [f64; 3] {
+        match (self.shape, self.diameter_m) {
+            (Shape::Cylinder, Some(diameter)) => [diameter, diameter, self.size_m[2]],
+            _ => self.size_m,
+        }
+    }
+
+    /// Area \[m²\] of the base.
+    pub fn base_area_m2(&self) -> f64 {
+        let [x, y, _] = self.extent_m();
+        match self.shape {
+            Shape::Block => x * y,
+            Shape::Cylinder => std::f64::consts::FRAC_PI_4 * x * y,
+        }
+    }
+
+    /// Number of elements.
+    pub fn element_count(&self) -> f64 {
+        let [nx, ny, nz] = self.elements.map(|n| n as f64);
+        let plane = match self.shape {
+            Shape::Block => nx * ny,
+            Shape::Cylinder => {
+                let core = core_elements(self.elements[0]) as f64;
+                core * core + 2.0 * core * (nx - core)
+            }
+        };
+        plane * nz
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> f64 {
+        let [nx, ny, nz] = self.elements.map(|n| n as f64);
+        let plane = match self.shape {
+            Shape::Block => (nx + 1.0) * (ny + 1.0),
+            Shape::Cylinder => {
+                let core = core_elements(self.elements[0]) as f64;
+                (core + 1.0).powi(2) + 2.0 * core * (nx - core)
+            }
+        };
+        plane * (nz + 1.0)
     }
 
     /// Adds every violated limit to `found`.
@@ -64,7 +189,7 @@ impl Pin {
                 );
             }
         }
-        let total = self.elements.iter().map(|&count| count as f64).product::<f64>();
+        let total = self.element_count();
         if total > MAX_TOTAL_ELEMENTS {
             found.add(
                 "scene.pin.elements",
@@ -72,7 +197,8 @@ impl Pin {
                 format!("at most {MAX_TOTAL_ELEMENTS:e} elements in all"),
             );
         }
-        let [lx, ly, _] = self.size_m;
+        self.check_shape(found);
+        let [lx, ly, _] = self.extent_m();
         self.base.check([lx, ly], [self.elements[0], self.elements[1]], found);
         let e = self.young_modulus_pa;
         found.require_magnitude("scene.pin.young_modulus_pa", e, "a modulus > 0 Pa");
@@ -85,5 +211,58 @@ impl Pin {
         );
         let rho = self.density_kg_m3;
         found.require_magnitude("scene.pin.density_kg_m3", rho, "a density > 0 kg/m³");
+        self.check_regions(found);
+    }
+
+    fn check_shape(&self, found: &mut Violations) {
+        match (self.shape, self.diameter_m) {
+            (Shape::Cylinder, None) => {
+                found.add("scene.pin.diameter_m", "absent", "a diameter > 0 m of the cylinder");
+            }
+            (Shape::Cylinder, Some(diameter)) => {
+                found.require_magnitude("scene.pin.diameter_m", diameter, "a diameter > 0 m");
+            }
+            (Shape::Block, Some(diameter)) => {
+                let right = "absent for a block, whose edges are size_m; or scene.pin.shape = cylinder";
+                found.add("scene.pin.diameter_m", diameter, right);
+            }
+            (Shape::Block, None) => {}
+        }
+        let [across, also, _] = self.elements;
+        if self.shape == Shape::Cylinder && (across != also || across < FEWEST_ACROSS) {
+            let right = format!(
+                "the same number in x and y, at least {FEWEST_ACROSS}: the elements over the diameter of a cylinder"
+            );
+            found.add("scene.pin.elements", format!("{:?}", self.elements), right);
+        }
+        for (name, angle) in [("tilt_x_deg", self.tilt_x_deg), ("tilt_y_deg", self.tilt_y_deg)] {
+            if let Some(angle) = angle {
+                let right = format!("an angle from -{MAX_TILT_DEG} to {MAX_TILT_DEG} degrees");
+                let holds = angle.abs() <= MAX_TILT_DEG;
+                found.require(&format!("scene.pin.{name}"), angle, holds, &right);
+            }
+        }
+    }
+
+    fn check_regions(&self, found: &mut Violations) {
+        let (height, layers) = (self.size_m[2], self.elements[2] as f64);
+        let mut below = 0.0;
+        for (number, region) in self.regions.iter().enumerate() {
+            let field = |name: &str| format!("scene.pin.regions[{number}].{name}");
+            let above = region.above_m;
+            let layer = above / height * layers;
+            let holds = above > below && above < height && (layer - layer.round()).abs() <= 1.0e-6;
+            let right = format!(
+                "a height between {below} m and {height} m at a multiple of {} m, the height of an element",
+                height / layers
+            );
+            found.require(&field("above_m"), above, holds, &right);
+            below = above;
+            found.require_magnitude(&field("young_modulus_pa"), region.young_modulus_pa, "a modulus > 0 Pa");
+            let nu = region.poisson_ratio;
+            let right = "a Poisson's ratio with -1 < ν < 0.5";
+            found.require(&field("poisson_ratio"), nu, nu > -1.0 && nu < 0.5, right);
+            found.require_magnitude(&field("density_kg_m3"), region.density_kg_m3, "a density > 0 kg/m³");
+        }
     }
 }

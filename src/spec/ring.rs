@@ -97,8 +97,8 @@ impl Ring {
             fine_part_m.min(length_m) / fine + (length_m - fine_part_m).max(0.0) / coarse + GRADED_ELEMENTS
         };
         let around_m = std::f64::consts::TAU * track_m;
-        let around = nodes_along(around_m, around_m * self.track_arc_deg / 360.0 + pin.size_m[1]);
-        let across = nodes_along(self.outer_radius_m - self.inner_radius_m, pin.size_m[0]);
+        let around = nodes_along(around_m, around_m * self.track_arc_deg / 360.0 + pin.extent_m()[1]);
+        let across = nodes_along(self.outer_radius_m - self.inner_radius_m, pin.extent_m()[0]);
         around * across * nodes_along(self.thickness_m, fine)
     }
 
@@ -149,7 +149,7 @@ impl Ring {
             ),
         );
         // The disk must reach one element beyond the pin's corners: the tangents at a patch's corners need its neighbours.
-        let [half_x, half_y] = [pin.size_m[0] / 2.0, pin.size_m[1] / 2.0];
+        let [half_x, half_y] = [pin.extent_m()[0] / 2.0, pin.extent_m()[1] / 2.0];
         let (low, high) = (track_m - half_x - fine, (track_m + half_x).hypot(half_y) + fine);
         let nodes = self.estimated_nodes(pin, track_m);
         if nodes > MAX_NODES {

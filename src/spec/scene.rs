@@ -174,7 +174,7 @@ impl Scene {
     /// because the disk and the top face guide it.
     pub fn vibration_time_s(&self) -> f64 {
         let pin = &self.pin;
-        let [x, y, z] = pin.size_m;
+        let [x, y, z] = pin.extent_m();
         let beside_strip_m = match self.clamp.side.axis_across() {
             Some(0) => x * x / y,
             Some(_) => y * y / x,
@@ -202,7 +202,7 @@ impl Scene {
         found.require(
             "scene.disk.track_radius_m",
             radius,
-            radius > pin.size_m[0] / 2.0,
+            radius > pin.extent_m()[0] / 2.0,
             "a radius larger than half the pin's width, so that the pin does not lie over the axis",
         );
         found.limit_magnitude("scene.disk.track_radius_m", radius);

@@ -7,9 +7,9 @@
 use super::coarse;
 use super::separable::Separable;
 use super::solve::Bilateral;
-use super::space::{Contact, Elasticity, LANES, Space};
+use super::space::{Contact, Elasticity, LANES, Space, block_of};
 use crate::solver::Model;
-use crate::solver::body::block::BlockMesh;
+use crate::solver::body::pin::BlockMesh;
 use faer::{Mat, Side};
 
 /// Modes that are free to slip.
@@ -80,7 +80,7 @@ impl Basis {
         if !is_complete {
             let contact = Contact { in_contact: &all_in_contact, is_locked_sideways: false };
             let bilateral = Bilateral { space, separable, contact };
-            for forces in patterns(model.mesh(), space).chunks(LANES) {
+            for forces in patterns(block_of(model), space).chunks(LANES) {
                 let views: Vec<&[f64]> = forces.iter().map(Vec::as_slice).collect();
                 let mut force = space.gather(&views);
                 space.project(contact, &mut force);

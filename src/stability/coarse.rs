@@ -1,11 +1,12 @@
 //! Modes of a coarse mesh, from which the basis of a fine mesh begins.
 
 use super::space::Space;
+use super::space::block_of;
 use crate::solver::Model;
 use crate::solver::body::Freedom;
-use crate::solver::body::block::BlockMesh;
-use crate::solver::body::block::operator::AssembledOperator;
 use crate::solver::body::hexahedron;
+use crate::solver::body::pin::BlockMesh;
+use crate::solver::body::pin::operator::AssembledOperator;
 use faer::{Mat, Side};
 use std::collections::BTreeMap;
 
@@ -41,7 +42,7 @@ pub fn modes(
     most: usize,
     complete: usize,
 ) -> CoarseModes {
-    let fine = model.mesh();
+    let fine = block_of(model);
     let mesh = coarse_mesh(fine);
     let is_exact = mesh == *fine;
     let nearest: Vec<usize> = (0..mesh.node_count()).map(|node| nearest_node(&mesh, fine, node)).collect();
@@ -79,9 +80,9 @@ pub fn modes(
     let element = hexahedron::stiffness(material, mesh.element_size_m());
     let operator = AssembledOperator::of_block(&mesh, &element);
     let mut scaled = Mat::<f64>::zeros(count, count);
-    for (row, unknown) in unknowns.iter().enumerate() {
+    for (row, unknown) in operator.rows().iter().zip(&unknowns) {
         let Some((i, own)) = *unknown else { continue };
-        for (column, value) in operator.row(row) {
+        for &(column, value) in row {
             if let Some((j, share)) = unknowns[column] {
                 scaled[(i, j)] += own * share * value / (mass[i] * mass[j]).sqrt();
             }

@@ -22,6 +22,11 @@ pub enum StabilityError {
     /// The holder moves.
     #[error("eigenvalues of steady sliding are for an ideal clamp (scene.holder): simulate this job")]
     Holder,
+    /// The pin is not an upright block of one material.
+    #[error(
+        "eigenvalues of steady sliding are for an upright block of one material (scene.pin): simulate this job"
+    )]
+    Shape,
     /// The base is not a plane.
     #[error("eigenvalues of steady sliding are for a flat base (scene.pin.base): simulate this job")]
     Base,

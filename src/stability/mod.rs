@@ -54,6 +54,9 @@ impl Structure {
         if model.ring().is_some() {
             return Err(StabilityError::ElasticDisk);
         }
+        if model.mesh().block().is_none() {
+            return Err(StabilityError::Shape);
+        }
         let space = Space::new(model);
         let separable = Separable::new(model);
         let basis = Basis::new(model, &space, &separable);

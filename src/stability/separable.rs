@@ -12,6 +12,7 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
+use super::space::block_of;
 use crate::solver::Model;
 use crate::solver::body::Freedom;
 use crate::solver::field::{Field, Row, WIDTH};
@@ -49,7 +50,7 @@ const SHIFT: f64 = 0.5;
 
 impl Separable {
     pub fn new(model: &Model) -> Self {
-        let (mesh, material) = (model.mesh(), model.pin().material());
+        let (mesh, material) = (block_of(model), model.pin().material());
         let nodes = mesh.nodes_per_axis();
         let size = mesh.element_size_m();
         let (lambda, g) = (material.lame_lambda_pa(), material.shear_modulus_pa());

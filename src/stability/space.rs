@@ -5,8 +5,9 @@
 
 use crate::solver::Model;
 use crate::solver::body::Freedom;
-use crate::solver::body::block::operator::Scratch;
 use crate::solver::body::hexahedron;
+use crate::solver::body::pin::BlockMesh;
+use crate::solver::body::pin::operator::Scratch;
 use crate::solver::field::{Field, Layout};
 
 /// Number of vectors that are treated together.
@@ -28,6 +29,14 @@ pub struct SlidingNode {
     pub area_m2: f64,
     /// Diagonal entry of K in z \[N/m\], with which a lifted node is preconditioned.
     pub stiffness_n_m: f64,
+}
+
+/// The mesh of the pin, which [`Structure::new`](super::Structure::new) has found to be a block.
+///
+/// # Panics
+/// If it is not.
+pub fn block_of(model: &Model) -> &BlockMesh {
+    model.mesh().block().expect("the pin is a block")
 }
 
 /// The part of the constraints that does not depend on the contact.
@@ -57,8 +66,9 @@ impl Space {
             let tied = support.tie()?;
             Some((tied.component, tied.nodes.clone()))
         });
-        let element = hexahedron::stiffness(pin.material(), pin.mesh().element_size_m());
-        let [hx, hy, _] = pin.mesh().element_size_m();
+        let size_m = block_of(model).element_size_m();
+        let element = hexahedron::stiffness(pin.material(), size_m);
+        let [hx, hy, _] = size_m;
         let sliding = model.slaves().iter().map(|slave| {
             let [x, y] = slave.surface_motion;
             let speed = libm::hypot(x, y);
@@ -174,7 +184,7 @@ pub struct Elasticity<'a, const L: usize = LANES> {
 
 impl<'a, const L: usize> Elasticity<'a, L> {
     pub fn new(model: &'a Model) -> Self {
-        Self { model, scratch: Scratch::new(model.mesh(), L) }
+        Self { model, scratch: model.pin().operator().scratch(model.mesh().layout(), L) }
     }
 
     /// y = K x, reactions of constraints included.

@@ -3,7 +3,8 @@
 use super::preset::Preset;
 use super::suggest;
 use crate::spec::{
-    ClampSide, DiskKind, DiskTimeStep, FrictionLaw, Precision, StabilityMethod, Start, TargetSurface, TopFace,
+    ClampSide, DiskKind, DiskTimeStep, FrictionLaw, Precision, Shape, StabilityMethod, Start, TargetSurface,
+    TopFace,
 };
 use schemars::{Schema, SchemaGenerator};
 use serde_json::{Map, Value};
@@ -42,6 +43,7 @@ const fn parameter(name: &'static str, pointer: &'static str, kind: Kind, doc: &
 }
 
 const CLAMP_SIDE: Kind = Kind::Name(SchemaGenerator::subschema_for::<ClampSide>);
+const PIN_SHAPE: Kind = Kind::Name(SchemaGenerator::subschema_for::<Shape>);
 const TOP_FACE: Kind = Kind::Name(SchemaGenerator::subschema_for::<TopFace>);
 const FRICTION_LAW: Kind = Kind::Name(SchemaGenerator::subschema_for::<FrictionLaw>);
 const DISK_KIND: Kind = Kind::Name(SchemaGenerator::subschema_for::<DiskKind>);
@@ -87,6 +89,10 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("size_x_m", "/scene/pin/size_m/0", Kind::Number, "edge of the pin in x, the radial direction [m]"),
     parameter("size_y_m", "/scene/pin/size_m/1", Kind::Number, "edge of the pin in y, the sliding direction [m]"),
     parameter("size_z_m", "/scene/pin/size_m/2", Kind::Number, "edge of the pin in z [m]"),
+    parameter("pin_shape", "/scene/pin/shape", PIN_SHAPE, "shape of the pin [name]"),
+    parameter("diameter_m", "/scene/pin/diameter_m", Kind::Number, "diameter of a cylindrical pin [m]"),
+    parameter("tilt_x_deg", "/scene/pin/tilt_x_deg", Kind::Number, "tilt of the pin about x, which lifts its trailing end [°]"),
+    parameter("tilt_y_deg", "/scene/pin/tilt_y_deg", Kind::Number, "tilt of the pin about y, which lifts its inner side [°]"),
     parameter("crown_radius_m", "/scene/pin/base/crown_radius_m", Kind::Number, "radius of a crowned base [m]"),
     parameter("edge_radius_m", "/scene/pin/base/edge_radius_m", Kind::Number, "radius of rounded edges of the base [m]"),
     parameter("chamfer_width_m", "/scene/pin/base/chamfer_width_m", Kind::Number, "width of a chamfer of the base [m]"),

@@ -113,10 +113,14 @@ fn the_instants_are_those_of_the_states() {
 fn waves_are_those_of_the_face() {
     let inspection = inspect(&coarse(), &Options::default());
     let mesh = inspection.mesh();
-    let [nx, ny, _] = mesh.elements();
+    let [nx, ny, _] = mesh.block().unwrap().elements();
     let separates: Vec<bool> = (0..=ny)
         .map(|j| {
-            let states = inspection.capture.face.iter().map(|step| step.nodes[mesh.node(nx / 2, j, 0)].state);
+            let states = inspection
+                .capture
+                .face
+                .iter()
+                .map(|step| step.nodes[mesh.block().unwrap().node(nx / 2, j, 0)].state);
             states.into_iter().any(|state| state == ContactState::Separated)
         })
         .collect();
@@ -125,7 +129,7 @@ fn waves_are_those_of_the_face() {
         .map(|j| [j, (j..=ny).take_while(|&k| separates[k]).last().unwrap()])
         .filter(|[first, last]| last > first)
         .collect();
-    let y = |j: usize| mesh.coordinates_m(mesh.node(0, j, 0))[1];
+    let y = |j: usize| mesh.coordinates_m(mesh.block().unwrap().node(0, j, 0))[1];
     let expected: Vec<_> = runs.iter().map(|&[first, last]| [y(first), y(last)]).collect();
     assert!(!expected.is_empty());
     let summary = Summary::of(&inspection);

@@ -6,7 +6,7 @@ use std::path::Path;
 use std::process::Command;
 use tribosweep::analysis::sample::NodeSample;
 use tribosweep::inspect::{Frame, Inspection, Options, PageHeader, write};
-use tribosweep::solver::body::block::stress;
+use tribosweep::solver::body::pin::stress;
 use tribosweep::solver::interface::ContactState;
 
 /// The start of both scripts.
@@ -129,7 +129,7 @@ fn assert_is_the_inspection(read: &Value, inspection: &Inspection) {
     assert_eq!(numbers(&read["times"]), frames.iter().map(|frame| frame.time_s).collect::<Vec<_>>());
     let files = read["files"].as_array().unwrap();
     assert_eq!(files.len(), frames.len());
-    let [hx, hy, hz] = mesh.element_size_m();
+    let [hx, hy, hz] = mesh.block().unwrap().element_size_m();
     let points: Vec<f64> = (0..mesh.node_count()).flat_map(|node| mesh.coordinates_m(node)).collect();
     for (file, frame) in files.iter().zip(frames) {
         assert_eq!(file["time"].as_f64(), Some(frame.time_s));
@@ -142,7 +142,7 @@ fn assert_is_the_inspection(read: &Value, inspection: &Inspection) {
         assert_eq!(numbers(&file["points"]), points);
         // With the corners in another order, the cells would be twisted and have other volumes.
         let volumes = numbers(&file["volumes"]);
-        assert_eq!(volumes.len(), mesh.element_positions().count());
+        assert_eq!(volumes.len(), mesh.block().unwrap().element_positions().count());
         assert!(volumes.iter().all(|volume| (volume / (hx * hy * hz) - 1.0).abs() < 1e-9), "{volumes:?}");
     }
     let nodes = mesh.node_count();
@@ -154,10 +154,10 @@ fn assert_is_the_inspection(read: &Value, inspection: &Inspection) {
     compare("displacement_m", &|frame| frame.u_m.clone());
     compare("velocity_m_s", &|frame| frame.velocity_m_s.clone());
     compare("stress_pa", &|frame| {
-        stress::nodal_pa(mesh, inspection.capture.model.pin().material(), &frame.u_m).concat()
+        stress::nodal_pa(mesh, inspection.capture.model.pin().materials(), &frame.u_m).concat()
     });
     let stress =
-        |frame: &Frame| stress::nodal_pa(mesh, inspection.capture.model.pin().material(), &frame.u_m);
+        |frame: &Frame| stress::nodal_pa(mesh, inspection.capture.model.pin().materials(), &frame.u_m);
     compare("von_mises_pa", &|frame| stress(frame).into_iter().map(stress::von_mises_pa).collect());
     compare("principal_stress_pa", &|frame| {
         stress(frame).into_iter().flat_map(stress::principal_pa).collect()

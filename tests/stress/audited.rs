@@ -7,7 +7,7 @@
 //! bound that is computed during the run:
 //!
 //! * The nodal force of a step is the result of some 40 operations in sequence (sums along x, y and z of
-//!   `solver::body::block::operator::tensor` and about ten more terms). |K| is the sum of the magnitudes of
+//!   `solver::body::pin::operator::tensor` and about ten more terms). |K| is the sum of the magnitudes of
 //!   all its terms, before any of them cancel. At each degree of freedom the error of the force is at most
 //!   ~91 ε w, with room for the sums along lines, where w = |K|(|u| + β_R|p|) + m(|u| + Δt|p|)/Δt² +
 //!   |external forces|. The term with 1/Δt² is the rounding of u_{n+1} and p_{n+1} themselves, as a force. An
@@ -25,8 +25,8 @@
 //!
 //! Terms in ε² are neglected: no run here has 10¹³ steps.
 
-use tribosweep::solver::body::block::BlockMesh;
-use tribosweep::solver::body::block::operator::AssembledOperator;
+use tribosweep::solver::body::pin::operator::{AssembledOperator, Operator};
+use tribosweep::solver::body::pin::{BlockMesh, PinMesh};
 use tribosweep::solver::energy::{Energies, EnergyLedger};
 use tribosweep::solver::material::Material;
 use tribosweep::solver::support::{Held, Support};
@@ -63,7 +63,8 @@ pub struct Audited<'a, R: Rounded = f64> {
     pub state: StateOf<1, R>,
     every: EnergyLedger<1, R>,
     sampled: EnergyLedger<1, R>,
-    magnitudes: AssembledOperator,
+    /// The magnitudes of the terms of K, row by row.
+    magnitudes: Vec<Vec<(usize, f64)>>,
     before: Vec<f64>,
     forces: Vec<f64>,
     increments: [Vec<f64>; 3],
@@ -84,7 +85,10 @@ impl<'a, R: Rounded> Audited<'a, R> {
             drive,
             every: EnergyLedger::new(model, 1),
             sampled: EnergyLedger::new(model, JOB_INTERVAL),
-            magnitudes: magnitudes(mesh, model.pin().material()),
+            magnitudes: match mesh {
+                PinMesh::Block(block) => magnitudes(block, model.pin().material()).rows(),
+                PinMesh::General(_) => magnitudes_of(model.pin().operator()).rows(),
+            },
             before: field(),
             forces: field(),
             increments: std::array::from_fn(|_| field()),
@@ -262,9 +266,16 @@ fn magnitudes(mesh: &BlockMesh, material: &Material) -> AssembledOperator {
             (3 * nodes[a] + r, 3 * nodes[b] + c, entry(a, r, b, c))
         })
     });
-    AssembledOperator::from_entries(3 * mesh.node_count(), entries).expect("magnitudes are symmetric")
+    AssembledOperator::from_entries(mesh.node_count(), entries).expect("magnitudes are symmetric")
 }
 
-fn times(operator: &AssembledOperator, x: &[f64]) -> Vec<f64> {
-    (0..operator.dofs()).map(|row| operator.row(row).map(|(column, k)| k * x[column]).sum()).collect()
+/// The magnitudes of all terms of an assembled K.
+fn magnitudes_of(operator: &Operator) -> AssembledOperator {
+    let Operator::Assembled(operator) = operator else { panic!("an assembled K") };
+    let entries = operator.entries().map(|(row, column, k)| (row, column, k.abs()));
+    AssembledOperator::from_entries(operator.nodes(), entries).expect("magnitudes are symmetric")
+}
+
+fn times(rows: &[Vec<(usize, f64)>], x: &[f64]) -> Vec<f64> {
+    rows.iter().map(|row| row.iter().map(|(column, k)| k * x[*column]).sum()).collect()
 }

@@ -1,7 +1,7 @@
 //! Small scenes for time steps below and above the limit.
 
-use tribosweep::solver::body::block::BlockMesh;
-use tribosweep::solver::body::block::Stiffness;
+use tribosweep::solver::body::pin::Stiffness;
+use tribosweep::solver::body::pin::{BlockMesh, PinMesh};
 use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::interface::target;
 use tribosweep::solver::interface::target::TargetDefinition;
@@ -19,11 +19,11 @@ pub const IDLE: Drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_
 
 /// The reference pin on a coarse mesh. One node row of its inner side is clamped, and the top is tied in z.
 pub fn pin(elements: [usize; 3]) -> ModelDefinition {
-    let mesh = BlockMesh::new([0.012, 0.015, 0.010], elements);
+    let mesh = PinMesh::from(BlockMesh::new([0.012, 0.015, 0.010], elements));
     let clamp = Clamp { side: ClampSide::InnerSide, width_m: 0.0 };
     let strip = clamp::clamped_strip(&mesh, &clamp).expect("a row at the edge");
     ModelDefinition {
-        material: MATERIAL,
+        materials: vec![MATERIAL],
         stiffness: Stiffness::Elastic,
         supports: clamp::supports(&mesh, &strip, TopFace::TiedInZ, &Holder::default()),
         load: load::normal_load(&mesh),

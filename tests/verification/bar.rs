@@ -54,7 +54,7 @@ fn bar(layers: usize, cfl: f64, beta2: f64) -> Model {
 }
 
 fn area_m2(model: &Model) -> f64 {
-    model.mesh().size_m()[0] * model.mesh().size_m()[1]
+    model.mesh().block().unwrap().size_m()[0] * model.mesh().block().unwrap().size_m()[1]
 }
 
 fn mass_kg(model: &Model) -> f64 {
@@ -63,7 +63,7 @@ fn mass_kg(model: &Model) -> f64 {
 
 /// Velocity of the centre of mass over the initial speed.
 fn rebound(model: &Model, state: &State<1>) -> f64 {
-    let nodes = 0..model.mesh().node_count();
+    let nodes = 0..model.mesh().block().unwrap().node_count();
     let momentum: f64 = nodes.map(|node| model.pin().masses_kg()[node] * state.p[3 * node + 2]).sum();
     momentum / (mass_kg(model) * SPEED_M_S)
 }
@@ -71,7 +71,7 @@ fn rebound(model: &Model, state: &State<1>) -> f64 {
 /// A bar that falls towards the wall, `gap_steps` steps of free flight away from it.
 fn falling(model: &Model, gap_steps: f64) -> State<1> {
     let mut state = State::at_rest(model);
-    for node in 0..model.mesh().node_count() {
+    for node in 0..model.mesh().block().unwrap().node_count() {
         state.u[3 * node + 2] = gap_steps * SPEED_M_S * model.time_step_s();
         state.p[3 * node + 2] = -SPEED_M_S;
     }
@@ -149,7 +149,7 @@ fn wall_impact_is_exact_at_unit_cfl() {
             // p is the velocity half a step before t_{n+1}. At that time the front is in an element with one
             // moving and one resting node, so the kinetic energy is exact there, too.
             let tau = (n as f64 + 0.5) / layers as f64;
-            let twice: f64 = (0..model.mesh().node_count())
+            let twice: f64 = (0..model.mesh().block().unwrap().node_count())
                 .map(|node| model.pin().masses_kg()[node] * state.p[3 * node + 2].powi(2))
                 .sum();
             let pair = (twice / (mass_kg(&model) * SPEED_M_S * SPEED_M_S), (1.0 - tau).abs());
@@ -164,8 +164,8 @@ fn wall_impact_is_exact_at_unit_cfl() {
         let contact_s = contact_steps as f64 * model.time_step_s();
         let exact_s = 2.0 * COLUMN_HEIGHT_M / wave_speed(&model);
         time.found(&name, contact_s, exact_s, exact_s);
-        let worst_speed = (0..model.mesh().node_count())
-            .filter(|&node| model.mesh().grid_position(node)[2] > 0)
+        let worst_speed = (0..model.mesh().block().unwrap().node_count())
+            .filter(|&node| model.mesh().block().unwrap().grid_position(node)[2] > 0)
             .map(|node| state.p[3 * node + 2] / SPEED_M_S)
             .max_by(|a, b| (a - 1.0).abs().total_cmp(&(b - 1.0).abs()));
         speeds.found(&name, worst_speed.expect("nodes"), 1.0, 1.0);

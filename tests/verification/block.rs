@@ -185,10 +185,10 @@ fn an_elastic_blocks_base_stops_like_a_rigid_block() {
         let shear_omega = (4.0 * stiffness / MASS_KG).sqrt();
         let model = elastic_block(young_modulus_pa, 0.0, 1.0 / shear_omega, TimeStep::FractionOfLimit(0.5));
         let mut state = State::at_rest(&model);
-        for node in 0..model.mesh().node_count() {
+        for node in 0..model.mesh().block().unwrap().node_count() {
             state.p[3 * node + Y] = SPEED_M_S;
         }
-        for node in model.mesh().top_nodes() {
+        for node in model.mesh().block().unwrap().top_nodes() {
             state.u[3 * node + Y] = MU * LOAD_N / (2.0 * stiffness);
             state.u[3 * node + Z] = -LOAD_N * COLUMN_HEIGHT_M / (young_modulus_pa * COLUMN_AREA_M2);
         }

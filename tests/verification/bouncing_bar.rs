@@ -91,7 +91,7 @@ fn bar(layers: usize, cfl: f64) -> Model {
     let material = Material { young_modulus_pa: 900.0, poisson_ratio: 0.0, density_kg_m3: 1.0 };
     let base = axial_bar(LENGTH_M, layers, material, false);
     // The shares are the weights of the lumped nodes, so that a load of 1 is the bar's weight.
-    let masses = base.mesh.lumped_masses_kg(material.density_kg_m3);
+    let masses = base.mesh.block().unwrap().lumped_masses_kg(material.density_kg_m3);
     let load = masses
         .iter()
         .enumerate()
@@ -121,9 +121,9 @@ struct Bounce {
 fn bounce(layers: usize, cfl: f64) -> Bounce {
     let model = bar(layers, cfl);
     let dt = model.time_step_s();
-    let area_m2 = model.mesh().size_m()[0] * model.mesh().size_m()[1];
+    let area_m2 = model.mesh().block().unwrap().size_m()[0] * model.mesh().block().unwrap().size_m()[1];
     let mut state = State::at_rest(&model);
-    for node in 0..model.mesh().node_count() {
+    for node in 0..model.mesh().block().unwrap().node_count() {
         state.u[3 * node + 2] = HEIGHT_M;
     }
     let weight = Drive { force_n: 1.0, ..IDLE };

@@ -48,11 +48,11 @@ fn run(layers: usize, cfl: f64) -> [Period; PERIODS] {
     let material = Material { young_modulus_pa: 1.0, poisson_ratio: 0.0, density_kg_m3: 1.0 };
     let base = axial_bar(1.0, layers, material, true);
     let model = Model::new(ModelDefinition { time_step: step_at_cfl(&base, cfl), ..base }).unwrap();
-    let area_m2 = model.mesh().size_m()[0] * model.mesh().size_m()[1];
+    let area_m2 = model.mesh().block().unwrap().size_m()[0] * model.mesh().block().unwrap().size_m()[1];
     let dt = model.time_step_s();
     let mut state = State::at_rest(&model);
-    for node in 0..model.mesh().node_count() {
-        state.u[3 * node + 2] = (1.0 - model.mesh().coordinates_m(node)[2]) / 2.0;
+    for node in 0..model.mesh().block().unwrap().node_count() {
+        state.u[3 * node + 2] = (1.0 - model.mesh().block().unwrap().coordinates_m(node)[2]) / 2.0;
     }
     let mut ledger = EnergyLedger::new(&model, 1);
     let steps = (3.0 / dt).round() as usize;

@@ -150,8 +150,7 @@ fn nothing_grows_without_damping() {
 
 /// Degrees of freedom that the scene holds or ties. Their velocities cannot be chosen freely.
 fn clamped(spec: &JobSpec) -> Vec<usize> {
-    let mesh =
-        tribosweep::solver::body::block::BlockMesh::new(spec.scene.pin.size_m, spec.scene.pin.elements);
+    let mesh = tribosweep::solver::body::pin::BlockMesh::new(spec.scene.pin.size_m, spec.scene.pin.elements);
     mesh.top_nodes().flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2]).collect()
 }
 
@@ -182,7 +181,7 @@ fn several_turns_strain_nothing() {
     let steps = (3.0e-3 / model.time_step_s()) as usize;
     let turns = drive(0.1, spec.scene.disk.omega_rpm);
     let mut state = State::<1>::at_rest(&model);
-    for node in 0..model.mesh().node_count() {
+    for node in 0..model.mesh().block().unwrap().node_count() {
         state.u[3 * node + 2] = 1.0e-6;
     }
     advance(&model, &Drive { force_n: 0.0, ..turns }, &mut state, steps);

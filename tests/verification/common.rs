@@ -1,6 +1,6 @@
 //! One-dimensional columns and small helpers shared by the other files.
 
-use tribosweep::solver::body::block::{BlockMesh, Stiffness};
+use tribosweep::solver::body::pin::{BlockMesh, PinMesh, Stiffness};
 use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::interface::target::{self, TargetDefinition};
 use tribosweep::solver::material::Material;
@@ -43,11 +43,12 @@ pub fn all_of(mesh: &BlockMesh, component: usize) -> Vec<usize> {
 }
 
 /// A definition with the parts that most columns share; no load, central difference, undamped.
-pub fn definition(mesh: BlockMesh, material: Material, supports: Vec<Support>) -> ModelDefinition {
+pub fn definition(mesh: impl Into<PinMesh>, material: Material, supports: Vec<Support>) -> ModelDefinition {
+    let mesh = mesh.into();
     ModelDefinition {
         target: TargetDefinition::Rigid(target::straight_plane(&mesh)),
         mesh,
-        material,
+        materials: vec![material],
         stiffness: Stiffness::Elastic,
         supports,
         load: Vec::<LoadShare>::new(),
@@ -96,8 +97,8 @@ pub fn axial_bar(length_m: f64, layers: usize, material: Material, top_fixed: bo
 
 /// The step of a column at a given cΔt/h, c the speed of pressure waves.
 pub fn step_at_cfl(definition: &ModelDefinition, cfl: f64) -> TimeStep {
-    let h = definition.mesh.element_size_m()[2];
-    TimeStep::Given(cfl * h / definition.material.pressure_wave_speed_m_s())
+    let h = definition.mesh.block().unwrap().element_size_m()[2];
+    TimeStep::Given(cfl * h / definition.materials[0].pressure_wave_speed_m_s())
 }
 
 /// Order ⅔ (to the digits that are shown) of errors that a dispersed front causes. The phase error of the

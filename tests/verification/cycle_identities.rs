@@ -43,7 +43,9 @@ fn model() -> Model {
 
 fn momentum_ns(model: &Model, state: &State<1>) -> [f64; 3] {
     std::array::from_fn(|c| {
-        (0..model.mesh().node_count()).map(|node| model.pin().masses_kg()[node] * state.p[3 * node + c]).sum()
+        (0..model.mesh().block().unwrap().node_count())
+            .map(|node| model.pin().masses_kg()[node] * state.p[3 * node + c])
+            .sum()
     })
 }
 

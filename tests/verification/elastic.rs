@@ -4,7 +4,7 @@
 //! width.
 
 use std::f64::consts::TAU;
-use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::body::pin::BlockMesh;
 use tribosweep::solver::body::ring::{RingDefinition, RingMesh};
 use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::interface::target::TargetDefinition;

@@ -6,8 +6,8 @@
 
 use crate::common::ROUNDINGS_PER_FORCE;
 use crate::evidence::Evidence;
-use tribosweep::solver::body::block::BlockMesh;
-use tribosweep::solver::body::block::Stiffness;
+use tribosweep::solver::body::pin::Stiffness;
+use tribosweep::solver::body::pin::{BlockMesh, PinMesh};
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::interface::target;
@@ -120,10 +120,10 @@ fn sampling_touches_only_the_damping() {
 
 /// The reference pin on a coarse mesh at a fraction of the stability limit, which is not checked.
 fn beyond_the_limit(fraction: f64) -> Model {
-    let mesh = BlockMesh::new([0.012, 0.015, 0.010], [6, 8, 5]);
+    let mesh = PinMesh::from(BlockMesh::new([0.012, 0.015, 0.010], [6, 8, 5]));
     let strip = clamp::clamped_strip(&mesh, &Clamp { width_m: 0.002, ..Clamp::default() }).unwrap();
     let definition = ModelDefinition {
-        material: Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 },
+        materials: vec![Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 }],
         stiffness: Stiffness::Elastic,
         supports: clamp::supports(&mesh, &strip, TopFace::TiedInZ, &Holder::default()),
         load: load::normal_load(&mesh),
@@ -164,7 +164,7 @@ fn divergence_is_noticed_and_explained() {
     let SolverError::Diverged { step, time_s, node, what, cause, .. } = &error else { panic!("{error}") };
     let model = beyond_the_limit(1.15);
     assert_eq!(*time_s, *step as f64 * model.time_step_s());
-    assert!(*node < model.mesh().node_count());
+    assert!(*node < model.mesh().block().unwrap().node_count());
     assert!(what.contains("stored energy"), "noticed by its energy, before anything overflows: {what}");
     assert!(cause.contains("1.1500 of the stability limit"), "{cause}");
 }

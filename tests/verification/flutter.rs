@@ -63,13 +63,13 @@ struct Sliding {
 
 impl Sliding {
     fn new(model: &Model, drive: &Drive, mu: f64) -> Self {
-        let n = 3 * model.mesh().node_count();
+        let n = 3 * model.mesh().block().unwrap().node_count();
         let k = stiffness(model);
-        let top_z: Vec<usize> = model.mesh().top_nodes().map(|node| 3 * node + 2).collect();
+        let top_z: Vec<usize> = model.mesh().block().unwrap().top_nodes().map(|node| 3 * node + 2).collect();
         let fixed = fixed_dofs(model, n);
         let mut moved = vec![top_z.clone()];
         for dof in 0..n {
-            let closed = dof % 3 == 2 && model.mesh().bottom_nodes().contains(&(dof / 3));
+            let closed = dof % 3 == 2 && model.mesh().block().unwrap().bottom_nodes().contains(&(dof / 3));
             if !closed && !fixed.contains(&dof) && !top_z.contains(&dof) {
                 moved.push(vec![dof]);
             }
@@ -174,7 +174,7 @@ const OMEGA_0: f64 = 1.0e5;
 
 /// K, column by column, from the program's operator.
 fn stiffness(model: &Model) -> DMatrix<f64> {
-    let n = 3 * model.mesh().node_count();
+    let n = 3 * model.mesh().block().unwrap().node_count();
     let mut k = DMatrix::zeros(n, n);
     for column in 0..n {
         let mut unit = vec![0.0; n];
@@ -186,7 +186,7 @@ fn stiffness(model: &Model) -> DMatrix<f64> {
 
 /// The x and y degrees of freedom of the top nodes within the clamp's width of the inner side.
 fn fixed_dofs(model: &Model, n: usize) -> Vec<usize> {
-    let mesh = model.mesh();
+    let mesh = model.mesh().block().unwrap();
     let edge = -mesh.size_m()[0] / 2.0 + model.clamp_width_m() * 1.001;
     (0..n)
         .filter(|dof| dof % 3 < 2)

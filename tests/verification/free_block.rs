@@ -31,7 +31,7 @@ use crate::evidence::Evidence;
 use crate::modes::{CLASSES, MirrorClass, Mode, lowest_modes, stiffness_rows};
 use crate::ritz;
 use tribosweep::solver::Model;
-use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::body::pin::BlockMesh;
 use tribosweep::solver::support::Support;
 
 const PIN_M: [f64; 3] = [0.012, 0.015, 0.010];
@@ -173,7 +173,7 @@ fn cube_frequencies_converge_with_order_two() {
 
 /// The frequency of the one mode that has Lamé's shape in the plane of the axes `plane`.
 fn lame_frequency_hz(model: &Model, modes: &[Mode], plane: [usize; 2], side_m: f64) -> f64 {
-    let mesh = model.mesh();
+    let mesh = model.mesh().block().unwrap();
     let centre = [0.0, 0.0, mesh.size_m()[2] / 2.0];
     let mut shape = vec![0.0; 3 * mesh.node_count()];
     for node in 0..mesh.node_count() {
@@ -275,7 +275,7 @@ fn rigid_motions_carry_no_force() {
         Evidence::new("B15", "rigid motion, |K u| over Σ|K||u|", "rigid motion strains nothing");
     for elements in [[4, 5, 3], [12, 15, 10]] {
         let block = Block::new(PIN_M, 0.3, elements, Vec::new());
-        let mesh = block.model.mesh();
+        let mesh = block.model.mesh().block().unwrap();
         for motion in 0..6 {
             let mut u = vec![0.0; 3 * mesh.node_count()];
             for node in 0..mesh.node_count() {

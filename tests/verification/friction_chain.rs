@@ -10,7 +10,7 @@
 //! μN = qh. The bar slips over 2F/q under a sudden load and over F/q under a slow one.
 
 use crate::particles::{Particles, Y, Z};
-use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::body::pin::BlockMesh;
 use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, State, TimeStep};
 
@@ -55,7 +55,7 @@ impl Chain {
     pub fn pressed(&self) -> State<1> {
         let mut state = State::at_rest(&self.model);
         for j in 0..self.nodes {
-            state.u[3 * self.model.mesh().node(0, j, 1) + Z] = -self.compression_m;
+            state.u[3 * self.model.mesh().block().unwrap().node(0, j, 1) + Z] = -self.compression_m;
         }
         state
     }
@@ -67,7 +67,7 @@ impl Chain {
 
     /// Displacement [m] of a node along the bar.
     pub fn u_m(&self, state: &State<1>, j: usize) -> f64 {
-        state.u[3 * self.model.mesh().node(0, j, 0) + Y]
+        state.u[3 * self.model.mesh().block().unwrap().node(0, j, 0) + Y]
     }
 
     /// Strain energy [J] of the bar itself.
@@ -79,7 +79,7 @@ impl Chain {
 
     /// Largest velocity [m/s] of the bar, half a step before the displacements.
     pub fn fastest_m_s(&self, state: &State<1>) -> f64 {
-        let speed = |j| state.p[3 * self.model.mesh().node(0, j, 0) + Y].abs();
+        let speed = |j| state.p[3 * self.model.mesh().block().unwrap().node(0, j, 0) + Y].abs();
         (0..self.nodes).map(speed).fold(0.0, f64::max)
     }
 

@@ -20,15 +20,15 @@ const SOURCE: &str = "amplification matrix of Newmark's method, β = 0, γ = β�
 /// A bar in its mode `mode`, 2 m above the plane.
 fn in_mode(model: &Model, mode: usize) -> State<1> {
     let mut state = State::at_rest(model);
-    for node in 0..model.mesh().node_count() {
-        let k = model.mesh().grid_position(node)[2] as f64;
+    for node in 0..model.mesh().block().unwrap().node_count() {
+        let k = model.mesh().block().unwrap().grid_position(node)[2] as f64;
         state.u[3 * node + 2] = 2.0 + (mode as f64 * PI / LAYERS as f64 * k).cos();
     }
     state
 }
 
 fn omega(model: &Model, mode: usize) -> f64 {
-    let h = model.mesh().element_size_m()[2];
+    let h = model.mesh().block().unwrap().element_size_m()[2];
     2.0 * model.pin().material().pressure_wave_speed_m_s() / h
         * (mode as f64 * PI / (2 * LAYERS) as f64).sin()
 }

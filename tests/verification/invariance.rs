@@ -8,8 +8,8 @@
 
 use crate::common::{IDLE, ROUNDINGS_PER_FORCE, advance, definition, pin_material};
 use crate::evidence::Evidence;
-use tribosweep::solver::body::block::BlockMesh;
-use tribosweep::solver::body::block::Stiffness;
+use tribosweep::solver::body::pin::Stiffness;
+use tribosweep::solver::body::pin::{BlockMesh, PinMesh};
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::field::Field;
 use tribosweep::solver::interface::law::Law;
@@ -67,10 +67,10 @@ fn scaling_load_and_speed_by_powers_of_two_scales_the_bits() {
 
 /// The pin of `size_m` on a plane that moves straight in `direction`.
 fn straight(size_m: [f64; 3], elements: [usize; 3], side: ClampSide, direction: [f64; 2]) -> Model {
-    let mesh = BlockMesh::new(size_m, elements);
+    let mesh = PinMesh::from(BlockMesh::new(size_m, elements));
     let strip = clamp::clamped_strip(&mesh, &Clamp { side, width_m: 0.002 }).unwrap();
     Model::new(ModelDefinition {
-        material: pin_material(0.3),
+        materials: vec![pin_material(0.3)],
         stiffness: Stiffness::Elastic,
         supports: clamp::supports(&mesh, &strip, TopFace::TiedInZ, &Holder::default()),
         load: load::normal_load(&mesh),
@@ -111,9 +111,9 @@ fn deviation(
     assert!(sideways > 0.01 * scale, "the one-sided clamp does move the pin sideways");
     let mut worst: f64 = 0.0;
     for node in 0..a.mesh().node_count() {
-        let [i, j, k] = image(a.mesh().grid_position(node));
+        let [i, j, k] = image(a.mesh().block().unwrap().grid_position(node));
         for (c, (to, sign)) in turned.into_iter().enumerate() {
-            let found = second.u[3 * b.mesh().node(i, j, k) + to];
+            let found = second.u[3 * b.mesh().block().unwrap().node(i, j, k) + to];
             worst = worst.max((sign * first.u[3 * node + c] - found).abs());
         }
     }
@@ -160,7 +160,7 @@ const HEIGHT_M: f64 = 0.01;
 fn free_flight_is_rigid() {
     let mesh = BlockMesh::new(SIZE_M, ELEMENTS);
     let model = Model::new(definition(mesh, pin_material(0.3), Vec::new())).unwrap();
-    let mesh = model.mesh();
+    let mesh = model.mesh().block().unwrap();
     let steps = 500;
     let mut evidence = Evidence::new(
         "B15",

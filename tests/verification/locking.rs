@@ -28,7 +28,7 @@ fn deflection_m(poisson_ratio: f64, elements: [usize; 3]) -> f64 {
     scene.clamp = Clamp { width_m: CLAMP_M, ..scene.clamp };
     let Scene { load, contact, .. } = &scene;
     let model = Model::from_scene(&scene, &numerics).unwrap();
-    let mesh = model.mesh();
+    let mesh = model.mesh().block().unwrap();
     let area_m2 = mesh.size_m()[0] * mesh.size_m()[1];
     let top: Vec<usize> = mesh.top_nodes().collect();
     let is_clamped =

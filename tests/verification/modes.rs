@@ -7,7 +7,7 @@
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
 use tribosweep::solver::Model;
-use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::body::pin::BlockMesh;
 
 /// Per direction +1 where the displacement field is its own mirror image and −1 where it is the
 /// reverse of it: u_c(−x_a) = class_a · (−1 if c = a, else 1) · u_c(x_a).
@@ -35,7 +35,7 @@ pub fn mirror_sign(class: MirrorClass, axis: usize, c: usize) -> f64 {
 /// A row reaches only the neighbouring nodes in every direction, so nodes three apart can share a product. 81
 /// products with unit displacements give all columns.
 pub fn stiffness_rows(model: &Model) -> Vec<Vec<(usize, f64)>> {
-    let mesh = model.mesh();
+    let mesh = model.mesh().block().unwrap();
     let dofs = 3 * mesh.node_count();
     let mut unit = vec![0.0; dofs];
     let mut rows = vec![Vec::with_capacity(81); dofs];
@@ -169,7 +169,7 @@ pub fn lowest_modes(
     shift_hz: f64,
     held: &dyn Fn(usize) -> bool,
 ) -> Vec<Mode> {
-    let ClassFreedom { follows, count: size } = freedom(model.mesh(), class, held);
+    let ClassFreedom { follows, count: size } = freedom(model.mesh().block().unwrap(), class, held);
     let mut mass = vec![0.0; size];
     let mut stiffness = vec![Vec::<(usize, f64)>::new(); size];
     let mut band = 0;

@@ -5,9 +5,9 @@
 //! the contact face whose z is released is a contact node.
 
 use std::collections::BTreeSet;
-use tribosweep::solver::body::block::BlockMesh;
-use tribosweep::solver::body::block::Stiffness;
-use tribosweep::solver::body::block::operator::AssembledOperator;
+use tribosweep::solver::body::pin::BlockMesh;
+use tribosweep::solver::body::pin::Stiffness;
+use tribosweep::solver::body::pin::operator::AssembledOperator;
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::interface::target;
 use tribosweep::solver::interface::target::TargetDefinition;
@@ -78,16 +78,16 @@ impl Particles {
     /// The definition of the model, with the central difference.
     pub fn definition(&self, beta_r_s: f64, time_step: TimeStep) -> ModelDefinition {
         let dofs = 3 * self.mesh.node_count();
-        let springs = AssembledOperator::from_entries(dofs, self.entries.iter().copied()).unwrap();
+        let springs = AssembledOperator::from_entries(dofs / 3, self.entries.iter().copied()).unwrap();
         let fixed = (0..dofs).filter(|dof| !self.released.contains(dof));
         ModelDefinition {
-            target: TargetDefinition::Rigid(target::straight_plane(&self.mesh)),
-            mesh: self.mesh.clone(),
-            material: Material {
+            target: TargetDefinition::Rigid(target::straight_plane(&self.mesh.clone().into())),
+            mesh: self.mesh.clone().into(),
+            materials: vec![Material {
                 young_modulus_pa: 1.0,
                 poisson_ratio: 0.0,
                 density_kg_m3: self.density_kg_m3,
-            },
+            }],
             stiffness: Stiffness::Springs(springs),
             supports: vec![Support::fixed(fixed)],
             load: self.load.clone(),

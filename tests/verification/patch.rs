@@ -17,7 +17,7 @@
 use crate::common::{ROUNDINGS_PER_FORCE, advance, all_of, definition, pin_material};
 use crate::evidence::Evidence;
 use crate::modes::stiffness_rows;
-use tribosweep::solver::body::block::BlockMesh;
+use tribosweep::solver::body::pin::BlockMesh;
 use tribosweep::solver::field::Field;
 use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::support::Support;
@@ -50,9 +50,9 @@ fn shortening_m(model: &Model, confined: bool) -> f64 {
 fn exact_m(model: &Model, confined: bool) -> Vec<f64> {
     let strain = shortening_m(model, confined) / SIZE_M[2];
     let sideways = if confined { 0.0 } else { model.pin().material().poisson_ratio * strain };
-    (0..model.mesh().node_count())
+    (0..model.mesh().block().unwrap().node_count())
         .flat_map(|node| {
-            let [x, y, z] = model.mesh().coordinates_m(node);
+            let [x, y, z] = model.mesh().block().unwrap().coordinates_m(node);
             [sideways * x, sideways * y, -strain * z]
         })
         .collect()
@@ -95,7 +95,7 @@ fn record(evidence: &mut [Evidence; 3], name: &str, model: &Model, state: &State
     let worst =
         exact_m(model, confined).iter().zip(state.u.values()).fold(0.0_f64, |w, (e, u)| w.max((u - e).abs()));
     displacements.bounded(name, worst / exact, 0.0, 1.0, displacement_bound);
-    let top = model.mesh().top_nodes().start;
+    let top = model.mesh().block().unwrap().top_nodes().start;
     shortening.bounded(name, -state.u[3 * top + 2] * 1e6, exact * 1e6, exact * 1e6, displacement_bound);
 }
 
@@ -123,7 +123,7 @@ fn uniform_pressure_stays_uniform() {
         for confined in [false, true] {
             let model = model(elements, confined, 0.0);
             let mut state = State::at_rest(&model);
-            state.u = Field::from_values(model.mesh().layout(), &exact_m(&model, confined));
+            state.u = Field::from_values(model.mesh().block().unwrap().layout(), &exact_m(&model, confined));
             advance(&model, &DRIVE, &mut state, 200);
             record(&mut evidence, &name(elements, confined), &model, &state, confined);
         }

@@ -50,15 +50,16 @@ fn column(layers: usize, cfl: f64) -> (Model, State<1>) {
     let time_step = TimeStep::FractionOfLimit(cfl);
     let definition = definition(mesh, material, [vec![Support::fixed(fixed)], ties].concat());
     let model = Model::new(ModelDefinition { time_step, ..definition }).unwrap();
-    let found_cfl = material.shear_wave_speed_m_s() * model.time_step_s() / model.mesh().element_size_m()[2];
+    let found_cfl = material.shear_wave_speed_m_s() * model.time_step_s()
+        / model.mesh().block().unwrap().element_size_m()[2];
     assert!((found_cfl / cfl - 1.0).abs() < 1e-12, "the limit is c_sΔt/h_e = 1: {found_cfl}");
 
     let pressure = SHEAR_LIMIT_PA / MU;
     let modulus = material.lame_lambda_pa() + 2.0 * material.shear_modulus_pa();
-    let h = model.mesh().element_size_m()[2];
+    let h = model.mesh().block().unwrap().element_size_m()[2];
     let mut state = State::at_rest(&model);
     for k in 1..=layers {
-        for node in level(model.mesh(), k) {
+        for node in level(model.mesh().block().unwrap(), k) {
             state.u[3 * node + 2] = -pressure / modulus * h;
         }
     }

@@ -14,8 +14,8 @@ use std::f64::consts::TAU;
 use tribosweep::analysis;
 use tribosweep::solver::Model;
 use tribosweep::solver::body::Freedom;
-use tribosweep::solver::body::block::operator::AssembledOperator;
 use tribosweep::solver::body::hexahedron;
+use tribosweep::solver::body::pin::operator::AssembledOperator;
 use tribosweep::spec::{ClampSide, JobSpec, TopFace};
 use tribosweep::stability::{Accuracy, Aim, Mode, SlidingPoint, Structure};
 use tribosweep::units::rad_per_s_from_rpm;
@@ -53,7 +53,7 @@ struct Dense {
 
 impl Dense {
     fn new(model: &Model, in_contact: &[bool], mu: f64) -> Self {
-        let (mesh, pin) = (model.mesh(), model.pin());
+        let (mesh, pin) = (model.mesh().block().unwrap(), model.pin());
         let mut unknowns = vec![None; 3 * mesh.node_count()];
         let mut group = None;
         let mut count = 0;
@@ -74,11 +74,11 @@ impl Dense {
             };
         }
         let element = hexahedron::stiffness(pin.material(), mesh.element_size_m());
-        let operator = AssembledOperator::of_block(mesh, &element);
+        let rows = AssembledOperator::of_block(mesh, &element).rows();
         let mut mass = vec![0.0; count];
         let mut stiffness = Mat::zeros(count, count);
         let mut add_row = |row: usize, factor: f64, from: usize| {
-            for (column, value) in operator.row(from) {
+            for &(column, value) in &rows[from] {
                 if let (Some(i), Some(j)) = (unknowns[row], unknowns[column]) {
                     stiffness[(i, j)] += factor * value;
                 }

@@ -63,7 +63,7 @@ fn run(
     let model = on_block(ModelDefinition { time_step: TimeStep::FractionOfLimit(0.9), ..base }, &below);
     let (dt, area) = (model.time_step_s(), size[0] * size[1]);
     let mut state = State::<1>::at_rest(&model);
-    for node in 0..model.mesh().node_count() {
+    for node in 0..model.mesh().block().unwrap().node_count() {
         state.u[3 * node + 2] = GAP;
         state.p[3 * node + 2] = -SPEED;
     }

@@ -83,7 +83,7 @@ fn of_point(
 }
 
 fn write_point(files: &mut Folder, job: &Job, model: &Model, shapes: &[Shape]) -> Result<(), CliError> {
-    let shortest_m = job.spec.scene.pin.size_m.into_iter().fold(f64::INFINITY, f64::min);
+    let shortest_m = job.spec.scene.pin.extent_m().into_iter().fold(f64::INFINITY, f64::min);
     for (index, (mode, shape)) in shapes.iter().enumerate() {
         let name = format!("{}_mode-{}", slug(job), index + 1);
         write_mode(files, model.mesh(), &name, mode.frequency_hz, shape, AMPLITUDE * shortest_m)?;

@@ -12,7 +12,7 @@ const LOOP_WIDTH: f64 = 0.8;
 
 /// Figure 3a: the loops of all nodes about their means, and the loops along three lines at the positions of the nodes.
 pub fn trajectories(inspection: &Inspection) -> Vec<Panel> {
-    let [nx, _, _] = inspection.mesh().elements();
+    let [nx, _] = inspection.face_grid().elements;
     let lines = [("inner side (−x)", 0), ("middle", nx / 2), ("outer side (+x)", nx)];
     let along = lines.map(|(name, i)| along_line(inspection, name, i));
     std::iter::once(all_loops(inspection)).chain(along).collect()
@@ -29,13 +29,13 @@ fn drawn_loop(path: &[(f64, f64)], place: impl Fn(f64) -> f64) -> impl Iterator<
 }
 
 fn all_loops(inspection: &Inspection) -> Panel {
-    let mesh = inspection.mesh();
-    let [nx, ny, _] = mesh.elements();
+    let grid = inspection.face_grid();
+    let [_, ny] = grid.elements;
     // The colour goes from front to rear in a sequence.
     let across = |j: usize| {
         let mut points = Vec::new();
-        for i in 0..=nx {
-            let path = node_loop(&inspection.capture.face, mesh.node(i, j, 0));
+        for slave in grid.across(j) {
+            let path = node_loop(&inspection.capture.face, slave);
             let mean = mean(&path);
             points.extend(drawn_loop(&path, |y| (y - mean) * MICRO));
         }
@@ -54,18 +54,16 @@ fn all_loops(inspection: &Inspection) -> Panel {
 
 fn along_line(inspection: &Inspection, name: &str, i: usize) -> Panel {
     let mesh = inspection.mesh();
-    let [_, ny, _] = mesh.elements();
+    let grid = inspection.face_grid();
     // Fewer loops than nodes, so that a reader can tell them apart.
-    let stride = ny.div_ceil(15);
-    let loops: Vec<(f64, Vec<(f64, f64)>)> = (0..=ny)
+    let stride = grid.elements[1].div_ceil(15);
+    let loops: Vec<(f64, Vec<(f64, f64)>)> = grid
+        .along(i)
         .step_by(stride)
-        .map(|j| {
-            let slave = mesh.node(i, j, 0);
-            (mesh.coordinates_m(slave)[1], node_loop(&inspection.capture.face, slave))
-        })
+        .map(|slave| (mesh.coordinates_m(slave)[1], node_loop(&inspection.capture.face, slave)))
         .collect();
     let widest_m = loops.iter().map(|(_, path)| extent(path)).fold(f64::MIN_POSITIVE, f64::max);
-    let factor = round_down(LOOP_WIDTH * stride as f64 * mesh.element_size_m()[1] / widest_m);
+    let factor = round_down(LOOP_WIDTH * stride as f64 * grid.width_m[1] / widest_m);
     let mut points = Vec::new();
     for (at_m, path) in &loops {
         let mean = mean(path);
@@ -99,18 +97,17 @@ fn round_down(x: f64) -> f64 {
 /// The states along the middle of the face over a cycle.
 pub fn waves(inspection: &Inspection) -> Panel {
     let mesh = inspection.mesh();
-    let [nx, ny, _] = mesh.elements();
+    let grid = inspection.face_grid();
     let [start_s, end_s] = inspection.survey.windows.cycle_s;
     let since = |time_s: f64| (time_s - start_s) * MICRO;
     // A little more than half an element, so that rounding to pixels leaves no gap between the rows.
-    let half_m = 0.55 * mesh.element_size_m()[1];
+    let half_m = 0.55 * grid.width_m[1];
     let [_, ly, _] = mesh.size_m();
     let x = Scale::from_to("time [µs]", 0.0, since(end_s));
     let y = Scale::from_to("y [mm]: rear above, front below", -ly / 2.0 * MILLI, ly / 2.0 * MILLI);
     let mut panel = Panel::new("States along the middle of the contact face over one cycle", x, y);
     panel.height = 700;
-    for j in 0..=ny {
-        let slave = mesh.node(nx / 2, j, 0);
+    for slave in grid.middle() {
         let at_m = mesh.coordinates_m(slave)[1];
         let rows = ((at_m - half_m).max(-ly / 2.0) * MILLI, (at_m + half_m).min(ly / 2.0) * MILLI);
         let steps = inspection.capture.face.iter().map(|step| (step.time_s, step.nodes[slave].state));

@@ -2,14 +2,17 @@
 
 use super::style::{MICRO, STATES, colour_of};
 use crate::inspect::capture::Frame;
+use crate::inspect::grid::FaceGrid;
 use crate::inspect::inspection::Inspection;
 use crate::publish::FigureError;
 use crate::publish::plot::canvas::{Area, WIDTH, sheet, write};
 use crate::publish::plot::{DrawError, MARGIN, TEXT};
+use crate::solver::body::pin::PinMesh;
 use crate::solver::interface::ContactState;
 use plotters::element::{Circle, PathElement, Polygon};
 use plotters::style::text_anchor::HPos;
 use plotters::style::{BLACK, Color, RGBColor};
+use std::collections::BTreeMap;
 
 const ROW: u32 = 720;
 /// Height of the title, with space for arrows that point out of the pin.
@@ -108,7 +111,8 @@ struct Scales {
 impl Scales {
     fn of(inspection: &Inspection, snapshots: &[Snapshot]) -> Self {
         let [lx, ly, lz] = inspection.mesh().size_m();
-        let ([hx, hy, _], [_, ny, _]) = (inspection.mesh().element_size_m(), inspection.mesh().elements());
+        let grid = inspection.face_grid();
+        let ([hx, hy], [_, ny]) = (grid.width_m, grid.elements);
         let stride = ny.div_ceil(ARROWS);
         let room = f64::from(WIDTH) / 2.0 - 3.0 * f64::from(MARGIN);
         let high = f64::from(ROW) - f64::from(TITLE) - f64::from(MARGIN);
@@ -159,7 +163,7 @@ fn draw_row(
 /// The middle plane: velocities at its nodes, forces under it.
 fn draw_side(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scales) -> Result<(), DrawError> {
     let mesh = inspection.mesh();
-    let [nx, ny, nz] = mesh.elements();
+    let grid = inspection.face_grid();
     let [_, ly, lz] = mesh.size_m();
     let middle = i64::from(WIDTH / 4) as f64;
     let base = f64::from(TITLE) + lz * scales.px_per_m;
@@ -167,18 +171,14 @@ fn draw_side(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scale
     let corners = [(-ly / 2.0, 0.0), (ly / 2.0, 0.0), (ly / 2.0, lz), (-ly / 2.0, lz), (-ly / 2.0, 0.0)];
     let outline = corners.map(|(y, z)| rounded(pixel(y, z)));
     area.draw(&PathElement::new(outline, GREY.stroke_width(3)))?;
-    for k in (0..=nz).step_by(scales.stride) {
-        for j in (0..=ny).step_by(scales.stride) {
-            let node = mesh.node(nx / 2, j, k);
-            let [_, y, z] = mesh.coordinates_m(node);
-            let v = &frame.velocity_m_s[3 * node..3 * node + 3];
-            let from = pixel(y, z);
-            let to = (from.0 + v[1] * scales.px_per_m_s, from.1 - v[2] * scales.px_per_m_s);
-            arrow(area, from, to, BLACK, 2)?;
-        }
+    for node in middle_plane(mesh, &grid, scales.stride) {
+        let [_, y, z] = mesh.coordinates_m(node);
+        let v = &frame.velocity_m_s[3 * node..3 * node + 3];
+        let from = pixel(y, z);
+        let to = (from.0 + v[1] * scales.px_per_m_s, from.1 - v[2] * scales.px_per_m_s);
+        arrow(area, from, to, BLACK, 2)?;
     }
-    for j in 0..=ny {
-        let slave = mesh.node(nx / 2, j, 0);
+    for (j, slave) in grid.middle().enumerate() {
         let [_, y, _] = mesh.coordinates_m(slave);
         let (node, tip) = (&frame.face[slave], pixel(y, 0.0));
         let [_, friction, normal] = node.force_n;
@@ -193,9 +193,34 @@ fn draw_side(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scale
     write(area, "rear", rounded(pixel(ly / 2.0, -0.12 * lz)), TEXT - 4, HPos::Left)
 }
 
+/// The nodes of the middle plane that get an arrow: every `stride`th in y and in z.
+fn middle_plane(mesh: &PinMesh, grid: &FaceGrid, stride: usize) -> Vec<usize> {
+    if let Some(block) = mesh.block() {
+        let [nx, ny, nz] = block.elements();
+        let rows = (0..=nz).step_by(stride);
+        return rows.flat_map(|k| (0..=ny).step_by(stride).map(move |j| block.node(nx / 2, j, k))).collect();
+    }
+    // Of the nodes in a cell of a grid, the one nearest to the middle plane.
+    let cell_m = stride as f64 * grid.width_m[1];
+    let mut nearest: BTreeMap<[i64; 2], usize> = BTreeMap::new();
+    for node in 0..mesh.node_count() {
+        let [x, y, z] = mesh.own_coordinates_m(node);
+        if x.abs() > 0.5 * grid.width_m[0] {
+            continue;
+        }
+        let cell = [y, z].map(|at| (at / cell_m).round() as i64);
+        let kept = nearest.entry(cell).or_insert(node);
+        if x.abs() < mesh.own_coordinates_m(*kept)[0].abs() {
+            *kept = node;
+        }
+    }
+    nearest.into_values().collect()
+}
+
 /// The contact face from above: states and friction forces.
 fn draw_face(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scales) -> Result<(), DrawError> {
     let mesh = inspection.mesh();
+    let grid = inspection.face_grid();
     let [lx, ly, _] = mesh.size_m();
     let middle = f64::from(WIDTH / 4);
     let centre = f64::from(TITLE) + lx / 2.0 * scales.px_per_m;
@@ -212,7 +237,7 @@ fn draw_face(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scale
     }
     // The arrows are drawn after the dots, which would hide them.
     for (slave, node) in frame.face.iter().enumerate() {
-        let [i, j, _] = mesh.grid_position(slave);
+        let [i, j] = grid.place(slave);
         if node.state != ContactState::Separated && i % scales.stride == 0 && j % scales.stride == 0 {
             let from = place(slave);
             let [sideways, along, _] = node.force_n;

@@ -47,11 +47,11 @@ pub fn stiffness(material: &Material, h: [f64; 3]) -> ElementStiffness {
 }
 
 /// Stiffness \[N/m\] and row-sum lumped volumes \[m³\] of an isoparametric hexahedron with these corners \[m\],
-/// numbered as in the figure above, by 2 × 2 × 2 Gauss points.
-///
-/// # Panics
-/// If the element is inverted.
-pub fn isoparametric(material: &Material, corners: &[Vector3<f64>; 8]) -> (ElementStiffness, [f64; 8]) {
+/// numbered as in the figure above, by 2 × 2 × 2 Gauss points. `None` if the element is inverted at one of them.
+pub fn isoparametric(
+    material: &Material,
+    corners: &[Vector3<f64>; 8],
+) -> Option<(ElementStiffness, [f64; 8])> {
     let lambda = material.lame_lambda_pa();
     let shear = material.shear_modulus_pa();
     let mut k = ElementStiffness::zeros();
@@ -62,8 +62,10 @@ pub fn isoparametric(material: &Material, corners: &[Vector3<f64>; 8]) -> (Eleme
         let local = gradients_at(xi, [2.0; 3]);
         let jacobian: Matrix3<f64> = local.iter().zip(corners).map(|(g, x)| g * x.transpose()).sum();
         let weight = jacobian.determinant();
-        assert!(weight > 0.0, "an inverted element");
-        let inverse = jacobian.try_inverse().expect("an element with a volume");
+        if weight <= 0.0 {
+            return None;
+        }
+        let inverse = jacobian.try_inverse()?;
         let gradients = local.map(|g| inverse * g);
         for (a, ga) in gradients.iter().enumerate() {
             let shape: f64 =
@@ -82,7 +84,34 @@ pub fn isoparametric(material: &Material, corners: &[Vector3<f64>; 8]) -> (Eleme
             }
         }
     }
-    ((k + k.transpose()) * 0.5, volumes)
+    Some(((k + k.transpose()) * 0.5, volumes))
+}
+
+/// The Jacobian at each corner of a hexahedron with these corners \[m\], over the product of the lengths of the edges that meet
+/// there. It is 1 for boxes, and 0 or less for elements that are inverted or flat.
+pub fn corner_jacobians(corners: &[Vector3<f64>; 8]) -> [f64; 8] {
+    std::array::from_fn(|a| {
+        let edges: [Vector3<f64>; 3] = std::array::from_fn(|axis| {
+            let edge = corners[a ^ (1 << axis)] - corners[a];
+            if a >> axis & 1 == 0 { edge } else { -edge }
+        });
+        let [x, y, z] = edges;
+        x.cross(&y).dot(&z) / (x.norm() * y.norm() * z.norm())
+    })
+}
+
+/// Gradients ∂N_a/∂x \[1/m\] of the eight shape functions at each corner of a hexahedron with these corners \[m\]. `None` if the
+/// element is flat at one of them.
+pub fn corner_gradients(corners: &[Vector3<f64>; 8]) -> Option<[[Vector3<f64>; 8]; 8]> {
+    let mut gradients = [[Vector3::zeros(); 8]; 8];
+    for (corner, gradients) in gradients.iter_mut().enumerate() {
+        let xi = std::array::from_fn(|axis| if corner >> axis & 1 == 0 { -1.0 } else { 1.0 });
+        let local = gradients_at(xi, [2.0; 3]);
+        let jacobian: Matrix3<f64> = local.iter().zip(corners).map(|(g, x)| g * x.transpose()).sum();
+        let inverse = jacobian.try_inverse()?;
+        *gradients = local.map(|g| inverse * g);
+    }
+    Some(gradients)
 }
 
 /// Position of a Gauss point in \[−1, 1\]³.

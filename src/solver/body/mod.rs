@@ -3,14 +3,14 @@
 //! A body has nodes with lumped masses, internal forces K (u + β_R p), stored energies, the work of its damping,
 //! and an upper bound of its largest frequency.
 //!
-//! * [`block`] – the pin: a uniform block. Its nodes are moved in the same pass that forms the product with K.
+//! * [`pin`] – the pin. Its nodes are moved in the same pass that forms the product with K.
 //! * [`ring`] – the elastic disk.
 //! * [`hexahedron`] – the finite element of both.
 //!
 //! No body uses another body, `support` or `interface`.
 
-pub mod block;
 pub mod hexahedron;
+pub mod pin;
 pub mod ring;
 
 /// How one degree of freedom of a body may move.

@@ -12,7 +12,7 @@
 //! a constraint. The multipliers that put it back act at t_n.
 //!
 //! * [`Interface`] – the slave nodes with their initial gaps and the velocity of the target under them.
-//! * `profile` – the initial gap of a base that is not a plane.
+//! * `profile` – the height of a base that is not a plane.
 //! * [`law`] – friction laws, and the projection that all of them share.
 //! * [`target`] – rigid surfaces, and the surface of an elastic disk between its nodes.
 //! * [`solve`] – the two contact solves: node by node on a rigid target, by sweeps on an elastic one.
@@ -31,5 +31,5 @@ mod work;
 pub(crate) use contacts::LIMIT;
 pub use contacts::{ContactState, Contacts, Status};
 pub use pair::{Interface, SlaveNode};
-pub(in crate::solver) use profile::initial_gap_m;
+pub(in crate::solver) use profile::base_height_m;
 pub(in crate::solver) use work::InterfaceWork;

@@ -2,7 +2,7 @@
 
 use super::target::SurfaceMotion;
 use crate::solver::body::Freedom;
-use crate::solver::body::block::{BlockBody, BlockMesh};
+use crate::solver::body::pin::PinBody;
 use crate::solver::field::{FieldOf, Layout};
 use crate::solver::number::Number;
 
@@ -41,18 +41,19 @@ impl Interface {
     ///
     /// # Panics
     /// If there is not one surface velocity per node of the contact face.
-    pub fn new(pin: &BlockBody, surface_motion: &SurfaceMotion) -> Self {
-        let mesh: &BlockMesh = pin.mesh();
+    pub fn new(pin: &PinBody, surface_motion: &SurfaceMotion) -> Self {
+        let mesh = pin.mesh();
         assert_eq!(surface_motion.len(), mesh.bottom_nodes().len(), "one surface velocity per slave node");
         let slaves = mesh
             .bottom_nodes()
+            .zip(mesh.contact_areas_m2())
             .zip(surface_motion)
-            .map(|(node, surface_motion)| {
+            .map(|((node, area_m2), surface_motion)| {
                 let [x, y, _] = mesh.coordinates_m(node);
                 SlaveNode {
                     node,
                     mass_kg: pin.masses_kg()[node],
-                    area_m2: mesh.tributary_area_m2(node),
+                    area_m2,
                     position_m: [x, y],
                     initial_gap_m: 0.0,
                     surface_motion: *surface_motion,
@@ -60,12 +61,12 @@ impl Interface {
                 }
             })
             .collect();
-        let ([lx, ly, _], [nx, ny, _]) = (mesh.size_m(), mesh.elements());
+        let [lx, ly, _] = mesh.size_m();
         Self {
             slaves,
-            layout: mesh.face_layout(),
+            layout: mesh.layout().first_plane(),
             extent_m: [lx, ly],
-            edge_centres: [mesh.node(nx / 2, 0, 0), mesh.node(nx / 2, ny, 0)],
+            edge_centres: mesh.edge_centres(),
         }
     }
 

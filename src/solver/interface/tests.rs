@@ -3,7 +3,7 @@
 use super::law::{AtNode, FrictionLaw, Law};
 use super::solve::{StepData, TargetState};
 use super::{Contacts, LIMIT, Status};
-use crate::solver::body::block::BlockMotion;
+use crate::solver::body::pin::NodeMotion;
 use crate::solver::{Drive, Model, State, step};
 use crate::spec::{DiskKind, JobSpec};
 use fearless_simd::{Simd, f64x8, prelude::*};
@@ -139,7 +139,7 @@ fn a_law_gets_the_step_before() {
     let steps_done = [state.steps_done(0)];
     let factors = model.scheme().step_factors(&steps_done);
     let given = StepData { factors: &factors, drives: &[DRIVE], steps_done: &steps_done };
-    let motion = BlockMotion::<1, f64>::new(model.pin());
+    let motion = NodeMotion::<1, f64>::new(model.pin());
     let mut target = TargetState::<1>::at_rest(model.interface(), model.target());
     let (mut u, mut p) = (state.u.clone(), state.p.clone());
     target.solve_with(ExposingLaw, &given, &mut motion.face(&mut u, &mut p), &mut state.contacts);

@@ -1,7 +1,7 @@
 //! The clamp and the top face of a scene as supports on a mesh.
 
 use super::{Held, Support, Tied};
-use crate::solver::body::block::BlockMesh;
+use crate::solver::body::pin::PinMesh;
 use crate::solver::error::SolverError;
 use crate::spec::{Clamp, ClampSide, Holder, HolderDirection, TopFace};
 
@@ -17,46 +17,99 @@ pub struct ClampedStrip {
     pub width_m: f64,
 }
 
-/// Finds the clamp's nodes on the top face of `mesh`.
+/// Finds the clamp's nodes on the top face of `mesh`. A mesh that has clamped nodes of its own decides itself.
 ///
 /// # Errors
 /// If no node row is near the clamp's width.
-pub fn clamped_strip(mesh: &BlockMesh, clamp: &Clamp) -> Result<ClampedStrip, SolverError> {
-    let (axis, low, high) = match clamp.side {
-        ClampSide::InnerSide => (0, true, false),
-        ClampSide::OuterSide => (0, false, true),
-        ClampSide::BothSides => (0, true, true),
-        ClampSide::LeadingEnd => (1, true, false),
-        ClampSide::TrailingEnd => (1, false, true),
-        ClampSide::BothEnds => (1, true, true),
-        ClampSide::WholeTop => {
-            return Ok(ClampedStrip { nodes: mesh.top_nodes().collect(), width_m: mesh.size_m()[0] });
-        }
+pub fn clamped_strip(mesh: &PinMesh, clamp: &Clamp) -> Result<ClampedStrip, SolverError> {
+    if let PinMesh::General(general) = mesh
+        && let Some(nodes) = general.clamped()
+    {
+        return Ok(ClampedStrip { nodes: nodes.to_vec(), width_m: 0.0 });
+    }
+    let (low, high) = match clamp.side {
+        ClampSide::InnerSide | ClampSide::LeadingEnd => (true, false),
+        ClampSide::OuterSide | ClampSide::TrailingEnd => (false, true),
+        ClampSide::BothSides | ClampSide::BothEnds => (true, true),
+        ClampSide::WholeTop => (false, false),
     };
-    let elements = mesh.elements()[axis];
-    let h = mesh.element_size_m()[axis];
-    let last_row = ((clamp.width_m / h).round() as usize).min(elements);
-    let width_m = last_row as f64 * h;
+    let Some(axis) = clamp.side.axis_across() else {
+        return Ok(ClampedStrip { nodes: mesh.top_nodes(), width_m: mesh.size_m()[0] });
+    };
+    let rows = Rows::new(mesh, axis);
+    let last_row = rows.nearest(clamp.width_m);
+    let width_m = rows.at_m[last_row];
     // The relative tolerance of 1e-12 covers the rounding of decimal widths.
     if (width_m - clamp.width_m).abs() > WIDTH_TOLERANCE * clamp.width_m * (1.0 + 1e-12) {
-        let below = ((clamp.width_m / h).floor() as usize).min(elements);
+        let below = rows.at_m.iter().filter(|at| **at <= clamp.width_m).count().saturating_sub(1);
         return Err(SolverError::ClampOffMesh {
             width_m: clamp.width_m,
-            elements,
+            elements: rows.at_m.len() - 1,
             length_m: mesh.size_m()[axis],
-            below_m: below as f64 * h,
-            above_m: (below + 1).min(elements) as f64 * h,
+            below_m: rows.at_m[below],
+            above_m: rows.at_m[(below + 1).min(rows.at_m.len() - 1)],
         });
     }
-    let held = |node: &usize| {
-        let row = mesh.grid_position(*node)[axis];
-        (low && row <= last_row) || (high && elements - row <= last_row)
+    let held = |(_, row): &(usize, usize)| {
+        (low && *row <= last_row) || (high && rows.at_m.len() - 1 - row <= last_row)
     };
-    Ok(ClampedStrip { nodes: mesh.top_nodes().filter(held).collect(), width_m })
+    let nodes = mesh.top_nodes().into_iter().zip(rows.of_top_nodes.iter().copied());
+    Ok(ClampedStrip { nodes: nodes.filter(held).map(|(node, _)| node).collect(), width_m })
+}
+
+/// The rows of nodes of the top face across one direction. Rows lie symmetrically about the axis.
+struct Rows {
+    /// Distance \[m\] of each row from the first.
+    at_m: Vec<f64>,
+    /// Their equal distance \[m\], if it is equal.
+    spacing_m: Option<f64>,
+    /// The row of each node of the top face.
+    of_top_nodes: Vec<usize>,
+}
+
+impl Rows {
+    fn new(mesh: &PinMesh, axis: usize) -> Self {
+        let top = mesh.top_nodes();
+        if let Some(block) = mesh.block() {
+            let h = block.element_size_m()[axis];
+            return Self {
+                at_m: (0..=block.elements()[axis]).map(|row| row as f64 * h).collect(),
+                spacing_m: Some(h),
+                of_top_nodes: top.iter().map(|&node| block.grid_position(node)[axis]).collect(),
+            };
+        }
+        let positions: Vec<f64> = top.iter().map(|&node| mesh.own_coordinates_m(node)[axis]).collect();
+        let mut sorted = positions.clone();
+        sorted.sort_by(f64::total_cmp);
+        // Nodes of a row agree to the rounding of their coordinates.
+        let near = 1e-9 * mesh.size_m()[axis];
+        sorted.dedup_by(|next, kept| *next - *kept <= near);
+        let row = |position: &f64| sorted.partition_point(|at| *at < position - near);
+        Self {
+            of_top_nodes: positions.iter().map(row).collect(),
+            at_m: sorted.iter().map(|at| at - sorted[0]).collect(),
+            spacing_m: None,
+        }
+    }
+
+    /// The row nearest to a distance; of two, the farther one.
+    fn nearest(&self, width_m: f64) -> usize {
+        if let Some(spacing_m) = self.spacing_m {
+            return ((width_m / spacing_m).round() as usize).min(self.at_m.len() - 1);
+        }
+        let distance = |row: usize| (self.at_m[row] - width_m).abs();
+        let mut nearest = 0;
+        for row in 1..self.at_m.len() {
+            if distance(row) <= distance(nearest) {
+                nearest = row;
+            }
+        }
+        nearest
+    }
 }
 
 /// The supports of a clamp (x and y of its nodes) and of the top face, on a holder.
-pub fn supports(mesh: &BlockMesh, strip: &ClampedStrip, top: TopFace, holder: &Holder) -> Vec<Support> {
+pub fn supports(mesh: &PinMesh, strip: &ClampedStrip, top: TopFace, holder: &Holder) -> Vec<Support> {
     let held = |tied: Tied, direction: HolderDirection| {
         let HolderDirection { mass_kg, stiffness_n_m, damping_n_s_m } = direction;
         Support::Held(Held { tied, mass_kg, stiffness_n_m, damping_n_s_m })
@@ -78,7 +131,7 @@ pub fn supports(mesh: &BlockMesh, strip: &ClampedStrip, top: TopFace, holder: &H
     match (top, directions[2]) {
         (TopFace::TiedInZ, None) => supports.push(Support::tied(2, mesh.top_nodes())),
         (TopFace::TiedInZ, Some(direction)) => {
-            supports.push(held(Tied { component: 2, nodes: mesh.top_nodes().collect() }, direction));
+            supports.push(held(Tied { component: 2, nodes: mesh.top_nodes() }, direction));
         }
         (TopFace::FreeInZ, _) => {}
     }
@@ -88,11 +141,12 @@ pub fn supports(mesh: &BlockMesh, strip: &ClampedStrip, top: TopFace, holder: &H
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::body::pin::BlockMesh;
 
     const SIZE_M: [f64; 3] = [0.012, 0.015, 0.010];
 
     fn strip(elements: [usize; 3], side: ClampSide, width_m: f64) -> Result<ClampedStrip, SolverError> {
-        clamped_strip(&BlockMesh::new(SIZE_M, elements), &Clamp { side, width_m })
+        clamped_strip(&BlockMesh::new(SIZE_M, elements).into(), &Clamp { side, width_m })
     }
 
     /// Protects: a width in metres gives the same strip on every mesh that has a node row there.

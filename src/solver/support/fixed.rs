@@ -2,7 +2,7 @@
 
 use super::applied::{AppliedSupport, Supported};
 use super::weights::{Weights, ones};
-use crate::solver::body::block::BlockMesh;
+use crate::solver::field::Layout;
 use crate::solver::number::Number;
 
 /// Degrees of freedom that never move.
@@ -21,8 +21,8 @@ pub(super) struct AppliedFixed<R: Number> {
 
 impl<R: Number> AppliedFixed<R> {
     /// For fields with `lanes` lanes.
-    pub fn new(fixed: &Fixed, mesh: &BlockMesh, lanes: usize) -> Self {
-        Self { held: ones(mesh, lanes, &fixed.dofs) }
+    pub fn new(fixed: &Fixed, layout: Layout, lanes: usize) -> Self {
+        Self { held: ones(layout, lanes, &fixed.dofs) }
     }
 }
 

@@ -11,8 +11,7 @@
 use super::applied::{AppliedSupport, Supported};
 use super::tied::{AppliedTie, Tied};
 use crate::solver::body::EnergySums;
-use crate::solver::body::block::BlockMesh;
-use crate::solver::field::{FieldOf, LaneSlot};
+use crate::solver::field::{FieldOf, LaneSlot, Layout};
 use crate::solver::number::Number;
 use crate::solver::scheme::{Bound, Scheme};
 
@@ -52,11 +51,11 @@ pub(super) struct AppliedHeld<const L: usize, R: Number> {
 }
 
 impl<const L: usize, R: Number> AppliedHeld<L, R> {
-    pub fn new(held: &Held, mesh: &BlockMesh, masses_kg: &[f64]) -> Self {
+    pub fn new(held: &Held, layout: Layout, masses_kg: &[f64]) -> Self {
         Self {
-            tie: AppliedTie::new(&held.tied, mesh, L, masses_kg, held.mass_kg),
+            tie: AppliedTie::new(&held.tied, layout, L, masses_kg, held.mass_kg),
             held: held.clone(),
-            place: FieldOf::<L, R>::zeros(mesh.layout()).place(held.tied.nodes[0]),
+            place: FieldOf::<L, R>::zeros(layout).place(held.tied.nodes[0]),
             motion: [[0.0; L]; 3],
         }
     }

@@ -3,8 +3,8 @@
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
 use super::weights::{Weights, weights};
-use crate::solver::body::block::BlockMesh;
-use crate::solver::field::{Block, FieldOf, in_slots_of};
+use crate::solver::body::pin::PinMesh;
+use crate::solver::field::{Block, FieldOf, Layout, in_slots_of};
 use crate::solver::number::Number;
 use crate::solver::simd::{dispatch, load};
 use fearless_simd::{Simd, prelude::*};
@@ -19,11 +19,10 @@ pub struct LoadShare {
 }
 
 /// The shares of a total load of 1 in −z, distributed over the top face by tributary area.
-pub fn normal_load(mesh: &BlockMesh) -> Vec<LoadShare> {
-    let area = mesh.size_m()[0] * mesh.size_m()[1];
-    mesh.top_nodes()
-        .map(|node| LoadShare { dof: 3 * node + 2, share: -mesh.tributary_area_m2(node) / area })
-        .collect()
+pub fn normal_load(mesh: &PinMesh) -> Vec<LoadShare> {
+    let area = mesh.top_area_m2();
+    let shares = mesh.top_nodes().into_iter().zip(mesh.top_areas_m2());
+    shares.map(|(node, node_area)| LoadShare { dof: 3 * node + 2, share: -node_area / area }).collect()
 }
 
 /// The distribution of the load in every lane.
@@ -34,9 +33,9 @@ pub(in crate::solver) struct AppliedLoad<R: Number> {
 
 impl<R: Number> AppliedLoad<R> {
     /// For fields with `lanes` lanes.
-    pub fn new(load: &[LoadShare], mesh: &BlockMesh, lanes: usize) -> Self {
+    pub fn new(load: &[LoadShare], layout: Layout, lanes: usize) -> Self {
         let shares: Vec<_> = load.iter().map(|load| (load.dof, load.share)).collect();
-        Self { shares: weights(mesh, lanes, &shares) }
+        Self { shares: weights(layout, lanes, &shares) }
     }
 
     /// Subtracts the load \[N\] from the residual \[N\].

@@ -24,10 +24,10 @@ pub use fixed::Fixed;
 pub use held::Held;
 pub use tied::Tied;
 
-use super::body::block::BlockMesh;
+use super::body::pin::PinMesh;
 use super::body::{EnergySums, Freedom};
 use super::error::SolverError;
-use super::field::FieldOf;
+use super::field::{FieldOf, Layout};
 use super::number::Number;
 use super::scheme::{Bound, Scheme};
 use fixed::AppliedFixed;
@@ -83,13 +83,13 @@ impl Support {
 
     fn applied<const L: usize, R: Number>(
         &self,
-        mesh: &BlockMesh,
+        layout: Layout,
         masses_kg: &[f64],
     ) -> Box<dyn AppliedSupport<L, R>> {
         match self {
-            Self::Fixed(fixed) => Box::new(AppliedFixed::new(fixed, mesh, L)),
-            Self::Tied(tied) => Box::new(AppliedTie::new(tied, mesh, L, masses_kg, 0.0)),
-            Self::Held(held) => Box::new(AppliedHeld::<L, R>::new(held, mesh, masses_kg)),
+            Self::Fixed(fixed) => Box::new(AppliedFixed::new(fixed, layout, L)),
+            Self::Tied(tied) => Box::new(AppliedTie::new(tied, layout, L, masses_kg, 0.0)),
+            Self::Held(held) => Box::new(AppliedHeld::<L, R>::new(held, layout, masses_kg)),
         }
     }
 }
@@ -100,7 +100,7 @@ impl Support {
 /// If a support is out of range, if a degree of freedom is supported twice, if a tie mixes nodes of the contact
 /// face with others, or if a holder has nodes of the contact face. The contact solve uses the mass of each slave node alone. For a tied group this is right only
 /// if all its nodes are in contact alike.
-pub fn freedoms(supports: &[Support], mesh: &BlockMesh) -> Result<Vec<Freedom>, SolverError> {
+pub fn freedoms(supports: &[Support], mesh: &PinMesh) -> Result<Vec<Freedom>, SolverError> {
     let mut freedoms = vec![Freedom::Free; 3 * mesh.node_count()];
     let mut set = |dof: usize, freedom| match freedoms.get_mut(dof) {
         Some(slot @ Freedom::Free) => {
@@ -147,11 +147,11 @@ pub(in crate::solver) struct AppliedSupports<const L: usize, R: Number>(Vec<Box<
 
 impl<const L: usize, R: Number> AppliedSupports<L, R> {
     /// Prepares the supports of a pin with these lumped masses \[kg\].
-    pub fn new(supports: &[Support], mesh: &BlockMesh, masses_kg: &[f64]) -> Self {
+    pub fn new(supports: &[Support], layout: Layout, masses_kg: &[f64]) -> Self {
         // A tie replaces the residual, so everything that adds to the residual acts before.
         let is_tie = |support: &&Support| support.tie().is_some();
         let (ties, others): (Vec<_>, Vec<_>) = supports.iter().partition(is_tie);
-        Self(others.into_iter().chain(ties).map(|support| support.applied(mesh, masses_kg)).collect())
+        Self(others.into_iter().chain(ties).map(|support| support.applied(layout, masses_kg)).collect())
     }
 
     /// Lets all supports act on the pin. Returns the sum of their reaction forces on the pin \[N\]: x, y and z.

@@ -4,8 +4,7 @@
 
 use super::applied::{AppliedSupport, Supported};
 use super::weights::{Weights, ones};
-use crate::solver::body::block::BlockMesh;
-use crate::solver::field::{Block, in_slots_of};
+use crate::solver::field::{Block, Layout, in_slots_of};
 use crate::solver::number::Number;
 use crate::solver::simd::{dispatch, load, splat};
 use fearless_simd::{Simd, prelude::*};
@@ -36,10 +35,10 @@ pub(super) struct AppliedTie<R: Number> {
 
 impl<R: Number> AppliedTie<R> {
     /// For fields with `lanes` lanes. The group has a mass of `more_kg` besides that of its nodes.
-    pub fn new(tied: &Tied, mesh: &BlockMesh, lanes: usize, masses_kg: &[f64], more_kg: f64) -> Self {
+    pub fn new(tied: &Tied, layout: Layout, lanes: usize, masses_kg: &[f64], more_kg: f64) -> Self {
         let nodes_kg: f64 = tied.nodes.iter().map(|&node| masses_kg[node]).sum();
         Self {
-            members: ones(mesh, lanes, &tied.dofs().collect::<Vec<_>>()),
+            members: ones(layout, lanes, &tied.dofs().collect::<Vec<_>>()),
             inverse_mass: 1.0 / (nodes_kg + more_kg),
         }
     }

@@ -2,8 +2,7 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use crate::solver::body::block::BlockMesh;
-use crate::solver::field::{Block, Row, add_slots, blocks_per_line};
+use crate::solver::field::{Block, Layout, Row, add_slots, blocks_per_line};
 use crate::solver::number::Number;
 use crate::solver::simd::{dispatch, load, splat};
 use fearless_simd::{Simd, prelude::*};
@@ -44,11 +43,11 @@ impl<R: Number> Weights<R> {
 
 /// Sorts weighted degrees of freedom (3·node + component, weight) by plane and component, for fields with `lanes` lanes.
 /// There is one entry for each plane and component with a weight. Planes are ordered from the contact face upwards.
-pub(super) fn weights<R: Number>(mesh: &BlockMesh, lanes: usize, dofs: &[(usize, f64)]) -> Vec<Weights<R>> {
-    let [mx, my, mz] = mesh.nodes_per_axis();
+pub(super) fn weights<R: Number>(layout: Layout, lanes: usize, dofs: &[(usize, f64)]) -> Vec<Weights<R>> {
+    let Layout { nodes_per_line: mx, lines_per_plane: my, .. } = layout;
     let stride = blocks_per_line::<R>(mx, lanes);
     let mut found = Vec::new();
-    for plane in 0..mz {
+    for plane in 0..layout.planes() {
         for component in 0..3 {
             let mut rows = vec![Row::<R>::default(); stride * my];
             let mut any = false;
@@ -70,6 +69,6 @@ pub(super) fn weights<R: Number>(mesh: &BlockMesh, lanes: usize, dofs: &[(usize,
 }
 
 /// The weight 1 on all these degrees of freedom.
-pub(super) fn ones<R: Number>(mesh: &BlockMesh, lanes: usize, dofs: &[usize]) -> Vec<Weights<R>> {
-    weights(mesh, lanes, &dofs.iter().map(|&dof| (dof, 1.0)).collect::<Vec<_>>())
+pub(super) fn ones<R: Number>(layout: Layout, lanes: usize, dofs: &[usize]) -> Vec<Weights<R>> {
+    weights(layout, lanes, &dofs.iter().map(|&dof| (dof, 1.0)).collect::<Vec<_>>())
 }

@@ -20,7 +20,7 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     let (pin, disk) = (&spec.scene.pin, &spec.scene.disk);
     let mut found = Vec::new();
 
-    let strain = spec.scene.load.force_n / (pin.young_modulus_pa * pin.size_m[0] * pin.size_m[1]);
+    let strain = spec.scene.load.force_n / (pin.young_modulus_pa * pin.base_area_m2());
     if strain > LARGE_STRAIN {
         let meaning = if strain > HUGE_STRAIN {
             "no material is linear elastic at this strain, so the result means nothing"
@@ -32,9 +32,9 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
             fields: &[
                 "scene.load.force_n",
                 "scene.pin.young_modulus_pa",
-                "scene.pin.size_m",
-                "scene.pin.size_m[0]",
-                "scene.pin.size_m[1]",
+                "scene.pin.extent_m()",
+                "scene.pin.extent_m()[0]",
+                "scene.pin.extent_m()[1]",
             ],
             size: strain,
             message: format!("the mean strain F/(E A) of the pin is {}; {meaning}", percent(strain)),
@@ -81,7 +81,7 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     // With the damping β_R ω/2 of the fastest oscillation, ω = 2 c_p/h, the limit of the step is (√(1 + ζ²) − ζ) 2/ω.
     let wave_m_s =
         elasticity::pressure_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
-    let edges = pin.size_m.iter().zip(pin.elements).map(|(size, n)| size / n as f64);
+    let edges = pin.extent_m().into_iter().zip(pin.elements).map(|(size, n)| size / n as f64);
     let shortest_m = edges.fold(f64::INFINITY, f64::min);
     let zeta = spec.numerics.beta_r_s * wave_m_s / shortest_m;
     let step = (1.0 + zeta * zeta).sqrt() - zeta;

@@ -1,6 +1,6 @@
 //! The presets and the settings that they stand for.
 
-use crate::spec::{Clamp, DiskKind, JobSpec, Pin, Precision, StabilityMethod, Start};
+use crate::spec::{Clamp, DiskKind, FEWEST_ACROSS, JobSpec, Pin, Precision, Shape, StabilityMethod, Start};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::{EnumString, IntoStaticStr};
@@ -78,21 +78,25 @@ impl Preset {
         }
     }
 
-    /// Element counts for a pin under a clamp.
+    /// Element counts for a pin under a clamp. A cylinder has rows of nodes at many distances, so its counts do not depend on the clamp.
     ///
     /// In the direction across the clamp's edge it is the smallest count, from the desired one up to four times as many,
     /// that has a node row at the edge. If there is none, it is the desired count, and the solver refuses the scene with
     /// the reason.
     pub fn elements(self, pin: &Pin, clamp: &Clamp) -> [usize; 3] {
-        let shortest_m = pin.size_m.iter().copied().fold(f64::INFINITY, f64::min);
+        let shortest_m = pin.extent_m().iter().copied().fold(f64::INFINITY, f64::min);
         let size_m = shortest_m / self.elements_along_shortest_edge() as f64;
         // Halves are rounded up: 15 mm in 2 mm elements give 8. The scene's check refuses counts out of bounds.
-        let mut elements = pin.size_m.map(|edge_m| ((edge_m / size_m + 0.5) as usize).max(1));
+        let mut elements = pin.extent_m().map(|edge_m| ((edge_m / size_m + 0.5) as usize).max(1));
+        if pin.shape == Shape::Cylinder {
+            let across = elements[0].max(FEWEST_ACROSS);
+            return [across, across, elements[2]];
+        }
         if let Some(axis) = clamp.side.axis_across() {
             let desired = elements[axis];
             elements[axis] = (desired..=MAX_REFINEMENT.saturating_mul(desired))
                 .take(MAX_TRIED_COUNTS)
-                .find(|&count| has_row(clamp.width_m, pin.size_m[axis], count))
+                .find(|&count| has_row(clamp.width_m, pin.extent_m()[axis], count))
                 .unwrap_or(desired);
         }
         elements

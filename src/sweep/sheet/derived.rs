@@ -21,13 +21,13 @@ pub(super) const SLIDING_SPEED: &str = "sliding speed at the pin's centre, ωR";
 /// The derived quantities of a job.
 pub(super) fn of(spec: &JobSpec) -> Vec<Derived> {
     let pin = &spec.scene.pin;
-    let [x_m, y_m, z_m] = pin.size_m;
-    let area_m2 = x_m * y_m;
+    let [_, _, z_m] = pin.extent_m();
+    let area_m2 = pin.base_area_m2();
     let (e, nu, rho) = (pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
     let (pressure_wave, shear_wave) = (pressure_wave_speed_m_s(e, nu, rho), shear_wave_speed_m_s(e, nu, rho));
     let load_n = spec.scene.load.force_n;
-    let nodes: f64 = pin.elements.iter().map(|&count| count as f64 + 1.0).product();
-    let edge = |axis: usize| pin.size_m[axis] / pin.elements[axis] as f64;
+    let nodes = pin.node_count();
+    let edge = |axis: usize| pin.extent_m()[axis] / pin.elements[axis] as f64;
     let speed_m_s = rad_per_s_from_rpm(spec.scene.disk.omega_rpm) * spec.scene.disk.track_radius_m;
     let quantity = |symbol, name, value, unit| Derived { symbol, name, value, unit };
     vec![

@@ -66,7 +66,7 @@ impl View {
 
 /// Draws the pin of a job. Texts give the values of all jobs.
 pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
-    let [x, y, h] = spec.scene.pin.size_m;
+    let [x, y, h] = spec.scene.pin.extent_m();
     let (x, y) = (x / 2.0, y / 2.0);
     let margin = 0.45 * x.max(y).min(2.5 * x.min(y));
     // The arrow of the motion is before the +x side.
@@ -131,7 +131,7 @@ fn draw_disk(sketch: &mut Sketch, view: &View, disk: [[f64; 2]; 4], depth: f64) 
 
 /// The rectangles of the top face that are held: from and to, in x and y.
 fn clamped(spec: &JobSpec) -> Vec<[[f64; 2]; 2]> {
-    let [x, y, _] = spec.scene.pin.size_m.map(|edge| edge / 2.0);
+    let [x, y, _] = spec.scene.pin.extent_m().map(|edge| edge / 2.0);
     // A clamp of no width holds one row of nodes, which is drawn as a narrow strip.
     let width = spec.scene.clamp.width_m;
     let wide = |edge: f64| width.max(0.03 * edge).min(2.0 * edge);
@@ -151,7 +151,7 @@ fn clamped(spec: &JobSpec) -> Vec<[[f64; 2]; 2]> {
 }
 
 fn draw_clamp(sketch: &mut Sketch, view: &View, spec: &JobSpec) {
-    let h = spec.scene.pin.size_m[2];
+    let h = spec.scene.pin.extent_m()[2];
     for [[left, right], [near, far]] in clamped(spec) {
         let strip = [[left, near, h], [right, near, h], [right, far, h], [left, far, h]];
         sketch.polygon(&strip.map(|point| view.at(point)), (VERMILLION, 0.75), None);
@@ -163,7 +163,7 @@ fn draw_mesh(sketch: &mut Sketch, view: &View, spec: &JobSpec) {
     if counts.iter().any(|&count| count > MAX_DRAWN_ELEMENTS) {
         return;
     }
-    let size = spec.scene.pin.size_m;
+    let size = spec.scene.pin.extent_m();
     let thin = Line::solid(MESH, 0.6);
     // Each visible face is at one end of an axis, and has lines of constant coordinate along the two others.
     for (normal, end) in [(0, size[0] / 2.0), (1, -size[1] / 2.0), (2, size[2])] {

@@ -25,7 +25,7 @@ pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
     let (disk, pin) = (&spec.scene.disk, &spec.scene.pin);
     let track_m = disk.track_radius_m;
     let elastic = disk.kind == DiskKind::Elastic;
-    let reach_m = track_m + pin.size_m[0];
+    let reach_m = track_m + pin.extent_m()[0];
     let largest_m = if elastic { disk.ring.outer_radius_m } else { reach_m };
     let scale = RADIUS / largest_m;
     let on_circle = |radius: f64, degrees: f64| {
@@ -40,7 +40,7 @@ pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
         sketch.circle(CENTRE, disk.ring.inner_radius_m * scale, Some(WHITE), edge);
     }
     sketch.circle(CENTRE, track_m * scale, None, Line { dashed: true, ..Line::solid(INK, 1.0) });
-    let half = [0, 1].map(|axis| (pin.size_m[axis] * scale / 2.0).max(SMALLEST / 2.0));
+    let half = [0, 1].map(|axis| (pin.extent_m()[axis] * scale / 2.0).max(SMALLEST / 2.0));
     let at = on_circle(track_m * scale, 0.0);
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
     let footprint = corners.map(|(x, y)| (at.0 + x * half[0], at.1 + y * half[1]));

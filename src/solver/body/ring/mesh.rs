@@ -165,13 +165,13 @@ impl RingMesh {
     /// The layout of a field on all nodes: lines along θ.
     pub fn layout(&self) -> Layout {
         let [columns, rows, planes] = self.nodes_per_axis();
-        Layout { nodes_per_line: columns, lines: rows * planes }
+        Layout { nodes_per_line: columns, lines_per_plane: rows, nodes: columns * rows * planes }
     }
 
     /// The layout of a field on the top face.
     pub fn top_layout(&self) -> Layout {
         let [columns, rows, _] = self.nodes_per_axis();
-        Layout { nodes_per_line: columns, lines: rows }
+        Layout { nodes_per_line: columns, lines_per_plane: rows, nodes: columns * rows }
     }
 
     /// Index of the node at angle j, radius i and depth k.

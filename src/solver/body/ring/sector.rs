@@ -29,7 +29,7 @@ pub(super) fn element(
         let height = heights[k + 1 - (corner >> 2)];
         Vector3::new(radius * libm::cos(angle(corner)), radius * libm::sin(angle(corner)), height)
     });
-    let (cartesian, volumes) = isoparametric(material, &corners);
+    let (cartesian, volumes) = isoparametric(material, &corners).expect("a sector of a ring is not inverted");
     let mut turned = ElementStiffness::zeros();
     for a in 0..8 {
         for b in 0..8 {

@@ -20,7 +20,7 @@
 
 use super::step_data::StepData;
 use super::sweeps::{ContactRow, Solves, TargetNode, TargetNodes};
-use crate::solver::body::block::{Face, move_nodes};
+use crate::solver::body::pin::{Face, move_nodes};
 use crate::solver::body::ring::{RingBody, RingState};
 use crate::solver::field::{Field, LaneSlot, WIDTH, add_slots};
 use crate::solver::interface::LIMIT;

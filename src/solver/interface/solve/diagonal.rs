@@ -15,7 +15,7 @@
 
 use super::held::HeldNode;
 use super::step_data::StepData;
-use crate::solver::body::block::Face;
+use crate::solver::body::pin::Face;
 use crate::solver::field::{Block, FieldOf, in_slots_of};
 use crate::solver::interface::LIMIT;
 use crate::solver::interface::law::{AtNode, FrictionLaw, LawOfLanes, project, with_law_of_lanes};

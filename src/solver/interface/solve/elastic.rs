@@ -2,7 +2,7 @@
 
 use super::coupled::RingTarget;
 use super::step_data::StepData;
-use crate::solver::body::block::Face;
+use crate::solver::body::pin::Face;
 use crate::solver::body::ring::RingBody;
 use crate::solver::interface::{Contacts, Interface};
 use crate::solver::lane::LaneState;

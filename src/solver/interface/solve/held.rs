@@ -5,7 +5,7 @@
 //! ([`partially_held_friction`]). Such nodes are rare, and they are solved in f64 in both precisions.
 
 use super::step_data::StepData;
-use crate::solver::body::block::Face;
+use crate::solver::body::pin::Face;
 use crate::solver::field::LaneSlot;
 use crate::solver::interface::LIMIT;
 use crate::solver::interface::law::{AtNode, project};

@@ -18,7 +18,7 @@ pub use sweeps::Solves;
 
 use super::target::Target;
 use super::{Contacts, Interface};
-use crate::solver::body::block::Face;
+use crate::solver::body::pin::Face;
 use crate::solver::body::ring::{RingBody, RingState};
 use crate::solver::lane::LaneState;
 use diagonal::DiagonalSolve;

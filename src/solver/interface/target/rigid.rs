@@ -1,6 +1,6 @@
 //! Rigid targets: the velocity of the surface under the slave nodes.
 
-use crate::solver::body::block::BlockMesh;
+use crate::solver::body::pin::PinMesh;
 
 /// Velocity of the target's surface under each slave node per unit of the drive's rate, x and y.
 ///
@@ -12,7 +12,7 @@ pub type SurfaceMotion = Vec<[f64; 2]>;
 ///
 /// The velocity under a slave node at (X, Y) from the axis is ω(−Y, X). It is evaluated at the node's reference
 /// position, because displacements are 10⁻⁴ of the radius. The problem then stays exactly homogeneous in (F, ω).
-pub fn rotating_disk(mesh: &BlockMesh, track_radius_m: f64) -> SurfaceMotion {
+pub fn rotating_disk(mesh: &PinMesh, track_radius_m: f64) -> SurfaceMotion {
     mesh.bottom_nodes()
         .map(|node| {
             let [x, y, _] = mesh.coordinates_m(node);
@@ -22,19 +22,20 @@ pub fn rotating_disk(mesh: &BlockMesh, track_radius_m: f64) -> SurfaceMotion {
 }
 
 /// A plane that moves in +y.
-pub fn straight_plane(mesh: &BlockMesh) -> SurfaceMotion {
+pub fn straight_plane(mesh: &PinMesh) -> SurfaceMotion {
     vec![[0.0, 1.0]; mesh.bottom_nodes().len()]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::solver::body::pin::BlockMesh;
 
     /// Protects: the velocity v = ω × r under the contact face is that of a rigid anticlockwise rotation about the
     /// axis.
     #[test]
     fn turns_rigidly_about_the_axis() {
-        let mesh = BlockMesh::new([0.012, 0.015, 0.010], [3, 4, 2]);
+        let mesh = PinMesh::from(BlockMesh::new([0.012, 0.015, 0.010], [3, 4, 2]));
         for (node, v) in mesh.bottom_nodes().zip(rotating_disk(&mesh, 0.0914)) {
             let [x, y, _] = mesh.coordinates_m(node);
             let r = [0.0914 + x, y];

@@ -1,7 +1,9 @@
-//! Stress at the nodes of a block, for output. No time step uses it.
+//! Stress at the nodes of a pin, for output. No time step uses it.
 
-use super::BlockMesh;
+use super::{BlockMesh, GeneralMesh, PinMesh};
+use crate::solver::body::hexahedron::corner_gradients;
 use crate::solver::material::Material;
+use nalgebra::Matrix3;
 
 /// Names of the components of a stress, in their order.
 pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
@@ -9,15 +11,50 @@ pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 /// Stress \[Pa\] at every node, in the order of [`COMPONENTS`], from displacements \[m\] in the order node →
 /// component.
 ///
-/// Strains are finite differences of nodal displacements along the mesh lines. Inside they are central differences,
+/// On a block strains are finite differences of nodal displacements along the mesh lines. Inside they are central differences,
 /// which are the mean of the strains of the two adjacent elements. On the faces they are one-sided differences of
 /// second order; the strains of the elements are only of first order there. So they are exact for displacements
 /// that are quadratic in the coordinates, on meshes with at least two elements in each direction.
 ///
+/// On a general mesh the stress of a node is the mean of the stresses that its elements have there.
+///
 /// # Panics
 /// If there are not three displacements per node.
-pub fn nodal_pa(mesh: &BlockMesh, material: &Material, u_m: &[f64]) -> Vec<[f64; 6]> {
+pub fn nodal_pa(mesh: &PinMesh, materials: &[Material], u_m: &[f64]) -> Vec<[f64; 6]> {
     assert_eq!(u_m.len(), 3 * mesh.node_count(), "three displacements per node");
+    match mesh {
+        PinMesh::Block(mesh) => of_block_pa(mesh, &materials[0], u_m),
+        PinMesh::General(mesh) => of_elements_pa(mesh, materials, u_m),
+    }
+}
+
+fn of_elements_pa(mesh: &GeneralMesh, materials: &[Material], u_m: &[f64]) -> Vec<[f64; 6]> {
+    let mut sums = vec![([0.0; 6], 0.0); mesh.node_count()];
+    for element in mesh.elements() {
+        let material = &materials[element.material];
+        let (lambda, shear) = (material.lame_lambda_pa(), material.shear_modulus_pa());
+        let Some(gradients) = corner_gradients(&mesh.corners_m(element)) else { continue };
+        for (&node, gradients) in element.nodes.iter().zip(&gradients) {
+            // ∂u_i/∂x_j
+            let gradient = Matrix3::<f64>::from_fn(|i, j| {
+                element.nodes.iter().zip(gradients).map(|(&other, g)| u_m[3 * other + i] * g[j]).sum::<f64>()
+            });
+            let dilation = lambda * gradient.trace();
+            let stress = |i: usize, j: usize| {
+                shear * (gradient[(i, j)] + gradient[(j, i)]) + if i == j { dilation } else { 0.0 }
+            };
+            let all = [stress(0, 0), stress(1, 1), stress(2, 2), stress(0, 1), stress(1, 2), stress(0, 2)];
+            let (sum, count) = &mut sums[node];
+            for (sum, value) in sum.iter_mut().zip(all) {
+                *sum += value;
+            }
+            *count += 1.0;
+        }
+    }
+    sums.into_iter().map(|(sum, count)| sum.map(|sum| sum / f64::max(count, 1.0))).collect()
+}
+
+fn of_block_pa(mesh: &BlockMesh, material: &Material, u_m: &[f64]) -> Vec<[f64; 6]> {
     let (lambda, shear) = (material.lame_lambda_pa(), material.shear_modulus_pa());
     let h = mesh.element_size_m();
     let elements = mesh.elements();
@@ -76,7 +113,7 @@ mod tests {
         let field = |[x, y, z]: [f64; 3]| [x * x + 2.0 * y * z, 3.0 * y - x * z, z * z + 0.5 * x * y];
         let u: Vec<f64> = (0..mesh.node_count()).flat_map(|node| field(mesh.coordinates_m(node))).collect();
         let (lambda, shear) = (MATERIAL.lame_lambda_pa(), MATERIAL.shear_modulus_pa());
-        for (node, found) in nodal_pa(&mesh, &MATERIAL, &u).into_iter().enumerate() {
+        for (node, found) in nodal_pa(&mesh.clone().into(), &[MATERIAL], &u).into_iter().enumerate() {
             let [x, y, z] = mesh.coordinates_m(node);
             let dilation = lambda * (2.0 * x + 3.0 + 2.0 * z);
             let exact = [

@@ -20,18 +20,11 @@
 //! sweep over the mesh.
 
 mod pass;
-#[cfg(test)]
-mod tests;
 
-pub use pass::Scratch;
-pub(in crate::solver) use pass::{BlockIndex, Pass};
+pub(super) use pass::TensorScratch;
 
-use crate::solver::body::block::BlockMesh;
-use crate::solver::field::{Block, FieldOf, add_slots};
+use crate::solver::body::pin::BlockMesh;
 use crate::solver::material::Material;
-use crate::solver::number::Number;
-use crate::solver::simd::{dispatch, load_all};
-use fearless_simd::{Simd, prelude::*};
 
 /// K of a block of equal elements.
 #[derive(Debug, Clone)]
@@ -69,52 +62,6 @@ impl TensorOperator {
             share: (lambda - g) / (lambda + g),
             corner: across.map(|scale| 4.0 * lambda * g / (lambda + g) * scale),
             powers: [1.0, 2.0, 4.0],
-        }
-    }
-
-    /// Computes `y = K x` for `L` lanes and returns x·y.
-    pub fn product<const L: usize, R: Number>(
-        &self,
-        x: &FieldOf<L, R>,
-        y: &mut FieldOf<L, R>,
-        scratch: &mut Scratch<R>,
-    ) -> [f64; L] {
-        let mut forms = scratch.take_forms();
-        self.multiply(&mut Product { x: x.blocks(), y: y.blocks_mut(), forms: &mut forms }, scratch);
-        let mut total = [0.0; L];
-        for slots in &forms {
-            add_slots(&mut total, slots.as_ref());
-        }
-        scratch.give_forms(forms);
-        total
-    }
-
-    fn multiply<R: Number>(&self, product: &mut Product<'_, R>, scratch: &mut Scratch<R>) {
-        dispatch!(simd => self.pass(simd, product, scratch));
-    }
-}
-
-struct Product<'a, R: Number> {
-    x: &'a [Block<R>],
-    y: &'a mut [Block<R>],
-    /// x·y, summed by columns of blocks.
-    forms: &'a mut [R::Totals],
-}
-
-#[expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
-impl<S: Simd, R: Number> Pass<S, R> for Product<'_, R> {
-    #[inline(always)]
-    fn input(&self, simd: S, at: usize) -> [R::Vector<S>; 3] {
-        load_all::<R, S>(simd, &self.x[at].0)
-    }
-
-    #[inline(always)]
-    fn output(&mut self, simd: S, index: BlockIndex, kx: [R::Vector<S>; 3]) {
-        let x = load_all::<R, S>(simd, &self.x[index.at].0);
-        let form = x[0] * kx[0] + x[1] * kx[1] + x[2] * kx[2];
-        R::add_to_totals::<S>(&mut self.forms[index.along], form);
-        for c in 0..3 {
-            kx[c].store_array(&mut self.y[index.at].0[c]);
         }
     }
 }

@@ -12,37 +12,15 @@
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
 use super::TensorOperator;
-use crate::solver::body::block::BlockMesh;
-use crate::solver::field::blocks_per_line;
+use crate::solver::body::pin::operator::{BlockIndex, Pass};
+use crate::solver::field::{Layout, blocks_per_line};
 use crate::solver::number::Number;
 use crate::solver::simd::{load, load_all, splat};
 use fearless_simd::{Simd, prelude::*};
 
-/// Position of a block.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::solver) struct BlockIndex {
-    /// Plane of nodes, from the contact face upwards.
-    pub plane: usize,
-    /// Line of nodes, y faster than z.
-    pub line: usize,
-    /// Block along the line.
-    pub along: usize,
-    /// Index of the block in its field.
-    pub at: usize,
-}
-
-/// The input and the output of a product, block by block.
-pub(in crate::solver) trait Pass<S: Simd, R: Number> {
-    /// The three components of x in block `at`.
-    fn input(&self, simd: S, at: usize) -> [R::Vector<S>; 3];
-    /// Takes the three components of K x in a block. The inputs of its plane and of those below are not read again,
-    /// so it may overwrite them. Planes come in their order, the blocks of a plane column by column.
-    fn output(&mut self, simd: S, index: BlockIndex, kx: [R::Vector<S>; 3]);
-}
-
 /// Scratch of a pass.
 #[derive(Debug)]
-pub struct Scratch<R: Number = f64> {
+pub(in crate::solver) struct TensorScratch<R: Number> {
     /// Number of lanes. It is no constant of the code, which is compiled once for all lane counts.
     lanes: usize,
     /// x of the current plane: line → component → a vector that ends with a zero node, the nodes, a vector of
@@ -53,8 +31,6 @@ pub struct Scratch<R: Number = f64> {
     /// Partial sums: block along the line → line.
     columns: Vec<PlaneSums<R>>,
     ends: Vec<Ends<R>>,
-    /// Room for x·Kx by columns.
-    forms: Vec<R::Totals>,
 }
 
 #[derive(Debug, Clone, Copy, Default)]
@@ -85,10 +61,10 @@ impl<R: Number> Ends<R> {
 /// Number of bytes of a cache line. Vectors begin at its boundaries.
 const ALIGNMENT: usize = 64;
 
-impl<R: Number> Scratch<R> {
-    /// Scratch for products of fields with `lanes` lanes on `mesh`.
-    pub fn new(mesh: &BlockMesh, lanes: usize) -> Self {
-        let [mx, my, _] = mesh.nodes_per_axis();
+impl<R: Number> TensorScratch<R> {
+    /// Scratch for products of fields with `lanes` lanes.
+    pub fn new(layout: Layout, lanes: usize) -> Self {
+        let Layout { nodes_per_line: mx, lines_per_plane: my, .. } = layout;
         let blocks = blocks_per_line::<R>(mx, lanes);
         let mut inside = Ends::<R>::default();
         inside.centre.as_mut().fill(R::from_f64(2.0));
@@ -108,23 +84,11 @@ impl<R: Number> Scratch<R> {
             pitch,
             columns: vec![PlaneSums::default(); blocks * my],
             ends,
-            forms: vec![R::Totals::default(); blocks],
         }
-    }
-
-    /// Takes the room for x·Kx, set to zero. [`Scratch::give_forms`] returns it.
-    pub(super) fn take_forms(&mut self) -> Vec<R::Totals> {
-        let mut forms = std::mem::take(&mut self.forms);
-        forms.fill(R::Totals::default());
-        forms
-    }
-
-    pub(super) fn give_forms(&mut self, forms: Vec<R::Totals>) {
-        self.forms = forms;
     }
 }
 
-impl<R: Number> Clone for Scratch<R> {
+impl<R: Number> Clone for TensorScratch<R> {
     /// Makes fresh scratch. The offset of the copy to its cache line differs, so its zero nodes have other indices.
     fn clone(&self) -> Self {
         Self {
@@ -133,7 +97,6 @@ impl<R: Number> Clone for Scratch<R> {
             pitch: self.pitch,
             columns: vec![PlaneSums::default(); self.columns.len()],
             ends: self.ends.clone(),
-            forms: self.forms.clone(),
         }
     }
 }
@@ -188,11 +151,11 @@ impl<R: Number> Column<'_, R> {
 impl TensorOperator {
     /// One pass over the mesh.
     #[inline(always)]
-    pub(in crate::solver) fn pass<S: Simd, R: Number>(
+    pub(in crate::solver::body::pin) fn pass<S: Simd, R: Number>(
         &self,
         simd: S,
         pass: &mut impl Pass<S, R>,
-        scratch: &mut Scratch<R>,
+        scratch: &mut TensorScratch<R>,
     ) {
         Coefficients::of(self).pass(simd, pass, scratch);
     }
@@ -232,7 +195,7 @@ impl<R: Number> Coefficients<R> {
     }
 
     #[inline(always)]
-    fn pass<S: Simd>(&self, simd: S, pass: &mut impl Pass<S, R>, scratch: &mut Scratch<R>) {
+    fn pass<S: Simd>(&self, simd: S, pass: &mut impl Pass<S, R>, scratch: &mut TensorScratch<R>) {
         let [_, my, mz] = self.nodes;
         let blocks = scratch.ends.len();
         for k in 0..mz {
@@ -257,7 +220,7 @@ impl<R: Number> Coefficients<R> {
 
     /// Stores x of plane `k` in `staged`.
     #[inline(always)]
-    fn stage<S: Simd>(&self, simd: S, pass: &impl Pass<S, R>, k: usize, scratch: &mut Scratch<R>) {
+    fn stage<S: Simd>(&self, simd: S, pass: &impl Pass<S, R>, k: usize, scratch: &mut TensorScratch<R>) {
         let my = self.nodes[1];
         let blocks = scratch.ends.len();
         let first = scratch.staged.as_ptr().align_offset(ALIGNMENT);
@@ -283,7 +246,7 @@ impl<R: Number> Coefficients<R> {
         pass: &mut impl Pass<S, R>,
         k: usize,
         along: usize,
-        scratch: &mut Scratch<R>,
+        scratch: &mut TensorScratch<R>,
     ) {
         let [_, my, mz] = self.nodes;
         let blocks = scratch.ends.len();

@@ -2,18 +2,18 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::BlockBody;
+use super::PinBody;
 use super::line_table::LineTable;
 use super::operator::Scratch;
 use crate::solver::body::{EnergySums, add_lanes};
-use crate::solver::field::{Block, FieldOf, add_slots, in_slots_of};
+use crate::solver::field::{Block, FieldOf, Layout, add_slots, in_slots_of};
 use crate::solver::lane::LaneState;
 use crate::solver::number::Number;
 use crate::solver::scheme::Scheme;
 use crate::solver::simd::{dispatch, load, splat};
 use fearless_simd::Simd;
 
-/// Displacements \[m\] and p \[m/s\] of a block at one time, and the number of steps that each lane has done.
+/// Displacements \[m\] and p \[m/s\] of a pin at one time, and the number of steps that each lane has done.
 #[derive(Clone, Copy)]
 pub(in crate::solver) struct Motion<'a, const L: usize, R: Number> {
     pub u: &'a FieldOf<L, R>,
@@ -21,9 +21,9 @@ pub(in crate::solver) struct Motion<'a, const L: usize, R: Number> {
     pub steps_done: &'a [u64; L],
 }
 
-/// Evaluates the energies of a block. It stores values from before the audited step.
+/// Evaluates the energies of a pin. It stores values from before the audited step.
 #[derive(Debug, Clone)]
-pub(in crate::solver) struct BlockAudit<const L: usize, R: Number> {
+pub(in crate::solver) struct PinAudit<const L: usize, R: Number> {
     mass: LineTable<R>,
     p: FieldOf<L, R>,
     /// K p.
@@ -57,9 +57,9 @@ const KINETIC: usize = 0;
 const DAMPING_AFTER: usize = 1;
 const INERTIAL_JUMP: usize = 2;
 
-impl<const L: usize, R: Number> BlockAudit<L, R> {
-    pub fn new(block: &BlockBody, beta2: f64) -> Self {
-        let field = || FieldOf::<L, R>::zeros(block.mesh().layout());
+impl<const L: usize, R: Number> PinAudit<L, R> {
+    pub fn new(pin: &PinBody, beta2: f64) -> Self {
+        let field = || FieldOf::<L, R>::zeros(pin.mesh().layout());
         let jumps = (beta2 > 0.5).then(|| Jumps {
             u: field(),
             acceleration: field(),
@@ -67,10 +67,10 @@ impl<const L: usize, R: Number> BlockAudit<L, R> {
             increment: field(),
         });
         Self {
-            mass: LineTable::new(block.mesh(), L, |node| block.masses_kg()[node]),
+            mass: LineTable::new(pin.mesh(), L, |node| pin.masses_kg()[node]),
             p: field(),
             kp: field(),
-            scratch: Scratch::new(block.mesh(), L),
+            scratch: pin.operator().scratch(pin.mesh().layout(), L),
             elastic_j: [0.0; L],
             damping_before_j: [0.0; L],
             columns: vec![[R::Totals::default(); SUMS]; field().blocks_per_line()],
@@ -87,8 +87,8 @@ impl<const L: usize, R: Number> BlockAudit<L, R> {
     }
 
     /// Evaluates uKu and pKp before the step.
-    pub fn begin(&mut self, block: &BlockBody, scheme: &Scheme, before: &Motion<'_, L, R>) {
-        let (operator, dt, beta_r) = (block.operator(), scheme.time_step_s, scheme.beta_r_s);
+    pub fn begin(&mut self, pin: &PinBody, scheme: &Scheme, before: &Motion<'_, L, R>) {
+        let (operator, dt, beta_r) = (pin.operator(), scheme.time_step_s, scheme.beta_r_s);
         // K p overwrites K u below.
         self.elastic_j = operator.product(before.u, &mut self.kp, &mut self.scratch).map(|form| 0.5 * form);
         if beta_r == 0.0 {
@@ -133,7 +133,7 @@ impl<const L: usize, R: Number> BlockAudit<L, R> {
     pub fn add_to(
         &mut self,
         total: &mut EnergySums<L>,
-        block: &BlockBody,
+        pin: &PinBody,
         scheme: &Scheme,
         after: &Motion<'_, L, R>,
     ) {
@@ -147,7 +147,7 @@ impl<const L: usize, R: Number> BlockAudit<L, R> {
         };
         let jumps = self.jumps.as_ref();
         let motion = AuditedMotion {
-            nodes: block.mesh().nodes_per_axis(),
+            layout: pin.mesh().layout(),
             mass: &self.mass,
             before_p: self.p.blocks(),
             after_p: after.p.blocks(),
@@ -161,7 +161,7 @@ impl<const L: usize, R: Number> BlockAudit<L, R> {
                 add_slots(sum, slots.as_ref());
             }
         }
-        let numerical_j = self.numerical_loss(block, scheme, &sums[INERTIAL_JUMP]);
+        let numerical_j = self.numerical_loss(pin, scheme, &sums[INERTIAL_JUMP]);
         add_lanes(&mut total.kinetic_j, &sums[KINETIC]);
         add_lanes(&mut total.elastic_j, &self.elastic_j);
         add_lanes(&mut total.damping_after_j, &sums[DAMPING_AFTER]);
@@ -170,7 +170,7 @@ impl<const L: usize, R: Number> BlockAudit<L, R> {
     }
 
     /// (γ−½)\[ΔuKΔu − ½γΔt² ΔaMΔa\] \[J\] of the step before `t_n`. It overwrites K p, which is no longer needed.
-    fn numerical_loss(&mut self, block: &BlockBody, scheme: &Scheme, inertial_jump_j: &[f64; L]) -> [f64; L] {
+    fn numerical_loss(&mut self, pin: &PinBody, scheme: &Scheme, inertial_jump_j: &[f64; L]) -> [f64; L] {
         let Some(jumps) = &mut self.jumps else { return [0.0; L] };
         let (dt, gamma) = (scheme.time_step_s, scheme.beta2);
         let before = self.p.blocks().iter().zip(jumps.previous_acceleration.blocks());
@@ -182,7 +182,7 @@ impl<const L: usize, R: Number> BlockAudit<L, R> {
                 }
             }
         }
-        let elastic_jump_j = block.operator().product(&jumps.increment, &mut self.kp, &mut self.scratch);
+        let elastic_jump_j = pin.operator().product(&jumps.increment, &mut self.kp, &mut self.scratch);
         std::array::from_fn(|lane| {
             (gamma - 0.5) * (elastic_jump_j[lane] - 0.5 * gamma * dt * dt * inertial_jump_j[lane])
         })
@@ -190,7 +190,7 @@ impl<const L: usize, R: Number> BlockAudit<L, R> {
 }
 
 /// Only the acceleration of the step before is carried from step to step.
-impl<const L: usize, R: Number> LaneState for BlockAudit<L, R> {
+impl<const L: usize, R: Number> LaneState for PinAudit<L, R> {
     fn save_lane(&self, lane: usize, saved: &mut Vec<f64>) {
         if let Some(jumps) = &self.jumps {
             jumps.previous_acceleration.save_lane(lane, saved);
@@ -214,7 +214,7 @@ struct Factors<'a, R: Number> {
 
 /// The blocks of an audited step, for any number of lanes.
 struct AuditedMotion<'a, R: Number> {
-    nodes: [usize; 3],
+    layout: Layout,
     mass: &'a LineTable<R>,
     before_p: &'a [Block<R>],
     after_p: &'a [Block<R>],
@@ -231,7 +231,6 @@ impl<R: Number> AuditedMotion<'_, R> {
 
     #[inline(always)]
     fn add_up_in<S: Simd>(&self, simd: S, factors: &Factors<'_, R>, columns: &mut [[R::Totals; SUMS]]) {
-        let [_, my, mz] = self.nodes;
         let Scheme { time_step_s: dt, beta2: gamma, beta_r_s } = *factors.scheme;
         let damps = beta_r_s > 0.0;
         let all = |value| splat::<R, S>(simd, value);
@@ -241,11 +240,12 @@ impl<R: Number> AuditedMotion<'_, R> {
         let [dt, zero] = [all(dt), all(0.0)];
         let blocks = columns.len();
         columns.fill([R::Totals::default(); SUMS]);
-        for k in 0..mz {
+        let Layout { lines_per_plane, .. } = self.layout;
+        let lines = self.layout.lines();
+        for plane in 0..self.layout.planes() {
             for along in 0..blocks {
                 let mut sums = [zero; SUMS];
-                for j in 0..my {
-                    let line = j + my * k;
+                for line in plane * lines_per_plane..((plane + 1) * lines_per_plane).min(lines) {
                     let at = line * blocks + along;
                     let half_mass = half * row(self.mass.row(line, along));
                     for c in 0..3 {

@@ -50,13 +50,7 @@ impl BlockMesh {
     /// The layout of a field on all nodes: lines along x.
     pub fn layout(&self) -> Layout {
         let [mx, my, mz] = self.nodes_per_axis();
-        Layout { nodes_per_line: mx, lines: my * mz }
-    }
-
-    /// The layout of a field on the contact face, or on any other plane in z.
-    pub fn face_layout(&self) -> Layout {
-        let [mx, my, _] = self.nodes_per_axis();
-        Layout { nodes_per_line: mx, lines: my }
+        Layout { nodes_per_line: mx, lines_per_plane: my, nodes: mx * my * mz }
     }
 
     /// Index of node (i, j, k).

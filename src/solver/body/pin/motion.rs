@@ -10,9 +10,9 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::BlockBody;
+use super::PinBody;
 use super::line_table::LineTable;
-use super::operator::{AssembledOperator, BlockIndex, Operator, Pass, Scratch, TensorOperator};
+use super::operator::{BlockIndex, Operator, Pass, Scratch};
 use crate::solver::body::Freedom;
 use crate::solver::field::{Block, FieldOf};
 use crate::solver::number::Number;
@@ -30,9 +30,9 @@ pub struct Face<'a, const L: usize, R: Number = f64> {
     pub inverse_mass: &'a [Block<R>],
 }
 
-/// Moves the nodes of a block in every lane. Nothing in it is carried from step to step.
+/// Moves the nodes of a pin in every lane. Nothing in it is carried from step to step.
 #[derive(Debug, Clone)]
-pub(in crate::solver) struct BlockMotion<const L: usize, R: Number> {
+pub(in crate::solver) struct NodeMotion<const L: usize, R: Number> {
     inverse_masses: InverseMasses<R>,
     /// Scratch of the product with K.
     scratch: Scratch<R>,
@@ -53,30 +53,30 @@ struct InverseMasses<R: Number> {
     blocks_per_plane: usize,
 }
 
-impl<const L: usize, R: Number> BlockMotion<L, R> {
-    pub fn new(block: &BlockBody) -> Self {
-        let mesh = block.mesh();
+impl<const L: usize, R: Number> NodeMotion<L, R> {
+    pub fn new(pin: &PinBody) -> Self {
+        let mesh = pin.mesh();
         let mut per_dof = FieldOf::<L, R>::zeros(mesh.layout());
-        for (dof, freedom) in block.freedoms().iter().enumerate() {
+        for (dof, freedom) in pin.freedoms().iter().enumerate() {
             let value = match freedom {
-                Freedom::Free => 1.0 / block.masses_kg()[dof / 3],
+                Freedom::Free => 1.0 / pin.masses_kg()[dof / 3],
                 Freedom::Fixed => 0.0,
                 Freedom::Tied(_) => 1.0,
             };
             *per_dof.at_mut(per_dof.place(dof / 3), dof % 3) = [R::from_f64(value); L];
         }
-        let blocks_per_plane = per_dof.blocks_per_line() * mesh.nodes_per_axis()[1];
-        let planes = per_dof.blocks().chunks_exact(blocks_per_plane).zip(block.constrained_planes());
+        let blocks_per_plane = per_dof.blocks_per_line() * mesh.layout().lines_per_plane;
+        let planes = per_dof.blocks().chunks_exact(blocks_per_plane).zip(pin.constrained_planes());
         Self {
             inverse_masses: InverseMasses {
-                free: LineTable::new(mesh, L, |node| 1.0 / block.masses_kg()[node]),
+                free: LineTable::new(mesh, L, |node| 1.0 / pin.masses_kg()[node]),
                 constrained: planes
                     .map(|(plane, constrained)| if *constrained { plane.to_vec() } else { Vec::new() })
                     .collect(),
-                constrained_planes: block.constrained_planes().to_vec(),
+                constrained_planes: pin.constrained_planes().to_vec(),
                 blocks_per_plane,
             },
-            scratch: Scratch::new(mesh, L),
+            scratch: pin.operator().scratch(mesh.layout(), L),
             residual: FieldOf::zeros(mesh.layout()),
         }
     }
@@ -94,20 +94,7 @@ impl<const L: usize, R: Number> BlockMotion<L, R> {
     /// Forms K (u + β_R p), moves the planes without constraints, and keeps the product on the others.
     pub fn advance_free_planes(
         &mut self,
-        block: &BlockBody,
-        factors: &StepFactors<R>,
-        u: &mut FieldOf<L, R>,
-        p: &mut FieldOf<L, R>,
-    ) {
-        match block.operator() {
-            Operator::Tensor(operator) => self.pass(operator, factors, u, p),
-            Operator::Assembled(operator) => self.assembled_forces(operator, factors, u, p),
-        }
-    }
-
-    fn pass(
-        &mut self,
-        operator: &TensorOperator,
+        pin: &PinBody,
         factors: &StepFactors<R>,
         u: &mut FieldOf<L, R>,
         p: &mut FieldOf<L, R>,
@@ -119,25 +106,7 @@ impl<const L: usize, R: Number> BlockMotion<L, R> {
             p: p.blocks_mut(),
             residual: self.residual.blocks_mut(),
         };
-        advance.run(operator, &mut self.scratch);
-    }
-
-    fn assembled_forces(
-        &mut self,
-        operator: &AssembledOperator,
-        factors: &StepFactors<R>,
-        u: &FieldOf<L, R>,
-        p: &FieldOf<L, R>,
-    ) {
-        let mut strained = u.clone();
-        for (s, p) in strained.blocks_mut().iter_mut().zip(p.blocks()) {
-            for c in 0..3 {
-                for i in 0..R::WIDTH {
-                    s.0[c][i] += factors.rounded_beta_r_s * p.0[c][i];
-                }
-            }
-        }
-        operator.product(&strained, &mut self.residual);
+        advance.run(pin.operator(), &mut self.scratch);
     }
 
     /// Moves the constrained planes above the contact face by their residual.
@@ -199,7 +168,7 @@ struct Advance<'a, R: Number> {
 }
 
 impl<R: Number> Advance<'_, R> {
-    fn run(&mut self, operator: &TensorOperator, scratch: &mut Scratch<R>) {
+    fn run(&mut self, operator: &Operator, scratch: &mut Scratch<R>) {
         dispatch!(simd => operator.pass(simd, self, scratch));
     }
 }

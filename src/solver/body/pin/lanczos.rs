@@ -1,0 +1,137 @@
+//! The largest frequency of a general mesh.
+
+use super::operator::Operator;
+use crate::solver::body::Freedom;
+use crate::solver::field::{Field, Layout};
+use nalgebra::DMatrix;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+/// What the bound adds to the largest frequency squared, relative to it.
+const MARGIN: f64 = 0.01;
+
+/// Probability with which the bound may be too low.
+const RISK: f64 = 1e-12;
+
+/// Upper bound of the largest angular frequency \[rad/s\] of nodes with these masses and the stiffness of `operator`.
+///
+/// Lanczos' method from a random start finds the largest eigenvalue λ of n degrees of freedom after k steps to (1 − ε)λ. It
+/// fails with a probability below 1.648 √n exp(−√ε (2k − 1)) (Kuczyński and Woźniakowski, SIAM J. Matrix Anal. Appl. 13, 1992,
+/// theorem 4.1). Here ε is 1 %, and k follows from a probability of 10⁻¹². The random numbers are always the same.
+pub fn omega_max_bound(layout: Layout, operator: &Operator, masses_kg: &[f64], freedoms: &[Freedom]) -> f64 {
+    let reduced = Reduced::new(masses_kg, freedoms);
+    let size = reduced.size;
+    if size == 0 {
+        return 0.0;
+    }
+    let steps = ((1.648 * (size as f64).sqrt()).ln() - RISK.ln()) / MARGIN.sqrt();
+    let steps = ((0.5 * (steps + 1.0)).ceil() as usize).min(size);
+    let mut scratch = operator.scratch(layout, 1);
+    let (mut u, mut force) = (Field::<1>::zeros(layout), Field::<1>::zeros(layout));
+    let mut v = random(size);
+    let mut before = vec![0.0; size];
+    let (mut diagonal, mut beside) = (Vec::new(), Vec::new());
+    let mut beta = 0.0;
+    normalise(&mut v);
+    for _ in 0..steps {
+        reduced.expand(&v, &mut u);
+        operator.product(&u, &mut force, &mut scratch);
+        let mut w = reduced.collect(&force);
+        let alpha: f64 = w.iter().zip(&v).map(|(w, v)| w * v).sum();
+        for ((w, v), before) in w.iter_mut().zip(&v).zip(&before) {
+            *w -= alpha * v + beta * before;
+        }
+        diagonal.push(alpha);
+        beta = normalise(&mut w);
+        // A space that is complete has no further direction. What is left is rounding.
+        if beta <= f64::EPSILON * alpha.abs() {
+            break;
+        }
+        beside.push(beta);
+        before = std::mem::replace(&mut v, w);
+    }
+    let count = diagonal.len();
+    let tridiagonal = DMatrix::from_fn(count, count, |i, j| match i.abs_diff(j) {
+        0 => diagonal[i],
+        1 => beside[i.min(j)],
+        _ => 0.0,
+    });
+    (tridiagonal.symmetric_eigenvalues().max() / (1.0 - MARGIN)).sqrt()
+}
+
+/// Coordinates in which the mass is the unit matrix: one for each degree of freedom that moves by itself, one for each tie.
+struct Reduced {
+    /// The coordinate of each degree of freedom, and the displacement for a unit of it.
+    of_dofs: Vec<Option<(usize, f64)>>,
+    size: usize,
+}
+
+impl Reduced {
+    fn new(masses_kg: &[f64], freedoms: &[Freedom]) -> Self {
+        let mut groups: BTreeMap<usize, (usize, f64)> = BTreeMap::new();
+        let mut size = 0;
+        let mut numbers = Vec::with_capacity(freedoms.len());
+        for (dof, freedom) in freedoms.iter().enumerate() {
+            let mut next = || {
+                size += 1;
+                size - 1
+            };
+            numbers.push(match *freedom {
+                Freedom::Fixed => None,
+                Freedom::Free => Some(next()),
+                Freedom::Tied(group) => {
+                    let entry = groups.entry(group).or_insert_with(|| (next(), 0.0));
+                    entry.1 += masses_kg[dof / 3];
+                    Some(entry.0)
+                }
+            });
+        }
+        let of_dofs = freedoms.iter().zip(numbers).enumerate().map(|(dof, (freedom, number))| {
+            let mass_kg = match freedom {
+                Freedom::Tied(group) => groups[group].1,
+                _ => masses_kg[dof / 3],
+            };
+            Some((number?, 1.0 / mass_kg.sqrt()))
+        });
+        Self { of_dofs: of_dofs.collect(), size }
+    }
+
+    fn expand(&self, v: &[f64], u: &mut Field<1>) {
+        for (dof, of_dof) in self.of_dofs.iter().enumerate() {
+            u[dof] = of_dof.map_or(0.0, |(number, share)| share * v[number]);
+        }
+    }
+
+    fn collect(&self, force: &Field<1>) -> Vec<f64> {
+        let mut v = vec![0.0; self.size];
+        for (dof, of_dof) in self.of_dofs.iter().enumerate() {
+            if let Some((number, share)) = *of_dof {
+                v[number] += share * force[dof];
+            }
+        }
+        v
+    }
+}
+
+/// Divides a vector by its length, and returns the length.
+fn normalise(v: &mut [f64]) -> f64 {
+    let length = v.iter().map(|x| x * x).sum::<f64>().sqrt();
+    for x in v {
+        *x /= length;
+    }
+    length
+}
+
+/// Numbers with a normal distribution, so that every direction is equally likely (Box and Muller, 1958).
+fn random(count: usize) -> Vec<f64> {
+    let mut state = 0_u64;
+    // SplitMix64 (Steele, Lea and Flood, 2014).
+    let mut uniform = move || {
+        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
+        let mut z = state;
+        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
+        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
+    };
+    (0..count).map(|_| (-2.0 * libm::log(1.0 - uniform())).sqrt() * libm::cos(TAU * uniform())).collect()
+}

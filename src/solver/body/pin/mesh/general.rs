@@ -1,0 +1,360 @@
+//! Meshes of any hexahedra.
+
+use super::BlockMesh;
+use crate::solver::body::hexahedron::corner_jacobians;
+use crate::solver::error::SolverError;
+use crate::solver::field::Layout;
+use nalgebra::Vector3;
+use std::collections::{BTreeMap, VecDeque};
+
+/// A hexahedron.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Hexahedron {
+    /// Its nodes, numbered as in [`hexahedron`](crate::solver::body::hexahedron).
+    pub nodes: [usize; 8],
+    /// Number of its material.
+    pub material: usize,
+}
+
+/// The parts from which a mesh is made, with nodes in any order.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct MeshParts {
+    /// Coordinates \[m\] in the frame of the pin: x and y from its axis, z from its base.
+    pub coordinates_m: Vec<[f64; 3]>,
+    /// The elements.
+    pub elements: Vec<Hexahedron>,
+    /// Quadrilaterals of the contact face, with their corners in order around them.
+    pub contact: Vec<[usize; 4]>,
+    /// Quadrilaterals of the face that carries the load.
+    pub top: Vec<[usize; 4]>,
+    /// Nodes that the clamp holds. `None`: they follow from the clamp of the scene.
+    pub clamped: Option<Vec<usize>>,
+    /// Number of elements in x, y and z, if the mesh has such directions.
+    pub divisions: Option<[usize; 3]>,
+}
+
+impl MeshParts {
+    /// The parts of a block, all of material 0.
+    pub fn of_block(mesh: &BlockMesh) -> Self {
+        let [nx, ny, nz] = mesh.elements();
+        let face = |k: usize| {
+            let corners = move |i, j| {
+                [
+                    mesh.node(i, j, k),
+                    mesh.node(i + 1, j, k),
+                    mesh.node(i + 1, j + 1, k),
+                    mesh.node(i, j + 1, k),
+                ]
+            };
+            (0..ny).flat_map(|j| (0..nx).map(move |i| corners(i, j))).collect()
+        };
+        Self {
+            coordinates_m: (0..mesh.node_count()).map(|node| mesh.coordinates_m(node)).collect(),
+            elements: mesh
+                .element_positions()
+                .map(|[i, j, k]| Hexahedron { nodes: mesh.element_nodes(i, j, k), material: 0 })
+                .collect(),
+            contact: face(0),
+            top: face(nz),
+            clamped: None,
+            divisions: Some(mesh.elements()),
+        }
+    }
+}
+
+/// How a pin is tilted: first by `y_rad` about y, then by `x_rad` about x.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Tilt {
+    /// Angle \[rad\] about x. A positive angle lifts the trailing end.
+    pub x_rad: f64,
+    /// Angle \[rad\] about y. A positive angle lifts the inner side.
+    pub y_rad: f64,
+}
+
+impl Tilt {
+    /// Turns a vector of the pin's frame.
+    #[must_use]
+    pub fn turned(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
+        if *self == Self::default() {
+            return [x, y, z];
+        }
+        let (sin_x, cos_x) = libm::sincos(self.x_rad);
+        let (sin_y, cos_y) = libm::sincos(self.y_rad);
+        let [x, z] = [cos_y * x + sin_y * z, cos_y * z - sin_y * x];
+        [x, cos_x * y - sin_x * z, sin_x * y + cos_x * z]
+    }
+}
+
+/// A mesh of any hexahedra. The nodes of the contact face come first. The others follow by their distance from it, counted in
+/// elements, so that neighbours are near each other in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct GeneralMesh {
+    coordinates_m: Vec<[f64; 3]>,
+    own_coordinates_m: Vec<[f64; 3]>,
+    tilt: Tilt,
+    size_m: [f64; 3],
+    elements: Vec<Hexahedron>,
+    contact: Vec<[usize; 4]>,
+    contact_areas_m2: Vec<f64>,
+    top_nodes: Vec<usize>,
+    top_areas_m2: Vec<f64>,
+    clamped: Option<Vec<usize>>,
+    worst_jacobian: f64,
+    divisions: Option<[usize; 3]>,
+}
+
+impl GeneralMesh {
+    /// A mesh of these parts. Nodes that no element has are left out. The lowest node of the tilted contact face is at z = 0.
+    ///
+    /// # Errors
+    /// If a coordinate is not finite, if an element is inverted or flat, if a face is empty or has nodes outside of the
+    /// elements, or if the elements do not hang together.
+    pub fn new(parts: &MeshParts, tilt: Tilt) -> Result<Self, SolverError> {
+        let refused = |what: String| Err(SolverError::Mesh(what));
+        for (what, faces) in [("contact", &parts.contact), ("load", &parts.top)] {
+            if faces.is_empty() {
+                return refused(format!("the {what} face has no quadrilateral"));
+            }
+        }
+        let count = parts.coordinates_m.len();
+        if let Some(node) = parts.coordinates_m.iter().position(|x| !x.iter().all(|x| x.is_finite())) {
+            return refused(format!("node {node} has a coordinate that is not a number"));
+        }
+        let mut worst_jacobian = f64::INFINITY;
+        for (number, element) in parts.elements.iter().enumerate() {
+            if element.nodes.iter().any(|&node| node >= count) {
+                return refused(format!("element {number} has a node that does not exist"));
+            }
+            let corners = element.nodes.map(|node| Vector3::from(parts.coordinates_m[node]));
+            let worst = corner_jacobians(&corners).into_iter().fold(f64::INFINITY, f64::min);
+            if worst <= 0.0 || worst.is_nan() {
+                let [x, y, z] = parts.coordinates_m[element.nodes[0]].map(|x| x * 1e3);
+                return refused(format!(
+                    "element {number} near x = {x:.4} mm, y = {y:.4} mm, z = {z:.4} mm has a Jacobian of {worst:.3} at a \
+                     corner, relative to its edges; it must be above 0"
+                ));
+            }
+            worst_jacobian = worst_jacobian.min(worst);
+        }
+        let new = renumbered(parts)?;
+        let node_count = new.iter().flatten().count();
+        let mut own_coordinates_m = vec![[0.0; 3]; node_count];
+        for (old, new) in new.iter().enumerate() {
+            if let Some(new) = *new {
+                own_coordinates_m[new] = parts.coordinates_m[old];
+            }
+        }
+        let number = |old: usize| {
+            new.get(old)
+                .copied()
+                .flatten()
+                .ok_or_else(|| SolverError::Mesh(format!("node {old} of a face is in no element")))
+        };
+        let faces = |faces: &[[usize; 4]]| -> Result<Vec<[usize; 4]>, SolverError> {
+            faces
+                .iter()
+                .map(|[a, b, c, d]| Ok([number(*a)?, number(*b)?, number(*c)?, number(*d)?]))
+                .collect()
+        };
+        let (contact, top) = (faces(&parts.contact)?, faces(&parts.top)?);
+        let contact_areas_m2: Vec<f64> = areas_m2(&own_coordinates_m, &contact).into_values().collect();
+        let (top_nodes, top_areas_m2): (Vec<_>, Vec<_>) =
+            areas_m2(&own_coordinates_m, &top).into_iter().unzip();
+        if top_nodes.iter().any(|&node| node < contact_areas_m2.len()) {
+            return refused("a node is both on the contact face and on the load's face".to_owned());
+        }
+        let clamped = match &parts.clamped {
+            None => None,
+            Some(nodes) => {
+                let mut nodes = nodes.iter().map(|&node| number(node)).collect::<Result<Vec<_>, _>>()?;
+                nodes.sort_unstable();
+                nodes.dedup();
+                Some(nodes)
+            }
+        };
+        let mut coordinates_m: Vec<_> = own_coordinates_m.iter().map(|x| tilt.turned(*x)).collect();
+        let lowest =
+            coordinates_m[..contact_areas_m2.len()].iter().map(|x| x[2]).fold(f64::INFINITY, f64::min);
+        for x in &mut coordinates_m {
+            x[2] -= lowest;
+        }
+        let size_m = std::array::from_fn(|axis| {
+            let along = || own_coordinates_m.iter().map(move |x: &[f64; 3]| x[axis]);
+            along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+        });
+        let elements = parts
+            .elements
+            .iter()
+            .map(|element| Hexahedron {
+                nodes: element.nodes.map(|node| new[node].unwrap_or_default()),
+                material: element.material,
+            })
+            .collect();
+        Ok(Self {
+            coordinates_m,
+            own_coordinates_m,
+            tilt,
+            size_m,
+            elements,
+            contact,
+            contact_areas_m2,
+            top_nodes,
+            top_areas_m2,
+            clamped,
+            worst_jacobian,
+            divisions: parts.divisions,
+        })
+    }
+
+    /// Number of nodes.
+    pub fn node_count(&self) -> usize {
+        self.coordinates_m.len()
+    }
+
+    /// The layout of a field on all nodes. The contact face is a line and a plane.
+    pub fn layout(&self) -> Layout {
+        Layout { nodes_per_line: self.contact_areas_m2.len(), lines_per_plane: 1, nodes: self.node_count() }
+    }
+
+    /// Coordinates \[m\] of a node: x and y from the pin's axis, z from the disk.
+    pub fn coordinates_m(&self, node: usize) -> [f64; 3] {
+        self.coordinates_m[node]
+    }
+
+    /// Coordinates \[m\] of a node in the frame of the pin.
+    pub fn own_coordinates_m(&self, node: usize) -> [f64; 3] {
+        self.own_coordinates_m[node]
+    }
+
+    /// How the pin is tilted.
+    pub fn tilt(&self) -> Tilt {
+        self.tilt
+    }
+
+    /// Extent \[m\] in x, y and z in the frame of the pin.
+    pub fn size_m(&self) -> [f64; 3] {
+        self.size_m
+    }
+
+    /// Number of elements in x, y and z, if the mesh has such directions.
+    pub fn divisions(&self) -> Option<[usize; 3]> {
+        self.divisions
+    }
+
+    /// The elements.
+    pub fn elements(&self) -> &[Hexahedron] {
+        &self.elements
+    }
+
+    /// The corners \[m\] of an element.
+    pub fn corners_m(&self, element: &Hexahedron) -> [Vector3<f64>; 8] {
+        element.nodes.map(|node| Vector3::from(self.coordinates_m[node]))
+    }
+
+    /// Quadrilaterals of the contact face.
+    pub fn contact_faces(&self) -> &[[usize; 4]] {
+        &self.contact
+    }
+
+    /// Tributary areas \[m²\] of the nodes of the contact face.
+    pub fn contact_areas_m2(&self) -> &[f64] {
+        &self.contact_areas_m2
+    }
+
+    /// Nodes of the face that carries the load, in ascending order.
+    pub fn top_nodes(&self) -> &[usize] {
+        &self.top_nodes
+    }
+
+    /// Their tributary areas \[m²\].
+    pub fn top_areas_m2(&self) -> &[f64] {
+        &self.top_areas_m2
+    }
+
+    /// Nodes that the clamp holds, if the mesh says which.
+    pub fn clamped(&self) -> Option<&[usize]> {
+        self.clamped.as_deref()
+    }
+
+    /// The smallest Jacobian at a corner of an element over the product of the lengths of the edges that meet there; 1 for
+    /// boxes.
+    pub fn worst_jacobian(&self) -> f64 {
+        self.worst_jacobian
+    }
+
+    /// Nodes of the contact face at its front and at its rear. Of several nodes the one nearest to the axis is taken.
+    pub fn edge_centres(&self) -> [usize; 2] {
+        let face = 0..self.contact_areas_m2.len();
+        let near = 1e-9 * self.size_m[1];
+        [1.0, -1.0].map(|sign| {
+            let at = |node: &usize| sign * self.own_coordinates_m[*node][1];
+            let end = face.clone().map(|node| at(&node)).fold(f64::INFINITY, f64::min);
+            let from_axis = |node: &usize| self.own_coordinates_m[*node][0].abs();
+            let at_end = face.clone().filter(|node| at(node) <= end + near);
+            at_end.min_by(|a, b| from_axis(a).total_cmp(&from_axis(b))).unwrap_or_default()
+        })
+    }
+}
+
+/// The new number of each node: contact nodes first, the others by breadth-first search.
+fn renumbered(parts: &MeshParts) -> Result<Vec<Option<usize>>, SolverError> {
+    let count = parts.coordinates_m.len();
+    let mut elements_of = vec![Vec::new(); count];
+    for (number, element) in parts.elements.iter().enumerate() {
+        for &node in &element.nodes {
+            elements_of[node].push(number);
+        }
+    }
+    let mut contact: Vec<usize> = parts.contact.iter().flatten().copied().collect();
+    contact.sort_unstable();
+    contact.dedup();
+    if let Some(&node) = contact.iter().find(|&&node| node >= count || elements_of[node].is_empty()) {
+        return Err(SolverError::Mesh(format!("node {node} of the contact face is in no element")));
+    }
+    let mut new = vec![None; count];
+    for (number, &node) in contact.iter().enumerate() {
+        new[node] = Some(number);
+    }
+    let mut next = contact.len();
+    let mut queue: VecDeque<usize> = contact.into();
+    while let Some(node) = queue.pop_front() {
+        let mut neighbours: Vec<usize> =
+            elements_of[node].iter().flat_map(|&element| parts.elements[element].nodes).collect();
+        neighbours.sort_unstable();
+        for neighbour in neighbours {
+            if new[neighbour].is_none() {
+                new[neighbour] = Some(next);
+                next += 1;
+                queue.push_back(neighbour);
+            }
+        }
+    }
+    match parts.elements.iter().position(|element| new[element.nodes[0]].is_none()) {
+        None => Ok(new),
+        Some(element) => Err(SolverError::Mesh(format!(
+            "element {element} does not hang together with the contact face; elements hang together by common nodes"
+        ))),
+    }
+}
+
+/// The tributary area \[m²\] of each node of some quadrilaterals, by 2 × 2 Gauss points.
+fn areas_m2(coordinates_m: &[[f64; 3]], faces: &[[usize; 4]]) -> BTreeMap<usize, f64> {
+    let mut areas = BTreeMap::new();
+    let g = 1.0 / 3.0_f64.sqrt();
+    for face in faces {
+        let x = face.map(|node| Vector3::from(coordinates_m[node]));
+        for [xi, eta] in [[-g, -g], [g, -g], [g, g], [-g, g]] {
+            let signs = [[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]];
+            let sum = |weight: &dyn Fn([f64; 2]) -> f64| -> Vector3<f64> {
+                x.iter().zip(signs).map(|(x, sign)| x * weight(sign)).sum()
+            };
+            let along_xi = sum(&|[a, b]: [f64; 2]| 0.25 * a * (1.0 + b * eta));
+            let along_eta = sum(&|[a, b]: [f64; 2]| 0.25 * b * (1.0 + a * xi));
+            let area = along_xi.cross(&along_eta).norm();
+            for (&node, [a, b]) in face.iter().zip(signs) {
+                *areas.entry(node).or_insert(0.0) += area * 0.25 * (1.0 + a * xi) * (1.0 + b * eta);
+            }
+        }
+    }
+    areas
+}
