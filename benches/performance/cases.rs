@@ -289,7 +289,8 @@ fn general<R: RunNumber>(what: &'static str) -> Pair {
     let mut general = block.clone();
     let pin = &mut general.scene.pin;
     pin.regions = vec![Region {
-        above_m: pin.size_m[2] * 8.0 / 17.0,
+        above_m: Some(pin.size_m[2] * 8.0 / 17.0),
+        group: None,
         young_modulus_pa: pin.young_modulus_pa,
         poisson_ratio: pin.poisson_ratio,
         density_kg_m3: pin.density_kg_m3,

@@ -1,6 +1,6 @@
 //! Builds the model of a scene.
 
-use super::body::pin::{BlockMesh, GeneralMesh, MeshParts, PinMesh, Stiffness, Tilt, cylinder};
+use super::body::pin::{BlockMesh, GeneralMesh, Hexahedron, MeshParts, PinMesh, Stiffness, Tilt, cylinder};
 use super::body::ring::RingDefinition;
 use super::error::SolverError;
 use super::interface::base_height_m;
@@ -46,13 +46,13 @@ impl Model {
             model.check_single_precision()?;
         }
         let tilt = tilt(&scene.pin);
-        if scene.pin.base.is_flat() && tilt == Tilt::default() {
+        if scene.pin.base.is_flat() && tilt == Tilt::default() && scene.pin.shape != Shape::Mesh {
             return Ok(model);
         }
         let mesh = model.mesh().clone();
         let height_m = |node: usize| {
-            let [x, y, _] = mesh.own_coordinates_m(node);
-            let [_, _, z] = tilt.turned([x, y, base_height_m(&scene.pin, [x, y])]);
+            let [x, y, z] = mesh.own_coordinates_m(node);
+            let [_, _, z] = tilt.turned([x, y, z + base_height_m(&scene.pin, [x, y])]);
             z
         };
         let lowest_m = mesh.bottom_nodes().map(height_m).fold(f64::INFINITY, f64::min);
@@ -108,6 +108,7 @@ fn pin_mesh(pin: &Pin) -> Result<PinMesh, SolverError> {
             MeshParts::of_block(&block)
         }
         Shape::Cylinder => cylinder(pin.extent_m(), across, along),
+        Shape::Mesh => from_file(pin)?,
     };
     Ok(GeneralMesh::new(&with_regions(parts, pin), tilt)?.into())
 }
@@ -116,10 +117,41 @@ fn pin_mesh(pin: &Pin) -> Result<PinMesh, SolverError> {
 fn with_regions(mut parts: MeshParts, pin: &Pin) -> MeshParts {
     for element in &mut parts.elements {
         let centre_m = element.nodes.iter().map(|&node| parts.coordinates_m[node][2]).sum::<f64>() / 8.0;
-        let region = pin.regions.iter().rposition(|region| centre_m > region.above_m);
-        element.material = region.map_or(0, |region| region + 1);
+        let region =
+            pin.regions.iter().rposition(|region| region.above_m.is_some_and(|above_m| centre_m > above_m));
+        element.material = region.map_or(element.material, |region| region + 1);
     }
     parts
+}
+
+/// The mesh of a file.
+fn from_file(pin: &Pin) -> Result<MeshParts, SolverError> {
+    let file = pin.mesh.as_ref();
+    let (Some(file), Some(content)) = (file, file.and_then(|file| file.decoded())) else {
+        return Err(SolverError::Mesh("scene.pin.mesh.content is not a mesh".to_owned()));
+    };
+    let material = |body: u32| {
+        let body = file.bodies.get(body as usize);
+        let region =
+            pin.regions.iter().rposition(|region| region.group.is_some() && region.group.as_ref() == body);
+        region.map_or(0, |region| region + 1)
+    };
+    let face = |corners: &[u32; 4]| corners.map(|node| node as usize);
+    let elements = content.hexahedra.iter().zip(&content.body_of);
+    Ok(MeshParts {
+        elements: elements
+            .map(|(nodes, &body)| Hexahedron {
+                nodes: nodes.map(|node| node as usize),
+                material: material(body),
+            })
+            .collect(),
+        names: content.ids.iter().map(|&id| u64::from(id)).collect(),
+        contact: content.contact.iter().map(face).collect(),
+        top: content.load.iter().map(face).collect(),
+        clamped: Some(content.clamp.iter().map(|&node| node as usize).collect()),
+        divisions: None,
+        coordinates_m: content.nodes_m,
+    })
 }
 
 fn tilt(pin: &Pin) -> Tilt {

@@ -3,6 +3,7 @@
 use super::base::Base;
 use super::check::Violations;
 use super::elasticity;
+use super::mesh::MeshFile;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::IntoStaticStr;
@@ -29,6 +30,8 @@ pub enum Shape {
     Block,
     /// A cylinder of the diameter `diameter_m` whose axis is z. Elements in x and y are the same number, that over the diameter.
     Cylinder,
+    /// The hexahedra of a file.
+    Mesh,
 }
 
 impl Shape {
@@ -48,8 +51,13 @@ impl Shape {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Region {
-    /// Height (m) above the base from which the region reaches to the top, or to the next region. It must be a plane of nodes.
-    pub above_m: f64,
+    /// Height (m) above the base from which the region of a block or a cylinder reaches to the top, or to the next region. It must be a
+    /// plane of nodes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub above_m: Option<f64>,
+    /// Group of elements of a mesh from a file.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub group: Option<String>,
     /// Young's modulus (Pa).
     pub young_modulus_pa: f64,
     /// Poisson's ratio, −1 < ν < 0.5.
@@ -75,7 +83,10 @@ pub struct Pin {
     /// Diameter (m) of a cylinder.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub diameter_m: Option<f64>,
-    /// Edge lengths (m) in x (radial), y (sliding direction) and z. A cylinder uses z only.
+    /// The mesh of a pin of the shape `mesh`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mesh: Option<Box<MeshFile>>,
+    /// Edge lengths (m) in x (radial), y (sliding direction) and z. A cylinder uses z only. A mesh from a file must have this extent.
     pub size_m: [f64; 3],
     /// Number of elements in x, y and z.
     pub elements: [usize; 3],
@@ -109,6 +120,7 @@ impl Default for Pin {
             base: Base::default(),
             shape: Shape::Block,
             diameter_m: None,
+            mesh: None,
             tilt_x_deg: None,
             tilt_y_deg: None,
             regions: Vec::new(),
@@ -140,11 +152,11 @@ impl Pin {
         }
     }
 
-    /// Area \[m²\] of the base.
+    /// Area \[m²\] of the base; of a mesh from a file, that of the rectangle around it.
     pub fn base_area_m2(&self) -> f64 {
         let [x, y, _] = self.extent_m();
         match self.shape {
-            Shape::Block => x * y,
+            Shape::Block | Shape::Mesh => x * y,
             Shape::Cylinder => std::f64::consts::FRAC_PI_4 * x * y,
         }
     }
@@ -153,6 +165,7 @@ impl Pin {
     pub fn element_count(&self) -> f64 {
         let [nx, ny, nz] = self.elements.map(|n| n as f64);
         let plane = match self.shape {
+            Shape::Mesh => return self.mesh.as_ref().and_then(|mesh| mesh.hexahedra).unwrap_or(0) as f64,
             Shape::Block => nx * ny,
             Shape::Cylinder => {
                 let core = core_elements(self.elements[0]) as f64;
@@ -166,6 +179,7 @@ impl Pin {
     pub fn node_count(&self) -> f64 {
         let [nx, ny, nz] = self.elements.map(|n| n as f64);
         let plane = match self.shape {
+            Shape::Mesh => return self.mesh.as_ref().and_then(|mesh| mesh.nodes).unwrap_or(0) as f64,
             Shape::Block => (nx + 1.0) * (ny + 1.0),
             Shape::Cylinder => {
                 let core = core_elements(self.elements[0]) as f64;
@@ -222,11 +236,19 @@ impl Pin {
             (Shape::Cylinder, Some(diameter)) => {
                 found.require_magnitude("scene.pin.diameter_m", diameter, "a diameter > 0 m");
             }
-            (Shape::Block, Some(diameter)) => {
-                let right = "absent for a block, whose edges are size_m; or scene.pin.shape = cylinder";
+            (Shape::Block | Shape::Mesh, Some(diameter)) => {
+                let right = "absent, because only scene.pin.shape = cylinder has a diameter";
                 found.add("scene.pin.diameter_m", diameter, right);
             }
-            (Shape::Block, None) => {}
+            (Shape::Block | Shape::Mesh, None) => {}
+        }
+        match (self.shape, &self.mesh) {
+            (Shape::Mesh, None) => found.add("scene.pin.mesh", "absent", "the file of a mesh"),
+            (Shape::Mesh, Some(mesh)) => mesh.check(self.size_m, found),
+            (Shape::Block | Shape::Cylinder, Some(_)) => {
+                found.add("scene.pin.mesh", "a mesh", "absent, or scene.pin.shape = mesh");
+            }
+            (Shape::Block | Shape::Cylinder, None) => {}
         }
         let [across, also, _] = self.elements;
         if self.shape == Shape::Cylinder && (across != also || across < FEWEST_ACROSS) {
@@ -249,15 +271,33 @@ impl Pin {
         let mut below = 0.0;
         for (number, region) in self.regions.iter().enumerate() {
             let field = |name: &str| format!("scene.pin.regions[{number}].{name}");
-            let above = region.above_m;
-            let layer = above / height * layers;
-            let holds = above > below && above < height && (layer - layer.round()).abs() <= 1.0e-6;
-            let right = format!(
-                "a height between {below} m and {height} m at a multiple of {} m, the height of an element",
-                height / layers
-            );
-            found.require(&field("above_m"), above, holds, &right);
-            below = above;
+            match (self.shape, region.above_m, &region.group) {
+                (Shape::Mesh, None, Some(group)) => {
+                    let bodies = self.mesh.as_ref().map_or(&[][..], |mesh| &mesh.bodies);
+                    if !bodies.contains(group) {
+                        let right = format!("a group of elements of the mesh: {}", bodies.join(", "));
+                        found.add(&field("group"), group, right);
+                    }
+                }
+                (Shape::Mesh, ..) => {
+                    found.add(&field("group"), "absent", "a group of elements of the mesh, without above_m");
+                }
+                (_, Some(above), None) => {
+                    let layer = above / height * layers;
+                    let holds = above > below && above < height && (layer - layer.round()).abs() <= 1.0e-6;
+                    let right = format!(
+                        "a height between {below} m and {height} m at a multiple of {} m, the height of an element",
+                        height / layers
+                    );
+                    found.require(&field("above_m"), above, holds, &right);
+                    below = above;
+                }
+                _ => found.add(
+                    &field("above_m"),
+                    "absent",
+                    "a height, without group, which is for meshes from files",
+                ),
+            }
             found.require_magnitude(&field("young_modulus_pa"), region.young_modulus_pa, "a modulus > 0 Pa");
             let nu = region.poisson_ratio;
             let right = "a Poisson's ratio with -1 < ν < 0.5";

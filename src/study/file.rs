@@ -5,7 +5,7 @@ use super::grid_schema::grid_schema;
 use super::json::present;
 use super::preset::Preset;
 use super::report_axes::ReportAxes;
-use crate::spec::{Detection, Numerics, RunControl, Scene, StabilityMethod};
+use crate::spec::{Detection, MeshFile, Numerics, RunControl, Scene, StabilityMethod};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -57,7 +57,10 @@ pub(super) struct StudyFile {
 impl StudyFile {
     /// An example that has every object and every name that a study file can have, for checks of its shape.
     pub(super) fn template() -> Value {
+        let mut scene = Scene::default();
+        scene.pin.mesh = Some(Box::new(MeshFile::template()));
         let file = Self {
+            scene,
             preset: Some(Preset::Standard),
             damping: Some(Damping::default()),
             report: Some(ReportAxes::template()),

@@ -2,8 +2,8 @@
 
 use super::json::encode;
 use crate::spec::{
-    Clamp, ClampSide, Detection, DiskKind, FrictionLaw, JobSpec, Load, Numerics, Precision, RunControl,
-    StabilityMethod, Start,
+    Clamp, ClampSide, Detection, DiskKind, FrictionLaw, JobSpec, Load, Numerics, Pin, Precision, RunControl,
+    Shape, StabilityMethod, Start,
 };
 use serde_json::Value;
 use std::collections::VecDeque;
@@ -16,7 +16,8 @@ const HEX_DIGITS: usize = 32;
 ///
 /// In canonical JSON the fields are sorted, there is no space, and numbers have their shortest exact form, with 0 for
 /// −0. Fields without effect do not enter. These have their defaults: coefficients that the friction law does not use; the
-/// clamp's width where no strip uses it; an angle of 0; the
+/// clamp's width where no strip uses it; an angle of 0; the elements and the clamp
+/// where the mesh comes from a file; the
 /// safety factor where the time step is given; the time step, the precision, the run, its detection and the load's ramp where
 /// there is no run; the method of stability where every run goes to its limit or where eigenvalues do not exist; the start
 /// where the mesh is too coarse for a coarser one. The ring of a rigid disk is left out. A new
@@ -26,6 +27,10 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     spec.scene.contact = spec.scene.contact.in_use();
     let [x_m, y_m, _] = spec.scene.pin.extent_m();
     (spec.scene.pin.size_m[0], spec.scene.pin.size_m[1]) = (x_m, y_m);
+    if spec.scene.pin.shape == Shape::Mesh {
+        spec.scene.pin.elements = Pin::default().elements;
+        spec.scene.clamp = Clamp::default();
+    }
     for angle in [&mut spec.scene.pin.tilt_x_deg, &mut spec.scene.pin.tilt_y_deg] {
         *angle = angle.filter(|angle| *angle != 0.0);
     }

@@ -30,6 +30,7 @@ mod json;
 mod key;
 mod limits;
 mod locate;
+mod mesh_file;
 mod name;
 mod origin;
 mod outline;

@@ -9,6 +9,7 @@ use super::grid::Grid;
 use super::json::{Decoded, decode_all};
 use super::limits::MAX_JOBS;
 use super::locate::join;
+use super::mesh_file;
 use super::name::{EXPECTED, is_study_name};
 use super::outline::Outline;
 use super::parameter::{Parameter, unknown_help};
@@ -47,7 +48,7 @@ impl Study {
     /// # Errors
     /// Those of [`Study::parse`], and changes with unknown, repeated or overlapping names or values of the wrong type.
     pub fn parse_changed(text: &str, source_name: &str, changes: &Changes) -> Result<Self, StudyError> {
-        Self::read(text, source_name, changes, changes.is_of_modes)
+        Self::read(text, source_name, changes, changes.is_of_modes, true)
     }
 
     /// As [`Study::parse`], for the document of a study in a database. It may be one of complex modes.
@@ -55,7 +56,7 @@ impl Study {
     /// # Errors
     /// Those of [`Study::parse`].
     pub fn parse_stored(document: &str, name: &str) -> Result<Self, StudyError> {
-        Self::read(document, name, &Changes::default(), true)
+        Self::read(document, name, &Changes::default(), true, false)
     }
 
     fn read(
@@ -63,9 +64,13 @@ impl Study {
         source_name: &str,
         changes: &Changes,
         allows_modes: bool,
+        reads_files: bool,
     ) -> Result<Self, StudyError> {
-        let (value, source) = SourceText::read(text, source_name)?;
+        let (mut value, mut source) = SourceText::read(text, source_name)?;
         refuse(source.repeated_keys())?;
+        if reads_files && let Some(text) = mesh_file::with_mesh(&value, &source)? {
+            (value, source) = SourceText::read(&text, source_name)?;
+        }
         let template = StudyFile::template();
         let Decoded { value: file, mismatches } = decode_all::<StudyFile>(&value, &template);
         let mut problems: Vec<_> =

@@ -102,6 +102,15 @@ impl SourceText {
         Some(text)
     }
 
+    /// As [`Self::with_value`], where what follows stays on its lines.
+    pub(super) fn with_value_on_lines(&self, field: &str, value: &Value) -> Option<String> {
+        let span = self.spans.by_path.get(field)?;
+        let lines = self.text[span.bytes.clone()].matches('\n').count();
+        let mut text = self.text.clone();
+        text.replace_range(span.bytes.clone(), &(value.to_string() + &"\n".repeat(lines)));
+        Some(text)
+    }
+
     /// A problem with the value of `field`.
     pub(super) fn problem(&self, field: &str, message: impl Into<String>) -> Problem {
         // The latest change is the one that has an effect.

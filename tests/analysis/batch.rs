@@ -5,7 +5,9 @@ use std::collections::BTreeMap;
 use strum::VariantArray;
 use tribosweep::analysis::batch::{Batch, Begun};
 use tribosweep::analysis::{CoarseStart, JobRecord, Unobserved, solve};
-use tribosweep::spec::{DiskKind, FrictionLaw, JobSpec, Precision, StabilityMethod, Start};
+use tribosweep::spec::{
+    ClampSide, DiskKind, FrictionLaw, JobSpec, Precision, Region, Shape, StabilityMethod, Start,
+};
 
 /// Jobs of one model. They differ in everything that may differ: friction, speed, load, ramp, length, and
 /// early stop.
@@ -116,6 +118,36 @@ fn companions_and_interruptions_change_nothing_with_other_laws() {
             companions_change_nothing_in(&jobs);
             resumed_jobs_have_the_same_bits(&jobs, &[2]);
         }
+    }
+}
+
+/// Protects: the same with general meshes, whose nodes are in lines that do not fill their vectors.
+#[test]
+fn companions_and_interruptions_change_nothing_on_general_meshes() {
+    for (disk, precision) in [
+        (DiskKind::Rigid, Precision::Double),
+        (DiskKind::Rigid, Precision::Single),
+        (DiskKind::Elastic, Precision::Double),
+    ] {
+        let mut jobs = jobs(disk, precision);
+        for job in &mut jobs {
+            let pin = &mut job.scene.pin;
+            pin.shape = Shape::Cylinder;
+            pin.diameter_m = Some(0.012);
+            pin.elements = [5, 5, 4];
+            pin.tilt_x_deg = Some(0.01);
+            pin.regions = vec![Region {
+                above_m: Some(0.5 * pin.size_m[2]),
+                group: None,
+                young_modulus_pa: 2.0 * pin.young_modulus_pa,
+                poisson_ratio: 0.2,
+                density_kg_m3: pin.density_kg_m3,
+            }];
+            job.scene.clamp.side = ClampSide::WholeTop;
+            job.run.limit_s = job.run.limit_s.min(0.003);
+        }
+        companions_change_nothing_in(&jobs);
+        resumed_jobs_have_the_same_bits(&jobs, &[2]);
     }
 }
 

@@ -7,7 +7,9 @@
 use crate::random::Random;
 use strum::VariantArray;
 use tribosweep::solver::Model;
-use tribosweep::spec::{ClampSide, FrictionLaw, JobSpec, Precision, StabilityMethod, TopFace};
+use tribosweep::spec::{
+    Base, ClampSide, FrictionLaw, JobSpec, Precision, Region, Shape, StabilityMethod, TopFace,
+};
 
 /// Largest number of nodes × steps of a case. With it 10 000 cases take minutes.
 const MOST_NODE_STEPS: f64 = 1.5e5;
@@ -21,6 +23,7 @@ pub fn job(seed: u64, index: u64) -> JobSpec {
     clamp(random, &mut spec);
     law(random, &mut spec);
     base(random, &mut spec);
+    shape(random, &mut spec);
     holder(random, &mut spec);
     numerics(random, &mut spec);
     duration(random, &mut spec);
@@ -118,6 +121,38 @@ fn base(random: &mut Random, spec: &mut JobSpec) {
             pin.base.wave_length_m = Some((lx + ly) * random.between(4.0, 10.0));
             pin.base.wave_direction_deg = Some(random.between(-360.0, 360.0));
         }
+    }
+}
+
+/// A cylinder, a tilt, or regions of materials that are far stiffer or softer, heavier or lighter.
+fn shape(random: &mut Random, spec: &mut JobSpec) {
+    if random.chance(0.6) {
+        return;
+    }
+    let pin = &mut spec.scene.pin;
+    if random.chance(0.5) {
+        let across = random.whole(3, 5);
+        pin.shape = Shape::Cylinder;
+        pin.elements[0] = across;
+        pin.elements[1] = across;
+        pin.diameter_m = Some(pin.size_m[0]);
+        // The lengths of a base are those of the block.
+        pin.base = Base::default();
+    }
+    if random.chance(0.5) {
+        pin.tilt_x_deg = Some(random.pick(&[0.0, 1.0e-9, -0.01, 4.0, -30.0]));
+        pin.tilt_y_deg = Some(random.between(-30.0, 30.0));
+    }
+    let layers = pin.elements[2];
+    if layers > 1 && random.chance(0.5) {
+        let above = random.whole(1, layers - 1);
+        pin.regions = vec![Region {
+            above_m: Some(pin.size_m[2] * above as f64 / layers as f64),
+            group: None,
+            young_modulus_pa: pin.young_modulus_pa * random.log_between(1.0e-3, 1.0e3),
+            poisson_ratio: random.pick(&[0.0, 0.3, 0.49, -0.5]),
+            density_kg_m3: pin.density_kg_m3 * random.log_between(1.0e-2, 1.0e2),
+        }];
     }
 }
 

@@ -44,6 +44,7 @@ mod ring_statics;
 mod ring_tools;
 mod ritz;
 mod saturated_flutter;
+mod shapes;
 mod shear;
 mod sideways;
 mod sliding_in_time;

@@ -25,7 +25,7 @@ fn height_m(base: &Base, shape: Shape, size_m: [f64; 2], [x, y]: [f64; 2]) -> f6
     let beyond = |width: f64| -> [f64; 2] {
         let along = |edge_m: f64, position: f64| (position.abs() - (0.5 * edge_m - width)).max(0.0);
         match shape {
-            Shape::Block => [along(size_m[0], x), along(size_m[1], y)],
+            Shape::Block | Shape::Mesh => [along(size_m[0], x), along(size_m[1], y)],
             Shape::Cylinder => [along(size_m[0], libm::hypot(x, y * (size_m[0] / size_m[1]))), 0.0],
         }
     };

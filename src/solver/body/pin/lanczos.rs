@@ -135,3 +135,45 @@ fn random(count: usize) -> Vec<f64> {
     };
     (0..count).map(|_| (-2.0 * libm::log(1.0 - uniform())).sqrt() * libm::cos(TAU * uniform())).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::{GeneralMesh, Tilt, assembled, cylinder};
+    use super::*;
+    use crate::solver::material::Material;
+
+    /// Protects: the bound is above the largest frequency of a dense eigenvalue problem, and by no more than its margin, with
+    /// fixed, tied and free nodes.
+    #[test]
+    fn bounds_the_dense_problem_from_above() {
+        let material = Material { young_modulus_pa: 1e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
+        let mesh = GeneralMesh::new(&cylinder([0.008, 0.009, 0.005], 5, 3), Tilt::default()).unwrap();
+        let (operator, masses_kg) = assembled(&mesh, &[material]).unwrap();
+        let dofs = 3 * mesh.node_count();
+        let mut freedoms = vec![Freedom::Free; dofs];
+        let check = |freedoms: &[Freedom]| {
+            let reduced = Reduced::new(&masses_kg, freedoms);
+            let layout = mesh.layout();
+            let mut scratch = operator.scratch(layout, 1);
+            let (mut u, mut force) = (Field::<1>::zeros(layout), Field::<1>::zeros(layout));
+            let mut dense = DMatrix::zeros(reduced.size, reduced.size);
+            for column in 0..reduced.size {
+                let mut unit = vec![0.0; reduced.size];
+                unit[column] = 1.0;
+                reduced.expand(&unit, &mut u);
+                operator.product(&u, &mut force, &mut scratch);
+                dense.set_column(column, &nalgebra::DVector::from_vec(reduced.collect(&force)));
+            }
+            let exact = ((&dense + dense.transpose()) * 0.5).symmetric_eigenvalues().max().sqrt();
+            let ratio = omega_max_bound(layout, &operator, &masses_kg, freedoms) / exact;
+            assert!((1.0..=1.0 / (1.0 - MARGIN)).contains(&ratio), "{ratio}");
+        };
+        check(&freedoms);
+        for node in mesh.top_nodes() {
+            freedoms[3 * node] = Freedom::Fixed;
+            freedoms[3 * node + 1] = Freedom::Fixed;
+            freedoms[3 * node + 2] = Freedom::Tied(0);
+        }
+        check(&freedoms);
+    }
+}

@@ -38,6 +38,7 @@ pub fn cylinder(size_m: [f64; 3], across: usize, along: usize) -> MeshParts {
     MeshParts {
         coordinates_m: coordinates_m.collect(),
         elements: elements.collect(),
+        names: Vec::new(),
         contact: face(0),
         top: face(along),
         clamped: None,

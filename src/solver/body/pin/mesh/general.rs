@@ -23,6 +23,8 @@ pub struct MeshParts {
     pub coordinates_m: Vec<[f64; 3]>,
     /// The elements.
     pub elements: Vec<Hexahedron>,
+    /// Their names in messages. Without them, they are numbered from 0.
+    pub names: Vec<u64>,
     /// Quadrilaterals of the contact face, with their corners in order around them.
     pub contact: Vec<[usize; 4]>,
     /// Quadrilaterals of the face that carries the load.
@@ -34,6 +36,11 @@ pub struct MeshParts {
 }
 
 impl MeshParts {
+    /// The name of an element in messages.
+    fn name(&self, index: usize) -> u64 {
+        self.names.get(index).copied().unwrap_or(index as u64)
+    }
+
     /// The parts of a block, all of material 0.
     pub fn of_block(mesh: &BlockMesh) -> Self {
         let [nx, ny, nz] = mesh.elements();
@@ -54,6 +61,7 @@ impl MeshParts {
                 .element_positions()
                 .map(|[i, j, k]| Hexahedron { nodes: mesh.element_nodes(i, j, k), material: 0 })
                 .collect(),
+            names: Vec::new(),
             contact: face(0),
             top: face(nz),
             clamped: None,
@@ -121,7 +129,8 @@ impl GeneralMesh {
             return refused(format!("node {node} has a coordinate that is not a number"));
         }
         let mut worst_jacobian = f64::INFINITY;
-        for (number, element) in parts.elements.iter().enumerate() {
+        for (index, element) in parts.elements.iter().enumerate() {
+            let number = parts.name(index);
             if element.nodes.iter().any(|&node| node >= count) {
                 return refused(format!("element {number} has a node that does not exist"));
             }
@@ -331,8 +340,9 @@ fn renumbered(parts: &MeshParts) -> Result<Vec<Option<usize>>, SolverError> {
     }
     match parts.elements.iter().position(|element| new[element.nodes[0]].is_none()) {
         None => Ok(new),
-        Some(element) => Err(SolverError::Mesh(format!(
-            "element {element} does not hang together with the contact face; elements hang together by common nodes"
+        Some(index) => Err(SolverError::Mesh(format!(
+            "element {} does not hang together with the contact face; elements hang together by common nodes",
+            parts.name(index)
         ))),
     }
 }

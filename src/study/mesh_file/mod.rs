@@ -1,0 +1,170 @@
+//! The file of a mesh: it is read with the study, whose text and jobs then contain the mesh.
+//!
+//! A reader of a format gives a [`FileMesh`]: nodes, hexahedra, and groups. From it follows the content of a job.
+
+mod abaqus;
+mod gmsh;
+
+use super::error::StudyError;
+use super::source::SourceText;
+use crate::spec::{MeshContent, MeshFile};
+use serde_json::{Value, json};
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+/// The field of the mesh.
+const MESH: &str = "scene.pin.mesh";
+
+/// Largest file [byte].
+const MOST_BYTES: u64 = 1 << 30;
+
+/// A mesh as its file describes it. Nodes are numbered from 0.
+#[derive(Debug, Default)]
+struct FileMesh {
+    nodes: Vec<[f64; 3]>,
+    /// The hexahedra with their numbers in the file, their nodes (around the lower face, then around the upper face), and the names of their
+    /// groups.
+    hexahedra: Vec<(u64, [usize; 8], Vec<String>)>,
+    /// The groups of faces and nodes.
+    groups: BTreeMap<String, Group>,
+}
+
+/// A group of faces or nodes.
+#[derive(Debug, Default)]
+struct Group {
+    /// Quadrilaterals, around their edges. None: the faces of hexahedra on the surface whose nodes are all in the group.
+    faces: Option<Vec<[usize; 4]>>,
+    nodes: BTreeSet<usize>,
+    /// What in it is no quadrilateral, with its number in the file.
+    other: Option<String>,
+}
+
+/// From the nodes around the two faces of a hexahedron to those with x fastest, then y, then z.
+const FROM_AROUND: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
+
+/// The faces of a hexahedron by its nodes around its two faces.
+const FACES: [[usize; 4]; 6] =
+    [[0, 3, 2, 1], [4, 5, 6, 7], [0, 1, 5, 4], [1, 2, 6, 5], [2, 3, 7, 6], [3, 0, 4, 7]];
+
+/// The text of the study with a mesh in place of its file's name; `None` if it names none. The file's path is relative to the folder of
+/// the study, or to the working directory for standard input.
+///
+/// # Errors
+/// If the file cannot be read, or does not have what the study needs.
+pub(super) fn with_mesh(value: &Value, source: &SourceText) -> Result<Option<String>, StudyError> {
+    let Some(mesh) = value.pointer("/scene/pin/mesh") else { return Ok(None) };
+    // Fields of wrong types are found with the other fields of the study.
+    let Ok(mesh) = serde_json::from_value::<MeshFile>(mesh.clone()) else { return Ok(None) };
+    let Some(name) = &mesh.file else { return Ok(None) };
+    let refuse = |message: String| Err(source.problem(&format!("{MESH}.file"), message).into());
+    if mesh.content.is_some() {
+        return refuse("expected either a file or its content".to_owned());
+    }
+    if mesh.length_unit_m <= 0.0 {
+        let right = "expected a length > 0 m of a unit of the file: 0.001 for millimetres";
+        return Err(source.problem(&format!("{MESH}.length_unit_m"), right).into());
+    }
+    let folder = Path::new(&source.file).parent().unwrap_or(Path::new(""));
+    match read(&mesh, &folder.join(name)) {
+        Ok(mesh) => Ok(source.with_value_on_lines(MESH, &json!(mesh))),
+        Err(message) => refuse(message),
+    }
+}
+
+/// Reads the file of a mesh, and puts its content in its place.
+///
+/// # Errors
+/// A message with the file, the line where there is one, and what would be right.
+fn read(mesh: &MeshFile, path: &Path) -> Result<MeshFile, String> {
+    let named = |message: String| format!("{}: {message}", path.display());
+    let size = std::fs::metadata(path).map_err(|error| named(format!("cannot be read: {error}")))?.len();
+    if size > MOST_BYTES {
+        return Err(named(format!("{size} bytes; expected at most {MOST_BYTES}")));
+    }
+    let bytes = std::fs::read(path).map_err(|error| named(format!("cannot be read: {error}")))?;
+    let is_abaqus = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("inp"));
+    let text = match String::from_utf8(bytes) {
+        Ok(text) => text,
+        Err(_) if is_abaqus => return Err(named("not a text file".to_owned())),
+        Err(_) => return Err(named("not a text file; save it with Mesh.Binary = 0".to_owned())),
+    };
+    let read = if is_abaqus { abaqus::read(&text) } else { gmsh::read(&text) };
+    let file_mesh = read.map_err(|(line, message)| format!("{}:{line}: {message}", path.display()))?;
+    resolved(mesh, &file_mesh).map_err(named)
+}
+
+fn resolved(mesh: &MeshFile, file: &FileMesh) -> Result<MeshFile, String> {
+    if file.hexahedra.is_empty() {
+        return Err("no hexahedron with 8 nodes".to_owned());
+    }
+    let mut bodies: Vec<String> = file.hexahedra.iter().flat_map(|(_, _, groups)| groups.clone()).collect();
+    bodies.sort_unstable();
+    bodies.dedup();
+    let body_of = |groups: &[String]| {
+        let first = groups.first().and_then(|name| bodies.binary_search(name).ok());
+        first.unwrap_or(bodies.len()) as u32
+    };
+    if let Some((number, _, groups)) = file.hexahedra.iter().find(|(_, _, groups)| groups.len() > 1) {
+        return Err(format!(
+            "element {number} is in the groups {}: expected one of them",
+            groups.join(" and ")
+        ));
+    }
+    let [contact, load, clamp] = mesh.groups();
+    let faces = |name: &str| -> Result<Vec<[u32; 4]>, String> {
+        let group = group_of(file, name)?;
+        if let Some(other) = &group.other {
+            return Err(format!("group {name:?} has {other}: expected quadrilaterals with 4 nodes"));
+        }
+        let faces = group.faces.clone().unwrap_or_else(|| surface_faces(file, &group.nodes));
+        if faces.is_empty() {
+            return Err(format!("group {name:?} has no quadrilateral on the surface of the hexahedra"));
+        }
+        Ok(faces.into_iter().map(|face| face.map(|node| node as u32)).collect())
+    };
+    let content = MeshContent {
+        nodes_m: file.nodes.iter().map(|x| x.map(|x| x * mesh.length_unit_m)).collect(),
+        hexahedra: file
+            .hexahedra
+            .iter()
+            .map(|(_, nodes, _)| FROM_AROUND.map(|corner| nodes[corner] as u32))
+            .collect(),
+        ids: file.hexahedra.iter().map(|(number, _, _)| *number as u32).collect(),
+        body_of: file.hexahedra.iter().map(|(_, _, groups)| body_of(groups)).collect(),
+        contact: faces(contact)?,
+        load: faces(load)?,
+        clamp: group_of(file, clamp)?.nodes.iter().map(|&node| node as u32).collect(),
+    };
+    Ok(MeshFile {
+        file: None,
+        extent_m: Some(content.extent_m()),
+        nodes: Some(content.nodes_m.len()),
+        hexahedra: Some(content.hexahedra.len()),
+        content: Some(content.encoded()),
+        bodies,
+        ..mesh.clone()
+    })
+}
+
+fn group_of<'a>(file: &'a FileMesh, name: &str) -> Result<&'a Group, String> {
+    file.groups.get(name).filter(|group| !group.nodes.is_empty()).ok_or_else(|| {
+        let known: Vec<&str> = file.groups.keys().map(String::as_str).collect();
+        let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+        format!("no group {name:?} of faces or nodes; the file has {known}")
+    })
+}
+
+/// The faces of one hexahedron only whose nodes are all in a set.
+fn surface_faces(file: &FileMesh, nodes: &BTreeSet<usize>) -> Vec<[usize; 4]> {
+    let mut faces: BTreeMap<[usize; 4], (usize, [usize; 4])> = BTreeMap::new();
+    for (_, corners, _) in &file.hexahedra {
+        for face in FACES.map(|face| face.map(|corner| corners[corner])) {
+            if face.iter().all(|node| nodes.contains(node)) {
+                let mut sorted = face;
+                sorted.sort_unstable();
+                faces.entry(sorted).or_insert((0, face)).0 += 1;
+            }
+        }
+    }
+    faces.into_values().filter(|(count, _)| *count == 1).map(|(_, face)| face).collect()
+}
