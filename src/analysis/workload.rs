@@ -14,6 +14,8 @@ pub struct Workload {
     pub precision: Precision,
     /// Number of nodes of the pin.
     pub pin_nodes: usize,
+    /// Whether the pin has the stiffness of a general mesh.
+    pub is_general: bool,
     /// Number of nodes of the disk; 0 if it is rigid.
     pub disk_nodes: usize,
     /// Stages of the disk in a time step; 0 if it is rigid.
@@ -33,6 +35,12 @@ const DISK_STAGE: f64 = 5.0;
 /// Time of a step of a node in single precision, relative to double precision, and the memory of a lane's fields.
 /// docs/performance.md has the times.
 const SINGLE: [f64; 2] = [0.6, 0.5];
+
+/// Time of a step of a node of a general mesh, relative to that of a block. docs/performance.md has the times.
+const GENERAL_TIME: f64 = 2.5;
+
+/// Additional memory \[byte\] of a node of a general mesh in a model: 14 pairs of nodes with 9 numbers and an index.
+const GENERAL_NODE_BYTES: f64 = 14.0 * (9.0 * 8.0 + 4.0);
 
 /// Largest angular frequency of a mesh of cubes, in wave speeds of pressure over edges: 2 over the limit of the time step.
 const LARGEST_FREQUENCY: f64 = 2.15;
@@ -71,6 +79,7 @@ impl Workload {
             elements: model.mesh().divisions(),
             precision,
             pin_nodes: model.mesh().node_count(),
+            is_general: model.mesh().block().is_none(),
             disk_nodes: disk.map_or(0, |disk| disk.mesh().node_count()),
             disk_stages: disk.map_or(0, |disk| disk.stages().count()),
             time_step_s: model.time_step_s(),
@@ -102,6 +111,7 @@ impl Workload {
             elements: pin.elements,
             precision: numerics.precision,
             pin_nodes: pin.node_count() as usize,
+            is_general: !pin.is_plain_block(),
             disk_nodes,
             disk_stages,
             time_step_s: numerics.time_step_s.unwrap_or(numerics.safety_factor * limit_s),
@@ -122,7 +132,8 @@ impl Workload {
     pub fn node_steps(&self, simulated_s: f64) -> f64 {
         let disk = DISK_STAGE * (self.disk_nodes * self.disk_stages) as f64;
         let [time, _] = self.over_double();
-        time * (self.pin_nodes as f64 + disk) * (simulated_s / self.time_step_s).ceil().max(1.0)
+        let general = if self.is_general { GENERAL_TIME } else { 1.0 };
+        time * (general * self.pin_nodes as f64 + disk) * (simulated_s / self.time_step_s).ceil().max(1.0)
     }
 
     /// Time of a step and memory of a lane over those in double precision.
@@ -135,7 +146,9 @@ impl Workload {
 
     /// The largest number of jobs for which it pays off to advance them together.
     pub fn widest(&self) -> usize {
-        [8, 4, 2].into_iter().find(|lanes| lanes * self.pin_nodes <= NODES_TIMES_LANES).unwrap_or(1)
+        // All lanes of a general mesh share what is read of its stiffness, which is more than their fields.
+        let most = if self.is_general { GENERAL_NODES_TIMES_LANES } else { NODES_TIMES_LANES };
+        [8, 4, 2].into_iter().find(|lanes| lanes * self.pin_nodes <= most).unwrap_or(1)
     }
 
     /// Memory \[byte\] of a thread that advances `jobs` jobs together, each with a decay observation of `observation_s`.
@@ -144,7 +157,8 @@ impl Workload {
         let lanes = lane_over_double * jobs.next_power_of_two() as f64;
         let [pin, disk] = [(PIN_NODE_BYTES, self.pin_nodes), (DISK_NODE_BYTES, self.disk_nodes)]
             .map(|([model, lane], nodes)| (model + lane * lanes) * nodes as f64);
-        pin + disk + jobs as f64 * OBSERVED_STEP_BYTES * observation_s / self.time_step_s
+        let general = if self.is_general { GENERAL_NODE_BYTES * self.pin_nodes as f64 } else { 0.0 };
+        pin + general + disk + jobs as f64 * OBSERVED_STEP_BYTES * observation_s / self.time_step_s
     }
 
     /// Memory \[byte\] that complex modes of steady sliding take.
@@ -161,6 +175,9 @@ impl Workload {
 /// Nodes times lanes above which another lane costs more than it saves: the fields that a step reads and
 /// writes then no longer fit into the core's caches. The value is measured; see docs/performance.md.
 const NODES_TIMES_LANES: usize = 40_000;
+
+/// The same for general meshes.
+const GENERAL_NODES_TIMES_LANES: usize = 1_600_000;
 
 /// When a job is likely to end, in simulated time \[s\].
 ///

@@ -54,7 +54,7 @@ pub struct MeshContent {
     pub hexahedra: Vec<[u32; 8]>,
     /// The number of each element in its file.
     pub ids: Vec<u32>,
-    /// The group of each element: its index in [`MeshFile::bodies`], or their number if it is in none.
+    /// The region of each element: the index of its group in [`MeshFile::bodies`], or their number if it is in none.
     pub body_of: Vec<u32>,
     /// Quadrilaterals of the contact face, around their edges.
     pub contact: Vec<[u32; 4]>,

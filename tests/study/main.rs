@@ -4,6 +4,7 @@ mod changes;
 mod damping;
 mod expansion;
 mod keys;
+mod mesh_files;
 mod mini_schema;
 mod mutations;
 mod plausibility;

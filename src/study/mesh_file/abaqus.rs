@@ -29,6 +29,9 @@ enum Section {
     },
 }
 
+/// Beginnings of the types of solid elements.
+const SOLIDS: [&str; 3] = ["C3D", "CSS", "SC"];
+
 /// Keywords that describe a mesh in a way that is not read.
 const REFUSED: [&str; 6] = ["INCLUDE", "INSTANCE", "NGEN", "NFILL", "NCOPY", "ELGEN"];
 
@@ -186,7 +189,13 @@ fn keyword_section(keyword: &str) -> Result<Section, String> {
         "NODE" => Ok(Section::Nodes { set: option("NSET") }),
         "ELEMENT" => {
             let kind = option("TYPE").unwrap_or_default().to_uppercase();
-            if !kind.starts_with("C3D8") {
+            // Faces and lines are not needed: groups are sets of nodes.
+            if !SOLIDS.iter().any(|solid| kind.starts_with(solid)) {
+                return Ok(Section::Other);
+            }
+            if kind.trim_start_matches("C3D8").starts_with(|next: char| next.is_ascii_digit())
+                || !kind.starts_with("C3D8")
+            {
                 return Err(format!("*ELEMENT of the type {kind:?}: expected hexahedra with 8 nodes, C3D8"));
             }
             Ok(Section::Elements { set: option("ELSET"), pending: Vec::new() })

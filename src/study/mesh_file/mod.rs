@@ -65,7 +65,10 @@ pub(super) fn with_mesh(value: &Value, source: &SourceText) -> Result<Option<Str
         return Err(source.problem(&format!("{MESH}.length_unit_m"), right).into());
     }
     let folder = Path::new(&source.file).parent().unwrap_or(Path::new(""));
-    match read(&mesh, &folder.join(name)) {
+    let regions = value.pointer("/scene/pin/regions").and_then(Value::as_array);
+    let regions: Vec<&str> =
+        regions.into_iter().flatten().filter_map(|region| region.get("group")?.as_str()).collect();
+    match read(&mesh, &folder.join(name), &regions) {
         Ok(mesh) => Ok(source.with_value_on_lines(MESH, &json!(mesh))),
         Err(message) => refuse(message),
     }
@@ -75,7 +78,7 @@ pub(super) fn with_mesh(value: &Value, source: &SourceText) -> Result<Option<Str
 ///
 /// # Errors
 /// A message with the file, the line where there is one, and what would be right.
-fn read(mesh: &MeshFile, path: &Path) -> Result<MeshFile, String> {
+fn read(mesh: &MeshFile, path: &Path, regions: &[&str]) -> Result<MeshFile, String> {
     let named = |message: String| format!("{}: {message}", path.display());
     let size = std::fs::metadata(path).map_err(|error| named(format!("cannot be read: {error}")))?.len();
     if size > MOST_BYTES {
@@ -90,26 +93,26 @@ fn read(mesh: &MeshFile, path: &Path) -> Result<MeshFile, String> {
     };
     let read = if is_abaqus { abaqus::read(&text) } else { gmsh::read(&text) };
     let file_mesh = read.map_err(|(line, message)| format!("{}:{line}: {message}", path.display()))?;
-    resolved(mesh, &file_mesh).map_err(named)
+    resolved(mesh, &file_mesh, regions).map_err(named)
 }
 
-fn resolved(mesh: &MeshFile, file: &FileMesh) -> Result<MeshFile, String> {
+fn resolved(mesh: &MeshFile, file: &FileMesh, regions: &[&str]) -> Result<MeshFile, String> {
     if file.hexahedra.is_empty() {
         return Err("no hexahedron with 8 nodes".to_owned());
     }
     let mut bodies: Vec<String> = file.hexahedra.iter().flat_map(|(_, _, groups)| groups.clone()).collect();
     bodies.sort_unstable();
     bodies.dedup();
-    let body_of = |groups: &[String]| {
-        let first = groups.first().and_then(|name| bodies.binary_search(name).ok());
-        first.unwrap_or(bodies.len()) as u32
+    // An element may be in several groups of its file. The regions of the study decide which of them counts.
+    let body_of = |(number, _, groups): &(u64, [usize; 8], Vec<String>)| -> Result<u32, String> {
+        let of_regions: Vec<&String> =
+            groups.iter().filter(|group| regions.contains(&group.as_str())).collect();
+        match of_regions[..] {
+            [] => Ok(bodies.len() as u32),
+            [one] => Ok(bodies.binary_search(one).unwrap_or(bodies.len()) as u32),
+            [one, other, ..] => Err(format!("element {number} is in the regions {one:?} and {other:?}")),
+        }
     };
-    if let Some((number, _, groups)) = file.hexahedra.iter().find(|(_, _, groups)| groups.len() > 1) {
-        return Err(format!(
-            "element {number} is in the groups {}: expected one of them",
-            groups.join(" and ")
-        ));
-    }
     let [contact, load, clamp] = mesh.groups();
     let faces = |name: &str| -> Result<Vec<[u32; 4]>, String> {
         let group = group_of(file, name)?;
@@ -130,7 +133,7 @@ fn resolved(mesh: &MeshFile, file: &FileMesh) -> Result<MeshFile, String> {
             .map(|(_, nodes, _)| FROM_AROUND.map(|corner| nodes[corner] as u32))
             .collect(),
         ids: file.hexahedra.iter().map(|(number, _, _)| *number as u32).collect(),
-        body_of: file.hexahedra.iter().map(|(_, _, groups)| body_of(groups)).collect(),
+        body_of: file.hexahedra.iter().map(body_of).collect::<Result<_, _>>()?,
         contact: faces(contact)?,
         load: faces(load)?,
         clamp: group_of(file, clamp)?.nodes.iter().map(|&node| node as u32).collect(),

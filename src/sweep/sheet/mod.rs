@@ -9,6 +9,7 @@ mod colours;
 mod derived;
 mod lines;
 mod pin;
+mod surface;
 mod survey;
 mod symbols;
 mod track;

@@ -2,12 +2,13 @@
 
 use super::colours::{DISK, DISK_EDGE, INK};
 use super::lines;
+use super::surface;
 use super::survey::Survey;
 use crate::publish::Drawing;
 use crate::publish::plot::RGBColor;
 use crate::publish::plot::palette::{BLUE, VERMILLION};
 use crate::publish::plot::sketch::{Anchor, At, Line, Sketch};
-use crate::spec::{ClampSide, DiskKind, JobSpec, TopFace};
+use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, TopFace};
 
 const SIZE: (u32, u32) = (560, 470);
 /// The part of the sheet for the bodies: left, top, right, bottom [px]. The rest is for texts.
@@ -17,13 +18,13 @@ const LOAD_ARROW: f64 = 46.0;
 /// With more elements along an edge the mesh would be a grey area, and is not drawn.
 const MAX_DRAWN_ELEMENTS: usize = 60;
 
-const MESH: RGBColor = RGBColor(0x9A, 0xAB, 0xBC);
-const TOP: RGBColor = RGBColor(0xF4, 0xF8, 0xFC);
-const SIDE: RGBColor = RGBColor(0xE0, 0xEA, 0xF4);
-const FRONT: RGBColor = RGBColor(0xCD, 0xDC, 0xEA);
+pub(super) const MESH: RGBColor = RGBColor(0x9A, 0xAB, 0xBC);
+pub(super) const TOP: RGBColor = RGBColor(0xF4, 0xF8, 0xFC);
+pub(super) const SIDE: RGBColor = RGBColor(0xE0, 0xEA, 0xF4);
+pub(super) const FRONT: RGBColor = RGBColor(0xCD, 0xDC, 0xEA);
 
 /// From positions in the scene [m] to positions on the sheet.
-struct View {
+pub(super) struct View {
     scale: f64,
     shift: At,
 }
@@ -58,7 +59,7 @@ impl View {
         }
     }
 
-    fn at(&self, point: [f64; 3]) -> At {
+    pub(super) fn at(&self, point: [f64; 3]) -> At {
         let (u, v) = oblique(point);
         (u * self.scale + self.shift.0, v * self.scale + self.shift.1)
     }
@@ -82,16 +83,31 @@ pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
     let on = |z: f64, corners: [[f64; 2]; 4]| corners.map(|[x, y]| [x, y, z]);
     let view =
         View::of(&[on(0.0, disk), on(-depth, disk), on(h, [[-x, -y], [x, -y], [x, y], [-x, y]])].concat());
-    let place = |points: &[[f64; 3]]| -> Vec<At> { points.iter().map(|point| view.at(*point)).collect() };
 
     let mut sketch = Sketch::new(SIZE);
     draw_disk(&mut sketch, &view, disk, depth);
+    if spec.scene.pin.is_plain_block() {
+        draw_block(&mut sketch, &view, spec);
+    } else {
+        surface::draw(&mut sketch, &view, spec);
+    }
+    draw_load(&mut sketch, &view, [x, y, h], survey);
+    draw_dimensions(&mut sketch, &view, [x, y, h], spec.scene.pin.shape, survey);
+    draw_motion(&mut sketch, &view, [x + 0.72 * before, y], elastic);
+    draw_axes(&mut sketch);
+    Drawing { stem: "scene", svg: sketch.finish(), caption: caption(spec, survey) }
+}
+
+fn draw_block(sketch: &mut Sketch, view: &View, spec: &JobSpec) {
+    let [x, y, h] = spec.scene.pin.extent_m();
+    let (x, y) = (x / 2.0, y / 2.0);
+    let place = |points: &[[f64; 3]]| -> Vec<At> { points.iter().map(|point| view.at(*point)).collect() };
     let outline = Some(Line::solid(INK, 1.6));
     sketch.polygon(&place(&[[x, -y, 0.0], [x, y, 0.0], [x, y, h], [x, -y, h]]), (SIDE, 1.0), None);
     sketch.polygon(&place(&[[-x, -y, 0.0], [x, -y, 0.0], [x, -y, h], [-x, -y, h]]), (FRONT, 1.0), None);
     sketch.polygon(&place(&[[-x, -y, h], [x, -y, h], [x, y, h], [-x, y, h]]), (TOP, 1.0), None);
-    draw_clamp(&mut sketch, &view, spec);
-    draw_mesh(&mut sketch, &view, spec);
+    draw_clamp(sketch, view, spec);
+    draw_mesh(sketch, view, spec);
     for face in [
         [[x, -y, 0.0], [x, y, 0.0], [x, y, h], [x, -y, h]],
         [[-x, -y, 0.0], [x, -y, 0.0], [x, -y, h], [-x, -y, h]],
@@ -99,11 +115,6 @@ pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
     ] {
         sketch.polygon(&place(&face), (TOP, 0.0), outline);
     }
-    draw_load(&mut sketch, &view, [x, y, h], survey);
-    draw_dimensions(&mut sketch, &view, [x, y, h], survey);
-    draw_motion(&mut sketch, &view, [x + 0.72 * before, y], elastic);
-    draw_axes(&mut sketch);
-    Drawing { stem: "scene", svg: sketch.finish(), caption: caption(spec, survey) }
 }
 
 fn draw_disk(sketch: &mut Sketch, view: &View, disk: [[f64; 2]; 4], depth: f64) {
@@ -193,17 +204,20 @@ fn draw_load(sketch: &mut Sketch, view: &View, [x, y, h]: [f64; 3], survey: &Sur
     sketch.text((at_x, (at_y - LOAD_ARROW - 34.0).max(14.0)), Anchor::Middle, BLUE, &text);
 }
 
-fn draw_dimensions(sketch: &mut Sketch, view: &View, [x, y, h]: [f64; 3], survey: &Survey) {
+fn draw_dimensions(sketch: &mut Sketch, view: &View, [x, y, h]: [f64; 3], shape: Shape, survey: &Survey) {
     let text = |symbol: &str, name: &str| format!("{symbol} = {}", lines::values(survey.values(name), "m"));
     // Dimensions are so many pixels away from their edges, whatever the size of the pin.
     let away = |px: f64| px / view.scale;
     let (near, side) = (-y - away(20.0), x + away(20.0));
     let (from, to) = (view.at([-x, near, 0.0]), view.at([x, near, 0.0]));
     let beside = (f64::midpoint(from.0, to.0) - 12.0, f64::midpoint(from.1, to.1) + 12.0);
-    sketch.dimension(from, to, INK, &text("l_x", "size_x_m"), (beside, Anchor::End));
-    let (from, to) = (view.at([side, -y, 0.0]), view.at([side, y, 0.0]));
-    let below = (f64::midpoint(from.0, to.0) + 8.0, f64::midpoint(from.1, to.1) + 12.0);
-    sketch.dimension(from, to, INK, &text("l_y", "size_y_m"), (below, Anchor::Start));
+    let (symbol, name) = if shape == Shape::Cylinder { ("d", "diameter_m") } else { ("l_x", "size_x_m") };
+    sketch.dimension(from, to, INK, &text(symbol, name), (beside, Anchor::End));
+    if shape != Shape::Cylinder {
+        let (from, to) = (view.at([side, -y, 0.0]), view.at([side, y, 0.0]));
+        let below = (f64::midpoint(from.0, to.0) + 8.0, f64::midpoint(from.1, to.1) + 12.0);
+        sketch.dimension(from, to, INK, &text("l_y", "size_y_m"), (below, Anchor::Start));
+    }
     let (from, to) = (view.at([-x, -y, 0.0]), view.at([-x, -y, h]));
     let (from, to) = ((from.0 - 16.0, from.1), (to.0 - 16.0, to.1));
     let left = (from.0 - 8.0, f64::midpoint(from.1, to.1));
@@ -245,15 +259,44 @@ fn caption(spec: &JobSpec, survey: &Survey) -> String {
         TopFace::TiedInZ => "its nodes have one common displacement in z",
         TopFace::FreeInZ => "its nodes move freely in z",
     };
-    let [nx, ny, nz] = spec.scene.pin.elements;
+    let pin = &spec.scene.pin;
+    let [nx, ny, nz] = pin.elements;
+    let mesh = match pin.shape {
+        Shape::Block => format!("The pin, {nx} × {ny} × {nz} elements,"),
+        Shape::Cylinder => {
+            format!("The pin, a cylinder with {nx} elements over its diameter and {nz} over its height,")
+        }
+        Shape::Mesh => format!("The pin, a mesh of {} elements,", pin.element_count()),
+    };
     let disk = match spec.scene.disk.kind {
         DiskKind::Rigid => "a rigid plane (strokes at its edges)",
         DiskKind::Elastic => "the surface of an elastic ring",
     };
     format!(
-        "The pin, {nx} × {ny} × {nz} elements, on {disk}. The pin is drawn to scale. Red: {clamp}. The load F acts on the \
-         top face; {top}. x is the radial direction, away from the disk's axis.{first}"
+        "{mesh} on {disk}. The pin is drawn to scale. Red: {clamp}. The load F acts on the top face; {top}.{} x is the radial \
+         direction, away from the disk's axis.{first}",
+        beyond_the_block(spec)
     )
+}
+
+/// What the drawing shows of a pin and a holder that are not ideal, or leaves out.
+fn beyond_the_block(spec: &JobSpec) -> String {
+    let pin = &spec.scene.pin;
+    let mut text = String::new();
+    if !pin.regions.is_empty() {
+        text += " Darker: regions of other materials.";
+    }
+    let [about_x, about_y] = [pin.tilt_x_deg, pin.tilt_y_deg].map(|angle| angle.unwrap_or(0.0));
+    if about_x != 0.0 || about_y != 0.0 {
+        text += &format!(" The pin is tilted by {about_x}° about x and by {about_y}° about y.");
+    }
+    if !pin.base.is_flat() {
+        text += " Its base is not flat; the gaps are too small to be drawn.";
+    }
+    if !spec.scene.holder.is_ideal() {
+        text += " A holder, which is not drawn, moves with the clamp.";
+    }
+    text
 }
 
 fn name(side: ClampSide) -> &'static str {
