@@ -1,6 +1,6 @@
 //! Sums and extremes of samples over a window, and the figures that follow from them.
 
-use super::sample::{OBSERVED, Sample};
+use super::sample::{HolderSample, OBSERVED, Sample};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
 
@@ -29,8 +29,22 @@ pub struct Figures {
     pub slip_speed_max_m_s: f64,
     /// Largest gap \[m\] of a node.
     pub lift_max_m: f64,
+    holder: [HolderFigures; 3],
     /// Extremes of the observed nodes.
     pub nodes: [NodeFigures; OBSERVED],
+}
+
+/// The holder in one direction.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+struct HolderFigures {
+    min_m: f64,
+    max_m: f64,
+    /// Sum of the squares of the acceleration.
+    squares: f64,
+}
+
+impl HolderFigures {
+    const EMPTY: Self = Self { min_m: f64::INFINITY, max_m: f64::NEG_INFINITY, squares: 0.0 };
 }
 
 /// Extremes of one observed node.
@@ -79,6 +93,7 @@ impl Figures {
         sigma_n_max_pa: 0.0,
         slip_speed_max_m_s: 0.0,
         lift_max_m: 0.0,
+        holder: [HolderFigures::EMPTY; 3],
         nodes: [NodeFigures::EMPTY; OBSERVED],
     };
 
@@ -99,6 +114,13 @@ impl Figures {
         self.sigma_n_max_pa = self.sigma_n_max_pa.max(sample.sigma_n_max_pa);
         self.slip_speed_max_m_s = self.slip_speed_max_m_s.max(sample.slip_speed_max_m_s);
         self.lift_max_m = self.lift_max_m.max(sample.lift_max_m);
+        for (holder, HolderSample { displacement_m, acceleration_m_s2 }) in
+            self.holder.iter_mut().zip(&sample.holder)
+        {
+            holder.min_m = holder.min_m.min(*displacement_m);
+            holder.max_m = holder.max_m.max(*displacement_m);
+            holder.squares += weight * (acceleration_m_s2 * acceleration_m_s2);
+        }
         for (node, observed) in self.nodes.iter_mut().zip(&sample.nodes) {
             node.y_min_m = node.y_min_m.min(observed.u_m[1]);
             node.y_max_m = node.y_max_m.max(observed.u_m[1]);
@@ -125,6 +147,11 @@ impl Figures {
         self.sigma_n_max_pa = self.sigma_n_max_pa.max(other.sigma_n_max_pa);
         self.slip_speed_max_m_s = self.slip_speed_max_m_s.max(other.slip_speed_max_m_s);
         self.lift_max_m = self.lift_max_m.max(other.lift_max_m);
+        for (holder, more) in self.holder.iter_mut().zip(&other.holder) {
+            holder.min_m = holder.min_m.min(more.min_m);
+            holder.max_m = holder.max_m.max(more.max_m);
+            holder.squares += factor * more.squares;
+        }
         for (node, more) in self.nodes.iter_mut().zip(&other.nodes) {
             node.y_min_m = node.y_min_m.min(more.y_min_m);
             node.y_max_m = node.y_max_m.max(more.y_max_m);
@@ -180,6 +207,12 @@ impl Figures {
     /// (1/F)⟨Σ μN(1 − cos φ)⟩ over slipping nodes: the reduction of μ* by misaligned or reversed slip.
     pub fn slip_reduction(&self) -> f64 {
         ratio(self.slip_deficit, self.load)
+    }
+
+    /// Peak-to-peak displacement \[m\] of the holder in a direction, and the root mean square of its acceleration \[m/s²\].
+    pub fn holder(&self, axis: usize) -> [f64; 2] {
+        let HolderFigures { min_m, max_m, squares } = self.holder[axis];
+        [max_m - min_m, ratio(squares, self.weight).sqrt()]
     }
 
     /// Shares of the node-time in stick, slip and separation.

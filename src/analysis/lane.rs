@@ -6,15 +6,17 @@ use super::figures::Figures;
 use super::lines;
 use super::nested::CoarseStart;
 use super::noted::Noted;
-use super::record::{ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability};
-use super::sample::{OBSERVED_NAMES, Sample};
+use super::record::{
+    ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
+};
+use super::sample::{DIRECTIONS, OBSERVED_NAMES, Sample};
 use super::steady::{self, SteadyState};
 use super::window::{LateWindow, Trailing, Window};
 use crate::solver::Model;
 use crate::solver::body::ring::RingBody;
 use crate::solver::energy::Energies;
 use crate::solver::interface::solve::Solves;
-use crate::spec::{FrictionLaw, JobSpec, Precision};
+use crate::spec::{FrictionLaw, Holder, JobSpec, Precision};
 use serde::{Deserialize, Serialize};
 
 /// Evaluates the run of one job and creates its record.
@@ -166,6 +168,7 @@ impl LaneAnalysis {
             stability: self.stability.clone(),
             start: self.start.clone(),
             disk: model.ring().zip(solves).map(|(body, solves)| elastic_disk(body, solves, steps)),
+            holder: holder_motion(&self.spec.scene.holder, figures),
             energy: totals(energies),
             nodes: observed_nodes(figures),
         }
@@ -282,6 +285,16 @@ fn totals(energies: &Energies) -> EnergyTotals {
         damping_j: energies.damping_j,
         contact_loss_j: energies.contact_loss_j,
     }
+}
+
+/// The directions in which a holder moves.
+fn holder_motion(holder: &Holder, figures: &Figures) -> Vec<HolderMotion> {
+    let motion = |axis: usize| {
+        let [peak_to_peak_m, acceleration_rms_m_s2] = figures.holder(axis);
+        HolderMotion { direction: DIRECTIONS[axis].to_owned(), peak_to_peak_m, acceleration_rms_m_s2 }
+    };
+    let moves = holder.directions();
+    (0..3).filter(|axis| moves[*axis].is_some()).map(motion).collect()
 }
 
 fn observed_nodes(figures: &Figures) -> Vec<ObservedNode> {

@@ -48,7 +48,8 @@ pub use lanes::Moment;
 pub use nested::CoarseStart;
 pub use noted::Noted;
 pub use record::{
-    ComplexMode, ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
+    ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime,
+    SlidingStability,
 };
 pub use stability::Structures;
 pub use steady::Obstacle;

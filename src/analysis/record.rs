@@ -39,6 +39,17 @@ pub struct ObservedNode {
     pub slip_speed_max_m_s: f64,
 }
 
+/// The motion of a holder in one direction over the averaging window.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub struct HolderMotion {
+    /// The direction: `x`, `y` or `z`.
+    pub direction: String,
+    /// Peak-to-peak displacement \[m\].
+    pub peak_to_peak_m: f64,
+    /// Root mean square of the acceleration \[m/s²\].
+    pub acceleration_rms_m_s2: f64,
+}
+
 /// The mesh and the contact solves of an elastic disk.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct ElasticDisk {
@@ -243,6 +254,9 @@ pub struct JobRecord {
     /// The elastic disk; none if the disk is rigid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub disk: Option<ElasticDisk>,
+    /// The holder in the directions in which it moves.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub holder: Vec<HolderMotion>,
     /// Energies at the end of the run.
     pub energy: EnergyTotals,
     /// The two observed nodes.
@@ -299,6 +313,7 @@ impl JobRecord {
             stability,
             start,
             disk,
+            holder,
             energy,
             nodes,
         } = self;
@@ -341,6 +356,10 @@ impl JobRecord {
         }
         if let Some(disk) = disk {
             figures.extend(disk.figures().map(|(path, value)| (format!("disk.{path}"), value)));
+        }
+        for HolderMotion { direction, peak_to_peak_m, acceleration_rms_m_s2 } in holder {
+            figures.push((format!("holder.{direction}.peak_to_peak_m"), *peak_to_peak_m));
+            figures.push((format!("holder.{direction}.acceleration_rms_m_s2"), *acceleration_rms_m_s2));
         }
         figures.extend(energy.figures().map(|(path, value)| (format!("energy.{path}"), value)));
         for (i, node) in nodes.iter().enumerate() {
@@ -420,6 +439,11 @@ mod tests {
             }),
             start: Some(CoarseStart::of_tests()),
             disk: Some(disk),
+            holder: vec![HolderMotion {
+                direction: "y".to_owned(),
+                peak_to_peak_m: 1e-6,
+                acceleration_rms_m_s2: 0.5,
+            }],
             energy: EnergyTotals::default(),
             nodes: vec![node.clone(), node],
         }

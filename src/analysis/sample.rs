@@ -49,8 +49,19 @@ pub struct Sample {
     pub slip_speed_max_m_s: f64,
     /// Largest gap \[m\] of a node.
     pub lift_max_m: f64,
+    /// The holder in x, y and z; zeros where it does not move.
+    pub holder: [HolderSample; 3],
     /// The observed nodes.
     pub nodes: [NodeSample; OBSERVED],
+}
+
+/// The holder in one direction at `t_n`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct HolderSample {
+    /// Displacement \[m\].
+    pub displacement_m: f64,
+    /// Acceleration \[m/s²\].
+    pub acceleration_m_s2: f64,
 }
 
 impl Sample {
@@ -66,6 +77,9 @@ pub const OBSERVED: usize = 2;
 /// Names of the observed nodes: the centre of the leading and of the trailing edge of the contact face.
 pub const OBSERVED_NAMES: [&str; OBSERVED] = ["front_centre", "rear_centre"];
 
+/// Names of the directions.
+pub const DIRECTIONS: [&str; 3] = ["x", "y", "z"];
+
 /// One observed contact node during a step.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct NodeSample {
@@ -79,6 +93,8 @@ pub struct NodeSample {
     pub gap_m: f64,
     /// Contact force \[N\] on the pin: friction in x and y, N in z.
     pub force_n: [f64; 3],
+    /// Limit \[N\] of the friction force that the law gave; 0 without contact.
+    pub limit_n: f64,
     /// Smoothed normal stress \[Pa\].
     pub sigma_n_pa: f64,
     /// Slip speed \[m/s\]; 0 unless the node slips.
@@ -194,6 +210,7 @@ impl<const L: usize, R: RunNumber> Sampler<L, R> {
     pub fn sample(&mut self, model: &Model, drives: &[Drive; L], state: &StateOf<L, R>) -> [Sample; L] {
         let dt = model.time_step_s();
         let Totals { sums, maxima } = self.totals(&state.contacts);
+        let holder = state.holder_motion();
         std::array::from_fn(|l| Sample {
             time_s: (state.steps_done(l) - 1) as f64 * dt,
             load_n: state.load_n[l],
@@ -214,6 +231,10 @@ impl<const L: usize, R: RunNumber> Sampler<L, R> {
             sigma_n_max_pa: maxima[STRESS][l],
             slip_speed_max_m_s: maxima[SLIPPED][l] / dt,
             lift_max_m: maxima[GAP][l],
+            holder: holder.map(|[displacement_m, acceleration_m_s2]| HolderSample {
+                displacement_m: displacement_m[l],
+                acceleration_m_s2: acceleration_m_s2[l],
+            }),
             nodes: self.observed.map(|slave| self.node(slave, model, &drives[l], state, l)),
         })
     }
@@ -245,6 +266,7 @@ impl<const L: usize, R: RunNumber> Sampler<L, R> {
             y_velocity_m_s: (y + of_target) / dt + model.slaves()[slave].surface_motion[1] * drive.rate,
             gap_m: contacts.gap_of(slave, lane),
             force_n: contacts.force_of(slave, lane),
+            limit_n: contacts.friction_limit_of(slave, lane),
             sigma_n_pa: self.last.at(place, SIGMA_N)[lane].to_f64(),
             slip_speed_m_s: if slips { (x * x + y * y).sqrt() / dt } else { 0.0 },
             state: contact_state,

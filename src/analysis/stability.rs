@@ -264,6 +264,7 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
         stability: Some(stability),
         start: None,
         disk: model.ring().map(|body| elastic_disk(body, &Solves::default(), 1)),
+        holder: Vec::new(),
         energy: EnergyTotals::default(),
         nodes: observed.map(|(name, slave)| observed_node(name, &nodes[slave])).collect(),
     }

@@ -43,8 +43,10 @@ pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
     let spec = Study::load(&args.study)?.single_with_preset(args.preset, &args.settings)?;
     warnings::of_job(&spec);
     let interrupt = foreground::interrupt();
-    let mut recorder =
-        Recorder { interrupt, history: args.history.as_ref().map(|_| History::new(args.every)) };
+    let mut recorder = Recorder {
+        interrupt,
+        history: args.history.as_ref().map(|_| History::new(args.every, &spec.scene.holder)),
+    };
     let solved = analysis::solve(&spec, &mut recorder);
     // The history is also written if the run failed: it explains the failure.
     if let (Some(path), Some(history)) = (&args.history, recorder.history) {
@@ -96,8 +98,12 @@ fn job_line(spec: &JobSpec) -> String {
     } else {
         format!(", friction law {}", contact.law.name())
     };
-    let others =
-        [(!pin.base.is_flat(), ", a base that is not flat"), (!holder.is_ideal(), ", a holder that moves")];
+    let others = [
+        (!pin.base.is_flat(), ", a base that is not flat"),
+        (contact.layer().is_some(), ", a contact layer"),
+        (!disk.is_plane(), ", a disk that is not plane"),
+        (!holder.is_ideal(), ", a holder that moves"),
+    ];
     let others: String = others.into_iter().filter_map(|(holds, words)| holds.then_some(words)).collect();
     format!(
         "job                    ω = {}, μ = {}, F = {}, E = {}, {nx} × {ny} × {nz} elements{law}{others}\n",

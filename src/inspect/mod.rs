@@ -20,6 +20,7 @@ mod fields;
 mod figures;
 mod grid;
 mod inspection;
+mod limit;
 mod loops;
 mod low_pass;
 mod mode_shapes;

@@ -1,6 +1,7 @@
 //! The numbers of an inspection, as one JSON document.
 
 use super::inspection::{Inspection, NodeFindings, loop_area_m2, node_loop};
+use super::limit::limit;
 use super::loops::{self, LoopSummary};
 use super::phases::Phase;
 use super::waves::{Wave, stations, waves};
@@ -62,7 +63,7 @@ pub struct NodeSummary {
     pub slip_speed_max_m_s: f64,
     /// Largest |v_y − target| [m/s] while it sticks: 0 up to rounding on a rigid disk.
     pub stick_speed_error_m_s: f64,
-    /// Largest |μ_eq − μ| while it slips: 0 up to rounding.
+    /// Largest difference of μ_eq from the limit of the friction law while it slips: 0 up to rounding.
     pub slip_friction_error: f64,
     /// Shares of the time in stick, slip and separation.
     pub shares: [f64; 3],
@@ -131,7 +132,6 @@ fn largest(values: impl Iterator<Item = f64>) -> f64 {
 fn node(inspection: &Inspection, number: usize) -> NodeSummary {
     let NodeFindings { node, target_velocity_m_s, phases, instants } = &inspection.observed[number];
     let steps = &inspection.capture.nodes[number];
-    let mu = inspection.spec.scene.contact.mu;
     let relative = |velocity_m_s: f64| velocity_m_s - target_velocity_m_s;
     let in_state = |state: ContactState| steps.iter().filter(move |step| step.node.state == state);
     let share = |state| in_state(state).count() as f64 / steps.len().max(1) as f64;
@@ -155,7 +155,8 @@ fn node(inspection: &Inspection, number: usize) -> NodeSummary {
             in_state(ContactState::Stick).map(|step| relative(step.node.y_velocity_m_s).abs()),
         ),
         slip_friction_error: largest(
-            in_state(ContactState::Slip).map(|step| (step.node.equivalent_friction() - mu).abs()),
+            in_state(ContactState::Slip)
+                .map(|step| (step.node.equivalent_friction() - limit(&inspection.spec, &step.node)).abs()),
         ),
         shares: [ContactState::Stick, ContactState::Slip, ContactState::Separated].map(share),
         frequency_hz: own_frequency_hz(inspection, phases),

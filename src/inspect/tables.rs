@@ -32,7 +32,10 @@ pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<BTreeMap<St
     };
     add("run.csv", &RUN, &mut run_lines(inspection))?;
     add("cycles.csv", &CYCLES, &mut cycle_lines(inspection))?;
-    add("totals.csv", &TOTALS, &mut inspection.capture.totals.iter().map(totals_line))?;
+    let moves = inspection.spec.scene.holder.directions().map(|direction| direction.is_some());
+    let header: Vec<&str> = TOTALS.into_iter().chain(of_moving(moves, HOLDER).flatten()).collect();
+    let lines = inspection.capture.totals.iter();
+    add("totals.csv", &header, &mut lines.map(|sample| totals_line(sample, moves)))?;
     add(SPECTRUM_FILE, &SPECTRUM, &mut spectrum_lines(&inspection.spectrum))?;
     for (observed, steps) in inspection.observed.iter().zip(&inspection.capture.nodes) {
         let name = format!("node_{}.csv", observed.node.name);
@@ -111,7 +114,19 @@ const TOTALS: [&str; 11] = [
     "separated_nodes",
 ];
 
-fn totals_line(sample: &Sample) -> Vec<String> {
+/// Columns of the holder in x, y and z.
+const HOLDER: [[&str; 2]; 3] = [
+    ["holder_x_m", "holder_x_acceleration_m_s2"],
+    ["holder_y_m", "holder_y_acceleration_m_s2"],
+    ["holder_z_m", "holder_z_acceleration_m_s2"],
+];
+
+/// What belongs to the directions in which the holder moves.
+fn of_moving<T>(moves: [bool; 3], all: [T; 3]) -> impl Iterator<Item = T> {
+    all.into_iter().zip(moves).filter_map(|(one, moves)| moves.then_some(one))
+}
+
+fn totals_line(sample: &Sample, moves: [bool; 3]) -> Vec<String> {
     let mut line = [
         sample.time_s,
         sample.load_n,
@@ -125,6 +140,8 @@ fn totals_line(sample: &Sample) -> Vec<String> {
     .map(number)
     .to_vec();
     line.extend([sample.stick, sample.slip, sample.separated].map(|count| count.to_string()));
+    let of_holder = of_moving(moves, sample.holder);
+    line.extend(of_holder.flat_map(|holder| [holder.displacement_m, holder.acceleration_m_s2].map(number)));
     line
 }
 

@@ -16,12 +16,14 @@ pub(super) fn is_further(name: &str) -> bool {
 }
 
 /// The endings of names that are units. Longer endings come first.
-const UNITS: [(&str, &str); 15] = [
+const UNITS: [(&str, &str); 17] = [
     ("_kg_m3", "kg/m³"),
     ("_n_s_m", "N s/m"),
     ("_n_m", "N/m"),
+    ("_pa_m", "Pa/m"),
     ("_s_m", "s/m"),
     ("_per_s", "1/s"),
+    ("_m_s2", "m/s²"),
     ("_m_s", "m/s"),
     ("_rpm", "rpm"),
     ("_deg", "°"),

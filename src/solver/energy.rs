@@ -19,6 +19,9 @@
 //!   −N·\[(1−γ)Δz_n + γΔz_{n−1}\] for all nodes. It is the energy that a velocity jump costs when a node sticks or
 //!   closes.
 //!
+//! A contact layer stores ∫N dδ, which is taken from the work −N·Δz of its nodes. The rest of that work is what its implicit
+//! law dissipates, and remains in the contact loss.
+//!
 //! The energies are a sum over bodies, supports and the interface. The works of the interface and of the load are
 //! summed in every step, because they need boundary nodes only. The stored energies and the damping of bodies need
 //! products with K. They are evaluated in an audit every `interval` steps, and the work of damping is the sample
@@ -43,7 +46,7 @@ use serde::{Deserialize, Serialize};
 pub struct Energies {
     /// Kinetic energy ½vMv − (γ/4)Δt²aMa.
     pub kinetic_j: f64,
-    /// Elastic energy ½uKu.
+    /// Elastic energy ½uKu, with that of springs of a holder and of a contact layer.
     pub elastic_j: f64,
     /// Energy stored at the start.
     pub initial_j: f64,
@@ -212,6 +215,8 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
             audit.add_to(&mut found, scheme, ring, &steps_done.map(|steps| steps == 1));
         }
         state.workspace.supports.add_energies(scheme, &steps_done, &state.u, &mut found);
+        // The layer has N_n at the depth of t_{n+1}. What it stores is no loss.
+        let in_layer_j = self.interface.stored_j(&state.contacts);
         for l in 0..L {
             let sums = &mut self.sums[l];
             let begins = state.steps_done(l) == 1;
@@ -222,13 +227,13 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
             let (kinetic_j, elastic_j) = (found.kinetic_j[l], found.elastic_j[l]);
             self.energies[l] = Energies {
                 kinetic_j,
-                elastic_j,
+                elastic_j: elastic_j + in_layer_j[l],
                 initial_j: if begins { kinetic_j + elastic_j } else { self.energies[l].initial_j },
                 load_work_j: sums.load.done(gamma),
                 drive_work_j: sums.drive.done(gamma),
                 friction_j: sums.friction.done(gamma),
                 damping_j: sums.damping.done(gamma) + sums.numerical_j,
-                contact_loss_j: sums.contact_loss.done(gamma),
+                contact_loss_j: sums.contact_loss.done(gamma) - in_layer_j[l],
             };
         }
         found.damping_after_j.map(|work_j| samples * work_j)

@@ -4,7 +4,7 @@ use super::body::pin::{PinBody, PinMesh, Stiffness};
 use super::body::ring::{RingBody, RingDefinition, UnsteppedRing};
 use super::error::SolverError;
 use super::interface::target::{SurfaceMotion, Target, TargetDefinition, UnsteppedTarget, rotating_disk};
-use super::interface::{Interface, SlaveNode};
+use super::interface::{Interface, Layer, Relief, SlaveNode};
 use super::material::Material;
 use super::scheme::{Bound, Scheme, TimeStep};
 use super::support::load::LoadShare;
@@ -116,6 +116,18 @@ impl Model {
     /// The same model with other initial gaps \[m\].
     pub(super) fn with_initial_gaps(self, gap_m: impl Fn(&SlaveNode) -> f64) -> Self {
         Self { interface: self.interface.with_initial_gaps(gap_m), ..self }
+    }
+
+    /// The same model with a layer between the pin and a rigid target.
+    #[must_use]
+    pub fn with_layer(self, layer: Layer) -> Self {
+        Self { interface: self.interface.with_layer(layer), ..self }
+    }
+
+    /// The same model on a rigid target with these heights.
+    #[must_use]
+    pub fn with_relief(self, relief: Relief) -> Self {
+        Self { interface: self.interface.with_relief(relief), ..self }
     }
 
     /// The pin.

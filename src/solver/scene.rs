@@ -3,8 +3,8 @@
 use super::body::pin::{BlockMesh, GeneralMesh, Hexahedron, MeshParts, PinMesh, Stiffness, Tilt, cylinder};
 use super::body::ring::RingDefinition;
 use super::error::SolverError;
-use super::interface::base_height_m;
 use super::interface::target::{TargetDefinition, rotating_disk};
+use super::interface::{BaseHeights, Layer, Relief};
 use super::material::Material;
 use super::model::{Model, ModelDefinition};
 use super::scheme::TimeStep;
@@ -45,18 +45,36 @@ impl Model {
         if numerics.precision == Precision::Single {
             model.check_single_precision()?;
         }
-        let tilt = tilt(&scene.pin);
-        if scene.pin.base.is_flat() && tilt == Tilt::default() && scene.pin.shape != Shape::Mesh {
+        let model = model.with_base(&scene.pin);
+        let model = match scene.contact.layer() {
+            None => model,
+            Some([stiffness_pa_m, exponent, pressure_pa]) => {
+                model.with_layer(Layer { stiffness_pa_m, exponent, pressure_pa })
+            }
+        };
+        if scene.disk.is_plane() {
             return Ok(model);
         }
-        let mesh = model.mesh().clone();
+        let relief = Relief::of_disk(&scene.disk.waves(), scene.disk.track_radius_m, model.slaves());
+        Ok(model.with_relief(relief))
+    }
+
+    /// The same model with the initial gaps of the pin's base and tilt.
+    fn with_base(self, pin: &Pin) -> Self {
+        let tilt = tilt(pin);
+        // The base of a mesh from a file need not be a plane.
+        if pin.base.is_flat() && tilt == Tilt::default() && pin.shape != Shape::Mesh {
+            return self;
+        }
+        let mesh = self.mesh().clone();
+        let base = BaseHeights::new(pin);
         let height_m = |node: usize| {
             let [x, y, z] = mesh.own_coordinates_m(node);
-            let [_, _, z] = tilt.turned([x, y, z + base_height_m(&scene.pin, [x, y])]);
+            let [_, _, z] = tilt.turned([x, y, z + base.height_m([x, y])]);
             z
         };
         let lowest_m = mesh.bottom_nodes().map(height_m).fold(f64::INFINITY, f64::min);
-        Ok(model.with_initial_gaps(|slave| height_m(slave.node) - lowest_m))
+        self.with_initial_gaps(|slave| height_m(slave.node) - lowest_m)
     }
 
     /// Checks the numbers that a step multiplies with. Between them and the ends of the range, products keep their digits.

@@ -82,6 +82,12 @@ impl<const L: usize, R: RunNumber> StateOf<L, R> {
         std::array::from_fn(|lane| self.steps_done(lane))
     }
 
+    /// Displacement \[m\] and acceleration \[m/s²\] of the holder in x, y and z at `t_{n−1}`, in every lane; zeros where it does
+    /// not move.
+    pub fn holder_motion(&self) -> [[[f64; L]; 2]; 3] {
+        self.workspace.supports.holder_motion()
+    }
+
     /// The motion of the pin.
     pub(super) fn motion<'a>(&'a self, steps_done: &'a [u64; L]) -> Motion<'a, L, R> {
         Motion { u: &self.u, p: &self.p, steps_done }

@@ -1,6 +1,7 @@
 //! The shape of the pin's base.
 
 use super::check::Violations;
+use super::roughness::{HeightMap, Roughness};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -30,10 +31,18 @@ pub struct Base {
     /// Direction (°) in which the wave runs, from +x towards +y. Absent: 90, the sliding direction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wave_direction_deg: Option<f64>,
+    /// Random roughness. Absent: smooth.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Roughness")]
+    pub roughness: Option<Roughness>,
+    /// Measured heights. Absent: none.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "HeightMap")]
+    pub height_map: Option<HeightMap>,
 }
 
 /// Fewest elements of a wavelength: with fewer its height between nodes is lost.
-const ELEMENTS_OF_WAVE: f64 = 4.0;
+pub(super) const ELEMENTS_OF_WAVE: f64 = 4.0;
 
 impl Base {
     /// Whether the base is a plane.
@@ -43,6 +52,8 @@ impl Base {
             && self.edge_radius_m.is_none()
             && !has_height(self.chamfer_height_m)
             && !has_height(self.wave_height_m)
+            && self.roughness.as_ref().is_none_or(|roughness| roughness.rms_m == 0.0)
+            && self.height_map.as_ref().is_none_or(HeightMap::is_flat)
     }
 
     /// Adds every violated limit to `found`, for a base with these edges and elements.
@@ -78,8 +89,14 @@ impl Base {
                 found.limit_magnitude(&field, height);
             }
         }
+        let [hx, hy] = [lx / elements[0] as f64, ly / elements[1] as f64];
+        if let Some(roughness) = &self.roughness {
+            roughness.check(ELEMENTS_OF_WAVE * hx.max(hy), found);
+        }
+        if let Some(map) = &self.height_map {
+            map.check(size_m, found);
+        }
         if let Some(length) = self.wave_length_m {
-            let [hx, hy] = [lx / elements[0] as f64, ly / elements[1] as f64];
             let (sin, cos) = libm::sincos(self.wave_direction_deg.unwrap_or(90.0).to_radians());
             let shortest = ELEMENTS_OF_WAVE * (hx * cos.abs()).max(hy * sin.abs());
             let right = format!("at least {shortest:.3e} m, {ELEMENTS_OF_WAVE} elements along the wave");

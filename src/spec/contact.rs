@@ -62,6 +62,15 @@ pub struct Contact {
     /// Slip (m) in which the law `prakash_clifton` follows the normal force.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub length_m: Option<f64>,
+    /// Stiffness (Pa/m) of a layer between pin and disk: pressure over depth. Absent: rigid.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stiffness_pa_m: Option<f64>,
+    /// Exponent m ≥ 1 of a layer whose pressure rises like depth^m. Absent: 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stiffness_exponent: Option<f64>,
+    /// Pressure (Pa) at which the layer has the stiffness `stiffness_pa_m`, for an exponent other than 1.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub stiffness_pressure_pa: Option<f64>,
 }
 
 impl Default for Contact {
@@ -73,15 +82,43 @@ impl Default for Contact {
             speed_m_s: None,
             slope_s_m: None,
             length_m: None,
+            stiffness_pa_m: None,
+            stiffness_exponent: None,
+            stiffness_pressure_pa: None,
         }
     }
 }
 
+/// Largest exponent of a layer.
+const STEEPEST: f64 = 10.0;
+
 impl Contact {
-    /// The same contact without the coefficients that its law does not use.
+    /// Stiffness \[Pa/m\], exponent and pressure \[Pa\] of the layer; none if the contact is rigid. With the exponent 1 the
+    /// pressure has no effect.
+    pub fn layer(&self) -> Option<[f64; 3]> {
+        let exponent = self.stiffness_exponent.unwrap_or(1.0);
+        Some([self.stiffness_pa_m?, exponent, self.stiffness_pressure_pa.unwrap_or(1.0)])
+    }
+
+    /// The part that all jobs of a batch share: the law and the layer, without the coefficients of friction.
+    pub(super) fn shared_part(&self) -> Self {
+        let Self { law, stiffness_pa_m, stiffness_exponent, stiffness_pressure_pa, .. } = *self;
+        Self { law, stiffness_pa_m, stiffness_exponent, stiffness_pressure_pa, ..Self::default() }
+    }
+
+    /// The same contact without the coefficients that its law or its layer does not use.
     #[must_use]
     pub fn in_use(&self) -> Self {
-        let rest = Self { mu: self.mu, law: self.law, ..Self::default() };
+        let exponent =
+            self.stiffness_exponent.filter(|exponent| self.stiffness_pa_m.is_some() && *exponent != 1.0);
+        let rest = Self {
+            mu: self.mu,
+            law: self.law,
+            stiffness_pa_m: self.stiffness_pa_m,
+            stiffness_exponent: exponent,
+            stiffness_pressure_pa: self.stiffness_pressure_pa.filter(|_| exponent.is_some()),
+            ..Self::default()
+        };
         match self.law {
             FrictionLaw::Coulomb => rest,
             FrictionLaw::StaticKinetic => Self { mu_static: self.mu_static, ..rest },
@@ -125,10 +162,38 @@ impl Contact {
             found.require("scene.contact.slope_s_m", slope, slope >= 0.0, "a rise >= 0 s/m");
             found.limit_magnitude("scene.contact.slope_s_m", slope);
         }
+        self.check_layer(found);
         match self.length_m {
             Some(length) => found.require_magnitude("scene.contact.length_m", length, "a length > 0 m"),
             None if uses(&[FrictionLaw::PrakashClifton]) => {
                 missing(found, "scene.contact.length_m", "a length > 0 m");
+            }
+            None => {}
+        }
+    }
+
+    fn check_layer(&self, found: &mut Violations) {
+        let exponent = self.stiffness_exponent.unwrap_or(1.0);
+        let right = format!("an exponent from 1 to {STEEPEST}");
+        let holds = (1.0..=STEEPEST).contains(&exponent);
+        found.require("scene.contact.stiffness_exponent", exponent, holds, &right);
+        let field = "scene.contact.stiffness_pressure_pa";
+        match self.stiffness_pressure_pa {
+            Some(pressure) => found.require_magnitude(field, pressure, "a pressure > 0 Pa"),
+            None if exponent != 1.0 => {
+                found.add(field, "absent", "a pressure > 0 Pa for an exponent other than 1");
+            }
+            None => {}
+        }
+        let field = "scene.contact.stiffness_pa_m";
+        match self.stiffness_pa_m {
+            Some(stiffness) => found.require_magnitude(field, stiffness, "a stiffness > 0 Pa/m"),
+            None if self.stiffness_exponent.is_some() || self.stiffness_pressure_pa.is_some() => {
+                found.add(
+                    field,
+                    "absent",
+                    "a stiffness > 0 Pa/m beside stiffness_exponent or stiffness_pressure_pa",
+                );
             }
             None => {}
         }

@@ -15,12 +15,14 @@ mod base;
 mod check;
 mod contact;
 mod detection;
+mod disk;
 pub mod elasticity;
 mod holder;
 mod mesh;
 mod numerics;
 mod pin;
 mod ring;
+mod roughness;
 mod scene;
 mod stability;
 
@@ -29,12 +31,15 @@ pub(crate) use check::short;
 pub use check::{FieldError, Violations};
 pub use contact::{Contact, FrictionLaw};
 pub use detection::Detection;
+pub use disk::{Disk, DiskKind};
 pub use holder::{Holder, HolderDirection};
 pub use mesh::{MeshContent, MeshFile};
 pub use numerics::{Numerics, Precision, RunControl, Start};
 pub use pin::{FEWEST_ACROSS, Pin, Region, Shape, core_elements};
 pub use ring::{DiskTimeStep, Ring, TargetSurface};
-pub use scene::{Clamp, ClampSide, Disk, DiskKind, Load, Scene, TopFace};
+pub(crate) use roughness::MOST_HEIGHTS;
+pub use roughness::{HeightMap, Roughness};
+pub use scene::{Clamp, ClampSide, Load, Scene, TopFace};
 pub use stability::StabilityMethod;
 
 use schemars::JsonSchema;
@@ -116,8 +121,8 @@ impl JobSpec {
     }
 
     /// Elements of the coarser mesh from which the job starts; none if it starts from rest, has no run or too few elements. A
-    /// motion on another mesh is not enough for a law that uses the past, a holder that moves, or a base that is not flat. It is
-    /// carried over between upright blocks of one material.
+    /// motion on another mesh is not enough for a law that uses the past, a holder that moves, a surface that is not flat, or a layer.
+    /// It is carried over between upright blocks of one material.
     pub fn coarser_elements(&self) -> Option<[usize; 3]> {
         let elements = self.scene.pin.elements.map(|n| n.div_ceil(2));
         let is_nested = self.run.start == Start::Nested && self.stability != StabilityMethod::Modes;
@@ -125,13 +130,15 @@ impl JobSpec {
         let is_carried_over = matches!(law, FrictionLaw::Coulomb | FrictionLaw::Regularised)
             && self.scene.holder.is_ideal()
             && self.scene.pin.base.is_flat()
+            && self.scene.disk.is_plane()
+            && self.scene.contact.layer().is_none()
             && self.scene.pin.is_plain_block();
         (is_nested && is_carried_over && elements.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS))
             .then_some(elements)
     }
 
-    /// Whether the equations of steady sliding cover the scene: Coulomb's law, a rigid disk, an ideal clamp and a flat base of an
-    /// upright block of one material.
+    /// Whether the equations of steady sliding cover the scene: Coulomb's law without a layer, a rigid plane disk, an ideal clamp
+    /// and a flat base of an upright block of one material.
     pub fn has_sliding_modes(&self) -> bool {
         let mut found = Violations::default();
         self.check_modes(&mut found);
@@ -171,6 +178,17 @@ impl JobSpec {
                 "scene.pin.base",
                 "not flat",
                 "{}: the complex modes of steady sliding are those of a flat base",
+            );
+        }
+        if let Some([stiffness, ..]) = self.scene.contact.layer() {
+            let right = "absent: the complex modes of steady sliding are those of a rigid contact";
+            found.add("scene.contact.stiffness_pa_m", check::readable(stiffness), right);
+        }
+        if !self.scene.disk.is_plane() {
+            found.add(
+                "scene.disk",
+                "run-out or waviness",
+                "a plane disk: there is no steady sliding on another surface",
             );
         }
     }
@@ -234,6 +252,10 @@ impl JobSpec {
                 ),
             );
         }
+        if let Some([stiffness, ..]) = self.scene.contact.layer() {
+            let right = "absent with an elastic disk; a layer is for rigid disks";
+            found.add("scene.contact.stiffness_pa_m", check::readable(stiffness), right);
+        }
         if self.numerics.beta2 != 0.5 {
             found.add(
                 "numerics.beta2",
@@ -263,7 +285,7 @@ impl JobSpec {
     #[must_use]
     pub fn shared_part(&self) -> Self {
         let mut scene = self.scene.clone();
-        scene.contact = Contact { law: self.scene.contact.law, ..Contact::default() };
+        scene.contact = self.scene.contact.shared_part();
         scene.load = Load::default();
         scene.disk.omega_rpm = Disk::default().omega_rpm;
         if scene.disk.kind == DiskKind::Rigid {

@@ -2,10 +2,10 @@
 
 use super::check::{Violations, readable};
 use super::contact::Contact;
+use super::disk::Disk;
 use super::elasticity;
 use super::holder::Holder;
 use super::pin::Pin;
-use super::ring::Ring;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::{IntoStaticStr, VariantArray};
@@ -28,37 +28,6 @@ pub struct Scene {
     pub holder: Holder,
     /// The normal load on the pin's top face.
     pub load: Load,
-}
-
-/// What the disk is made of.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum DiskKind {
-    /// A rigid plane that turns about the disk's axis.
-    #[default]
-    Rigid,
-    /// An elastic ring: see [`Ring`].
-    Elastic,
-}
-
-/// The rotating disk. Its surface moves towards +y under the pin.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
-#[serde(deny_unknown_fields, default)]
-pub struct Disk {
-    /// What the disk is made of.
-    pub kind: DiskKind,
-    /// Rotation speed ω [revolutions per minute], constant, > 0.
-    pub omega_rpm: f64,
-    /// Distance R (m) of the pin's centre from the axis.
-    pub track_radius_m: f64,
-    /// The body of an elastic disk; a rigid one does not use it.
-    pub ring: Ring,
-}
-
-impl Default for Disk {
-    fn default() -> Self {
-        Self { kind: DiskKind::Rigid, omega_rpm: 7.0, track_radius_m: 0.0914, ring: Ring::default() }
-    }
 }
 
 /// Where on the top face the clamp is.
@@ -192,23 +161,7 @@ impl Scene {
     pub(super) fn check(&self, found: &mut Violations) {
         let pin = &self.pin;
         pin.check(found);
-        let omega = self.disk.omega_rpm;
-        found.require_magnitude(
-            "scene.disk.omega_rpm",
-            omega,
-            "a speed > 0 rpm (the disk always turns towards +y)",
-        );
-        let radius = self.disk.track_radius_m;
-        found.require(
-            "scene.disk.track_radius_m",
-            radius,
-            radius > pin.extent_m()[0] / 2.0,
-            "a radius larger than half the pin's width, so that the pin does not lie over the axis",
-        );
-        found.limit_magnitude("scene.disk.track_radius_m", radius);
-        if self.disk.kind == DiskKind::Elastic {
-            self.disk.ring.check(pin, radius, found);
-        }
+        self.disk.check(pin, found);
         self.contact.check(found);
         self.holder.check(found);
         if self.top == TopFace::FreeInZ

@@ -5,7 +5,7 @@ use super::grid_schema::grid_schema;
 use super::json::present;
 use super::preset::Preset;
 use super::report_axes::ReportAxes;
-use crate::spec::{Detection, MeshFile, Numerics, RunControl, Scene, StabilityMethod};
+use crate::spec::{Detection, HeightMap, MeshFile, Numerics, Roughness, RunControl, Scene, StabilityMethod};
 use schemars::JsonSchema;
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -59,6 +59,8 @@ impl StudyFile {
     pub(super) fn template() -> Value {
         let mut scene = Scene::default();
         scene.pin.mesh = Some(Box::new(MeshFile::template()));
+        scene.pin.base.roughness = Some(Roughness::default());
+        scene.pin.base.height_map = Some(HeightMap::default());
         let file = Self {
             scene,
             preset: Some(Preset::Standard),

@@ -16,7 +16,7 @@ const HEX_DIGITS: usize = 32;
 ///
 /// In canonical JSON the fields are sorted, there is no space, and numbers have their shortest exact form, with 0 for
 /// −0. Fields without effect do not enter. These have their defaults: coefficients that the friction law does not use; the
-/// clamp's width where no strip uses it; an angle of 0; the elements and the clamp
+/// clamp's width where no strip uses it; an angle of 0; run-out and waviness of no height; the elements and the clamp
 /// where the mesh comes from a file; the
 /// safety factor where the time step is given; the time step, the precision, the run, its detection and the load's ramp where
 /// there is no run; the method of stability where every run goes to its limit or where eigenvalues do not exist; the start
@@ -34,6 +34,7 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     for angle in [&mut spec.scene.pin.tilt_x_deg, &mut spec.scene.pin.tilt_y_deg] {
         *angle = angle.filter(|angle| *angle != 0.0);
     }
+    spec.scene.disk = spec.scene.disk.in_use();
     if spec.scene.clamp.side == ClampSide::WholeTop {
         spec.scene.clamp.width_m = Clamp::default().width_m;
     }

@@ -25,6 +25,7 @@ mod expand;
 mod file;
 mod grid;
 mod grid_schema;
+mod height_file;
 mod input;
 mod json;
 mod key;

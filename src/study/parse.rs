@@ -6,6 +6,7 @@ use super::definition::Study;
 use super::error::{Problem, StudyError};
 use super::file::StudyFile;
 use super::grid::Grid;
+use super::height_file;
 use super::json::{Decoded, decode_all};
 use super::limits::MAX_JOBS;
 use super::locate::join;
@@ -33,7 +34,8 @@ impl Study {
     }
 
     /// Checks the text of a study file; `source_name` stands for the file in messages, and its stem
-    /// is the study's name unless the text gives one.
+    /// is the study's name unless the text gives one. A height map's file is relative to its folder. It is read, and
+    /// [`Study::document`] has the heights.
     ///
     /// # Errors
     /// Broken JSON, repeated keys, unknown fields or parameters, wrong types, unusable axes, more
@@ -68,6 +70,9 @@ impl Study {
     ) -> Result<Self, StudyError> {
         let (mut value, mut source) = SourceText::read(text, source_name)?;
         refuse(source.repeated_keys())?;
+        if reads_files && let Some(text) = height_file::with_heights(&value, &source)? {
+            (value, source) = SourceText::read(&text, source_name)?;
+        }
         if reads_files && let Some(text) = mesh_file::with_mesh(&value, &source)? {
             (value, source) = SourceText::read(&text, source_name)?;
         }

@@ -1,6 +1,7 @@
 //! The history of a run as CSV.
 
-use crate::analysis::sample::{OBSERVED_NAMES, Sample};
+use crate::analysis::sample::{DIRECTIONS, HolderSample, OBSERVED_NAMES, Sample};
+use crate::spec::Holder;
 use std::io;
 
 /// Columns of the whole contact.
@@ -20,28 +21,40 @@ const TOTALS: [&str; 9] = [
 const OF_NODE: [&str; 8] =
     ["ux_m", "uy_m", "uz_m", "y_velocity_m_s", "sigma_n_pa", "slip_speed_m_s", "mu_eq", "state"];
 
+/// Columns of the holder in each direction in which it moves, behind `holder_`, the direction and `_`.
+const OF_HOLDER: [&str; 2] = ["m", "acceleration_m_s2"];
+
 /// Collects a line of CSV for every n-th step of a run.
 #[derive(Debug)]
 pub struct History {
     writer: csv::Writer<Vec<u8>>,
     every: u64,
+    /// The directions, from 0 to 2, in which the holder moves.
+    holder: Vec<usize>,
     steps: u64,
     /// The first error of a line.
     failure: Option<io::Error>,
 }
 
 impl History {
-    /// An empty history that keeps the first step and then every `every`-th one.
-    pub fn new(every: std::num::NonZeroU64) -> Self {
+    /// An empty history of a pin on this holder. It keeps the first step and then every `every`-th one.
+    pub fn new(every: std::num::NonZeroU64, holder: &Holder) -> Self {
+        let moves = holder.directions();
         let mut history = Self {
             writer: csv::Writer::from_writer(Vec::new()),
             every: every.get(),
+            holder: (0..3).filter(|axis| moves[*axis].is_some()).collect(),
             steps: 0,
             failure: None,
         };
         let of_nodes =
             OBSERVED_NAMES.iter().flat_map(|node| OF_NODE.map(|column| format!("{node}_{column}")));
-        history.write(TOTALS.map(str::to_owned).into_iter().chain(of_nodes));
+        let of_holder: Vec<_> = history
+            .holder
+            .iter()
+            .flat_map(|&axis| OF_HOLDER.map(|column| format!("holder_{}_{column}", DIRECTIONS[axis])))
+            .collect();
+        history.write(TOTALS.map(str::to_owned).into_iter().chain(of_nodes).chain(of_holder));
         history
     }
 
@@ -75,7 +88,15 @@ impl History {
                 node.state.name().to_owned(),
             ]
         });
-        self.write(totals.into_iter().chain(of_nodes));
+        let of_holder: Vec<_> = self
+            .holder
+            .iter()
+            .flat_map(|&axis| {
+                let HolderSample { displacement_m, acceleration_m_s2 } = sample.holder[axis];
+                [displacement_m, acceleration_m_s2].map(|value| format!("{value:e}"))
+            })
+            .collect();
+        self.write(totals.into_iter().chain(of_nodes).chain(of_holder));
     }
 
     fn write(&mut self, fields: impl Iterator<Item = String>) {

@@ -5,6 +5,7 @@ mod decay;
 mod extremes;
 mod figures;
 mod frequency;
+mod holder;
 mod identities;
 mod interruption;
 mod nested;

@@ -4,8 +4,8 @@ use crate::synthetic::{record, row};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use tribosweep::analysis::{
-    CoarseStart, ComplexMode, ElasticDisk, EnergyTotals, JobRecord, ObservedNode, Obstacle, Outcome, Regime,
-    SlidingStability,
+    CoarseStart, ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Obstacle,
+    Outcome, Regime, SlidingStability,
 };
 use tribosweep::report::columns::{Column, InputColumn, all, plain};
 use tribosweep::report::{RowState, SCALARS, name_and_unit};
@@ -38,6 +38,13 @@ fn full(obstacle: Obstacle) -> JobRecord {
             sweeps_max: 0.0,
             residual_max: 0.0,
         }),
+        holder: ["x", "y", "z"]
+            .map(|direction| HolderMotion {
+                direction: direction.to_owned(),
+                peak_to_peak_m: 0.0,
+                acceleration_rms_m_s2: 0.0,
+            })
+            .to_vec(),
         energy: EnergyTotals::default(),
         nodes: vec![node("front_centre"), node("rear_centre")],
         ..record(Outcome::NotPeriodic, Regime::StickSlip, 0.3)

@@ -78,6 +78,7 @@ pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
         stability: None,
         start: None,
         disk: None,
+        holder: Vec::new(),
         energy: EnergyTotals::default(),
         nodes: Vec::new(),
     }

@@ -32,13 +32,17 @@ fn given_over_limit(spec: &JobSpec) -> f64 {
 }
 
 /// All corners. The predicates are evaluated for legal cases only.
-pub const CORNERS: [Corner; 40] = [
+pub const CORNERS: [Corner; 44] = [
     ("a holder that moves", |s| !s.scene.holder.is_ideal()),
     ("a static coefficient", |s| s.scene.contact.law == FrictionLaw::StaticKinetic),
     ("an exponential law", |s| s.scene.contact.law == FrictionLaw::Exponential),
     ("a regularised law", |s| s.scene.contact.law == FrictionLaw::Regularised),
     ("a law with a state", |s| s.scene.contact.law == FrictionLaw::PrakashClifton),
     ("a base with gaps", |s| !s.scene.pin.base.is_flat()),
+    ("a rough base", |s| s.scene.pin.base.roughness.is_some()),
+    ("measured heights", |s| s.scene.pin.base.height_map.is_some()),
+    ("a contact layer", |s| s.scene.contact.layer().is_some()),
+    ("a disk that is not plane", |s| !s.scene.disk.is_plane()),
     ("single precision", |s| s.numerics.precision == Precision::Single),
     ("single precision, ν = 0.499", |s| {
         s.numerics.precision == Precision::Single && s.scene.pin.poisson_ratio == 0.499

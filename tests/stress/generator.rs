@@ -8,7 +8,8 @@ use crate::random::Random;
 use strum::VariantArray;
 use tribosweep::solver::Model;
 use tribosweep::spec::{
-    Base, ClampSide, FrictionLaw, JobSpec, Precision, Region, Shape, StabilityMethod, TopFace,
+    Base, ClampSide, FrictionLaw, HeightMap, JobSpec, Precision, Region, Roughness, Scene, Shape,
+    StabilityMethod, TopFace,
 };
 
 /// Largest number of nodes × steps of a case. With it 10 000 cases take minutes.
@@ -24,6 +25,8 @@ pub fn job(seed: u64, index: u64) -> JobSpec {
     law(random, &mut spec);
     base(random, &mut spec);
     shape(random, &mut spec);
+    surface(random, &mut spec);
+    layer(random, &mut spec);
     holder(random, &mut spec);
     numerics(random, &mut spec);
     duration(random, &mut spec);
@@ -109,7 +112,24 @@ fn base(random: &mut Random, spec: &mut JobSpec) {
     let compression_m = spec.scene.load.force_n * lz / (pin.young_modulus_pa * lx * ly);
     let height_m = (compression_m * random.log_between(1.0e-6, 1.0e6)).min(0.1 * lz);
     let half_edge = 0.5 * lx.min(ly);
-    match random.whole(0, 3) {
+    match random.whole(0, 5) {
+        4 => {
+            let shortest_m = (lx + ly) * random.between(4.0, 10.0);
+            pin.base.roughness = Some(Roughness {
+                rms_m: height_m,
+                seed: random.whole(0, 1000) as u64,
+                hurst: random.between(0.01, 1.0),
+                longest_m: Some(shortest_m * random.between(2.0, 256.0)),
+                shortest_m: Some(shortest_m),
+            });
+        }
+        5 => {
+            let [columns, rows] = [random.whole(2, 9), random.whole(2, 9)];
+            let row =
+                |random: &mut Random| (0..columns).map(|_| random.between(-height_m, height_m)).collect();
+            let heights_m = (0..rows).map(|_| row(random)).collect();
+            pin.base.height_map = Some(HeightMap { file: None, spacing_m: lx.max(ly), heights_m });
+        }
         0 => pin.base.crown_radius_m = Some(libm::hypot(lx, ly) * random.log_between(0.51, 1.0e6)),
         1 => pin.base.edge_radius_m = Some(half_edge * random.between(0.001, 1.0)),
         2 => {
@@ -153,6 +173,42 @@ fn shape(random: &mut Random, spec: &mut JobSpec) {
             poisson_ratio: random.pick(&[0.0, 0.3, 0.49, -0.5]),
             density_kg_m3: pin.density_kg_m3 * random.log_between(1.0e-2, 1.0e2),
         }];
+    }
+}
+
+/// A disk with run-out and waviness, with heights far below and above the compression of the pin.
+fn surface(random: &mut Random, spec: &mut JobSpec) {
+    if random.chance(0.7) {
+        return;
+    }
+    let Scene { pin, disk, load, .. } = &mut spec.scene;
+    let [lx, ly, lz] = pin.extent_m();
+    let compression_m = load.force_n * lz / (pin.young_modulus_pa * lx * ly);
+    let inner_m = disk.track_radius_m - 0.5 * lx;
+    let shortest_m = 4.0 * ly / pin.elements[1] as f64;
+    let most = (std::f64::consts::TAU * disk.track_radius_m / shortest_m).min(1.0e6) as usize;
+    let mut height_m = |count: usize| {
+        (compression_m * random.log_between(1.0e-6, 1.0e6)).min(0.1 * inner_m / count as f64).min(0.1 * lz)
+    };
+    disk.runout_m = Some(height_m(1));
+    if most > 0 {
+        let count = most.div_ceil(2);
+        disk.waviness_height_m = Some(height_m(count));
+        disk.waviness_count = Some(count as u32);
+    }
+}
+
+/// A layer that is much softer or much stiffer than the pin, at pressures far below and above the mean one.
+fn layer(random: &mut Random, spec: &mut JobSpec) {
+    if random.chance(0.8) {
+        return;
+    }
+    let Scene { pin, contact, load, .. } = &mut spec.scene;
+    contact.stiffness_pa_m = Some(pin.young_modulus_pa / pin.size_m[2] * random.log_between(1.0e-2, 1.0e8));
+    if random.chance(0.5) {
+        contact.stiffness_exponent = Some(random.between(1.0, 10.0));
+        let pressure_pa = load.force_n / (pin.size_m[0] * pin.size_m[1]);
+        contact.stiffness_pressure_pa = Some((pressure_pa * random.log_between(1.0e-3, 1.0e3)).max(1.0e-20));
     }
 }
 

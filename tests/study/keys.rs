@@ -3,7 +3,8 @@
 use super::parse;
 use serde_json::Value;
 use tribosweep::spec::{
-    Base, ClampSide, Contact, DiskKind, FrictionLaw, Holder, JobSpec, Precision, StabilityMethod, Start,
+    Base, ClampSide, Contact, DiskKind, FrictionLaw, HeightMap, Holder, JobSpec, Precision, Roughness,
+    StabilityMethod, Start,
 };
 use tribosweep::study::{PARAMETERS, job_key};
 
@@ -33,6 +34,9 @@ pub fn full() -> JobSpec {
         speed_m_s: Some(0.01),
         slope_s_m: Some(0.1),
         length_m: Some(1.0e-6),
+        stiffness_pa_m: Some(1.0e13),
+        stiffness_exponent: Some(2.0),
+        stiffness_pressure_pa: Some(1.0e6),
     };
     spec.scene.pin.base = Base {
         crown_radius_m: Some(1.0),
@@ -42,7 +46,22 @@ pub fn full() -> JobSpec {
         wave_height_m: Some(1.0e-6),
         wave_length_m: Some(0.006),
         wave_direction_deg: Some(30.0),
+        roughness: Some(Roughness {
+            rms_m: 1.0e-7,
+            seed: 3,
+            hurst: 0.7,
+            longest_m: Some(0.008),
+            shortest_m: Some(0.004),
+        }),
+        height_map: Some(HeightMap {
+            file: Some("map.csv".to_owned()),
+            spacing_m: 0.02,
+            heights_m: vec![vec![1.0e-7, 2.0e-7], vec![3.0e-7, 5.0e-7]],
+        }),
     };
+    spec.scene.disk.runout_m = Some(1.0e-6);
+    spec.scene.disk.waviness_height_m = Some(2.0e-6);
+    spec.scene.disk.waviness_count = Some(30);
     spec.scene.holder = Holder {
         mass_kg: Some(0.1),
         stiffness_x_n_m: Some(1.0e7),
@@ -85,6 +104,7 @@ fn another(value: &Value, pointer: &str) -> Option<Value> {
             "/run/start" => Some(Value::from("nested")),
             "/stability" => Some(Value::from("eigenvalues")),
             "/numerics/precision" => Some(Value::from("single")),
+            "/scene/pin/base/height_map/file" => Some(Value::from("other.csv")),
             "/scene/contact/law" => Some(Value::from("static_kinetic")),
             other => panic!("{other} = {value}: this test needs another value for it"),
         },
@@ -189,6 +209,19 @@ fn unused_coefficients_do_not_change_the_key() {
     let two = |mu_static, length_m| with(FrictionLaw::StaticKinetic, mu_static, length_m);
     assert_eq!(two(Some(0.5), Some(1.0e-6)), two(Some(0.5), None));
     assert_ne!(two(Some(0.5), None), two(Some(0.6), None));
+}
+
+/// Protects: run-out and waviness of no height, and roughness of no height, are no part of a job.
+#[test]
+fn surfaces_without_height_do_not_change_the_key() {
+    let mut spec = JobSpec::default();
+    spec.scene.disk.runout_m = Some(0.0);
+    spec.scene.disk.waviness_height_m = Some(0.0);
+    spec.scene.disk.waviness_count = Some(30);
+    spec.scene.pin.base.roughness = Some(Roughness::default());
+    assert_eq!(key(&spec), key(&JobSpec::default()));
+    spec.scene.disk.waviness_height_m = Some(1.0e-6);
+    assert_ne!(key(&spec), key(&JobSpec::default()));
 }
 
 /// Protects: jobs in double precision have the keys of versions without single precision, so their results are found.

@@ -3,6 +3,7 @@
 mod changes;
 mod damping;
 mod expansion;
+mod height_map;
 mod keys;
 mod mesh_files;
 mod mini_schema;

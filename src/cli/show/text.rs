@@ -69,6 +69,7 @@ fn heading(group: Group) -> &'static str {
         Group::Stability => "Steady sliding",
         Group::Contact => "Contact, over the window",
         Group::Nodes => "Observed nodes, over the window",
+        Group::Holder => "Holder, over the window",
         Group::Energies => "Energies, with their shares of the work of load and drive",
         Group::Run => "Run",
         Group::Residuals => "Residuals",

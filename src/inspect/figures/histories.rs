@@ -3,6 +3,7 @@
 use super::style::{MEGA, MICRO, MILLI, STATES, colour_of, legend_position};
 use crate::inspect::capture::NodeStep;
 use crate::inspect::inspection::{Inspection, NodeFindings};
+use crate::inspect::limit;
 use crate::inspect::phases::Phase;
 use crate::publish::plot::palette;
 use crate::publish::plot::panel::{Band, Level, Mark, Panel, Scale, Series, Stroke};
@@ -79,10 +80,10 @@ pub fn displacements(inspection: &Inspection) -> Vec<Panel> {
 pub fn friction(inspection: &Inspection) -> Vec<Panel> {
     for_each_node(inspection, |observed, steps| {
         let (since, x) = time_scale(inspection);
-        let mu = inspection.spec.scene.contact.mu;
+        let most = limit::largest(&inspection.spec, steps.iter().map(|step| &step.node)).max(0.02);
         let points: Vec<_> =
             steps.iter().map(|step| (since(step.time_s), step.node.equivalent_friction())).collect();
-        let y = Scale::from_to("μ_eq", -0.05 * mu.max(0.02), 1.2 * mu.max(0.02));
+        let y = Scale::from_to("μ_eq", -0.05 * most, 1.2 * most);
         let (velocity, scale) = velocity(steps, &since);
         let mut panel = Panel::new(&observed.node.title, x, y);
         panel.right = Some(scale);

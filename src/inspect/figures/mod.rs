@@ -11,6 +11,7 @@ mod totals;
 pub use overlay::overlay;
 
 use super::inspection::Inspection;
+use super::limit;
 use crate::publish::plot::panel::stack;
 use crate::publish::{FigureError, Folder, PublishError};
 
@@ -56,7 +57,7 @@ fn of_nodes(inspection: &Inspection) -> Vec<Part<'_>> {
     let histories: Vec<String> =
         inspection.observed.iter().map(|observed| format!("node_{}.csv", observed.node.name)).collect();
     let with = |more: &[&str]| -> Vec<String> { histories.iter().cloned().chain(only(more)).collect() };
-    let mu = inspection.spec.scene.contact.mu;
+    let limit = limit::in_words(&inspection.spec.scene.contact);
     vec![
         (
             "figure2a",
@@ -70,7 +71,7 @@ fn of_nodes(inspection: &Inspection) -> Vec<Part<'_>> {
             "figure2b",
             "Stick, slip and separation",
             format!(
-                "Equivalent friction coefficient |τ/σ_n| and velocity in y (Figure 2b): {mu} is slip, less is stick, \
+                "Equivalent friction coefficient |τ/σ_n| and velocity in y (Figure 2b): {limit} is slip, less is stick, \
                  0 is separation."
             ),
             with(&["phases.csv"]),

@@ -3,11 +3,12 @@
 use super::{Column, Group};
 use crate::analysis::sample::OBSERVED_NAMES;
 use crate::analysis::{
-    CoarseStart, ComplexMode, ElasticDisk, JobRecord, ObservedNode, Obstacle, Outcome, SlidingStability,
+    CoarseStart, ComplexMode, ElasticDisk, HolderMotion, JobRecord, ObservedNode, Obstacle, Outcome,
+    SlidingStability,
 };
 use crate::publish::value::number;
 use crate::report::row::{JobRow, RowState};
-use Group::{Contact, Disk, Energies, Job, Nodes, Residuals, Result, Run, Stability};
+use Group::{Contact, Disk, Energies, Holder, Job, Nodes, Residuals, Result, Run, Stability};
 use serde_json::Value;
 
 /// The columns of every export. Older versions have them too, in this order.
@@ -42,7 +43,7 @@ pub static PLAIN: [Column; 25] = [
 
 /// The rest of the record.
 #[rustfmt::skip]
-pub static FURTHER: [Column; 57] = [
+pub static FURTHER: [Column; 63] = [
     Column::of_row("growth_rate_per_s", "1/s", Result, "growth rate of the fastest growing strong line, if the run ended in steady sliding, and of the leading mode without a run; negative: sliding is stable", |row| of(row, |record| record.growth_rate_per_s)),
     Column::of_row("obstacle", "", Result, "why the run is not periodic", |row| of(row, |record| record.obstacle.as_ref().map(in_words))),
     Column::of_row("obstacle_figure", "", Result, "the figure that is not the same from cycle to cycle", |row| unsteady(row, |figure, _, _| figure.into())),
@@ -59,7 +60,7 @@ pub static FURTHER: [Column; 57] = [
     Column::of_row("mode_residual", "", Stability, "relative residual of the leading mode in the full problem", |row| mode(row, |mode| mode.residual)),
     Column::of_row("contact_nodes", "", Stability, "nodes of the contact face that are in contact in steady sliding", |row| sliding(row, |sliding| sliding.contact_nodes)),
     Column::of_row("lifted_nodes", "", Stability, "nodes of the contact face that are lifted in steady sliding", |row| sliding(row, |sliding| sliding.lifted_nodes)),
-    Column::of_row("lift_max_m", "m", Contact, "largest gap of a node", |row| of(row, |record| record.lift_max_m)),
+    Column::of_row("lift_max_m", "m", Contact, "largest gap of a node, with the initial gap of a base that is not flat", |row| of(row, |record| record.lift_max_m)),
     Column::of_row("contact_loss_share", "", Residuals, "contact loss in the window over the work of the drive", |row| of(row, |record| record.contact_loss_share)),
     Column::of_row("macroscopic_identity_residual", "", Residuals, "residual of the identity μ − μ* = mean friction deficit of the nodes over F", |row| of(row, |record| record.macroscopic_identity_residual)),
     Column::of_row("energy_identity_residual", "", Residuals, "residual of the energy identity over the window, relative to the work of the drive", |row| of(row, |record| record.energy_identity_residual)),
@@ -75,12 +76,12 @@ pub static FURTHER: [Column; 57] = [
     Column::of_row("start_mu_star", "", Run, "μ* on the coarser mesh", |row| start(row, |start| start.mu_star)),
     Column::of_row("start_frequency_hz", "Hz", Run, "fundamental frequency on the coarser mesh", |row| start(row, |start| start.frequency_hz)),
     Column::of_row("energy_kinetic_j", "J", Energies, "kinetic energy at the end of the run", |row| of(row, |record| record.energy.kinetic_j)),
-    Column::of_row("energy_elastic_j", "J", Energies, "elastic energy at the end of the run", |row| of(row, |record| record.energy.elastic_j)),
+    Column::of_row("energy_elastic_j", "J", Energies, "elastic energy at the end of the run, with that of a contact layer", |row| of(row, |record| record.energy.elastic_j)),
     Column::of_row("energy_load_work_j", "J", Energies, "work of the load since the start", |row| of(row, |record| record.energy.load_work_j)),
     Column::of_row("energy_drive_work_j", "J", Energies, "work of the disk's drive on the pin since the start", |row| of(row, |record| record.energy.drive_work_j)),
     Column::of_row("energy_friction_j", "J", Energies, "dissipated by friction since the start", |row| of(row, |record| record.energy.friction_j)),
     Column::of_row("energy_damping_j", "J", Energies, "dissipated by the damping β_R and by β₂ > ½ since the start", |row| of(row, |record| record.energy.damping_j)),
-    Column::of_row("energy_contact_loss_j", "J", Energies, "lost since the start by nodes that close or begin to stick", |row| of(row, |record| record.energy.contact_loss_j)),
+    Column::of_row("energy_contact_loss_j", "J", Energies, "lost since the start by nodes that close or begin to stick, and by a contact layer", |row| of(row, |record| record.energy.contact_loss_j)),
     Column::of_row("front_centre_y_peak_to_peak_m", "m", Nodes, "centre of the leading end: peak-to-peak displacement in y", |row| front(row, |node| node.y_peak_to_peak_m)),
     Column::of_row("front_centre_lift_max_m", "m", Nodes, "centre of the leading end: largest gap", |row| front(row, |node| node.lift_max_m)),
     Column::of_row("front_centre_sigma_n_max_pa", "Pa", Nodes, "centre of the leading end: largest normal contact stress, smoothed", |row| front(row, |node| node.sigma_n_max_pa)),
@@ -89,6 +90,12 @@ pub static FURTHER: [Column; 57] = [
     Column::of_row("rear_centre_lift_max_m", "m", Nodes, "centre of the trailing end: largest gap", |row| rear(row, |node| node.lift_max_m)),
     Column::of_row("rear_centre_sigma_n_max_pa", "Pa", Nodes, "centre of the trailing end: largest normal contact stress, smoothed", |row| rear(row, |node| node.sigma_n_max_pa)),
     Column::of_row("rear_centre_slip_speed_max_m_s", "m/s", Nodes, "centre of the trailing end: largest slip speed in contact", |row| rear(row, |node| node.slip_speed_max_m_s)),
+    Column::of_row("holder_x_peak_to_peak_m", "m", Holder, "peak-to-peak displacement of the holder in x, where it moves in x", |row| holder(row, "x", |motion| motion.peak_to_peak_m)),
+    Column::of_row("holder_x_acceleration_rms_m_s2", "m/s²", Holder, "root mean square of its acceleration in x", |row| holder(row, "x", |motion| motion.acceleration_rms_m_s2)),
+    Column::of_row("holder_y_peak_to_peak_m", "m", Holder, "peak-to-peak displacement of the holder in y, where it moves in y", |row| holder(row, "y", |motion| motion.peak_to_peak_m)),
+    Column::of_row("holder_y_acceleration_rms_m_s2", "m/s²", Holder, "root mean square of its acceleration in y", |row| holder(row, "y", |motion| motion.acceleration_rms_m_s2)),
+    Column::of_row("holder_z_peak_to_peak_m", "m", Holder, "peak-to-peak displacement of the holder in z, where it moves in z", |row| holder(row, "z", |motion| motion.peak_to_peak_m)),
+    Column::of_row("holder_z_acceleration_rms_m_s2", "m/s²", Holder, "root mean square of its acceleration in z", |row| holder(row, "z", |motion| motion.acceleration_rms_m_s2)),
     Column::of_row("disk_elements_theta", "", Disk, "elements of the elastic disk around the axis", |row| disk(row, |disk| disk.elements[0])),
     Column::of_row("disk_elements_r", "", Disk, "elements of the elastic disk along the radius", |row| disk(row, |disk| disk.elements[1])),
     Column::of_row("disk_elements_z", "", Disk, "elements of the elastic disk through its thickness", |row| disk(row, |disk| disk.elements[2])),
@@ -124,6 +131,10 @@ fn rear(row: &JobRow, read: impl FnOnce(&ObservedNode) -> f64) -> Value {
 
 fn node(row: &JobRow, name: &str, read: impl FnOnce(&ObservedNode) -> f64) -> Value {
     of(row, |record| record.nodes.iter().find(|node| node.name == name).map(read))
+}
+
+fn holder(row: &JobRow, direction: &str, read: impl FnOnce(&HolderMotion) -> f64) -> Value {
+    of(row, |record| record.holder.iter().find(|motion| motion.direction == direction).map(read))
 }
 
 /// Records of versions without eigenvalues are those of runs.

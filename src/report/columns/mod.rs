@@ -39,6 +39,9 @@ pub enum Group {
     /// The two observed nodes.
     #[strum(serialize = "observed nodes")]
     Nodes,
+    /// The motion of a holder.
+    #[strum(serialize = "holder")]
+    Holder,
     /// Energies of the run.
     #[strum(serialize = "energies")]
     Energies,
@@ -61,13 +64,14 @@ pub enum Group {
 
 impl Group {
     /// All of them, in the order in which a job is described.
-    pub const ALL: [Self; 10] = [
+    pub const ALL: [Self; 11] = [
         Self::Job,
         Self::Input,
         Self::Result,
         Self::Stability,
         Self::Contact,
         Self::Nodes,
+        Self::Holder,
         Self::Energies,
         Self::Run,
         Self::Residuals,

@@ -1,6 +1,7 @@
 //! The slave nodes: their initial gaps, and the velocity of the target under them.
 
 use super::target::SurfaceMotion;
+use super::{Layer, Relief};
 use crate::solver::body::Freedom;
 use crate::solver::body::pin::PinBody;
 use crate::solver::field::{FieldOf, Layout};
@@ -18,7 +19,7 @@ pub struct SlaveNode {
     /// Position in the contact face \[m\], x and y from the pin's axis.
     pub position_m: [f64; 2],
     /// Gap \[m\] between the undeformed pin and the undeformed target. The gap of a node is this plus its
-    /// displacement in z, minus the displacement of the target.
+    /// displacement in z, minus the displacement of the target. Over a [`Relief`] it is that over the mean plane.
     pub initial_gap_m: f64,
     /// Velocity of the target under the node per unit of the drive's rate, x and y: \[m\] for a disk, 1 for a
     /// plane.
@@ -31,6 +32,8 @@ pub struct SlaveNode {
 #[derive(Debug, Clone)]
 pub struct Interface {
     slaves: Vec<SlaveNode>,
+    relief: Option<Relief>,
+    layer: Option<Layer>,
     layout: Layout,
     extent_m: [f64; 2],
     edge_centres: [usize; 2],
@@ -64,6 +67,8 @@ impl Interface {
         let [lx, ly, _] = mesh.size_m();
         Self {
             slaves,
+            relief: None,
+            layer: None,
             layout: mesh.layout().first_plane(),
             extent_m: [lx, ly],
             edge_centres: mesh.edge_centres(),
@@ -76,6 +81,31 @@ impl Interface {
             node.initial_gap_m = gap_m(node);
         }
         self
+    }
+
+    /// The same slave nodes on a target with these heights. The lowest node touches at the beginning.
+    pub(in crate::solver) fn with_relief(mut self, relief: Relief) -> Self {
+        let gaps_m = relief.gaps_m(&self.slaves);
+        for (node, gap_m) in self.slaves.iter_mut().zip(gaps_m) {
+            node.initial_gap_m = gap_m;
+        }
+        self.relief = Some(relief);
+        self
+    }
+
+    /// The same slave nodes on a layer.
+    pub(in crate::solver) fn with_layer(self, layer: Layer) -> Self {
+        Self { layer: Some(layer), ..self }
+    }
+
+    /// The layer between the nodes and the target; none if they touch it.
+    pub fn layer(&self) -> Option<&Layer> {
+        self.layer.as_ref()
+    }
+
+    /// The heights of the target; none if it is a plane.
+    pub fn relief(&self) -> Option<&Relief> {
+        self.relief.as_ref()
     }
 
     /// The slave nodes.

@@ -1,5 +1,6 @@
 //! The height of a base that is not a plane.
 
+use super::roughness::{WaveSum, map_height_m};
 use crate::spec::{Base, Pin, Shape};
 use std::f64::consts::TAU;
 
@@ -10,12 +11,7 @@ use std::f64::consts::TAU;
 /// * Chamfer of width w and height h: h d/w.
 /// * Wave: a (1 + sin(2πs/λ)).
 ///
-/// The flat part of a round pin is round.
-pub fn base_height_m(pin: &Pin, position_m: [f64; 2]) -> f64 {
-    let [lx, ly, _] = pin.extent_m();
-    height_m(&pin.base, pin.shape, [lx, ly], position_m)
-}
-
+/// The flat part of a round pin is round. Roughness has no lowest point that is known in advance, so it is not among them.
 fn height_m(base: &Base, shape: Shape, size_m: [f64; 2], [x, y]: [f64; 2]) -> f64 {
     let arc = |radius: f64, distance: f64| {
         let inside = distance.min(radius);
@@ -43,6 +39,31 @@ fn height_m(base: &Base, shape: Shape, size_m: [f64; 2], [x, y]: [f64; 2]) -> f6
         height * (1.0 + libm::sin(TAU * (x * cos + y * sin) / length))
     });
     crown + rounded + chamfer + wave
+}
+
+/// The base of a pin.
+#[derive(Debug)]
+pub struct BaseHeights<'a> {
+    pin: &'a Pin,
+    rough: Option<WaveSum>,
+}
+
+impl<'a> BaseHeights<'a> {
+    /// The base of this pin.
+    pub fn new(pin: &'a Pin) -> Self {
+        Self { pin, rough: pin.base.roughness.as_ref().map(WaveSum::new) }
+    }
+
+    /// The height \[m\] of the undeformed base at a point \[m\] from the pin's axis, over some plane.
+    pub fn height_m(&self, position_m: [f64; 2]) -> f64 {
+        let Self { pin, rough } = self;
+        let [lx, ly, _] = pin.extent_m();
+        let smooth_m = height_m(&pin.base, pin.shape, [lx, ly], position_m);
+        let rough_m = rough.as_ref().map_or(0.0, |surface| surface.height_m(position_m));
+        // A map has heights outwards, towards the disk.
+        let measured_m = pin.base.height_map.as_ref().map_or(0.0, |map| map_height_m(map, position_m));
+        smooth_m + rough_m - measured_m
+    }
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
 use super::solve::{RunNumber, TargetState};
-use super::{Contacts, Interface, Status};
+use super::{Contacts, Interface, NodesOnLayer, Status};
 use crate::solver::drive::Drive;
 use crate::solver::field::{Block, FieldOf, add_slots};
 use crate::solver::number::Number;
@@ -15,6 +15,7 @@ use fearless_simd::{Simd, prelude::*};
 pub(in crate::solver) struct InterfaceWork<const L: usize, R: Number> {
     /// Velocity of the target per unit of the drive's rate under every slave node, x and y.
     motion: FieldOf<L, R>,
+    layer: Option<NodesOnLayer>,
 }
 
 /// Work \[J\] of the forces at t_n over the increments after and before t_n.
@@ -33,8 +34,17 @@ pub(in crate::solver) struct StepWorks<const L: usize> {
 
 impl<const L: usize, R: RunNumber> InterfaceWork<L, R> {
     pub fn new(interface: &Interface) -> Self {
-        let motion = interface.field(|node| [node.surface_motion[0], node.surface_motion[1], 0.0]);
-        Self { motion }
+        let motion: FieldOf<L, R> =
+            interface.field(|node| [node.surface_motion[0], node.surface_motion[1], 0.0]);
+        let layer = interface
+            .layer()
+            .map(|layer| NodesOnLayer::new(*layer, interface.slaves(), |slave| motion.place(slave)));
+        Self { motion, layer }
+    }
+
+    /// Energy \[J\] that a layer stores under the contact forces.
+    pub fn stored_j(&self, contacts: &Contacts<L, R>) -> [f64; L] {
+        self.layer.as_ref().map_or([0.0; L], |layer| layer.stored_j(contacts))
     }
 
     /// The works of the step that gave these contacts and this target.

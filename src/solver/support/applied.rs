@@ -28,6 +28,12 @@ pub(in crate::solver) trait AppliedSupport<const L: usize, R: Number>:
     ) {
     }
 
+    /// The component in which the support moves as one body, and its displacement \[m\] and acceleration \[m/s²\] at t_n; none
+    /// for a support that is no body.
+    fn motion(&self) -> Option<(usize, [[f64; L]; 2])> {
+        None
+    }
+
     /// A copy.
     fn boxed(&self) -> Box<dyn AppliedSupport<L, R>>;
 }

@@ -95,6 +95,11 @@ impl<const L: usize, R: Number> AppliedSupport<L, R> for AppliedHeld<L, R> {
         }
     }
 
+    fn motion(&self) -> Option<(usize, [[f64; L]; 2])> {
+        let [u, _, a] = self.motion;
+        Some((self.held.tied.component, [u, a]))
+    }
+
     fn boxed(&self) -> Box<dyn AppliedSupport<L, R>> {
         Box::new(self.clone())
     }

@@ -163,6 +163,15 @@ impl<const L: usize, R: Number> AppliedSupports<L, R> {
         reaction_n
     }
 
+    /// Displacement \[m\] and acceleration \[m/s²\] of the holder in x, y and z at t_n; zeros where it does not move.
+    pub fn holder_motion(&self) -> [[[f64; L]; 2]; 3] {
+        let mut motion = [[[0.0; L]; 2]; 3];
+        for (component, found) in self.0.iter().filter_map(|support| support.motion()) {
+            motion[component] = found;
+        }
+        motion
+    }
+
     /// Adds the energies of all supports to those of the bodies.
     pub fn add_energies(
         &self,

@@ -29,7 +29,9 @@ fn groups(spec: &JobSpec) -> [String; 2] {
 fn has_similarity(spec: &JobSpec) -> bool {
     let scene = &spec.scene;
     let has_scale = !matches!(scene.contact.law, FrictionLaw::Coulomb | FrictionLaw::StaticKinetic);
-    scene.disk.kind == DiskKind::Rigid && !has_scale && scene.pin.base.is_flat() && scene.holder.is_ideal()
+    let is_flat = scene.pin.base.is_flat() && scene.disk.is_plane();
+    let has_scale = has_scale || scene.contact.layer().is_some();
+    scene.disk.kind == DiskKind::Rigid && !has_scale && is_flat && scene.holder.is_ideal()
 }
 
 impl Study {

@@ -19,7 +19,7 @@ use crate::solver::body::pin::Face;
 use crate::solver::field::{Block, FieldOf, in_slots_of};
 use crate::solver::interface::LIMIT;
 use crate::solver::interface::law::{AtNode, FrictionLaw, LawOfLanes, project, with_law_of_lanes};
-use crate::solver::interface::{Contacts, Interface, SlaveNode, Status};
+use crate::solver::interface::{Contacts, Interface, MovingRelief, NodesOnLayer, SlaveNode, Status};
 use crate::solver::number::Number;
 use crate::solver::scheme::StepFactors;
 use crate::solver::simd::{load, splat};
@@ -31,8 +31,11 @@ pub(super) struct DiagonalSolve<const L: usize, R: Number> {
     /// Per slave node: velocity of the target per unit of the drive's rate in x and y, and the mass \[kg\]. The
     /// mass is zero if the pass does not solve the node.
     nodes: FieldOf<L, R>,
-    /// Initial gap \[m\] of every slave node, in the first component.
+    /// Initial gap \[m\] of every slave node, in the first component. Over a relief and on a layer it is the gap of the
+    /// undeformed pin at t_{n+1}, over the surface as it then is.
     initial_gap_m: FieldOf<L, R>,
+    relief: Option<Box<MovingRelief<L>>>,
+    layer: Option<Box<NodesOnLayer>>,
     held: Vec<HeldNode<L>>,
 }
 
@@ -46,7 +49,11 @@ impl<const L: usize, R: Number> DiagonalSolve<L, R> {
         let held = interface.slaves().iter().enumerate().filter(|(_, node)| !is_free(node));
         let held = held.map(|(slave, node)| HeldNode::new(nodes.place(slave), *node)).collect();
         let initial_gap_m = interface.field(|node| [node.initial_gap_m, 0.0, 0.0]);
-        Self { nodes, initial_gap_m, held }
+        let place = |slave| nodes.place(slave);
+        let relief = interface.relief().map(|relief| MovingRelief::new(relief, interface.slaves(), place));
+        let layer = interface.layer().map(|layer| NodesOnLayer::new(*layer, interface.slaves(), place));
+        let (relief, layer) = (relief.map(Box::new), layer.map(Box::new));
+        Self { nodes, initial_gap_m, relief, layer, held }
     }
 
     /// Moves the slave nodes. Returns the sum of the contact forces \[N\] on fixed degrees of freedom, which
@@ -57,6 +64,17 @@ impl<const L: usize, R: Number> DiagonalSolve<L, R> {
         face: &mut Face<'_, L, R>,
         contacts: &mut Contacts<L, R>,
     ) -> [[f64; L]; 3] {
+        if let Some(relief) = &mut self.relief {
+            relief.advance(given, &mut self.initial_gap_m);
+        }
+        if let Some(layer) = &self.layer {
+            layer.compress(given, face, &mut self.initial_gap_m, self.relief.is_some());
+        }
+        if self.relief.is_some() || self.layer.is_some() {
+            for held in &mut self.held {
+                held.set_gap(&self.initial_gap_m);
+            }
+        }
         for held in &mut self.held {
             held.keep(face, contacts);
         }
@@ -66,7 +84,15 @@ impl<const L: usize, R: Number> DiagonalSolve<L, R> {
         for held in &self.held {
             held.solve(given, face, contacts, &mut carried_n);
         }
+        if let Some(relief) = &self.relief {
+            relief.relate(contacts);
+        }
         carried_n
+    }
+
+    /// Works \[J\] of the normal forces over the rises of a relief after and before t_n.
+    pub fn relief_works_j(&self, contacts: &Contacts<L, R>) -> [[f64; L]; 2] {
+        self.relief.as_ref().map_or([[0.0; L]; 2], |relief| relief.works_j(contacts))
     }
 
     /// The pass over all nodes without a fixed component.

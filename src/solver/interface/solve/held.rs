@@ -6,7 +6,7 @@
 
 use super::step_data::StepData;
 use crate::solver::body::pin::Face;
-use crate::solver::field::LaneSlot;
+use crate::solver::field::{FieldOf, LaneSlot};
 use crate::solver::interface::LIMIT;
 use crate::solver::interface::law::{AtNode, project};
 use crate::solver::interface::{Contacts, SlaveNode, Status};
@@ -17,6 +17,8 @@ use crate::solver::number::Number;
 pub(super) struct HeldNode<const L: usize> {
     place: LaneSlot,
     node: SlaveNode,
+    /// Initial gap \[m\]. See `DiagonalSolve`.
+    initial_gap_m: [f64; L],
     /// Displacements \[m\] at t_n.
     u_m: [[f64; L]; 3],
     /// Whether the node slipped in the step before (0 or 1).
@@ -27,7 +29,13 @@ pub(super) struct HeldNode<const L: usize> {
 
 impl<const L: usize> HeldNode<L> {
     pub fn new(place: LaneSlot, node: SlaveNode) -> Self {
-        Self { place, node, u_m: [[0.0; L]; 3], slipped: [0.0; L], limit_n: [0.0; L] }
+        let initial_gap_m = [node.initial_gap_m; L];
+        Self { place, node, initial_gap_m, u_m: [[0.0; L]; 3], slipped: [0.0; L], limit_n: [0.0; L] }
+    }
+
+    /// Takes the initial gap from the first component of `gap_m`.
+    pub fn set_gap<R: Number>(&mut self, gap_m: &FieldOf<L, R>) {
+        self.initial_gap_m = gap_m.at(self.place, 0).map(R::to_f64);
     }
 
     /// Stores the values that the pass will overwrite.
@@ -71,7 +79,7 @@ impl<const L: usize> HeldNode<L> {
         let (u_scale, p_scale) = (factors.u_scale[lane].to_f64(), factors.p_scale[lane].to_f64());
         let stiffness = self.node.mass_kg * (1.0 / u_scale);
         let carried = self.node.surface_motion.map(|motion| motion * (drive.rate * factors.time_step_s));
-        let initial_gap = self.node.initial_gap_m;
+        let initial_gap = self.initial_gap_m[lane];
         let predicted = [0, 1, 2].map(|c| face.u.at(place, c)[lane].to_f64());
         let gap = predicted[2] + initial_gap;
         let mut force = [0.0; 3];

@@ -93,10 +93,10 @@ impl<const L: usize, R: RunNumber> TargetState<L, R> {
     }
 
     /// Works \[J\] of the drive on the slopes of the target, over the increments after and before the time of the
-    /// forces. A rigid target has no slopes.
+    /// forces. A plane has no slopes.
     pub(in crate::solver) fn slope_works_j(&self, contacts: &Contacts<L, R>) -> [[f64; L]; 2] {
         match &self.0 {
-            Kind::Rigid(_) => [[0.0; L]; 2],
+            Kind::Rigid(solve) => solve.relief_works_j(contacts),
             Kind::Ring(ring) => ring.slope_works_j(contacts),
         }
     }
