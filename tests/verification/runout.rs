@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 use tribosweep::analysis::drive;
 use tribosweep::solver::energy::EnergyLedger;
 use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::interface::{Relief, Wave};
+use tribosweep::solver::interface::{ContactState, Relief, Wave};
 use tribosweep::solver::lane::LaneState;
 use tribosweep::solver::{Drive, Model, State, TimeStep, step};
 use tribosweep::spec::{HeightMap, JobSpec};
@@ -161,7 +161,7 @@ fn energies_close_and_lanes_are_independent() {
     let (mut separated, mut stuck) = (0, 0);
     for _ in 0..steps {
         audited_step(&model, fast, &mut state, &mut ledger);
-        let states: Vec<_> = state.contacts.states(0).map(|state| state.name()).collect();
+        let states: Vec<_> = state.contacts.states(0).map(ContactState::name).collect();
         separated += states.iter().filter(|name| **name == "separated").count();
         stuck += states.iter().filter(|name| **name == "slip").count();
     }
