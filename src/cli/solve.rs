@@ -99,6 +99,7 @@ fn job_line(spec: &JobSpec) -> String {
         format!(", friction law {}", contact.law.name())
     };
     let others = [
+        (!pin.is_plain_block(), ", not an upright block of one material"),
         (!pin.base.is_flat(), ", a base that is not flat"),
         (contact.layer().is_some(), ", a contact layer"),
         (!disk.is_plane(), ", a disk that is not plane"),

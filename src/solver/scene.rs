@@ -62,8 +62,7 @@ impl Model {
     /// The same model with the initial gaps of the pin's base and tilt.
     fn with_base(self, pin: &Pin) -> Self {
         let tilt = tilt(pin);
-        // The base of a mesh from a file need not be a plane.
-        if pin.base.is_flat() && tilt == Tilt::default() && pin.shape != Shape::Mesh {
+        if pin.has_plane_base() {
             return self;
         }
         let mesh = self.mesh().clone();

@@ -137,11 +137,16 @@ impl Pin {
 
     /// Whether the pin is an upright block of one material, for which there is a faster form of the stiffness.
     pub fn is_plain_block(&self) -> bool {
-        let is_turned = |angle: Option<f64>| angle.is_some_and(|angle| angle != 0.0);
-        self.shape == Shape::Block
-            && self.regions.is_empty()
-            && !is_turned(self.tilt_x_deg)
-            && !is_turned(self.tilt_y_deg)
+        self.shape == Shape::Block && self.regions.is_empty() && !self.is_tilted()
+    }
+
+    /// Whether the base is a plane that is parallel to the disk. A mesh from a file may have any base.
+    pub fn has_plane_base(&self) -> bool {
+        self.base.is_flat() && !self.is_tilted() && self.shape != Shape::Mesh
+    }
+
+    fn is_tilted(&self) -> bool {
+        [self.tilt_x_deg, self.tilt_y_deg].into_iter().flatten().any(|angle| angle != 0.0)
     }
 
     /// Extent \[m\] in x, y and z, without tilt.

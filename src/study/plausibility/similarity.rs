@@ -29,7 +29,7 @@ fn groups(spec: &JobSpec) -> [String; 2] {
 fn has_similarity(spec: &JobSpec) -> bool {
     let scene = &spec.scene;
     let has_scale = !matches!(scene.contact.law, FrictionLaw::Coulomb | FrictionLaw::StaticKinetic);
-    let is_flat = scene.pin.base.is_flat() && scene.disk.is_plane();
+    let is_flat = scene.pin.has_plane_base() && scene.disk.is_plane();
     let has_scale = has_scale || scene.contact.layer().is_some();
     scene.disk.kind == DiskKind::Rigid && !has_scale && is_flat && scene.holder.is_ideal()
 }
