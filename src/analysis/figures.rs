@@ -184,6 +184,11 @@ impl Figures {
         self.weight == 0.0
     }
 
+    /// Mean load \[N\]; 0 without a step.
+    pub fn load_n(&self) -> f64 {
+        ratio(self.load, self.weight)
+    }
+
     /// ⟨T⟩/⟨F⟩ with T at the clamp.
     pub fn mu_star(&self) -> f64 {
         ratio(self.clamp_tangential, self.load)

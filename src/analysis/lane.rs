@@ -6,6 +6,7 @@ use super::figures::Figures;
 use super::lines;
 use super::nested::CoarseStart;
 use super::noted::Noted;
+use super::program::ProgramWindows;
 use super::record::{
     ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
 };
@@ -33,6 +34,8 @@ pub struct LaneAnalysis {
     decays: bool,
     late: LateWindow,
     trailing: Trailing,
+    /// The windows of a job with a program. Such a run has no steady state, and nothing looks for one.
+    windows: Option<ProgramWindows>,
     /// The eigenvalues that left the decision to the run, if they were computed.
     stability: Option<SlidingStability>,
     /// Whether they know a growing mode that the run may not show: in single precision a growth that begins at rounding is
@@ -48,7 +51,9 @@ impl LaneAnalysis {
         let ramp_s = spec.scene.load.ramp_s;
         // Times are multiples of the step, so two steps are added as a tolerance.
         let slidable_s = spec.run.limit_s - ramp_s + 2.0 * model.time_step_s();
-        let observes = spec.detection.decay_observation_s <= slidable_s;
+        let has_program = !spec.scene.program.is_constant();
+        let late_s = (1.0 - spec.run.average_last_fraction) * spec.run.limit_s;
+        let observes = !has_program && spec.detection.decay_observation_s <= slidable_s;
         Self {
             cutter: CycleCutter::new(model, ramp_s),
             monitor: observes.then(|| {
@@ -57,8 +62,9 @@ impl LaneAnalysis {
             cycles: Vec::new(),
             steady: None,
             decays: false,
-            late: LateWindow::from((1.0 - spec.run.average_last_fraction) * spec.run.limit_s),
+            late: LateWindow::from(if has_program { ramp_s } else { late_s }),
             trailing: Trailing::new(spec.detection.decay_observation_s, model.time_step_s()),
+            windows: has_program.then(|| ProgramWindows::of(&spec)),
             stability: None,
             may_grow_from_rounding: false,
             start: None,
@@ -91,7 +97,14 @@ impl LaneAnalysis {
 
     /// Adds a step. `energies` are those of the last audit.
     pub fn push(&mut self, sample: &Sample, energies: &Energies) {
-        if let Some(cycle) = self.cutter.push(sample, energies) {
+        let cycle = self.cutter.push(sample, energies);
+        if let Some(windows) = &mut self.windows {
+            windows.push(&self.spec, sample, cycle.as_ref());
+            self.late.push(sample, energies);
+            self.trailing.push(sample, energies);
+            return;
+        }
+        if let Some(cycle) = cycle {
             self.cycles.push(cycle);
             self.steady = steady::find(&self.cycles, &self.spec.detection);
         }
@@ -117,6 +130,7 @@ impl LaneAnalysis {
     ) -> JobRecord {
         let simulated_s = steps as f64 * model.time_step_s();
         let outcome = match self.steady {
+            _ if self.windows.is_some() => Outcome::Completed,
             _ if self.decays => Outcome::Decayed,
             Some(_) => Outcome::Periodic,
             None => Outcome::NotPeriodic,
@@ -169,6 +183,7 @@ impl LaneAnalysis {
             start: self.start.clone(),
             disk: model.ring().zip(solves).map(|(body, solves)| elastic_disk(body, solves, steps)),
             holder: holder_motion(&self.spec.scene.holder, figures),
+            windows: self.windows.as_ref().map_or_else(Vec::new, |windows| windows.all(&self.spec)),
             energy: totals(energies),
             nodes: observed_nodes(figures),
         }
@@ -180,6 +195,7 @@ impl LaneAnalysis {
     ///   cycles in the last part of the run.
     /// * Neither: all whole cycles in the last part of the run. If they are too few or cover less than half
     ///   of this part: the part itself. If not a single step falls into it: the last observation time.
+    /// * With a program: the run after the load's ramp. Its μ* has no standard error, because it is no mean of a steady state.
     fn window(&self, simulated_s: f64) -> Window {
         if self.decays {
             return self.trailing.window(true);
@@ -198,15 +214,16 @@ impl LaneAnalysis {
         let duration_s = whole.last().map_or(0.0, |last| last.end_s - whole[0].start_s);
         let covers = self.steady.is_some() || duration_s >= 0.5 * (simulated_s - self.late.start_s);
         if whole.len() < 2 * crossings || !covers {
+            let trailing = self.trailing.window(false);
             if self.late.figures.is_empty() {
-                return self.trailing.window(false);
+                return trailing;
             }
             return Window {
                 start_s: self.late.start_s,
                 figures: self.late.figures,
                 energies: self.late.energies.unwrap_or_default(),
                 // There are no cycles here, so equal blocks of the last observation time replace them.
-                mu_star_parts: self.trailing.window(false).mu_star_parts,
+                mu_star_parts: if self.windows.is_none() { trailing.mu_star_parts } else { Vec::new() },
                 cycles: 0,
                 frequency_hz: None,
             };

@@ -6,7 +6,7 @@
 //! lanes are between two audits.
 
 use super::checkpoint::{self, Unreadable};
-use super::drive::{IDLE, drive};
+use super::drive::{IDLE, drive, follow};
 use super::error::{JobError, step_count};
 use super::lane::LaneAnalysis;
 use super::nested::{Beginning, CoarseStart, under_way};
@@ -16,7 +16,7 @@ use super::sample::{NodeSample, Sample, Sampler};
 use crate::solver::energy::{Energies, EnergyLedger};
 use crate::solver::lane::LaneState;
 use crate::solver::{Drive, Model, PinMotion, RunNumber, StateOf, guard, step};
-use crate::spec::JobSpec;
+use crate::spec::{JobSpec, Program};
 use std::sync::Arc;
 
 /// Steps between two evaluations of the stored energies and of the divergence guard. Jobs begin only at these
@@ -45,6 +45,8 @@ struct Run {
     ticket: u64,
     steps: u64,
     stop_early: bool,
+    /// How speed and load change in time; none if they are constant.
+    program: Option<Program>,
     analysis: Box<LaneAnalysis>,
 }
 
@@ -177,8 +179,9 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
         self.state.begun[lane] = self.state.step;
         self.drives[lane] = drive(&spec);
         let stop_early = spec.run.stop_early;
-        self.runs[lane] =
-            Some(Run { ticket, steps, stop_early, analysis: Box::new(LaneAnalysis::new(&self.model, spec)) });
+        let program = (!spec.scene.program.is_constant()).then(|| spec.scene.program.clone());
+        let analysis = Box::new(LaneAnalysis::new(&self.model, spec));
+        self.runs[lane] = Some(Run { ticket, steps, stop_early, program, analysis });
         Ok(())
     }
 
@@ -286,6 +289,7 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
         loop {
             let audited = self.ledger.audits(self.state.step);
             self.ledger.before_step(&self.model, &self.state);
+            self.follow_programs();
             step(&self.model, &self.drives, &mut self.state);
             self.ledger.after_step(&self.model, &self.drives, &self.state);
             let samples = self.sampler.sample(&self.model, &self.drives, &self.state);
@@ -312,6 +316,17 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
             }
             if self.ledger.audits(self.state.step) {
                 return ended;
+            }
+        }
+    }
+
+    /// Gives the lanes whose jobs have a program the speed and the load of the coming step.
+    fn follow_programs(&mut self) {
+        let dt = self.model.time_step_s();
+        for lane in 0..L {
+            if let Some(Run { program: Some(program), .. }) = &self.runs[lane] {
+                let time_s = self.state.steps_done(lane) as f64 * dt;
+                follow(program, &mut self.drives[lane], time_s, dt);
             }
         }
     }

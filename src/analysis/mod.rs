@@ -3,7 +3,8 @@
 //! ```text
 //! solver state ─► sample ─► cycles ─► steady (periodic?) ─┐
 //!                     ├───► decay (stable?) ──────────────┼─► lane ─► record
-//!                     └───► figures (means, extremes) ────┘
+//!                     ├───► figures (means, extremes) ────┤
+//!                     └───► program (windows, hysteresis) ┘
 //! ```
 //!
 //! Before a run, [`stability`] may decide the job by the eigenvalues of steady sliding. Then there is no run.
@@ -33,6 +34,7 @@ pub mod lines;
 pub mod nested;
 mod noted;
 mod outcome;
+pub mod program;
 pub mod record;
 pub mod sample;
 pub mod stability;
@@ -41,7 +43,7 @@ mod window;
 mod workload;
 
 pub use checkpoint::Unreadable;
-pub use drive::drive;
+pub use drive::{drive, drive_at};
 pub use error::JobError;
 pub use job::{JobObserver, Unobserved, solve};
 pub use lanes::Moment;

@@ -13,6 +13,9 @@ pub enum Outcome {
     Decayed,
     /// The run reached its time limit first. The figures are averages over the last part of the run.
     NotPeriodic,
+    /// The speed or the load changed in time, and the run reached its end. The figures are averages over the run after the load's
+    /// ramp; those of its windows are beside them.
+    Completed,
     /// A mode of steady sliding grows, and there was no run. The figures are those of steady sliding.
     Unstable,
 }

@@ -2,6 +2,7 @@
 
 use super::nested::CoarseStart;
 pub use super::outcome::{Outcome, Regime};
+use super::program::ProgramWindow;
 use super::steady::Obstacle;
 use serde::{Deserialize, Serialize};
 
@@ -257,6 +258,9 @@ pub struct JobRecord {
     /// The holder in the directions in which it moves.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub holder: Vec<HolderMotion>,
+    /// The windows of a run whose speed or load changes in time; empty for another run.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub windows: Vec<ProgramWindow>,
     /// Energies at the end of the run.
     pub energy: EnergyTotals,
     /// The two observed nodes.
@@ -314,6 +318,7 @@ impl JobRecord {
             start,
             disk,
             holder,
+            windows,
             energy,
             nodes,
         } = self;
@@ -360,6 +365,9 @@ impl JobRecord {
         for HolderMotion { direction, peak_to_peak_m, acceleration_rms_m_s2 } in holder {
             figures.push((format!("holder.{direction}.peak_to_peak_m"), *peak_to_peak_m));
             figures.push((format!("holder.{direction}.acceleration_rms_m_s2"), *acceleration_rms_m_s2));
+        }
+        for (i, window) in windows.iter().enumerate() {
+            figures.extend(window.figures().map(|(path, value)| (format!("windows[{i}].{path}"), value)));
         }
         figures.extend(energy.figures().map(|(path, value)| (format!("energy.{path}"), value)));
         for (i, node) in nodes.iter().enumerate() {
@@ -444,6 +452,7 @@ mod tests {
                 peak_to_peak_m: 1e-6,
                 acceleration_rms_m_s2: 0.5,
             }],
+            windows: vec![ProgramWindow::of_tests()],
             energy: EnergyTotals::default(),
             nodes: vec![node.clone(), node],
         }

@@ -263,6 +263,7 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
         obstacle: None,
         stability: Some(stability),
         start: None,
+        windows: Vec::new(),
         disk: model.ring().map(|body| elastic_disk(body, &Solves::default(), 1)),
         holder: Vec::new(),
         energy: EnergyTotals::default(),

@@ -214,7 +214,7 @@ impl Ending {
             return Self { early_s: limit_s, likely_s: limit_s, late_s: limit_s, limit_s };
         }
         let limit_s = spec.run.limit_s;
-        if !spec.run.stop_early {
+        if !spec.run.stop_early || !spec.scene.program.is_constant() {
             return Self { early_s: limit_s, likely_s: limit_s, late_s: limit_s, limit_s };
         }
         let pin = &spec.scene.pin;

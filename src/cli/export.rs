@@ -17,6 +17,9 @@ pub(crate) struct Args {
     /// Every input as a column of its own, the defaults too, and the whole record: see `columns --all`.
     #[arg(long)]
     all: bool,
+    /// One row for each window of the jobs whose speed or load changes in time, instead of one for each job.
+    #[arg(long, conflicts_with_all = ["all", "format"])]
+    windows: bool,
     /// Write to this file instead of standard output.
     #[arg(long = "csv", value_name = "FILE")]
     file: Option<PathBuf>,
@@ -54,7 +57,11 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         sweep::block_on(async {
             let mut queue = sweep::open_to_read(db.clone()).await?;
             let studies = if given.is_empty() { every_study(&mut queue).await? } else { given.clone() };
-            sweep::export(&mut queue, &studies, columns, format, out).await?;
+            if args.windows {
+                sweep::export_windows(&mut queue, &studies, out).await?;
+            } else {
+                sweep::export(&mut queue, &studies, columns, format, out).await?;
+            }
             queue.close().await?;
             Ok(())
         })

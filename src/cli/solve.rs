@@ -4,6 +4,7 @@ use super::error::CliError;
 use super::foreground;
 use super::output::{log, print, write_file};
 use super::warnings;
+use crate::analysis::program::{Hysteresis, Leading};
 use crate::analysis::{self, ElasticDisk, JobObserver, JobRecord, Moment, SlidingStability};
 use crate::exit;
 use crate::publish::value::quantity;
@@ -98,8 +99,10 @@ fn job_line(spec: &JobSpec) -> String {
     } else {
         format!(", friction law {}", contact.law.name())
     };
+    let changes = !spec.scene.program.is_constant();
     let others = [
         (!pin.is_plain_block(), ", not an upright block of one material"),
+        (changes, ", a speed or a load that changes in time (the largest is given)"),
         (!pin.base.is_flat(), ", a base that is not flat"),
         (contact.layer().is_some(), ", a contact layer"),
         (!disk.is_plane(), ", a disk that is not plane"),
@@ -133,6 +136,14 @@ pub(crate) fn as_text(record: &JobRecord) -> String {
             )
         }
     };
+    let hysteresis = Hysteresis::of(&record.windows).map_or_else(String::new, |found| {
+        let unit = if Leading::of(&record.windows) == Leading::Omega { "rpm" } else { "N" };
+        let windows = record.windows.len();
+        format!(
+            "hysteresis             {:.5} at {:.4} {unit}, of {windows} windows\n",
+            found.difference, found.at
+        )
+    });
     let sliding = record.stability.as_ref().map_or_else(String::new, sliding_lines);
     format!(
         "outcome                {} {}\n\
@@ -145,7 +156,7 @@ pub(crate) fn as_text(record: &JobRecord) -> String {
          largest normal stress  {:.4} MPa\n\
          largest slip speed     {:.1} mm/s\n\
          residuals              energy {:.1e}, identities {:.1e}\n\
-         {sliding}{disk}",
+         {hysteresis}{sliding}{disk}",
         record.outcome.name(),
         end,
         record.regime.name(),

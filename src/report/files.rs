@@ -8,6 +8,7 @@ use super::input::Report;
 use super::inspections::inspections;
 use super::layout::Layout;
 use super::page::{self, FigureLink, Table};
+use super::program::{self, Programs};
 use super::row::JobRow;
 use super::spectra;
 use super::stability::{self, Analysis};
@@ -80,20 +81,7 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
     let residuals = residuals.map_err(|source| cannot_draw(out_dir, &RESIDUALS.stem, source))?;
     folder.write_text(&format!("{}.svg", RESIDUALS.stem), &residuals)?;
 
-    let mut data_files = Vec::new();
-    let behind_figures = plots.iter().map(|plot| plot.data());
-    for DataFile { stem, columns } in behind_figures.chain([RESIDUALS, RUN_TIMES]) {
-        let file = format!("{stem}.csv");
-        // Two figures may share a file of data.
-        if data_files.contains(&file) {
-            continue;
-        }
-        folder.write_with(&file, |out| {
-            *out = export::selection(rows, &layout.further, &columns)?;
-            Ok(())
-        })?;
-        data_files.push(file);
-    }
+    let mut data_files = write_data(&mut folder, rows, &layout, &plots)?;
     if !spectra.is_empty() {
         folder.write_with("waterfall.csv", |out| {
             *out = figure::waterfall::csv(&layout, &spectra)?;
@@ -101,6 +89,8 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         })?;
         data_files.push("waterfall.csv".to_owned());
     }
+    let programs = write_programs(&mut folder, rows, out_dir)?;
+    data_files.extend(programs.iter().map(|_| program::WINDOWS.to_owned()));
     let stability_rows = stability::rows(report.stability);
     let analysis =
         (!report.stability.is_empty()).then(|| Analysis::of(report.stability, &stability_rows, view));
@@ -116,7 +106,8 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         folder.write_with("differences.csv", |out| comparison::csv(comparison, out))?;
     }
     let differences = comparison.as_ref();
-    let section = stability.map_or_else(String::new, |(own, files)| stability::markdown(own, files));
+    let mut section = programs.as_ref().map_or_else(String::new, Programs::markdown);
+    section += &stability.map_or_else(String::new, |(own, files)| stability::markdown(own, files));
     let markdown = page::of_report(report, &tables, &links, &data_files, differences, &section);
     folder.write_text("report.md", &markdown)?;
     let pages = inspections(out_dir).into_iter().filter_map(|found| Some((found.job.clone(), found.page()?)));
@@ -129,11 +120,55 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         comparison: differences,
         residuals: &residuals,
         spectra: &spectra,
+        programs: programs.as_ref(),
         stability,
         pages,
     };
     folder.write_text("report.html", &html::page(&parts))?;
     folder.finish(|name| could_be_of_a_report(name, out_dir))
+}
+
+/// Writes the data behind the figures, and returns the files.
+fn write_data(
+    folder: &mut Folder,
+    rows: &[JobRow],
+    layout: &Layout,
+    plots: &[Plot],
+) -> Result<Vec<String>, PublishError> {
+    let mut data_files = Vec::new();
+    let behind_figures = plots.iter().map(|plot| plot.data());
+    for DataFile { stem, columns } in behind_figures.chain([RESIDUALS, RUN_TIMES]) {
+        let file = format!("{stem}.csv");
+        // Two figures may share a file of data.
+        if data_files.contains(&file) {
+            continue;
+        }
+        folder.write_with(&file, |out| {
+            *out = export::selection(rows, &layout.further, &columns)?;
+            Ok(())
+        })?;
+        data_files.push(file);
+    }
+    Ok(data_files)
+}
+
+/// Writes the figures and the windows of the jobs whose speed or load changes in time; none if there are no such jobs.
+fn write_programs<'a>(
+    folder: &mut Folder,
+    rows: &'a [JobRow],
+    out_dir: &Path,
+) -> Result<Option<Programs<'a>>, PublishError> {
+    let programs = Programs::of(rows).map_err(|source| cannot_draw(out_dir, "program", source))?;
+    for figure in programs.iter().flat_map(Programs::figures) {
+        folder.write_text(&figure.file, &figure.svg)?;
+    }
+    if let Some(programs) = &programs {
+        folder.write_with(program::WINDOWS, |out| {
+            out.extend_from_slice(programs.csv());
+            Ok(())
+        })?;
+    }
+    Ok(programs)
 }
 
 fn cannot_draw(out_dir: &Path, stem: &str, source: FigureError) -> PublishError {

@@ -50,6 +50,9 @@ pub(super) fn status_glyph(row: &JobRow) -> StatusGlyph {
     if record.outcome == Outcome::Unstable {
         return glyph('U', "unstable, without a run", AnsiColor::Red, palette::YELLOW);
     }
+    if record.outcome == Outcome::Completed {
+        return glyph('C', "completed program", AnsiColor::White, GREY);
+    }
     let is_settled = record.outcome != Outcome::NotPeriodic;
     let (letter, colour, fill) = match record.regime {
         Regime::Stable => ('S', AnsiColor::Blue, palette::SKY),

@@ -32,6 +32,7 @@ pub mod overview;
 mod page;
 mod parameters;
 pub mod pareto;
+mod program;
 mod provenance;
 mod row;
 mod scalar;
@@ -55,6 +56,7 @@ pub use measurement::{MeasuredValue, Measurement};
 #[cfg(feature = "cli")]
 pub(crate) use parameters::assignment;
 pub use parameters::name_and_unit;
+pub use program::WindowsCsv;
 pub use provenance::{BuildInfo, Provenance, ResultGroup};
 pub use row::{JobNumerics, JobRow, RowState};
 pub use scalar::{SCALARS, Scalar};

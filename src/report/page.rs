@@ -33,14 +33,14 @@ pub(super) fn of_table(table: &Table, title: &str) -> String {
     tables::titled(title, table.quantity, &table.markdown)
 }
 
-/// The page of the whole report. `stability` is its section on linear stability.
+/// The page of the whole report. `sections` are those on programs and on linear stability.
 pub(super) fn of_report(
     report: &Report,
     tables: &[Table],
     figures: &[FigureLink],
     data: &[String],
     differences: Option<&comparison::Comparison>,
-    stability: &str,
+    sections: &str,
 ) -> String {
     let rows = report.rows;
     let description =
@@ -63,7 +63,7 @@ pub(super) fn of_report(
     for table in tables {
         page += &section(table, figures);
     }
-    page += stability;
+    page += sections;
     page += &trouble(rows);
     page += &list("Failed jobs", rows, failed);
     page += &list("Not periodic", rows, not_periodic);

@@ -11,6 +11,7 @@ pub(super) struct Summary {
     pub decayed: usize,
     pub not_periodic: usize,
     pub unstable: usize,
+    pub completed: usize,
     pub failed: usize,
     pub running: usize,
     pub pending: usize,
@@ -34,6 +35,7 @@ impl Summary {
                     Outcome::Decayed => &mut summary.decayed,
                     Outcome::NotPeriodic => &mut summary.not_periodic,
                     Outcome::Unstable => &mut summary.unstable,
+                    Outcome::Completed => &mut summary.completed,
                 },
             } += 1;
         }
@@ -41,7 +43,7 @@ impl Summary {
     }
 
     pub fn done(&self) -> usize {
-        self.periodic + self.decayed + self.not_periodic + self.unstable
+        self.periodic + self.decayed + self.not_periodic + self.unstable + self.completed
     }
 
     pub fn missing(&self) -> usize {
@@ -57,9 +59,10 @@ impl Summary {
 
     /// The jobs that are done by outcome, in words.
     pub fn done_in_words(&self) -> String {
-        let Self { periodic, decayed, not_periodic, unstable, .. } = self;
+        let Self { periodic, decayed, not_periodic, unstable, completed, .. } = self;
         let without_run = if *unstable > 0 { format!(", {unstable} unstable") } else { String::new() };
-        format!("{periodic} periodic, {decayed} decayed, {not_periodic} not periodic{without_run}")
+        let programs = if *completed > 0 { format!(", {completed} completed") } else { String::new() };
+        format!("{periodic} periodic, {decayed} decayed, {not_periodic} not periodic{without_run}{programs}")
     }
 }
 

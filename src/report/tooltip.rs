@@ -51,6 +51,7 @@ pub(super) fn outcome_label(outcome: Outcome) -> &'static str {
         Outcome::Periodic => "periodic",
         Outcome::Decayed => "decayed",
         Outcome::NotPeriodic => "not periodic",
+        Outcome::Completed => "program completed",
         Outcome::Unstable => "unstable, without a run",
     }
 }

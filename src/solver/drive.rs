@@ -2,7 +2,8 @@
 
 use super::interface::law::Law;
 
-/// The inputs of one lane.
+/// The inputs of one lane in a step. A lane whose rate or load changes in time gets another drive before every step: the load
+/// is that at the step's t_n, and the rate is the mean one of the step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Drive {
     /// The friction law with its coefficients.

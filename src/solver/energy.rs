@@ -11,8 +11,8 @@
 //! (Krenk, *Energy conservation in Newmark based time integration algorithms*, CMAME 195, 2006, with β = 0). For γ
 //! = ½ the kinetic part is ½ v_{n−½} M v_{n+½}. So a force f_n does the work f_n·\[(1−γ)Δu_n + γΔu_{n−1}\]. For
 //! contact forces this work has three parts:
-//! * The work of the drive is f_t·VΔt. On an elastic disk, N times the rise of the surface along the node's path is
-//!   added.
+//! * The work of the drive is f_t·\[(1−γ)V_n + γV_{n−1}\]Δt with the velocities of the target over both steps. On an
+//!   elastic disk, N times the rise of the surface along the node's path is added.
 //! * The work of friction is −f_t·\[(1−γ)s_n + γs_{n−1}\] of the slipping nodes, where s is the increment relative
 //!   to the target.
 //! * The contact loss is the same product for the tangential forces of sticking nodes, and
@@ -115,6 +115,8 @@ pub struct EnergyLedger<const L: usize, R: RunNumber = f64> {
     interval: u64,
     sums: [LaneSums; L],
     energies: [Energies; L],
+    /// Rate of the target's motion over the last step.
+    last_rates: [f64; L],
     interface: InterfaceWork<L, R>,
     pin: PinAudit<L, R>,
     ring: Option<RingAudit<L>>,
@@ -131,6 +133,7 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
             interval,
             sums: [LaneSums::default(); L],
             energies: [Energies::default(); L],
+            last_rates: [0.0; L],
             interface: InterfaceWork::new(model.interface()),
             pin: PinAudit::new(model.pin(), model.scheme().beta2),
             ring: model.ring().map(RingAudit::new),
@@ -167,7 +170,10 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
     /// Adds the works of the step just done and, at an audit, evaluates the energies at the `t_n` of that step.
     pub fn after_step(&mut self, model: &Model, drives: &[Drive; L], state: &StateOf<L, R>) {
         let done = state.step - 1;
-        let works = self.interface.of_step(model.time_step_s(), drives, &state.contacts, &state.target);
+        let rates: [f64; L] = std::array::from_fn(|l| drives[l].rate);
+        let both_rates = [&rates, &self.last_rates];
+        let works = self.interface.of_step(model.time_step_s(), both_rates, &state.contacts, &state.target);
+        self.last_rates = rates;
         let [before_last, last, next] = &state.load_stroke_m;
         for l in 0..L {
             let sums = &mut self.sums[l];
@@ -175,7 +181,7 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
             sums.friction.before_j += works.friction_before_j[l];
             sums.contact_loss.before_j += works.contact_loss_before_j[l];
             if state.steps_done(l) > 1 {
-                sums.drive.before_j += works.drive_j[l];
+                sums.drive.before_j += works.drive_before_j[l];
             }
             sums.drive.before_j += works.slope_before_j[l];
         }
@@ -192,7 +198,7 @@ impl<const L: usize, R: RunNumber> EnergyLedger<L, R> {
             sums.load.after_j += state.load_n[l] * (next[l] - last[l]);
             sums.friction.after_j += works.friction_after_j[l];
             sums.contact_loss.after_j += works.contact_loss_after_j[l];
-            sums.drive.after_j += works.drive_j[l] + works.slope_after_j[l];
+            sums.drive.after_j += works.drive_after_j[l] + works.slope_after_j[l];
             sums.damping.after_j += damping_after_j[l];
         }
     }
@@ -261,6 +267,7 @@ impl<const L: usize, R: RunNumber> LaneState for EnergyLedger<L, R> {
         } = self.energies[lane];
         saved.extend([kinetic_j, elastic_j, initial_j, load_work_j]);
         saved.extend([drive_work_j, friction_j, damping_j, contact_loss_j]);
+        saved.push(self.last_rates[lane]);
         self.pin.save_lane(lane, saved);
     }
 
@@ -284,6 +291,7 @@ impl<const L: usize, R: RunNumber> LaneState for EnergyLedger<L, R> {
             damping_j,
             contact_loss_j,
         };
+        [self.last_rates[lane]] = next(saved);
         self.pin.load_lane(lane, saved);
     }
 }

@@ -24,7 +24,7 @@ pub enum DiskKind {
 pub struct Disk {
     /// What the disk is made of.
     pub kind: DiskKind,
-    /// Rotation speed ω [revolutions per minute], constant, > 0.
+    /// Rotation speed ω [revolutions per minute], > 0: constant, or the largest one of a program.
     pub omega_rpm: f64,
     /// Distance R (m) of the pin's centre from the axis.
     pub track_radius_m: f64,

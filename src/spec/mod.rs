@@ -21,6 +21,7 @@ mod holder;
 mod mesh;
 mod numerics;
 mod pin;
+mod program;
 mod ring;
 mod roughness;
 mod scene;
@@ -36,6 +37,7 @@ pub use holder::{Holder, HolderDirection};
 pub use mesh::{MeshContent, MeshFile};
 pub use numerics::{Numerics, Precision, RunControl, Start};
 pub use pin::{FEWEST_ACROSS, Pin, Region, Shape, core_elements};
+pub use program::{Change, Program, Table};
 pub use ring::{DiskTimeStep, Ring, TargetSurface};
 pub(crate) use roughness::MOST_HEIGHTS;
 pub use roughness::{HeightMap, Roughness};
@@ -77,6 +79,12 @@ impl JobSpec {
         self.numerics.check(&mut found);
         self.run.check(&mut found);
         self.detection.check(&mut found);
+        self.scene.check_program(self.run.limit_s, &mut found);
+        if self.run.window_s.is_some() && self.scene.program.is_constant() {
+            let right =
+                "absent without scene.program: a run with a constant speed and load is not cut into windows";
+            found.add("run.window_s", "given", right);
+        }
         if self.scene.load.ramp_s >= self.run.limit_s {
             found.add(
                 "scene.load.ramp_s",
@@ -122,7 +130,7 @@ impl JobSpec {
 
     /// Elements of the coarser mesh from which the job starts; none if it starts from rest, has no run or too few elements. A
     /// motion on another mesh is not enough for a law that uses the past, a holder that moves, a surface that is not flat, or a layer.
-    /// It is carried over between upright blocks of one material.
+    /// It is carried over between upright blocks of one material. A program begins from rest.
     pub fn coarser_elements(&self) -> Option<[usize; 3]> {
         let elements = self.scene.pin.elements.map(|n| n.div_ceil(2));
         let is_nested = self.run.start == Start::Nested && self.stability != StabilityMethod::Modes;
@@ -132,13 +140,14 @@ impl JobSpec {
             && self.scene.pin.base.is_flat()
             && self.scene.disk.is_plane()
             && self.scene.contact.layer().is_none()
-            && self.scene.pin.is_plain_block();
+            && self.scene.pin.is_plain_block()
+            && self.scene.program.is_constant();
         (is_nested && is_carried_over && elements.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS))
             .then_some(elements)
     }
 
-    /// Whether the equations of steady sliding cover the scene: Coulomb's law without a layer, a rigid plane disk, an ideal clamp
-    /// and a flat base of an upright block of one material.
+    /// Whether the equations of steady sliding cover the scene: Coulomb's law without a layer, a rigid plane disk, an ideal clamp,
+    /// a flat base of an upright block of one material, and a constant speed and load.
     pub fn has_sliding_modes(&self) -> bool {
         let mut found = Violations::default();
         self.check_modes(&mut found);
@@ -191,6 +200,13 @@ impl JobSpec {
                 "a plane disk: there is no steady sliding on another surface",
             );
         }
+        if !self.scene.program.is_constant() {
+            found.add(
+                "scene.program",
+                "a speed or a load that changes",
+                "{}: the complex modes of steady sliding are those of a constant speed and load",
+            );
+        }
     }
 
     /// Whether single precision is known to keep the figures of the job (docs/studies.md): a scene of
@@ -224,7 +240,7 @@ impl JobSpec {
             let right = "another law, or numerics.precision = double: its changes in a step are below the digits of single precision";
             found.add("scene.contact.law", law.name(), right);
         }
-        let force_n = self.scene.load.force_n;
+        let force_n = self.scene.program.force_n.as_ref().map_or(self.scene.load.force_n, Table::least);
         let compression_m = force_n * lz / (young_modulus_pa * pin.base_area_m2());
         if compression_m < LEAST_SINGLE_M {
             let least_n = LEAST_SINGLE_M / compression_m * force_n;
@@ -279,6 +295,15 @@ impl JobSpec {
         }
     }
 
+    /// The length \[s\] of the windows of a run with a program: `run.window_s` or its default, changed a little so that the
+    /// run has a whole number of them.
+    pub fn window_length_s(&self) -> f64 {
+        let limit_s = self.run.limit_s;
+        let shortest_s = SHORTEST_WINDOW * self.scene.pin.shear_transit_s();
+        let about_s = self.run.window_s.unwrap_or(shortest_s.max(limit_s / WINDOWS));
+        limit_s / (limit_s / about_s).round().max(1.0)
+    }
+
     /// The part of the job that all jobs of one batch share, because they are advanced with one model: bodies, meshes,
     /// clamp, friction law, integrator and time step. Its coefficients, load, speed, run length and detection have their
     /// defaults in it.
@@ -287,6 +312,7 @@ impl JobSpec {
         let mut scene = self.scene.clone();
         scene.contact = self.scene.contact.shared_part();
         scene.load = Load::default();
+        scene.program = Program::default();
         scene.disk.omega_rpm = Disk::default().omega_rpm;
         if scene.disk.kind == DiskKind::Rigid {
             scene.disk.ring = Ring::default();
@@ -300,6 +326,12 @@ impl JobSpec {
         }
     }
 }
+
+/// Usual number of windows of a run with a program.
+const WINDOWS: f64 = 100.0;
+
+/// Shortest usual window, in transit times of shear waves over the pin's height: about 20 cycles of the first shear modes.
+const SHORTEST_WINDOW: f64 = 50.0;
 
 /// Fewest elements of a coarser mesh in each direction. From 6 × 8 × 5 elements to 12 × 15 × 10 the start saved hardly any
 /// time: the limit cycles differ too much.

@@ -118,7 +118,8 @@ impl Start {
 #[serde(deny_unknown_fields, default)]
 pub struct RunControl {
     /// Simulated time (s) after which a run ends whether or not it became periodic. Absent in a study: 0.04 for the pin of
-    /// the reference scene, in proportion to their slowest vibrations for other pins, at most 100.
+    /// the reference scene, in proportion to their slowest vibrations for other pins, at most 100; with a program, the time of
+    /// its last point.
     pub limit_s: f64,
     /// Stop as soon as the state is periodic or has decayed. `false`: always run to `limit_s`.
     pub stop_early: bool,
@@ -126,17 +127,30 @@ pub struct RunControl {
     pub average_last_fraction: f64,
     /// What state the run starts from.
     pub start: Start,
+    /// Length (s), about, of the windows into which a run with a program is cut; `limit_s` is a whole number of them. Absent: a
+    /// hundredth of `limit_s`, or 50 times the time in which a shear wave crosses the pin's height if that is longer.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub window_s: Option<f64>,
 }
 
 impl Default for RunControl {
     fn default() -> Self {
-        Self { limit_s: 0.04, stop_early: true, average_last_fraction: 0.4, start: Start::Rest }
+        Self {
+            limit_s: 0.04,
+            stop_early: true,
+            average_last_fraction: 0.4,
+            start: Start::Rest,
+            window_s: None,
+        }
     }
 }
 
 impl RunControl {
     /// The longest `limit_s` \[s\]; more is taken for a typing error.
     pub const LONGEST_LIMIT_S: f64 = 100.0;
+
+    /// The largest number of windows of a run.
+    const MOST_WINDOWS: f64 = 1000.0;
 
     pub(super) fn check(&self, found: &mut Violations) {
         let limit = self.limit_s;
@@ -153,5 +167,10 @@ impl RunControl {
             fraction > 0.0 && fraction < 1.0,
             "a fraction of the run, 0 < average_last_fraction < 1",
         );
+        if let Some(window) = self.window_s {
+            let right = format!("a length > 0 s, from {:e} to 1 of run.limit_s", 1.0 / Self::MOST_WINDOWS);
+            let holds = window > 0.0 && window <= limit && window * Self::MOST_WINDOWS >= limit;
+            found.require("run.window_s", window, holds, &right);
+        }
     }
 }

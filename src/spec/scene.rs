@@ -2,10 +2,11 @@
 
 use super::check::{Violations, readable};
 use super::contact::Contact;
-use super::disk::Disk;
+use super::disk::{Disk, DiskKind};
 use super::elasticity;
 use super::holder::Holder;
 use super::pin::Pin;
+use super::program::{LEAST_LOAD_N, Program};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::{IntoStaticStr, VariantArray};
@@ -28,6 +29,9 @@ pub struct Scene {
     pub holder: Holder,
     /// The normal load on the pin's top face.
     pub load: Load,
+    /// How the speed of the disk and the load change in time.
+    #[serde(skip_serializing_if = "Program::is_constant")]
+    pub program: Program,
 }
 
 /// Where on the top face the clamp is.
@@ -117,7 +121,7 @@ pub enum TopFace {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Load {
-    /// Total normal load F (N), pressing the pin towards the disk.
+    /// Total normal load F (N), pressing the pin towards the disk: after the ramp, or the largest one of a program.
     pub force_n: f64,
     /// Duration (s) of the linear ramp; 0 is a sudden load. Absent in a study: 0.0005 for the pin of the reference scene, in
     /// proportion to their slowest vibrations for other pins; half of `limit_s` if it would not be shorter than that.
@@ -129,9 +133,6 @@ impl Default for Load {
         Self { force_n: 30.0, ramp_s: 5.0e-4 }
     }
 }
-
-/// Least load.
-const LEAST_LOAD_N: f64 = 1.0e-20;
 
 impl Scene {
     /// Time \[s\] that the slowest vibrations scale with: the time in which a shear wave crosses the pin's longest
@@ -155,6 +156,21 @@ impl Scene {
         // The frequency 0.16 c/ℓ is that of an oscillator with √(m/k) = ℓ/c. NaN must remain.
         let holder_s = self.holder.vibration_time_s(pin.density_kg_m3 * x * y * z);
         if holder_s > wave_s { holder_s } else { wave_s }
+    }
+
+    /// Sets the speed and the load to the largest ones of the program, as far as it changes them and `keeps` [speed, load] does
+    /// not forbid it.
+    pub fn take_largest_of_program(&mut self, keeps: [bool; 2]) {
+        let Self { program, disk, load, .. } = self;
+        program.raise([&mut disk.omega_rpm, &mut load.force_n], keeps);
+    }
+
+    /// Adds every violated limit of the program in a run of `limit_s` to `found`.
+    pub(super) fn check_program(&self, limit_s: f64, found: &mut Violations) {
+        let constants = [self.disk.omega_rpm, self.load.force_n];
+        // The angle of the disk is then the rate times the time.
+        let needs_constant_speed = self.disk.kind == DiskKind::Elastic || !self.disk.is_plane();
+        self.program.check(limit_s, constants, needs_constant_speed, found);
     }
 
     /// Adds every violated limit to `found`.

@@ -73,6 +73,7 @@ impl Draft {
             preset.choose_way(&mut spec, gives);
         }
         time_defaults::fill(&mut spec, gives);
+        spec.scene.take_largest_of_program(["omega_rpm", "load_n"].map(gives));
         violations.extend(spec.check().err().into_iter().flat_map(|found| found.0));
         Resolved { spec, violations }
     }

@@ -20,7 +20,7 @@ const HEX_DIGITS: usize = 32;
 /// where the mesh comes from a file; the
 /// safety factor where the time step is given; the time step, the precision, the run, its detection and the load's ramp where
 /// there is no run; the method of stability where every run goes to its limit or where eigenvalues do not exist; the start
-/// where the mesh is too coarse for a coarser one. The ring of a rigid disk is left out. A new
+/// where the mesh is too coarse for a coarser one; what looks for a steady state where the speed or the load changes. The ring of a rigid disk is left out. A new
 /// `solver_version` changes every key, so that old results are not taken for new ones.
 pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     let mut spec = spec.clone();
@@ -52,6 +52,12 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
         spec.scene.load.ramp_s = Load::default().ramp_s;
     } else if !spec.run.stop_early || !spec.has_sliding_modes() {
         spec.stability = StabilityMethod::Simulate;
+    }
+    if !spec.scene.program.is_constant() {
+        let RunControl { limit_s, start, window_s, .. } = spec.run;
+        spec.run = RunControl { limit_s, start, window_s, ..RunControl::default() };
+        let regime_threshold = spec.detection.regime_threshold;
+        spec.detection = Detection { regime_threshold, ..Detection::default() };
     }
     if spec.coarser_elements().is_none() {
         spec.run.start = Start::Rest;

@@ -134,6 +134,7 @@ pub static PARAMETERS: &[Parameter] = &[
     parameter("stop_early", "/run/stop_early", Kind::Flag, "stop once periodic or decayed [true or false]"),
     parameter("average_last_fraction", "/run/average_last_fraction", Kind::Number, "last fraction of the run that is averaged [-]"),
     parameter("start", "/run/start", START, "whether a run starts from rest or from the limit cycle of a coarser mesh [name]"),
+    parameter("window_s", "/run/window_s", Kind::Number, "length of the windows of a run whose speed or load changes, about [s]"),
     parameter("cycles", "/detection/cycles", Kind::Count, "consecutive limit cycles that must repeat [-]"),
     parameter("tolerance", "/detection/tolerance", Kind::Number, "largest spread of a per-cycle figure over them [-]"),
     parameter("drift_tolerance", "/detection/drift_tolerance", Kind::Number, "largest drift of its mean between their halves [-]"),

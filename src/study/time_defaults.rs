@@ -8,13 +8,16 @@ pub(super) const FIELDS: [&str; 3] = ["limit_s", "decay_observation_s", "ramp_s"
 /// Sets the run's time limit, the observation of a decay and the load's ramp, except for those that something else `gives`
 /// by name. They have three significant digits. For the pin of the reference scene they are 0.04, 0.008 and 0.0005 s.
 ///
+/// A run with a program lasts until its last point.
+///
 /// A ramp that nobody gives must not be what makes a job unusable: where it would be longer than a given time limit, it is
 /// half of that limit.
 pub(super) fn fill(job: &mut JobSpec, gives: impl Fn(&str) -> bool) {
     let defaults = JobSpec::default();
     let scale = scale(&job.scene);
     if !gives("limit_s") {
-        let limit_s = three_digits(defaults.run.limit_s * scale);
+        let limit_s = job.scene.program.end_s();
+        let limit_s = limit_s.unwrap_or_else(|| three_digits(defaults.run.limit_s * scale));
         job.run.limit_s = limit_s.min(RunControl::LONGEST_LIMIT_S);
     }
     if !gives("decay_observation_s") {

@@ -3,6 +3,7 @@
 use super::error::SweepError;
 use super::rows::{add_further_names, for_each_row, for_each_row_with_inputs};
 use crate::queue::{Queue, Rows};
+use crate::report::WindowsCsv;
 use crate::report::columns::{self, Column, InputColumn};
 use crate::report::export::Export;
 use crate::study::{Parameter, input_parameters};
@@ -26,6 +27,22 @@ pub enum ExportColumns {
     Plain,
     /// These, every input and the whole record.
     All,
+}
+
+/// Writes one row per window of the jobs whose speed or load changes in time to `out`, study after study, as CSV.
+///
+/// # Errors
+/// As [`export`].
+pub async fn export_windows(
+    queue: &mut Queue,
+    studies: &[String],
+    out: &mut dyn Write,
+) -> Result<(), SweepError> {
+    let mut csv = WindowsCsv::new(out).map_err(SweepError::Output)?;
+    for study in studies {
+        for_each_row(queue, study, Rows::All, |_, row| csv.write(&row).map_err(SweepError::Output)).await?;
+    }
+    csv.finish().map_err(SweepError::Output)
 }
 
 /// The columns of an export of studies with these `grid` parameters other than ω and μ.

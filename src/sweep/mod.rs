@@ -41,7 +41,7 @@ pub use database::{block_on, document, load_study, open, open_to_change, open_to
 pub use difference::{Difference, InputDifference};
 pub use discretisation::discretisation_of;
 pub use error::SweepError;
-pub use export::{ExportColumns, ExportFormat, columns, export};
+pub use export::{ExportColumns, ExportFormat, columns, export, export_windows};
 pub use forecast::{Forecast, Group, Kind, Known, Speed, TimeRange, expected_s_per_cost};
 pub use history::History;
 pub use measured::MeasuredError;

@@ -6,7 +6,7 @@ use strum::VariantArray;
 use tribosweep::analysis::batch::{Batch, Begun};
 use tribosweep::analysis::{CoarseStart, JobRecord, Unobserved, solve};
 use tribosweep::spec::{
-    ClampSide, DiskKind, FrictionLaw, JobSpec, Precision, Region, Shape, StabilityMethod, Start,
+    ClampSide, DiskKind, FrictionLaw, JobSpec, Precision, Region, Shape, StabilityMethod, Start, Table,
 };
 
 /// Jobs of one model. They differ in everything that may differ: friction, speed, load, ramp, length, and
@@ -148,6 +148,40 @@ fn companions_and_interruptions_change_nothing_on_general_meshes() {
         }
         companions_change_nothing_in(&jobs);
         resumed_jobs_have_the_same_bits(&jobs, &[2]);
+    }
+}
+
+/// Jobs of which two in three have a speed, a load or both that change in time.
+fn programmed(precision: Precision) -> Vec<JobSpec> {
+    let mut jobs = jobs(DiskKind::Rigid, precision);
+    for (i, job) in jobs.iter_mut().enumerate().filter(|(i, _)| i % 3 != 1) {
+        let scene = &mut job.scene;
+        let (limit_s, omega, force) = (job.run.limit_s, scene.disk.omega_rpm, scene.load.force_n);
+        if i % 3 == 0 {
+            let up_and_down = vec![[0.0, 0.1 * omega], [0.5 * limit_s, omega], [limit_s, 0.0]];
+            scene.program.omega_rpm = Some(Table(up_and_down));
+        }
+        if i % 2 == 0 || i % 3 == 2 {
+            let step =
+                vec![[0.3 * limit_s, force], [0.3 * limit_s, 0.4 * force], [0.9 * limit_s, 0.7 * force]];
+            scene.program.force_n = Some(Table(step));
+        }
+        job.run.window_s = Some(limit_s / (5 + i) as f64);
+        job.check().unwrap();
+    }
+    jobs
+}
+
+/// Protects: the same with speeds and loads that change in time, beside jobs without, in both precisions. A job that is resumed in the
+/// middle of a ramp has the windows of an uninterrupted run.
+#[test]
+fn companions_and_interruptions_change_nothing_with_programs() {
+    for precision in [Precision::Double, Precision::Single] {
+        let jobs = programmed(precision);
+        companions_change_nothing_in(&jobs);
+        resumed_jobs_have_the_same_bits(&jobs, &[0, 2, 3]);
+        let windows = |job: &JobSpec| solve(job, &mut Unobserved).unwrap().windows.len();
+        assert_eq!((windows(&jobs[0]), windows(&jobs[1]), windows(&jobs[3])), (5, 0, 8));
     }
 }
 

@@ -225,3 +225,25 @@ fn the_program_in_the_documents_works() {
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
     assert_eq!(text.lines().filter(|line| line.contains(" mini ")).count(), 4, "{text}");
 }
+
+/// Protects: the windows of a job whose speed changes are exported, with the study and the job, and a job without a program
+/// has none. Its status is `completed`.
+#[test]
+fn windows_are_exported() {
+    let mut study = small(&json!({ "mu": [0.3] }));
+    study["run"] = json!({ "limit_s": 0.003, "window_s": 0.0005 });
+    study["scene"]["program"] = json!({ "omega_rpm": [[0.001, 1], [0.002, 20], [0.003, 1]] });
+    let folder = Folder::with("ramp", &study);
+    folder.add("constant", &small(&json!({ "mu": [0.0] })));
+    for name in ["ramp", "constant"] {
+        folder.ok(&format!("run {name}.json --threads 1"));
+    }
+    assert_eq!(rows(&folder.ok("export ramp"))[0]["status"], "completed");
+    let windows = folder.ok("export --windows");
+    assert_eq!(windows.lines().count(), 1 + 6, "{windows}");
+    assert!(windows.lines().skip(1).all(|line| line.starts_with("ramp,")), "{windows}");
+    for (direction, count) in [("up", 2), ("down", 2)] {
+        let is_own = |line: &&str| line.contains(&format!(",{direction},"));
+        assert_eq!(windows.lines().filter(is_own).count(), count, "{windows}");
+    }
+}

@@ -114,6 +114,7 @@ fn every_scalar_has_a_figure_and_a_table() {
         let is_optional = [
             "frequency",
             "growth_rate",
+            "hysteresis",
             "mode",
             "contact_nodes",
             "lifted_nodes",

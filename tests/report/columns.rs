@@ -3,6 +3,7 @@
 use crate::synthetic::{record, row};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
+use tribosweep::analysis::program::{Direction, ProgramWindow};
 use tribosweep::analysis::{
     CoarseStart, ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Obstacle,
     Outcome, Regime, SlidingStability,
@@ -48,6 +49,24 @@ fn full(obstacle: Obstacle) -> JobRecord {
         energy: EnergyTotals::default(),
         nodes: vec![node("front_centre"), node("rear_centre")],
         ..record(Outcome::NotPeriodic, Regime::StickSlip, 0.3)
+    }
+}
+
+/// A window at 7 rpm.
+fn window(direction: Direction) -> ProgramWindow {
+    ProgramWindow {
+        time_s: [0.0, 0.001],
+        direction,
+        omega_rpm: 7.0,
+        load_n: 30.0,
+        mu_star: 0.3,
+        mu_star_contact: 0.3,
+        frequency_hz: None,
+        n_amplitude: 0.0,
+        y_peak_to_peak_m: 0.0,
+        stick_share: 0.0,
+        slip_share: 1.0,
+        separated_share: 0.0,
     }
 }
 
@@ -135,7 +154,8 @@ fn units_are_those_of_the_names() {
         band_hz: 5e4,
         modes: vec![mode],
     };
-    let record = JobRecord { stability: Some(stability), ..full(Obstacle::SlipOnly) };
+    let windows = [Direction::Up, Direction::Down].map(window).into();
+    let record = JobRecord { stability: Some(stability), windows, ..full(Obstacle::SlipOnly) };
     let row = row(7.0, 0.4, RowState::Done(Box::new(record)));
     for scalar in SCALARS.iter() {
         let column = Column::find(scalar.name).unwrap_or_else(|| panic!("no column {}", scalar.name));

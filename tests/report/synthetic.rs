@@ -79,6 +79,7 @@ pub fn record(outcome: Outcome, regime: Regime, mu_star: f64) -> JobRecord {
         start: None,
         disk: None,
         holder: Vec::new(),
+        windows: Vec::new(),
         energy: EnergyTotals::default(),
         nodes: Vec::new(),
     }

@@ -58,7 +58,8 @@ pub const JOB_INTERVAL: u64 = tribosweep::analysis::lanes::AUDIT_INTERVAL;
 /// A run whose energies are balanced at every step.
 pub struct Audited<'a, R: Rounded = f64> {
     model: &'a Model,
-    drive: Drive,
+    /// The drive of the coming steps.
+    pub drive: Drive,
     /// The state.
     pub state: StateOf<1, R>,
     every: EnergyLedger<1, R>,

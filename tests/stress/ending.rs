@@ -4,7 +4,7 @@ use crate::audited::{Audited, Rounded};
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use tribosweep::analysis::{JobError, JobObserver, JobRecord, Moment, drive, solve};
+use tribosweep::analysis::{JobError, JobObserver, JobRecord, Moment, drive, drive_at, solve};
 use tribosweep::solver::{Model, SolverError, StateOf};
 use tribosweep::spec::{FrictionLaw, JobSpec, Precision};
 
@@ -120,7 +120,16 @@ fn result<R: Rounded>(spec: &JobSpec, record: &JobRecord, steps: u64) -> Result<
     plausible(spec, record, R::EPSILON)?;
     let model = Model::from_scene(&spec.scene, &spec.numerics).map_err(|error| error.to_string())?;
     let mut run = Audited::<R>::new(&model, drive(spec), StateOf::at_rest(&model));
-    run.run(steps);
+    if spec.scene.program.is_constant() {
+        run.run(steps);
+    } else {
+        for n in 0..steps {
+            run.drive = drive_at(spec, n as f64 * model.time_step_s(), model.time_step_s());
+            run.run(1);
+        }
+        // The bounds are those of the largest load.
+        run.drive = drive(spec);
+    }
     same_energies(record, &run)?;
 
     let (energies, bound_j) = (run.energies(), run.rounding_bound_j());

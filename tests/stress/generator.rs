@@ -9,7 +9,7 @@ use strum::VariantArray;
 use tribosweep::solver::Model;
 use tribosweep::spec::{
     Base, ClampSide, FrictionLaw, HeightMap, JobSpec, Precision, Region, Roughness, Scene, Shape,
-    StabilityMethod, TopFace,
+    StabilityMethod, Table, TopFace,
 };
 
 /// Largest number of nodes × steps of a case. With it 10 000 cases take minutes.
@@ -30,6 +30,7 @@ pub fn job(seed: u64, index: u64) -> JobSpec {
     holder(random, &mut spec);
     numerics(random, &mut spec);
     duration(random, &mut spec);
+    program(random, &mut spec);
     if random.chance(0.3) {
         spec.numerics.precision = Precision::Single;
     }
@@ -309,10 +310,42 @@ fn duration(random: &mut Random, spec: &mut JobSpec) {
     }
 }
 
+/// A speed and a load that change in time, with steps and with stretches of less than a time step.
+fn program(random: &mut Random, spec: &mut JobSpec) {
+    if random.chance(0.7) {
+        return;
+    }
+    let limit_s = spec.run.limit_s;
+    let mut table = |largest: f64, least: f64| {
+        let count = random.whole(2, 6);
+        let mut times: Vec<f64> = (0..count).map(|_| limit_s * random.between(0.0, 1.0)).collect();
+        times.sort_by(f64::total_cmp);
+        if random.chance(0.3) {
+            times[1] = times[0];
+        }
+        let mut value = || if random.chance(0.2) { least } else { largest * random.log_between(1.0e-6, 1.0) };
+        let mut points: Vec<[f64; 2]> = times.iter().map(|time_s| [*time_s, value()]).collect();
+        let at = random.whole(0, count - 1);
+        points[at][1] = largest;
+        Some(Table(points))
+    };
+    let omega = table(spec.scene.disk.omega_rpm, 0.0);
+    let force = table(spec.scene.load.force_n, 1.0e-3 * spec.scene.load.force_n);
+    let scene = &mut spec.scene;
+    match random.whole(0, 2) {
+        // Run-out and waviness are for constant speeds.
+        _ if !scene.disk.is_plane() => scene.program.force_n = force,
+        0 => scene.program.omega_rpm = omega,
+        1 => scene.program.force_n = force,
+        _ => (scene.program.omega_rpm, scene.program.force_n) = (omega, force),
+    }
+    spec.scene.take_largest_of_program([false; 2]);
+}
+
 /// Sets one value that is not legal.
 fn spoil(random: &mut Random, spec: &mut JobSpec) {
     let scene = &mut spec.scene;
-    match random.whole(0, 13) {
+    match random.whole(0, 14) {
         0 => scene.load.force_n = random.pick(&[0.0, -0.0, -30.0]),
         1 => scene.pin.poisson_ratio = random.pick(&[0.5, 0.6, -1.0]),
         2 => scene.pin.young_modulus_pa = random.pick(&[0.0, -1.0e9]),
@@ -326,6 +359,7 @@ fn spoil(random: &mut Random, spec: &mut JobSpec) {
         10 => spec.numerics.beta2 = random.pick(&[0.499, 1.001]),
         11 => spec.numerics.beta_r_s = -1.0e-12,
         12 => spec.numerics.safety_factor = random.pick(&[0.0, 1.02]),
+        13 => scene.program.force_n = Some(Table(vec![[0.0, scene.load.force_n]])),
         _ => spec.run.limit_s = random.pick(&[0.0, 101.0]),
     }
 }

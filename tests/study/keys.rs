@@ -71,6 +71,7 @@ pub fn full() -> JobSpec {
         damping_y_n_s_m: Some(2.0),
         damping_z_n_s_m: Some(3.0),
     };
+    spec.run.window_s = Some(0.001);
     spec
 }
 
@@ -222,6 +223,29 @@ fn surfaces_without_height_do_not_change_the_key() {
     assert_eq!(key(&spec), key(&JobSpec::default()));
     spec.scene.disk.waviness_height_m = Some(1.0e-6);
     assert_ne!(key(&spec), key(&JobSpec::default()));
+}
+
+/// Protects: every number of a program is a part of the key, what looks for a steady state is not, and a job without a program has
+/// the key of before, also if it is written as an empty object.
+#[test]
+fn a_program_changes_the_key() {
+    let with = |omega: &str, rest: &str| {
+        key_of(&format!(
+            r#"{{ "scene": {{ "program": {{ "omega_rpm": {omega} }} }}, "run": {{ "limit_s": 0.04 {rest} }} }}"#
+        ))
+    };
+    let own = with("[[0, 1], [0.01, 9]]", "");
+    for other in [
+        "[[0, 1], [0.02, 9]]",
+        "[[0, 2], [0.01, 9]]",
+        "[[0, 1], [0.01, 8]]",
+        "[[0, 1], [0.01, 9], [0.02, 9]]",
+    ] {
+        assert_ne!(with(other, ""), own, "{other}");
+    }
+    assert_ne!(with("[[0, 1], [0.01, 9]]", r#", "window_s": 0.001"#), own);
+    assert_eq!(with("[[0, 1], [0.01, 9]]", r#", "stop_early": false, "average_last_fraction": 0.2"#), own);
+    assert_eq!(key_of(r#"{ "scene": { "program": {} } }"#), key(&JobSpec::default()));
 }
 
 /// Protects: jobs in double precision have the keys of versions without single precision, so their results are found.

@@ -462,3 +462,56 @@ fn axes_of_the_report_are_parameters() {
     assert_contains(&refusal(r#"{ "report": { "z": "mu" } }"#), &["report.z", "no such field", "`x`"]);
     assert_contains(&refusal(r#"{ "report": { "x": 3 } }"#), &["report.x = 3: expected a name"]);
 }
+
+/// Protects: a program that is no table over the time of the run is refused with the point and its value.
+#[test]
+fn programs_that_are_no_tables_are_refused() {
+    for (program, expected) in [
+        (r#""omega_rpm": [[0, 1]]"#, "scene.program.omega_rpm = 1 points: expected at least two points"),
+        (r#""omega_rpm": []"#, "scene.program.omega_rpm = 0 points: expected at least two points"),
+        (
+            r#""omega_rpm": [[0, 1], [0.02, 5], [0.01, 7]]"#,
+            "scene.program.omega_rpm[2] = 0.01: expected times that ascend",
+        ),
+        (
+            r#""omega_rpm": [[-0.01, 1], [0.02, 5]]"#,
+            "scene.program.omega_rpm[0] = -0.01: expected a time >= 0",
+        ),
+        (
+            r#""omega_rpm": [[0.01, 1], [0.01, 2], [0.01, 3]]"#,
+            "scene.program.omega_rpm[2] = 0.01: expected at most two points at the same time",
+        ),
+        (
+            r#""omega_rpm": [[0, 1], [0.05, 5]]"#,
+            "scene.program.omega_rpm[1] = 0.05: expected a time within the run",
+        ),
+        (
+            r#""omega_rpm": [[0, -1], [0.02, 5]]"#,
+            "scene.program.omega_rpm[0] = -1: expected a speed >= 0 rpm",
+        ),
+        (r#""force_n": [[0, 30], [0.02, 0]]"#, "scene.program.force_n[1] = 0: expected a load > 0 N"),
+        (r#""omega_rpm": [[0, 1, 2], [0.02, 5]]"#, "scene.program.omega_rpm[0] = [0, 1, 2]: expected fewer"),
+        (r#""omega_rpm": 7"#, "scene.program.omega_rpm = 7: expected"),
+        (r#""speed": []"#, "scene.program.speed = []: no such field"),
+    ] {
+        let text =
+            format!(r#"{{ "scene": {{ "program": {{ {program} }} }}, "run": {{ "limit_s": 0.04 }} }}"#);
+        assert_contains(&refusal(&text), &["studies/x.json:1:", expected]);
+    }
+    let of = |scene: &str, rest: &str| {
+        refusal(&format!(
+            r#"{{ "scene": {{ {scene} "program": {{ "omega_rpm": [[0, 1], [0.02, 5]] }} }} {rest} }}"#
+        ))
+    };
+    let twice = of(r#""disk": { "omega_rpm": 7 },"#, "");
+    assert_contains(&twice, &["scene.disk.omega_rpm = 7: expected absent, or 5, the largest value"]);
+    let swept = of("", r#", "grid": { "omega_rpm": [5, 7] }"#);
+    assert_contains(&swept, &["7: expected absent, or 5"]);
+    let elastic = of(r#""disk": { "kind": "elastic" },"#, "");
+    assert_contains(&elastic, &["scene.program.omega_rpm = ", "expected absent with an elastic disk"]);
+    let still = refusal(r#"{ "scene": { "program": { "omega_rpm": [[0, 0], [0.02, 0]] } } }"#);
+    assert_contains(&still, &["scene.disk.omega_rpm = 0: expected a speed > 0 rpm"]);
+    let windows = refusal(r#"{ "run": { "window_s": 0.001 } }"#);
+    assert_contains(&windows, &["run.window_s = ", "expected absent without scene.program"]);
+    assert_contains(&of("", r#", "run": { "window_s": 1 }"#), &["run.window_s = 1: expected a length"]);
+}

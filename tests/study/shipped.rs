@@ -163,3 +163,18 @@ fn the_studies_of_work_and_precision_share_their_scene() {
     assert_eq!(scene("studies/work_precision_damping.json"), first);
     assert_eq!(scene("studies/work_precision_detection.json"), first);
 }
+
+/// Protects: the run-up and run-down lasts as long as its program, and stands for its largest speed.
+#[test]
+fn run_up_down_goes_up_and_down() {
+    let jobs = jobs("studies/run_up_down.json");
+    assert_eq!(jobs.iter().map(|job| job.spec.scene.contact.mu).collect::<Vec<_>>(), [0.2, 0.3, 0.4]);
+    for job in jobs {
+        let omega = job.spec.scene.program.omega_rpm.as_ref().unwrap();
+        for (time_s, exact) in [(0.0, 1.0), (0.055, 25.5), (0.105, 50.0), (0.155, 25.5), (0.205, 1.0)] {
+            assert!((omega.at(time_s) - exact).abs() < 1.0e-9, "{} rpm at {time_s} s", omega.at(time_s));
+        }
+        assert_eq!((job.spec.run.limit_s, job.spec.scene.disk.omega_rpm), (0.205, 50.0));
+        assert!(job.spec.run.limit_s / job.spec.window_length_s() > 50.0);
+    }
+}

@@ -98,6 +98,42 @@ fn closes_to_rounding_in_single_precision() {
     }
 }
 
+/// Protects: the balance with a speed and a load that change in every step, by steps and by ramps, for every integrator and in
+/// both precisions. The work of the drive over an increment takes the speed of that step.
+#[test]
+fn closes_to_rounding_when_speed_and_load_change() {
+    fn residual<R: RunNumber>(beta2: f64) -> f64 {
+        let mut spec = spec();
+        spec.numerics.beta2 = beta2;
+        let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
+        let mut state = StateOf::<1, R>::at_rest(&model);
+        let mut ledger = EnergyLedger::<1, R>::new(&model, 1);
+        for n in 0..CHANGING_STEPS {
+            let up_and_down = 1.0 - (n as f64 / (0.5 * CHANGING_STEPS as f64) - 1.0).abs();
+            let force_n = if n % 500 < 250 { 30.0 } else { 10.0 + 30.0 * up_and_down };
+            let drives =
+                [Drive { law: Law::Coulomb { mu: 0.5 }, rate: 3.0 * up_and_down, force_n, ramp_s: 1.0e-4 }];
+            ledger.before_step(&model, &state);
+            step(&model, &drives, &mut state);
+            ledger.after_step(&model, &drives, &state);
+        }
+        let energies = ledger.energies(0);
+        assert!(energies.friction_j > 0.0 && energies.contact_loss_j > 0.0, "{energies:?}");
+        energies.relative_residual()
+    }
+    for beta2 in [0.5, 0.6, 1.0] {
+        // As in the tests above: every step adds works of forces, each of which is rounded like a row of K u.
+        let roundings = ROUNDINGS_PER_FORCE * CHANGING_STEPS as f64;
+        let bounds = [roundings * f64::EPSILON, roundings.sqrt() * f64::from(f32::EPSILON)];
+        for (found, bound) in [residual::<f64>(beta2), residual::<f32>(beta2)].into_iter().zip(bounds) {
+            println!("β₂ = {beta2}: {found:.1e} of {bound:.1e}");
+            assert!(found < bound, "β₂ = {beta2}: {found:e} of {bound:e}");
+        }
+    }
+}
+
+const CHANGING_STEPS: u64 = 3000;
+
 /// Protects: sampling changes the damping's work only within its sampling error, and nothing else. The power
 /// of damping is positive and varies by its own size in every cycle. If n samples were as bad as random ones,
 /// their sum would have a relative error of 1/√n, and seldom more than three times that.

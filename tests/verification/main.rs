@@ -36,6 +36,7 @@ mod modes;
 mod on_elastic_disk;
 mod particles;
 mod patch;
+mod programs;
 mod reference;
 mod ring_modes;
 mod ring_ritz;

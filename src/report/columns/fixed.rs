@@ -1,6 +1,7 @@
 //! The columns of a job and of its record.
 
 use super::{Column, Group};
+use crate::analysis::program::Hysteresis;
 use crate::analysis::sample::OBSERVED_NAMES;
 use crate::analysis::{
     CoarseStart, ComplexMode, ElasticDisk, HolderMotion, JobRecord, ObservedNode, Obstacle, Outcome,
@@ -18,7 +19,7 @@ pub static PLAIN: [Column; 25] = [
     Column::of_row("job", "", Job, "key of the job", |row| row.job.as_str().into()),
     Column::of_row("omega_rpm", "rpm", Job, "rotation speed ω of the disk", |row| row.omega_rpm.into()),
     Column::of_row("mu", "", Job, "local (Coulomb) friction coefficient μ", |row| row.mu.into()),
-    Column::of_row("status", "", Job, "how far the job is, or how its run ended: pending, running, cancelled, failed, periodic, decayed, not_periodic, unstable", |row| row.status().into()),
+    Column::of_row("status", "", Job, "how far the job is, or how its run ended: pending, running, cancelled, failed, periodic, decayed, not_periodic, completed, unstable", |row| row.status().into()),
     Column::of_row("regime", "", Result, "contact regime: stable, stick_slip, stick_slip_separation, slip_separation, undecided", |row| of(row, |record| record.regime.name())),
     Column::of_row("mu_star", "", Result, "macroscopic friction coefficient μ* = ⟨T⟩/⟨F⟩ with the tangential force T at the clamp", |row| of(row, |record| record.mu_star)),
     Column::of_row("mu_star_se", "", Result, "standard error of mu_star over the cycles; of a stable job, over equal parts of the window", |row| of(row, |record| record.mu_star_se)),
@@ -43,7 +44,7 @@ pub static PLAIN: [Column; 25] = [
 
 /// The rest of the record.
 #[rustfmt::skip]
-pub static FURTHER: [Column; 63] = [
+pub static FURTHER: [Column; 65] = [
     Column::of_row("growth_rate_per_s", "1/s", Result, "growth rate of the fastest growing strong line, if the run ended in steady sliding, and of the leading mode without a run; negative: sliding is stable", |row| of(row, |record| record.growth_rate_per_s)),
     Column::of_row("obstacle", "", Result, "why the run is not periodic", |row| of(row, |record| record.obstacle.as_ref().map(in_words))),
     Column::of_row("obstacle_figure", "", Result, "the figure that is not the same from cycle to cycle", |row| unsteady(row, |figure, _, _| figure.into())),
@@ -53,6 +54,8 @@ pub static FURTHER: [Column; 63] = [
     Column::of_row("obstacle_cycles_needed", "", Result, "section crossings that would have to repeat in such a run", |row| few_cycles(row, |_, needed| needed)),
     Column::of_row("mu_reduction_stick", "", Result, "part of μ − μ* that is due to sticking nodes", |row| of(row, |record| record.mu_reduction_stick)),
     Column::of_row("mu_reduction_slip", "", Result, "part of μ − μ* that is due to nodes that slip sideways or backwards", |row| of(row, |record| record.mu_reduction_slip)),
+    Column::of_row("hysteresis", "", Result, "largest difference of μ* between the way up and the way down of a program at the same speed or load, up minus down", |row| hysteresis(row, |found| found.difference)),
+    Column::of_row("hysteresis_at", "", Result, "the speed in rpm or the load in N at that difference", |row| hysteresis(row, |found| found.at)),
     Column::of_row("decided_by", "", Stability, "what decided the outcome: run, or eigenvalues, and then there was no run", |row| of(row, decided_by)),
     Column::of_row("mode_frequency_hz", "Hz", Stability, "frequency of the leading mode of steady sliding, which grows fastest or decays most slowly", |row| mode(row, |mode| mode.frequency_hz)),
     Column::of_row("mode_growth_rate_per_s", "1/s", Stability, "growth rate of the leading mode; negative: it decays", |row| mode(row, |mode| mode.growth_rate_per_s)),
@@ -162,6 +165,10 @@ fn coarse_outcome(start: &CoarseStart) -> &'static str {
 
 fn disk<T: Into<Value>>(row: &JobRow, read: impl FnOnce(&ElasticDisk) -> T) -> Value {
     of(row, |record| record.disk.as_ref().map(read))
+}
+
+fn hysteresis(row: &JobRow, read: impl FnOnce(&Hysteresis) -> f64) -> Value {
+    of(row, |record| Hysteresis::of(&record.windows).as_ref().map(read))
 }
 
 fn unsteady(row: &JobRow, read: impl FnOnce(&str, f64, f64) -> Value) -> Value {

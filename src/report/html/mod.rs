@@ -55,6 +55,7 @@ pub(super) fn page(parts: &Parts) -> String {
     let mut sections: Vec<(&str, &str, Markup)> = Vec::new();
     sections.extend(parts.comparison.map(|found| ("comparison", "Comparison", comparison::section(found))));
     sections.extend(report.sheet.map(|sheet| ("scene", "What was simulated", scene::section(sheet))));
+    sections.extend(parts.programs.map(|own| ("program", "Speed and load in time", own.markup())));
     sections.extend([
         ("friction", "Macroscopic friction", grids::friction(parts)),
         ("frequency", "Frequency", grids::frequency(parts)),

@@ -4,7 +4,6 @@
 
 use super::solve::{RunNumber, TargetState};
 use super::{Contacts, Interface, NodesOnLayer, Status};
-use crate::solver::drive::Drive;
 use crate::solver::field::{Block, FieldOf, add_slots};
 use crate::solver::number::Number;
 use crate::solver::simd::{dispatch, load, splat};
@@ -22,7 +21,8 @@ pub(in crate::solver) struct InterfaceWork<const L: usize, R: Number> {
 #[derive(Debug, Clone, Copy)]
 #[expect(clippy::struct_field_names, reason = "units are part of the names")]
 pub(in crate::solver) struct StepWorks<const L: usize> {
-    pub drive_j: [f64; L],
+    pub drive_after_j: [f64; L],
+    pub drive_before_j: [f64; L],
     /// Work of the drive on the slopes of an elastic target.
     pub slope_after_j: [f64; L],
     pub slope_before_j: [f64; L],
@@ -47,11 +47,12 @@ impl<const L: usize, R: RunNumber> InterfaceWork<L, R> {
         self.layer.as_ref().map_or([0.0; L], |layer| layer.stored_j(contacts))
     }
 
-    /// The works of the step that gave these contacts and this target.
+    /// The works of the step that gave these contacts and this target. The rates of the target are those over the step and
+    /// over the step before.
     pub fn of_step(
         &self,
         time_step_s: f64,
-        drives: &[Drive; L],
+        [rates, last_rates]: [&[f64; L]; 2],
         contacts: &Contacts<L, R>,
         target: &TargetState<L, R>,
     ) -> StepWorks<L> {
@@ -65,14 +66,13 @@ impl<const L: usize, R: RunNumber> InterfaceWork<L, R> {
             status: contacts.status.blocks(),
         };
         face.add_up(&mut sums.each_mut().map(<[f64; L]>::as_mut_slice));
-        let [mut drive_j, friction_after_j, friction_before_j, contact_loss_after_j, contact_loss_before_j] =
+        let [on_motion_n, friction_after_j, friction_before_j, contact_loss_after_j, contact_loss_before_j] =
             sums;
-        for (drive_j, drive) in drive_j.iter_mut().zip(drives) {
-            *drive_j *= drive.rate * time_step_s;
-        }
+        let drive_j = |rates: &[f64; L]| std::array::from_fn(|l| on_motion_n[l] * (rates[l] * time_step_s));
         let [slope_after_j, slope_before_j] = target.slope_works_j(contacts);
         StepWorks {
-            drive_j,
+            drive_after_j: drive_j(rates),
+            drive_before_j: drive_j(last_rates),
             slope_after_j,
             slope_before_j,
             friction_after_j,

@@ -24,13 +24,13 @@ fn groups(spec: &JobSpec) -> [String; 2] {
     [speed, pin.density_kg_m3 / pin.young_modulus_pa].map(|group| format!("{group:.9e}"))
 }
 
-/// Whether the equations are those above. Gaps are lengths, some friction laws have a speed or a length, and a holder has a
-/// mass and a stiffness of its own.
+/// Whether the equations are those above. Gaps are lengths, some friction laws have a speed or a length, a holder has a
+/// mass and a stiffness of its own, and the values of a program are no parameters.
 fn has_similarity(spec: &JobSpec) -> bool {
     let scene = &spec.scene;
     let has_scale = !matches!(scene.contact.law, FrictionLaw::Coulomb | FrictionLaw::StaticKinetic);
     let is_flat = scene.pin.has_plane_base() && scene.disk.is_plane();
-    let has_scale = has_scale || scene.contact.layer().is_some();
+    let has_scale = has_scale || scene.contact.layer().is_some() || !scene.program.is_constant();
     scene.disk.kind == DiskKind::Rigid && !has_scale && is_flat && scene.holder.is_ideal()
 }
 
