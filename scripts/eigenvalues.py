@@ -382,7 +382,11 @@ by {whole} %. That of `clamps` differs by {clamps} %, because its mesh is coarse
 * **Modes follow their shapes.** A correction continues a mode by the eigenvector of the larger basis that is most like it. Of
   two modes that are nearly equal in shape and frequency, one can take the place of the other.
 * **The distance in μ.** It rests on runs, not on a theorem. The runs have one pin, one mesh and one load, and one way to start.
-* **An elastic disk.** Its jobs are always simulated. `tribosweep stability` refuses such a study.
+* **Other scenes.** Modes cover holders, bases that are not flat, and all friction laws but `prakash_clifton`. The errors and the
+  distance in μ were measured for Coulomb's law, an ideal clamp and a flat base only. So presets leave other scenes to their
+  runs. If a study itself says `eigenvalues`, they decide with a holder, with gaps and with `regularised`, too.
+* **An elastic disk, and friction with a state** (`prakash_clifton`). Such jobs are always simulated. `tribosweep stability` refuses such a
+  study. The library has the modes on an elastic disk (`stability::SparseStructure`).
 * **Large vibrations, stick and lift-off.** Modes are small vibrations about steady sliding. They do not give the amplitude,
   frequency or μ\\* of a limit cycle.
 """

@@ -216,27 +216,29 @@ STABILITY = """
 
 **Equilibrium.** A node in contact has the normal force N and the friction μN along d, the unit vector of the disk's velocity
 there. The displacements u solve K u = F + Σ (N n + μ N d), with the load F and the normal n. Which nodes are in contact is a
-complementarity problem: N ≥ 0, gap ≥ 0, and one of them is zero. An active set solves it. The equilibrium is proportional to
-the load, and it does not depend on the speed.
+complementarity problem: N ≥ 0, gap ≥ 0, and one of them is zero. An active set solves it. On a flat base the equilibrium is
+proportional to the load. It depends on the speed only through a coefficient μ(v). On a base with gaps it belongs to one load.
 
 **Small vibrations.** Let q be a small displacement from the equilibrium that keeps the nodes in contact at z = 0. Then
 
 ```text
 M q̈ + [β K_μ + D] q̇ + K_μ q = 0
 K_μ = K − μ d ⊗ K_z
-D   = μ N₀/|v| (1 − d ⊗ d)
+D   = μ N₀/|v| (1 − d ⊗ d) + μ′ N₀ d ⊗ d
 ```
 
 The second and the third line hold at each node in contact, and D acts on the tangential plane. K_z is the row of K that gives the
 node's normal force. So K_μ has the friction that follows the normal force, and it is not symmetric: two modes can couple, and one
-of them grows. β is the stiffness-proportional damping; it acts on the normal force, too. D is positive. It is the turning of the
-friction force N₀ when a node slips sideways at the disk's speed |v|, and it is large on a slow disk. With q = Re(q̂ exp(λt)), Re λ is
+of them grows. β is the stiffness-proportional damping; it acts on the normal force, too. The first part of D is positive. It is the
+turning of the friction force when a node slips sideways at the disk's speed |v|, and it is large on a slow disk. The second part
+is the slope μ′ of a law that depends on the speed. It feeds vibrations if friction falls with the speed. A holder adds its mass,
+its spring and its damper to the nodes that it carries. With q = Re(q̂ exp(λt)), Re λ is
 the growth rate [1/s] and Im λ/2π the frequency [Hz]. Sliding is stable if all growth rates are negative.
 
 **What it neglects.** Vibrations are small: no node sticks, none lifts off, none closes. So the modes say whether vibrations grow
 from steady sliding. They do not say how large vibrations become, and they do not give the frequency or μ\\* of the limit cycle.
 The disk is rigid. An elastic disk is not covered: its jobs are simulated, and `tribosweep stability` refuses
-such a study.
+such a study. So is the law `prakash_clifton`, whose friction has a state.
 
 ## More than one limit cycle
 

@@ -10,7 +10,7 @@ use super::sample::OBSERVED_NAMES;
 use crate::solver::interface::SlaveNode;
 use crate::solver::interface::solve::Solves;
 use crate::solver::{Drive, Model};
-use crate::spec::{JobSpec, Precision, StabilityMethod};
+use crate::spec::{FrictionLaw, JobSpec, Precision, StabilityMethod};
 use crate::stability::{Decision, Equilibrium, Mode, SlidingPoint, StabilityError, Structure};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
@@ -115,7 +115,7 @@ pub fn judge(
                 Some(figure) => Err(JobError::NotFinite { figure }),
             }
         }
-        StabilityMethod::Eigenvalues if spec.run.stop_early && spec.has_sliding_modes() => {
+        StabilityMethod::Eigenvalues if spec.eigenvalues_may_decide() => {
             // Without an equilibrium or eigenvalues the run decides.
             let decide = |structure: &Structure| structure.decide(model, &drive(spec), DECIDING_MODES);
             let Ok((point, verdict, is_safely_stable)) = structures.with(spec, model, decide) else {
@@ -192,7 +192,7 @@ struct SlidingNode {
     slip_speed_m_s: f64,
     /// Distance from the undeformed disk; 0 if it is in contact.
     lift_m: f64,
-    /// Part of μN that friction lacks in y: N(1 − cos φ), with the angle φ of the disk's motion from +y.
+    /// What friction lacks in y, over the scale of μ: N(1 − cos φ), with the angle φ of the disk's motion from +y.
     misaligned_n: f64,
 }
 
@@ -201,7 +201,7 @@ impl SlidingNode {
         let [x, y] = node.surface_motion;
         let motion = x.hypot(y);
         if !equilibrium.in_contact[slave] {
-            let gap_m = node.initial_gap_m + equilibrium.u_m[3 * node.node + 2];
+            let gap_m = node.initial_gap_m + equilibrium.u_m[3 * node.node + 2] - equilibrium.disk_z_m[slave];
             let lift_m = gap_m.max(0.0);
             return Self { sigma_n_pa: 0.0, slip_speed_m_s: 0.0, lift_m, misaligned_n: 0.0 };
         }
@@ -211,7 +211,7 @@ impl SlidingNode {
             sigma_n_pa: normal_n / node.area_m2,
             slip_speed_m_s: (motion * drive.rate).abs(),
             lift_m: 0.0,
-            misaligned_n: normal_n * misalignment,
+            misaligned_n: normal_n * misalignment * equilibrium.mu_share[slave],
         }
     }
 }
@@ -225,9 +225,9 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
     let largest = |value: fn(&SlidingNode) -> f64| nodes.iter().map(value).fold(0.0, f64::max);
     // The time step is not in the key of modes that do not depend on it.
     let is_without_step = spec.stability == StabilityMethod::Modes && !spec.modes_need_time_step();
-    let mu = spec.scene.contact.mu;
     let mu_star = stability.mu_star;
-    let slip_reduction = mu * nodes.iter().map(|node| node.misaligned_n).sum::<f64>() / drive.force_n;
+    let slip_reduction =
+        point.equilibrium.mu * nodes.iter().map(|node| node.misaligned_n).sum::<f64>() / drive.force_n;
     let all = nodes.len() as f64;
     let observed = OBSERVED_NAMES.iter().zip(model.interface().edge_centres());
     JobRecord {
@@ -254,7 +254,11 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
         time_step_limit_s: model.time_step_limit_s(),
         clamp_width_m: model.clamp_width_m(),
         energy_residual: 0.0,
-        macroscopic_identity_residual: mu - mu_star - slip_reduction,
+        macroscopic_identity_residual: match spec.scene.contact.law {
+            FrictionLaw::Coulomb => spec.scene.contact.mu - mu_star - slip_reduction,
+            // As in a run: μ* is that of the contact.
+            _ => 0.0,
+        },
         energy_identity_residual: 0.0,
         contact_loss_share: 0.0,
         mu_reduction_stick: 0.0,
@@ -315,7 +319,15 @@ mod tests {
             shape: Vec::new(),
         };
         SlidingPoint {
-            equilibrium: Equilibrium { u_m, normal_n, in_contact, mu_star },
+            equilibrium: Equilibrium {
+                u_m,
+                normal_n,
+                mu_share: vec![1.0; in_contact.len()],
+                disk_z_m: vec![0.0; in_contact.len()],
+                in_contact,
+                mu: 0.4,
+                mu_star,
+            },
             modes: vec![mode],
             band_hz: 5.0e4,
             basis: 40,

@@ -113,8 +113,9 @@ impl Model {
         Self { clamp_width_m, ..self }
     }
 
-    /// The same model with other initial gaps \[m\].
-    pub(super) fn with_initial_gaps(self, gap_m: impl Fn(&SlaveNode) -> f64) -> Self {
+    /// The same model with other initial gaps \[m\]. A negative gap presses a node of a held pin on the target.
+    #[must_use]
+    pub fn with_initial_gaps(self, gap_m: impl Fn(&SlaveNode) -> f64) -> Self {
         Self { interface: self.interface.with_initial_gaps(gap_m), ..self }
     }
 

@@ -47,7 +47,7 @@ pub struct Basis {
 impl Basis {
     pub fn new(model: &Model, space: &Space, separable: &Separable) -> Self {
         let all_in_contact = vec![true; space.sliding().len()];
-        let mut elasticity = Elasticity::new(model);
+        let mut elasticity = Elasticity::new(model, space);
         let free = coarse::modes(model, space, false, FREE, COMPLETE);
         let highest = free.omega_squared.last().copied().unwrap_or(0.0);
         let band_hz = frequency_hz(highest);
@@ -137,7 +137,7 @@ impl Basis {
 
 /// Independent combinations of the columns, orthonormal in the mass.
 fn orthonormal(masses: &[f64], columns: &Mat<f64>) -> Mat<f64> {
-    let weighted = Mat::from_fn(columns.nrows(), columns.ncols(), |i, j| masses[i / 3] * columns[(i, j)]);
+    let weighted = Mat::from_fn(columns.nrows(), columns.ncols(), |i, j| masses[i] * columns[(i, j)]);
     let gram = columns.transpose() * &weighted;
     drop(weighted);
     let eigen = gram.self_adjoint_eigen(Side::Lower).expect("a symmetric matrix of finite numbers");
@@ -178,13 +178,17 @@ fn stiffness_in(space: &Space, elasticity: &mut Elasticity<'_>, vectors: &Mat<f6
 }
 
 fn mass_norm(masses: &[f64], x: &[f64]) -> f64 {
-    x.as_chunks::<3>()
-        .0
-        .iter()
-        .zip(masses)
-        .map(|([x, y, z], m)| m * (x * x + y * y + z * z))
-        .sum::<f64>()
-        .sqrt()
+    let squares = x.as_chunks::<3>().0.iter().zip(masses.as_chunks::<3>().0);
+    squares.map(|(x, m)| sum_of(x, x, m)).sum::<f64>().sqrt()
+}
+
+/// Σ m a b over the components of a node. Only holders make their masses differ.
+pub fn sum_of(a: &[f64; 3], b: &[f64; 3], masses: &[f64; 3]) -> f64 {
+    let [x, y, z] = *masses;
+    if x == y && y == z {
+        return x * (a[0] * b[0] + a[1] * b[1] + a[2] * b[2]);
+    }
+    x * a[0] * b[0] + y * a[1] * b[1] + z * a[2] * b[2]
 }
 
 /// Tangential forces on the contact face: products of cosines over x and y.

@@ -7,6 +7,7 @@ use crate::solver::body::Freedom;
 use crate::solver::body::hexahedron;
 use crate::solver::body::pin::BlockMesh;
 use crate::solver::body::pin::operator::AssembledOperator;
+use crate::solver::support::Support;
 use faer::{Mat, Side};
 use std::collections::BTreeMap;
 
@@ -77,6 +78,14 @@ pub fn modes(
             mass[*index] += nodal * share * share;
         }
     }
+    let mut springs_n_m = vec![0.0; count];
+    let ties = model.supports().iter().filter(|support| support.tie().is_some());
+    for (group, support) in ties.enumerate() {
+        if let (Support::Held(held), Some(&index)) = (support, groups.get(&group)) {
+            mass[index] += held.mass_kg;
+            springs_n_m[index] = held.stiffness_n_m;
+        }
+    }
     let element = hexahedron::stiffness(material, mesh.element_size_m());
     let operator = AssembledOperator::of_block(&mesh, &element);
     let mut scaled = Mat::<f64>::zeros(count, count);
@@ -87,6 +96,9 @@ pub fn modes(
                 scaled[(i, j)] += own * share * value / (mass[i] * mass[j]).sqrt();
             }
         }
+    }
+    for (i, spring_n_m) in springs_n_m.into_iter().enumerate() {
+        scaled[(i, i)] += spring_n_m / mass[i];
     }
     let is_complete = is_exact && !is_locked_sideways && count <= complete;
     let wanted = if is_complete { count } else { most.min(count) };

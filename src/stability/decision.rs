@@ -88,8 +88,15 @@ mod tests {
             is_converged: true,
             shape: Vec::new(),
         };
-        let equilibrium =
-            Equilibrium { u_m: Vec::new(), normal_n: Vec::new(), in_contact: Vec::new(), mu_star: 0.4 };
+        let equilibrium = Equilibrium {
+            u_m: Vec::new(),
+            normal_n: Vec::new(),
+            in_contact: Vec::new(),
+            disk_z_m: Vec::new(),
+            mu: 0.4,
+            mu_share: Vec::new(),
+            mu_star: 0.4,
+        };
         SlidingPoint {
             equilibrium,
             modes: modes.iter().map(mode).collect(),

@@ -1,10 +1,11 @@
 //! The equilibrium of steady sliding, with the nodes that are in contact.
 //!
 //! All nodes in contact slip with the disk, so their friction is μN along the disk's velocity. Which nodes are in contact is
-//! a complementarity problem (N ≥ 0, gap ≥ 0, one of them zero) and is solved with an active set. The problem is
-//! homogeneous in the load, and on a rigid disk it does not depend on the speed.
+//! a complementarity problem (N ≥ 0, gap ≥ 0, one of them zero) and is solved with an active set. On a flat base the problem is
+//! homogeneous in the load. On a rigid disk it depends on the speed only through the friction coefficient.
 
 use super::error::StabilityError;
+use super::friction::SlidingFriction;
 use super::separable::Separable;
 use super::solve::Bilateral;
 use super::space::{Contact, Elasticity, Space};
@@ -20,7 +21,7 @@ const TOLERANCE: f64 = 1e-11;
 /// Residual while the nodes in contact still change.
 const SEARCH_TOLERANCE: f64 = 1e-5;
 
-/// The equilibrium under a load of 1 N.
+/// The equilibrium over the load. On a flat base it is the same under any load.
 #[derive(Debug, Clone)]
 pub struct UnitEquilibrium {
     /// Displacements over the load \[m/N\], three per node.
@@ -32,7 +33,16 @@ pub struct UnitEquilibrium {
 }
 
 impl UnitEquilibrium {
-    pub fn new(model: &Model, space: &Space, separable: &Separable, mu: f64) -> Result<Self, StabilityError> {
+    /// The equilibrium under a load, which matters only for a base that is not flat.
+    pub fn new(
+        model: &Model,
+        space: &Space,
+        separable: &Separable,
+        friction: &SlidingFriction,
+        force_n: f64,
+    ) -> Result<Self, StabilityError> {
+        let gaps: Vec<f64> = model.slaves().iter().map(|slave| slave.initial_gap_m / force_n).collect();
+        let has_gaps = gaps.iter().any(|gap| *gap != 0.0);
         let slaves = space.sliding();
         let mut load = vec![0.0; space.len()];
         for share in model.load() {
@@ -45,19 +55,32 @@ impl UnitEquilibrium {
             let contact = Contact { in_contact: &in_contact, is_locked_sideways: false };
             let mut problem = Sliding {
                 bilateral: Bilateral { space, separable, contact },
-                elasticity: Elasticity::new(model),
-                mu,
+                elasticity: Elasticity::new(model, space),
+                friction,
             };
             space.project(contact, &mut u);
             let mut force = space.one(&load);
             space.project(contact, &mut force);
-            problem.solve(&force, &mut u, tolerance)?;
+            if has_gaps {
+                // The nodes in contact have moved down by their gaps. The rest of the displacement satisfies the constraints.
+                let mut closed: Field<1> = space.zeros();
+                for (i, slave) in slaves.iter().enumerate().filter(|(i, _)| in_contact[*i]) {
+                    closed.at_mut(closed.place(slave.node), 2)[0] = -gaps[i];
+                }
+                add(&mut force, -1.0, &problem.apply(&closed));
+                problem.solve(&force, &mut u, tolerance)?;
+                add(&mut u, 1.0, &closed);
+            } else {
+                problem.solve(&force, &mut u, tolerance)?;
+            }
             let mut product = space.zeros();
             problem.elasticity.product(&u, &mut product);
             let of = |field: &Field<1>, node: usize| field.at(field.place(node), 2)[0];
             let normal: Vec<f64> = slaves.iter().map(|slave| of(&product, slave.node)).collect();
             let next: Vec<bool> = (0..slaves.len())
-                .map(|i| if in_contact[i] { normal[i] >= 0.0 } else { of(&u, slaves[i].node) < 0.0 })
+                .map(
+                    |i| if in_contact[i] { normal[i] >= 0.0 } else { gaps[i] + of(&u, slaves[i].node) < 0.0 },
+                )
                 .collect();
             if next != in_contact {
                 in_contact = next;
@@ -68,14 +91,14 @@ impl UnitEquilibrium {
                 return Ok(Self { u: u.values().collect(), normal, in_contact });
             }
         }
-        Err(StabilityError::NoEquilibrium { mu })
+        Err(StabilityError::NoEquilibrium { mu: friction.mu })
     }
 
     /// Macroscopic friction coefficient: friction in y over the normal force.
-    pub fn mu_star(&self, space: &Space, mu: f64) -> f64 {
-        let along_y: f64 =
-            self.normal.iter().zip(space.sliding()).map(|(normal, slave)| normal * slave.forward[1]).sum();
-        mu * along_y / self.normal.iter().sum::<f64>()
+    pub fn mu_star(&self, space: &Space, friction: &SlidingFriction) -> f64 {
+        let nodes = self.normal.iter().zip(&friction.share).zip(space.sliding());
+        let along_y: f64 = nodes.map(|((normal, share), slave)| normal * share * slave.forward[1]).sum();
+        friction.mu * along_y / self.normal.iter().sum::<f64>()
     }
 }
 
@@ -83,7 +106,7 @@ impl UnitEquilibrium {
 struct Sliding<'a> {
     bilateral: Bilateral<'a>,
     elasticity: Elasticity<'a, 1>,
-    mu: f64,
+    friction: &'a SlidingFriction,
 }
 
 impl Sliding<'_> {
@@ -92,12 +115,13 @@ impl Sliding<'_> {
         let mut force = space.zeros();
         self.elasticity.product(u, &mut force);
         force.clear_padding();
-        for (slave, &in_contact) in space.sliding().iter().zip(contact.in_contact) {
+        for (i, (slave, &in_contact)) in space.sliding().iter().zip(contact.in_contact).enumerate() {
             if in_contact {
+                let mu = self.friction.mu_of(i);
                 let place: LaneSlot = force.place(slave.node);
                 let [normal] = *force.at(place, 2);
                 for c in 0..2 {
-                    force.at_mut(place, c)[0] -= self.mu * slave.forward[c] * normal;
+                    force.at_mut(place, c)[0] -= mu * slave.forward[c] * normal;
                 }
             }
         }

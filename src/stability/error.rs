@@ -11,25 +11,36 @@ pub enum StabilityError {
         /// The local friction coefficient.
         mu: f64,
     },
-    /// The disk is elastic.
+    /// The mesh of an elastic disk is too fine.
     #[error(
-        "eigenvalues of steady sliding are for a rigid disk, and scene.disk.kind is elastic: simulate this job"
+        "eigenvalues of steady sliding on an elastic disk are for at most {most} displacements, and pin and disk have \
+         {unknowns}: give coarser elements (scene.disk.ring.element_size_m, coarse_element_size_m, scene.pin.elements) or \
+         simulate this job"
     )]
-    ElasticDisk,
-    /// The friction law is not Coulomb's.
-    #[error("eigenvalues of steady sliding are for Coulomb's law (scene.contact.law): simulate this job")]
+    TooLarge {
+        /// Displacements of pin and disk.
+        unknowns: usize,
+        /// The largest number.
+        most: usize,
+    },
+    /// A sparse matrix has no factors.
+    #[error("the equations of steady sliding with {unknowns} unknowns are singular, or memory is short")]
+    NotFactored {
+        /// Number of unknowns.
+        unknowns: usize,
+    },
+    /// The friction law has a state.
+    #[error(
+        "eigenvalues of steady sliding are not for friction with a state (scene.contact.law = prakash_clifton): \
+         simulate this job"
+    )]
     FrictionLaw,
-    /// The holder moves.
-    #[error("eigenvalues of steady sliding are for an ideal clamp (scene.holder): simulate this job")]
-    Holder,
-    /// The pin is not an upright block of one material.
+    /// A holder has no spring along the disk, which friction would push away.
     #[error(
-        "eigenvalues of steady sliding are for an upright block of one material (scene.pin): simulate this job"
+        "steady sliding has no equilibrium on a holder without a spring (scene.holder.stiffness_x_n_m, \
+         stiffness_y_n_m = 0): give a stiffness > 0 or simulate this job"
     )]
-    Shape,
-    /// The base is not a plane.
-    #[error("eigenvalues of steady sliding are for a flat base (scene.pin.base): simulate this job")]
-    Base,
+    Holder,
     /// An iteration did not converge.
     #[error("{what} did not converge within {iterations} iterations")]
     NotConverged {

@@ -1,7 +1,8 @@
 //! Vectors that are added to the basis for some modes of one point.
 
-use super::basis::Basis;
-use super::pencil::Pencil;
+use super::basis::{Basis, sum_of};
+use super::dashpots::Dashpots;
+use super::pencil::{Pencil, Sampling};
 use super::space::{Elasticity, LANES, Space, Vectors};
 use super::vibration::Vibration;
 use faer::Mat;
@@ -13,7 +14,7 @@ const INDEPENDENT: f64 = 1e-10;
 pub struct Extension {
     /// Orthogonal to each other in the mass.
     pub vectors: Vec<Vec<f64>>,
-    /// Slip along and across the disk's velocity and normal forces: vector → slave node.
+    /// Slip along the disk's velocity times the share of μ, slip across it, and normal forces: vector → slave node.
     forward: Vec<Vec<f64>>,
     sideways: Vec<Vec<f64>>,
     normal: Vec<Vec<f64>>,
@@ -30,7 +31,7 @@ impl Extension {
         let mut given = Mat::from_fn(space.len(), lanes, |i, lane| response.blocks()[i / 3].0[i % 3][lane]);
         let own: Vec<f64> = (0..lanes).map(|lane| column_dot(masses, &given, lane)).collect();
         for _ in 0..2 {
-            let weighted = Mat::from_fn(space.len(), lanes, |i, lane| masses[i / 3] * given[(i, lane)]);
+            let weighted = Mat::from_fn(space.len(), lanes, |i, lane| masses[i] * given[(i, lane)]);
             let shares = basis.vectors.transpose() * &weighted;
             given -= &basis.vectors * &shares;
         }
@@ -104,7 +105,7 @@ impl Extension {
                 let v = views[lane];
                 self.forward.push(of_nodes(&|i| {
                     let [dx, dy] = slave(i).forward;
-                    dx * v[3 * slave(i).node] + dy * v[3 * slave(i).node + 1]
+                    (dx * v[3 * slave(i).node] + dy * v[3 * slave(i).node + 1]) * vibration.friction.share[i]
                 }));
                 self.sideways.push(of_nodes(&|i| {
                     let [dx, dy] = slave(i).forward;
@@ -124,28 +125,63 @@ impl Extension {
             .map(|j| self.sideways[j - r].iter().zip(vibration.sideways_n_s_m).map(|(a, b)| a * b).collect())
             .collect();
         for i in 0..size {
-            let forward = get(&basis.forward, &self.forward, i);
+            let mut forward = get(&basis.forward, &self.forward, i);
+            if i < r {
+                for (slip, share) in forward.iter_mut().zip(&vibration.friction.share) {
+                    *slip *= share;
+                }
+            }
             let normal = get(&basis.normal, &self.normal, i);
             let across = get(&basis.sideways, &self.sideways, i);
             for j in old..size {
-                stiffness[(i, j)] -= vibration.mu * dot(&forward, &self.normal[j - r]);
+                stiffness[(i, j)] -= vibration.friction.mu * dot(&forward, &self.normal[j - r]);
                 if i < old {
-                    stiffness[(j, i)] -= vibration.mu * dot(&self.forward[j - r], &normal);
+                    stiffness[(j, i)] -= vibration.friction.mu * dot(&self.forward[j - r], &normal);
                 }
                 let damping = dot(&across, &weighted[j - old]);
                 sideways[(i, j)] = damping;
                 sideways[(j, i)] = damping;
             }
         }
-        Pencil { stiffness, sideways, damping_s: before.damping_s }
+        let viscous = self.with_dashpots(basis, vibration, before, old);
+        Pencil { viscous, stiffness, sideways, damping_s: before.damping_s }
+    }
+
+    /// The matrices of other dampers in the larger basis, of which `old` vectors had been there before.
+    fn with_dashpots(
+        &self,
+        basis: &Basis,
+        vibration: &Vibration<'_>,
+        before: &Pencil,
+        old: usize,
+    ) -> Vec<(Sampling, Mat<f64>)> {
+        let r = basis.len();
+        let size = r + self.vectors.len();
+        let enlarge = |(dashpots, (sampling, before)): (&Dashpots, &(Sampling, Mat<f64>))| {
+            let velocities: Vec<Vec<f64>> = (0..size)
+                .map(|i| match i.checked_sub(r) {
+                    None => dashpots.velocities_of_basis(basis, i),
+                    Some(own) => dashpots.velocities(&self.vectors[own]),
+                })
+                .collect();
+            let form = |i: usize, j: usize| {
+                if i < old && j < old {
+                    before[(i, j)]
+                } else {
+                    dashpots.form(&velocities[i], &velocities[j])
+                }
+            };
+            (*sampling, Mat::from_fn(size, size, form))
+        };
+        vibration.viscous.iter().zip(&before.viscous).map(enlarge).collect()
     }
 }
 
 fn column_dot(masses: &[f64], x: &Mat<f64>, column: usize) -> f64 {
-    x.col(column).iter().enumerate().map(|(i, x)| masses[i / 3] * x * x).sum()
+    x.col(column).iter().enumerate().map(|(i, x)| masses[i] * x * x).sum()
 }
 
 fn mass_dot(masses: &[f64], a: &[f64], b: &[f64]) -> f64 {
-    let (a, b) = (a.as_chunks::<3>().0, b.as_chunks::<3>().0);
-    a.iter().zip(b).zip(masses).map(|((a, b), m)| m * (a[0] * b[0] + a[1] * b[1] + a[2] * b[2])).sum()
+    let [a, b, masses] = [a, b, masses].map(|x| x.as_chunks::<3>().0);
+    a.iter().zip(b).zip(masses).map(|((a, b), m)| sum_of(a, b, m)).sum()
 }

@@ -2,65 +2,80 @@
 
 mod basis;
 mod coarse;
+mod dashpots;
 mod decision;
 mod equilibrium;
 mod error;
 mod extension;
+mod friction;
 mod pencil;
 mod point;
 mod separable;
 mod sliding;
 mod solve;
 mod space;
+mod sparse;
 mod vibration;
 
 pub use error::StabilityError;
 
-use crate::solver::interface::law::Law;
-use crate::solver::support::Support;
 use crate::solver::{Drive, Model};
 use basis::Basis;
+use dashpots::{Dashpot, Dashpots};
 pub use decision::Decision;
 use decision::{further_mu, verdict};
 use equilibrium::UnitEquilibrium;
-use pencil::Clock;
+use friction::{Conditions, SlidingFriction, with_mu};
+use pencil::{Clock, Sampling};
 pub use point::{Accuracy, Aim};
 use point::{Friction, Point};
 use separable::Separable;
 pub use sliding::{Equilibrium, Mode, SlidingPoint};
 use solve::Bilateral;
 use space::{Elasticity, Space};
+pub use sparse::{ModesNear, SparseStructure};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// What all points of a model share: everything that does not depend on friction, speed and load.
 #[derive(Debug)]
-pub struct Structure {
+pub enum Structure {
+    /// On a rigid disk.
+    Reduced(Box<ReducedStructure>),
+    /// On an elastic disk.
+    Sparse(Box<SparseStructure>),
+}
+
+/// What all points of a pin on a rigid disk share.
+#[derive(Debug)]
+pub struct ReducedStructure {
     space: Space,
     separable: Separable,
     basis: Basis,
-    /// What the points of one μ share, for the μ used last.
-    frictions: Mutex<Vec<Arc<Friction>>>,
+    /// Dampers of the holders of the pin.
+    holders: Option<Dashpots>,
+    has_gaps: bool,
+    /// What the points of one equilibrium share, for those used last.
+    frictions: Mutex<Vec<(Conditions, Arc<Friction>)>>,
 }
 
-/// Number of friction coefficients that are remembered.
+/// Number of equilibria that are remembered.
 const REMEMBERED: usize = 16;
 
 impl Structure {
     /// What all points of `model` share.
     ///
     /// # Errors
-    /// If the disk is elastic.
+    /// If a holder in x or y has no spring, or if pin and elastic disk have too many unknowns.
     pub fn new(model: &Model) -> Result<Self, StabilityError> {
-        if model.ring().is_some() {
-            return Err(StabilityError::ElasticDisk);
+        if space::holders(model).any(|held| held.tied.component < 2 && held.stiffness_n_m <= 0.0) {
+            return Err(StabilityError::Holder);
         }
-        if model.mesh().block().is_none() {
-            return Err(StabilityError::Shape);
-        }
-        let space = Space::new(model);
-        let separable = Separable::new(model);
-        let basis = Basis::new(model, &space, &separable);
-        Ok(Self { space, separable, basis, frictions: Mutex::default() })
+        let is_plain = model.ring().is_none() && model.mesh().block().is_some();
+        Ok(if is_plain {
+            Self::Reduced(Box::new(ReducedStructure::new(model)))
+        } else {
+            Self::Sparse(Box::new(SparseStructure::new(model)?))
+        })
     }
 
     /// Equilibrium and the leading `modes` modes of steady sliding.
@@ -71,7 +86,7 @@ impl Structure {
         self.point_with(model, drive, modes, Accuracy::default())
     }
 
-    /// As [`Structure::point`], with other limits for the corrections in the full space.
+    /// As [`Structure::point`], with other limits for the corrections in the full space. On an elastic disk there are none.
     ///
     /// # Errors
     /// As [`Structure::point`].
@@ -82,8 +97,56 @@ impl Structure {
         modes: usize,
         accuracy: Accuracy,
     ) -> Result<SlidingPoint, StabilityError> {
-        let mu = coulomb_on_a_plane(model, drive)?;
-        let friction = self.friction(model, mu)?;
+        match self {
+            Self::Reduced(structure) => structure.point_with(model, drive, modes, accuracy),
+            Self::Sparse(structure) => structure.point(model, drive, modes),
+        }
+    }
+
+    /// The modes of a point, what they say, and whether they show that a run decays: sliding is stable at such a distance from the
+    /// threshold that no limit cycle was found beside it. The modes are exact only as far as this question needs it. On an elastic
+    /// disk they show nothing, because no distance was measured there.
+    ///
+    /// # Errors
+    /// As [`Structure::point`].
+    pub fn decide(
+        &self,
+        model: &Model,
+        drive: &Drive,
+        modes: usize,
+    ) -> Result<(SlidingPoint, Decision, bool), StabilityError> {
+        match self {
+            Self::Reduced(structure) => structure.decide(model, drive, modes),
+            Self::Sparse(structure) => Ok((structure.point(model, drive, modes)?, Decision::Open, false)),
+        }
+    }
+}
+
+impl ReducedStructure {
+    fn new(model: &Model) -> Self {
+        let space = Space::new(model);
+        let separable = Separable::new(model);
+        let basis = Basis::new(model, &space, &separable);
+        let has_gaps = model.slaves().iter().any(|slave| slave.initial_gap_m != 0.0);
+        Self {
+            holders: holder_dampers(model),
+            has_gaps,
+            space,
+            separable,
+            basis,
+            frictions: Mutex::default(),
+        }
+    }
+
+    fn point_with(
+        &self,
+        model: &Model,
+        drive: &Drive,
+        modes: usize,
+        accuracy: Accuracy,
+    ) -> Result<SlidingPoint, StabilityError> {
+        let friction = self.friction(model, drive)?;
+        let slope = friction.slope(&self.space, drive.force_n);
         let scheme = model.scheme();
         let point = Point {
             space: &self.space,
@@ -95,6 +158,7 @@ impl Structure {
                 contact: point::contact(&friction.equilibrium),
             },
             load_over_rate: drive.force_n / drive.rate,
+            viscous: self.holders.iter().cloned().chain(slope).collect(),
             // β₂ > ½ damps like a stiffness-proportional damping of (β₂ − ½)Δt, to first order.
             steps: Clock::Steps {
                 time_step_s: scheme.time_step_s,
@@ -103,7 +167,7 @@ impl Structure {
             },
             damping_s: scheme.beta_r_s + (scheme.beta2 - 0.5) * scheme.time_step_s,
         };
-        let found = point.modes(&mut Elasticity::new(model), modes, accuracy);
+        let found = point.modes(&mut Elasticity::new(model, &self.space), modes, accuracy);
         let unit = &friction.equilibrium;
         let modes: Vec<Mode> = found
             .into_iter()
@@ -121,7 +185,10 @@ impl Structure {
                 u_m: unit.u.iter().map(|u| u * drive.force_n).collect(),
                 normal_n: unit.normal.iter().map(|normal| normal * drive.force_n).collect(),
                 in_contact: unit.in_contact.clone(),
-                mu_star: unit.mu_star(&self.space, mu),
+                disk_z_m: vec![0.0; unit.in_contact.len()],
+                mu: friction.coefficients.mu,
+                mu_share: friction.coefficients.share.clone(),
+                mu_star: unit.mu_star(&self.space, &friction.coefficients),
             },
             modes,
             band_hz: self.basis.band_hz,
@@ -130,20 +197,15 @@ impl Structure {
         })
     }
 
-    /// The modes of a point, what they say, and whether they show that a run decays: sliding is stable at such a distance from the
-    /// threshold that no limit cycle was found beside it. The modes are exact only as far as this question needs it.
-    ///
-    /// # Errors
-    /// As [`Structure::point`].
-    pub fn decide(
+    fn decide(
         &self,
         model: &Model,
         drive: &Drive,
         modes: usize,
     ) -> Result<(SlidingPoint, Decision, bool), StabilityError> {
-        let mu = coulomb_on_a_plane(model, drive)?;
-        let mu = further_mu(mu, natural_speed_ratio(model, drive, mu));
-        let further = Drive { law: Law::Coulomb { mu }, ..*drive };
+        let mu = drive.law.mu();
+        let further = further_mu(mu, natural_speed_ratio(model, drive, mu));
+        let further = Drive { law: with_mu(drive.law, further), ..*drive };
         let (point, verdict) = self.resolve(model, drive, modes)?;
         let is_stable = |resolved: Result<(SlidingPoint, Decision), _>| {
             resolved.is_ok_and(|(_, verdict)| verdict == Decision::Stable)
@@ -165,22 +227,42 @@ impl Structure {
         Ok((point, verdict))
     }
 
-    /// What the points of one μ share. It is computed once for as many μ as are remembered.
-    fn friction(&self, model: &Model, mu: f64) -> Result<Arc<Friction>, StabilityError> {
-        let known = |all: &[Arc<Friction>]| all.iter().find(|friction| friction.mu == mu).cloned();
+    /// What the points of one equilibrium share. It is computed once for as many of them as are remembered.
+    fn friction(&self, model: &Model, drive: &Drive) -> Result<Arc<Friction>, StabilityError> {
+        let conditions = Conditions::new(drive, self.has_gaps);
+        let known = |all: &[(Conditions, Arc<Friction>)]| {
+            all.iter().find(|(known, _)| *known == conditions).map(|(_, friction)| Arc::clone(friction))
+        };
         let lock = || self.frictions.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(friction) = known(&lock()) {
             return Ok(friction);
         }
-        let equilibrium = UnitEquilibrium::new(model, &self.space, &self.separable, mu)?;
-        let friction = Arc::new(Friction::new(&self.space, &self.basis, mu, equilibrium));
+        let friction = SlidingFriction::new(&self.space.speeds_per_rate(), drive)?;
+        let equilibrium =
+            UnitEquilibrium::new(model, &self.space, &self.separable, &friction, drive.force_n)?;
+        let friction = Arc::new(Friction::new(&self.space, &self.basis, friction, equilibrium));
         let mut all = lock();
         if all.len() == REMEMBERED {
             all.remove(0);
         }
-        all.push(Arc::clone(&friction));
+        all.push((conditions, Arc::clone(&friction)));
         Ok(friction)
     }
+}
+
+/// The dampers of holders. Their springs are in K, whose stiffness-proportional damping the springs do not have.
+fn holder_dampers(model: &Model) -> Option<Dashpots> {
+    let beta_r_s = model.scheme().beta_r_s;
+    let all: Vec<Dashpot> = space::holders(model)
+        .map(|held| {
+            let share = 1.0 / held.tied.nodes.len() as f64;
+            Dashpot {
+                coefficient_n_s_m: held.damping_n_s_m - beta_r_s * held.stiffness_n_m,
+                direction: held.tied.dofs().map(|dof| (dof, share)).collect(),
+            }
+        })
+        .collect();
+    (!all.is_empty()).then_some(Dashpots { sampling: Sampling::Beginning, all })
 }
 
 /// The stiffness-proportional damping \[s\]. β₂ > ½ damps like (β₂ − ½)Δt, to first order.
@@ -199,17 +281,4 @@ fn natural_speed_ratio(model: &Model, drive: &Drive, mu: f64) -> f64 {
     let material = model.pin().material();
     let impedance = material.density_kg_m3 * material.shear_wave_speed_m_s();
     speed_m_s * impedance * area_m2 / (mu * drive.force_n)
-}
-
-/// The friction coefficient, if the equations of steady sliding hold: Coulomb's law, an ideal clamp, and a base without gaps,
-/// so that everything is proportional to the load.
-fn coulomb_on_a_plane(model: &Model, drive: &Drive) -> Result<f64, StabilityError> {
-    let Law::Coulomb { mu } = drive.law else { return Err(StabilityError::FrictionLaw) };
-    if model.slaves().iter().any(|slave| slave.initial_gap_m > 0.0) {
-        return Err(StabilityError::Base);
-    }
-    if model.supports().iter().any(|support| matches!(support, Support::Held(_))) {
-        return Err(StabilityError::Holder);
-    }
-    Ok(mu)
 }

@@ -1,7 +1,7 @@
 //! The quadratic eigenvalue problem in a basis that is normalized to the mass 1.
 //!
 //! ```text
-//! P(λ) = λ² + (1 + β λ) (K − μ AᵀB) + λ D
+//! P(λ) = λ² + (1 + β λ) (K − μ AᵀB) + λ (D + Σ C)
 //! ```
 
 use faer::linalg::solvers::{PartialPivLu, Solve};
@@ -14,8 +14,21 @@ pub struct Pencil {
     pub stiffness: Mat<f64>,
     /// The damping of sideways slip D.
     pub sideways: Mat<f64>,
+    /// Other dampers C, by the moment of a step at which they take the velocity.
+    pub viscous: Vec<(Sampling, Mat<f64>)>,
     /// β \[s\].
     pub damping_s: f64,
+}
+
+/// The velocity that a damper of a run takes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Sampling {
+    /// p at the beginning of the step.
+    Beginning,
+    /// The increment of the step before over the time step.
+    StepBefore,
+    /// The increment of the step itself over the time step.
+    Step,
 }
 
 /// How time passes: what takes the place of λ², βλ and λ in P.
@@ -33,6 +46,8 @@ struct Factors {
     inertia: c64,
     elastic: c64,
     sideways: c64,
+    /// Factors of other dampers, by [`Sampling`].
+    viscous: [c64; 3],
 }
 
 /// An eigenvalue with its right and left eigenvectors in the basis.
@@ -61,7 +76,9 @@ impl Pencil {
             (true, false) => f64::from(u8::from(i == j - n)),
             (false, true) => -self.stiffness[(i - n, j)] / (scale * scale),
             (false, false) => {
-                -(self.damping_s * self.stiffness[(i - n, j - n)] + self.sideways[(i - n, j - n)]) / scale
+                let (i, j) = (i - n, j - n);
+                let own = self.damping_s * self.stiffness[(i, j)] + self.sideways[(i, j)];
+                -self.viscous.iter().fold(own, |sum, (_, matrix)| sum + matrix[(i, j)]) / scale
             }
         });
         let Ok(eigen) = matrix.eigen() else { return Vec::new() };
@@ -92,8 +109,18 @@ impl Pencil {
         let one = c64::new(1.0, 0.0);
         match clock {
             Clock::Continuous => [
-                Factors { inertia: value * value, elastic: one + value * self.damping_s, sideways: value },
-                Factors { inertia: value * 2.0, elastic: one * self.damping_s, sideways: one },
+                Factors {
+                    inertia: value * value,
+                    elastic: one + value * self.damping_s,
+                    sideways: value,
+                    viscous: [value; 3],
+                },
+                Factors {
+                    inertia: value * 2.0,
+                    elastic: one * self.damping_s,
+                    sideways: one,
+                    viscous: [one; 3],
+                },
             ],
             Clock::Steps { time_step_s, beta2, beta_r_s } => {
                 let z = (value * time_step_s).exp();
@@ -106,11 +133,13 @@ impl Pencil {
                         inertia: step * step / (g * square),
                         elastic: one + step / g * (beta_r_s / time_step_s),
                         sideways: step / time_step_s,
+                        viscous: [step / g, step / z, step].map(|factor| factor / time_step_s),
                     },
                     Factors {
                         inertia: slope * (step * 2.0 * g - step * step * weight) / (g * g * square),
                         elastic: slope / (g * g) * (beta_r_s / time_step_s),
                         sideways: slope / time_step_s,
+                        viscous: [slope / (g * g), slope / (z * z), slope].map(|factor| factor / time_step_s),
                     },
                 ]
             }
@@ -119,10 +148,12 @@ impl Pencil {
 
     fn at(&self, clock: Clock, value: c64) -> Mat<c64> {
         let n = self.stiffness.nrows();
-        let [Factors { inertia, elastic, sideways }, _] = self.factors(clock, value);
+        let [Factors { inertia, elastic, sideways, viscous }, _] = self.factors(clock, value);
         Mat::from_fn(n, n, |i, j| {
             let own = if i == j { inertia } else { c64::new(0.0, 0.0) };
-            own + elastic * self.stiffness[(i, j)] + sideways * self.sideways[(i, j)]
+            let own = own + elastic * self.stiffness[(i, j)] + sideways * self.sideways[(i, j)];
+            let others = self.viscous.iter();
+            others.fold(own, |sum, (sampling, matrix)| sum + viscous[*sampling as usize] * matrix[(i, j)])
         })
     }
 
@@ -136,11 +167,7 @@ impl Pencil {
         let mut factors = self.at(clock, value).partial_piv_lu();
         let mut left = left_vector(&factors, &x);
         for step in 1..=STEPS {
-            let products = Products {
-                own: &x,
-                elastic: times(&self.stiffness, &x),
-                sideways: times(&self.sideways, &x),
-            };
+            let products = self.products(&x);
             let before = value;
             value = self.root(clock, value, &products, &left);
             let [at, _] = self.factors(clock, value);
@@ -167,20 +194,26 @@ impl Pencil {
     pub fn slope_form(&self, pair: &Pair) -> c64 {
         let column = |of: &[c64]| Mat::from_fn(of.len(), 1, |i, _| of[i]);
         let (x, y) = (column(&pair.right), column(&pair.left));
-        let [_, Factors { inertia, elastic, sideways }] = self.factors(Clock::Continuous, pair.value);
-        inertia * dot(&y, &x)
-            + elastic * dot(&y, &times(&self.stiffness, &x))
-            + sideways * dot(&y, &times(&self.sideways, &x))
+        let [_, slopes] = self.factors(Clock::Continuous, pair.value);
+        self.products(&x).forms(&y).combined(&slopes)
+    }
+
+    fn products<'a>(&self, x: &'a Mat<c64>) -> Products<'a> {
+        let viscous = self.viscous.iter().map(|(sampling, matrix)| (*sampling, times(matrix, x)));
+        Products {
+            own: x,
+            elastic: times(&self.stiffness, x),
+            sideways: times(&self.sideways, x),
+            viscous: viscous.collect(),
+        }
     }
 
     /// The root λ of yᴴ P(λ) x = 0 by Newton's method. Its error is that of x times that of y.
     fn root(&self, clock: Clock, value: c64, x: &Products<'_>, y: &Mat<c64>) -> c64 {
-        let [own, elastic, sideways] = [x.own, &x.elastic, &x.sideways].map(|of| dot(y, of));
+        let forms = x.forms(y);
         let mut value = value;
         for _ in 0..STEPS {
-            let [at, slope] = self
-                .factors(clock, value)
-                .map(|f| f.inertia * own + f.elastic * elastic + f.sideways * sideways);
+            let [at, slope] = self.factors(clock, value).map(|factors| forms.combined(&factors));
             let change = at / slope;
             value -= change;
             // This is false for NaN.
@@ -193,21 +226,51 @@ impl Pencil {
     }
 }
 
-/// A vector with its products with K − μ AᵀB and D.
+/// A vector with its products with K − μ AᵀB, D and C.
 struct Products<'a> {
     own: &'a Mat<c64>,
     elastic: Mat<c64>,
     sideways: Mat<c64>,
+    viscous: Vec<(Sampling, Mat<c64>)>,
+}
+
+/// Products of one vector with those of another.
+struct Forms {
+    own: c64,
+    elastic: c64,
+    sideways: c64,
+    viscous: Vec<(Sampling, c64)>,
+}
+
+impl Forms {
+    fn combined(&self, factors: &Factors) -> c64 {
+        let own =
+            factors.inertia * self.own + factors.elastic * self.elastic + factors.sideways * self.sideways;
+        let others = self.viscous.iter();
+        others.fold(own, |sum, (sampling, form)| sum + factors.viscous[*sampling as usize] * form)
+    }
 }
 
 impl Products<'_> {
     /// P(λ) x.
     fn combined(&self, factors: &Factors) -> Mat<c64> {
         Mat::from_fn(self.own.nrows(), 1, |i, _| {
-            factors.inertia * self.own[(i, 0)]
+            let own = factors.inertia * self.own[(i, 0)]
                 + factors.elastic * self.elastic[(i, 0)]
-                + factors.sideways * self.sideways[(i, 0)]
+                + factors.sideways * self.sideways[(i, 0)];
+            let others = self.viscous.iter();
+            others.fold(own, |sum, (sampling, of)| sum + factors.viscous[*sampling as usize] * of[(i, 0)])
         })
+    }
+
+    /// The products with yᴴ.
+    fn forms(&self, y: &Mat<c64>) -> Forms {
+        Forms {
+            own: dot(y, self.own),
+            elastic: dot(y, &self.elastic),
+            sideways: dot(y, &self.sideways),
+            viscous: self.viscous.iter().map(|(sampling, of)| (*sampling, dot(y, of))).collect(),
+        }
     }
 }
 

@@ -1,12 +1,14 @@
 //! The modes of one point: found in the basis, then corrected in the full space.
 
 use super::basis::Basis;
+use super::dashpots::{Dashpot, Dashpots};
 use super::decision::JUDGED;
 use super::equilibrium::UnitEquilibrium;
 use super::extension::Extension;
+use super::friction::SlidingFriction;
 use super::pencil::{Clock, Pair, Pencil};
 use super::solve::Bilateral;
-use super::space::{Contact, Elasticity, Space, Vectors};
+use super::space::{Contact, Elasticity, SlidingNode, Space, Vectors};
 use super::vibration::{PAIRS, Vibration};
 use faer::{Mat, c64};
 use std::f64::consts::TAU;
@@ -26,10 +28,10 @@ const LEAST_DISTANCE: f64 = 0.03;
 /// Smallest number of modes of the basis whose residuals are known: one that is far behind may lead after its correction.
 const CANDIDATES: usize = 12;
 
-/// What the points of one friction coefficient share.
+/// What the points of one equilibrium share.
 #[derive(Debug)]
 pub struct Friction {
-    pub mu: f64,
+    pub coefficients: SlidingFriction,
     pub equilibrium: UnitEquilibrium,
     /// K − μ AᵀB in the basis.
     stiffness: Mat<f64>,
@@ -75,25 +77,42 @@ impl Candidate {
 }
 
 impl Friction {
-    pub fn new(space: &Space, basis: &Basis, mu: f64, equilibrium: UnitEquilibrium) -> Self {
+    pub fn new(
+        space: &Space,
+        basis: &Basis,
+        coefficients: SlidingFriction,
+        equilibrium: UnitEquilibrium,
+    ) -> Self {
         let on: Vec<usize> =
             (0..equilibrium.in_contact.len()).filter(|&i| equilibrium.in_contact[i]).collect();
         let rows = |of: &Mat<f64>, factor: &dyn Fn(usize) -> f64| {
             Mat::from_fn(on.len(), basis.len(), |i, j| factor(on[i]) * of[(on[i], j)])
         };
         let sideways_of_nodes: Vec<f64> = (0..equilibrium.normal.len())
-            .map(|i| mu * equilibrium.normal[i] / space.sliding()[i].speed_per_rate)
+            .map(|i| coefficients.mu_of(i) * equilibrium.normal[i] / space.sliding()[i].speed_per_rate)
             .collect();
-        let follow = rows(&basis.forward, &|_| mu).transpose() * rows(&basis.normal, &|_| 1.0);
+        let follow =
+            rows(&basis.forward, &|i| coefficients.mu_of(i)).transpose() * rows(&basis.normal, &|_| 1.0);
         let stiffness =
             Mat::from_fn(basis.len(), basis.len(), |i, j| basis.stiffness[(i, j)] - follow[(i, j)]);
         let sideways =
             rows(&basis.sideways, &|i| sideways_of_nodes[i]).transpose() * rows(&basis.sideways, &|_| 1.0);
-        Self { mu, equilibrium, stiffness, sideways, sideways_of_nodes }
+        Self { coefficients, equilibrium, stiffness, sideways, sideways_of_nodes }
+    }
+
+    /// The dampers that stand for the slope of the law, for this load \[N\].
+    pub fn slope(&self, space: &Space, force_n: f64) -> Option<Dashpots> {
+        let (slope_s_m, sampling) = self.coefficients.slope.as_ref()?;
+        let of = |(i, slave): (usize, &SlidingNode)| Dashpot {
+            coefficient_n_s_m: slope_s_m[i] * self.equilibrium.normal[i] * force_n,
+            direction: vec![(3 * slave.node, slave.forward[0]), (3 * slave.node + 1, slave.forward[1])],
+        };
+        let nodes = space.sliding().iter().enumerate().filter(|(i, _)| self.equilibrium.in_contact[*i]);
+        Some(Dashpots { sampling: *sampling, all: nodes.map(of).collect() })
     }
 }
 
-/// One point: a friction coefficient, a speed and a load.
+/// One point: friction, a speed and a load.
 pub struct Point<'a> {
     pub space: &'a Space,
     pub basis: &'a Basis,
@@ -101,6 +120,8 @@ pub struct Point<'a> {
     pub bilateral: Bilateral<'a>,
     /// Load over the drive's rate.
     pub load_over_rate: f64,
+    /// Dampers besides those of the material and of sideways slip.
+    pub viscous: Vec<Dashpots>,
     pub damping_s: f64,
     /// How time passes in a run.
     pub steps: Clock,
@@ -180,8 +201,13 @@ impl Point<'_> {
     pub fn modes(&self, elasticity: &mut Elasticity<'_>, count: usize, accuracy: Accuracy) -> Vec<FullMode> {
         let r = self.basis.len();
         let sideways = Mat::from_fn(r, r, |i, j| self.load_over_rate * self.friction.sideways[(i, j)]);
-        let pencil =
-            Pencil { stiffness: self.friction.stiffness.clone(), sideways, damping_s: self.damping_s };
+        let viscous = self.viscous.iter().map(|dashpots| (dashpots.sampling, dashpots.in_basis(self.basis)));
+        let pencil = Pencil {
+            stiffness: self.friction.stiffness.clone(),
+            sideways,
+            viscous: viscous.collect(),
+            damping_s: self.damping_s,
+        };
         let mut found = pencil.eigenpairs();
         let candidates = if accuracy.aim == Aim::Signs { count } else { count.max(CANDIDATES) };
         found.truncate(candidates);
@@ -190,8 +216,9 @@ impl Point<'_> {
         let Bilateral { space, separable, contact } = self.bilateral;
         let vibration = Vibration {
             bilateral: Bilateral { space, separable, contact },
-            mu: self.friction.mu,
+            friction: &self.friction.coefficients,
             sideways_n_s_m: &sideways_of_nodes,
+            viscous: &self.viscous,
             damping_s: self.damping_s,
         };
         let mut modes: Vec<Candidate> = Vec::new();

@@ -11,6 +11,12 @@ pub struct Equilibrium {
     pub normal_n: Vec<f64>,
     /// Whether each slave node is in contact.
     pub in_contact: Vec<bool>,
+    /// Displacement \[m\] of an elastic disk's surface under each slave node in z; zero on a rigid one.
+    pub disk_z_m: Vec<f64>,
+    /// The scale of the friction coefficients.
+    pub mu: f64,
+    /// Friction coefficient of each slave node over the scale.
+    pub mu_share: Vec<f64>,
     /// Macroscopic friction coefficient: the tangential contact force in y over the normal force.
     pub mu_star: f64,
 }

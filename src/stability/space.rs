@@ -1,7 +1,8 @@
 //! The displacements that the constraints allow, and what acts on them.
 //!
 //! Up to eight vectors are treated together, one in each lane of a [`Field`]. All vectors have three components per node of the
-//! pin. The constraints are a projection: fixed components are zero, the members of a tie have their mean.
+//! pin. The constraints are a projection: fixed components are zero, the members of a tie have their mean. The mass, the spring
+//! and the damper of a holder are spread evenly over its members, which move alike.
 
 use crate::solver::Model;
 use crate::solver::body::Freedom;
@@ -9,6 +10,7 @@ use crate::solver::body::hexahedron;
 use crate::solver::body::pin::BlockMesh;
 use crate::solver::body::pin::operator::Scratch;
 use crate::solver::field::{Field, Layout};
+use crate::solver::support::{Held, Support};
 
 /// Number of vectors that are treated together.
 pub const LANES: usize = 8;
@@ -43,7 +45,10 @@ pub fn block_of(model: &Model) -> &BlockMesh {
 #[derive(Debug)]
 pub struct Space {
     layout: Layout,
+    /// Mass \[kg\] of every component of every node.
     masses_kg: Vec<f64>,
+    /// Stiffness \[N/m\] to the frame of the components that holders hold.
+    springs: Vec<(usize, f64)>,
     fixed: Vec<usize>,
     ties: Vec<(usize, Vec<usize>)>,
     sliding: Vec<SlidingNode>,
@@ -80,9 +85,19 @@ impl Space {
                 stiffness_n_m: element[(2, 2)] * slave.area_m2 / (hx * hy / 4.0),
             }
         });
+        let mut masses_kg: Vec<f64> = pin.masses_kg().iter().flat_map(|mass| [*mass; 3]).collect();
+        let mut springs = Vec::new();
+        for held in holders(model) {
+            let share = 1.0 / held.tied.nodes.len() as f64;
+            for dof in held.tied.dofs() {
+                masses_kg[dof] += share * held.mass_kg;
+                springs.push((dof, share * held.stiffness_n_m));
+            }
+        }
         Self {
             layout: pin.mesh().layout(),
-            masses_kg: pin.masses_kg().to_vec(),
+            masses_kg,
+            springs,
             fixed: (0..freedoms.len()).filter(|&dof| freedoms[dof] == Freedom::Fixed).collect(),
             ties: ties.collect(),
             sliding: sliding.collect(),
@@ -91,13 +106,19 @@ impl Space {
 
     /// Number of components of a vector: three per node.
     pub fn len(&self) -> usize {
-        3 * self.masses_kg.len()
+        self.masses_kg.len()
     }
 
     pub fn sliding(&self) -> &[SlidingNode] {
         &self.sliding
     }
 
+    /// Speed of the disk under each slave node per unit of the drive's rate.
+    pub fn speeds_per_rate(&self) -> Vec<f64> {
+        self.sliding.iter().map(|slave| slave.speed_per_rate).collect()
+    }
+
+    /// Mass \[kg\] of every component of every node.
     pub fn masses_kg(&self) -> &[f64] {
         &self.masses_kg
     }
@@ -142,8 +163,8 @@ impl Space {
     /// M x.
     pub fn mass_times(&self, x: &Vectors) -> Vectors {
         let mut product = x.clone();
-        for (block, mass) in product.blocks_mut().iter_mut().zip(&self.masses_kg) {
-            for row in &mut block.0 {
+        for (block, masses) in product.blocks_mut().iter_mut().zip(self.masses_kg.as_chunks::<3>().0) {
+            for (row, mass) in block.0.iter_mut().zip(masses) {
                 for value in row {
                     *value *= mass;
                 }
@@ -176,20 +197,35 @@ impl Space {
     }
 }
 
-/// The stiffness of the pin with its scratch memory.
+/// The holders of a model.
+pub fn holders(model: &Model) -> impl Iterator<Item = &Held> {
+    model.supports().iter().filter_map(|support| match support {
+        Support::Held(held) => Some(held),
+        Support::Fixed(_) | Support::Tied(_) => None,
+    })
+}
+
+/// The stiffness of the pin and of the springs of its holders, with its scratch memory.
 pub struct Elasticity<'a, const L: usize = LANES> {
     model: &'a Model,
+    space: &'a Space,
     scratch: Scratch,
 }
 
 impl<'a, const L: usize> Elasticity<'a, L> {
-    pub fn new(model: &'a Model) -> Self {
-        Self { model, scratch: model.pin().operator().scratch(model.mesh().layout(), L) }
+    pub fn new(model: &'a Model, space: &'a Space) -> Self {
+        Self { model, space, scratch: model.pin().operator().scratch(model.mesh().layout(), L) }
     }
 
     /// y = K x, reactions of constraints included.
     pub fn product(&mut self, x: &Field<L>, y: &mut Field<L>) {
         self.model.pin().operator().product(x, y, &mut self.scratch);
+        for &(dof, stiffness_n_m) in &self.space.springs {
+            let place = y.place(dof / 3);
+            for (force, u) in y.at_mut(place, dof % 3).iter_mut().zip(x.at(place, dof % 3)) {
+                *force += stiffness_n_m * u;
+            }
+        }
     }
 }
 

@@ -1,12 +1,15 @@
 //! The full problem of small vibrations about steady sliding, and the corrections of approximate modes.
 //!
 //! ```text
-//! M q̈ + [β K_μ + D] q̇ + K_μ q = 0        K_μ = K − μ d ⊗ K_z        D = μ N₀/|v| (1 − d ⊗ d)
+//! M q̈ + [β K_μ + D + C] q̇ + K_μ q = 0        K_μ = K − μ d ⊗ K_z        D = μ N₀/|v| (1 − d ⊗ d)
 //! ```
 //!
 //! with the direction d of the disk's velocity v at each node in contact. K_z q is the change of the normal contact forces.
-//! Friction follows it, so K_μ is not symmetric. D comes from the turn of the friction's direction by sideways slip.
+//! Friction follows it, so K_μ is not symmetric. D comes from the turn of the friction's direction by sideways slip. C are other
+//! dampers: those of holders, and the slope of friction that depends on the slip speed.
 
+use super::dashpots::Dashpots;
+use super::friction::SlidingFriction;
 use super::solve::Bilateral;
 use super::space::{Elasticity, LANES, Vectors, add};
 use faer::c64;
@@ -17,9 +20,11 @@ pub const PAIRS: usize = LANES / 2;
 /// Small vibrations about steady sliding.
 pub struct Vibration<'a> {
     pub bilateral: Bilateral<'a>,
-    pub mu: f64,
+    pub friction: &'a SlidingFriction,
     /// μN₀/|v| \[N·s/m\] of each slave node.
     pub sideways_n_s_m: &'a [f64],
+    /// C.
+    pub viscous: &'a [Dashpots],
     /// β \[s\].
     pub damping_s: f64,
 }
@@ -48,10 +53,11 @@ impl Vibration<'_> {
         let mut moved = q.clone();
         if is_left {
             // A virtual displacement along d comes with −μ times itself in z, through friction.
-            for (_, (slave, _)) in nodes() {
+            for (i, (slave, _)) in nodes() {
+                let mu = self.friction.mu_of(i);
                 let block = &mut moved.blocks_mut()[slave.node].0;
                 let [dx, dy] = slave.forward;
-                block[2] = std::array::from_fn(|l| -self.mu * (dx * block[0][l] + dy * block[1][l]));
+                block[2] = std::array::from_fn(|l| -mu * (dx * block[0][l] + dy * block[1][l]));
             }
         }
         let mut product = space.zeros();
@@ -65,10 +71,11 @@ impl Vibration<'_> {
         add_complex(&mut force, &values.map(|value| value * value), &inertia);
         for (i, (slave, _)) in nodes() {
             let [dx, dy] = slave.forward;
+            let mu = self.friction.mu_of(i);
             let block = &mut force.blocks_mut()[slave.node].0;
             if !is_left {
                 for lane in 0..LANES {
-                    let friction = self.mu * block[2][lane];
+                    let friction = mu * block[2][lane];
                     block[0][lane] -= dx * friction;
                     block[1][lane] -= dy * friction;
                 }
@@ -83,6 +90,9 @@ impl Vibration<'_> {
                     block[1][lane] += dx * part;
                 }
             }
+        }
+        for dashpots in self.viscous {
+            dashpots.add_forces(&values, q, &mut force);
         }
         space.project(contact, &mut force);
         let energy = std::array::from_fn(|pair| energies[2 * pair] + energies[2 * pair + 1]);

@@ -22,7 +22,7 @@ pub fn input_parameters() -> impl Iterator<Item = &'static Parameter> {
 
 /// All inputs of a job that have an effect, the defaults among them, each once: the mesh and the size by their components,
 /// no ring of a rigid disk, no coefficient that the friction law does not use, no width of a clamp that holds the whole top, no safety factor beside a given time step, nothing
-/// about the run of a job without one, and no method of stability where every run goes to its limit.
+/// about the run of a job without one, and no method of stability where eigenvalues may not decide.
 pub fn inputs(spec: &JobSpec) -> Vec<Input> {
     let mut spec = spec.clone();
     spec.scene.contact = spec.scene.contact.in_use();
@@ -32,7 +32,7 @@ pub fn inputs(spec: &JobSpec) -> Vec<Input> {
         "time_step_s" | "safety_factor" if !is_run && !spec.modes_need_time_step() => false,
         "ramp_s" | "precision" if !is_run => false,
         _ if !is_run && matches!(parameter.part(), Some("run" | "detection")) => false,
-        "stability" => !is_run || (spec.run.stop_early && spec.has_sliding_modes()),
+        "stability" => !is_run || spec.eigenvalues_may_decide(),
         "start" => spec.run.start == Start::Rest || spec.coarser_elements().is_some(),
         "clamp_width_m" => spec.scene.clamp.side != ClampSide::WholeTop,
         "safety_factor" => spec.numerics.time_step_s.is_none(),

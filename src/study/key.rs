@@ -19,7 +19,7 @@ const HEX_DIGITS: usize = 32;
 /// clamp's width where no strip uses it; an angle of 0; run-out and waviness of no height; the elements and the clamp
 /// where the mesh comes from a file; the
 /// safety factor where the time step is given; the time step, the precision, the run, its detection and the load's ramp where
-/// there is no run; the method of stability where every run goes to its limit or where eigenvalues do not exist; the start
+/// there is no run; the method of stability where eigenvalues may not decide; the start
 /// where the mesh is too coarse for a coarser one; what looks for a steady state where the speed or the load changes. The ring of a rigid disk is left out. A new
 /// `solver_version` changes every key, so that old results are not taken for new ones.
 pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
@@ -50,7 +50,7 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
         spec.run = RunControl::default();
         spec.detection = Detection::default();
         spec.scene.load.ramp_s = Load::default().ramp_s;
-    } else if !spec.run.stop_early || !spec.has_sliding_modes() {
+    } else if !spec.eigenvalues_may_decide() {
         spec.stability = StabilityMethod::Simulate;
     }
     if !spec.scene.program.is_constant() {

@@ -2,8 +2,8 @@
 //! command `stability` alone.
 
 use super::{assert_contains, parse, refusal};
-use tribosweep::spec::{JobSpec, Precision, StabilityMethod};
-use tribosweep::study::{Changes, Study, inputs, job_key};
+use tribosweep::spec::{DiskKind, FrictionLaw, JobSpec, Precision, StabilityMethod};
+use tribosweep::study::{Changes, Preset, Study, inputs, job_key};
 
 fn method(text: &str) -> StabilityMethod {
     parse(text).base().stability
@@ -112,4 +112,48 @@ fn the_run_is_not_in_the_key_of_modes() {
     let modes = names(&JobSpec { stability: StabilityMethod::Modes, ..JobSpec::default() });
     assert!(modes.contains(&"stability") && modes.contains(&"beta_r_s"), "{modes:?}");
     assert!(!["limit_s", "tolerance", "safety_factor", "ramp_s"].iter().any(|name| modes.contains(name)));
+}
+
+/// Protects: modes are refused only where the equations of steady sliding do not hold, with the field and the reason; eigenvalues
+/// decide only laws without a larger friction of slow slip; and presets choose them only for scenes on which they were measured.
+#[test]
+fn modes_cover_holders_laws_and_bases() {
+    let spec = |change: &dyn Fn(&mut JobSpec)| {
+        let mut spec = JobSpec { stability: StabilityMethod::Modes, ..JobSpec::default() };
+        change(&mut spec);
+        spec
+    };
+    let law = |law| {
+        spec(&|spec| {
+            let contact = &mut spec.scene.contact;
+            (contact.law, contact.mu_static, contact.speed_m_s) = (law, Some(0.5), Some(0.1));
+            contact.length_m = Some(1.0e-6);
+        })
+    };
+    let holder = |stiffness_n_m| spec(&|spec| spec.scene.holder.stiffness_y_n_m = Some(stiffness_n_m));
+    let crowned = spec(&|spec| spec.scene.pin.base.crown_radius_m = Some(5.0));
+    let elastic = spec(&|spec| spec.scene.disk.kind = DiskKind::Elastic);
+    // A scene, the field that is refused, and whether eigenvalues may decide.
+    let cases = [
+        (spec(&|_| ()), None, true),
+        (law(FrictionLaw::Regularised), None, true),
+        (law(FrictionLaw::StaticKinetic), None, false),
+        (law(FrictionLaw::Exponential), None, false),
+        (law(FrictionLaw::PrakashClifton), Some("scene.contact.law"), false),
+        (holder(1.0e6), None, true),
+        (holder(0.0), Some("scene.holder.stiffness_y_n_m"), false),
+        (crowned, None, true),
+        (elastic, Some("scene.disk.kind"), false),
+    ];
+    for (at, (spec, refused, may_decide)) in cases.into_iter().enumerate() {
+        match (spec.check(), refused) {
+            (Ok(()), None) => {}
+            (Err(violations), Some(field)) => assert_contains(&violations.to_string(), &[field]),
+            (found, _) => panic!("case {at}: {found:?}"),
+        }
+        assert_eq!(spec.eigenvalues_may_decide(), may_decide, "case {at}");
+        let way = Preset::Standard.way(JobSpec { stability: StabilityMethod::Simulate, ..spec });
+        let is_chosen = way.stability == StabilityMethod::Eigenvalues;
+        assert_eq!(is_chosen, at == 0, "case {at}");
+    }
 }

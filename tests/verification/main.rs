@@ -53,5 +53,7 @@ mod shear;
 mod sideways;
 mod sliding_in_time;
 mod sliding_modes;
+mod sliding_scenes;
+mod sliding_sparse;
 mod two_bodies;
 mod wedge;

@@ -12,6 +12,7 @@ use crate::sliding_modes::{EXACT, SURE, scene};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use tribosweep::analysis;
+use tribosweep::solver::interface::law::Law;
 use tribosweep::solver::{Drive, Model, State, step};
 use tribosweep::spec::{ClampSide, JobSpec, Numerics};
 use tribosweep::stability::{Accuracy, Aim, Mode, SlidingPoint, Structure};
@@ -23,20 +24,20 @@ const AMPLITUDE: f64 = 1.0e-5;
 const CLOSE: Accuracy = Accuracy { corrected: 1, aim: Aim::Leading, groups: 2, residual: 3.0e-3, rounds: 4 };
 
 /// A model for small vibrations.
-struct Pin {
-    model: Model,
+pub struct Pin {
+    pub model: Model,
     structure: Structure,
 }
 
 impl Pin {
-    fn new(spec: &JobSpec, fraction_of_limit: f64) -> Self {
+    pub fn new(spec: &JobSpec, fraction_of_limit: f64) -> Self {
         let numerics = Numerics { safety_factor: fraction_of_limit, ..spec.numerics.clone() };
         let model = Model::from_scene(&spec.scene, &numerics).unwrap();
         let structure = Structure::new(&model).unwrap();
         Self { model, structure }
     }
 
-    fn vibration(&self, spec: &JobSpec, accuracy: Accuracy) -> Vibration<'_> {
+    pub fn vibration(&self, spec: &JobSpec, accuracy: Accuracy) -> Vibration<'_> {
         let drive = Drive { ramp_s: 0.0, ..analysis::drive(spec) };
         let point = self.structure.point_with(&self.model, &drive, 4, accuracy).unwrap();
         Vibration { model: &self.model, drive, point }
@@ -44,22 +45,27 @@ impl Pin {
 }
 
 /// Small vibrations at one point.
-struct Vibration<'a> {
+pub struct Vibration<'a> {
     model: &'a Model,
     drive: Drive,
-    point: SlidingPoint,
+    pub point: SlidingPoint,
 }
 
 impl Vibration<'_> {
     /// The mode that grows fastest in a run, of those in the band of the basis.
-    fn leading(&self) -> &Mode {
+    pub fn leading(&self) -> &Mode {
         let growth = |mode: &&Mode| mode.eigenvalue_in_steps_per_s.re;
         let in_band = |mode: &&Mode| mode.eigenvalue_per_s.im < TAU * SURE * self.point.band_hz;
         self.point.modes.iter().filter(in_band).max_by(|a, b| growth(a).total_cmp(&growth(b))).unwrap()
     }
 
     /// The growth rate [1/s] and the frequency [Hz] of a run of so many `periods` that begins with the leading mode.
-    fn run(&self, periods: f64) -> (f64, f64) {
+    pub fn run(&self, periods: f64) -> (f64, f64) {
+        self.run_after(0.0, periods, AMPLITUDE)
+    }
+
+    /// The same after `before` periods, which are not used, with this amplitude over that of the equilibrium at the start.
+    pub fn run_after(&self, before: f64, periods: f64, amplitude: f64) -> (f64, f64) {
         let (model, mode) = (self.model, self.leading());
         let dt = model.time_step_s();
         let z = (mode.eigenvalue_in_steps_per_s * dt).exp();
@@ -67,12 +73,23 @@ impl Vibration<'_> {
         // p of the scheme's vibration, plus half of Δt a, which the first step leaves out.
         let rate = (z - one) / (z * dt) + (z - one) * (z - one) / (z * dt) * 0.5;
         let equilibrium = &self.point.equilibrium.u_m;
-        let size = AMPLITUDE * equilibrium.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
+        let size = amplitude * equilibrium.iter().fold(0.0, |a: f64, b| a.max(b.abs()));
         let mut state = State::<1>::at_rest(model);
         for (dof, q) in mode.shape.iter().enumerate() {
             state.u[dof] = equilibrium[dof] + size * q.re;
             state.p[dof] = size * (rate * q).re;
         }
+        // A law that uses the step before sees steady sliding.
+        for (i, slave) in model.slaves().iter().enumerate() {
+            for c in 0..2 {
+                state.contacts.increment_m[3 * i + c] = -slave.surface_motion[c] * self.drive.rate * dt;
+            }
+        }
+        // In its first step a law with a static coefficient would take all nodes for sticking ones.
+        let first = match self.drive.law {
+            Law::StaticKinetic { mu, .. } => Drive { law: Law::Coulomb { mu }, ..self.drive },
+            _ => self.drive,
+        };
         let largest = |c: usize| {
             let size = |node: &usize| mode.shape[3 * node + c].norm();
             let node = (0..mode.shape.len() / 3).max_by(|a, b| size(a).total_cmp(&size(b))).unwrap();
@@ -85,12 +102,12 @@ impl Vibration<'_> {
         let dof = dof.unwrap();
         let period = TAU / mode.eigenvalue_per_s.im;
         let mut history = Vec::new();
-        for _ in 0..(periods * period / dt) as usize {
+        for _ in 0..((before + periods) * period / dt) as usize {
             history.push(state.u[dof] - equilibrium[dof]);
-            step(model, &[self.drive], &mut state);
+            step(model, &[if history.len() == 1 { first } else { self.drive }], &mut state);
         }
         let quarter = (period / 4.0 / dt) as usize;
-        fit(&history, quarter, dt)
+        fit(&history[(before * period / dt) as usize..], quarter, dt)
     }
 }
 

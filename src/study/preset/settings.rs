@@ -125,7 +125,7 @@ impl Preset {
         if !gives("start") && job.run.stop_early {
             job.run.start = Start::Nested;
         }
-        if !gives("stability") && job.has_sliding_modes() {
+        if !gives("stability") && job.is_of_measured_kind() {
             job.stability = StabilityMethod::Eigenvalues;
         }
     }

@@ -204,7 +204,7 @@ fn groups(plan: &Plan, threads: usize) -> Vec<Group> {
         group.jobs += 1;
         group.limit_s = group.limit_s.max(job.spec.run.limit_s);
         group.node_steps += workload.node_steps(job.spec.run.limit_s);
-        let spares_runs = job.spec.run.stop_early && job.spec.has_sliding_modes();
+        let spares_runs = job.spec.eigenvalues_may_decide();
         if job.spec.stability == StabilityMethod::Modes
             || (job.spec.stability == StabilityMethod::Eigenvalues && spares_runs)
         {

@@ -134,6 +134,32 @@ impl RingOperator {
         &self.classes
     }
 
+    /// The entries (3·node + component, value \[N/m\]) of one row of K, for assembled systems.
+    pub fn row(&self, row: usize) -> Vec<(usize, f64)> {
+        let [columns, rows, planes] = self.nodes;
+        let (node, component) = (row / 3, row % 3);
+        let (j, i, k) = (node % columns, node / columns % rows, node / (columns * rows));
+        let blocks = &self.rows[(self.classes[j] * planes + k) * rows + i];
+        let inside = |at: usize, step: usize, end: usize| (at + step).checked_sub(1).filter(|at| *at < end);
+        let mut entries = Vec::with_capacity(81);
+        for line in 0..9 {
+            let Some((depth, radius)) = inside(k, line / 3, planes).zip(inside(i, line % 3, rows)) else {
+                continue;
+            };
+            for step in 0..3 {
+                let column = if self.closed {
+                    Some((j + columns + step - 1) % columns)
+                } else {
+                    inside(j, step, columns)
+                };
+                let Some(column) = column else { continue };
+                let other = column + columns * (radius + rows * depth);
+                entries.extend((0..3).map(|d| (3 * other + d, blocks[line][step][d][component])));
+            }
+        }
+        entries
+    }
+
     /// Computes `y = K x` for `L` lanes.
     pub fn product<const L: usize>(&self, x: &Field<L>, y: &mut Field<L>, scratch: &mut RingScratch<L>) {
         dispatch!(simd => self.product_in(simd, x, y, scratch));

@@ -3,7 +3,7 @@
 //! * [`rotating_disk`], [`straight_plane`] – rigid surfaces with a given velocity.
 //! * `patch` – the surface of an elastic disk between its nodes.
 
-pub(in crate::solver) mod patch;
+pub mod patch;
 mod rigid;
 
 pub use rigid::{SurfaceMotion, rotating_disk, straight_plane};

@@ -1,0 +1,166 @@
+//! B33 Complex modes of steady sliding by sparse factors, on rigid and elastic disks.
+//!
+//! * **On a rigid disk** they are those of the reduced problem (B30), whose corrections end at 10⁻¹⁰ of |λ|.
+//! * **A stiff disk** of constant density is a rigid one: its deflection falls as 1/E, and so does the change of an eigenvalue of the
+//!   pin.
+//! * **A disk alone** has modes with three waves around. Their frequency comes from one column of nodes of its own K and M. A pin on a
+//!   nodal line leaves one of the two such modes as it is.
+
+use crate::elastic::coarse_scene;
+use crate::sliding_modes::{EXACT, scene};
+use faer::{Mat, Side, c64};
+use std::f64::consts::TAU;
+use tribosweep::analysis;
+use tribosweep::solver::body::block::{BlockMesh, Stiffness};
+use tribosweep::solver::body::ring::operator::RingOperator;
+use tribosweep::solver::body::ring::{RingDefinition, RingMesh};
+use tribosweep::solver::interface::law::Law;
+use tribosweep::solver::interface::target::TargetDefinition;
+use tribosweep::solver::material::Material;
+use tribosweep::solver::support::Support;
+use tribosweep::solver::{Drive, Model, ModelDefinition, TimeStep};
+use tribosweep::spec::{ClampSide, DiskKind, DiskTimeStep, FrictionLaw, JobSpec, TargetSurface};
+use tribosweep::stability::{SparseStructure, Structure};
+
+fn model(spec: &JobSpec) -> Model {
+    Model::from_scene(&spec.scene, &spec.numerics).unwrap()
+}
+
+/// Protects: equilibrium and modes of the sparse equations are those of the reduced ones, with a holder, a law that depends on the
+/// speed, lifted nodes and a crowned base.
+#[test]
+fn rigid_scenes_have_the_modes_of_the_reduced_problem() {
+    let mut holder = scene([4, 5, 4], 0.003, 0.5, 7.0);
+    holder.scene.clamp.side = ClampSide::TrailingEnd;
+    holder.scene.holder.mass_kg = Some(0.02);
+    holder.scene.holder.stiffness_y_n_m = Some(2.0e7);
+    holder.scene.holder.damping_y_n_s_m = Some(5.0);
+    let mut crowned = scene([4, 5, 4], 0.003, 0.3, 20.0);
+    crowned.scene.pin.base.crown_radius_m = Some(8.0);
+    crowned.scene.contact.law = FrictionLaw::Exponential;
+    (crowned.scene.contact.mu_static, crowned.scene.contact.speed_m_s) = (Some(0.45), Some(0.05));
+    for spec in [scene([4, 5, 4], 0.003, 0.4, 7.0), holder, crowned] {
+        let (model, drive) = (model(&spec), analysis::drive(&spec));
+        let reduced = Structure::new(&model).unwrap().point_with(&model, &drive, 4, EXACT).unwrap();
+        let sparse = SparseStructure::new(&model).unwrap();
+        let point = sparse.point(&model, &drive, 4).unwrap();
+        assert_eq!(point.equilibrium.in_contact, reduced.equilibrium.in_contact);
+        let forces = point.equilibrium.normal_n.iter().zip(&reduced.equilibrium.normal_n);
+        let worst = forces.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        // The reduced equilibrium ends at 10⁻¹¹ of the load or of what presses the crown flat.
+        assert!(worst < 1.0e-7 * drive.force_n, "{worst:e} N");
+        assert!((point.equilibrium.mu_star / reduced.equilibrium.mu_star - 1.0).abs() < 1.0e-9);
+        assert!(point.modes[0].eigenvalue_per_s.re >= point.modes[1].eigenvalue_per_s.re);
+        let mut compared = 0;
+        for mode in reduced.modes.iter().filter(|mode| mode.is_converged) {
+            let value = mode.eigenvalue_per_s;
+            let near = sparse.near(&model, &drive, value.im / TAU).unwrap();
+            let in_band = if value.im < TAU * point.band_hz { &point.modes } else { &near.modes };
+            for modes in [in_band, &near.modes] {
+                let errors = modes.iter().map(|near| (near.eigenvalue_per_s - value).norm() / value.norm());
+                let error = errors.fold(f64::INFINITY, f64::min);
+                println!("{value} differs by {error:e}");
+                assert!(error < 1.0e-9, "{value}: {error:e}");
+            }
+            compared += 1;
+        }
+        assert!(compared >= 2, "only {compared} modes were compared");
+    }
+}
+
+/// Protects: an elastic disk that gets stiffer tends to a rigid one, as 1/E.
+#[test]
+fn a_stiff_disk_is_rigid() {
+    let mut spec = coarse_scene();
+    spec.scene.contact.mu = 0.4;
+    let elastic = |spec: &JobSpec, hz: f64| {
+        let model = model(spec);
+        let near = SparseStructure::new(&model).unwrap().near(&model, &analysis::drive(spec), hz).unwrap();
+        near.modes.iter().map(|mode| mode.eigenvalue_per_s).collect::<Vec<_>>()
+    };
+    let mut rigid = spec.clone();
+    rigid.scene.disk.kind = DiskKind::Rigid;
+    let rigid_model = model(&rigid);
+    let drive = analysis::drive(&rigid);
+    let exact =
+        Structure::new(&rigid_model).unwrap().point_with(&rigid_model, &drive, 4, EXACT).unwrap().modes[0]
+            .eigenvalue_per_s;
+    let mut errors = Vec::new();
+    for young_modulus_pa in [2.0e13, 2.0e14, 2.0e15] {
+        spec.scene.disk.ring.young_modulus_pa = young_modulus_pa;
+        let values = elastic(&spec, exact.im / TAU);
+        let error =
+            values.iter().map(|value| (value - exact).norm() / exact.norm()).fold(f64::INFINITY, f64::min);
+        println!("E = {young_modulus_pa:e}: {error:e} of {exact}");
+        errors.push(error);
+    }
+    for pair in errors.windows(2) {
+        // The next term is of the order of the error itself.
+        assert!((pair[0] / pair[1] / 10.0 - 1.0).abs() < 0.1, "{errors:?}");
+    }
+}
+
+/// The lowest frequency [Hz] of a disk alone with three waves around. K of a uniform ring couples a column of nodes with its two
+/// neighbours, whose displacements differ by a factor e^(±3iΔ). So one column has all modes with three waves.
+fn three_waves_hz(mesh: &RingMesh) -> f64 {
+    let (operator, masses_kg) = RingOperator::of_mesh(mesh, &ALUMINIUM);
+    let [columns, rows, planes] = mesh.nodes_per_axis();
+    let unknown = |i: usize, k: usize, c: usize| (k * (rows - 1) + i - 1) * 3 + c;
+    let size = 3 * (rows - 1) * planes;
+    let mut matrix = Mat::<c64>::zeros(size, size);
+    for (k, i, c) in (0..planes).flat_map(|k| (1..rows).flat_map(move |i| (0..3).map(move |c| (k, i, c)))) {
+        let node = mesh.node(0, i, k);
+        for (column, value) in operator.row(3 * node + c) {
+            let [j, other_i, other_k] = mesh.grid_position(column / 3);
+            if other_i == 0 {
+                continue;
+            }
+            let step = if j == columns - 1 { -1.0 } else { j as f64 };
+            let (sin, cos) = (3.0 * step * TAU / columns as f64).sin_cos();
+            let mass_kg = (masses_kg[node] * masses_kg[mesh.node(0, other_i, other_k)]).sqrt();
+            matrix[(unknown(i, k, c), unknown(other_i, other_k, column % 3))] +=
+                c64::new(cos, sin) * (value / mass_kg);
+        }
+    }
+    matrix.self_adjoint_eigenvalues(Side::Lower).unwrap()[0].sqrt() / TAU
+}
+
+const ALUMINIUM: Material = Material { young_modulus_pa: 7.0e10, poisson_ratio: 0.33, density_kg_m3: 2700.0 };
+
+/// Protects: stiffness and mass of the disk, and which nodes it is held by. Without friction a pin that stands on a nodal line
+/// leaves a mode of the disk as it is.
+#[test]
+fn a_mode_of_the_disk_is_left_alone() {
+    let mesh = RingMesh::uniform(TAU, [0.008, 0.179], 0.025, [24, 6, 2]);
+    let exact_hz = three_waves_hz(&mesh);
+    let pin = BlockMesh::new([0.01, 0.01, 0.03], [2, 2, 4]);
+    let held = (0..mesh.node_count()).filter(|node| mesh.grid_position(*node)[1] == 0).collect();
+    let definition = ModelDefinition {
+        supports: vec![Support::fixed(pin.top_nodes().flat_map(|node| 3 * node..3 * node + 3))],
+        mesh: pin,
+        material: ALUMINIUM,
+        stiffness: Stiffness::Elastic,
+        load: Vec::new(),
+        target: TargetDefinition::Ring(RingDefinition {
+            mesh,
+            material: ALUMINIUM,
+            held,
+            target: TargetSurface::Bilinear,
+            clock: DiskTimeStep::Own,
+            track_radius_m: 0.162,
+        }),
+        beta2: 0.5,
+        beta_r_s: 0.0,
+        time_step: TimeStep::FractionOfLimit(0.5),
+    };
+    // Only the middle of the base touches, under which the nodal line is, and the held pin presses it down.
+    let gap_m = |position_m: [f64; 2]| if position_m[1].abs() < 1.0e-4 { -1.0e-6 } else { 1.0e-4 };
+    let model = Model::new(definition).unwrap().with_initial_gaps(|slave| gap_m(slave.position_m));
+    let drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 2.0, force_n: 1.0, ramp_s: 0.0 };
+    let near = SparseStructure::new(&model).unwrap().near(&model, &drive, exact_hz).unwrap();
+    let errors = near.modes.iter().map(|mode| (mode.eigenvalue_per_s.im / (TAU * exact_hz) - 1.0).abs());
+    let error = errors.fold(f64::INFINITY, f64::min);
+    println!("{exact_hz} Hz, differs by {error:e}");
+    // K ends at 10⁻¹⁶ of the fastest mode, whose ω² is 10⁴ times that of this one.
+    assert!(error < 1.0e-10, "{exact_hz} Hz: {error:e}");
+}
