@@ -9,6 +9,7 @@ use crate::publish::plot::RGBColor;
 use crate::publish::plot::palette::{BLUE, VERMILLION};
 use crate::publish::plot::sketch::{Anchor, At, Line, Sketch};
 use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, TopFace};
+use std::fmt::Write;
 
 const SIZE: (u32, u32) = (560, 470);
 /// The part of the sheet for the bodies: left, top, right, bottom [px]. The rest is for texts.
@@ -288,7 +289,7 @@ fn beyond_the_block(spec: &JobSpec) -> String {
     }
     let [about_x, about_y] = [pin.tilt_x_deg, pin.tilt_y_deg].map(|angle| angle.unwrap_or(0.0));
     if about_x != 0.0 || about_y != 0.0 {
-        text += &format!(" The pin is tilted by {about_x}° about x and by {about_y}° about y.");
+        let _ = write!(text, " The pin is tilted by {about_x}° about x and by {about_y}° about y.");
     }
     if !pin.base.is_flat() {
         text += " Its base is not flat; the gaps are too small to be drawn.";
