@@ -3,8 +3,8 @@
 use super::parse;
 use serde_json::Value;
 use tribosweep::spec::{
-    Base, ClampSide, Contact, DiskKind, FrictionLaw, HeightMap, Holder, JobSpec, Precision, Roughness,
-    StabilityMethod, Start,
+    Base, ClampSide, Contact, DiskKind, FrictionLaw, HeightMap, Holder, JobSpec, MeshFile, Precision, Region,
+    Roughness, Shape, StabilityMethod, Start,
 };
 use tribosweep::study::{PARAMETERS, job_key};
 
@@ -59,6 +59,30 @@ pub fn full() -> JobSpec {
             heights_m: vec![vec![1.0e-7, 2.0e-7], vec![3.0e-7, 5.0e-7]],
         }),
     };
+    let pin = &mut spec.scene.pin;
+    pin.shape = Shape::Cylinder;
+    pin.diameter_m = Some(0.011);
+    pin.tilt_x_deg = Some(0.1);
+    pin.tilt_y_deg = Some(0.2);
+    pin.regions = vec![Region {
+        above_m: Some(0.005),
+        group: Some("plate".to_owned()),
+        young_modulus_pa: 2.0e9,
+        poisson_ratio: 0.25,
+        density_kg_m3: 3000.0,
+    }];
+    pin.mesh = Some(Box::new(MeshFile {
+        file: Some("pin.msh".to_owned()),
+        length_unit_m: 0.001,
+        contact: "base".to_owned(),
+        load: "top".to_owned(),
+        clamp: "side".to_owned(),
+        content: Some("none".to_owned()),
+        extent_m: Some([0.01, 0.02, 0.03]),
+        nodes: Some(8),
+        hexahedra: Some(1),
+        bodies: vec!["plate".to_owned()],
+    }));
     spec.scene.disk.runout_m = Some(1.0e-6);
     spec.scene.disk.waviness_height_m = Some(2.0e-6);
     spec.scene.disk.waviness_count = Some(30);
@@ -106,6 +130,9 @@ fn another(value: &Value, pointer: &str) -> Option<Value> {
             "/stability" => Some(Value::from("eigenvalues")),
             "/numerics/precision" => Some(Value::from("single")),
             "/scene/pin/base/height_map/file" => Some(Value::from("other.csv")),
+            "/scene/pin/shape" => Some(Value::from("block")),
+            "/scene/pin/regions/0/group" => Some(Value::from("other")),
+            other if other.starts_with("/scene/pin/mesh/") => Some(Value::from("other")),
             "/scene/contact/law" => Some(Value::from("static_kinetic")),
             other => panic!("{other} = {value}: this test needs another value for it"),
         },
@@ -149,6 +176,17 @@ fn every_field_changes_the_key_even_by_one_ulp() {
         // There are no eigenvalues and no coarser mesh for such a scene.
         if ["/stability", "/run/start"].contains(&pointer.as_str()) {
             assert_eq!(key(&changed), key(&full()), "{pointer}");
+            continue;
+        }
+        // A cylinder has a diameter in place of these edges.
+        if ["/scene/pin/size_m/0", "/scene/pin/size_m/1"].contains(&pointer.as_str()) {
+            assert_eq!(key(&changed), key(&full()), "{pointer}");
+            let block = |spec: &JobSpec| {
+                let mut spec = spec.clone();
+                spec.scene.pin.shape = Shape::Block;
+                key(&spec)
+            };
+            assert_ne!(block(&changed), block(&full()), "{pointer} of a block");
             continue;
         }
         // The exponential law of this job does not use the length.

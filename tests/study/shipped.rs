@@ -1,7 +1,7 @@
 //! Protects: the studies that come with the package are valid and contain what their names say.
 
 use std::path::PathBuf;
-use tribosweep::spec::{ClampSide, DiskKind, JobSpec, Precision, StabilityMethod, Start};
+use tribosweep::spec::{ClampSide, DiskKind, JobSpec, Precision, Shape, StabilityMethod, Start};
 use tribosweep::study::{Job, Study};
 
 /// Every file in `studies/`.
@@ -115,6 +115,10 @@ fn every_clamp_ends_at_a_node_row() {
     for file in files() {
         for job in jobs(file.to_str().unwrap()) {
             let (pin, clamp) = (&job.spec.scene.pin, &job.spec.scene.clamp);
+            // A cylinder has rows of nodes at many distances, and a mesh from a file has its own clamp.
+            if pin.shape != Shape::Block {
+                continue;
+            }
             let axis = match clamp.side {
                 ClampSide::WholeTop => continue,
                 ClampSide::InnerSide | ClampSide::OuterSide | ClampSide::BothSides => 0,

@@ -11,7 +11,7 @@ use crate::sliding_modes::{EXACT, scene};
 use faer::{Mat, Side, c64};
 use std::f64::consts::TAU;
 use tribosweep::analysis;
-use tribosweep::solver::body::block::{BlockMesh, Stiffness};
+use tribosweep::solver::body::pin::{BlockMesh, Stiffness};
 use tribosweep::solver::body::ring::operator::RingOperator;
 use tribosweep::solver::body::ring::{RingDefinition, RingMesh};
 use tribosweep::solver::interface::law::Law;
@@ -137,8 +137,8 @@ fn a_mode_of_the_disk_is_left_alone() {
     let held = (0..mesh.node_count()).filter(|node| mesh.grid_position(*node)[1] == 0).collect();
     let definition = ModelDefinition {
         supports: vec![Support::fixed(pin.top_nodes().flat_map(|node| 3 * node..3 * node + 3))],
-        mesh: pin,
-        material: ALUMINIUM,
+        mesh: pin.into(),
+        materials: vec![ALUMINIUM],
         stiffness: Stiffness::Elastic,
         load: Vec::new(),
         target: TargetDefinition::Ring(RingDefinition {

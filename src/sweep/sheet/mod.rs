@@ -13,6 +13,7 @@ mod surface;
 mod survey;
 mod symbols;
 mod track;
+mod view;
 
 use super::error::SweepError;
 use crate::publish::{Sheet, SheetGroup};

@@ -1,70 +1,21 @@
 //! The drawing of the pin on the disk, seen obliquely from above.
 
-use super::colours::{DISK, DISK_EDGE, INK};
+use super::colours::{DISK, DISK_EDGE, FRONT, INK, MESH, SIDE, TOP};
 use super::lines;
 use super::surface;
 use super::survey::Survey;
+use super::view::{DIRECTIONS, View};
 use crate::publish::Drawing;
-use crate::publish::plot::RGBColor;
 use crate::publish::plot::palette::{BLUE, VERMILLION};
 use crate::publish::plot::sketch::{Anchor, At, Line, Sketch};
 use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, TopFace};
 use std::fmt::Write;
 
 const SIZE: (u32, u32) = (560, 470);
-/// The part of the sheet for the bodies: left, top, right, bottom [px]. The rest is for texts.
-const FRAME: [f64; 4] = [70.0, 92.0, 500.0, 400.0];
 /// Length of the arrows of the load [px].
 const LOAD_ARROW: f64 = 46.0;
 /// With more elements along an edge the mesh would be a grey area, and is not drawn.
 const MAX_DRAWN_ELEMENTS: usize = 60;
-
-pub(super) const MESH: RGBColor = RGBColor(0x9A, 0xAB, 0xBC);
-pub(super) const TOP: RGBColor = RGBColor(0xF4, 0xF8, 0xFC);
-pub(super) const SIDE: RGBColor = RGBColor(0xE0, 0xEA, 0xF4);
-pub(super) const FRONT: RGBColor = RGBColor(0xCD, 0xDC, 0xEA);
-
-/// From positions in the scene [m] to positions on the sheet.
-pub(super) struct View {
-    scale: f64,
-    shift: At,
-}
-
-/// The directions of x, y and z on the sheet, for an eye above the +x side and somewhat before the −y end.
-const DIRECTIONS: [At; 3] = [(0.57, 0.35), (0.82, -0.24), (0.0, -0.91)];
-
-fn oblique([x, y, z]: [f64; 3]) -> At {
-    let along =
-        |pick: fn(At) -> f64| x * pick(DIRECTIONS[0]) + y * pick(DIRECTIONS[1]) + z * pick(DIRECTIONS[2]);
-    (along(|d| d.0), along(|d| d.1))
-}
-
-impl View {
-    /// The view in which these positions fill the frame.
-    fn of(points: &[[f64; 3]]) -> Self {
-        let flat: Vec<At> = points.iter().map(|point| oblique(*point)).collect();
-        let ends = |pick: fn(&At) -> f64| {
-            flat.iter()
-                .map(pick)
-                .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
-        };
-        let ((left, right), (top, bottom)) = (ends(|at| at.0), ends(|at| at.1));
-        let scale = ((FRAME[2] - FRAME[0]) / (right - left)).min((FRAME[3] - FRAME[1]) / (bottom - top));
-        let middle = |low: f64, high: f64| f64::midpoint(low, high);
-        Self {
-            scale,
-            shift: (
-                middle(FRAME[0], FRAME[2]) - scale * middle(left, right),
-                middle(FRAME[1], FRAME[3]) - scale * middle(top, bottom),
-            ),
-        }
-    }
-
-    pub(super) fn at(&self, point: [f64; 3]) -> At {
-        let (u, v) = oblique(point);
-        (u * self.scale + self.shift.0, v * self.scale + self.shift.1)
-    }
-}
 
 /// Draws the pin of a job. Texts give the values of all jobs.
 pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {

@@ -1,7 +1,7 @@
 //! The surface of a pin that is not a plain block: a cylinder, a tilted pin, regions, or a mesh from a file.
 
-use super::colours::INK;
-use super::pin::{FRONT, MESH, SIDE, TOP, View};
+use super::colours::{FRONT, INK, MESH, SIDE, TOP};
+use super::view::View;
 use crate::publish::plot::RGBColor;
 use crate::publish::plot::palette::VERMILLION;
 use crate::publish::plot::sketch::{At, Line, Sketch};
