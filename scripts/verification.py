@@ -36,6 +36,7 @@ BENCHMARKS = {
     "B20": "A rough base",
     "B21": "A disk with run-out and waviness",
     "B22": "A compliant contact layer",
+    "B23": "General meshes: cylinders, tilt, regions",
     "Flutter": "Linear flutter of the pin",
     "R1": "Ring: eigenfrequencies",
     "R2": "Ring: static deflection",

@@ -165,7 +165,9 @@ impl ProgramWindows {
         let figures = &self.figures;
         let [stick_share, slip_share, separated_share] = figures.shares();
         let load_n = figures.load_n();
-        let n_amplitude = 0.5 * (figures.normal_max_n - figures.normal_min_n) / load_n;
+        let swing_n = 0.5 * (figures.normal_max_n - figures.normal_min_n);
+        // A window within the first step of a ramp has no load.
+        let n_amplitude = if load_n > 0.0 { swing_n / load_n } else { 0.0 };
         let [from_s, to_s] = self.cycles_s;
         let has_frequency = self.cycles >= FEWEST_CYCLES && n_amplitude >= LEAST_AMPLITUDE;
         let time_s = [self.number as f64 * self.length_s, (self.number + 1) as f64 * self.length_s];

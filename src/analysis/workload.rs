@@ -4,6 +4,7 @@ use super::error::{JobError, step_count};
 use crate::solver::Model;
 use crate::solver::scheme;
 use crate::spec::{DiskKind, JobSpec, Precision, StabilityMethod, elasticity};
+use crate::stability::Structure;
 
 /// What the jobs of one model take.
 #[derive(Debug, Clone, PartialEq)]
@@ -65,10 +66,13 @@ impl Workload {
     /// Builds the job's model, as a run does, and takes its sizes.
     ///
     /// # Errors
-    /// If the specification is not physical, or the solver refuses the model.
+    /// If the specification is not physical, the solver refuses the model, or modes have too many unknowns.
     pub fn examine(spec: &JobSpec) -> Result<Self, JobError> {
         spec.check()?;
         let model = Model::from_scene(&spec.scene, &spec.numerics)?;
+        if spec.stability == StabilityMethod::Modes {
+            Structure::check_size(&model)?;
+        }
         Ok(Self::of(&model, spec.numerics.precision))
     }
 

@@ -70,12 +70,19 @@ impl Structure {
         if space::holders(model).any(|held| held.tied.component < 2 && held.stiffness_n_m <= 0.0) {
             return Err(StabilityError::Holder);
         }
-        let is_plain = model.ring().is_none() && model.mesh().block().is_some();
-        Ok(if is_plain {
+        Ok(if is_plain(model) {
             Self::Reduced(Box::new(ReducedStructure::new(model)))
         } else {
             Self::Sparse(Box::new(SparseStructure::new(model)?))
         })
+    }
+
+    /// Checks whether [`Structure::new`] takes as many unknowns as the model has, without making anything.
+    ///
+    /// # Errors
+    /// If there are too many.
+    pub fn check_size(model: &Model) -> Result<(), StabilityError> {
+        if is_plain(model) { Ok(()) } else { sparse::check_size(model) }
     }
 
     /// Equilibrium and the leading `modes` modes of steady sliding.
@@ -281,4 +288,9 @@ fn natural_speed_ratio(model: &Model, drive: &Drive, mu: f64) -> f64 {
     let material = model.pin().material();
     let impedance = material.density_kg_m3 * material.shear_wave_speed_m_s();
     speed_m_s * impedance * area_m2 / (mu * drive.force_n)
+}
+
+/// Whether the pin is an upright block of one material on a rigid disk.
+fn is_plain(model: &Model) -> bool {
+    model.ring().is_none() && model.mesh().block().is_some()
 }

@@ -241,12 +241,15 @@ fn eigenvalues_and_runs_agree() {
     assert!(simulated.iter().all(|row| row["decided_by"] == "run"), "{simulated:?}");
 }
 
-/// Protects: modes are those of a rigid disk, and a study of another disk is refused before any point is submitted.
+/// Protects: a study with too many unknowns of pin and elastic disk is refused before any point is submitted.
 #[test]
-fn an_elastic_disk_is_refused() {
+fn an_elastic_disk_that_is_too_fine_is_refused() {
     let folder = Folder::with("study", &small(&json!({ "mu": [0.1, 0.4] })));
     let refused = folder.command("stability study.json --set disk_kind=elastic").assert().code(2);
     let message = stderr(&refused);
-    assert!(message.contains("scene.disk.kind") && message.contains("rigid"), "{message}");
+    assert!(
+        message.contains("at most 30000 displacements") && message.contains("element_size_m"),
+        "{message}"
+    );
     folder.command("export study-stability").assert().code(2);
 }

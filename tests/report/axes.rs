@@ -115,6 +115,7 @@ fn every_scalar_has_a_figure_and_a_table() {
             "frequency",
             "growth_rate",
             "hysteresis",
+            "holder",
             "mode",
             "contact_nodes",
             "lifted_nodes",

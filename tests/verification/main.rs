@@ -38,6 +38,7 @@ mod particles;
 mod patch;
 mod programs;
 mod reference;
+mod rig;
 mod ring_modes;
 mod ring_ritz;
 mod ring_rotation;

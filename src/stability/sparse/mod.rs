@@ -45,17 +45,24 @@ pub struct ModesNear {
     pub radius_per_s: f64,
 }
 
+/// Checks the number of displacements of pin and disk.
+pub fn check_size(model: &Model) -> Result<(), StabilityError> {
+    let disk = model.ring().map_or(0, |ring| ring.mesh().node_count());
+    let unknowns = 3 * (model.mesh().node_count() + disk);
+    if unknowns > MOST_UNKNOWNS {
+        return Err(StabilityError::TooLarge { unknowns, most: MOST_UNKNOWNS });
+    }
+    Ok(())
+}
+
 impl SparseStructure {
     /// What all points of `model` share. Its disk may be rigid or elastic.
     ///
     /// # Errors
     /// If there are too many unknowns.
     pub fn new(model: &Model) -> Result<Self, StabilityError> {
+        check_size(model)?;
         let bodies = Bodies::new(model);
-        let unknowns = bodies.masses_kg.len();
-        if unknowns > MOST_UNKNOWNS {
-            return Err(StabilityError::TooLarge { unknowns, most: MOST_UNKNOWNS });
-        }
         Ok(Self { bodies, band_hz: BAND / (4.0 * model.pin().shear_transit_s()) })
     }
 
