@@ -202,6 +202,7 @@ fn validate_writes_no_file() {
 fn shipped_studies() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("studies");
     let mut studies: Vec<_> = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
+    studies.retain(|path| path.extension().is_some_and(|extension| extension == "json"));
     studies.sort();
     studies
 }

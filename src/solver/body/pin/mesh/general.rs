@@ -116,7 +116,7 @@ impl GeneralMesh {
     ///
     /// # Errors
     /// If a coordinate is not finite, if an element is inverted or flat, if a face is empty or has nodes outside of the
-    /// elements, or if the elements do not hang together.
+    /// elements, or if an element is not connected with the contact face.
     pub fn new(parts: &MeshParts, tilt: Tilt) -> Result<Self, SolverError> {
         let refused = |what: String| Err(SolverError::Mesh(what));
         for (what, faces) in [("contact", &parts.contact), ("load", &parts.top)] {
@@ -341,7 +341,7 @@ fn renumbered(parts: &MeshParts) -> Result<Vec<Option<usize>>, SolverError> {
     match parts.elements.iter().position(|element| new[element.nodes[0]].is_none()) {
         None => Ok(new),
         Some(index) => Err(SolverError::Mesh(format!(
-            "element {} does not hang together with the contact face; elements hang together by common nodes",
+            "element {} is not connected with the contact face by elements with common nodes",
             parts.name(index)
         ))),
     }
