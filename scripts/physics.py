@@ -237,8 +237,8 @@ the growth rate [1/s] and Im λ/2π the frequency [Hz]. Sliding is stable if all
 
 **What it neglects.** Vibrations are small: no node sticks, none lifts off, none closes. So the modes say whether vibrations grow
 from steady sliding. They do not say how large vibrations become, and they do not give the frequency or μ\\* of the limit cycle.
-The disk is rigid. An elastic disk is not covered: its jobs are simulated, and `tribosweep stability` refuses
-such a study. So is the law `prakash_clifton`, whose friction has a state.
+The rotation of an elastic disk is neglected. `tribosweep stability` refuses what has no equations here: the law `prakash_clifton`,
+whose friction has a state, contact layers, run-out and waviness, and a speed or a load that changes.
 
 ## More than one limit cycle
 

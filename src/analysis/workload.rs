@@ -101,8 +101,7 @@ impl Workload {
         let pin = &spec.scene.pin;
         let wave_speed =
             elasticity::pressure_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
-        let edges = pin.extent_m().into_iter().zip(pin.elements).map(|(size, n)| size / n as f64);
-        let shortest = edges.fold(f64::INFINITY, f64::min);
+        let shortest = pin.element_edges_m().into_iter().fold(f64::INFINITY, f64::min);
         let omega_max = LARGEST_FREQUENCY * wave_speed / shortest;
         let numerics = &spec.numerics;
         let limit_s = scheme::time_step_limit_s(omega_max, numerics.beta2, numerics.beta_r_s);

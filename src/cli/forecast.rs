@@ -111,7 +111,11 @@ fn table(groups: &[Group]) -> Vec<String> {
 fn row(group: &Group) -> [String; 7] {
     let workload = &group.workload;
     let about = if workload.is_estimate { "~" } else { "" };
-    let [nx, ny, nz] = workload.elements;
+    let elements = match workload.elements {
+        // A mesh from a file has no directions.
+        [count, 1, 1] if workload.is_general => format!("{} elements", grouped(count as u64)),
+        [nx, ny, nz] => format!("{nx}×{ny}×{nz}"),
+    };
     let precision = match workload.precision {
         Precision::Double => "",
         Precision::Single => ", single",
@@ -122,7 +126,7 @@ fn row(group: &Group) -> [String; 7] {
         String::new()
     };
     [
-        format!("{nx}×{ny}×{nz}{precision}"),
+        format!("{elements}{precision}"),
         format!("{}{disk}", grouped(workload.pin_nodes as u64)),
         group.jobs.to_string(),
         format!("{about}{}", quantity(workload.time_step_s, "s")),

@@ -8,7 +8,7 @@ use crate::analysis::program::{Hysteresis, Leading};
 use crate::analysis::{self, ElasticDisk, JobObserver, JobRecord, Moment, SlidingStability};
 use crate::exit;
 use crate::publish::value::quantity;
-use crate::spec::{FrictionLaw, JobSpec, Scene};
+use crate::spec::{FrictionLaw, JobSpec, Scene, Shape};
 use crate::study::{Preset, Study};
 use crate::sweep::History;
 use crate::worker::Interrupt;
@@ -93,7 +93,13 @@ fn as_json(record: &JobRecord) -> Result<String, CliError> {
 /// The most important inputs of a job.
 fn job_line(spec: &JobSpec) -> String {
     let Scene { pin, disk, contact, load, holder, .. } = &spec.scene;
-    let [nx, ny, nz] = pin.elements;
+    let mesh = match pin.shape {
+        Shape::Mesh => pin.mesh_words(),
+        Shape::Block | Shape::Cylinder => {
+            let [nx, ny, nz] = pin.elements;
+            format!("{nx} × {ny} × {nz} elements")
+        }
+    };
     let law = if contact.law == FrictionLaw::Coulomb {
         String::new()
     } else {
@@ -110,7 +116,7 @@ fn job_line(spec: &JobSpec) -> String {
     ];
     let others: String = others.into_iter().filter_map(|(holds, words)| holds.then_some(words)).collect();
     format!(
-        "job                    ω = {}, μ = {}, F = {}, E = {}, {nx} × {ny} × {nz} elements{law}{others}\n",
+        "job                    ω = {}, μ = {}, F = {}, E = {}, {mesh}{law}{others}\n",
         quantity(disk.omega_rpm, "rpm"),
         quantity(contact.mu, ""),
         quantity(load.force_n, "N"),

@@ -57,7 +57,7 @@ impl Base {
     }
 
     /// Adds every violated limit to `found`, for a base with these edges and elements.
-    pub(super) fn check(&self, size_m: [f64; 2], elements: [usize; 2], found: &mut Violations) {
+    pub(super) fn check(&self, size_m: [f64; 2], [hx, hy]: [f64; 2], found: &mut Violations) {
         let [lx, ly] = size_m;
         let half_diagonal = 0.5 * libm::hypot(lx, ly);
         let half_edge = 0.5 * lx.min(ly);
@@ -89,7 +89,6 @@ impl Base {
                 found.limit_magnitude(&field, height);
             }
         }
-        let [hx, hy] = [lx / elements[0] as f64, ly / elements[1] as f64];
         if let Some(roughness) = &self.roughness {
             roughness.check(ELEMENTS_OF_WAVE * hx.max(hy), found);
         }

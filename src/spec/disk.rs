@@ -145,7 +145,7 @@ impl Disk {
             _ => {}
         }
         if let Some(count) = count {
-            let shortest_m = super::base::ELEMENTS_OF_WAVE * pin.extent_m()[1] / pin.elements[1] as f64;
+            let shortest_m = super::base::ELEMENTS_OF_WAVE * pin.element_edges_m()[1];
             let most = TAU * self.track_radius_m / shortest_m;
             if count == 0 || f64::from(count) > most {
                 let right = format!(

@@ -40,6 +40,12 @@ pub struct MeshFile {
     /// Its number of elements.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub hexahedra: Option<usize>,
+    /// The number of quadrilaterals of its contact face.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_faces: Option<usize>,
+    /// Largest extent (m) in x and in y of one of them.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub contact_edges_m: Option<[f64; 2]>,
     /// Names of its groups of elements.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub bodies: Vec<String>,
@@ -73,6 +79,8 @@ impl MeshFile {
             extent_m: Some([0.0; 3]),
             nodes: Some(0),
             hexahedra: Some(0),
+            contact_faces: Some(0),
+            contact_edges_m: Some([0.0; 2]),
             bodies: vec![String::new()],
             ..Self::default()
         }
@@ -95,6 +103,27 @@ impl MeshFile {
         MeshContent::from_bytes(&bytes)
     }
 
+    /// The mesh of this content, in place of the file.
+    #[must_use]
+    pub fn with_content(&self, content: &MeshContent, bodies: Vec<String>) -> Self {
+        Self {
+            file: None,
+            content: Some(content.encoded()),
+            extent_m: Some(content.extent_m()),
+            nodes: Some(content.nodes_m.len()),
+            hexahedra: Some(content.hexahedra.len()),
+            contact_faces: Some(content.contact.len()),
+            contact_edges_m: Some(content.contact_edges_m()),
+            bodies,
+            ..self.clone()
+        }
+    }
+
+    /// What is known of the content without reading it.
+    fn measures(&self) -> impl PartialEq + use<> {
+        (self.extent_m, self.nodes, self.hexahedra, self.contact_faces, self.contact_edges_m)
+    }
+
     /// Adds every violated limit to `found`, for a pin of this size.
     pub(super) fn check(&self, size_m: [f64; 3], found: &mut Violations) {
         found.require_magnitude("scene.pin.mesh.length_unit_m", self.length_unit_m, "a length > 0 m");
@@ -103,6 +132,11 @@ impl MeshFile {
             found.add("scene.pin.mesh.content", "no mesh", right);
             return;
         };
+        if self.with_content(&content, Vec::new()).measures() != self.measures() {
+            let right = "the numbers of nodes and elements and the lengths of that content: name scene.pin.mesh.file again";
+            found.add("scene.pin.mesh", "a content that does not fit", right);
+            return;
+        }
         let extent_m = content.extent_m();
         for axis in 0..3 {
             if (extent_m[axis] - size_m[axis]).abs() > EXTENT_TOLERANCE * extent_m[axis] {
@@ -129,6 +163,23 @@ impl MeshContent {
             let along = || self.nodes_m.iter().map(move |x| x[axis]);
             along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
         })
+    }
+
+    /// Largest extent (m) in x and in y of a quadrilateral of the contact face.
+    fn contact_edges_m(&self) -> [f64; 2] {
+        let extent_m = |face: &[u32; 4], axis: usize| {
+            let along = face.iter().filter_map(|&node| self.nodes_m.get(node as usize)).map(|x| x[axis]);
+            let [low, high] =
+                along.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+            high - low
+        };
+        [0, 1].map(|axis| self.contact.iter().map(|face| extent_m(face, axis)).fold(0.0, f64::max))
+    }
+
+    /// What two equal meshes have in common: everything but the numbers in their files, with bodies as `body` numbers them.
+    pub fn identity(&self, body: impl Fn(u32) -> u32) -> Vec<u8> {
+        let body_of = self.body_of.iter().map(|&of| body(of)).collect();
+        Self { ids: vec![0; self.ids.len()], body_of, ..self.clone() }.to_bytes()
     }
 
     /// The text that takes the place of a file.

@@ -206,7 +206,7 @@ impl JobSpec {
             found.add(
                 "scene.program",
                 "a speed or a load that changes",
-                "{}: the complex modes of steady sliding are those of a constant speed and load",
+                "absent: the complex modes of steady sliding are those of a constant speed and load",
             );
         }
     }

@@ -131,7 +131,7 @@ impl Default for Pin {
 impl Pin {
     /// Time \[s\] in which a shear wave crosses the pin's height; NaN for an unphysical material.
     pub fn shear_transit_s(&self) -> f64 {
-        self.size_m[2]
+        self.extent_m()[2]
             / elasticity::shear_wave_speed_m_s(self.young_modulus_pa, self.poisson_ratio, self.density_kg_m3)
     }
 
@@ -151,9 +151,44 @@ impl Pin {
 
     /// Extent \[m\] in x, y and z, without tilt.
     pub fn extent_m(&self) -> [f64; 3] {
-        match (self.shape, self.diameter_m) {
-            (Shape::Cylinder, Some(diameter)) => [diameter, diameter, self.size_m[2]],
+        let of_mesh = self.mesh.as_ref().and_then(|mesh| mesh.extent_m);
+        match (self.shape, self.diameter_m, of_mesh) {
+            (Shape::Cylinder, Some(diameter), _) => [diameter, diameter, self.size_m[2]],
+            (Shape::Mesh, _, Some(extent_m)) => extent_m,
             _ => self.size_m,
+        }
+    }
+
+    /// Edges \[m\] of the elements in x, y and z. Those of a mesh from a file are the largest ones in x and y of its contact face, and the
+    /// mean one in z.
+    pub fn element_edges_m(&self) -> [f64; 3] {
+        let extent_m = self.extent_m();
+        match self.mesh.as_ref().and_then(|mesh| mesh.contact_edges_m) {
+            Some([x, y]) if self.shape == Shape::Mesh => [x, y, extent_m[2] / self.layers()],
+            _ => std::array::from_fn(|axis| extent_m[axis] / self.elements[axis] as f64),
+        }
+    }
+
+    /// Mean number of elements over the height.
+    fn layers(&self) -> f64 {
+        let faces = self.mesh.as_ref().and_then(|mesh| mesh.contact_faces).unwrap_or(1);
+        (self.element_count() / faces as f64).max(1.0)
+    }
+
+    /// Mean volume \[m³\] of an element; of a mesh from a file, that of the box around it over its elements.
+    pub fn element_volume_m3(&self) -> f64 {
+        match self.shape {
+            Shape::Mesh => self.extent_m().iter().product::<f64>() / self.element_count(),
+            Shape::Block | Shape::Cylinder => self.element_edges_m().iter().product(),
+        }
+    }
+
+    /// The mesh in words: `12×15×10`.
+    pub fn mesh_words(&self) -> String {
+        let [nx, ny, nz] = self.elements;
+        match self.shape {
+            Shape::Mesh => format!("{} elements", self.element_count()),
+            Shape::Block | Shape::Cylinder => format!("{nx}×{ny}×{nz}"),
         }
     }
 
@@ -218,7 +253,8 @@ impl Pin {
         }
         self.check_shape(found);
         let [lx, ly, _] = self.extent_m();
-        self.base.check([lx, ly], [self.elements[0], self.elements[1]], found);
+        let [hx, hy, _] = self.element_edges_m();
+        self.base.check([lx, ly], [hx, hy], found);
         let e = self.young_modulus_pa;
         found.require_magnitude("scene.pin.young_modulus_pa", e, "a modulus > 0 Pa");
         let nu = self.poisson_ratio;

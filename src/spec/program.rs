@@ -105,6 +105,12 @@ impl Table {
             );
             found.add(field, format!("{} points", points.len()), right);
         }
+        if points.len() >= 2 && points.iter().all(|&[time_s, _]| time_s == 0.0) {
+            found.add(field, "all times 0", "a last time > 0 s, at which the run ends");
+        }
+        if points.len() >= 2 && points.iter().all(|&[_, value]| value == 0.0) {
+            found.add(field, "all values 0", "at least one value > 0");
+        }
         for (index, &[time_s, _]) in points.iter().enumerate() {
             let field = format!("{field}[{index}]");
             let before_s = index.checked_sub(1).map(|last| points[last][0]);
@@ -136,7 +142,9 @@ impl Program {
 
     /// What up and down refer to: the speed if it changes, otherwise the load.
     pub fn leading(&self) -> Option<&Table> {
-        self.tables().next()
+        let end_s = self.end_s()?;
+        let changes = |table: &&Table| table.change([0.0, end_s]) != Change::None;
+        self.tables().find(changes).or_else(|| self.tables().next())
     }
 
     /// Sets a speed and a load to the largest ones of the program, as far as it changes them and `keeps` [speed, load] does not
@@ -144,7 +152,8 @@ impl Program {
     pub(super) fn raise(&self, constants: [&mut f64; 2], keeps: [bool; 2]) {
         let tables = [&self.omega_rpm, &self.force_n];
         for ((table, keeps), constant) in tables.into_iter().zip(keeps).zip(constants) {
-            if let Some(table) = table.as_ref().filter(|table| !keeps && !table.0.is_empty()) {
+            // A table without a value above 0 is refused itself.
+            if let Some(table) = table.as_ref().filter(|table| !keeps && table.largest() > 0.0) {
                 *constant = table.largest();
             }
         }
@@ -194,7 +203,7 @@ impl Program {
 /// Adds a violation if a constant differs from the largest value of the program that stands for it.
 fn check_largest(of: &str, field: &str, constant: f64, table: &Table, found: &mut Violations) {
     let largest = table.largest();
-    if largest.is_finite() && constant != largest {
+    if largest.is_finite() && largest > 0.0 && constant != largest {
         let right = format!("absent, or {}, the largest value of {of}", readable(largest));
         found.add(field, readable(constant), right);
     }

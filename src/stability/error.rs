@@ -11,11 +11,11 @@ pub enum StabilityError {
         /// The local friction coefficient.
         mu: f64,
     },
-    /// The mesh of an elastic disk is too fine.
+    /// The meshes are too fine for sparse factors, which elastic disks and all pins but plain blocks need.
     #[error(
-        "eigenvalues of steady sliding on an elastic disk are for at most {most} displacements, and pin and disk have \
-         {unknowns}: give coarser elements (scene.disk.ring.element_size_m, coarse_element_size_m, scene.pin.elements) or \
-         simulate this job"
+        "eigenvalues of steady sliding are for at most {most} displacements of this pin and its disk, which have {unknowns}: give \
+         coarser elements (scene.pin.elements or another mesh; scene.disk.ring.element_size_m and coarse_element_size_m of an \
+         elastic disk) or simulate this job"
     )]
     TooLarge {
         /// Displacements of pin and disk.

@@ -210,7 +210,19 @@ impl Point<'_> {
         };
         let mut found = pencil.eigenpairs();
         let candidates = if accuracy.aim == Aim::Signs { count } else { count.max(CANDIDATES) };
-        found.truncate(candidates);
+        if accuracy.aim == Aim::Signs {
+            found.truncate(candidates);
+        } else {
+            // Many values beyond the band may have a larger real part, and most of them are no modes. They must not take the places
+            // of modes in the band.
+            let [mut inside, mut beyond] = [0; 2];
+            found.retain(|(value, _)| {
+                let is_open = inside < candidates;
+                let taken = if self.is_in_band(*value) { &mut inside } else { &mut beyond };
+                *taken += 1;
+                is_open && *taken <= candidates
+            });
+        }
         let sideways_of_nodes: Vec<f64> =
             self.friction.sideways_of_nodes.iter().map(|d| d * self.load_over_rate).collect();
         let Bilateral { space, separable, contact } = self.bilateral;
@@ -251,9 +263,7 @@ impl Point<'_> {
         // Beyond the band the basis lacks modes, and what it has there need not be one.
         let is_reliable = |mode: &Candidate| {
             let residual = mode.corrected.as_ref().map_or(mode.residual, |mode| mode.residual);
-            self.basis.is_complete
-                || mode.value().im <= TAU * self.basis.band_hz
-                || residual <= accuracy.residual
+            self.is_in_band(mode.value()) || residual <= accuracy.residual
         };
         modes.retain(is_reliable);
         modes.truncate(count);
@@ -267,6 +277,11 @@ impl Point<'_> {
             }));
         }
         finished
+    }
+
+    /// Whether the basis has all modes at the frequency of a value.
+    fn is_in_band(&self, value: c64) -> bool {
+        self.basis.is_complete || value.im <= TAU * self.basis.band_hz
     }
 
     /// Corrects up to four modes in the full space. Each round adds the responses of the pin to the residuals of right and

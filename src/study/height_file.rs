@@ -40,7 +40,7 @@ pub(super) fn with_heights(value: &Value, source: &SourceText) -> Result<Option<
     let mut fields = map.clone();
     fields.remove("file");
     fields.insert("heights_m".to_owned(), json!(rows));
-    Ok(source.with_value_on_lines(MAP, &Value::Object(fields)))
+    Ok(source.with_value(MAP, &Value::Object(fields)))
 }
 
 /// Reads a text file that is not larger than a map can be.

@@ -2,7 +2,7 @@
 
 use super::json::encode;
 use super::parameter::{PARAMETERS, Parameter};
-use crate::spec::{ClampSide, DiskKind, JobSpec, StabilityMethod, Start};
+use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, StabilityMethod, Start};
 use serde_json::Value;
 
 /// A parameter and its value in a job.
@@ -34,6 +34,12 @@ pub fn inputs(spec: &JobSpec) -> Vec<Input> {
         _ if !is_run && matches!(parameter.part(), Some("run" | "detection")) => false,
         "stability" => !is_run || spec.eigenvalues_may_decide(),
         "start" => spec.run.start == Start::Rest || spec.coarser_elements().is_some(),
+        "elements" | "nx" | "ny" | "nz" | "clamp_side" | "clamp_width_m"
+            if spec.scene.pin.shape == Shape::Mesh =>
+        {
+            false
+        }
+        "size_x_m" | "size_y_m" => spec.scene.pin.shape != Shape::Cylinder,
         "clamp_width_m" => spec.scene.clamp.side != ClampSide::WholeTop,
         "safety_factor" => spec.numerics.time_step_s.is_none(),
         _ => spec.scene.disk.kind == DiskKind::Elastic || !parameter.pointer.starts_with("/scene/disk/ring/"),

@@ -2,8 +2,8 @@
 
 use super::json::encode;
 use crate::spec::{
-    Clamp, ClampSide, Detection, DiskKind, FrictionLaw, JobSpec, Load, Numerics, Pin, Precision, RunControl,
-    Shape, StabilityMethod, Start,
+    Clamp, ClampSide, Detection, DiskKind, FrictionLaw, JobSpec, Load, MeshFile, Numerics, Pin, Precision,
+    RunControl, Shape, StabilityMethod, Start,
 };
 use serde_json::Value;
 use std::collections::VecDeque;
@@ -17,7 +17,7 @@ const HEX_DIGITS: usize = 32;
 /// In canonical JSON the fields are sorted, there is no space, and numbers have their shortest exact form, with 0 for
 /// −0. Fields without effect do not enter. These have their defaults: coefficients that the friction law does not use; the
 /// clamp's width where no strip uses it; an angle of 0; run-out and waviness of no height; the elements and the clamp
-/// where the mesh comes from a file; the
+/// where the mesh comes from a file, of which a hash of its content enters; the
 /// safety factor where the time step is given; the time step, the precision, the run, its detection and the load's ramp where
 /// there is no run; the method of stability where eigenvalues may not decide; the start
 /// where the mesh is too coarse for a coarser one; what looks for a steady state where the speed or the load changes. The ring of a rigid disk is left out. A new
@@ -25,11 +25,11 @@ const HEX_DIGITS: usize = 32;
 pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     let mut spec = spec.clone();
     spec.scene.contact = spec.scene.contact.in_use();
-    let [x_m, y_m, _] = spec.scene.pin.extent_m();
-    (spec.scene.pin.size_m[0], spec.scene.pin.size_m[1]) = (x_m, y_m);
+    spec.scene.pin.size_m = spec.scene.pin.extent_m();
     if spec.scene.pin.shape == Shape::Mesh {
         spec.scene.pin.elements = Pin::default().elements;
         spec.scene.clamp = Clamp::default();
+        reduce_mesh(&mut spec.scene.pin);
     }
     for angle in [&mut spec.scene.pin.tilt_x_deg, &mut spec.scene.pin.tilt_y_deg] {
         *angle = angle.filter(|angle| *angle != 0.0);
@@ -106,6 +106,24 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
     let mut text = Value::from(solver_version).to_string();
     write_canonical(&job, &mut text);
     blake3::hash(text.as_bytes()).to_hex()[..HEX_DIGITS].to_owned()
+}
+
+/// Leaves of a mesh from a file a hash of its nodes, elements, faces and regions: names, units and compression have no effect.
+fn reduce_mesh(pin: &mut Pin) {
+    let Pin { mesh: Some(mesh), regions, .. } = pin else { return };
+    // A damaged mesh is refused before it has a result.
+    let Some(content) = mesh.decoded() else { return };
+    let region_of = |body: u32| {
+        let name = mesh.bodies.get(body as usize);
+        let region =
+            regions.iter().position(|region| region.group.is_some() && region.group.as_ref() == name);
+        region.unwrap_or(regions.len()) as u32
+    };
+    let hash = blake3::hash(&content.identity(region_of)).to_hex().to_string();
+    **mesh = MeshFile { content: Some(hash), ..MeshFile::default() };
+    for region in regions {
+        region.group = None;
+    }
 }
 
 /// Largest number of parts that are remembered: a search through them takes less time than to encode one job.

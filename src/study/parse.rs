@@ -70,11 +70,11 @@ impl Study {
     ) -> Result<Self, StudyError> {
         let (mut value, mut source) = SourceText::read(text, source_name)?;
         refuse(source.repeated_keys())?;
-        if reads_files && let Some(text) = height_file::with_heights(&value, &source)? {
-            (value, source) = SourceText::read(&text, source_name)?;
-        }
-        if reads_files && let Some(text) = mesh_file::with_mesh(&value, &source)? {
-            (value, source) = SourceText::read(&text, source_name)?;
+        for with_file in [height_file::with_heights, mesh_file::with_mesh] {
+            if reads_files && let Some(text) = with_file(&value, &source)? {
+                let (with_content, read) = SourceText::read(&text, source_name)?;
+                (value, source) = (with_content, read.at_places_of(&source));
+            }
         }
         let template = StudyFile::template();
         let Decoded { value: file, mismatches } = decode_all::<StudyFile>(&value, &template);

@@ -102,13 +102,15 @@ impl SourceText {
         Some(text)
     }
 
-    /// As [`Self::with_value`], where what follows stays on its lines.
-    pub(super) fn with_value_on_lines(&self, field: &str, value: &Value) -> Option<String> {
-        let span = self.spans.by_path.get(field)?;
-        let lines = self.text[span.bytes.clone()].matches('\n').count();
-        let mut text = self.text.clone();
-        text.replace_range(span.bytes.clone(), &(value.to_string() + &"\n".repeat(lines)));
-        Some(text)
+    /// This text with places in messages as they are in `original`, from which it differs by the value of some fields.
+    pub(super) fn at_places_of(mut self, original: &Self) -> Self {
+        let spans = &original.spans;
+        for (path, span) in &mut self.spans.by_path {
+            if let Some(place) = spans.by_path.get(path) {
+                (span.key, span.value) = (place.key, place.value);
+            }
+        }
+        self
     }
 
     /// A problem with the value of `field`.

@@ -16,7 +16,8 @@ pub(super) fn fill(job: &mut JobSpec, gives: impl Fn(&str) -> bool) {
     let defaults = JobSpec::default();
     let scale = scale(&job.scene);
     if !gives("limit_s") {
-        let limit_s = job.scene.program.end_s();
+        // A program without a time above 0 is refused itself.
+        let limit_s = job.scene.program.end_s().filter(|end_s| *end_s > 0.0);
         let limit_s = limit_s.unwrap_or_else(|| three_digits(defaults.run.limit_s * scale));
         job.run.limit_s = limit_s.min(RunControl::LONGEST_LIMIT_S);
     }

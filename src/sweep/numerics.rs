@@ -8,12 +8,10 @@ use crate::study::SharedKeys;
 pub(super) fn numerics(spec: &JobSpec, cases: &mut SharedKeys) -> JobNumerics {
     let JobSpec { scene, numerics, run, detection, stability: _ } = spec;
     let elements = scene.pin.elements;
-    let element_volume_m3: f64 =
-        (0..3).map(|axis| scene.pin.extent_m()[axis] / elements[axis] as f64).product();
     JobNumerics {
         case: case_key(spec, cases),
         elements,
-        element_size_m: element_volume_m3.cbrt(),
+        element_size_m: scene.pin.element_volume_m3().cbrt(),
         nodes: scene.pin.node_count() as u64,
         beta2: numerics.beta2,
         beta_r_s: numerics.beta_r_s,

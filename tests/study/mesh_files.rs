@@ -4,7 +4,7 @@ use super::assert_contains;
 use std::fmt::Write;
 use tribosweep::solver::Model;
 use tribosweep::spec::JobSpec;
-use tribosweep::study::Study;
+use tribosweep::study::{Study, job_key};
 
 const ELEMENTS: [usize; 3] = [3, 4, 2];
 const SIZE_MM: [f64; 3] = [12.0, 15.0, 10.0];
@@ -49,12 +49,13 @@ fn words(numbers: impl IntoIterator<Item = usize>, between: &str) -> String {
     numbers.into_iter().map(|n| n.to_string()).collect::<Vec<_>>().join(between)
 }
 
-/// The pin as Gmsh writes it.
+/// The pin as Gmsh writes it. Its upper layer of elements is a plate.
 fn gmsh() -> String {
     let [nx, ny, nz] = ELEMENTS;
-    let mut text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n4\n1 4 \"clamp\"\n2 1 \"contact\"\n2 2 \"load\"\n\
-                    3 3 \"pin body\"\n$EndPhysicalNames\n$Entities\n0 1 2 1\n7 -6 -7.5 10 -6 7.5 10 1 4 0\n\
-                    1 -6 -7.5 0 6 7.5 0 1 1 0\n2 -6 -7.5 10 6 7.5 10 1 2 0\n1 -6 -7.5 0 6 7.5 10 1 3 0\n$EndEntities\n"
+    let mut text = "$MeshFormat\n4.1 0 8\n$EndMeshFormat\n$PhysicalNames\n5\n1 4 \"clamp\"\n2 1 \"contact\"\n2 2 \"load\"\n\
+                    3 3 \"pin body\"\n3 5 \"plate\"\n$EndPhysicalNames\n$Entities\n0 1 2 2\n7 -6 -7.5 10 -6 7.5 10 1 4 0\n\
+                    1 -6 -7.5 0 6 7.5 0 1 1 0\n2 -6 -7.5 10 6 7.5 10 1 2 0\n1 -6 -7.5 0 6 7.5 5 1 3 0\n\
+                    2 -6 -7.5 5 6 7.5 10 1 5 0\n$EndEntities\n"
         .to_owned();
     let nodes = nodes();
     let count = nodes.len();
@@ -80,11 +81,13 @@ fn gmsh() -> String {
         }
     };
     let total = ny + 2 * nx * ny + nx * ny * nz;
-    let _ = write!(text, "$EndNodes\n$Elements\n4 {total} 1 {total}\n");
+    let _ = write!(text, "$EndNodes\n$Elements\n5 {total} 1 {total}\n");
     block(&mut text, "1 7 1", (0..ny).map(|j| vec![node(0, j, nz), node(0, j + 1, nz)]).collect());
     block(&mut text, "2 1 3", face(0).map(Vec::from).collect());
     block(&mut text, "2 2 3", face(nz).map(Vec::from).collect());
-    block(&mut text, "3 1 5", hexahedra().into_iter().map(Vec::from).collect());
+    for (head, elements) in ["3 1 5", "3 2 5"].into_iter().zip(hexahedra().chunks(nx * ny)) {
+        block(&mut text, head, elements.iter().copied().map(Vec::from).collect());
+    }
     text + "$EndElements\n"
 }
 
@@ -111,6 +114,7 @@ fn abaqus() -> String {
     let _ = writeln!(text, "*NSET, NSET=load\n{}", words(plane(nz), ",\n"));
     let _ =
         writeln!(text, "*NSET, NSET=clamp, GENERATE\n{}, {}, {}", node(0, 0, nz), node(0, ny, nz), nx + 1);
+    let _ = writeln!(text, "*ELSET, ELSET=plate, GENERATE\n{}, {}", 100 + nx * ny, 99 + nx * ny * nz);
     text
 }
 
@@ -198,30 +202,37 @@ fn a_block_from_a_file_is_the_block() {
 /// Protects: elements of a group have the material of its region.
 #[test]
 fn a_group_of_elements_is_a_region() {
-    let region = r#", "regions": [{ "group": "pin body", "young_modulus_pa": 2e9, "poisson_ratio": 0.1, "density_kg_m3": 5000 }]"#;
+    let region = r#", "regions": [{ "group": "plate", "young_modulus_pa": 2e9, "poisson_ratio": 0.1, "density_kg_m3": 5000 }]"#;
     for (text, name) in [(gmsh(), "pin.msh"), (abaqus(), "pin.inp")] {
         let job = job(&text, name, region).unwrap();
         let model = Model::from_scene(&job.scene, &job.numerics).unwrap();
         let mass: f64 = model.pin().masses_kg().iter().sum();
-        assert!((mass / (5000.0 * 1.8e-6) - 1.0).abs() < 1.0e-12, "{name}: {mass} kg");
+        assert!((mass / (0.5 * (2500.0 + 5000.0) * 1.8e-6) - 1.0).abs() < 1.0e-12, "{name}: {mass} kg");
     }
 }
 
 /// Protects: the reason why a file cannot be used, with its line.
 #[test]
 fn unusable_files_are_refused_with_their_line() {
-    let gmsh_cases: [(&str, &str, &[&str]); 11] = [
+    let gmsh_cases: [(&str, &str, &[&str]); 18] = [
         ("4.1 0 8", "2.2 0 8", &["FOLDER/pin.msh:2: version", "expected 4.1"]),
         ("4.1 0 8", "4.1 1 8", &["pin.msh:2: a binary file", "Mesh.Binary = 0"]),
         ("$MeshFormat", "solid pin", &["pin.msh:1:", "expected a section"]),
         ("\"contact\"", "\"base\"", &["no group \"contact\"", "base, clamp, load"]),
         ("2 1 \"contact\"", "2 1 contact", &["pin.msh:7:", "quotation marks"]),
-        ("3 1 5 24", "3 1 4 24", &["is a tetrahedron", "pin body", "expected hexahedra with 8 nodes"]),
-        ("3 1 5 24", "3 1 17 24", &["elements of kind 17"]),
+        ("3 1 5 12", "3 1 4 12", &["is a tetrahedron", "pin body", "expected hexahedra with 8 nodes"]),
+        ("3 1 5 12", "3 1 17 12", &["elements of kind 17"]),
         ("2 1 3 12", "2 1 2 12", &["group \"contact\"", "a triangle", "expected quadrilaterals"]),
         ("$Nodes\n1 60", "$Nodes\n1 x", &["`1 x 1 60`: expected blocks"]),
         ("$EndElements", "", &["the file ends here"]),
         ("29 1 2 6 5 21 22 26 25", "29 2 1 5 6 22 21 25 26", &["element 29", "Jacobian"]),
+        ("\n30 2 3 7 6", "\n29 2 3 7 6", &["element 29 is repeated"]),
+        ("\n30 2 3 7 6 22 23 27 26", "\n30 1 2 6 5 21 22 26 25", &["elements 29 and 30 have the same nodes"]),
+        ("\n30 2 3 7 6", "\n5000000000 2 3 7 6", &["element 5000000000", "4294967295"]),
+        ("\n6 2 3 7 6", "\n6 1 2 6 5", &["near x = -6", "of the contact face is repeated"]),
+        ("\n6 2 3 7 6", "\n6 22 23 27 26", &["of the contact face is between two elements"]),
+        ("\n6 2 3 7 6", "\n6 2 3 8 6", &["of the contact face is no face of an element"]),
+        ("2 1 \"contact\"\n2 2 \"load\"", "2 2 \"contact\"\n2 1 \"load\"", &["does not look down"]),
     ];
     for (from, to, expected) in gmsh_cases {
         let text = gmsh();
@@ -232,13 +243,23 @@ fn unusable_files_are_refused_with_their_line() {
         });
         assert_contains(&refused.unwrap_err(), expected);
     }
-    let abaqus_cases: [(&str, &str, &[&str]); 6] = [
+    let abaqus_cases: [(&str, &str, &[&str]); 12] = [
         ("Type=C3D8R", "Type=C3D4", &["pin.inp:66:", "\"C3D4\"", "C3D8"]),
         ("Type=C3D8R", "Type=C3D20R", &["\"C3D20R\""]),
         ("*Heading", "*INCLUDE, INPUT=other.inp", &["pin.inp:1: *INCLUDE is not read"]),
         ("NSET=load", "NSET=top", &["no group \"load\"", "clamp, contact, top"]),
         ("1, -6, -7.5, 0", "1, -6, -7.5, nan", &["pin.inp:4:", "coordinate 3 of node 1"]),
         ("100, 1, 2, 6, 5,", "100, 1, 2, 6, 555,", &["node 555, which does not exist"]),
+        ("*NODE", "*NODE, SYSTEM=C", &["pin.inp:3:", "SYSTEM=C", "expected Cartesian"]),
+        ("*NODE", "*NODE, INPUT=nodes.txt", &["pin.inp:3:", "INPUT=nodes.txt"]),
+        (
+            "*NODE\n",
+            "*NODE\n99, 1, 1, 1\n*NSET, NSET=load\n99\n*NODE\n",
+            &["node 99 of group \"load\" is in no element"],
+        ),
+        ("41, 57, 4", "57, 41, 4", &["a range from 57 to 41"]),
+        ("41, 57, 4", "41, 18446744073709551615, 4", &["a range of 4611686018427387894 numbers"]),
+        ("41, 57, 4", "41, 4000000, 4", &["a range of 999990 numbers, but there are"]),
     ];
     for (from, to, expected) in abaqus_cases {
         let text = abaqus();
@@ -255,8 +276,18 @@ fn other_units_and_unknown_groups_are_refused() {
     checked("").unwrap();
     let other = checked(r#", "size_m": [0.12, 0.15, 0.10]"#).unwrap_err();
     assert_contains(&other, &["scene.pin.size_m[0]", "0.12", "0.012", "length_unit_m"]);
-    let region = r#", "regions": [{ "group": "plate", "young_modulus_pa": 2e9, "poisson_ratio": 0.1, "density_kg_m3": 5000 }]"#;
-    assert_contains(&checked(region).unwrap_err(), &["scene.pin.regions[0].group", "plate", "pin body"]);
+    let region = r#", "regions": [{ "group": "steel", "young_modulus_pa": 2e9, "poisson_ratio": 0.1, "density_kg_m3": 5000 }]"#;
+    assert_contains(&checked(region).unwrap_err(), &["scene.pin.regions[0].group", "steel", "pin body"]);
+    let region = |group| {
+        format!(
+            r#"{{ "group": "{group}", "young_modulus_pa": 2e9, "poisson_ratio": 0.1, "density_kg_m3": 5000 }}"#
+        )
+    };
+    let both = format!(r#", "regions": [{}, {}]"#, region("plate"), region("pin body"));
+    assert_contains(
+        &checked(&both).unwrap_err(),
+        &["every element is in a region (plate, pin body)", "scene.pin"],
+    );
     let missing = Study::parse(
         r#"{ "scene": { "pin": { "shape": "mesh", "mesh": { "file": "none.msh", "length_unit_m": 1 } } } }"#,
         "studies/x.json",
@@ -265,4 +296,55 @@ fn other_units_and_unknown_groups_are_refused() {
         &missing.unwrap_err().to_string(),
         &["scene.pin.mesh.file", "none.msh", "cannot be read"],
     );
+}
+
+/// The text of the Gmsh file with every node moved by `by_mm` along x.
+fn moved(by_mm: f64) -> String {
+    let change = |line: &str| {
+        let numbers: Vec<f64> = line.split(' ').filter_map(|word| word.parse().ok()).collect();
+        match numbers[..] {
+            [x, y, z] => format!("{} {y} {z}", x + by_mm),
+            _ => line.to_owned(),
+        }
+    };
+    gmsh().lines().map(change).collect::<Vec<_>>().join("\n")
+}
+
+/// Protects: x = y = 0 of the file is the pin's axis. A mesh in the coordinates of the disk or of an assembly is refused.
+#[test]
+fn a_mesh_beside_its_axis_is_refused() {
+    job(&moved(5.0), "pin.msh", "").unwrap();
+    assert_contains(
+        &job(&moved(91.4), "pin.msh", "").unwrap_err(),
+        &["x goes from 85.4 to 97.4", "x = 0", "track_radius_m"],
+    );
+}
+
+/// Protects: the same mesh has the same key, whatever its file calls its groups and elements, in whatever unit it is, and however
+/// exactly the study says its size.
+#[test]
+fn equal_meshes_have_equal_keys() {
+    let key = |text: &str, pin: &str| job_key(&job(text, "pin.msh", pin).unwrap(), "1");
+    let expected = key(&gmsh(), "");
+    assert_eq!(key(&gmsh(), r#", "size_m": [0.012001, 0.015, 0.01]"#), expected);
+    assert_eq!(key(&gmsh(), r#", "elements": [3, 3, 3]"#), expected);
+    assert_eq!(key(&gmsh().replace("pin body", "block"), ""), expected);
+    assert_eq!(key(&gmsh().replace("\n52 ", "\n1052 "), ""), expected);
+    assert_ne!(key(&gmsh().replace("\n-6 -7.5 0\n", "\n-6.001 -7.5 0\n"), ""), expected);
+    let region = r#", "regions": [{ "group": "plate", "young_modulus_pa": 2e9, "poisson_ratio": 0.1, "density_kg_m3": 5000 }]"#;
+    assert_ne!(key(&gmsh(), region), expected);
+    let renamed = (gmsh().replace("plate", "back"), region.replace("plate", "back"));
+    assert_eq!(key(&renamed.0, &renamed.1), key(&gmsh(), region));
+    let other = region.replace("plate", "pin body");
+    assert_ne!(key(&gmsh(), &other), key(&gmsh(), region));
+}
+
+/// Protects: a message about what follows a mesh on its line has the place in the user's file, not in the text with the mesh.
+#[test]
+fn places_are_those_of_the_users_text() {
+    let pin = r#", "regions": [{ "group": "steel", "young_modulus_pa": 2e9, "poisson_ratio": 0.1, "density_kg_m3": 5000 }]"#;
+    let error = job(&gmsh(), "pin.msh", pin)
+        .and_then(|job| job.check().map_err(|error| error.to_string()))
+        .unwrap_err();
+    assert_contains(&error, &["study.json:1:124"]);
 }

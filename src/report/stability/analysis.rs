@@ -56,6 +56,8 @@ pub(in crate::report) struct Speed {
     pub branches: Vec<Branch>,
     /// Where modes begin to grow, by ascending μ.
     pub onsets: Vec<Onset>,
+    /// The smallest μ at which no mode was found, so that it is not known whether sliding is stable.
+    pub without_modes: Option<f64>,
 }
 
 /// Where a mode begins to grow.
@@ -119,10 +121,15 @@ impl<'a> Analysis<'a> {
             }
             Some(onset) if !onset.is_converged => words.push("not converged".to_owned()),
             Some(_) => {}
+            None if speed.without_modes.is_some() => {}
             None => {
                 let largest = self.layout.dimension(MU).assignment(&speed.mus[1].into());
                 words.push(format!("stable up to {largest}"));
             }
+        }
+        if let Some(mu) = speed.without_modes {
+            let place = self.layout.dimension(MU).assignment(&mu.into());
+            words.push(format!("no mode was found at {place}: whether sliding is stable there is not known"));
         }
         let more = speed.onsets.len().saturating_sub(1);
         if more > 0 {
@@ -159,7 +166,9 @@ fn speed(omega: &Value, points: &[&StabilityPoint]) -> Speed {
     let mut onsets: Vec<Onset> =
         branches.iter().enumerate().filter_map(|(number, branch)| onset(number, branch)).collect();
     onsets.sort_by(|a, b| a.mu.total_cmp(&b.mu).then(a.frequency_hz.total_cmp(&b.frequency_hz)));
-    Speed { omega: omega.clone(), mus, branches, onsets }
+    let without_modes = points.iter().filter(|point| point.stability.modes.is_empty()).map(|point| point.mu);
+    let without_modes = without_modes.reduce(f64::min);
+    Speed { omega: omega.clone(), mus, branches, onsets, without_modes }
 }
 
 /// Where a branch begins to grow; none if it does not.
@@ -227,13 +236,15 @@ impl Speed {
     }
 
     /// The threshold in words: `0.3142`, `≤ 0.1` if sliding is unstable at the smallest μ already, `> 0.6` if it is stable at
-    /// every μ.
+    /// every μ, and a dash if no mode grows but points without modes leave it open.
     pub fn threshold_in_words(&self) -> String {
         let text = |mu: f64| value::significant(mu, 4);
         match self.lowest() {
             Some(onset) if onset.below.is_some() => text(onset.mu),
             Some(onset) => format!("≤ {}", text(onset.mu)),
-            None if self.mus[1].is_finite() => format!("> {}", text(self.mus[1])),
+            None if self.mus[1].is_finite() && self.without_modes.is_none() => {
+                format!("> {}", text(self.mus[1]))
+            }
             None => value::MISSING.to_owned(),
         }
     }
@@ -264,7 +275,8 @@ mod tests {
     }
 
     /// Protects: modes of neighbouring speeds with nearly the same frequency are one family, the one with the smallest threshold
-    /// comes first, and a speed without a growing mode says up to which μ it is stable.
+    /// comes first, and a speed without a growing mode says up to which μ it is stable, or that this is not known because a point
+    /// has no modes.
     #[test]
     fn families_and_thresholds() {
         let points = [
@@ -274,19 +286,24 @@ mod tests {
             point(2.0, 0.3, &[(10_100.0, 10.0), (20_100.0, 5.0)]),
             point(4.0, 0.1, &[(10_200.0, -30.0)]),
             point(4.0, 0.3, &[(10_200.0, -10.0)]),
+            point(8.0, 0.1, &[(10_200.0, -30.0)]),
+            point(8.0, 0.3, &[]),
         ];
         let rows = rows(&points);
         let found = Analysis::of(&points, &rows, &View::DEFAULT);
         let group = &found.groups[0];
         assert_eq!(group.families, [20_100.0, 10_100.0]);
         let words: Vec<String> = group.speeds.iter().map(Speed::threshold_in_words).collect();
-        assert_eq!(words, ["≤ 0.1", "0.2", "> 0.3"]);
+        assert_eq!(words, ["≤ 0.1", "0.2", "> 0.3", value::MISSING]);
+        let notes: Vec<String> = group.speeds.iter().map(|speed| found.note(speed)).collect();
+        assert_eq!(notes[2], "stable up to mu = 0.3");
+        assert_eq!(notes[3], "no mode was found at mu = 0.3: whether sliding is stable there is not known");
         let families: Vec<Vec<usize>> = group
             .speeds
             .iter()
             .map(|speed| speed.onsets.iter().map(|onset| onset.family).collect())
             .collect();
-        assert_eq!(families, [vec![0, 1], vec![0, 1], vec![]]);
+        assert_eq!(families, [vec![0, 1], vec![0, 1], vec![], vec![]]);
         assert_eq!(group.speeds[1].onsets[0].frequency_hz, 20_100.0);
     }
 }

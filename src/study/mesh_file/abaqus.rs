@@ -32,13 +32,18 @@ enum Section {
 /// Beginnings of the types of solid elements.
 const SOLIDS: [&str; 3] = ["C3D", "CSS", "SC"];
 
+/// A range of a set may be so many times as long as there are numbers: they need not be consecutive.
+const MOST_SPARSE: usize = 1000;
+
 /// Keywords that describe a mesh in a way that is not read.
-const REFUSED: [&str; 6] = ["INCLUDE", "INSTANCE", "NGEN", "NFILL", "NCOPY", "ELGEN"];
+const REFUSED: [&str; 9] =
+    ["INCLUDE", "INSTANCE", "NGEN", "NFILL", "NCOPY", "ELGEN", "NMAP", "SYSTEM", "TRANSFORM"];
 
 /// What has been read.
 #[derive(Default)]
 struct Reader {
     nodes: Vec<[f64; 3]>,
+    numbers: Vec<u64>,
     index_of: HashMap<u64, usize>,
     elements: BTreeMap<u64, [usize; 8]>,
     node_sets: BTreeMap<String, Vec<u64>>,
@@ -101,11 +106,15 @@ impl Reader {
                 }
             }
             Section::NodeSet { name, generates } => {
-                let members = members(&entries, *generates, &self.node_sets)?;
+                let is_known = |id: &u64| self.index_of.contains_key(id);
+                let known = self.nodes.len();
+                let members = members(&entries, *generates, &self.node_sets, known, is_known)?;
                 self.node_sets.entry(name.clone()).or_default().extend(members);
             }
             Section::ElementSet { name, generates } => {
-                let members = members(&entries, *generates, &self.element_sets)?;
+                let is_known = |id: &u64| self.elements.contains_key(id);
+                let known = self.elements.len();
+                let members = members(&entries, *generates, &self.element_sets, known, is_known)?;
                 self.element_sets.entry(name.clone()).or_default().extend(members);
             }
         }
@@ -123,11 +132,15 @@ impl Reader {
             return Err(format!("node {id} is repeated"));
         }
         self.nodes.push(x);
+        self.numbers.push(id);
         Ok(())
     }
 
     fn element(&mut self, numbers: &[u64]) -> Result<(), String> {
         let &[id, ref corners @ ..] = numbers else { return Ok(()) };
+        if u32::try_from(id).is_err() {
+            return Err(format!("element {id}: expected a number up to {}", u32::MAX));
+        }
         if corners.len() != 8 {
             return Err(format!("element {id} has {} nodes: expected 8 of a C3D8", corners.len()));
         }
@@ -165,7 +178,7 @@ impl Reader {
         let hexahedra = self.elements.into_iter();
         let hexahedra =
             hexahedra.map(|(id, nodes)| (id, nodes, bodies.remove(&id).unwrap_or_default())).collect();
-        Ok(FileMesh { nodes: self.nodes, hexahedra, groups })
+        Ok(FileMesh { nodes: self.nodes, numbers: self.numbers, hexahedra, groups })
     }
 }
 
@@ -185,6 +198,13 @@ fn keyword_section(keyword: &str) -> Result<Section, String> {
     let option = |key: &str| options.iter().find(|(found, _)| found == key).map(|(_, value)| value.clone());
     let set = |key: &str| option(key).ok_or_else(|| format!("*{name} without {key}"));
     let generates = option("GENERATE").is_some();
+    if let Some(file) = option("INPUT") {
+        return Err(format!("*{name} with INPUT={file}: expected the data in this file"));
+    }
+    let system = option("SYSTEM").filter(|system| name == "NODE" && !system.eq_ignore_ascii_case("R"));
+    if let Some(system) = system {
+        return Err(format!("*NODE with SYSTEM={system}: expected Cartesian coordinates, SYSTEM=R"));
+    }
     match name.as_str() {
         "NODE" => Ok(Section::Nodes { set: option("NSET") }),
         "ELEMENT" => {
@@ -210,7 +230,15 @@ fn keyword_section(keyword: &str) -> Result<Section, String> {
 }
 
 /// The members of a set that a data line names: numbers, other sets, or a range with its step.
-fn members(entries: &[&str], generates: bool, sets: &BTreeMap<String, Vec<u64>>) -> Result<Vec<u64>, String> {
+///
+/// Numbers in a range that nothing has are passed over, as by Abaqus. `known` nodes or elements exist before this line.
+fn members(
+    entries: &[&str],
+    generates: bool,
+    sets: &BTreeMap<String, Vec<u64>>,
+    known: usize,
+    is_known: impl Fn(&u64) -> bool,
+) -> Result<Vec<u64>, String> {
     let number =
         |entry: &str| entry.parse::<u64>().map_err(|_| format!("`{entry}`: expected a whole number"));
     if generates {
@@ -220,7 +248,15 @@ fn members(entries: &[&str], generates: bool, sets: &BTreeMap<String, Vec<u64>>)
             [first, last, step] if step > 0 => (first, last, step),
             _ => return Err("expected the first number, the last one and the step".to_owned()),
         };
-        return Ok((first..=last).step_by(step as usize).collect());
+        if last < first {
+            return Err(format!("a range from {first} to {last}: expected the smaller number first"));
+        }
+        let count = (last - first) / step + 1;
+        if count > (MOST_SPARSE * known.max(1)) as u64 {
+            return Err(format!("a range of {count} numbers, but there are {known} before this line"));
+        }
+        let numbers = (0..count).map(|number| first + number * step);
+        return Ok(numbers.filter(is_known).collect());
     }
     let mut found = Vec::new();
     for entry in entries {

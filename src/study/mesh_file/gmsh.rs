@@ -1,7 +1,7 @@
 //! Gmsh MSH 4.1 as text (Gmsh reference manual, section "MSH file format").
 
 use super::{FileMesh, Group};
-use std::collections::{BTreeMap, HashMap};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::str::FromStr;
 
 /// A message and its line.
@@ -186,6 +186,7 @@ fn nodes(
             if index_of.insert(tag, first + offset).is_some() {
                 return Err(lines.failed(format!("node {tag} is repeated")));
             }
+            mesh.numbers.push(tag);
         }
         for _ in 0..block[3] {
             let x = lines.numbers::<f64>(3, "three coordinates")?;
@@ -206,6 +207,7 @@ fn elements(
 ) -> Result<(), Failed> {
     let header = lines.numbers::<u64>(4, "blocks, elements, and the smallest and largest tag")?;
     let mut groups: BTreeMap<String, Group> = BTreeMap::new();
+    let mut tags = HashSet::new();
     for _ in 0..header[0] {
         let block = lines.numbers::<i64>(4, "dimension, tag, kind and number of elements")?;
         let (dimension, kind) = (block[0] as u32, block[2] as u32);
@@ -221,6 +223,12 @@ fn elements(
         for _ in 0..block[3] {
             let numbers = lines.numbers::<u64>(size + 1, "an element's tag and nodes")?;
             let tag = numbers[0];
+            if !tags.insert(tag) {
+                return Err(lines.failed(format!("element {tag} is repeated")));
+            }
+            if u32::try_from(tag).is_err() {
+                return Err(lines.failed(format!("element {tag}: expected a number up to {}", u32::MAX)));
+            }
             if dimension == 3 && kind != HEXAHEDRON {
                 let of = names.first().map_or(String::new(), |name| format!(" of group {name:?}"));
                 return Err(

@@ -22,6 +22,8 @@ const MOST_BYTES: u64 = 1 << 30;
 #[derive(Debug, Default)]
 struct FileMesh {
     nodes: Vec<[f64; 3]>,
+    /// Their numbers in the file.
+    numbers: Vec<u64>,
     /// The hexahedra with their numbers in the file, their nodes (around the lower face, then around the upper face), and the names of their
     /// groups.
     hexahedra: Vec<(u64, [usize; 8], Vec<String>)>,
@@ -69,7 +71,7 @@ pub(super) fn with_mesh(value: &Value, source: &SourceText) -> Result<Option<Str
     let regions: Vec<&str> =
         regions.into_iter().flatten().filter_map(|region| region.get("group")?.as_str()).collect();
     match read(&mesh, &folder.join(name), &regions) {
-        Ok(mesh) => Ok(source.with_value_on_lines(MESH, &json!(mesh))),
+        Ok(mesh) => Ok(source.with_value(MESH, &json!(mesh))),
         Err(message) => refuse(message),
     }
 }
@@ -138,15 +140,45 @@ fn resolved(mesh: &MeshFile, file: &FileMesh, regions: &[&str]) -> Result<MeshFi
         load: faces(load)?,
         clamp: group_of(file, clamp)?.nodes.iter().map(|&node| node as u32).collect(),
     };
-    Ok(MeshFile {
-        file: None,
-        extent_m: Some(content.extent_m()),
-        nodes: Some(content.nodes_m.len()),
-        hexahedra: Some(content.hexahedra.len()),
-        content: Some(content.encoded()),
-        bodies,
-        ..mesh.clone()
-    })
+    check_place(file)?;
+    for name in [contact, load, clamp] {
+        check_group(file, name)?;
+    }
+    if content.body_of.iter().all(|&body| (body as usize) < bodies.len()) {
+        return Err(format!(
+            "every element is in a region ({}): leave out the region of the material that slides on the disk, and give that \
+             material in scene.pin",
+            regions.join(", ")
+        ));
+    }
+    Ok(mesh.with_content(&content, bodies))
+}
+
+/// Every node of a group is in an element.
+fn check_group(file: &FileMesh, name: &str) -> Result<(), String> {
+    let mut is_used = vec![false; file.nodes.len()];
+    file.hexahedra.iter().flat_map(|(_, nodes, _)| nodes).for_each(|&node| is_used[node] = true);
+    match group_of(file, name)?.nodes.iter().find(|&&node| !is_used[node]) {
+        None => Ok(()),
+        Some(&node) => Err(format!("node {} of group {name:?} is in no element", file.numbers[node])),
+    }
+}
+
+/// x = y = 0 of the file is the pin's axis. A mesh beside it is one in other coordinates, for example those of an assembly.
+fn check_place(file: &FileMesh) -> Result<(), String> {
+    let corners =
+        || file.hexahedra.iter().flat_map(|(_, nodes, _)| nodes.iter().map(|&node| file.nodes[node]));
+    for (axis, name) in ["x", "y"].into_iter().enumerate() {
+        let low = corners().map(|x| x[axis]).fold(f64::INFINITY, f64::min);
+        let high = corners().map(|x| x[axis]).fold(f64::NEG_INFINITY, f64::max);
+        if low > 0.0 || high < 0.0 {
+            return Err(format!(
+                "{name} goes from {low} to {high}, but {name} = 0 must be the pin's axis: move the mesh, and give the place on the \
+                 disk as scene.disk.track_radius_m"
+            ));
+        }
+    }
+    Ok(())
 }
 
 fn group_of<'a>(file: &'a FileMesh, name: &str) -> Result<&'a Group, String> {

@@ -81,8 +81,7 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     // With the damping β_R ω/2 of the fastest oscillation, ω = 2 c_p/h, the limit of the step is (√(1 + ζ²) − ζ) 2/ω.
     let wave_m_s =
         elasticity::pressure_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
-    let edges = pin.extent_m().into_iter().zip(pin.elements).map(|(size, n)| size / n as f64);
-    let shortest_m = edges.fold(f64::INFINITY, f64::min);
+    let shortest_m = pin.element_edges_m().into_iter().fold(f64::INFINITY, f64::min);
     let zeta = spec.numerics.beta_r_s * wave_m_s / shortest_m;
     let step = (1.0 + zeta * zeta).sqrt() - zeta;
     if step < SHORT_STEP {

@@ -27,14 +27,14 @@ pub(super) fn of(spec: &JobSpec) -> Vec<Derived> {
     let (pressure_wave, shear_wave) = (pressure_wave_speed_m_s(e, nu, rho), shear_wave_speed_m_s(e, nu, rho));
     let load_n = spec.scene.load.force_n;
     let nodes = pin.node_count();
-    let edge = |axis: usize| pin.extent_m()[axis] / pin.elements[axis] as f64;
+    let edges_m = pin.element_edges_m();
     let speed_m_s = rad_per_s_from_rpm(spec.scene.disk.omega_rpm) * spec.scene.disk.track_radius_m;
     let quantity = |symbol, name, value, unit| Derived { symbol, name, value, unit };
     vec![
         quantity("", "nodes of the pin", nodes, ""),
-        quantity("", "element edge in x", edge(0), "m"),
-        quantity("", "element edge in y", edge(1), "m"),
-        quantity("", "element edge in z", edge(2), "m"),
+        quantity("", "element edge in x", edges_m[0], "m"),
+        quantity("", "element edge in y", edges_m[1], "m"),
+        quantity("", "element edge in z", edges_m[2], "m"),
         quantity("c_p", "speed of pressure waves in the pin", pressure_wave, "m/s"),
         quantity("c_s", "speed of shear waves in the pin", shear_wave, "m/s"),
         quantity("h/c_s", "transit time of shear waves over the pin's height", z_m / shear_wave, "s"),

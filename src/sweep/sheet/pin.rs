@@ -8,6 +8,7 @@ use super::view::{DIRECTIONS, View};
 use crate::publish::Drawing;
 use crate::publish::plot::palette::{BLUE, VERMILLION};
 use crate::publish::plot::sketch::{Anchor, At, Line, Sketch};
+use crate::publish::value::quantity;
 use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, TopFace};
 use std::fmt::Write;
 
@@ -200,9 +201,11 @@ fn caption(spec: &JobSpec, survey: &Survey) -> String {
     let drawn =
         ["size_x_m", "size_y_m", "size_z_m", "nx", "ny", "nz", "clamp_side", "clamp_width_m", "disk_kind"];
     let first = if drawn.iter().any(|name| survey.varies(name)) { " Drawn is the first job." } else { "" };
-    let clamp = match spec.scene.clamp.side {
-        ClampSide::WholeTop => "the whole top face is held in x and y".to_owned(),
-        side => {
+    let groups = spec.scene.pin.mesh.as_ref().map(|mesh| mesh.groups());
+    let clamp = match (groups, spec.scene.clamp.side) {
+        (Some([.., group]), _) => format!("the nodes of the group {group} are held in x and y"),
+        (None, ClampSide::WholeTop) => "the whole top face is held in x and y".to_owned(),
+        (None, side) => {
             let width = lines::values(survey.values("clamp_width_m"), "m");
             format!("a strip of {width} at the {} of the top face is held in x and y", name(side))
         }
@@ -218,7 +221,7 @@ fn caption(spec: &JobSpec, survey: &Survey) -> String {
         Shape::Cylinder => {
             format!("The pin, a cylinder with {nx} elements over its diameter and {nz} over its height,")
         }
-        Shape::Mesh => format!("The pin, a mesh of {} elements,", pin.element_count()),
+        Shape::Mesh => format!("The pin, a mesh of {},", pin.mesh_words()),
     };
     let disk = match spec.scene.disk.kind {
         DiskKind::Rigid => "a rigid plane (strokes at its edges)",
@@ -235,8 +238,18 @@ fn caption(spec: &JobSpec, survey: &Survey) -> String {
 fn beyond_the_block(spec: &JobSpec) -> String {
     let pin = &spec.scene.pin;
     let mut text = String::new();
-    if !pin.regions.is_empty() {
-        text += " Darker: regions of other materials.";
+    for region in &pin.regions {
+        let place = match (region.above_m, &region.group) {
+            (Some(above_m), _) => format!("above {}", quantity(above_m, "m")),
+            (None, group) => format!("group {}", group.as_deref().unwrap_or_default()),
+        };
+        let _ = write!(
+            text,
+            " Darker: {place}, with E = {}, ν = {}, ρ = {}.",
+            quantity(region.young_modulus_pa, "Pa"),
+            region.poisson_ratio,
+            quantity(region.density_kg_m3, "kg/m³")
+        );
     }
     let [about_x, about_y] = [pin.tilt_x_deg, pin.tilt_y_deg].map(|angle| angle.unwrap_or(0.0));
     if about_x != 0.0 || about_y != 0.0 {

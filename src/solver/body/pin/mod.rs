@@ -175,7 +175,8 @@ impl PinBody {
 fn assembled(mesh: &GeneralMesh, materials: &[Material]) -> Result<(Operator, Vec<f64>), SolverError> {
     let mut masses_kg = vec![0.0; mesh.node_count()];
     let mut elements = Vec::with_capacity(mesh.elements().len());
-    for (number, element) in mesh.elements().iter().enumerate() {
+    for (index, element) in mesh.elements().iter().enumerate() {
+        let number = mesh.name(index);
         let material = materials
             .get(element.material)
             .ok_or_else(|| SolverError::Mesh(format!("element {number} has no material")))?;

@@ -5,7 +5,7 @@ use crate::solver::body::hexahedron::corner_jacobians;
 use crate::solver::error::SolverError;
 use crate::solver::field::Layout;
 use nalgebra::Vector3;
-use std::collections::{BTreeMap, VecDeque};
+use std::collections::{BTreeMap, HashMap, HashSet, VecDeque};
 
 /// A hexahedron.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -109,14 +109,15 @@ pub struct GeneralMesh {
     clamped: Option<Vec<usize>>,
     worst_jacobian: f64,
     divisions: Option<[usize; 3]>,
+    names: Vec<u64>,
 }
 
 impl GeneralMesh {
     /// A mesh of these parts. Nodes that no element has are left out. The lowest node of the tilted contact face is at z = 0.
     ///
     /// # Errors
-    /// If a coordinate is not finite, if an element is inverted or flat, if a face is empty or has nodes outside of the
-    /// elements, or if an element is not connected with the contact face.
+    /// If a coordinate is not finite; if an element is inverted, flat, repeated, or not connected with the contact face; if a face is
+    /// empty or not on the surface; if the contact face does not look down, or a node is below it.
     pub fn new(parts: &MeshParts, tilt: Tilt) -> Result<Self, SolverError> {
         let refused = |what: String| Err(SolverError::Mesh(what));
         for (what, faces) in [("contact", &parts.contact), ("load", &parts.top)] {
@@ -166,6 +167,10 @@ impl GeneralMesh {
                 .collect()
         };
         let (contact, top) = (faces(&parts.contact)?, faces(&parts.top)?);
+        let surface = Surface::of(parts)?;
+        surface.check("contact", &parts.contact, parts)?;
+        surface.check("load", &parts.top, parts)?;
+        surface.check_looks_down(parts, tilt)?;
         let contact_areas_m2: Vec<f64> = areas_m2(&own_coordinates_m, &contact).into_values().collect();
         let (top_nodes, top_areas_m2): (Vec<_>, Vec<_>) =
             areas_m2(&own_coordinates_m, &top).into_iter().unzip();
@@ -186,6 +191,14 @@ impl GeneralMesh {
             coordinates_m[..contact_areas_m2.len()].iter().map(|x| x[2]).fold(f64::INFINITY, f64::min);
         for x in &mut coordinates_m {
             x[2] -= lowest;
+        }
+        let height_m = coordinates_m.iter().map(|x| x[2]).fold(0.0, f64::max);
+        if let Some(below) = coordinates_m.iter().find(|x| x[2] < -1.0e-9 * height_m) {
+            return refused(format!(
+                "a node of the pin is {:.4} mm below its contact face; the disk is below the pin, and the contact face is its lowest \
+                 part",
+                -1e3 * below[2]
+            ));
         }
         let size_m = std::array::from_fn(|axis| {
             let along = || own_coordinates_m.iter().map(move |x: &[f64; 3]| x[axis]);
@@ -212,6 +225,7 @@ impl GeneralMesh {
             clamped,
             worst_jacobian,
             divisions: parts.divisions,
+            names: parts.names.clone(),
         })
     }
 
@@ -253,6 +267,11 @@ impl GeneralMesh {
     /// The elements.
     pub fn elements(&self) -> &[Hexahedron] {
         &self.elements
+    }
+
+    /// The name of an element in messages.
+    pub fn name(&self, index: usize) -> u64 {
+        self.names.get(index).copied().unwrap_or(index as u64)
     }
 
     /// The corners \[m\] of an element.
@@ -303,6 +322,88 @@ impl GeneralMesh {
             at_end.min_by(|a, b| from_axis(a).total_cmp(&from_axis(b))).unwrap_or_default()
         })
     }
+}
+
+/// The faces of a hexahedron by its nodes.
+const FACES: [[usize; 4]; 6] =
+    [[0, 1, 2, 3], [4, 5, 6, 7], [0, 1, 4, 5], [2, 3, 6, 7], [0, 2, 4, 6], [1, 3, 5, 7]];
+
+/// The faces of the elements by their sorted nodes: how many elements have each, and the first of them.
+struct Surface(HashMap<[usize; 4], (usize, usize)>);
+
+impl Surface {
+    fn of(parts: &MeshParts) -> Result<Self, SolverError> {
+        let mut elements = HashMap::new();
+        let mut faces = HashMap::new();
+        for (index, element) in parts.elements.iter().enumerate() {
+            let mut nodes = element.nodes;
+            nodes.sort_unstable();
+            if let Some(first) = elements.insert(nodes, index) {
+                let [first, second] = [first, index].map(|index| parts.name(index));
+                return Err(SolverError::Mesh(format!("elements {first} and {second} have the same nodes")));
+            }
+            for face in FACES {
+                let (count, _) =
+                    faces.entry(sorted(face.map(|corner| element.nodes[corner]))).or_insert((0, index));
+                *count += 1;
+                if *count > 2 {
+                    let number = parts.name(index);
+                    return Err(SolverError::Mesh(format!(
+                        "a face of element {number} is also one of two other elements; at most two may share a face"
+                    )));
+                }
+            }
+        }
+        Ok(Self(faces))
+    }
+
+    /// Checks that quadrilaterals are on the surface of the elements, and none twice.
+    fn check(&self, what: &str, quadrilaterals: &[[usize; 4]], parts: &MeshParts) -> Result<(), SolverError> {
+        let mut seen = HashSet::new();
+        for face in quadrilaterals {
+            let [x, y, z] = parts.coordinates_m[face[0]].map(|x| 1e3 * x);
+            let place = format!(
+                "the quadrilateral near x = {x:.4} mm, y = {y:.4} mm, z = {z:.4} mm of the {what} face"
+            );
+            if !seen.insert(sorted(*face)) {
+                return Err(SolverError::Mesh(format!("{place} is repeated")));
+            }
+            match self.0.get(&sorted(*face)) {
+                Some((1, _)) => {}
+                Some(_) => return Err(SolverError::Mesh(format!("{place} is between two elements"))),
+                None => return Err(SolverError::Mesh(format!("{place} is no face of an element"))),
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks that the outside of the contact face, which has been checked, is below it.
+    fn check_looks_down(&self, parts: &MeshParts, tilt: Tilt) -> Result<(), SolverError> {
+        for face in &parts.contact {
+            let corners = face.map(|node| Vector3::from(tilt.turned(parts.coordinates_m[node])));
+            let normal = (corners[2] - corners[0]).cross(&(corners[3] - corners[1]));
+            let nodes = self.0.get(&sorted(*face)).map(|(_, element)| parts.elements[*element].nodes);
+            let centre: Vector3<f64> = nodes
+                .iter()
+                .flatten()
+                .map(|&node| Vector3::from(tilt.turned(parts.coordinates_m[node])))
+                .sum();
+            let outwards = corners.iter().sum::<Vector3<f64>>() / 4.0 - centre / 8.0;
+            if normal.z * normal.dot(&outwards).signum() >= 0.0 {
+                let [x, y, z] = parts.coordinates_m[face[0]].map(|x| 1e3 * x);
+                return Err(SolverError::Mesh(format!(
+                    "the contact face near x = {x:.4} mm, y = {y:.4} mm, z = {z:.4} mm does not look down: the disk is below the pin, \
+                     and z points from the disk into the pin"
+                )));
+            }
+        }
+        Ok(())
+    }
+}
+
+fn sorted(mut face: [usize; 4]) -> [usize; 4] {
+    face.sort_unstable();
+    face
 }
 
 /// The new number of each node: contact nodes first, the others by breadth-first search.
