@@ -1,11 +1,12 @@
 #!/usr/bin/env python3
-"""Writes docs/scenes.md: what a holder, another friction law, a crowned base and a cylindrical pin change of the reference scene.
+"""Writes docs/scenes.md, docs/holder.svg and docs/cylinder.svg: what a holder, another friction law, a crowned base and a cylindrical pin change of the reference scene.
 
 Runs studies/holder.json, studies/friction_laws.json, studies/crown.json and studies/cylinder.json, and the reference scene with an ideal clamp. The
 words describe what these studies are; every number in the page is computed.
 """
 
 import math
+import shutil
 
 import runs
 
@@ -34,6 +35,15 @@ def reference(speeds):
     return by(runs.sweep(study), "omega_rpm")
 
 
+def figure(study, x, by, **settings):
+    """The report's figure of μ* of a shipped study, which has been run, as docs/STUDY.svg."""
+    out = runs.WORK / f"{study}-figure"
+    path = str(runs.ROOT / "studies" / f"{study}.json")
+    runs.tribosweep("run", path, *runs.set_arguments(settings), "--name", f"{study}-figure", "--out", str(out))
+    runs.tribosweep("report", f"{study}-figure", "--x", x, "--by", by, "--out", str(out))
+    shutil.copy(out / "mu_star.svg", runs.ROOT / "docs" / f"{study}.svg")
+
+
 def main():
     runs.build()
     holder = runs.sweep("studies/holder.json")
@@ -49,17 +59,19 @@ def main():
 
     speeds, words = head(holder)
     found = by(holder, "holder_mass_kg", "holder_stiffness_y_n_m", "omega_rpm")
-    pairs = sorted({key[:2] for key in found})
+    pairs = sorted({key[:2] for key in found if key[1] in (1e6, 1e7, 1e8)})
     holder_rows = [["ideal", "", *(cell(ideal[(speed,)]) for speed in speeds)]]
     holder_rows += [[f"{1000 * mass:g}", f"{stiffness / 1e6:g}", *(cell(found[(mass, stiffness, speed)]) for speed in speeds)]
                     for mass, stiffness in pairs]
     holder_table = runs.table(["mass [g]", "stiffness [MN/m]", *words], holder_rows)
     share = [abs(found[key]["mu_star"] / ideal[key[2:]]["mu_star"] - 1) for key in found]
     largest = {pair: max(abs(found[(*pair, speed)]["mu_star"] / ideal[(speed,)]["mu_star"] - 1) for speed in speeds)
-               for pair in pairs}
-    two = sorted(largest, key=largest.get)[-2:]
-    near = ", ".join(f"{1000 * mass:g} g on {stiffness / 1e6:g} MN/m have {math.sqrt(stiffness / mass) / (2000 * math.pi):.1f} kHz"
-                     for mass, stiffness in reversed(two))
+               for pair in {key[:2] for key in found}}
+    near = ", ".join(f"{1000 * mass:g} g on {stiffness / 1e6:g} MN/m has {math.sqrt(stiffness / mass) / (2000 * math.pi):.1f} kHz"
+                     for mass, stiffness in [max((pair for pair in largest if pair[0] == mass), key=largest.get)
+                                             for mass in sorted({pair[0] for pair in largest})])
+    heaviest = max(mass for mass, _ in pairs)
+    most_of_heaviest = max(share for (mass, _), share in largest.items() if mass == heaviest)
 
     speeds, words = head(laws)
     found_laws = by(laws, "friction_law", "omega_rpm")
@@ -87,19 +99,24 @@ def main():
     spread = [max(row["mu_star"] for row in cylinders if row["omega_rpm"] == speed)
               - min(row["mu_star"] for row in cylinders if row["omega_rpm"] == speed) for speed in speeds]
 
+    figure("holder", "holder_stiffness_y_n_m", "holder_mass_kg", omega_rpm=7)
+    figure("cylinder", "diameter_m", "omega_rpm")
     runs.write(
         "scenes.md",
         "# Holder, friction law and base\n\n"
         "Written by `scripts/scenes.py`; do not edit. Solved by the studies `studies/holder.json`, `studies/friction_laws.json`,\n"
-        "`studies/crown.json` and `studies/cylinder.json`, all on coarse meshes (the first three on that of the preset `draft`). So the numbers compare scenes, and they are not converged.\n"
+        "`studies/crown.json` and `studies/cylinder.json`, all on coarse meshes (the first three on that of the preset `draft`). So the numbers\n"
+        "compare scenes, and they are not converged.\n"
         "Each cell has μ\\* and the frequency.\n\n"
         "## The holder\n\n"
         "The holder moves in the sliding direction on a spring with a damper of 20 N s/m. In x and z it is ideal.\n\n"
         + holder_table
         + f"\nThe largest change of μ\\* from the ideal clamp is {100 * max(share):.0f} %. For somebody who measures friction: the holder is a\n"
-        "part of the result. It changes most where its own frequency √(stiffness/mass)/(2π) is near that of the squeal: "
-        f"{near}.\nA holder of 100 g behaves like an ideal clamp with each of these springs, because its mass hardly moves at the frequency of\n"
-        "the squeal. So a static test of the stiffness says little.\n\n"
+        "part of the result. The springs that change most for each mass, with the holder's own frequency √(stiffness/mass)/(2π):\n"
+        f"{near}.\nThe squeal is at 15 to 16 kHz. So a holder matters if its own frequency is near that of the squeal. A holder of "
+        f"{1000 * heaviest:g} g\nchanges μ\\* by at most {100 * most_of_heaviest:.0f} % with each of these springs, because its mass hardly moves at the frequency of\n"
+        "the squeal. A static test of the stiffness does not tell them apart.\n\n"
+        "![μ\\* at 7 rpm against the stiffness of the holder, for three masses](holder.svg)\n\n"
         "## The friction law\n\n"
         "μ is 0.4 for fast slip, the static coefficient is 0.5, the speed of `exponential` and `regularised` is 20 mm/s, and the length\n"
         "of `prakash_clifton` is 0.1 µm.\n\n"
@@ -114,6 +131,7 @@ def main():
         "## The diameter of a cylinder\n\n"
         "Height, material and load are those of the reference pin, and the clamp holds 1 mm at the inner side.\n\n"
         + cylinder_table
+        + "\n![μ\\* against the diameter of a cylindrical pin, for three speeds of the disk](cylinder.svg)\n"
         + f"\nAt one speed, μ\\* differs by up to {max(spread):.2f} between these diameters, with the same local μ"
         + (f", and the frequency by a factor of up to {max(slopes):.2f}" if slopes else "")
         + ".\nSo two tribometers with pins of the same material and height measure different friction if their pins differ in diameter. A\n"

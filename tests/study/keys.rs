@@ -81,6 +81,8 @@ pub fn full() -> JobSpec {
         extent_m: Some([0.01, 0.02, 0.03]),
         nodes: Some(8),
         hexahedra: Some(1),
+        contact_faces: Some(1),
+        contact_edges_m: Some([0.01, 0.02]),
         bodies: vec!["plate".to_owned()],
     }));
     spec.scene.disk.runout_m = Some(1.0e-6);

@@ -44,35 +44,36 @@ fn rig(pin: [usize; 3], disk: [usize; 3], tilt_deg: f64) -> Model {
     Model::new(definition).unwrap().with_initial_gaps(|slave| heights[slave.node] - 1.0e-4)
 }
 
+/// The growth rate \[1/s\] and the frequency \[Hz\] of the mode between 1.9 and 3 kHz that grows fastest.
+fn leading(tilt_deg: f64, mu: f64) -> [f64; 2] {
+    let model = rig([2, 2, 20], [40, 10, 3], tilt_deg);
+    let structure = SparseStructure::new(&model).unwrap();
+    let drive = Drive { law: Law::Coulomb { mu }, rate: 2.0, force_n: 1.0, ramp_s: 0.0 };
+    let near = structure.near(&model, &drive, 2450.0).unwrap();
+    // All modes of the range have been found.
+    assert!(near.radius_per_s > TAU * 550.0, "{:e}", near.radius_per_s);
+    let values = near.modes.iter().map(|mode| [mode.eigenvalue_per_s.re, mode.eigenvalue_per_s.im / TAU]);
+    values
+        .filter(|[_, frequency_hz]| (1900.0..3000.0).contains(frequency_hz))
+        .max_by(|a, b| a[0].total_cmp(&b[0]))
+        .unwrap()
+}
+
+/// Protects: the squeal of a rig from the literature. The beam's leading edge touches: two modes lock in and one grows, near the
+/// 2215 Hz that others computed for this rig. The mesh is coarse, so that the frequency is up to 15 % too high; docs/rig.md has its
+/// convergence. Without friction nothing grows, and nothing grows with a trailing edge, which friction pushes away from the beam.
 #[test]
-#[ignore = "sparse factors of pin and disk"]
-fn probe() {
-    for (pin, disk) in [([2, 3, 24], [48, 12, 3]), ([2, 4, 30], [60, 14, 3])] {
-        for tilt_deg in [4.0, -4.0] {
-            let model = rig(pin, disk, tilt_deg);
-            let structure = SparseStructure::new(&model).unwrap();
-            for mu in [0.0, 0.152, 0.4] {
-                let drive = Drive { law: Law::Coulomb { mu }, rate: 2.0, force_n: 1.0, ramp_s: 0.0 };
-                let started = std::time::Instant::now();
-                let near = match structure.near(&model, &drive, 2250.0) {
-                    Ok(near) => near,
-                    Err(error) => {
-                        println!("{error}");
-                        continue;
-                    }
-                };
-                println!("{pin:?} {disk:?} tilt {tilt_deg} mu {mu}: {:.1?}", started.elapsed());
-                let mut modes = near.modes;
-                modes.retain(|mode| (mode.eigenvalue_per_s.im / TAU - 2250.0).abs() < 500.0);
-                modes.sort_by(|a, b| a.eigenvalue_per_s.im.total_cmp(&b.eigenvalue_per_s.im));
-                for mode in &modes {
-                    println!(
-                        "   {:.1} Hz {:+.2} 1/s",
-                        mode.eigenvalue_per_s.im / TAU,
-                        mode.eigenvalue_per_s.re
-                    );
-                }
-            }
-        }
+fn the_rig_of_allgaier_squeals_with_a_leading_edge() {
+    // Eigenvalues on the imaginary axis have a rounding error.
+    let rounding_per_s = 1.0e-6 * TAU * 3000.0;
+    let [growth_per_s, frequency_hz] = leading(4.0, 0.152);
+    assert!(growth_per_s > 100.0, "{growth_per_s}");
+    assert!(frequency_hz > 2215.0 && frequency_hz < 1.15 * 2215.0, "{frequency_hz}");
+    for (tilt_deg, mu) in [(4.0, 0.0), (-4.0, 0.152)] {
+        let [growth_per_s, frequency_hz] = leading(tilt_deg, mu);
+        assert!(
+            growth_per_s < rounding_per_s,
+            "{tilt_deg}°, μ = {mu}: {growth_per_s} 1/s at {frequency_hz} Hz"
+        );
     }
 }

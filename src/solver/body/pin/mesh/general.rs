@@ -125,27 +125,7 @@ impl GeneralMesh {
                 return refused(format!("the {what} face has no quadrilateral"));
             }
         }
-        let count = parts.coordinates_m.len();
-        if let Some(node) = parts.coordinates_m.iter().position(|x| !x.iter().all(|x| x.is_finite())) {
-            return refused(format!("node {node} has a coordinate that is not a number"));
-        }
-        let mut worst_jacobian = f64::INFINITY;
-        for (index, element) in parts.elements.iter().enumerate() {
-            let number = parts.name(index);
-            if element.nodes.iter().any(|&node| node >= count) {
-                return refused(format!("element {number} has a node that does not exist"));
-            }
-            let corners = element.nodes.map(|node| Vector3::from(parts.coordinates_m[node]));
-            let worst = corner_jacobians(&corners).into_iter().fold(f64::INFINITY, f64::min);
-            if worst <= 0.0 || worst.is_nan() {
-                let [x, y, z] = parts.coordinates_m[element.nodes[0]].map(|x| x * 1e3);
-                return refused(format!(
-                    "element {number} near x = {x:.4} mm, y = {y:.4} mm, z = {z:.4} mm has a Jacobian of {worst:.3} at a \
-                     corner, relative to its edges; it must be above 0"
-                ));
-            }
-            worst_jacobian = worst_jacobian.min(worst);
-        }
+        let worst_jacobian = check_elements(parts)?;
         let new = renumbered(parts)?;
         let node_count = new.iter().flatten().count();
         let mut own_coordinates_m = vec![[0.0; 3]; node_count];
@@ -322,6 +302,32 @@ impl GeneralMesh {
             at_end.min_by(|a, b| from_axis(a).total_cmp(&from_axis(b))).unwrap_or_default()
         })
     }
+}
+
+/// Checks coordinates and elements. Returns the worst Jacobian.
+fn check_elements(parts: &MeshParts) -> Result<f64, SolverError> {
+    let count = parts.coordinates_m.len();
+    if let Some(node) = parts.coordinates_m.iter().position(|x| !x.iter().all(|x| x.is_finite())) {
+        return Err(SolverError::Mesh(format!("node {node} has a coordinate that is not a number")));
+    }
+    let mut worst_jacobian = f64::INFINITY;
+    for (index, element) in parts.elements.iter().enumerate() {
+        let number = parts.name(index);
+        if element.nodes.iter().any(|&node| node >= count) {
+            return Err(SolverError::Mesh(format!("element {number} has a node that does not exist")));
+        }
+        let corners = element.nodes.map(|node| Vector3::from(parts.coordinates_m[node]));
+        let worst = corner_jacobians(&corners).into_iter().fold(f64::INFINITY, f64::min);
+        if worst <= 0.0 || worst.is_nan() {
+            let [x, y, z] = parts.coordinates_m[element.nodes[0]].map(|x| x * 1e3);
+            return Err(SolverError::Mesh(format!(
+                "element {number} near x = {x:.4} mm, y = {y:.4} mm, z = {z:.4} mm has a Jacobian of {worst:.3} at a \
+                 corner, relative to its edges; it must be above 0"
+            )));
+        }
+        worst_jacobian = worst_jacobian.min(worst);
+    }
+    Ok(worst_jacobian)
 }
 
 /// The faces of a hexahedron by its nodes.
