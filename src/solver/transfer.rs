@@ -32,7 +32,8 @@ impl PinMotion {
         for (dof, freedom) in model.pin().freedoms().iter().enumerate() {
             let own = [kept.u_m[dof], kept.velocity_m_s[dof]];
             let moved = match *freedom {
-                Freedom::Free => own,
+                // Scenes with a holder start from rest.
+                Freedom::Free | Freedom::Carried => own,
                 Freedom::Fixed => [0.0; 2],
                 // Without a holder that moves, scenes tie whole planes, so the members of a tie agree on the other mesh too.
                 Freedom::Tied(group) => {
@@ -165,7 +166,7 @@ mod tests {
         let mut tied = Vec::new();
         for (dof, freedom) in model.pin().freedoms().iter().enumerate() {
             match freedom {
-                Freedom::Free => {}
+                Freedom::Free | Freedom::Carried => {}
                 Freedom::Fixed => assert_eq!(of(dof), [0.0; 2]),
                 Freedom::Tied(_) => tied.push(of(dof)),
             }

@@ -31,6 +31,24 @@ pub struct Holder {
     /// Damper (N s/m) in z. Absent: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub damping_z_n_s_m: Option<f64>,
+    /// Rotational stiffness (N m/rad) about x, with which the pin rocks in the sliding direction. Absent: it does not rotate about x.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rotational_stiffness_x_n_m: Option<f64>,
+    /// Rotational stiffness (N m/rad) about y. Absent: it does not rotate about y.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rotational_stiffness_y_n_m: Option<f64>,
+    /// Rotational damper (N m s/rad) about x. Absent: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rotational_damping_x_n_m_s: Option<f64>,
+    /// Rotational damper (N m s/rad) about y. Absent: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rotational_damping_y_n_m_s: Option<f64>,
+    /// Moment of inertia (kg m²) of the holder about x. Absent: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inertia_x_kg_m2: Option<f64>,
+    /// Moment of inertia (kg m²) of the holder about y. Absent: 0.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub inertia_y_kg_m2: Option<f64>,
 }
 
 /// The spring and the damper of one direction.
@@ -47,7 +65,28 @@ pub struct HolderDirection {
 impl Holder {
     /// Whether it does not move in any direction, and has no mass.
     pub fn is_ideal(&self) -> bool {
-        self.stiffnesses().iter().all(Option::is_none)
+        self.stiffnesses().iter().all(Option::is_none) && !self.rotates()
+    }
+
+    /// Whether it rotates about x or y.
+    pub fn rotates(&self) -> bool {
+        self.rotations().iter().any(Option::is_some)
+    }
+
+    /// How it rotates about x and y, with inertia \[kg m²\], stiffness \[N m/rad\] and damper \[N m s/rad\] in place of those in a
+    /// direction; none where it does not.
+    pub fn rotations(&self) -> [Option<HolderDirection>; 2] {
+        let of = |inertia: Option<f64>, stiffness: Option<f64>, damping: Option<f64>| {
+            Some(HolderDirection {
+                mass_kg: inertia.unwrap_or(0.0),
+                stiffness_n_m: stiffness?,
+                damping_n_s_m: damping.unwrap_or(0.0),
+            })
+        };
+        [
+            of(self.inertia_x_kg_m2, self.rotational_stiffness_x_n_m, self.rotational_damping_x_n_m_s),
+            of(self.inertia_y_kg_m2, self.rotational_stiffness_y_n_m, self.rotational_damping_y_n_m_s),
+        ]
     }
 
     fn stiffnesses(&self) -> [Option<f64>; 3] {
@@ -71,17 +110,15 @@ impl Holder {
         })
     }
 
-    /// The longest √(mass over stiffness) \[s\] of its springs with a pin of this mass; 0 without springs.
-    pub(super) fn vibration_time_s(&self, pin_kg: f64) -> f64 {
-        let of =
-            |direction: &HolderDirection| ((direction.mass_kg + pin_kg) / direction.stiffness_n_m).sqrt();
-        let has_spring = |direction: &HolderDirection| direction.stiffness_n_m > 0.0;
-        self.directions()
-            .iter()
-            .flatten()
-            .filter(|direction| has_spring(direction))
-            .map(of)
-            .fold(0.0, f64::max)
+    /// The longest √(mass over stiffness) \[s\] of its springs with a pin of this mass, and of this height \[m\] below the axes of
+    /// rotation; 0 without springs.
+    pub(super) fn vibration_time_s(&self, pin_kg: f64, height_m: f64) -> f64 {
+        let of = |way: HolderDirection, pin: f64| ((way.mass_kg + pin) / way.stiffness_n_m).sqrt();
+        let has_spring = |way: &HolderDirection| way.stiffness_n_m > 0.0;
+        let along = self.directions().into_iter().flatten().filter(has_spring).map(|way| of(way, pin_kg));
+        let rod = pin_kg * height_m * height_m / 3.0;
+        let about = self.rotations().into_iter().flatten().filter(has_spring).map(|way| of(way, rod));
+        along.chain(about).fold(0.0, f64::max)
     }
 
     /// Adds every violated limit to `found`.
@@ -113,17 +150,46 @@ impl Holder {
                 found.limit_magnitude(&field, damping);
             }
         }
+        self.check_rotations(found);
         if let Some(stiffness) = self.stiffness_z_n_m.filter(|stiffness| *stiffness > 0.0) {
             let right =
                 "0 N/m, a mass that moves with the load: a spring in z would carry a part of the load";
             found.add("scene.holder.stiffness_z_n_m", stiffness, right);
         }
-        if self.mass_kg.is_some() && self.is_ideal() {
+        if self.mass_kg.is_some() && self.stiffnesses().iter().all(Option::is_none) {
             found.add(
                 "scene.holder.stiffness_y_n_m",
                 "absent",
                 "a stiffness in at least one direction: without one the holder is ideal, and mass_kg has no effect",
             );
+        }
+    }
+
+    fn check_rotations(&self, found: &mut Violations) {
+        let ways = [
+            ("x", self.rotational_stiffness_x_n_m, self.rotational_damping_x_n_m_s, self.inertia_x_kg_m2),
+            ("y", self.rotational_stiffness_y_n_m, self.rotational_damping_y_n_m_s, self.inertia_y_kg_m2),
+        ];
+        for (axis, stiffness, damping, inertia) in ways {
+            let fields = [
+                (
+                    format!("scene.holder.rotational_stiffness_{axis}_n_m"),
+                    stiffness,
+                    "a stiffness >= 0 N m/rad",
+                ),
+                (format!("scene.holder.rotational_damping_{axis}_n_m_s"), damping, "a damper >= 0 N m s/rad"),
+                (format!("scene.holder.inertia_{axis}_kg_m2"), inertia, "an inertia >= 0 kg m²"),
+            ];
+            for (field, value, right) in &fields {
+                if let Some(value) = *value {
+                    found.require(field, value, value >= 0.0, right);
+                    found.limit_magnitude(field, value);
+                }
+            }
+            if stiffness.is_none() && (damping.is_some() || inertia.is_some()) {
+                let right = "a rotational stiffness, which may be 0, beside its damper and its inertia";
+                found.add(&fields[0].0, "absent", right);
+            }
         }
     }
 }

@@ -172,6 +172,7 @@ impl JobSpec {
         is_largest_in_slip
             && self.scene.disk.kind == DiskKind::Rigid
             && self.scene.pin.is_plain_block()
+            && !self.scene.holder.rotates()
             && self.run.stop_early
             && self.has_sliding_modes()
     }

@@ -154,7 +154,7 @@ impl Scene {
         let wave_s = longest_m
             / elasticity::shear_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
         // The frequency 0.16 c/ℓ is that of an oscillator with √(m/k) = ℓ/c. NaN must remain.
-        let holder_s = self.holder.vibration_time_s(pin.density_kg_m3 * x * y * z);
+        let holder_s = self.holder.vibration_time_s(pin.density_kg_m3 * x * y * z, z);
         if holder_s > wave_s { holder_s } else { wave_s }
     }
 
@@ -185,6 +185,15 @@ impl Scene {
         {
             let right = "absent, or scene.top = tied_in_z: a rigid holder carries all top nodes alike";
             found.add("scene.holder.stiffness_z_n_m", stiffness, right);
+        }
+        for (axis, _) in ["x", "y"].into_iter().zip(self.holder.rotations()).filter(|(_, way)| way.is_some())
+        {
+            if self.top == TopFace::FreeInZ {
+                let field = format!("scene.holder.rotational_stiffness_{axis}_n_m");
+                let right =
+                    "absent, or scene.top = tied_in_z: a rigid holder carries all top nodes as a plane";
+                found.add(&field, "given", right);
+            }
         }
         let width = self.clamp.width_m;
         found.require("scene.clamp.width_m", width, width >= 0.0, "a width >= 0 m (0 holds one node row)");

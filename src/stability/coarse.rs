@@ -58,7 +58,7 @@ pub fn modes(
                 Freedom::Fixed => None,
                 _ if is_held => None,
                 Freedom::Tied(group) => Some((*groups.entry(group).or_insert_with(|| next(&mut count)), 1.0)),
-                Freedom::Free => Some((next(&mut count), 1.0)),
+                Freedom::Free | Freedom::Carried => Some((next(&mut count), 1.0)),
             };
         }
         if is_locked_sideways && mesh.bottom_nodes().contains(&node) {

@@ -19,6 +19,7 @@ mod vibration;
 
 pub use error::StabilityError;
 
+use crate::solver::support::Support;
 use crate::solver::{Drive, Model};
 use basis::Basis;
 use dashpots::{Dashpot, Dashpots};
@@ -292,5 +293,6 @@ fn natural_speed_ratio(model: &Model, drive: &Drive, mu: f64) -> f64 {
 
 /// Whether the pin is an upright block of one material on a rigid disk.
 fn is_plain(model: &Model) -> bool {
-    model.ring().is_none() && model.mesh().block().is_some()
+    let rocks = model.supports().iter().any(|support| matches!(support, Support::Rocking(_)));
+    model.ring().is_none() && model.mesh().block().is_some() && !rocks
 }

@@ -201,7 +201,7 @@ impl Space {
 pub fn holders(model: &Model) -> impl Iterator<Item = &Held> {
     model.supports().iter().filter_map(|support| match support {
         Support::Held(held) => Some(held),
-        Support::Fixed(_) | Support::Tied(_) => None,
+        Support::Fixed(_) | Support::Tied(_) | Support::Rocking(_) => None,
     })
 }
 

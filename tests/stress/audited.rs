@@ -29,7 +29,7 @@ use tribosweep::solver::body::pin::operator::{AssembledOperator, Operator};
 use tribosweep::solver::body::pin::{BlockMesh, PinMesh};
 use tribosweep::solver::energy::{Energies, EnergyLedger};
 use tribosweep::solver::material::Material;
-use tribosweep::solver::support::{Held, Support};
+use tribosweep::solver::support::{RockingWay, Support};
 use tribosweep::solver::{Drive, Model, RunNumber, StateOf, step};
 
 /// The numbers of a run's fields.
@@ -177,11 +177,14 @@ impl<'a, R: Rounded> Audited<'a, R> {
             *force +=
                 mass * (self.state.u[i].to_f64().abs() + dt * self.state.p[i].to_f64().abs()) / (dt * dt);
         }
-        for held in holders(self.model) {
-            let dof = held.tied.dofs().next().expect("at least one node");
-            let [u, p] = [&self.state.u, &self.state.p].map(|field| field[dof].to_f64().abs());
-            let inertia = held.mass_kg * (u + dt * p) / (dt * dt);
-            self.forces[dof] += held.stiffness_n_m * u + held.damping_n_s_m * p + inertia;
+        for Way { form, mass, stiffness, damping } in ways(self.model) {
+            let [u, p] = [&self.state.u, &self.state.p].map(|field| -> f64 {
+                form.iter().map(|(dof, factor)| factor.abs() * field[*dof].to_f64().abs()).sum()
+            });
+            let inertia = mass * (u + dt * p) / (dt * dt);
+            for (dof, factor) in form {
+                self.forces[dof] += factor.abs() * (stiffness * u + damping * p + inertia);
+            }
         }
     }
 
@@ -218,23 +221,51 @@ impl<'a, R: Rounded> Audited<'a, R> {
             let mass = self.model.pin().masses_kg()[i / 3];
             sum_j += 0.5 * magnitude[i] * product[i] + mass * speed * (speed + magnitude[i] / dt);
         }
-        for held in holders(self.model) {
-            let dof = held.tied.dofs().next().expect("at least one node");
-            let speed =
-                self.state.p[dof].to_f64().abs() + (self.increments[0][dof] + self.increments[1][dof]) / dt;
-            sum_j += 0.5 * held.stiffness_n_m * magnitude[dof] * magnitude[dof]
-                + held.mass_kg * speed * (speed + magnitude[dof] / dt);
+        for Way { form, mass, stiffness, .. } in ways(self.model) {
+            let of = |value: &dyn Fn(usize) -> f64| -> f64 {
+                form.iter().map(|(dof, factor)| factor.abs() * value(*dof)).sum()
+            };
+            let speed = of(&|dof| {
+                self.state.p[dof].to_f64().abs() + (self.increments[0][dof] + self.increments[1][dof]) / dt
+            });
+            let u = of(&|dof| magnitude[dof]);
+            sum_j += 0.5 * stiffness * u * u + mass * speed * (speed + u / dt);
         }
         sum_j
     }
 }
 
-/// The holders among the supports.
-fn holders(model: &Model) -> impl Iterator<Item = &Held> {
-    model.supports().iter().filter_map(|support| match support {
-        Support::Held(held) => Some(held),
-        Support::Fixed(_) | Support::Tied(_) => None,
-    })
+/// A way in which a holder moves, as a form of displacements.
+struct Way {
+    form: Vec<(usize, f64)>,
+    mass: f64,
+    stiffness: f64,
+    damping: f64,
+}
+
+/// The ways of the holders among the supports.
+fn ways(model: &Model) -> Vec<Way> {
+    let of = |support: &Support| match support {
+        Support::Held(held) => vec![Way {
+            form: held.tied.dofs().take(1).map(|dof| (dof, 1.0)).collect(),
+            mass: held.mass_kg,
+            stiffness: held.stiffness_n_m,
+            damping: held.damping_n_s_m,
+        }],
+        Support::Rocking(rocking) => {
+            let (chosen, factors) = rocking.coordinates().unwrap();
+            let dofs: Vec<usize> = rocking.dofs().collect();
+            let way = |(w, way): (usize, &RockingWay)| Way {
+                form: chosen.iter().enumerate().map(|(i, &at)| (dofs[at], factors[(w, i)])).collect(),
+                mass: way.inertia,
+                stiffness: way.stiffness,
+                damping: way.damping,
+            };
+            rocking.ways.iter().enumerate().map(way).collect()
+        }
+        Support::Fixed(_) | Support::Tied(_) => Vec::new(),
+    };
+    model.supports().iter().flat_map(of).collect()
 }
 
 /// The magnitudes of all terms of K in its tensor form, element by element.

@@ -236,6 +236,23 @@ fn holder(random: &mut Random, spec: &mut JobSpec) {
     if is_tied {
         (holder.stiffness_z_n_m, holder.damping_z_n_s_m) = (Some(0.0), along_z.1);
     }
+    if is_tied && random.chance(0.5) {
+        let (stiffness, inertia) = (pin_n_m * lx * ly, pin_kg * lz * lz);
+        let mut about = || {
+            let scale = if random.chance(0.2) { 0.0 } else { random.log_between(1.0e-6, 1.0e2) };
+            let damping = (stiffness * inertia).sqrt() * random.log_between(1.0e-6, 1.0);
+            let own = inertia * random.log_between(1.0e-3, 1.0e6);
+            let (has_damping, has_own) = (random.chance(0.5), random.chance(0.5));
+            (Some(stiffness * scale), has_damping.then_some(damping), has_own.then_some(own))
+        };
+        let (x, y) = (about(), about());
+        let holder = &mut spec.scene.holder;
+        (holder.rotational_stiffness_x_n_m, holder.rotational_damping_x_n_m_s, holder.inertia_x_kg_m2) = x;
+        if random.chance(0.5) {
+            (holder.rotational_stiffness_y_n_m, holder.rotational_damping_y_n_m_s, holder.inertia_y_kg_m2) =
+                y;
+        }
+    }
 }
 
 fn clamp(random: &mut Random, spec: &mut JobSpec) {

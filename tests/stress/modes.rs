@@ -35,7 +35,8 @@ pub fn highest(definition: &ModelDefinition, closed: bool) -> Mode {
     for (dof, freedom) in freedoms.iter().enumerate() {
         match freedom {
             Freedom::Fixed => {}
-            Freedom::Free => motions.push(vec![dof]),
+            // The scenes of these modes have no holder that rotates.
+            Freedom::Free | Freedom::Carried => motions.push(vec![dof]),
             Freedom::Tied(group) => {
                 let at = *tied.entry(*group).or_insert_with(|| {
                     motions.push(Vec::new());

@@ -96,6 +96,12 @@ pub fn full() -> JobSpec {
         damping_x_n_s_m: Some(1.0),
         damping_y_n_s_m: Some(2.0),
         damping_z_n_s_m: Some(3.0),
+        rotational_stiffness_x_n_m: Some(4.0),
+        rotational_stiffness_y_n_m: Some(5.0),
+        rotational_damping_x_n_m_s: Some(6.0),
+        rotational_damping_y_n_m_s: Some(7.0),
+        inertia_x_kg_m2: Some(8.0),
+        inertia_y_kg_m2: Some(9.0),
     };
     spec.run.window_s = Some(0.001);
     spec

@@ -71,6 +71,7 @@ impl Dense {
                 Freedom::Fixed => None,
                 Freedom::Free => Some(next()),
                 Freedom::Tied(_) => Some(*group.get_or_insert_with(&mut next)),
+                Freedom::Carried => unreachable!("no scene here has a holder that rotates"),
             };
         }
         let element = hexahedron::stiffness(pin.material(), mesh.element_size_m());

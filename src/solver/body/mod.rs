@@ -22,6 +22,8 @@ pub enum Freedom {
     Fixed,
     /// It moves with the other members of the group of this number.
     Tied(usize),
+    /// It moves with a rigid plane that rotates.
+    Carried,
 }
 
 /// Stored energies \[J\] at t_n, and the work \[J\] of damping in one step, summed over bodies and supports.

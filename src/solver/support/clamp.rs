@@ -1,6 +1,6 @@
 //! The clamp and the top face of a scene as supports on a mesh.
 
-use super::{Held, Support, Tied};
+use super::{Held, Rocking, RockingWay, Support, Tied};
 use crate::solver::body::pin::PinMesh;
 use crate::solver::error::SolverError;
 use crate::spec::{Clamp, ClampSide, Holder, HolderDirection, TopFace};
@@ -128,6 +128,10 @@ pub fn supports(mesh: &PinMesh, strip: &ClampedStrip, top: TopFace, holder: &Hol
             supports.push(held(Tied { component, nodes: strip.nodes.clone() }, direction));
         }
     }
+    if holder.rotates() && top == TopFace::TiedInZ {
+        supports.push(Support::Rocking(rocking(mesh, holder)));
+        return supports;
+    }
     match (top, directions[2]) {
         (TopFace::TiedInZ, None) => supports.push(Support::tied(2, mesh.top_nodes())),
         (TopFace::TiedInZ, Some(direction)) => {
@@ -136,6 +140,23 @@ pub fn supports(mesh: &PinMesh, strip: &ClampedStrip, top: TopFace, holder: &Hol
         (TopFace::FreeInZ, _) => {}
     }
     supports
+}
+
+/// The top face as a rigid plane on a holder. The axes of rotation lie in the top face and cross above the pin's axis.
+fn rocking(mesh: &PinMesh, holder: &Holder) -> Rocking {
+    let nodes = mesh.top_nodes();
+    let way = |direction: HolderDirection, share: &dyn Fn([f64; 3]) -> f64| RockingWay {
+        shares: nodes.iter().map(|&node| share(mesh.coordinates_m(node))).collect(),
+        inertia: direction.mass_kg,
+        stiffness: direction.stiffness_n_m,
+        damping: direction.damping_n_s_m,
+    };
+    let massless = HolderDirection { mass_kg: 0.0, stiffness_n_m: 0.0, damping_n_s_m: 0.0 };
+    let mut ways = vec![way(holder.directions()[2].unwrap_or(massless), &|_| 1.0)];
+    let [about_x, about_y] = holder.rotations();
+    ways.extend(about_x.map(|direction| way(direction, &|[_, y, _]| y)));
+    ways.extend(about_y.map(|direction| way(direction, &|[x, _, _]| -x)));
+    Rocking { nodes, ways }
 }
 
 #[cfg(test)]

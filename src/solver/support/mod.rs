@@ -4,6 +4,7 @@
 //!   is computed.
 //! * [`Tied`] – nodes that share one displacement in one component.
 //! * [`Held`] – nodes on a holder with a mass, a spring and a damper. The force on the frame is part of T.
+//! * [`Rocking`] – nodes that move in z as a rigid plane, on a holder that also rotates.
 //! * [`clamp`] – the supports that represent a scene's clamp and top face.
 //! * [`load`] – the normal load, which acts on the same planes.
 //!
@@ -16,12 +17,14 @@ pub mod clamp;
 mod fixed;
 mod held;
 pub mod load;
+mod rocking;
 mod tied;
 mod weights;
 
 pub(in crate::solver) use applied::{AppliedSupport, Supported};
 pub use fixed::Fixed;
 pub use held::Held;
+pub use rocking::{Rocking, RockingWay};
 pub use tied::Tied;
 
 use super::body::pin::PinMesh;
@@ -32,6 +35,7 @@ use super::number::Number;
 use super::scheme::{Bound, Scheme};
 use fixed::AppliedFixed;
 use held::AppliedHeld;
+use rocking::AppliedRocking;
 use tied::AppliedTie;
 
 /// A support in the definition of a model.
@@ -43,6 +47,8 @@ pub enum Support {
     Tied(Tied),
     /// Nodes on a holder.
     Held(Held),
+    /// Nodes on a holder that rotates.
+    Rocking(Rocking),
 }
 
 impl Support {
@@ -61,13 +67,14 @@ impl Support {
         match self {
             Self::Fixed(fixed) => fixed.dofs.clone(),
             Self::Tied(tied) | Self::Held(Held { tied, .. }) => tied.dofs().collect(),
+            Self::Rocking(rocking) => rocking.dofs().collect(),
         }
     }
 
     /// The nodes that share a displacement, if the support ties nodes.
     pub fn tie(&self) -> Option<&Tied> {
         match self {
-            Self::Fixed(_) => None,
+            Self::Fixed(_) | Self::Rocking(_) => None,
             Self::Tied(tied) | Self::Held(Held { tied, .. }) => Some(tied),
         }
     }
@@ -78,6 +85,7 @@ impl Support {
         match self {
             Self::Fixed(_) | Self::Tied(_) => Bound::default(),
             Self::Held(held) => held.bound(masses_kg),
+            Self::Rocking(rocking) => rocking.bound(masses_kg),
         }
     }
 
@@ -90,6 +98,7 @@ impl Support {
             Self::Fixed(fixed) => Box::new(AppliedFixed::new(fixed, layout, L)),
             Self::Tied(tied) => Box::new(AppliedTie::new(tied, layout, L, masses_kg, 0.0)),
             Self::Held(held) => Box::new(AppliedHeld::<L, R>::new(held, layout, masses_kg)),
+            Self::Rocking(rocking) => Box::new(AppliedRocking::<L, R>::new(rocking, layout, masses_kg)),
         }
     }
 }
@@ -136,6 +145,17 @@ pub fn freedoms(supports: &[Support], mesh: &PinMesh) -> Result<Vec<Freedom>, So
                 }
                 groups += 1;
             }
+            Support::Rocking(rocking) => {
+                rocking.coordinates()?;
+                for dof in rocking.dofs() {
+                    set(dof, Freedom::Carried)?;
+                }
+                if rocking.nodes.iter().any(|node| mesh.bottom_nodes().contains(node)) {
+                    return Err(SolverError::Constraints(
+                        "a rocking holder must not hold nodes of the contact face".to_owned(),
+                    ));
+                }
+            }
         }
     }
     Ok(freedoms)
@@ -149,7 +169,7 @@ impl<const L: usize, R: Number> AppliedSupports<L, R> {
     /// Prepares the supports of a pin with these lumped masses \[kg\].
     pub fn new(supports: &[Support], layout: Layout, masses_kg: &[f64]) -> Self {
         // A tie replaces the residual, so everything that adds to the residual acts before.
-        let is_tie = |support: &&Support| support.tie().is_some();
+        let is_tie = |support: &&Support| !matches!(support, Support::Fixed(_));
         let (ties, others): (Vec<_>, Vec<_>) = supports.iter().partition(is_tie);
         Self(others.into_iter().chain(ties).map(|support| support.applied(layout, masses_kg)).collect())
     }

@@ -10,8 +10,9 @@ use crate::solver::body::hexahedron;
 use crate::solver::body::pin::operator::{AssembledOperator, Operator};
 use crate::solver::body::ring::RingBody;
 use crate::solver::interface::target::patch::Grid;
-use crate::solver::support::Support;
+use crate::solver::support::{Rocking, RockingWay, Support};
 use crate::spec::TargetSurface;
+use std::collections::BTreeMap;
 
 /// A node of the contact face on its target.
 #[derive(Debug)]
@@ -28,6 +29,9 @@ pub struct Meeting {
     pub surface: [Vec<(usize, f64)>; 3],
 }
 
+/// A linear form: displacements with their shares.
+pub type Form = Vec<(usize, f64)>;
+
 /// The bodies.
 #[derive(Debug)]
 pub struct Bodies {
@@ -40,8 +44,11 @@ pub struct Bodies {
     /// Number of displacements of the pin.
     pub pin: usize,
     pub meetings: Vec<Meeting>,
-    /// Holders: one of the displacements of the group, mass \[kg\], stiffness \[N/m\] and damper \[N s/m\].
-    pub holders: Vec<(usize, [f64; 3])>,
+    /// Ways of holders: the way as a form of displacements, with its mass \[kg\], stiffness \[N/m\] and damper \[N s/m\] (of a
+    /// rotation: \[kg m²\], \[N m/rad\], \[N m s/rad\]).
+    pub holders: Vec<(Form, [f64; 3])>,
+    /// Rigid planes: for each displacement, its shares of the ways of its plane, which are numbered from 0 over all planes.
+    pub carried: BTreeMap<usize, Form>,
 }
 
 impl Bodies {
@@ -69,12 +76,27 @@ impl Bodies {
                 }
             }
         }
-        let holders = model.supports().iter().filter_map(|support| match support {
-            Support::Held(held) => {
-                Some((held.tied.dofs().next()?, [held.mass_kg, held.stiffness_n_m, held.damping_n_s_m]))
+        let mut holders = Vec::new();
+        let mut carried = BTreeMap::new();
+        let mut ways = 0;
+        for support in model.supports() {
+            match support {
+                Support::Held(held) => {
+                    let form = held.tied.dofs().take(1).map(|dof| (dof, 1.0)).collect();
+                    holders.push((form, [held.mass_kg, held.stiffness_n_m, held.damping_n_s_m]));
+                }
+                Support::Rocking(rocking) => {
+                    for (at, dof) in rocking.dofs().enumerate() {
+                        let shares =
+                            rocking.ways.iter().enumerate().map(|(w, way)| (ways + w, way.shares[at]));
+                        carried.insert(dof, shares.collect());
+                    }
+                    ways += rocking.ways.len();
+                    holders.extend(ways_of(rocking));
+                }
+                Support::Fixed(_) | Support::Tied(_) => {}
             }
-            Support::Fixed(_) | Support::Tied(_) => None,
-        });
+        }
         let meetings = model.slaves().iter().map(|slave| {
             let [x, y] = slave.surface_motion;
             let speed_per_rate = libm::hypot(x, y);
@@ -86,15 +108,19 @@ impl Bodies {
                 surface: model.ring().map_or_else(Default::default, |ring| surface(ring, first, [y, -x])),
             }
         });
-        Self {
-            holders: holders.collect(),
-            meetings: meetings.collect(),
-            pin: first,
-            rows,
-            masses_kg,
-            freedoms,
-        }
+        Self { holders, carried, meetings: meetings.collect(), pin: first, rows, masses_kg, freedoms }
     }
+}
+
+/// The ways of a rigid plane as forms of displacements, with mass, stiffness and damper.
+fn ways_of(rocking: &Rocking) -> Vec<(Form, [f64; 3])> {
+    // The model has checked that the nodes determine the ways.
+    let Ok((chosen, factors)) = rocking.coordinates() else { return Vec::new() };
+    let of_way = |(w, way): (usize, &RockingWay)| {
+        let form = chosen.iter().enumerate().map(|(i, &at)| (3 * rocking.nodes[at] + 2, factors[(w, i)]));
+        (form.collect(), [way.inertia, way.stiffness, way.damping])
+    };
+    rocking.ways.iter().enumerate().map(of_way).collect()
 }
 
 /// The displacements of the disk's surface at a point (X, Y) \[m\] from its axis, with their shares in x, y and z.

@@ -10,10 +10,10 @@ use super::friction::SlidingFriction;
 use super::sliding::{Equilibrium, Mode, SlidingPoint};
 use crate::solver::{Drive, Model};
 use arnoldi::{Found, Near, near};
-use bodies::Bodies;
+use bodies::{Bodies, Form};
 use faer::c64;
 use std::f64::consts::TAU;
-use system::{Form, System};
+use system::System;
 
 /// Largest number of changes of the nodes in contact.
 const MOST_CHANGES: usize = 60;
@@ -216,13 +216,16 @@ impl SparseStructure {
         Err(StabilityError::NoEquilibrium { mu: friction.mu })
     }
 
-    /// K u with the springs of holders, which act on one of the displacements of a group.
+    /// K u with the springs of holders, which act on some of the displacements of a group.
     fn forces(&self, u: &[f64]) -> Vec<f64> {
         let rows = self.bodies.rows.iter();
         let mut forces: Vec<f64> =
             rows.map(|row| row.iter().map(|(column, value)| value * u[*column]).sum()).collect();
-        for (dof, [_, stiffness_n_m, _]) in &self.bodies.holders {
-            forces[*dof] += stiffness_n_m * u[*dof];
+        for (form, [_, stiffness, _]) in &self.bodies.holders {
+            let way: f64 = form.iter().map(|(dof, factor)| factor * u[*dof]).sum();
+            for (dof, factor) in form {
+                forces[*dof] += factor * stiffness * way;
+            }
         }
         forces
     }
@@ -242,7 +245,7 @@ impl Settled {
         let mut dampers: Vec<(f64, Form)> = bodies
             .holders
             .iter()
-            .map(|(dof, [_, stiffness, damping])| (damping - beta_r_s * stiffness, vec![(*dof, 1.0)]))
+            .map(|(form, [_, stiffness, damping])| (damping - beta_r_s * stiffness, form.clone()))
             .collect();
         for (i, meeting) in
             bodies.meetings.iter().enumerate().filter(|(i, _)| self.equilibrium.in_contact[*i])

@@ -4,7 +4,7 @@
 //! Its row of K u + M ü is the normal contact force N on the pin. N acts with the opposite sign on the surface, and friction μN d
 //! acts on both. So the equations of q are Lᵀ (K u + M ü) = Lᵀ F, where L differs from T by friction alone.
 
-use super::bodies::Bodies;
+use super::bodies::{Bodies, Form};
 use crate::solver::body::Freedom;
 use crate::stability::error::StabilityError;
 use faer::linalg::solvers::Solve;
@@ -13,9 +13,6 @@ use faer::sparse::{SparseColMat, SymbolicSparseColMat};
 use faer::traits::ComplexField;
 use faer::{Mat, c64};
 use std::collections::BTreeMap;
-
-/// A linear form: displacements with their shares.
-pub type Form = Vec<(usize, f64)>;
 
 /// Matrices on a common pattern in compressed columns.
 #[derive(Debug)]
@@ -47,9 +44,18 @@ impl System {
         let follows: std::collections::BTreeSet<usize> =
             touching().map(|(_, meeting)| 3 * meeting.node + 2).collect();
         let mut right: Vec<Form> = vec![Form::new(); bodies.freedoms.len()];
+        let mut ways = BTreeMap::new();
         for (dof, freedom) in bodies.freedoms.iter().enumerate() {
             let index = match freedom {
                 Freedom::Fixed => continue,
+                Freedom::Carried => {
+                    for (way, share) in &bodies.carried[&dof] {
+                        let index = *ways.entry(*way).or_insert(size);
+                        size = size.max(index + 1);
+                        right[dof].push((index, *share));
+                    }
+                    continue;
+                }
                 _ if follows.contains(&dof) => continue,
                 Freedom::Free => size,
                 Freedom::Tied(group) => *groups.entry(*group).or_insert(size),
@@ -86,8 +92,9 @@ impl System {
             }
             add(&left[row], &right[row], [bodies.masses_kg[row], 0.0, 0.0]);
         }
-        for (dof, [mass_kg, stiffness_n_m, _]) in &bodies.holders {
-            add(&left[*dof], &right[*dof], [*mass_kg, *stiffness_n_m, 0.0]);
+        for (form, [mass, stiffness, _]) in &bodies.holders {
+            let form = moved(&right, form, 1.0);
+            add(&form, &form, [*mass, *stiffness, 0.0]);
         }
         for (coefficient_n_s_m, form) in dampers {
             let form = moved(&right, form, 1.0);

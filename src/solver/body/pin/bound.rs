@@ -119,7 +119,7 @@ fn pattern(freedoms: &[Freedom; 24]) -> [u8; 24] {
                 Some(e) => numbers[e],
                 None => take(&mut next),
             },
-            Freedom::Free => take(&mut next),
+            Freedom::Free | Freedom::Carried => take(&mut next),
         };
     }
     numbers

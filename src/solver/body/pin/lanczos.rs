@@ -78,7 +78,8 @@ impl Reduced {
             };
             numbers.push(match *freedom {
                 Freedom::Fixed => None,
-                Freedom::Free => Some(next()),
+                // A constraint can only lower the largest frequency.
+                Freedom::Free | Freedom::Carried => Some(next()),
                 Freedom::Tied(group) => {
                     let entry = groups.entry(group).or_insert_with(|| (next(), 0.0));
                     entry.1 += masses_kg[dof / 3];

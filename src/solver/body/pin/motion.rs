@@ -46,7 +46,7 @@ struct InverseMasses<R: Number> {
     /// 1/m \[1/kg\] of every node.
     free: LineTable<R>,
     /// 1/m \[1/kg\] of every degree of freedom of a constrained plane. It is 0 where the degree of freedom is
-    /// fixed. It is 1 where it is tied, because there the support replaces the residual by minus the acceleration
+    /// fixed. It is 1 where it is tied or carried, because there the support replaces the residual by minus the acceleration
     /// of the group.
     constrained: Vec<Vec<Block<R>>>,
     constrained_planes: Vec<bool>,
@@ -61,7 +61,7 @@ impl<const L: usize, R: Number> NodeMotion<L, R> {
             let value = match freedom {
                 Freedom::Free => 1.0 / pin.masses_kg()[dof / 3],
                 Freedom::Fixed => 0.0,
-                Freedom::Tied(_) => 1.0,
+                Freedom::Tied(_) | Freedom::Carried => 1.0,
             };
             *per_dof.at_mut(per_dof.place(dof / 3), dof % 3) = [R::from_f64(value); L];
         }
