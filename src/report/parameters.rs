@@ -16,8 +16,11 @@ pub(super) fn is_further(name: &str) -> bool {
 }
 
 /// The endings of names that are units. Longer endings come first.
-const UNITS: [(&str, &str); 17] = [
+const UNITS: [(&str, &str); 20] = [
+    ("_nm_s_rad", "N m s/rad"),
+    ("_nm_rad", "N m/rad"),
     ("_kg_m3", "kg/m³"),
+    ("_kg_m2", "kg m²"),
     ("_n_s_m", "N s/m"),
     ("_n_m", "N/m"),
     ("_pa_m", "Pa/m"),

@@ -33,16 +33,16 @@ pub struct Holder {
     pub damping_z_n_s_m: Option<f64>,
     /// Rotational stiffness (N m/rad) about x, with which the pin rocks in the sliding direction. Absent: it does not rotate about x.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub rotational_stiffness_x_n_m: Option<f64>,
+    pub rotational_stiffness_x_nm_rad: Option<f64>,
     /// Rotational stiffness (N m/rad) about y. Absent: it does not rotate about y.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub rotational_stiffness_y_n_m: Option<f64>,
+    pub rotational_stiffness_y_nm_rad: Option<f64>,
     /// Rotational damper (N m s/rad) about x. Absent: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub rotational_damping_x_n_m_s: Option<f64>,
+    pub rotational_damping_x_nm_s_rad: Option<f64>,
     /// Rotational damper (N m s/rad) about y. Absent: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub rotational_damping_y_n_m_s: Option<f64>,
+    pub rotational_damping_y_nm_s_rad: Option<f64>,
     /// Moment of inertia (kg m²) of the holder about x. Absent: 0.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub inertia_x_kg_m2: Option<f64>,
@@ -84,8 +84,8 @@ impl Holder {
             })
         };
         [
-            of(self.inertia_x_kg_m2, self.rotational_stiffness_x_n_m, self.rotational_damping_x_n_m_s),
-            of(self.inertia_y_kg_m2, self.rotational_stiffness_y_n_m, self.rotational_damping_y_n_m_s),
+            of(self.inertia_x_kg_m2, self.rotational_stiffness_x_nm_rad, self.rotational_damping_x_nm_s_rad),
+            of(self.inertia_y_kg_m2, self.rotational_stiffness_y_nm_rad, self.rotational_damping_y_nm_s_rad),
         ]
     }
 
@@ -167,17 +167,31 @@ impl Holder {
 
     fn check_rotations(&self, found: &mut Violations) {
         let ways = [
-            ("x", self.rotational_stiffness_x_n_m, self.rotational_damping_x_n_m_s, self.inertia_x_kg_m2),
-            ("y", self.rotational_stiffness_y_n_m, self.rotational_damping_y_n_m_s, self.inertia_y_kg_m2),
+            (
+                "x",
+                self.rotational_stiffness_x_nm_rad,
+                self.rotational_damping_x_nm_s_rad,
+                self.inertia_x_kg_m2,
+            ),
+            (
+                "y",
+                self.rotational_stiffness_y_nm_rad,
+                self.rotational_damping_y_nm_s_rad,
+                self.inertia_y_kg_m2,
+            ),
         ];
         for (axis, stiffness, damping, inertia) in ways {
             let fields = [
                 (
-                    format!("scene.holder.rotational_stiffness_{axis}_n_m"),
+                    format!("scene.holder.rotational_stiffness_{axis}_nm_rad"),
                     stiffness,
                     "a stiffness >= 0 N m/rad",
                 ),
-                (format!("scene.holder.rotational_damping_{axis}_n_m_s"), damping, "a damper >= 0 N m s/rad"),
+                (
+                    format!("scene.holder.rotational_damping_{axis}_nm_s_rad"),
+                    damping,
+                    "a damper >= 0 N m s/rad",
+                ),
                 (format!("scene.holder.inertia_{axis}_kg_m2"), inertia, "an inertia >= 0 kg m²"),
             ];
             for (field, value, right) in &fields {

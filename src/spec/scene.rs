@@ -189,7 +189,7 @@ impl Scene {
         for (axis, _) in ["x", "y"].into_iter().zip(self.holder.rotations()).filter(|(_, way)| way.is_some())
         {
             if self.top == TopFace::FreeInZ {
-                let field = format!("scene.holder.rotational_stiffness_{axis}_n_m");
+                let field = format!("scene.holder.rotational_stiffness_{axis}_nm_rad");
                 let right =
                     "absent, or scene.top = tied_in_z: a rigid holder carries all top nodes as a plane";
                 found.add(&field, "given", right);

@@ -247,10 +247,17 @@ fn holder(random: &mut Random, spec: &mut JobSpec) {
         };
         let (x, y) = (about(), about());
         let holder = &mut spec.scene.holder;
-        (holder.rotational_stiffness_x_n_m, holder.rotational_damping_x_n_m_s, holder.inertia_x_kg_m2) = x;
+        (
+            holder.rotational_stiffness_x_nm_rad,
+            holder.rotational_damping_x_nm_s_rad,
+            holder.inertia_x_kg_m2,
+        ) = x;
         if random.chance(0.5) {
-            (holder.rotational_stiffness_y_n_m, holder.rotational_damping_y_n_m_s, holder.inertia_y_kg_m2) =
-                y;
+            (
+                holder.rotational_stiffness_y_nm_rad,
+                holder.rotational_damping_y_nm_s_rad,
+                holder.inertia_y_kg_m2,
+            ) = y;
         }
     }
 }

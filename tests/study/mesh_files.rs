@@ -307,7 +307,11 @@ fn moved(by_mm: f64) -> String {
             _ => line.to_owned(),
         }
     };
-    gmsh().lines().map(change).collect::<Vec<_>>().join("\n")
+    let text = gmsh();
+    let (before, nodes) = text.split_once("$Nodes").unwrap();
+    let (nodes, after) = nodes.split_once("$EndNodes").unwrap();
+    let nodes: Vec<String> = nodes.lines().map(change).collect();
+    format!("{before}$Nodes{}\n$EndNodes{after}", nodes.join("\n"))
 }
 
 /// Protects: x = y = 0 of the file is the pin's axis. A mesh in the coordinates of the disk or of an assembly is refused.
@@ -346,5 +350,76 @@ fn places_are_those_of_the_users_text() {
     let error = job(&gmsh(), "pin.msh", pin)
         .and_then(|job| job.check().map_err(|error| error.to_string()))
         .unwrap_err();
-    assert_contains(&error, &["study.json:1:124"]);
+    assert_contains(&error, &["study.json:1:118"]);
+}
+
+/// Numbers that are the same on every machine (a linear congruential generator, Knuth).
+struct Random(u64);
+
+impl Random {
+    fn below(&mut self, count: usize) -> usize {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 33) as usize % count.max(1)
+    }
+}
+
+/// The text with a few random changes of its lines and words.
+fn damaged(text: &str, random: &mut Random) -> String {
+    const WORDS: [&str; 14] = [
+        "",
+        "-1",
+        "0",
+        "1",
+        "4294967296",
+        "18446744073709551615",
+        "9e999",
+        "nan",
+        "-inf",
+        "1e300",
+        "x",
+        "$Nodes",
+        "*NODE",
+        "\u{fffd}",
+    ];
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    for _ in 0..=random.below(3) {
+        let (at, other) = (random.below(lines.len()), random.below(lines.len()));
+        match random.below(6) {
+            0 => drop(lines.remove(at)),
+            1 => lines.insert(at, lines[other].clone()),
+            2 => lines.swap(at, other),
+            3 => lines.truncate(at.max(1)),
+            _ => {
+                let mut words: Vec<&str> = lines[at].split(' ').collect();
+                let word = random.below(words.len());
+                words[word] = WORDS[random.below(WORDS.len())];
+                lines[at] = words.join(" ");
+            }
+        }
+    }
+    lines.join("\n")
+}
+
+/// Protects: whatever a file contains, it is a mesh that a model can be made of, or it is refused. Nothing panics, and nothing asks for
+/// memory without limit.
+#[test]
+fn damaged_files_are_refused_or_read() {
+    let mut random = Random(1);
+    let [mut read, mut refused] = [0, 0];
+    for round in 0..600 {
+        for (text, name) in [(gmsh(), "pin.msh"), (abaqus(), "pin.inp")] {
+            let text = damaged(&text, &mut random);
+            let found = job(&text, name, "").and_then(|job| {
+                Model::from_scene(&job.scene, &job.numerics).map(drop).map_err(|error| error.to_string())
+            });
+            match found {
+                Ok(()) => read += 1,
+                Err(message) => {
+                    assert!(message.len() > 20, "round {round}, {name}: {message}");
+                    refused += 1;
+                }
+            }
+        }
+    }
+    assert!(read > 10 && refused > 600, "{read} read, {refused} refused");
 }

@@ -510,7 +510,7 @@ fn programs_that_are_no_tables_are_refused() {
     let elastic = of(r#""disk": { "kind": "elastic" },"#, "");
     assert_contains(&elastic, &["scene.program.omega_rpm = ", "expected absent with an elastic disk"]);
     let still = refusal(r#"{ "scene": { "program": { "omega_rpm": [[0, 0], [0.02, 0]] } } }"#);
-    assert_contains(&still, &["scene.disk.omega_rpm = 0: expected a speed > 0 rpm"]);
+    assert_contains(&still, &["scene.program.omega_rpm = all values 0: expected at least one value > 0"]);
     let windows = refusal(r#"{ "run": { "window_s": 0.001 } }"#);
     assert_contains(&windows, &["run.window_s = ", "expected absent without scene.program"]);
     assert_contains(&of("", r#", "run": { "window_s": 1 }"#), &["run.window_s = 1: expected a length"]);

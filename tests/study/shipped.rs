@@ -4,10 +4,11 @@ use std::path::PathBuf;
 use tribosweep::spec::{ClampSide, DiskKind, JobSpec, Precision, Shape, StabilityMethod, Start};
 use tribosweep::study::{Job, Study};
 
-/// Every file in `studies/`.
+/// Every study in `studies/`.
 pub fn files() -> Vec<PathBuf> {
     let mut files: Vec<_> =
         std::fs::read_dir("studies").unwrap().map(|entry| entry.unwrap().path()).collect();
+    files.retain(|file| file.extension().is_some_and(|extension| extension == "json"));
     files.sort();
     files
 }

@@ -296,8 +296,8 @@ mod tests {
         let words: Vec<String> = group.speeds.iter().map(Speed::threshold_in_words).collect();
         assert_eq!(words, ["≤ 0.1", "0.2", "> 0.3", value::MISSING]);
         let notes: Vec<String> = group.speeds.iter().map(|speed| found.note(speed)).collect();
-        assert_eq!(notes[2], "stable up to mu = 0.3");
-        assert_eq!(notes[3], "no mode was found at mu = 0.3: whether sliding is stable there is not known");
+        assert_eq!(notes[2], "stable up to μ = 0.3");
+        assert_eq!(notes[3], "no mode was found at μ = 0.3: whether sliding is stable there is not known");
         let families: Vec<Vec<usize>> = group
             .speeds
             .iter()

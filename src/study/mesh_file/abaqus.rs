@@ -198,7 +198,7 @@ fn keyword_section(keyword: &str) -> Result<Section, String> {
     let option = |key: &str| options.iter().find(|(found, _)| found == key).map(|(_, value)| value.clone());
     let set = |key: &str| option(key).ok_or_else(|| format!("*{name} without {key}"));
     let generates = option("GENERATE").is_some();
-    if let Some(file) = option("INPUT") {
+    if let Some(file) = option("INPUT").filter(|_| !REFUSED.contains(&name.as_str())) {
         return Err(format!("*{name} with INPUT={file}: expected the data in this file"));
     }
     let system = option("SYSTEM").filter(|system| name == "NODE" && !system.eq_ignore_ascii_case("R"));
