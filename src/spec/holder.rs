@@ -6,7 +6,8 @@ use serde::{Deserialize, Serialize};
 
 /// A rigid holder between the pin and the frame of the instrument. In a direction with a stiffness it moves, on a spring and a
 /// damper, and carries the clamp's nodes (x, y) or the top face (z) with it. Without a stiffness it is ideal: in x and y
-/// the clamp does not move, and in z the top face carries the load without any mass of the holder.
+/// the clamp does not move, and in z the top face carries the load without any mass of the holder. With a rotational stiffness the
+/// top face rotates as a plane.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Holder {
@@ -160,7 +161,8 @@ impl Holder {
             found.add(
                 "scene.holder.stiffness_y_n_m",
                 "absent",
-                "a stiffness in at least one direction: without one the holder is ideal, and mass_kg has no effect",
+                "a stiffness in x, y or z beside mass_kg, which otherwise has no effect; stiffness_z_n_m = 0 is a mass that moves with the top \
+                 face",
             );
         }
     }

@@ -106,22 +106,29 @@ impl MeshFile {
     /// The mesh of this content, in place of the file.
     #[must_use]
     pub fn with_content(&self, content: &MeshContent, bodies: Vec<String>) -> Self {
+        let Self { length_unit_m, contact, load, clamp, .. } = self.clone();
+        let content_text = Some(content.encoded());
+        let measures = Self::measures_of(content);
+        Self { content: content_text, length_unit_m, contact, load, clamp, bodies, ..measures }
+    }
+
+    /// What is known of a content without reading it.
+    fn measures_of(content: &MeshContent) -> Self {
         Self {
-            file: None,
-            content: Some(content.encoded()),
             extent_m: Some(content.extent_m()),
             nodes: Some(content.nodes_m.len()),
             hexahedra: Some(content.hexahedra.len()),
             contact_faces: Some(content.contact.len()),
             contact_edges_m: Some(content.contact_edges_m()),
-            bodies,
-            ..self.clone()
+            ..Self::default()
         }
     }
 
-    /// What is known of the content without reading it.
-    fn measures(&self) -> impl PartialEq + use<> {
-        (self.extent_m, self.nodes, self.hexahedra, self.contact_faces, self.contact_edges_m)
+    fn has_measures(&self, of: &Self) -> bool {
+        let measures = |mesh: &Self| {
+            (mesh.extent_m, mesh.nodes, mesh.hexahedra, mesh.contact_faces, mesh.contact_edges_m)
+        };
+        measures(self) == measures(of)
     }
 
     /// Adds every violated limit to `found`, for a pin of this size.
@@ -132,7 +139,7 @@ impl MeshFile {
             found.add("scene.pin.mesh.content", "no mesh", right);
             return;
         };
-        if self.with_content(&content, Vec::new()).measures() != self.measures() {
+        if !self.has_measures(&Self::measures_of(&content)) {
             let right = "the numbers of nodes and elements and the lengths of that content: name scene.pin.mesh.file again";
             found.add("scene.pin.mesh", "a content that does not fit", right);
             return;

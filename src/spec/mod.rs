@@ -192,6 +192,17 @@ impl JobSpec {
                 "a stiffness > 0 N/m: friction pushes a holder without a spring away, so that steady sliding has no equilibrium",
             );
         }
+        for (axis, _) in ["x", "y"]
+            .into_iter()
+            .zip(self.scene.holder.rotations())
+            .filter(|(_, way)| way.is_some_and(|way| way.stiffness_n_m == 0.0))
+        {
+            found.add(
+                &format!("scene.holder.rotational_stiffness_{axis}_nm_rad"),
+                0.0,
+                "a stiffness > 0 N m/rad: without a spring the disk alone guides the pin, and steady sliding may have no equilibrium",
+            );
+        }
         if let Some([stiffness, ..]) = self.scene.contact.layer() {
             let right = "absent: the complex modes of steady sliding are those of a rigid contact";
             found.add("scene.contact.stiffness_pa_m", check::readable(stiffness), right);
@@ -242,6 +253,10 @@ impl JobSpec {
         if law == FrictionLaw::PrakashClifton {
             let right = "another law, or numerics.precision = double: its changes in a step are below the digits of single precision";
             found.add("scene.contact.law", law.name(), right);
+        }
+        if self.scene.holder.rotates() {
+            let right = "double with a holder that rotates: roundings of its nodes add up";
+            found.add("numerics.precision", self.numerics.precision.name(), right);
         }
         let force_n = self.scene.program.force_n.as_ref().map_or(self.scene.load.force_n, Table::least);
         let compression_m = force_n * lz / (young_modulus_pa * pin.base_area_m2());

@@ -313,6 +313,11 @@ impl Pin {
         for (number, region) in self.regions.iter().enumerate() {
             let field = |name: &str| format!("scene.pin.regions[{number}].{name}");
             match (self.shape, region.above_m, &region.group) {
+                (Shape::Mesh, None, Some(group))
+                    if self.regions[..number].iter().any(|other| other.group.as_ref() == Some(group)) =>
+                {
+                    found.add(&field("group"), group, "another group: a region before it has this one");
+                }
                 (Shape::Mesh, None, Some(group)) => {
                     let bodies = self.mesh.as_ref().map_or(&[][..], |mesh| &mesh.bodies);
                     if !bodies.contains(group) {

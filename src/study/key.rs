@@ -16,7 +16,7 @@ const HEX_DIGITS: usize = 32;
 ///
 /// In canonical JSON the fields are sorted, there is no space, and numbers have their shortest exact form, with 0 for
 /// −0. Fields without effect do not enter. These have their defaults: coefficients that the friction law does not use; the
-/// clamp's width where no strip uses it; an angle of 0; run-out and waviness of no height; the elements and the clamp
+/// clamp's width where no strip uses it; an angle of 0; masses, inertias and dampers of 0; run-out and waviness of no height; the elements and the clamp
 /// where the mesh comes from a file, of which a hash of its content enters; the
 /// safety factor where the time step is given; the time step, the precision, the run, its detection and the load's ramp where
 /// there is no run; the method of stability where eigenvalues may not decide; the start
@@ -30,6 +30,19 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
         spec.scene.pin.elements = Pin::default().elements;
         spec.scene.clamp = Clamp::default();
         reduce_mesh(&mut spec.scene.pin);
+    }
+    let holder = &mut spec.scene.holder;
+    for nothing in [
+        &mut holder.mass_kg,
+        &mut holder.damping_x_n_s_m,
+        &mut holder.damping_y_n_s_m,
+        &mut holder.damping_z_n_s_m,
+        &mut holder.rotational_damping_x_nm_s_rad,
+        &mut holder.rotational_damping_y_nm_s_rad,
+        &mut holder.inertia_x_kg_m2,
+        &mut holder.inertia_y_kg_m2,
+    ] {
+        *nothing = nothing.filter(|value| *value != 0.0);
     }
     for angle in [&mut spec.scene.pin.tilt_x_deg, &mut spec.scene.pin.tilt_y_deg] {
         *angle = angle.filter(|angle| *angle != 0.0);

@@ -298,3 +298,27 @@ fn a_pin_rocks_below_its_holder() {
     let error = errors.fold(f64::INFINITY, f64::min);
     assert!(error < 1.0e-3, "{error:e}");
 }
+
+/// Protects: the axes of a holder cross above the pin's own axis, so that the load does not turn the holder, whatever the tilt.
+#[test]
+fn the_load_does_not_turn_the_holder() {
+    let mut spec = JobSpec::default();
+    spec.scene.pin.elements = [4, 5, 4];
+    (spec.scene.pin.tilt_x_deg, spec.scene.pin.tilt_y_deg) = (Some(5.0), Some(-3.0));
+    spec.scene.clamp.side = ClampSide::WholeTop;
+    let holder = &mut spec.scene.holder;
+    (holder.rotational_stiffness_x_nm_rad, holder.rotational_stiffness_y_nm_rad) = (Some(10.0), Some(20.0));
+    let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
+    let rocking = model.supports().iter().find_map(|support| match support {
+        Support::Rocking(rocking) => Some(rocking),
+        _ => None,
+    });
+    let rocking = rocking.unwrap();
+    assert_eq!(rocking.ways.len(), 3);
+    for (way, expected) in rocking.ways.iter().zip([-1.0, 0.0, 0.0]) {
+        let share = |dof: usize| model.load().iter().find(|load| load.dof == dof).unwrap().share;
+        let force: f64 = rocking.dofs().zip(&way.shares).map(|(dof, arm)| share(dof) * arm).sum();
+        // Arms are some millimetres, with a rounding error of their coordinates.
+        assert!((force - expected).abs() < 1.0e-14, "{force:e}");
+    }
+}

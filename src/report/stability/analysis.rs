@@ -56,8 +56,8 @@ pub(in crate::report) struct Speed {
     pub branches: Vec<Branch>,
     /// Where modes begin to grow, by ascending μ.
     pub onsets: Vec<Onset>,
-    /// The smallest μ at which no mode was found, so that it is not known whether sliding is stable.
-    pub without_modes: Option<f64>,
+    /// Each μ at which no mode was found, so that it is not known whether sliding is stable.
+    pub without_modes: Vec<f64>,
 }
 
 /// Where a mode begins to grow.
@@ -121,15 +121,18 @@ impl<'a> Analysis<'a> {
             }
             Some(onset) if !onset.is_converged => words.push("not converged".to_owned()),
             Some(_) => {}
-            None if speed.without_modes.is_some() => {}
+            None if !speed.without_modes.is_empty() => {}
             None => {
                 let largest = self.layout.dimension(MU).assignment(&speed.mus[1].into());
                 words.push(format!("stable up to {largest}"));
             }
         }
-        if let Some(mu) = speed.without_modes {
-            let place = self.layout.dimension(MU).assignment(&mu.into());
-            words.push(format!("no mode was found at {place}: whether sliding is stable there is not known"));
+        if !speed.without_modes.is_empty() {
+            let places = speed.without_modes.iter().map(|mu| value::significant(*mu, 4)).collect::<Vec<_>>();
+            let places = places.join(", ");
+            words.push(format!(
+                "no mode was found at μ = {places}: whether sliding is stable there is not known"
+            ));
         }
         let more = speed.onsets.len().saturating_sub(1);
         if more > 0 {
@@ -167,7 +170,8 @@ fn speed(omega: &Value, points: &[&StabilityPoint]) -> Speed {
         branches.iter().enumerate().filter_map(|(number, branch)| onset(number, branch)).collect();
     onsets.sort_by(|a, b| a.mu.total_cmp(&b.mu).then(a.frequency_hz.total_cmp(&b.frequency_hz)));
     let without_modes = points.iter().filter(|point| point.stability.modes.is_empty()).map(|point| point.mu);
-    let without_modes = without_modes.reduce(f64::min);
+    let mut without_modes: Vec<f64> = without_modes.collect();
+    without_modes.sort_by(f64::total_cmp);
     Speed { omega: omega.clone(), mus, branches, onsets, without_modes }
 }
 
@@ -235,14 +239,16 @@ impl Speed {
         self.onsets.iter().find(|onset| onset.branch == branch)
     }
 
-    /// The threshold in words: `0.3142`, `≤ 0.1` if sliding is unstable at the smallest μ already, `> 0.6` if it is stable at
+    /// The threshold in words: `0.3142`, `≤ 0.1` if sliding is unstable at the smallest μ already or not known at a smaller one, `> 0.6` if it is stable at
     /// every μ, and a dash if no mode grows but points without modes leave it open.
     pub fn threshold_in_words(&self) -> String {
         let text = |mu: f64| value::significant(mu, 4);
         match self.lowest() {
-            Some(onset) if onset.below.is_some() => text(onset.mu),
+            Some(onset) if onset.below.is_some() && !self.without_modes.iter().any(|mu| *mu < onset.mu) => {
+                text(onset.mu)
+            }
             Some(onset) => format!("≤ {}", text(onset.mu)),
-            None if self.mus[1].is_finite() && self.without_modes.is_none() => {
+            None if self.mus[1].is_finite() && self.without_modes.is_empty() => {
                 format!("> {}", text(self.mus[1]))
             }
             None => value::MISSING.to_owned(),

@@ -142,9 +142,13 @@ pub fn supports(mesh: &PinMesh, strip: &ClampedStrip, top: TopFace, holder: &Hol
     supports
 }
 
-/// The top face as a rigid plane on a holder. The axes of rotation lie in the top face and cross above the pin's axis.
+/// The top face as a rigid plane on a holder. The axes of rotation cross where the pin's own axis meets the top face.
 fn rocking(mesh: &PinMesh, holder: &Holder) -> Rocking {
     let nodes = mesh.top_nodes();
+    let [centre_x, centre_y, _] = match mesh {
+        PinMesh::Block(_) => [0.0; 3],
+        PinMesh::General(general) => general.tilt().turned([0.0, 0.0, general.size_m()[2]]),
+    };
     let way = |direction: HolderDirection, share: &dyn Fn([f64; 3]) -> f64| RockingWay {
         shares: nodes.iter().map(|&node| share(mesh.coordinates_m(node))).collect(),
         inertia: direction.mass_kg,
@@ -154,8 +158,8 @@ fn rocking(mesh: &PinMesh, holder: &Holder) -> Rocking {
     let massless = HolderDirection { mass_kg: 0.0, stiffness_n_m: 0.0, damping_n_s_m: 0.0 };
     let mut ways = vec![way(holder.directions()[2].unwrap_or(massless), &|_| 1.0)];
     let [about_x, about_y] = holder.rotations();
-    ways.extend(about_x.map(|direction| way(direction, &|[_, y, _]| y)));
-    ways.extend(about_y.map(|direction| way(direction, &|[x, _, _]| -x)));
+    ways.extend(about_x.map(|direction| way(direction, &|[_, y, _]| y - centre_y)));
+    ways.extend(about_y.map(|direction| way(direction, &|[x, _, _]| centre_x - x)));
     Rocking { nodes, ways }
 }
 

@@ -63,6 +63,26 @@ impl Rocking {
         })
     }
 
+    /// The inverse of the masses and inertias.
+    ///
+    /// # Panics
+    /// If the displacements of the nodes do not determine the ways, which [`Rocking::coordinates`] finds.
+    fn inverse_inertias(&self, masses_kg: &[f64]) -> DMatrix<f64> {
+        let mut matrix = self.inertias(masses_kg);
+        // A unit diagonal keeps the determinant of small masses within the range of numbers.
+        let scales: Vec<f64> = matrix.diagonal().iter().map(|entry| 1.0 / entry.sqrt()).collect();
+        let scale = |matrix: &mut DMatrix<f64>| {
+            let count = scales.len();
+            for (w, v) in (0..count).flat_map(|w| (0..count).map(move |v| (w, v))) {
+                matrix[(w, v)] *= scales[w] * scales[v];
+            }
+        };
+        scale(&mut matrix);
+        let mut inverse = matrix.try_inverse().expect("the ways are independent");
+        scale(&mut inverse);
+        inverse
+    }
+
     /// Each way as a sum over some of the nodes: the positions of these nodes in the list, and the factors of their displacements.
     ///
     /// # Errors
@@ -99,7 +119,7 @@ impl Rocking {
 
     /// The springs and dampers on the masses and inertias. The largest frequency squared is at most the trace of I⁻¹ k.
     pub fn bound(&self, masses_kg: &[f64]) -> Bound {
-        let Some(inverse) = self.inertias(masses_kg).try_inverse() else { return Bound::default() };
+        let inverse = self.inverse_inertias(masses_kg);
         let trace = |of: fn(&RockingWay) -> f64| -> f64 {
             self.ways.iter().enumerate().map(|(w, way)| inverse[(w, w)] * of(way)).sum()
         };
@@ -127,7 +147,7 @@ impl<const L: usize, R: Number> AppliedRocking<L, R> {
     /// If the nodes do not determine the ways, which the model has checked.
     pub fn new(rocking: &Rocking, layout: Layout, masses_kg: &[f64]) -> Self {
         let (chosen, factors) = rocking.coordinates().expect("the model has checked the nodes");
-        let inverse = rocking.inertias(masses_kg).try_inverse().expect("masses are positive");
+        let inverse = rocking.inverse_inertias(masses_kg);
         let dofs: Vec<usize> = rocking.dofs().collect();
         let field = FieldOf::<L, R>::zeros(layout);
         let mut members: Vec<_> = ones(layout, L, &dofs).into_iter().map(|own| (own, Vec::new())).collect();
