@@ -38,7 +38,7 @@ const DISK_STAGE: f64 = 5.0;
 const SINGLE: [f64; 2] = [0.6, 0.5];
 
 /// Time of a step of a node of a general mesh, relative to that of a block: measured on 9828 nodes (docs/studies.md).
-const GENERAL_TIME: f64 = 4.0;
+const GENERAL_TIME: f64 = 3.0;
 
 /// Additional memory \[byte\] of a node of a general mesh in a model: 14 pairs of nodes with 9 numbers and an index.
 const GENERAL_NODE_BYTES: f64 = 14.0 * (9.0 * 8.0 + 4.0);
