@@ -28,6 +28,7 @@ mod retry;
 mod rm;
 mod run;
 mod schema;
+mod sensitivity;
 mod show;
 mod signals;
 mod slurm;
@@ -80,6 +81,8 @@ enum Command {
     Report(report::Args),
     /// Compare jobs that differ in their numerics: error against run time.
     Pareto(pareto::Args),
+    /// Show how much each parameter of a study decides, from its own jobs.
+    Sensitivity(sensitivity::Args),
     /// Write one row per job of one, several or all studies as CSV or JSON lines.
     Export(export::Args),
     /// Print the columns of the export with their units and meanings.
@@ -133,6 +136,7 @@ pub fn main(cli: Cli) -> u8 {
         Command::Status(args) => status::run(&args, db),
         Command::Report(args) => report::run(&args, db),
         Command::Pareto(args) => pareto::run(&args, db),
+        Command::Sensitivity(args) => sensitivity::run(&args, db),
         Command::Export(args) => export::run(&args, db),
         Command::Columns(args) => columns::run(&args),
         Command::Show(args) => show::run(&args, db),

@@ -35,11 +35,9 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     report::check_folder(plan.name(), &args.out)?;
     let (forecast, replaced) = forecast::read(&plan, args.threads.number(), db)?;
     forecast::warn(&forecast);
-    let axes: Vec<String> = plan
-        .study()
-        .axes()
-        .map(|(parameter, values)| format!("{} {}", parameter.name, values.len()))
-        .collect();
+    let samples = plan.study().samples().map(|samples| format!("samples {samples}"));
+    let axes = plan.study().axes().map(|(parameter, values)| format!("{} {}", parameter.name, values.len()));
+    let axes: Vec<String> = samples.into_iter().chain(axes).collect();
     let grid = if axes.is_empty() { String::new() } else { format!(" ({})", axes.join(" × ")) };
     print(&if args.json {
         format!("{}\n", forecast::as_json(&forecast, replaced.as_ref(), &plan))

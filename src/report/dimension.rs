@@ -8,6 +8,7 @@ use serde_json::Value;
 use std::collections::HashMap;
 
 /// A parameter of a layout. Its numbers are written in one unit, which fits the median of their sizes.
+#[derive(Clone)]
 pub(super) struct Dimension {
     name: String,
     /// Name and unit, for an axis: `disk speed ω [rpm]`.

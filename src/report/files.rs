@@ -70,7 +70,9 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
     let mut links = Vec::new();
     let mut drawn: Vec<(Plot, Vec<Figure>)> = Vec::new();
     for (plot, figures) in figures {
-        let figures = figures.map_err(|source| cannot_draw(out_dir, plot.stem(), source))?;
+        let mut figures = figures.map_err(|source| cannot_draw(out_dir, plot.stem(), source))?;
+        let over_others = figure::over_others(rows, view, layout_of(plot), plot);
+        figures.extend(over_others.map_err(|source| cannot_draw(out_dir, plot.stem(), source))?);
         for figure in &figures {
             let file = format!("{}{}.svg", plot.stem(), figure.suffix);
             folder.write_text(&file, &figure.svg)?;

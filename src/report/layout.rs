@@ -12,7 +12,7 @@ use super::view::View;
 use crate::publish::plot::axis::Axis;
 use crate::publish::value;
 use serde_json::Value;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 pub(super) use super::words::parameters_in_words;
 
@@ -33,6 +33,8 @@ pub(super) struct Layout<'a> {
     pub sources: Vec<Source<'a>>,
     /// One group per combination of `further`, in the order of the study.
     pub groups: Vec<Group<'a>>,
+    /// Parameters that vary freely in the only group, because the jobs are points and no grid. Points are not joined by lines then.
+    pub scattered: Vec<&'a str>,
     dimensions: HashMap<&'a str, Dimension>,
 }
 
@@ -75,6 +77,9 @@ pub(super) struct PlacedJob<'a> {
     pub series: usize,
 }
 
+/// Fewer jobs are shown as a grid in any case.
+const FEWEST_SCATTERED: usize = 6;
+
 /// The rows of a layout with the names of their parameters that differ.
 struct Varying<'a> {
     rows: Vec<&'a JobRow>,
@@ -104,6 +109,22 @@ impl<'a> Varying<'a> {
         if name == SOURCE { self.sources.len() > 1 } else { self.names.contains(&name) }
     }
 
+    /// The parameters besides that along the axis, if the jobs are points and no grid: if two numbers or more have nearly as many values
+    /// as there are jobs. Otherwise none.
+    fn scattered(&self, axis: &str) -> Vec<&'a str> {
+        let jobs = || self.rows.iter().filter(|row| !row.is_measured());
+        let count = jobs().count();
+        let has_many = |name: &&str| {
+            let values = || jobs().map(|row| row.parameter(name));
+            let different = values().map(|value| value::text(&value)).collect::<HashSet<_>>().len();
+            values().all(|value| value.is_number()) && 4 * different > 3 * count
+        };
+        if count < FEWEST_SCATTERED || self.names.iter().filter(|name| has_many(name)).count() < 2 {
+            return Vec::new();
+        }
+        self.names.iter().copied().filter(|name| *name != axis).collect()
+    }
+
     /// The parameter along the axis.
     fn axis(&self) -> &'a str {
         let further = self.names.iter().find(|name| **name != OMEGA && **name != MU);
@@ -127,6 +148,21 @@ impl<'a> Layout<'a> {
     /// Lays out rows. This compares the values of all jobs as text, which is slow: a report shares one layout between all
     /// its tables and figures.
     pub fn of(rows: impl IntoIterator<Item = &'a JobRow>, view: &View) -> Self {
+        Self::laid_out(rows, view, true)
+    }
+
+    /// The same jobs with the only scattered parameter as that of the curves, for a map on true axes; none if there is no such
+    /// parameter, or if there are several.
+    pub fn on_true_axes(&self) -> Option<Self> {
+        let [by] = self.scattered[..] else { return None };
+        let rows = self.groups.iter().flat_map(|group| &group.jobs).map(|job| job.row);
+        let view = View { x: Some(self.axis.to_owned()), by: Some(by.to_owned()), ..View::default() };
+        let mut own = Self::laid_out(rows, &view, false);
+        own.dimensions.extend(self.dimensions.iter().map(|(name, dimension)| (*name, dimension.clone())));
+        Some(own)
+    }
+
+    fn laid_out(rows: impl IntoIterator<Item = &'a JobRow>, view: &View, may_scatter: bool) -> Self {
         let (varying, constant) = Varying::new(rows.into_iter().collect());
         let known = |name: &Option<String>| {
             let own = varying.names.iter().chain(&constant).chain(&[SOURCE]);
@@ -135,8 +171,12 @@ impl<'a> Layout<'a> {
         };
         let axis = known(&view.x).unwrap_or_else(|| varying.axis());
         let by = known(&view.by).filter(|by| *by != axis).unwrap_or_else(|| varying.by(axis));
+        let scattered = if may_scatter { varying.scattered(axis) } else { Vec::new() };
+        let by = if scattered.is_empty() { by } else { SOURCE };
         let is_placed = |name: &str| name == axis || name == by;
-        let further: Vec<&str> = varying.names.iter().copied().filter(|name| !is_placed(name)).collect();
+        let further =
+            varying.names.iter().copied().filter(|name| !is_placed(name) && !scattered.contains(name));
+        let further: Vec<&str> = further.collect();
         let constants = varying.rows.first().map_or_else(Vec::new, |row| {
             // A constant ω or μ is in the heads of tables, if it has no other place.
             let named = constant.iter().filter(|name| !is_placed(name));
@@ -158,6 +198,7 @@ impl<'a> Layout<'a> {
             series,
             sources: varying.sources,
             groups: Vec::new(),
+            scattered,
             dimensions,
         };
         layout.groups = layout.group(&varying.rows, &series_of);

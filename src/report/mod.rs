@@ -36,6 +36,7 @@ mod program;
 mod provenance;
 mod row;
 mod scalar;
+pub mod sensitivity;
 mod spectra;
 mod stability;
 mod stability_point;

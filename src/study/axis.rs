@@ -8,7 +8,7 @@ use super::parameter::{Kind, Parameter};
 use super::range::{Range, Unusable};
 use super::source::SourceText;
 use serde_json::{Value, json};
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 /// A parameter and the values it takes.
 #[derive(Debug, Clone)]
@@ -23,6 +23,11 @@ pub(super) struct Axis {
 }
 
 impl Axis {
+    /// An axis of values that have been checked.
+    pub(super) fn of_values(parameter: &'static Parameter, values: Vec<Value>) -> Self {
+        Self { parameter, values, is_listed: true, range: None }
+    }
+
     /// Path in the study file.
     pub(super) fn path(&self) -> String {
         format!("grid.{}", self.parameter.name)
@@ -41,24 +46,39 @@ impl Axis {
         source: &SourceText,
     ) -> Result<Self, Vec<Problem>> {
         let path = format!("grid.{}", parameter.name);
-        let values = match given {
-            Value::Array(list) if list.is_empty() => Err(vec![
-                source
-                    .problem(&path, "expected at least one value")
-                    .with_help("leave the parameter out to use the value of the base job"),
-            ]),
-            Value::Array(list) => Ok(list.clone()),
-            Value::Object(_) => range_values(parameter, given, &path, source),
-            _ => Err(vec![source.problem(&path, format!("expected {}", axis_form(parameter)))]),
-        }?;
         let axis = Self {
             parameter,
-            values: values.into_iter().map(|value| parameter.normalise(value)).collect(),
+            values: values(parameter, given, &path, source)?,
             is_listed: given.is_array(),
             range: given.is_object().then(|| given.clone()),
         };
         let problems = axis.problems(template, source);
         if problems.is_empty() { Ok(axis) } else { Err(problems) }
+    }
+
+    /// Values of a parameter at `path`, a list or a range, which may be repeated.
+    pub(super) fn column(
+        parameter: &'static Parameter,
+        given: &Value,
+        path: &str,
+        template: &Value,
+        source: &SourceText,
+    ) -> Result<Vec<Value>, Vec<Problem>> {
+        let values = values(parameter, given, path, source)?;
+        let mut checked = HashSet::new();
+        let mut problems = Vec::new();
+        for (index, value) in values.iter().enumerate() {
+            if (matches!(parameter.kind, Kind::Number) && value.is_number())
+                || !checked.insert(value.to_string())
+            {
+                continue;
+            }
+            if let Err(message) = check_type(parameter, value, template) {
+                let path = if given.is_array() { format!("{path}[{index}]") } else { path.to_owned() };
+                problems.push(source.problem(&path, message).with_help(parameter.help()));
+            }
+        }
+        if problems.is_empty() { Ok(values) } else { Err(problems) }
     }
 
     /// Where value `index` stands in the file: its path, and words for messages.
@@ -116,6 +136,26 @@ fn axis_form(parameter: &Parameter) -> &'static str {
         Kind::Counts => "a list of meshes, each [nx, ny, nz]",
         Kind::Flag | Kind::Name(_) => "a list of values",
     }
+}
+
+/// The values of a list or a range at `path`, normalised.
+fn values(
+    parameter: &'static Parameter,
+    given: &Value,
+    path: &str,
+    source: &SourceText,
+) -> Result<Vec<Value>, Vec<Problem>> {
+    let values = match given {
+        Value::Array(list) if list.is_empty() => Err(vec![
+            source
+                .problem(path, "expected at least one value")
+                .with_help("leave the parameter out to use the value of the base job"),
+        ]),
+        Value::Array(list) => Ok(list.clone()),
+        Value::Object(_) => range_values(parameter, given, path, source),
+        _ => Err(vec![source.problem(path, format!("expected {}", axis_form(parameter)))]),
+    }?;
+    Ok(values.into_iter().map(|value| parameter.normalise(value)).collect())
 }
 
 /// The values of the range `given`.

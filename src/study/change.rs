@@ -96,6 +96,8 @@ impl Outline {
     /// Removes what the study says about a parameter.
     fn forget(&mut self, parameter: &Parameter) {
         self.grid.axes.retain(|axis| !axis.parameter.overlaps(parameter));
+        self.grid.samples =
+            self.grid.samples.take().and_then(|samples| samples.without(|own| own.overlaps(parameter)));
         let (parent, name) = parameter.pointer.rsplit_once('/').unwrap_or_default();
         if let Some(Value::Object(fields)) = self.document.pointer_mut(parent) {
             fields.remove(name);
@@ -120,12 +122,19 @@ impl Outline {
         let place = self.grid.axes.iter().position(|axis| axis.parameter == *parameter);
         let place = place.unwrap_or(self.grid.axes.len());
         self.grid.axes.retain(|axis| !parameter.sets(&axis.parameter.field()));
+        self.grid.samples =
+            self.grid.samples.take().and_then(|samples| samples.without(|own| parameter.sets(&own.field())));
         let place = place.min(self.grid.axes.len());
         if forms == Forms::AxesToo
             && let Some(axis) = self.grid.axes.iter().find(|axis| axis.parameter.overlaps(parameter))
         {
             let message =
                 format!("grid.{0} varies the same field; expected {0} instead", axis.parameter.name);
+            return vec![Problem::of_change(&setting.place, parameter.name, &setting.text, message)];
+        }
+        let of_samples = self.grid.samples.iter().flat_map(|samples| &samples.parameters);
+        if let Some(other) = of_samples.into_iter().find(|other| other.overlaps(parameter)) {
+            let message = format!("samples vary the same field; expected {0} instead", other.name);
             return vec![Problem::of_change(&setting.place, parameter.name, &setting.text, message)];
         }
         let list_is_absent = || {

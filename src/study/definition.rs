@@ -51,6 +51,16 @@ impl Study {
         self.grid.axes.iter().map(|axis| (axis.parameter, axis.values.as_slice()))
     }
 
+    /// All parameters that the study varies: those of its samples, then those of its grid.
+    pub fn varied(&self) -> impl Iterator<Item = &'static Parameter> {
+        self.grid.parameters()
+    }
+
+    /// Number of its samples; none without `samples`.
+    pub fn samples(&self) -> Option<usize> {
+        self.grid.samples.as_ref().map(|samples| samples.rows.len())
+    }
+
     /// Axes and quantities of the report.
     pub fn report(&self) -> &ReportAxes {
         &self.report

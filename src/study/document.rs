@@ -35,11 +35,14 @@ struct Written<'a>(&'a Value, &'a Grid);
 impl Serialize for Written<'_> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         let mut fields: Vec<_> = self.0.as_object().into_iter().flatten().collect();
-        fields.retain(|(name, _)| *name != "grid");
+        fields.retain(|(name, _)| *name != "grid" && *name != "samples");
         fields.sort_by_key(|(name, _)| ORDER.iter().position(|known| known == name).unwrap_or(ORDER.len()));
         let mut map = serializer.serialize_map(None)?;
         for (name, value) in fields {
             map.serialize_entry(name, value)?;
+        }
+        if let Some(samples) = &self.1.samples {
+            map.serialize_entry("samples", samples.written())?;
         }
         if !self.1.axes.is_empty() {
             map.serialize_entry("grid", &WrittenGrid(self.1))?;

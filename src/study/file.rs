@@ -1,10 +1,11 @@
 //! The shape of a study file.
 
 use super::damping::Damping;
-use super::grid_schema::grid_schema;
+use super::grid_schema::{conditions_schema, grid_schema};
 use super::json::present;
 use super::preset::Preset;
 use super::report_axes::ReportAxes;
+use super::samples::given::SamplesFile;
 use crate::spec::{Detection, HeightMap, MeshFile, Numerics, Roughness, RunControl, Scene, StabilityMethod};
 use schemars::JsonSchema;
 use serde::Deserialize;
@@ -48,6 +49,18 @@ pub(super) struct StudyFile {
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(schema_with = "grid_schema")]
     pub grid: Option<Map<String, Value>>,
+    /// Points that are no grid. The jobs are all combinations of them with those of `grid`.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(with = "SamplesFile")]
+    pub samples: Option<SamplesFile>,
+    /// Only points that fulfil one of these conditions are jobs: parameters with `{ "from": a, "to": b }`, a list or a value.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(schema_with = "conditions_schema")]
+    pub include: Option<Vec<Map<String, Value>>>,
+    /// Points that fulfil one of these conditions are no jobs.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(schema_with = "conditions_schema")]
+    pub exclude: Option<Vec<Map<String, Value>>>,
     /// Axes and quantities of the report.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(with = "ReportAxes")]

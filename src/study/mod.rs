@@ -16,6 +16,7 @@
 
 mod axis;
 mod change;
+mod conditions;
 mod damping;
 mod definition;
 mod document;
@@ -41,6 +42,7 @@ mod plausibility;
 mod preset;
 mod range;
 mod report_axes;
+mod samples;
 mod schema;
 mod single;
 mod source;

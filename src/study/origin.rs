@@ -40,11 +40,11 @@ impl Study {
     pub fn origin(&self, parameter: &Parameter) -> Origin {
         let field = parameter.field();
         let is_preset_given =
-            self.source.gives("preset") || self.axes().any(|(axis, _)| axis.name == "preset");
+            self.source.gives("preset") || self.varied().any(|varied| varied.name == "preset");
         let in_grid = |axis: &Parameter| axis.overlaps(parameter);
         // `scene.pin.elements` gives `scene.pin.elements[0]` too.
         let list = field.split('[').next().unwrap_or_default();
-        if self.axes().any(|(axis, _)| in_grid(axis)) {
+        if self.varied().any(in_grid) {
             Origin::Grid
         } else if self.source.gives(&field)
             || self.source.gives(list)

@@ -2,6 +2,7 @@
 
 use super::axis::Axis;
 use super::change::{Changes, Forms};
+use super::conditions::Conditions;
 use super::definition::Study;
 use super::error::{Problem, StudyError};
 use super::file::StudyFile;
@@ -16,6 +17,7 @@ use super::outline::Outline;
 use super::parameter::{Parameter, unknown_help};
 use super::range;
 use super::report_axes::ReportAxes;
+use super::samples::{self, given::SamplesFile};
 use super::source::{Change, SourceText};
 use super::text::{STDIN, StudyText};
 use super::validate::check_jobs;
@@ -70,7 +72,7 @@ impl Study {
     ) -> Result<Self, StudyError> {
         let (mut value, mut source) = SourceText::read(text, source_name)?;
         refuse(source.repeated_keys())?;
-        for with_file in [height_file::with_heights, mesh_file::with_mesh] {
+        for with_file in [height_file::with_heights, mesh_file::with_mesh, samples::with_points] {
             if reads_files && let Some(text) = with_file(&value, &source)? {
                 let (with_content, read) = SourceText::read(&text, source_name)?;
                 (value, source) = (with_content, read.at_places_of(&source));
@@ -81,14 +83,25 @@ impl Study {
         let mut problems: Vec<_> =
             mismatches.into_iter().map(|mismatch| source.mismatch("", mismatch)).collect();
         let Some(file) = file else { return Err(StudyError::Invalid(problems)) };
-        if let Err(error) = check_size(file.grid.as_ref(), &source) {
+        let samples = file.samples.as_ref().map(SamplesFile::length);
+        if let Err(error) = check_size(samples, file.grid.as_ref(), &source) {
             return Err(if problems.is_empty() { error } else { StudyError::Invalid(problems) });
         }
         let axes = axes(file.grid, &template, &source).unwrap_or_else(|found| {
             problems.extend(found);
             Vec::new()
         });
-        let mut outline = Outline { document: value, grid: Grid { axes }, source, allows_modes };
+        let mut grid = Grid::of_axes(axes);
+        match file.samples.map(|samples| samples.read(&template, &source)).transpose() {
+            Ok(samples) => grid.samples = samples,
+            Err(found) => problems.extend(found),
+        }
+        problems.extend(repeated_parameters(&grid, &source));
+        match Conditions::read(file.include.as_deref(), file.exclude.as_deref(), &source) {
+            Ok(conditions) => grid.set_conditions(conditions),
+            Err(found) => problems.extend(found),
+        }
+        let mut outline = Outline { document: value, grid, source, allows_modes };
         let name = outline.rename(changes).and_then(|()| outline.name());
         if !problems.iter().any(|problem| problem.field == "name") {
             problems.extend(name.err().into_iter().flatten());
@@ -112,14 +125,19 @@ impl Study {
         let name = outline.name().map_err(StudyError::Invalid)?;
         refuse(report.problems(&outline.source))?;
         let draft = outline.draft();
-        let Outline { document, grid, source, allows_modes } = outline;
+        let Outline { document, mut grid, source, allows_modes } = outline;
+        let base = draft.resolve().spec;
+        if grid.select(&base) == 0 {
+            let field = if document.get("include").is_some() { "include" } else { "exclude" };
+            let message = "expected conditions that leave at least one point";
+            return Err(StudyError::Invalid(vec![source.problem(field, message)]));
+        }
         let (specs, mut violations): (Vec<_>, Vec<_>) =
             grid.resolve(&draft).into_iter().map(|job| (job.spec, job.violations)).unzip();
         if !allows_modes {
             specs.iter().zip(&mut violations).for_each(|(spec, found)| found.extend(refused_modes(spec)));
         }
         let description = document.get("description").and_then(Value::as_str).map(str::to_owned);
-        let base = draft.resolve().spec;
         let study = Self { name, description, base, document, grid, specs, report, source, allows_modes };
         refuse(check_jobs(&study, &violations))?;
         Ok(study)
@@ -164,8 +182,9 @@ impl Outline {
 
     /// Refuses a grid that has become too large.
     fn check_size(&self) -> Result<(), StudyError> {
+        let samples = self.grid.samples.as_ref().map(|samples| ("samples", samples.rows.len()));
         let axes = self.grid.axes.iter().map(|axis| (axis.parameter.name, axis.values.len()));
-        limit_size(&axes.collect::<Vec<_>>(), &self.source)
+        limit_size(&samples.into_iter().chain(axes).collect::<Vec<_>>(), &self.source)
     }
 }
 
@@ -244,12 +263,29 @@ fn axes(
     if problems.is_empty() { Ok(axes) } else { Err(problems) }
 }
 
+/// Parameters of the samples that an axis sets, too.
+fn repeated_parameters(grid: &Grid, source: &SourceText) -> Vec<Problem> {
+    let of_samples = grid.samples.iter().flat_map(|samples| &samples.parameters);
+    let repeated = of_samples.filter_map(|parameter| {
+        let axis = grid.axes.iter().find(|axis| axis.parameter.overlaps(parameter))?;
+        let message =
+            format!("sets the same field as {} in samples; expected only one of the two", parameter.name);
+        Some(source.problem_with_name(&axis.path(), message))
+    });
+    repeated.collect()
+}
+
 /// Refuses a grid that is too large. This comes before any value is read: a few axes of a million values each would
 /// take minutes to be refused.
-fn check_size(grid: Option<&Map<String, Value>>, source: &SourceText) -> Result<(), StudyError> {
+fn check_size(
+    samples: Option<usize>,
+    grid: Option<&Map<String, Value>>,
+    source: &SourceText,
+) -> Result<(), StudyError> {
     let mut axes: Vec<_> =
         grid.into_iter().flatten().map(|(name, given)| (name.as_str(), range::axis_length(given))).collect();
     axes.sort_by_key(|(name, _)| source.key_position(&join("grid", name)));
+    axes.splice(0..0, samples.map(|count| ("samples", count)));
     limit_size(&axes, source)
 }
 

@@ -80,7 +80,7 @@ impl Study {
         let single = found?;
         let job = json::encode(&single.specs[0]);
         let at_point = single.grid.parameters_at(0);
-        let in_grid = self.grid.axes.iter().map(|axis| axis.parameter);
+        let in_grid = self.grid.parameters();
         let named = overrides.iter().filter_map(|(name, _)| Parameter::find(name));
         let mut parameters: Vec<(String, Value)> = Vec::new();
         for parameter in in_grid.chain(named) {
@@ -109,8 +109,17 @@ impl Study {
         let allows_modes = self.allows_modes;
         let mut outline = Outline { document, grid, source: source_text, allows_modes };
         let problems = outline.set(source, preset, overrides, Forms::Single);
-        let (fixed, left_open) = outline.grid.axes.into_iter().partition(|axis| axis.values.len() == 1);
-        outline.grid = Grid { axes: fixed };
+        let of_samples = outline.grid.samples.iter().flat_map(|samples| {
+            samples
+                .parameters
+                .iter()
+                .enumerate()
+                .map(|(at, parameter)| Axis::of_values(parameter, samples.values(at)))
+        });
+        let axes: Vec<Axis> = of_samples.chain(outline.grid.axes.iter().cloned()).collect();
+        let (fixed, left_open) = axes.into_iter().partition(|axis| axis.values.len() == 1);
+        // One job is not a part of the study's points, and no condition keeps it out.
+        outline.grid = Grid::of_axes(fixed);
         let single = if problems.is_empty() {
             Self::of(outline, self.report.clone())
         } else {

@@ -52,13 +52,44 @@ impl Study {
     /// A problem with the value of a field at a grid point. Also returns the number of points with this value.
     pub(super) fn problem_at(&self, field: &str, message: &str, point: usize) -> (Problem, usize) {
         let axis = self.grid.axes.iter().position(|axis| axis.parameter.sets(field));
-        let Some(position) = axis else { return (self.source.problem(field, message), self.grid_size()) };
+        let Some(position) = axis else {
+            if let Some(found) = self.problem_in_samples(field, message, point) {
+                return found;
+            }
+            return (self.source.problem(field, message), self.grid_size());
+        };
         let axis = &self.grid.axes[position];
         let index = self.grid.indices_of(point)[position];
         let (path, words) = axis.value_path(index);
         let problem = self.source.problem(&path, message).with_help(format!("set by {words}"));
         let value = Some(axis.values[index].to_string());
-        (Problem { field: field.to_owned(), value, ..problem }, self.grid_size() / axis.values.len())
+        (Problem { field: field.to_owned(), value, ..problem }, self.points_like(point, position))
+    }
+
+    /// A problem with a value that the samples give.
+    fn problem_in_samples(&self, field: &str, message: &str, point: usize) -> Option<(Problem, usize)> {
+        let samples = self.grid.samples.as_ref()?;
+        let column = samples.parameters.iter().position(|parameter| parameter.sets(field))?;
+        let (row, _) = self.grid.place_of(point);
+        let name = samples.parameters[column].name;
+        let path = [
+            format!("samples.of.{name}"),
+            format!("samples.points[{row}].{name}"),
+            format!("samples.zip.{name}"),
+        ]
+        .into_iter()
+        .find(|path| self.source.gives(path));
+        let problem = self.source.problem(path.as_deref().unwrap_or("samples"), message);
+        let problem =
+            problem.with_help(format!("set by samples, point {} of {}", row + 1, samples.rows.len()));
+        let value = Some(samples.rows[row][column].to_string());
+        Some((Problem { field: field.to_owned(), value, ..problem }, 1))
+    }
+
+    /// Number of points with the same value of an axis as this point.
+    fn points_like(&self, point: usize, axis: usize) -> usize {
+        let index = self.grid.indices_of(point)[axis];
+        (0..self.grid_size()).filter(|other| self.grid.indices_of(*other)[axis] == index).count()
     }
 }
 

@@ -14,6 +14,7 @@ mod interruption;
 mod mount;
 mod nightly;
 mod one_job;
+mod points;
 #[path = "../support/random.rs"]
 mod random;
 #[path = "../support/report_files.rs"]

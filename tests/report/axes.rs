@@ -1,11 +1,11 @@
 //! The axes of tables and figures: any parameter along the axis, over the columns and in panels, in units that people use.
 
 use crate::svg;
-use crate::synthetic::{partial_study, periodic, record, row, with};
+use crate::synthetic::{partial_study, periodic, record, report, row, with};
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::figure::{Plot, figures};
 use tribosweep::report::tables::{self, Quantity};
-use tribosweep::report::{JobRow, RowState, SCALARS, Scalar, View, name_and_unit};
+use tribosweep::report::{JobRow, RowState, SCALARS, Scalar, View, name_and_unit, write};
 use tribosweep::study::PARAMETERS;
 
 /// Two speeds, two μ and three stiffnesses of the pin.
@@ -159,4 +159,24 @@ fn computed_ranges_have_short_heads() {
         .map(|line| line.split('|').nth(1).expect("a cell").trim().to_owned())
         .collect();
     assert_eq!(speeds, ["1.43", "1.95", "2.67", "3.66", "5.02"]);
+}
+
+/// Protects: jobs that are points and no grid are shown in one figure for each of their parameters, without lines, and in tables with a
+/// row for each point. A grid of the same number of jobs has curves.
+#[test]
+fn points_have_figures_over_each_parameter() {
+    let point = |n: usize| {
+        let (omega, mu) = (1.0 + 0.7 * n as f64, 0.2 + 0.01 * ((n * 7) % 12) as f64);
+        with(row(omega, mu, periodic(mu)), "load_n", 20.0 + ((n * 5) % 12) as f64)
+    };
+    let points: Vec<JobRow> = (0..12).map(point).collect();
+    let folder = tempfile::tempdir().unwrap();
+    let files = write(&report(&points), folder.path()).unwrap();
+    let files: Vec<_> = files.iter().map(|file| file.file_name().unwrap().to_str().unwrap()).collect();
+    for name in ["mu_star.svg", "mu_star-over-mu.svg", "mu_star-over-load_n.svg", "frequency-over-mu.svg"] {
+        assert!(files.contains(&name), "{name} in {files:?}");
+    }
+    assert!(!files.contains(&"mu_star-2.svg"), "{files:?}");
+    let table = std::fs::read_to_string(folder.path().join("mu_star.csv")).unwrap();
+    assert_eq!(table.lines().count(), 13, "{table}");
 }

@@ -13,6 +13,7 @@ mod presets;
 #[path = "../support/random.rs"]
 mod random;
 mod refusals;
+mod samples;
 mod schema;
 mod shipped;
 mod single;

@@ -53,7 +53,8 @@ pub(super) fn curves<'a>(
     let curve = |(series, mut results): (&'a Series, Vec<LocatedResult<'a>>)| {
         results.sort_by(|a, b| a.x.total_cmp(&b.x));
         let points = results.iter().filter_map(|found| point(scalar, found)).collect();
-        let is_joined = !layout.sources.get(series.source).is_some_and(|source| source.is_measured);
+        let is_joined = layout.scattered.is_empty()
+            && !layout.sources.get(series.source).is_some_and(|source| source.is_measured);
         let stretches = if is_joined { stretches(scalar, &results) } else { Vec::new() };
         Curve { series, points, stretches }
     };

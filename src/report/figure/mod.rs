@@ -162,7 +162,9 @@ impl Plot {
         let has_spectrum =
             |group: &super::layout::Group| group.jobs.iter().any(|job| spectra.contains_key(&job.row.job));
         match self {
-            Self::RegimePlane | Self::GrowthRate if !plane::exists(layout) => {
+            Self::RegimePlane | Self::GrowthRate
+                if !layout.on_true_axes().as_ref().map_or_else(|| plane::exists(layout), plane::exists) =>
+            {
                 Some("There is no map on true axes, because an axis has names and no numbers.")
             }
             Self::Waterfall if !layout.groups.iter().any(has_spectrum) => Some(
@@ -221,6 +223,33 @@ pub fn figures(rows: &[JobRow], view: &View, plot: Plot) -> Result<Vec<Figure>, 
     figures_of(&Layout::of(rows, view), plot, &Spectra::new(), &[])
 }
 
+/// The figures of a number over the other parameters of jobs that are points and no grid, one for each parameter that is a number. There
+/// are none for a grid, and none of other plots.
+pub(super) fn over_others(
+    rows: &[JobRow],
+    view: &View,
+    layout: &Layout,
+    plot: Plot,
+) -> Result<Vec<Figure>, FigureError> {
+    let scalar = match plot {
+        Plot::MuStar => &MU_STAR,
+        Plot::Frequency => &FREQUENCY,
+        Plot::Of(scalar) => scalar,
+        _ => return Ok(Vec::new()),
+    };
+    let is_number = |name: &&&str| rows.iter().any(|row| row.parameter(name).is_number());
+    let draw = |name: &&str| {
+        let own = Layout::of(rows, &View { x: Some((*name).to_owned()), ..view.clone() });
+        Ok(Figure {
+            suffix: format!("-over-{name}"),
+            caption: format!("over {}", own.axis_name()),
+            groups: 0..1,
+            svg: chart::draw(&own, &own.groups, scalar)?,
+        })
+    };
+    layout.scattered.iter().filter(is_number).map(draw).collect()
+}
+
 pub(super) fn figures_of(
     layout: &Layout,
     plot: Plot,
@@ -230,6 +259,11 @@ pub(super) fn figures_of(
     if plot.absence(layout, spectra).is_some() {
         return Ok(Vec::new());
     }
+    let own = match plot {
+        Plot::RegimePlane | Plot::GrowthRate => layout.on_true_axes(),
+        _ => None,
+    };
+    let layout = own.as_ref().unwrap_or(layout);
     let of_sheet = match plot {
         // The shares have a panel for each curve of each group.
         Plot::Shares => (MAX_PANELS / layout.series.len().max(1)).max(1),

@@ -24,6 +24,8 @@ const MAX_JOBS: usize = 4_000;
 const MAX_DRAWN: usize = 20_000;
 /// Largest number of figures of a kind.
 const MAX_SHEETS: usize = 2;
+/// Largest number of figures of a kind over different parameters.
+const MAX_MARGINAL: usize = 8;
 
 pub(super) fn friction(parts: &Parts) -> Markup {
     let errors =
@@ -251,7 +253,12 @@ fn figures(parts: &Parts, plot: Plot, caption: &str) -> Markup {
     let mut jobs = 0;
     let fitting = all.enumerate().take_while(|(number, figure)| {
         jobs += jobs_of(layout, figure);
-        if *number == 0 { jobs <= MAX_DRAWN } else { *number < MAX_SHEETS && jobs <= MAX_JOBS }
+        let sheets = if layout.scattered.is_empty() { MAX_SHEETS } else { MAX_MARGINAL };
+        if *number == 0 {
+            jobs <= MAX_DRAWN
+        } else {
+            *number < sheets && jobs <= MAX_DRAWN.min(MAX_JOBS * sheets / 2)
+        }
     });
     let figures: Vec<&Figure> = fitting.map(|(_, figure)| figure).collect();
     let shown = figures.last().map_or(0, |figure| figure.groups.end);

@@ -127,7 +127,7 @@ impl Study {
     fn warning(&self, Shared { doubt, worst, first, jobs }: &Shared) -> Warning {
         // The study's author can change what the study gives, and only knows that.
         let gives = |field: &&&str| {
-            self.source.gives(field) || self.grid.axes.iter().any(|axis| axis.parameter.sets(field))
+            self.source.gives(field) || self.grid.parameters().any(|parameter| parameter.sets(field))
         };
         let field = doubt.fields.iter().find(gives).unwrap_or(&doubt.fields[0]);
         let (mut problem, _) = self.problem_at(field, &doubt.message, *worst);

@@ -43,16 +43,16 @@ impl Study {
         if joined.len() < 2 {
             return None;
         }
-        let mut first_of: HashMap<(Vec<usize>, [String; 2]), usize> = HashMap::new();
+        let mut first_of: HashMap<(usize, Vec<usize>, [String; 2]), usize> = HashMap::new();
         let mut repeated = 0;
         let mut example = None;
         for (point, spec) in self.specs.iter().enumerate() {
             if !has_similarity(spec) {
                 continue;
             }
-            let indices = self.grid.indices_of(point);
+            let (sample, indices) = self.grid.place_of(point);
             let others = others.iter().map(|&position| indices[position]).collect();
-            match first_of.entry((others, groups(spec))) {
+            match first_of.entry((sample, others, groups(spec))) {
                 Entry::Occupied(first) => {
                     repeated += 1;
                     example.get_or_insert((*first.get(), point));

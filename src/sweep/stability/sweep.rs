@@ -29,7 +29,7 @@ impl StabilitySweep {
     /// The sweep of a plan whose jobs compute modes without a run. If it looks for thresholds and the grid varies μ, points
     /// are added where the grid is too coarse.
     pub fn new(plan: Plan, finds_thresholds: bool) -> Self {
-        let varies_mu = plan.study().axes().any(|(axis, values)| axis.name == MU && values.len() > 1);
+        let varies_mu = plan.study().varied().any(|parameter| parameter.name == MU);
         let grid = plan.jobs().to_vec();
         let mut sweep = Self { plan, grid, has_thresholds: finds_thresholds && varies_mu };
         if sweep.has_thresholds {
