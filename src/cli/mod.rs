@@ -26,6 +26,7 @@ mod replace;
 mod report;
 mod retry;
 mod rm;
+mod rows;
 mod run;
 mod schema;
 mod sensitivity;

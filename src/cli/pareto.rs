@@ -3,10 +3,10 @@
 use super::error::CliError;
 use super::output::{log, print};
 use super::report::OutFolder;
+use super::rows;
 use crate::exit;
 use crate::queue::Location;
 use crate::report::pareto;
-use crate::sweep;
 
 /// Arguments of `pareto`.
 #[derive(Debug, clap::Args)]
@@ -20,16 +20,7 @@ pub(crate) struct Args {
 
 /// Compares the finished jobs, prints the tables and writes the files.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let names = args.studies.iter().map(|study| sweep::study_name(study)).collect::<Result<Vec<_>, _>>()?;
-    let rows = sweep::block_on(async {
-        let mut queue = sweep::open_to_read(db.clone()).await?;
-        let mut all = Vec::new();
-        for name in &names {
-            all.extend(sweep::read_rows(&mut queue, name).await?);
-        }
-        queue.close().await?;
-        Ok::<_, CliError>(all)
-    })?;
+    let (names, rows) = rows::of_studies(&args.studies, db)?;
     let title = names.join(", ");
     let comparison =
         pareto::compare(&rows).map_err(|error| CliError::Refused(format!("{title}: {error}")))?;

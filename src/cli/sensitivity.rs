@@ -3,11 +3,11 @@
 use super::error::CliError;
 use super::output::{log, print};
 use super::report::OutFolder;
+use super::rows;
 use crate::exit;
 use crate::publish::Folder;
 use crate::queue::Location;
 use crate::report::{Scalar, sensitivity};
-use crate::sweep;
 
 /// Arguments of `sensitivity`.
 #[derive(Debug, clap::Args)]
@@ -32,16 +32,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         })
     };
     let of = args.of.iter().map(scalar).collect::<Result<Vec<_>, _>>()?;
-    let names = args.studies.iter().map(|study| sweep::study_name(study)).collect::<Result<Vec<_>, _>>()?;
-    let rows = sweep::block_on(async {
-        let mut queue = sweep::open_to_read(db.clone()).await?;
-        let mut all = Vec::new();
-        for name in &names {
-            all.extend(sweep::read_rows(&mut queue, name).await?);
-        }
-        queue.close().await?;
-        Ok::<_, CliError>(all)
-    })?;
+    let (names, rows) = rows::of_studies(&args.studies, db)?;
     let found = sensitivity::sensitivities(&rows, &of);
     if found.iter().all(|one| one.parameters.is_empty()) {
         let title = names.join(", ");

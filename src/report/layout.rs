@@ -115,9 +115,9 @@ impl<'a> Varying<'a> {
         let jobs = || self.rows.iter().filter(|row| !row.is_measured());
         let count = jobs().count();
         let has_many = |name: &&str| {
-            let values = || jobs().map(|row| row.parameter(name));
-            let different = values().map(|value| value::text(&value)).collect::<HashSet<_>>().len();
-            values().all(|value| value.is_number()) && 4 * different > 3 * count
+            let numbers = jobs().map(|row| row.parameter(name).as_f64().map(f64::to_bits));
+            let different = numbers.collect::<Option<HashSet<u64>>>();
+            different.is_some_and(|different| 4 * different.len() > 3 * count)
         };
         if count < FEWEST_SCATTERED || self.names.iter().filter(|name| has_many(name)).count() < 2 {
             return Vec::new();

@@ -103,4 +103,13 @@ impl Grid {
         }
         (number, indices)
     }
+
+    /// Number of points with the same value of an axis as this point.
+    pub(super) fn points_like(&self, point: usize, axis: usize) -> usize {
+        if self.kept.is_none() {
+            return self.size() / self.axes[axis].values.len();
+        }
+        let index = self.indices_of(point)[axis];
+        (0..self.size()).filter(|other| self.indices_of(*other)[axis] == index).count()
+    }
 }

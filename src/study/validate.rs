@@ -63,7 +63,7 @@ impl Study {
         let (path, words) = axis.value_path(index);
         let problem = self.source.problem(&path, message).with_help(format!("set by {words}"));
         let value = Some(axis.values[index].to_string());
-        (Problem { field: field.to_owned(), value, ..problem }, self.points_like(point, position))
+        (Problem { field: field.to_owned(), value, ..problem }, self.grid.points_like(point, position))
     }
 
     /// A problem with a value that the samples give.
@@ -84,12 +84,6 @@ impl Study {
             problem.with_help(format!("set by samples, point {} of {}", row + 1, samples.rows.len()));
         let value = Some(samples.rows[row][column].to_string());
         Some((Problem { field: field.to_owned(), value, ..problem }, 1))
-    }
-
-    /// Number of points with the same value of an axis as this point.
-    fn points_like(&self, point: usize, axis: usize) -> usize {
-        let index = self.grid.indices_of(point)[axis];
-        (0..self.grid_size()).filter(|other| self.grid.indices_of(*other)[axis] == index).count()
     }
 }
 

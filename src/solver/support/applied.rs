@@ -48,3 +48,34 @@ pub(in crate::solver) struct Supported<'a, const L: usize, R: Number> {
     /// K (u + β_R p) − external forces \[N\].
     pub residual: &'a mut FieldOf<L, R>,
 }
+
+/// A mass on a spring and a damper, or an inertia on their rotational counterparts.
+pub(super) struct Way {
+    pub inertia: f64,
+    pub stiffness: f64,
+    pub damping: f64,
+}
+
+impl Way {
+    /// Adds its energies: `motion` is its displacement, p and acceleration at t_n, and `after` its displacement after the step.
+    pub fn add_energies<const L: usize>(
+        &self,
+        scheme: &Scheme,
+        steps_done: &[u64; L],
+        motion: &[[f64; L]; 3],
+        after: &[f64; L],
+        total: &mut EnergySums<L>,
+    ) {
+        let Self { inertia, stiffness, damping } = *self;
+        let Scheme { beta2: gamma, time_step_s: dt, .. } = *scheme;
+        for lane in 0..L {
+            let [u, p, a] = motion.map(|of_lanes| of_lanes[lane]);
+            // In its first step p is the velocity.
+            let v = if steps_done[lane] == 1 { p } else { p + gamma * dt * a };
+            total.kinetic_j[lane] += 0.5 * inertia * (v * v - 0.5 * gamma * dt * dt * (a * a));
+            total.elastic_j[lane] += 0.5 * stiffness * u * u;
+            total.damping_after_j[lane] += damping * p * (after[lane] - u);
+            total.damping_before_j[lane] += damping * p * (dt * p);
+        }
+    }
+}

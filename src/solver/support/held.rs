@@ -8,7 +8,7 @@
 //! The spring and the damper act at t_n like K and β_R K. The frame carries k u + d p, which an instrument behind the holder
 //! measures.
 
-use super::applied::{AppliedSupport, Supported};
+use super::applied::{AppliedSupport, Supported, Way};
 use super::tied::{AppliedTie, Tied};
 use crate::solver::body::EnergySums;
 use crate::solver::field::{FieldOf, LaneSlot, Layout};
@@ -82,17 +82,9 @@ impl<const L: usize, R: Number> AppliedSupport<L, R> for AppliedHeld<L, R> {
         total: &mut EnergySums<L>,
     ) {
         let Held { tied, mass_kg, stiffness_n_m, damping_n_s_m } = &self.held;
-        let Scheme { beta2: gamma, time_step_s: dt, .. } = *scheme;
+        let way = Way { inertia: *mass_kg, stiffness: *stiffness_n_m, damping: *damping_n_s_m };
         let after = u_after.at(self.place, tied.component).map(R::to_f64);
-        for lane in 0..L {
-            let [u, p, a] = self.motion.map(|of_lanes| of_lanes[lane]);
-            // In its first step p is the velocity.
-            let v = if steps_done[lane] == 1 { p } else { p + gamma * dt * a };
-            total.kinetic_j[lane] += 0.5 * mass_kg * (v * v - 0.5 * gamma * dt * dt * (a * a));
-            total.elastic_j[lane] += 0.5 * stiffness_n_m * u * u;
-            total.damping_after_j[lane] += damping_n_s_m * p * (after[lane] - u);
-            total.damping_before_j[lane] += damping_n_s_m * p * (dt * p);
-        }
+        way.add_energies(scheme, steps_done, &self.motion, &after, total);
     }
 
     fn motion(&self) -> Option<(usize, [[f64; L]; 2])> {

@@ -11,7 +11,7 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::applied::{AppliedSupport, Supported};
+use super::applied::{AppliedSupport, Supported, Way};
 use super::weights::{Weights, ones, weights};
 use crate::solver::body::EnergySums;
 use crate::solver::error::SolverError;
@@ -233,19 +233,10 @@ impl<const L: usize, R: Number> AppliedSupport<L, R> for AppliedRocking<L, R> {
         u_after: &FieldOf<L, R>,
         total: &mut EnergySums<L>,
     ) {
-        let Scheme { beta2: gamma, time_step_s: dt, .. } = *scheme;
         let after = self.ways_of(u_after);
         for ((way, motion), after) in self.ways.iter().zip(&self.motion).zip(&after) {
-            let RockingWay { inertia, stiffness, damping, .. } = way;
-            for lane in 0..L {
-                let [u, p, a] = motion.map(|of_lanes| of_lanes[lane]);
-                // In its first step p is the velocity.
-                let v = if steps_done[lane] == 1 { p } else { p + gamma * dt * a };
-                total.kinetic_j[lane] += 0.5 * inertia * (v * v - 0.5 * gamma * dt * dt * (a * a));
-                total.elastic_j[lane] += 0.5 * stiffness * u * u;
-                total.damping_after_j[lane] += damping * p * (after[lane] - u);
-                total.damping_before_j[lane] += damping * p * (dt * p);
-            }
+            let RockingWay { inertia, stiffness, damping, .. } = *way;
+            Way { inertia, stiffness, damping }.add_energies(scheme, steps_done, motion, after, total);
         }
     }
 
