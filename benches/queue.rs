@@ -83,8 +83,10 @@ fn round(args: &Args, workers: usize, study: &str) {
             cost: (index * 7919 % 97) as f64,
             batch: String::new(),
             priority: None,
+            parent: None,
         });
-        let study = NewStudy { name: study.to_owned(), document: String::new(), jobs: jobs.collect() };
+        let study =
+            NewStudy { name: study.to_owned(), document: String::new(), jobs: jobs.collect(), grows: false };
         open(args).await.submit(&study).await.unwrap();
     });
     let (begun, cpu_s) = (Instant::now(), server_cpu_s());
@@ -156,7 +158,8 @@ async fn work(args: &Args) {
 }
 
 fn finish(job: ClaimedJob, wall_s: f64) -> Finished {
-    let outcome = FinishedOutcome::Done { record: "r".repeat(RECORD), label: "periodic".to_owned() };
+    let outcome =
+        FinishedOutcome::Done { record: "r".repeat(RECORD), label: "periodic".to_owned(), final_state: None };
     Finished { key: job.key, attempt: job.attempt, outcome, wall_s }
 }
 

@@ -1,6 +1,7 @@
 //! Jobs of one model in as many lanes as they need.
 
 use super::checkpoint::Unreadable;
+use super::continuation;
 use super::error::{JobError, step_count};
 use super::lanes::{Ended, LanesOf};
 use super::nested::{Beginning, COST, CoarseStart, coarser};
@@ -8,7 +9,7 @@ use super::record::JobRecord;
 use super::stability::{Structures, Verdict, judge};
 use super::workload::Workload;
 use crate::solver::body::pin::BlockMesh;
-use crate::solver::{Model, RunNumber};
+use crate::solver::{Model, PinMotion, RunNumber};
 use crate::spec::{JobSpec, Precision};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -158,20 +159,46 @@ impl Batch {
         each!(&self.lanes, lanes => lanes.jobs())
     }
 
-    /// Begins a job, unless the eigenvalues of steady sliding decide it at once. Its owner identifies it by `ticket`.
+    /// Begins a job that continues no other one, as [`Batch::begin_after`].
+    ///
+    /// # Errors
+    /// As [`Batch::begin_after`].
+    ///
+    /// # Panics
+    /// As [`Batch::begin_after`].
+    pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Result<Begun, JobError> {
+        self.begin_after(ticket, spec, None)
+    }
+
+    /// Begins a job, unless the eigenvalues of steady sliding decide it at once. Its owner identifies it by `ticket`. If it
+    /// continues another one, `parent` is the last motion of that one.
     ///
     /// A job that starts from a coarser mesh is judged after the run there, and only if that found no limit cycle.
     ///
     /// # Errors
-    /// If the specification is not physical or asks for too many steps, or if a job without a run has no eigenvalues.
+    /// If the specification is not physical or asks for too many steps, if a job without a run has no eigenvalues, or if the
+    /// motion is missing that the job continues.
     ///
     /// # Panics
     /// If the job has another model, or if the batch is full.
-    pub fn begin(&mut self, ticket: u64, spec: JobSpec) -> Result<Begun, JobError> {
+    pub fn begin_after(
+        &mut self,
+        ticket: u64,
+        spec: JobSpec,
+        parent: Option<PinMotion>,
+    ) -> Result<Begun, JobError> {
         spec.check()?;
         assert!(self.takes(&spec), "a job of another model");
         assert!(self.jobs() < self.widest, "no more jobs than the widest");
         step_count(spec.run.limit_s, self.workload().time_step_s)?;
+        if let Some(key) = spec.parent() {
+            let beginning = each!(&self.lanes, lanes => {
+                parent.and_then(|motion| continuation::beginning(&spec, lanes.model(), motion))
+            });
+            let parent = key.to_owned();
+            let beginning = beginning.ok_or(JobError::NoParentMotion { parent })?;
+            return self.begin_ready(Ready { ticket, spec, beginning });
+        }
         let rest = Ready { ticket, spec, beginning: Beginning::REST };
         let ready = match self.coarser_of(&rest.spec) {
             Some(coarser) => coarser.begin(ticket, rest.spec),

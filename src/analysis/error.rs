@@ -41,6 +41,15 @@ pub enum JobError {
         /// Path of the figure in the record.
         figure: String,
     },
+    /// The job continues another one, whose last motion is not there.
+    #[error(
+        "it continues the job {parent}, whose last motion is not in the database (removed by `gc`?): submit the study again with \
+         another name"
+    )]
+    NoParentMotion {
+        /// The key of the job that it continues.
+        parent: String,
+    },
     /// The observer asked to stop.
     #[error("interrupted")]
     Interrupted,

@@ -55,6 +55,9 @@ fn solve_in<R: RunNumber>(
     model: Model,
     observer: &mut dyn JobObserver,
 ) -> Result<JobRecord, JobError> {
+    if let Some(parent) = spec.parent() {
+        return Err(JobError::NoParentMotion { parent: parent.to_owned() });
+    }
     let mut lanes = LanesOf::<1, R>::new(Arc::new(model));
     step_count(spec.run.limit_s, lanes.model().time_step_s())?;
     let beginning = beginning(spec, &mut |spent_s| observer.progress(spent_s))?;

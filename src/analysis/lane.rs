@@ -83,6 +83,11 @@ impl LaneAnalysis {
         self.start = start;
     }
 
+    /// Whether other jobs may continue this one.
+    pub fn can_be_continued(&self) -> bool {
+        self.spec.continuation.is_some()
+    }
+
     /// The run on a coarser mesh, if there was one.
     pub fn start(&self) -> Option<&CoarseStart> {
         self.start.as_ref()

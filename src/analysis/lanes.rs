@@ -109,7 +109,7 @@ pub struct Ended {
     pub ticket: u64,
     /// The job's record, or the reason why it has none.
     pub result: Result<JobRecord, JobError>,
-    /// The motion at its end, if that was a limit cycle.
+    /// The motion at its end, if that was a limit cycle or if other jobs may continue it.
     pub motion: Option<PinMotion>,
 }
 
@@ -307,7 +307,10 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
                     if let Some(result) = self.result(lane, audited) {
                         let is_periodic =
                             result.as_ref().is_ok_and(|record| record.outcome == Outcome::Periodic);
-                        let motion = is_periodic.then(|| self.state.motion_of(&self.model, lane));
+                        let can_be_continued =
+                            self.runs[lane].as_ref().is_some_and(|run| run.analysis.can_be_continued());
+                        let keeps_motion = is_periodic || can_be_continued && result.is_ok();
+                        let motion = keeps_motion.then(|| self.state.motion_of(&self.model, lane));
                         let run = self.runs[lane].take();
                         ended.extend(run.map(|run| Ended { ticket: run.ticket, result, motion }));
                         self.clear(lane);

@@ -8,7 +8,8 @@
 //! ```
 //!
 //! Before a run, [`stability`] may decide the job by the eigenvalues of steady sliding. Then there is no run.
-//! A run starts from rest or, in [`nested`], from the limit cycle of a coarser mesh.
+//! A run starts from rest, in [`nested`] from the limit cycle of a coarser mesh, or in [`continuation`] from the last motion of
+//! another job.
 //!
 //! # Definitions
 //! * **μ*** = ⟨T⟩/⟨F⟩ over whole limit cycles. T is the tangential force in y that the clamp carries, F the
@@ -22,6 +23,7 @@
 pub mod batch;
 pub mod branches;
 mod checkpoint;
+pub mod continuation;
 pub mod cycles;
 pub mod decay;
 mod drive;

@@ -74,9 +74,9 @@ impl Beginning {
     pub const REST: Self = Self { motion: None, start: None };
 }
 
-/// The job without the ramp of its load, if it goes on in a limit cycle under the whole load.
+/// The job without the ramp of its load, if it begins in a motion under the whole load.
 pub(super) fn under_way(mut spec: JobSpec, start: Option<&CoarseStart>) -> JobSpec {
-    if start.is_some_and(CoarseStart::is_used) {
+    if start.is_some_and(CoarseStart::is_used) || spec.parent().is_some() {
         spec.scene.load.ramp_s = 0.0;
     }
     spec

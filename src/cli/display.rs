@@ -1,7 +1,8 @@
 //! Progress on standard error: a bar on a terminal, plain lines elsewhere.
 
 use super::output::{log, wrapped};
-use crate::publish::value::{multiple, significant};
+use crate::publish::value::{count, multiple, significant};
+use crate::queue::Planned;
 use crate::worker::{Progress, RunningJob, Snapshot};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::{IsTerminal, stderr};
@@ -151,6 +152,16 @@ impl Progress for Display {
 
     fn failed(&mut self, key: &str, error: &str) {
         self.note(&format!("job {key} failed: {error}"));
+    }
+
+    fn planned(&mut self, study: &str, wave: u64, planned: &Planned) {
+        self.note(&match planned {
+            Planned::Wave { jobs, note } => {
+                format!("{study}: wave {wave} adds {} ({note})", count(jobs.len() as u64, "job"))
+            }
+            Planned::Complete { note } => format!("{study}: no more jobs are needed: {note}"),
+            Planned::Failed { error } => format!("{study}: wave {wave} cannot be planned: {error}"),
+        });
     }
 
     fn waiting(&mut self, reason: &str) {

@@ -6,8 +6,11 @@ use super::report::OutFolder;
 use super::rows;
 use crate::exit;
 use crate::publish::Folder;
+use crate::publish::value::count;
 use crate::queue::Location;
 use crate::report::{Scalar, sensitivity};
+use crate::study::Study;
+use crate::sweep::{self, SweepError};
 
 /// Arguments of `sensitivity`.
 #[derive(Debug, clap::Args)]
@@ -33,7 +36,11 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     };
     let of = args.of.iter().map(scalar).collect::<Result<Vec<_>, _>>()?;
     let (names, rows) = rows::of_studies(&args.studies, db)?;
-    let found = sensitivity::sensitivities(&rows, &of);
+    let is_morris = match &names[..] {
+        [name] => sweep::block_on(is_morris(name, db))?,
+        _ => false,
+    };
+    let found = sensitivity::sensitivities(&rows, &of, is_morris);
     if found.iter().all(|one| one.parameters.is_empty()) {
         let title = names.join(", ");
         return Err(CliError::Refused(format!(
@@ -46,7 +53,23 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let mut folder = Folder::create(&path, "sensitivity")?;
     folder.write_text("sensitivity.md", &text)?;
     folder.write_text("sensitivity.csv", &sensitivity::csv(&found))?;
+    let (points, left_out) = sensitivity::points_csv(&rows, &of);
+    folder.write_text("sensitivity_points.csv", &points)?;
     folder.finish(|_| false)?;
+    if left_out > 0 {
+        log(format_args!(
+            "{} without a value left out of sensitivity_points.csv",
+            count(left_out as u64, "job")
+        ));
+    }
     log(format_args!("indices written to {}", path.display()));
     Ok(exit::SUCCESS)
+}
+
+/// Whether the points of a study are a Morris design and no product of one with a grid.
+async fn is_morris(name: &str, db: &Location) -> Result<bool, CliError> {
+    let mut queue = sweep::open_to_read(db.clone()).await?;
+    let document = sweep::document(&mut queue, name).await?;
+    queue.close().await.map_err(SweepError::from)?;
+    Ok(Study::parse_stored(&document, name).is_ok_and(|study| study.is_morris()))
 }

@@ -21,7 +21,14 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let database = Database::of(db)?;
     let plan = args.study.plan()?;
     let name = plan.name();
-    if args.workers as usize > plan.jobs().len() {
+    let grows = plan.study().growth().is_any();
+    if grows && !database.is_shared() {
+        return Err(CliError::Usage(
+            "a study with `refine` or `continue` needs one database for all workers: give that of a server with --db postgres://…"
+                .to_owned(),
+        ));
+    }
+    if !grows && args.workers as usize > plan.jobs().len() {
         return Err(CliError::Usage(format!(
             "the study has fewer jobs than {} workers; give at most --workers {}",
             args.workers,

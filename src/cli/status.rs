@@ -68,8 +68,14 @@ async fn one_study(queue: &mut Queue, name: &str, as_json: bool) -> Result<Strin
     let counts = queue.counts(&Scope::Study(name.to_owned())).await?;
     let outlook = Outlook::read(queue, name, counts).await?;
     let workers = queue.workers().await?;
+    let grows = queue.plan_status(name).await?.is_some();
     if as_json {
         let mut json = study_json(name, counts, outlook.as_ref(), &trouble);
+        if grows {
+            let rows = sweep::read_rows(queue, name).await?;
+            json["waves"] =
+                sweep::read_growth(queue, name, &rows).await?.map(|found| found.waves_json()).into();
+        }
         json["workers"] = workers::as_json(&workers);
         return Ok(format!("{json}\n"));
     }
@@ -79,8 +85,16 @@ async fn one_study(queue: &mut Queue, name: &str, as_json: bool) -> Result<Strin
         text.push_str(&outlook::as_text(outlook, output::width()));
     }
     text.push_str(&workers::as_text(&workers, output::width()));
+    let rows = if counts.total() <= LARGEST_OVERVIEW || grows {
+        sweep::read_rows(queue, name).await?
+    } else {
+        Vec::new()
+    };
     if counts.total() <= LARGEST_OVERVIEW {
-        text.push_str(&overview(&sweep::read_rows(queue, name).await?, output::width()));
+        text.push_str(&overview(&rows, output::width()));
+    }
+    if let Some(findings) = sweep::read_growth(queue, name, &rows).await? {
+        text.push_str(&findings.as_text());
     }
     if not_periodic > 0 {
         let jobs = count(not_periodic, "done job");

@@ -93,6 +93,7 @@ pub(crate) fn options(threads: &Threads, checkpoints: &Checkpoints) -> WorkOptio
         checkpoint_interval: Some(Duration::from_secs_f64(checkpoints.seconds))
             .filter(|interval| !interval.is_zero()),
         idle_exit: None,
+        planner: Some(sweep::PLANNER),
     }
 }
 
@@ -175,6 +176,7 @@ async fn work_and_log(
         worked => worked?,
     };
     log_taken_back(summary.taken_back);
+    let may_grow = queue.open_jobs(scope).await.is_ok_and(|open| open.has_plans);
     let counts = summary.counts;
     let is_cancelled = counts.cancelled > 0 && *scope != Scope::All;
     if is_cancelled {
@@ -186,7 +188,7 @@ async fn work_and_log(
             "no job is left for this worker; other workers are running {}",
             count(counts.running, "job")
         ));
-    } else if counts.pending + counts.running > 0 || is_cancelled {
+    } else if counts.pending + counts.running > 0 || is_cancelled || may_grow && summary.interrupted {
         log("interrupted; run the same command again to continue");
         return Ok(exit::WORK_LEFT);
     }

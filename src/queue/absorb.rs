@@ -7,6 +7,7 @@ use super::engine::{Connection, Statement, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
+use super::plans;
 use super::state::JobState;
 use super::submit::{self, NewJob, UPSERT_STUDY};
 
@@ -35,14 +36,14 @@ const STUDIES: &str = "
 
 /// Rows of a study with the definition of their jobs.
 const ROWS: &str = "
-    SELECT m.ordinal, m.parameters, j.key, j.batch, j.priority, j.cost, p.payload
+    SELECT m.ordinal, m.parameters, j.key, j.batch, j.priority, j.cost, p.payload, j.parent
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     JOIN payloads AS p ON p.job_id = j.id
     WHERE m.study_id = $1 AND m.ordinal >= $2
     ORDER BY m.ordinal LIMIT $3";
 
-type RowColumns = (i64, String, String, String, i64, f64, String);
+type RowColumns = (i64, String, String, String, i64, f64, String, Option<String>);
 
 /// The states of the same rows' jobs.
 const STATES: &str = "
@@ -97,6 +98,16 @@ const SET_RESULT: &str = "
     SELECT id, $2, $3, $4, $5, $6, $7, $8 FROM jobs WHERE key = $1
     ON CONFLICT DO NOTHING";
 
+const FINAL_STATES: &str = "
+    SELECT j.key, f.bytes
+    FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = $1 AND ordinal >= $2 AND ordinal <= $3) AS m
+    JOIN jobs AS j ON j.id = m.job_id
+    JOIN final_states AS f ON f.job_id = j.id";
+
+const SET_FINAL_STATE: &str = "
+    INSERT INTO final_states (job_id, bytes) SELECT id, $2 FROM jobs WHERE key = $1 AND state = 'done'
+    ON CONFLICT DO NOTHING";
+
 const SET_CHECKPOINT: &str = "
     INSERT INTO checkpoints (job_id, attempt, bytes, saved_ms)
     SELECT id, $2, $3, $4 FROM jobs WHERE key = $1 AND state = 'pending'
@@ -113,6 +124,7 @@ struct Page {
     states: Vec<StateColumns>,
     results: Vec<ResultColumns>,
     checkpoints: Vec<(String, i64, Vec<u8>, i64)>,
+    final_states: Vec<(String, Vec<u8>)>,
 }
 
 impl Queue {
@@ -167,6 +179,8 @@ impl Queue {
             })
             .await?;
         absorbed.studies += 1;
+        // The plan is read before the rows: a wave that is added meanwhile is planned again here, with the same jobs.
+        let plan = plans::read(&mut other.connection, *there_id).await?;
         let mut next = 0;
         while let Some(page) = read(&mut other.connection, *there_id, next).await? {
             next = page.rows.last().map_or(next, |(ordinal, _)| ordinal + 1);
@@ -178,6 +192,9 @@ impl Queue {
             absorbed.ended += copied.ended;
             absorbed.open += copied.open;
         }
+        if let Some(plan) = &plan {
+            self.write(async |connection, _| plans::copy(connection, here_id, plan).await).await?;
+        }
         Ok(())
     }
 }
@@ -187,8 +204,8 @@ async fn read(connection: &mut Connection, study_id: i64, from: i64) -> Result<O
     let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Ok(None) };
     let (first, last) = (first.0, last.0);
     let about = |statement: &'static str| query(statement).bind(study_id).bind(first).bind(last);
-    let row = |(ordinal, parameters, key, batch, priority, cost, payload): RowColumns| {
-        (ordinal, NewJob { key, payload, parameters, cost, batch, priority: Some(priority) })
+    let row = |(ordinal, parameters, key, batch, priority, cost, payload, parent): RowColumns| {
+        (ordinal, NewJob { key, payload, parameters, cost, batch, priority: Some(priority), parent })
     };
     Ok(Some(Page {
         rows: rows.into_iter().map(row).collect(),
@@ -196,6 +213,7 @@ async fn read(connection: &mut Connection, study_id: i64, from: i64) -> Result<O
         states: about(STATES).all(connection).await?,
         results: about(RESULTS).all(connection).await?,
         checkpoints: about(CHECKPOINTS).all(connection).await?,
+        final_states: about(FINAL_STATES).all(connection).await?,
     }))
 }
 
@@ -254,6 +272,9 @@ async fn write(
         let Some(before) = copied.get(key.as_str()) else { continue };
         let checkpoint = query(SET_CHECKPOINT).bind(key).bind(before + attempt).bind(bytes.as_slice());
         checkpoint.bind(*saved_ms).run(connection).await?;
+    }
+    for (key, bytes) in &page.final_states {
+        query(SET_FINAL_STATE).bind(key).bind(bytes.as_slice()).run(connection).await?;
     }
     Ok(absorbed)
 }

@@ -30,6 +30,8 @@ pub struct ClaimedJob {
     pub batch: String,
     /// The last checkpoint of an earlier attempt.
     pub checkpoint: Option<Vec<u8>>,
+    /// The final state of the job that it continues; none if it continues no job, or if that state is not there any more.
+    pub parent_state: Option<Vec<u8>>,
 }
 
 /// A claim is one statement, because sending a statement to the database costs more than its work for one job.
@@ -58,7 +60,9 @@ const TAKE: Statement = Statement::each(
         ORDER BY priority DESC, cost DESC, id LIMIT $4
     )
     RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
-              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)",
+              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id),
+              (SELECT bytes FROM final_states
+               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent))",
     "
     WITH first AS MATERIALIZED (
         SELECT batch, priority FROM jobs
@@ -76,7 +80,9 @@ const TAKE: Statement = Statement::each(
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3
     FROM next WHERE jobs.id = next.id
     RETURNING jobs.id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
-              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)",
+              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id),
+              (SELECT bytes FROM final_states
+               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent))",
 );
 
 /// As above, for the study named $6.
@@ -100,7 +106,9 @@ const TAKE_OF_STUDY: Statement = Statement::each(
         ORDER BY priority DESC, cost DESC, job_id LIMIT $4
     )
     RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
-              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)",
+              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id),
+              (SELECT bytes FROM final_states
+               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent))",
     "
     WITH first AS MATERIALIZED (
         SELECT p.batch, p.priority
@@ -121,10 +129,12 @@ const TAKE_OF_STUDY: Statement = Statement::each(
     UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3
     FROM next WHERE jobs.id = next.id
     RETURNING jobs.id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
-              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id)",
+              (SELECT bytes FROM checkpoints WHERE job_id = jobs.id),
+              (SELECT bytes FROM final_states
+               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent))",
 );
 
-type Columns = (i64, String, String, i64, f64, i64, String, Option<Vec<u8>>);
+type Columns = (i64, String, String, i64, f64, i64, String, Option<Vec<u8>>, Option<Vec<u8>>);
 
 /// What all claims of a transaction share.
 #[derive(Debug, Clone, Copy)]
@@ -163,13 +173,14 @@ pub(super) async fn take(
     }
     // RETURNING does not guarantee an order.
     rows.sort_by(|a, b| b.5.cmp(&a.5).then(b.4.total_cmp(&a.4)).then(a.0.cmp(&b.0)));
-    let job = |(_, key, payload, attempt, cost, _, batch, checkpoint): Columns| ClaimedJob {
+    let job = |(_, key, payload, attempt, cost, _, batch, checkpoint, parent_state): Columns| ClaimedJob {
         key,
         payload,
         attempt: attempt as u32,
         cost,
         batch,
         checkpoint,
+        parent_state,
     };
     Ok(rows.into_iter().map(job).collect())
 }
@@ -197,9 +208,13 @@ mod tests {
                 cost: cost + (index * 7919 % 97) as f64 / 100.0,
                 batch: format!("batch {}", index % 7),
                 priority: None,
+                parent: None,
             };
             let jobs = (0..jobs).map(job).collect();
-            queue.submit(&NewStudy { name: name.into(), document: String::new(), jobs }).await.unwrap();
+            queue
+                .submit(&NewStudy { name: name.into(), document: String::new(), jobs, grows: false })
+                .await
+                .unwrap();
             if name == "over" {
                 // The database collects its statistics at a time when no job is pending.
                 queue.cancel(name).await.unwrap();

@@ -27,6 +27,8 @@ pub enum FinishedOutcome {
         record: String,
         /// A word for the kind of result, by which rows can be selected ([`Rows::Done`](super::Rows::Done)).
         label: String,
+        /// The state in which it ended, for jobs that continue it; none if no job does.
+        final_state: Option<Vec<u8>>,
     },
     /// Without a result. Another attempt would fail in the same way.
     Failed {
@@ -92,6 +94,12 @@ const STORE: Statement = Statement::each(
     SELECT key FROM ended",
 );
 
+/// For a job that has just ended with this attempt.
+const KEEP_STATE: &str = "
+    INSERT INTO final_states (job_id, bytes)
+    SELECT id, $3 FROM jobs WHERE key = $1 AND state = 'done' AND attempt = $2
+    ON CONFLICT (job_id) DO UPDATE SET bytes = excluded.bytes";
+
 /// Stores the outcomes of attempts. Returns the keys of those that `owner` does not run.
 pub(super) async fn store(
     connection: &mut Connection,
@@ -113,6 +121,11 @@ pub(super) async fn store(
             .scalars(connection)
             .await?;
         ended.extend(keys);
+    }
+    for job in finished.iter().filter(|job| ended.contains(&job.key)) {
+        if let FinishedOutcome::Done { final_state: Some(bytes), .. } = &job.outcome {
+            query(KEEP_STATE).bind(&job.key).bind(job.attempt).bind(bytes.as_slice()).run(connection).await?;
+        }
     }
     let keys = finished.iter().map(|job| &job.key);
     Ok(keys.filter(|key| !ended.contains(*key)).cloned().collect())
@@ -174,6 +187,7 @@ mod tests {
             let outcome = FinishedOutcome::Done {
                 record: "\"".repeat(100 * (index % 7)),
                 label: "periodic".to_owned(),
+                final_state: None,
             };
             Finished { key: format!("job {index}"), attempt: 1, outcome, wall_s: 0.25 }
         };

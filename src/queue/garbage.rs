@@ -92,6 +92,7 @@ impl Queue {
                 query(UNREFERENCED).run(connection).await?;
                 let mut deleted = async |statement: &'static str| query(statement).run(connection).await;
                 deleted("DELETE FROM checkpoints WHERE job_id IN (SELECT id FROM garbage)").await?;
+                deleted("DELETE FROM final_states WHERE job_id IN (SELECT id FROM garbage)").await?;
                 deleted("DELETE FROM payloads WHERE job_id IN (SELECT id FROM garbage)").await?;
                 let garbage = Garbage {
                     results: deleted("DELETE FROM results WHERE job_id IN (SELECT id FROM garbage)").await?,

@@ -21,6 +21,7 @@
 //!   it finishes them or is gone (`take_back` defines when a worker is gone).
 //! * An **attempt** is one start of a job. A finish names its attempt, and it counts only if the same worker is still
 //!   running that attempt. A worker that lost a job therefore cannot overwrite later results.
+//! * A study may **grow**: when its jobs have ended, a worker plans its next wave from their results (`plans`).
 //! * Jobs of one **batch** can be run together. A claim takes jobs of one batch only.
 //!
 //! # Rules
@@ -63,6 +64,7 @@ mod lookup;
 mod open;
 mod open_jobs;
 mod owner;
+mod plans;
 #[cfg(feature = "postgres")]
 mod postgres;
 mod preview;
@@ -104,6 +106,7 @@ pub use garbage::Garbage;
 pub use handle::Queue;
 pub use location::{Location, Server};
 pub use open_jobs::OpenJobs;
+pub use plans::{PlanClaim, PlanState, PlanStatus, Planned};
 pub use provenance::ProvenanceGroup;
 pub use remove::Removed;
 pub use replace::{Replace, Replaced};

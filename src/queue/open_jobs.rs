@@ -1,6 +1,7 @@
 use super::engine::query;
 use super::error::QueueError;
 use super::handle::Queue;
+use super::plans;
 use super::scope::Scope;
 
 const ALL: &str = "
@@ -23,6 +24,8 @@ pub struct OpenJobs {
     pub has_pending: bool,
     /// Whether jobs run on some worker.
     pub has_running: bool,
+    /// Whether there are studies that may still grow.
+    pub has_plans: bool,
 }
 
 impl Queue {
@@ -32,11 +35,13 @@ impl Queue {
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.
     pub async fn open_jobs(&mut self, scope: &Scope) -> Result<OpenJobs, QueueError> {
-        let open = match scope.study_id(&mut self.connection).await? {
+        let study_id = scope.study_id(&mut self.connection).await?;
+        let open = match study_id {
             None => query(ALL),
             Some(id) => query(OF_STUDY).bind(id),
         };
         let (pending, running): (i64, i64) = open.one(&mut self.connection).await?;
-        Ok(OpenJobs { has_pending: pending > 0, has_running: running > 0 })
+        let has_plans = plans::has_open(&mut self.connection, study_id).await?;
+        Ok(OpenJobs { has_pending: pending > 0, has_running: running > 0, has_plans })
     }
 }

@@ -4,6 +4,7 @@ use super::engine::query;
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
+use super::plans;
 use super::replace::Replaced;
 use super::state::JobState;
 
@@ -16,7 +17,7 @@ const OLD_JOBS: &str = "
     JOIN jobs AS j ON j.id = m.job_id";
 
 impl Queue {
-    /// What a submission of a study with this name and these jobs would replace; `None` if no study has the name. Nothing
+    /// What a submission of a study with this name, these jobs and this document would replace; `None` if no study has the name. Nothing
     /// is changed.
     ///
     /// # Errors
@@ -25,6 +26,7 @@ impl Queue {
         &mut self,
         name: &str,
         keys: &HashSet<&str>,
+        document: &str,
     ) -> Result<Option<Replaced>, QueueError> {
         let Some(old) = self.study(name).await? else { return Ok(None) };
         let study_id = lookup::require(&mut self.connection, name).await?;
@@ -32,8 +34,14 @@ impl Queue {
             query(OLD_JOBS).bind(study_id).all(&mut self.connection).await?;
         let mut replaced =
             Replaced { document: old.document, kept: 0, new: 0, dropped: 0, dropped_done: 0, cancelled: 0 };
+        // A study that grows keeps its waves if it is submitted as it is.
+        let keeps_waves =
+            replaced.document == document && plans::read(&mut self.connection, study_id).await?.is_some();
+        let mut stay = 0;
         for (key, state, is_only_here) in jobs {
-            if keys.contains(key.as_str()) {
+            let is_wanted = keys.contains(key.as_str());
+            stay += u64::from(is_wanted);
+            if is_wanted || keeps_waves {
                 replaced.kept += 1;
                 continue;
             }
@@ -42,7 +50,7 @@ impl Queue {
             replaced.dropped_done += u64::from(state == JobState::Done);
             replaced.cancelled += u64::from(state == JobState::Pending && is_only_here == 1);
         }
-        replaced.new = keys.len() as u64 - replaced.kept;
+        replaced.new = keys.len() as u64 - stay;
         Ok(Some(replaced))
     }
 }

@@ -5,6 +5,7 @@ use super::counts;
 use super::engine::{Connection, Statement, query};
 use super::error::QueueError;
 use super::handle::Queue;
+use super::plans;
 use super::replace::{Replace, Replaced};
 
 /// A study to be submitted.
@@ -16,6 +17,8 @@ pub struct NewStudy {
     pub document: String,
     /// Its rows, in order. Several rows may have the same key.
     pub jobs: Vec<NewJob>,
+    /// Whether workers add jobs to it when these have ended ([`Queue::claim_plan`]).
+    pub grows: bool,
 }
 
 /// A row of a study and the job it points to.
@@ -34,6 +37,8 @@ pub struct NewJob {
     /// Jobs with a higher priority are claimed first, whatever they cost. With `None`, an existing job keeps its
     /// priority, and a new job has priority 0.
     pub priority: Option<i64>,
+    /// The key of the job that it continues: it is run when that one is done, and receives its final state with the claim.
+    pub parent: Option<String>,
 }
 
 /// A part of a study's rows, for several databases that divide a study: the rows whose number modulo `of` is `index`.
@@ -75,7 +80,7 @@ pub struct Submitted {
 
 /// Rows per JSON parameter. Rows in one JSON text are inserted twice as fast as row by row, but the text of a million
 /// jobs would exceed `SQLite`'s limit of 10⁹ bytes.
-const CHUNK: usize = 10_000;
+pub(super) const CHUNK: usize = 10_000;
 
 pub(super) const UPSERT_STUDY: &str = "
     INSERT INTO studies (name, document, submitted_ms) VALUES ($1, $2, $3)
@@ -89,14 +94,14 @@ pub(super) const UPSERT_STUDY: &str = "
 /// The batch of an existing job is updated because another version of the program may group jobs differently.
 const INSERT_JOBS: Statement = Statement::each(
     "
-    INSERT INTO jobs (key, cost, batch, priority, created_ms)
-    SELECT e.value ->> 0, e.value ->> 2, e.value ->> 3, COALESCE(e.value ->> 4, 0), $2
+    INSERT INTO jobs (key, cost, batch, priority, parent, created_ms)
+    SELECT e.value ->> 0, e.value ->> 2, e.value ->> 3, COALESCE(e.value ->> 4, 0), e.value ->> 5, $2
     FROM json_each($1) AS e WHERE true
     ON CONFLICT (key) DO UPDATE SET batch = excluded.batch WHERE batch <> excluded.batch",
     "
-    INSERT INTO jobs (key, cost, batch, priority, created_ms)
+    INSERT INTO jobs (key, cost, batch, priority, parent, created_ms)
     SELECT e.value ->> 0, (e.value ->> 2)::double precision, e.value ->> 3,
-           COALESCE((e.value ->> 4)::bigint, 0), $2
+           COALESCE((e.value ->> 4)::bigint, 0), e.value ->> 5, $2
     FROM (
         SELECT DISTINCT ON (value ->> 0) value, place
         FROM json_array_elements($1::json) WITH ORDINALITY AS e (value, place)
@@ -131,7 +136,7 @@ const SET_PRIORITY: Statement = Statement::each(
 );
 
 /// A submission requests its jobs, even if they were cancelled before.
-const UNDO_CANCELLATION: &str = "
+pub(super) const UNDO_CANCELLATION: &str = "
     UPDATE jobs SET state = 'pending', note = NULL
     WHERE state = 'cancelled' AND id IN (SELECT job_id FROM study_jobs WHERE study_id = $1)";
 
@@ -212,6 +217,9 @@ impl Queue {
     /// Existing jobs keep their results, and cancelled ones are pending again. Jobs that no study refers to any more
     /// also stay, because the next edit may request their results again; the pending ones among them are cancelled.
     ///
+    /// A study that grows keeps the jobs that workers have added if it is submitted again as it is. Otherwise it grows anew;
+    /// jobs that it then asks for again have their results.
+    ///
     /// # Errors
     /// [`QueueError::BadCost`], or if the database cannot be written; then nothing has changed.
     pub async fn submit(&mut self, study: &NewStudy) -> Result<Submitted, QueueError> {
@@ -233,10 +241,7 @@ impl Queue {
         replace: &Replace,
     ) -> Result<Submitted, QueueError> {
         assert!(shard.index < shard.of, "{shard:?}");
-        // JSON cannot represent NaN and infinity; they would become null.
-        if let Some(job) = study.jobs.iter().find(|job| !job.cost.is_finite()) {
-            return Err(QueueError::BadCost { key: job.key.clone(), cost: job.cost });
-        }
+        check_costs(&study.jobs)?;
         let rows: Vec<_> = (0_i64..).zip(&study.jobs).filter(|(ordinal, _)| shard.has(*ordinal)).collect();
         let jobs = rows.iter().map(|(_, job)| &job.key).collect::<HashSet<_>>().len() as u64;
         let (replaced, added, counts) = self
@@ -249,16 +254,29 @@ impl Queue {
                     .bind(now_ms)
                     .scalar(connection)
                     .await?;
-                let end = i64::try_from(study.jobs.len()).unwrap_or(i64::MAX);
-                let surplus: Vec<i64> = query(DELETE_SURPLUS)
-                    .bind(study_id)
-                    .bind(end)
-                    .bind(shard.of.cast_signed())
-                    .bind(shard.index.cast_signed())
-                    .scalars(connection)
-                    .await?;
+                let is_same_document =
+                    old.as_ref().is_some_and(|(_, document, _)| *document == study.document);
+                let keeps_waves = study.grows
+                    && is_same_document
+                    && plans::read(connection, study_id).await?.is_some()
+                    && is_unchanged(connection, study_id, &rows).await?;
                 // Jobs of deleted rows. Other rows of the study may have them still.
-                let mut deleted: BTreeSet<i64> = surplus.into_iter().collect();
+                let mut deleted = BTreeSet::new();
+                if !keeps_waves {
+                    let surplus: Vec<i64> = query(DELETE_SURPLUS)
+                        .bind(study_id)
+                        .bind(i64::try_from(study.jobs.len()).unwrap_or(i64::MAX))
+                        .bind(shard.of.cast_signed())
+                        .bind(shard.index.cast_signed())
+                        .scalars(connection)
+                        .await?;
+                    deleted.extend(surplus);
+                }
+                match (study.grows, keeps_waves) {
+                    (true, true) => plans::reopen(connection, study_id).await?,
+                    (true, false) => plans::begin(connection, study_id).await?,
+                    (false, _) => plans::delete(connection, study_id).await?,
+                }
                 let before = count_jobs(connection).await?;
                 for chunk in rows.chunks(CHUNK) {
                     if old.is_some() {
@@ -277,7 +295,14 @@ impl Queue {
                     let (dropped, dropped_done) = count_dropped(connection, study_id, deleted).await?;
                     let cancelled = query(CANCEL_UNREQUESTED).bind(NOTE).run(connection).await?;
                     let kept = old_jobs.unsigned_abs() - dropped;
-                    let old = Replaced { document, kept, new: jobs - kept, dropped, dropped_done, cancelled };
+                    let old = Replaced {
+                        document,
+                        kept,
+                        new: jobs.saturating_sub(kept),
+                        dropped,
+                        dropped_done,
+                        cancelled,
+                    };
                     if !replace.permits(&old) {
                         let name = study.name.clone();
                         return Err(QueueError::ResultsWouldBeDropped { name, replaced: Box::new(old) });
@@ -315,6 +340,28 @@ async fn count_dropped(
         done += counts.1.unsigned_abs();
     }
     Ok((dropped, done))
+}
+
+/// JSON cannot represent NaN and infinity; they would become null.
+pub(super) fn check_costs(jobs: &[NewJob]) -> Result<(), QueueError> {
+    match jobs.iter().find(|job| !job.cost.is_finite()) {
+        Some(job) => Err(QueueError::BadCost { key: job.key.clone(), cost: job.cost }),
+        None => Ok(()),
+    }
+}
+
+/// Whether the study has all these rows as they are.
+async fn is_unchanged(
+    connection: &mut Connection,
+    study_id: i64,
+    rows: &[Row<'_>],
+) -> Result<bool, QueueError> {
+    for chunk in rows.chunks(CHUNK) {
+        if !changed(connection, study_id, chunk).await?.is_empty() {
+            return Ok(false);
+        }
+    }
+    Ok(true)
 }
 
 async fn count_jobs(connection: &mut Connection) -> Result<u64, QueueError> {
@@ -367,7 +414,8 @@ async fn set_priority(connection: &mut Connection, rows: &[Row<'_>]) -> Result<(
 }
 
 fn as_jobs(rows: &[Row<'_>]) -> String {
-    let jobs = rows.iter().map(|(_, job)| (&job.key, &job.payload, job.cost, &job.batch, job.priority));
+    let jobs =
+        rows.iter().map(|(_, job)| (&job.key, &job.payload, job.cost, &job.batch, job.priority, &job.parent));
     json(&jobs.collect::<Vec<_>>())
 }
 
@@ -393,9 +441,14 @@ mod tests {
             cost: 1.0,
             batch: "batch".into(),
             priority: None,
+            parent: None,
         };
-        let mut study =
-            NewStudy { name: "a".into(), document: String::new(), jobs: (0..500).map(job).collect() };
+        let mut study = NewStudy {
+            name: "a".into(),
+            document: String::new(),
+            jobs: (0..500).map(job).collect(),
+            grows: false,
+        };
         let mut written = async |study: &NewStudy| {
             let total = "SELECT total_changes()";
             let before: i64 = sqlx::query_scalar(total).fetch_one(queue.connection.sqlite()).await.unwrap();

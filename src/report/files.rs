@@ -3,7 +3,8 @@
 use super::comparison::{self, Comparison};
 use super::export;
 use super::figure::{self, DataFile, Figure, Plot, RESIDUALS, RUN_TIMES};
-use super::html::{self, Parts};
+use super::growth::Findings;
+use super::html::{self, Layouts, Parts};
 use super::input::Report;
 use super::inspections::inspections;
 use super::layout::Layout;
@@ -33,13 +34,17 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
     let mut folder = Folder::create(out_dir, "report")?;
     let Report { title, rows, view, .. } = *report;
 
-    let layout = Layout::of(rows, view);
+    let layout = Layout::of(rows.iter().filter(|row| !row.is_at_boundary()), view);
     let spectra = spectra::read(out_dir, rows);
-    let jobs_alone = || Layout::of(rows.iter().filter(|row| !row.is_measured()), view);
+    let jobs_alone = |with_boundaries: bool| {
+        let jobs = rows.iter().filter(|row| !row.is_measured());
+        Layout::of(jobs.filter(|row| with_boundaries || !row.is_at_boundary()), view)
+    };
     let has_measured = rows.iter().any(JobRow::is_measured);
-    let jobs_layout = has_measured.then(jobs_alone);
+    let jobs_layout = has_measured.then(|| jobs_alone(false));
     let jobs_layout = jobs_layout.as_ref().unwrap_or(&layout);
-    let layout_of = |plot: Plot| if plot.shows_measured() { &layout } else { jobs_layout };
+    let whole = rows.iter().any(JobRow::is_at_boundary).then(|| jobs_alone(true));
+    let layouts = Layouts { all: &layout, jobs: jobs_layout, whole: whole.as_ref().unwrap_or(jobs_layout) };
     let plots: Vec<Plot> =
         Plot::ALL.into_iter().chain(view.y.iter().map(|scalar| Plot::Of(scalar))).collect();
     let quantities =
@@ -47,7 +52,7 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
     let quantities: Vec<(Quantity, &'static str)> = quantities.collect();
 
     let tables = || quantities.into_par_iter().map(|(quantity, stem)| table(&layout, quantity, stem));
-    let draw = |plot: Plot| (plot, figure::figures_of(layout_of(plot), plot, &spectra, report.stability));
+    let draw = |plot: Plot| (plot, figure::figures_of(layouts.of(plot), plot, &spectra, report.stability));
     let figures = || plots.clone().into_par_iter().map(draw);
     let jobs = || {
         let mut out = Vec::new();
@@ -71,7 +76,7 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
     let mut drawn: Vec<(Plot, Vec<Figure>)> = Vec::new();
     for (plot, figures) in figures {
         let mut figures = figures.map_err(|source| cannot_draw(out_dir, plot.stem(), source))?;
-        let over_others = figure::over_others(rows, view, layout_of(plot), plot);
+        let over_others = figure::over_others(rows, view, layouts.of(plot), plot);
         figures.extend(over_others.map_err(|source| cannot_draw(out_dir, plot.stem(), source))?);
         for figure in &figures {
             let file = format!("{}{}.svg", plot.stem(), figure.suffix);
@@ -93,6 +98,7 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
     }
     let programs = write_programs(&mut folder, rows, out_dir)?;
     data_files.extend(programs.iter().map(|_| program::WINDOWS.to_owned()));
+    data_files.extend(write_findings(&mut folder, report)?);
     let stability_rows = stability::rows(report.stability);
     let analysis =
         (!report.stability.is_empty()).then(|| Analysis::of(report.stability, &stability_rows, view));
@@ -108,7 +114,8 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         folder.write_with("differences.csv", |out| comparison::csv(comparison, out))?;
     }
     let differences = comparison.as_ref();
-    let mut section = programs.as_ref().map_or_else(String::new, Programs::markdown);
+    let mut section = report.findings.map_or_else(String::new, Findings::markdown);
+    section += &programs.as_ref().map_or_else(String::new, Programs::markdown);
     section += &stability.map_or_else(String::new, |(own, files)| stability::markdown(own, files));
     let markdown = page::of_report(report, &tables, &links, &data_files, differences, &section);
     folder.write_text("report.md", &markdown)?;
@@ -116,8 +123,7 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
     let pages = pages.collect();
     let parts = Parts {
         report,
-        layout: &layout,
-        jobs: jobs_layout,
+        layouts,
         figures: &drawn,
         comparison: differences,
         residuals: &residuals,
@@ -152,6 +158,20 @@ fn write_data(
         data_files.push(file);
     }
     Ok(data_files)
+}
+
+/// Writes the tables of what a study that grows has found, and returns the files.
+fn write_findings(folder: &mut Folder, report: &Report) -> Result<Vec<String>, PublishError> {
+    let mut files = Vec::new();
+    for table in report.findings.iter().flat_map(|own| own.tables()) {
+        let file = format!("{}.csv", table.stem);
+        folder.write_with(&file, |out| {
+            *out = table.csv()?;
+            Ok(())
+        })?;
+        files.push(file);
+    }
+    Ok(files)
 }
 
 /// Writes the figures and the windows of the jobs whose speed or load changes in time; none if there are no such jobs.

@@ -1,5 +1,6 @@
 //! What a report is written from.
 
+use super::growth::Findings;
 use super::provenance::Provenance;
 use super::row::JobRow;
 use super::stability_point::StabilityPoint;
@@ -25,6 +26,8 @@ pub struct Report<'a> {
     pub warnings: &'a [String],
     /// The complex modes of steady sliding at the grid points of one study and between them; empty if they were not computed.
     pub stability: &'a [StabilityPoint],
+    /// What the only study found that grows; none for other studies.
+    pub findings: Option<&'a Findings>,
     /// When it is written, in milliseconds since 1970-01-01 UTC.
     pub written_ms: i64,
     /// After how many seconds the page reloads itself; none for a page that is not going to be written again.

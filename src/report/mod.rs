@@ -8,6 +8,7 @@
 //! * [`figure`] – curves against speed, maps over speed and friction, shares and residuals, as SVG.
 //! * [`overview`] – a letter for every job, for a terminal.
 //! * [`pareto`] – error against run time of jobs that differ in their numerics only.
+//! * [`Findings`] – boundaries, minima, branches and basins of studies that grow.
 //! * [`trouble`] – where in the grid jobs fail or do not become periodic, and why.
 //! * [`write_stability`] – the linear stability of steady sliding: maps, branches of modes, thresholds.
 //! * [`write()`] – a folder with all of it, and a page for a browser that contains all of it.
@@ -22,6 +23,7 @@ pub mod export;
 pub mod figure;
 mod files;
 mod glyph;
+mod growth;
 mod html;
 mod input;
 mod inspections;
@@ -51,6 +53,7 @@ mod words;
 
 pub use discretisation::{Discretisation, MeshError};
 pub use files::write;
+pub use growth::{Basin, BranchPoint, Crossing, Endpoint, Findings, Minimum, basins};
 pub use input::Report;
 pub use inspections::{FoundInspection, INSPECTIONS, inspections};
 pub use measurement::{MeasuredValue, Measurement};

@@ -4,6 +4,7 @@
 use super::glyph::{SEVERAL_JOBS, StatusGlyph, status_glyph};
 use super::layout::{Group, Layout};
 use super::row::JobRow;
+use super::view::View;
 use anstyle::Style;
 use std::fmt::Write;
 
@@ -16,7 +17,7 @@ pub fn overview(rows: &[JobRow], width: usize) -> String {
     if rows.is_empty() {
         return String::new();
     }
-    let layout = Layout::new(rows);
+    let layout = Layout::of(rows.iter().filter(|row| !row.is_at_boundary()), &View::DEFAULT);
     let mut text = String::new();
     let mut used: Vec<StatusGlyph> = Vec::new();
     for group in layout.groups.iter().take(MAX_GROUPS) {

@@ -30,6 +30,10 @@ pub struct JobRow {
     pub numerics: Option<JobNumerics>,
     /// What is known about the error of its mesh, time step and detection.
     pub discretisation: Discretisation,
+    /// The wave in which the program added the job; 0 for a job that the study's author asked for.
+    pub wave: u64,
+    /// Why the program added the job: `curve`, `minimum`, `boundary`.
+    pub why: Option<String>,
 }
 
 /// What a job's accuracy and cost depend on besides the physics.
@@ -119,6 +123,11 @@ impl JobRow {
     /// Whether there is a result: of a job that is done, or a measured one.
     pub(super) fn has_result(&self) -> bool {
         matches!(self.state, RowState::Done(_) | RowState::Measured(_))
+    }
+
+    /// Whether the program added the job at a boundary between kinds of jobs. Such jobs are points of maps, and of no curve or table.
+    pub(super) fn is_at_boundary(&self) -> bool {
+        self.why.as_deref() == Some("boundary")
     }
 
     /// Whether this is a measured point and no job.

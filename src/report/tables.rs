@@ -132,6 +132,7 @@ pub fn markdown(rows: &[JobRow], quantity: Quantity) -> String {
 
 /// The tables of one quantity as a page in Markdown: below a title, and with the axes of a `view`.
 pub fn page(rows: &[JobRow], view: &View, quantity: Quantity, title: &str) -> String {
+    let rows = rows.iter().filter(|row| !row.is_at_boundary());
     titled(title, quantity, &markdown_of(&Layout::of(rows, view), quantity))
 }
 

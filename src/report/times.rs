@@ -60,6 +60,8 @@ mod tests {
             wall_s,
             numerics: None,
             discretisation: crate::report::Discretisation::NotMeasured,
+            wave: 0,
+            why: None,
         }
     }
 

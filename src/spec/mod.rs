@@ -14,6 +14,7 @@
 mod base;
 mod check;
 mod contact;
+mod continuation;
 mod detection;
 mod disk;
 pub mod elasticity;
@@ -31,6 +32,7 @@ pub use base::Base;
 pub(crate) use check::short;
 pub use check::{FieldError, Violations};
 pub use contact::{Contact, FrictionLaw};
+pub use continuation::Continuation;
 pub use detection::Detection;
 pub use disk::{Disk, DiskKind};
 pub use holder::{Holder, HolderDirection};
@@ -61,6 +63,10 @@ pub struct JobSpec {
     pub detection: Detection,
     /// How the job finds out whether its steady sliding is stable.
     pub stability: StabilityMethod,
+    /// The job that it continues, and whether others can continue it; none for most jobs.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(skip)]
+    pub continuation: Option<Box<Continuation>>,
 }
 
 /// Shortest observation of a decay, in transit times of shear waves over the pin's height (2.5 ms in the reference
@@ -108,6 +114,14 @@ impl JobSpec {
                 "0.5 with a holder that moves, whose energies are kept for the central difference only",
             );
         }
+        if let Some(continuation) = &self.continuation {
+            continuation.check(&mut found);
+            if !self.keeps_no_past() || self.scene.disk.kind == DiskKind::Elastic {
+                let right = "absent here: displacements and velocities alone continue a run only on a rigid plane disk without \
+                             a holder that moves, a layer, a law that uses the past, or a speed or load that changes";
+                found.add("continue", "given", right);
+            }
+        }
         let observation_s = self.detection.decay_observation_s;
         let shortest_s = SHORTEST_OBSERVATION * self.scene.pin.shear_transit_s();
         if observation_s < shortest_s {
@@ -134,16 +148,25 @@ impl JobSpec {
     pub fn coarser_elements(&self) -> Option<[usize; 3]> {
         let elements = self.scene.pin.elements.map(|n| n.div_ceil(2));
         let is_nested = self.run.start == Start::Nested && self.stability != StabilityMethod::Modes;
-        let law = self.scene.contact.law;
-        let is_carried_over = matches!(law, FrictionLaw::Coulomb | FrictionLaw::Regularised)
+        let is_carried_over =
+            self.keeps_no_past() && self.scene.pin.base.is_flat() && self.scene.pin.is_plain_block();
+        let goes_on = self.continuation.is_some();
+        (is_nested && is_carried_over && !goes_on && elements.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS))
+            .then_some(elements)
+    }
+
+    /// Whether displacements and velocities are all that the future of a run depends on, apart from that of an elastic disk.
+    fn keeps_no_past(&self) -> bool {
+        matches!(self.scene.contact.law, FrictionLaw::Coulomb | FrictionLaw::Regularised)
             && self.scene.holder.is_ideal()
-            && self.scene.pin.base.is_flat()
             && self.scene.disk.is_plane()
             && self.scene.contact.layer().is_none()
-            && self.scene.pin.is_plain_block()
-            && self.scene.program.is_constant();
-        (is_nested && is_carried_over && elements.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS))
-            .then_some(elements)
+            && self.scene.program.is_constant()
+    }
+
+    /// The key of the job that it continues, if it continues one.
+    pub fn parent(&self) -> Option<&str> {
+        self.continuation.as_deref()?.parent.as_deref()
     }
 
     /// Whether the scene is of the kind on which the errors of presets, of single precision and of eigenvalues were measured:
@@ -341,6 +364,7 @@ impl JobSpec {
             run: RunControl::default(),
             detection: Detection::default(),
             stability: StabilityMethod::default(),
+            continuation: None,
         }
     }
 }

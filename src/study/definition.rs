@@ -1,8 +1,10 @@
 //! A study that has been read and checked.
 
 use super::document;
+use super::draft::Draft;
 use super::error::Problem;
 use super::grid::Grid;
+use super::growth::Growth;
 use super::parameter::Parameter;
 use super::report_axes::ReportAxes;
 use super::source::SourceText;
@@ -21,6 +23,7 @@ pub struct Study {
     /// The job of every grid point, made once for the check and for the expansion.
     pub(super) specs: Vec<JobSpec>,
     pub(super) report: ReportAxes,
+    pub(super) growth: Growth,
     pub(super) source: SourceText,
     pub(super) allows_modes: bool,
 }
@@ -41,6 +44,11 @@ impl Study {
         document::text(&self.document, &self.grid, &self.source)
     }
 
+    /// The draft of the job without the values of the grid.
+    pub(super) fn draft(&self) -> Draft {
+        Draft::of(&self.document)
+    }
+
     /// The job without the values of the grid.
     pub fn base(&self) -> &JobSpec {
         &self.base
@@ -59,6 +67,12 @@ impl Study {
     /// Number of its samples; none without `samples`.
     pub fn samples(&self) -> Option<usize> {
         self.grid.samples.as_ref().map(|samples| samples.rows.len())
+    }
+
+    /// Whether its points are a Morris design, and no product of one with a grid.
+    pub fn is_morris(&self) -> bool {
+        let design = self.document.pointer("/samples/design").and_then(Value::as_str);
+        design == Some("morris") && self.grid.axes.is_empty()
     }
 
     /// Axes and quantities of the report.

@@ -59,7 +59,7 @@ impl Draft {
     pub(super) fn resolve(&self) -> Resolved {
         let StudyFile { preset, damping, scene, numerics, run, detection, stability, .. } =
             decode(&self.values);
-        let mut spec = JobSpec { scene, numerics, run, detection, stability };
+        let mut spec = JobSpec { scene, numerics, run, detection, stability, continuation: None };
         let gives = |name: &str| self.given.contains(name);
         let mut violations = Vec::new();
         if let Some(preset) = preset {

@@ -24,6 +24,8 @@ impl Study {
     /// All jobs: the cartesian product of the axes in the order of the file, the **first axis
     /// slowest**, the values of an axis in their order.
     ///
+    /// A study with `continue` has only the jobs here that continue no other one.
+    ///
     /// Grid points that are the same job (a `whole_top` clamp at several widths) appear once, as the
     /// first of them. `solver_version` is a part of the keys, see [`job_key`].
     ///
@@ -31,6 +33,14 @@ impl Study {
     /// None for a study from [`Study::parse`], which has checked every job. The signature leaves room
     /// for studies that are too large to be checked in advance.
     pub fn expand(&self, solver_version: &str) -> Result<Vec<Job>, StudyError> {
+        Ok(self.roots(self.points(solver_version)?, solver_version))
+    }
+
+    /// The jobs at the points of the study, also those that continue others in a study with `continue`.
+    ///
+    /// # Errors
+    /// As [`Study::expand`].
+    pub fn points(&self, solver_version: &str) -> Result<Vec<Job>, StudyError> {
         let job = |(point, spec): (usize, &JobSpec)| Job {
             key: job_key(spec, solver_version),
             parameters: self.grid.parameters_at(point),

@@ -2,6 +2,7 @@
 
 use super::damping::Damping;
 use super::grid_schema::{conditions_schema, grid_schema};
+use super::growth::{Continue, Refine};
 use super::json::present;
 use super::preset::Preset;
 use super::report_axes::ReportAxes;
@@ -61,6 +62,14 @@ pub(super) struct StudyFile {
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(schema_with = "conditions_schema")]
     pub exclude: Option<Vec<Map<String, Value>>>,
+    /// Where the program adds points by itself: curves, minima, boundaries between regimes.
+    #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(with = "Refine")]
+    pub refine: Option<Refine>,
+    /// Jobs that begin in the motion with which another one ended: branches and basins of limit cycles.
+    #[serde(rename = "continue", skip_serializing_if = "Option::is_none", deserialize_with = "present")]
+    #[schemars(with = "Continue")]
+    pub continues: Option<Continue>,
     /// Axes and quantities of the report.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "present")]
     #[schemars(with = "ReportAxes")]

@@ -49,6 +49,11 @@ impl Grid {
         self.size()
     }
 
+    /// Whether a point that it need not have fulfils the conditions.
+    pub(super) fn keeps(&self, point: &[(&'static Parameter, &Value)], base: &JobSpec) -> bool {
+        self.conditions.is_empty() || self.conditions.keep(point, &encode(base))
+    }
+
     /// Number of points; 1 without samples and axes.
     pub(super) fn size(&self) -> usize {
         let of_samples = self.samples.as_ref().map_or(1, |samples| samples.rows.len());

@@ -7,6 +7,7 @@ use super::definition::Study;
 use super::error::{Problem, StudyError};
 use super::file::StudyFile;
 use super::grid::Grid;
+use super::growth::Growth;
 use super::height_file;
 use super::json::{Decoded, decode_all};
 use super::limits::MAX_JOBS;
@@ -112,7 +113,12 @@ impl Study {
         }
         // The jobs are judged only when every field has been read: a limit may depend on several of them.
         if problems.is_empty() {
-            return Self::of(outline, file.report.unwrap_or_default());
+            let growth = if changes.is_of_modes {
+                Growth::default()
+            } else {
+                Growth { refine: file.refine, continues: file.continues }
+            };
+            return Self::of(outline, file.report.unwrap_or_default(), growth);
         }
         // A problem of a field that the file does not give has no position; it comes last.
         problems.sort_by_key(|problem| (problem.position.is_none(), problem.position));
@@ -120,10 +126,11 @@ impl Study {
     }
 
     /// The study with all its jobs.
-    pub(super) fn of(outline: Outline, report: ReportAxes) -> Result<Self, StudyError> {
+    pub(super) fn of(outline: Outline, report: ReportAxes, growth: Growth) -> Result<Self, StudyError> {
         outline.check_size()?;
         let name = outline.name().map_err(StudyError::Invalid)?;
         refuse(report.problems(&outline.source))?;
+        refuse(growth.problems(&outline.grid, &outline.source))?;
         let draft = outline.draft();
         let Outline { document, mut grid, source, allows_modes } = outline;
         let base = draft.resolve().spec;
@@ -138,7 +145,8 @@ impl Study {
             specs.iter().zip(&mut violations).for_each(|(spec, found)| found.extend(refused_modes(spec)));
         }
         let description = document.get("description").and_then(Value::as_str).map(str::to_owned);
-        let study = Self { name, description, base, document, grid, specs, report, source, allows_modes };
+        let study =
+            Self { name, description, base, document, grid, specs, report, growth, source, allows_modes };
         refuse(check_jobs(&study, &violations))?;
         Ok(study)
     }
@@ -174,6 +182,9 @@ impl Outline {
         self.source.changes.push(Change::of_name("", &name));
         self.grid.axes.retain(|axis| axis.parameter.name != STABILITY);
         if let Value::Object(fields) = &mut self.document {
+            // Points of modes are refined by the command itself.
+            fields.remove("refine");
+            fields.remove("continue");
             fields.insert("name".to_owned(), name.into());
             fields.insert(STABILITY.to_owned(), StabilityMethod::Modes.name().into());
         }

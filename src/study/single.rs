@@ -5,6 +5,7 @@ use super::change::Forms;
 use super::definition::Study;
 use super::error::{Problem, StudyError};
 use super::grid::Grid;
+use super::growth::Growth;
 use super::json;
 use super::outline::Outline;
 use super::parameter::Parameter;
@@ -121,7 +122,7 @@ impl Study {
         // One job is not a part of the study's points, and no condition keeps it out.
         outline.grid = Grid::of_axes(fixed);
         let single = if problems.is_empty() {
-            Self::of(outline, self.report.clone())
+            Self::of(outline, self.report.clone(), Growth::default())
         } else {
             Err(StudyError::Invalid(problems))
         };

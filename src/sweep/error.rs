@@ -95,6 +95,11 @@ pub enum SweepError {
         /// What is wrong and which names there are.
         message: String,
     },
+    /// A study that grows is to be divided between databases.
+    #[error(
+        "a study with `refine` or `continue` cannot be divided into shards: its next jobs depend on the results of all"
+    )]
+    GrowingShard,
     /// A source of a comparison is given twice.
     #[error("{0} is given twice; expected different studies and files")]
     RepeatedSource(String),

@@ -239,6 +239,8 @@ fn row(
         wall_s: None,
         numerics: None,
         discretisation: Discretisation::NotMeasured,
+        wave: 0,
+        why: None,
     }))
 }
 

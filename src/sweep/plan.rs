@@ -150,7 +150,7 @@ impl Plan {
     /// If the database cannot be read.
     pub async fn preview_replacement(&self, queue: &mut Queue) -> Result<Option<Replaced>, SweepError> {
         let keys = self.jobs.iter().map(|job| job.key.as_str()).collect();
-        Ok(queue.preview_replacement(self.name(), &keys).await?)
+        Ok(queue.preview_replacement(self.name(), &keys, &self.document).await?)
     }
 
     /// Submits all jobs to the database. Jobs that it has already are not added again.
@@ -168,7 +168,7 @@ impl Plan {
     /// As [`Plan::submit`], in the way that `submission` describes.
     ///
     /// # Errors
-    /// As [`Plan::submit`].
+    /// As [`Plan::submit`], and [`SweepError::GrowingShard`].
     ///
     /// # Panics
     /// If the shard's index is not below the number of shards.
@@ -177,39 +177,90 @@ impl Plan {
         queue: &mut Queue,
         submission: &Submission,
     ) -> Result<Submitted, SweepError> {
+        if self.study.growth().is_any() && submission.shard != Shard::WHOLE {
+            return Err(SweepError::GrowingShard);
+        }
         let study = self.new_study(submission.priority)?;
         Ok(queue.submit_shard(&study, submission.shard, &submission.replace).await?)
     }
 
     /// The study in the form that the queue takes.
     fn new_study(&self, priority: Option<i64>) -> Result<NewStudy, SweepError> {
+        let workload_of: Vec<&Workload> = self.workloads().collect();
         let jobs = self
             .jobs
             .par_iter()
             .zip(&self.batches)
-            .zip(&self.workload_of)
+            .zip(workload_of)
             .map_init(
                 || SharedKeys::new(""),
-                |cases, ((job, batch), &workload)| {
-                    let parameters = RowParameters {
-                        omega_rpm: job.spec.scene.disk.omega_rpm,
-                        mu: job.spec.scene.contact.mu,
-                        grid: job.parameters.clone(),
-                        numerics: Some(numerics(&job.spec, cases)),
-                    };
-                    Ok(NewJob {
-                        key: job.key.clone(),
-                        payload: encode(&job.spec)?,
-                        parameters: encode(&parameters)?,
-                        cost: self.workloads[workload].node_steps(Ending::of(&job.spec).likely_s),
-                        batch: batch.clone(),
-                        priority,
-                    })
+                |cases, ((job, batch), workload)| {
+                    Ok(NewJob { priority, ..new_job(job, batch, workload, cases, None)? })
                 },
             )
             .collect::<Result<_, SweepError>>()?;
-        Ok(NewStudy { name: self.name().to_owned(), document: self.document.clone(), jobs })
+        let grows = self.study.growth().is_any();
+        Ok(NewStudy { name: self.name().to_owned(), document: self.document.clone(), jobs, grows })
     }
+}
+
+/// Why jobs are added to a study that grows.
+pub(super) struct Added {
+    /// The number of the wave, from 1.
+    pub wave: u64,
+    /// For each job why it is added.
+    pub whys: Vec<String>,
+}
+
+/// Jobs of a wave in the form that the queue takes. Those that the solver would refuse before their first step are left out.
+pub(super) fn added_jobs(source_name: &str, jobs: &[Job], added: &Added) -> Result<Vec<NewJob>, SweepError> {
+    let mut batches = SharedKeys::new(solver::VERSION);
+    let mut cases = SharedKeys::new("");
+    let keys: Vec<String> = jobs.iter().map(|job| batches.key(job.spec.shared_part())).collect();
+    let planned: Vec<Option<Workload>> =
+        if let Ok((workloads, workload_of)) = preflight(source_name, jobs, &keys) {
+            workload_of.into_iter().map(|number| Some(workloads[number].clone())).collect()
+        } else {
+            let one = |(job, key): (&Job, &String)| {
+                let alone = preflight(source_name, std::slice::from_ref(job), std::slice::from_ref(key));
+                alone.ok().map(|(mut workloads, _)| workloads.swap_remove(0))
+            };
+            jobs.iter().zip(&keys).map(one).collect()
+        };
+    let mut new = Vec::new();
+    for (((job, batch), why), workload) in jobs.iter().zip(&keys).zip(&added.whys).zip(planned) {
+        if let Some(workload) = workload {
+            new.push(new_job(job, batch, &workload, &mut cases, Some((added.wave, why)))?);
+        }
+    }
+    Ok(new)
+}
+
+/// A job in the form that the queue takes. `added` is the wave and the reason of a job that the program adds.
+fn new_job(
+    job: &Job,
+    batch: &str,
+    workload: &Workload,
+    cases: &mut SharedKeys,
+    added: Option<(u64, &String)>,
+) -> Result<NewJob, SweepError> {
+    let parameters = RowParameters {
+        omega_rpm: job.spec.scene.disk.omega_rpm,
+        mu: job.spec.scene.contact.mu,
+        grid: job.parameters.clone(),
+        numerics: Some(numerics(&job.spec, cases)),
+        wave: added.map(|(wave, _)| wave),
+        why: added.map(|(_, why)| why.clone()),
+    };
+    Ok(NewJob {
+        key: job.key.clone(),
+        payload: encode(&job.spec)?,
+        parameters: encode(&parameters)?,
+        cost: workload.node_steps(Ending::of(&job.spec).likely_s),
+        batch: batch.to_owned(),
+        priority: None,
+        parent: job.spec.parent().map(str::to_owned),
+    })
 }
 
 fn encode(value: &impl Serialize) -> Result<String, SweepError> {

@@ -1,6 +1,7 @@
 //! The report of a study, and whether it has to be written again.
 
 use super::error::SweepError;
+use super::growth::read_growth;
 use super::request::{ReportContent, ReportRequest};
 use super::rows::read_rows;
 use super::stability::{name_of_modes, read_stability};
@@ -66,7 +67,13 @@ async fn write_viewed(
 ) -> Result<Vec<PathBuf>, SweepError> {
     let surroundings = Surroundings::read(queue, studies, rows).await?;
     let stability = stability(queue, studies).await?;
-    let report = Report { title, rows, view, stability: &stability, refresh_s, ..surroundings.report() };
+    let findings = match studies {
+        [study] => read_growth(queue, study, rows).await?,
+        _ => None,
+    };
+    let findings = findings.as_ref();
+    let report =
+        Report { title, rows, view, stability: &stability, findings, refresh_s, ..surroundings.report() };
     Ok(write(&report, folder)?)
 }
 

@@ -10,7 +10,7 @@ use crate::queue::Queue;
 use crate::report::{JobRow, SCALARS, Scalar, View};
 use crate::solver;
 use crate::spec::JobSpec;
-use crate::study::{PARAMETERS, Study, StudyError, nearest_name};
+use crate::study::{DIRECTION, PARAMETERS, Study, StudyError, nearest_name};
 use serde_json::Value;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -124,6 +124,9 @@ impl ReportRequest {
             let message = "expected another parameter than that of the axis".to_owned();
             return Err(SweepError::NoSuchAxis { option: "--by", name, message });
         }
+        // The two ways along a parameter are curves beside each other.
+        let is_usual = by.is_none() && x.as_deref() != Some(DIRECTION);
+        let by = if is_usual && known.contains(&DIRECTION) { Some(DIRECTION.to_owned()) } else { by };
         let quantities = if self.y.is_empty() { &own.y } else { &self.y };
         let mut y: Vec<&'static Scalar> = Vec::new();
         for name in quantities {
@@ -149,17 +152,17 @@ fn no_such_name(option: &'static str, name: &str, known: &[&str]) -> SweepError 
 /// Refuses quantities in a study's file that no record has.
 pub(super) fn check_quantities(study: &Study) -> Result<(), SweepError> {
     let names = SCALARS.iter().map(|scalar| scalar.name).collect::<Vec<_>>();
-    let unknown = study.report().y.iter().enumerate().filter(|(_, name)| Scalar::find(name).is_none());
+    let of_report =
+        study.report().y.iter().enumerate().map(|(index, name)| (format!("report.y[{index}]"), name));
+    let of_curves = study.growth().refine.iter().filter_map(|refine| refine.curves.as_ref());
+    let of_curves = of_curves.map(|curves| ("refine.curves.of".to_owned(), &curves.of));
+    let unknown = of_report.chain(of_curves).filter(|(_, name)| Scalar::find(name).is_none());
     let problems: Vec<_> = unknown
-        .map(|(index, name)| {
+        .map(|(field, name)| {
             let nearest =
                 nearest_name(name, names.iter().copied()).map(|name| format!("did you mean `{name}`?"));
             let all = format!("the quantities are {}", names.join(", "));
-            study.problem(
-                &format!("report.y[{index}]"),
-                "no such quantity",
-                nearest.into_iter().chain([all]).collect(),
-            )
+            study.problem(&field, "no such quantity", nearest.into_iter().chain([all]).collect())
         })
         .collect();
     if problems.is_empty() { Ok(()) } else { Err(StudyError::Invalid(problems).into()) }

@@ -23,6 +23,12 @@ pub(super) struct RowParameters {
     /// What accuracy and cost depend on; absent in databases of versions that did not store it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub numerics: Option<JobNumerics>,
+    /// The wave in which the job was added; absent for jobs of the study's author.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub wave: Option<u64>,
+    /// Why it was added.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub why: Option<String>,
 }
 
 /// Reads all rows of a study, in the order of the grid, with what is known about the error of their discretisation.
@@ -177,7 +183,7 @@ pub(super) async fn add_further_names(
     Ok(())
 }
 
-fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepError> {
+pub(super) fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepError> {
     let unreadable = |what, reason| SweepError::Unreadable {
         subject: format!("job {} of {study}", row.key),
         what,
@@ -197,6 +203,8 @@ fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepError> {
         wall_s: row.wall_s,
         numerics: parameters.numerics,
         discretisation: Discretisation::default(),
+        wave: parameters.wave.unwrap_or(0),
+        why: parameters.why,
     })
 }
 

@@ -202,6 +202,8 @@ impl StoredJob {
             wall_s: *wall_s,
             numerics: None,
             discretisation: discretisation_of(&spec),
+            wave: 0,
+            why: None,
         })
     }
 }

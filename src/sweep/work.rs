@@ -1,6 +1,7 @@
 //! Running the jobs of a study without a display.
 
 use super::error::SweepError;
+use super::growth::PLANNER;
 use crate::queue::{Queue, Scope};
 use crate::worker::{self, Interrupt, SilentProgress, WorkOptions, WorkSummary};
 
@@ -12,5 +13,6 @@ use crate::worker::{self, Interrupt, SilentProgress, WorkOptions, WorkSummary};
 /// counted in the summary.
 pub async fn work(queue: &mut Queue, study: &str, options: WorkOptions) -> Result<WorkSummary, SweepError> {
     let scope = Scope::Study(study.to_owned());
-    Ok(worker::work(queue, &scope, options, &Interrupt::default(), &mut SilentProgress).await?)
+    Ok(worker::work(queue, &scope, options.growing(PLANNER), &Interrupt::default(), &mut SilentProgress)
+        .await?)
 }

@@ -6,7 +6,9 @@ use super::isolate::isolate_panic;
 use super::job::{ParsedJob, outcome, panic_outcome};
 use super::schedule::CheckpointSchedule;
 use crate::analysis::batch::{Batch, Begun};
+use crate::analysis::{JobError, JobRecord};
 use crate::queue::FinishedOutcome;
+use crate::solver::PinMotion;
 use crate::spec::JobSpec;
 use std::collections::{BTreeMap, VecDeque};
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -50,7 +52,7 @@ impl<'a> BatchRunner<'a> {
             Batch::sharing(&first.spec, channel.structures.clone())
         })) {
             Ok(Ok(batch)) => return Self::new(channel, batch, first).run_to_end(),
-            Ok(Err(error)) => outcome(Err(error)),
+            Ok(Err(error)) => outcome(&first.spec, Err(error), None),
             Err(panic) => panic_outcome(&*panic),
         };
         channel.finish(&first.assignment.job, failure, 0.0);
@@ -104,7 +106,7 @@ impl<'a> BatchRunner<'a> {
                 running.share_s += share_s;
             }
             for job in ended {
-                self.end(job.ticket, outcome(job.result));
+                self.end(job.ticket, job.result, job.motion.as_ref());
             }
             self.show_progress();
         }
@@ -147,7 +149,7 @@ impl<'a> BatchRunner<'a> {
                 continue;
             }
             let checkpoint = job.assignment.job.checkpoint.take();
-            let spec = job.spec.clone();
+            let (spec, parent) = (job.spec.clone(), job.parent.clone());
             let schedule = CheckpointSchedule::new(spec.run.limit_s);
             self.last_ticket += 1;
             // Registered before it begins: if it panics, its end must be reported all the same.
@@ -155,29 +157,29 @@ impl<'a> BatchRunner<'a> {
             if checkpoint.is_some_and(|sealed| self.resume(&sealed)) {
                 continue;
             }
-            self.begin(spec);
+            self.begin(spec, parent);
         }
     }
 
     /// Begins the newest job. It ends at once if it is refused, or if the eigenvalues decide it.
-    fn begin(&mut self, spec: JobSpec) {
+    fn begin(&mut self, spec: JobSpec, parent: Option<PinMotion>) {
         let begun = Instant::now();
-        let result = self.batch.begin(self.last_ticket, spec);
+        let result = self.batch.begin_after(self.last_ticket, spec, parent);
         if let Some(running) = self.running.get_mut(&self.last_ticket) {
             running.share_s = begun.elapsed().as_secs_f64();
         }
         self.was_decided = matches!(result, Ok(Begun::Decided(_)));
         match result {
             Ok(Begun::Runs) => {}
-            Ok(Begun::Decided(record)) => self.end(self.last_ticket, outcome(Ok(*record))),
-            Err(error) => self.end(self.last_ticket, outcome(Err(error))),
+            Ok(Begun::Decided(record)) => self.end(self.last_ticket, Ok(*record), None),
+            Err(error) => self.end(self.last_ticket, Err(error), None),
         }
     }
 
     /// Resumes the newest job from a checkpoint of an earlier attempt; false if the checkpoint is not usable.
     fn resume(&mut self, sealed: &[u8]) -> bool {
         let Some(running) = self.running.get_mut(&self.last_ticket) else { return false };
-        let ParsedJob { assignment, spec } = &running.job;
+        let ParsedJob { assignment, spec, parent: _ } = &running.job;
         let Some((spent_s, state)) = checkpoint::open(&assignment.job, sealed) else { return false };
         let is_resumed = self.batch.resume(self.last_ticket, spec.clone(), state).is_ok();
         if is_resumed {
@@ -221,8 +223,9 @@ impl<'a> BatchRunner<'a> {
         }
     }
 
-    fn end(&mut self, ticket: u64, outcome: FinishedOutcome) {
+    fn end(&mut self, ticket: u64, result: Result<JobRecord, JobError>, motion: Option<&PinMotion>) {
         let Some(running) = self.running.remove(&ticket) else { return };
+        let outcome = outcome(&running.job.spec, result, motion);
         self.ended_since_request += 1;
         self.channel.finish(&running.job.assignment.job, outcome, running.share_s);
     }

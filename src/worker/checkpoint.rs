@@ -68,6 +68,7 @@ mod tests {
             cost: 1.0,
             batch: String::new(),
             checkpoint: None,
+            parent_state: None,
         };
         let own = job("a", "{}");
         let sealed = seal(&own, 2.5, b"state").bytes;

@@ -11,15 +11,16 @@ use super::heartbeat::Heartbeat;
 use super::idle::IdleTimer;
 use super::interrupt::Interrupt;
 use super::options::WorkOptions;
+use super::planner::Planner;
 use super::progress::{Progress, RunningJob, Snapshot};
 use super::retry::RetryBackoff;
 use super::tally::Tally;
 use crate::queue::{
-    Claim, ClaimedJob, Exchanged, Finished, FinishedOutcome, Queue, QueueError, Scope, TakenBack,
+    Claim, ClaimedJob, Exchanged, Finished, FinishedOutcome, Planned, Queue, QueueError, Scope, TakenBack,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 use tokio::sync::mpsc::UnboundedReceiver;
 
 /// Longest time without a turn: how often progress is shown when no job ends.
@@ -45,6 +46,9 @@ pub struct Dispatcher<'a> {
     idle: IdleTimer,
     idle_exit: Option<Duration>,
     expected_s_per_cost: [f64; 2],
+    planner: Option<&'static dyn Planner>,
+    /// When studies that grow were last looked for.
+    last_plan: Option<Instant>,
     /// Whether the database knows that this worker was asked to stop.
     is_stopping: bool,
     taken_back: TakenBack,
@@ -79,6 +83,8 @@ impl<'a> Dispatcher<'a> {
             idle: IdleTimer::default(),
             idle_exit: options.idle_exit,
             expected_s_per_cost: options.expected_s_per_cost,
+            planner: options.planner,
+            last_plan: None,
             is_stopping: false,
             taken_back,
             tally,
@@ -97,6 +103,7 @@ impl<'a> Dispatcher<'a> {
             for (request, jobs) in requests.into_iter().zip(exchanged.claimed) {
                 self.answer(request, jobs);
             }
+            self.plan_waves(progress).await?;
             self.tally.refresh(self.queue, self.scope).await?;
             progress.update(&self.snapshot());
             loop {
@@ -149,7 +156,7 @@ impl<'a> Dispatcher<'a> {
         }
         let backoff = RetryBackoff::new();
         loop {
-            match self.poll_for_jobs().await {
+            match self.poll_for_jobs(progress).await {
                 Ok(is_finished) => return Ok(is_finished),
                 Err(_) if self.interrupt.is_raised() => return Ok(true),
                 Err(error) => backoff.wait(error, self.interrupt, progress).await?,
@@ -157,16 +164,56 @@ impl<'a> Dispatcher<'a> {
         }
     }
 
+    /// Plans the waves that are due, if it has not looked for them in the last [`TICK`]. Returns whether there are new jobs.
+    async fn plan_waves(&mut self, progress: &mut dyn Progress) -> Result<bool, QueueError> {
+        let Some(planner) = self.planner else { return Ok(false) };
+        if self.interrupt.is_raised() || self.last_plan.is_some_and(|last| last.elapsed() < TICK) {
+            return Ok(false);
+        }
+        self.last_plan = Some(Instant::now());
+        let mut has_planned = false;
+        match self.plan_due(planner, &mut has_planned, progress).await {
+            // It is tried again at the next turn.
+            Err(error) if error.is_transient() => {}
+            planned => planned?,
+        }
+        if has_planned {
+            self.tally.invalidate();
+        }
+        Ok(has_planned)
+    }
+
+    async fn plan_due(
+        &mut self,
+        planner: &dyn Planner,
+        has_planned: &mut bool,
+        progress: &mut dyn Progress,
+    ) -> Result<(), QueueError> {
+        while let Some(claim) = self.queue.claim_plan(self.scope).await? {
+            let rows = self.queue.rows(&claim.study).await?;
+            let planned = planner.plan(&claim, &rows);
+            if self.queue.store_plan(&claim, &planned).await? {
+                *has_planned |= matches!(planned, Planned::Wave { .. });
+                progress.planned(&claim.study, claim.wave, &planned);
+            }
+        }
+        Ok(())
+    }
+
     /// Looks for new jobs and for jobs of dead workers; returns whether there is nothing more to wait for.
-    async fn poll_for_jobs(&mut self) -> Result<bool, QueueError> {
+    async fn poll_for_jobs(&mut self, progress: &mut dyn Progress) -> Result<bool, QueueError> {
         self.take_back().await?;
+        self.last_plan = None;
+        let has_planned = self.plan_waves(progress).await?;
         // The tally may be older than the changes by other workers.
         let open = self.queue.open_jobs(self.scope).await?;
-        if open.has_pending {
+        if open.has_pending || has_planned {
             self.tally.invalidate();
             return Ok(false);
         }
-        let Some(limit) = self.idle_exit else { return Ok(!open.has_running) };
+        // A wave that another worker plans will have jobs for this one, too.
+        let may_grow = open.has_plans && self.planner.is_some();
+        let Some(limit) = self.idle_exit else { return Ok(!open.has_running && !may_grow) };
         // Exits even if other workers are still running jobs, unless one of them has missed a heartbeat: its jobs may
         // come back.
         Ok(self.idle.elapsed() >= limit && !(open.has_running && self.queue.has_missing_workers().await?))

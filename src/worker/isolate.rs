@@ -14,17 +14,17 @@ pub fn isolate_panic(job: &ParsedJob, channel: &WorkerChannel) -> FinishedOutcom
 
 fn solve_alone(job: &ParsedJob, channel: &WorkerChannel) -> FinishedOutcome {
     let started = Batch::sharing(&job.spec, channel.structures.clone()).and_then(|mut batch| {
-        let begun = batch.begin(0, job.spec.clone())?;
+        let begun = batch.begin_after(0, job.spec.clone(), job.parent.clone())?;
         Ok((batch, begun))
     });
     let mut batch = match started {
         Ok((batch, Begun::Runs)) => batch,
-        Ok((_, Begun::Decided(record))) => return outcome(Ok(*record)),
-        Err(error) => return outcome(Err(error)),
+        Ok((_, Begun::Decided(record))) => return outcome(&job.spec, Ok(*record), None),
+        Err(error) => return outcome(&job.spec, Err(error), None),
     };
     loop {
         if let Some(ended) = batch.advance().pop() {
-            return outcome(ended.result);
+            return outcome(&job.spec, ended.result, ended.motion.as_ref());
         }
         for (_, simulated_s) in batch.simulated() {
             job.assignment.progress.set_simulated_s(simulated_s);

@@ -1,8 +1,10 @@
 //! A job on its thread: its payload is parsed once, and its end becomes an outcome for the queue.
 
 use super::channel::{Assignment, WorkerChannel};
+use crate::analysis::continuation::{from_bytes, to_bytes};
 use crate::analysis::{Ending, JobError, JobRecord};
 use crate::queue::FinishedOutcome;
+use crate::solver::PinMotion;
 use crate::spec::JobSpec;
 use std::any::Any;
 
@@ -13,15 +15,18 @@ pub struct ParsedJob {
     pub assignment: Assignment,
     /// Its payload.
     pub spec: JobSpec,
+    /// The last motion of the job that it continues.
+    pub parent: Option<PinMotion>,
 }
 
 impl ParsedJob {
     /// Parses the payload. If it is no job, reports that the job failed.
-    pub fn parse(assignment: Assignment, channel: &WorkerChannel) -> Option<Self> {
+    pub fn parse(mut assignment: Assignment, channel: &WorkerChannel) -> Option<Self> {
         match serde_json::from_str(&assignment.job.payload) {
             Ok(spec) => {
                 assignment.progress.set_ending(Ending::of(&spec));
-                Some(Self { assignment, spec })
+                let parent = assignment.job.parent_state.take().and_then(|bytes| from_bytes(&bytes));
+                Some(Self { assignment, spec, parent })
             }
             Err(error) => {
                 let failure = FinishedOutcome::Failed { error: format!("unreadable job: {error}") };
@@ -33,10 +38,20 @@ impl ParsedJob {
 }
 
 /// The end of a run as an outcome for the queue.
-pub fn outcome(result: Result<JobRecord, JobError>) -> FinishedOutcome {
+///
+/// `spec` says whether the last motion is kept for jobs that continue this one.
+pub fn outcome(
+    spec: &JobSpec,
+    result: Result<JobRecord, JobError>,
+    motion: Option<&PinMotion>,
+) -> FinishedOutcome {
     match result {
         Ok(record) => match serde_json::to_string(&record) {
-            Ok(text) => FinishedOutcome::Done { record: text, label: record.outcome.name().to_owned() },
+            Ok(text) => FinishedOutcome::Done {
+                record: text,
+                label: record.outcome.name().to_owned(),
+                final_state: motion.filter(|_| spec.continuation.is_some()).map(to_bytes),
+            },
             Err(error) => FinishedOutcome::Failed { error: format!("unwritable record: {error}") },
         },
         Err(error) => FinishedOutcome::Failed { error: error.to_string() },

@@ -1,10 +1,11 @@
 //! Settings of a worker.
 
 use super::eta::TYPICAL_S_PER_COST;
+use super::planner::Planner;
 use std::time::Duration;
 
 /// Settings of a worker.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy)]
 pub struct WorkOptions {
     /// Number of threads.
     pub threads: usize,
@@ -17,11 +18,19 @@ pub struct WorkOptions {
     /// The range of seconds of a thread per unit of a job's cost that is expected. The remaining time is estimated from it
     /// until jobs have finished.
     pub expected_s_per_cost: [f64; 2],
+    /// Plans the waves of studies that grow. Without it they do not grow here.
+    pub planner: Option<&'static dyn Planner>,
 }
 
 impl WorkOptions {
     /// The default interval. A checkpoint costs milliseconds, and at most a minute's work is lost.
     pub const CHECKPOINT_INTERVAL: Duration = Duration::from_mins(1);
+
+    /// The same settings with a planner, so that studies grow.
+    #[must_use]
+    pub fn growing(self, planner: &'static dyn Planner) -> Self {
+        Self { planner: Some(planner), ..self }
+    }
 
     /// Settings with that number of threads and defaults otherwise.
     pub fn new(threads: usize) -> Self {
@@ -30,6 +39,7 @@ impl WorkOptions {
             checkpoint_interval: Some(Self::CHECKPOINT_INTERVAL),
             idle_exit: None,
             expected_s_per_cost: TYPICAL_S_PER_COST,
+            planner: None,
         }
     }
 }

@@ -1,7 +1,7 @@
 //! How a worker reports its progress.
 
 use super::eta::Eta;
-use crate::queue::Counts;
+use crate::queue::{Counts, Planned};
 
 /// A job that is running now.
 #[derive(Debug, Clone, PartialEq)]
@@ -36,6 +36,11 @@ pub trait Progress {
     /// Called when the worker has to wait for the database.
     fn waiting(&mut self, reason: &str) {
         let _ = reason;
+    }
+
+    /// Called when this worker has planned a wave of a study that grows.
+    fn planned(&mut self, study: &str, wave: u64, planned: &Planned) {
+        let _ = (study, wave, planned);
     }
 
     /// Called once, when the worker stops.

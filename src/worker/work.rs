@@ -76,8 +76,12 @@ async fn work_through(
     let left = queue.counts(scope).await?;
     // No more threads than jobs to run on them, unless new jobs may come.
     let jobs = usize::try_from(left.pending + left.running).unwrap_or(usize::MAX);
-    let threads =
-        if options.idle_exit.is_some() { options.threads } else { options.threads.min(jobs.max(1)) };
+    let may_grow = options.planner.is_some() && queue.open_jobs(scope).await?.has_plans;
+    let threads = if options.idle_exit.is_some() || may_grow {
+        options.threads
+    } else {
+        options.threads.min(jobs.max(1))
+    };
     let options = WorkOptions { threads, ..options };
     let (sender, reports) = unbounded_channel();
     let executor = Executor::new(options, &sender, interrupt)

@@ -253,8 +253,9 @@ fn an_unreadable_job() {
         cost: 1.0,
         batch: String::new(),
         priority: None,
+        parent: None,
     };
-    let study = NewStudy { name: "spoilt".into(), document: String::new(), jobs: vec![job] };
+    let study = NewStudy { name: "spoilt".into(), document: String::new(), jobs: vec![job], grows: false };
     tokio::runtime::Builder::new_current_thread().enable_all().build().unwrap().block_on(async {
         let mut queue = Queue::open(folder.path("tribosweep.db"), Clock::OfDatabase).await.unwrap();
         queue.submit(&study).await.unwrap();

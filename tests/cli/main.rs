@@ -7,6 +7,7 @@ mod data;
 mod determinism;
 mod exit_codes;
 mod forecast;
+mod growing;
 mod guards;
 mod inspect;
 mod interruption;

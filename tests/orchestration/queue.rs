@@ -8,6 +8,7 @@ mod lost;
 mod migrate;
 mod open;
 mod outlook;
+mod plans;
 mod read;
 mod recovery;
 mod scale;

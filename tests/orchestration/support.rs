@@ -157,6 +157,7 @@ pub fn job(key: &str, cost: f64) -> NewJob {
         cost,
         batch: String::new(),
         priority: None,
+        parent: None,
     }
 }
 
@@ -166,6 +167,7 @@ pub fn study(name: &str, keys: &[&str]) -> NewStudy {
         name: name.into(),
         document: format!("document of {name}"),
         jobs: keys.iter().map(|key| job(key, 1.0)).collect(),
+        grows: false,
     }
 }
 
@@ -209,7 +211,7 @@ pub fn foreign_worker() -> Worker {
 }
 
 pub fn labelled(record: &str, label: &str) -> FinishedOutcome {
-    FinishedOutcome::Done { record: record.into(), label: label.into() }
+    FinishedOutcome::Done { record: record.into(), label: label.into(), final_state: None }
 }
 
 pub fn done(record: &str) -> FinishedOutcome {

@@ -31,6 +31,7 @@ fn job(key: &str, payload: &str) -> NewJob {
         cost: 1.0,
         batch: String::new(),
         priority: None,
+        parent: None,
     }
 }
 
@@ -45,7 +46,7 @@ fn several(count: u8, limit_s: f64) -> Vec<NewJob> {
 }
 
 async fn submit(queue: &mut Queue, name: &str, jobs: Vec<NewJob>) {
-    queue.submit(&NewStudy { name: name.into(), document: String::new(), jobs }).await.unwrap();
+    queue.submit(&NewStudy { name: name.into(), document: String::new(), jobs, grows: false }).await.unwrap();
 }
 
 async fn row(queue: &mut Queue, study: &str, key: &str) -> StudyRow {

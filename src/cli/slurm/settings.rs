@@ -78,6 +78,11 @@ pub(crate) enum Database {
 }
 
 impl Database {
+    /// Whether all workers share it.
+    pub(crate) fn is_shared(&self) -> bool {
+        matches!(self, Self::Shared(_))
+    }
+
     /// The database that `--db` names.
     pub(crate) fn of(db: &Location) -> Result<Self, CliError> {
         match db {

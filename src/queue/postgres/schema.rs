@@ -60,6 +60,11 @@ async fn version(connection: &mut PgConnection) -> Result<i64, sqlx::Error> {
 }
 
 fn migrator() -> Migrator {
-    let queue = include_str!("../../../migrations/postgres/0001_queue.sql").into_sql_str();
-    Migrator::with_migrations(vec![Migration::new(1, "queue".into(), MigrationType::Simple, queue, false)])
+    let migration = |version, name: &'static str, sql: &'static str| {
+        Migration::new(version, name.into(), MigrationType::Simple, sql.into_sql_str(), false)
+    };
+    Migrator::with_migrations(vec![
+        migration(1, "queue", include_str!("../../../migrations/postgres/0001_queue.sql")),
+        migration(2, "plans", include_str!("../../../migrations/postgres/0002_plans.sql")),
+    ])
 }

@@ -38,8 +38,8 @@ pub(super) fn friction(parts: &Parts) -> Markup {
     let caption = format!(
         "Macroscopic friction coefficient μ* against {}, one curve for each {} (dashed: μ* = μ). Error bars: standard error \
          over the cycles, where it is larger than a marker.{bands}",
-        parts.layout.axis_label(),
-        parts.layout.by_words()
+        parts.layouts.all.axis_label(),
+        parts.layouts.all.by_words()
     );
     html! {
         (figures(parts, Plot::MuStar, &caption))
@@ -58,7 +58,7 @@ fn has_aperiodic(parts: &Parts) -> bool {
 }
 
 pub(super) fn frequency(parts: &Parts) -> Markup {
-    let axis = parts.layout.axis_label();
+    let axis = parts.layouts.all.axis_label();
     let aperiodic = has_aperiodic(parts);
     let curves = format!(
         "Fundamental frequency of the total normal contact force against {axis}.{}",
@@ -73,14 +73,14 @@ pub(super) fn frequency(parts: &Parts) -> Markup {
         parts.report.rows.iter().any(|row| row.record().is_none_or(|record| record.frequency_hz.is_none()));
     let map = format!(
         "The same frequencies over {axis} and {}.{}{}",
-        parts.layout.by_words(),
+        parts.layouts.all.by_words(),
         if without { " A letter: the job has no frequency." } else { "" },
         if aperiodic { " ~: not periodic, and not in the colour scale." } else { "" }
     );
     let waterfall = format!(
         "Stored spectra of the total normal contact force over {axis}, a panel for each {}. A dot marks the fundamental \
          frequency.",
-        parts.layout.by_words()
+        parts.layouts.all.by_words()
     );
     html! {
         (figures(parts, Plot::Frequency, &curves))
@@ -97,16 +97,16 @@ pub(super) fn regimes(parts: &Parts) -> Markup {
     };
     let caption = format!(
         "Contact regime of every job over {} and {}.{}",
-        parts.layout.axis_label(),
-        parts.layout.by_words(),
+        parts.layouts.all.axis_label(),
+        parts.layouts.all.by_words(),
         if parts.report.rows.iter().any(pale) {
             " A small letter on a pale colour: the run did not become periodic."
         } else {
             ""
         }
     );
-    let axis = parts.layout.axis_label();
-    let by = parts.layout.by_words();
+    let axis = parts.layouts.all.axis_label();
+    let by = parts.layouts.all.by_words();
     let boundary = if parts.report.stability.is_empty() {
         ""
     } else {
@@ -136,7 +136,7 @@ pub(super) fn bifurcation(parts: &Parts) -> Markup {
         "Bifurcation diagram against {}: the largest and the smallest total normal contact force N over the load F, the range \
          of the displacement in y of the observed nodes, and the largest gap of a node, all in the averaging window. Steady \
          sliding collapses to N/F = 1 and to no amplitude (dashed). N is smoothed. Hollow: not periodic.",
-        parts.layout.axis_label()
+        parts.layouts.all.axis_label()
     );
     figures(parts, Plot::Bifurcation, &caption)
 }
@@ -144,7 +144,7 @@ pub(super) fn bifurcation(parts: &Parts) -> Markup {
 pub(super) fn shares(parts: &Parts) -> Markup {
     let caption = format!(
         "Shares of stick, slip and separation in the time of all contact nodes, against {}. White lines mark the jobs.",
-        parts.layout.axis_label()
+        parts.layouts.all.axis_label()
     );
     figures(parts, Plot::Shares, &caption)
 }
@@ -154,8 +154,8 @@ pub(super) fn quantity(parts: &Parts, scalar: &'static Scalar) -> Markup {
     let caption = format!(
         "{} against {}, one curve for each {}.",
         scalar.title(),
-        parts.layout.axis_label(),
-        parts.layout.by_words()
+        parts.layouts.all.axis_label(),
+        parts.layouts.all.by_words()
     );
     html! {
         (figures(parts, Plot::Of(scalar), &caption))
@@ -247,7 +247,7 @@ fn linked<'a>(parts: &Parts, svg: &'a str) -> Cow<'a, str> {
 
 /// The figures of one kind, with the data behind them.
 fn figures(parts: &Parts, plot: Plot, caption: &str) -> Markup {
-    let layout = parts.layout_of(plot);
+    let layout = parts.layouts.of(plot);
     let data = plot.data();
     let all = parts.figures.iter().filter(|(own, _)| *own == plot).flat_map(|(_, figures)| figures);
     let mut jobs = 0;
@@ -310,7 +310,7 @@ fn see_files(what: &str, files: &str) -> Markup {
 
 fn csv<'a>(parts: &Parts, rows: impl Iterator<Item = &'a JobRow>, data: &DataFile) -> String {
     // The CSV consists of strings, so it is valid UTF-8; writing to memory cannot fail.
-    export::selection(rows, &parts.layout.further, &data.columns)
+    export::selection(rows, &parts.layouts.all.further, &data.columns)
         .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
         .unwrap_or_default()
 }
@@ -325,7 +325,7 @@ fn cell_pages<'a>(parts: &'a Parts, group: &Group) -> HashMap<(usize, usize), &'
 }
 
 fn table(parts: &Parts, quantity: Quantity) -> Markup {
-    let layout = parts.layout;
+    let layout = parts.layouts.all;
     let constants = layout.constants_in_words();
     let header = tables::header(layout);
     let shown = shown(layout);

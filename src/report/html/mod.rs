@@ -12,7 +12,7 @@ mod scene;
 mod trouble;
 mod warnings;
 
-pub(super) use parts::Parts;
+pub(super) use parts::{Layouts, Parts};
 
 use crate::publish::{html, value};
 use crate::report::input::Report;
@@ -56,6 +56,7 @@ pub(super) fn page(parts: &Parts) -> String {
     sections.extend(parts.comparison.map(|found| ("comparison", "Comparison", comparison::section(found))));
     sections.extend(report.sheet.map(|sheet| ("scene", "What was simulated", scene::section(sheet))));
     sections.extend(parts.programs.map(|own| ("program", "Speed and load in time", own.markup())));
+    sections.extend(report.findings.map(|own| ("findings", "What was found", own.markup())));
     sections.extend([
         ("friction", "Macroscopic friction", grids::friction(parts)),
         ("frequency", "Frequency", grids::frequency(parts)),

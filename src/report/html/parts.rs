@@ -12,10 +12,7 @@ use std::collections::HashMap;
 /// What the page is made from.
 pub(in crate::report) struct Parts<'a> {
     pub report: &'a Report<'a>,
-    /// All rows: jobs and measured points.
-    pub layout: &'a Layout<'a>,
-    /// The jobs alone, for figures that cannot show measured points.
-    pub jobs: &'a Layout<'a>,
+    pub layouts: Layouts<'a>,
     /// The figures of every kind.
     pub figures: &'a [(Plot, Vec<Figure>)],
     /// The differences between several sources.
@@ -32,9 +29,24 @@ pub(in crate::report) struct Parts<'a> {
     pub pages: HashMap<String, String>,
 }
 
-impl<'a> Parts<'a> {
+/// Which rows tables and figures show.
+#[derive(Clone, Copy)]
+pub(in crate::report) struct Layouts<'a> {
+    /// Jobs and measured points.
+    pub all: &'a Layout<'a>,
+    /// The jobs alone, for figures that cannot show measured points.
+    pub jobs: &'a Layout<'a>,
+    /// The jobs with those at boundaries, for maps on true axes.
+    pub whole: &'a Layout<'a>,
+}
+
+impl<'a> Layouts<'a> {
     /// The rows that the figures of a kind show.
-    pub fn layout_of(&self, plot: Plot) -> &'a Layout<'a> {
-        if plot.shows_measured() { self.layout } else { self.jobs }
+    pub fn of(&self, plot: Plot) -> &'a Layout<'a> {
+        match plot {
+            Plot::RegimePlane | Plot::GrowthRate => self.whole,
+            plot if plot.shows_measured() => self.all,
+            _ => self.jobs,
+        }
     }
 }

@@ -14,6 +14,9 @@ use std::fmt::Write;
 /// Number of resamples for confidence intervals.
 const RESAMPLES: usize = 200;
 
+/// The share of its range by which a parameter changes in a Morris design.
+const MORRIS_STEP: f64 = 2.0 / 3.0;
+
 /// With fewer points, indices say little.
 const FEW_POINTS: usize = 100;
 
@@ -26,6 +29,20 @@ pub struct Index {
     pub interval: [f64; 2],
 }
 
+/// The indices of a parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Indices {
+    /// Its name.
+    pub name: String,
+    /// The first-order index; none for regimes, and for parameters that are no numbers.
+    pub first_order: Option<Index>,
+    /// The PAWN index; of regimes, the index of shares.
+    pub pawn: Option<Index>,
+    /// The elementary effects of a Morris design: the mean of their sizes, in the unit of the quantity for the whole range of the
+    /// parameter, and their standard deviation.
+    pub effects: Option<(Index, f64)>,
+}
+
 /// The indices of a quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Sensitivity {
@@ -33,9 +50,8 @@ pub struct Sensitivity {
     pub of: String,
     /// The number of points with a value.
     pub points: usize,
-    /// For each parameter that varies: its name, its first-order index (none for regimes, and for parameters that are no numbers) and its
-    /// PAWN index. The index of regimes has the place of PAWN.
-    pub parameters: Vec<(String, Option<Index>, Option<Index>)>,
+    /// The indices of each parameter that varies.
+    pub parameters: Vec<Indices>,
     /// What the index of a parameter without any effect would be, above which few of them are by chance: the 95 % quantile of the last
     /// index with shuffled parameters.
     pub chance: f64,
@@ -45,12 +61,13 @@ pub struct Sensitivity {
 pub const REGIME: &str = "regime";
 
 /// The sensitivities of some numbers, and of the regime, to all parameters that vary between the jobs that ended. They are the same in
-/// every call.
-pub fn sensitivities(rows: &[JobRow], of: &[&'static Scalar]) -> Vec<Sensitivity> {
+/// every call. `is_morris` says that the rows are those of a Morris design, in its order.
+pub fn sensitivities(rows: &[JobRow], of: &[&'static Scalar], is_morris: bool) -> Vec<Sensitivity> {
     let ended = |row: &&JobRow| matches!(row.state, RowState::Done(_) | RowState::Failed { .. });
     let rows: Vec<&JobRow> = rows.iter().filter(ended).collect();
     let parameters = parameters(&rows);
-    let mut found: Vec<Sensitivity> = of.iter().map(|scalar| of_scalar(&rows, &parameters, scalar)).collect();
+    let mut found: Vec<Sensitivity> =
+        of.iter().map(|scalar| of_scalar(&rows, &parameters, scalar, is_morris)).collect();
     found.push(of_regimes(&rows, &parameters));
     found
 }
@@ -86,12 +103,42 @@ fn parameters(rows: &[&JobRow]) -> Vec<Parameter> {
     names.filter_map(parameter).collect()
 }
 
-fn of_scalar(rows: &[&JobRow], parameters: &[Parameter], scalar: &Scalar) -> Sensitivity {
+/// The elementary effects of a parameter: the differences of the quantity between neighbours in the design that differ in it alone, over
+/// the share of its range by which it changes (Morris, Technometrics 33, 1991).
+fn elementary_effects(
+    rows: &[&JobRow],
+    parameters: &[Parameter],
+    own: &Parameter,
+    scalar: &Scalar,
+) -> Vec<f64> {
+    let effect = |at: usize| {
+        let is_alone = parameters
+            .iter()
+            .all(|other| (other.values[at] != other.values[at - 1]) == (other.name == own.name));
+        let step = MORRIS_STEP.copysign(own.values[at] - own.values[at - 1]);
+        is_alone.then(|| Some((scalar.value(rows[at])? - scalar.value(rows[at - 1])?) / step))?
+    };
+    (1..rows.len()).filter_map(effect).collect()
+}
+
+/// The mean size of effects, and their standard deviation; none with fewer than two.
+fn of_effects(effects: &[f64]) -> Option<(Index, f64)> {
+    let count = effects.len() as f64;
+    let mean = effects.iter().sum::<f64>() / count;
+    let variance = effects.iter().map(|effect| (effect - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    let size = |points: &[usize]| Some(points.iter().map(|&at| effects[at].abs()).sum::<f64>() / count);
+    let index = (effects.len() > 1).then(|| with_interval(effects.len(), size)).flatten();
+    index.map(|index| (index, variance.sqrt()))
+}
+
+fn of_scalar(rows: &[&JobRow], parameters: &[Parameter], scalar: &Scalar, is_morris: bool) -> Sensitivity {
     let with_value: Vec<(usize, f64)> =
         rows.iter().enumerate().filter_map(|(at, row)| Some((at, scalar.value(row)?))).collect();
     let y: Vec<f64> = with_value.iter().map(|(_, y)| *y).collect();
     let mut chance = Vec::new();
+    let all = parameters;
     let of_parameter = |parameter: &Parameter| {
+        let effects = is_morris.then(|| elementary_effects(rows, all, parameter, scalar));
         let x: Vec<f64> = with_value.iter().map(|(at, _)| parameter.values[*at]).collect();
         let first = |points: &[usize]| {
             let [x, y] = [&x, &y].map(|all| points.iter().map(|&at| all[at]).collect::<Vec<_>>());
@@ -106,7 +153,12 @@ fn of_scalar(rows: &[&JobRow], parameters: &[Parameter], scalar: &Scalar) -> Sen
             Some(pawn(&slices(&shuffled)?, &y))
         }));
         let first = parameter.is_number.then(|| with_interval(y.len(), first)).flatten();
-        (parameter.name.clone(), first, with_interval(y.len(), of_pawn))
+        Indices {
+            name: parameter.name.clone(),
+            first_order: first,
+            pawn: with_interval(y.len(), of_pawn),
+            effects: effects.and_then(|effects| of_effects(&effects)),
+        }
     };
     let parameters = parameters.iter().map(of_parameter).collect();
     Sensitivity {
@@ -137,7 +189,12 @@ fn of_regimes(rows: &[&JobRow], parameters: &[Parameter]) -> Sensitivity {
             let x: Vec<f64> = order.iter().map(|&at| parameter.values[at]).collect();
             Some(of_classes(&slices(&x)?, &class, names.len()))
         }));
-        (parameter.name.clone(), None, with_interval(class.len(), index))
+        Indices {
+            name: parameter.name.clone(),
+            first_order: None,
+            pawn: with_interval(class.len(), index),
+            effects: None,
+        }
     };
     let parameters = parameters.iter().map(of_parameter).collect();
     Sensitivity {
@@ -213,18 +270,31 @@ pub fn markdown(found: &[Sensitivity]) -> String {
         let _ = writeln!(text, "# {title}: {} points\n", one.points);
         let mut ranked: Vec<_> = one.parameters.iter().collect();
         let of = |index: &Option<Index>| index.as_ref().map_or(-1.0, |index| index.value);
-        ranked.sort_by(|a, b| of(&b.2).total_cmp(&of(&a.2)).then(a.0.cmp(&b.0)));
+        ranked.sort_by(|a, b| of(&b.pawn).total_cmp(&of(&a.pawn)).then(a.name.cmp(&b.name)));
+        let is_morris = one.parameters.iter().any(|own| own.effects.is_some());
         text += if is_regime {
             "| parameter | shares |\n| --- | --- |\n"
+        } else if is_morris {
+            "| parameter | first order | PAWN | mean size of effects | their deviation |\n| --- | --- | --- | --- | --- |\n"
         } else {
             "| parameter | first order | PAWN |\n| --- | --- | --- |\n"
         };
-        for (name, first, last) in ranked {
-            let _ = if is_regime {
-                writeln!(text, "| `{name}` | {} |", index(last))
-            } else {
-                writeln!(text, "| `{name}` | {} | {} |", index(first), index(last))
-            };
+        for Indices { name, first_order, pawn, effects } in ranked {
+            if is_regime {
+                let _ = writeln!(text, "| `{name}` | {} |", index(pawn));
+                continue;
+            }
+            let _ = write!(text, "| `{name}` | {} | {} |", index(first_order), index(pawn));
+            if is_morris {
+                let size = |(index, deviation): &(Index, f64)| {
+                    let [size, low, high, deviation] =
+                        [index.value, index.interval[0], index.interval[1], *deviation]
+                            .map(|number| value::significant(number, 3));
+                    format!(" {size} ({low} … {high}) | {deviation} |")
+                };
+                text += &effects.as_ref().map_or_else(|| " – | – |".to_owned(), size);
+            }
+            text += "\n";
         }
         let what = if is_regime { "shares" } else { "PAWN" };
         let chance = value::fixed(one.chance, 2);
@@ -243,11 +313,22 @@ pub fn markdown(found: &[Sensitivity]) -> String {
 pub fn csv(found: &[Sensitivity]) -> String {
     let mut text = "quantity,points,parameter,index,value,low,high,by_chance\n".to_owned();
     for one in found {
-        for (name, first, last) in &one.parameters {
+        for Indices { name, first_order, pawn, effects } in &one.parameters {
             let last_name = if one.of == REGIME { "shares" } else { "pawn" };
-            for (kind, index) in [("first_order", first), (last_name, last)] {
+            let sizes = effects.map(|(index, _)| index);
+            let deviations =
+                effects.map(|(_, deviation)| Index { value: deviation, interval: [f64::NAN; 2] });
+            let all = [
+                ("first_order", first_order),
+                (last_name, pawn),
+                ("effects_mean_size", &sizes),
+                ("effects_deviation", &deviations),
+            ];
+            for (kind, index) in all {
                 if let Some(Index { value, interval: [low, high] }) = index {
-                    let chance = if kind == "first_order" { String::new() } else { one.chance.to_string() };
+                    let chance = if kind == last_name { one.chance.to_string() } else { String::new() };
+                    let [low, high] = [low, high]
+                        .map(|bound| if bound.is_nan() { String::new() } else { bound.to_string() });
                     let Sensitivity { of, points, .. } = one;
                     let _ = writeln!(text, "{of},{points},{name},{kind},{value},{low},{high},{chance}");
                 }
@@ -255,4 +336,27 @@ pub fn csv(found: &[Sensitivity]) -> String {
         }
     }
     text
+}
+
+/// The points and their results as a table of numbers, for other programs: a column for each parameter that varies, then one for each
+/// quantity. Jobs without a value of every quantity are left out. Parameters that are names have numbers from 0.
+///
+/// Returns the text and the number of jobs that are left out.
+pub fn points_csv(rows: &[JobRow], of: &[&'static Scalar]) -> (String, usize) {
+    let ended = |row: &&JobRow| matches!(row.state, RowState::Done(_) | RowState::Failed { .. });
+    let rows: Vec<&JobRow> = rows.iter().filter(ended).collect();
+    let parameters = parameters(&rows);
+    let names = parameters.iter().map(|parameter| parameter.name.as_str());
+    let mut text = names.chain(of.iter().map(|scalar| scalar.name)).collect::<Vec<_>>().join(",") + "\n";
+    let mut left_out = 0;
+    for (at, row) in rows.iter().enumerate() {
+        let values: Option<Vec<f64>> = of.iter().map(|scalar| scalar.value(row)).collect();
+        let Some(values) = values else {
+            left_out += 1;
+            continue;
+        };
+        let numbers = parameters.iter().map(|parameter| parameter.values[at]).chain(values);
+        text += &(numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(",") + "\n");
+    }
+    (text, left_out)
 }

@@ -24,6 +24,8 @@ pub(in crate::report) fn rows(points: &[StabilityPoint]) -> Vec<JobRow> {
         wall_s: None,
         numerics: None,
         discretisation: Discretisation::NotMeasured,
+        wave: 0,
+        why: None,
     };
     points.iter().enumerate().map(row).collect()
 }

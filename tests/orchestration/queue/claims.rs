@@ -22,7 +22,7 @@ on_both_databases! {
 }
 
 fn study_of(name: &str, jobs: Vec<NewJob>) -> NewStudy {
-    NewStudy { name: name.into(), document: String::new(), jobs }
+    NewStudy { name: name.into(), document: String::new(), jobs, grows: false }
 }
 
 /// Jobs by key, cost, batch and priority.

@@ -26,6 +26,7 @@ async fn the_most_expensive_job_comes_first(sandbox: &Sandbox) {
         name: "a".into(),
         document: String::new(),
         jobs: jobs.iter().map(|(key, cost)| job(key, *cost)).collect(),
+        grows: false,
     };
     queue.submit(&study).await.unwrap();
 

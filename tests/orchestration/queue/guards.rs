@@ -51,9 +51,9 @@ async fn results_stay_in_view(sandbox: &Sandbox) {
         cancelled: 1,
     };
     assert_eq!((name.as_str(), &*refused), ("a", &expected));
-    let preview = queue.preview_replacement("a", &["y", "v"].into()).await.unwrap();
+    let preview = queue.preview_replacement("a", &["y", "v"].into(), "").await.unwrap();
     assert_eq!(preview.as_ref(), Some(&expected), "the preview has the numbers of the submission");
-    assert_eq!(queue.preview_replacement("c", &["y", "v"].into()).await.unwrap(), None);
+    assert_eq!(queue.preview_replacement("c", &["y", "v"].into(), "").await.unwrap(), None);
     assert_eq!(queue.rows("a").await.unwrap(), rows);
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), states);
     assert_eq!(queue.study("a").await.unwrap().unwrap().document, "document of a");

@@ -20,6 +20,7 @@ async fn a_hundred_thousand_jobs_are_planned(sandbox: &Sandbox) {
         name: "large".into(),
         document: String::new(),
         jobs: (0..JOBS).map(|index| job(&format!("job {index}"), (index / 2) as f64)).collect(),
+        grows: false,
     };
     assert_eq!(queue.submit(&study).await.unwrap().added, JOBS);
     assert_eq!(queue.submit(&study).await.unwrap().already_known, JOBS);
@@ -46,6 +47,7 @@ async fn fill(sandbox: &Sandbox, jobs: usize) {
                 ..job(&format!("{name} {index}"), cost + (index * 7919 % 97) as f64 / 100.0)
             })
             .collect(),
+        grows: false,
     };
     let mut queue = sandbox.open().await;
     // The database collects its statistics at a time when no job is pending.
@@ -129,7 +131,10 @@ async fn throughput(sandbox: &Sandbox) {
             })
             .collect();
         let begun = Instant::now();
-        queue.submit(&NewStudy { name: "large".into(), document: String::new(), jobs }).await.unwrap();
+        queue
+            .submit(&NewStudy { name: "large".into(), document: String::new(), jobs, grows: false })
+            .await
+            .unwrap();
         let planning = begun.elapsed();
         let claim = Claim { scope: of("large"), limit, batch: None };
         let (mut finished, mut parts) = (Vec::new(), Vec::new());
@@ -145,7 +150,11 @@ async fn throughput(sandbox: &Sandbox) {
                 parts.push(part.elapsed());
                 part = Instant::now();
             }
-            let outcome = || FinishedOutcome::Done { record: record.clone(), label: "end".to_owned() };
+            let outcome = || FinishedOutcome::Done {
+                record: record.clone(),
+                label: "end".to_owned(),
+                final_state: None,
+            };
             let finish = |job: ClaimedJob| Finished {
                 key: job.key,
                 attempt: job.attempt,

@@ -1,0 +1,383 @@
+//! Studies that grow: what a study file says about jobs that depend on the results of others.
+
+use super::definition::Study;
+use super::error::Problem;
+use super::expand::Job;
+use super::grid::Grid;
+use super::key::job_key;
+use super::parameter::{PARAMETERS, Parameter};
+use super::source::SourceText;
+use super::suggest::nearest_name;
+use crate::spec::{Continuation, StabilityMethod, Start};
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+/// Where the program adds points by itself, wave by wave.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Refine {
+    /// Curves of a quantity over a parameter, until they are known well enough.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub curves: Option<Curves>,
+    /// Boundaries between jobs of different kinds.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub boundaries: Option<Boundaries>,
+    /// Largest number of jobs of the study, with those of its grid.
+    pub most_jobs: usize,
+    /// Largest number of jobs that are added at a time. It is a part of the plan: another number gives other points.
+    pub wave_jobs: usize,
+}
+
+impl Default for Refine {
+    fn default() -> Self {
+        Self { curves: None, boundaries: None, most_jobs: 1_000, wave_jobs: 64 }
+    }
+}
+
+/// Curves of a quantity over a parameter: one for each combination of the other parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Curves {
+    /// The parameter along the curves: one that the grid varies.
+    #[schemars(schema_with = "number_schema")]
+    pub over: String,
+    /// The quantity: a column of the export.
+    #[serde(default = "mu_star")]
+    pub of: String,
+    /// The error of straight lines between neighbouring points, as the second differences estimate it, is to be at most this.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub within: Option<f64>,
+    /// The smallest value of each curve is to lie so near to its neighbours, in the unit of the parameter.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub minimum_within: Option<f64>,
+    /// No two points are nearer to each other. Absent: `minimum_within`, or a thousandth of the range.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub finest: Option<f64>,
+}
+
+/// What the two sides of a boundary differ in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Whether steady sliding is stable: by the growth rate where eigenvalues were computed, and else by how the run ended.
+    #[default]
+    Stability,
+    /// The contact regime.
+    Regime,
+    /// The status: how the job ended.
+    Status,
+}
+
+/// Boundaries along a parameter: one line for each combination of the other parameters.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Boundaries {
+    /// The parameter along which a boundary is looked for: one that the grid varies.
+    #[schemars(schema_with = "number_schema")]
+    pub over: String,
+    /// What the two sides differ in.
+    #[serde(default)]
+    pub between: Side,
+    /// Width within which each boundary is to be known, in the unit of the parameter.
+    pub within: f64,
+}
+
+/// Jobs that begin in the motion with which another one ended. Exactly one of `along` and `kicks` is given.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Continue {
+    /// The parameter along which each job continues its neighbour: one that the grid varies.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(schema_with = "number_schema")]
+    pub along: Option<String>,
+    /// Ways along that parameter.
+    pub directions: Vec<Direction>,
+    /// Number of jobs that continue each point of the study with different random velocities, to find its limit cycles.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kicks: Option<u32>,
+    /// Root mean square (m/s) of the velocities that are added at the beginning of a job. Absent: 10⁻⁴ m/s along a parameter, so
+    /// that unstable sliding is left; needed with `kicks`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub kick_m_s: Option<f64>,
+}
+
+impl Default for Continue {
+    fn default() -> Self {
+        Self { along: None, directions: vec![Direction::Up, Direction::Down], kicks: None, kick_m_s: None }
+    }
+}
+
+/// A way along a parameter.
+#[derive(
+    Debug,
+    Clone,
+    Copy,
+    PartialEq,
+    Eq,
+    Serialize,
+    Deserialize,
+    JsonSchema,
+    strum::IntoStaticStr,
+    strum::EnumString,
+)]
+#[serde(rename_all = "snake_case")]
+#[strum(serialize_all = "snake_case")]
+pub enum Direction {
+    /// From the smallest value to the largest.
+    Up,
+    /// From the largest value to the smallest.
+    Down,
+}
+
+impl Direction {
+    /// The name used in study files and tables.
+    pub fn name(self) -> &'static str {
+        self.into()
+    }
+}
+
+/// The name under which rows have their direction.
+pub const DIRECTION: &str = "direction";
+
+/// The name under which rows have the number of their kick: 0 for the job that is kicked.
+pub const KICK: &str = "kick";
+
+/// Velocity that takes a chain away from unstable sliding \[m/s\]: below a thousandth of usual sliding speeds.
+const CHAIN_KICK_M_S: f64 = 1.0e-4;
+
+/// Most jobs of a wave: the lanes of a thousand cores.
+const MOST_WAVE_JOBS: usize = 10_000;
+
+/// How a study grows.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Growth {
+    /// Points that are added where they are needed.
+    pub refine: Option<Refine>,
+    /// Jobs that continue others.
+    pub continues: Option<Continue>,
+}
+
+fn mu_star() -> String {
+    "mu_star".to_owned()
+}
+
+fn number_schema(_: &mut SchemaGenerator) -> Schema {
+    let numbers = PARAMETERS.iter().filter(|parameter| parameter.is_number()).map(|parameter| parameter.name);
+    json_schema!({ "type": "string", "enum": numbers.collect::<Vec<_>>() })
+}
+
+impl Growth {
+    /// Whether there is any.
+    pub fn is_any(&self) -> bool {
+        self.refine.is_some() || self.continues.is_some()
+    }
+
+    /// What is wrong with it in a study of this grid. The names of quantities are not known here.
+    pub(super) fn problems(&self, grid: &Grid, source: &SourceText) -> Vec<Problem> {
+        let mut found = Vec::new();
+        if self.refine.is_some() && self.continues.is_some() {
+            found.push(source.problem("continue", "expected only one of `refine` and `continue`"));
+        }
+        let mut along = |field: &str, name: &str| {
+            let varied = || grid.parameters().filter(|parameter| parameter.is_number());
+            if !varied().any(|parameter| parameter.name == name) {
+                let problem = source.problem(field, "expected a number that the study varies");
+                let names: Vec<_> = varied().map(|parameter| parameter.name).collect();
+                let nearest = nearest_name(name, names.iter().copied());
+                let mut help: Vec<_> =
+                    nearest.into_iter().map(|name| format!("did you mean `{name}`?")).collect();
+                help.push(format!(
+                    "it varies {}",
+                    if names.is_empty() { "none".to_owned() } else { names.join(", ") }
+                ));
+                found.push(Problem { help, ..problem });
+            }
+        };
+        if let Some(curves) = self.refine.as_ref().and_then(|refine| refine.curves.as_ref()) {
+            along("refine.curves.over", &curves.over);
+        }
+        if let Some(boundaries) = self.refine.as_ref().and_then(|refine| refine.boundaries.as_ref()) {
+            along("refine.boundaries.over", &boundaries.over);
+        }
+        if let Some(name) = self.continues.as_ref().and_then(|own| own.along.as_deref()) {
+            along("continue.along", name);
+        }
+        let mut positive = |field: &str, value: Option<f64>| {
+            if value.is_some_and(|value| !(value > 0.0 && value.is_finite())) {
+                found.push(source.problem(field, "expected a number > 0"));
+            }
+        };
+        if let Some(Refine { curves, boundaries, .. }) = &self.refine {
+            if let Some(curves) = curves {
+                positive("refine.curves.within", curves.within);
+                positive("refine.curves.minimum_within", curves.minimum_within);
+                positive("refine.curves.finest", curves.finest);
+            }
+            positive("refine.boundaries.within", boundaries.as_ref().map(|own| own.within));
+        }
+        positive("continue.kick_m_s", self.continues.as_ref().and_then(|own| own.kick_m_s));
+        if let Some(refine) = &self.refine {
+            refine.add_problems(source, &mut found);
+        }
+        if let Some(own) = &self.continues {
+            own.add_problems(source, &mut found);
+        }
+        found
+    }
+}
+
+impl Refine {
+    fn add_problems(&self, source: &SourceText, found: &mut Vec<Problem>) {
+        if self.curves.is_none() && self.boundaries.is_none() {
+            found.push(source.problem("refine", "expected `curves`, `boundaries`, or both"));
+        }
+        if self.curves.as_ref().is_some_and(|own| own.within.is_none() && own.minimum_within.is_none()) {
+            found.push(source.problem("refine.curves", "expected `within`, `minimum_within`, or both"));
+        }
+        if !(1..=MOST_WAVE_JOBS).contains(&self.wave_jobs) {
+            let message = format!("expected a number of jobs from 1 to {MOST_WAVE_JOBS}");
+            found.push(source.problem("refine.wave_jobs", message));
+        }
+    }
+}
+
+impl Continue {
+    fn add_problems(&self, source: &SourceText, found: &mut Vec<Problem>) {
+        match (&self.along, self.kicks) {
+            (None, None) | (Some(_), Some(_)) => {
+                found.push(source.problem("continue", "expected either `along` or `kicks`"));
+            }
+            (None, Some(kicks)) => {
+                if kicks == 0 {
+                    found.push(source.problem("continue.kicks", "expected at least 1"));
+                }
+                if self.kick_m_s.is_none() {
+                    let message = "expected `kick_m_s`, a speed to be compared with that of sliding";
+                    found.push(source.problem("continue", message));
+                }
+            }
+            (Some(_), None) => {}
+        }
+        let repeated =
+            self.directions.iter().enumerate().any(|(at, own)| self.directions[..at].contains(own));
+        if self.directions.is_empty() || repeated {
+            found.push(source.problem("continue.directions", "expected `up`, `down`, or both"));
+        }
+    }
+}
+
+impl Study {
+    /// How the study grows.
+    pub fn growth(&self) -> &Growth {
+        &self.growth
+    }
+
+    /// The job at a point that the grid need not have: with these values of the parameters that the study varies. None if a limit or a
+    /// condition of the study forbids it.
+    pub fn job_at(&self, parameters: &[(String, Value)], solver_version: &str) -> Option<Job> {
+        let mut draft = self.draft();
+        let known = |name: &str| PARAMETERS.iter().find(|parameter| parameter.name == name);
+        for (name, value) in parameters {
+            if let Some(parameter) = known(name) {
+                draft.mark(parameter);
+                draft.put(parameter, value);
+            }
+        }
+        let point: Vec<_> =
+            parameters.iter().filter_map(|(name, value)| Some((known(name)?, value))).collect();
+        if !self.grid.keeps(&point, &self.base) {
+            return None;
+        }
+        let resolved = draft.resolve();
+        let key = job_key(&resolved.spec, solver_version);
+        let job = Job { key, spec: resolved.spec, parameters: parameters.to_vec() };
+        resolved.violations.is_empty().then_some(job)
+    }
+
+    /// The first jobs of chains, made from the jobs of the grid; `jobs` unchanged if the study continues none.
+    pub(super) fn roots(&self, jobs: Vec<Job>, solver_version: &str) -> Vec<Job> {
+        let Some(continues) = &self.growth.continues else { return jobs };
+        let Some(along) = &continues.along else {
+            let with_kick = |job: &Job| job.continued(None, (KICK, 0.into()), solver_version);
+            return jobs.iter().map(with_kick).collect();
+        };
+        let chains = chains_of(&jobs, along);
+        let root = |direction: &Direction, chain: &Vec<&Job>| {
+            let first = if *direction == Direction::Up { chain.first() } else { chain.last() };
+            first.map(|job| job.continued(None, (DIRECTION, direction.name().into()), solver_version))
+        };
+        continues
+            .directions
+            .iter()
+            .flat_map(|direction| chains.iter().filter_map(move |chain| root(direction, chain)))
+            .collect()
+    }
+}
+
+impl Continue {
+    /// The velocity that is added at the beginning of each job \[m/s\].
+    pub fn kick_m_s(&self) -> f64 {
+        self.kick_m_s.unwrap_or(CHAIN_KICK_M_S)
+    }
+}
+
+/// The jobs that differ in one parameter alone, from its smallest value to its largest; the groups in the order of their first jobs.
+pub fn chains_of<'a>(jobs: &'a [Job], along: &str) -> Vec<Vec<&'a Job>> {
+    let mut places = std::collections::HashMap::new();
+    let mut chains: Vec<Vec<&Job>> = Vec::new();
+    for job in jobs {
+        let rest: Vec<_> = job.parameters.iter().filter(|(name, _)| name != along).collect();
+        let rest = serde_json::to_string(&rest).unwrap_or_default();
+        let place = *places.entry(rest).or_insert(chains.len());
+        if place == chains.len() {
+            chains.push(Vec::new());
+        }
+        chains[place].push(job);
+    }
+    for chain in &mut chains {
+        chain.sort_by(|a, b| a.number(along).total_cmp(&b.number(along)));
+    }
+    chains
+}
+
+impl Job {
+    /// The value of a parameter that is a number; NaN if it has none.
+    pub fn number(&self, name: &str) -> f64 {
+        let own = self.parameters.iter().find(|(own, _)| own == name);
+        own.and_then(|(_, value)| value.as_f64()).unwrap_or(f64::NAN)
+    }
+
+    /// The job as one that begins where its parent ended, or at rest, and that others can continue. It runs in any case:
+    /// eigenvalues say nothing about motions far from steady sliding. `own` is what tells its row from others.
+    #[must_use]
+    pub fn continued(
+        &self,
+        continuation: Option<Continuation>,
+        own: (&str, Value),
+        solver_version: &str,
+    ) -> Self {
+        let mut job = self.clone();
+        job.spec.continuation = Some(Box::new(continuation.unwrap_or(Continuation::ROOT)));
+        job.spec.stability = StabilityMethod::Simulate;
+        job.spec.run.start = Start::Rest;
+        job.key = job_key(&job.spec, solver_version);
+        job.parameters.retain(|(name, _)| name != own.0);
+        job.parameters.push((own.0.to_owned(), own.1));
+        job
+    }
+}
+
+impl Parameter {
+    /// The shortest decimal number that differs from `value` by at most `by`.
+    pub fn rounded(value: f64, by: f64) -> f64 {
+        for decimals in 0..=12 {
+            let scale = 10_f64.powi(decimals);
+            let rounded = (value * scale).round() / scale;
+            if (rounded - value).abs() <= by {
+                return rounded;
+            }
+        }
+        value
+    }
+}

@@ -1,0 +1,131 @@
+//! What a study that grows has found so far.
+
+use super::{chains, refine};
+use crate::queue::{PlanState, PlanStatus, Queue};
+use crate::report::{BranchPoint, Endpoint, Findings, JobRow, RowState, basins};
+use crate::study::{Continue, DIRECTION, Direction, KICK, Study};
+use crate::sweep::error::SweepError;
+use serde_json::Value;
+use std::collections::{BTreeMap, HashMap};
+
+/// What a study has found, from all its `rows`; none if it does not grow, or if this version cannot read it.
+///
+/// # Errors
+/// If the database has no such study or cannot be read.
+pub async fn read_growth(
+    queue: &mut Queue,
+    study: &str,
+    rows: &[JobRow],
+) -> Result<Option<Findings>, SweepError> {
+    let Some(plan) = queue.plan_status(study).await? else { return Ok(None) };
+    let document = queue.study(study).await?.map(|found| found.document);
+    let Some(study) = document.and_then(|text| Study::parse_stored(&text, study).ok()) else {
+        return Ok(None);
+    };
+    let mut found = Findings { waves: waves(rows), state: state(&study, &plan, rows), ..Findings::default() };
+    let growth = study.growth();
+    if let Some(settings) = &growth.refine {
+        found.crossings = settings.boundaries.iter().flat_map(|own| refine::crossings(own, rows)).collect();
+        found.minima = settings.curves.iter().flat_map(|own| refine::minima(own, rows)).collect();
+    }
+    match &growth.continues {
+        Some(Continue { along: Some(_), .. }) => found.branches = branches(rows),
+        Some(_) => found.basins = basins_of(rows),
+        None => {}
+    }
+    Ok(Some(found))
+}
+
+fn waves(rows: &[JobRow]) -> Vec<BTreeMap<String, u64>> {
+    let mut waves: Vec<BTreeMap<String, u64>> = Vec::new();
+    for row in rows.iter().filter(|row| row.wave > 0) {
+        let index = row.wave as usize - 1;
+        waves.resize_with(waves.len().max(index + 1), BTreeMap::new);
+        *waves[index].entry(row.why.clone().unwrap_or_default()).or_default() += 1;
+    }
+    waves
+}
+
+fn state(study: &Study, plan: &PlanStatus, rows: &[JobRow]) -> String {
+    let note = plan.note.as_deref().unwrap_or_default();
+    let waves = plan.waves;
+    match plan.state {
+        PlanState::Complete => format!("No more jobs are needed after wave {waves}: {note}."),
+        PlanState::Failed => {
+            format!("The next wave could not be planned: {note}. `tribosweep retry` tries it again.")
+        }
+        PlanState::Open => {
+            let most = match (&study.growth().refine, &study.growth().continues) {
+                (Some(refine), _) => format!("at most {}", refine.most_jobs),
+                (_, Some(continues)) => chains::length(study, continues).to_string(),
+                _ => String::new(),
+            };
+            let jobs = rows.len();
+            let last = if waves > 0 { format!("Wave {waves} asked for {note}. ") } else { String::new() };
+            format!("{last}More jobs follow when these have ended: there are {jobs} of {most} jobs.")
+        }
+    }
+}
+
+/// The ends on the two ways at each point, in the order of the rows.
+fn branches(rows: &[JobRow]) -> Vec<BranchPoint> {
+    let mut places: HashMap<String, usize> = HashMap::new();
+    let mut found: Vec<BranchPoint> = Vec::new();
+    for row in rows {
+        let Some(way) = own(row, DIRECTION) else { continue };
+        let parameters = without(row, DIRECTION);
+        let place =
+            *places.entry(serde_json::to_string(&parameters).unwrap_or_default()).or_insert(found.len());
+        if place == found.len() {
+            found.push(BranchPoint { parameters, up: None, down: None });
+        }
+        let end = row.record().map(Endpoint::of);
+        if way.as_str() == Some(Direction::Up.name()) {
+            found[place].up = end;
+        } else {
+            found[place].down = end;
+        }
+    }
+    found.sort_by(|a, b| {
+        let numbers = |point: &BranchPoint| -> Vec<f64> {
+            point.parameters.iter().map(|(_, value)| value.as_f64().unwrap_or(0.0)).collect()
+        };
+        numbers(a)
+            .iter()
+            .zip(&numbers(b))
+            .map(|(a, b)| a.total_cmp(b))
+            .find(|order| order.is_ne())
+            .unwrap_or(std::cmp::Ordering::Equal)
+    });
+    found
+}
+
+/// The states that the kicked jobs of each point ended in.
+fn basins_of(rows: &[JobRow]) -> Vec<crate::report::Basin> {
+    type Ends = Vec<Option<Endpoint>>;
+    let mut places: HashMap<String, usize> = HashMap::new();
+    let mut found: Vec<(Vec<(String, Value)>, Ends)> = Vec::new();
+    for row in rows {
+        let is_kicked = own(row, KICK).and_then(Value::as_u64).is_some_and(|kick| kick > 0);
+        let has_ended = matches!(row.state, RowState::Done(_) | RowState::Failed { .. });
+        if !is_kicked || !has_ended {
+            continue;
+        }
+        let parameters = without(row, KICK);
+        let place =
+            *places.entry(serde_json::to_string(&parameters).unwrap_or_default()).or_insert(found.len());
+        if place == found.len() {
+            found.push((parameters, Vec::new()));
+        }
+        found[place].1.push(row.record().map(Endpoint::of));
+    }
+    found.iter().flat_map(|(parameters, ends)| basins(parameters, ends)).collect()
+}
+
+fn own<'a>(row: &'a JobRow, name: &str) -> Option<&'a Value> {
+    row.parameters.iter().find(|(own, _)| own == name).map(|(_, value)| value)
+}
+
+fn without(row: &JobRow, name: &str) -> Vec<(String, Value)> {
+    row.parameters.iter().filter(|(own, _)| own != name).cloned().collect()
+}

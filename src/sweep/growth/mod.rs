@@ -1,0 +1,18 @@
+//! The next jobs of studies that grow, from the results of those that have ended.
+//!
+//! ```text
+//! rows of the study ──► series (jobs that differ in one parameter) ──┬──► refine: curves, minima, boundaries ──┐
+//!                                                                    └──► chains, kicks: jobs that continue ───┴──► wave
+//! ```
+//!
+//! A wave is a function of the study and of the results before it: the same study gets the same jobs, whoever plans them and
+//! in whatever order results come in. Jobs that failed, or that have no value, are points where nothing is known.
+
+mod chains;
+mod findings;
+mod planner;
+mod refine;
+mod series;
+
+pub use findings::read_growth;
+pub use planner::PLANNER;

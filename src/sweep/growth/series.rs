@@ -1,0 +1,109 @@
+//! Jobs that differ in one parameter.
+
+use crate::analysis::{JobRecord, Outcome, Regime};
+use crate::report::JobRow;
+use crate::study::Side;
+use serde_json::Value;
+use std::collections::HashMap;
+
+/// The jobs of a study that differ in one parameter alone, from its smallest value to its largest.
+#[derive(Debug)]
+pub struct Series<'a> {
+    /// The other parameters with their values.
+    pub rest: Vec<(String, Value)>,
+    pub points: Vec<(f64, &'a JobRow)>,
+}
+
+/// The series along a parameter, in the order of their first jobs. Only those that have two jobs that the study's author asked for: a
+/// point that was added to one series is no beginning of another one.
+pub fn series_along<'a>(rows: &'a [JobRow], along: &str) -> Vec<Series<'a>> {
+    let mut places: HashMap<String, usize> = HashMap::new();
+    let mut found: Vec<(usize, Series<'a>)> = Vec::new();
+    for row in rows {
+        let Some(x) = row.parameters.iter().find(|(name, _)| name == along).and_then(|(_, x)| x.as_f64())
+        else {
+            continue;
+        };
+        let rest: Vec<_> = row.parameters.iter().filter(|(name, _)| name != along).cloned().collect();
+        let place = *places.entry(serde_json::to_string(&rest).unwrap_or_default()).or_insert(found.len());
+        if place == found.len() {
+            found.push((0, Series { rest, points: Vec::new() }));
+        }
+        let (given, series) = &mut found[place];
+        *given += usize::from(row.wave == 0);
+        series.points.push((x, row));
+    }
+    let mut found: Vec<Series<'a>> =
+        found.into_iter().filter(|(given, _)| *given >= 2).map(|(_, series)| series).collect();
+    for series in &mut found {
+        series.points.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        series.points.dedup_by_key(|(x, _)| x.to_bits());
+    }
+    found
+}
+
+impl Series<'_> {
+    /// The parameters of a point, in the order of the study.
+    pub fn at(&self, along: &str, x: f64) -> Vec<(String, Value)> {
+        let order = self.points.first().map_or(&self.rest, |(_, row)| &row.parameters);
+        order
+            .iter()
+            .map(|(name, value)| (name.clone(), if name == along { x.into() } else { value.clone() }))
+            .collect()
+    }
+
+    /// The points with a value, and the positions of those without one.
+    pub fn known<T>(&self, value: impl Fn(&JobRow) -> Option<T>) -> (Vec<(f64, T)>, Vec<f64>) {
+        let mut unknown = Vec::new();
+        let mut known = Vec::new();
+        for (x, row) in &self.points {
+            match value(row) {
+                Some(value) => known.push((*x, value)),
+                None => unknown.push(*x),
+            }
+        }
+        (known, unknown)
+    }
+}
+
+/// The kind of a job on one side of a boundary, with the growth rate \[1/s\] that tells how far the boundary is.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Kind {
+    pub name: String,
+    pub rate_per_s: Option<f64>,
+}
+
+/// The kind of a job; none if it is not known.
+pub fn kind(row: &JobRow, side: Side) -> Option<Kind> {
+    let record = row.record();
+    match side {
+        Side::Stability => {
+            let rate_per_s = growth_rate_per_s(record?);
+            let is_stable = rate_per_s.map(|rate| rate < 0.0).or_else(|| is_stable(record?))?;
+            Some(Kind { name: if is_stable { "stable" } else { "unstable" }.to_owned(), rate_per_s })
+        }
+        Side::Regime => {
+            let regime = record?.regime;
+            (regime != Regime::Undecided).then(|| Kind { name: regime.name().to_owned(), rate_per_s: None })
+        }
+        Side::Status => {
+            record?;
+            Some(Kind { name: row.status().to_owned(), rate_per_s: None })
+        }
+    }
+}
+
+/// Of the fastest growing mode, or of the oscillation that a run ended with.
+fn growth_rate_per_s(record: &JobRecord) -> Option<f64> {
+    let of_modes = record.stability.as_ref().and_then(|own| own.modes.first());
+    of_modes.map(|mode| mode.growth_rate_per_s).or(record.growth_rate_per_s)
+}
+
+/// Whether the run says that sliding is stable; none if it says neither.
+fn is_stable(record: &JobRecord) -> Option<bool> {
+    match (record.outcome, record.regime) {
+        (Outcome::Decayed, _) => Some(true),
+        (Outcome::NotPeriodic | Outcome::Completed, Regime::Undecided | Regime::Stable) => None,
+        (Outcome::Periodic | Outcome::Unstable | Outcome::NotPeriodic | Outcome::Completed, _) => Some(false),
+    }
+}

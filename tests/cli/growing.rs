@@ -1,0 +1,195 @@
+//! Studies that grow: the same jobs and the same report, whoever plans them, in whatever order results come, and whatever dies.
+#![cfg(unix)]
+
+use std::collections::BTreeMap;
+use std::time::Duration;
+
+use serde_json::{Value, json};
+
+use crate::random::Random;
+use crate::server_database::ServerDatabase;
+use crate::support::{Folder, rows, small, stderr, without_wall_times};
+
+/// Curves with their minima, and boundaries of stability, on a small mesh. Waves are small, so that there are many.
+fn refining() -> Value {
+    let mut study = small(&json!({ "mu": [0.1, 0.3, 0.6], "omega_rpm": [3, 10, 40] }));
+    study["stability"] = "eigenvalues".into();
+    study["refine"] = json!({
+        "curves": { "over": "omega_rpm", "within": 0.01, "minimum_within": 1.0 },
+        "boundaries": { "over": "mu", "within": 0.01 },
+        "most_jobs": 70,
+        "wave_jobs": 5,
+    });
+    study
+}
+
+/// A way up and a way down.
+fn continuing() -> Value {
+    let mut study = small(&json!({ "mu": [0.4, 0.6], "omega_rpm": [3, 5, 10, 20] }));
+    study["continue"] = json!({ "along": "omega_rpm" });
+    study
+}
+
+/// The files of a report that have no times, and the export without wall times.
+fn findings(folder: &Folder, db: &str) -> BTreeMap<String, String> {
+    folder.ok(&format!("report study --db {db} --out report"));
+    let mut found = BTreeMap::new();
+    for file in folder.files().into_iter().filter(|file| file.starts_with("report/")) {
+        let has_times =
+            ["report.md", "report.html", "run_times", "jobs.csv"].iter().any(|part| file.contains(part));
+        // The hidden list names the files only.
+        if !has_times {
+            found.insert(file.clone(), folder.read(&file));
+        }
+    }
+    assert!(found.len() > 10, "{:?}", found.keys());
+    found.insert("export".to_owned(), without_wall_times(&folder.ok(&format!("export study --db {db}"))));
+    found
+}
+
+fn undisturbed(study: &Value, options: &str) -> BTreeMap<String, String> {
+    let folder = Folder::with("study", study);
+    folder.ok(&format!("run study.json --db sweep.db {options}"));
+    findings(&folder, "sweep.db")
+}
+
+/// Starts pairs of workers and kills them after a random time, until the study needs no more jobs.
+fn storm(study: &Value, db: &str, seed: u64) -> BTreeMap<String, String> {
+    let folder = Folder::with("study", study);
+    let mut random = Random::new(seed);
+    folder.ok(&format!("submit study.json --db {db}"));
+    let state =
+        || -> Value { serde_json::from_str(&folder.ok(&format!("status study --json --db {db}"))).unwrap() };
+    let mut kills = 0;
+    loop {
+        let work = format!("work --db {db} --threads 1 --lease 10s --max-crashes 1000");
+        let workers = [folder.start(&work), folder.start(&work)];
+        std::thread::sleep(Duration::from_millis(30 + random.below(250) as u64));
+        for worker in workers {
+            worker.signal("KILL");
+            kills += usize::from(worker.end().0.is_none());
+        }
+        let words = state()["waves"]["state"].as_str().unwrap().to_owned();
+        if words.starts_with("No more jobs") {
+            break;
+        }
+        assert!(kills < 2_000, "{words}");
+    }
+    assert!(kills > 2, "the study must not be done before anything is killed");
+    findings(&folder, db)
+}
+
+fn assert_same(found: &BTreeMap<String, String>, expected: &BTreeMap<String, String>) {
+    assert_eq!(found.keys().collect::<Vec<_>>(), expected.keys().collect::<Vec<_>>());
+    for (file, text) in expected {
+        assert!(found[file] == *text, "{file}:\n{}\n---\n{text}", found[file]);
+    }
+}
+
+/// Protects: a study that refines has the same jobs and the same report with one thread and with two, and when its workers are killed
+/// at any time.
+#[test]
+fn a_refinement_survives_a_storm_of_kills() {
+    let study = refining();
+    let expected = undisturbed(&study, "--threads 1");
+    assert_same(&undisturbed(&study, "--threads 2"), &expected);
+    assert!(expected["report/waves.csv"].lines().count() > 5, "{}", expected["report/waves.csv"]);
+    assert!(
+        expected["report/boundaries.csv"].contains(",stable,unstable,"),
+        "{}",
+        expected["report/boundaries.csv"]
+    );
+    assert_same(&storm(&study, "sweep.db", 1), &expected);
+}
+
+/// Protects: the same on a server.
+#[test]
+fn a_refinement_survives_on_a_server() {
+    let Some(database) = ServerDatabase::new() else { return };
+    let study = refining();
+    assert_same(&storm(&study, &database.url(), 2), &undisturbed(&study, ""));
+}
+
+/// Protects: chains of jobs that continue their neighbours survive the same, and every job of them is there.
+#[test]
+fn chains_survive_a_storm_of_kills() {
+    let study = continuing();
+    let expected = undisturbed(&study, "--threads 2");
+    assert_eq!(rows(&expected["export"]).len(), 16);
+    assert_eq!(expected["report/branches.csv"].lines().count(), 9);
+    assert_same(&storm(&study, "sweep.db", 3), &expected);
+}
+
+/// Protects: what is found is as good as what is asked for, and no better by chance: every boundary is known within its width, every
+/// minimum lies between near neighbours, and jobs beyond the budget are not asked for.
+#[test]
+fn what_is_asked_for_is_found() {
+    let folder = Folder::with("study", &refining());
+    folder.ok("run study.json");
+    let table = |name: &str| rows(&folder.read(format!("reports/study/{name}.csv")));
+    let boundaries = table("boundaries");
+    assert!(!boundaries.is_empty());
+    for row in &boundaries {
+        let [from, to] = ["from", "to"].map(|name| row[name].parse::<f64>().unwrap());
+        assert!(to - from <= 0.01 + 1e-9 && row["known"] == "yes", "{row:?}");
+    }
+    for row in table("minima") {
+        assert_eq!(row["known"], "yes", "{row:?}");
+    }
+    let mut small = refining();
+    small["refine"]["most_jobs"] = 15.into();
+    let folder = Folder::with("study", &small);
+    let run = folder.ok("run study.json");
+    assert!(!run.is_empty());
+    assert_eq!(rows(&folder.ok("export study")).len(), 15);
+    assert!(folder.ok("status study").contains("the budget of 15 jobs is used up"));
+}
+
+/// Protects: mistakes in `refine` and `continue` are refused with the field and what would be right, and no database is made.
+#[test]
+fn mistakes_are_refused() {
+    let grid = json!({ "mu": [0.2, 0.4], "omega_rpm": [5, 20] });
+    for (field, value, expected) in [
+        ("refine", json!({}), "`curves`, `boundaries`, or both"),
+        ("refine", json!({ "curves": { "over": "omega_rpm" } }), "`within`, `minimum_within`, or both"),
+        (
+            "refine",
+            json!({ "curves": { "over": "load_n", "within": 0.1 } }),
+            "expected a number that the study varies",
+        ),
+        (
+            "refine",
+            json!({ "curves": { "over": "mu", "of": "mustar", "within": 0.1 } }),
+            "did you mean `mu_star`?",
+        ),
+        ("refine", json!({ "boundaries": { "over": "mu", "within": 0 } }), "expected a number > 0"),
+        (
+            "refine",
+            json!({ "boundaries": { "over": "mu", "within": 0.1 }, "wave_jobs": 0 }),
+            "a number of jobs from 1",
+        ),
+        ("continue", json!({}), "either `along` or `kicks`"),
+        ("continue", json!({ "along": "mu", "kicks": 3 }), "either `along` or `kicks`"),
+        ("continue", json!({ "along": "mu", "directions": [] }), "`up`, `down`, or both"),
+        ("continue", json!({ "kicks": 4 }), "expected `kick_m_s`"),
+        ("continue", json!({ "along": "clamp_width_m" }), "it varies mu, omega_rpm"),
+    ] {
+        let mut study = small(&grid);
+        study[field] = value.clone();
+        let folder = Folder::with("study", &study);
+        let message = stderr(&folder.command("submit study.json").assert().failure());
+        assert!(message.contains(expected), "{value}: {message}");
+        assert_eq!(folder.files(), ["study.json"]);
+    }
+    let mut study = small(&grid);
+    study["continue"] = json!({ "along": "mu" });
+    study["scene"]["disk"] = json!({ "runout_m": 1.0e-6 });
+    let folder = Folder::with("study", &study);
+    let message = stderr(&folder.command("validate study.json").assert().failure());
+    assert!(message.contains("continue"), "{message}");
+    let folder = Folder::with("study", &refining());
+    let message = stderr(&folder.command("submit study.json --shard 1/2").assert().failure());
+    assert!(message.contains("cannot be divided into shards"), "{message}");
+    let message = stderr(&folder.command("slurm study.json --workers 2").assert().failure());
+    assert!(message.contains("needs one database for all workers"), "{message}");
+}
