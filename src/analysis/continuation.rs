@@ -5,7 +5,8 @@
 //! but for the rounding of its first step.
 
 use super::nested::Beginning;
-use crate::solver::{Model, PinMotion};
+use crate::solver::Model;
+pub use crate::solver::PinMotion;
 use crate::spec::{Continuation, JobSpec};
 
 /// Bytes of a number.
@@ -95,6 +96,7 @@ mod tests {
     fn a_kick_has_its_size() {
         let mut spec = JobSpec::default();
         spec.scene.pin.elements = [4, 5, 3];
+        spec.scene.clamp.width_m = 0.003;
         let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
         let with =
             |kick_seed| kick(&Continuation { kick_m_s: 0.02, kick_seed, ..Continuation::ROOT }, &model);

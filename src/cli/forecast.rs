@@ -33,6 +33,14 @@ pub(crate) fn read(
     })
 }
 
+/// That more jobs follow, in a line; empty for a study that does not grow.
+pub(crate) fn growth(plan: &Plan) -> String {
+    let most = plan.study().most_jobs();
+    most.map_or_else(String::new, |most| {
+        format!("growth    more jobs follow when these have ended, up to {most} in all\n")
+    })
+}
+
 /// The forecast in lines of at most 80 characters, if the path of the database is short.
 pub(crate) fn as_text(forecast: &Forecast, db: &Location) -> String {
     let mut lines = table(&forecast.groups);

@@ -77,7 +77,11 @@ fn dry_run(plan: &Plan, args: &Args, db: &Location) -> Result<u8, CliError> {
         format!("{}\n", forecast::as_json(&forecast, replaced.as_ref(), plan))
     } else {
         let jobs = value::count(forecast.jobs, "job");
-        format!("{name}: {jobs}, nothing was submitted\n{}", forecast::as_text(&forecast, db))
+        format!(
+            "{name}: {jobs}, nothing was submitted\n{}{}",
+            forecast::as_text(&forecast, db),
+            forecast::growth(plan)
+        )
     })?;
     replace::check(plan, &args.replacement, replaced)?;
     Ok(exit::SUCCESS)

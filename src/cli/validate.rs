@@ -46,9 +46,10 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         // A changed study may have another name than the file says.
         let name = if args.study.is_changed() { format!(" as {}", plan.name()) } else { String::new() };
         format!(
-            "{file}{name}: valid, {}{grid}\n{}",
+            "{file}{name}: valid, {}{grid}\n{}{}",
             count(forecast.jobs, "job"),
-            forecast::as_text(&forecast, db)
+            forecast::as_text(&forecast, db),
+            forecast::growth(&plan)
         )
     })?;
     replace::check(&plan, &args.replacement, replaced)?;

@@ -7,7 +7,7 @@ use super::engine::{Connection, Statement, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
-use super::plans;
+use super::plan_rows;
 use super::state::JobState;
 use super::submit::{self, NewJob, UPSERT_STUDY};
 
@@ -180,7 +180,7 @@ impl Queue {
             .await?;
         absorbed.studies += 1;
         // The plan is read before the rows: a wave that is added meanwhile is planned again here, with the same jobs.
-        let plan = plans::read(&mut other.connection, *there_id).await?;
+        let plan = plan_rows::read(&mut other.connection, *there_id).await?;
         let mut next = 0;
         while let Some(page) = read(&mut other.connection, *there_id, next).await? {
             next = page.rows.last().map_or(next, |(ordinal, _)| ordinal + 1);
@@ -193,7 +193,7 @@ impl Queue {
             absorbed.open += copied.open;
         }
         if let Some(plan) = &plan {
-            self.write(async |connection, _| plans::copy(connection, here_id, plan).await).await?;
+            self.write(async |connection, _| plan_rows::copy(connection, here_id, plan).await).await?;
         }
         Ok(())
     }

@@ -64,6 +64,7 @@ mod lookup;
 mod open;
 mod open_jobs;
 mod owner;
+mod plan_rows;
 mod plans;
 #[cfg(feature = "postgres")]
 mod postgres;

@@ -1,7 +1,7 @@
 use super::engine::query;
 use super::error::QueueError;
 use super::handle::Queue;
-use super::plans;
+use super::plan_rows;
 use super::scope::Scope;
 
 const ALL: &str = "
@@ -41,7 +41,7 @@ impl Queue {
             Some(id) => query(OF_STUDY).bind(id),
         };
         let (pending, running): (i64, i64) = open.one(&mut self.connection).await?;
-        let has_plans = plans::has_open(&mut self.connection, study_id).await?;
+        let has_plans = plan_rows::has_open(&mut self.connection, study_id).await?;
         Ok(OpenJobs { has_pending: pending > 0, has_running: running > 0, has_plans })
     }
 }

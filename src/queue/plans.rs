@@ -15,6 +15,7 @@ use super::engine::{Connection, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
+use super::plan_rows;
 use super::scope::Scope;
 use super::submit::{self, CHUNK, NewJob};
 
@@ -88,12 +89,6 @@ const DUE: &str = "
           WHERE m.study_id = s.id AND j.state = 'running')
     ORDER BY s.id LIMIT 1";
 
-/// Whether there are studies that may grow, in all the database or with the number $1.
-const OPEN: &str = "
-    SELECT COUNT(*) FROM (
-        SELECT 1 FROM plans AS p JOIN studies AS s ON s.id = p.study_id
-        WHERE p.state = 'open' AND s.cancelled_ms IS NULL AND ($1 IS NULL OR s.id = $1) LIMIT 1) AS o";
-
 const TAKE: &str = "UPDATE plans SET owner = $2, lease_until_ms = $3 WHERE study_id = $1";
 
 /// The fence: the plan is still the one that the worker claimed, and the study has the document from which it was made.
@@ -103,22 +98,6 @@ const ADVANCE: &str = "
       AND EXISTS (SELECT 1 FROM studies AS s WHERE s.id = $1 AND s.document = $7)";
 
 const NEXT_ORDINAL: &str = "SELECT COALESCE(MAX(ordinal) + 1, 0) FROM study_jobs WHERE study_id = $1";
-
-/// A plan that failed is tried again.
-const REOPEN: &str = "UPDATE plans SET state = 'open', note = NULL WHERE study_id = $1 AND state = 'failed'";
-
-const BEGIN: &str = "
-    INSERT INTO plans (study_id) VALUES ($1)
-    ON CONFLICT (study_id) DO UPDATE
-    SET wave = 0, state = 'open', note = NULL, owner = NULL, lease_until_ms = NULL";
-
-const STATUS: &str = "SELECT wave, state, note FROM plans WHERE study_id = $1";
-
-const COPY: &str = "
-    INSERT INTO plans (study_id, wave, state, note) VALUES ($1, $2, $3, $4)
-    ON CONFLICT (study_id) DO UPDATE
-    SET wave = excluded.wave, state = excluded.state, note = excluded.note
-    WHERE plans.wave < excluded.wave OR plans.wave = excluded.wave AND plans.state = 'open'";
 
 impl Queue {
     /// Claims the next wave that is due in `scope`, if there is one. The worker that was given it before may claim it again.
@@ -189,7 +168,7 @@ impl Queue {
     /// [`QueueError::UnknownStudy`], or if the database cannot be read.
     pub async fn plan_status(&mut self, study: &str) -> Result<Option<PlanStatus>, QueueError> {
         let id = lookup::require(&mut self.connection, study).await?;
-        let found = read(&mut self.connection, id).await?;
+        let found = plan_rows::read(&mut self.connection, id).await?;
         Ok(found.map(|(waves, state, note)| PlanStatus {
             waves: waves.unsigned_abs(),
             state: match state.as_str() {
@@ -209,42 +188,4 @@ async fn due(
     now_ms: i64,
 ) -> Result<Option<(i64, String, String, i64)>, QueueError> {
     query(DUE).bind(study_id).bind(owner).bind(now_ms).optional(connection).await
-}
-
-/// Whether studies may grow, of all or of this number.
-pub(super) async fn has_open(connection: &mut Connection, study_id: Option<i64>) -> Result<bool, QueueError> {
-    let found: i64 = query(OPEN).bind(study_id).scalar(connection).await?;
-    Ok(found > 0)
-}
-
-/// Begins the plan of a study again, with no waves.
-pub(super) async fn begin(connection: &mut Connection, study_id: i64) -> Result<(), QueueError> {
-    query(BEGIN).bind(study_id).run(connection).await.map(drop)
-}
-
-/// The study does not grow any more.
-pub(super) async fn delete(connection: &mut Connection, study_id: i64) -> Result<(), QueueError> {
-    query("DELETE FROM plans WHERE study_id = $1").bind(study_id).run(connection).await.map(drop)
-}
-
-/// Tries a plan that failed again.
-pub(super) async fn reopen(connection: &mut Connection, study_id: i64) -> Result<(), QueueError> {
-    query(REOPEN).bind(study_id).run(connection).await.map(drop)
-}
-
-/// Waves, state and note of a plan.
-pub(super) type Columns = (i64, String, Option<String>);
-
-/// The plan of a study as it is stored.
-pub(super) async fn read(connection: &mut Connection, study_id: i64) -> Result<Option<Columns>, QueueError> {
-    query(STATUS).bind(study_id).optional(connection).await
-}
-
-/// Gives a study the plan that it has in another database, unless its own one is further.
-pub(super) async fn copy(
-    connection: &mut Connection,
-    study_id: i64,
-    (waves, state, note): &Columns,
-) -> Result<(), QueueError> {
-    query(COPY).bind(study_id).bind(*waves).bind(state).bind(note).run(connection).await.map(drop)
 }

@@ -4,7 +4,7 @@ use super::engine::query;
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
-use super::plans;
+use super::plan_rows;
 use super::replace::Replaced;
 use super::state::JobState;
 
@@ -36,7 +36,7 @@ impl Queue {
             Replaced { document: old.document, kept: 0, new: 0, dropped: 0, dropped_done: 0, cancelled: 0 };
         // A study that grows keeps its waves if it is submitted as it is.
         let keeps_waves =
-            replaced.document == document && plans::read(&mut self.connection, study_id).await?.is_some();
+            replaced.document == document && plan_rows::read(&mut self.connection, study_id).await?.is_some();
         let mut stay = 0;
         for (key, state, is_only_here) in jobs {
             let is_wanted = keys.contains(key.as_str());

@@ -2,7 +2,7 @@ use super::engine::{Connection, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
-use super::plans;
+use super::plan_rows;
 
 /// What the removal of a study changed, or would change. A job that several rows point to counts once.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -62,7 +62,7 @@ impl Queue {
             let removed = extent(connection, study_id).await?;
             query(CANCEL_UNREQUESTED).bind(study_id).bind(NOTE).run(connection).await?;
             query("DELETE FROM study_jobs WHERE study_id = $1").bind(study_id).run(connection).await?;
-            plans::delete(connection, study_id).await?;
+            plan_rows::delete(connection, study_id).await?;
             query("DELETE FROM studies WHERE id = $1").bind(study_id).run(connection).await?;
             Ok(removed)
         })

@@ -2,7 +2,7 @@ use super::engine::query;
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
-use super::plans;
+use super::plan_rows;
 use super::take_back::TakenBack;
 
 /// Which jobs to run again.
@@ -48,7 +48,7 @@ impl Queue {
             let mut retried = Retried { taken_back, ..Retried::default() };
             let again = |state: &'static str| query(PENDING_AGAIN).bind(study_id).bind(state).bind(NOTE);
             retried.failed = again("failed").run(connection).await?;
-            plans::reopen(connection, study_id).await?;
+            plan_rows::reopen(connection, study_id).await?;
             if which == Retry::All {
                 query(UNDO_CANCELLATION).bind(study_id).run(connection).await?;
                 retried.cancelled = again("cancelled").run(connection).await?;

@@ -5,7 +5,7 @@ use super::counts;
 use super::engine::{Connection, Statement, query};
 use super::error::QueueError;
 use super::handle::Queue;
-use super::plans;
+use super::plan_rows;
 use super::replace::{Replace, Replaced};
 
 /// A study to be submitted.
@@ -258,7 +258,7 @@ impl Queue {
                     old.as_ref().is_some_and(|(_, document, _)| *document == study.document);
                 let keeps_waves = study.grows
                     && is_same_document
-                    && plans::read(connection, study_id).await?.is_some()
+                    && plan_rows::read(connection, study_id).await?.is_some()
                     && is_unchanged(connection, study_id, &rows).await?;
                 // Jobs of deleted rows. Other rows of the study may have them still.
                 let mut deleted = BTreeSet::new();
@@ -273,9 +273,9 @@ impl Queue {
                     deleted.extend(surplus);
                 }
                 match (study.grows, keeps_waves) {
-                    (true, true) => plans::reopen(connection, study_id).await?,
-                    (true, false) => plans::begin(connection, study_id).await?,
-                    (false, _) => plans::delete(connection, study_id).await?,
+                    (true, true) => plan_rows::reopen(connection, study_id).await?,
+                    (true, false) => plan_rows::begin(connection, study_id).await?,
+                    (false, _) => plan_rows::delete(connection, study_id).await?,
                 }
                 let before = count_jobs(connection).await?;
                 for chunk in rows.chunks(CHUNK) {

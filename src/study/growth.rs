@@ -1,17 +1,12 @@
 //! Studies that grow: what a study file says about jobs that depend on the results of others.
 
-use super::definition::Study;
 use super::error::Problem;
-use super::expand::Job;
 use super::grid::Grid;
-use super::key::job_key;
 use super::parameter::{PARAMETERS, Parameter};
 use super::source::SourceText;
 use super::suggest::nearest_name;
-use crate::spec::{Continuation, StabilityMethod, Start};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
-use serde_json::Value;
 
 /// Where the program adds points by itself, wave by wave.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -267,104 +262,10 @@ impl Continue {
     }
 }
 
-impl Study {
-    /// How the study grows.
-    pub fn growth(&self) -> &Growth {
-        &self.growth
-    }
-
-    /// The job at a point that the grid need not have: with these values of the parameters that the study varies. None if a limit or a
-    /// condition of the study forbids it.
-    pub fn job_at(&self, parameters: &[(String, Value)], solver_version: &str) -> Option<Job> {
-        let mut draft = self.draft();
-        let known = |name: &str| PARAMETERS.iter().find(|parameter| parameter.name == name);
-        for (name, value) in parameters {
-            if let Some(parameter) = known(name) {
-                draft.mark(parameter);
-                draft.put(parameter, value);
-            }
-        }
-        let point: Vec<_> =
-            parameters.iter().filter_map(|(name, value)| Some((known(name)?, value))).collect();
-        if !self.grid.keeps(&point, &self.base) {
-            return None;
-        }
-        let resolved = draft.resolve();
-        let key = job_key(&resolved.spec, solver_version);
-        let job = Job { key, spec: resolved.spec, parameters: parameters.to_vec() };
-        resolved.violations.is_empty().then_some(job)
-    }
-
-    /// The first jobs of chains, made from the jobs of the grid; `jobs` unchanged if the study continues none.
-    pub(super) fn roots(&self, jobs: Vec<Job>, solver_version: &str) -> Vec<Job> {
-        let Some(continues) = &self.growth.continues else { return jobs };
-        let Some(along) = &continues.along else {
-            let with_kick = |job: &Job| job.continued(None, (KICK, 0.into()), solver_version);
-            return jobs.iter().map(with_kick).collect();
-        };
-        let chains = chains_of(&jobs, along);
-        let root = |direction: &Direction, chain: &Vec<&Job>| {
-            let first = if *direction == Direction::Up { chain.first() } else { chain.last() };
-            first.map(|job| job.continued(None, (DIRECTION, direction.name().into()), solver_version))
-        };
-        continues
-            .directions
-            .iter()
-            .flat_map(|direction| chains.iter().filter_map(move |chain| root(direction, chain)))
-            .collect()
-    }
-}
-
 impl Continue {
     /// The velocity that is added at the beginning of each job \[m/s\].
     pub fn kick_m_s(&self) -> f64 {
         self.kick_m_s.unwrap_or(CHAIN_KICK_M_S)
-    }
-}
-
-/// The jobs that differ in one parameter alone, from its smallest value to its largest; the groups in the order of their first jobs.
-pub fn chains_of<'a>(jobs: &'a [Job], along: &str) -> Vec<Vec<&'a Job>> {
-    let mut places = std::collections::HashMap::new();
-    let mut chains: Vec<Vec<&Job>> = Vec::new();
-    for job in jobs {
-        let rest: Vec<_> = job.parameters.iter().filter(|(name, _)| name != along).collect();
-        let rest = serde_json::to_string(&rest).unwrap_or_default();
-        let place = *places.entry(rest).or_insert(chains.len());
-        if place == chains.len() {
-            chains.push(Vec::new());
-        }
-        chains[place].push(job);
-    }
-    for chain in &mut chains {
-        chain.sort_by(|a, b| a.number(along).total_cmp(&b.number(along)));
-    }
-    chains
-}
-
-impl Job {
-    /// The value of a parameter that is a number; NaN if it has none.
-    pub fn number(&self, name: &str) -> f64 {
-        let own = self.parameters.iter().find(|(own, _)| own == name);
-        own.and_then(|(_, value)| value.as_f64()).unwrap_or(f64::NAN)
-    }
-
-    /// The job as one that begins where its parent ended, or at rest, and that others can continue. It runs in any case:
-    /// eigenvalues say nothing about motions far from steady sliding. `own` is what tells its row from others.
-    #[must_use]
-    pub fn continued(
-        &self,
-        continuation: Option<Continuation>,
-        own: (&str, Value),
-        solver_version: &str,
-    ) -> Self {
-        let mut job = self.clone();
-        job.spec.continuation = Some(Box::new(continuation.unwrap_or(Continuation::ROOT)));
-        job.spec.stability = StabilityMethod::Simulate;
-        job.spec.run.start = Start::Rest;
-        job.key = job_key(&job.spec, solver_version);
-        job.parameters.retain(|(name, _)| name != own.0);
-        job.parameters.push((own.0.to_owned(), own.1));
-        job
     }
 }
 

@@ -15,6 +15,7 @@
 //! Messages name the file, line and column, the field, its value and what is expected.
 
 mod axis;
+mod chains;
 mod change;
 mod conditions;
 mod damping;
@@ -52,11 +53,12 @@ mod text;
 mod time_defaults;
 mod validate;
 
+pub use chains::chains_of;
 pub use change::Changes;
 pub use definition::Study;
 pub use error::{Problem, StudyError};
 pub use expand::Job;
-pub use growth::{Boundaries, Continue, Curves, DIRECTION, Direction, Growth, KICK, Refine, Side, chains_of};
+pub use growth::{Boundaries, Continue, Curves, DIRECTION, Direction, Growth, KICK, Refine, Side};
 pub use input::{Input, input_parameters, inputs};
 pub use key::{SharedKeys, job_key};
 pub use limits::MAX_JOBS;

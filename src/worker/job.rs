@@ -1,10 +1,9 @@
 //! A job on its thread: its payload is parsed once, and its end becomes an outcome for the queue.
 
 use super::channel::{Assignment, WorkerChannel};
-use crate::analysis::continuation::{from_bytes, to_bytes};
+use crate::analysis::continuation::{PinMotion, from_bytes, to_bytes};
 use crate::analysis::{Ending, JobError, JobRecord};
 use crate::queue::FinishedOutcome;
-use crate::solver::PinMotion;
 use crate::spec::JobSpec;
 use std::any::Any;
 

@@ -220,7 +220,8 @@ fn the_shipped_studies_are_valid() {
     for study in studies {
         let jobs = Study::load(&study).unwrap().expand(solver::VERSION).unwrap().len();
         let printed = stdout(&folder.command("validate").timeout(LONGEST_CHECK).arg(&study).assert().code(0));
-        let expected = format!("{}: valid, {jobs} jobs", study.display());
+        let noun = if jobs == 1 { "job" } else { "jobs" };
+        let expected = format!("{}: valid, {jobs} {noun}", study.display());
         let rest = printed.strip_prefix(&expected);
         assert!(
             rest.is_some_and(|rest| rest.starts_with('\n') || rest.starts_with(" (")),

@@ -109,6 +109,8 @@ pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> JobRow {
         numerics: None,
         // An error that leaves all digits.
         discretisation: Discretisation::Measured(Arc::new(MeshError::default())),
+        wave: 0,
+        why: None,
     }
 }
 

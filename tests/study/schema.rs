@@ -53,6 +53,8 @@ fn a_complete_job_fits() {
         "samples",
         "include",
         "exclude",
+        "refine",
+        "continue",
         "report",
     ] {
         assert!(parts.remove(part).is_some(), "{part}");

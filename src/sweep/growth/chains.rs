@@ -15,14 +15,6 @@ pub fn next_jobs(study: &Study, continues: &Continue, rows: &[JobRow]) -> Result
     }
 }
 
-/// Number of jobs that the chains of a study have in the end, if none fails.
-pub fn length(study: &Study, continues: &Continue) -> usize {
-    match continues.along {
-        Some(_) => continues.directions.len() * study.grid_size(),
-        None => study.grid_size() * (1 + continues.kicks.unwrap_or(0) as usize),
-    }
-}
-
 fn next_of_chains(
     study: &Study,
     continues: &Continue,

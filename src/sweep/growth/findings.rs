@@ -1,6 +1,6 @@
 //! What a study that grows has found so far.
 
-use super::{chains, refine};
+use super::refine;
 use crate::queue::{PlanState, PlanStatus, Queue};
 use crate::report::{BranchPoint, Endpoint, Findings, JobRow, RowState, basins};
 use crate::study::{Continue, DIRECTION, Direction, KICK, Study};
@@ -55,14 +55,10 @@ fn state(study: &Study, plan: &PlanStatus, rows: &[JobRow]) -> String {
             format!("The next wave could not be planned: {note}. `tribosweep retry` tries it again.")
         }
         PlanState::Open => {
-            let most = match (&study.growth().refine, &study.growth().continues) {
-                (Some(refine), _) => format!("at most {}", refine.most_jobs),
-                (_, Some(continues)) => chains::length(study, continues).to_string(),
-                _ => String::new(),
-            };
+            let most = study.most_jobs().unwrap_or(0);
             let jobs = rows.len();
             let last = if waves > 0 { format!("Wave {waves} asked for {note}. ") } else { String::new() };
-            format!("{last}More jobs follow when these have ended: there are {jobs} of {most} jobs.")
+            format!("{last}More jobs follow when these have ended: there are {jobs} of at most {most} jobs.")
         }
     }
 }

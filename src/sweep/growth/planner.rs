@@ -34,7 +34,7 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
     if let Some(continues) = &growth.continues {
         let jobs = chains::next_jobs(&study, continues, &rows)?;
         if jobs.is_empty() {
-            let missing = chains::length(&study, continues).saturating_sub(rows.len());
+            let missing = study.most_jobs().unwrap_or(0).saturating_sub(rows.len());
             let stopped = if missing == 0 {
                 String::new()
             } else {

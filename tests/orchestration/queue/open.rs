@@ -87,6 +87,8 @@ async fn an_interrupted_creation_is_completed() {
     for statement in [
         "PRAGMA application_id = 0",
         "DROP TABLE checkpoints",
+        "DROP TABLE final_states",
+        "DROP TABLE plans",
         "DROP TABLE payloads",
         "DROP TABLE study_pending",
         "DROP TABLE results",
@@ -117,7 +119,7 @@ async fn a_newer_database_is_refused() {
 
     let error = error_of(&sandbox.database()).await;
     assert!(matches!(error, QueueError::NewerDatabase { found: 9001, .. }), "{error:?}");
-    assert!(error.to_string().contains("newer tribosweep (schema 9001; this one knows up to 3)"), "{error}");
+    assert!(error.to_string().contains("newer tribosweep (schema 9001; this one knows up to 4)"), "{error}");
 }
 
 /// Protects: if several processes open a missing database at the same time, all of them succeed. Without the opening
