@@ -153,6 +153,12 @@ def main():
     branch_lines = [[line["omega_rpm"], line["mu_star_up"], line["frequency_up_hz"], line["mu_star_down"],
                      line["frequency_down_hz"]] for line in found_branches["two"]]
     difference = lambda lines: max(abs(float(line["mu_star_up"]) - float(line["mu_star_down"])) for line in lines)
+    of_thresholds = runs.table(["ω [rpm]", "boundary in μ, refined", "boundary in μ, uniform grid"], refined['thresholds'])
+    of_minima = runs.table(["μ", "minimum at ω [rpm] (neighbours)", "μ\\* there", "uniform grid: ω [rpm]", "μ\\* there"], refined['minima'])
+    of_branches = runs.table(["ω [rpm]", "μ\\* up", "frequency up [Hz]", "μ\\* down", "frequency down [Hz]"], branch_lines)
+    of_basins = runs.table(["kick [m/s]", "μ\\*", "frequency [Hz]", "jobs", "share"], found_basins)
+    of_slow = runs.table(header, slow_table)
+    of_fast = runs.table(header, fast_table)
     text = f"""# What plans that learn find
 
 Written by `scripts/growing.py`; do not edit. Reference scene on 12 × 15 × 10 elements.
@@ -165,8 +171,8 @@ Written by `scripts/growing.py`; do not edit. Reference scene on 12 × 15 × 10 
 0.002 at three speeds; 2 to 20 rpm in steps of 0.1 rpm at two μ) have {refined['uniform']} jobs:
 **{refined['uniform'] / refined['jobs']:.1f} times as many**, and take {refined['uniform_s'] / refined['wall_s']:.1f} times the time of threads. Both were run.
 
-{runs.table(["ω [rpm]", "boundary in μ, refined", "boundary in μ, uniform grid"], refined['thresholds'])}
-{runs.table(["μ", "minimum at ω [rpm] (neighbours)", "μ\\* there", "uniform grid: ω [rpm]", "μ\\* there"], refined['minima'])}
+{of_thresholds}
+{of_minima}
 Near its minimum μ\\* is flat, and its values differ by less than the detection of limit cycles leaves open. Then the two minima may be
 some steps apart, with the same μ\\*.
 
@@ -175,7 +181,7 @@ some steps apart, with the same μ\\*.
 With a clamp of 2 mm and a step of 4·10⁻⁷ s (`studies/branches.json`), each job continues its neighbour, in steps of 0.1 rpm from 6 to 8 rpm
 and back. From {found_branches['two'][0]['omega_rpm']} to {found_branches['two'][-1]['omega_rpm']} rpm the two ways are on different limit cycles:
 
-{runs.table(["ω [rpm]", "μ\\* up", "frequency up [Hz]", "μ\\* down", "frequency down [Hz]"], branch_lines)}
+{of_branches}
 With a clamp of 1 mm there is one limit cycle only, although its frequency falls steeply from 6.7 to 6.9 rpm. With the usual detection the
 two ways differ by up to {difference(found_branches['loose']):.4f} there, because a slow approach to the limit cycle already counts as periodic. With a
 detection ten times as strict they differ by at most {difference(found_branches['narrow']):.4f}.
@@ -183,7 +189,7 @@ detection ten times as strict they differ by at most {difference(found_branches[
 How often random velocities lead from a limit cycle at 7 rpm to each of the two (clamp of 2 mm, `studies/basins.json`; 64 kicks of each size;
 in brackets the interval that has the true share with 95 %):
 
-{runs.table(["kick [m/s]", "μ\\*", "frequency [Hz]", "jobs", "share"], found_basins)}
+{of_basins}
 The speed of sliding is 0.067 m/s. A kick that is small beside it seldom changes the limit cycle; large ones lead to both about equally often.
 
 ## What should be measured best?
@@ -193,15 +199,15 @@ The speed of sliding is 0.067 m/s. A kick that is small beside it seldom changes
 
 At 7 rpm, near the minimum of μ\\*:
 
-{runs.table(header, slow_table)}
+{of_slow}
 The variance of μ\\* is explained by {words(slow_ranked, slow_first)}. A parameter without effect has PAWN up to {slow_chance['mu_star']:.2f} by chance.
 
 At 20 rpm:
 
-{runs.table(header, fast_table)}
+{of_fast}
 The variance of μ\\* is explained by {words(fast_ranked, fast_first)}.
 
-So {NAMES[slow_ranked[0]]} is to be measured best at 7 rpm, then {NAMES[slow_ranked[1]]}; at 20 rpm {NAMES[fast_ranked[0]]}, then {NAMES[fast_ranked[1]]}.
+These shares belong to these ranges: the width of a clamp is seldom known, and it is varied most. So {NAMES[slow_ranked[0]]} is to be measured best at 7 rpm, then {NAMES[slow_ranked[1]]}; at 20 rpm {NAMES[fast_ranked[0]]}, then {NAMES[fast_ranked[1]]}.
 """
     runs.write("growing.md", text)
 

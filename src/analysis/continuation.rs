@@ -1,8 +1,8 @@
 //! Jobs that begin with the motion in which another one ended.
 //!
 //! A job stores its last motion as displacements and velocities. That is all that a run on a rigid disk needs, if the law of
-//! friction does not use the past. So a run that continues in the same conditions goes on as if it had not been interrupted,
-//! but for the rounding of its first step.
+//! friction does not use the past. So a run that continues in the same conditions stays in its limit cycle. The displacements are
+//! those at the time of the velocities, so that its beginning is off by less than a time step.
 
 use super::nested::Beginning;
 use crate::solver::Model;

@@ -43,8 +43,8 @@ pub enum JobError {
     },
     /// The job continues another one, whose last motion is not there.
     #[error(
-        "it continues the job {parent}, whose last motion is not in the database (removed by `gc`?): submit the study again with \
-         another name"
+        "it continues the job {parent}, whose last motion is not in this database or is one of another mesh: continue jobs along \
+         a parameter that keeps the mesh, and in the database in which that job was run"
     )]
     NoParentMotion {
         /// The key of the job that it continues.

@@ -75,6 +75,10 @@ const HERE: Statement = Statement::each(
      FROM json_array_elements_text($1::json) AS e (key) JOIN jobs AS j ON j.key = e.key",
 );
 
+/// The rows that a study has here.
+const KNOWN_ROWS: &str =
+    "SELECT ordinal FROM study_jobs WHERE study_id = $1 AND ordinal >= $2 AND ordinal <= $3 ORDER BY ordinal";
+
 const SET_STATES: Statement = Statement::each(
     "
     UPDATE jobs
@@ -163,6 +167,7 @@ impl Queue {
         (there_id, name, document, submitted_ms, cancelled_ms): &StudyColumns,
         absorbed: &mut Absorbed,
     ) -> Result<(), QueueError> {
+        let was_here = self.study(name).await?.is_some();
         let here_id = self
             .write(async |connection, _| {
                 if let Some(id) = lookup::find(connection, name).await? {
@@ -181,11 +186,14 @@ impl Queue {
         absorbed.studies += 1;
         // The plan is read before the rows: a wave that is added meanwhile is planned again here, with the same jobs.
         let plan = plan_rows::read(&mut other.connection, *there_id).await?;
+        // The rows of a study that grows belong to its own plan.
+        let keeps_rows = was_here && plan_rows::read(&mut self.connection, here_id).await?.is_some();
+        let ended_before = absorbed.ended;
         let mut next = 0;
         while let Some(page) = read(&mut other.connection, *there_id, next).await? {
             next = page.rows.last().map_or(next, |(ordinal, _)| ordinal + 1);
             let copied = self
-                .write(async |connection, now_ms| write(connection, here_id, &page, now_ms).await)
+                .write(async |connection, now_ms| write(connection, here_id, &page, keeps_rows, now_ms).await)
                 .await?;
             absorbed.rows += page.rows.len() as u64;
             absorbed.added += copied.added;
@@ -193,7 +201,15 @@ impl Queue {
             absorbed.open += copied.open;
         }
         if let Some(plan) = &plan {
-            self.write(async |connection, _| plan_rows::copy(connection, here_id, plan).await).await?;
+            let has_new_results = was_here && absorbed.ended > ended_before;
+            self.write(async |connection, _| {
+                plan_rows::copy(connection, here_id, plan).await?;
+                if has_new_results {
+                    plan_rows::reopen(connection, here_id).await?;
+                }
+                Ok(())
+            })
+            .await?;
         }
         Ok(())
     }
@@ -221,6 +237,7 @@ async fn write(
     connection: &mut Connection,
     study_id: i64,
     page: &Page,
+    keeps_rows: bool,
     now_ms: i64,
 ) -> Result<Absorbed, QueueError> {
     let keys: Vec<&str> = page.states.iter().map(|state| state.0.as_str()).collect();
@@ -231,7 +248,12 @@ async fn write(
         .collect();
 
     let rows: Vec<submit::Row<'_>> = page.rows.iter().map(|(ordinal, job)| (*ordinal, job)).collect();
-    let changed = submit::changed(connection, study_id, &rows).await?;
+    let mut changed = submit::changed(connection, study_id, &rows).await?;
+    if keeps_rows && let (Some(first), Some(last)) = (rows.first(), rows.last()) {
+        let known = query(KNOWN_ROWS).bind(study_id).bind(first.0).bind(last.0);
+        let known: Vec<i64> = known.scalars(connection).await?;
+        changed.retain(|(ordinal, _)| known.binary_search(ordinal).is_err());
+    }
     submit::delete_rows(connection, study_id, &changed).await?;
     submit::insert(connection, study_id, &changed, now_ms).await?;
 

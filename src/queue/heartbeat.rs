@@ -4,6 +4,9 @@ use super::handle::Queue;
 
 const EXTEND: &str = "UPDATE jobs SET lease_until_ms = $2 WHERE owner = $1 AND state = 'running'";
 
+/// What the worker plans.
+const EXTEND_PLANS: &str = "UPDATE plans SET lease_until_ms = $2 WHERE owner = $1";
+
 /// A worker that was declared dead and sends a heartbeat is alive again.
 const ALIVE: &str =
     "UPDATE workers SET heartbeat_ms = $2, finished = $3, jobs_per_s = $4, ended_ms = NULL WHERE id = $1";
@@ -32,7 +35,9 @@ impl Queue {
             self.register_again().await?;
             return Ok(0);
         }
-        let extended = query(EXTEND).bind(owner).bind(now_ms.saturating_add(lease_ms));
+        let until_ms = now_ms.saturating_add(lease_ms);
+        query(EXTEND_PLANS).bind(owner).bind(until_ms).run(&mut self.connection).await?;
+        let extended = query(EXTEND).bind(owner).bind(until_ms);
         extended.run(&mut self.connection).await
     }
 }

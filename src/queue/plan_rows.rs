@@ -9,8 +9,9 @@ const OPEN: &str = "
         SELECT 1 FROM plans AS p JOIN studies AS s ON s.id = p.study_id
         WHERE p.state = 'open' AND s.cancelled_ms IS NULL AND ($1 IS NULL OR s.id = $1) LIMIT 1) AS o";
 
-/// A plan that failed is tried again.
-const REOPEN: &str = "UPDATE plans SET state = 'open', note = NULL WHERE study_id = $1 AND state = 'failed'";
+/// What is being planned is out of date.
+const REOPEN: &str = "
+    UPDATE plans SET state = 'open', note = NULL, owner = NULL, lease_until_ms = NULL WHERE study_id = $1";
 
 const BEGIN: &str = "
     INSERT INTO plans (study_id) VALUES ($1)
@@ -41,7 +42,7 @@ pub(super) async fn delete(connection: &mut Connection, study_id: i64) -> Result
     query("DELETE FROM plans WHERE study_id = $1").bind(study_id).run(connection).await.map(drop)
 }
 
-/// Tries a plan that failed again.
+/// The study is planned further, even if its plan was complete or has failed: jobs may have other results.
 pub(super) async fn reopen(connection: &mut Connection, study_id: i64) -> Result<(), QueueError> {
     query(REOPEN).bind(study_id).run(connection).await.map(drop)
 }

@@ -95,12 +95,17 @@ const TAKE: &str = "UPDATE plans SET owner = $2, lease_until_ms = $3 WHERE study
 const ADVANCE: &str = "
     UPDATE plans SET wave = $3, state = $4, note = $5, owner = NULL, lease_until_ms = NULL
     WHERE study_id = $1 AND owner = $2 AND state = 'open' AND wave = $6
-      AND EXISTS (SELECT 1 FROM studies AS s WHERE s.id = $1 AND s.document = $7)";
+      AND EXISTS (SELECT 1 FROM studies AS s WHERE s.id = $1 AND s.document = $7 AND s.cancelled_ms IS NULL)";
+
+/// The priority of the jobs that the study has.
+const PRIORITY: &str = "
+    SELECT COALESCE(MAX(j.priority), 0) FROM study_jobs AS m JOIN jobs AS j ON j.id = m.job_id WHERE m.study_id = $1";
 
 const NEXT_ORDINAL: &str = "SELECT COALESCE(MAX(ordinal) + 1, 0) FROM study_jobs WHERE study_id = $1";
 
 impl Queue {
     /// Claims the next wave that is due in `scope`, if there is one. The worker that was given it before may claim it again.
+    /// Heartbeats extend the claim.
     ///
     /// # Errors
     /// [`QueueError::UnknownStudy`], or if the database cannot be written.
@@ -128,7 +133,7 @@ impl Queue {
     }
 
     /// Stores what became of a plan. Returns `false` if it came too late: another worker has planned the wave, or the study
-    /// was replaced or removed. Then nothing has changed.
+    /// was replaced, cancelled, tried again or removed. Then nothing has changed.
     ///
     /// # Errors
     /// [`QueueError::BadCost`], or if the database cannot be written; then nothing has changed.
@@ -151,7 +156,10 @@ impl Queue {
                 return Ok(false);
             }
             let next: i64 = query(NEXT_ORDINAL).bind(id).scalar(connection).await?;
-            let rows: Vec<submit::Row<'_>> = (next..).zip(jobs).collect();
+            let priority: i64 = query(PRIORITY).bind(id).scalar(connection).await?;
+            let jobs: Vec<NewJob> =
+                jobs.iter().map(|job| NewJob { priority: Some(priority), ..job.clone() }).collect();
+            let rows: Vec<submit::Row<'_>> = (next..).zip(&jobs).collect();
             for chunk in rows.chunks(CHUNK) {
                 submit::insert(connection, id, chunk, now_ms).await?;
             }

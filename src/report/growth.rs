@@ -273,10 +273,10 @@ impl Findings {
 
     fn minima_table(&self) -> FindingsTable {
         let line = |own: &Minimum| {
-            let side =
-                |side: Option<f64>| side.map_or("end of the curve".to_owned(), |x| value::text(&x.into()));
-            let is_known =
-                own.neighbours.iter().flatten().all(|x| (x - own.at).abs() <= own.wanted * 1.000_001);
+            let side = |side: Option<f64>| side.map_or("no value".to_owned(), |x| value::text(&x.into()));
+            let has_neighbour = own.neighbours.iter().any(Option::is_some);
+            let is_known = has_neighbour
+                && own.neighbours.iter().flatten().all(|x| (x - own.at).abs() <= own.wanted * 1.000_001);
             let numbers = [
                 value::text(&own.at.into()),
                 side(own.neighbours[0]),
@@ -291,7 +291,7 @@ impl Findings {
             stem: "minima",
             heading: "Minima",
             meaning: "The smallest value of each curve. The minimum of a curve with one minimum lies between the neighbours; it is \
-                      known if they are as near as the study asks for.",
+                      known if they are as near as the study asks for. There is no value beyond the ends of a curve, and where jobs failed.",
             header: header(
                 names(self.minima.first().map(|own| &own.rest)),
                 &["of", "over", "at", "from", "to", "value", "known"],
@@ -353,7 +353,7 @@ impl Findings {
 
     /// The waves and the state of the plan, for a terminal.
     pub fn as_text(&self) -> String {
-        let line = |line: Vec<String>| format!("wave {}: {} jobs ({})\n", line[0], line[1], line[2]);
+        let line = |line: Vec<String>| format!("wave {}, jobs: {} ({})\n", line[0], line[1], line[2]);
         let waves: String = self.waves_table().lines.into_iter().map(line).collect();
         format!("{waves}{}\n", self.state)
     }

@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 
 /// That a job begins with the motion in which another one ended, and that its own last motion is kept for others.
 ///
-/// Study files do not have this object: `continue` in a study and the command `basins` make such jobs.
+/// Study files do not have this object: `continue` in a study makes such jobs.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 pub struct Continuation {

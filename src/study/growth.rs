@@ -2,7 +2,8 @@
 
 use super::error::Problem;
 use super::grid::Grid;
-use super::parameter::{PARAMETERS, Parameter};
+use super::limits::MAX_JOBS;
+use super::parameter::{Kind, PARAMETERS, Parameter};
 use super::source::SourceText;
 use super::suggest::nearest_name;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
@@ -46,7 +47,7 @@ pub struct Curves {
     /// The smallest value of each curve is to lie so near to its neighbours, in the unit of the parameter.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub minimum_within: Option<f64>,
-    /// No two points are nearer to each other. Absent: `minimum_within`, or a thousandth of the range.
+    /// Intervals that are not longer than this are not divided for `within`. Absent: `minimum_within`, or a thousandth of the range.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub finest: Option<f64>,
 }
@@ -158,7 +159,10 @@ fn mu_star() -> String {
 }
 
 fn number_schema(_: &mut SchemaGenerator) -> Schema {
-    let numbers = PARAMETERS.iter().filter(|parameter| parameter.is_number()).map(|parameter| parameter.name);
+    let numbers = PARAMETERS
+        .iter()
+        .filter(|parameter| matches!(parameter.kind, Kind::Number))
+        .map(|parameter| parameter.name);
     json_schema!({ "type": "string", "enum": numbers.collect::<Vec<_>>() })
 }
 
@@ -171,13 +175,28 @@ impl Growth {
     /// What is wrong with it in a study of this grid. The names of quantities are not known here.
     pub(super) fn problems(&self, grid: &Grid, source: &SourceText) -> Vec<Problem> {
         let mut found = Vec::new();
+        let size = grid.size();
+        if let Some(refine) = self.refine.as_ref().filter(|own| !(size..=MAX_JOBS).contains(&own.most_jobs)) {
+            let message = format!(
+                "expected a number of jobs from {size}, those of the grid, to {MAX_JOBS}; it is {}",
+                refine.most_jobs
+            );
+            found.push(source.problem("refine.most_jobs", message));
+        }
+        let most_kicks = MAX_JOBS / size.max(1) - 1;
+        if self.continues.as_ref().and_then(|own| own.kicks).is_some_and(|kicks| kicks as usize > most_kicks)
+        {
+            let message =
+                format!("expected at most {most_kicks}, so that the study has at most {MAX_JOBS} jobs");
+            found.push(source.problem("continue.kicks", message));
+        }
         if self.refine.is_some() && self.continues.is_some() {
             found.push(source.problem("continue", "expected only one of `refine` and `continue`"));
         }
         let mut along = |field: &str, name: &str| {
-            let varied = || grid.parameters().filter(|parameter| parameter.is_number());
+            let varied = || grid.parameters().filter(|parameter| matches!(parameter.kind, Kind::Number));
             if !varied().any(|parameter| parameter.name == name) {
-                let problem = source.problem(field, "expected a number that the study varies");
+                let problem = source.problem(field, "expected a number with decimals that the study varies");
                 let names: Vec<_> = varied().map(|parameter| parameter.name).collect();
                 let nearest = nearest_name(name, names.iter().copied());
                 let mut help: Vec<_> =

@@ -130,7 +130,6 @@ impl Study {
         outline.check_size()?;
         let name = outline.name().map_err(StudyError::Invalid)?;
         refuse(report.problems(&outline.source))?;
-        refuse(growth.problems(&outline.grid, &outline.source))?;
         let draft = outline.draft();
         let Outline { document, mut grid, source, allows_modes } = outline;
         let base = draft.resolve().spec;
@@ -139,6 +138,7 @@ impl Study {
             let message = "expected conditions that leave at least one point";
             return Err(StudyError::Invalid(vec![source.problem(field, message)]));
         }
+        refuse(growth.problems(&grid, &source))?;
         let (specs, mut violations): (Vec<_>, Vec<_>) =
             grid.resolve(&draft).into_iter().map(|job| (job.spec, job.violations)).unzip();
         if !allows_modes {

@@ -205,15 +205,20 @@ impl Plan {
 }
 
 /// Why jobs are added to a study that grows.
-pub(super) struct Added {
+pub(super) struct Added<'a> {
     /// The number of the wave, from 1.
     pub wave: u64,
     /// For each job why it is added.
-    pub whys: Vec<String>,
+    pub whys: &'a [String],
 }
 
-/// Jobs of a wave in the form that the queue takes. Those that the solver would refuse before their first step are left out.
-pub(super) fn added_jobs(source_name: &str, jobs: &[Job], added: &Added) -> Result<Vec<NewJob>, SweepError> {
+/// Jobs of a wave in the form that the queue takes. with the reasons why they are added. Those that the solver
+/// would refuse before their first step are left out.
+pub(super) fn added_jobs<'a>(
+    source_name: &str,
+    jobs: &[Job],
+    added: &Added<'a>,
+) -> Result<Vec<(NewJob, &'a str)>, SweepError> {
     let mut batches = SharedKeys::new(solver::VERSION);
     let mut cases = SharedKeys::new("");
     let keys: Vec<String> = jobs.iter().map(|job| batches.key(job.spec.shared_part())).collect();
@@ -228,9 +233,9 @@ pub(super) fn added_jobs(source_name: &str, jobs: &[Job], added: &Added) -> Resu
             jobs.iter().zip(&keys).map(one).collect()
         };
     let mut new = Vec::new();
-    for (((job, batch), why), workload) in jobs.iter().zip(&keys).zip(&added.whys).zip(planned) {
+    for (((job, batch), why), workload) in jobs.iter().zip(&keys).zip(added.whys).zip(planned) {
         if let Some(workload) = workload {
-            new.push(new_job(job, batch, &workload, &mut cases, Some((added.wave, why)))?);
+            new.push((new_job(job, batch, &workload, &mut cases, Some((added.wave, why)))?, why.as_str()));
         }
     }
     Ok(new)

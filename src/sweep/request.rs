@@ -165,6 +165,13 @@ pub(super) fn check_quantities(study: &Study) -> Result<(), SweepError> {
             study.problem(&field, "no such quantity", nearest.into_iter().chain([all]).collect())
         })
         .collect();
+    // Points that depend on the speed of a machine would be others on every machine.
+    let curves = study.growth().refine.as_ref().and_then(|refine| refine.curves.as_ref());
+    let mut problems = problems;
+    if curves.is_some_and(|curves| curves.of == "wall_s") {
+        let message = "expected a quantity of the result, and not of the machine";
+        problems.push(study.problem("refine.curves.of", message, Vec::new()));
+    }
     if problems.is_empty() { Ok(()) } else { Err(StudyError::Invalid(problems).into()) }
 }
 

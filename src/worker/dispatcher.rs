@@ -16,7 +16,8 @@ use super::progress::{Progress, RunningJob, Snapshot};
 use super::retry::RetryBackoff;
 use super::tally::Tally;
 use crate::queue::{
-    Claim, ClaimedJob, Exchanged, Finished, FinishedOutcome, Planned, Queue, QueueError, Scope, TakenBack,
+    Claim, ClaimedJob, Exchanged, Finished, FinishedOutcome, PlanClaim, Planned, Queue, QueueError, Scope,
+    StudyRow, TakenBack,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -185,19 +186,46 @@ impl<'a> Dispatcher<'a> {
 
     async fn plan_due(
         &mut self,
-        planner: &dyn Planner,
+        planner: &'static dyn Planner,
         has_planned: &mut bool,
         progress: &mut dyn Progress,
     ) -> Result<(), QueueError> {
-        while let Some(claim) = self.queue.claim_plan(self.scope).await? {
+        while !self.interrupt.is_raised()
+            && let Some(claim) = self.queue.claim_plan(self.scope).await?
+        {
             let rows = self.queue.rows(&claim.study).await?;
-            let planned = planner.plan(&claim, &rows);
+            let planned = self.plan_aside(planner, claim.clone(), rows).await?;
             if self.queue.store_plan(&claim, &planned).await? {
                 *has_planned |= matches!(planned, Planned::Wave { .. });
                 progress.planned(&claim.study, claim.wave, &planned);
             }
         }
         Ok(())
+    }
+
+    /// Plans a wave on a thread of its own. Heartbeats go on meanwhile.
+    async fn plan_aside(
+        &mut self,
+        planner: &'static dyn Planner,
+        claim: PlanClaim,
+        rows: Vec<StudyRow>,
+    ) -> Result<Planned, QueueError> {
+        let mut plan = tokio::task::spawn_blocking(move || planner.plan(&claim, &rows));
+        loop {
+            match tokio::time::timeout(TICK, &mut plan).await {
+                Ok(Ok(planned)) => return Ok(planned),
+                // A panic is a bug, but it must not end the worker, which has other studies.
+                Ok(Err(error)) => {
+                    return Ok(Planned::Failed {
+                        error: format!("internal error (please report it): {error}"),
+                    });
+                }
+                Err(_) => match self.keep_alive().await {
+                    Err(error) if error.is_transient() => {}
+                    kept_alive => kept_alive?,
+                },
+            }
+        }
     }
 
     /// Looks for new jobs and for jobs of dead workers; returns whether there is nothing more to wait for.
@@ -336,6 +364,7 @@ impl<'a> Dispatcher<'a> {
             Err(error) if error.is_transient() => {}
             kept_alive => kept_alive?,
         }
+        self.plan_waves(progress).await?;
         self.tally.refresh(self.queue, self.scope).await?;
         progress.update(&self.snapshot());
         Ok(())

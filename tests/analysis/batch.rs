@@ -4,9 +4,11 @@ use crate::signals::coarse;
 use std::collections::BTreeMap;
 use strum::VariantArray;
 use tribosweep::analysis::batch::{Batch, Begun};
-use tribosweep::analysis::{CoarseStart, JobRecord, Unobserved, solve};
+use tribosweep::analysis::continuation::PinMotion;
+use tribosweep::analysis::{CoarseStart, JobRecord, Outcome, Unobserved, solve};
 use tribosweep::spec::{
-    ClampSide, DiskKind, FrictionLaw, JobSpec, Precision, Region, Shape, StabilityMethod, Start, Table,
+    ClampSide, Continuation, DiskKind, FrictionLaw, JobSpec, Precision, Region, Shape, StabilityMethod,
+    Start, Table,
 };
 
 /// Jobs of one model. They differ in everything that may differ: friction, speed, load, ramp, length, and
@@ -399,4 +401,56 @@ fn jobs_of_other_models_are_not_taken() {
     assert!(!changed(|job| job.scene.clamp.width_m *= 0.9));
     assert!(!changed(|job| job.numerics.beta_r_s = 0.0));
     assert!(!changed(|job| job.numerics.precision = Precision::Single));
+}
+
+/// Protects: a job that continues a limit cycle begins in it: it is periodic long before the run from rest was, in the same limit cycle.
+/// Interruptions change no bit of it. Without the motion that it continues it is refused.
+#[test]
+fn a_job_continues_the_limit_cycle_of_another() {
+    let mut root = coarse();
+    root.scene.contact.mu = 0.5;
+    root.scene.disk.omega_rpm = 7.0;
+    root.run.limit_s = 0.1;
+    root.continuation = Some(Box::new(Continuation::ROOT));
+    let run = |job: &JobSpec, parent: Option<PinMotion>, pause: usize| {
+        let mut batch = Batch::new(job).unwrap();
+        batch.begin_after(1, job.clone(), parent).unwrap();
+        let mut turns = 0;
+        loop {
+            if let Some(ended) = batch.advance().pop() {
+                return (ended.result.unwrap(), ended.motion.unwrap());
+            }
+            turns += 1;
+            if turns % pause == 0 {
+                let kept = batch.checkpoint(1).unwrap();
+                batch = Batch::new(job).unwrap();
+                batch.resume(1, job.clone(), &kept).unwrap();
+            }
+        }
+    };
+    let (first, motion) = run(&root, None, usize::MAX);
+    assert_eq!(first.outcome, Outcome::Periodic);
+    let mut child = root.clone();
+    child.continuation =
+        Some(Box::new(Continuation { parent: Some("key".to_owned()), ..Continuation::ROOT }));
+    let (second, end) = run(&child, Some(motion.clone()), usize::MAX);
+    assert_eq!(second.outcome, Outcome::Periodic);
+    assert!(second.simulated_s < 0.7 * first.simulated_s, "{} {}", second.simulated_s, first.simulated_s);
+    // Both are within what the detection leaves open.
+    let tolerance = root.detection.tolerance;
+    assert!((second.mu_star / first.mu_star - 1.0).abs() < tolerance);
+    assert!((second.frequency_hz.unwrap() / first.frequency_hz.unwrap() - 1.0).abs() < tolerance);
+    for pause in [1, 7] {
+        let (again, same_end) = run(&child, Some(motion.clone()), pause);
+        assert_eq!(serde_json::to_string(&again).unwrap(), serde_json::to_string(&second).unwrap());
+        assert_eq!(same_end, end);
+    }
+    child.continuation.as_mut().unwrap().kick_m_s = 0.5;
+    let (kicked, _) = run(&child, Some(motion), usize::MAX);
+    assert_ne!(kicked.simulated_s, second.simulated_s, "a kick is felt");
+    let mut batch = Batch::new(&child).unwrap();
+    let refused = batch.begin(1, child.clone()).unwrap_err();
+    assert!(refused.to_string().contains("continues the job key"), "{refused}");
+    let other = PinMotion { u_m: vec![0.0; 3], velocity_m_s: vec![0.0; 3] };
+    assert!(batch.begin_after(1, child, Some(other)).is_err(), "a motion of another mesh");
 }

@@ -145,6 +145,27 @@ fn what_is_asked_for_is_found() {
     assert!(folder.ok("status study").contains("the budget of 15 jobs is used up"));
 }
 
+/// Protects: a chain that ended at a job that failed goes on when the job is tried again, and then has all its jobs.
+#[test]
+fn a_chain_goes_on_after_a_retry() {
+    let mut study = continuing();
+    // So long that a process can be killed in the first jobs.
+    study["run"] = json!({ "limit_s": 0.3, "stop_early": false });
+    let folder = Folder::with("study", &study);
+    folder.ok("submit study.json");
+    // A job fails if its process dies once more than it may.
+    let work = folder.start("work --threads 1 --max-crashes 1");
+    folder.wait_for("study", |counts| counts["running"] > 0);
+    work.signal("KILL");
+    work.end();
+    folder.command("work --max-crashes 1").assert().code(1);
+    let state = folder.ok("status study");
+    assert!(state.contains("because jobs before them failed"), "{state}");
+    folder.ok("retry study --failed");
+    folder.ok("work");
+    assert_eq!(without_wall_times(&folder.ok("export study")), undisturbed(&study, "")["export"]);
+}
+
 /// Protects: mistakes in `refine` and `continue` are refused with the field and what would be right, and no database is made.
 #[test]
 fn mistakes_are_refused() {
@@ -168,6 +189,17 @@ fn mistakes_are_refused() {
             json!({ "boundaries": { "over": "mu", "within": 0.1 }, "wave_jobs": 0 }),
             "a number of jobs from 1",
         ),
+        (
+            "refine",
+            json!({ "curves": { "over": "mu", "of": "wall_s", "within": 0.1 } }),
+            "and not of the machine",
+        ),
+        (
+            "refine",
+            json!({ "boundaries": { "over": "mu", "within": 0.1 }, "most_jobs": 3 }),
+            "from 4, those of the grid",
+        ),
+        ("continue", json!({ "kicks": 4_000_000, "kick_m_s": 0.1 }), "at most 249999"),
         ("continue", json!({}), "either `along` or `kicks`"),
         ("continue", json!({ "along": "mu", "kicks": 3 }), "either `along` or `kicks`"),
         ("continue", json!({ "along": "mu", "directions": [] }), "`up`, `down`, or both"),
@@ -180,6 +212,17 @@ fn mistakes_are_refused() {
         let message = stderr(&folder.command("submit study.json").assert().failure());
         assert!(message.contains(expected), "{value}: {message}");
         assert_eq!(folder.files(), ["study.json"]);
+    }
+    // The mesh must not change along a chain, and half an element is none.
+    for (field, value) in [
+        ("continue", json!({ "along": "ny" })),
+        ("refine", json!({ "curves": { "over": "ny", "within": 0.1 } })),
+    ] {
+        let mut study = small(&json!({ "mu": [0.2, 0.4], "ny": [4, 8] }));
+        study[field] = value;
+        let folder = Folder::with("study", &study);
+        let message = stderr(&folder.command("submit study.json").assert().failure());
+        assert!(message.contains("expected a number with decimals that the study varies"), "{message}");
     }
     let mut study = small(&grid);
     study["continue"] = json!({ "along": "mu" });

@@ -7,6 +7,9 @@ use crate::study::{Continue, DIRECTION, Direction, Job, KICK, Study, StudyError,
 use serde_json::Value;
 use std::collections::{HashMap, HashSet};
 
+/// Why such jobs are added.
+pub const PURPOSE: &str = "continuing";
+
 /// The next jobs of each chain; nothing if all chains have ended. A chain ends at a job that failed.
 pub fn next_jobs(study: &Study, continues: &Continue, rows: &[JobRow]) -> Result<Vec<Job>, StudyError> {
     match &continues.along {

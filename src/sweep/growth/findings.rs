@@ -57,8 +57,14 @@ fn state(study: &Study, plan: &PlanStatus, rows: &[JobRow]) -> String {
         PlanState::Open => {
             let most = study.most_jobs().unwrap_or(0);
             let jobs = rows.len();
-            let last = if waves > 0 { format!("Wave {waves} asked for {note}. ") } else { String::new() };
-            format!("{last}More jobs follow when these have ended: there are {jobs} of at most {most} jobs.")
+            let last = if waves > 0 && !note.is_empty() {
+                format!("Wave {waves} asked for {note}. ")
+            } else {
+                String::new()
+            };
+            format!(
+                "{last}More jobs may follow when these have ended: there are {jobs} of at most {most} jobs."
+            )
         }
     }
 }

@@ -1,8 +1,9 @@
 //! What a worker asks when a wave of a study is due.
 
+use super::refine::Wanted;
 use super::{chains, refine};
 use crate::publish::value::count;
-use crate::queue::{PlanClaim, Planned, StudyRow};
+use crate::queue::{NewJob, PlanClaim, Planned, StudyRow};
 use crate::report::JobRow;
 use crate::solver;
 use crate::study::{Job, Study};
@@ -31,6 +32,12 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
     let rows: Vec<JobRow> =
         rows.par_iter().map(|row| report_row(&claim.study, row)).collect::<Result<_, _>>()?;
     let growth = study.growth();
+    // Results of two versions do not belong to one curve.
+    let own: HashSet<String> = study.expand(solver::VERSION)?.into_iter().map(|job| job.key).collect();
+    if rows.iter().any(|row| row.wave == 0 && !own.contains(&row.job)) {
+        let error = "its jobs are those of another version of the solver; submit the study again".to_owned();
+        return Ok(Planned::Failed { error });
+    }
     if let Some(continues) = &growth.continues {
         let jobs = chains::next_jobs(&study, continues, &rows)?;
         if jobs.is_empty() {
@@ -42,9 +49,14 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
             };
             return Ok(Planned::Complete { note: format!("all chains have ended{stopped}") });
         }
-        let note = format!("{} that continue others", count(jobs.len() as u64, "job"));
-        let whys = vec!["continues its neighbour".to_owned(); jobs.len()];
-        return wave(claim, &jobs, whys, note);
+        let note = format!("{}: {}", chains::PURPOSE, jobs.len());
+        let whys = vec![chains::PURPOSE.to_owned(); jobs.len()];
+        let added = added_jobs(&claim.study, &jobs, &Added { wave: claim.wave, whys: &whys })?;
+        let jobs: Vec<NewJob> = added.into_iter().map(|(job, _)| job).collect();
+        if jobs.is_empty() {
+            return Ok(Planned::Complete { note: "the solver refuses every further job".to_owned() });
+        }
+        return Ok(Planned::Wave { jobs, note });
     }
     let Some(settings) = &growth.refine else {
         return Ok(Planned::Complete { note: "the study does not grow".to_owned() });
@@ -53,18 +65,28 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
     if wanted.is_empty() {
         return Ok(Planned::Complete { note: "everything is known as well as it is asked for".to_owned() });
     }
-    let mut known: HashSet<String> = rows.iter().map(|row| row.job.clone()).collect();
     let most = settings.wave_jobs.min(settings.most_jobs.saturating_sub(rows.len()));
-    let (mut jobs, mut whys, mut purposes) = (Vec::new(), Vec::new(), BTreeMap::<&str, u64>::new());
-    for point in &wanted {
-        if jobs.len() == most {
+    let mut known: HashSet<String> = rows.iter().map(|row| row.job.clone()).collect();
+    let mut left = wanted.iter();
+    let mut jobs: Vec<NewJob> = Vec::new();
+    let mut purposes = BTreeMap::<&str, u64>::new();
+    // What a limit or the solver refuses makes room for the next point.
+    while jobs.len() < most {
+        let new = |point: &Wanted| Some((study.job_at(&point.parameters, solver::VERSION)?, point.purpose));
+        let part: Vec<(Job, &str)> = left
+            .by_ref()
+            .filter_map(new)
+            .filter(|(job, _)| known.insert(job.key.clone()))
+            .take(most - jobs.len())
+            .collect();
+        if part.is_empty() {
             break;
         }
-        // What a limit forbids is not asked for, and neither is what is there.
-        let Some(job) = study.job_at(&point.parameters, solver::VERSION) else { continue };
-        if known.insert(job.key.clone()) {
-            *purposes.entry(point.purpose).or_default() += 1;
-            whys.push(point.purpose.to_owned());
+        let (part, whys): (Vec<Job>, Vec<String>) =
+            part.into_iter().map(|(job, purpose)| (job, purpose.to_owned())).unzip();
+        for (job, purpose) in added_jobs(&claim.study, &part, &Added { wave: claim.wave, whys: &whys })? {
+            let own = refine::PURPOSES.iter().find(|own| **own == purpose).copied().unwrap_or_default();
+            *purposes.entry(own).or_default() += 1;
             jobs.push(job);
         }
     }
@@ -78,13 +100,5 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
         return Ok(Planned::Complete { note: format!("{why}; {still} would be needed") });
     }
     let words: Vec<String> = purposes.iter().map(|(purpose, jobs)| format!("{purpose}: {jobs}")).collect();
-    wave(claim, &jobs, whys, words.join(", "))
-}
-
-fn wave(claim: &PlanClaim, jobs: &[Job], whys: Vec<String>, note: String) -> Result<Planned, SweepError> {
-    let jobs = added_jobs(&claim.study, jobs, &Added { wave: claim.wave, whys })?;
-    if jobs.is_empty() {
-        return Ok(Planned::Complete { note: "the solver refuses every further point".to_owned() });
-    }
-    Ok(Planned::Wave { jobs, note })
+    Ok(Planned::Wave { jobs, note: words.join(", ") })
 }

@@ -11,9 +11,12 @@ pub struct Wanted {
     /// What is known is so many times worse than what is asked for.
     pub urgency: f64,
     pub parameters: Vec<(String, Value)>,
-    /// `curve`, `minimum` or `boundary`.
+    /// One of [`PURPOSES`].
     pub purpose: &'static str,
 }
+
+/// What points are asked for.
+pub const PURPOSES: [&str; 3] = ["boundary", "curve", "minimum"];
 
 /// An interval whose error is not known is as urgent as this.
 const UNKNOWN: f64 = 1.0e9;
@@ -118,7 +121,7 @@ fn on_curve(series: &Series<'_>, curves: &Curves) -> Vec<Wanted> {
         }
     }
     let point = |(index, (urgency, purpose)): (usize, (f64, &'static str))| {
-        let x = inside(known[index].0, known[index + 1].0, &unknown, 0.5)?;
+        let x = inside([known[index].0, known[index + 1].0], &unknown, 0.5, f64::INFINITY)?;
         Some(Wanted { urgency, parameters: series.at(&curves.over, x), purpose })
     };
     urgencies
@@ -160,7 +163,8 @@ fn on_boundaries(series: &Series<'_>, boundaries: &Boundaries) -> Vec<Wanted> {
             .filter_map(|(x, kind)| Some((*x, kind.rate_per_s?)))
             .collect();
         let shares = shares([low, high], boundaries.within, &rates);
-        let points = shares.into_iter().filter_map(|share| inside(low, high, &unknown, share));
+        let points =
+            shares.into_iter().filter_map(|share| inside([low, high], &unknown, share, boundaries.within));
         found.extend(points.map(|x| Wanted {
             urgency: width / boundaries.within,
             parameters: series.at(&boundaries.over, x),
@@ -200,8 +204,8 @@ fn zero([(x0, r0), (x1, r1), (x2, r2)]: [(f64, f64); 3]) -> f64 {
 }
 
 /// A position inside an interval, at this share of its width. If there are points without a value in it, the middle of the widest gap
-/// between them; none if there are too many.
-fn inside(low: f64, high: f64, unknown: &[f64], share: f64) -> Option<f64> {
+/// between them; none if there are too many. It is rounded by a small share of the width and of `within`.
+fn inside([low, high]: [f64; 2], unknown: &[f64], share: f64, within: f64) -> Option<f64> {
     let mut stops = vec![low];
     stops.extend(unknown.iter().copied().filter(|x| (low..high).contains(x) && *x > low));
     stops.push(high);
@@ -215,7 +219,7 @@ fn inside(low: f64, high: f64, unknown: &[f64], share: f64) -> Option<f64> {
         (widest[0], widest[1], 0.5)
     };
     let width = high - low;
-    let x = Parameter::rounded(low + share * width, ROUNDED_BY * width.min(high - low));
+    let x = Parameter::rounded(low + share * width, ROUNDED_BY * width.min(within));
     (low < x && x < high).then_some(x)
 }
 
@@ -263,7 +267,7 @@ mod tests {
                     }
                     let near = known[at.saturating_sub(1)..(at + 3).min(known.len())].to_vec();
                     for share in shares(range, within, &near) {
-                        let x = inside(range[0], range[1], &[], share).unwrap();
+                        let x = inside(range, &[], share, within).unwrap();
                         known.push((x, rate(x)));
                     }
                 }
@@ -276,11 +280,11 @@ mod tests {
     /// Protects: points without a value are passed by, and an interval that has several of them is given up.
     #[test]
     fn failed_points_do_not_stall() {
-        assert_eq!(inside(0.0, 1.0, &[], 0.5), Some(0.5));
-        let second = inside(0.0, 1.0, &[0.5], 0.5).unwrap();
+        assert_eq!(inside([0.0, 1.0], &[], 0.5, 1.0), Some(0.5));
+        let second = inside([0.0, 1.0], &[0.5], 0.5, 1.0).unwrap();
         assert!(second != 0.5 && second > 0.0 && second < 1.0);
-        assert!(inside(0.0, 1.0, &[0.5, second], 0.5).is_some());
-        assert_eq!(inside(0.0, 1.0, &[0.25, 0.5, 0.75], 0.5), None);
-        assert_eq!(inside(0.0, 1.0, &[1.0, 2.0, -1.0], 0.5), Some(0.5));
+        assert!(inside([0.0, 1.0], &[0.5, second], 0.5, 1.0).is_some());
+        assert_eq!(inside([0.0, 1.0], &[0.25, 0.5, 0.75], 0.5, 1.0), None);
+        assert_eq!(inside([0.0, 1.0], &[1.0, 2.0, -1.0], 0.5, 1.0), Some(0.5));
     }
 }

@@ -78,9 +78,13 @@ pub fn kind(row: &JobRow, side: Side) -> Option<Kind> {
     let record = row.record();
     match side {
         Side::Stability => {
-            let rate_per_s = growth_rate_per_s(record?);
-            let is_stable = rate_per_s.map(|rate| rate < 0.0).or_else(|| is_stable(record?))?;
-            Some(Kind { name: if is_stable { "stable" } else { "unstable" }.to_owned(), rate_per_s })
+            let of_mode = record?.stability.as_ref().and_then(|own| own.modes.first());
+            let of_mode = of_mode.map(|mode| mode.growth_rate_per_s);
+            let is_stable = of_mode.map(|rate| rate < 0.0).or_else(|| is_stable(record?))?;
+            // The rate of a run counts if it says the same.
+            let of_run = record?.growth_rate_per_s.filter(|rate| (*rate < 0.0) == is_stable);
+            let name = if is_stable { "stable" } else { "unstable" }.to_owned();
+            Some(Kind { name, rate_per_s: of_mode.or(of_run) })
         }
         Side::Regime => {
             let regime = record?.regime;
@@ -91,12 +95,6 @@ pub fn kind(row: &JobRow, side: Side) -> Option<Kind> {
             Some(Kind { name: row.status().to_owned(), rate_per_s: None })
         }
     }
-}
-
-/// Of the fastest growing mode, or of the oscillation that a run ended with.
-fn growth_rate_per_s(record: &JobRecord) -> Option<f64> {
-    let of_modes = record.stability.as_ref().and_then(|own| own.modes.first());
-    of_modes.map(|mode| mode.growth_rate_per_s).or(record.growth_rate_per_s)
 }
 
 /// Whether the run says that sliding is stable; none if it says neither.

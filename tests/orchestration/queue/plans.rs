@@ -5,7 +5,7 @@ use tribosweep::queue::{
 };
 
 use crate::support::{
-    Sandbox, claim, counts, dead_worker, done, failed, finish, foreign_worker, job, of, study,
+    Sandbox, claim, counts, dead_worker, done, failed, finish, foreign_worker, job, keys, of, study,
 };
 
 on_both_databases! {
@@ -16,6 +16,8 @@ on_both_databases! {
     a_study_that_is_submitted_again_keeps_its_waves,
     a_changed_study_grows_anew,
     a_plan_that_failed_is_tried_again,
+    a_retry_plans_further,
+    a_wave_has_the_priority_of_its_study,
     plans_are_copied_and_removed,
     a_job_receives_the_state_of_its_parent,
 }
@@ -121,6 +123,10 @@ async fn a_plan_that_comes_too_late_changes_nothing(sandbox: &Sandbox) {
     let replaced = plan(&mut other).await;
     queue.submit(&NewStudy { document: "another".into(), ..growing(&["x"]) }).await.unwrap();
     assert!(!other.store_plan(&replaced, &wave(&["z"])).await.unwrap());
+    let cancelled = plan(&mut other).await;
+    queue.cancel("a").await.unwrap();
+    assert!(!other.store_plan(&cancelled, &wave(&["z"])).await.unwrap());
+    queue.retry("a", Retry::All).await.unwrap();
     let removed = plan(&mut other).await;
     queue.remove("a").await.unwrap();
     assert!(!other.store_plan(&removed, &wave(&["z"])).await.unwrap());
@@ -183,6 +189,39 @@ async fn a_plan_that_failed_is_tried_again(sandbox: &Sandbox) {
         }
     }
     assert_eq!(plan(&mut queue).await.wave, 1);
+}
+
+/// Protects: a study whose plan was complete is planned further when its failed jobs are tried again, and a plan that was made before
+/// the retry does not count.
+async fn a_retry_plans_further(sandbox: &Sandbox) {
+    let mut queue = sandbox.open().await;
+    queue.submit(&growing(&["x"])).await.unwrap();
+    claim(&mut queue, of("a"), 1).await;
+    finish(&mut queue, "x", 1, failed("e")).await;
+    let early = plan(&mut queue).await;
+    queue.retry("a", Retry::Failed).await.unwrap();
+    let complete = Planned::Complete { note: "nothing is possible".into() };
+    assert!(!queue.store_plan(&early, &complete).await.unwrap());
+    claim(&mut queue, of("a"), 1).await;
+    finish(&mut queue, "x", 2, failed("e")).await;
+    let late = plan(&mut queue).await;
+    assert!(queue.store_plan(&late, &complete).await.unwrap());
+    queue.retry("a", Retry::Failed).await.unwrap();
+    run_all(&mut queue).await;
+    assert_eq!(plan(&mut queue).await.wave, 1);
+}
+
+/// Protects: the jobs of a wave do not wait behind those of other studies that their own study comes before.
+async fn a_wave_has_the_priority_of_its_study(sandbox: &Sandbox) {
+    let mut queue = sandbox.open().await;
+    let mut urgent = growing(&["x"]);
+    urgent.jobs[0].priority = Some(5);
+    queue.submit(&urgent).await.unwrap();
+    run_all(&mut queue).await;
+    let first = plan(&mut queue).await;
+    queue.submit(&study("b", &["other"])).await.unwrap();
+    queue.store_plan(&first, &wave(&["y"])).await.unwrap();
+    assert_eq!(keys(&claim(&mut queue, Scope::All, 1).await), ["y"]);
 }
 
 /// Protects: a copy has the waves and the plan of the original, and a removed study leaves no plan behind.
