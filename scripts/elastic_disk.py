@@ -96,8 +96,8 @@ def stiffness():
     away = [[abs(a - b) for a, b in zip(figures(row), figures(rigid))] for row in rows]
     return f"""## The limit of a rigid disk
 
-At 7 rpm two limit cycles exist side by side on this mesh of the pin, also with a rigid disk. Which of them a run finds
-depends on its time step. So the comparisons from here on are made at 12 rpm, where there is only one.
+Near 7 rpm the limit cycle changes steeply with the speed on this mesh of the pin, also with a rigid disk, and a smaller time step
+moves this change to a larger speed ([growing.md](growing.md#two-limit-cycles-at-7-rpm)). So the comparisons from here on are made at 12 rpm.
 
 12 rpm, μ = 0.4, 12 × 15 × 10 elements, disk elements of 5 mm, ρ of steel, all with the step 2·10⁻⁷ s. As E grows, every
 value tends to that of the rigid disk.

@@ -1,7 +1,6 @@
 //! Studies that grow: what a study file says about jobs that depend on the results of others.
 
 use super::error::Problem;
-use super::grid::Grid;
 use super::limits::MAX_JOBS;
 use super::parameter::{Kind, PARAMETERS, Parameter};
 use super::source::SourceText;
@@ -172,10 +171,14 @@ impl Growth {
         self.refine.is_some() || self.continues.is_some()
     }
 
-    /// What is wrong with it in a study of this grid. The names of quantities are not known here.
-    pub(super) fn problems(&self, grid: &Grid, source: &SourceText) -> Vec<Problem> {
+    /// What is wrong with it in a study that varies these parameters and has `size` points. The names of quantities are not known here.
+    pub(super) fn problems(
+        &self,
+        varied: &[&'static Parameter],
+        size: usize,
+        source: &SourceText,
+    ) -> Vec<Problem> {
         let mut found = Vec::new();
-        let size = grid.size();
         if let Some(refine) = self.refine.as_ref().filter(|own| !(size..=MAX_JOBS).contains(&own.most_jobs)) {
             let message = format!(
                 "expected a number of jobs from {size}, those of the grid, to {MAX_JOBS}; it is {}",
@@ -194,10 +197,10 @@ impl Growth {
             found.push(source.problem("continue", "expected only one of `refine` and `continue`"));
         }
         let mut along = |field: &str, name: &str| {
-            let varied = || grid.parameters().filter(|parameter| matches!(parameter.kind, Kind::Number));
-            if !varied().any(|parameter| parameter.name == name) {
+            let numbers = || varied.iter().filter(|parameter| matches!(parameter.kind, Kind::Number));
+            if !numbers().any(|parameter| parameter.name == name) {
                 let problem = source.problem(field, "expected a number with decimals that the study varies");
-                let names: Vec<_> = varied().map(|parameter| parameter.name).collect();
+                let names: Vec<_> = numbers().map(|parameter| parameter.name).collect();
                 let nearest = nearest_name(name, names.iter().copied());
                 let mut help: Vec<_> =
                     nearest.into_iter().map(|name| format!("did you mean `{name}`?")).collect();

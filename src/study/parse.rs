@@ -138,7 +138,7 @@ impl Study {
             let message = "expected conditions that leave at least one point";
             return Err(StudyError::Invalid(vec![source.problem(field, message)]));
         }
-        refuse(growth.problems(&grid, &source))?;
+        refuse(growth.problems(&grid.parameters().collect::<Vec<_>>(), grid.size(), &source))?;
         let (specs, mut violations): (Vec<_>, Vec<_>) =
             grid.resolve(&draft).into_iter().map(|job| (job.spec, job.violations)).unzip();
         if !allows_modes {

@@ -176,7 +176,7 @@ fn mistakes_are_refused() {
         (
             "refine",
             json!({ "curves": { "over": "load_n", "within": 0.1 } }),
-            "expected a number that the study varies",
+            "expected a number with decimals that the study varies",
         ),
         (
             "refine",
