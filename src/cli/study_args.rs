@@ -2,7 +2,7 @@
 
 use super::error::CliError;
 use super::foreground::{parse_preset, parse_setting};
-use crate::study::{Changes, Preset};
+use crate::study::{Basins, Changes, Preset};
 use crate::sweep::Plan;
 use std::path::PathBuf;
 
@@ -20,6 +20,13 @@ pub(crate) struct StudyArgs {
     /// overrides the preset.
     #[arg(long, value_name = "NAME", value_parser = parse_preset)]
     preset: Option<Preset>,
+    /// Instead of what the study says about further jobs, continue each of its points N times with random velocities, to find its
+    /// limit cycles. The name becomes STUDY-basins.
+    #[arg(long, value_name = "N", requires = "kick_m_s")]
+    basins: Option<u32>,
+    /// With --basins: root mean square of the velocities in m/s.
+    #[arg(long = "kick", id = "kick_m_s", value_name = "SPEED", requires = "basins")]
+    kick_m_s: Option<f64>,
     /// Give the study this name, so that it stands beside the one in the file.
     #[arg(long, value_name = "NAME")]
     name: Option<String>,
@@ -38,11 +45,16 @@ impl StudyArgs {
 
     /// Reads and checks the study of the complex modes at the points of the study.
     pub(crate) fn plan_of_modes(&self) -> Result<Plan, CliError> {
+        if self.basins.is_some() {
+            let message = "--basins is for runs; the modes of steady sliding have no limit cycles";
+            return Err(CliError::Usage(message.to_owned()));
+        }
         Ok(Plan::load_changed(&self.file, &Changes { is_of_modes: true, ..self.changes() })?)
     }
 
     fn changes(&self) -> Changes {
         let (name, settings) = (self.name.clone(), self.settings.clone());
-        Changes { name, preset: self.preset, settings, is_of_modes: false }
+        let basins = self.basins.zip(self.kick_m_s).map(|(kicks, kick_m_s)| Basins { kicks, kick_m_s });
+        Changes { name, preset: self.preset, settings, is_of_modes: false, basins }
     }
 }

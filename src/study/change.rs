@@ -1,4 +1,4 @@
-//! Changes of a study by the command line: `--preset`, `--set` and `--name`.
+//! Changes of a study by the command line: `--preset`, `--set`, `--basins` and `--name`.
 
 use super::axis::{Axis, check_type};
 use super::error::Problem;
@@ -21,6 +21,18 @@ pub struct Changes {
     pub settings: Vec<(String, String)>,
     /// Whether the jobs compute complex modes without a run. The study is then called `NAME-stability`.
     pub is_of_modes: bool,
+    /// Random velocities from each point of the study, instead of what it says about further jobs. Without a `name`, the study is then
+    /// called `NAME-basins`.
+    pub basins: Option<Basins>,
+}
+
+/// Random velocities to find the limit cycles that can be reached from a point.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Basins {
+    /// How many jobs continue each point.
+    pub kicks: u32,
+    /// Root mean square of the velocities \[m/s\].
+    pub kick_m_s: f64,
 }
 
 /// What values may be.

@@ -54,7 +54,7 @@ mod time_defaults;
 mod validate;
 
 pub use chains::chains_of;
-pub use change::Changes;
+pub use change::{Basins, Changes};
 pub use definition::Study;
 pub use error::{Problem, StudyError};
 pub use expand::Job;

@@ -1,13 +1,13 @@
 //! From the text of a study file to a checked study.
 
 use super::axis::Axis;
-use super::change::{Changes, Forms};
+use super::change::{Basins, Changes, Forms};
 use super::conditions::Conditions;
 use super::definition::Study;
 use super::error::{Problem, StudyError};
 use super::file::StudyFile;
 use super::grid::Grid;
-use super::growth::Growth;
+use super::growth::{Continue, Growth};
 use super::height_file;
 use super::json::{Decoded, decode_all};
 use super::limits::MAX_JOBS;
@@ -23,7 +23,7 @@ use super::source::{Change, SourceText};
 use super::text::{STDIN, StudyText};
 use super::validate::check_jobs;
 use crate::spec::{FieldError, JobSpec, StabilityMethod};
-use serde_json::{Map, Value};
+use serde_json::{Map, Value, json};
 use std::path::Path;
 
 impl Study {
@@ -111,13 +111,14 @@ impl Study {
         if changes.is_of_modes && problems.is_empty() {
             outline.ask_for_modes()?;
         }
+        let mut growth = Growth { refine: file.refine, continues: file.continues };
+        if changes.is_of_modes {
+            growth = Growth::default();
+        } else if let Some(basins) = changes.basins.filter(|_| problems.is_empty()) {
+            growth = outline.ask_for_basins(basins, changes.name.is_some())?;
+        }
         // The jobs are judged only when every field has been read: a limit may depend on several of them.
         if problems.is_empty() {
-            let growth = if changes.is_of_modes {
-                Growth::default()
-            } else {
-                Growth { refine: file.refine, continues: file.continues }
-            };
             return Self::of(outline, file.report.unwrap_or_default(), growth);
         }
         // A problem of a field that the file does not give has no position; it comes last.
@@ -189,6 +190,27 @@ impl Outline {
             fields.insert(STABILITY.to_owned(), StabilityMethod::Modes.name().into());
         }
         Ok(())
+    }
+
+    /// Makes it the study of the limit cycles that can be reached from its points.
+    fn ask_for_basins(
+        &mut self,
+        Basins { kicks, kick_m_s }: Basins,
+        has_name: bool,
+    ) -> Result<Growth, StudyError> {
+        let own = self.name().map_err(StudyError::Invalid)?;
+        let name = if has_name { own } else { format!("{own}-basins") };
+        let text = format!("{kicks} of {kick_m_s} m/s");
+        self.source
+            .changes
+            .extend([Change::of_name("--basins", &name), Change::of_growth("--basins", &text)]);
+        if let Value::Object(fields) = &mut self.document {
+            fields.insert("name".to_owned(), name.into());
+            fields.remove("refine");
+            fields.insert("continue".to_owned(), json!({ "kicks": kicks, "kick_m_s": kick_m_s }));
+        }
+        let continues = Continue { kicks: Some(kicks), kick_m_s: Some(kick_m_s), ..Continue::default() };
+        Ok(Growth { refine: None, continues: Some(continues) })
     }
 
     /// Refuses a grid that has become too large.

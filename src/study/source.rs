@@ -48,6 +48,12 @@ impl Change {
         Self { place: place.to_owned(), fields: vec!["name".to_owned()], text: text.to_owned() }
     }
 
+    /// What the study says about further jobs.
+    pub(super) fn of_growth(place: &str, text: &str) -> Self {
+        let fields = ["continue", "refine"].map(str::to_owned).to_vec();
+        Self { place: place.to_owned(), fields, text: text.to_owned() }
+    }
+
     fn covers(&self, path: &str) -> bool {
         let is_within = |field: &String| {
             path.strip_prefix(field).is_some_and(|rest| rest.is_empty() || rest.starts_with(['[', '.']))

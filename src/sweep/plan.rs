@@ -209,16 +209,16 @@ pub(super) struct Added<'a> {
     /// The number of the wave, from 1.
     pub wave: u64,
     /// For each job why it is added.
-    pub whys: &'a [String],
+    pub whys: &'a [&'static str],
 }
 
 /// Jobs of a wave in the form that the queue takes. with the reasons why they are added. Those that the solver
 /// would refuse before their first step are left out.
-pub(super) fn added_jobs<'a>(
+pub(super) fn added_jobs(
     source_name: &str,
     jobs: &[Job],
-    added: &Added<'a>,
-) -> Result<Vec<(NewJob, &'a str)>, SweepError> {
+    added: &Added<'_>,
+) -> Result<Vec<(NewJob, &'static str)>, SweepError> {
     let mut batches = SharedKeys::new(solver::VERSION);
     let mut cases = SharedKeys::new("");
     let keys: Vec<String> = jobs.iter().map(|job| batches.key(job.spec.shared_part())).collect();
@@ -235,7 +235,7 @@ pub(super) fn added_jobs<'a>(
     let mut new = Vec::new();
     for (((job, batch), why), workload) in jobs.iter().zip(&keys).zip(added.whys).zip(planned) {
         if let Some(workload) = workload {
-            new.push((new_job(job, batch, &workload, &mut cases, Some((added.wave, why)))?, why.as_str()));
+            new.push((new_job(job, batch, &workload, &mut cases, Some((added.wave, why)))?, *why));
         }
     }
     Ok(new)
@@ -247,7 +247,7 @@ fn new_job(
     batch: &str,
     workload: &Workload,
     cases: &mut SharedKeys,
-    added: Option<(u64, &String)>,
+    added: Option<(u64, &str)>,
 ) -> Result<NewJob, SweepError> {
     let parameters = RowParameters {
         omega_rpm: job.spec.scene.disk.omega_rpm,
@@ -255,7 +255,7 @@ fn new_job(
         grid: job.parameters.clone(),
         numerics: Some(numerics(&job.spec, cases)),
         wave: added.map(|(wave, _)| wave),
-        why: added.map(|(_, why)| why.clone()),
+        why: added.map(|(_, why)| why.to_owned()),
     };
     Ok(NewJob {
         key: job.key.clone(),

@@ -145,6 +145,31 @@ fn what_is_asked_for_is_found() {
     assert!(folder.ok("status study").contains("the budget of 15 jobs is used up"));
 }
 
+/// Protects: `--basins` makes the same jobs as `kicks` in the study, beside the study itself, and shares of all kicks.
+#[test]
+fn basins_can_be_asked_for_on_the_command_line() {
+    let mut study = small(&json!({ "mu": [0.6], "omega_rpm": [10] }));
+    let folder = Folder::with("study", &study);
+    folder.ok("run study.json --basins 5 --kick 0.02");
+    let asked = rows(&folder.ok("export study-basins"));
+    assert_eq!(asked.len(), 6);
+    study["continue"] = json!({ "kicks": 5, "kick_m_s": 0.02 });
+    folder.add("same", &study);
+    let message = stderr(&folder.command("submit same.json").assert().success());
+    assert!(message.contains("1 job, 0 new, 1 already done"), "{message}");
+    folder.ok("work");
+    let same = rows(&folder.ok("export same"));
+    assert_eq!(
+        same.iter().map(|row| &row["job"]).collect::<Vec<_>>(),
+        asked.iter().map(|row| &row["job"]).collect::<Vec<_>>()
+    );
+    let table = rows(&folder.read("reports/study-basins/basins.csv"));
+    let jobs: u64 = table.iter().map(|row| row["jobs"].parse::<u64>().unwrap()).sum();
+    assert_eq!(jobs, 5);
+    let message = stderr(&folder.command("run study.json --basins 5").assert().failure());
+    assert!(message.contains("--kick"), "{message}");
+}
+
 /// Protects: a chain that ended at a job that failed goes on when the job is tried again, and then has all its jobs.
 #[test]
 fn a_chain_goes_on_after_a_retry() {

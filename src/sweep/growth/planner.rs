@@ -50,7 +50,7 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
             return Ok(Planned::Complete { note: format!("all chains have ended{stopped}") });
         }
         let note = format!("{}: {}", chains::PURPOSE, jobs.len());
-        let whys = vec![chains::PURPOSE.to_owned(); jobs.len()];
+        let whys = vec![chains::PURPOSE; jobs.len()];
         let added = added_jobs(&claim.study, &jobs, &Added { wave: claim.wave, whys: &whys })?;
         let jobs: Vec<NewJob> = added.into_iter().map(|(job, _)| job).collect();
         if jobs.is_empty() {
@@ -61,9 +61,16 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
     let Some(settings) = &growth.refine else {
         return Ok(Planned::Complete { note: "the study does not grow".to_owned() });
     };
-    let wanted = refine::wanted(settings, &rows);
+    let (wanted, given_up) = refine::wanted(settings, &rows);
     if wanted.is_empty() {
-        return Ok(Planned::Complete { note: "everything is known as well as it is asked for".to_owned() });
+        let note = match given_up {
+            0 => "everything is known as well as it is asked for".to_owned(),
+            given_up => {
+                let intervals = count(given_up as u64, "interval");
+                format!("the rest is known; {intervals} given up, because several jobs inside have no value")
+            }
+        };
+        return Ok(Planned::Complete { note });
     }
     let most = settings.wave_jobs.min(settings.most_jobs.saturating_sub(rows.len()));
     let mut known: HashSet<String> = rows.iter().map(|row| row.job.clone()).collect();
@@ -73,7 +80,7 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
     // What a limit or the solver refuses makes room for the next point.
     while jobs.len() < most {
         let new = |point: &Wanted| Some((study.job_at(&point.parameters, solver::VERSION)?, point.purpose));
-        let part: Vec<(Job, &str)> = left
+        let part: Vec<(Job, &'static str)> = left
             .by_ref()
             .filter_map(new)
             .filter(|(job, _)| known.insert(job.key.clone()))
@@ -82,11 +89,9 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
         if part.is_empty() {
             break;
         }
-        let (part, whys): (Vec<Job>, Vec<String>) =
-            part.into_iter().map(|(job, purpose)| (job, purpose.to_owned())).unzip();
+        let (part, whys): (Vec<Job>, Vec<&'static str>) = part.into_iter().unzip();
         for (job, purpose) in added_jobs(&claim.study, &part, &Added { wave: claim.wave, whys: &whys })? {
-            let own = refine::PURPOSES.iter().find(|own| **own == purpose).copied().unwrap_or_default();
-            *purposes.entry(own).or_default() += 1;
+            *purposes.entry(purpose).or_default() += 1;
             jobs.push(job);
         }
     }

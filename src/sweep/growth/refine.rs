@@ -11,12 +11,9 @@ pub struct Wanted {
     /// What is known is so many times worse than what is asked for.
     pub urgency: f64,
     pub parameters: Vec<(String, Value)>,
-    /// One of [`PURPOSES`].
+    /// `curve`, `minimum` or `boundary`.
     pub purpose: &'static str,
 }
-
-/// What points are asked for.
-pub const PURPOSES: [&str; 3] = ["boundary", "curve", "minimum"];
 
 /// An interval whose error is not known is as urgent as this.
 const UNKNOWN: f64 = 1.0e9;
@@ -36,8 +33,8 @@ const ROUNDING: f64 = 1.0 + 1.0e-6;
 /// A position may be rounded by this share of the width of its interval.
 const ROUNDED_BY: f64 = 0.02;
 
-/// All points that are asked for, the most urgent ones first.
-pub fn wanted(refine: &Refine, rows: &[JobRow]) -> Vec<Wanted> {
+/// All points that are asked for, the most urgent ones first, and the number of intervals that are given up.
+pub fn wanted(refine: &Refine, rows: &[JobRow]) -> (Vec<Wanted>, usize) {
     let mut all = Vec::new();
     if let Some(curves) = &refine.curves {
         for series in series_along(rows, &curves.over) {
@@ -49,9 +46,11 @@ pub fn wanted(refine: &Refine, rows: &[JobRow]) -> Vec<Wanted> {
             all.extend(on_boundaries(&series, boundaries));
         }
     }
+    let given_up = all.iter().filter(|point| point.is_none()).count();
+    let mut wanted: Vec<Wanted> = all.into_iter().flatten().collect();
     // The sort is stable: what is equally urgent keeps the order of the study.
-    all.sort_by(|a, b| b.urgency.total_cmp(&a.urgency));
-    all
+    wanted.sort_by(|a, b| b.urgency.total_cmp(&a.urgency));
+    (wanted, given_up)
 }
 
 /// The boundaries of a study as far as they are known.
@@ -96,7 +95,8 @@ fn lowest(known: &[(f64, f64)]) -> Option<usize> {
     (0..known.len()).min_by(|&a, &b| known[a].1.total_cmp(&known[b].1))
 }
 
-fn on_curve(series: &Series<'_>, curves: &Curves) -> Vec<Wanted> {
+/// The points that a curve asks for; none for an interval that is given up.
+fn on_curve(series: &Series<'_>, curves: &Curves) -> Vec<Option<Wanted>> {
     let Some(scalar) = Scalar::find(&curves.of) else { return Vec::new() };
     let (known, unknown) = series.known(|row| scalar.value(row));
     let (Some(first), Some(last)) = (known.first(), known.last()) else { return Vec::new() };
@@ -124,12 +124,7 @@ fn on_curve(series: &Series<'_>, curves: &Curves) -> Vec<Wanted> {
         let x = inside([known[index].0, known[index + 1].0], &unknown, 0.5, f64::INFINITY)?;
         Some(Wanted { urgency, parameters: series.at(&curves.over, x), purpose })
     };
-    urgencies
-        .into_iter()
-        .enumerate()
-        .filter(|(_, (urgency, _))| *urgency > ROUNDING)
-        .filter_map(point)
-        .collect()
+    urgencies.into_iter().enumerate().filter(|(_, (urgency, _))| *urgency > ROUNDING).map(point).collect()
 }
 
 /// For each interval the error of a straight line in it, |f″|h²/8, with the larger of the second differences at its two ends; none if
@@ -149,7 +144,8 @@ fn errors_of_lines(known: &[(f64, f64)]) -> Vec<Option<f64>> {
         .collect()
 }
 
-fn on_boundaries(series: &Series<'_>, boundaries: &Boundaries) -> Vec<Wanted> {
+/// The points that the boundaries of a series ask for, likewise.
+fn on_boundaries(series: &Series<'_>, boundaries: &Boundaries) -> Vec<Option<Wanted>> {
     let (known, unknown) = series.known(|row| kind(row, boundaries.between));
     let mut found = Vec::new();
     for (index, pair) in known.windows(2).enumerate().filter(|(_, pair)| pair[0].1.name != pair[1].1.name) {
@@ -163,12 +159,10 @@ fn on_boundaries(series: &Series<'_>, boundaries: &Boundaries) -> Vec<Wanted> {
             .filter_map(|(x, kind)| Some((*x, kind.rate_per_s?)))
             .collect();
         let shares = shares([low, high], boundaries.within, &rates);
-        let points =
-            shares.into_iter().filter_map(|share| inside([low, high], &unknown, share, boundaries.within));
-        found.extend(points.map(|x| Wanted {
-            urgency: width / boundaries.within,
-            parameters: series.at(&boundaries.over, x),
-            purpose: "boundary",
+        found.extend(shares.into_iter().map(|share| {
+            let x = inside([low, high], &unknown, share, boundaries.within)?;
+            let parameters = series.at(&boundaries.over, x);
+            Some(Wanted { urgency: width / boundaries.within, parameters, purpose: "boundary" })
         }));
     }
     found
