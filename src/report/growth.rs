@@ -42,6 +42,8 @@ pub struct Minimum {
     pub neighbours: [Option<f64>; 2],
     /// The distance of the neighbours that was asked for.
     pub wanted: f64,
+    /// Whether the values of the curve differ by no more than the error that was asked for.
+    pub is_flat: bool,
 }
 
 /// How a job that continues others, or is continued, ended.
@@ -277,12 +279,17 @@ impl Findings {
             let has_neighbour = own.neighbours.iter().any(Option::is_some);
             let is_known = has_neighbour
                 && own.neighbours.iter().flatten().all(|x| (x - own.at).abs() <= own.wanted * 1.000_001);
+            let known = match (own.is_flat, is_known) {
+                (true, _) => "flat",
+                (false, true) => "yes",
+                (false, false) => "no",
+            };
             let numbers = [
                 value::text(&own.at.into()),
                 side(own.neighbours[0]),
                 side(own.neighbours[1]),
                 value::significant(own.value, 5),
-                if is_known { "yes" } else { "no" }.to_owned(),
+                known.to_owned(),
             ];
             let names = [own.of.clone(), own.over.clone()];
             values(&own.rest).into_iter().chain(names).chain(numbers).collect()
@@ -291,7 +298,8 @@ impl Findings {
             stem: "minima",
             heading: "Minima",
             meaning: "The smallest value of each curve. The minimum of a curve with one minimum lies between the neighbours; it is \
-                      known if they are as near as the study asks for. There is no value beyond the ends of a curve, and where jobs failed.",
+                      known if they are as near as the study asks for. There is no value beyond the ends of a \
+                      curve, and where jobs failed. The minimum of a curve is not looked for if it is flat.",
             header: header(
                 names(self.minima.first().map(|own| &own.rest)),
                 &["of", "over", "at", "from", "to", "value", "known"],

@@ -133,9 +133,10 @@ fn what_is_asked_for_is_found() {
         let [from, to] = ["from", "to"].map(|name| row[name].parse::<f64>().unwrap());
         assert!(to - from <= 0.01 + 1e-9 && row["known"] == "yes", "{row:?}");
     }
-    for row in table("minima") {
-        assert_eq!(row["known"], "yes", "{row:?}");
-    }
+    // The curve of stable sliding has no minimum to be looked for.
+    let minima = table("minima");
+    let known: Vec<&str> = minima.iter().map(|row| row["known"].as_str()).collect();
+    assert_eq!(known, ["flat", "yes", "yes"], "{minima:?}");
     let mut small = refining();
     small["refine"]["most_jobs"] = 15.into();
     let folder = Folder::with("study", &small);

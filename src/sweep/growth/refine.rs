@@ -86,9 +86,17 @@ pub fn minima(curves: &Curves, rows: &[JobRow]) -> Vec<Minimum> {
             value: known[at].1,
             neighbours: [neighbour(at.checked_sub(1)), neighbour(Some(at + 1))],
             wanted,
+            is_flat: is_flat(&known, curves),
         })
     };
     series_along(rows, &curves.over).into_iter().filter_map(minimum).collect()
+}
+
+/// Whether the values of a curve differ by no more than the error that is asked for. Then its minimum is anywhere.
+fn is_flat(known: &[(f64, f64)], curves: &Curves) -> bool {
+    let values = || known.iter().map(|(_, value)| *value);
+    let spread = values().fold(f64::NEG_INFINITY, f64::max) - values().fold(f64::INFINITY, f64::min);
+    curves.within.is_some_and(|within| spread <= within)
 }
 
 fn lowest(known: &[(f64, f64)]) -> Option<usize> {
@@ -111,7 +119,9 @@ fn on_curve(series: &Series<'_>, curves: &Curves) -> Vec<Option<Wanted>> {
             urgency.0 = errors[index].map_or(UNKNOWN, |error| error / within);
         }
     }
-    if let (Some(within), Some(at)) = (curves.minimum_within, lowest(&known)) {
+    if let (Some(within), Some(at)) = (curves.minimum_within, lowest(&known))
+        && !is_flat(&known, curves)
+    {
         for index in [at.checked_sub(1), Some(at)].into_iter().flatten().filter(|&index| index < errors.len())
         {
             let needed = (known[index + 1].0 - known[index].0) / within;
