@@ -16,6 +16,7 @@ mod mount;
 mod nightly;
 mod one_job;
 mod points;
+mod python;
 #[path = "../support/random.rs"]
 mod random;
 #[path = "../support/report_files.rs"]

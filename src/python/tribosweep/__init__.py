@@ -1,0 +1,142 @@
+"""Friction-induced vibration of a pin on a disk: runs the program `tribosweep` and reads its results.
+
+    import tribosweep
+    jobs = tribosweep.run("studies/mini.json")              # a DataFrame, a row for each job
+    record = tribosweep.solve("studies/mini.json", mu=0.4, omega_rpm=7)
+    grid = tribosweep.grid(jobs, ["mu_star"])               # an xarray.Dataset over the parameters
+
+`run` and `read` need pandas; `grid` also needs xarray. A study is the path of its file, or a dictionary with the same content.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from io import StringIO
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, Union
+
+if TYPE_CHECKING:
+    import pandas
+    import xarray
+
+__all__ = ["Error", "grid", "program", "read", "run", "solve"]
+
+Study = Union[str, "os.PathLike[str]", Mapping[str, Any]]
+
+# Exit codes of the program with which results are there: all jobs are done, or some have failed.
+_WITH_RESULTS = (0, 1)
+
+
+class Error(Exception):
+    """The program refused something. The text is its message; `code` is its exit code."""
+
+    def __init__(self, message: str, code: int) -> None:
+        super().__init__(message)
+        self.code = code
+
+
+def program() -> str:
+    """The path of the program: TRIBOSWEEP_PROGRAM, the one that was installed with this module, or the one on the PATH.
+
+    Raises FileNotFoundError if there is none.
+    """
+    given = os.environ.get("TRIBOSWEEP_PROGRAM")
+    beside = shutil.which("tribosweep", path=str(Path(sys.executable).parent))
+    found = given or beside or shutil.which("tribosweep")
+    if found is None:
+        raise FileNotFoundError("no program `tribosweep` on the PATH; set TRIBOSWEEP_PROGRAM to its path")
+    return found
+
+
+def run(
+    study: Study,
+    *,
+    db: str | os.PathLike[str] = "tribosweep.db",
+    out: str | os.PathLike[str] | None = None,
+    preset: str | None = None,
+    threads: int | None = None,
+    replace: bool = False,
+    settings: Mapping[str, Any] | None = None,
+) -> pandas.DataFrame:
+    """Solves the jobs of a study, writes its report, and returns a row for each job with all columns of the export.
+
+    Jobs that the database has are not solved again. Failed jobs have a status `failed` and a text in `error`. `settings` are
+    parameters with other values: a number, a name, or a list that becomes an axis.
+
+    Raises Error if the study or the database is refused, or if the run was interrupted.
+    """
+    options = ["--db", os.fspath(db)]
+    with _file_of(study) as path:
+        changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
+        others = [] if threads is None else ["--threads", str(threads)]
+        others += [] if out is None else ["--out", os.fspath(out)]
+        others += ["--replace"] if replace else []
+        _call(["run", path, *changes, *others, *options], codes=_WITH_RESULTS)
+        name = json.loads(_call(["validate", path, *changes, "--json", "--replace", *options]))["study"]
+    return read(db, name)
+
+
+def read(db: str | os.PathLike[str], study: str) -> pandas.DataFrame:
+    """The jobs of a study in a database: a row for each job with all columns of the export.
+
+    Raises Error if there is no such database or study.
+    """
+    import pandas
+
+    return pandas.read_csv(StringIO(_call(["export", study, "--all", "--db", os.fspath(db)])))
+
+
+def solve(study: Study, *, preset: str | None = None, **settings: Any) -> dict[str, Any]:
+    """Solves one job and returns its record. Nothing is stored. `settings` are parameters such as mu=0.4.
+
+    Raises Error if the job is refused or fails.
+    """
+    changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
+    with _file_of(study) as path:
+        return json.loads(_call(["solve", path, *changes, "--json"]))
+
+
+def grid(jobs: pandas.DataFrame, values: Sequence[str], over: Sequence[str] | None = None) -> xarray.Dataset:
+    """Columns of jobs as arrays over their parameters; missing where the grid has no job.
+
+    `over` are the parameters; by default ω and μ, as far as they vary. Raises ValueError if two jobs have the same values of them.
+    """
+    if over is None:
+        over = [name for name in ("omega_rpm", "mu") if jobs[name].nunique() > 1] or ["omega_rpm"]
+    if jobs.duplicated(list(over)).any():
+        raise ValueError(f"several jobs have the same {', '.join(over)}; name all parameters that vary in `over`")
+    return jobs.set_index(list(over))[list(values)].to_xarray()
+
+
+def _settings(settings: Mapping[str, Any] | None) -> list[str]:
+    def text(value: Any) -> str:
+        return value if isinstance(value, str) else json.dumps(value)
+
+    return [part for name, value in (settings or {}).items() for part in ("--set", f"{name}={text(value)}")]
+
+
+@contextmanager
+def _file_of(study: Study) -> Iterator[str]:
+    """The path of the study's file; that of a dictionary exists as long as it is needed."""
+    if not isinstance(study, Mapping):
+        yield os.fspath(study)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "study.json"
+        path.write_text(json.dumps({"name": "study", **study}), encoding="utf-8")
+        yield str(path)
+
+
+def _call(arguments: Sequence[str], codes: Sequence[int] = (0,)) -> str:
+    done = subprocess.run([program(), *arguments], capture_output=True, text=True, encoding="utf-8", check=False)
+    if done.returncode not in codes:
+        message = "\n".join(line for line in done.stderr.splitlines() if line)
+        raise Error(message or f"the program ended with code {done.returncode}", done.returncode)
+    return done.stdout

@@ -1,0 +1,90 @@
+//! The Python module: it calls the program, and its frames have what the program exports.
+
+use std::path::Path;
+use std::process::Command;
+
+use crate::support::Folder;
+use crate::tools;
+
+/// What the module promises, as Python's own assertions.
+const CHECKS: &str = r#"
+import math, os, subprocess, sys
+import pandas
+import tribosweep
+
+program = tribosweep.program()
+assert program == os.environ["TRIBOSWEEP_PROGRAM"], program
+study = {
+    "scene": {"pin": {"elements": [3, 4, 3]}, "clamp": {"width_m": 0.004}},
+    "run": {"limit_s": 0.012},
+    "grid": {"mu": [0.2, 0.4], "omega_rpm": [5, 20, 50]},
+}
+jobs = tribosweep.run(study, db="sweep.db", out="report", threads=1)
+assert list(jobs["mu"]) == [0.2, 0.2, 0.2, 0.4, 0.4, 0.4], jobs
+assert os.path.exists("report/report.html")
+again = tribosweep.read("sweep.db", "study")
+pandas.testing.assert_frame_equal(jobs, again)
+exported = subprocess.run([program, "export", "study", "--all", "--db", "sweep.db"], capture_output=True, text=True).stdout
+assert exported.splitlines()[0].split(",") == list(jobs.columns)
+
+one = tribosweep.run(study, db="sweep.db", out="report", replace=True, settings={"mu": 0.4, "omega_rpm": [5, 20]})
+assert len(one) == 2 and set(one["job"]) <= set(jobs["job"])
+
+record = tribosweep.solve(study, mu=0.4, omega_rpm=20)
+same = jobs[(jobs["mu"] == 0.4) & (jobs["omega_rpm"] == 20)].iloc[0]
+assert math.isclose(record["mu_star"], same["mu_star"], rel_tol=1e-12), (record["mu_star"], same["mu_star"])
+
+for call, part, code in [
+    (lambda: tribosweep.run({"grid": {"muu": [0.2]}}, db="sweep.db"), "did you mean `mu`?", 2),
+    (lambda: tribosweep.run("missing.json", db="sweep.db"), "missing.json", 2),
+    (lambda: tribosweep.read("missing.db", "study"), "missing.db", 2),
+    (lambda: tribosweep.solve(study, mu=-1), "-1", 2),
+]:
+    try:
+        call()
+    except tribosweep.Error as error:
+        assert part in str(error) and error.code == code, (error.code, str(error))
+    else:
+        raise AssertionError(part)
+try:
+    tribosweep.grid(jobs, ["mu_star"], over=["omega_rpm"])
+except ValueError as error:
+    assert "omega_rpm" in str(error)
+else:
+    raise AssertionError("two jobs at one place")
+try:
+    import xarray
+except ImportError:
+    print("no xarray")
+else:
+    cube = tribosweep.grid(jobs, ["mu_star", "frequency_hz"])
+    assert cube["mu_star"].sel(mu=0.4, omega_rpm=20) == same["mu_star"]
+    assert dict(cube.sizes) == {"omega_rpm": 3, "mu": 2}, cube.sizes
+print("checked")
+"#;
+
+/// Protects: `run`, `read`, `solve` and `grid` return what the program computes, and what it refuses becomes an exception with its message
+/// and its exit code.
+#[test]
+fn the_module_returns_what_the_program_computes() {
+    let folder = Folder::new();
+    let python = std::env::var("TRIBOSWEEP_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let has_pandas = Command::new(&python).args(["-c", "import pandas"]).output();
+    if !has_pandas.is_ok_and(|done| done.status.success()) {
+        return tools::missing(
+            "there is no Python with pandas",
+            "install pandas (and xarray), and set TRIBOSWEEP_PYTHON to a Python that has them",
+        );
+    }
+    let module = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/python");
+    let done = Command::new(&python)
+        .args(["-c", CHECKS])
+        .env("PYTHONPATH", module)
+        .env("PYTHONDONTWRITEBYTECODE", "1")
+        .env("TRIBOSWEEP_PROGRAM", env!("CARGO_BIN_EXE_tribosweep"))
+        .current_dir(folder.path("."))
+        .output()
+        .unwrap();
+    let [out, errors] = [done.stdout, done.stderr].map(|text| String::from_utf8(text).unwrap());
+    assert!(out.contains("checked"), "{out}{errors}");
+}
