@@ -299,7 +299,9 @@ fn the_map_is_true() {
     let entries = page.lines().filter_map(|line| line.strip_prefix("* [`")?.split_once("`] – "));
     let entries: BTreeMap<&str, &str> = entries.collect();
     let named: BTreeSet<String> = entries.keys().map(|&name| name.to_owned()).collect();
-    assert_eq!(named, folders("src"));
+    // The Python module is no room of the library: it calls the program.
+    let rooms: BTreeSet<String> = folders("src").into_iter().filter(|room| room != "python").collect();
+    assert_eq!(named, rooms);
     for (name, text) in entries {
         assert!(is_description(text), "{name}: {text}");
     }
