@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Makes a statically linked program for any Linux on x86-64, which needs no other file.
+#
+#     scripts/release.sh [FOLDER]
+#
+# Writes into FOLDER (default target/dist) an archive with the program, its licences, the completions of shells, the studies and the changes,
+# and a file of checksums. Needs the target of rustup (`rustup target add x86_64-unknown-linux-musl`) and a C compiler for musl
+# (Debian: musl-tools). Ends with an error if the static program gives other results than the ordinary one in the mini study.
+set -euo pipefail
+root="$(cd "$(dirname "$0")/.." && pwd)"
+folder="${1:-$root/target/dist}"
+mkdir -p "$folder"
+folder="$(cd "$folder" && pwd)"
+cd "$root"
+target=x86_64-unknown-linux-musl
+built="${CARGO_TARGET_DIR:-$root/target}"
+cargo build --release --locked --quiet
+cargo build --release --locked --quiet --target "$target"
+static="$built/$target/release/tribosweep"
+if ! file -b "$static" | grep -q -e "statically linked" -e "static-pie linked"; then
+    echo "$static is not linked statically: $(file -b "$static")"
+    exit 1
+fi
+
+scratch=$(mktemp -d)
+trap 'rm -rf "$scratch"' EXIT
+for way in ordinary static; do
+    program="$built/release/tribosweep"
+    [ "$way" = ordinary ] || program="$static"
+    "$program" run studies/mini.json --db "$scratch/$way.db" --out "$scratch/$way" > /dev/null
+    # All columns but the times of threads.
+    "$program" export mini --all --format json --db "$scratch/$way.db" | sed 's/"wall_s":[^,}]*//' > "$scratch/$way.json"
+done
+if ! cmp -s "$scratch/ordinary.json" "$scratch/static.json"; then
+    echo "the static program gives other results than the ordinary one:"
+    diff "$scratch/ordinary.json" "$scratch/static.json" | cut -c1-400
+    exit 1
+fi
+
+version=$("$static" --version | cut -d' ' -f2)
+name="tribosweep-$version-$target"
+package="$scratch/$name"
+mkdir -p "$package/completions"
+cp "$static" LICENSE-MIT LICENSE-APACHE README.md CHANGELOG.md CITATION.cff "$package"
+strip "$package/tribosweep"
+cp -r studies "$package"
+for shell in bash fish zsh; do
+    "$static" completions "$shell" > "$package/completions/tribosweep.$shell"
+done
+tar -C "$scratch" --sort=name --owner=0 --group=0 -czf "$folder/$name.tar.gz" "$name"
+(cd "$folder" && sha256sum "$name.tar.gz" > "$name.sha256")
+bytes=$(stat -c %s "$package/tribosweep")
+echo "$folder/$name.tar.gz: program of $((bytes / 1000000)) MB, the same results as the ordinary one"
