@@ -8,6 +8,7 @@ minutes on two cores. Results are kept in target/docs/docs.db.
 """
 
 import csv
+import math
 
 import runs
 
@@ -168,6 +169,7 @@ def main():
     speeds = [6.8, 7.0]
     of_steps = runs.table(["Δt [µs]", *(f"μ\\* at {speed:g} rpm" for speed in speeds)],
                           [[step, *(at(lines, speed) for speed in speeds)] for step, lines in found_branches["steps"]])
+    sliding_m_s = 7 * 2 * math.pi / 60 * 0.0914
     difference = lambda lines: max(abs(float(line["mu_star_up"]) - float(line["mu_star_down"])) for line in lines)
     of_thresholds = runs.table(["ω [rpm]", "boundary in μ, refined", "boundary in μ, uniform grid"], refined['thresholds'])
     of_minima = runs.table(["μ", "minimum at ω [rpm] (neighbours)", "μ\\* there", "uniform grid: ω [rpm]", "μ\\* there"], refined['minima'])
@@ -175,6 +177,11 @@ def main():
     of_basins = runs.table(["kick [m/s]", "μ\\*", "frequency [Hz]", "jobs", "share"], found_basins)
     of_slow = runs.table(header, slow_table)
     of_fast = runs.table(header, fast_table)
+    # What the page says in words.
+    assert difference(found_branches["narrow"]) < 1e-3 < difference(found_branches["loose"])
+    assert all(difference([line]) > 5e-3 for line in found_branches["two"])
+    frequency = {float(line["omega_rpm"]): float(line["frequency_up_hz"]) for line in found_branches["narrow"]}
+    assert frequency[6.7] - frequency[6.9] > 2 * (frequency[6.6] - frequency[6.7])
     text = f"""# What plans that learn find
 
 Written by `scripts/growing.py`; do not edit. Reference scene on 12 × 15 × 10 elements.
@@ -210,7 +217,7 @@ How often random velocities lead from a limit cycle at 7 rpm to each of the two 
 in brackets the interval that has the true share with 95 %):
 
 {of_basins}
-The speed of sliding is 0.067 m/s. A kick that is small beside it seldom changes the limit cycle; large ones lead to both about equally often.
+The speed of sliding is {sliding_m_s:.3f} m/s. A kick that is small beside it seldom changes the limit cycle; large ones lead to both about equally often.
 
 ## What should be measured best?
 

@@ -61,8 +61,8 @@ pub struct Endpoint {
     pub is_settled: bool,
 }
 
-/// Ends whose μ\* differ by less than this share are those of one limit cycle: a third of the distance of the limit cycles of the
-/// reference scene at 7 rpm, and several times what the detection of a limit cycle leaves open.
+/// Ends whose μ\* differ by less than this share are those of one limit cycle: less than a tenth of the distance of the two limit cycles
+/// at 7 rpm (docs/growing.md), and several times what the detection of a limit cycle leaves open.
 const SAME_MU_STAR: f64 = 0.003;
 
 /// Likewise for frequencies.

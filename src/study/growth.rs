@@ -290,17 +290,3 @@ impl Continue {
         self.kick_m_s.unwrap_or(CHAIN_KICK_M_S)
     }
 }
-
-impl Parameter {
-    /// The shortest decimal number that differs from `value` by at most `by`.
-    pub fn rounded(value: f64, by: f64) -> f64 {
-        for decimals in 0..=12 {
-            let scale = 10_f64.powi(decimals);
-            let rounded = (value * scale).round() / scale;
-            if (rounded - value).abs() <= by {
-                return rounded;
-            }
-        }
-        value
-    }
-}

@@ -27,6 +27,9 @@ use tokio::sync::mpsc::UnboundedReceiver;
 /// Longest time without a turn: how often progress is shown when no job ends.
 const TICK: Duration = Duration::from_millis(250);
 
+/// Shortest time between two looks for waves that are due, while jobs run here: most studies have none.
+const PLAN_PAUSE: Duration = Duration::from_secs(1);
+
 /// Turns between the database and the solver threads.
 pub struct Dispatcher<'a> {
     queue: &'a mut Queue,
@@ -165,10 +168,10 @@ impl<'a> Dispatcher<'a> {
         }
     }
 
-    /// Plans the waves that are due, if it has not looked for them in the last [`TICK`]. Returns whether there are new jobs.
+    /// Plans the waves that are due, if it has not looked for them within [`PLAN_PAUSE`]. Returns whether there are new jobs.
     async fn plan_waves(&mut self, progress: &mut dyn Progress) -> Result<bool, QueueError> {
         let Some(planner) = self.planner else { return Ok(false) };
-        if self.interrupt.is_raised() || self.last_plan.is_some_and(|last| last.elapsed() < TICK) {
+        if self.interrupt.is_raised() || self.last_plan.is_some_and(|last| last.elapsed() < PLAN_PAUSE) {
             return Ok(false);
         }
         self.last_plan = Some(Instant::now());
@@ -364,7 +367,10 @@ impl<'a> Dispatcher<'a> {
             Err(error) if error.is_transient() => {}
             kept_alive => kept_alive?,
         }
-        self.plan_waves(progress).await?;
+        // A worker without jobs looks for waves when it looks for jobs, which becomes rarer.
+        if !self.running.is_empty() {
+            self.plan_waves(progress).await?;
+        }
         self.tally.refresh(self.queue, self.scope).await?;
         progress.update(&self.snapshot());
         Ok(())

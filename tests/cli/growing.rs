@@ -147,8 +147,7 @@ fn what_is_asked_for_is_found() {
     let mut small = refining();
     small["refine"]["most_jobs"] = 15.into();
     let folder = Folder::with("study", &small);
-    let run = folder.ok("run study.json");
-    assert!(!run.is_empty());
+    folder.ok("run study.json");
     assert_eq!(rows(&folder.ok("export study")).len(), 15);
     assert!(folder.ok("status study").contains("the budget of 15 jobs is used up"));
 }

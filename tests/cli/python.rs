@@ -52,14 +52,9 @@ except ValueError as error:
     assert "omega_rpm" in str(error)
 else:
     raise AssertionError("two jobs at one place")
-try:
-    import xarray
-except ImportError:
-    print("no xarray")
-else:
-    cube = tribosweep.grid(jobs, ["mu_star", "frequency_hz"])
-    assert cube["mu_star"].sel(mu=0.4, omega_rpm=20) == same["mu_star"]
-    assert dict(cube.sizes) == {"omega_rpm": 3, "mu": 2}, cube.sizes
+cube = tribosweep.grid(jobs, ["mu_star", "frequency_hz"])
+assert cube["mu_star"].sel(mu=0.4, omega_rpm=20) == same["mu_star"]
+assert dict(cube.sizes) == {"omega_rpm": 3, "mu": 2}, cube.sizes
 print("checked")
 "#;
 
@@ -69,11 +64,11 @@ print("checked")
 fn the_module_returns_what_the_program_computes() {
     let folder = Folder::new();
     let python = std::env::var("TRIBOSWEEP_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let has_pandas = Command::new(&python).args(["-c", "import pandas"]).output();
-    if !has_pandas.is_ok_and(|done| done.status.success()) {
+    let has_packages = Command::new(&python).args(["-c", "import pandas, xarray"]).output();
+    if !has_packages.is_ok_and(|done| done.status.success()) {
         return tools::missing(
-            "there is no Python with pandas",
-            "install pandas (and xarray), and set TRIBOSWEEP_PYTHON to a Python that has them",
+            "there is no Python with pandas and xarray",
+            "install pandas and xarray, and set TRIBOSWEEP_PYTHON to a Python that has them",
         );
     }
     let module = Path::new(env!("CARGO_MANIFEST_DIR")).join("src/python");

@@ -2,7 +2,7 @@
 
 use super::series::{Kind, Series, kind, series_along};
 use crate::report::{Crossing, JobRow, Minimum, Scalar};
-use crate::study::{Boundaries, Curves, Parameter, Refine};
+use crate::study::{Boundaries, Curves, Refine};
 use serde_json::Value;
 
 /// A point that is asked for.
@@ -207,6 +207,15 @@ fn zero([(x0, r0), (x1, r1), (x2, r2)]: [(f64, f64); 3]) -> f64 {
         + x2 * r0 * r1 / ((r2 - r0) * (r2 - r1))
 }
 
+/// The shortest decimal number that differs from `value` by at most `by`.
+fn rounded(value: f64, by: f64) -> f64 {
+    let to = |decimals| {
+        let scale = 10_f64.powi(decimals);
+        (value * scale).round() / scale
+    };
+    (0..=12).map(to).find(|rounded| (rounded - value).abs() <= by).unwrap_or(value)
+}
+
 /// A position inside an interval, at this share of its width. If there are points without a value in it, the middle of the widest gap
 /// between them; none if there are too many. It is rounded by a small share of the width and of `within`.
 fn inside([low, high]: [f64; 2], unknown: &[f64], share: f64, within: f64) -> Option<f64> {
@@ -223,7 +232,7 @@ fn inside([low, high]: [f64; 2], unknown: &[f64], share: f64, within: f64) -> Op
         (widest[0], widest[1], 0.5)
     };
     let width = high - low;
-    let x = Parameter::rounded(low + share * width, ROUNDED_BY * width.min(within));
+    let x = rounded(low + share * width, ROUNDED_BY * width.min(within));
     (low < x && x < high).then_some(x)
 }
 

@@ -37,6 +37,14 @@ async fn run_all(queue: &mut Queue) {
     }
 }
 
+/// A study with the job x, which is done, and the first wave with y.
+async fn grow_once(queue: &mut Queue) {
+    queue.submit(&growing(&["x"])).await.unwrap();
+    run_all(queue).await;
+    let first = plan(queue).await;
+    assert!(queue.store_plan(&first, &wave(&["y"])).await.unwrap());
+}
+
 async fn plan(queue: &mut Queue) -> PlanClaim {
     queue.claim_plan(&Scope::All).await.unwrap().expect("a wave is due")
 }
@@ -136,10 +144,7 @@ async fn a_plan_that_comes_too_late_changes_nothing(sandbox: &Sandbox) {
 /// Protects: a study that is submitted again as it is keeps the jobs that were added, and its plan goes on.
 async fn a_study_that_is_submitted_again_keeps_its_waves(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
-    queue.submit(&growing(&["x"])).await.unwrap();
-    run_all(&mut queue).await;
-    let first = plan(&mut queue).await;
-    queue.store_plan(&first, &wave(&["y"])).await.unwrap();
+    grow_once(&mut queue).await;
     run_all(&mut queue).await;
     let keys = std::collections::HashSet::from(["x"]);
     let preview = queue.preview_replacement("a", &keys, "document of a").await.unwrap().unwrap();
@@ -154,10 +159,7 @@ async fn a_study_that_is_submitted_again_keeps_its_waves(sandbox: &Sandbox) {
 /// Protects: a study that is changed loses the jobs that were added only if its user agrees, and grows anew from the beginning.
 async fn a_changed_study_grows_anew(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
-    queue.submit(&growing(&["x"])).await.unwrap();
-    run_all(&mut queue).await;
-    let first = plan(&mut queue).await;
-    queue.store_plan(&first, &wave(&["y"])).await.unwrap();
+    grow_once(&mut queue).await;
     run_all(&mut queue).await;
     let changed = NewStudy { document: "changed".into(), ..growing(&["x"]) };
     assert!(queue.submit_shard(&changed, Shard::WHOLE, &Replace::KeepingResults).await.is_err());
@@ -227,10 +229,7 @@ async fn a_wave_has_the_priority_of_its_study(sandbox: &Sandbox) {
 /// Protects: a copy has the waves and the plan of the original, and a removed study leaves no plan behind.
 async fn plans_are_copied_and_removed(sandbox: &Sandbox) {
     let mut queue = sandbox.open().await;
-    queue.submit(&growing(&["x"])).await.unwrap();
-    run_all(&mut queue).await;
-    let first = plan(&mut queue).await;
-    queue.store_plan(&first, &wave(&["y"])).await.unwrap();
+    grow_once(&mut queue).await;
     let elsewhere = sandbox.another();
     let mut copy = elsewhere.open().await;
     copy.absorb(&mut queue, None).await.unwrap();
