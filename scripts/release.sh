@@ -3,8 +3,8 @@
 #
 #     scripts/release.sh [FOLDER]
 #
-# Writes into FOLDER (default target/dist) an archive with the program, its licences, the completions of shells, the studies and the changes,
-# and a file of checksums. Needs the target of rustup (`rustup target add x86_64-unknown-linux-musl`) and a C compiler for musl
+# Writes into FOLDER (default target/dist) an archive with the program, its licences, and those of its packages, the completions of shells, manual
+# pages, the studies and the changes, and a file of checksums. Needs the target of rustup (`rustup target add x86_64-unknown-linux-musl`) and a C compiler for musl
 # (Debian: musl-tools). Ends with an error if the static program gives other results than the ordinary one in the mini study.
 set -euo pipefail
 root="$(cd "$(dirname "$0")/.." && pwd)"
@@ -37,6 +37,21 @@ if ! cmp -s "$scratch/ordinary.json" "$scratch/static.json"; then
     exit 1
 fi
 
+# An emulator gives the static program processors with fewer vector instructions.
+for processor in Nehalem Haswell; do
+    if command -v qemu-x86_64 > /dev/null; then
+        qemu-x86_64 -cpu "$processor" "$static" run studies/mini.json --db "$scratch/$processor.db" --out "$scratch/$processor" > /dev/null
+        "$static" export mini --all --format json --db "$scratch/$processor.db" | sed 's/"wall_s":[^,}]*//' > "$scratch/$processor.json"
+        if ! cmp -s "$scratch/static.json" "$scratch/$processor.json"; then
+            echo "the static program gives other results on a processor like $processor:"
+            diff "$scratch/static.json" "$scratch/$processor.json" | cut -c1-400
+            exit 1
+        fi
+    else
+        echo "other processors were not tried: qemu-x86_64 (Debian: qemu-user) is not there"
+    fi
+done
+
 version=$("$static" --version | cut -d' ' -f2)
 name="tribosweep-$version-$target"
 package="$scratch/$name"
@@ -47,7 +62,13 @@ cp -r studies "$package"
 for shell in bash fish zsh; do
     "$static" completions "$shell" > "$package/completions/tribosweep.$shell"
 done
+"$static" man "$package/man"
+python3 scripts/licences.py "$target" > "$package/THIRDPARTY.txt"
+bytes=$(stat -c %s "$package/tribosweep")
+if [ "$bytes" -gt 25000000 ]; then
+    echo "the program has $bytes bytes; at most 25 MB are wanted"
+    exit 1
+fi
 tar -C "$scratch" --sort=name --owner=0 --group=0 -czf "$folder/$name.tar.gz" "$name"
 (cd "$folder" && sha256sum "$name.tar.gz" > "$name.sha256")
-bytes=$(stat -c %s "$package/tribosweep")
 echo "$folder/$name.tar.gz: program of $((bytes / 1000000)) MB, the same results as the ordinary one"

@@ -4,6 +4,10 @@ use clap::Parser;
 use std::process::ExitCode;
 use tribosweep::cli::{self, Cli};
 
+#[cfg(target_env = "musl")]
+#[global_allocator]
+static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
+
 fn main() -> ExitCode {
     ExitCode::from(cli::main(Cli::parse()))
 }

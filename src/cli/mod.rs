@@ -15,6 +15,7 @@ mod forecast;
 mod foreground;
 mod gc;
 mod inspect;
+mod man;
 mod merge;
 mod missing;
 mod outlook;
@@ -124,6 +125,8 @@ enum Command {
     Schema(schema::Args),
     /// Print a completion script for a shell.
     Completions(completions::Args),
+    /// Write the manual pages of all commands to a folder.
+    Man(man::Args),
 }
 
 /// Runs the command and returns its exit code (see `exit`).
@@ -158,6 +161,7 @@ pub fn main(cli: Cli) -> u8 {
         Command::Presets(args) => presets::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::Completions(args) => completions::run(&args),
+        Command::Man(args) => man::run(&args),
     };
     match result {
         Ok(code) => code,

@@ -1,4 +1,4 @@
-//! Commands that show, check and write: status, report, export, validate, schema, completions.
+//! Commands that show, check and write: status, report, export, validate, schema, completions, manual pages.
 
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
@@ -11,7 +11,7 @@ use tribosweep::solver;
 use tribosweep::study::{Study, schema};
 
 use crate::report_files::{LIST, REPORT};
-use crate::support::{Folder, HEADER, long, rows, small, stdout};
+use crate::support::{Folder, HEADER, long, rows, small, stderr, stdout};
 
 /// Protects: the progress of one and of all studies, as text and as JSON, before and after the work.
 #[test]
@@ -277,4 +277,20 @@ fn completions_name_every_command() {
             assert!(script.contains(&offer(shell, command)), "{shell}: {command}");
         }
     }
+}
+
+/// Protects: the program and every command have a manual page with the name of the command, and a folder that cannot be made is named.
+#[test]
+fn manual_pages_of_every_command() {
+    let folder = Folder::new();
+    folder.ok("man pages");
+    let page = folder.read("pages/tribosweep.1");
+    for command in Cli::command().get_subcommands().map(clap::Command::get_name) {
+        let own = folder.read(format!("pages/tribosweep-{command}.1"));
+        assert!(own.contains(".SH SYNOPSIS") && own.contains(command), "{own}");
+        assert!(page.contains(&format!("tribosweep\\-{command}(1)")), "{command}: {page}");
+    }
+    folder.write("file", "");
+    let refused = folder.command("man file/pages").assert().code(2);
+    assert!(stderr(&refused).contains("file/pages"), "{}", stderr(&refused));
 }

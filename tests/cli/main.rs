@@ -1,6 +1,7 @@
 //! The command as a user runs it: its output, its files, its exit codes, and the results after an interruption.
 
 mod accuracy;
+mod book;
 mod commands;
 mod comparison;
 mod data;

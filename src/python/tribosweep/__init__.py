@@ -100,7 +100,8 @@ def solve(study: Study, *, preset: str | None = None, **settings: Any) -> dict[s
     """
     changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
     with _file_of(study) as path:
-        return json.loads(_call(["solve", path, *changes, "--json"]))
+        record: dict[str, Any] = json.loads(_call(["solve", path, *changes, "--json"]))
+    return record
 
 
 def grid(jobs: pandas.DataFrame, values: Sequence[str], over: Sequence[str] | None = None) -> xarray.Dataset:

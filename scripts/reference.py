@@ -1,0 +1,143 @@
+#!/usr/bin/env python3
+"""Writes docs/fields.md and docs/options.md from what the program itself prints: its schema and its help.
+
+    scripts/reference.py PROGRAM [--check]
+
+With --check it writes nothing and ends with 1 if a page is not what the program prints. Needs only Python's standard library.
+"""
+
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+DOCS = pathlib.Path(__file__).resolve().parent.parent / "docs"
+
+
+def output(program, *arguments):
+    # The width of the help must not depend on the terminal, and defaults not on the environment.
+    environment = {name: value for name, value in os.environ.items() if not name.startswith("TRIBOSWEEP")}
+    environment.update(COLUMNS="100", NO_COLOR="1")
+    return subprocess.run([program, *arguments], env=environment, stdout=subprocess.PIPE, text=True, check=True).stdout
+
+
+def cell(text):
+    return " ".join(text.split()).replace("|", "\\|")
+
+
+def referred(schema):
+    """The name of the definition that a field has, if it has one."""
+    for choice in [schema, *schema.get("anyOf", [])]:
+        if "$ref" in choice:
+            return choice["$ref"].rsplit("/", 1)[1]
+    return None
+
+
+def values(schema, definitions):
+    """What may stand in a field."""
+    name = referred(schema)
+    if name:
+        definition = definitions[name]
+        return f"[{name}](#{name.lower()})" if is_section(definition) else values(definition, definitions)
+    choices = schema.get("oneOf", []) + schema.get("anyOf", [])
+    if "const" in schema:
+        return f"`{json.dumps(schema['const'])}`"
+    if len(schema.get("enum", [])) > 20:
+        return "a parameter of the [grid](#grid)"
+    if "enum" in schema:
+        return ", ".join(f"`{json.dumps(value)}`" for value in schema["enum"] if value is not None)
+    if choices:
+        parts = [values(choice, definitions) for choice in choices if choice.get("type") != "null"]
+        return ", ".join(part for part in dict.fromkeys(parts) if part)
+    kinds = schema.get("type", [])
+    kinds = [kinds] if isinstance(kinds, str) else kinds
+    if "array" in kinds and isinstance(schema.get("items"), dict):
+        least, most = schema.get("minItems"), schema.get("maxItems")
+        count = f" of {least}" if least and least == most else ""
+        inner = values(schema["items"], definitions)
+        return f"list{count}: {inner}" if inner else f"list{count}"
+    return ", ".join(kind for kind in kinds if kind != "null")
+
+
+def is_section(definition):
+    return "properties" in definition
+
+
+def default(schema, definitions):
+    """The default of a field. Those of an object are in its own section."""
+    name = referred(schema)
+    if "default" not in schema or (name and is_section(definitions[name])) or schema["default"] is None:
+        return ""
+    return f"`{json.dumps(schema['default'])}`"
+
+
+def table(schema, definitions):
+    rows = ["| field | content | default | meaning |", "|---|---|---|---|"]
+    for name, field in schema["properties"].items():
+        target = referred(field)
+        description = field.get("description") or (definitions[target].get("description", "") if target else "")
+        own = [values(field, definitions), default(field, definitions), description]
+        rows.append(f"| `{name}` | " + " | ".join(map(cell, own)) + " |")
+    return "\n".join(rows) + "\n"
+
+
+def choices(definition):
+    """The values of a choice, where the program describes each of them."""
+    described = [choice for choice in definition.get("oneOf", []) if "const" in choice and choice.get("description")]
+    return [f"* `{json.dumps(choice['const'])}`: {cell(choice['description'])}" for choice in described]
+
+
+def fields(program):
+    schema = json.loads(output(program, "schema"))
+    definitions = schema["$defs"]
+    top = {name: field for name, field in schema["properties"].items() if name != "grid"}
+    grid = schema["properties"]["grid"]["properties"]
+    parts = [
+        "# Fields of a study\n\nWritten by `scripts/reference.py` from `tribosweep schema`; do not edit. [Studies](studies.md) explains the fields. The unit is in the end of "
+        "a name: `_m` is metres, `_pa` pascals, `_s` seconds. A field without a default may be absent; what then holds is in its meaning.\n",
+        "## The file\n\n" + table({"properties": top}, definitions),
+    ]
+    for name, definition in definitions.items():
+        text = cell(definition.get("description", ""))
+        if is_section(definition):
+            parts.append(f"## {name}\n\n{text}\n\n{table(definition, definitions)}")
+        elif choices(definition):
+            parts.append(f"## {name}\n\n{text}\n\n" + "\n".join(choices(definition)) + "\n")
+    rows = ["| parameter | meaning and unit |", "|---|---|"]
+    rows += [f"| `{name}` | {cell(field.get('description', ''))} |" for name, field in grid.items()]
+    parts.append("## grid\n\nEach parameter has a list of values or a [Range](#range).\n\n" + "\n".join(rows) + "\n")
+    return "\n".join(parts)
+
+
+def options(program):
+    overview = output(program, "--help")
+    commands = re.findall(r"^  ([a-z]+)  ", overview.split("Commands:")[1].split("Options:")[0], flags=re.M)
+    parts = ["# Options of the commands\n\nWritten by `scripts/reference.py` from `tribosweep help`; do not edit. [Commands](commands.md) explains them.\n",
+             f"```text\n{overview.rstrip()}\n```\n"]
+    for command in commands:
+        if command != "help":
+            parts.append(f"## {command}\n\n```text\n{output(program, 'help', command).rstrip()}\n```\n")
+    lines = "\n".join(parts).splitlines()
+    return "\n".join(line.rstrip() for line in lines) + "\n"
+
+
+def main():
+    if len(sys.argv) < 2:
+        raise SystemExit(__doc__)
+    program = sys.argv[1]
+    wrong = []
+    for name, text in [("fields.md", fields(program)), ("options.md", options(program))]:
+        page = DOCS / name
+        if "--check" not in sys.argv:
+            page.write_text(text)
+            print(f"written: docs/{name}")
+        elif not page.exists() or page.read_text() != text:
+            wrong.append(name)
+    if wrong:
+        raise SystemExit(f"docs differ from the program: {', '.join(wrong)}; run scripts/reference.py {program}")
+
+
+if __name__ == "__main__":
+    main()
