@@ -101,3 +101,9 @@ fn where_squeal_begins() {
 fn long_sweeps() {
     follow("long_sweeps.md", include_str!("../../docs/long_sweeps.md"), 3);
 }
+
+/// Protects: every command of the page about inspections works.
+#[test]
+fn inspections() {
+    follow("inspect.md", include_str!("../../docs/inspect.md"), 6);
+}
