@@ -8,7 +8,7 @@
 //!
 //! For each number of processes, it prints the jobs and claims per second, the time of a claim, and the load of the
 //! server: the processor time of all processes named `postgres`, so no other server should run. Payloads and records
-//! have the size of real ones. `docs/cluster.md` discusses the results.
+//! have the size of real ones. `docs/postgresql.md` discusses the results.
 
 use std::io::Write;
 use std::process::{Command, Stdio};

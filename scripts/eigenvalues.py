@@ -303,7 +303,7 @@ def page():
 PAGE = """\
 # Eigenvalues of steady sliding: accuracy, and what they decide
 
-Written by `scripts/eigenvalues.py`; do not edit. [physics.md](physics.md#linear-stability-of-steady-sliding) has the equations.
+Written by `scripts/eigenvalues.py`; do not edit. [theory.md](theory.md#eigenvalues) has the equations.
 The pin, the load and the damping are those of `studies/figure7.json`, and every clamp is 1 mm wide.
 
 ## How a job is decided
@@ -321,7 +321,7 @@ until its sign is clear, and a job with a mode that clearly grows is simulated w
 The basis has the modes of the pin up to a frequency, its *band*, and near the end of the band it has them badly. So modes are
 judged one by one up to 85 % of the band. Above that, damping must win with the largest gain of all modes that are known.
 
-A job that [starts from a coarser mesh](studies.md#a-start-from-a-coarser-mesh) is judged after its run there, and only if that run
+A job that [starts from a coarser mesh](solving.md#a-start-from-a-coarser-mesh) is judged after its run there, and only if that run
 found no limit cycle.
 
 All other jobs are simulated. So eigenvalues never say that a job is periodic, and they give no limit cycle. `tribosweep stability`

@@ -185,7 +185,7 @@ def main():
     text = f"""# What plans that learn find
 
 Written by `scripts/growing.py`; do not edit. Reference scene on 12 × 15 × 10 elements.
-[studies.md](studies.md#plans-that-learn) says how such studies are written.
+[points.md](points.md#plans-that-learn) says how such studies are written.
 
 ## Where squeal begins, and where the curve turns
 

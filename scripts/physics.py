@@ -208,43 +208,12 @@ def clamps():
     return runs.table(["clamp", *(f"{speed:g} rpm" for speed in speeds)], lines)
 
 
-STABILITY = """
-## Linear stability of steady sliding
-
-*Steady sliding* is the equilibrium in which all nodes in contact slip with the disk. `tribosweep stability` computes its modes, and
-[eigenvalues.md](eigenvalues.md) says how accurate they are and which jobs they decide.
-
-**Equilibrium.** A node in contact has the normal force N and the friction μN along d, the unit vector of the disk's velocity
-there. The displacements u solve K u = F + Σ (N n + μ N d), with the load F and the normal n. Which nodes are in contact is a
-complementarity problem: N ≥ 0, gap ≥ 0, and one of them is zero. An active set solves it. On a flat base the equilibrium is
-proportional to the load. It depends on the speed only through a coefficient μ(v). On a base with gaps it belongs to one load.
-
-**Small vibrations.** Let q be a small displacement from the equilibrium that keeps the nodes in contact at z = 0. Then
-
-```text
-M q̈ + [β K_μ + D] q̇ + K_μ q = 0
-K_μ = K − μ d ⊗ K_z
-D   = μ N₀/|v| (1 − d ⊗ d) + μ′ N₀ d ⊗ d
-```
-
-The second and the third line hold at each node in contact, and D acts on the tangential plane. K_z is the row of K that gives the
-node's normal force. So K_μ has the friction that follows the normal force, and it is not symmetric: two modes can couple, and one
-of them grows. β is the stiffness-proportional damping; it acts on the normal force, too. The first part of D is positive. It is the
-turning of the friction force when a node slips sideways at the disk's speed |v|, and it is large on a slow disk. The second part
-is the slope μ′ of a law that depends on the speed. It feeds vibrations if friction falls with the speed. A holder adds its mass,
-its spring and its damper to the nodes that it carries. With q = Re(q̂ exp(λt)), Re λ is
-the growth rate [1/s] and Im λ/2π the frequency [Hz]. Sliding is stable if all growth rates are negative.
-
-**What it neglects.** Vibrations are small: no node sticks, none lifts off, none closes. So the modes say whether vibrations grow
-from steady sliding. They do not say how large vibrations become, and they do not give the frequency or μ\\* of the limit cycle.
-The rotation of an elastic disk is neglected. `tribosweep stability` refuses what has no equations here: the law `prakash_clifton`,
-whose friction has a state, contact layers, run-out and waviness, and a speed or a load that changes.
-
+LIMIT_CYCLES = """
 ## More than one limit cycle
 
 At some points two limit cycles, or a limit cycle and stable sliding, exist side by side on one mesh. Which of them a run reaches
 depends on what it starts from. All runs of this page start from rest. A run that starts from the limit cycle of a coarser mesh
-(`"start": "nested"`, [studies.md](studies.md#a-start-from-a-coarser-mesh)) may reach another one.
+(`"start": "nested"`, [solving.md](solving.md#a-start-from-a-coarser-mesh)) may reach another one.
 """
 
 
@@ -292,7 +261,7 @@ def main():
         + clamps()
         + "\n"
         + leading_end()
-        + STABILITY,
+        + LIMIT_CYCLES,
     )
 
 

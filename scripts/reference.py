@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Writes docs/fields.md and docs/options.md from what the program itself prints: its schema and its help.
+"""Writes docs/fields.md, docs/options.md and docs/columns.md from what the program itself prints: its schema, parameters, help and columns.
 
     scripts/reference.py PROGRAM [--check]
 
@@ -93,9 +93,8 @@ def fields(program):
     schema = json.loads(output(program, "schema"))
     definitions = schema["$defs"]
     top = {name: field for name, field in schema["properties"].items() if name != "grid"}
-    grid = schema["properties"]["grid"]["properties"]
     parts = [
-        "# Fields of a study\n\nWritten by `scripts/reference.py` from `tribosweep schema`; do not edit. [Studies](studies.md) explains the fields. The unit is in the end of "
+        "# Fields of a study\n\nWritten by `scripts/reference.py` from `tribosweep schema` and `tribosweep parameters`; do not edit. [Studies](studies.md) explains the fields. The unit is in the end of "
         "a name: `_m` is metres, `_pa` pascals, `_s` seconds. A field without a default may be absent; what then holds is in its meaning.\n",
         "## The file\n\n" + table({"properties": top}, definitions),
     ]
@@ -105,9 +104,13 @@ def fields(program):
             parts.append(f"## {name}\n\n{text}\n\n{table(definition, definitions)}")
         elif choices(definition):
             parts.append(f"## {name}\n\n{text}\n\n" + "\n".join(choices(definition)) + "\n")
-    rows = ["| parameter | meaning and unit |", "|---|---|"]
-    rows += [f"| `{name}` | {cell(field.get('description', ''))} |" for name, field in grid.items()]
-    parts.append("## grid\n\nEach parameter has a list of values or a [Range](#range).\n\n" + "\n".join(rows) + "\n")
+    rows = ["| parameter | unit | meaning | field |", "|---|---|---|---|"]
+    for parameter in json.loads(output(program, "parameters", "--json")):
+        rows.append("| `{name}` | {} | {meaning} | `{field}` |".format(parameter["unit"] or "", **parameter))
+    parts.append(
+        "## grid\n\nEach parameter has a list of values or a [Range](#range). `--set` takes the same names. A parameter takes the place of its field.\n\n"
+        + "\n".join(rows) + "\n"
+    )
     return "\n".join(parts)
 
 
@@ -123,12 +126,63 @@ def options(program):
     return "\n".join(line.rstrip() for line in lines) + "\n"
 
 
+COLUMNS = """# Columns
+
+Written by `scripts/reference.py` from `tribosweep columns`; do not edit. `jobs.csv` of a report and `tribosweep export` have one line per job. `tribosweep columns` prints the columns of the plain
+export, `tribosweep columns --all` those of `export --all`. With `--json` it prints them for other programs.
+
+A cell without a value is empty in CSV and null in JSON. Numbers are exact: each is the shortest text that reads back as the
+same number. [The report and its data](report.md#averages-and-residuals) says what the averaging window, the regimes and the
+residuals are.
+
+## Every export
+
+{plain}
+The parameters of the grid other than ω and μ follow, one column each. If several studies are exported, the parameters of all
+of them are columns. If a parameter has the name of a column above, its column is called `parameter_NAME`: `cycles` is the
+number of cycles in the window, and `parameter_cycles` the number that has to repeat.
+
+## The rest of the record
+
+`export --all` has these columns too:
+
+{record}
+## The inputs
+
+`export --all` also has every input of the job, whether the study gives it or not. An input that has no effect is empty: the
+disk's material if the disk is rigid, for example.
+
+{inputs}
+An input has the name of the parameter that sets it in a grid or with `--set`, with one exception: the numbers of elements are
+`elements_x`, `elements_y` and `elements_z`, beside `size_x_m`. A grid sets them with `nx`, `ny` and `nz`, or all three with
+`elements`; the plain export names its column like the parameter. Parameters of a grid that are not fields of a job, such as a
+preset, follow as the last columns.
+"""
+
+
+def columns(program):
+    every = json.loads(output(program, "columns", "--all", "--json"))
+    plain = {column["name"] for column in json.loads(output(program, "columns", "--json"))}
+
+    def table_of(own):
+        rows = ["| column | unit | meaning |", "|---|---|---|"]
+        rows += [f"| `{column['name']}` | {column['unit'] or ''} | {cell(column['meaning'])} |" for column in own]
+        return "\n".join(rows) + "\n"
+
+    others = [column for column in every if column["name"] not in plain]
+    return COLUMNS.format(
+        plain=table_of(column for column in every if column["name"] in plain),
+        record=table_of(column for column in others if column["group"] != "input"),
+        inputs=table_of(column for column in others if column["group"] == "input"),
+    )
+
+
 def main():
     if len(sys.argv) < 2:
         raise SystemExit(__doc__)
     program = sys.argv[1]
     wrong = []
-    for name, text in [("fields.md", fields(program)), ("options.md", options(program))]:
+    for name, text in [("fields.md", fields(program)), ("options.md", options(program)), ("columns.md", columns(program))]:
         page = DOCS / name
         if "--check" not in sys.argv:
             page.write_text(text)

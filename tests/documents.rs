@@ -5,7 +5,6 @@ mod walk;
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use tribosweep::study::{PARAMETERS, Parameter};
 
 /// The folders whose files documents name by their path from the root of the repository.
 const ROOTS: [&str; 8] = [".ci", "benches", "docs", "migrations", "scripts", "src", "studies", "tests"];
@@ -135,22 +134,6 @@ fn paths_in_documents_exist() {
     {
         assert!(found.contains(known), "{known} is not found");
     }
-}
-
-/// Protects: the page about studies lists every parameter of a grid with its unit, as the program has them.
-#[test]
-fn the_parameters_of_a_grid_are_listed() {
-    let row = |parameter: &Parameter| {
-        let (name, field) = (parameter.name, parameter.field());
-        format!(
-            "| `{name}` | {} | {} | `{field}` |\n",
-            parameter.unit().unwrap_or(""),
-            parameter.description()
-        )
-    };
-    let rows = PARAMETERS.iter().map(row).collect::<Vec<_>>().concat();
-    let table = format!("| parameter | unit | meaning | field |\n|---|---|---|---|\n{rows}");
-    assert!(read("docs/studies.md").contains(&table), "docs/studies.md needs this table:\n{table}");
 }
 
 /// The sources by the path of their module.
@@ -298,4 +281,14 @@ fn evidence_is_in_its_pages() {
 fn the_readme_is_short() {
     let count = read("README.md").split_whitespace().count();
     assert!(count <= 700, "{count} words");
+}
+
+/// Protects: the example in the README is that of the page about Python, which the tests run.
+#[test]
+fn the_readme_has_an_example_that_is_run() {
+    let blocks = |text: &str| -> Vec<String> {
+        text.split("```python\n").skip(1).map(|rest| rest.split("```").next().unwrap().to_owned()).collect()
+    };
+    let (readme, page) = (blocks(&read("README.md")), blocks(&read("docs/python.md")));
+    assert!(readme.len() == 1 && page.contains(&readme[0]), "{readme:?}");
 }

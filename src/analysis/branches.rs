@@ -165,7 +165,7 @@ fn cost(expected: Complex<f64>, value: Complex<f64>, growth_unit: f64) -> Option
     // Two equal numbers may be zero.
     let unit = (FREQUENCY_UNIT * size).max(f64::MIN_POSITIVE);
     // Growth rates are much smaller than angular frequencies. On the scale of frequencies they would say nothing.
-    Some((difference.im / unit).hypot(difference.re / growth_unit.min(unit).max(f64::MIN_POSITIVE)))
+    Some(libm::hypot(difference.im / unit, difference.re / growth_unit.min(unit).max(f64::MIN_POSITIVE)))
 }
 
 fn is_finite(value: Complex<f64>) -> bool {
@@ -185,7 +185,7 @@ mod tests {
     use super::*;
 
     fn mode(frequency_hz: f64, growth_rate_per_s: f64) -> ComplexMode {
-        let damping_ratio = -growth_rate_per_s / (TAU * frequency_hz).hypot(growth_rate_per_s);
+        let damping_ratio = -growth_rate_per_s / libm::hypot(TAU * frequency_hz, growth_rate_per_s);
         ComplexMode { frequency_hz, growth_rate_per_s, damping_ratio, residual: 1e-9, is_converged: true }
     }
 

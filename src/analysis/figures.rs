@@ -174,7 +174,7 @@ impl Figures {
     pub fn tapered<'a>(windows: impl ExactSizeIterator<Item = &'a Self>) -> Self {
         let count = windows.len() as f64;
         windows.enumerate().fold(Self::EMPTY, |mut all, (i, window)| {
-            all.merge(window, 1.0 - (2.0 * PI * (i as f64 + 0.5) / count).cos());
+            all.merge(window, 1.0 - libm::cos(2.0 * PI * (i as f64 + 0.5) / count));
             all
         })
     }

@@ -118,7 +118,7 @@ impl Stretches {
         if self.spectra.len() == self.kept {
             self.spectra.pop_front();
         }
-        self.spectra.push_back(output.iter().map(|c| c.norm() * 2.0 / plan.weight).collect());
+        self.spectra.push_back(output.iter().map(|c| libm::hypot(c.re, c.im) * 2.0 / plan.weight).collect());
     }
 
     /// Whether there are enough stretches for an observation.
@@ -129,7 +129,7 @@ impl Stretches {
     /// Slope per hop of the logarithm of a line's amplitude, and its standard error.
     fn growth_per_hop(&self, line: usize) -> (f64, f64) {
         let n = self.spectra.len() as f64;
-        let logs: Vec<f64> = self.spectra.iter().map(|s| s[line].max(f64::MIN_POSITIVE).ln()).collect();
+        let logs: Vec<f64> = self.spectra.iter().map(|s| libm::log(s[line].max(f64::MIN_POSITIVE))).collect();
         let mean = logs.iter().sum::<f64>() / n;
         let centre = (n - 1.0) / 2.0;
         let (mut spread, mut product) = (0.0, 0.0);
@@ -148,7 +148,7 @@ impl Stretches {
 impl Taper {
     fn at(self, x: f64) -> f64 {
         match self {
-            Self::Hann => 0.5 + 0.5 * (PI * x).cos(),
+            Self::Hann => 0.5 + 0.5 * libm::cos(PI * x),
             Self::Kaiser => bessel_i0(KAISER_BETA * (1.0 - x * x).sqrt()) / bessel_i0(KAISER_BETA),
         }
     }
@@ -240,7 +240,7 @@ impl LineMonitor {
             // All lines have decayed to the floor since the signal began. This is a measured decay, too.
             let elapsed_s = self.hop_s * (self.hops - SHORT as u64) as f64;
             let at_least = (self.start_amplitude > self.floor)
-                .then(|| (self.floor / self.start_amplitude).ln() / elapsed_s);
+                .then(|| libm::log(self.floor / self.start_amplitude) / elapsed_s);
             return Verdict { growth_rate_per_s: self.measured.or(at_least), decays: true };
         }
         let faintest = self.floor.max(LEAKAGE * highest);

@@ -20,6 +20,8 @@
 //!   energy.
 //! * Stresses and the extremes of N are taken after a short low-pass filter ([`sample::STRESS_SMOOTHING`]).
 
+#![warn(clippy::disallowed_methods)]
+
 pub mod batch;
 pub mod branches;
 mod checkpoint;

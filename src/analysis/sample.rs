@@ -132,7 +132,7 @@ impl Smoother {
 
 /// Gain of a first-order low-pass of time constant `tau_s` at the step `time_step_s`.
 pub fn smoothing_gain(time_step_s: f64, tau_s: f64) -> f64 {
-    1.0 - (-time_step_s / tau_s).exp()
+    1.0 - libm::exp(-time_step_s / tau_s)
 }
 
 /// Time constant of the stress smoother over the pressure-wave transit time of the pin's height.

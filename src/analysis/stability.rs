@@ -160,7 +160,7 @@ fn growth(mode: &Mode) -> f64 {
 
 fn complex_mode(mode: &Mode) -> ComplexMode {
     let eigenvalue = mode.eigenvalue_per_s;
-    let size = eigenvalue.re.hypot(eigenvalue.im);
+    let size = libm::hypot(eigenvalue.re, eigenvalue.im);
     ComplexMode {
         frequency_hz: eigenvalue.im / TAU,
         growth_rate_per_s: eigenvalue.re,
@@ -199,7 +199,7 @@ struct SlidingNode {
 impl SlidingNode {
     fn of(slave: usize, node: &SlaveNode, equilibrium: &Equilibrium, drive: &Drive) -> Self {
         let [x, y] = node.surface_motion;
-        let motion = x.hypot(y);
+        let motion = libm::hypot(x, y);
         if !equilibrium.in_contact[slave] {
             let gap_m = node.initial_gap_m + equilibrium.u_m[3 * node.node + 2] - equilibrium.disk_z_m[slave];
             let lift_m = gap_m.max(0.0);
@@ -307,7 +307,7 @@ mod tests {
         let mut u_m = vec![0.0; 3 * model.mesh().node_count()];
         u_m[3 * slaves[0].node + 2] = 2.0e-6;
         let misaligned = slaves.iter().zip(&normal_n).map(|(node, n)| {
-            n * node.surface_motion[1] / node.surface_motion[0].hypot(node.surface_motion[1])
+            n * node.surface_motion[1] / libm::hypot(node.surface_motion[0], node.surface_motion[1])
         });
         let mu_star = 0.4 * misaligned.sum::<f64>() / 30.0;
         let mode = Mode {

@@ -37,7 +37,7 @@ const DISK_STAGE: f64 = 5.0;
 /// docs/performance.md has the times.
 const SINGLE: [f64; 2] = [0.6, 0.5];
 
-/// Time of a step of a node of a general mesh, relative to that of a block: measured on 9828 nodes (docs/studies.md).
+/// Time of a step of a node of a general mesh, relative to that of a block: measured on 9828 nodes (docs/scene.md).
 const GENERAL_TIME: f64 = 3.0;
 
 /// Additional memory \[byte\] of a node of a general mesh in a model: 14 pairs of nodes with 9 numbers and an index.

@@ -20,6 +20,7 @@ mod merge;
 mod missing;
 mod outlook;
 mod output;
+mod parameters;
 mod pareto;
 mod presets;
 mod rename;
@@ -56,7 +57,7 @@ use clap::{Parser, Subcommand};
 #[command(
     version = env!("TRIBOSWEEP_VERSION"),
     max_term_width = 100,
-    after_help = "Exit codes: 0 all jobs succeeded, 1 some jobs failed, 2 error (bad input, usage or environment), 3 jobs are left."
+    after_help = exit::help()
 )]
 pub struct Cli {
     #[command(subcommand)]
@@ -121,6 +122,8 @@ enum Command {
     Validate(validate::Args),
     /// Show the accuracy presets with their settings and measured errors.
     Presets(presets::Args),
+    /// Print the parameters that a grid and `--set` know, with units and meanings.
+    Parameters(parameters::Args),
     /// Print the JSON schema of study files.
     Schema(schema::Args),
     /// Print a completion script for a shell.
@@ -159,6 +162,7 @@ pub fn main(cli: Cli) -> u8 {
         Command::Inspect(args) => inspect::run(&args, db),
         Command::Validate(args) => validate::run(&args, db),
         Command::Presets(args) => presets::run(&args),
+        Command::Parameters(args) => parameters::run(&args),
         Command::Schema(args) => schema::run(&args),
         Command::Completions(args) => completions::run(&args),
         Command::Man(args) => man::run(&args),

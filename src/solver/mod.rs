@@ -30,6 +30,8 @@
 //! * The gap is positive when open. The normal contact force N on the pin is ≥ 0 (N = −λ_n, with the multiplier
 //!   λ_n).
 
+#![warn(clippy::disallowed_methods)]
+
 pub mod body;
 mod drive;
 pub mod energy;
@@ -62,4 +64,4 @@ pub use transfer::PinMotion;
 
 /// Version of everything that can change the bits of a result. It is part of every job's key. Raise it with any
 /// change of the scheme, of the operator's rounding, of the analysis, or of the eigenvalues of steady sliding.
-pub const VERSION: &str = "3";
+pub const VERSION: &str = "4";

@@ -11,6 +11,8 @@
 //!   direction. **The disk's surface moves towards +y**, so the pin meets fresh disk surface at its
 //!   −y end: −y is the *leading* end (the pin's front), +y the *trailing* end (its rear).
 
+#![warn(clippy::disallowed_methods)]
+
 mod base;
 mod check;
 mod contact;
@@ -246,7 +248,7 @@ impl JobSpec {
         }
     }
 
-    /// Whether single precision is known to keep the figures of the job (docs/studies.md): a scene of
+    /// Whether single precision is known to keep the figures of the job (docs/solving.md): a scene of
     /// [`Self::is_of_measured_kind`], ν below 0.48, at least a tenth of the reference scene's damping in proportion to the pin, at
     /// least 0.1 rpm of the reference scene in proportion to the load, and numbers within the range of f32.
     pub fn suits_single_precision(&self) -> bool {

@@ -27,7 +27,7 @@ pub enum Precision {
     /// 64-bit numbers: 16 digits.
     #[default]
     Double,
-    /// 32-bit numbers: 7 digits, in about half the time. Rigid disks only. docs/studies.md says what it can do.
+    /// 32-bit numbers: 7 digits, in about half the time. Rigid disks only. docs/solving.md says what it can do.
     Single,
 }
 

@@ -150,7 +150,7 @@ impl Ring {
         );
         // The disk must reach one element beyond the pin's corners: the tangents at a patch's corners need its neighbours.
         let [half_x, half_y] = [pin.extent_m()[0] / 2.0, pin.extent_m()[1] / 2.0];
-        let (low, high) = (track_m - half_x - fine, (track_m + half_x).hypot(half_y) + fine);
+        let (low, high) = (track_m - half_x - fine, libm::hypot(track_m + half_x, half_y) + fine);
         let nodes = self.estimated_nodes(pin, track_m);
         if nodes > MAX_NODES {
             found.add(

@@ -17,7 +17,7 @@ const MOST_ELEMENTS: f64 = 240.0;
 /// The coarse mesh: the pin's own mesh if it is small.
 pub fn coarse_mesh(fine: &BlockMesh) -> BlockMesh {
     let elements: usize = fine.elements().iter().product();
-    let factor = (MOST_ELEMENTS / elements as f64).cbrt().min(1.0);
+    let factor = libm::cbrt(MOST_ELEMENTS / elements as f64).min(1.0);
     let count = |n: usize| ((n as f64 * factor).round() as usize).clamp(1, n);
     BlockMesh::new(fine.size_m(), fine.elements().map(count))
 }

@@ -1,5 +1,7 @@
 //! The linear stability of steady sliding: equilibrium, complex modes, thresholds.
 
+#![warn(clippy::disallowed_methods)]
+
 mod basis;
 mod coarse;
 mod dashpots;

@@ -123,7 +123,9 @@ impl Pencil {
                 },
             ],
             Clock::Steps { time_step_s, beta2, beta_r_s } => {
-                let z = (value * time_step_s).exp();
+                let exponent = value * time_step_s;
+                let (sin, cos) = libm::sincos(exponent.im);
+                let z = c64::new(cos, sin) * libm::exp(exponent.re);
                 let (step, weight) = (z - one, 0.5 + beta2);
                 let g = one + step * weight;
                 let slope = z * time_step_s;

@@ -5,7 +5,6 @@ use sqlx::sqlite::SqliteConnectOptions;
 use sqlx::{ConnectOptions, SqliteConnection};
 
 use crate::support::{ExportRow, Folder, HEADER, rows, small, stderr, stdout};
-use crate::tools;
 
 fn parsed(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error}: {text}"))
@@ -198,32 +197,6 @@ fn a_stored_job_is_inspected_as_submitted() {
     let found = parsed(&folder.read("reports/mine/inspect/mu-0.2_omega_rpm-7/inspection.json"));
     let scene = &found["job"]["scene"];
     assert_eq!((&scene["load"]["force_n"], &scene["contact"]["mu"]), (&json!(30.0), &json!(0.2)));
-}
-
-/// Protects: the program in the documents that reads all data works.
-#[test]
-fn the_program_in_the_documents_works() {
-    let page = include_str!("../../docs/report.md");
-    let program = page.split("```python\n").skip(1).filter_map(|rest| rest.split("```").next());
-    let program = program.filter(|text| text.contains("all.csv")).collect::<String>();
-    assert!(!program.is_empty());
-    let python = std::env::var("TRIBOSWEEP_PYTHON").unwrap_or_else(|_| "python3".to_owned());
-    let run = |code: &str, folder: &Folder| {
-        std::process::Command::new(&python).arg("-c").arg(code).current_dir(folder.path("")).output()
-    };
-    let folder = Folder::with("mini", &small(&json!({ "mu": [0.2, 0.4], "omega_rpm": [2, 7] })));
-    if !run("import pandas", &folder).is_ok_and(|output| output.status.success()) {
-        return tools::missing(
-            "Python has no pandas",
-            "install Python 3 and pandas (pip install pandas), and name the Python in TRIBOSWEEP_PYTHON",
-        );
-    }
-    folder.ok("run mini.json");
-    folder.ok("export --all --csv all.csv");
-    let output = run(&program, &folder).unwrap();
-    let text = String::from_utf8(output.stdout).unwrap();
-    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
-    assert_eq!(text.lines().filter(|line| line.contains(" mini ")).count(), 4, "{text}");
 }
 
 /// Protects: the windows of a job whose speed changes are exported, with the study and the job, and a job without a program

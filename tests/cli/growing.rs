@@ -2,7 +2,7 @@
 #![cfg(unix)]
 
 use std::collections::BTreeMap;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 
@@ -23,9 +23,10 @@ fn refining() -> Value {
     study
 }
 
-/// A way up and a way down.
+/// A way up and a way down. The jobs go to their limit, so that they take long enough to be killed.
 fn continuing() -> Value {
     let mut study = small(&json!({ "mu": [0.4, 0.6], "omega_rpm": [3, 5, 10, 20] }));
+    study["run"] = json!({ "limit_s": 0.2, "stop_early": false });
     study["continue"] = json!({ "along": "omega_rpm" });
     study
 }
@@ -48,13 +49,21 @@ fn findings(folder: &Folder, db: &str) -> BTreeMap<String, String> {
 }
 
 fn undisturbed(study: &Value, options: &str) -> BTreeMap<String, String> {
-    let folder = Folder::with("study", study);
-    folder.ok(&format!("run study.json --db sweep.db {options}"));
-    findings(&folder, "sweep.db")
+    timed(study, options).0
 }
 
-/// Starts pairs of workers and kills them after a random time, until the study needs no more jobs.
-fn storm(study: &Value, db: &str, seed: u64) -> BTreeMap<String, String> {
+/// The findings of an undisturbed run, and how long it took.
+fn timed(study: &Value, options: &str) -> (BTreeMap<String, String>, Duration) {
+    let folder = Folder::with("study", study);
+    let start = Instant::now();
+    folder.ok(&format!("run study.json --db sweep.db {options}"));
+    let whole = start.elapsed();
+    (findings(&folder, "sweep.db"), whole)
+}
+
+/// Starts pairs of workers and kills them after a random time, until the study needs no more jobs. An undisturbed run takes the time
+/// `whole`. A pair lives for a sixth of it at most, so that several pairs are killed on a machine of any speed.
+fn storm(study: &Value, db: &str, seed: u64, whole: Duration) -> BTreeMap<String, String> {
     let folder = Folder::with("study", study);
     let mut random = Random::new(seed);
     folder.ok(&format!("submit study.json --db {db}"));
@@ -64,7 +73,7 @@ fn storm(study: &Value, db: &str, seed: u64) -> BTreeMap<String, String> {
     loop {
         let work = format!("work --db {db} --threads 1 --lease 10s --max-crashes 1000");
         let workers = [folder.start(&work), folder.start(&work)];
-        std::thread::sleep(Duration::from_millis(30 + random.below(250) as u64));
+        std::thread::sleep(whole * (random.below(250) as u32) / 1500);
         for worker in workers {
             worker.signal("KILL");
             kills += usize::from(worker.end().0.is_none());
@@ -91,7 +100,7 @@ fn assert_same(found: &BTreeMap<String, String>, expected: &BTreeMap<String, Str
 #[test]
 fn a_refinement_survives_a_storm_of_kills() {
     let study = refining();
-    let expected = undisturbed(&study, "--threads 1");
+    let (expected, whole) = timed(&study, "--threads 1");
     assert_same(&undisturbed(&study, "--threads 2"), &expected);
     assert!(expected["report/waves.csv"].lines().count() > 5, "{}", expected["report/waves.csv"]);
     assert!(
@@ -99,7 +108,7 @@ fn a_refinement_survives_a_storm_of_kills() {
         "{}",
         expected["report/boundaries.csv"]
     );
-    assert_same(&storm(&study, "sweep.db", 1), &expected);
+    assert_same(&storm(&study, "sweep.db", 1, whole), &expected);
 }
 
 /// Protects: the same on a server.
@@ -107,17 +116,18 @@ fn a_refinement_survives_a_storm_of_kills() {
 fn a_refinement_survives_on_a_server() {
     let Some(database) = ServerDatabase::new() else { return };
     let study = refining();
-    assert_same(&storm(&study, &database.url(), 2), &undisturbed(&study, ""));
+    let (expected, whole) = timed(&study, "");
+    assert_same(&storm(&study, &database.url(), 2, whole), &expected);
 }
 
 /// Protects: chains of jobs that continue their neighbours survive the same, and every job of them is there.
 #[test]
 fn chains_survive_a_storm_of_kills() {
     let study = continuing();
-    let expected = undisturbed(&study, "--threads 2");
+    let (expected, whole) = timed(&study, "--threads 2");
     assert_eq!(rows(&expected["export"]).len(), 16);
     assert_eq!(expected["report/branches.csv"].lines().count(), 9);
-    assert_same(&storm(&study, "sweep.db", 3), &expected);
+    assert_same(&storm(&study, "sweep.db", 3, whole), &expected);
 }
 
 /// Protects: what is found is as good as what is asked for, and no better by chance: every boundary is known within its width, every
@@ -180,9 +190,7 @@ fn basins_can_be_asked_for_on_the_command_line() {
 /// Protects: a chain that ended at a job that failed goes on when the job is tried again, and then has all its jobs.
 #[test]
 fn a_chain_goes_on_after_a_retry() {
-    let mut study = continuing();
-    // So long that a process can be killed in the first jobs.
-    study["run"] = json!({ "limit_s": 0.3, "stop_early": false });
+    let study = continuing();
     let folder = Folder::with("study", &study);
     folder.ok("submit study.json");
     // A job fails if its process dies once more than it may.

@@ -24,7 +24,7 @@ pub fn omega_max_bound(layout: Layout, operator: &Operator, masses_kg: &[f64], f
     if size == 0 {
         return 0.0;
     }
-    let steps = ((1.648 * (size as f64).sqrt()).ln() - RISK.ln()) / MARGIN.sqrt();
+    let steps = (libm::log(1.648 * (size as f64).sqrt()) - libm::log(RISK)) / MARGIN.sqrt();
     let steps = ((0.5 * (steps + 1.0)).ceil() as usize).min(size);
     let mut scratch = operator.scratch(layout, 1);
     let (mut u, mut force) = (Field::<1>::zeros(layout), Field::<1>::zeros(layout));

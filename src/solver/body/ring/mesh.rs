@@ -55,7 +55,7 @@ impl RingMesh {
     pub fn under_track(ring: &Ring, pin: &Pin, track_radius_m: f64) -> Self {
         let (fine, coarse) = (ring.element_size_m, ring.coarse_element_size_m);
         let [half_x, half_y] = [pin.size_m[0] / 2.0, pin.size_m[1] / 2.0];
-        let (inside, outside) = (track_radius_m - half_x, (track_radius_m + half_x).hypot(half_y));
+        let (inside, outside) = (track_radius_m - half_x, libm::hypot(track_radius_m + half_x, half_y));
         // The track has one more element on either side, from which patches take tangents. It ends at the edge of
         // the ring if less than half an element would be left there.
         let low =

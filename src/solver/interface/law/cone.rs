@@ -73,8 +73,8 @@ mod tests {
     /// is in the disk. Otherwise it is the best of a fan of directions on the rim, and the fan is refined around
     /// the best one.
     fn nearest_in_the_disk(trial_n: [f64; 2], limit_n: f64) -> [f64; 2] {
-        let distance = |t: [f64; 2]| (t[0] - trial_n[0]).hypot(t[1] - trial_n[1]);
-        if trial_n[0].hypot(trial_n[1]) <= limit_n {
+        let distance = |t: [f64; 2]| libm::hypot(t[0] - trial_n[0], t[1] - trial_n[1]);
+        if libm::hypot(trial_n[0], trial_n[1]) <= limit_n {
             return trial_n;
         }
         let on_rim = |angle: f64| [limit_n * libm::cos(angle), limit_n * libm::sin(angle)];

@@ -190,7 +190,7 @@ mod tests {
                     let stiffness = 3.0;
                     let force = partially_held_friction(given, free, stiffness, limit);
                     let slip: f64 = free + force[1] / stiffness;
-                    let length = given.hypot(slip);
+                    let length = libm::hypot(given, slip);
                     // The sum free + t/k cancels, so the rounding error of the slip has the size of its terms.
                     let rounding =
                         8.0 * f64::EPSILON * (limit + limit * (free.abs() + limit / stiffness) / length);

@@ -1,0 +1,107 @@
+//! A reader who follows a page in a folder that has the program, the studies and what the page needs.
+
+use std::os::unix::fs::{PermissionsExt, symlink};
+use std::path::Path;
+use std::process::Command;
+
+use super::steps::{Step, steps, whole_study};
+use crate::server_database::ServerDatabase;
+use crate::support::{Folder, TRIBOSWEEP};
+use crate::tools;
+
+const ROOT: &str = env!("CARGO_MANIFEST_DIR");
+
+/// The server in the pages.
+const URL: &str = "postgres://me@dbhost/sweeps";
+
+/// A stand-in for Slurm, where each task is run at once.
+const SBATCH: &str = r#"#!/bin/bash
+script=${*: -1}
+case $script in
+    *workers*)
+        for i in 0 1; do
+            SLURM_ARRAY_TASK_ID=$i SLURM_ARRAY_JOB_ID=11 SLURM_JOB_ID=11 SLURM_CPUS_PER_TASK=1 bash "$script" > "11_$i.log" 2>&1
+        done
+        echo 11 ;;
+    *) SLURM_JOB_ID=12 bash "$script" > report-12.log 2>&1; echo 12 ;;
+esac
+"#;
+
+/// Follows a page and returns the files that were written below folders. `None` where a server or Python is missing.
+pub fn follow(name: &str, page: &str) -> Option<Vec<String>> {
+    let folder = Folder::new();
+    symlink(Path::new(ROOT).join("studies"), folder.path("studies")).unwrap();
+    symlink(Path::new(ROOT).join("studies/pad.msh"), folder.path("pad.msh")).unwrap();
+    folder.write("base.csv", &height_map());
+    std::fs::create_dir(folder.path("bin")).unwrap();
+    for (program, text) in [("sbatch", SBATCH), ("squeue", "#!/bin/sh\n"), ("scancel", "#!/bin/sh\n")] {
+        folder.write(&format!("bin/{program}"), text);
+        let executable = std::fs::Permissions::from_mode(0o755);
+        std::fs::set_permissions(folder.path("bin").join(program), executable).unwrap();
+    }
+    let database = if page.contains(URL) { Some(ServerDatabase::new()?) } else { None };
+    let url = database.as_ref().map_or_else(|| URL.to_owned(), ServerDatabase::url);
+    let python = std::env::var("TRIBOSWEEP_PYTHON").unwrap_or_else(|_| "python3".to_owned());
+    let all = steps(page);
+    if all.iter().any(|step| matches!(step, Step::Python(_))) && !has_packages(&python) {
+        tools::missing(
+            "there is no Python with pandas, xarray and matplotlib",
+            "install them, and set TRIBOSWEEP_PYTHON to a Python that has them",
+        );
+        return None;
+    }
+
+    let run = |program: &str, arguments: [&str; 2]| {
+        let programs = Path::new(TRIBOSWEEP).parent().unwrap().display().to_string();
+        let path = std::env::var("PATH").unwrap_or_default();
+        let done = Command::new(program)
+            .args(arguments)
+            .current_dir(folder.path("."))
+            .env("PATH", format!("{}:{programs}:{path}", folder.path("bin").display()))
+            .env("PYTHONPATH", Path::new(ROOT).join("src/python"))
+            .env("PYTHONDONTWRITEBYTECODE", "1")
+            .env("TRIBOSWEEP_PROGRAM", TRIBOSWEEP)
+            .env("MPLBACKEND", "agg")
+            .env("XDG_CACHE_HOME", env!("CARGO_TARGET_TMPDIR"))
+            .env("TMPDIR", folder.path("bin"))
+            .env_remove("TRIBOSWEEP_DB")
+            .output()
+            .unwrap();
+        let [out, errors] = [done.stdout, done.stderr].map(|text| String::from_utf8(text).unwrap());
+        assert!(done.status.success(), "{name}: {}{out}{errors}", arguments[1]);
+        out
+    };
+    let mut output = String::new();
+    for step in all {
+        match step {
+            Step::Save(file, text) => folder.write(file, text),
+            Step::Check(part) => {
+                folder.write("part.json", &whole_study(part));
+                run(TRIBOSWEEP, ["validate", "part.json"]);
+            }
+            Step::Run(commands) => output = run("bash", ["-euc", &commands.replace(URL, &url)]),
+            Step::Python(program) => output = run(&python, ["-c", program]),
+            Step::Compare(text) => {
+                assert!(output.contains(text), "{name} shows\n{text}the program\n{output}");
+            }
+        }
+    }
+    let is_written = |file: &String| {
+        file.contains('/') && !["bin/", "studies/"].iter().any(|folder| file.starts_with(folder))
+    };
+    Some(folder.files().into_iter().filter(is_written).collect())
+}
+
+fn has_packages(python: &str) -> bool {
+    let done = Command::new(python).args(["-c", "import pandas, xarray, matplotlib"]).output();
+    done.is_ok_and(|done| done.status.success())
+}
+
+/// Heights at a distance of 0.1 mm that cover the base of the reference pin, 12 × 15 mm: a crown of 1 µm.
+fn height_map() -> String {
+    let height = |i: i32, half: i32| 1e-6 * (1.0 - (f64::from(i - half) / f64::from(half)).powi(2));
+    let line = |j: i32| {
+        (0..=120).map(|i| format!("{:e}", height(i, 60) + height(j, 75))).collect::<Vec<_>>().join(",")
+    };
+    (0..=150).map(line).collect::<Vec<_>>().join("\n")
+}
