@@ -1,80 +1,96 @@
 #!/usr/bin/env bash
-# Makes a statically linked program for any Linux on x86-64, which needs no other file.
+# Makes programs for any Linux, which need no other file, and wheels with them.
 #
-#     scripts/release.sh [FOLDER]
+#     scripts/release.sh [FOLDER [TARGET ...]]
 #
-# Writes into FOLDER (default target/dist) an archive with the program, its licences, and those of its packages, the completions of shells, manual
-# pages, the studies and the changes, and a file of checksums. Needs the target of rustup (`rustup target add x86_64-unknown-linux-musl`) and a C compiler for musl
-# (Debian: musl-tools). Ends with an error if the static program gives other results than the ordinary one in the mini study.
+# Writes into FOLDER (default target/dist), for each target (default x86_64-unknown-linux-musl and aarch64-unknown-linux-musl):
+# * a wheel for Python, with the module and the program. The program is linked statically, so pip installs it on every Linux.
+# * an archive with the same program, its licences and those of its packages, the completions of shells, manual pages, the studies and the
+#   changes,
+# * checksums of both.
+# Needs rustup, Python 3 with venv, and Debian's packages file and qemu-user; the compiler for C comes from PyPI (ziglang). Ends with an error if a
+# program gives other results than the ordinary one in the mini study, to the last bit, on this processor or an emulated one.
 set -euo pipefail
 root="$(cd "$(dirname "$0")/.." && pwd)"
 folder="${1:-$root/target/dist}"
+shift || true
+targets=("$@")
+[ ${#targets[@]} -gt 0 ] || targets=(x86_64-unknown-linux-musl aarch64-unknown-linux-musl)
 mkdir -p "$folder"
 folder="$(cd "$folder" && pwd)"
 cd "$root"
-target=x86_64-unknown-linux-musl
-built="${CARGO_TARGET_DIR:-$root/target}"
-cargo build --release --locked --quiet
-cargo build --release --locked --quiet --target "$target"
-static="$built/$target/release/tribosweep"
-if ! file -b "$static" | grep -q -e "statically linked" -e "static-pie linked"; then
-    echo "$static is not linked statically: $(file -b "$static")"
-    exit 1
-fi
-
-# The results of the mini study. Times of threads are left out. The Fourier transform has other instructions on other processors, so the last
-# digits of a measured growth rate may differ, and six decimals of it are kept. All else must be the same to the last bit.
-results() {
-    "$1" export mini --all --format json --db "$2" |
-        sed -E 's/"wall_s":[^,}]*//; s/("growth_rate_per_s":-?[0-9]+\.[0-9]{6})[0-9]*/\1/'
-}
-
+for tool in file qemu-x86_64 qemu-aarch64; do
+    command -v "$tool" > /dev/null || { echo "$tool is not there (Debian: apt-get install file qemu-user)"; exit 1; }
+done
+rustup --quiet target add "${targets[@]}"
+tools="$root/target/tools/python"
+[ -x "$tools/bin/maturin" ] || { python3 -m venv "$tools" && "$tools/bin/pip" install --quiet maturin ziglang wheel; }
+export PATH="$tools/bin:$PATH"
 scratch=$(mktemp -d)
 trap 'rm -rf "$scratch"' EXIT
-for way in ordinary static; do
-    program="$built/release/tribosweep"
-    [ "$way" = ordinary ] || program="$static"
-    "$program" run studies/mini.json --db "$scratch/$way.db" --out "$scratch/$way" > /dev/null
-    results "$program" "$scratch/$way.db" > "$scratch/$way.json"
-done
-if ! cmp -s "$scratch/ordinary.json" "$scratch/static.json"; then
-    echo "the static program gives other results than the ordinary one:"
-    diff "$scratch/ordinary.json" "$scratch/static.json" | cut -c1-400
-    exit 1
-fi
 
-# An emulator gives the static program processors with fewer vector instructions.
-for processor in Nehalem Haswell; do
-    if command -v qemu-x86_64 > /dev/null; then
-        qemu-x86_64 -cpu "$processor" "$static" run studies/mini.json --db "$scratch/$processor.db" --out "$scratch/$processor" > /dev/null
-        results "$static" "$scratch/$processor.db" > "$scratch/$processor.json"
-        if ! cmp -s "$scratch/static.json" "$scratch/$processor.json"; then
-            echo "the static program gives other results on a processor like $processor:"
-            diff "$scratch/static.json" "$scratch/$processor.json" | cut -c1-400
+cargo build --release --locked --quiet
+ordinary="${CARGO_TARGET_DIR:-$root/target}/release/tribosweep"
+
+# Runs the mini study with a program, and writes its results without times.
+results() {
+    local name=$1
+    shift
+    "$@" run studies/mini.json --db "$scratch/$name.db" --out "$scratch/$name" > /dev/null 2> "$scratch/$name.log" \
+        || { echo "$name: the mini study cannot be run"; cat "$scratch/$name.log"; exit 1; }
+    "$ordinary" export mini --all --format json --db "$scratch/$name.db" | sed -E 's/"wall_s":[^,}]*//' > "$scratch/$name.json"
+}
+results ordinary "$ordinary"
+
+for target in "${targets[@]}"; do
+    machine=${target%%-*}
+    rm -rf "$scratch/wheel" "$scratch/unpacked"
+    maturin build --quiet --release --locked --zig --target "$target" --out "$scratch/wheel"
+    wheel tags --remove --platform-tag "manylinux_2_17_$machine.manylinux2014_$machine.musllinux_1_1_$machine" "$scratch"/wheel/*.whl > /dev/null
+    python3 -m zipfile -e "$scratch"/wheel/*.whl "$scratch/unpacked"
+    program=$(echo "$scratch"/unpacked/*.data/scripts/tribosweep)
+    chmod +x "$program"
+    if ! file -b "$program" | grep -q -e "statically linked" -e "static-pie linked"; then
+        echo "the program for $target is not linked statically: $(file -b "$program")"
+        exit 1
+    fi
+    # Processors with SSE2 alone, and with AVX2; this one may have AVX-512.
+    case "$machine" in
+        x86_64) ways=("" "qemu-x86_64 -cpu Opteron_G1" "qemu-x86_64 -cpu Haswell") ;;
+        *) ways=("qemu-$machine") ;;
+    esac
+    [ "$machine" = x86_64 ] || [ "$machine" != "$(uname -m)" ] || ways=("")
+    for way in "${ways[@]}"; do
+        name="$machine${way// /_}"
+        # shellcheck disable=SC2086 # the words of the emulator
+        results "$name" $way "$program"
+        if ! cmp -s "$scratch/ordinary.json" "$scratch/$name.json"; then
+            echo "the program for $target gives other results than the ordinary one (${way:-on this processor}):"
+            diff "$scratch/ordinary.json" "$scratch/$name.json" | cut -c1-400
             exit 1
         fi
-    else
-        echo "other processors were not tried: qemu-x86_64 (Debian: qemu-user) is not there"
+        echo "$target, ${way:-this processor}: the same results"
+    done
+    bytes=$(stat -c %s "$program")
+    if [ "$bytes" -gt 25000000 ]; then
+        echo "the program for $target has $bytes bytes; at most 25 MB are wanted"
+        exit 1
     fi
-done
 
-version=$("$static" --version | cut -d' ' -f2)
-name="tribosweep-$version-$target"
-package="$scratch/$name"
-mkdir -p "$package/completions"
-cp "$static" LICENSE-MIT LICENSE-APACHE README.md CHANGELOG.md CITATION.cff "$package"
-strip "$package/tribosweep"
-cp -r studies "$package"
-for shell in bash fish zsh; do
-    "$static" completions "$shell" > "$package/completions/tribosweep.$shell"
+    version=$("$ordinary" --version | cut -d' ' -f2)
+    name="tribosweep-$version-$target"
+    package="$scratch/$name"
+    mkdir -p "$package/completions"
+    cp "$program" LICENSE-MIT LICENSE-APACHE README.md CHANGELOG.md CITATION.cff "$package"
+    cp -r studies "$package"
+    for shell in bash fish zsh; do
+        "$ordinary" completions "$shell" > "$package/completions/tribosweep.$shell"
+    done
+    "$ordinary" man "$package/man"
+    python3 scripts/licences.py "$target" > "$package/THIRDPARTY.txt"
+    tar -C "$scratch" --sort=name --owner=0 --group=0 -czf "$folder/$name.tar.gz" "$name"
+    wheel=$(basename "$scratch"/wheel/*.whl)
+    cp "$scratch/wheel/$wheel" "$folder"
+    (cd "$folder" && sha256sum "$name.tar.gz" "$wheel" > "$name.sha256")
+    echo "$folder/$name.tar.gz and $wheel: a program of $((bytes / 1000000)) MB"
 done
-"$static" man "$package/man"
-python3 scripts/licences.py "$target" > "$package/THIRDPARTY.txt"
-bytes=$(stat -c %s "$package/tribosweep")
-if [ "$bytes" -gt 25000000 ]; then
-    echo "the program has $bytes bytes; at most 25 MB are wanted"
-    exit 1
-fi
-tar -C "$scratch" --sort=name --owner=0 --group=0 -czf "$folder/$name.tar.gz" "$name"
-(cd "$folder" && sha256sum "$name.tar.gz" > "$name.sha256")
-echo "$folder/$name.tar.gz: program of $((bytes / 1000000)) MB, the same results as the ordinary one"

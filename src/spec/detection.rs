@@ -4,7 +4,7 @@ use super::check::Violations;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Thresholds of the steady-state detection; see `analysis::steady` and `analysis::decay`.
+/// When a state counts as periodic or as decayed, and what names the regime.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Detection {

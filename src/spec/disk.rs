@@ -14,7 +14,7 @@ pub enum DiskKind {
     /// A rigid plane that turns about the disk's axis.
     #[default]
     Rigid,
-    /// An elastic ring: see [`Ring`].
+    /// An elastic ring, whose body is `ring`.
     Elastic,
 }
 
@@ -34,7 +34,7 @@ pub struct Disk {
     /// Amplitude (m) of the waviness of a rigid disk around its axis. Absent: none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub waviness_height_m: Option<f64>,
-    /// Number of its waves in a revolution.
+    /// Number of waves of the waviness in a revolution.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub waviness_count: Option<u32>,
     /// The body of an elastic disk; a rigid one does not use it.

@@ -5,7 +5,7 @@ use super::contact::Contact;
 use super::disk::{Disk, DiskKind};
 use super::elasticity;
 use super::holder::Holder;
-use super::pin::Pin;
+use super::pin::{Pin, Shape};
 use super::program::{LEAST_LOAD_N, Program};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -198,6 +198,18 @@ impl Scene {
         let width = self.clamp.width_m;
         found.require("scene.clamp.width_m", width, width >= 0.0, "a width >= 0 m (0 holds one node row)");
         found.limit_magnitude("scene.clamp.width_m", width);
+        if let Some(axis) = self.clamp.side.axis_across().filter(|_| self.pin.shape != Shape::Mesh) {
+            // A pin of a wrong size is refused for that.
+            let edge = self.pin.extent_m()[axis];
+            if edge > 0.0 && width > edge * (1.0 + 1.0e-9) {
+                let right = format!(
+                    "a width in metres of at most {} m, the pin's edge in {}",
+                    readable(edge),
+                    ["x", "y"][axis]
+                );
+                found.add("scene.clamp.width_m", readable(width), right);
+            }
+        }
         let force = self.load.force_n;
         found.require("scene.load.force_n", force, force > 0.0, "a load > 0 N, pressing the pin on the disk");
         if force > 0.0 && force < LEAST_LOAD_N {

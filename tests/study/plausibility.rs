@@ -137,6 +137,59 @@ fn damping_that_shortens_the_step_is_named() {
     assert_eq!(found.len(), 1, "{found:?}");
     // 2e-6 × 733.8 / 0.001 = 1.468, and √(1 + 1.468²) − 1.468 = 0.308.
     assert_contains(&found[0].to_string(), &["beta_r_s = 2e-6: ", "30.8 %", "β_R c/h is 1.47"]);
+    // What the study gives is named, with its own value.
+    let found = warnings(
+        r#"{ "damping": { "ratio": 0.1, "frequency_hz": 15000 }, "grid": { "damping_ratio": [0.01, 0.1] } }"#,
+    );
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_contains(
+        &found[0].to_string(),
+        &["damping.ratio = 0.1: damping shortens", "set by grid.damping_ratio[1]"],
+    );
+    let job = job_warnings(parse(r#"{ "damping": { "loss_factor": 0.2, "frequency_hz": 15000 } }"#).base());
+    assert!(job[0].in_words().starts_with("numerics.beta_r_s = "), "{job:?}");
+}
+
+/// Protects: a frequency of the damping in kHz is named as the reason, and not what follows from it.
+#[test]
+fn a_damping_frequency_in_khz_is_named() {
+    let given = |frequency: f64| {
+        warnings(&format!(r#"{{ "damping": {{ "loss_factor": 0.04, "frequency_hz": {frequency} }} }}"#))
+    };
+    assert_eq!(given(15_000.0), []);
+    let found = given(15.0);
+    assert_eq!(found.iter().map(|warning| warning.kind).collect::<Vec<_>>(), ["unit"]);
+    // ζ at 0.16/t: the slowest vibrations of the reference pin have t = z²/(x c_s), x²/(y c_s) or, longest, y/c_s.
+    // c_s = 392.2 m/s, 0.16 c_s/y = 4.18 kHz, and ζ = 0.02 × 4183/15.
+    assert_contains(
+        &found[0].to_string(),
+        &["damping.frequency_hz = 15", "4.18 kHz", "5.58 times", "expected Hz"],
+    );
+}
+
+/// Protects: a strip that is a single row of nodes, or the whole face, is named, and an ordinary one is not.
+#[test]
+fn a_clamp_that_is_no_strip_is_named() {
+    let clamp = |side: &str, width: f64| {
+        warnings(&of_scene(&format!(r#""clamp": {{ "side": "{side}", "width_m": {width} }}"#)))
+    };
+    assert_eq!(clamp("inner_side", 0.002), []);
+    assert_eq!(clamp("both_sides", 0.005), []);
+    assert_eq!(clamp("whole_top", 0.0), []);
+    for (side, width, expected) in [
+        ("inner_side", 0.0, "a single row of nodes"),
+        ("inner_side", 0.012, "the whole top face"),
+        ("both_sides", 0.006, "the whole top face"),
+        ("leading_end", 0.015, "the whole top face"),
+    ] {
+        let found = clamp(side, width);
+        assert_eq!(found.iter().map(|warning| warning.kind).collect::<Vec<_>>(), ["clamp"], "{side} {width}");
+        assert_contains(&found[0].to_string(), &["scene.clamp.width_m = ", expected]);
+    }
+    assert_contains(
+        &refusal(r#"{ "scene": { "clamp": { "width_m": 2 } } }"#),
+        &["scene.clamp.width_m = 2: expected a width in metres of at most 0.012 m, the pin's edge in x"],
+    );
 }
 
 /// Protects: a doubt of many jobs is one warning with their number, the first and the worst, at the worst one's place.

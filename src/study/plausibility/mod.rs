@@ -19,7 +19,7 @@ pub use physics::LOCKING_POISSON_RATIO;
 /// Something in a study that is allowed and yet doubtful. Displayed like a [`Problem`].
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Warning {
-    /// What is doubtful, in one word: `unit`, `strain`, `speed`, `locking`, `damping` or `repetition`.
+    /// What is doubtful, in one word: `unit`, `strain`, `speed`, `locking`, `damping`, `clamp` or `repetition`.
     pub kind: &'static str,
     /// Number of jobs that it concerns; a job that appears twice in the grid counts twice.
     pub jobs: usize,
@@ -69,7 +69,10 @@ fn doubts(spec: &JobSpec) -> Vec<Doubt> {
 /// What is doubtful about one job.
 pub fn job_warnings(spec: &JobSpec) -> Vec<Warning> {
     let warning = |Doubt { kind, fields, message, help, .. }: Doubt| {
-        let (field, value) = (fields[0].to_owned(), value_of(fields[0], spec));
+        // A job has no field for what only a study can give, such as a loss factor.
+        let own = fields.iter().find_map(|field| Some((*field, value_of(field, spec)?)));
+        let (field, value) = own.map_or((fields[0], None), |(field, value)| (field, Some(value)));
+        let field = field.to_owned();
         let problem =
             Problem { file: String::new(), position: None, field, value, message, help: vec![help] };
         Warning { kind, jobs: 1, problem }

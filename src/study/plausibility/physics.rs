@@ -1,7 +1,7 @@
 //! Jobs outside of what the model and its elements describe.
 
 use super::{Doubt, percent, short};
-use crate::spec::{DiskKind, JobSpec, elasticity};
+use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, elasticity};
 use std::f64::consts::PI;
 
 /// Mean strain of the pin from which on the linear model is in doubt.
@@ -32,9 +32,10 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
             fields: &[
                 "scene.load.force_n",
                 "scene.pin.young_modulus_pa",
-                "scene.pin.extent_m()",
-                "scene.pin.extent_m()[0]",
-                "scene.pin.extent_m()[1]",
+                "scene.pin.size_m",
+                "scene.pin.size_m[0]",
+                "scene.pin.size_m[1]",
+                "scene.pin.diameter_m",
             ],
             size: strain,
             message: format!("the mean strain F/(E A) of the pin is {}; {meaning}", percent(strain)),
@@ -88,9 +89,9 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
         found.push(Doubt {
             kind: "damping",
             fields: &[
-                "numerics.beta_r_s",
-                "damping.ratio",
                 "damping.loss_factor",
+                "damping.ratio",
+                "numerics.beta_r_s",
                 "scene.pin.elements",
                 "scene.pin.young_modulus_pa",
                 "scene.pin.density_kg_m3",
@@ -104,7 +105,30 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
             help: "a smaller β_R or a coarser mesh makes the run shorter".to_owned(),
         });
     }
+    found.extend(clamp(spec));
     found
+}
+
+/// A strip that is no strip: a single row of nodes, or the whole face.
+fn clamp(spec: &JobSpec) -> Option<Doubt> {
+    let (pin, clamp) = (&spec.scene.pin, &spec.scene.clamp);
+    let axis = clamp.side.axis_across().filter(|_| pin.shape != Shape::Mesh)?;
+    let strips = if matches!(clamp.side, ClampSide::BothSides | ClampSide::BothEnds) { 2.0 } else { 1.0 };
+    let share = strips * clamp.width_m / pin.extent_m()[axis];
+    let (size, message) = if clamp.width_m == 0.0 {
+        (1.0, "a single row of nodes is held, whose effect depends on the mesh")
+    } else if share >= 1.0 - 1.0e-9 {
+        (share, "the whole top face is held, as with the side `whole_top`")
+    } else {
+        return None;
+    };
+    Some(Doubt {
+        kind: "clamp",
+        fields: &["scene.clamp.width_m", "scene.clamp.side"],
+        size,
+        message: message.to_owned(),
+        help: "expected the width in metres of the strip that the holder holds".to_owned(),
+    })
 }
 
 /// Speed of Rayleigh waves \[m/s\], by the approximation of Viktorov, which is within 0.5 % for ν from 0 to ½.

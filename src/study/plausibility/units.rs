@@ -22,6 +22,8 @@ const ROUGHEST: f64 = 2.0;
 /// waves, `Scene::vibration_time_s`.
 const LONGEST_S: f64 = 1.0;
 const LONGEST_TRANSITS: f64 = 1.0e5;
+/// Damping ratio of the slowest vibrations from which on nothing would vibrate.
+const CRITICAL: f64 = 1.0;
 
 type Fields = &'static [&'static str];
 
@@ -65,6 +67,20 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     if mu > ROUGHEST {
         let message = "an unusually large friction coefficient".to_owned();
         add(&mut found, &["scene.contact.mu"], mu, message, "expected a number, not per cent");
+    }
+    // The lowest vibrations of a body have a frequency of about 0.16 over that time (`Scene::vibration_time_s`).
+    let lowest_hz = 0.16 / scene.vibration_time_s();
+    let ratio = PI * spec.numerics.beta_r_s * lowest_hz;
+    if ratio > CRITICAL {
+        let message = format!(
+            "even the slowest vibrations of the pin, at about {} kHz, would be damped {} times as much as critically, as if \
+             kHz were given; expected Hz",
+            short(lowest_hz / 1000.0),
+            short(ratio)
+        );
+        let fields: Fields =
+            &["damping.frequency_hz", "damping.loss_factor", "damping.ratio", "numerics.beta_r_s"];
+        add(&mut found, fields, ratio, message, "1 kHz is 1000 Hz, and ζ = π β_R f");
     }
     let limit_s = spec.run.limit_s;
     let transits = limit_s / scene.vibration_time_s();
