@@ -4,7 +4,7 @@ use super::measured::MeasuredError;
 use crate::analysis::JobError;
 use crate::publish::PublishError;
 use crate::queue::{Location, QueueError};
-use crate::study::StudyError;
+use crate::study::{StudyError, Warning};
 use crate::worker::WorkError;
 use thiserror::Error;
 
@@ -16,7 +16,7 @@ pub enum SweepError {
     #[error(transparent)]
     Study(#[from] StudyError),
     /// A job of the study would be refused before its first step.
-    #[error("{source_name}: {reason}{}", at(.point, *.jobs, *.of))]
+    #[error("{source_name}: {reason}{}{}", at(.point, *.jobs, *.of), lines(.doubts))]
     RefusedJob {
         /// The study's file as given.
         source_name: String,
@@ -28,6 +28,8 @@ pub enum SweepError {
         jobs: usize,
         /// Number of all jobs.
         of: usize,
+        /// What is doubtful about the study, and may be the reason.
+        doubts: Vec<Warning>,
     },
     /// The database.
     #[error(transparent)]
@@ -117,6 +119,11 @@ fn at(point: &str, jobs: usize, of: usize) -> String {
         (point, 1) => format!(" (at {point})"),
         (point, jobs) => format!(" (in {jobs} of {of} jobs, first at {point})"),
     }
+}
+
+/// A line for each warning.
+fn lines(doubts: &[Warning]) -> String {
+    doubts.iter().fold(String::new(), |text, warning| text + "\nwarning: " + &warning.to_string())
 }
 
 fn of(study: Option<&str>) -> String {
