@@ -113,6 +113,16 @@ pub enum SweepError {
     Runtime(std::io::Error),
 }
 
+impl SweepError {
+    /// A refused job with what is doubtful about its study.
+    pub(super) fn with_doubts(mut self, found: Vec<Warning>) -> Self {
+        if let Self::RefusedJob { doubts, .. } = &mut self {
+            *doubts = found;
+        }
+        self
+    }
+}
+
 fn at(point: &str, jobs: usize, of: usize) -> String {
     match (point, jobs) {
         ("", _) => String::new(),

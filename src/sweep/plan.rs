@@ -87,7 +87,8 @@ impl Plan {
             .par_iter()
             .map_init(|| SharedKeys::new(solver::VERSION), |keys, job| keys.key(job.spec.shared_part()))
             .collect();
-        let (workloads, workload_of) = preflight(source_name, &study, &jobs, &batches)?;
+        let (workloads, workload_of) = preflight(source_name, &jobs, &batches)
+            .map_err(|refusal| refusal.with_doubts(study.warnings()))?;
         Ok(Self { document: study.document(), study, jobs, batches, workloads, workload_of })
     }
 
@@ -282,7 +283,6 @@ const MANY_STEPS: f64 = 0.1;
 /// would refuse before its first step. One job of each batch shows whether the solver refuses the model.
 fn preflight(
     source_name: &str,
-    study: &Study,
     jobs: &[Job],
     batches: &[String],
 ) -> Result<(Vec<Workload>, Vec<usize>), SweepError> {
@@ -328,6 +328,6 @@ fn preflight(
         point: point.join(", "),
         jobs: refused.iter().filter(|&&is_refused| is_refused).count(),
         of: jobs.len(),
-        doubts: study.warnings(),
+        doubts: Vec::new(),
     })
 }
