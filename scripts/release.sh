@@ -4,12 +4,13 @@
 #     scripts/release.sh [FOLDER [TARGET ...]]
 #
 # Writes into FOLDER (default target/dist), for each target (default x86_64-unknown-linux-musl and aarch64-unknown-linux-musl):
-# * a wheel for Python, with the module and the program. The program is linked statically, so pip installs it on every Linux.
-# * an archive with the same program, its licences and those of its packages, the completions of shells, manual pages, the studies and the
-#   changes,
+# * a wheel for Python, with the module, the program, its licences and those of its packages. The program is linked statically, so pip installs
+#   it on every Linux.
+# * an archive with the same program and licences, the completions of shells, manual pages, the studies and the changes,
 # * checksums of both.
 # Needs rustup, Python 3 with venv, and Debian's packages file and qemu-user; the compiler for C comes from PyPI (ziglang). Ends with an error if a
-# program gives other results than the ordinary one in the mini study, to the last bit, on this processor or an emulated one.
+# program gives other results than the ordinary one in the mini study, to the last bit, on this processor or an emulated one. Says how long both take
+# for the study `clamps`.
 set -euo pipefail
 root="$(cd "$(dirname "$0")/.." && pwd)"
 folder="${1:-$root/target/dist}"
@@ -42,19 +43,33 @@ results() {
 }
 results ordinary "$ordinary"
 
+# The vector instructions with which a program had its results.
+vectors() { "$ordinary" show "$(sed -n '1s/.*"job":"\([0-9a-f]*\)".*/\1/p' "$scratch/$1.json")" --db "$scratch/$1.db" | awk '$1 == "vectors" { print $2 }'; }
+[ "$(vectors ordinary)" = Avx512 ] || echo "this processor has no AVX-512 ($(vectors ordinary)), which is not compared"
+
+seconds() {
+    local start
+    rm -f "$scratch"/time.db*
+    start=$(date +%s.%N)
+    "$1" run studies/clamps.json --db "$scratch/time.db" --out "$scratch/time" > /dev/null 2>&1
+    date +%s.%N | awk -v start="$start" '{ printf "%.2f\n", $1 - start }'
+}
+
 for target in "${targets[@]}"; do
     machine=${target%%-*}
     rm -rf "$scratch/wheel" "$scratch/unpacked"
     maturin build --quiet --release --locked --zig --target "$target" --out "$scratch/wheel"
+    wheel unpack --dest "$scratch/unpacked" "$scratch"/wheel/*.whl > /dev/null
+    program=$(echo "$scratch"/unpacked/*/*.data/scripts/tribosweep)
+    python3 scripts/licences.py "$target" > "$(echo "$scratch"/unpacked/*/*.dist-info/licenses)/THIRDPARTY.txt"
+    rm "$scratch"/wheel/*.whl
+    wheel pack --dest-dir "$scratch/wheel" "$scratch"/unpacked/* > /dev/null
     wheel tags --remove --platform-tag "manylinux_2_17_$machine.manylinux2014_$machine.musllinux_1_1_$machine" "$scratch"/wheel/*.whl > /dev/null
-    python3 -m zipfile -e "$scratch"/wheel/*.whl "$scratch/unpacked"
-    program=$(echo "$scratch"/unpacked/*.data/scripts/tribosweep)
-    chmod +x "$program"
     if ! file -b "$program" | grep -q -e "statically linked" -e "static-pie linked"; then
         echo "the program for $target is not linked statically: $(file -b "$program")"
         exit 1
     fi
-    # Processors with SSE2 alone, and with AVX2; this one may have AVX-512.
+    # Processors with SSE2 alone, and with AVX2. The emulator has no AVX-512.
     case "$machine" in
         x86_64) ways=("" "qemu-x86_64 -cpu Opteron_G1" "qemu-x86_64 -cpu Haswell") ;;
         *) ways=("qemu-$machine") ;;
@@ -69,8 +84,11 @@ for target in "${targets[@]}"; do
             diff "$scratch/ordinary.json" "$scratch/$name.json" | cut -c1-400
             exit 1
         fi
-        echo "$target, ${way:-this processor}: the same results"
+        echo "$target, ${way:-this processor}, $(vectors "$name"): the same results"
     done
+    if [ "$machine" = "$(uname -m)" ]; then
+        echo "seconds for clamps, ordinary and static in turn: $(for _ in 1 2 3; do seconds "$ordinary"; seconds "$program"; done | xargs)"
+    fi
     bytes=$(stat -c %s "$program")
     if [ "$bytes" -gt 25000000 ]; then
         echo "the program for $target has $bytes bytes; at most 25 MB are wanted"
@@ -87,7 +105,7 @@ for target in "${targets[@]}"; do
         "$ordinary" completions "$shell" > "$package/completions/tribosweep.$shell"
     done
     "$ordinary" man "$package/man"
-    python3 scripts/licences.py "$target" > "$package/THIRDPARTY.txt"
+    cp "$scratch"/unpacked/*/*.dist-info/licenses/THIRDPARTY.txt "$package"
     tar -C "$scratch" --sort=name --owner=0 --group=0 -czf "$folder/$name.tar.gz" "$name"
     wheel=$(basename "$scratch"/wheel/*.whl)
     cp "$scratch/wheel/$wheel" "$folder"

@@ -8,6 +8,7 @@ pub(crate) use args::Args;
 
 use super::error::CliError;
 use super::output::{log, print, write_file};
+use super::warnings;
 use crate::exit;
 use crate::queue::Location;
 use crate::study::StudyText;
@@ -40,6 +41,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let is_own = args.study.is_changed() || StudyText::is_stdin(&args.study.file);
     let study = if is_own { folder.join("study.json") } else { args.study.file.clone() };
     let scripts = Scripts::new(args, &study, name, &database, &folder)?;
+    warnings::of_study(plan.study());
     scripts.write()?;
     if is_own {
         write_file(&study, plan.document().as_bytes())?;

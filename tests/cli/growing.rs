@@ -62,7 +62,7 @@ fn timed(study: &Value, options: &str) -> (BTreeMap<String, String>, Duration) {
 }
 
 /// Starts pairs of workers and kills them after a random time, until the study needs no more jobs. An undisturbed run takes the time
-/// `whole`. A pair lives for a sixth of it at most, so that several pairs are killed on a machine of any speed.
+/// `whole`. A pair lives for a third of it at most, so that several pairs are killed on a machine of any speed.
 fn storm(study: &Value, db: &str, seed: u64, whole: Duration) -> BTreeMap<String, String> {
     let folder = Folder::with("study", study);
     let mut random = Random::new(seed);
@@ -73,7 +73,7 @@ fn storm(study: &Value, db: &str, seed: u64, whole: Duration) -> BTreeMap<String
     loop {
         let work = format!("work --db {db} --threads 1 --lease 10s --max-crashes 1000");
         let workers = [folder.start(&work), folder.start(&work)];
-        std::thread::sleep(whole * (random.below(250) as u32) / 1500);
+        std::thread::sleep(whole * (random.below(250) as u32) / 750);
         for worker in workers {
             worker.signal("KILL");
             kills += usize::from(worker.end().0.is_none());

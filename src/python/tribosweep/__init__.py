@@ -72,6 +72,9 @@ def run(
 
     Raises Error if the study or the database is refused, or if the run was interrupted.
     """
+    # Without pandas nothing is begun.
+    import pandas  # noqa: F401
+
     options = ["--db", os.fspath(db)]
     with _file_of(study) as path:
         changes = _settings(settings) + ([] if preset is None else ["--preset", preset])

@@ -109,25 +109,37 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     found
 }
 
-/// A strip that is no strip: a single row of nodes, or the whole face.
+/// A strip that is no strip: the outermost row of nodes, or the whole face. The mesh of a block says which rows are held. On other
+/// meshes rows are at many distances.
 fn clamp(spec: &JobSpec) -> Option<Doubt> {
     let (pin, clamp) = (&spec.scene.pin, &spec.scene.clamp);
     let axis = clamp.side.axis_across().filter(|_| pin.shape != Shape::Mesh)?;
     let strips = if matches!(clamp.side, ClampSide::BothSides | ClampSide::BothEnds) { 2.0 } else { 1.0 };
-    let share = strips * clamp.width_m / pin.extent_m()[axis];
-    let (size, message) = if clamp.width_m == 0.0 {
-        (1.0, "a single row of nodes is held, whose effect depends on the mesh")
-    } else if share >= 1.0 - 1.0e-9 {
-        (share, "the whole top face is held, as with the side `whole_top`")
+    let (width_m, whole_m) = if pin.shape == Shape::Block {
+        let edge_m = pin.element_edges_m()[axis];
+        let held_m = (clamp.width_m / edge_m).round() * edge_m;
+        // Of two strips, the last rows are neighbours, and an element lies between them.
+        (held_m, pin.extent_m()[axis] - (strips - 1.0) * edge_m)
     } else {
-        return None;
+        (clamp.width_m, pin.extent_m()[axis])
     };
-    Some(Doubt {
+    let share = strips * width_m / whole_m;
+    let doubt = |fields, message: &str| Doubt {
         kind: "clamp",
-        fields: &["scene.clamp.width_m", "scene.clamp.side"],
-        size,
+        fields,
+        size: share,
         message: message.to_owned(),
         help: "expected the width in metres of the strip that the holder holds".to_owned(),
+    };
+    if clamp.width_m == 0.0 {
+        let message = "only the outermost row of nodes is held, so that what is held depends on the mesh";
+        return Some(doubt(&["scene.clamp.width_m"], message));
+    }
+    (share > 1.0 - 1.0e-9).then(|| {
+        doubt(
+            &["scene.clamp.width_m", "scene.clamp.side"],
+            "the whole top face is held, as with the side `whole_top`",
+        )
     })
 }
 

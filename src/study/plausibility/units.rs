@@ -22,8 +22,6 @@ const ROUGHEST: f64 = 2.0;
 /// waves, `Scene::vibration_time_s`.
 const LONGEST_S: f64 = 1.0;
 const LONGEST_TRANSITS: f64 = 1.0e5;
-/// Damping ratio of the slowest vibrations from which on nothing would vibrate.
-const CRITICAL: f64 = 1.0;
 
 type Fields = &'static [&'static str];
 
@@ -68,19 +66,9 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
         let message = "an unusually large friction coefficient".to_owned();
         add(&mut found, &["scene.contact.mu"], mu, message, "expected a number, not per cent");
     }
-    // The lowest vibrations of a body have a frequency of about 0.16 over that time (`Scene::vibration_time_s`).
-    let lowest_hz = 0.16 / scene.vibration_time_s();
-    let ratio = PI * spec.numerics.beta_r_s * lowest_hz;
-    if ratio > CRITICAL {
-        let message = format!(
-            "even the slowest vibrations of the pin, at about {} kHz, would be damped {} times as much as critically, as if \
-             kHz were given; expected Hz",
-            short(lowest_hz / 1000.0),
-            short(ratio)
-        );
-        let fields: Fields =
-            &["damping.frequency_hz", "damping.loss_factor", "damping.ratio", "numerics.beta_r_s"];
-        add(&mut found, fields, ratio, message, "1 kHz is 1000 Hz, and ζ = π β_R f");
+    // A time of the pin is in doubt with its material and its size.
+    if found.is_empty() {
+        overdamped(spec, &mut found);
     }
     let limit_s = spec.run.limit_s;
     let transits = limit_s / scene.vibration_time_s();
@@ -92,6 +80,22 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
         add(&mut found, &["run.limit_s"], transits, message, "1 ms is 0.001 s");
     }
     found
+}
+
+/// Damping under which nothing vibrates. ζ = π β_R f is 1 at the frequency 1/(π β_R), and the lowest vibrations of the pin have
+/// about 0.16/t with the time of [`Scene::vibration_time_s`](crate::spec::Scene::vibration_time_s).
+fn overdamped(spec: &JobSpec, found: &mut Vec<Doubt>) {
+    let critical_hz = 1.0 / (PI * spec.numerics.beta_r_s);
+    let ratio = 0.16 / spec.scene.vibration_time_s() / critical_hz;
+    if ratio > 1.0 {
+        let message = format!(
+            "every vibration above {} Hz is damped more than critically, and so are all of this pin's",
+            short(critical_hz)
+        );
+        let fields: Fields =
+            &["damping.frequency_hz", "damping.loss_factor", "damping.ratio", "numerics.beta_r_s"];
+        add(found, fields, ratio, message, "frequency_hz is in Hz (1 kHz is 1000 Hz), and ζ = π β_R f");
+    }
 }
 
 fn young_modulus(fields: Fields, modulus_pa: f64, found: &mut Vec<Doubt>) {
