@@ -256,7 +256,7 @@ fn the_book_has_every_page() {
     assert_eq!(named.len(), pages.len(), "a page is named twice");
 }
 
-/// Protects: what the page of claims says was found stands word for word in the page that it names.
+/// Protects: the words that support a claim stand in the page that the claim names, and its number stands in the words.
 #[test]
 fn evidence_is_in_its_pages() {
     let words = |text: &str| text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -267,10 +267,16 @@ fn evidence_is_in_its_pages() {
         // A bar inside of a cell is escaped.
         let row = row.replace("\\|", "\u{1}");
         let cells: Vec<&str> = row.trim_matches('|').split('|').collect();
-        let [claim, found, link] = cells[..] else { panic!("{row}") };
+        let [claim, number, found, link] = cells[..] else { panic!("{row}") };
         let (page, _) = links("docs/evidence.md", link).remove(0);
         let found = words(&found.replace('\u{1}', "|"));
         assert!(words(&read(&page)).contains(&found), "{claim}: {page} does not say “{found}”");
+        let numbers =
+            number.split(|c: char| !(c.is_ascii_digit() || c == '.')).map(|word| word.trim_matches('.'));
+        for own in numbers.filter(|word| !word.is_empty()) {
+            let is_there = found.split(|c: char| !(c.is_ascii_digit() || c == '.')).any(|word| word == own);
+            assert!(is_there, "{claim}: {own} is not in “{found}”");
+        }
         count += 1;
     }
     assert!(count >= 10, "{count} claims");

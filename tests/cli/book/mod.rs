@@ -4,8 +4,8 @@
 mod files;
 mod reader;
 mod steps;
+mod tables;
 
-use std::collections::BTreeSet;
 use std::panic::catch_unwind;
 use std::path::Path;
 use std::sync::Mutex;
@@ -34,18 +34,19 @@ fn docs() -> Vec<(String, String)> {
 }
 
 /// Protects: every study, command and program in the book works as it stands there, and prints what the page shows. The page of files
-/// has every file that they write, and no other.
+/// has every file that they write, and no other; the pages of columns have every column of their tables.
 #[test]
 fn every_page_can_be_followed() {
     let is_example = |language: &str| ["sh", "json", "python"].contains(&language);
     let has_examples = |text: &str| steps::blocks(text).any(|block| is_example(block.language));
-    let pages: Vec<_> = docs().into_iter().filter(|(_, text)| has_examples(text)).collect();
+    let all = docs();
+    let pages: Vec<_> = all.iter().filter(|(_, text)| has_examples(text)).collect();
     for (name, reason) in NOT_FOLLOWED {
         assert!(pages.iter().any(|(page, _)| page == name), "{name} has no examples: {reason}");
     }
     let followed = pages.iter().filter(|(name, _)| NOT_FOLLOWED.iter().all(|(other, _)| other != name));
     let waiting = Mutex::new(followed);
-    let written = Mutex::new(BTreeSet::new());
+    let written = Mutex::new(Vec::new());
     let failed = Mutex::new(Vec::new());
     let is_whole = Mutex::new(true);
     let work = || {
@@ -68,6 +69,10 @@ fn every_page_can_be_followed() {
     );
     // Without a server or Python, some files are missing.
     if *is_whole.lock().unwrap() {
-        files::assert_documented(include_str!("../../../docs/files.md"), &written.lock().unwrap());
+        let written = written.lock().unwrap();
+        let page = |name: &str| -> &str { &all.iter().find(|(own, _)| own == name).unwrap().1 };
+        files::assert_documented(page("files.md"), written.iter().map(|(file, _)| file));
+        let tables = written.iter().filter_map(|(file, header)| Some((file.as_str(), header.as_deref()?)));
+        tables::assert_documented(page("tables.md"), [page("columns.md"), page("fields.md")], tables);
     }
 }

@@ -1,5 +1,6 @@
 //! A reader who follows a page in a folder that has the program, the studies and what the page needs.
 
+use std::collections::BTreeMap;
 use std::os::unix::fs::{PermissionsExt, symlink};
 use std::path::Path;
 use std::process::Command;
@@ -27,8 +28,11 @@ case $script in
 esac
 "#;
 
-/// Follows a page and returns the files that were written below folders. `None` where a server or Python is missing.
-pub fn follow(name: &str, page: &str) -> Option<Vec<String>> {
+/// The files that a page wrote below folders, and the first line of each that is a table in CSV.
+pub type Written = BTreeMap<String, Option<String>>;
+
+/// Follows a page. `None` where a server or Python is missing.
+pub fn follow(name: &str, page: &str) -> Option<Written> {
     let folder = Folder::new();
     symlink(Path::new(ROOT).join("studies"), folder.path("studies")).unwrap();
     symlink(Path::new(ROOT).join("studies/pad.msh"), folder.path("pad.msh")).unwrap();
@@ -89,7 +93,15 @@ pub fn follow(name: &str, page: &str) -> Option<Vec<String>> {
     let is_written = |file: &String| {
         file.contains('/') && !["bin/", "studies/"].iter().any(|folder| file.starts_with(folder))
     };
-    Some(folder.files().into_iter().filter(is_written).collect())
+    let header = |file: &String| {
+        file.ends_with(".csv").then(|| folder.read(file).lines().next().unwrap_or_default().to_owned())
+    };
+    let files = folder.files().into_iter().filter(is_written);
+    let with_header = files.map(|file| {
+        let first_line = header(&file);
+        (file, first_line)
+    });
+    Some(with_header.collect())
 }
 
 fn has_packages(python: &str) -> bool {
