@@ -6,7 +6,7 @@
 # Writes into FOLDER (default target/dist), for each target (default x86_64-unknown-linux-musl and aarch64-unknown-linux-musl):
 # * a wheel for Python, with the module, the program, its licences and those of its packages. The program is linked statically, so pip installs
 #   it on every Linux.
-# * an archive with the same program and licences, the completions of shells, manual pages, the studies and the changes,
+# * an archive with the same program and licences, the book, the completions of shells, manual pages, the studies and the changes,
 # * checksums of both.
 # Needs rustup, Python 3 with venv, and Debian's packages file and qemu-user; the compiler for C comes from PyPI (ziglang). Ends with an error if a
 # program gives other results than the ordinary one in the mini study, to the last bit, on this processor or an emulated one. Says how long both take
@@ -99,7 +99,9 @@ for target in "${targets[@]}"; do
     name="tribosweep-$version-$target"
     package="$scratch/$name"
     mkdir -p "$package/completions"
-    cp "$program" LICENSE-MIT LICENSE-APACHE README.md CHANGELOG.md CITATION.cff "$package"
+    cp "$program" LICENSE-MIT LICENSE-APACHE CHANGELOG.md CITATION.cff "$package"
+    cp docs/install.md "$package/INSTALL.md"
+    cp -r docs "$package/book"
     cp -r studies "$package"
     for shell in bash fish zsh; do
         "$ordinary" completions "$shell" > "$package/completions/tribosweep.$shell"

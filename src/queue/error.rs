@@ -19,7 +19,9 @@ pub enum QueueError {
     },
 
     /// There is no database to read.
-    #[error("no database at {database}; submit a study first with `tribosweep submit STUDY`")]
+    #[error(
+        "no database at {database}: go to the folder where the study was run, give --db, or begin with `tribosweep run STUDY`"
+    )]
     NoDatabase {
         /// Where the database was looked for.
         database: Location,

@@ -203,7 +203,7 @@ impl Scene {
             let edge = self.pin.extent_m()[axis];
             if edge > 0.0 && width > edge * (1.0 + 1.0e-9) {
                 let right = format!(
-                    "a width in metres of at most {} m, the pin's edge in {}",
+                    "a width in metres (1 mm is 0.001 m) of at most {} m, the pin's edge in {}",
                     readable(edge),
                     ["x", "y"][axis]
                 );

@@ -147,8 +147,11 @@ fn usage() {
     assert_eq!(folder.files(), ["mine.json"]);
     let help = folder.ok("--help");
     let codes = help.split_once("Exit codes:").expect("the help has the exit codes").1;
+    let page = include_str!("../../docs/commands.md");
     for code in 0..=3 {
-        assert!(codes.contains(&format!("\n  {code}  ")), "{codes}");
+        let line = codes.lines().find_map(|line| line.strip_prefix(&format!("  {code}  ")));
+        let meaning = line.unwrap_or_else(|| panic!("{code}: {codes}"));
+        assert!(page.contains(&format!("| **{code}** | {meaning} |")), "docs/commands.md: {code} is {meaning}");
     }
     // Number, and with a repository commit and day.
     let version = folder.ok("--version");

@@ -194,6 +194,8 @@ fn a_clamp_that_is_no_strip_is_named() {
         assert_eq!(found.iter().map(|warning| warning.kind).collect::<Vec<_>>(), ["clamp"], "{side} {width}");
         assert_contains(&found[0].to_string(), &["scene.clamp.width_m = ", expected]);
     }
+    let moved = clamp("inner_side", 0.0022);
+    assert_contains(&moved[0].to_string(), &["width_m = 0.0022: this mesh holds a strip of 0.002 m"]);
     // Two doubts about one field are two warnings.
     let both = warnings(r#"{ "grid": { "clamp_width_m": [0, 0.002, 0.012] } }"#);
     assert_eq!(
@@ -202,7 +204,9 @@ fn a_clamp_that_is_no_strip_is_named() {
     );
     assert_contains(
         &refusal(r#"{ "scene": { "clamp": { "width_m": 2 } } }"#),
-        &["scene.clamp.width_m = 2: expected a width in metres of at most 0.012 m, the pin's edge in x"],
+        &[
+            "scene.clamp.width_m = 2: expected a width in metres (1 mm is 0.001 m) of at most 0.012 m, the pin's edge in x",
+        ],
     );
 }
 

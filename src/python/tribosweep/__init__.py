@@ -72,9 +72,7 @@ def run(
 
     Raises Error if the study or the database is refused, or if the run was interrupted.
     """
-    # Without pandas nothing is begun.
-    import pandas  # noqa: F401
-
+    _pandas()  # Without it nothing is begun.
     options = ["--db", os.fspath(db)]
     with _file_of(study) as path:
         changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
@@ -91,9 +89,8 @@ def read(db: str | os.PathLike[str], study: str) -> pandas.DataFrame:
 
     Raises Error if there is no such database or study.
     """
-    import pandas
-
-    return pandas.read_csv(StringIO(_call(["export", study, "--all", "--db", os.fspath(db)])))
+    jobs: pandas.DataFrame = _pandas().read_csv(StringIO(_call(["export", study, "--all", "--db", os.fspath(db)])))
+    return jobs
 
 
 def solve(study: Study, *, preset: str | None = None, **settings: Any) -> dict[str, Any]:
@@ -117,6 +114,14 @@ def grid(jobs: pandas.DataFrame, values: Sequence[str], over: Sequence[str] | No
     if jobs.duplicated(list(over)).any():
         raise ValueError(f"several jobs have the same {', '.join(over)}; name all parameters that vary in `over`")
     return jobs.set_index(list(over))[list(values)].to_xarray()
+
+
+def _pandas() -> Any:
+    try:
+        import pandas
+    except ImportError as error:
+        raise ImportError("frames need pandas: pip install 'tribosweep[xarray]', or pandas and xarray alone") from error
+    return pandas
 
 
 def _settings(settings: Mapping[str, Any] | None) -> list[str]:

@@ -13,6 +13,8 @@ const HUGE_STRAIN: f64 = 0.1;
 const FAST: f64 = 0.1;
 /// Poisson's ratio from which on the elements are noticeably too stiff; `tests/verification/locking.rs` has measured it.
 pub const LOCKING_POISSON_RATIO: f64 = 0.48;
+/// Change of the clamp's width by the mesh from which on it is named.
+const MOVED: f64 = 0.01;
 /// The time step with damping over the one without, below which damping decides about the cost.
 const SHORT_STEP: f64 = 0.5;
 
@@ -135,10 +137,17 @@ fn clamp(spec: &JobSpec) -> Option<Doubt> {
         let message = "only the outermost row of nodes is held, so that what is held depends on the mesh";
         return Some(doubt(&["scene.clamp.width_m"], message));
     }
-    (share > 1.0 - 1.0e-9).then(|| {
-        doubt(
-            &["scene.clamp.width_m", "scene.clamp.side"],
-            "the whole top face is held, as with the side `whole_top`",
+    if share > 1.0 - 1.0e-9 {
+        let message = "the whole top face is held, as with the side `whole_top`";
+        return Some(doubt(&["scene.clamp.width_m", "scene.clamp.side"], message));
+    }
+    // A width that is too far from every row is refused when the model is made.
+    let moved = width_m / clamp.width_m - 1.0;
+    (moved.abs() > MOVED).then(|| Doubt {
+        size: moved.abs(),
+        ..doubt(
+            &["scene.clamp.width_m", "scene.pin.elements"],
+            &format!("this mesh holds a strip of {} m, up to its nearest row of nodes", short(width_m)),
         )
     })
 }

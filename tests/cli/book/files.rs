@@ -41,7 +41,7 @@ fn sections(file: &str) -> (&'static [&'static str], &str) {
     let (folder, path) = file.split_once('/').expect("a file below a folder");
     if let Some(path) = below("/inspect/") {
         (&["An inspection"], path)
-    } else if folder.ends_with(".slurm") {
+    } else if folder.strip_suffix(".slurm").is_some() {
         path.strip_prefix("report/").map_or((&["A job array"], path), |path| (&["A report"], path))
     } else if let Some(path) = file.strip_prefix("reports/").and_then(|rest| rest.split_once('/')) {
         (&["A report", "Linear stability"], path.1)

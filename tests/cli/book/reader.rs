@@ -94,7 +94,7 @@ pub fn follow(name: &str, page: &str) -> Option<Written> {
         file.contains('/') && !["bin/", "studies/"].iter().any(|folder| file.starts_with(folder))
     };
     let header = |file: &String| {
-        file.ends_with(".csv").then(|| folder.read(file).lines().next().unwrap_or_default().to_owned())
+        file.strip_suffix(".csv").map(|_| folder.read(file).lines().next().unwrap_or_default().to_owned())
     };
     let files = folder.files().into_iter().filter(is_written);
     let with_header = files.map(|file| {

@@ -36,7 +36,9 @@ async fn reading_creates_nothing() {
     let sandbox = Sandbox::new();
     let error = Queue::open_to_read(sandbox.location(), sandbox.clock.clock()).await.unwrap_err();
     assert!(matches!(error, QueueError::NoDatabase { .. }), "{error:?}");
-    assert!(error.to_string().contains("sweep.db; submit a study first with `tribosweep submit STUDY`"));
+    assert!(error.to_string().contains(
+        "sweep.db: go to the folder where the study was run, give --db, or begin with `tribosweep run STUDY`"
+    ));
     assert_eq!(fs::read_dir(sandbox.folder.path()).unwrap().count(), 0);
 }
 
