@@ -107,7 +107,7 @@ fn a_time_step_above_the_limit() {
 fn no_database() {
     let folder = Folder::with("mine", &small(&json!({ "mu": [0.2] })));
     for command in ["status", "status mine", "work", "export mine", "report mine.json"] {
-        refuses(&folder, command, &["error: no database at tribosweep.db", "tribosweep submit"]);
+        refuses(&folder, command, &["error: no database at tribosweep.db", "tribosweep run"]);
     }
     assert_eq!(folder.files(), ["mine.json"]);
     refuses(&folder, "submit mine.json --db no/such.db", &["folder", "no"]);
