@@ -151,7 +151,10 @@ fn usage() {
     for code in 0..=3 {
         let line = codes.lines().find_map(|line| line.strip_prefix(&format!("  {code}  ")));
         let meaning = line.unwrap_or_else(|| panic!("{code}: {codes}"));
-        assert!(page.contains(&format!("| **{code}** | {meaning} |")), "docs/commands.md: {code} is {meaning}");
+        assert!(
+            page.contains(&format!("| **{code}** | {meaning} |")),
+            "docs/commands.md: {code} is {meaning}"
+        );
     }
     // Number, and with a repository commit and day.
     let version = folder.ok("--version");
