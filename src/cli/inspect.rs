@@ -10,6 +10,7 @@ use crate::inspect::{self, Inspection, InspectionError, NodeSelector, Options, P
 use crate::publish::value;
 use crate::queue::Location;
 use crate::report::{self, assignment};
+use crate::solver;
 use crate::study::{Origin, Parameter, Preset, Study, is_set_by_presets};
 use crate::sweep::{self, SelectedJob};
 use crate::worker::{self, Interrupt};
@@ -77,6 +78,19 @@ fn log_scene_values(job: &SelectedJob) {
     }
 }
 
+/// Grids up to this size are searched for a job.
+const SEARCHED: usize = 10_000;
+
+/// Logs that the study does not have a job, which may be a mistake.
+fn log_if_foreign(study: &Study, job: &SelectedJob) {
+    if study.grid_size() <= SEARCHED
+        && let Ok(jobs) = study.expand(solver::VERSION)
+        && !jobs.iter().any(|own| own.key == job.key)
+    {
+        log(format_args!("this job is none of the points of {}", study.name()));
+    }
+}
+
 /// A study's name with the parameters of a job.
 fn title(study: &Study, parameters: &[(String, Value)]) -> String {
     let words: Vec<String> = parameters.iter().map(|(name, value)| assignment(name, value)).collect();
@@ -115,6 +129,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     }
     let job = select(args, &study, &args.job, db)?;
     log_scene_values(&job);
+    log_if_foreign(&study, &job);
     let folder = args.out(&study, &[&slug(&job.parameters), args.preset.map_or("", Preset::name)]);
     let folder = if args.folder.is_none() { beside_others(folder, &job.key) } else { folder };
     if args.only == Some(Only::Spectrum) {

@@ -20,7 +20,7 @@ pub enum QueueError {
 
     /// There is no database to read.
     #[error(
-        "no database at {database}: go to the folder where the study was run, give --db, or begin with `tribosweep run STUDY`"
+        "no database at {database}: `tribosweep run STUDY` makes one, and `--db` names one in another place"
     )]
     NoDatabase {
         /// Where the database was looked for.

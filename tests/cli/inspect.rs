@@ -115,8 +115,8 @@ fn each_inspection_has_its_own_folder() {
     );
 }
 
-/// Protects: parameters without a setting have the values of the study's scene, and the command says so. Nodes, cycles and
-/// frames are as requested.
+/// Protects: parameters without a setting have the values of the study's scene, and the command says so, and
+/// also if the study does not have the job. Nodes, cycles and frames are as requested.
 #[test]
 fn other_parameters_are_those_of_the_scene() {
     let folder = folder();
@@ -124,7 +124,11 @@ fn other_parameters_are_those_of_the_scene() {
         .command("inspect mine.json mu=0.2 --node -2,3 --node centre --cycles 3 --frames 16 --out out")
         .assert()
         .code(0);
+    let foreign = "this job is none of the points of mine\n";
     assert!(stderr(&assert).contains("from the study's scene: ω = 7 rpm\n"), "{}", stderr(&assert));
+    assert!(!stderr(&assert).contains(foreign), "{}", stderr(&assert));
+    let other = folder.command("inspect mine.json mu=0.3 --out other").assert().code(0);
+    assert!(stderr(&other).contains(foreign), "a point that the study does not have: {}", stderr(&other));
     let found = summary(&folder, "out");
     assert_eq!(
         (&found["job"]["scene"]["contact"]["mu"], &found["job"]["scene"]["disk"]["omega_rpm"]),

@@ -239,7 +239,7 @@ fn bad_urls_are_explained() {
     let Some(database) = ServerDatabase::new() else { return };
     let url = database.url();
     let empty = refusal(&format!("status --db {url}"));
-    assert!(empty.contains("no database at") && empty.contains("submit"), "{empty}");
+    assert!(empty.contains("no database at") && empty.contains("tribosweep run"), "{empty}");
     let missing = refusal(&format!("submit study.json --db {}", url.replace('?', "_missing?")));
     assert!(missing.contains("does not exist"), "{missing}");
 }

@@ -36,9 +36,11 @@ async fn reading_creates_nothing() {
     let sandbox = Sandbox::new();
     let error = Queue::open_to_read(sandbox.location(), sandbox.clock.clock()).await.unwrap_err();
     assert!(matches!(error, QueueError::NoDatabase { .. }), "{error:?}");
-    assert!(error.to_string().contains(
-        "sweep.db: go to the folder where the study was run, give --db, or begin with `tribosweep run STUDY`"
-    ));
+    assert!(
+        error
+            .to_string()
+            .contains("sweep.db: `tribosweep run STUDY` makes one, and `--db` names one in another place")
+    );
     assert_eq!(fs::read_dir(sandbox.folder.path()).unwrap().count(), 0);
 }
 
