@@ -129,7 +129,10 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     }
     let job = select(args, &study, &args.job, db)?;
     log_scene_values(&job);
-    log_if_foreign(&study, &job);
+    // A key names a job that the database has, also one of an earlier version or of a plan's wave.
+    if args.job.iter().all(|word| word.contains('=')) {
+        log_if_foreign(&study, &job);
+    }
     let folder = args.out(&study, &[&slug(&job.parameters), args.preset.map_or("", Preset::name)]);
     let folder = if args.folder.is_none() { beside_others(folder, &job.key) } else { folder };
     if args.only == Some(Only::Spectrum) {
