@@ -1,4 +1,4 @@
-//! Limit cycles from section crossings of the total normal force.
+//! Limit cycles from section crossings: of the total normal force, and, with a holder that moves, of the force that it carries.
 
 use super::figures::Figures;
 use super::sample::{Sample, Smoother, smoothing_gain};
@@ -6,7 +6,7 @@ use crate::solver::Model;
 use crate::solver::energy::Energies;
 use serde::{Deserialize, Serialize};
 
-/// The part of a run from one upward crossing of N = F to the next.
+/// The part of a run from one upward crossing of the section to the next. The section is N = F, or T = its mean (see [`Section`]).
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
     /// Start \[s\], interpolated between two steps.
@@ -17,9 +17,9 @@ pub struct Cycle {
     pub figures: Figures,
     /// Energies at the start.
     pub energies: Energies,
-    /// Half the range \[N\] of the filtered N.
+    /// Half the range \[N\] of the filtered force of the section.
     pub amplitude_n: f64,
-    /// Largest and smallest filtered N − F \[N\].
+    /// Largest and smallest difference \[N\] of that force from the section.
     pub extremes_n: [f64; 2],
 }
 
@@ -35,7 +35,7 @@ impl Cycle {
 /// Their constant delay does not change the period.
 const SECTION_SMOOTHING: f64 = 0.25;
 
-/// A crossing counts only if N has been below F by more than this fraction of the last cycle's amplitude
+/// A crossing counts only if the force has been below the section by more than this fraction of the last cycle's amplitude
 /// since the previous crossing.
 const HYSTERESIS: f64 = 0.25;
 
@@ -43,9 +43,45 @@ const HYSTERESIS: f64 = 0.25;
 /// six cycles of the reference scene. Without it, a violent start would hide a small cycle for ever.
 const AMPLITUDE_MEMORY: f64 = 16.0;
 
+/// Time constant of each of the two filters of T, over the longest period of a swing. It removes the squeal and leaves the swing.
+const SWING_SMOOTHING: f64 = 0.01;
+
+/// Time constants of the mean of T and of the memory of its amplitude, over the same period. A cycle in which the holder sticks
+/// takes longer than a swing.
+const SWING_MEAN: f64 = 10.0;
+const SWING_MEMORY: f64 = 6.0;
+
+/// Where cycles begin.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+enum Section {
+    /// N rises through the load.
+    Normal,
+    /// The force T that the holder carries rises through its mean. A holder that sticks and slips below the squeal has a cycle that N,
+    /// which shows the squeal, does not show.
+    Holder { mean: Smoother, gain: f64 },
+}
+
+impl Section {
+    /// The force \[N\] whose sign is looked at.
+    fn force_n(&mut self, sample: &Sample) -> f64 {
+        match self {
+            Self::Normal => sample.normal_n,
+            Self::Holder { mean, gain } => {
+                sample.clamp_tangential_n - mean.push(sample.clamp_tangential_n, *gain)
+            }
+        }
+    }
+
+    /// Its level \[N\].
+    fn level_n(&self, sample: &Sample) -> f64 {
+        if *self == Self::Normal { sample.load_n } else { 0.0 }
+    }
+}
+
 /// Divides a run into cycles, step by step.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct CycleCutter {
+    section: Section,
     gain: f64,
     /// Fraction of the remembered amplitude that remains after a step.
     memory: f64,
@@ -61,15 +97,28 @@ pub struct CycleCutter {
 }
 
 impl CycleCutter {
-    /// A cutter that starts after the load's ramp.
+    /// A cutter at N = F that starts after the load's ramp.
     pub fn new(model: &Model, ramp_s: f64) -> Self {
         let transit_s = model.pin().shear_transit_s();
+        let taus_s = [SECTION_SMOOTHING * transit_s, AMPLITUDE_MEMORY * transit_s];
+        Self::at(Section::Normal, model.time_step_s(), taus_s, ramp_s)
+    }
+
+    /// A cutter at the mean of T that starts after the load's ramp, for a holder that swings with periods of up to `swing_s`.
+    pub fn of_holder(time_step_s: f64, ramp_s: f64, swing_s: f64) -> Self {
+        let gain = smoothing_gain(time_step_s, SWING_MEAN * swing_s);
+        let section = Section::Holder { mean: Smoother::default(), gain };
+        Self::at(section, time_step_s, [SWING_SMOOTHING * swing_s, SWING_MEMORY * swing_s], ramp_s)
+    }
+
+    fn at(section: Section, time_step_s: f64, [filter_s, memory_s]: [f64; 2], ramp_s: f64) -> Self {
         Self {
-            gain: smoothing_gain(model.time_step_s(), SECTION_SMOOTHING * transit_s),
-            memory: 1.0 - smoothing_gain(model.time_step_s(), AMPLITUDE_MEMORY * transit_s),
+            section,
+            gain: smoothing_gain(time_step_s, filter_s),
+            memory: 1.0 - smoothing_gain(time_step_s, memory_s),
             filters: [Smoother::default(); 2],
             ramp_s,
-            time_step_s: model.time_step_s(),
+            time_step_s,
             previous: 0.0,
             lowest: 0.0,
             highest: 0.0,
@@ -81,8 +130,9 @@ impl CycleCutter {
 
     /// Adds one step; returns the cycle that it completes, if any.
     pub fn push(&mut self, sample: &Sample, energies: &Energies) -> Option<Cycle> {
-        let once = self.filters[0].push(sample.normal_n, self.gain);
-        let above = self.filters[1].push(once, self.gain) - sample.load_n;
+        let force_n = self.section.force_n(sample);
+        let once = self.filters[0].push(force_n, self.gain);
+        let above = self.filters[1].push(once, self.gain) - self.section.level_n(sample);
         if sample.time_s < self.ramp_s {
             self.previous = above;
             return None;

@@ -2,16 +2,16 @@
 //!
 //! While no node sticks and none opens or closes, the system is linear. All its signals are then sums of
 //! lines that grow or decay exponentially (see `lines`). Sliding counts as decaying only if each of several
-//! signals decays: N alone does not show a mode of a symmetric pin that is odd in x or y.
+//! signals decays: N alone does not show a mode of a symmetric pin that is odd in x or y, and a swing of the holder in the sliding
+//! direction shows best in the force T that the holder carries.
 
-use super::lines::LineMonitor;
+use super::lines::{self, LineMonitor, StrongLine};
 use super::sample::Sample;
-use crate::spec::Detection;
 use serde::{Deserialize, Serialize};
 
-/// Number of observed signals. All of them are over F: N, its first moments about the y and x axes, and the
-/// sideways friction.
-const SIGNALS: usize = 4;
+/// Number of observed signals. All of them are over F: N, its first moments about the y and x axes, the sideways friction, and, with a
+/// holder that moves, T.
+const SIGNALS: usize = 5;
 
 /// Amplitude, over F, below which lines are not judged on an elastic disk.
 ///
@@ -33,22 +33,35 @@ pub const SINGLE_FLOOR: f64 = 1.0e-5;
 #[derive(Serialize, Deserialize)]
 pub struct DecayMonitor {
     ramp_s: f64,
-    monitors: [LineMonitor; SIGNALS],
+    monitors: Vec<LineMonitor>,
     decays: bool,
 }
 
 impl DecayMonitor {
-    /// A monitor that starts after the load's ramp. It judges lines above the amplitude `floor`, over F.
-    pub fn new(time_step_s: f64, ramp_s: f64, detection: &Detection, floor: f64) -> Self {
-        let observation_s = detection.decay_observation_s;
-        let monitors = std::array::from_fn(|_| LineMonitor::new(time_step_s, observation_s, floor));
+    /// A monitor that starts after the load's ramp. It judges lines above the amplitude `floor`, over F, in observations of
+    /// `observation_s`.
+    pub fn new(time_step_s: f64, ramp_s: f64, observation_s: f64, floor: f64, holder_moves: bool) -> Self {
+        let signals = if holder_moves { SIGNALS } else { SIGNALS - 1 };
+        let monitors = (0..signals).map(|_| LineMonitor::new(time_step_s, observation_s, floor)).collect();
         Self { ramp_s, monitors, decays: false }
     }
 
     /// Growth rate \[1/s\] of the fastest growing (or slowest decaying) strong line of any signal over the
-    /// last observation time. After the oscillation has decayed to rounding, it is the last measured rate. It
-    /// is none unless sliding was steady during the whole observation time.
+    /// last observation time, without the harmonics of others. After the oscillation has decayed to rounding, it is the last
+    /// measured rate. It is none unless sliding was steady during the whole observation time.
     pub fn growth_rate_per_s(&self) -> Option<f64> {
+        let fastest = self.fastest_per_s()?;
+        if fastest <= 0.0 {
+            // What two decaying lines make decays faster than both.
+            return Some(fastest);
+        }
+        let lines: Vec<StrongLine> =
+            self.monitors.iter().flat_map(|monitor| monitor.strong_lines().iter().copied()).collect();
+        Some(lines::fastest_of_modes(&lines).unwrap_or(fastest))
+    }
+
+    /// The largest rate \[1/s\] of any strong line.
+    fn fastest_per_s(&self) -> Option<f64> {
         let rates = self.monitors.iter().filter_map(|monitor| monitor.verdict()?.growth_rate_per_s);
         rates.reduce(f64::max)
     }
@@ -63,18 +76,19 @@ impl DecayMonitor {
             self.decays = false;
             return false;
         }
-        let signals = [
+        let signals: [f64; SIGNALS] = [
             sample.normal_n - sample.load_n,
             sample.x_moment_n,
             sample.y_moment_n,
             sample.contact_sideways_n,
+            sample.clamp_tangential_n,
         ];
         for (monitor, signal) in self.monitors.iter_mut().zip(signals) {
             monitor.push(signal / sample.load_n);
         }
         if self.monitors.iter().all(|monitor| monitor.verdict().is_some_and(|verdict| verdict.decays)) {
             self.decays = true;
-        } else if self.growth_rate_per_s().is_some_and(|rate| rate > 0.0) {
+        } else if self.fastest_per_s().is_some_and(|rate| rate > 0.0) {
             // Only growth revokes a measured decay. An undecided observation does not.
             self.decays = false;
         }

@@ -194,6 +194,19 @@ impl Figures {
         ratio(self.clamp_tangential, self.load)
     }
 
+    /// μ\* of a steady state: ⟨T⟩/⟨F⟩, or ⟨T⟩/⟨N⟩ of the contact if the holder moves.
+    ///
+    /// The two differ by what the momentum of pin and holder changes over the window. It is nothing in a periodic state. But a
+    /// heavy holder swings for a long time with little effect on the contact, and its momentum would be most of the error.
+    pub fn mu_star_without_momentum(&self, holder_moves: bool) -> f64 {
+        if holder_moves { self.mu_star_contact() } else { self.mu_star() }
+    }
+
+    /// ⟨T⟩/⟨F⟩ of the clamp minus ⟨T⟩/⟨N⟩ of the contact. It vanishes over a whole cycle of a periodic state.
+    pub fn imbalance(&self) -> f64 {
+        self.mu_star() - self.mu_star_contact()
+    }
+
     /// ⟨T⟩/⟨N⟩ of the contact forces.
     pub fn mu_star_contact(&self) -> f64 {
         ratio(self.contact_tangential, self.normal)

@@ -11,13 +11,13 @@ use super::record::{
     ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
 };
 use super::sample::{DIRECTIONS, OBSERVED_NAMES, Sample};
-use super::steady::{self, SteadyState};
-use super::window::{LateWindow, Trailing, Window};
+use super::steady::{self, Obstacle, SteadyState};
+use super::window::{LateWindow, Settling, Trailing, Window};
 use crate::solver::Model;
 use crate::solver::body::ring::RingBody;
 use crate::solver::energy::Energies;
 use crate::solver::interface::solve::Solves;
-use crate::spec::{FrictionLaw, Holder, JobSpec, Precision};
+use crate::spec::{FrictionLaw, Holder, JobSpec, Precision, SlowTimes};
 use serde::{Deserialize, Serialize};
 
 /// Evaluates the run of one job and creates its record.
@@ -31,6 +31,10 @@ pub struct LaneAnalysis {
     monitor: Option<DecayMonitor>,
     cycles: Vec<Cycle>,
     steady: Option<SteadyState>,
+    /// The cycles of T, if a holder moves.
+    swings: Option<Swings>,
+    /// Whether all oscillations decay, and whether the means have settled, too.
+    oscillations_decay: bool,
     decays: bool,
     late: LateWindow,
     trailing: Trailing,
@@ -45,6 +49,28 @@ pub struct LaneAnalysis {
     start: Option<CoarseStart>,
 }
 
+/// The cycles of the force T that a holder carries.
+#[derive(Serialize, Deserialize)]
+struct Swings {
+    cutter: CycleCutter,
+    cycles: Vec<Cycle>,
+    steady: Option<SteadyState>,
+}
+
+impl Swings {
+    fn of(slow: SlowTimes, time_step_s: f64, ramp_s: f64) -> Self {
+        let cutter = CycleCutter::of_holder(time_step_s, ramp_s, slow.swing_s);
+        Self { cutter, cycles: Vec::new(), steady: None }
+    }
+
+    fn push(&mut self, sample: &Sample, energies: &Energies, spec: &JobSpec) {
+        let Some(cycle) = self.cutter.push(sample, energies) else { return };
+        self.cycles.push(cycle);
+        let slow = spec.scene.slow_times();
+        self.steady = slow.and_then(|slow| steady::find_swing(&self.cycles, &spec.detection, slow));
+    }
+}
+
 impl LaneAnalysis {
     /// The analysis of the job `spec`.
     pub fn new(model: &Model, spec: JobSpec) -> Self {
@@ -53,17 +79,21 @@ impl LaneAnalysis {
         let slidable_s = spec.run.limit_s - ramp_s + 2.0 * model.time_step_s();
         let has_program = !spec.scene.program.is_constant();
         let late_s = (1.0 - spec.run.average_last_fraction) * spec.run.limit_s;
-        let observes = !has_program && spec.detection.decay_observation_s <= slidable_s;
+        let observation_s = spec.observation_s();
+        let observes = !has_program && observation_s <= slidable_s;
+        let (time_step_s, floor) = (model.time_step_s(), decay_floor(model, &spec));
+        let slow = spec.scene.slow_times();
         Self {
             cutter: CycleCutter::new(model, ramp_s),
-            monitor: observes.then(|| {
-                DecayMonitor::new(model.time_step_s(), ramp_s, &spec.detection, decay_floor(model, &spec))
-            }),
+            monitor: observes
+                .then(|| DecayMonitor::new(time_step_s, ramp_s, observation_s, floor, slow.is_some())),
             cycles: Vec::new(),
             steady: None,
+            swings: slow.filter(|_| !has_program).map(|slow| Swings::of(slow, time_step_s, ramp_s)),
+            oscillations_decay: false,
             decays: false,
             late: LateWindow::from(if has_program { ramp_s } else { late_s }),
-            trailing: Trailing::new(spec.detection.decay_observation_s, model.time_step_s()),
+            trailing: Trailing::new(observation_s, time_step_s),
             windows: has_program.then(|| ProgramWindows::of(&spec)),
             stability: None,
             may_grow_from_rounding: false,
@@ -111,17 +141,41 @@ impl LaneAnalysis {
         }
         if let Some(cycle) = cycle {
             self.cycles.push(cycle);
-            self.steady = steady::find(&self.cycles, &self.spec.detection);
+            self.steady = steady::find(&self.cycles, &self.spec.detection, self.spec.scene.slow_times());
         }
-        let decays = self.monitor.as_mut().is_some_and(|monitor| monitor.push(sample));
-        self.decays = decays && !self.may_grow_from_rounding;
+        if let Some(swings) = &mut self.swings {
+            swings.push(sample, energies, &self.spec);
+        }
         self.late.push(sample, energies);
         self.trailing.push(sample, energies);
+        let decay = self.monitor.as_mut().is_some_and(|monitor| monitor.push(sample));
+        let decay = decay && !self.may_grow_from_rounding;
+        // The means hardly change from step to step.
+        let is_due = decay && (!self.oscillations_decay || self.trailing.begins_block());
+        if is_due && !self.decays {
+            self.decays = self.trailing.settling().is_done(self.spec.detection.drift_tolerance);
+        }
+        self.decays &= decay;
+        self.oscillations_decay = decay;
+    }
+
+    /// Whether the holder moves, with the pin's top.
+    fn holder_moves(&self) -> bool {
+        !self.spec.scene.holder.is_ideal()
     }
 
     /// Whether the run can stop: its state is periodic, or it was measured to decay.
     pub fn is_settled(&self) -> bool {
-        self.steady.is_some() || self.decays
+        self.periodic().is_some() || self.decays
+    }
+
+    /// The periodic state with its cycles: those of N, or else those of the holder.
+    fn periodic(&self) -> Option<(SteadyState, &[Cycle])> {
+        let of_n = self.steady.map(|steady| (steady, self.cycles.as_slice()));
+        of_n.or_else(|| {
+            let swings = self.swings.as_ref()?;
+            Some((swings.steady?, swings.cycles.as_slice()))
+        })
     }
 
     /// The record of a run that ended after `steps` steps with these final `energies`. `solves` are the
@@ -134,7 +188,8 @@ impl LaneAnalysis {
         solves: Option<&Solves>,
     ) -> JobRecord {
         let simulated_s = steps as f64 * model.time_step_s();
-        let outcome = match self.steady {
+        let periodic = self.periodic();
+        let outcome = match periodic {
             _ if self.windows.is_some() => Outcome::Completed,
             _ if self.decays => Outcome::Decayed,
             Some(_) => Outcome::Periodic,
@@ -144,12 +199,13 @@ impl LaneAnalysis {
         let figures = &window.figures;
         let [stick, slip, separated] = figures.shares();
         let load_n = self.spec.scene.load.force_n;
-        let crossings = self.steady.map_or(1, |s| s.crossings_per_cycle);
+        let holder_moves = self.holder_moves();
+        let still_to_come = if self.decays { self.trailing.settling().still_to_come } else { 0.0 };
         JobRecord {
             outcome,
             regime: regime(outcome, stick, separated, self.spec.detection.regime_threshold),
-            mu_star: figures.mu_star(),
-            mu_star_se: steady::standard_error(&window.mu_star_parts),
+            mu_star: figures.mu_star_without_momentum(holder_moves),
+            mu_star_se: libm::hypot(steady::standard_error_with_drift(&window.mu_star_parts), still_to_come),
             mu_star_contact: figures.mu_star_contact(),
             frequency_hz: window.frequency_hz,
             stick_share: stick,
@@ -161,7 +217,7 @@ impl LaneAnalysis {
             slip_speed_max_m_s: figures.slip_speed_max_m_s,
             lift_max_m: figures.lift_max_m,
             cycles: window.cycles,
-            crossings_per_cycle: crossings,
+            crossings_per_cycle: self.crossings_per_cycle(),
             simulated_s,
             window_start_s: window.start_s,
             steps,
@@ -182,8 +238,7 @@ impl LaneAnalysis {
             mu_reduction_stick: figures.stick_reduction(),
             mu_reduction_slip: figures.slip_reduction(),
             growth_rate_per_s: self.monitor.as_ref().and_then(DecayMonitor::growth_rate_per_s),
-            obstacle: (outcome == Outcome::NotPeriodic)
-                .then(|| steady::obstacle(&self.cycles, &self.spec.detection)),
+            obstacle: (outcome == Outcome::NotPeriodic).then(|| self.obstacle()),
             stability: self.stability.clone(),
             start: self.start.clone(),
             disk: model.ring().zip(solves).map(|(body, solves)| elastic_disk(body, solves, steps)),
@@ -194,6 +249,29 @@ impl LaneAnalysis {
         }
     }
 
+    /// Crossings of N = F in one limit cycle; 1 if there is none. In a cycle of the holder it is the nearest whole number.
+    fn crossings_per_cycle(&self) -> usize {
+        let Some((state, cycles)) = self.periodic() else { return 1 };
+        if self.steady.is_some() {
+            return state.crossings_per_cycle;
+        }
+        let window = &cycles[cycles.len() - state.window_crossings..];
+        let [start_s, end_s] = [window[0].start_s, window[window.len() - 1].end_s];
+        let of_n =
+            self.cycles.iter().filter(|cycle| cycle.start_s >= start_s && cycle.end_s <= end_s).count();
+        let groups = window.len() / state.crossings_per_cycle;
+        (of_n as f64 / groups as f64).round().max(1.0) as usize
+    }
+
+    /// Why the end of the run counts neither as periodic nor as decayed.
+    fn obstacle(&self) -> Obstacle {
+        if self.oscillations_decay {
+            let Settling { still_to_come, imbalance } = self.trailing.settling();
+            return Obstacle::Creep { still_to_come, imbalance };
+        }
+        steady::obstacle(&self.cycles, &self.spec.detection, self.spec.scene.slow_times())
+    }
+
     /// The averaging window:
     /// * Decayed: the last observation time, tapered, whether or not it contains cycles.
     /// * Periodic: the cycles in which the state was found periodic. If `stop_early` is false: all whole
@@ -202,24 +280,22 @@ impl LaneAnalysis {
     ///   of this part: the part itself. If not a single step falls into it: the last observation time.
     /// * With a program: the run after the load's ramp. Its μ* has no standard error, because it is no mean of a steady state.
     fn window(&self, simulated_s: f64) -> Window {
+        let moves = self.holder_moves();
         if self.decays {
-            return self.trailing.window(true);
+            return self.trailing.window(true, moves);
         }
-        let crossings = self.steady.map_or(1, |s| s.crossings_per_cycle);
-        let cycles = match self.steady {
-            Some(steady) if self.spec.run.stop_early => {
-                &self.cycles[self.cycles.len() - steady.window_crossings..]
-            }
-            _ => {
-                let first = self.cycles.partition_point(|c| c.start_s < self.late.start_s);
-                &self.cycles[first..]
-            }
+        let periodic = self.periodic();
+        let (crossings, all) =
+            periodic.map_or((1, self.cycles.as_slice()), |(steady, all)| (steady.crossings_per_cycle, all));
+        let cycles = match periodic {
+            Some((steady, _)) if self.spec.run.stop_early => &all[all.len() - steady.window_crossings..],
+            _ => &all[all.partition_point(|c| c.start_s < self.late.start_s)..],
         };
         let whole = &cycles[cycles.len() % crossings..];
         let duration_s = whole.last().map_or(0.0, |last| last.end_s - whole[0].start_s);
-        let covers = self.steady.is_some() || duration_s >= 0.5 * (simulated_s - self.late.start_s);
+        let covers = periodic.is_some() || duration_s >= 0.5 * (simulated_s - self.late.start_s);
         if whole.len() < 2 * crossings || !covers {
-            let trailing = self.trailing.window(false);
+            let trailing = self.trailing.window(false, moves);
             if self.late.figures.is_empty() {
                 return trailing;
             }
@@ -235,7 +311,9 @@ impl LaneAnalysis {
         }
         let mu_star_parts: Vec<f64> = whole
             .chunks_exact(crossings)
-            .map(|group| Figures::merged(group.iter().map(|cycle| &cycle.figures)).mu_star())
+            .map(|group| {
+                Figures::merged(group.iter().map(|cycle| &cycle.figures)).mu_star_without_momentum(moves)
+            })
             .collect();
         Window {
             start_s: whole[0].start_s,

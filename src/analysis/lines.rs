@@ -59,6 +59,46 @@ pub struct LineMonitor {
     hops: u64,
     measured: Option<f64>,
     verdict: Option<Verdict>,
+    /// The strong lines of the last verdict.
+    strong: Vec<StrongLine>,
+}
+
+/// A line that is within a factor of the strongest.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct StrongLine {
+    /// Its number in the long spectra: its frequency times their duration.
+    pub line: usize,
+    /// Its amplitude in the last of them.
+    pub amplitude: f64,
+    /// Growth rate \[1/s\].
+    pub rate_per_s: f64,
+}
+
+impl StrongLine {
+    /// Whether it is what the product of two stronger lines makes: it has the sum or the difference of their frequencies, and
+    /// the sum of their rates. The second harmonic of a growing mode is the product of its line with itself.
+    fn is_product_in(&self, lines: &[Self]) -> bool {
+        let stronger = || lines.iter().filter(|other| other.amplitude > self.amplitude);
+        // Each of three lines is known to half a line, and rates to some per cent.
+        let is_near = |line: usize| self.line.abs_diff(line) <= 2;
+        let has_rate = |rate: f64| (self.rate_per_s - rate).abs() <= 0.05 * self.rate_per_s.abs();
+        stronger().any(|a| {
+            stronger().any(|b| {
+                has_rate(a.rate_per_s + b.rate_per_s)
+                    && (is_near(a.line + b.line) || is_near(a.line.abs_diff(b.line)))
+            })
+        })
+    }
+}
+
+/// The growth rate \[1/s\] of the fastest growing of the strong `lines` of all signals that is not the product of others; none without
+/// lines.
+///
+/// N is not linear where a node's slip turns, and not where friction depends on the slip speed. There a growing mode has
+/// harmonics, which grow twice as fast.
+pub fn fastest_of_modes(lines: &[StrongLine]) -> Option<f64> {
+    let of_modes = lines.iter().filter(|line| !line.is_product_in(lines)).map(|line| line.rate_per_s);
+    of_modes.reduce(f64::max)
 }
 
 /// The result for a signal over the last observation time.
@@ -185,7 +225,13 @@ impl LineMonitor {
             hops: 0,
             measured: None,
             verdict: None,
+            strong: Vec::new(),
         }
+    }
+
+    /// The strong lines of the last complete observation; none after all have decayed to the floor.
+    pub fn strong_lines(&self) -> &[StrongLine] {
+        &self.strong
     }
 
     /// The result of the last complete observation; none before there is one.
@@ -213,6 +259,7 @@ impl LineMonitor {
         self.hops = 0;
         self.measured = None;
         self.verdict = None;
+        self.strong.clear();
     }
 
     fn finish_hop(&mut self) {
@@ -234,6 +281,7 @@ impl LineMonitor {
     }
 
     fn judge(&mut self) -> Verdict {
+        self.strong.clear();
         let last = &self.long.spectra[self.long.spectra.len() - 1];
         let highest = last.iter().skip(FIRST_LINE).copied().fold(0.0, f64::max);
         if highest < self.floor {
@@ -254,7 +302,9 @@ impl LineMonitor {
                 let short_line = (line * SHORT + LONG / 2) / LONG;
                 let (short_rate, short_error) = self.short.growth_per_hop(short_line);
                 decays &= rate < -smallest && short_rate + STEADY_STANDARD_ERRORS * short_error < 0.0;
-                fastest = fastest.max(rate / self.hop_s);
+                let rate_per_s = rate / self.hop_s;
+                fastest = fastest.max(rate_per_s);
+                self.strong.push(StrongLine { line, amplitude: last[line], rate_per_s });
             }
         }
         self.measured = Some(fastest);

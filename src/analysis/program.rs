@@ -178,7 +178,7 @@ impl ProgramWindows {
             direction: self.direction(spec, time_s),
             omega_rpm: omega.map_or(scene.disk.omega_rpm, |table| table.mean(time_s)),
             load_n,
-            mu_star: figures.mu_star(),
+            mu_star: figures.mu_star_without_momentum(!scene.holder.is_ideal()),
             mu_star_contact: figures.mu_star_contact(),
             frequency_hz: has_frequency.then(|| self.cycles as f64 / (to_s - from_s)),
             n_amplitude,

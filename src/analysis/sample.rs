@@ -112,7 +112,7 @@ impl NodeSample {
 }
 
 /// A first-order low-pass filter.
-#[derive(Debug, Clone, Copy, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
 pub struct Smoother {
     value: f64,
 }

@@ -5,13 +5,21 @@
 //! the limit cycle. Groups repeat if, over the last `cycles` of them, the range of every figure is within
 //! `tolerance`, and its means over the two halves differ by at most `drift_tolerance`. The amplitude of N is
 //! one of the figures: a slowly growing or decaying oscillation is not periodic, however small it is.
+//!
+//! In a periodic state the mean tangential forces of clamp and contact are equal. A difference of more than `drift_tolerance` is a
+//! change of momentum: something still swings.
+//!
+//! With a holder that moves, the groups cover its slowest motion, because a part of a swing looks periodic where the swing turns. A
+//! holder that sticks and slips below the squeal has a cycle of its own, from one rise of T through its mean to the next. There the
+//! largest N and the largest stress come from the squeal, which need not be in step with the holder. So the range of T, relative to
+//! itself, takes the place of the peak stress, and the range of N counts relative to F.
 
 use super::cycles::Cycle;
 use super::figures::Figures;
-use crate::spec::Detection;
+use crate::spec::{Detection, SlowTimes};
 use serde::{Deserialize, Serialize};
 
-/// Largest number of section crossings in one limit cycle.
+/// Largest number of section crossings in one limit cycle, unless a holder moves.
 const MAX_CROSSINGS: usize = 4;
 
 /// A periodic steady state at the end of a sequence of cycles.
@@ -23,14 +31,53 @@ pub struct SteadyState {
     pub window_crossings: usize,
 }
 
-/// Finds a periodic steady state at the end of `cycles`.
-pub fn find(cycles: &[Cycle], detection: &Detection) -> Option<SteadyState> {
-    (1..=MAX_CROSSINGS).find_map(|m| {
-        let window_crossings = m * detection.cycles;
-        let window = &cycles[cycles.len().checked_sub(window_crossings)?..];
-        let groups: Vec<[f64; FIGURES]> = window.chunks_exact(m).map(figures_of).collect();
-        repeats(&groups, detection).then_some(SteadyState { crossings_per_cycle: m, window_crossings })
-    })
+/// Finds a periodic steady state at the end of `cycles` of N. `slow` is how slowly the pin moves with its holder, if that moves.
+pub fn find(cycles: &[Cycle], detection: &Detection, slow: Option<SlowTimes>) -> Option<SteadyState> {
+    let covered_s = slow.map_or(0.0, |slow| slow.swing_s + slow.relaxation_s);
+    (1..=MAX_CROSSINGS).find_map(|m| find_groups(cycles, m, detection, covered_s, figures_of))
+}
+
+/// Finds a periodic steady state at the end of `swings`, the cycles of T at a holder that moves.
+pub fn find_swing(swings: &[Cycle], detection: &Detection, slow: SlowTimes) -> Option<SteadyState> {
+    (1..=MAX_CROSSINGS).find_map(|m| find_groups(swings, m, detection, slow.relaxation_s, figures_of_swing))
+}
+
+/// The last `count` groups of `m` crossings; none if there are fewer.
+fn last_groups(cycles: &[Cycle], m: usize, count: usize) -> Option<&[Cycle]> {
+    Some(&cycles[cycles.len().checked_sub(m * count)?..])
+}
+
+/// Groups of `m` crossings that repeat, in a window of at least `covered_s`.
+fn find_groups(
+    cycles: &[Cycle],
+    m: usize,
+    detection: &Detection,
+    covered_s: f64,
+    figures: fn(&[Cycle]) -> [f64; FIGURES],
+) -> Option<SteadyState> {
+    let state = |window: &[Cycle]| {
+        let groups: Vec<[f64; FIGURES]> = window.chunks_exact(m).map(figures).collect();
+        let is_steady = repeats(&groups, detection) && is_balanced(window, detection);
+        is_steady.then_some(SteadyState { crossings_per_cycle: m, window_crossings: window.len() })
+    };
+    let window = last_groups(cycles, m, detection.cycles)?;
+    let found = state(window)?;
+    let end_s = window[window.len() - 1].end_s;
+    if end_s - window[0].start_s >= covered_s {
+        return Some(found);
+    }
+    let first = cycles.partition_point(|cycle| end_s - cycle.start_s >= covered_s).checked_sub(1)?;
+    state(last_groups(cycles, m, (cycles.len() - first).div_ceil(m))?)
+}
+
+/// Whether clamp and contact carry the same mean force.
+fn is_balanced(window: &[Cycle], detection: &Detection) -> bool {
+    imbalance(window).abs() <= detection.drift_tolerance
+}
+
+/// [`Figures::imbalance`] of a window.
+fn imbalance(window: &[Cycle]) -> f64 {
+    Figures::merged(window.iter().map(|cycle| &cycle.figures)).imbalance()
 }
 
 /// Why the end of a run does not count as periodic.
@@ -56,16 +103,34 @@ pub enum Obstacle {
         /// The difference of its means over the two halves of the cycles, relative in the same way.
         drift: f64,
     },
+    /// The last cycles repeat, but not over the slowest motion of the pin with its holder, or clamp and contact carry different mean forces.
+    Swing {
+        /// ⟨T⟩/⟨F⟩ of the clamp minus ⟨T⟩/⟨N⟩ of the contact over the last cycles.
+        imbalance: f64,
+        /// The time \[s\] over which the cycles must repeat; none if the holder does not move.
+        covered_s: Option<f64>,
+    },
+    /// All oscillations decay, but the mean friction has not come to its end.
+    Creep {
+        /// What the mean over an observation will still change.
+        still_to_come: f64,
+        /// How far ⟨T⟩/⟨F⟩ of the clamp and ⟨T⟩/⟨N⟩ of the contact differ over the observation.
+        imbalance: f64,
+    },
 }
 
 /// Why the end of `cycles` is not periodic, if [`find`] finds nothing.
-pub fn obstacle(cycles: &[Cycle], detection: &Detection) -> Obstacle {
+pub fn obstacle(cycles: &[Cycle], detection: &Detection, slow: Option<SlowTimes>) -> Obstacle {
     let few = Obstacle::FewCycles { found: cycles.len(), needed: detection.cycles };
     let attempts = (1..=MAX_CROSSINGS).filter_map(|m| {
-        let window = &cycles[cycles.len().checked_sub(m * detection.cycles)?..];
+        let window = last_groups(cycles, m, detection.cycles)?;
         let groups: Vec<[f64; FIGURES]> = window.chunks_exact(m).map(figures_of).collect();
         if slips_only(&groups) {
             return Some((f64::INFINITY, Obstacle::SlipOnly));
+        }
+        if repeats(&groups, detection) {
+            let covered_s = slow.map(|slow| slow.swing_s + slow.relaxation_s);
+            return Some((0.0, Obstacle::Swing { imbalance: imbalance(window), covered_s }));
         }
         let excesses = (0..FIGURES).map(|f| (Variation::of(&groups, f).excess(detection), f));
         let (excess, f) = excesses.max_by(|a, b| a.0.total_cmp(&b.0))?;
@@ -105,6 +170,23 @@ fn figures_of(group: &[Cycle]) -> [f64; FIGURES] {
         separated,
         group[group.len() - 1].end_s - group[0].start_s,
         figures.sigma_n_max_pa,
+        group.iter().map(|cycle| cycle.amplitude_n).fold(0.0, f64::max),
+    ]
+}
+
+/// The figures of a swing. The range of N over F is not relative, because the squeal need not be in step with the swing.
+fn figures_of_swing(group: &[Cycle]) -> [f64; FIGURES] {
+    let figures = Figures::merged(group.iter().map(|cycle| &cycle.figures));
+    let [stick, slip, separated] = figures.shares();
+    let range_n = figures.normal_max_n - figures.normal_min_n;
+    [
+        figures.mu_star_contact(),
+        figures.normal_over_load() + 0.5 * range_n / figures.load_n(),
+        stick,
+        slip,
+        separated,
+        group[group.len() - 1].end_s - group[0].start_s,
+        1.0,
         group.iter().map(|cycle| cycle.amplitude_n).fold(0.0, f64::max),
     ]
 }
@@ -218,4 +300,18 @@ pub fn standard_error(values: &[f64]) -> f64 {
     let mean = means.iter().sum::<f64>() / batches as f64;
     let variance = means.iter().map(|m| (m - mean).powi(2)).sum::<f64>() / (batches - 1) as f64;
     (variance / batches as f64).sqrt()
+}
+
+/// Standard error of the mean of consecutive `values` with what they still drift: the difference D of the means of the two halves,
+/// as far as it is larger than chance makes it. The mean square of D is 4 s² where only chance is at work, with the [`standard_error`] s.
+pub fn standard_error_with_drift(values: &[f64]) -> f64 {
+    let chance = standard_error(values);
+    let half = values.len() / 2;
+    if half == 0 {
+        return chance;
+    }
+    let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
+    let drift = mean(&values[values.len() - half..]) - mean(&values[..half]);
+    let squared = chance * chance;
+    (squared + (drift * drift - 4.0 * squared).max(0.0)).sqrt()
 }

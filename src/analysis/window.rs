@@ -73,19 +73,89 @@ impl Trailing {
         }
     }
 
+    /// Whether a block has just begun.
+    pub fn begins_block(&self) -> bool {
+        self.steps.is_multiple_of(self.steps_per_block)
+    }
+
+    /// How far the means of decaying sliding are from their ends.
+    pub fn settling(&self) -> Settling {
+        let all = || self.blocks.iter().map(|block| &block.figures);
+        let [clamp, contact] = [Figures::mu_star, Figures::mu_star_contact].map(|of| {
+            let values: Vec<f64> = all().map(of).collect();
+            let quarter = self.blocks.len() / 4;
+            let means = [0, 1, 2].map(|first| {
+                let part = self.blocks.range(first * quarter..(first + 2) * quarter);
+                of(&Figures::tapered(part.map(|block| &block.figures)))
+            });
+            still_to_come(&means, LEAK * scatter(&values))
+        });
+        Settling { imbalance: Figures::tapered(all()).imbalance().abs(), still_to_come: clamp.max(contact) }
+    }
+
     /// The window of all blocks.
-    pub fn window(&self, tapered: bool) -> Window {
+    pub fn window(&self, tapered: bool, holder_moves: bool) -> Window {
         let figures = self.blocks.iter().map(|block| &block.figures);
         let first = self.blocks.front();
         Window {
             start_s: first.map_or(0.0, |block| block.start_s),
             figures: if tapered { Figures::tapered(figures) } else { Figures::merged(figures) },
             energies: first.map(|block| block.energies).unwrap_or_default(),
-            mu_star_parts: self.blocks.iter().map(|block| block.figures.mu_star()).collect(),
+            mu_star_parts: self
+                .blocks
+                .iter()
+                .map(|block| block.figures.mu_star_without_momentum(holder_moves))
+                .collect(),
             cycles: 0,
             frequency_hz: None,
         }
     }
+}
+
+/// How far the means of decaying sliding are from their ends.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Settling {
+    /// Difference of T/F of the clamp and T/N of the contact.
+    pub imbalance: f64,
+    /// What the means over the observation will still change.
+    pub still_to_come: f64,
+}
+
+impl Settling {
+    /// Whether both are within `tolerance`.
+    pub fn is_done(&self, tolerance: f64) -> bool {
+        self.imbalance <= tolerance && self.still_to_come <= tolerance
+    }
+}
+
+/// What an oscillation with 6 periods or more in half of an observation leaves in a mean under a Hann taper, over its amplitude: for n
+/// periods it is 1/(n² − 1)/(πn) or less.
+const LEAK: f64 = 2.0e-3;
+
+/// Differences below this part of the tolerance are no creep that matters during a run.
+const NEGLIGIBLE: f64 = 0.05;
+
+/// What the mean over an observation will still change, from the means of its first, middle and last half, which are a quarter
+/// apart. Differences of up to `noise` may come from oscillations.
+///
+/// The slowest real mode falls as exp(−ct). So the differences d₁ and d₂ of successive means have the ratio exp(−cτ), and what comes
+/// after the mean in the middle is d₂ + d₂ exp(−cτ) + … = d₂/(1 − d₂/d₁). Differences that do not fall have no end.
+fn still_to_come(&[first, middle, last]: &[f64; 3], noise: f64) -> f64 {
+    let (before, after) = (middle - first, last - middle);
+    let largest = before.abs().max(after.abs());
+    if largest <= noise {
+        // Chance decides the ratio.
+        return largest / NEGLIGIBLE;
+    }
+    let ratio = after / before;
+    let has_end = (0.0..1.0).contains(&ratio);
+    if has_end { after.abs() / (1.0 - ratio) } else { largest / NEGLIGIBLE }
+}
+
+/// Root mean square of the differences of successive values, over √2: their scatter without a trend.
+fn scatter(values: &[f64]) -> f64 {
+    let squares: f64 = values.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
+    (squares / (2.0 * values.len().max(2) as f64 - 2.0)).sqrt()
 }
 
 /// The window over which the figures of a record are averaged.
@@ -102,4 +172,43 @@ pub(super) struct Window {
     pub cycles: usize,
     /// Fundamental frequency \[Hz\] of N.
     pub frequency_hz: Option<f64>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects: what is still to come of a mean that falls as exp(−ct), for real modes that take from a fifth to thirty observations. It is
+    /// the mean over the middle half, less the end.
+    #[test]
+    fn an_exponential_creep_has_an_end() {
+        for c in [0.03, 0.3, 1.0, 5.0] {
+            // Means over halves of an observation of length 1 are A exp(−ct) with the same factor A.
+            let means = [0.25_f64, 0.5, 0.75].map(|t| 0.2 + 0.01 * libm::exp(-c * t));
+            let found = still_to_come(&means, 0.0);
+            let exact = means[1] - 0.2;
+            assert!((found / exact - 1.0).abs() < 1.0e-9, "c = {c}: {found} instead of {exact}");
+        }
+    }
+
+    /// Protects: a mean that does not settle has not settled: one that grows, turns or rises at a constant rate counts with twenty times its change. A mean
+    /// that stands still has nothing to come.
+    #[test]
+    fn a_creep_without_an_end_is_not_done() {
+        for means in [[0.0, 0.001, 0.003], [0.0, 0.001, 0.0], [0.0, 0.001, 0.002]] {
+            assert!(still_to_come(&means, 0.0) > 0.02 * 0.99, "{means:?}");
+        }
+        assert_eq!(still_to_come(&[0.3; 3], 0.0), 0.0);
+        // Below the noise the ratio is chance, and only the size counts.
+        assert!((still_to_come(&[0.0, 1.0e-5, 1.5e-5], 1.0e-4) / 2.0e-4 - 1.0).abs() < 1.0e-9);
+    }
+
+    /// Protects: the scatter of a signal is that of its values, and a trend is none.
+    #[test]
+    fn a_trend_is_no_scatter() {
+        let alternating: Vec<f64> = (0..64).map(|n| if n % 2 == 0 { 0.1 } else { -0.1 }).collect();
+        assert!((scatter(&alternating) / (0.1 * 2.0_f64.sqrt()) - 1.0).abs() < 1.0e-12);
+        let rising: Vec<f64> = (0..64).map(f64::from).collect();
+        assert!((scatter(&rising) / 0.5_f64.sqrt() - 1.0).abs() < 1.0e-12);
+    }
 }

@@ -213,7 +213,7 @@ impl Ending {
     pub fn of(spec: &JobSpec) -> Self {
         if spec.stability == StabilityMethod::Modes {
             // There is no run, but modes take as long as a short one.
-            let limit_s = MODES * spec.detection.decay_observation_s;
+            let limit_s = MODES * spec.observation_s();
             return Self { early_s: limit_s, likely_s: limit_s, late_s: limit_s, limit_s };
         }
         let limit_s = spec.run.limit_s;
@@ -225,7 +225,7 @@ impl Ending {
             elasticity::shear_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
         let cycles_s = spec.detection.cycles as f64 * PERIOD * pin.extent_m()[2] / shear;
         let [early_s, likely_s, late_s] = OBSERVATIONS.map(|observations| {
-            let end = spec.scene.load.ramp_s + observations * spec.detection.decay_observation_s + cycles_s;
+            let end = spec.scene.load.ramp_s + observations * spec.observation_s() + cycles_s;
             end.min(limit_s)
         });
         Self { early_s, likely_s, late_s, limit_s }

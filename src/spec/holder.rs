@@ -63,6 +63,15 @@ pub struct HolderDirection {
     pub damping_n_s_m: f64,
 }
 
+/// How slowly a pin moves with its holder.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SlowTimes {
+    /// About the longest period \[s\] of a swing, rather too long than too short.
+    pub swing_s: f64,
+    /// The longest time \[s\] in which a motion without a swing falls to 1/e; 0 without dampers.
+    pub relaxation_s: f64,
+}
+
 impl Holder {
     /// Whether it does not move in any direction, and has no mass.
     pub fn is_ideal(&self) -> bool {
@@ -119,6 +128,20 @@ impl Holder {
         let along = self.directions().into_iter().flatten().filter(has_spring).map(|way| of(way, pin_kg));
         let rod = pin_kg * height_m * height_m / 3.0;
         let about = self.rotations().into_iter().flatten().filter(has_spring).map(|way| of(way, rod));
+        along.chain(about).fold(0.0, f64::max)
+    }
+
+    /// The longest time \[s\] in which its dampers let a motion without a swing fall to 1/e, with a pin of this mass and height:
+    /// d/k of a spring with a damper, m/d of a damper alone.
+    pub(super) fn relaxation_time_s(&self, pin_kg: f64, height_m: f64) -> f64 {
+        let of = |way: HolderDirection, pin: f64| match way {
+            HolderDirection { damping_n_s_m: 0.0, .. } => 0.0,
+            HolderDirection { stiffness_n_m: 0.0, mass_kg, damping_n_s_m } => (mass_kg + pin) / damping_n_s_m,
+            HolderDirection { stiffness_n_m, damping_n_s_m, .. } => damping_n_s_m / stiffness_n_m,
+        };
+        let along = self.directions().into_iter().flatten().map(|way| of(way, pin_kg));
+        let rod = pin_kg * height_m * height_m / 3.0;
+        let about = self.rotations().into_iter().flatten().map(|way| of(way, rod));
         along.chain(about).fold(0.0, f64::max)
     }
 

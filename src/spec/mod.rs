@@ -37,7 +37,7 @@ pub use contact::{Contact, FrictionLaw};
 pub use continuation::Continuation;
 pub use detection::Detection;
 pub use disk::{Disk, DiskKind};
-pub use holder::{Holder, HolderDirection};
+pub use holder::{Holder, HolderDirection, SlowTimes};
 pub use mesh::{MeshContent, MeshFile};
 pub use numerics::{Numerics, Precision, RunControl, Start};
 pub use pin::{FEWEST_ACROSS, Pin, Region, Shape, core_elements};
@@ -74,6 +74,9 @@ pub struct JobSpec {
 /// Shortest observation of a decay, in transit times of shear waves over the pin's height (2.5 ms in the reference
 /// scene): the squeal's frequency must lie well above the lowest frequency that the observation resolves.
 const SHORTEST_OBSERVATION: f64 = 100.0;
+
+/// Swings of a holder in an observation of a decay. The first line that is judged has 7 periods in 10/16 of it, which is 11.2.
+const SWINGS_OBSERVED: f64 = 12.0;
 
 impl JobSpec {
     /// Checks every value against its physical or numerical limits.
@@ -345,6 +348,13 @@ impl JobSpec {
         let shortest_s = SHORTEST_WINDOW * self.scene.pin.shear_transit_s();
         let about_s = self.run.window_s.unwrap_or(shortest_s.max(limit_s / WINDOWS));
         limit_s / (limit_s / about_s).round().max(1.0)
+    }
+
+    /// The time \[s\] of uninterrupted sliding over which a decay is measured: that of the study, or what shows the line of the
+    /// holder's slowest swing, if that is longer.
+    pub fn observation_s(&self) -> f64 {
+        let shortest_s = self.scene.slow_times().map_or(0.0, |slow| SWINGS_OBSERVED * slow.swing_s);
+        self.detection.decay_observation_s.max(shortest_s)
     }
 
     /// The part of the job that all jobs of one batch share, because they are advanced with one model: bodies, meshes,

@@ -4,11 +4,12 @@ use super::check::{Violations, readable};
 use super::contact::Contact;
 use super::disk::{Disk, DiskKind};
 use super::elasticity;
-use super::holder::Holder;
+use super::holder::{Holder, SlowTimes};
 use super::pin::{Pin, Shape};
 use super::program::{LEAST_LOAD_N, Program};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::TAU;
 use strum::{IntoStaticStr, VariantArray};
 
 /// A pin pressed on a rotating disk. Defaults to the reference scene (Baillet et al. 2005, tables 1 and 2).
@@ -156,6 +157,28 @@ impl Scene {
         // The frequency 0.16 c/ℓ is that of an oscillator with √(m/k) = ℓ/c. NaN must remain.
         let holder_s = self.holder.vibration_time_s(pin.density_kg_m3 * x * y * z, z);
         if holder_s > wave_s { holder_s } else { wave_s }
+    }
+
+    /// How slowly the pin moves with its holder; none if the holder is ideal.
+    ///
+    /// The squares of the periods of three oscillators are added: the holder with a rigid pin on the springs, the pin alone, and the
+    /// holder's mass on the elastic pin. By Dunkerley's formula the true period is not longer.
+    pub fn slow_times(&self) -> Option<SlowTimes> {
+        if self.holder.is_ideal() {
+            return None;
+        }
+        let pin = &self.pin;
+        let [x, y, z] = pin.extent_m();
+        let pin_kg = pin.density_kg_m3 * x * y * z;
+        let shear_pa = pin.young_modulus_pa / (2.0 * (1.0 + pin.poisson_ratio));
+        let on_pin_s = (self.holder.mass_kg.unwrap_or(0.0) * z / (shear_pa * x * y)).sqrt();
+        let alone_s = Self { holder: Holder::default(), ..self.clone() }.vibration_time_s();
+        let on_springs_s = self.holder.vibration_time_s(pin_kg, z);
+        let sum_s2 = on_springs_s * on_springs_s + alone_s * alone_s + on_pin_s * on_pin_s;
+        Some(SlowTimes {
+            swing_s: TAU * sum_s2.sqrt(),
+            relaxation_s: self.holder.relaxation_time_s(pin_kg, z),
+        })
     }
 
     /// Sets the speed and the load to the largest ones of the program, as far as it changes them and `keeps` [speed, load] does

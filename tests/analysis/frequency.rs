@@ -8,7 +8,7 @@ use tribosweep::spec::Detection;
 
 /// The frequency as a record reports it, over the window in which the state was found periodic.
 fn reported_hz(cycles: &[Cycle]) -> (f64, usize) {
-    let found = steady::find(cycles, &Detection::default()).expect("a periodic signal");
+    let found = steady::find(cycles, &Detection::default(), None).expect("a periodic signal");
     let window = &cycles[cycles.len() - found.window_crossings..];
     (steady::frequency_hz(window, found.crossings_per_cycle), found.crossings_per_cycle)
 }
@@ -75,7 +75,7 @@ fn impact_spikes() {
         let tolerance_hz = if (0.2..0.66).contains(&phase) { 1.0 } else { 10.0 };
         // The jitter of the spikes may keep the window from being periodic. The frequency must be right in
         // this case, too.
-        let hz = steady::find(&cycles, &Detection::default()).map_or_else(
+        let hz = steady::find(&cycles, &Detection::default(), None).map_or_else(
             || {
                 let crossings = if cycles.len() > 100 { 2 } else { 1 };
                 let whole = &cycles[cycles.len() - 20 * crossings..];

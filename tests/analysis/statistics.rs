@@ -1,7 +1,7 @@
 //! The standard error of correlated figures.
 
 use crate::random::Random;
-use tribosweep::analysis::steady::standard_error;
+use tribosweep::analysis::steady::{standard_error, standard_error_with_drift};
 
 /// Protects: the standard error of an AR(1) sequence's mean is right. With ρ = 0.5 and unit innovations the
 /// variance of a mean of n values is s²(n) = [1 − 2ρ(1 − ρⁿ)/(n(1 − ρ²))]/(n(1 − ρ)²). The means of ⌊√n⌋ = 20
@@ -43,4 +43,23 @@ fn constant_and_short_sequences() {
     assert!((standard_error(&[1.0, 2.0, 3.0]) - 0.5).abs() < 1e-15);
     // There are two batches of two values: means 1.5 and 3.5, variance 2, error of the mean 1.
     assert!((standard_error(&[1.0, 2.0, 3.0, 4.0]) - 1.0).abs() < 1e-15);
+}
+
+/// Protects: a drift is in the error. Values that rise by D from one half to the next have a mean that may be off by as much; the batches alone
+/// would give 0.3 D. Of chance alone little is added: for 20 values in four batches, the mean square rises by less than a half.
+#[test]
+fn a_drift_is_part_of_the_error() {
+    let rising: Vec<f64> = (0..20).map(|n| 0.3 + 1.0e-4 * f64::from(n)).collect();
+    let drift = 1.0e-3;
+    assert!(standard_error(&rising) < 0.35 * drift);
+    assert!((0.7..1.0).contains(&(standard_error_with_drift(&rising) / drift)));
+    let mut random = Random::new(22);
+    let [mut plain, mut with_drift] = [0.0; 2];
+    for _ in 0..2000 {
+        let values: Vec<f64> = (0..20).map(|_| random.normal()).collect();
+        plain += standard_error(&values).powi(2);
+        with_drift += standard_error_with_drift(&values).powi(2);
+    }
+    assert!((1.0..1.5).contains(&(with_drift / plain)), "{}", with_drift / plain);
+    assert_eq!(standard_error_with_drift(&[1.0]), 0.0);
 }

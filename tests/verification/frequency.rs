@@ -130,12 +130,12 @@ fn impacts() {
 /// Protects: the growth rate by which sliding is called stable is right.
 #[test]
 fn growth_rate_of_a_decaying_line() {
-    let detection = Detection::default();
     let mut evidence =
         Evidence::new("B16", "growth rate of a damped line [1/s]", "the signal's own growth rate");
     for (rate, hz) in [(-50.0, SQUEAL_HZ), (-500.0, SQUEAL_HZ), (-500.0, 31_000.0), (-200.0, 90_000.0)] {
         let step_s = 8.5e-7;
-        let mut monitor = DecayMonitor::new(step_s, 0.0, &detection, ROUNDING);
+        let mut monitor =
+            DecayMonitor::new(step_s, 0.0, Detection::default().decay_observation_s, ROUNDING, false);
         let found = (0..).find_map(|n| {
             let t = f64::from(n) * step_s;
             let line = 0.1 * (rate * t).exp() * (TAU * hz * t).cos();

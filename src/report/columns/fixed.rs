@@ -193,5 +193,11 @@ fn in_words(obstacle: &Obstacle) -> String {
         Obstacle::Unsteady { figure, spread, drift } => {
             format!("{figure} is not steady: spread {}, drift {}", number(*spread), number(*drift))
         }
+        Obstacle::Swing { imbalance, .. } => {
+            format!("the holder swings: clamp and contact differ by {}", number(*imbalance))
+        }
+        Obstacle::Creep { still_to_come, .. } => {
+            format!("the mean friction creeps: {} still to come", number(*still_to_come))
+        }
     }
 }

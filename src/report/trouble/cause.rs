@@ -42,6 +42,26 @@ fn obstacle(record: &JobRecord, numerics: Option<&JobNumerics>) -> (String, Stri
             "slip only".to_owned(),
             format!("all nodes slip all the time, and neither growth nor decay is established{growth}"),
         ),
+        Some(Obstacle::Swing { imbalance, covered_s }) => (
+            "swing".to_owned(),
+            format!(
+                "the last cycles repeat, but the pin still swings with its holder: the mean forces of clamp and contact differ by {} of the load{}",
+                significant(imbalance.abs()),
+                covered_s.map_or_else(String::new, |time_s| format!(
+                    ", and the cycles must repeat over {}",
+                    value::quantity(time_s, "s")
+                ))
+            ),
+        ),
+        Some(Obstacle::Creep { still_to_come, imbalance }) => (
+            "creep".to_owned(),
+            format!(
+                "the oscillations decay, but the mean friction still changes by about {}, and the mean forces of clamp and contact differ by {} of \
+                 the load",
+                significant(*still_to_come),
+                significant(imbalance.abs())
+            ),
+        ),
         Some(Obstacle::Unsteady { figure, spread, drift }) => (
             format!("unsteady {figure}"),
             format!(

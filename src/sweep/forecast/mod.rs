@@ -210,7 +210,7 @@ fn groups(plan: &Plan, threads: usize) -> Vec<Group> {
         {
             group.modes_bytes = workload.modes_bytes();
         }
-        let observation_s = job.spec.detection.decay_observation_s;
+        let observation_s = job.spec.observation_s();
         group.memory_bytes = group.memory_bytes.max(observation_s);
     }
     for group in &mut groups {
