@@ -10,9 +10,10 @@
 //! change of momentum: something still swings.
 //!
 //! With a holder that moves, the groups cover its slowest motion, because a part of a swing looks periodic where the swing turns. A
-//! holder that sticks and slips below the squeal has a cycle of its own, from one rise of T through its mean to the next. There the
-//! largest N and the largest stress come from the squeal, which need not be in step with the holder. So the range of T, relative to
-//! itself, takes the place of the peak stress, and the range of N counts relative to F.
+//! holder that sticks and slips below the squeal has a cycle of its own, from one rise of T through its mean to the next. The squeal
+//! need not be in step with it, so no two of these cycles are quite the same. Therefore the spread may be three times as large there, and the
+//! halves may differ by what chance makes; a swing that grows or decays differs by more. The peak stress, which is that of the squeal, does
+//! not count, and the amplitude is that of T and N together.
 
 use super::cycles::Cycle;
 use super::figures::Figures;
@@ -34,12 +35,12 @@ pub struct SteadyState {
 /// Finds a periodic steady state at the end of `cycles` of N. `slow` is how slowly the pin moves with its holder, if that moves.
 pub fn find(cycles: &[Cycle], detection: &Detection, slow: Option<SlowTimes>) -> Option<SteadyState> {
     let covered_s = slow.map_or(0.0, |slow| slow.swing_s + slow.relaxation_s);
-    (1..=MAX_CROSSINGS).find_map(|m| find_groups(cycles, m, detection, covered_s, figures_of))
+    (1..=MAX_CROSSINGS).find_map(|m| find_groups(cycles, m, detection, covered_s, Kind::Normal))
 }
 
 /// Finds a periodic steady state at the end of `swings`, the cycles of T at a holder that moves.
 pub fn find_swing(swings: &[Cycle], detection: &Detection, slow: SlowTimes) -> Option<SteadyState> {
-    (1..=MAX_CROSSINGS).find_map(|m| find_groups(swings, m, detection, slow.relaxation_s, figures_of_swing))
+    (1..=MAX_CROSSINGS).find_map(|m| find_groups(swings, m, detection, slow.relaxation_s, Kind::Holder))
 }
 
 /// The last `count` groups of `m` crossings; none if there are fewer.
@@ -53,11 +54,11 @@ fn find_groups(
     m: usize,
     detection: &Detection,
     covered_s: f64,
-    figures: fn(&[Cycle]) -> [f64; FIGURES],
+    kind: Kind,
 ) -> Option<SteadyState> {
     let state = |window: &[Cycle]| {
-        let groups: Vec<[f64; FIGURES]> = window.chunks_exact(m).map(figures).collect();
-        let is_steady = repeats(&groups, detection) && is_balanced(window, detection);
+        let groups: Vec<[f64; FIGURES]> = window.chunks_exact(m).map(|group| kind.figures(group)).collect();
+        let is_steady = repeats(&groups, detection, kind) && is_balanced(window, detection);
         is_steady.then_some(SteadyState { crossings_per_cycle: m, window_crossings: window.len() })
     };
     let window = last_groups(cycles, m, detection.cycles)?;
@@ -128,7 +129,7 @@ pub fn obstacle(cycles: &[Cycle], detection: &Detection, slow: Option<SlowTimes>
         if slips_only(&groups) {
             return Some((f64::INFINITY, Obstacle::SlipOnly));
         }
-        if repeats(&groups, detection) {
+        if repeats(&groups, detection, Kind::Normal) {
             let covered_s = slow.map(|slow| slow.swing_s + slow.relaxation_s);
             return Some((0.0, Obstacle::Swing { imbalance: imbalance(window), covered_s }));
         }
@@ -174,25 +175,65 @@ fn figures_of(group: &[Cycle]) -> [f64; FIGURES] {
     ]
 }
 
-/// The figures of a swing. The range of N over F is not relative, because the squeal need not be in step with the swing.
+/// The figures of a group of cycles of the holder.
 fn figures_of_swing(group: &[Cycle]) -> [f64; FIGURES] {
     let figures = Figures::merged(group.iter().map(|cycle| &cycle.figures));
     let [stick, slip, separated] = figures.shares();
-    let range_n = figures.normal_max_n - figures.normal_min_n;
+    let of_both = |cycle: &Cycle| {
+        let of_normal_n = 0.5 * (cycle.figures.normal_max_n - cycle.figures.normal_min_n);
+        libm::hypot(cycle.amplitude_n, of_normal_n)
+    };
     [
         figures.mu_star_contact(),
-        figures.normal_over_load() + 0.5 * range_n / figures.load_n(),
+        figures.normal_over_load(),
         stick,
         slip,
         separated,
         group[group.len() - 1].end_s - group[0].start_s,
         1.0,
-        group.iter().map(|cycle| cycle.amplitude_n).fold(0.0, f64::max),
+        group.iter().map(of_both).sum::<f64>() / group.len() as f64,
     ]
 }
 
-fn repeats(groups: &[[f64; FIGURES]], detection: &Detection) -> bool {
-    !slips_only(groups) && (0..FIGURES).all(|f| Variation::of(groups, f).is_tolerated(detection))
+/// Whose cycles they are.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Kind {
+    Normal,
+    Holder,
+}
+
+impl Kind {
+    fn figures(self, group: &[Cycle]) -> [f64; FIGURES] {
+        match self {
+            Self::Normal => figures_of(group),
+            Self::Holder => figures_of_swing(group),
+        }
+    }
+}
+
+/// How many times the tolerated spread the cycles of a holder may differ by, and how many standard errors their halves.
+const CHANCE: f64 = 3.0;
+
+fn repeats(groups: &[[f64; FIGURES]], detection: &Detection, kind: Kind) -> bool {
+    let is_tolerated = |f| {
+        let variation = Variation::of(groups, f);
+        match kind {
+            Kind::Normal => variation.is_tolerated(detection, 1.0, 0.0),
+            Kind::Holder => variation.is_tolerated(detection, CHANCE, CHANCE * chance_of_drift(groups, f)),
+        }
+    };
+    !slips_only(groups) && (0..FIGURES).all(is_tolerated)
+}
+
+/// Standard error of the difference of a figure's means over the two halves, from the scatter within each.
+fn chance_of_drift(groups: &[[f64; FIGURES]], f: usize) -> f64 {
+    let half = groups.len() / 2;
+    let of_mean = |part: &[[f64; FIGURES]]| {
+        let n = part.len() as f64;
+        let mean = part.iter().map(|group| group[f]).sum::<f64>() / n;
+        part.iter().map(|group| (group[f] - mean).powi(2)).sum::<f64>() / (n * (n - 1.0).max(1.0))
+    };
+    (of_mean(&groups[..half]) + of_mean(&groups[groups.len() - half..])).sqrt()
 }
 
 /// Whether all nodes slip all the time. Such sliding is linear: it grows or decays, and has no limit cycle.
@@ -221,9 +262,10 @@ impl Variation {
         }
     }
 
-    fn is_tolerated(&self, detection: &Detection) -> bool {
-        self.spread <= detection.tolerance * self.scale
-            && self.drift <= detection.drift_tolerance * self.scale
+    /// Whether the spread is within `times` the tolerance, and the drift within its tolerance or `chance`.
+    fn is_tolerated(&self, detection: &Detection, times: f64, chance: f64) -> bool {
+        self.spread <= times * detection.tolerance * self.scale
+            && self.drift <= (detection.drift_tolerance * self.scale).max(chance)
     }
 
     /// The larger of spread and drift, each over its tolerance.
