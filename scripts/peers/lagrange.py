@@ -33,7 +33,7 @@ CLAMP_M = 0.001
 UNIFORM = [(12, 15, 10), (24, 30, 20)]
 RATIOS = [0.3, 0.4, 0.45, 0.48, 0.49, 0.495, 0.499]
 # Order of the elements, and layers of elements towards each singular edge. Each layer is GRADING times as thick as the one before.
-LEVELS = [(2, 2), (3, 3), (4, 4)]
+LEVELS = [(2, 2), (3, 3), (3, 4)]
 GRADING = 0.15
 
 

@@ -50,7 +50,8 @@ fn drifts_are_listed() {
         let mu_star = job.split(',').nth(6).unwrap();
         export.replace(mu_star, &format!("{}", mu_star.parse::<f64>().unwrap() * factor))
     };
-    let with_job = |export: &str, old: &str, new: &str| export.replace(&job(export), &job(export).replace(old, new));
+    let with_job =
+        |export: &str, old: &str, new: &str| export.replace(&job(export), &job(export).replace(old, new));
     let changes: [(&str, &dyn Fn(&str) -> String, &str); 6] = [
         ("mini", &|export| other_mu_star(export, 1.002), "mu_star"),
         // The bits of the presets are the same on all machines.

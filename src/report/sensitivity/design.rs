@@ -45,15 +45,12 @@ const DEPENDENT: f64 = 4.0;
 /// What some points are: the positions `points` among the values of the parameters.
 pub(super) fn design_of(parameters: &[Parameter], points: &[usize]) -> Design {
     let count = points.len();
-    let columns: Vec<Vec<f64>> = parameters
-        .iter()
-        .map(|parameter| points.iter().map(|&at| parameter.values[at]).collect())
-        .collect();
+    let columns: Vec<Vec<f64>> =
+        parameters.iter().map(|parameter| points.iter().map(|&at| parameter.values[at]).collect()).collect();
     let sizes: Vec<usize> = columns.iter().map(|column| levels(column).len()).collect();
     let combinations = sizes.iter().map(|size| *size as f64).product::<f64>();
-    let different: BTreeSet<Vec<u64>> = (0..count)
-        .map(|at| columns.iter().map(|column| column[at].to_bits()).collect())
-        .collect();
+    let different: BTreeSet<Vec<u64>> =
+        (0..count).map(|at| columns.iter().map(|column| column[at].to_bits()).collect()).collect();
     if count > 1 && different.len() == count && combinations == count as f64 {
         return Design::Grid(sizes);
     }
@@ -67,7 +64,10 @@ pub(super) fn design_of(parameters: &[Parameter], points: &[usize]) -> Design {
         ));
     }
     if count <= 2 * HARMONICS {
-        return Design::Unknown(format!("{count} points are too few: indices need {} or more", 2 * HARMONICS + 1));
+        return Design::Unknown(format!(
+            "{count} points are too few: indices need {} or more",
+            2 * HARMONICS + 1
+        ));
     }
     for (at, first) in columns.iter().enumerate() {
         for (other, second) in columns.iter().enumerate().skip(at + 1) {

@@ -78,7 +78,8 @@ pub fn sensitivities(rows: &[JobRow], of: &[&'static Scalar], is_morris: bool) -
     let asked: Vec<&JobRow> = rows.iter().filter(|row| row.wave == 0).collect();
     let ended = |row: &&JobRow| matches!(row.state, RowState::Done(_) | RowState::Failed { .. });
     let rows: Vec<&JobRow> = asked.iter().copied().filter(ended).collect();
-    let points = Points { parameters: parameters(&rows), unfinished: asked.len() - rows.len(), rows, is_morris };
+    let points =
+        Points { parameters: parameters(&rows), unfinished: asked.len() - rows.len(), rows, is_morris };
     let mut found: Vec<Sensitivity> = of.iter().map(|scalar| points.of_scalar(scalar)).collect();
     found.push(points.of_regimes());
     found
@@ -133,7 +134,10 @@ struct Basis {
 impl Points<'_> {
     fn basis(&self, points: Vec<usize>) -> Basis {
         let design = if self.is_morris {
-            Design::Unknown("the points of a Morris design follow each other, so they are no sample; it has effects".to_owned())
+            Design::Unknown(
+                "the points of a Morris design follow each other, so they are no sample; it has effects"
+                    .to_owned(),
+            )
         } else {
             design_of(&self.parameters, &points)
         };
@@ -156,7 +160,9 @@ impl Points<'_> {
         let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
         for (place, &at) in basis.points.iter().enumerate() {
             let others = self.parameters.iter().filter(|other| other.name != parameter.name);
-            let group = *known.entry(others.map(|other| other.values[at].to_bits()).collect()).or_insert(groups.len());
+            let group = *known
+                .entry(others.map(|other| other.values[at].to_bits()).collect())
+                .or_insert(groups.len());
             if group == groups.len() {
                 groups.push(Vec::new());
             }
@@ -185,7 +191,8 @@ impl Points<'_> {
                 Design::Grid(_) if levels_of_x.len() == 1 => {}
                 Design::Grid(_) => {
                     let found = on_grid(&levels_of_x, &self.without(&basis, parameter), &y);
-                    [main, total] = found.map_or([None; 2], |found| found.map(|index| Some(Index::exact(index))));
+                    [main, total] =
+                        found.map_or([None; 2], |found| found.map(|index| Some(Index::exact(index))));
                 }
                 Design::Sample => match estimator(&parameter.name, parameter.is_number, &x) {
                     Ok(estimator) => main = estimated(&estimator, &x, &y),
@@ -273,7 +280,9 @@ impl Points<'_> {
                     let found = with_interval(count, |points| of(at(points), points));
                     if found.is_none() {
                         let name = &parameter.name;
-                        remarks.push(format!("{name} has nearly one value only, so it has no slices to compare."));
+                        remarks.push(format!(
+                            "{name} has nearly one value only, so it has no slices to compare."
+                        ));
                     }
                     let own = by_chance(count, |order| of(at(order), &all));
                     chance = chance.into_iter().chain(own).reduce(f64::max);

@@ -46,7 +46,8 @@ pub fn markdown(found: &[Sensitivity]) -> String {
                     let size = |(index, deviation): &(Index, f64)| {
                         let number = |number: f64| value::significant(number, 3);
                         let interval = index.interval.map(|bounds| bounds.map(number));
-                        let interval = interval.map(|[low, high]| format!(" ({low} … {high})")).unwrap_or_default();
+                        let interval =
+                            interval.map(|[low, high]| format!(" ({low} … {high})")).unwrap_or_default();
                         vec![number(index.value) + &interval, number(*deviation)]
                     };
                     effects.as_ref().map_or_else(|| vec![value::MISSING.to_owned(); 2], size)
@@ -67,7 +68,11 @@ pub fn markdown(found: &[Sensitivity]) -> String {
                 let sizes = sizes.iter().map(usize::to_string).collect::<Vec<_>>().join(" × ");
                 writeln!(text, "Exact on this grid of {sizes} points, each of which counts the same.")
             }
-            Design::Unknown(why) => writeln!(text, "No {what}{}: {why}.", if is_regime { "" } else { " and no first-order index" }),
+            Design::Unknown(why) => writeln!(
+                text,
+                "No {what}{}: {why}.",
+                if is_regime { "" } else { " and no first-order index" }
+            ),
             Design::Sample => Ok(()),
         };
         if let Some(chance) = one.chance {
@@ -75,12 +80,18 @@ pub fn markdown(found: &[Sensitivity]) -> String {
             let _ = writeln!(text, "A parameter without effect has {what} up to {chance} by chance.");
             if one.points < FEW_POINTS {
                 let points = one.points;
-                let _ =
-                    writeln!(text, "Only {points} points: the indices say little; give at least {FEW_POINTS}.");
+                let _ = writeln!(
+                    text,
+                    "Only {points} points: the indices say little; give at least {FEW_POINTS}."
+                );
             }
         }
         if one.missing > 0 {
-            let _ = writeln!(text, "{} without a value here: no index says anything of these points.", count(one.missing as u64, "job"));
+            let _ = writeln!(
+                text,
+                "{} without a value here: no index says anything of these points.",
+                count(one.missing as u64, "job")
+            );
         }
         for remark in &one.remarks {
             let _ = writeln!(text, "{remark}");
