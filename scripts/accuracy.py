@@ -145,7 +145,7 @@ def measure_presets():
         },
         "presets": presets,
     }
-    file, text = runs.ROOT / "src/study/presets.json", json.dumps(evidence, indent=2) + "\n"
+    file, text = runs.ROOT / "src/study/presets.json", json.dumps(evidence, indent=2, ensure_ascii=False) + "\n"
     if file.read_text() != text:
         file.write_text(text)
         runs.build()
