@@ -172,7 +172,8 @@ def convergence_tables(found):
             cells += [f"{p:.1f}", f"{limit:.1f}" if name == "growth_per_s" else f"{limit:.0f}",
                       signed(values[1] / limit - 1)]
         orders.append([mu, speed, *cells])
-        independent.append(independent_line(mu, speed, own))
+        if of_peer(mu, speed):
+            independent.append(independent_line(mu, speed, own))
     middle = " × ".join(map(str, MESHES[1]))
     errors = [f"error on {' × '.join(map(str, elements))} [%]" for elements in MESHES]
     return {
@@ -185,7 +186,8 @@ def convergence_tables(found):
 
 
 def of_peer(mu, speed):
-    return next(mode for mode in CONVERGED["modes"] if (mode["mu"], mode["omega_rpm"]) == (mu, speed))
+    """The converged mode of a point; None where there is none."""
+    return next((mode for mode in CONVERGED["modes"] if (mode["mu"], mode["omega_rpm"]) == (mu, speed)), None)
 
 
 def independent_line(mu, speed, own):

@@ -255,8 +255,8 @@ class Sliding:
                 "open_share": float(block.base_area[~self.touching].sum() / block.base_area.sum())}
 
 
-# μ and the speed [rpm] of docs/eigenvalues.md, and the number of levels.
-POINTS = [(0.4, 7, 3), (0.2, 35, 2)]
+# μ and the speed [rpm] of a point of docs/eigenvalues.md.
+POINTS = [(0.4, 7)]
 # Order of the elements, layers towards the clamp's edges, top and ends, and further elements of the base in x and y.
 MODE_LEVELS = [(2, 2, 3), (2, 3, 3), (2, 4, 3)]
 
@@ -270,11 +270,11 @@ def mode_grids(layers, more):
 
 def modes():
     found = []
-    for mu, omega_rpm, count in POINTS:
+    for mu, omega_rpm in POINTS:
         [draft, _] = UNIFORM
         trilinear = Sliding(Block(uniform(draft), 1), mu, omega_rpm, True).leading()
         levels = []
-        for order, layers, more in MODE_LEVELS[:count]:
+        for order, layers, more in MODE_LEVELS:
             own = Sliding(Block(mode_grids(layers, more), order), mu, omega_rpm).leading()
             levels.append({"order": order, "layers": layers, **own})
             print(mu, omega_rpm, json.dumps(levels[-1]), flush=True)
