@@ -5,6 +5,9 @@ use std::process::Command;
 use crate::support::Folder;
 use crate::tools;
 
+/// What makes another export of one.
+type Change<'a> = &'a dyn Fn(&str) -> String;
+
 /// Exit code and output of the comparison of a folder; `None` without Python.
 fn compared(folder: &Folder, name: &str) -> Option<(i32, String)> {
     let script = concat!(env!("CARGO_MANIFEST_DIR"), "/scripts/nightly.py");
@@ -52,7 +55,7 @@ fn drifts_are_listed() {
     };
     let with_job =
         |export: &str, old: &str, new: &str| export.replace(&job(export), &job(export).replace(old, new));
-    let changes: [(&str, &dyn Fn(&str) -> String, &str); 6] = [
+    let changes: [(&str, Change, &str); 6] = [
         ("mini", &|export| other_mu_star(export, 1.002), "mu_star"),
         // The bits of the presets are the same on all machines.
         ("mini-standard", &|export| other_mu_star(export, 1.0 + 1.0e-9), "mu_star"),

@@ -1,8 +1,8 @@
 //! What the points of a study are: a full grid, on which indices are exact; a sample, from which they are estimated; or points from which
 //! nothing can be said.
 
-use super::Parameter;
 use super::indices::{HARMONICS, levels, slices_of};
+use super::parameter::Parameter;
 use crate::publish::value;
 use std::collections::BTreeSet;
 

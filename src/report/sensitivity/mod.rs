@@ -2,10 +2,13 @@
 
 mod design;
 mod indices;
+mod parameter;
 mod tables;
+mod types;
 
 pub use design::Design;
 pub use tables::{csv, markdown};
+pub use types::{Index, Indices, REGIME, Sensitivity};
 
 use super::export::further_names;
 use super::parameters::{MU, OMEGA};
@@ -14,6 +17,7 @@ use super::scalar::Scalar;
 use crate::publish::value;
 use design::{Estimator, design_of, estimator};
 use indices::{first_order, levels, of_classes, of_levels, on_grid, pawn, slices};
+use parameter::Parameter;
 use std::collections::{BTreeMap, HashMap};
 
 /// Number of resamples for confidence intervals.
@@ -21,55 +25,6 @@ const RESAMPLES: usize = 200;
 
 /// The share of its range by which a parameter changes in a Morris design.
 const MORRIS_STEP: f64 = 2.0 / 3.0;
-
-/// An index, with its interval of confidence where it is an estimate.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Index {
-    /// The index of all points.
-    pub value: f64,
-    /// Its 5 % and 95 % quantiles over resamples of the points, moved so that their mean is the value. None on a full grid, where the value
-    /// is exact.
-    pub interval: Option<[f64; 2]>,
-}
-
-/// The indices of a parameter.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Indices {
-    /// Its name.
-    pub name: String,
-    /// The first-order index; none for regimes.
-    pub first_order: Option<Index>,
-    /// The total index, which is known on a full grid only; none for regimes.
-    pub total: Option<Index>,
-    /// The PAWN index; of regimes, the index of shares.
-    pub pawn: Option<Index>,
-    /// The elementary effects of a Morris design: the mean of their sizes, in the unit of the quantity for the whole range of the
-    /// parameter, and their standard deviation.
-    pub effects: Option<(Index, f64)>,
-}
-
-/// The indices of a quantity.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sensitivity {
-    /// The name of the quantity; `regime` for the regimes, of which failed jobs are one.
-    pub of: String,
-    /// The number of points with a value.
-    pub points: usize,
-    /// The number of jobs without a value, or without an end.
-    pub missing: usize,
-    /// What these points are.
-    pub design: Design,
-    /// The indices of each parameter that varies.
-    pub parameters: Vec<Indices>,
-    /// Why single indices are not there.
-    pub remarks: Vec<String>,
-    /// What the index of a parameter without any effect would be, above which few of them are by chance: the 95 % quantile of the last
-    /// index with shuffled parameters. None unless the indices are estimates.
-    pub chance: Option<f64>,
-}
-
-/// The name of the sensitivity of regimes.
-pub const REGIME: &str = "regime";
 
 /// The sensitivities of some numbers, and of the regime, to all parameters that vary between the jobs that ended. They are the same in
 /// every call. Jobs that the program added where something happens (waves) do not count: they are no sample. `is_morris` says that the rows
@@ -83,13 +38,6 @@ pub fn sensitivities(rows: &[JobRow], of: &[&'static Scalar], is_morris: bool) -
     let mut found: Vec<Sensitivity> = of.iter().map(|scalar| points.of_scalar(scalar)).collect();
     found.push(points.of_regimes());
     found
-}
-
-/// A parameter with its value in each row as a number. Names are numbered in the order of the rows.
-struct Parameter {
-    name: String,
-    is_number: bool,
-    values: Vec<f64>,
 }
 
 fn parameters(rows: &[&JobRow]) -> Vec<Parameter> {
@@ -319,12 +267,6 @@ fn estimated(estimator: &Estimator, x: &[f64], y: &[f64]) -> Option<Index> {
             Estimator::Harmonics => first_order(&x, &y),
         }
     })
-}
-
-impl Index {
-    fn exact(value: f64) -> Self {
-        Self { value, interval: None }
-    }
 }
 
 /// The mean size of effects, and their standard deviation; none with fewer than two.

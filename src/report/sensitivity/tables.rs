@@ -1,6 +1,7 @@
 //! Indices as a text and as CSV.
 
-use super::{Design, Index, Indices, REGIME, Sensitivity};
+use super::design::Design;
+use super::types::{Index, Indices, REGIME, Sensitivity};
 use crate::publish::value::{self, count};
 use crate::report::Scalar;
 use std::fmt::Write;
