@@ -130,6 +130,8 @@ def main():
         "  there are, the further beyond.\n\n"
         "The range that is printed contains both uncertainties. Most runs lie in it; the column *inside* says by what factor one does not.\n"
         "*Limit* is the time if every job runs to its time limit. *Share* is the simulated time over that limit, on average.\n"
+        "The memory is that of the whole process with its two threads: the largest resident memory of `run`. Complex modes, by which\n"
+        "eigenvalues decide stable jobs (`figure7`), take most of it; without them a thread takes some 10 MB on that mesh, and the process 12 MB.\n"
         "The memory is predicted within a factor of two or so.\n\n"
         + runs.table(
             ["study", "meshes or steps", "jobs", "predicted [s]", "limit [s]", "run [s]", "inside", "share",

@@ -298,3 +298,37 @@ fn the_readme_has_an_example_that_is_run() {
     let (readme, page) = (blocks(&read("README.md")), blocks(&read("docs/python.md")));
     assert!(readme.len() == 1 && page.contains(&readme[0]), "{readme:?}");
 }
+
+/// Protects: a push is checked with the compiler that the repository names, and by `.ci/run`, on both hosts.
+#[test]
+fn pushes_run_the_check_with_the_pinned_compiler() {
+    let value = |text: &str, key: &str| -> String {
+        let line = text.lines().find_map(|line| line.trim().strip_prefix(key));
+        line.unwrap_or_else(|| panic!("no {key}")).trim_matches([' ', '=', '"']).to_owned()
+    };
+    let version = value(&read("rust-toolchain.toml"), "channel");
+    assert!(version.split('.').count() == 3, "{version} is no exact version");
+    let least = value(&read("Cargo.toml"), "rust-version");
+    assert!(version == least || version.starts_with(&format!("{least}.")), "{least} and {version}");
+    let gitlab = read(".gitlab-ci.yml");
+    assert_eq!(value(&gitlab, "image:"), format!("rust:{version}"));
+    let [(_, check)] =
+        gitlab.split("\n\n").flat_map(|part| part.split_once("\ncheck:\n")).collect::<Vec<_>>()[..]
+    else {
+        panic!("one job is named check")
+    };
+    let check = check.split("\nbook:").next().unwrap();
+    for line in
+        [r#"$CI_PIPELINE_SOURCE == "push""#, r#"$CI_PIPELINE_SOURCE == "merge_request_event""#, "- .ci/run"]
+    {
+        assert!(check.contains(line), "{line} in {check}");
+    }
+    let github = read("scripts/ci/github.yml");
+    let compilers: BTreeSet<&str> = github
+        .split("dtolnay/rust-toolchain@")
+        .skip(1)
+        .map(|rest| rest.split_whitespace().next().unwrap_or_default())
+        .collect();
+    assert_eq!(compilers, BTreeSet::from([&*version]));
+    assert!(github.contains("  push:\n  pull_request:\n") && github.contains(".ci/run\n"), "{github}");
+}

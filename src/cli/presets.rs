@@ -82,16 +82,19 @@ fn as_text(evidence: &Evidence) -> String {
          elements: along the pin's shortest edge; the other directions get elements of about the same size, and as\n\
          many more as the clamp needs to end at a node row. safety: time step as a fraction of the stability limit.\n\
          tolerance, drift: of the periodic state. cost: nodes × steps, standard = 1.\n\n\
-         Errors: the largest at {} rpm, μ = {}, {},\n\
-         against {nx} × {ny} × {nz} elements with a safety factor of {}, beyond which may lie\n\
-         up to {:.1} % (first order from the next coarser mesh). Other scenes have other errors: compare two presets there.\n\
+         Errors: the largest at {} rpm, μ = {}, {}.\n\
+         Of μ*: from the limit of fine meshes, which is known to ± {:.1} % from\n\
+         {}.\n\
+         Of f and shares: from {nx} × {ny} × {nz} elements with a safety factor of {}.\n\
+         Other scenes have other errors: compare two presets there.\n\
          Written by {} with solver version {}.\n",
         ways,
         speeds.join(", "),
         evidence.mu,
         evidence.scene,
-        reference.safety_factor,
         100.0 * reference.mu_star_uncertainty,
+        reference.mu_star_source,
+        reference.safety_factor,
         evidence.written_by,
         evidence.solver_version,
     );

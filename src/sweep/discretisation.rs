@@ -59,14 +59,13 @@ fn measured_at(evidence: &Evidence) -> String {
         Some((last, others)) if !others.is_empty() => format!("{} and {last}", others.join(", ")),
         _ => speeds.concat(),
     };
-    let [nx, ny, nz] = evidence.reference.elements;
     let version = if evidence.solver_version == solver::VERSION {
         String::new()
     } else {
         format!(", by version {} of the solver", evidence.solver_version)
     };
     format!(
-        "on {} at μ = {} and {speeds} rpm{version} (against {nx} × {ny} × {nz} elements, which may be off by another {:.1} %)",
+        "on {} at μ = {} and {speeds} rpm{version} (against the limit of fine meshes, which is known to ± {:.1} %)",
         evidence.scene,
         evidence.mu,
         100.0 * evidence.reference.mu_star_uncertainty

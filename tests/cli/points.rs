@@ -66,3 +66,54 @@ fn sensitivities_are_printed_and_written() {
     assert_eq!(stdout(&folder.command("sensitivity mine --of mu_star,stick_share").assert()), text);
     assert!(refused("sensitivity mine --of mu_stat").contains("--of mu_stat: no such quantity"));
 }
+
+/// Protects: on a full grid the indices are those of sums over the grid, and a quantity whose points leave gaps has none but a reason.
+#[test]
+fn a_grid_has_exact_indices() {
+    let mut study = small(&json!({ "mu": [0.1, 0.2, 0.5], "omega_rpm": [2, 10, 50, 100] }));
+    // Enough to tell the values apart; no limit cycle is needed.
+    study["run"] = json!({ "limit_s": 0.002 });
+    let folder = Folder::with("mine", &study);
+    folder.ok("run mine.json");
+    let text = folder.ok("sensitivity mine --of mu_star");
+    assert!(text.contains("Exact on this grid of 4 × 3 points, each of which counts the same."), "{text}");
+    assert!(!text.contains("by chance") && !text.contains('…'), "{text}");
+    let export = rows(&folder.ok("export mine"));
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+    let variance =
+        |values: &[f64]| mean(&values.iter().map(|v| (v - mean(values)).powi(2)).collect::<Vec<_>>());
+    let of = |row: &crate::support::ExportRow, name: &str| row[name].parse::<f64>().unwrap();
+    let all: Vec<f64> = export.iter().map(|row| of(row, "mu_star")).collect();
+    let lines = rows(&folder.read("reports/mine/sensitivity.csv"));
+    for (own, other) in [("mu", "omega_rpm"), ("omega_rpm", "mu")] {
+        // The means, and the variances within, over the points with one value of a parameter.
+        let over = |name: &str, figure: &dyn Fn(&[f64]) -> f64| -> Vec<f64> {
+            let values: std::collections::BTreeSet<&str> = export.iter().map(|row| &*row[name]).collect();
+            let with = |value: &&str| {
+                let of_value = export.iter().filter(|row| row[name] == **value);
+                figure(&of_value.map(|row| of(row, "mu_star")).collect::<Vec<_>>())
+            };
+            values.iter().map(with).collect()
+        };
+        let expected = [
+            ("first_order", variance(&over(own, &mean)) / variance(&all)),
+            ("total", mean(&over(other, &variance)) / variance(&all)),
+        ];
+        for (index, expected) in expected {
+            let is_wanted =
+                |line: &&crate::support::ExportRow| line["parameter"] == own && line["index"] == index;
+            let line = lines.iter().find(is_wanted).unwrap();
+            assert!((of(line, "value") - expected).abs() < 1e-9, "{own} {index}: {expected} {line:?}");
+            assert_eq!((&*line["low"], &*line["by_chance"]), ("", ""));
+        }
+    }
+    // A part of another grid is a grid with gaps.
+    study["grid"] = json!({ "mu": [0.3], "omega_rpm": [2, 10] });
+    folder.add("other", &study);
+    folder.ok("run other.json");
+    let text = folder.ok("sensitivity mine other --of mu_star");
+    assert!(
+        text.contains("No PAWN and no first-order index: the points are a grid with gaps: 14 of 4 × 4"),
+        "{text}"
+    );
+}

@@ -15,10 +15,7 @@ impl Mount {
         mount.args(["-t", "tmpfs", "-o", options, "tmpfs"]).arg(folder);
         let is_mounted = mount.output().is_ok_and(|output| output.status.success());
         if !is_mounted {
-            tools::missing(
-                "mounting a file system is refused",
-                "run the tests as root with the right to mount",
-            );
+            tools::missing_mount();
         }
         is_mounted.then(|| Self(folder.to_owned()))
     }

@@ -1,8 +1,12 @@
-//! Sensitivity indices from given points, whatever their design.
+//! Sensitivity indices from given points.
 //!
-//! * **First-order index** S = Var(E(Y|x))/Var(Y) by RBD-FAST: the values in the order of x, up and down again, have the variance of
-//!   their first harmonics (Tarantola, Gatelli and Mara, Reliab. Eng. Syst. Saf. 91, 2006), with the correction of bias of Tissot and
-//!   Prieur (Reliab. Eng. Syst. Saf. 107, 2012).
+//! On a full grid ([`on_grid`]) all sums are exact. Otherwise the points are a sample, and the indices are estimates, which hold for
+//! parameters that do not depend on each other ([`super::design`] decides that):
+//!
+//! * **First-order index** S = Var(E(Y|x))/Var(Y). Where a parameter has few values, by the variance of the means over each of them, with the
+//!   correction of its bias of Fisher (the adjusted coefficient of determination). Where all its values differ, by RBD-FAST: the values in the
+//!   order of x, up and down again, have the variance of their first harmonics (Tarantola, Gatelli and Mara, Reliab. Eng. Syst. Saf. 91, 2006),
+//!   with the correction of bias of Tissot and Prieur (Reliab. Eng. Syst. Saf. 107, 2012).
 //! * **PAWN**: the median over slices of x of the largest distance between the distribution of Y in the slice and that of all Y
 //!   (Pianosi and Wagener, Environ. Model. Softw. 67, 2015, and 108, 2018).
 //! * **Shares**: the same for classes: half the sum of the differences between their shares in a slice and in all points.
@@ -10,13 +14,16 @@
 use std::f64::consts::TAU;
 
 /// Number of harmonics of RBD-FAST.
-const HARMONICS: usize = 10;
+pub(super) const HARMONICS: usize = 10;
 
 /// Fewest points of a slice.
 const FEWEST_IN_SLICE: usize = 5;
 
 /// Most slices.
 const MOST_SLICES: usize = 10;
+
+/// A variance below this share of the square of the mean is that of rounding.
+const ROUNDING: f64 = 1e-24;
 
 /// The positions of points in ascending order of x.
 fn order(x: &[f64]) -> Vec<usize> {
@@ -25,7 +32,7 @@ fn order(x: &[f64]) -> Vec<usize> {
     order
 }
 
-/// The first-order index of x; none with fewer than 2·[`HARMONICS`] + 1 points, or if y does not vary.
+/// The first-order index of x, whose values differ; none with fewer than 2·[`HARMONICS`] + 1 points, or if y does not vary.
 pub(super) fn first_order(x: &[f64], y: &[f64]) -> Option<f64> {
     let count = y.len();
     let mean = y.iter().sum::<f64>() / count as f64;
@@ -53,27 +60,71 @@ pub(super) fn first_order(x: &[f64], y: &[f64]) -> Option<f64> {
     Some(raw - bias / (1.0 - bias) * (1.0 - raw))
 }
 
-/// Slices of the points along x: as many as have [`FEWEST_IN_SLICE`] points, at most [`MOST_SLICES`]; equal values stay together. None
-/// with fewer than two.
-pub(super) fn slices(x: &[f64]) -> Option<Vec<Vec<usize>>> {
-    let count = (x.len() / FEWEST_IN_SLICE).min(MOST_SLICES);
-    if count < 2 {
-        return None;
+/// The positions of the points with each value of x, in ascending order of x.
+pub(super) fn levels(x: &[f64]) -> Vec<Vec<usize>> {
+    let mut levels: Vec<Vec<usize>> = Vec::new();
+    for at in order(x) {
+        match levels.last_mut().filter(|level| x[level[0]] == x[at]) {
+            Some(level) => level.push(at),
+            None => levels.push(vec![at]),
+        }
     }
+    levels
+}
+
+/// The variance of the means of y over groups of points, over the variance of y; none if y does not vary.
+fn explained(groups: &[Vec<usize>], y: &[f64]) -> Option<f64> {
+    let mean = y.iter().sum::<f64>() / y.len() as f64;
+    let variance = y.iter().map(|y| (y - mean).powi(2)).sum::<f64>();
+    let own = |group: &Vec<usize>| {
+        let sum: f64 = group.iter().map(|&at| y[at] - mean).sum();
+        sum * sum / group.len() as f64
+    };
+    (variance > ROUNDING * mean * mean * y.len() as f64)
+        .then(|| groups.iter().map(own).sum::<f64>() / variance)
+}
+
+/// The first-order index of a parameter of which each value has several points; none if y does not vary.
+pub(super) fn of_levels(levels: &[Vec<usize>], y: &[f64]) -> Option<f64> {
+    let [count, groups] = [y.len(), levels.len()].map(|number| number as f64);
+    Some(1.0 - (count - 1.0) / (count - groups) * (1.0 - explained(levels, y)?))
+}
+
+/// The first-order and the total index of a parameter on a full grid, on which every value of a parameter counts the same. `levels` are the
+/// points of each of its values. `others` are the points of each combination of the other parameters.
+pub(super) fn on_grid(levels: &[Vec<usize>], others: &[Vec<usize>], y: &[f64]) -> Option<[f64; 2]> {
+    Some([explained(levels, y)?, 1.0 - explained(others, y)?])
+}
+
+/// Slices of the points along x: at most `most` of about equal size, each with `fewest` points or more; equal values stay together. None
+/// with fewer than two.
+pub(super) fn slices_of(x: &[f64], most: usize, fewest: usize) -> Option<Vec<Vec<usize>>> {
+    let count = (x.len() / fewest).min(most);
     let order = order(x);
     let mut slices: Vec<Vec<usize>> = Vec::new();
+    // The place among `count` equal slices at which the last slice begins.
+    let mut begun = 0;
     for (rank, &at) in order.iter().enumerate() {
-        let wanted = rank * count / x.len();
+        let place = rank * count / x.len();
         let is_equal = rank > 0 && x[at] == x[order[rank - 1]];
-        let is_next = slices.len() <= wanted && !is_equal;
-        if is_next || slices.is_empty() {
-            slices.push(Vec::new());
-        }
-        if let Some(last) = slices.last_mut() {
-            last.push(at);
+        match slices.last_mut() {
+            Some(last) if is_equal || place == begun || last.len() < fewest => last.push(at),
+            _ => {
+                begun = place;
+                slices.push(vec![at]);
+            }
         }
     }
+    if slices.len() > 1 && slices.last().is_some_and(|last| last.len() < fewest) {
+        let rest = slices.pop().unwrap_or_default();
+        slices.last_mut()?.extend(rest);
+    }
     (slices.len() > 1).then_some(slices)
+}
+
+/// The slices of indices.
+pub(super) fn slices(x: &[f64]) -> Option<Vec<Vec<usize>>> {
+    slices_of(x, MOST_SLICES, FEWEST_IN_SLICE)
 }
 
 /// The PAWN index of some slices.
@@ -185,5 +236,65 @@ mod tests {
         let three: Vec<f64> = (0..30).map(|n| f64::from(n % 3)).collect();
         assert_eq!(slices(&three).unwrap().iter().map(Vec::len).collect::<Vec<_>>(), [10, 10, 10]);
         assert_eq!(slices(&[1.0; 40]), None);
+    }
+
+    /// Protects: no slice has fewer than five points, however the values repeat. A slice of one point would have the distance 1/2 or more from
+    /// all others without any effect.
+    #[test]
+    fn slices_have_enough_points() {
+        let lengths = |x: &[f64]| slices(x).map(|slices| slices.iter().map(Vec::len).collect::<Vec<_>>());
+        let repeated = |values: &[(f64, usize)]| -> Vec<f64> {
+            values.iter().flat_map(|&(value, times)| vec![value; times]).collect()
+        };
+        // One point of 40 is no slice.
+        assert_eq!(lengths(&repeated(&[(0.0, 39), (1.0, 1)])), None);
+        assert_eq!(lengths(&repeated(&[(0.0, 20), (1.0, 3), (2.0, 17)])), Some(vec![20, 20]));
+        let half: Vec<f64> = (0..40).map(|n| f64::from((n - 20).max(0))).collect();
+        assert_eq!(lengths(&half), Some(vec![21, 5, 5, 9]));
+        // Six values of each of 17 speeds: slices are whole speeds.
+        let speeds: Vec<f64> = (0..102).map(|n| f64::from(n % 17)).collect();
+        let found = lengths(&speeds).unwrap();
+        assert!(found.iter().all(|length| length % 6 == 0 && *length >= 6), "{found:?}");
+        assert_eq!(found.iter().sum::<usize>(), 102);
+    }
+
+    /// Protects: the index of a parameter with few values. y = a + b with a of three values 0, 1, 2 and b even on [−1, 1] has the variances 2/3 and
+    /// 1/3, so S of a is 2/3; a parameter of three values without effect has 0.
+    #[test]
+    fn few_values_have_their_own_estimator() {
+        let points = even(999);
+        let step = |k: usize| points.iter().map(|point| (3.0 * point[k]).floor()).collect::<Vec<f64>>();
+        let y: Vec<f64> = points.iter().zip(step(0)).map(|(point, a)| a + 2.0 * point[1] - 1.0).collect();
+        let found = |k: usize| of_levels(&levels(&step(k)), &y).unwrap();
+        // The standard error of a share of variance s from n points is below 2 √(s/n) = 0.05; an even sequence has less.
+        assert!((found(0) - 2.0 / 3.0).abs() < 0.02, "{}", found(0));
+        assert!(found(2).abs() < 0.02, "{}", found(2));
+        // 90 values explain 89/998 = 9 % of the variance of anything that varies at random, and the correction takes them off.
+        let many: Vec<f64> = (0..999).map(|n| f64::from(n * 487 % 999 / 11)).collect();
+        let noise: Vec<f64> = (0..999).map(|n| (f64::from(n).powi(2) * 0.754_877_666).fract()).collect();
+        let corrected = of_levels(&levels(&many), &noise).unwrap();
+        assert!(corrected.abs() < 0.04, "{corrected}");
+        assert_eq!(of_levels(&levels(&step(0)), &[1.0; 999]), None);
+    }
+
+    /// Protects: on a full grid the decomposition is exact: y = x₁ + x₂ + c x₁x₂ with centred values has the variances v₁, v₂ and c² v₁ v₂.
+    #[test]
+    fn a_full_grid_is_decomposed_exactly() {
+        let [first, second] = [[-1.0, 0.0, 1.0, 4.0, -4.0].as_slice(), [-3.0, 3.0, 1.0, -1.0].as_slice()];
+        let c = 0.5;
+        let points: Vec<[f64; 2]> = first.iter().flat_map(|a| second.iter().map(|b| [*a, *b])).collect();
+        let y: Vec<f64> = points.iter().map(|[a, b]| 7.0 + a + b + c * a * b).collect();
+        let variance = |values: &[f64]| values.iter().map(|v| v * v).sum::<f64>() / values.len() as f64;
+        let (v1, v2) = (variance(first), variance(second));
+        let v12 = c * c * v1 * v2;
+        let all = v1 + v2 + v12;
+        let of = |k: usize| levels(&points.iter().map(|point| point[k]).collect::<Vec<_>>());
+        for (own, other, v) in [(0, 1, v1), (1, 0, v2)] {
+            let [main, total] = on_grid(&of(own), &of(other), &y).unwrap();
+            assert!((main - v / all).abs() < 1e-14 && (total - (v + v12) / all).abs() < 1e-14);
+        }
+        // A quantity that differs in its last bits only does not vary.
+        let noise: Vec<f64> = (0..20).map(|n| 1.0 + f64::EPSILON * f64::from(n % 2)).collect();
+        assert_eq!(on_grid(&of(0), &of(1), &noise), None);
     }
 }

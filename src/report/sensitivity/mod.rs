@@ -1,15 +1,24 @@
 //! What the results of a study depend on: sensitivity indices of its parameters, from its own points.
 
+mod design;
 mod indices;
+mod parameter;
+mod tables;
+mod types;
+
+pub use design::Design;
+pub use tables::{csv, markdown};
+pub use types::{Index, Indices, REGIME, Sensitivity};
 
 use super::export::further_names;
 use super::parameters::{MU, OMEGA};
 use super::row::{JobRow, RowState};
 use super::scalar::Scalar;
 use crate::publish::value;
-use indices::{first_order, of_classes, pawn, slices};
-use std::collections::BTreeMap;
-use std::fmt::Write;
+use design::{Estimator, design_of, estimator};
+use indices::{first_order, levels, of_classes, of_levels, on_grid, pawn, slices};
+use parameter::Parameter;
+use std::collections::{BTreeMap, HashMap};
 
 /// Number of resamples for confidence intervals.
 const RESAMPLES: usize = 200;
@@ -17,66 +26,18 @@ const RESAMPLES: usize = 200;
 /// The share of its range by which a parameter changes in a Morris design.
 const MORRIS_STEP: f64 = 2.0 / 3.0;
 
-/// With fewer points, indices say little.
-const FEW_POINTS: usize = 100;
-
-/// An index with its interval of confidence.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Index {
-    /// The index of all points.
-    pub value: f64,
-    /// Its 5 % and 95 % quantiles over resamples of the points, moved so that their mean is the value.
-    pub interval: [f64; 2],
-}
-
-/// The indices of a parameter.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Indices {
-    /// Its name.
-    pub name: String,
-    /// The first-order index; none for regimes, and for parameters that are no numbers.
-    pub first_order: Option<Index>,
-    /// The PAWN index; of regimes, the index of shares.
-    pub pawn: Option<Index>,
-    /// The elementary effects of a Morris design: the mean of their sizes, in the unit of the quantity for the whole range of the
-    /// parameter, and their standard deviation.
-    pub effects: Option<(Index, f64)>,
-}
-
-/// The indices of a quantity.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Sensitivity {
-    /// The name of the quantity; `regime` for the regimes, of which failed jobs are one.
-    pub of: String,
-    /// The number of points with a value.
-    pub points: usize,
-    /// The indices of each parameter that varies.
-    pub parameters: Vec<Indices>,
-    /// What the index of a parameter without any effect would be, above which few of them are by chance: the 95 % quantile of the last
-    /// index with shuffled parameters.
-    pub chance: f64,
-}
-
-/// The name of the sensitivity of regimes.
-pub const REGIME: &str = "regime";
-
 /// The sensitivities of some numbers, and of the regime, to all parameters that vary between the jobs that ended. They are the same in
-/// every call. `is_morris` says that the rows are those of a Morris design, in its order.
+/// every call. Jobs that the program added where something happens (waves) do not count: they are no sample. `is_morris` says that the rows
+/// are those of a Morris design, in its order.
 pub fn sensitivities(rows: &[JobRow], of: &[&'static Scalar], is_morris: bool) -> Vec<Sensitivity> {
+    let asked: Vec<&JobRow> = rows.iter().filter(|row| row.wave == 0).collect();
     let ended = |row: &&JobRow| matches!(row.state, RowState::Done(_) | RowState::Failed { .. });
-    let rows: Vec<&JobRow> = rows.iter().filter(ended).collect();
-    let parameters = parameters(&rows);
-    let mut found: Vec<Sensitivity> =
-        of.iter().map(|scalar| of_scalar(&rows, &parameters, scalar, is_morris)).collect();
-    found.push(of_regimes(&rows, &parameters));
+    let rows: Vec<&JobRow> = asked.iter().copied().filter(ended).collect();
+    let points =
+        Points { parameters: parameters(&rows), unfinished: asked.len() - rows.len(), rows, is_morris };
+    let mut found: Vec<Sensitivity> = of.iter().map(|scalar| points.of_scalar(scalar)).collect();
+    found.push(points.of_regimes());
     found
-}
-
-/// A parameter with its value in each row as a number. Names are numbered in the order of the rows.
-struct Parameter {
-    name: String,
-    is_number: bool,
-    values: Vec<f64>,
 }
 
 fn parameters(rows: &[&JobRow]) -> Vec<Parameter> {
@@ -103,22 +64,209 @@ fn parameters(rows: &[&JobRow]) -> Vec<Parameter> {
     names.filter_map(parameter).collect()
 }
 
-/// The elementary effects of a parameter: the differences of the quantity between neighbours in the design that differ in it alone, over
-/// the share of its range by which it changes (Morris, Technometrics 33, 1991).
-fn elementary_effects(
-    rows: &[&JobRow],
-    parameters: &[Parameter],
-    own: &Parameter,
-    scalar: &Scalar,
-) -> Vec<f64> {
-    let effect = |at: usize| {
-        let is_alone = parameters
-            .iter()
-            .all(|other| (other.values[at] != other.values[at - 1]) == (other.name == own.name));
-        let step = MORRIS_STEP.copysign(own.values[at] - own.values[at - 1]);
-        is_alone.then(|| Some((scalar.value(rows[at])? - scalar.value(rows[at - 1])?) / step))?
-    };
-    (1..rows.len()).filter_map(effect).collect()
+/// The jobs that ended, with the parameters that vary.
+struct Points<'a> {
+    rows: Vec<&'a JobRow>,
+    parameters: Vec<Parameter>,
+    /// Jobs that have not ended.
+    unfinished: usize,
+    is_morris: bool,
+}
+
+/// What the indices of one quantity are computed from: positions of rows and what they are.
+struct Basis {
+    points: Vec<usize>,
+    design: Design,
+}
+
+impl Points<'_> {
+    fn basis(&self, points: Vec<usize>) -> Basis {
+        let design = if self.is_morris {
+            Design::Unknown(
+                "the points of a Morris design follow each other, so they are no sample; it has effects"
+                    .to_owned(),
+            )
+        } else {
+            design_of(&self.parameters, &points)
+        };
+        Basis { points, design }
+    }
+
+    /// The number of jobs that are not among so many points.
+    fn missing(&self, points: usize) -> usize {
+        self.rows.len() + self.unfinished - points
+    }
+
+    /// The values of a parameter at the points.
+    fn column(basis: &Basis, parameter: &Parameter) -> Vec<f64> {
+        basis.points.iter().map(|&at| parameter.values[at]).collect()
+    }
+
+    /// The points of each combination of all parameters but one.
+    fn without(&self, basis: &Basis, parameter: &Parameter) -> Vec<Vec<usize>> {
+        let mut groups: Vec<Vec<usize>> = Vec::new();
+        let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
+        for (place, &at) in basis.points.iter().enumerate() {
+            let others = self.parameters.iter().filter(|other| other.name != parameter.name);
+            let group = *known
+                .entry(others.map(|other| other.values[at].to_bits()).collect())
+                .or_insert(groups.len());
+            if group == groups.len() {
+                groups.push(Vec::new());
+            }
+            groups[group].push(place);
+        }
+        groups
+    }
+
+    fn of_scalar(&self, scalar: &Scalar) -> Sensitivity {
+        let with_value: Vec<(usize, f64)> =
+            self.rows.iter().enumerate().filter_map(|(at, row)| Some((at, scalar.value(row)?))).collect();
+        let y: Vec<f64> = with_value.iter().map(|(_, y)| *y).collect();
+        let basis = self.basis(with_value.iter().map(|(at, _)| *at).collect());
+        let mut remarks = Vec::new();
+        let last = |slices: &[Vec<usize>], points: &[usize]| {
+            let own: Vec<f64> = points.iter().map(|&at| y[at]).collect();
+            pawn(slices, &own)
+        };
+        let (last, chance) = self.last_indices(&basis, last, &mut remarks);
+        let indices = |(parameter, pawn): (&Parameter, Option<Index>)| {
+            let x = Self::column(&basis, parameter);
+            let levels_of_x = levels(&x);
+            let [mut main, mut total] = [None, None];
+            match basis.design {
+                // A parameter of which one value is left decides nothing here.
+                Design::Grid(_) if levels_of_x.len() == 1 => {}
+                Design::Grid(_) => {
+                    let found = on_grid(&levels_of_x, &self.without(&basis, parameter), &y);
+                    [main, total] =
+                        found.map_or([None; 2], |found| found.map(|index| Some(Index::exact(index))));
+                }
+                Design::Sample => match estimator(&parameter.name, parameter.is_number, &x) {
+                    Ok(estimator) => main = estimated(&estimator, &x, &y),
+                    Err(why) => remarks.push(format!("{why}, so it has no first-order index.")),
+                },
+                Design::Unknown(_) => {}
+            }
+            let effects = self.is_morris.then(|| self.elementary_effects(parameter, scalar));
+            Indices {
+                name: parameter.name.clone(),
+                first_order: main,
+                total,
+                pawn,
+                effects: effects.and_then(|effects| of_effects(&effects)),
+            }
+        };
+        let parameters = self.parameters.iter().zip(last).map(indices).collect();
+        Sensitivity {
+            of: scalar.name.to_owned(),
+            points: y.len(),
+            missing: self.missing(y.len()),
+            design: basis.design,
+            parameters,
+            remarks,
+            chance,
+        }
+    }
+
+    fn of_regimes(&self) -> Sensitivity {
+        let mut names: BTreeMap<&str, usize> = BTreeMap::new();
+        let class = |row: &&JobRow| row.record().map_or("failed", |record| record.regime.name());
+        let classes: Vec<&str> = self.rows.iter().map(class).collect();
+        for name in &classes {
+            let next = names.len();
+            names.entry(name).or_insert(next);
+        }
+        let class: Vec<usize> = classes.iter().map(|name| names[name]).collect();
+        let basis = self.basis((0..class.len()).collect());
+        let mut remarks = Vec::new();
+        let last = |slices: &[Vec<usize>], points: &[usize]| {
+            let own: Vec<usize> = points.iter().map(|&at| class[at]).collect();
+            of_classes(slices, &own, names.len())
+        };
+        let (last, chance) = self.last_indices(&basis, last, &mut remarks);
+        let indices = |(parameter, shares): (&Parameter, Option<Index>)| Indices {
+            name: parameter.name.clone(),
+            first_order: None,
+            total: None,
+            pawn: shares,
+            effects: None,
+        };
+        let parameters = self.parameters.iter().zip(last).map(indices).collect();
+        Sensitivity {
+            of: REGIME.to_owned(),
+            points: class.len(),
+            missing: self.missing(class.len()),
+            design: basis.design,
+            parameters,
+            remarks,
+            chance,
+        }
+    }
+
+    /// The index of slices of each parameter, and how large it can be by chance. On a full grid each value of a parameter is a slice, and a
+    /// parameter without effect has exactly 0. `index` takes slices of some points.
+    fn last_indices(
+        &self,
+        basis: &Basis,
+        index: impl Fn(&[Vec<usize>], &[usize]) -> f64,
+        remarks: &mut Vec<String>,
+    ) -> (Vec<Option<Index>>, Option<f64>) {
+        let count = basis.points.len();
+        let all: Vec<usize> = (0..count).collect();
+        let mut chance: Option<f64> = None;
+        let of_parameter = |parameter: &Parameter| {
+            let x = Self::column(basis, parameter);
+            match basis.design {
+                Design::Grid(_) => {
+                    let levels = levels(&x);
+                    (levels.len() > 1).then(|| Index::exact(index(&levels, &all)))
+                }
+                Design::Sample => {
+                    let of = |x: Vec<f64>, points: &[usize]| Some(index(&slices(&x)?, points));
+                    let at = |points: &[usize]| points.iter().map(|&at| x[at]).collect::<Vec<_>>();
+                    let found = with_interval(count, |points| of(at(points), points));
+                    if found.is_none() {
+                        let name = &parameter.name;
+                        remarks.push(format!(
+                            "{name} has nearly one value only, so it has no slices to compare."
+                        ));
+                    }
+                    let own = by_chance(count, |order| of(at(order), &all));
+                    chance = chance.into_iter().chain(own).reduce(f64::max);
+                    found
+                }
+                Design::Unknown(_) => None,
+            }
+        };
+        let found = self.parameters.iter().map(of_parameter).collect();
+        (found, chance)
+    }
+
+    /// The elementary effects of a parameter: the differences of the quantity between neighbours in the design that differ in it alone, over
+    /// the share of its range by which it changes (Morris, Technometrics 33, 1991).
+    fn elementary_effects(&self, own: &Parameter, scalar: &Scalar) -> Vec<f64> {
+        let Self { rows, parameters, .. } = self;
+        let effect = |at: usize| {
+            let is_alone = parameters
+                .iter()
+                .all(|other| (other.values[at] != other.values[at - 1]) == (other.name == own.name));
+            let step = MORRIS_STEP.copysign(own.values[at] - own.values[at - 1]);
+            is_alone.then(|| Some((scalar.value(rows[at])? - scalar.value(rows[at - 1])?) / step))?
+        };
+        (1..rows.len()).filter_map(effect).collect()
+    }
+}
+
+/// The first-order index of a parameter of a sample.
+fn estimated(estimator: &Estimator, x: &[f64], y: &[f64]) -> Option<Index> {
+    with_interval(y.len(), |points| {
+        let [x, y] = [x, y].map(|all| points.iter().map(|&at| all[at]).collect::<Vec<_>>());
+        match estimator {
+            Estimator::Levels => of_levels(&levels(&x), &y),
+            Estimator::Harmonics => first_order(&x, &y),
+        }
+    })
 }
 
 /// The mean size of effects, and their standard deviation; none with fewer than two.
@@ -129,80 +277,6 @@ fn of_effects(effects: &[f64]) -> Option<(Index, f64)> {
     let size = |points: &[usize]| Some(points.iter().map(|&at| effects[at].abs()).sum::<f64>() / count);
     let index = (effects.len() > 1).then(|| with_interval(effects.len(), size)).flatten();
     index.map(|index| (index, variance.sqrt()))
-}
-
-fn of_scalar(rows: &[&JobRow], parameters: &[Parameter], scalar: &Scalar, is_morris: bool) -> Sensitivity {
-    let with_value: Vec<(usize, f64)> =
-        rows.iter().enumerate().filter_map(|(at, row)| Some((at, scalar.value(row)?))).collect();
-    let y: Vec<f64> = with_value.iter().map(|(_, y)| *y).collect();
-    let mut chance = Vec::new();
-    let all = parameters;
-    let of_parameter = |parameter: &Parameter| {
-        let effects = is_morris.then(|| elementary_effects(rows, all, parameter, scalar));
-        let x: Vec<f64> = with_value.iter().map(|(at, _)| parameter.values[*at]).collect();
-        let first = |points: &[usize]| {
-            let [x, y] = [&x, &y].map(|all| points.iter().map(|&at| all[at]).collect::<Vec<_>>());
-            first_order(&x, &y)
-        };
-        let of_pawn = |points: &[usize]| {
-            let [x, y] = [&x, &y].map(|all| points.iter().map(|&at| all[at]).collect::<Vec<_>>());
-            Some(pawn(&slices(&x)?, &y))
-        };
-        chance.push(by_chance(y.len(), |order| {
-            let shuffled: Vec<f64> = order.iter().map(|&at| x[at]).collect();
-            Some(pawn(&slices(&shuffled)?, &y))
-        }));
-        let first = parameter.is_number.then(|| with_interval(y.len(), first)).flatten();
-        Indices {
-            name: parameter.name.clone(),
-            first_order: first,
-            pawn: with_interval(y.len(), of_pawn),
-            effects: effects.and_then(|effects| of_effects(&effects)),
-        }
-    };
-    let parameters = parameters.iter().map(of_parameter).collect();
-    Sensitivity {
-        of: scalar.name.to_owned(),
-        points: y.len(),
-        parameters,
-        chance: chance.into_iter().flatten().fold(0.0, f64::max),
-    }
-}
-
-fn of_regimes(rows: &[&JobRow], parameters: &[Parameter]) -> Sensitivity {
-    let mut names: BTreeMap<&str, usize> = BTreeMap::new();
-    let class = |row: &&JobRow| row.record().map_or("failed", |record| record.regime.name());
-    let classes: Vec<&str> = rows.iter().map(class).collect();
-    for name in &classes {
-        let next = names.len();
-        names.entry(name).or_insert(next);
-    }
-    let class: Vec<usize> = classes.iter().map(|name| names[name]).collect();
-    let mut chance = Vec::new();
-    let of_parameter = |parameter: &Parameter| {
-        let index = |points: &[usize]| {
-            let x: Vec<f64> = points.iter().map(|&at| parameter.values[at]).collect();
-            let own: Vec<usize> = points.iter().map(|&at| class[at]).collect();
-            Some(of_classes(&slices(&x)?, &own, names.len()))
-        };
-        chance.push(by_chance(class.len(), |order| {
-            let x: Vec<f64> = order.iter().map(|&at| parameter.values[at]).collect();
-            Some(of_classes(&slices(&x)?, &class, names.len()))
-        }));
-        Indices {
-            name: parameter.name.clone(),
-            first_order: None,
-            pawn: with_interval(class.len(), index),
-            effects: None,
-        }
-    };
-    let parameters = parameters.iter().map(of_parameter).collect();
-    Sensitivity {
-        of: REGIME.to_owned(),
-        points: class.len(),
-        parameters,
-        chance: chance.into_iter().flatten().fold(0.0, f64::max),
-    }
 }
 
 /// An index of all points, with the quantiles over resamples with replacement.
@@ -222,7 +296,7 @@ fn with_interval(count: usize, index: impl Fn(&[usize]) -> Option<f64>) -> Optio
         let found = found.get((share * found.len() as f64) as usize);
         found.map_or(value, |found| value + found - mean)
     };
-    Some(Index { value, interval: [quantile(0.05), quantile(0.95)] })
+    Some(Index { value, interval: Some([quantile(0.05), quantile(0.95)]) })
 }
 
 /// The 95 % quantile of an index with shuffled points.
@@ -252,90 +326,6 @@ impl Random {
         word ^= word >> 31;
         ((u128::from(word) * count.max(1) as u128) >> 64) as usize
     }
-}
-
-/// The indices as a text with tables.
-pub fn markdown(found: &[Sensitivity]) -> String {
-    let mut text = String::new();
-    for one in found {
-        let index = |index: &Option<Index>| {
-            let interval = |index: &Index| {
-                let [low, high] = index.interval.map(|bound| value::fixed(bound, 2));
-                format!("{} ({low} … {high})", value::fixed(index.value, 2))
-            };
-            index.as_ref().map_or_else(|| value::MISSING.to_owned(), interval)
-        };
-        let is_regime = one.of == REGIME;
-        let title = Scalar::find(&one.of).map_or_else(|| one.of.clone(), Scalar::title);
-        let _ = writeln!(text, "# {title}: {} points\n", one.points);
-        let mut ranked: Vec<_> = one.parameters.iter().collect();
-        let of = |index: &Option<Index>| index.as_ref().map_or(-1.0, |index| index.value);
-        ranked.sort_by(|a, b| of(&b.pawn).total_cmp(&of(&a.pawn)).then(a.name.cmp(&b.name)));
-        let is_morris = one.parameters.iter().any(|own| own.effects.is_some());
-        text += if is_regime {
-            "| parameter | shares |\n| --- | --- |\n"
-        } else if is_morris {
-            "| parameter | first order | PAWN | mean size of effects | their deviation |\n| --- | --- | --- | --- | --- |\n"
-        } else {
-            "| parameter | first order | PAWN |\n| --- | --- | --- |\n"
-        };
-        for Indices { name, first_order, pawn, effects } in ranked {
-            if is_regime {
-                let _ = writeln!(text, "| `{name}` | {} |", index(pawn));
-                continue;
-            }
-            let _ = write!(text, "| `{name}` | {} | {} |", index(first_order), index(pawn));
-            if is_morris {
-                let size = |(index, deviation): &(Index, f64)| {
-                    let [size, low, high, deviation] =
-                        [index.value, index.interval[0], index.interval[1], *deviation]
-                            .map(|number| value::significant(number, 3));
-                    format!(" {size} ({low} … {high}) | {deviation} |")
-                };
-                text += &effects.as_ref().map_or_else(|| " – | – |".to_owned(), size);
-            }
-            text += "\n";
-        }
-        let what = if is_regime { "shares" } else { "PAWN" };
-        let chance = value::fixed(one.chance, 2);
-        let _ = writeln!(text, "\nA parameter without effect has {what} up to {chance} by chance.");
-        if one.points < FEW_POINTS {
-            let points = one.points;
-            let _ =
-                writeln!(text, "Only {points} points: the indices say little; give at least {FEW_POINTS}.");
-        }
-        text += "\n";
-    }
-    text
-}
-
-/// The indices as CSV: quantity, points, parameter, index, its value and its interval.
-pub fn csv(found: &[Sensitivity]) -> String {
-    let mut text = "quantity,points,parameter,index,value,low,high,by_chance\n".to_owned();
-    for one in found {
-        for Indices { name, first_order, pawn, effects } in &one.parameters {
-            let last_name = if one.of == REGIME { "shares" } else { "pawn" };
-            let sizes = effects.map(|(index, _)| index);
-            let deviations =
-                effects.map(|(_, deviation)| Index { value: deviation, interval: [f64::NAN; 2] });
-            let all = [
-                ("first_order", first_order),
-                (last_name, pawn),
-                ("effects_mean_size", &sizes),
-                ("effects_deviation", &deviations),
-            ];
-            for (kind, index) in all {
-                if let Some(Index { value, interval: [low, high] }) = index {
-                    let chance = if kind == last_name { one.chance.to_string() } else { String::new() };
-                    let [low, high] = [low, high]
-                        .map(|bound| if bound.is_nan() { String::new() } else { bound.to_string() });
-                    let Sensitivity { of, points, .. } = one;
-                    let _ = writeln!(text, "{of},{points},{name},{kind},{value},{low},{high},{chance}");
-                }
-            }
-        }
-    }
-    text
 }
 
 /// The points and their results as a table of numbers, for other programs: a column for each parameter that varies, then one for each

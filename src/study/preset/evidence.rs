@@ -29,6 +29,8 @@ pub struct ReferenceEvidence {
     pub elements: [usize; 3],
     /// Time step as a fraction of the stability limit.
     pub safety_factor: f64,
+    /// Where the limits of μ* come from, in words.
+    pub mu_star_source: String,
     /// The largest of its cases' uncertainties.
     pub mu_star_uncertainty: f64,
     /// Its results, each with its uncertainty.
@@ -47,8 +49,10 @@ pub struct CaseEvidence {
     pub frequency_hz: f64,
     /// Shares of stick, slip and separation.
     pub shares: [f64; 3],
-    /// Of the reference: the relative change of μ* that first order leaves beyond its mesh, from the next
-    /// coarser one.
+    /// Of the reference: μ* in the limit of fine meshes, from which errors are taken. Its own mesh is not fine enough for that.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mu_star_limit: Option<f64>,
+    /// Of the reference: how well this limit is known, relative to it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mu_star_uncertainty: Option<f64>,
 }
@@ -69,11 +73,11 @@ pub struct PresetEvidence {
     pub drift_tolerance: f64,
     /// Its results.
     pub cases: Vec<CaseEvidence>,
-    /// Largest relative error of μ*.
+    /// Largest relative error of μ*, from the limit of fine meshes.
     pub mu_star_error: f64,
-    /// Largest relative error of the frequency.
+    /// Largest relative error of the frequency, from the reference's mesh.
     pub frequency_error: f64,
-    /// Largest absolute error of a share.
+    /// Largest absolute error of a share, from the reference's mesh.
     pub shares_error: f64,
     /// Nodes × steps of all cases over those of the standard preset.
     pub relative_cost: f64,
