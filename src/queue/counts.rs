@@ -32,11 +32,11 @@ impl Counts {
         self.pending + self.running + self.done + self.failed + self.cancelled
     }
 
-    fn from_rows(rows: Vec<(String, i64)>) -> Self {
+    fn from_rows(rows: Vec<(String, i64)>) -> Result<Self, QueueError> {
         let mut counts = Self::default();
         for (state, count) in rows {
             let count = count.unsigned_abs();
-            match JobState::from_column(&state) {
+            match JobState::from_column(&state)? {
                 JobState::Pending => counts.pending = count,
                 JobState::Running => counts.running = count,
                 JobState::Done => counts.done = count,
@@ -44,7 +44,7 @@ impl Counts {
                 JobState::Cancelled => counts.cancelled = count,
             }
         }
-        counts
+        Ok(counts)
     }
 }
 
@@ -58,11 +58,11 @@ impl Queue {
             return of_study(&mut self.connection, id).await;
         }
         let rows = query("SELECT state, COUNT(*) FROM jobs GROUP BY state");
-        Ok(Counts::from_rows(rows.all(&mut self.connection).await?))
+        Counts::from_rows(rows.all(&mut self.connection).await?)
     }
 }
 
 pub(super) async fn of_study(connection: &mut Connection, study_id: i64) -> Result<Counts, QueueError> {
     let rows = query(OF_STUDY).bind(study_id).all(connection).await?;
-    Ok(Counts::from_rows(rows))
+    Counts::from_rows(rows)
 }

@@ -14,6 +14,7 @@ use super::options::WorkOptions;
 use super::planner::Planner;
 use super::progress::{Progress, RunningJob, Snapshot};
 use super::retry::RetryBackoff;
+use super::stall::Stall;
 use super::tally::Tally;
 use crate::queue::{
     Claim, ClaimedJob, Exchanged, Finished, FinishedOutcome, PlanClaim, Planned, Queue, QueueError, Scope,
@@ -40,6 +41,8 @@ pub struct Dispatcher<'a> {
     reports: UnboundedReceiver<Report>,
     /// Requests of threads that have not been answered.
     requests: Vec<Request>,
+    /// Ends of jobs that could not be stored before an error.
+    unstored: Vec<Finished>,
     /// Checkpoints that have not been stored.
     checkpoints: Vec<SealedCheckpoint>,
     /// Cost and progress of every running job, by key.
@@ -48,6 +51,7 @@ pub struct Dispatcher<'a> {
     timings: Vec<(f64, f64)>,
     heartbeat: Heartbeat,
     idle: IdleTimer,
+    stall: Stall,
     idle_exit: Option<Duration>,
     expected_s_per_cost: [f64; 2],
     planner: Option<&'static dyn Planner>,
@@ -80,11 +84,13 @@ impl<'a> Dispatcher<'a> {
             executor,
             reports,
             requests: Vec::new(),
+            unstored: Vec::new(),
             checkpoints: Vec::new(),
             running: BTreeMap::new(),
             timings: Vec::new(),
             heartbeat,
             idle: IdleTimer::default(),
+            stall: Stall::default(),
             idle_exit: options.idle_exit,
             expected_s_per_cost: options.expected_s_per_cost,
             planner: options.planner,
@@ -101,7 +107,13 @@ impl<'a> Dispatcher<'a> {
         loop {
             self.store_checkpoints(progress).await;
             let requests = self.take_answerable_requests();
-            let exchanged = self.exchange(&done, &requests, progress).await?;
+            let exchanged = match self.exchange(&done, &requests, progress).await {
+                Ok(exchanged) => exchanged,
+                Err(error) => {
+                    self.unstored = done;
+                    return Err(error);
+                }
+            };
             self.record_ends(&done, &exchanged.refused, progress);
             done.clear();
             for (request, jobs) in requests.into_iter().zip(exchanged.claimed) {
@@ -131,8 +143,22 @@ impl<'a> Dispatcher<'a> {
     }
 
     /// Leaves the database as far as it answers; what fails is ignored.
-    pub async fn unregister(&mut self) {
+    async fn unregister(&mut self) {
         let _ = self.queue.unregister().await;
+    }
+
+    /// After an error that ends the worker: leaves the database as far as it answers. If the database was deleted, moved or
+    /// replaced, all results are put where they can be found; the error says where.
+    pub async fn abort(&mut self, error: QueueError) -> QueueError {
+        if !matches!(error, QueueError::Displaced { .. }) {
+            self.unregister().await;
+            return error;
+        }
+        let mut ended = std::mem::take(&mut self.unstored);
+        while let Ok(report) = self.reports.try_recv() {
+            self.accept(report, &mut ended);
+        }
+        self.queue.rescue(&ended, error).await
     }
 
     /// Unregisters the worker and counts the jobs for the last time.
@@ -144,7 +170,8 @@ impl<'a> Dispatcher<'a> {
                 error => error,
             };
             match left {
-                Ok(()) => return Ok(()),
+                // What was counted is there, and not only in memory.
+                Ok(()) => return self.queue.ensure_place().await,
                 Err(error) => backoff.wait(error, self.interrupt, progress).await?,
             }
         }
@@ -155,7 +182,11 @@ impl<'a> Dispatcher<'a> {
         if self.interrupt.is_raised() {
             return Ok(true);
         }
-        if self.tally.counts.pending > 0 || !self.idle.is_poll_due() {
+        if self.tally.counts.pending > 0 {
+            self.note_unclaimed().await?;
+            return Ok(false);
+        }
+        if !self.idle.is_poll_due() {
             return Ok(false);
         }
         let backoff = RetryBackoff::new();
@@ -238,9 +269,19 @@ impl<'a> Dispatcher<'a> {
         let has_planned = self.plan_waves(progress).await?;
         // The tally may be older than the changes by other workers.
         let open = self.queue.open_jobs(self.scope).await?;
+        if open.has_pending || open.has_running && self.tally.counts.running == 0 {
+            self.note_unclaimed().await?;
+        } else {
+            self.stall.reset();
+        }
         if open.has_pending || has_planned {
             self.tally.invalidate();
             return Ok(false);
+        }
+        if open.has_running {
+            for advice in self.queue.stopped_workers().await? {
+                progress.waiting(&advice);
+            }
         }
         // A wave that another worker plans will have jobs for this one, too.
         let may_grow = open.has_plans && self.planner.is_some();
@@ -248,6 +289,23 @@ impl<'a> Dispatcher<'a> {
         // Exits even if other workers are still running jobs, unless one of them has missed a heartbeat: its jobs may
         // come back.
         Ok(self.idle.elapsed() >= limit && !(open.has_running && self.queue.has_missing_workers().await?))
+    }
+
+    /// A look found jobs that this worker, which runs none, has not claimed.
+    ///
+    /// # Errors
+    /// If nobody else runs a job either, and this has been so for too long.
+    async fn note_unclaimed(&mut self) -> Result<(), QueueError> {
+        if self.tally.counts.running == 0 && !self.stall.is_over_limit() {
+            return Ok(());
+        }
+        // The tally may be old.
+        self.tally.query(self.queue, self.scope).await?;
+        if self.tally.counts.running == 0 {
+            return Err(self.queue.contradiction().await?);
+        }
+        self.stall.reset();
+        Ok(())
     }
 
     fn accept(&mut self, report: Report, done: &mut Vec<Finished>) {
@@ -291,6 +349,7 @@ impl<'a> Dispatcher<'a> {
         }
         if !jobs.is_empty() {
             self.idle.reset();
+            self.stall.reset();
         }
         self.tally.add_claimed(jobs.len() as u64);
         let assignments = jobs.into_iter().map(|job| {
@@ -354,7 +413,7 @@ impl<'a> Dispatcher<'a> {
             match exchanged {
                 Ok(exchanged) => return Ok(exchanged),
                 // Also after an interruption: finished work must not be lost.
-                Err(error @ QueueError::Locked(_)) => progress.waiting(&error.to_string()),
+                Err(error @ QueueError::Locked { .. }) => progress.waiting(&error.to_string()),
                 Err(error) => backoff.wait(error, self.interrupt, progress).await?,
             }
         }

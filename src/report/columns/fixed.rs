@@ -19,7 +19,7 @@ pub static PLAIN: [Column; 25] = [
     Column::of_row("job", "", Job, "key of the job", |row| row.job.as_str().into()),
     Column::of_row("omega_rpm", "rpm", Job, "rotation speed ω of the disk", |row| row.omega_rpm.into()),
     Column::of_row("mu", "", Job, "local (Coulomb) friction coefficient μ", |row| row.mu.into()),
-    Column::of_row("status", "", Job, "how far the job is, or how its run ended: pending, running, cancelled, failed, periodic, decayed, not_periodic, completed, unstable", |row| row.status().into()),
+    Column::of_row("status", "", Job, "how far the job is, or how its run ended: pending, running, cancelled, failed, unreadable (its result is damaged or of another version), periodic, decayed, not_periodic, completed, unstable", |row| row.status().into()),
     Column::of_row("regime", "", Result, "contact regime: stable, stick_slip, stick_slip_separation, slip_separation, undecided", |row| of(row, |record| record.regime.name())),
     Column::of_row("mu_star", "", Result, "macroscopic friction coefficient μ* = ⟨T⟩/⟨F⟩ with the tangential force T at the clamp", |row| of(row, |record| record.mu_star)),
     Column::of_row("mu_star_se", "", Result, "standard error of mu_star over the cycles; of a stable job, over equal parts of the window", |row| of(row, |record| record.mu_star_se)),
@@ -120,6 +120,7 @@ fn of<'a, T: Into<Value>>(row: &'a JobRow, read: impl FnOnce(&'a JobRecord) -> T
 fn error(row: &JobRow) -> Value {
     match &row.state {
         RowState::Failed { error } => error.as_str().into(),
+        RowState::Unreadable { reason } => reason.as_str().into(),
         _ => Value::Null,
     }
 }

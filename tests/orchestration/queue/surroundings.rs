@@ -30,7 +30,7 @@ async fn a_lock_that_is_kept() {
         queue.cancel("a").await.unwrap_err(),
     ];
     for error in errors {
-        assert!(matches!(error, QueueError::Locked(_)), "{error:?}");
+        assert!(matches!(error, QueueError::Locked { .. }), "{error:?}");
         assert!(error.to_string().contains("another program holds a lock"), "{error}");
     }
     let mut reader = Queue::open_with(sandbox.location(), sandbox.clock.clock(), impatient()).await.unwrap();
