@@ -3,7 +3,7 @@
 use std::time::{Duration, Instant};
 
 /// How long a worker that is alone tries to get at unfinished jobs. Its tries are a fraction of a second apart.
-const LIMIT: Duration = Duration::from_secs(10);
+const LIMIT: Duration = Duration::from_secs(5);
 
 /// Notices that jobs are unfinished although nobody runs them, and that they cannot be claimed.
 ///

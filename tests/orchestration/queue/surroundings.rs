@@ -65,6 +65,29 @@ async fn a_full_disk() {
     queue.close().await.unwrap();
 }
 
+/// Protects: a worker that finds no room to register learns that the disk is full, and can claim nothing.
+#[tokio::test]
+async fn a_full_disk_at_the_beginning() {
+    let sandbox = Sandbox::new();
+    let Some(mount) = Mount::new(sandbox.folder.path(), "size=2M") else { return };
+    let mut queue = Queue::open(sandbox.location(), sandbox.clock.clock()).await.unwrap();
+    queue.submit(&study("a", &["x"])).await.unwrap();
+    // This is more than the free space.
+    let _ = fs::write(sandbox.folder.path().join("filler"), vec![0; 3_000_000]);
+    let worker = tribosweep::queue::Worker::this_process(1, "test", "provenance");
+    let error = loop {
+        // The page of the first workers may be in the log already.
+        match queue.register(&worker).await {
+            Ok(()) => {}
+            Err(error) => break error,
+        }
+    };
+    assert!(matches!(error, QueueError::DiskFull(_)), "{error:?}");
+    mount.remount("size=20M");
+    queue.register(&worker).await.unwrap();
+    assert_eq!(claim(&mut queue, Scope::All, 1).await.len(), 1);
+}
+
 /// Protects: a read-only database can be read without changing anything, and the error of a write says what is wrong.
 #[tokio::test]
 async fn a_read_only_folder() {
