@@ -89,7 +89,9 @@ mod tests {
         };
         for (signal, is_expected) in [("-STOP", true), ("-CONT", false)] {
             send(signal);
+            let begun = std::time::Instant::now();
             while is_stopped(child.id()) != is_expected {
+                assert!(begun.elapsed().as_secs() < 30, "{signal} is not seen");
                 std::thread::yield_now();
             }
             assert_eq!(presence(child.id(), started), Presence::Alive);

@@ -1,7 +1,7 @@
 //! Reading all that a database has: results, specifications, final motions and checkpoints.
 
 use super::error::SweepError;
-use super::rows::{read_record, report_row};
+use super::rows::{RowParameters, read_record, report_row};
 use super::work::job_key;
 use crate::queue::{Finding, Integrity, Queue, Rows, StudyRow};
 use crate::spec::JobSpec;
@@ -44,6 +44,7 @@ pub async fn examine_deeply(queue: &mut Queue) -> Vec<Finding> {
     for (subject, found) in [
         ("results", results(queue).await),
         ("specifications", specifications(queue).await),
+        ("parameters", parameters(queue).await),
         ("motions", motions(queue).await),
         ("checkpoints", checkpoints(queue).await),
     ] {
@@ -135,6 +136,30 @@ async fn specifications(queue: &mut Queue) -> Found {
     let is_problem = unreadable.count + changed.count > 0;
     let advice = "; submit the studies again, then `tribosweep retry` them";
     Ok((if is_problem { text + advice } else { text }, is_problem))
+}
+
+async fn parameters(queue: &mut Queue) -> Found {
+    let (mut read, mut damaged) = (0_u64, Vec::new());
+    for study in queue.studies().await? {
+        let mut wrong = 0_u64;
+        queue
+            .each_parameters(&study.name, |text| {
+                read += 1;
+                wrong += u64::from(serde_json::from_str::<RowParameters>(text).is_err());
+            })
+            .await?;
+        if wrong > 0 {
+            damaged.push(format!("{wrong} of {}", study.name));
+        }
+    }
+    if damaged.is_empty() {
+        return Ok((format!("{read} rows read"), false));
+    }
+    let damaged = damaged.join(", ");
+    Ok((
+        format!("{read} rows read, damaged: {damaged}; submit these studies again, which writes them anew"),
+        true,
+    ))
 }
 
 async fn motions(queue: &mut Queue) -> Found {

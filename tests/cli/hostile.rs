@@ -134,6 +134,9 @@ async fn damaged_results() {
     assert_eq!(states[..2], [unreadable.clone(), unreadable]);
     assert_eq!(states[2].1, rows(&before)[2]["mu_star"]);
     assert!(folder.read("reports/study/report.md").contains("does not have its digest"));
+    let shown: serde_json::Value =
+        serde_json::from_str(&folder.ok(&format!("show {} --json", jobs[0]))).unwrap();
+    assert!(shown["record"].is_null() && shown["unreadable"].is_string(), "{shown}");
     let deep = stdout(&folder.command("doctor --deep").assert().code(2));
     let line = deep.lines().find(|line| line.contains("results ")).unwrap();
     assert!(line.starts_with("PROBLEM") && line.contains("3 read, 1 without a digest"), "{deep}");
@@ -161,6 +164,10 @@ async fn damaged_specifications() {
     .await;
     let deep = stdout(&folder.command("doctor --deep").assert().code(2));
     assert!(deep.contains("2 read, changed, so that they are not those of their keys: 1 ("), "{deep}");
+    // The parameters of a row are written anew with the study.
+    change(&folder, "UPDATE study_jobs SET parameters = 'x' WHERE ordinal = 1").await;
+    let deep = stdout(&folder.command("doctor --deep").assert().code(2));
+    assert!(deep.contains("2 rows read, damaged: 1 of study"), "{deep}");
     let failed = stderr(&folder.command("work").assert().code(1));
     assert!(failed.contains("submit the study again, then `tribosweep retry` it"), "{failed}");
     folder.ok("submit study.json");
