@@ -17,8 +17,7 @@ use super::retry::RetryBackoff;
 use super::stall::Stall;
 use super::tally::Tally;
 use crate::queue::{
-    Claim, ClaimedJob, Exchanged, Finished, FinishedOutcome, PlanClaim, Planned, Queue, QueueError, Scope,
-    StudyRow, TakenBack,
+    Claim, ClaimedJob, Counts, Exchanged, Finished, FinishedOutcome, Queue, QueueError, Scope, TakenBack,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -26,17 +25,14 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::UnboundedReceiver;
 
 /// Longest time without a turn: how often progress is shown when no job ends.
-const TICK: Duration = Duration::from_millis(250);
-
-/// Shortest time between two looks for waves that are due, while jobs run here: most studies have none.
-const PLAN_PAUSE: Duration = Duration::from_secs(1);
+pub(super) const TICK: Duration = Duration::from_millis(250);
 
 /// Turns between the database and the solver threads.
 pub struct Dispatcher<'a> {
-    queue: &'a mut Queue,
-    scope: &'a Scope,
+    pub(super) queue: &'a mut Queue,
+    pub(super) scope: &'a Scope,
     threads: usize,
-    interrupt: &'a Interrupt,
+    pub(super) interrupt: &'a Interrupt,
     executor: Executor,
     reports: UnboundedReceiver<Report>,
     /// Requests of threads that have not been answered.
@@ -54,13 +50,13 @@ pub struct Dispatcher<'a> {
     stall: Stall,
     idle_exit: Option<Duration>,
     expected_s_per_cost: [f64; 2],
-    planner: Option<&'static dyn Planner>,
+    pub(super) planner: Option<&'static dyn Planner>,
     /// When studies that grow were last looked for.
-    last_plan: Option<Instant>,
+    pub(super) last_plan: Option<Instant>,
     /// Whether the database knows that this worker was asked to stop.
     is_stopping: bool,
     taken_back: TakenBack,
-    tally: Tally,
+    pub(super) tally: Tally,
 }
 
 impl<'a> Dispatcher<'a> {
@@ -199,69 +195,6 @@ impl<'a> Dispatcher<'a> {
         }
     }
 
-    /// Plans the waves that are due, if it has not looked for them within [`PLAN_PAUSE`]. Returns whether there are new jobs.
-    async fn plan_waves(&mut self, progress: &mut dyn Progress) -> Result<bool, QueueError> {
-        let Some(planner) = self.planner else { return Ok(false) };
-        if self.interrupt.is_raised() || self.last_plan.is_some_and(|last| last.elapsed() < PLAN_PAUSE) {
-            return Ok(false);
-        }
-        self.last_plan = Some(Instant::now());
-        let mut has_planned = false;
-        match self.plan_due(planner, &mut has_planned, progress).await {
-            // It is tried again at the next turn.
-            Err(error) if error.is_transient() => {}
-            planned => planned?,
-        }
-        if has_planned {
-            self.tally.invalidate();
-        }
-        Ok(has_planned)
-    }
-
-    async fn plan_due(
-        &mut self,
-        planner: &'static dyn Planner,
-        has_planned: &mut bool,
-        progress: &mut dyn Progress,
-    ) -> Result<(), QueueError> {
-        while !self.interrupt.is_raised()
-            && let Some(claim) = self.queue.claim_plan(self.scope).await?
-        {
-            let rows = self.queue.rows(&claim.study).await?;
-            let planned = self.plan_aside(planner, claim.clone(), rows).await?;
-            if self.queue.store_plan(&claim, &planned).await? {
-                *has_planned |= matches!(planned, Planned::Wave { .. });
-                progress.planned(&claim.study, claim.wave, &planned);
-            }
-        }
-        Ok(())
-    }
-
-    /// Plans a wave on a thread of its own. Heartbeats go on meanwhile.
-    async fn plan_aside(
-        &mut self,
-        planner: &'static dyn Planner,
-        claim: PlanClaim,
-        rows: Vec<StudyRow>,
-    ) -> Result<Planned, QueueError> {
-        let mut plan = tokio::task::spawn_blocking(move || planner.plan(&claim, &rows));
-        loop {
-            match tokio::time::timeout(TICK, &mut plan).await {
-                Ok(Ok(planned)) => return Ok(planned),
-                // A panic is a bug, but it must not end the worker, which has other studies.
-                Ok(Err(error)) => {
-                    return Ok(Planned::Failed {
-                        error: format!("internal error (please report it): {error}"),
-                    });
-                }
-                Err(_) => match self.keep_alive().await {
-                    Err(error) if error.is_transient() => {}
-                    kept_alive => kept_alive?,
-                },
-            }
-        }
-    }
-
     /// Looks for new jobs and for jobs of dead workers; returns whether there is nothing more to wait for.
     async fn poll_for_jobs(&mut self, progress: &mut dyn Progress) -> Result<bool, QueueError> {
         self.take_back().await?;
@@ -301,7 +234,11 @@ impl<'a> Dispatcher<'a> {
         }
         // The tally may be old.
         self.tally.query(self.queue, self.scope).await?;
-        if self.tally.counts.running == 0 {
+        let open = self.queue.open_jobs(self.scope).await?;
+        let Counts { pending, running, .. } = self.tally.counts;
+        let is_stuck =
+            if pending > 0 { self.stall.has_tried() } else { open.has_pending || open.has_running };
+        if running == 0 && is_stuck {
             return Err(self.queue.contradiction().await?);
         }
         self.stall.reset();
@@ -344,6 +281,7 @@ impl<'a> Dispatcher<'a> {
         if jobs.is_empty() && request.batch.is_none() {
             // Other workers were faster. No job is claimed until the database has been queried again.
             self.tally.counts.pending = 0;
+            self.stall.note_empty_claim();
             self.requests.push(request);
             return;
         }
@@ -437,7 +375,7 @@ impl<'a> Dispatcher<'a> {
 
     /// Sends a heartbeat if one is due, which extends the leases of the jobs that run here, and takes back the jobs of
     /// dead workers.
-    async fn keep_alive(&mut self) -> Result<(), QueueError> {
+    pub(super) async fn keep_alive(&mut self) -> Result<(), QueueError> {
         if self.interrupt.is_raised() && !self.is_stopping {
             // From now on a sudden end of this process is no crash. If the database does not learn it, it is one.
             self.is_stopping = self.queue.mark_stopping().await.is_ok();

@@ -36,6 +36,7 @@ mod retry;
 mod schedule;
 mod stall;
 mod tally;
+mod waves;
 mod work;
 
 pub use eta::Eta;

@@ -12,6 +12,7 @@ const LIMIT: Duration = Duration::from_secs(5);
 #[derive(Debug, Default)]
 pub struct Stall {
     since: Option<Instant>,
+    has_tried: bool,
 }
 
 impl Stall {
@@ -20,9 +21,19 @@ impl Stall {
         self.is_over_limit_at(Instant::now())
     }
 
+    /// A claim has returned no job.
+    pub fn note_empty_claim(&mut self) {
+        self.has_tried = true;
+    }
+
+    /// Whether claims have returned no job since the last reset. On a busy machine the threads may not have asked for any.
+    pub fn has_tried(&self) -> bool {
+        self.has_tried
+    }
+
     /// A job was claimed, or somebody runs one, or nothing is left.
     pub fn reset(&mut self) {
-        self.since = None;
+        *self = Self::default();
     }
 
     fn is_over_limit_at(&mut self, now: Instant) -> bool {
@@ -42,7 +53,10 @@ mod tests {
         let at = |share: f64| begun + LIMIT.mul_f64(share);
         assert!(!stall.is_over_limit_at(begun));
         assert!(!stall.is_over_limit_at(at(0.9)));
+        stall.note_empty_claim();
+        assert!(stall.has_tried());
         stall.reset();
+        assert!(!stall.has_tried());
         assert!(!stall.is_over_limit_at(at(1.1)));
         assert!(!stall.is_over_limit_at(at(2.0)));
         assert!(stall.is_over_limit_at(at(2.1)));

@@ -99,7 +99,11 @@ async fn final_states_have_digests(sandbox: &Sandbox) {
     queue.submit(&study).await.unwrap();
     for (statement, state, is_damaged) in [
         ("SELECT 1", Some(vec![1, 2, 3]), false),
-        ("UPDATE final_states SET bytes = (SELECT MAX(bytes) FROM final_states)", None, true),
+        (
+            "UPDATE final_states SET bytes = (SELECT f.bytes FROM final_states AS f ORDER BY f.job_id DESC LIMIT 1)",
+            None,
+            true,
+        ),
         ("UPDATE final_states SET digest = NULL", Some(vec![4, 5, 6]), false),
     ] {
         sandbox.run(statement).await;

@@ -111,7 +111,7 @@ async fn a_damaged_motion_is_refused() {
     let mut child = solvable("child", &spec(0.2, 0.001));
     child.parent = Some("parent".into());
     submit(&mut queue, "study", vec![job("parent", "{}"), child]).await;
-    sandbox.run("UPDATE final_states SET bytes = zeroblob(40) || x'0000000000000100'").await;
+    sandbox.run("UPDATE final_states SET bytes = zeroblob(56)").await;
     let options = WorkOptions::new(1);
     work(&mut queue, &Scope::All, options, &Interrupt::default(), &mut SilentProgress).await.unwrap();
     let error = row(&mut queue, "study", "child").await.error.unwrap();
