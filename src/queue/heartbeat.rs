@@ -57,7 +57,14 @@ impl Queue {
     }
 
     /// Gives back jobs that this worker owns in the database and does not know of. It would wait for itself without end.
+    ///
+    /// # Errors
+    /// If the file is damaged: then their outcomes may have been refused because an index does not have them, and it would
+    /// run them again and again.
     async fn release_unknown(&mut self) -> Result<(), QueueError> {
+        if let damaged @ QueueError::Damaged(_) = self.contradiction().await? {
+            return Err(damaged);
+        }
         let Registration { id, held, .. } = self.registration();
         let (owner, held) = (*id, held.clone());
         self.write_shared(async |connection, _| {
