@@ -25,6 +25,8 @@ pub(crate) fn log_unreadable(unreadable: &Unreadable) -> u8 {
 /// As [`log_unreadable`], for the rows of a report.
 pub(crate) fn log_unreadable_rows(rows: &[JobRow]) -> u8 {
     let mut unreadable = Unreadable::default();
-    rows.iter().for_each(|row| unreadable.note(row));
+    for row in rows {
+        unreadable.note(row);
+    }
     log_unreadable(&unreadable)
 }

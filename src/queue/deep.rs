@@ -50,6 +50,8 @@ const FINAL_STATES: &str = "
     SELECT f.job_id, j.key, f.bytes, f.digest FROM final_states AS f LEFT JOIN jobs AS j ON j.id = f.job_id
     WHERE f.job_id > $1 ORDER BY f.job_id LIMIT 20";
 
+type StateColumns = (i64, Option<String>, Vec<u8>, Option<String>);
+
 const CHECKPOINTS: &str = "SELECT job_id, bytes FROM checkpoints WHERE job_id > $1 ORDER BY job_id LIMIT 20";
 
 impl Queue {
@@ -100,8 +102,7 @@ impl Queue {
     ) -> Result<(), QueueError> {
         let mut last = i64::MIN;
         loop {
-            let page: Vec<(i64, Option<String>, Vec<u8>, Option<String>)> =
-                query(FINAL_STATES).bind(last).all(&mut self.connection).await?;
+            let page: Vec<StateColumns> = query(FINAL_STATES).bind(last).all(&mut self.connection).await?;
             let Some(row) = page.last() else { return Ok(()) };
             last = row.0;
             for (_, key, bytes, digest) in page {

@@ -120,13 +120,13 @@ impl Queue {
             let studies = query(STUDIES).bind(columns.0).scalars(&mut self.connection).await?;
             let digest: Option<(Option<String>,)> =
                 query(DIGEST).bind(columns.0).optional(&mut self.connection).await?;
-            jobs.push(details(columns, studies, digest.and_then(|(digest,)| digest))?);
+            jobs.push(details(columns, studies, digest.as_ref().and_then(|(digest,)| digest.as_deref()))?);
         }
         Ok(jobs)
     }
 }
 
-fn details(columns: Columns, studies: Vec<String>, digest: Option<String>) -> Result<JobDetails, QueueError> {
+fn details(columns: Columns, studies: Vec<String>, digest: Option<&str>) -> Result<JobDetails, QueueError> {
     let (
         _,
         key,
@@ -147,7 +147,7 @@ fn details(columns: Columns, studies: Vec<String>, digest: Option<String>) -> Re
     ) = columns;
     let has_result = record.is_some() || error.is_some();
     let expected = || digest::of_result(&key, record.as_deref(), error.as_deref());
-    let integrity = Integrity::of(digest.as_deref().filter(|_| has_result), expected);
+    let integrity = Integrity::of(digest.filter(|_| has_result), expected);
     Ok(JobDetails {
         key,
         state: JobState::from_column(&state)?,

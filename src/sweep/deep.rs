@@ -5,7 +5,8 @@ use super::rows::{RowParameters, read_record, report_row};
 use super::work::job_key;
 use crate::queue::{Finding, Integrity, Queue, Rows, StudyRow};
 use crate::spec::JobSpec;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeSet, HashSet};
+use std::fmt::Write;
 use std::ops::ControlFlow;
 
 /// Keys that a finding lists.
@@ -73,11 +74,11 @@ async fn results(queue: &mut Queue) -> Found {
         .await?;
     let mut text = format!("{read} read");
     if without > 0 {
-        text += &format!(", {without} without a digest (an earlier version stored them)");
+        let _ = write!(text, ", {without} without a digest (an earlier version stored them)");
     }
     for (keys, what) in [(&damaged, "damaged"), (&unreadable, "of another version or damaged")] {
         if keys.count > 0 {
-            text += &format!(", {what}: {}", keys.in_words());
+            let _ = write!(text, ", {what}: {}", keys.in_words());
         }
     }
     let is_problem = damaged.count + unreadable.count > 0;
@@ -103,34 +104,38 @@ async fn specifications(queue: &mut Queue) -> Found {
     if !others.is_empty() {
         let mut of_studies = HashSet::new();
         for study in queue.studies().await? {
-            let mut keys = BTreeMap::new();
+            let mut keys = BTreeSet::new();
             queue
                 .each_page(&study.name, Rows::All, |page| {
-                    keys.extend(page.into_iter().map(|row| (row.key, ())));
+                    keys.extend(page.into_iter().map(|row| row.key));
                     ControlFlow::Continue(())
                 })
                 .await?;
-            let strange = keys.keys().filter(|key| others.contains(*key)).count();
+            let strange = keys.iter().filter(|key| others.contains(*key)).count();
             if strange < keys.len() {
-                keys.keys().filter(|key| others.contains(*key)).for_each(|key| changed.add(key));
+                for key in keys.iter().filter(|key| others.contains(*key)) {
+                    changed.add(key);
+                }
             } else {
                 of_others += strange;
             }
-            of_studies.extend(keys.into_keys());
+            of_studies.extend(keys);
         }
         of_others += others.iter().filter(|key| !of_studies.contains(*key)).count();
     }
     let mut text = format!("{read} read");
     if of_others > 0 {
-        text +=
-            &format!(", {of_others} of another version of the solver, so that their keys cannot be checked");
+        let _ = write!(
+            text,
+            ", {of_others} of another version of the solver, so that their keys cannot be checked"
+        );
     }
     for (keys, what) in [
         (&unreadable, "missing, damaged or of another version"),
         (&changed, "changed, so that they are not those of their keys"),
     ] {
         if keys.count > 0 {
-            text += &format!(", {what}: {}", keys.in_words());
+            let _ = write!(text, ", {what}: {}", keys.in_words());
         }
     }
     let is_problem = unreadable.count + changed.count > 0;
@@ -176,10 +181,10 @@ async fn motions(queue: &mut Queue) -> Found {
         .await?;
     let mut text = format!("{read} read");
     if without > 0 {
-        text += &format!(", {without} without a digest (an earlier version stored them)");
+        let _ = write!(text, ", {without} without a digest (an earlier version stored them)");
     }
     if damaged.count > 0 {
-        text += &format!(", damaged: {}{RUN_AGAIN}", damaged.in_words());
+        let _ = write!(text, ", damaged: {}{RUN_AGAIN}", damaged.in_words());
     }
     Ok((text, damaged.count > 0))
 }

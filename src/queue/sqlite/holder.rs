@@ -21,11 +21,10 @@ pub(super) fn in_words(path: &Path) -> Option<String> {
     }
     let name = fs::read_to_string(format!("/proc/{pid}/comm")).ok()?;
     let name: String = name.trim().chars().filter(|c| !c.is_control()).collect();
-    let advice = match process::is_stopped(pid) {
-        true => {
-            format!(", which is stopped: continue it (`kill -CONT {pid}`) or end it (`kill -KILL {pid}`)")
-        }
-        false => String::new(),
+    let advice = if process::is_stopped(pid) {
+        format!(", which is stopped: continue it (`kill -CONT {pid}`) or end it (`kill -KILL {pid}`)")
+    } else {
+        String::new()
     };
     Some(format!("process {pid} ({name}){advice}"))
 }

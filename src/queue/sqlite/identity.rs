@@ -22,20 +22,18 @@ impl Identity {
     /// # Errors
     /// Those of the system; [`ErrorKind::Unsupported`] where files have no such numbers. (There, on Windows, a file that
     /// `SQLite` has open can neither be deleted nor moved.)
-    pub fn of(path: &Path) -> io::Result<Self> {
-        Self::from_metadata(&fs::metadata(path)?)
-    }
-
     #[cfg(unix)]
-    fn from_metadata(metadata: &fs::Metadata) -> io::Result<Self> {
+    pub fn of(path: &Path) -> io::Result<Self> {
         use std::os::unix::fs::MetadataExt;
+        let metadata = fs::metadata(path)?;
         let born = metadata.created().ok().and_then(|time| time.duration_since(std::time::UNIX_EPOCH).ok());
         let born_ns = born.map_or(0, |since| since.as_nanos());
         Ok(Self { device: metadata.dev(), inode: metadata.ino(), born_ns })
     }
 
+    /// No file has an identity here.
     #[cfg(not(unix))]
-    fn from_metadata(_: &fs::Metadata) -> io::Result<Self> {
+    pub fn of(_: &Path) -> io::Result<Self> {
         Err(ErrorKind::Unsupported.into())
     }
 
