@@ -111,7 +111,7 @@ const INSERT_JOBS: Statement = Statement::each(
     ON CONFLICT (key) DO UPDATE SET batch = excluded.batch WHERE jobs.batch <> excluded.batch",
 );
 
-/// `SQLite`: CROSS JOIN fixes the order of the loops, so that a key is looked up for each row.
+/// `SQLite`: CROSS JOIN fixes the order of the loops, so that a key is looked up for each row (below, too).
 const INSERT_PAYLOADS: Statement = Statement::each(
     "
     INSERT INTO payloads (job_id, payload)
@@ -138,7 +138,6 @@ const REPAIR_PAYLOADS: Statement = Statement::each(
 const FAILED: &str = "
     SELECT j.key FROM study_jobs AS m JOIN jobs AS j ON j.id = m.job_id WHERE m.study_id = $1 AND j.state = 'failed'";
 
-/// The key is looked up for each row, as above.
 const SET_PRIORITY: Statement = Statement::each(
     "
     UPDATE jobs SET priority = e.value ->> 4
