@@ -2,7 +2,7 @@
 """Kills worker processes at random, then compares the export with that of an undisturbed run.
 
     cargo build --release
-    python3 scripts/torture.py [--kills 300] [--workers 3] [--jobs 6000] [--seed 1]
+    python3 scripts/torture.py [--kills 300] [--workers 3] [--jobs 6000] [--seed 1] [--places 20]
 
 Several processes work on one database. Repeatedly, one of them is killed (kill -9), paused, or interrupted. Sometimes the
 database's files are copied while all processes are paused, and the copy is opened. Some processes save checkpoints of their
@@ -12,6 +12,11 @@ After each kill, all earlier results must exist unchanged. At the end, the expor
 undisturbed run except for the run times; each job must have one result; and the number of repeated jobs must not exceed the
 number of jobs that the killed processes held. The script ends earlier when no job is left. It prints the counts and exits
 with an error if a check fails. It needs only Python's standard library.
+
+Then the database of a second sweep is attacked in its place, `--places` times: it is moved, deleted or replaced by another one
+while workers have it open, its folder becomes read-only, or its disk fills up. Each worker must end with 2 and name the file
+that has the results, which must be all there; a database that took the place must keep every byte; and at the end the export
+must be that of the undisturbed run. Filling the disk and working as another user need root; what is left out is said.
 """
 
 import argparse
@@ -21,6 +26,7 @@ import json
 import os
 import pathlib
 import random
+import re
 import shutil
 import signal
 import sqlite3
@@ -156,12 +162,134 @@ def torture(sweep, options, draw):
     return counts
 
 
+NAMED = re.compile(r"Everything that was stored.* is in (.+?): move that file")
+
+
+class Place:
+    """A sweep on a disk of its own, if this process may mount one."""
+
+    def __init__(self, program, folder, jobs):
+        mount = ["mount", "-t", "tmpfs", "-o", "size=24M", "tmpfs", folder]
+        self.is_mounted = subprocess.run(mount, capture_output=True).returncode == 0
+        self.sweep = Sweep(program, folder, jobs)
+        self.folder = self.sweep.folder
+        self.database = self.folder / FILES[0]
+        self.sweep.call("submit", "torture.json")
+
+    def unmount(self):
+        if self.is_mounted:
+            subprocess.run(["umount", "-l", str(self.folder)])
+
+    def start(self, count, user=None):
+        def worker():
+            command = [self.sweep.program, "work", "--threads", "1", "--max-crashes", "1000000"]
+            return subprocess.Popen(
+                command, cwd=self.folder, user=user, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
+            )
+
+        return [worker() for _ in range(count)]
+
+    def displaced(self, workers):
+        """Waits for workers whose database has left its place, and puts one database with all their results there."""
+        named = set()
+        for worker in workers:
+            _, message = worker.communicate(timeout=120)
+            if worker.returncode == 0 and "0 left" in message:
+                continue
+            check(worker.returncode == 2, f"a worker ended with {worker.returncode}: {message}")
+            found = NAMED.search(message)
+            check(found, f"no file is named: {message}")
+            named.add(found[1])
+        check(named, "all workers had ended before")
+        first, *others = sorted(named)
+        pathlib.Path(first).rename(self.database)
+        if others:
+            self.sweep.call("merge", *others)
+        for other in others:
+            pathlib.Path(other).unlink()
+
+    def move(self, workers, draw):
+        self.database.rename(self.folder / "moved.db")
+        self.displaced(workers)
+
+    def delete(self, workers, draw):
+        for name in draw.sample(FILES, 3):
+            (self.folder / name).unlink(missing_ok=True)
+        self.displaced(workers)
+
+    def replace(self, workers, draw):
+        new, taken = self.folder / "new.db", self.folder / "taken.db"
+        self.sweep.call("--db", new.name, "submit", "torture.json", "--name", "other")
+        content = new.read_bytes()
+        new.rename(self.database)
+        for worker in workers:
+            worker.wait(timeout=120)
+        check(self.database.read_bytes() == content, "the new database was changed")
+        check("PROBLEM" not in self.sweep.call("doctor"), "the new database is damaged")
+        self.database.rename(taken)
+        self.displaced(workers)
+        taken.unlink()
+
+    def make_read_only(self, workers, draw):
+        modes = {path: path.stat().st_mode for path in [*self.folder.glob("tribosweep.db*"), self.folder]}
+        for path in modes:
+            path.chmod(0o555 if path.is_dir() else 0o444)
+        (late,) = self.start(1, "nobody")
+        _, message = late.communicate(timeout=120)
+        check(late.returncode == 2 and "cannot" in message, f"read-only: {late.returncode} {message}")
+        for path, mode in modes.items():
+            if path.exists():
+                path.chmod(mode)
+        self.interrupt(workers)
+
+    def fill(self, workers, draw):
+        filler = self.folder / "filler"
+        try:
+            filler.write_bytes(bytes(32_000_000))
+        except OSError:
+            pass
+        for worker in workers:
+            _, message = worker.communicate(timeout=120)
+            is_full = worker.returncode == 2 and "disk of the database is full" in message
+            check(is_full or worker.returncode == 0, f"full disk: {worker.returncode} {message}")
+        filler.unlink()
+
+    def interrupt(self, workers):
+        for worker in workers:
+            worker.send_signal(signal.SIGINT)
+        for worker in workers:
+            check(worker.wait(timeout=120) in (0, 3), f"a worker ended with {worker.returncode}")
+
+
+def attack_places(place, options, draw):
+    actions = [place.move, place.delete, place.replace]
+    actions += [place.make_read_only] if os.geteuid() == 0 else []
+    actions += [place.fill] if place.is_mounted else []
+    counts = dict.fromkeys([action.__name__ for action in actions], 0)
+    for number in range(options.places):
+        before = finished(place.sweep.export())
+        if len(before) > options.jobs - 200:
+            break
+        workers = place.start(options.workers)
+        time.sleep(draw.uniform(0.2, 1.0))
+        before = finished(place.sweep.export())
+        action = actions[number % len(actions)]
+        counts[action.__name__] += 1
+        action(workers, draw)
+        now = finished(place.sweep.export())
+        lost = [job for job, line in before.items() if now.get(job) != line]
+        check(not lost, f"{action.__name__}: lost or run again: {lost}")
+    place.sweep.call("work")
+    return counts
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--kills", type=int, default=300)
     parser.add_argument("--workers", type=int, default=3)
     parser.add_argument("--jobs", type=int, default=6000, help="a multiple of ten")
     parser.add_argument("--pause", type=float, default=0.05, help="longest time between two actions [s]")
+    parser.add_argument("--places", type=int, default=20, help="how often a database is attacked in its place")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--program", default=str(ROOT / "target/release/tribosweep"))
     options = parser.parse_args()
@@ -183,8 +311,19 @@ def main():
         # Jobs in lanes, jobs that wait for a lane, and jobs that have ended and are not stored yet.
         allowed = 3 * LANES * (counts["kills"] + counts["interrupts"])
         check(repeated <= allowed, f"{repeated} jobs repeated, at most {allowed} were running")
-    for name, count in counts.items():
+        with tempfile.TemporaryDirectory() as other:
+            pathlib.Path(other).chmod(0o755)
+            place = Place(options.program, other, options.jobs)
+            try:
+                attacks = attack_places(place, options, draw)
+                check(timeless(place.sweep.export()) == timeless(reference.export()), "after attacks, the export differs")
+            finally:
+                place.unmount()
+    for name, count in (counts | attacks).items():
         print(f"{name}: {count}")
+    left_out = {"make_read_only", "fill"} - attacks.keys()
+    if left_out:
+        print(f"left out, because they need root: {', '.join(sorted(left_out))}")
     print(f"jobs: {jobs}, results: {results}, repeated: {repeated}, lost: 0, recorded twice: 0")
     print(f"export: identical to the undisturbed run, in {time.monotonic() - begun:.0f} s")
 

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 /// The command did its work, and no job failed. Other workers may still be running jobs.
 pub(crate) const SUCCESS: u8 = 0;
-/// Some jobs failed; the others have results.
+/// Some jobs failed, or stored results cannot be read; the others have results.
 pub(crate) const SOME_FAILED: u8 = 1;
 /// The command could not do its work, or not all of it. Work that was done before the error is kept.
 pub(crate) const ERROR: u8 = 2;
@@ -14,9 +14,12 @@ pub(crate) const WORK_LEFT: u8 = 3;
 /// What the codes mean, as the help says it.
 const MEANINGS: [(u8, &str); 4] = [
     (SUCCESS, "All jobs succeeded, or the command did its work. Other workers may still run jobs."),
-    (SOME_FAILED, "Some jobs failed; the others have results."),
+    (SOME_FAILED, "Some jobs failed, or stored results cannot be read; the others have results."),
     (ERROR, "Error: bad input, usage or environment, such as a damaged database or a full disk."),
-    (WORK_LEFT, "Jobs are left: the command was interrupted, or jobs were cancelled while it ran."),
+    (
+        WORK_LEFT,
+        "Jobs are left: the command was interrupted, jobs were cancelled while it ran, or a stopped process holds them.",
+    ),
 ];
 
 /// The text about exit codes at the end of the help.

@@ -2,9 +2,9 @@
 
 use super::error::CliError;
 use super::output::{fill_file, stream};
-use crate::exit;
+use super::unreadable::log_unreadable;
 use crate::queue::{Location, Queue};
-use crate::sweep::{self, ExportColumns, ExportFormat};
+use crate::sweep::{self, ExportColumns, ExportFormat, Unreadable};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -53,15 +53,16 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         Format::Csv => ExportFormat::Csv,
         Format::Json => ExportFormat::JsonLines,
     };
+    let mut unreadable = Unreadable::default();
     let fill = |out: &mut dyn Write| {
         sweep::block_on(async {
             let mut queue = sweep::open_to_read(db.clone()).await?;
             let studies = if given.is_empty() { every_study(&mut queue).await? } else { given.clone() };
-            if args.windows {
-                sweep::export_windows(&mut queue, &studies, out).await?;
+            unreadable = if args.windows {
+                sweep::export_windows(&mut queue, &studies, out).await?
             } else {
-                sweep::export(&mut queue, &studies, columns, format, out).await?;
-            }
+                sweep::export(&mut queue, &studies, columns, format, out).await?
+            };
             queue.close().await?;
             Ok(())
         })
@@ -70,7 +71,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         Some(path) => fill_file(path, fill)?,
         None => stream(fill)?,
     }
-    Ok(exit::SUCCESS)
+    Ok(log_unreadable(&unreadable))
 }
 
 async fn every_study(queue: &mut Queue) -> Result<Vec<String>, CliError> {

@@ -40,6 +40,7 @@ mod stability;
 mod status;
 mod study_args;
 mod submit;
+mod unreadable;
 mod validate;
 mod warnings;
 mod work;
@@ -92,7 +93,7 @@ enum Command {
     Columns(columns::Args),
     /// Show everything about a job: its inputs, its whole result, and how the result was obtained.
     Show(show::Args),
-    /// Make failed and cancelled jobs of a study pending again.
+    /// Make failed and cancelled jobs of a study pending again, or those whose results cannot be read.
     Retry(retry::Args),
     /// Cancel the pending jobs of a study.
     Cancel(cancel::Args),
@@ -111,7 +112,7 @@ enum Command {
     /// Copy one or all studies with their results from one database to another; each is a file or on a server.
     Copy(merge::CopyArgs),
     /// Check the database and its environment for problems.
-    Doctor,
+    Doctor(doctor::Args),
     /// Solve one job in the foreground.
     Solve(solve::Args),
     /// Compute the complex modes of steady sliding at every point of a study, and the μ at which sliding becomes unstable.
@@ -156,7 +157,7 @@ pub fn main(cli: Cli) -> u8 {
         Command::Document(args) => document::run(&args, db),
         Command::Merge(args) => merge::run(&args, db),
         Command::Copy(args) => merge::copy(&args, db),
-        Command::Doctor => doctor::run(db),
+        Command::Doctor(args) => doctor::run(&args, db),
         Command::Solve(args) => solve::run(&args),
         Command::Stability(args) => stability::run(&args, db),
         Command::Inspect(args) => inspect::run(&args, db),

@@ -3,6 +3,7 @@
 use super::error::CliError;
 use super::output::{log, print};
 use super::signals::raise_on_signal;
+use super::unreadable::log_unreadable_rows;
 use crate::exit;
 use crate::queue::{Location, Queue};
 use crate::sweep::{self, ReportContent, ReportRequest, Revision};
@@ -70,14 +71,15 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let folder = args.out.of(&request.folder_name());
     sweep::block_on(async {
         let mut queue = sweep::open_to_read(db.clone()).await?;
+        let code;
         if let Some(interval_s) = args.watch {
-            watch(&mut queue, &request, &folder, interval_s).await?;
+            code = watch(&mut queue, &request, &folder, interval_s).await?;
         } else {
-            read_and_write(&mut queue, &request, &folder, None).await?;
+            code = read_and_write(&mut queue, &request, &folder, None).await?;
             print_page(&folder)?;
         }
         queue.close().await?;
-        Ok(exit::SUCCESS)
+        Ok(code)
     })
 }
 
@@ -90,9 +92,10 @@ async fn read_and_write(
     request: &ReportRequest,
     folder: &Path,
     refresh_s: Option<u32>,
-) -> Result<(), CliError> {
+) -> Result<u8, CliError> {
     let content = sweep::read_report(queue, request).await?;
-    write(queue, &content, folder, refresh_s).await
+    write(queue, &content, folder, refresh_s).await?;
+    Ok(log_unreadable_rows(&content.rows))
 }
 
 /// Writes a report and logs where it is.
@@ -116,11 +119,12 @@ async fn watch(
     request: &ReportRequest,
     folder: &Path,
     interval_s: u32,
-) -> Result<(), CliError> {
+) -> Result<u8, CliError> {
     let interrupt = Interrupt::default();
     let listener =
         tokio::spawn(raise_on_signal(interrupt.clone(), "the report will not be updated any more"));
     let mut last: Option<Vec<Revision>> = None;
+    let mut code = exit::SUCCESS;
     loop {
         // The revision is read before the rows: a change in between leads to another report.
         let mut revision = Vec::new();
@@ -129,7 +133,7 @@ async fn watch(
         }
         let is_last = revision.iter().all(Revision::is_finished) || interrupt.is_raised();
         if is_last || last.as_ref() != Some(&revision) {
-            read_and_write(queue, request, folder, Some(interval_s).filter(|_| !is_last)).await?;
+            code = read_and_write(queue, request, folder, Some(interval_s).filter(|_| !is_last)).await?;
         }
         if last.is_none() {
             print_page(folder)?;
@@ -146,7 +150,7 @@ async fn watch(
         }
     }
     listener.abort();
-    Ok(())
+    Ok(code)
 }
 
 /// Checks whether the folder of a report can be created and written to, and creates nothing.

@@ -16,22 +16,46 @@ pub(crate) struct Args {
     /// Retry failed jobs only, not cancelled ones.
     #[arg(long)]
     failed: bool,
+    /// Retry only jobs that have ended and whose stored result or final motion cannot be read, or is damaged. That result is
+    /// deleted.
+    #[arg(long, conflicts_with = "failed")]
+    unreadable: bool,
 }
 
 /// Makes the jobs pending again.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let name = sweep::study_name(&args.study)?;
+    if args.unreadable {
+        return run_again(&name, db);
+    }
     let which = if args.failed { Retry::Failed } else { Retry::All };
-    let retried = sweep::block_on(async {
+    let (retried, stopped) = sweep::block_on(async {
         let mut queue = sweep::open_to_change(db.clone()).await?;
         let retried = queue.retry(&name, which).await?;
+        let stopped = queue.stopped_workers().await?;
         queue.close().await?;
-        Ok::<_, CliError>(retried)
+        Ok::<_, CliError>((retried, stopped))
     })?;
     log_taken_back(retried.taken_back);
+    stopped.iter().for_each(log);
     let failed = value::count(retried.failed, "failed job");
     let cancelled = value::count(retried.cancelled, "cancelled job");
     let jobs = if args.failed { failed } else { format!("{failed} and {cancelled}") };
     log(format_args!("{name}: `retry` makes {jobs} pending again; `tribosweep work` runs pending jobs"));
+    Ok(exit::SUCCESS)
+}
+
+fn run_again(name: &str, db: &Location) -> Result<u8, CliError> {
+    let again = sweep::block_on(async {
+        let mut queue = sweep::open_to_change(db.clone()).await?;
+        let keys = sweep::unreadable_jobs(&mut queue, name).await?;
+        let again = if keys.is_empty() { 0 } else { queue.run_again(name, &keys).await? };
+        queue.close().await?;
+        Ok::<_, CliError>(again)
+    })?;
+    let jobs = value::count(again, "job");
+    log(format_args!(
+        "{name}: `retry` makes {jobs} pending again, whose results could not be read; `tribosweep work` runs pending jobs"
+    ));
     Ok(exit::SUCCESS)
 }

@@ -7,6 +7,7 @@ use super::replace::Replacement;
 use super::report::{self, OutFolder};
 use super::study_args::StudyArgs;
 use super::submit::{Priority, submit};
+use super::unreadable::log_unreadable_rows;
 use super::work::{Checkpoints, Retries, Threads, options, work};
 use crate::queue::{Clock, Location, Queue, Scope, Shard};
 use crate::report::tables::{self, Quantity};
@@ -49,7 +50,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         let content = sweep::read_report(&mut queue, &ReportRequest::of_study(name)).await?;
         print(&tables::page(&content.rows, &content.view, Quantity::MuStar, name))?;
         report::write(&mut queue, &content, &args.out.of(name), None).await?;
+        queue.ensure_place().await?;
         queue.close().await?;
-        Ok(code)
+        Ok(code.max(log_unreadable_rows(&content.rows)))
     })
 }

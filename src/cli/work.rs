@@ -93,6 +93,7 @@ pub(crate) fn options(threads: &Threads, checkpoints: &Checkpoints) -> WorkOptio
         checkpoint_interval: Some(Duration::from_secs_f64(checkpoints.seconds))
             .filter(|interval| !interval.is_zero()),
         idle_exit: None,
+        job_key: Some(sweep::job_key),
         planner: Some(sweep::PLANNER),
     }
 }
@@ -182,6 +183,14 @@ async fn work_and_log(
     if is_cancelled {
         let were = if counts.cancelled == 1 { "was" } else { "were" };
         log(format_args!("{} {were} cancelled in the meantime", count(counts.cancelled, "job")));
+    }
+    let stopped = if counts.running > 0 { queue.stopped_workers().await? } else { Vec::new() };
+    for advice in &stopped {
+        log(advice);
+    }
+    if !stopped.is_empty() && !summary.interrupted {
+        log("jobs are left that nobody runs; do what is said above, and run the same command again");
+        return Ok(exit::WORK_LEFT);
     }
     if counts.running > 0 && !summary.interrupted && counts.pending == 0 {
         log(format_args!(

@@ -14,6 +14,7 @@ pub(crate) fn as_text(workers: &[WorkerStatus], width: usize) -> String {
     let (lost, present): (Vec<_>, Vec<_>) =
         workers.iter().partition(|worker| worker.presence == WorkerPresence::Gone);
     let mut lines: Vec<String> = present.iter().map(|worker| present_line(worker)).collect();
+    lines.extend(present.iter().filter_map(|worker| worker.advice()));
     if present.len() > 1 {
         let per_s: f64 = present.iter().filter_map(|worker| worker.jobs_per_s).sum();
         let threads: u64 = present.iter().map(|worker| worker.threads).sum();
@@ -40,6 +41,7 @@ fn present_line(worker: &WorkerStatus) -> String {
     let WorkerStatus { host, pid, threads, running, finished, taken_back, silent_ms, .. } = worker;
     let doing = match (worker.presence, running) {
         (WorkerPresence::Stopping, _) => "stopping".to_owned(),
+        (WorkerPresence::Stopped, running) => format!("stopped, {running} in its hands"),
         (_, 0) => "idle".to_owned(),
         (_, running) => format!("{running} running"),
     };
@@ -89,6 +91,7 @@ pub(crate) fn as_json(workers: &[WorkerStatus]) -> Value {
             "presence": match worker.presence {
                 WorkerPresence::Working => "working",
                 WorkerPresence::Stopping => "stopping",
+                WorkerPresence::Stopped => "stopped",
                 WorkerPresence::Gone => "lost",
             },
             "running": worker.running,

@@ -40,7 +40,7 @@ const ROWS: &str = "
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     JOIN payloads AS p ON p.job_id = j.id
-    WHERE m.study_id = $1 AND m.ordinal >= $2
+    WHERE m.study_id = $1 AND m.ordinal > $2
     ORDER BY m.ordinal LIMIT $3";
 
 type RowColumns = (i64, String, String, String, i64, f64, String, Option<String>);
@@ -54,13 +54,23 @@ const STATES: &str = "
 type StateColumns = (String, String, i64, i64, i64, Option<i64>, Option<String>, Option<String>);
 
 const RESULTS: &str = "
-    SELECT j.key, r.attempt, r.record, r.error, r.wall_s, r.started_ms, r.finished_ms, r.provenance
+    SELECT j.key, r.attempt, r.record, r.error, r.wall_s, r.started_ms, r.finished_ms, r.provenance, r.digest
     FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = $1 AND ordinal >= $2 AND ordinal <= $3) AS m
     JOIN jobs AS j ON j.id = m.job_id
     JOIN results AS r ON r.job_id = j.id";
 
-type ResultColumns =
-    (String, i64, Option<String>, Option<String>, Option<f64>, Option<i64>, i64, Option<String>);
+/// Key, attempt, record, error, time, beginning, end, provenance and digest. A result that is damaged stays so.
+type ResultColumns = (
+    String,
+    i64,
+    Option<String>,
+    Option<String>,
+    Option<f64>,
+    Option<i64>,
+    i64,
+    Option<String>,
+    Option<String>,
+);
 
 const CHECKPOINTS: &str = "
     SELECT j.key, c.attempt, c.bytes, c.saved_ms
@@ -98,18 +108,18 @@ const SET_STATES: Statement = Statement::each(
 /// Results are inserted one by one: one of the databases reads JSON numbers with 15 digits only, and times must be
 /// copied exactly.
 const SET_RESULT: &str = "
-    INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)
-    SELECT id, $2, $3, $4, $5, $6, $7, $8 FROM jobs WHERE key = $1
+    INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance, digest)
+    SELECT id, $2, $3, $4, $5, $6, $7, $8, $9 FROM jobs WHERE key = $1
     ON CONFLICT DO NOTHING";
 
 const FINAL_STATES: &str = "
-    SELECT j.key, f.bytes
+    SELECT j.key, f.bytes, f.digest
     FROM (SELECT DISTINCT job_id FROM study_jobs WHERE study_id = $1 AND ordinal >= $2 AND ordinal <= $3) AS m
     JOIN jobs AS j ON j.id = m.job_id
     JOIN final_states AS f ON f.job_id = j.id";
 
 const SET_FINAL_STATE: &str = "
-    INSERT INTO final_states (job_id, bytes) SELECT id, $2 FROM jobs WHERE key = $1 AND state = 'done'
+    INSERT INTO final_states (job_id, bytes, digest) SELECT id, $2, $3 FROM jobs WHERE key = $1 AND state = 'done'
     ON CONFLICT DO NOTHING";
 
 const SET_CHECKPOINT: &str = "
@@ -128,7 +138,7 @@ struct Page {
     states: Vec<StateColumns>,
     results: Vec<ResultColumns>,
     checkpoints: Vec<(String, i64, Vec<u8>, i64)>,
-    final_states: Vec<(String, Vec<u8>)>,
+    final_states: Vec<(String, Vec<u8>, Option<String>)>,
 }
 
 impl Queue {
@@ -189,9 +199,10 @@ impl Queue {
         // The rows of a study that grows belong to its own plan.
         let keeps_rows = was_here && plan_rows::read(&mut self.connection, here_id).await?.is_some();
         let ended_before = absorbed.ended;
-        let mut next = 0;
-        while let Some(page) = read(&mut other.connection, *there_id, next).await? {
-            next = page.rows.last().map_or(next, |(ordinal, _)| ordinal + 1);
+        // Rows are read after the last one, because the largest number has none after it.
+        let mut last = -1;
+        while let Some(page) = read(&mut other.connection, *there_id, last).await? {
+            last = page.rows.last().map_or(last, |(ordinal, _)| *ordinal);
             let copied = self
                 .write(async |connection, now_ms| write(connection, here_id, &page, keeps_rows, now_ms).await)
                 .await?;
@@ -215,8 +226,8 @@ impl Queue {
     }
 }
 
-async fn read(connection: &mut Connection, study_id: i64, from: i64) -> Result<Option<Page>, QueueError> {
-    let rows: Vec<RowColumns> = query(ROWS).bind(study_id).bind(from).bind(PAGE).all(connection).await?;
+async fn read(connection: &mut Connection, study_id: i64, after: i64) -> Result<Option<Page>, QueueError> {
+    let rows: Vec<RowColumns> = query(ROWS).bind(study_id).bind(after).bind(PAGE).all(connection).await?;
     let (Some(first), Some(last)) = (rows.first(), rows.last()) else { return Ok(None) };
     let (first, last) = (first.0, last.0);
     let about = |statement: &'static str| query(statement).bind(study_id).bind(first).bind(last);
@@ -244,8 +255,8 @@ async fn write(
     let here: Vec<(String, String, i64)> = query(HERE).bind(json(&keys)).all(connection).await?;
     let here: HashMap<String, (JobState, i64)> = here
         .into_iter()
-        .map(|(key, state, attempt)| (key, (JobState::from_column(&state), attempt)))
-        .collect();
+        .map(|(key, state, attempt)| Ok((key, (JobState::from_column(&state)?, attempt))))
+        .collect::<Result<_, QueueError>>()?;
 
     let rows: Vec<submit::Row<'_>> = page.rows.iter().map(|(ordinal, job)| (*ordinal, job)).collect();
     let mut changed = submit::changed(connection, study_id, &rows).await?;
@@ -262,7 +273,7 @@ async fn write(
     let mut states = Vec::new();
     let mut absorbed = Absorbed::default();
     for (key, state, attempt, crashes, created_ms, started_ms, note, label) in &page.states {
-        let there = match JobState::from_column(state) {
+        let there = match JobState::from_column(state)? {
             // No worker of this database runs it.
             JobState::Running => JobState::Pending,
             state => state,
@@ -284,19 +295,20 @@ async fn write(
         states.push((key, there.as_str(), before + attempt, crashes, created_ms, started_ms, note, label));
     }
     query(SET_STATES).bind(json(&states)).run(connection).await?;
-    for (key, attempt, record, error, wall_s, started_ms, finished_ms, provenance) in &page.results {
+    for (key, attempt, record, error, wall_s, started_ms, finished_ms, provenance, digest) in &page.results {
         let Some(before) = copied.get(key.as_str()) else { continue };
         let result =
             query(SET_RESULT).bind(key).bind(before + attempt).bind(record).bind(error).bind(*wall_s);
-        result.bind(*started_ms).bind(*finished_ms).bind(provenance).run(connection).await?;
+        let result = result.bind(*started_ms).bind(*finished_ms).bind(provenance);
+        result.bind(digest).run(connection).await?;
     }
     for (key, attempt, bytes, saved_ms) in &page.checkpoints {
         let Some(before) = copied.get(key.as_str()) else { continue };
         let checkpoint = query(SET_CHECKPOINT).bind(key).bind(before + attempt).bind(bytes.as_slice());
         checkpoint.bind(*saved_ms).run(connection).await?;
     }
-    for (key, bytes) in &page.final_states {
-        query(SET_FINAL_STATE).bind(key).bind(bytes.as_slice()).run(connection).await?;
+    for (key, bytes, digest) in &page.final_states {
+        query(SET_FINAL_STATE).bind(key).bind(bytes.as_slice()).bind(digest).run(connection).await?;
     }
     Ok(absorbed)
 }

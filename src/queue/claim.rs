@@ -1,3 +1,4 @@
+use super::digest::{self, Integrity};
 use super::engine::{Connection, Statement, query};
 use super::error::QueueError;
 use super::scope::Scope;
@@ -30,8 +31,12 @@ pub struct ClaimedJob {
     pub batch: String,
     /// The last checkpoint of an earlier attempt.
     pub checkpoint: Option<Vec<u8>>,
-    /// The final state of the job that it continues; none if it continues no job, or if that state is not there any more.
+    /// The key of the job that it continues, if it continues one.
+    pub parent: Option<String>,
+    /// The final state of that job; none if that state is not there any more, or is damaged.
     pub parent_state: Option<Vec<u8>>,
+    /// Whether that state is there and damaged.
+    pub parent_is_damaged: bool,
 }
 
 /// A claim is one statement, because sending a statement to the database costs more than its work for one job.
@@ -47,7 +52,8 @@ pub struct ClaimedJob {
 /// never waits for a row.
 const TAKE: Statement = Statement::each(
     "
-    UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3
+    UPDATE jobs SET state = 'running', attempt = MAX(attempt, 0) + 1, started_ms = $2, owner = $1,
+           lease_until_ms = $3
     WHERE id IN (
         SELECT id FROM jobs INDEXED BY jobs_pending_batch
         WHERE state = 'pending'
@@ -61,7 +67,10 @@ const TAKE: Statement = Statement::each(
     )
     RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
               (SELECT bytes FROM checkpoints WHERE job_id = jobs.id),
+              parent,
               (SELECT bytes FROM final_states
+               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent)),
+              (SELECT digest FROM final_states
                WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent))",
     "
     WITH first AS MATERIALIZED (
@@ -77,11 +86,15 @@ const TAKE: Statement = Statement::each(
         ORDER BY priority DESC, cost DESC, id LIMIT $4
         FOR UPDATE SKIP LOCKED
     )
-    UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3
+    UPDATE jobs SET state = 'running', attempt = GREATEST(attempt, 0) + 1, started_ms = $2, owner = $1,
+           lease_until_ms = $3
     FROM next WHERE jobs.id = next.id
     RETURNING jobs.id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
               (SELECT bytes FROM checkpoints WHERE job_id = jobs.id),
+              parent,
               (SELECT bytes FROM final_states
+               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent)),
+              (SELECT digest FROM final_states
                WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent))",
 );
 
@@ -92,7 +105,8 @@ const TAKE: Statement = Statement::each(
 /// collected statistics.
 const TAKE_OF_STUDY: Statement = Statement::each(
     "
-    UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3
+    UPDATE jobs SET state = 'running', attempt = MAX(attempt, 0) + 1, started_ms = $2, owner = $1,
+           lease_until_ms = $3
     WHERE id IN (
         SELECT job_id FROM study_pending INDEXED BY study_pending_batch
         WHERE study_id = (SELECT id FROM studies WHERE name = $6)
@@ -107,7 +121,10 @@ const TAKE_OF_STUDY: Statement = Statement::each(
     )
     RETURNING id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
               (SELECT bytes FROM checkpoints WHERE job_id = jobs.id),
+              parent,
               (SELECT bytes FROM final_states
+               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent)),
+              (SELECT digest FROM final_states
                WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent))",
     "
     WITH first AS MATERIALIZED (
@@ -126,15 +143,32 @@ const TAKE_OF_STUDY: Statement = Statement::each(
               SELECT CASE WHEN $5 IS NULL THEN -9223372036854775808 ELSE priority END FROM first)
         ORDER BY p.priority DESC, p.cost DESC, p.job_id + 0 LIMIT $4
     )
-    UPDATE jobs SET state = 'running', attempt = attempt + 1, started_ms = $2, owner = $1, lease_until_ms = $3
+    UPDATE jobs SET state = 'running', attempt = GREATEST(attempt, 0) + 1, started_ms = $2, owner = $1,
+           lease_until_ms = $3
     FROM next WHERE jobs.id = next.id
     RETURNING jobs.id, key, (SELECT payload FROM payloads WHERE job_id = jobs.id), attempt, cost, priority, batch,
               (SELECT bytes FROM checkpoints WHERE job_id = jobs.id),
+              parent,
               (SELECT bytes FROM final_states
+               WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent)),
+              (SELECT digest FROM final_states
                WHERE job_id = (SELECT p.id FROM jobs AS p WHERE p.key = jobs.parent))",
 );
 
-type Columns = (i64, String, String, i64, f64, i64, String, Option<Vec<u8>>, Option<Vec<u8>>);
+/// Number, key, payload, attempt, cost, priority, batch, checkpoint; the parent's key, its final state, and its digest.
+type Columns = (
+    i64,
+    String,
+    Option<String>,
+    i64,
+    f64,
+    i64,
+    String,
+    Option<Vec<u8>>,
+    Option<String>,
+    Option<Vec<u8>>,
+    Option<String>,
+);
 
 /// What all claims of a transaction share.
 #[derive(Debug, Clone, Copy)]
@@ -173,16 +207,30 @@ pub(super) async fn take(
     }
     // RETURNING does not guarantee an order.
     rows.sort_by(|a, b| b.5.cmp(&a.5).then(b.4.total_cmp(&a.4)).then(a.0.cmp(&b.0)));
-    let job = |(_, key, payload, attempt, cost, _, batch, checkpoint, parent_state): Columns| ClaimedJob {
+    rows.into_iter().map(claimed).collect()
+}
+
+fn claimed(columns: Columns) -> Result<ClaimedJob, QueueError> {
+    let (_, key, payload, attempt, cost, _, batch, checkpoint, parent, state, digest) = columns;
+    let Ok(attempt) = u32::try_from(attempt) else {
+        return Err(QueueError::Inconsistent(format!("job {key} was started {attempt} times")));
+    };
+    let expected =
+        || digest::of_state(parent.as_deref().unwrap_or_default(), state.as_deref().unwrap_or_default());
+    let parent_is_damaged =
+        state.is_some() && Integrity::of(digest.as_deref(), expected) == Integrity::Damaged;
+    Ok(ClaimedJob {
+        // A job without a payload is reported by its executor, which cannot read it.
+        payload: payload.unwrap_or_default(),
         key,
-        payload,
-        attempt: attempt as u32,
+        attempt,
         cost,
         batch,
         checkpoint,
-        parent_state,
-    };
-    Ok(rows.into_iter().map(job).collect())
+        parent,
+        parent_state: state.filter(|_| !parent_is_damaged),
+        parent_is_damaged,
+    })
 }
 
 #[cfg(test)]

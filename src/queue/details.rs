@@ -1,8 +1,10 @@
+use super::digest::{self, Integrity};
 use super::engine::query;
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
 use super::state::JobState;
+use super::unsigned::unsigned;
 
 /// Everything about a job.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +39,8 @@ pub struct JobDetails {
     pub payload: String,
     /// Its result, if it is done.
     pub record: Option<String>,
+    /// Whether the result is as it was stored.
+    pub integrity: Integrity,
     /// The names of the studies that contain it.
     pub studies: Vec<String>,
 }
@@ -53,6 +57,10 @@ const JOBS: &str = "
       AND ($3 IS NULL OR EXISTS (
           SELECT 1 FROM study_jobs AS m JOIN studies AS s ON s.id = m.study_id WHERE m.job_id = j.id AND s.name = $3))
     ORDER BY j.key LIMIT $2";
+
+/// Of the attempt that ended.
+const DIGEST: &str = "
+    SELECT r.digest FROM results AS r JOIN jobs AS j ON j.id = r.job_id WHERE j.id = $1 AND r.attempt = j.attempt";
 
 const STUDIES: &str = "
     SELECT name FROM studies WHERE id IN (SELECT study_id FROM study_jobs WHERE job_id = $1) ORDER BY id";
@@ -110,13 +118,15 @@ impl Queue {
         let mut jobs = Vec::with_capacity(found.len());
         for columns in found {
             let studies = query(STUDIES).bind(columns.0).scalars(&mut self.connection).await?;
-            jobs.push(details(columns, studies));
+            let digest: Option<(Option<String>,)> =
+                query(DIGEST).bind(columns.0).optional(&mut self.connection).await?;
+            jobs.push(details(columns, studies, digest.as_ref().and_then(|(digest,)| digest.as_deref()))?);
         }
         Ok(jobs)
     }
 }
 
-fn details(columns: Columns, studies: Vec<String>) -> JobDetails {
+fn details(columns: Columns, studies: Vec<String>, digest: Option<&str>) -> Result<JobDetails, QueueError> {
     let (
         _,
         key,
@@ -135,14 +145,17 @@ fn details(columns: Columns, studies: Vec<String>) -> JobDetails {
         payload,
         record,
     ) = columns;
-    JobDetails {
+    let has_result = record.is_some() || error.is_some();
+    let expected = || digest::of_result(&key, record.as_deref(), error.as_deref());
+    let integrity = Integrity::of(digest.filter(|_| has_result), expected);
+    Ok(JobDetails {
         key,
-        state: JobState::from_column(&state),
+        state: JobState::from_column(&state)?,
         priority,
         cost,
         batch,
-        attempt: attempt as u32,
-        crashes: crashes as u32,
+        attempt: unsigned(attempt),
+        crashes: unsigned(crashes),
         note,
         error,
         wall_s,
@@ -151,6 +164,7 @@ fn details(columns: Columns, studies: Vec<String>) -> JobDetails {
         provenance,
         payload,
         record,
+        integrity,
         studies,
-    }
+    })
 }

@@ -223,12 +223,42 @@ pub enum QueueError {
     },
 
     /// Another process holds a lock for longer than the busy timeout.
+    #[error("the database is locked: {}; the same command then continues, and nothing is lost", lock(.holder.as_deref()))]
+    Locked {
+        /// What the database said.
+        source: Source,
+        /// The process that holds the lock and what to do about it, if that is known.
+        holder: Option<String>,
+    },
+
+    /// The file is not any more where it was opened.
+    #[error("the database {path} was {how} while this process worked on it{kept}")]
+    Displaced {
+        /// Where it was.
+        path: PathBuf,
+        /// What happened to it, in words.
+        how: String,
+        /// What became of the results, in words.
+        kept: String,
+    },
+
+    /// Beside the database lies the log of another file, which was at this path before.
     #[error(
-        "the database is locked: another program holds a lock on it for longer than any operation here takes. Close the \
-         program that has it open (a database shell, a viewer, a backup); the same command then continues, and nothing is \
-         lost"
+        "{path} is another file than the one that was here before, and {path}-wal is the log of that one: its last results \
+         are in it, and it would destroy this file. End the processes that work on the former file. If {path}-wal is still \
+         there then, move {path}-wal and {path}-shm away, or to the former file if you still have it"
     )]
-    Locked(#[source] Source),
+    LogOfAnother {
+        /// The database file.
+        path: PathBuf,
+    },
+
+    /// A row of the database is none that this program writes.
+    #[error(
+        "the database was changed by hand or is damaged: {0}. `tribosweep doctor --deep` lists what is wrong; take a backup, or \
+         submit the study to a new database"
+    )]
+    Inconsistent(String),
 
     /// The server does not answer, or it has ended the connection. It is unknown whether the last transaction was
     /// committed.
@@ -265,8 +295,19 @@ pub enum QueueError {
 impl QueueError {
     /// Whether the same operation may succeed later.
     pub fn is_transient(&self) -> bool {
-        matches!(self, Self::Locked(_) | Self::Unreachable(_) | Self::NoAnswer { .. })
+        matches!(self, Self::Locked { .. } | Self::Unreachable(_) | Self::NoAnswer { .. })
     }
+}
+
+fn lock(holder: Option<&str>) -> String {
+    holder.map_or_else(
+        || {
+            "another program holds a lock on it for longer than any operation here takes. Close the program that has it open \
+             (a database shell, a viewer, a backup)"
+                .to_owned()
+        },
+        |holder| format!("{holder} holds a lock on it for longer than any operation here takes"),
+    )
 }
 
 fn existing(known: &[String]) -> String {

@@ -64,7 +64,11 @@ impl Queue {
                 }
                 Ok(Exchanged { claimed, refused })
             })
-            .await?;
+            .await;
+        let exchanged = match exchanged {
+            Ok(exchanged) => exchanged,
+            Err(error) => return self.naming_holder(Err(error)).await,
+        };
         self.connection.clear_doubt();
         for job in finished {
             registration.held.remove(&job.key);

@@ -1,6 +1,7 @@
 use std::collections::HashSet;
 
 use super::bulk::json;
+use super::digest;
 use super::engine::{Connection, Statement, query};
 use super::error::QueueError;
 use super::state::JobState;
@@ -60,8 +61,8 @@ const RELEASED: &str = "released: the work was interrupted before the job ended"
 /// leave only the key's index. PostgreSQL: the expressions on the other columns have the same effect.
 const STORE: Statement = Statement::each(
     "
-    INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)
-    SELECT j.id, j.attempt, e.value ->> 2, e.value ->> 3, e.value ->> 4, j.started_ms, $3, $4
+    INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance, digest)
+    SELECT j.id, j.attempt, e.value ->> 2, e.value ->> 3, e.value ->> 4, j.started_ms, $3, $4, e.value ->> 5
     FROM json_each($1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 0
     WHERE j.state = 'running' AND j.owner = $2 AND j.attempt = e.value ->> 1
     ON CONFLICT DO NOTHING;
@@ -84,9 +85,9 @@ const STORE: Statement = Statement::each(
           AND jobs.state || '' = 'running' AND jobs.owner + 0 = $2 AND jobs.attempt = (e.value ->> 1)::bigint
         RETURNING jobs.id, jobs.key, jobs.attempt, jobs.started_ms
     ), stored AS (
-        INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance)
+        INSERT INTO results (job_id, attempt, record, error, wall_s, started_ms, finished_ms, provenance, digest)
         SELECT ended.id, ended.attempt, r.value ->> 2, r.value ->> 3, (r.value ->> 4)::double precision,
-               ended.started_ms, $3, $4
+               ended.started_ms, $3, $4, r.value ->> 5
         FROM json_array_elements($1::json) AS r (value)
         JOIN ended ON ended.key = r.value ->> 0 AND ended.attempt = (r.value ->> 1)::bigint
         ON CONFLICT DO NOTHING
@@ -96,9 +97,9 @@ const STORE: Statement = Statement::each(
 
 /// For a job that has just ended with this attempt.
 const KEEP_STATE: &str = "
-    INSERT INTO final_states (job_id, bytes)
-    SELECT id, $3 FROM jobs WHERE key = $1 AND state = 'done' AND attempt = $2
-    ON CONFLICT (job_id) DO UPDATE SET bytes = excluded.bytes";
+    INSERT INTO final_states (job_id, bytes, digest)
+    SELECT id, $3, $4 FROM jobs WHERE key = $1 AND state = 'done' AND attempt = $2
+    ON CONFLICT (job_id) DO UPDATE SET bytes = excluded.bytes, digest = excluded.digest";
 
 /// Stores the outcomes of attempts. Returns the keys of those that `owner` does not run.
 pub(super) async fn store(
@@ -124,7 +125,8 @@ pub(super) async fn store(
     }
     for job in finished.iter().filter(|job| ended.contains(&job.key)) {
         if let FinishedOutcome::Done { final_state: Some(bytes), .. } = &job.outcome {
-            query(KEEP_STATE).bind(&job.key).bind(job.attempt).bind(bytes.as_slice()).run(connection).await?;
+            let keep = query(KEEP_STATE).bind(&job.key).bind(job.attempt).bind(bytes.as_slice());
+            keep.bind(digest::of_state(&job.key, bytes)).run(connection).await?;
         }
     }
     let keys = finished.iter().map(|job| &job.key);
@@ -149,8 +151,8 @@ fn messages(mut finished: &[Finished], max_bytes: usize) -> Vec<&[Finished]> {
     messages
 }
 
-/// Key, attempt, record, error and time.
-type ResultRow<'a> = (&'a str, u32, Option<&'a str>, Option<&'a str>, f64);
+/// Key, attempt, record, error, time and digest.
+type ResultRow<'a> = (&'a str, u32, Option<&'a str>, Option<&'a str>, f64, String);
 
 fn result_row(job: &Finished) -> Option<ResultRow<'_>> {
     let (record, error) = match &job.outcome {
@@ -158,7 +160,7 @@ fn result_row(job: &Finished) -> Option<ResultRow<'_>> {
         FinishedOutcome::Failed { error } => (None, Some(error.as_str())),
         FinishedOutcome::Released | FinishedOutcome::Unstarted => return None,
     };
-    Some((&job.key, job.attempt, record, error, job.wall_s))
+    Some((&job.key, job.attempt, record, error, job.wall_s, digest::of_result(&job.key, record, error)))
 }
 
 /// Key, attempt, state, note, the number of attempts that do not count, and label.

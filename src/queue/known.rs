@@ -25,7 +25,9 @@ impl Queue {
         for chunk in keys.chunks(CHUNK) {
             let known: Vec<(String, String)> =
                 query(KNOWN).bind(json(&chunk)).all(&mut self.connection).await?;
-            states.extend(known.into_iter().map(|(key, state)| (key, JobState::from_column(&state))));
+            for (key, state) in known {
+                states.insert(key, JobState::from_column(&state)?);
+            }
         }
         Ok(states)
     }

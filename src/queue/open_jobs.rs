@@ -1,8 +1,9 @@
-use super::engine::query;
+use super::engine::{Connection, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::plan_rows;
 use super::scope::Scope;
+use super::sqlite;
 
 const ALL: &str = "
     SELECT (SELECT COUNT(*) FROM (SELECT 1 FROM jobs WHERE state = 'pending' LIMIT 1) AS p),
@@ -43,5 +44,25 @@ impl Queue {
         let (pending, running): (i64, i64) = open.one(&mut self.connection).await?;
         let has_plans = plan_rows::has_open(&mut self.connection, study_id).await?;
         Ok(OpenJobs { has_pending: pending > 0, has_running: running > 0, has_plans })
+    }
+
+    /// Why a worker that is alone sees jobs that it can neither claim nor take back: parts of the database contradict each
+    /// other. To be asked after some time only, because it reads the whole file.
+    ///
+    /// # Errors
+    /// If the database cannot be read.
+    pub async fn contradiction(&mut self) -> Result<QueueError, QueueError> {
+        let damage = match &mut self.connection {
+            Connection::Sqlite(file) => sqlite::integrity(file.connection()).await?,
+            #[cfg(feature = "postgres")]
+            Connection::Postgres(_) => Vec::new(),
+        };
+        Ok(if damage.is_empty() {
+            QueueError::Inconsistent(
+                "there are unfinished jobs that no worker runs and that cannot be claimed".to_owned(),
+            )
+        } else {
+            QueueError::Damaged(damage.join("; ").into())
+        })
     }
 }

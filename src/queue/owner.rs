@@ -118,6 +118,11 @@ impl Owner {
         self.stopping_ms.is_some()
     }
 
+    /// Whether its process is on this machine and is stopped. It keeps its jobs, because it may continue.
+    pub fn is_stopped(&self) -> bool {
+        self.liveness() == Liveness::Alive && process::is_stopped(self.pid)
+    }
+
     pub fn liveness(&self) -> Liveness {
         let here = (process::host(), process::boot_id(), process::pid_namespace());
         let (Some(start), true) = (self.process_start, self.boot_id.is_some() && self.host == here.0) else {

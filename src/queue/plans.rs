@@ -101,7 +101,7 @@ const ADVANCE: &str = "
 const PRIORITY: &str = "
     SELECT COALESCE(MAX(j.priority), 0) FROM study_jobs AS m JOIN jobs AS j ON j.id = m.job_id WHERE m.study_id = $1";
 
-const NEXT_ORDINAL: &str = "SELECT COALESCE(MAX(ordinal) + 1, 0) FROM study_jobs WHERE study_id = $1";
+const LAST_ORDINAL: &str = "SELECT COALESCE(MAX(ordinal), -1) FROM study_jobs WHERE study_id = $1";
 
 impl Queue {
     /// Claims the next wave that is due in `scope`, if there is one. The worker that was given it before may claim it again.
@@ -155,11 +155,17 @@ impl Queue {
             if advance.bind(before).bind(&claim.document).run(connection).await? == 0 {
                 return Ok(false);
             }
-            let next: i64 = query(NEXT_ORDINAL).bind(id).scalar(connection).await?;
+            let last: i64 = query(LAST_ORDINAL).bind(id).scalar(connection).await?;
+            if last.checked_add(jobs.len() as i64).is_none() {
+                let study = &claim.study;
+                return Err(QueueError::Inconsistent(format!(
+                    "the last row of {study} has the number {last}"
+                )));
+            }
             let priority: i64 = query(PRIORITY).bind(id).scalar(connection).await?;
             let jobs: Vec<NewJob> =
                 jobs.iter().map(|job| NewJob { priority: Some(priority), ..job.clone() }).collect();
-            let rows: Vec<submit::Row<'_>> = (next..).zip(&jobs).collect();
+            let rows: Vec<submit::Row<'_>> = (last + 1..).zip(&jobs).collect();
             for chunk in rows.chunks(CHUNK) {
                 submit::insert(connection, id, chunk, now_ms).await?;
             }

@@ -45,7 +45,7 @@ impl Queue {
                 replaced.kept += 1;
                 continue;
             }
-            let state = JobState::from_column(&state);
+            let state = JobState::from_column(&state)?;
             replaced.dropped += 1;
             replaced.dropped_done += u64::from(state == JobState::Done);
             replaced.cancelled += u64::from(state == JobState::Pending && is_only_here == 1);

@@ -32,6 +32,12 @@ pub(super) fn presence(pid: u32, started: i64) -> Presence {
     }
 }
 
+/// Whether the process `pid` is stopped (by Ctrl-Z, SIGSTOP or a debugger), as far as the system tells.
+pub(super) fn is_stopped(pid: u32) -> bool {
+    let stat = fs::read_to_string(format!("/proc/{pid}/stat"));
+    stat.is_ok_and(|stat| state_and_start(&stat).is_some_and(|(state, _)| ['T', 't'].contains(&state)))
+}
+
 /// When the process `pid` started, in clock ticks since the boot, if the system provides it.
 pub(super) fn start_tick(pid: u32) -> Option<i64> {
     state_and_start(&fs::read_to_string(format!("/proc/{pid}/stat")).ok()?).map(|(_, start)| start)
@@ -69,6 +75,30 @@ mod tests {
         let stat = "4242 (a) R (b c) S 1 4242 4242 0 -1 4194304 100 0 0 0 1 2 0 0 20 0 1 0 777 1000 10 0";
         assert_eq!(state_and_start(stat), Some(('S', 777)));
         assert_eq!(state_and_start("4242 (short) S 1 2"), None);
+    }
+
+    /// Protects: a stopped process is seen as such until it continues, and it is alive.
+    #[cfg(target_os = "linux")]
+    #[test]
+    fn a_stopped_process_is_seen() {
+        let mut child = std::process::Command::new("sleep").arg("60").spawn().unwrap();
+        let started = start_tick(child.id()).unwrap();
+        let send = |signal: &str| {
+            let sent = std::process::Command::new("kill").args([signal, &child.id().to_string()]).status();
+            assert!(sent.unwrap().success());
+        };
+        for (signal, is_expected) in [("-STOP", true), ("-CONT", false)] {
+            send(signal);
+            let begun = std::time::Instant::now();
+            while is_stopped(child.id()) != is_expected {
+                assert!(begun.elapsed().as_secs() < 30, "{signal} is not seen");
+                std::thread::yield_now();
+            }
+            assert_eq!(presence(child.id(), started), Presence::Alive);
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        assert!(!is_stopped(child.id()));
     }
 
     /// Protects: this process is alive; the same number with another start is another process; and a child that has

@@ -41,19 +41,24 @@ impl Queue {
     }
 
     async fn insert(&mut self, worker: &Worker) -> Result<i64, QueueError> {
-        let now_ms = self.now_ms().await?;
-        query(REGISTER)
-            .bind(&worker.host)
-            .bind(&worker.boot_id)
-            .bind(&worker.pid_namespace)
-            .bind(worker.pid)
-            .bind(worker.process_start)
-            .bind(i64::try_from(worker.threads).unwrap_or(i64::MAX))
-            .bind(&worker.version)
-            .bind(now_ms)
-            .bind(self.settings.lease_ms())
-            .scalar(&mut self.connection)
-            .await
+        let lease_ms = self.settings.lease_ms();
+        // In a transaction: outside of one, reading the first row hides the error of the commit, for instance of a full
+        // disk, and the number is that of no worker.
+        self.write_shared(async |connection, now_ms| {
+            query(REGISTER)
+                .bind(&worker.host)
+                .bind(&worker.boot_id)
+                .bind(&worker.pid_namespace)
+                .bind(worker.pid)
+                .bind(worker.process_start)
+                .bind(i64::try_from(worker.threads).unwrap_or(i64::MAX))
+                .bind(&worker.version)
+                .bind(now_ms)
+                .bind(lease_ms)
+                .scalar(connection)
+                .await
+        })
+        .await
     }
 
     /// Ends the registration. Jobs that the worker still holds are pending again.

@@ -1,4 +1,5 @@
-use super::engine::query;
+use super::bulk::json;
+use super::engine::{Statement, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
@@ -32,9 +33,49 @@ const PENDING_AGAIN: &str = "
     UPDATE jobs SET state = 'pending', crashes = 0, note = $3
     WHERE state = $2 AND id IN (SELECT job_id FROM study_jobs WHERE study_id = $1)";
 
+/// Results that cannot be used are not kept as those of earlier attempts.
+const DELETE_RESULTS: Statement = Statement::each(
+    "
+    DELETE FROM results WHERE (job_id, attempt) IN (
+        SELECT j.id, j.attempt FROM json_each($1) AS e CROSS JOIN jobs AS j ON j.key = e.value
+        WHERE j.state IN ('done', 'failed'))",
+    "
+    DELETE FROM results WHERE (job_id, attempt) IN (
+        SELECT j.id, j.attempt FROM json_array_elements_text($1::json) AS e (key) JOIN jobs AS j ON j.key = e.key
+        WHERE j.state IN ('done', 'failed'))",
+);
+
+const RUN_AGAIN: Statement = Statement::each(
+    "
+    UPDATE jobs SET state = 'pending', crashes = 0, note = $2
+    WHERE key IN (SELECT e.value FROM json_each($1) AS e) AND +state IN ('done', 'failed')",
+    "
+    UPDATE jobs SET state = 'pending', crashes = 0, note = $2
+    WHERE key IN (SELECT e.key FROM json_array_elements_text($1::json) AS e (key)) AND state || '' IN ('done', 'failed')",
+);
+
+const UNREADABLE: &str = "to be run again: what was stored could not be read";
+
 const NOTE: &str = "to be tried again: asked for by its user";
 
 impl Queue {
+    /// Makes jobs of a study that have ended pending again, whose results cannot be used, and deletes these results. Returns
+    /// the number of jobs.
+    ///
+    /// # Errors
+    /// [`QueueError::UnknownStudy`], or if the database cannot be written.
+    pub async fn run_again(&mut self, study: &str, keys: &[String]) -> Result<u64, QueueError> {
+        let keys = json(&keys);
+        self.write(async |connection, _| {
+            let study_id = lookup::require(connection, study).await?;
+            query(DELETE_RESULTS).bind(&keys).run(connection).await?;
+            let again = query(RUN_AGAIN).bind(&keys).bind(UNREADABLE).run(connection).await?;
+            plan_rows::reopen(connection, study_id).await?;
+            Ok(again)
+        })
+        .await
+    }
+
     /// Makes failed, or failed and cancelled, jobs of a study pending again and resets their crash counts. Before that,
     /// it takes back the jobs of workers that are gone ([`Queue::take_back`]): a job may count as failed only then.
     ///

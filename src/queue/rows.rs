@@ -1,10 +1,12 @@
 use std::ops::ControlFlow;
 
+use super::digest::{self, Integrity};
 use super::engine::{Statement, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::lookup;
 use super::state::JobState;
+use super::unsigned::unsigned;
 
 /// One row of a study with the data of its job that reports need. [`Queue::jobs`] returns more about a single job.
 #[derive(Debug, Clone, PartialEq)]
@@ -21,6 +23,8 @@ pub struct StudyRow {
     pub record: Option<String>,
     /// Why the job failed, if it did.
     pub error: Option<String>,
+    /// Whether the record or the error is as it was stored.
+    pub integrity: Integrity,
     /// How long the attempt that ended took, in seconds, if that is known.
     pub wall_s: Option<f64>,
     /// How many times the job was started.
@@ -43,23 +47,23 @@ pub struct StudyRow {
 /// payloads are read only if $6 is 1.
 const ROWS: Statement = Statement::each(
     "
-    SELECT json_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note), m.parameters, r.record, r.wall_s,
+    SELECT json_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note, r.digest), m.parameters, r.record, r.wall_s,
            CASE WHEN $6 = 1 THEN (SELECT p.payload FROM payloads AS p WHERE p.job_id = j.id) END
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
-    WHERE m.study_id = $1 AND m.ordinal >= $2 AND ($4 IS NULL OR j.state = $4)
+    WHERE m.study_id = $1 AND m.ordinal > $2 AND ($4 IS NULL OR j.state = $4)
       AND ($5 IS NULL OR j.label = $5)
     ORDER BY m.ordinal
     LIMIT $3",
     "
-    SELECT json_build_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note)::text,
+    SELECT json_build_array(m.ordinal, j.key, j.state, r.error, j.attempt, j.crashes, j.note, r.digest)::text,
            m.parameters, r.record, r.wall_s,
            CASE WHEN $6 = 1 THEN (SELECT p.payload FROM payloads AS p WHERE p.job_id = j.id) END
     FROM study_jobs AS m
     JOIN jobs AS j ON j.id = m.job_id
     LEFT JOIN results AS r ON r.job_id = j.id AND r.attempt = j.attempt AND j.state IN ('done', 'failed')
-    WHERE m.study_id = $1 AND m.ordinal >= $2 AND ($4 IS NULL OR j.state = $4)
+    WHERE m.study_id = $1 AND m.ordinal > $2 AND ($4 IS NULL OR j.state = $4)
       AND ($5 IS NULL OR j.label = $5)
     ORDER BY m.ordinal
     LIMIT $3",
@@ -75,11 +79,14 @@ const PARAMETERS_OF_JOB: &str = "
     ORDER BY m.ordinal LIMIT 1";
 
 const PARAMETERS: &str = "
-    SELECT ordinal, parameters FROM study_jobs WHERE study_id = $1 AND ordinal >= $2 ORDER BY ordinal LIMIT $3";
+    SELECT ordinal, parameters FROM study_jobs WHERE study_id = $1 AND ordinal > $2 ORDER BY ordinal LIMIT $3";
 
 /// Rows that are read at a time. Reading all rows at once would prevent checkpoints of the write-ahead log meanwhile,
 /// and would need memory for all of them.
 const PAGE: i64 = 1_000;
+
+/// The number before that of a study's first row.
+const BEFORE_ALL: i64 = -1;
 
 /// Which rows of a study.
 #[derive(Debug, Clone, Copy)]
@@ -149,14 +156,15 @@ impl Queue {
             Rows::Failed => (Some(JobState::Failed), None),
             Rows::Done(label) => (Some(JobState::Done), Some(label)),
         };
-        let mut next = 0_i64;
+        // Rows are read after the last one, because the largest number has none after it.
+        let mut last = BEFORE_ALL;
         loop {
-            let page = query(ROWS).bind(study_id).bind(next).bind(PAGE);
+            let page = query(ROWS).bind(study_id).bind(last).bind(PAGE);
             let page = page.bind(state.map(JobState::as_str)).bind(label).bind(i64::from(with_payloads));
             let page: Vec<Columns> = page.all(&mut self.connection).await?;
             let page = page.into_iter().map(StudyRow::from_columns).collect::<Result<Vec<_>, _>>()?;
-            let Some(last) = page.last() else { return Ok(()) };
-            next = last.ordinal.cast_signed() + 1;
+            let Some(row) = page.last() else { return Ok(()) };
+            last = row.ordinal.cast_signed();
             if visit(page).is_break() {
                 return Ok(());
             }
@@ -183,12 +191,13 @@ impl Queue {
         mut visit: impl FnMut(&str),
     ) -> Result<(), QueueError> {
         let study_id = lookup::require(&mut self.connection, study).await?;
-        let mut next = 0_i64;
+        // Rows are read after the last one, because the largest number has none after it.
+        let mut last = BEFORE_ALL;
         loop {
-            let page = query(PARAMETERS).bind(study_id).bind(next).bind(PAGE);
+            let page = query(PARAMETERS).bind(study_id).bind(last).bind(PAGE);
             let page: Vec<(i64, String)> = page.all(&mut self.connection).await?;
-            let Some((last, _)) = page.last() else { return Ok(()) };
-            next = last + 1;
+            let Some((ordinal, _)) = page.last() else { return Ok(()) };
+            last = *ordinal;
             for (_, parameters) in &page {
                 visit(parameters);
             }
@@ -201,10 +210,26 @@ type Columns = (String, String, Option<String>, Option<f64>, Option<String>);
 
 impl StudyRow {
     fn from_columns((short, parameters, record, wall_s, payload): Columns) -> Result<Self, QueueError> {
-        type Short = (u64, String, String, Option<String>, u32, u32, Option<String>);
-        let (ordinal, key, state, error, attempt, crashes, note): Short =
+        type Short = (u64, String, String, Option<String>, i64, i64, Option<String>, Option<String>);
+        let (ordinal, key, state, error, attempt, crashes, note, digest): Short =
             serde_json::from_str(&short).map_err(|error| QueueError::Database(error.into()))?;
-        let state = JobState::from_column(&state);
-        Ok(Self { ordinal, key, parameters, state, record, error, wall_s, attempt, crashes, note, payload })
+        let state = JobState::from_column(&state)?;
+        let expected = || digest::of_result(&key, record.as_deref(), error.as_deref());
+        let integrity = Integrity::of(digest.as_deref(), expected);
+        let (attempt, crashes) = (unsigned(attempt), unsigned(crashes));
+        Ok(Self {
+            ordinal,
+            key,
+            parameters,
+            state,
+            record,
+            error,
+            integrity,
+            wall_s,
+            attempt,
+            crashes,
+            note,
+            payload,
+        })
     }
 }

@@ -1,3 +1,5 @@
+use super::error::QueueError;
+
 /// The state of a job.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum JobState {
@@ -25,14 +27,20 @@ impl JobState {
         }
     }
 
-    pub(super) fn from_column(name: &str) -> Self {
-        match name {
+    /// The state that the table has. Its CHECK constraint allows no other one, but a damaged page or an editor may.
+    pub(super) fn from_column(name: &str) -> Result<Self, QueueError> {
+        Ok(match name {
             "pending" => Self::Pending,
             "running" => Self::Running,
             "done" => Self::Done,
             "failed" => Self::Failed,
             "cancelled" => Self::Cancelled,
-            other => unreachable!("the table's CHECK constraint excludes the state `{other}`"),
-        }
+            other => {
+                let other: String = other.escape_debug().take(40).collect();
+                return Err(QueueError::Inconsistent(format!(
+                    "a job has the state `{other}`, and there is no such state"
+                )));
+            }
+        })
     }
 }

@@ -111,7 +111,7 @@ const INSERT_JOBS: Statement = Statement::each(
     ON CONFLICT (key) DO UPDATE SET batch = excluded.batch WHERE jobs.batch <> excluded.batch",
 );
 
-/// `SQLite`: CROSS JOIN fixes the order of the loops, so that a key is looked up for each row.
+/// `SQLite`: CROSS JOIN fixes the order of the loops, so that a key is looked up for each row (below, too).
 const INSERT_PAYLOADS: Statement = Statement::each(
     "
     INSERT INTO payloads (job_id, payload)
@@ -123,7 +123,21 @@ const INSERT_PAYLOADS: Statement = Statement::each(
     ON CONFLICT (job_id) DO NOTHING",
 );
 
-/// The key is looked up for each row, as above.
+/// A job may have failed because its payload was damaged. The study has it intact.
+const REPAIR_PAYLOADS: Statement = Statement::each(
+    "
+    UPDATE payloads SET payload = e.value ->> 1
+    FROM json_each($1) AS e CROSS JOIN jobs AS j ON j.key = e.value ->> 0
+    WHERE payloads.job_id = j.id AND payloads.payload <> e.value ->> 1",
+    "
+    UPDATE payloads SET payload = e.value ->> 1
+    FROM json_array_elements($1::json) AS e (value) JOIN jobs AS j ON j.key = e.value ->> 0
+    WHERE payloads.job_id = j.id AND payloads.payload <> e.value ->> 1",
+);
+
+const FAILED: &str = "
+    SELECT j.key FROM study_jobs AS m JOIN jobs AS j ON j.id = m.job_id WHERE m.study_id = $1 AND j.state = 'failed'";
+
 const SET_PRIORITY: Statement = Statement::each(
     "
     UPDATE jobs SET priority = e.value ->> 4
@@ -288,6 +302,9 @@ impl Queue {
                     }
                     set_priority(connection, chunk).await?;
                 }
+                if old.is_some() {
+                    repair_payloads(connection, study_id, &rows).await?;
+                }
                 let added = count_jobs(connection).await? - before;
                 query(UNDO_CANCELLATION).bind(study_id).run(connection).await?;
                 let mut replaced = None;
@@ -402,6 +419,21 @@ pub(super) async fn insert(
     query(INSERT_JOBS).bind(&jobs).bind(now_ms).run(connection).await?;
     query(INSERT_PAYLOADS).bind(&jobs).run(connection).await?;
     query(INSERT_ROWS).bind(as_rows(rows)).bind(study_id).run(connection).await?;
+    Ok(())
+}
+
+async fn repair_payloads(
+    connection: &mut Connection,
+    study_id: i64,
+    rows: &[Row<'_>],
+) -> Result<(), QueueError> {
+    let failed: Vec<String> = query(FAILED).bind(study_id).scalars(connection).await?;
+    let failed: HashSet<String> = failed.into_iter().collect();
+    let rows: Vec<_> = rows.iter().copied().filter(|(_, job)| failed.contains(&job.key)).collect();
+    for chunk in rows.chunks(CHUNK) {
+        query(INSERT_PAYLOADS).bind(as_jobs(chunk)).run(connection).await?;
+        query(REPAIR_PAYLOADS).bind(as_jobs(chunk)).run(connection).await?;
+    }
     Ok(())
 }
 

@@ -6,14 +6,16 @@
 //!    that jumps takes no jobs from anybody. If its process does not exist, its jobs are pending at once.
 //! 2. If the worker is on an earlier boot of this machine, it is gone. This holds for a database file only: on a
 //!    server, two machines may have the same name, and another boot may be another machine.
-//! 3. For any other worker, its heartbeats and the leases of its jobs decide, by the database's clock. A worker is
+//! 3. A worker that the database does not know is gone.
+//! 4. For any other worker, its heartbeats and the leases of its jobs decide, by the database's clock. A worker is
 //!    silent if its last heartbeat is older than its own lease. A lease that ends further in the future than any clock
 //!    error explains counts as expired: a clock that had jumped wrote it.
 //!
 //! A wrong decision loses nothing: a job that is run twice is recorded once, because outcomes are fenced by owner and
 //! attempt.
 
-use super::engine::query;
+use super::digest;
+use super::engine::{Statement, query};
 use super::error::QueueError;
 use super::handle::Queue;
 use super::owner::{Liveness, Owner};
@@ -35,11 +37,11 @@ const TAKE_BACK: &str = "
         crashes = crashes + $6, owner = NULL, lease_until_ms = NULL, note = $3
     WHERE owner = $1 AND state = 'running'
       AND ($4 IS NULL OR lease_until_ms <= $4 OR lease_until_ms > $5)
-    RETURNING id, state, crashes";
+    RETURNING id, key, state, crashes";
 
 const CRASHED: &str = "
-    INSERT INTO results (job_id, attempt, error, started_ms, finished_ms)
-    SELECT id, attempt, $2, started_ms, $3 FROM jobs WHERE id = $1";
+    INSERT INTO results (job_id, attempt, error, started_ms, finished_ms, digest)
+    SELECT id, attempt, $2, started_ms, $3, $4 FROM jobs WHERE id = $1";
 
 /// Counts the jobs that were taken back. The worker has ended if it holds no more jobs and has sent no heartbeat since
 /// $4.
@@ -52,6 +54,21 @@ const COUNT: &str = "
             THEN $2 ELSE ended_ms END
     WHERE id = $1";
 
+const COUNT_ORPHANS: Statement = Statement::each(
+    "
+    SELECT COUNT(*) FROM jobs AS j INDEXED BY jobs_owner
+    WHERE j.state = 'running' AND NOT EXISTS (SELECT 1 FROM workers AS w WHERE w.id = j.owner)",
+    "
+    SELECT COUNT(*) FROM jobs AS j
+    WHERE j.state = 'running' AND NOT EXISTS (SELECT 1 FROM workers AS w WHERE w.id = j.owner)",
+);
+
+const TAKE_ORPHANS: &str = "
+    UPDATE jobs SET state = 'pending', owner = NULL, lease_until_ms = NULL, note = $1
+    WHERE state = 'running' AND NOT EXISTS (SELECT 1 FROM workers AS w WHERE w.id = jobs.owner)";
+
+const ORPHANED: &str = "taken back: the database does not know the worker that owned the job";
+
 const TAKEN_BACK: &str = "taken back: the process that ran the job ended without finishing it";
 
 impl Queue {
@@ -61,7 +78,7 @@ impl Queue {
     /// # Errors
     /// If the database cannot be written.
     pub async fn take_back(&mut self) -> Result<TakenBack, QueueError> {
-        let mut taken = TakenBack::default();
+        let mut taken = TakenBack { pending: self.take_orphans().await?, failed: 0 };
         let owners = self.owners().await?;
         // This worker finishes its own jobs.
         let own = self.registration.as_ref().map(|own| own.id);
@@ -83,6 +100,16 @@ impl Queue {
             }
         }
         Ok(taken)
+    }
+
+    /// Takes back the running jobs whose owner is no worker that the database knows. No lease of theirs is extended, and
+    /// nobody would ever be found gone. Only a damaged or edited database has such jobs.
+    async fn take_orphans(&mut self) -> Result<u64, QueueError> {
+        let orphans: i64 = query(COUNT_ORPHANS).scalar(&mut self.connection).await?;
+        if orphans == 0 {
+            return Ok(0);
+        }
+        self.write(async |connection, _| query(TAKE_ORPHANS).bind(ORPHANED).run(connection).await).await
     }
 
     /// Whether jobs of other workers may soon become pending: another worker is gone, is stopping or has missed
@@ -112,7 +139,7 @@ impl Queue {
         let found = self
             .write(async |connection, now_ms| {
                 let mut taken = TakenBack::default();
-                let jobs: Vec<(i64, String, i64)> = query(TAKE_BACK)
+                let jobs: Vec<(i64, String, String, i64)> = query(TAKE_BACK)
                     .bind(owner.id)
                     .bind(crash_limit)
                     .bind(TAKEN_BACK)
@@ -122,7 +149,7 @@ impl Queue {
                     .all(connection)
                     .await?;
                 let count = jobs.len() as i64;
-                for (id, state, crashes) in jobs {
+                for (id, key, state, crashes) in jobs {
                     if state == "pending" {
                         taken.pending += 1;
                         continue;
@@ -132,7 +159,8 @@ impl Queue {
                         "its process died {crashes} times without finishing it (killed, out of memory, a crash, a power \
                          cut); `tribosweep retry` tries it again"
                     );
-                    query(CRASHED).bind(id).bind(error).bind(now_ms).run(connection).await?;
+                    let digest = digest::of_result(&key, None, Some(&error));
+                    query(CRASHED).bind(id).bind(error).bind(now_ms).bind(digest).run(connection).await?;
                 }
                 let counted = query(COUNT).bind(owner.id).bind(now_ms).bind(count);
                 counted.bind(owner.heartbeat_ms).run(connection).await?;

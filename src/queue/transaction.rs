@@ -5,6 +5,7 @@ use super::clock::Clock;
 use super::engine::Connection;
 use super::error::QueueError;
 use super::handle::Queue;
+use super::owner::Owner;
 
 impl Queue {
     /// Runs `work` in an exclusive transaction, with the time in milliseconds since 1970-01-01 UTC. After an error, the
@@ -13,7 +14,8 @@ impl Queue {
         &mut self,
         work: impl AsyncFnOnce(&mut Connection, i64) -> Result<T, QueueError>,
     ) -> Result<T, QueueError> {
-        transact(&mut self.connection, &self.clock, Access::Exclusive, work).await
+        let worked = transact(&mut self.connection, &self.clock, Access::Exclusive, work).await;
+        self.naming_holder(worked).await
     }
 
     /// As [`Self::write`], in a shared transaction: `work` may change only jobs of this queue's worker, and claim jobs
@@ -22,7 +24,26 @@ impl Queue {
         &mut self,
         work: impl AsyncFnOnce(&mut Connection, i64) -> Result<T, QueueError>,
     ) -> Result<T, QueueError> {
-        transact(&mut self.connection, &self.clock, Access::Shared, work).await
+        let worked = transact(&mut self.connection, &self.clock, Access::Shared, work).await;
+        self.naming_holder(worked).await
+    }
+
+    /// What was done under a lock. If another process holds that lock and it is not known which one, it is probably a worker
+    /// of this database that is stopped. Nothing else holds it for long.
+    pub(super) async fn naming_holder<T>(&mut self, worked: Result<T, QueueError>) -> Result<T, QueueError> {
+        match worked {
+            Err(QueueError::Locked { source, holder: None }) => {
+                let owners = self.owners().await.unwrap_or_default();
+                let holder = owners.iter().find(|owner| owner.is_stopped()).map(|Owner { pid, .. }| {
+                    format!(
+                        "process {pid}, a worker of this database that is stopped (continue it with `kill -CONT {pid}` or end \
+                         it with `kill -KILL {pid}`), probably"
+                    )
+                });
+                Err(QueueError::Locked { source, holder })
+            }
+            worked => worked,
+        }
     }
 
     /// The time of this queue's clock, in milliseconds since 1970-01-01 UTC.

@@ -35,6 +35,8 @@ pub enum WorkerPresence {
     Working,
     /// It is active and has been asked to stop.
     Stopping,
+    /// Its process is stopped (Ctrl-Z, SIGSTOP): it keeps its jobs until it continues or ends.
+    Stopped,
     /// Its process has ended, or it has sent no heartbeat for longer than its lease.
     Gone,
 }
@@ -83,10 +85,18 @@ impl Queue {
                     jobs_per_s,
                     taken_back: i64::unsigned_abs(taken_back),
                     started_ms,
-                    silent_ms: now_ms - heartbeat_ms,
+                    silent_ms: now_ms.saturating_sub(heartbeat_ms),
                 }
             };
         Ok(rows.into_iter().map(status).collect())
+    }
+
+    /// What to do about workers that are stopped and hold jobs, a sentence each.
+    ///
+    /// # Errors
+    /// If the database cannot be read.
+    pub async fn stopped_workers(&mut self) -> Result<Vec<String>, QueueError> {
+        Ok(self.workers().await?.iter().filter_map(WorkerStatus::advice).collect())
     }
 
     /// Counts the active workers that have not been asked to stop. A worker whose process is not visible from here is
@@ -105,6 +115,26 @@ impl Queue {
     }
 }
 
+impl WorkerStatus {
+    /// What to do about a worker that is stopped and holds jobs, in a sentence; none of others.
+    ///
+    /// The time is in minutes, so that a line about it is not written again and again.
+    pub fn advice(&self) -> Option<String> {
+        if self.presence != WorkerPresence::Stopped || self.running == 0 {
+            return None;
+        }
+        let Self { pid, running, .. } = self;
+        let minutes = self.silent_ms / 60_000;
+        let since =
+            if minutes < 1 { "for less than a minute".to_owned() } else { format!("for {minutes} min") };
+        let jobs = if *running == 1 { "1 job".to_owned() } else { format!("{running} jobs") };
+        Some(format!(
+            "process {pid} has been stopped {since} and holds {jobs}: continue it (`kill -CONT {pid}`) or end it \
+             (`kill {pid}; kill -CONT {pid}`)"
+        ))
+    }
+}
+
 impl Owner {
     fn presence(&self, now_ms: i64) -> WorkerPresence {
         let is_active = match self.liveness() {
@@ -114,6 +144,7 @@ impl Owner {
         };
         match (is_active, self.is_stopping()) {
             (false, _) => WorkerPresence::Gone,
+            (true, _) if self.is_stopped() => WorkerPresence::Stopped,
             (true, true) => WorkerPresence::Stopping,
             (true, false) => WorkerPresence::Working,
         }

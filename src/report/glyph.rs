@@ -44,6 +44,9 @@ pub(super) fn status_glyph(row: &JobRow) -> StatusGlyph {
         RowState::Running => return glyph('>', "running", AnsiColor::Cyan, GREY),
         RowState::Cancelled => return glyph('-', "cancelled", AnsiColor::BrightBlack, LIGHT),
         RowState::Failed { .. } => return glyph('!', "failed", AnsiColor::Red, palette::VERMILLION),
+        RowState::Unreadable { .. } => {
+            return glyph('?', "unreadable", AnsiColor::Red, palette::VERMILLION);
+        }
         RowState::Done(record) => record,
         RowState::Measured(_) => return glyph('M', "measured", AnsiColor::White, GREY),
     };

@@ -201,6 +201,11 @@ fn not_periodic(row: &JobRow) -> Option<String> {
 }
 
 fn missing(row: &JobRow) -> Option<String> {
-    let is_missing = matches!(row.state, RowState::Pending | RowState::Running | RowState::Cancelled);
-    is_missing.then(|| entry(row, row.status()))
+    match &row.state {
+        RowState::Pending | RowState::Running | RowState::Cancelled => Some(entry(row, row.status())),
+        RowState::Unreadable { reason } => {
+            Some(entry(row, &format!("{}: {}", row.status(), markdown::code(reason))))
+        }
+        _ => None,
+    }
 }

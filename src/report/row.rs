@@ -92,6 +92,11 @@ pub enum RowState {
         /// The reason.
         error: String,
     },
+    /// It has ended, and what is stored of it cannot be read.
+    Unreadable {
+        /// Why.
+        reason: String,
+    },
     /// It has a result.
     Done(Box<JobRecord>),
     /// It is no job but a point from a file, for comparison.
@@ -99,7 +104,7 @@ pub enum RowState {
 }
 
 impl JobRow {
-    /// The name of the job's state in CSV: `pending`, `running`, `cancelled`, `failed`, `measured` or the outcome of
+    /// The name of the job's state in CSV: `pending`, `running`, `cancelled`, `failed`, `unreadable`, `measured` or the outcome of
     /// its run.
     pub fn status(&self) -> &'static str {
         match &self.state {
@@ -107,6 +112,7 @@ impl JobRow {
             RowState::Running => "running",
             RowState::Cancelled => "cancelled",
             RowState::Failed { .. } => "failed",
+            RowState::Unreadable { .. } => "unreadable",
             RowState::Done(record) => record.outcome.name(),
             RowState::Measured(_) => "measured",
         }
@@ -116,6 +122,14 @@ impl JobRow {
     pub fn record(&self) -> Option<&JobRecord> {
         match &self.state {
             RowState::Done(record) => Some(record),
+            _ => None,
+        }
+    }
+
+    /// Why what is stored of the job cannot be read; none if it can.
+    pub fn unreadable(&self) -> Option<&str> {
+        match &self.state {
+            RowState::Unreadable { reason } => Some(reason),
             _ => None,
         }
     }

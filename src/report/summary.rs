@@ -16,6 +16,7 @@ pub(super) struct Summary {
     pub running: usize,
     pub pending: usize,
     pub cancelled: usize,
+    pub unreadable: usize,
 }
 
 impl Summary {
@@ -29,6 +30,7 @@ impl Summary {
                 RowState::Running => &mut summary.running,
                 RowState::Cancelled => &mut summary.cancelled,
                 RowState::Failed { .. } => &mut summary.failed,
+                RowState::Unreadable { .. } => &mut summary.unreadable,
                 RowState::Measured(_) => continue,
                 RowState::Done(record) => match record.outcome {
                     Outcome::Periodic => &mut summary.periodic,
@@ -47,14 +49,16 @@ impl Summary {
     }
 
     pub fn missing(&self) -> usize {
-        self.running + self.pending + self.cancelled
+        self.running + self.pending + self.cancelled + self.unreadable
     }
 
     /// The missing jobs by status, in words.
     pub fn missing_in_words(&self) -> String {
         let cancelled =
             if self.cancelled > 0 { format!(", {} cancelled", self.cancelled) } else { String::new() };
-        format!("{} running, {} pending{cancelled}", self.running, self.pending)
+        let unreadable =
+            if self.unreadable > 0 { format!(", {} unreadable", self.unreadable) } else { String::new() };
+        format!("{} running, {} pending{cancelled}{unreadable}", self.running, self.pending)
     }
 
     /// The jobs that are done by outcome, in words.

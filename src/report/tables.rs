@@ -110,6 +110,7 @@ impl Quantity {
         match &row.state {
             RowState::Pending | RowState::Running | RowState::Cancelled => MISSING.to_owned(),
             RowState::Failed { .. } => "failed".to_owned(),
+            RowState::Unreadable { .. } => "unreadable".to_owned(),
             RowState::Done(record) => self.result(row, record, digits),
             RowState::Measured(_) => self.measured(row),
         }

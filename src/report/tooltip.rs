@@ -23,6 +23,10 @@ pub(super) fn tooltip_text(row: &JobRow) -> String {
             let reason: String = error.chars().take(MAX_ERROR_LENGTH).collect();
             lines.push(format!("failed: {reason}"));
         }
+        RowState::Unreadable { reason } => {
+            let reason: String = reason.chars().take(MAX_ERROR_LENGTH).collect();
+            lines.push(format!("unreadable: {reason}"));
+        }
         RowState::Pending | RowState::Running | RowState::Cancelled => lines.push(row.status().to_owned()),
         RowState::Measured(measured) => {
             lines.extend(measured.values.iter().map(in_words));

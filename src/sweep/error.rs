@@ -71,7 +71,8 @@ pub enum SweepError {
     },
     /// Something in the database that this version cannot read.
     #[error(
-        "{subject}: another version of tribosweep wrote the {what} ({reason}); submit the study to a new database"
+        "{subject}: another version of tribosweep wrote the {what}, or they are damaged ({reason}); submit the study again, \
+         which writes them anew, or submit it to a new database"
     )]
     Unreadable {
         /// The job or study.

@@ -3,9 +3,9 @@
 use super::error::SweepError;
 use super::rows::{add_further_names, for_each_row, for_each_row_with_inputs};
 use crate::queue::{Queue, Rows};
-use crate::report::WindowsCsv;
 use crate::report::columns::{self, Column, InputColumn};
 use crate::report::export::Export;
+use crate::report::{JobRow, WindowsCsv};
 use crate::study::{Parameter, input_parameters};
 use std::io::Write;
 
@@ -29,6 +29,29 @@ pub enum ExportColumns {
     All,
 }
 
+/// What an export could not read.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Unreadable {
+    /// The jobs, with the reason, in words. The first few are enough to see what it is.
+    pub jobs: Vec<String>,
+    /// Their number.
+    pub count: u64,
+}
+
+/// Jobs that [`Unreadable`] lists.
+const MOST_LISTED: usize = 10;
+
+impl Unreadable {
+    /// Notes a row if it cannot be read.
+    pub fn note(&mut self, row: &JobRow) {
+        let Some(reason) = row.unreadable() else { return };
+        self.count += 1;
+        if self.jobs.len() < MOST_LISTED {
+            self.jobs.push(format!("job {} of {}: {reason}", row.job, row.study));
+        }
+    }
+}
+
 /// Writes one row per window of the jobs whose speed or load changes in time to `out`, study after study, as CSV.
 ///
 /// # Errors
@@ -37,12 +60,18 @@ pub async fn export_windows(
     queue: &mut Queue,
     studies: &[String],
     out: &mut dyn Write,
-) -> Result<(), SweepError> {
+) -> Result<Unreadable, SweepError> {
+    let mut unreadable = Unreadable::default();
     let mut csv = WindowsCsv::new(out).map_err(SweepError::Output)?;
     for study in studies {
-        for_each_row(queue, study, Rows::All, |_, row| csv.write(&row).map_err(SweepError::Output)).await?;
+        for_each_row(queue, study, Rows::All, |_, row| {
+            unreadable.note(&row);
+            csv.write(&row).map_err(SweepError::Output)
+        })
+        .await?;
     }
-    csv.finish().map_err(SweepError::Output)
+    csv.finish().map_err(SweepError::Output)?;
+    Ok(unreadable)
 }
 
 /// The columns of an export of studies with these `grid` parameters other than ω and μ.
@@ -68,7 +97,8 @@ fn input_columns() -> Vec<InputColumn> {
 }
 
 /// Writes one row per job of the studies to `out`, study after study. Each study is read twice, first for the names of its
-/// parameters, so that its rows need not be held in memory. A grid parameter of any study is a column of all of them.
+/// parameters, so that its rows need not be held in memory. A grid parameter of any study is a column of all of them. Jobs whose
+/// stored result cannot be read have rows without figures; they are returned.
 ///
 /// # Errors
 /// If the database does not have one of the studies or cannot be read, and [`SweepError::Output`] if `out` fails. An unknown
@@ -79,7 +109,8 @@ pub async fn export(
     which: ExportColumns,
     format: ExportFormat,
     out: &mut dyn Write,
-) -> Result<(), SweepError> {
+) -> Result<Unreadable, SweepError> {
+    let mut unreadable = Unreadable::default();
     let mut grid = Vec::new();
     for study in studies {
         add_further_names(queue, study, &mut grid).await?;
@@ -93,17 +124,20 @@ pub async fn export(
         match which {
             ExportColumns::Plain => {
                 for_each_row(queue, study, Rows::All, |_, row| {
+                    unreadable.note(&row);
                     export.write(&row, &[]).map_err(SweepError::Output)
                 })
                 .await?;
             }
             ExportColumns::All => {
                 for_each_row_with_inputs(queue, study, |row, inputs| {
+                    unreadable.note(&row);
                     export.write(&row, &inputs).map_err(SweepError::Output)
                 })
                 .await?;
             }
         }
     }
-    export.finish().map_err(SweepError::Output)
+    export.finish().map_err(SweepError::Output)?;
+    Ok(unreadable)
 }

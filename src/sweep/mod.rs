@@ -15,6 +15,7 @@
 //! the database may be open.
 
 mod database;
+mod deep;
 mod difference;
 mod discretisation;
 mod error;
@@ -39,10 +40,11 @@ mod trouble;
 mod work;
 
 pub use database::{block_on, document, load_study, open, open_to_change, open_to_read, study_name};
+pub use deep::{examine_deeply, unreadable_jobs};
 pub use difference::{Difference, InputDifference};
 pub use discretisation::discretisation_of;
 pub use error::SweepError;
-pub use export::{ExportColumns, ExportFormat, columns, export, export_windows};
+pub use export::{ExportColumns, ExportFormat, Unreadable, columns, export, export_windows};
 pub use forecast::{Forecast, Group, Kind, Known, Speed, TimeRange, expected_s_per_cost};
 pub use growth::{PLANNER, read_growth};
 pub use history::History;
@@ -60,4 +62,4 @@ pub use sheet::sheet_of_job;
 pub use stability::{StabilitySweep, WAVES, name_of_modes, read_stability};
 pub use transfer::{Transfer, transfer};
 pub use trouble::Trouble;
-pub use work::work;
+pub use work::{job_key, work};

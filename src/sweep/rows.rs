@@ -2,7 +2,8 @@
 
 use super::discretisation::MeasuredErrors;
 use super::error::SweepError;
-use crate::queue::{JobState, Queue, Rows, StudyRow};
+use crate::analysis::JobRecord;
+use crate::queue::{Integrity, JobState, Queue, Rows, StudyRow};
 use crate::report::{Discretisation, JobNumerics, JobRow, RowState, export};
 use crate::spec::JobSpec;
 use crate::study::{Parameter, input_parameters, inputs};
@@ -123,8 +124,16 @@ pub async fn for_each_row_with_inputs(
 ) -> Result<(), SweepError> {
     let mut visited = Ok(());
     let convert = |row: &StudyRow| {
-        let spec = job_spec(&row.key, row.payload.as_deref().unwrap_or_default())?;
-        Ok((report_row(study, row)?, input_values(&spec)))
+        let mut own = report_row(study, row)?;
+        let inputs = match job_spec(&row.key, row.payload.as_deref().unwrap_or_default()) {
+            Ok(spec) => input_values(&spec),
+            // Without its inputs the row would be that of an unknown scene.
+            Err(error) => {
+                own.state = RowState::Unreadable { reason: error.to_string() };
+                input_parameters().map(|_| Value::Null).collect()
+            }
+        };
+        Ok((own, inputs))
     };
     let visit_page = page_visitor(&mut visited, convert, |(row, inputs)| visit(row, inputs));
     queue.each_page_with_payloads(study, Rows::All, visit_page).await?;
@@ -183,16 +192,15 @@ pub(super) async fn add_further_names(
     Ok(())
 }
 
+/// A row of the queue as a row of a report. A result that cannot be read is a state of the row.
 pub(super) fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepError> {
-    let unreadable = |what, reason| SweepError::Unreadable {
+    let unreadable = |reason| SweepError::Unreadable {
         subject: format!("job {} of {study}", row.key),
-        what,
+        what: "parameters",
         reason,
     };
-    let parameters: RowParameters =
-        serde_json::from_str(&row.parameters).map_err(|reason| unreadable("parameters", reason))?;
-    let state = row_state(row.state, row.record.as_deref(), row.error.as_deref())
-        .map_err(|reason| unreadable("record", reason))?;
+    let parameters: RowParameters = serde_json::from_str(&row.parameters).map_err(unreadable)?;
+    let state = row_state(row.state, row.record.as_deref(), row.error.as_deref(), row.integrity);
     Ok(JobRow {
         study: study.to_owned(),
         job: row.key.clone(),
@@ -208,18 +216,37 @@ pub(super) fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepErr
     })
 }
 
-/// The state of a job with its record or its error.
+/// The state of a job with its record or its error. A result that was damaged is none: a figure with a wrong digit looks like
+/// any other one.
 pub(super) fn row_state(
     state: JobState,
     record: Option<&str>,
     error: Option<&str>,
-) -> Result<RowState, serde_json::Error> {
-    Ok(match (state, record) {
+    integrity: Integrity,
+) -> RowState {
+    let unreadable = |reason: String| RowState::Unreadable { reason };
+    match (state, record) {
         (JobState::Pending, _) => RowState::Pending,
         (JobState::Running, _) => RowState::Running,
-        (JobState::Done, Some(record)) => RowState::Done(serde_json::from_str(record)?),
-        (JobState::Done, None) => RowState::Failed { error: "the record is missing".to_owned() },
         (JobState::Cancelled, _) => RowState::Cancelled,
+        (JobState::Done | JobState::Failed, _) if integrity == Integrity::Damaged => {
+            unreadable("the stored result is damaged: it does not have its digest".to_owned())
+        }
+        (JobState::Done, Some(record)) => match read_record(record) {
+            Ok(record) => RowState::Done(record),
+            Err(reason) => unreadable(reason),
+        },
+        (JobState::Done, None) => unreadable("the stored result is missing".to_owned()),
         (JobState::Failed, _) => RowState::Failed { error: error.unwrap_or_default().to_owned() },
+    }
+}
+
+/// The record that was stored as this text.
+///
+/// # Errors
+/// Why it cannot be read, in words.
+pub(super) fn read_record(text: &str) -> Result<Box<JobRecord>, String> {
+    serde_json::from_str(text).map_err(|error| {
+        format!("the stored result cannot be read: another version of tribosweep wrote it, or it is damaged ({error})")
     })
 }

@@ -187,11 +187,9 @@ impl StoredJob {
     /// # Errors
     /// [`SweepError::Unreadable`].
     pub fn row(&self) -> Result<JobRow, SweepError> {
-        let JobDetails { key, state, record, error, wall_s, .. } = &self.details;
+        let JobDetails { key, state, record, error, integrity, wall_s, .. } = &self.details;
         let spec = self.spec()?;
-        let state = row_state(*state, record.as_deref(), error.as_deref()).map_err(|reason| {
-            SweepError::Unreadable { subject: format!("job {key}"), what: "record", reason }
-        })?;
+        let state = row_state(*state, record.as_deref(), error.as_deref(), *integrity);
         Ok(JobRow {
             study: self.studies.first().map(|own| own.study.name.clone()).unwrap_or_default(),
             job: key.clone(),

@@ -2,6 +2,7 @@
 
 use super::checkpoint::SealedCheckpoint;
 use super::interrupt::Interrupt;
+use super::options::JobKey;
 use crate::analysis::{Ending, Structures};
 use crate::queue::{ClaimedJob, Finished, FinishedOutcome};
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -103,6 +104,8 @@ pub struct WorkerChannel {
     pub interrupt: Interrupt,
     /// How often the state of a running job is stored; `None` if never.
     pub checkpoint_interval: Option<Duration>,
+    /// The key that a job must have; `None` if it is not checked.
+    pub job_key: Option<JobKey>,
     /// The structures of models, which all threads of the worker share.
     pub structures: Structures,
 }

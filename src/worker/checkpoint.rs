@@ -68,7 +68,9 @@ mod tests {
             cost: 1.0,
             batch: String::new(),
             checkpoint: None,
+            parent: None,
             parent_state: None,
+            parent_is_damaged: false,
         };
         let own = job("a", "{}");
         let sealed = seal(&own, 2.5, b"state").bytes;

@@ -14,10 +14,10 @@ use super::options::WorkOptions;
 use super::planner::Planner;
 use super::progress::{Progress, RunningJob, Snapshot};
 use super::retry::RetryBackoff;
+use super::stall::Stall;
 use super::tally::Tally;
 use crate::queue::{
-    Claim, ClaimedJob, Exchanged, Finished, FinishedOutcome, PlanClaim, Planned, Queue, QueueError, Scope,
-    StudyRow, TakenBack,
+    Claim, ClaimedJob, Counts, Exchanged, Finished, FinishedOutcome, Queue, QueueError, Scope, TakenBack,
 };
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -25,21 +25,20 @@ use std::time::{Duration, Instant};
 use tokio::sync::mpsc::UnboundedReceiver;
 
 /// Longest time without a turn: how often progress is shown when no job ends.
-const TICK: Duration = Duration::from_millis(250);
-
-/// Shortest time between two looks for waves that are due, while jobs run here: most studies have none.
-const PLAN_PAUSE: Duration = Duration::from_secs(1);
+pub(super) const TICK: Duration = Duration::from_millis(250);
 
 /// Turns between the database and the solver threads.
 pub struct Dispatcher<'a> {
-    queue: &'a mut Queue,
-    scope: &'a Scope,
+    pub(super) queue: &'a mut Queue,
+    pub(super) scope: &'a Scope,
     threads: usize,
-    interrupt: &'a Interrupt,
+    pub(super) interrupt: &'a Interrupt,
     executor: Executor,
     reports: UnboundedReceiver<Report>,
     /// Requests of threads that have not been answered.
     requests: Vec<Request>,
+    /// Ends of jobs that could not be stored before an error.
+    unstored: Vec<Finished>,
     /// Checkpoints that have not been stored.
     checkpoints: Vec<SealedCheckpoint>,
     /// Cost and progress of every running job, by key.
@@ -48,15 +47,16 @@ pub struct Dispatcher<'a> {
     timings: Vec<(f64, f64)>,
     heartbeat: Heartbeat,
     idle: IdleTimer,
+    stall: Stall,
     idle_exit: Option<Duration>,
     expected_s_per_cost: [f64; 2],
-    planner: Option<&'static dyn Planner>,
+    pub(super) planner: Option<&'static dyn Planner>,
     /// When studies that grow were last looked for.
-    last_plan: Option<Instant>,
+    pub(super) last_plan: Option<Instant>,
     /// Whether the database knows that this worker was asked to stop.
     is_stopping: bool,
     taken_back: TakenBack,
-    tally: Tally,
+    pub(super) tally: Tally,
 }
 
 impl<'a> Dispatcher<'a> {
@@ -80,11 +80,13 @@ impl<'a> Dispatcher<'a> {
             executor,
             reports,
             requests: Vec::new(),
+            unstored: Vec::new(),
             checkpoints: Vec::new(),
             running: BTreeMap::new(),
             timings: Vec::new(),
             heartbeat,
             idle: IdleTimer::default(),
+            stall: Stall::default(),
             idle_exit: options.idle_exit,
             expected_s_per_cost: options.expected_s_per_cost,
             planner: options.planner,
@@ -101,7 +103,13 @@ impl<'a> Dispatcher<'a> {
         loop {
             self.store_checkpoints(progress).await;
             let requests = self.take_answerable_requests();
-            let exchanged = self.exchange(&done, &requests, progress).await?;
+            let exchanged = match self.exchange(&done, &requests, progress).await {
+                Ok(exchanged) => exchanged,
+                Err(error) => {
+                    self.unstored = done;
+                    return Err(error);
+                }
+            };
             self.record_ends(&done, &exchanged.refused, progress);
             done.clear();
             for (request, jobs) in requests.into_iter().zip(exchanged.claimed) {
@@ -131,8 +139,22 @@ impl<'a> Dispatcher<'a> {
     }
 
     /// Leaves the database as far as it answers; what fails is ignored.
-    pub async fn unregister(&mut self) {
+    async fn unregister(&mut self) {
         let _ = self.queue.unregister().await;
+    }
+
+    /// After an error that ends the worker: leaves the database as far as it answers. If the database was deleted, moved or
+    /// replaced, all results are put where they can be found; the error says where.
+    pub async fn abort(&mut self, error: QueueError) -> QueueError {
+        if !matches!(error, QueueError::Displaced { .. }) {
+            self.unregister().await;
+            return error;
+        }
+        let mut ended = std::mem::take(&mut self.unstored);
+        while let Ok(report) = self.reports.try_recv() {
+            self.accept(report, &mut ended);
+        }
+        self.queue.rescue(&ended, error).await
     }
 
     /// Unregisters the worker and counts the jobs for the last time.
@@ -144,7 +166,8 @@ impl<'a> Dispatcher<'a> {
                 error => error,
             };
             match left {
-                Ok(()) => return Ok(()),
+                // What was counted is there, and not only in memory.
+                Ok(()) => return self.queue.ensure_place().await,
                 Err(error) => backoff.wait(error, self.interrupt, progress).await?,
             }
         }
@@ -155,7 +178,11 @@ impl<'a> Dispatcher<'a> {
         if self.interrupt.is_raised() {
             return Ok(true);
         }
-        if self.tally.counts.pending > 0 || !self.idle.is_poll_due() {
+        if self.tally.counts.pending > 0 {
+            self.note_unclaimed().await?;
+            return Ok(false);
+        }
+        if !self.idle.is_poll_due() {
             return Ok(false);
         }
         let backoff = RetryBackoff::new();
@@ -168,69 +195,6 @@ impl<'a> Dispatcher<'a> {
         }
     }
 
-    /// Plans the waves that are due, if it has not looked for them within [`PLAN_PAUSE`]. Returns whether there are new jobs.
-    async fn plan_waves(&mut self, progress: &mut dyn Progress) -> Result<bool, QueueError> {
-        let Some(planner) = self.planner else { return Ok(false) };
-        if self.interrupt.is_raised() || self.last_plan.is_some_and(|last| last.elapsed() < PLAN_PAUSE) {
-            return Ok(false);
-        }
-        self.last_plan = Some(Instant::now());
-        let mut has_planned = false;
-        match self.plan_due(planner, &mut has_planned, progress).await {
-            // It is tried again at the next turn.
-            Err(error) if error.is_transient() => {}
-            planned => planned?,
-        }
-        if has_planned {
-            self.tally.invalidate();
-        }
-        Ok(has_planned)
-    }
-
-    async fn plan_due(
-        &mut self,
-        planner: &'static dyn Planner,
-        has_planned: &mut bool,
-        progress: &mut dyn Progress,
-    ) -> Result<(), QueueError> {
-        while !self.interrupt.is_raised()
-            && let Some(claim) = self.queue.claim_plan(self.scope).await?
-        {
-            let rows = self.queue.rows(&claim.study).await?;
-            let planned = self.plan_aside(planner, claim.clone(), rows).await?;
-            if self.queue.store_plan(&claim, &planned).await? {
-                *has_planned |= matches!(planned, Planned::Wave { .. });
-                progress.planned(&claim.study, claim.wave, &planned);
-            }
-        }
-        Ok(())
-    }
-
-    /// Plans a wave on a thread of its own. Heartbeats go on meanwhile.
-    async fn plan_aside(
-        &mut self,
-        planner: &'static dyn Planner,
-        claim: PlanClaim,
-        rows: Vec<StudyRow>,
-    ) -> Result<Planned, QueueError> {
-        let mut plan = tokio::task::spawn_blocking(move || planner.plan(&claim, &rows));
-        loop {
-            match tokio::time::timeout(TICK, &mut plan).await {
-                Ok(Ok(planned)) => return Ok(planned),
-                // A panic is a bug, but it must not end the worker, which has other studies.
-                Ok(Err(error)) => {
-                    return Ok(Planned::Failed {
-                        error: format!("internal error (please report it): {error}"),
-                    });
-                }
-                Err(_) => match self.keep_alive().await {
-                    Err(error) if error.is_transient() => {}
-                    kept_alive => kept_alive?,
-                },
-            }
-        }
-    }
-
     /// Looks for new jobs and for jobs of dead workers; returns whether there is nothing more to wait for.
     async fn poll_for_jobs(&mut self, progress: &mut dyn Progress) -> Result<bool, QueueError> {
         self.take_back().await?;
@@ -238,9 +202,19 @@ impl<'a> Dispatcher<'a> {
         let has_planned = self.plan_waves(progress).await?;
         // The tally may be older than the changes by other workers.
         let open = self.queue.open_jobs(self.scope).await?;
+        if open.has_pending || open.has_running && self.tally.counts.running == 0 {
+            self.note_unclaimed().await?;
+        } else {
+            self.stall.reset();
+        }
         if open.has_pending || has_planned {
             self.tally.invalidate();
             return Ok(false);
+        }
+        if open.has_running {
+            for advice in self.queue.stopped_workers().await? {
+                progress.waiting(&advice);
+            }
         }
         // A wave that another worker plans will have jobs for this one, too.
         let may_grow = open.has_plans && self.planner.is_some();
@@ -248,6 +222,27 @@ impl<'a> Dispatcher<'a> {
         // Exits even if other workers are still running jobs, unless one of them has missed a heartbeat: its jobs may
         // come back.
         Ok(self.idle.elapsed() >= limit && !(open.has_running && self.queue.has_missing_workers().await?))
+    }
+
+    /// A look found jobs that this worker, which runs none, has not claimed.
+    ///
+    /// # Errors
+    /// If nobody else runs a job either, and this has been so for too long.
+    async fn note_unclaimed(&mut self) -> Result<(), QueueError> {
+        if self.tally.counts.running == 0 && !self.stall.is_over_limit() {
+            return Ok(());
+        }
+        // The tally may be old.
+        self.tally.query(self.queue, self.scope).await?;
+        let open = self.queue.open_jobs(self.scope).await?;
+        let Counts { pending, running, .. } = self.tally.counts;
+        let is_stuck =
+            if pending > 0 { self.stall.has_tried() } else { open.has_pending || open.has_running };
+        if running == 0 && is_stuck {
+            return Err(self.queue.contradiction().await?);
+        }
+        self.stall.reset();
+        Ok(())
     }
 
     fn accept(&mut self, report: Report, done: &mut Vec<Finished>) {
@@ -286,11 +281,13 @@ impl<'a> Dispatcher<'a> {
         if jobs.is_empty() && request.batch.is_none() {
             // Other workers were faster. No job is claimed until the database has been queried again.
             self.tally.counts.pending = 0;
+            self.stall.note_empty_claim();
             self.requests.push(request);
             return;
         }
         if !jobs.is_empty() {
             self.idle.reset();
+            self.stall.reset();
         }
         self.tally.add_claimed(jobs.len() as u64);
         let assignments = jobs.into_iter().map(|job| {
@@ -354,7 +351,7 @@ impl<'a> Dispatcher<'a> {
             match exchanged {
                 Ok(exchanged) => return Ok(exchanged),
                 // Also after an interruption: finished work must not be lost.
-                Err(error @ QueueError::Locked(_)) => progress.waiting(&error.to_string()),
+                Err(error @ QueueError::Locked { .. }) => progress.waiting(&error.to_string()),
                 Err(error) => backoff.wait(error, self.interrupt, progress).await?,
             }
         }
@@ -378,7 +375,7 @@ impl<'a> Dispatcher<'a> {
 
     /// Sends a heartbeat if one is due, which extends the leases of the jobs that run here, and takes back the jobs of
     /// dead workers.
-    async fn keep_alive(&mut self) -> Result<(), QueueError> {
+    pub(super) async fn keep_alive(&mut self) -> Result<(), QueueError> {
         if self.interrupt.is_raised() && !self.is_stopping {
             // From now on a sudden end of this process is no crash. If the database does not learn it, it is one.
             self.is_stopping = self.queue.mark_stopping().await.is_ok();

@@ -29,7 +29,7 @@ impl Executor {
         reports: &UnboundedSender<Report>,
         interrupt: &Interrupt,
     ) -> Result<Self, rayon::ThreadPoolBuildError> {
-        let WorkOptions { threads, checkpoint_interval, .. } = options;
+        let WorkOptions { threads, checkpoint_interval, job_key, .. } = options;
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .thread_name(|i| format!("solver-{i}"))
@@ -43,6 +43,7 @@ impl Executor {
                 reports: reports.clone(),
                 interrupt: interrupt.clone(),
                 checkpoint_interval,
+                job_key,
                 structures: structures.clone(),
             };
             pool.spawn(move || run_jobs(&channel));

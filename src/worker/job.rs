@@ -1,9 +1,10 @@
 //! A job on its thread: its payload is parsed once, and its end becomes an outcome for the queue.
 
 use super::channel::{Assignment, WorkerChannel};
+use super::options::JobKey;
 use crate::analysis::continuation::{PinMotion, from_bytes, to_bytes};
 use crate::analysis::{Ending, JobError, JobRecord};
-use crate::queue::FinishedOutcome;
+use crate::queue::{ClaimedJob, FinishedOutcome};
 use crate::spec::JobSpec;
 use std::any::Any;
 
@@ -21,19 +22,38 @@ pub struct ParsedJob {
 impl ParsedJob {
     /// Parses the payload. If it is no job, reports that the job failed.
     pub fn parse(mut assignment: Assignment, channel: &WorkerChannel) -> Option<Self> {
-        match serde_json::from_str(&assignment.job.payload) {
+        match read(&assignment.job, channel.job_key) {
             Ok(spec) => {
                 assignment.progress.set_ending(Ending::of(&spec));
                 let parent = assignment.job.parent_state.take().and_then(|bytes| from_bytes(&bytes));
                 Some(Self { assignment, spec, parent })
             }
             Err(error) => {
-                let failure = FinishedOutcome::Failed { error: format!("unreadable job: {error}") };
-                channel.finish(&assignment.job, failure, 0.0);
+                channel.finish(&assignment.job, FinishedOutcome::Failed { error }, 0.0);
                 None
             }
         }
     }
+}
+
+/// The specification of a job, if it is the one that the job's key was made of and what the job begins with is intact.
+fn read(job: &ClaimedJob, job_key: Option<JobKey>) -> Result<JobSpec, String> {
+    let spec = serde_json::from_str(&job.payload).map_err(|error| {
+        format!("unreadable job: {error}; submit the study again, then `tribosweep retry` it")
+    })?;
+    if job_key.is_some_and(|job_key| job_key(&spec) != job.key) {
+        return Err("the specification that is stored for this job does not have the job's key: it was changed, or another \
+                    version of the solver planned the job; submit the study again, then `tribosweep retry` it"
+            .to_owned());
+    }
+    if job.parent_is_damaged {
+        let parent = job.parent.as_deref().unwrap_or_default();
+        return Err(format!(
+            "the stored motion in which job {parent} ended is damaged, and this job begins with it; run that job again with \
+             `tribosweep retry STUDY --unreadable` and `tribosweep work`, then `tribosweep retry` this one"
+        ));
+    }
+    Ok(spec)
 }
 
 /// The end of a run as an outcome for the queue.

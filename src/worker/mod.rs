@@ -34,13 +34,15 @@ mod progress;
 mod provenance;
 mod retry;
 mod schedule;
+mod stall;
 mod tally;
+mod waves;
 mod work;
 
 pub use eta::Eta;
 pub use interrupt::Interrupt;
 pub use open::open;
-pub use options::WorkOptions;
+pub use options::{JobKey, WorkOptions};
 pub use planner::Planner;
 pub use progress::{Progress, RunningJob, SilentProgress, Snapshot};
 pub use provenance::{machine, program};

@@ -2,7 +2,11 @@
 
 use super::eta::TYPICAL_S_PER_COST;
 use super::planner::Planner;
+use crate::spec::JobSpec;
 use std::time::Duration;
+
+/// The key of a job with this specification.
+pub type JobKey = fn(&JobSpec) -> String;
 
 /// Settings of a worker.
 #[derive(Debug, Clone, Copy)]
@@ -18,6 +22,9 @@ pub struct WorkOptions {
     /// The range of seconds of a thread per unit of a job's cost that is expected. The remaining time is estimated from it
     /// until jobs have finished.
     pub expected_s_per_cost: [f64; 2],
+    /// The key that a job with this specification has. A job that was claimed under another key fails: its specification was
+    /// changed, and its result would be stored as that of another scene. Without it, keys may be any names.
+    pub job_key: Option<JobKey>,
     /// Plans the waves of studies that grow. Without it they do not grow here.
     pub planner: Option<&'static dyn Planner>,
 }
@@ -32,6 +39,12 @@ impl WorkOptions {
         Self { planner: Some(planner), ..self }
     }
 
+    /// The same settings with a check of keys.
+    #[must_use]
+    pub fn checking(self, job_key: JobKey) -> Self {
+        Self { job_key: Some(job_key), ..self }
+    }
+
     /// Settings with that number of threads and defaults otherwise.
     pub fn new(threads: usize) -> Self {
         Self {
@@ -39,6 +52,7 @@ impl WorkOptions {
             checkpoint_interval: Some(Self::CHECKPOINT_INTERVAL),
             idle_exit: None,
             expected_s_per_cost: TYPICAL_S_PER_COST,
+            job_key: None,
             planner: None,
         }
     }

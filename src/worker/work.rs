@@ -88,13 +88,14 @@ async fn work_through(
         .map_err(|error| WorkError::Threads(std::io::Error::other(error)))?;
     queue.register(&provenance::worker(threads)).await?;
     let mut dispatcher = Dispatcher::new(queue, scope, options, interrupt, executor, reports).await?;
-    let worked = dispatcher.run(progress).await;
-    // Also after an error, if possible: jobs that are given back do not count as crashed. The first error is returned.
-    if worked.is_err() {
-        dispatcher.unregister().await;
+    let worked = match dispatcher.run(progress).await {
+        Ok(()) => dispatcher.shut_down(progress).await,
+        error => error,
+    };
+    // Jobs that are given back do not count as crashed. The first error is returned.
+    if let Err(error) = worked {
+        return Err(dispatcher.abort(error).await.into());
     }
-    worked?;
-    dispatcher.shut_down(progress).await?;
     let snapshot = dispatcher.snapshot();
     progress.stopped(&snapshot);
     let taken_back = dispatcher.taken_back();

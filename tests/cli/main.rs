@@ -10,6 +10,7 @@ mod exit_codes;
 mod forecast;
 mod growing;
 mod guards;
+mod hostile;
 mod inspect;
 mod interruption;
 #[path = "../support/mount.rs"]

@@ -2,8 +2,10 @@
 
 mod absorb;
 mod claims;
+mod displaced;
 mod exchange;
 mod guards;
+mod integrity;
 mod lost;
 mod migrate;
 mod open;

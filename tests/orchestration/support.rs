@@ -140,6 +140,14 @@ impl Sandbox {
         }
     }
 
+    /// The text that a statement returns, bypassing the queue.
+    pub async fn text(&self, statement: &'static str) -> String {
+        match &self.server {
+            None => sqlx::query_scalar(statement).fetch_one(&mut self.raw().await).await.unwrap(),
+            Some(server) => sqlx::query_scalar(statement).fetch_one(&mut server.raw().await).await.unwrap(),
+        }
+    }
+
     /// The number that a statement returns, bypassing the queue.
     pub async fn number(&self, statement: &'static str) -> i64 {
         match &self.server {

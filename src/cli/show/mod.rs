@@ -52,6 +52,8 @@ fn as_json(job: &StoredJob) -> Value {
             inputs(&spec).into_iter().map(|input| (input.parameter.column().to_owned(), input.value));
         values.collect::<Map<_, _>>()
     });
+    // A damaged record is not shown: its figures look like any others.
+    let unreadable = job.row().ok().and_then(|row| row.unreadable().map(str::to_owned));
     json!({
         "job": details.key,
         "studies": studies.iter().map(study).collect::<Vec<_>>(),
@@ -71,7 +73,8 @@ fn as_json(job: &StoredJob) -> Value {
         "provenance": details.provenance.as_deref().map(parsed),
         "inputs": inputs,
         "spec": parsed(&details.payload),
-        "record": details.record.as_deref().map(parsed),
+        "unreadable": unreadable,
+        "record": details.record.as_deref().filter(|_| unreadable.is_none()).map(parsed),
     })
 }
 

@@ -53,7 +53,11 @@ pub(super) fn of_job(job: &StoredJob, width: Option<usize>) -> String {
                 text += &table;
             }
         }
-        Ok(_) => {}
+        Ok(row) => {
+            if let Some(reason) = row.unreadable() {
+                add("Result", &[[reason.to_owned(), String::new(), String::new()]]);
+            }
+        }
         Err(error) => add("Result", &[[error.to_string(), String::new(), String::new()]]),
     }
     let _ = write!(text, "\nProvenance\n{}", aligned::lines(2, &provenance(job), width));
@@ -80,7 +84,11 @@ fn heading(group: Group) -> &'static str {
 fn head(job: &StoredJob) -> Vec<[String; 2]> {
     let details = &job.details;
     let line = |name: &str, text: String| [name.to_owned(), text];
-    let outcome = job.row().ok().filter(|row| row.record().is_some()).map(|row| row.status());
+    let outcome = job
+        .row()
+        .ok()
+        .filter(|row| row.record().is_some() || row.unreadable().is_some())
+        .map(|row| row.status());
     let state = details.state.as_str();
     let mut lines = vec![
         line("job", details.key.clone()),

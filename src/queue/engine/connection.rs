@@ -1,4 +1,5 @@
-use sqlx::{Connection as _, SqliteConnection};
+#[cfg(test)]
+use sqlx::SqliteConnection;
 
 use crate::queue::access::Access;
 use crate::queue::clock::{self, Clock};
@@ -11,7 +12,7 @@ use crate::queue::sqlite;
 #[derive(Debug)]
 pub(in crate::queue) enum Connection {
     /// To a file.
-    Sqlite(SqliteConnection),
+    Sqlite(sqlite::File),
     /// To a server.
     #[cfg(feature = "postgres")]
     Postgres(Box<Session>),
@@ -21,8 +22,8 @@ impl Connection {
     /// Begins a transaction that writes. Returns the time in milliseconds since 1970-01-01 UTC.
     pub async fn begin(&mut self, access: Access, clock: &Clock) -> Result<i64, QueueError> {
         let database_ms = match self {
-            Self::Sqlite(connection) => {
-                sqlite::begin(connection).await?;
+            Self::Sqlite(file) => {
+                sqlite::begin(file).await?;
                 None
             }
             #[cfg(feature = "postgres")]
@@ -36,7 +37,7 @@ impl Connection {
     /// Commits the transaction.
     pub async fn commit(&mut self) -> Result<(), QueueError> {
         match self {
-            Self::Sqlite(connection) => sqlite::commit(connection).await,
+            Self::Sqlite(file) => sqlite::commit(file).await,
             #[cfg(feature = "postgres")]
             Self::Postgres(session) => session.commit().await,
         }
@@ -45,7 +46,7 @@ impl Connection {
     /// Rolls the transaction back, unless the database has already done so.
     pub async fn roll_back(&mut self) {
         match self {
-            Self::Sqlite(connection) => sqlite::roll_back(connection).await,
+            Self::Sqlite(file) => sqlite::roll_back(file).await,
             #[cfg(feature = "postgres")]
             Self::Postgres(session) => session.roll_back().await,
         }
@@ -91,7 +92,7 @@ impl Connection {
     /// Frees the space of deleted rows.
     pub async fn compact(&mut self) -> Result<(), QueueError> {
         match self {
-            Self::Sqlite(connection) => sqlite::compact(connection).await,
+            Self::Sqlite(file) => sqlite::compact(file).await,
             #[cfg(feature = "postgres")]
             Self::Postgres(session) => session.compact().await,
         }
@@ -100,7 +101,7 @@ impl Connection {
     /// The size of the database in bytes.
     pub async fn size(&mut self) -> Result<u64, QueueError> {
         match self {
-            Self::Sqlite(connection) => sqlite::size(connection).await,
+            Self::Sqlite(file) => sqlite::size(file).await,
             #[cfg(feature = "postgres")]
             Self::Postgres(session) => session.size().await,
         }
@@ -110,7 +111,7 @@ impl Connection {
     #[cfg(test)]
     pub fn sqlite(&mut self) -> &mut SqliteConnection {
         match self {
-            Self::Sqlite(connection) => connection,
+            Self::Sqlite(file) => file.connection(),
             #[cfg(feature = "postgres")]
             Self::Postgres(_) => panic!("the database is on a server"),
         }
@@ -119,7 +120,7 @@ impl Connection {
     /// Closes the connection and waits until it is closed.
     pub async fn close(self) -> Result<(), QueueError> {
         match self {
-            Self::Sqlite(connection) => connection.close().await.map_err(sqlite::classify),
+            Self::Sqlite(file) => file.close().await,
             #[cfg(feature = "postgres")]
             Self::Postgres(session) => {
                 session.close().await;

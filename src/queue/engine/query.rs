@@ -11,7 +11,6 @@ use sqlx::sqlite::SqliteRow;
 use super::connection::Connection;
 use super::statement::Statement;
 use crate::queue::error::QueueError;
-use crate::queue::sqlite;
 
 /// The types that rows of both databases can be read as: tuples of `i64`, `f64`, `String`, `Vec<u8>` and options of
 /// these. (PostgreSQL has no unsigned integers.)
@@ -109,10 +108,10 @@ impl<'q> Query<'q> {
         let Self { statement, values } = self;
         Box::pin(async move {
             match connection {
-                Connection::Sqlite(connection) => {
+                Connection::Sqlite(file) => {
                     let query = bound!(sqlx::query(statement.sqlite()), values);
-                    let done = query.execute(connection).await.map_err(sqlite::classify)?;
-                    Ok(done.rows_affected())
+                    let done = query.execute(file.connection()).await;
+                    Ok(done.map_err(|error| file.explain(error))?.rows_affected())
                 }
                 #[cfg(feature = "postgres")]
                 Connection::Postgres(session) => {
@@ -138,14 +137,14 @@ impl<'q> Query<'q> {
         let Self { statement, values } = self;
         Box::pin(async move {
             match connection {
-                Connection::Sqlite(connection) => {
+                Connection::Sqlite(file) => {
                     let query = bound!(sqlx::query(statement.sqlite()), values);
                     let query = query.try_map(|row| read(Row::Sqlite(row)));
                     let done = match rows {
-                        Rows::All => query.fetch_all(connection).await.map(drop),
-                        Rows::First => query.fetch_optional(connection).await.map(drop),
+                        Rows::All => query.fetch_all(file.connection()).await.map(drop),
+                        Rows::First => query.fetch_optional(file.connection()).await.map(drop),
                     };
-                    done.map_err(sqlite::classify)
+                    done.map_err(|error| file.explain(error))
                 }
                 #[cfg(feature = "postgres")]
                 Connection::Postgres(session) => {

@@ -40,7 +40,7 @@ pub(super) fn classify(source: sqlx::Error) -> QueueError {
     if is_gone || code == TOO_MANY_CONNECTIONS || code == STATEMENT_TIMEOUT {
         QueueError::Unreachable(error.to_string())
     } else if LOCKED.contains(&code) {
-        QueueError::Locked(Box::new(source))
+        QueueError::Locked { source: Box::new(source), holder: None }
     } else if code == DISK_FULL {
         QueueError::DiskFull(Box::new(source))
     } else if READ_ONLY.contains(&code) {

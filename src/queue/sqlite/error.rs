@@ -19,11 +19,11 @@ const FULL: u32 = 13;
 const NOTADB: u32 = 26;
 
 /// The queue's error for an error of `SQLite` or of sqlx.
-pub(in crate::queue) fn classify(source: sqlx::Error) -> QueueError {
+pub(super) fn classify(source: sqlx::Error) -> QueueError {
     let extended = extended_code(&source);
     let source = Box::new(source);
     match extended.map(primary_code) {
-        Some(BUSY | LOCKED) => QueueError::Locked(source),
+        Some(BUSY | LOCKED) => QueueError::Locked { source, holder: None },
         Some(READONLY) => QueueError::ReadOnly(source),
         Some(CORRUPT | NOTADB) => QueueError::Damaged(source),
         Some(FULL) => QueueError::DiskFull(source),

@@ -23,15 +23,10 @@ pub(in crate::queue) async fn examine(
     let level = usize::try_from(level).ok().and_then(|level| SYNCHRONOUS.get(level));
     findings.push(Finding::good("synchronous", *level.unwrap_or(&"unknown")));
 
-    // The first few problems suffice to show what is wrong.
-    let damage: Vec<String> = sqlx::query_scalar("PRAGMA integrity_check(5)")
-        .fetch_all(&mut *connection)
-        .await
-        .map_err(classify)?;
-    let is_whole = damage == ["ok"];
+    let damage = integrity(connection).await?;
     let advice = "; copy what can be read with `sqlite3 FILE .recover`, or take a backup";
-    let text = if is_whole { "ok".to_owned() } else { damage.join("; ") + advice };
-    findings.push(Finding::judged("integrity", text, is_whole));
+    let text = if damage.is_empty() { "ok".to_owned() } else { damage.join("; ") + advice };
+    findings.push(Finding::judged("integrity", text, damage.is_empty()));
 
     let orphans: i64 = scalar(connection, "SELECT COUNT(*) FROM pragma_foreign_key_check").await?;
     let text = if orphans == 0 {
@@ -41,6 +36,18 @@ pub(in crate::queue) async fn examine(
     };
     findings.push(Finding::judged("references", text, orphans == 0));
     Ok(())
+}
+
+/// What `SQLite` finds wrong with the file: the first few problems, which suffice to show what it is.
+pub(in crate::queue) async fn integrity(
+    connection: &mut SqliteConnection,
+) -> Result<Vec<String>, QueueError> {
+    let mut damage: Vec<String> =
+        sqlx::query_scalar("PRAGMA integrity_check(5)").fetch_all(connection).await.map_err(classify)?;
+    if damage == ["ok"] {
+        damage.clear();
+    }
+    Ok(damage)
 }
 
 async fn scalar<T>(connection: &mut SqliteConnection, statement: &'static str) -> Result<T, QueueError>

@@ -1,7 +1,9 @@
 //! File locks of the operating system, on files beside the database. A lock ends with the process that holds it,
-//! however the process ends, so no stale locks remain. The empty file of the opening lock stays.
+//! however the process ends, so no stale locks remain. The file of the opening lock stays. It
+//! says which file the database is, and which file its log is.
 
 use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{Read, Seek, Write};
 use std::path::{Path, PathBuf};
 
 use crate::queue::error::QueueError;
@@ -43,6 +45,20 @@ pub(super) async fn opening_lock(database: &Path) -> Result<File, QueueError> {
     locked.expect("locking a file does not panic").map_err(|source| QueueError::File { path, source })
 }
 
+/// What the last opening wrote into the lock file; empty if it cannot be read.
+pub(super) fn read(mut lock: &File) -> String {
+    let mut text = String::new();
+    match lock.read_to_string(&mut text) {
+        Ok(_) => text,
+        Err(_) => String::new(),
+    }
+}
+
+/// Writes into the lock file for the next opening. It is only a help, so a full disk is no error.
+pub(super) fn write(mut lock: &File, text: &str) {
+    let _ = lock.set_len(0).and_then(|()| lock.rewind()).and_then(|()| lock.write_all(text.as_bytes()));
+}
+
 /// Whether a lock file can be created beside the database.
 pub(super) fn can_be_taken(database: &Path) -> bool {
     open_beside(database, ".lock").is_ok()
@@ -52,7 +68,7 @@ fn open_beside(database: &Path, suffix: &str) -> Result<(PathBuf, File), QueueEr
     let mut path = database.as_os_str().to_owned();
     path.push(suffix);
     let path = PathBuf::from(path);
-    match OpenOptions::new().create(true).truncate(false).write(true).open(&path) {
+    match OpenOptions::new().create(true).truncate(false).read(true).write(true).open(&path) {
         Ok(file) => Ok((path, file)),
         Err(source) => Err(QueueError::File { path, source }),
     }

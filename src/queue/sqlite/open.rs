@@ -6,6 +6,7 @@ use sqlx::sqlite::{SqliteConnectOptions, SqliteSynchronous};
 use sqlx::{ConnectOptions, SqliteConnection};
 
 use super::error::{classify, classify_at_open};
+use super::file::{self, File};
 use super::{filesystem, lock, schema};
 use crate::queue::error::QueueError;
 use crate::queue::settings::Settings;
@@ -24,38 +25,38 @@ const LOG_PAGES: &str = "10000";
 const ROWS_IN_FLIGHT: usize = 1_000;
 
 /// Opens the database at `path`. Creates it if it is missing, but not its folder.
-pub(in crate::queue) async fn open(path: &Path, settings: Settings) -> Result<SqliteConnection, QueueError> {
+pub(in crate::queue) async fn open(path: &Path, settings: Settings) -> Result<File, QueueError> {
     let path = resolve(path)?;
     check_path(&path)?;
     // If two processes create the file, switch it to a write-ahead log or create the tables at the same time, one of
     // them fails with "database is locked". The busy timeout does not help.
     let opening = lock::opening_lock(&path).await?;
+    if file::has_log_of_another(&path, &lock::read(&opening)) {
+        return Err(QueueError::LogOfAnother { path });
+    }
     let mut connection = connect(&path, options(&path, settings).create_if_missing(true)).await?;
     check_library(&mut connection).await?;
     schema::check_ownership(&mut connection, &path).await?;
     use_write_ahead_log(&mut connection, &path).await?;
     schema::migrate(&mut connection, &path).await?;
     sqlx::query("PRAGMA foreign_keys = ON").execute(&mut connection).await.map_err(classify)?;
+    let file = File::new(connection, &path);
+    if let Some(record) = file::record(&path) {
+        lock::write(&opening, &record);
+    }
     drop(opening);
-    Ok(connection)
+    Ok(file)
 }
 
 /// Opens the database at `path`, which must exist, for reading. This also works if the file and its folder are
 /// read-only.
-pub(in crate::queue) async fn open_to_read(
-    path: &Path,
-    settings: Settings,
-) -> Result<SqliteConnection, QueueError> {
+pub(in crate::queue) async fn open_to_read(path: &Path, settings: Settings) -> Result<File, QueueError> {
     if is_writable(path) {
         return open(path, settings).await;
     }
     let path = resolve(path)?;
     check_path(&path)?;
-    let beside = |suffix: &str| {
-        let mut name = path.as_os_str().to_owned();
-        name.push(suffix);
-        Path::new(&name).exists()
-    };
+    let beside = |suffix: &str| file::beside(&path, suffix).exists();
     // Without a log, no process is writing. SQLite is then told that the file is immutable, because otherwise it would
     // try to create the shared memory for a log.
     let has_log = beside("-wal");
@@ -66,7 +67,7 @@ pub(in crate::queue) async fn open_to_read(
     check_library(&mut connection).await?;
     schema::check_ownership(&mut connection, &path).await?;
     schema::check_version(&mut connection, &path).await?;
-    Ok(connection)
+    Ok(File::new(connection, &path))
 }
 
 fn check_path(path: &Path) -> Result<(), QueueError> {

@@ -95,5 +95,6 @@ fn migrator() -> Migrator {
         migration(2, "leases", include_str!("../../../migrations/sqlite/0002_leases.sql")),
         migration(3, "workers", include_str!("../../../migrations/sqlite/0003_workers.sql")),
         migration(4, "plans", include_str!("../../../migrations/sqlite/0004_plans.sql")),
+        migration(5, "digests", include_str!("../../../migrations/sqlite/0005_digests.sql")),
     ])
 }

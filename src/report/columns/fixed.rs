@@ -19,7 +19,7 @@ pub static PLAIN: [Column; 25] = [
     Column::of_row("job", "", Job, "key of the job", |row| row.job.as_str().into()),
     Column::of_row("omega_rpm", "rpm", Job, "rotation speed ω of the disk", |row| row.omega_rpm.into()),
     Column::of_row("mu", "", Job, "local (Coulomb) friction coefficient μ", |row| row.mu.into()),
-    Column::of_row("status", "", Job, "how far the job is, or how its run ended: pending, running, cancelled, failed, periodic, decayed, not_periodic, completed, unstable", |row| row.status().into()),
+    Column::of_row("status", "", Job, "how far the job is, or how its run ended: pending, running, cancelled, failed, unreadable (its result is damaged or of another version), periodic, decayed, not_periodic, completed, unstable", |row| row.status().into()),
     Column::of_row("regime", "", Result, "contact regime: stable, stick_slip, stick_slip_separation, slip_separation, undecided", |row| of(row, |record| record.regime.name())),
     Column::of_row("mu_star", "", Result, "macroscopic friction coefficient μ* = ⟨T⟩/⟨F⟩ with the tangential force T at the clamp", |row| of(row, |record| record.mu_star)),
     Column::of_row("mu_star_se", "", Result, "standard error of mu_star over the cycles (of a stable job, over equal parts of the window) with what it still drifts", |row| of(row, |record| record.mu_star_se)),
@@ -78,12 +78,12 @@ pub static FURTHER: [Column; 65] = [
     Column::of_row("start_simulated_s", "s", Run, "simulated time on the coarser mesh, which simulated_s does not contain", |row| start(row, |start| start.simulated_s)),
     Column::of_row("start_mu_star", "", Run, "μ* on the coarser mesh", |row| start(row, |start| start.mu_star)),
     Column::of_row("start_frequency_hz", "Hz", Run, "fundamental frequency on the coarser mesh", |row| start(row, |start| start.frequency_hz)),
-    Column::of_row("energy_kinetic_j", "J", Energies, "kinetic energy at the end of the run", |row| of(row, |record| record.energy.kinetic_j)),
+    Column::of_row("energy_kinetic_j", "J", Energies, "kinetic energy at the end of the run, ½ v·M·v of the velocities half a step before and after: it may be slightly negative where the velocity changes its sign", |row| of(row, |record| record.energy.kinetic_j)),
     Column::of_row("energy_elastic_j", "J", Energies, "elastic energy at the end of the run, with that of a contact layer", |row| of(row, |record| record.energy.elastic_j)),
     Column::of_row("energy_load_work_j", "J", Energies, "work of the load since the start", |row| of(row, |record| record.energy.load_work_j)),
     Column::of_row("energy_drive_work_j", "J", Energies, "work of the disk's drive on the pin since the start", |row| of(row, |record| record.energy.drive_work_j)),
     Column::of_row("energy_friction_j", "J", Energies, "dissipated by friction since the start", |row| of(row, |record| record.energy.friction_j)),
-    Column::of_row("energy_damping_j", "J", Energies, "dissipated by the damping β_R and by β₂ > ½ since the start", |row| of(row, |record| record.energy.damping_j)),
+    Column::of_row("energy_damping_j", "J", Energies, "dissipated by the damping β_R and by β₂ > ½ since the start, added up from samples of the steps: where next to nothing is dissipated, it may be slightly negative", |row| of(row, |record| record.energy.damping_j)),
     Column::of_row("energy_contact_loss_j", "J", Energies, "lost since the start by nodes that close or begin to stick, and by a contact layer", |row| of(row, |record| record.energy.contact_loss_j)),
     Column::of_row("front_centre_y_peak_to_peak_m", "m", Nodes, "centre of the leading end: peak-to-peak displacement in y", |row| front(row, |node| node.y_peak_to_peak_m)),
     Column::of_row("front_centre_lift_max_m", "m", Nodes, "centre of the leading end: largest gap", |row| front(row, |node| node.lift_max_m)),
@@ -120,6 +120,7 @@ fn of<'a, T: Into<Value>>(row: &'a JobRow, read: impl FnOnce(&'a JobRecord) -> T
 fn error(row: &JobRow) -> Value {
     match &row.state {
         RowState::Failed { error } => error.as_str().into(),
+        RowState::Unreadable { reason } => reason.as_str().into(),
         _ => Value::Null,
     }
 }

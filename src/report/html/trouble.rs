@@ -69,6 +69,9 @@ fn not_periodic(row: &JobRow) -> Option<Markup> {
 }
 
 fn missing(row: &JobRow) -> Option<Markup> {
-    let is_missing = matches!(row.state, RowState::Pending | RowState::Running | RowState::Cancelled);
-    is_missing.then(|| html! { (row.status()) })
+    match &row.state {
+        RowState::Pending | RowState::Running | RowState::Cancelled => Some(html! { (row.status()) }),
+        RowState::Unreadable { reason } => Some(html! { span.words { (row.status()) ": " (reason) } }),
+        _ => None,
+    }
 }

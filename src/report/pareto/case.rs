@@ -45,7 +45,7 @@ impl<'a> Case<'a> {
             waiting: count(|state| {
                 matches!(state, RowState::Pending | RowState::Running | RowState::Cancelled)
             }),
-            failed: count(|state| matches!(state, RowState::Failed { .. })),
+            failed: count(|state| matches!(state, RowState::Failed { .. } | RowState::Unreadable { .. })),
             jobs,
         }
     }

@@ -31,6 +31,14 @@ fn plan(claim: &PlanClaim, rows: &[StudyRow]) -> Result<Planned, SweepError> {
     let study = Study::parse_stored(&claim.document, &claim.study)?;
     let rows: Vec<JobRow> =
         rows.par_iter().map(|row| report_row(&claim.study, row)).collect::<Result<_, _>>()?;
+    // A wave is a function of all results: without one of them it would be another wave.
+    if let Some((job, reason)) = rows.iter().find_map(|row| Some((&row.job, row.unreadable()?))) {
+        let error = format!(
+            "job {job}: {reason}; `tribosweep retry {} --unreadable` runs it again, and then the study goes on",
+            claim.study
+        );
+        return Ok(Planned::Failed { error });
+    }
     let growth = study.growth();
     // Results of two versions do not belong to one curve.
     let own: HashSet<String> = study.expand(solver::VERSION)?.into_iter().map(|job| job.key).collect();

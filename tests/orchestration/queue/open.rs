@@ -123,7 +123,7 @@ async fn a_newer_database_is_refused() {
 
     let error = error_of(&sandbox.database()).await;
     assert!(matches!(error, QueueError::NewerDatabase { found: 9001, .. }), "{error:?}");
-    assert!(error.to_string().contains("newer tribosweep (schema 9001; this one knows up to 4)"), "{error}");
+    assert!(error.to_string().contains("newer tribosweep (schema 9001; this one knows up to 5)"), "{error}");
 }
 
 /// Protects: if several processes open a missing database at the same time, all of them succeed. Without the opening

@@ -3,7 +3,7 @@
 use std::ops::ControlFlow;
 
 use tribosweep::queue::{
-    Claim, JobState, Queue, QueueError, Rows, Scope, StudyDocument, StudyRow, StudySummary,
+    Claim, Integrity, JobState, Queue, QueueError, Rows, Scope, StudyDocument, StudyRow, StudySummary,
 };
 
 use crate::support::{Sandbox, claim, counts, done, failed, finish, labelled, of, study};
@@ -68,13 +68,14 @@ async fn rows_are_complete_and_in_order(sandbox: &Sandbox) {
         state,
         record: None,
         error: None,
+        integrity: Integrity::WithoutDigest,
         wall_s: None,
         attempt,
         crashes: 0,
         note: None,
         payload: None,
     };
-    let ended = |row| StudyRow { wall_s: Some(2.5), ..row };
+    let ended = |row| StudyRow { wall_s: Some(2.5), integrity: Integrity::Intact, ..row };
     let expected = [
         StudyRow { record: Some("record of z".into()), ..ended(row(0, "z", JobState::Done, 1)) },
         StudyRow { error: Some("error of y".into()), ..ended(row(1, "y", JobState::Failed, 1)) },

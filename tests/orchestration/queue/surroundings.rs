@@ -30,7 +30,7 @@ async fn a_lock_that_is_kept() {
         queue.cancel("a").await.unwrap_err(),
     ];
     for error in errors {
-        assert!(matches!(error, QueueError::Locked(_)), "{error:?}");
+        assert!(matches!(error, QueueError::Locked { .. }), "{error:?}");
         assert!(error.to_string().contains("another program holds a lock"), "{error}");
     }
     let mut reader = Queue::open_with(sandbox.location(), sandbox.clock.clock(), impatient()).await.unwrap();
@@ -63,6 +63,29 @@ async fn a_full_disk() {
     assert_eq!(queue.counts(&Scope::All).await.unwrap(), counts(0, 0, 2, 0));
     assert_eq!(queue.rows("a").await.unwrap()[0].record.as_deref(), Some("r"));
     queue.close().await.unwrap();
+}
+
+/// Protects: a worker that finds no room to register learns that the disk is full, and can claim nothing.
+#[tokio::test]
+async fn a_full_disk_at_the_beginning() {
+    let sandbox = Sandbox::new();
+    let Some(mount) = Mount::new(sandbox.folder.path(), "size=2M") else { return };
+    let mut queue = Queue::open(sandbox.location(), sandbox.clock.clock()).await.unwrap();
+    queue.submit(&study("a", &["x"])).await.unwrap();
+    // This is more than the free space.
+    let _ = fs::write(sandbox.folder.path().join("filler"), vec![0; 3_000_000]);
+    let worker = tribosweep::queue::Worker::this_process(1, "test", "provenance");
+    let error = loop {
+        // The page of the first workers may be in the log already.
+        match queue.register(&worker).await {
+            Ok(()) => {}
+            Err(error) => break error,
+        }
+    };
+    assert!(matches!(error, QueueError::DiskFull(_)), "{error:?}");
+    mount.remount("size=20M");
+    queue.register(&worker).await.unwrap();
+    assert_eq!(claim(&mut queue, Scope::All, 1).await.len(), 1);
 }
 
 /// Protects: a read-only database can be read without changing anything, and the error of a write says what is wrong.
