@@ -55,7 +55,7 @@ pub use nested::CoarseStart;
 pub use noted::Noted;
 pub use record::{
     ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime,
-    SlidingStability,
+    SlidingStability, AboveBand,
 };
 pub use stability::Structures;
 pub use steady::Obstacle;

@@ -303,12 +303,12 @@ fn preflight(
             let estimate = Workload::estimate(spec)?;
             let is_certain = spec.numerics.time_step_s.is_none()
                 && spec.scene.disk.kind == DiskKind::Rigid
-                && estimate.steps(spec.run.limit_s / MANY_STEPS).is_ok();
+                && estimate.steps(spec.limit_of_run_s() / MANY_STEPS).is_ok();
             if examines_all || !is_certain { Workload::examine(spec) } else { Ok(estimate) }
         })
         .collect();
     let is_refused = |(job, &number): (&Job, &usize)| match &workloads[number] {
-        Ok(workload) => workload.steps(job.spec.run.limit_s).is_err(),
+        Ok(workload) => workload.steps(job.spec.limit_of_run_s()).is_err(),
         Err(_) => true,
     };
     let refused: Vec<bool> = jobs.iter().zip(&workload_of).map(is_refused).collect();
@@ -317,7 +317,7 @@ fn preflight(
     };
     let job = &jobs[first];
     let workload = workloads.swap_remove(workload_of[first]);
-    let Err(reason) = workload.and_then(|workload| workload.steps(job.spec.run.limit_s)) else {
+    let Err(reason) = workload.and_then(|workload| workload.steps(job.spec.limit_of_run_s())) else {
         unreachable!("the job is refused");
     };
     let point: Vec<String> =

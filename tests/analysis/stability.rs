@@ -29,6 +29,8 @@ fn eigenvalues() -> SlidingStability {
         lifted_nodes: 3,
         mu_star: 0.4,
         band_hz: 5e4,
+        above_band: AboveBand::NotLookedAt,
+        damped_above_hz: None,
         modes: vec![mode],
     }
 }

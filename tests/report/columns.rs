@@ -152,6 +152,8 @@ fn units_are_those_of_the_names() {
         lifted_nodes: 0,
         mu_star: 0.3,
         band_hz: 5e4,
+        above_band: AboveBand::NotLookedAt,
+        damped_above_hz: None,
         modes: vec![mode],
     };
     let windows = [Direction::Up, Direction::Down].map(window).into();

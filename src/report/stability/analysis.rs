@@ -261,7 +261,7 @@ impl Speed {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::{ComplexMode, SlidingStability};
+    use crate::analysis::{ComplexMode, SlidingStability, AboveBand};
 
     fn point(omega_rpm: f64, mu: f64, modes: &[(f64, f64)]) -> StabilityPoint {
         let mode = |(frequency_hz, growth_rate_per_s): &(f64, f64)| ComplexMode {
@@ -277,6 +277,8 @@ mod tests {
             lifted_nodes: 0,
             mu_star: mu,
             band_hz: 5e4,
+            above_band: AboveBand::NotLookedAt,
+            damped_above_hz: None,
             modes: modes.iter().map(mode).collect(),
         };
         StabilityPoint { omega_rpm, mu, parameters: Vec::new(), on_grid: true, stability }

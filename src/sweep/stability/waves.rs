@@ -59,7 +59,7 @@ fn between(low: (f64, f64), high: (f64, f64)) -> Vec<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::{ComplexMode, SlidingStability};
+    use crate::analysis::{ComplexMode, SlidingStability, AboveBand};
 
     fn point(mu: f64, rate: f64) -> StabilityPoint {
         let mode = ComplexMode {
@@ -75,6 +75,8 @@ mod tests {
             lifted_nodes: 0,
             mu_star: mu,
             band_hz: 5.0e4,
+            above_band: AboveBand::NotLookedAt,
+            damped_above_hz: None,
             modes: vec![mode],
         };
         StabilityPoint { omega_rpm: 7.0, mu, parameters: Vec::new(), on_grid: true, stability }
