@@ -54,8 +54,8 @@ pub use lanes::Moment;
 pub use nested::CoarseStart;
 pub use noted::Noted;
 pub use record::{
-    ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime,
-    SlidingStability, AboveBand,
+    AboveBand, ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome,
+    Regime, SlidingStability,
 };
 pub use stability::Structures;
 pub use steady::Obstacle;

@@ -5,7 +5,9 @@ use super::error::{JobError, step_count};
 use super::lane::elastic_disk;
 use super::nested::Beginning;
 use super::noted::Noted;
-use super::record::{AboveBand, ComplexMode, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability};
+use super::record::{
+    AboveBand, ComplexMode, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
+};
 use super::sample::OBSERVED_NAMES;
 use crate::solver::interface::SlaveNode;
 use crate::solver::interface::solve::Solves;
@@ -131,7 +133,9 @@ pub fn judge(
             let mut record = record(spec, model, &point, Outcome::Decayed);
             // A decided job is stable as far as anybody can know without its run.
             record.regime = Regime::Stable;
-            for stability in record.stability.iter_mut().filter(|own| coarser_decayed && !own.above_band.is_known()) {
+            for stability in
+                record.stability.iter_mut().filter(|own| coarser_decayed && !own.above_band.is_known())
+            {
                 stability.above_band = AboveBand::CoarserRun;
             }
             record.start.clone_from(&beginning.start);

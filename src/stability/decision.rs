@@ -114,7 +114,11 @@ mod tests {
     #[test]
     fn a_sign_needs_more_than_the_error() {
         let of = |growth_per_s, in_steps_per_s| {
-            verdict(&point(&[(-500.0, -500.0, 0.0), (growth_per_s, in_steps_per_s, 300.0)], 5.0e4), 1.0e-6, true)
+            verdict(
+                &point(&[(-500.0, -500.0, 0.0), (growth_per_s, in_steps_per_s, 300.0)], 5.0e4),
+                1.0e-6,
+                true,
+            )
         };
         assert_eq!(of(-310.0, -310.0), Decision::Stable);
         assert_eq!(of(-290.0, -310.0), Decision::Open);

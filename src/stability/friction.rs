@@ -72,7 +72,8 @@ impl SlidingFriction {
 /// The same law with another coefficient μ. The static coefficient changes in proportion; without kinetic friction there is no
 /// proportion, and it stays.
 pub fn with_mu(law: Law, mu: f64) -> Law {
-    let scaled = |mu_static: f64, before: f64| if before == 0.0 { mu_static } else { mu_static * mu / before };
+    let scaled =
+        |mu_static: f64, before: f64| if before == 0.0 { mu_static } else { mu_static * mu / before };
     match law {
         Law::Coulomb { .. } => Law::Coulomb { mu },
         Law::StaticKinetic { mu: before, mu_static } => {

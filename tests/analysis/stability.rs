@@ -4,7 +4,7 @@ use super::signals::coarse;
 use std::sync::Arc;
 use tribosweep::analysis::lanes::{Lanes, LanesOf};
 use tribosweep::analysis::{
-    ComplexMode, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Unobserved, solve,
+    AboveBand, ComplexMode, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Unobserved, solve,
 };
 use tribosweep::solver::{Model, RunNumber};
 use tribosweep::spec::{JobSpec, Precision, StabilityMethod};

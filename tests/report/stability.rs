@@ -6,7 +6,7 @@ use crate::synthetic::{done, periodic, record, report, row, with};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use tribosweep::analysis::{ComplexMode, Outcome, Regime, SlidingStability, AboveBand};
+use tribosweep::analysis::{AboveBand, ComplexMode, Outcome, Regime, SlidingStability};
 use tribosweep::report::{JobRow, Report, RowState, StabilityPoint, write, write_stability};
 
 const SPEEDS: [f64; 4] = [1.0, 5.0, 20.0, 100.0];

@@ -28,7 +28,7 @@ const BAND: f64 = 2.5;
 const PARTS: usize = 4;
 const HALVINGS: usize = 4;
 /// Beyond the band this many steps of [`near`] are taken, over the number of unknowns: the time of a point stays within bounds.
-const WORK_BEYOND: usize = 100_000;
+const WORK_BEYOND: usize = 50_000;
 const MOST_BEYOND: usize = 300;
 /// Frequencies are searched up to this multiple of the mesh's largest one, which friction changes a little.
 const ALL: f64 = 1.1;
@@ -107,8 +107,7 @@ impl SparseStructure {
         let last_per_s = last_per_s.fold(f64::INFINITY, f64::min);
         if reached_per_s >= band_per_s && last_per_s.is_finite() {
             let most = (WORK_BEYOND / system.matrices.size()).min(MOST_BEYOND);
-            reached_per_s =
-                beyond(&system, damping_s, [band_per_s, last_per_s], part, most, &mut all)?;
+            reached_per_s = beyond(&system, damping_s, [band_per_s, last_per_s], part, most, &mut all)?;
         }
         // A mode above what was covered is one, too, but others may be missing there.
         all.retain(|found: &Found| {
