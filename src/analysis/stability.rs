@@ -387,6 +387,35 @@ mod tests {
         assert_eq!((stability.contact_nodes, stability.lifted_nodes), (19, 1));
     }
 
+    /// Protects: a mode that does not vibrate has the frequency 0 whatever rounding its eigenvalue has, and a slow vibration keeps its own.
+    #[test]
+    fn a_mode_that_does_not_vibrate_has_no_frequency() {
+        let mut mode =
+            point(&Model::from_scene(&spec().scene, &spec().numerics).unwrap(), -400.0).modes.remove(0);
+        for (im, expected_hz) in [(-2.0e-11, 0.0), (2.0e-11, 0.0), (TAU, 1.0)] {
+            mode.eigenvalue_per_s = Complex::new(-15_649.9, im);
+            assert_eq!(complex_mode(&mode).frequency_hz, expected_hz);
+        }
+    }
+
+    /// Protects: what is above a band is known only if the basis has all modes, or if none can grow from where its modes are sure.
+    #[test]
+    fn what_is_above_the_band_is_said() {
+        let mut point = point(&Model::from_scene(&spec().scene, &spec().numerics).unwrap(), -400.0);
+        assert_eq!(above_band(&point), AboveBand::Nothing);
+        point.has_all_modes = false;
+        assert_eq!(above_band(&point), AboveBand::NotLookedAt);
+        for (limit_hz, is_reduced, expected) in [
+            (4.9e4, true, AboveBand::NotLookedAt),
+            (4.2e4, true, AboveBand::Damped),
+            (4.9e4, false, AboveBand::Damped),
+            (5.1e4, false, AboveBand::NotLookedAt),
+        ] {
+            (point.damped_above_hz, point.is_reduced) = (Some(limit_hz), is_reduced);
+            assert_eq!(above_band(&point), expected);
+        }
+    }
+
     /// Protects: threads share the structure of a model, whatever the friction, speed, load and run of their jobs.
     #[test]
     fn structures_are_shared_by_model() {

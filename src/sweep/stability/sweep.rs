@@ -31,7 +31,7 @@ impl StabilitySweep {
         let mut sweep = Self { plan, grid, along };
         let is_axis = sweep.plan.study().axes().any(|(parameter, _)| parameter.name == MU);
         if let Some(along) = sweep.along.clone().filter(|along| along.is_mu() && is_axis) {
-            let mus: Vec<f64> = sweep.grid.iter().filter_map(|job| position(&along, job)).collect();
+            let mus: Vec<f64> = sweep.grid.iter().map(|job| job.spec.scene.contact.mu).collect();
             let steps = ladder(&distinct(&mus));
             let jobs = sweep.series(&along).into_values().flat_map(|anchors| {
                 steps.iter().filter_map(|&mu| sweep.at(&along, &anchors, mu)).collect::<Vec<_>>()
@@ -61,7 +61,11 @@ impl StabilitySweep {
         if queue.study(self.plan.name()).await?.is_none() {
             return Ok(());
         }
-        let ways: Vec<_> = ways(self.plan.study())
+        let mut ways = ways(self.plan.study());
+        if !ways.iter().any(Along::is_mu) {
+            ways.push(Along::mu());
+        }
+        let ways: Vec<_> = ways
             .into_iter()
             .map(|along| {
                 let series = self.series(&along);
@@ -72,11 +76,8 @@ impl StabilitySweep {
         for_each_row(queue, self.plan.name(), Rows::All, |_, row| {
             for (along, series) in &ways {
                 let own = id(&rest(along, row.omega_rpm, row.mu, &row.parameters));
-                let at = row.parameters.iter().find(|(name, _)| *name == along.parameter);
-                let (Some(anchors), Some(at)) = (series.get(&own), at.and_then(|(_, value)| value.as_f64()))
-                else {
-                    continue;
-                };
+                let at = position(along, row.omega_rpm, row.mu, &row.parameters);
+                let (Some(anchors), Some(at)) = (series.get(&own), at) else { continue };
                 // A job of another version has another key, and is computed again.
                 stored.extend(self.at(along, anchors, at).filter(|job| job.key == row.job));
             }
@@ -110,7 +111,7 @@ impl StabilitySweep {
         let mut found: BTreeMap<String, Vec<(f64, &Job)>> = BTreeMap::new();
         for job in &self.grid {
             let (omega_rpm, mu) = (job.spec.scene.disk.omega_rpm, job.spec.scene.contact.mu);
-            if let Some(at) = position(along, job) {
+            if let Some(at) = position(along, omega_rpm, mu, &job.parameters) {
                 found.entry(id(&rest(along, omega_rpm, mu, &job.parameters))).or_default().push((at, job));
             }
         }

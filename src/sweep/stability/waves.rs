@@ -108,4 +108,25 @@ mod tests {
         }
         assert_eq!(next_wave(&Along::mu(), &[point(0.1, -1.0), point(0.2, -2.0)]), Vec::new());
     }
+
+    /// Protects: where sliding becomes stable again is narrowed down as well, along any parameter, and tiny numbers keep their digits.
+    #[test]
+    fn a_threshold_downwards_is_found_too() {
+        let along = Along { parameter: "beta_r_s".to_owned(), with: Vec::new() };
+        let at = |beta_r_s: f64| {
+            let mut point = point(0.3, 500.0 * (3.3e-8 - beta_r_s) / 1.0e-8);
+            point.parameters = vec![("beta_r_s".to_owned(), beta_r_s.into())];
+            point
+        };
+        let mut points = vec![at(2.0e-8), at(4.0e-8), at(8.0e-8)];
+        for _ in 0..WAVES {
+            for (_, wave) in next_wave(&along, &points) {
+                points.extend(wave.into_iter().map(at));
+            }
+        }
+        let places = || points.iter().map(|p| p.parameter("beta_r_s").as_f64().unwrap());
+        let below = places().filter(|x| *x <= 3.3e-8).fold(0.0, f64::max);
+        let above = places().filter(|x| *x > 3.3e-8).fold(1.0, f64::min);
+        assert!(above - below <= 1.01 * TOLERANCE * above, "{below} to {above}");
+    }
 }
