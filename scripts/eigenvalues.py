@@ -344,7 +344,7 @@ For the reference scene (β_R = 5·10⁻⁸ s) and μ = 0.2 the frequency is abo
 there. With β_R = 5·10⁻⁷ s, as many polymers have, it is 18 kHz, and sliding is proved to be stable.
 
 **The search.** Pins that are no plain blocks, on a rigid disk, are searched window by window from 0 up to that frequency, the largest one of the
-mesh, or the end of a budget of 50 000 over the number of unknowns in windows. A cylinder of 12 mm with 4500 unknowns is searched up to
+mesh, or a budget of windows: 50 000 over the number of unknowns, at most 120. A cylinder of 12 mm with 4500 unknowns is searched up to
 some 70 kHz, and its mode at 41 kHz is found. An elastic disk is searched in its band only.
 
 [verdicts.md](verdicts.md) has 100 random pins: what eigenvalues say beside the end of a run.

@@ -72,7 +72,7 @@ pub(in crate::report) struct Speed {
     pub intervals: Vec<Interval>,
     /// Each μ at which no mode was found, so that it is not known whether sliding is stable.
     pub without_modes: Vec<f64>,
-    /// How far it was looked at all points.
+    /// How far it was looked where no mode grows.
     pub known: Known,
 }
 
@@ -233,7 +233,7 @@ fn speed(omega: &Value, along: &Along, points: &[&StabilityPoint]) -> Speed {
         points.iter().map(|point| (place(point), point.leading().copied())).collect();
     leading.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     leading.dedup_by(|later, earlier| later.0 == earlier.0);
-    let known = Known::of(points);
+    let known = Known::of_stable(points);
     let intervals = intervals(&leading, &onsets);
     Speed { omega: omega.clone(), mus, branches, onsets, intervals, without_modes, known }
 }

@@ -5,7 +5,7 @@ use crate::analysis::{AboveBand, ComplexMode};
 use crate::publish::value;
 use crate::report::stability_point::StabilityPoint;
 
-/// How far modes were looked for at all points of a series.
+/// How far modes were looked for along a series.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(in crate::report) struct Known {
     /// The lowest frequency \[Hz\] up to which modes were looked for.
@@ -15,7 +15,15 @@ pub(in crate::report) struct Known {
 }
 
 impl Known {
-    pub fn of(points: &[&StabilityPoint]) -> Self {
+    /// At the points of a series at which no mode grows; at all if there are none.
+    pub fn of_stable(points: &[&StabilityPoint]) -> Self {
+        let is_stable =
+            |point: &&&StabilityPoint| point.leading().is_none_or(|mode| mode.growth_rate_per_s < 0.0);
+        let stable: Vec<&StabilityPoint> = points.iter().filter(is_stable).copied().collect();
+        Self::of(if stable.is_empty() { points } else { &stable })
+    }
+
+    fn of(points: &[&StabilityPoint]) -> Self {
         let band_hz = points.iter().map(|point| point.stability.band_hz).fold(f64::INFINITY, f64::min);
         let all = || points.iter().map(|point| point.stability.above_band);
         let above = if let Some(open) = all().find(|above| !above.is_known()) {

@@ -29,7 +29,9 @@ const PARTS: usize = 4;
 const HALVINGS: usize = 4;
 /// Beyond the band this many steps of [`near`] are taken, over the number of unknowns: the time of a point stays within bounds.
 const WORK_BEYOND: usize = 50_000;
-const MOST_BEYOND: usize = 300;
+const MOST_BEYOND: usize = 120;
+/// Smallest width of a search, over its frequency.
+const NARROWEST: f64 = 1.0e-3;
 /// Frequencies are searched up to this multiple of the mesh's largest one, which friction changes a little.
 const ALL: f64 = 1.1;
 /// Least radius around the middle of a part over half its width, so that modes away from the imaginary axis are found, too.
@@ -289,7 +291,7 @@ fn beyond(
 ) -> Result<f64, StabilityError> {
     let (mut reached, mut width) = (from, width);
     for _ in 0..most {
-        if reached >= to {
+        if reached >= to || width < NARROWEST * reached {
             break;
         }
         let middle = reached + 0.5 * width;
