@@ -80,8 +80,10 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             print(&table.as_text())?;
             if sweep.along().is_some() && !points.is_empty() {
                 let (table, notes) = thresholds_table(&points, &shown);
-                let notes: String = notes.iter().map(|note| format!("{note}\n")).collect();
-                print(&format!("\nThresholds\n{}{notes}", table.as_text()))?;
+                print(&format!("\nThresholds\n{}", table.as_text()))?;
+                for note in &notes {
+                    print(&format!("{note}\n"))?;
+                }
             }
             if along.is_none() && !args.no_thresholds {
                 log(

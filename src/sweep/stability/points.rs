@@ -52,7 +52,7 @@ pub(super) type Series = Vec<(String, Value)>;
 
 /// A name that no other series has.
 pub(super) fn id(series: &Series) -> String {
-    series.iter().map(|(name, value)| format!("{name}={value};")).collect()
+    series.iter().map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join(";")
 }
 
 /// The points of each series with their places along it, from the smallest to the largest. The series are in the order of their
