@@ -347,7 +347,7 @@ there. With β_R = 5·10⁻⁷ s, as many polymers have, it is 18 kHz, and slidi
 mesh, or a budget of windows: 50 000 over the number of unknowns, at most 120. A cylinder of 12 mm with 4500 unknowns is searched up to
 some 70 kHz, and its mode at 41 kHz is found. An elastic disk is searched in its band only.
 
-[verdicts.md](verdicts.md) has 100 random pins: what eigenvalues say beside the end of a run.
+[verdicts.md](verdicts.md) has random pins of all shapes, clamps, laws and dampings: what eigenvalues say beside the end of a run.
 
 All other jobs are simulated. So eigenvalues never say that a job is periodic, and they give no limit cycle. `tribosweep stability`
 prints all growth rates, without this distance.

@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use tribosweep::analysis::program::{Direction, ProgramWindow};
 use tribosweep::analysis::{
-    CoarseStart, ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Obstacle,
-    Outcome, Regime, SlidingStability,
+    AboveBand, CoarseStart, ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode,
+    Obstacle, Outcome, Regime, SlidingStability,
 };
 use tribosweep::report::columns::{Column, InputColumn, all, plain};
 use tribosweep::report::{RowState, SCALARS, name_and_unit};
