@@ -125,10 +125,10 @@ mod tests {
     #[test]
     fn a_zip_moves_together() {
         let study = study(
-            r#""samples": { "zip": { "mu": [0.1, 0.3], "force_n": [10, 30] } }, "grid": { "omega_rpm": [7] }"#,
+            r#""samples": { "zip": { "mu": [0.1, 0.3], "load_n": [10, 30] } }, "grid": { "omega_rpm": [7] }"#,
         );
         let [along] = &ways(&study)[..] else { panic!("one way") };
-        assert_eq!((along.parameter.as_str(), along.with.as_slice()), ("mu", &["force_n".to_owned()][..]));
+        assert_eq!((along.parameter.as_str(), along.with.as_slice()), ("mu", &["load_n".to_owned()][..]));
         let jobs = study.expand("v").unwrap();
         let anchors: Vec<(f64, &Job)> = jobs.iter().map(|job| (job.spec.scene.contact.mu, job)).collect();
         let at = |x: f64| {
