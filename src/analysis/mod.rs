@@ -22,6 +22,7 @@
 
 #![warn(clippy::disallowed_methods)]
 
+mod above_band;
 pub mod batch;
 pub mod branches;
 mod checkpoint;
@@ -46,6 +47,7 @@ pub mod steady;
 mod window;
 mod workload;
 
+pub use above_band::AboveBand;
 pub use checkpoint::Unreadable;
 pub use drive::{drive, drive_at};
 pub use error::JobError;
@@ -54,8 +56,8 @@ pub use lanes::Moment;
 pub use nested::CoarseStart;
 pub use noted::Noted;
 pub use record::{
-    AboveBand, ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome,
-    Regime, SlidingStability,
+    ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Outcome, Regime,
+    SlidingStability,
 };
 pub use stability::Structures;
 pub use steady::Obstacle;

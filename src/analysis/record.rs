@@ -1,5 +1,6 @@
 //! The record of one job: all results of its run.
 
+use super::above_band::AboveBand;
 use super::nested::CoarseStart;
 pub use super::outcome::{Outcome, Regime};
 use super::program::ProgramWindow;
@@ -73,16 +74,7 @@ pub struct ElasticDisk {
 
 impl SlidingStability {
     fn figures(&self) -> impl Iterator<Item = (String, f64)> {
-        let Self {
-            decided: _,
-            contact_nodes: _,
-            lifted_nodes: _,
-            mu_star,
-            band_hz,
-            above_band: _,
-            damped_above_hz,
-            modes,
-        } = self;
+        let Self { mu_star, band_hz, damped_above_hz, modes, .. } = self;
         let of_mode = |(index, mode): (usize, &ComplexMode)| {
             let ComplexMode { frequency_hz, growth_rate_per_s, damping_ratio, residual, is_converged: _ } =
                 *mode;
@@ -190,38 +182,6 @@ pub struct SlidingStability {
     pub damped_above_hz: Option<f64>,
     /// The leading modes, largest growth rate first.
     pub modes: Vec<ComplexMode>,
-}
-
-/// What is known about modes above the frequency up to which they were looked for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
-#[serde(rename_all = "snake_case")]
-pub enum AboveBand {
-    /// There is none: all modes of the mesh were looked for.
-    Nothing,
-    /// None grows: damping is proved to win there.
-    Damped,
-    /// Nobody looked for one, but a run of the job on a coarser mesh, which carries such vibrations, decayed.
-    CoarserRun,
-    /// Nobody looked. A record of a version that did not say it counts as such.
-    #[default]
-    NotLookedAt,
-}
-
-impl AboveBand {
-    /// Its name in tables.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Nothing => "nothing",
-            Self::Damped => "damped",
-            Self::CoarserRun => "coarser_run",
-            Self::NotLookedAt => "not_looked_at",
-        }
-    }
-
-    /// Whether every mode that can grow is among those that were looked for.
-    pub fn is_known(self) -> bool {
-        matches!(self, Self::Nothing | Self::Damped)
-    }
 }
 
 /// The results of one run.

@@ -1,13 +1,12 @@
 //! Steady sliding and its eigenvalues: what they say about a job, and the record of a job that they decide without a run.
 
+use super::above_band::AboveBand;
 use super::drive::drive;
 use super::error::{JobError, step_count};
 use super::lane::elastic_disk;
 use super::nested::Beginning;
 use super::noted::Noted;
-use super::record::{
-    AboveBand, ComplexMode, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability,
-};
+use super::record::{ComplexMode, EnergyTotals, JobRecord, ObservedNode, Outcome, Regime, SlidingStability};
 use super::sample::OBSERVED_NAMES;
 use crate::solver::interface::SlaveNode;
 use crate::solver::interface::solve::Solves;
