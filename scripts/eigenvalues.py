@@ -354,10 +354,35 @@ The error is estimated from the residuals of the right and the left eigenvector 
 until its sign is clear, and a job with a mode that clearly grows is simulated without further corrections.
 
 The basis has the modes of the pin up to a frequency, its *band*, and near the end of the band it has them badly. So modes are
-judged one by one up to 85 % of the band. Above that, damping must win with the largest gain of all modes that are known.
+judged one by one up to 85 % of the band. A job is decided only if more than that is known [above it](#what-is-known-above-the-band).
 
 A job that [starts from a coarser mesh](solving.md#a-start-from-a-coarser-mesh) is judged after its run there, and only if that run
 found no limit cycle.
+
+## What is known above the band
+
+Modes are not looked for at all frequencies, so a verdict names its band and what is known above it: `band_hz` and `above_band` of the
+tables, `show` and the page. A mode that is listed is one in any case. *Stable* is said only with the first two of these:
+
+| `above_band` | what is known | where |
+| --- | --- | --- |
+| `nothing` | All modes of the mesh were looked for. | blocks of up to 500 displacements; other pins on a rigid disk whose modes are all within reach of the search, which is so on meshes of some hundred nodes |
+| `damped` | No mode can grow there: a bound. | pins with enough damping, without holders, on a rigid disk, with friction that does not fall with the speed |
+| `coarser_run` | Nobody looked, but the job's own run on the coarser mesh, which carries such vibrations, decayed; and damping wins with the largest gain of the known modes. | decided jobs of a preset on the reference scene, such as the stable ones of `figure7` |
+| `not_looked_at` | Nothing. The table says "no mode below … grows", not "stable", and a job is not decided without its run. | all others: large blocks with little damping, elastic disks, holders |
+
+**The bound.** Let the coupling by friction turn no more than the share γ of the elastic energy: |Im qᴴK_μq| ≤ γ Re qᴴK_μq for all q. Then no
+mode grows above the frequency γ/(2πβ_R). It follows from the real and the imaginary part of the equation of a mode (the head of
+`src/stability/bound.rs` has the steps), holds for every speed, because the damping of sideways slip only helps, and does not depend on
+the mesh. γ is computed by a Lanczos iteration and taken 10 % larger. For short waves it is μ(1 − 2ν)/(2(1 − ν)), 0.29 μ with ν = 0.3.
+For the reference scene (β_R = 5·10⁻⁸ s) and μ = 0.2 the frequency is about 180 kHz, far above the band of 49 kHz, so that nothing is proved
+there. With β_R = 5·10⁻⁷ s, as many polymers have, it is 18 kHz, and sliding is proved to be stable.
+
+**The search.** Pins that are no plain blocks, on a rigid disk, are searched window by window from 0 up to that frequency, the largest one of the
+mesh, or a budget of windows: 50 000 over the number of unknowns, at most 120. A cylinder of 12 mm with 4500 unknowns is searched up to
+some 70 kHz, and its mode at 41 kHz is found. An elastic disk is searched in its band only.
+
+[verdicts.md](verdicts.md) has random pins of all shapes, clamps, laws and dampings: what eigenvalues say beside the end of a run.
 
 All other jobs are simulated. So eigenvalues never say that a job is periodic, and they give no limit cycle. `tribosweep stability`
 prints all growth rates, without this distance.
@@ -418,9 +443,9 @@ by {whole} %. That of `clamps` differs by {clamps} %, because its mesh is coarse
 
 ## What is not covered
 
-* **Modes above 85 % of the band.** That damping wins there follows from the largest gain of the modes that are known, which is
-  taken for all others. This is an assumption, not a bound. `tribosweep stability` makes no such test. A weakly damped pin (small β_R) can have growing
-  modes there that it does not list. `tribosweep show JOB` prints the band.
+* **Modes above the band**, [unless more is known](#what-is-known-above-the-band). A weakly damped pin (small β_R) can have growing modes there that
+  `tribosweep stability` does not list: it says how far it looked. For jobs that a preset decides, the largest gain of the known modes is
+  taken for all others, and the run on the coarser mesh has decayed. This is no proof.
 * **Modes follow their shapes.** A correction continues a mode by the eigenvector of the larger basis that is most like it. Of
   two modes that are nearly equal in shape and frequency, one can take the place of the other.
 * **The distance in μ.** It rests on runs, not on a theorem. The runs have one pin, one mesh and one load, and one way to start.
@@ -428,7 +453,7 @@ by {whole} %. That of `clamps` differs by {clamps} %, because its mesh is coarse
   distance in μ were measured for Coulomb's law, an ideal clamp and a flat base only. So presets leave other scenes to their
   runs. If a study itself says `eigenvalues`, they decide with a holder, with gaps and with `regularised`, too.
 * **Elastic disks and other pins** (cylinders, tilted pins, regions, meshes from files). `tribosweep stability` finds their modes by sparse
-  factors of pin and disk together, in a band of up to 2.5 times c_s/(4h) of the pin's height h. It takes up to 30 000 unknowns; 9000 take some
+  factors of pin and disk together, in a band of up to 2.5 times c_s/(4h) of the pin's height h, and on a rigid disk [beyond it](#what-is-known-above-the-band). It takes up to 30 000 unknowns; 9000 take some
   10 s for each of several frequencies, 17 000 some minutes. The disk's rotation and gyroscopic terms are neglected. Eigenvalues do not decide such jobs, because the distance in μ was not measured there.
 * **Friction with a state** (`prakash_clifton`), run-out and contact layers. `tribosweep stability` refuses such a study.
 * **Large vibrations, stick and lift-off.** Modes are small vibrations about steady sliding. They do not give the amplitude,

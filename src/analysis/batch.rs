@@ -190,7 +190,7 @@ impl Batch {
         spec.check()?;
         assert!(self.takes(&spec), "a job of another model");
         assert!(self.jobs() < self.widest, "no more jobs than the widest");
-        step_count(spec.run.limit_s, self.workload().time_step_s)?;
+        step_count(spec.limit_of_run_s(), self.workload().time_step_s)?;
         if let Some(key) = spec.parent() {
             let beginning = each!(&self.lanes, lanes => {
                 parent.and_then(|motion| continuation::beginning(&spec, lanes.model(), motion))

@@ -1,4 +1,4 @@
-//! Modes that are followed over the friction coefficient.
+//! Modes that are followed over the friction coefficient, or over another parameter in its place.
 //!
 //! The eigenvalues at one μ have no names. A branch joins those that are one mode: at the next μ a mode is looked for where
 //! the line through the last points of the branch leads. Only the leading modes of each μ are known, so that a branch can
@@ -45,14 +45,37 @@ impl Branch {
         self.points.windows(2).find(becomes_positive).map(|pair| [pair[0], pair[1]])
     }
 
+    /// Where it grows: the pairs of points between which the growth rate becomes positive and, after that, negative. The first is none
+    /// if it grows at its first point already, the second if it still grows at its last one.
+    pub fn spans(&self) -> Vec<[Option<[BranchPoint; 2]>; 2]> {
+        let grows = |point: &BranchPoint| point.mode.growth_rate_per_s >= 0.0;
+        let mut spans = Vec::new();
+        let mut open = self.points.first().filter(|point| grows(point)).map(|_| None);
+        for pair in self.points.windows(2) {
+            match (open, grows(&pair[1])) {
+                (None, true) => open = Some(Some([pair[0], pair[1]])),
+                (Some(begins), false) => {
+                    spans.push([begins, Some([pair[0], pair[1]])]);
+                    open = None;
+                }
+                _ => {}
+            }
+        }
+        spans.extend(open.map(|begins| [begins, None]));
+        spans
+    }
+
     fn of(points: Vec<BranchPoint>) -> Self {
         let mut branch = Self { points, mu_c: None };
-        branch.mu_c = branch.around_mu_c().map(|[below, above]| {
-            let (from, to) = (below.mode.growth_rate_per_s, above.mode.growth_rate_per_s);
-            below.mu + (above.mu - below.mu) * from / (from - to)
-        });
+        branch.mu_c = branch.around_mu_c().map(crossing);
         branch
     }
+}
+
+/// Where the growth rate is zero between two points, by linear interpolation.
+pub fn crossing([below, above]: [BranchPoint; 2]) -> f64 {
+    let (from, to) = (below.mode.growth_rate_per_s, above.mode.growth_rate_per_s);
+    below.mu + (above.mu - below.mu) * from / (from - to)
 }
 
 /// Largest distance of an eigenvalue from the place where it is expected, relative to its size. A mode further away is
@@ -295,6 +318,18 @@ mod tests {
         assert!(near(rates(&[10.0, -10.0, 10.0]), 0.15));
         assert!(near(rates(&[-10.0, 0.0, 10.0]), 0.1));
         assert_eq!((rates(&[10.0, 20.0]), rates(&[10.0, -1.0]), rates(&[-2.0, -1.0])), (None, None, None));
+    }
+
+    /// Protects: every range in which a mode grows is found: one that has begun at the first point, one between two crossings, and one
+    /// that has not ended at the last point.
+    #[test]
+    fn a_mode_can_grow_in_several_ranges() {
+        let rates = [10.0, -10.0, -10.0, 30.0, -30.0, 10.0];
+        let one = |(k, rate): (usize, &f64)| Sample { mu: 0.1 * k as f64, modes: vec![mode(1e4, *rate)] };
+        let found = branches(&rates.iter().enumerate().map(one).collect::<Vec<_>>());
+        let at = |pair: Option<[BranchPoint; 2]>| pair.map(|pair| (1.0e6 * crossing(pair)).round() / 1.0e6);
+        let spans: Vec<_> = found[0].spans().into_iter().map(|span| span.map(at)).collect();
+        assert_eq!(spans, [[None, Some(0.05)], [Some(0.225), Some(0.35)], [Some(0.475), None]]);
     }
 
     /// Protects: a mode that is missing at a few μ stays one branch. After a longer pause, and at a place where no branch

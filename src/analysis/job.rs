@@ -59,7 +59,7 @@ fn solve_in<R: RunNumber>(
         return Err(JobError::NoParentMotion { parent: parent.to_owned() });
     }
     let mut lanes = LanesOf::<1, R>::new(Arc::new(model));
-    step_count(spec.run.limit_s, lanes.model().time_step_s())?;
+    step_count(spec.limit_of_run_s(), lanes.model().time_step_s())?;
     let beginning = beginning(spec, &mut |spent_s| observer.progress(spent_s))?;
     let verdict = judge(spec, lanes.model(), &beginning, &Structures::default())?;
     let stability = match if observer.needs_run() { verdict.with_run() } else { verdict } {

@@ -22,6 +22,7 @@
 
 #![warn(clippy::disallowed_methods)]
 
+mod above_band;
 pub mod batch;
 pub mod branches;
 mod checkpoint;
@@ -46,6 +47,7 @@ pub mod steady;
 mod window;
 mod workload;
 
+pub use above_band::AboveBand;
 pub use checkpoint::Unreadable;
 pub use drive::{drive, drive_at};
 pub use error::JobError;

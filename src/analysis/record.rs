@@ -1,5 +1,6 @@
 //! The record of one job: all results of its run.
 
+use super::above_band::AboveBand;
 use super::nested::CoarseStart;
 pub use super::outcome::{Outcome, Regime};
 use super::program::ProgramWindow;
@@ -73,7 +74,7 @@ pub struct ElasticDisk {
 
 impl SlidingStability {
     fn figures(&self) -> impl Iterator<Item = (String, f64)> {
-        let Self { decided: _, contact_nodes: _, lifted_nodes: _, mu_star, band_hz, modes } = self;
+        let Self { mu_star, band_hz, damped_above_hz, modes, .. } = self;
         let of_mode = |(index, mode): (usize, &ComplexMode)| {
             let ComplexMode { frequency_hz, growth_rate_per_s, damping_ratio, residual, is_converged: _ } =
                 *mode;
@@ -86,7 +87,8 @@ impl SlidingStability {
             figures.map(|(name, value)| (format!("modes[{index}].{name}"), value))
         };
         let own = [("mu_star".to_owned(), *mu_star), ("band_hz".to_owned(), *band_hz)];
-        own.into_iter().chain(modes.iter().enumerate().flat_map(of_mode))
+        let damped = damped_above_hz.map(|limit_hz| ("damped_above_hz".to_owned(), limit_hz));
+        own.into_iter().chain(damped).chain(modes.iter().enumerate().flat_map(of_mode))
     }
 }
 
@@ -172,6 +174,12 @@ pub struct SlidingStability {
     pub mu_star: f64,
     /// Frequency \[Hz\] up to which modes were looked for.
     pub band_hz: f64,
+    /// What is known above that frequency.
+    #[serde(default)]
+    pub above_band: AboveBand,
+    /// A frequency \[Hz\] above which damping is proved to win; none if none is known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub damped_above_hz: Option<f64>,
     /// The leading modes, largest growth rate first.
     pub modes: Vec<ComplexMode>,
 }
@@ -448,6 +456,8 @@ mod tests {
                 lifted_nodes: 0,
                 mu_star: 0.4,
                 band_hz: 5e4,
+                above_band: AboveBand::Damped,
+                damped_above_hz: Some(4e4),
                 modes: vec![ComplexMode {
                     frequency_hz: 1.5e4,
                     growth_rate_per_s: 100.0,

@@ -1,5 +1,6 @@
 //! Steady sliding and its eigenvalues: what they say about a job, and the record of a job that they decide without a run.
 
+use super::above_band::AboveBand;
 use super::drive::drive;
 use super::error::{JobError, step_count};
 use super::lane::elastic_disk;
@@ -21,6 +22,9 @@ pub const MODES: usize = 12;
 
 /// Modes of a job whose run may be spared.
 const DECIDING_MODES: usize = 8;
+
+/// An eigenvalue whose imaginary part is a smaller share of it belongs to no vibration.
+const NO_VIBRATION: f64 = 1.0e-9;
 
 /// Structures that are kept. The threads of a worker rarely need more at a time.
 const KEPT: usize = 8;
@@ -99,7 +103,7 @@ pub fn judge(
     structures: &Structures,
 ) -> Result<Verdict, JobError> {
     // A job is refused for what it asks, not for what its eigenvalues say.
-    step_count(spec.run.limit_s, model.time_step_s())?;
+    step_count(spec.limit_of_run_s(), model.time_step_s())?;
     if beginning.motion.is_some() {
         return Ok(Verdict::Undecided(None));
     }
@@ -117,11 +121,22 @@ pub fn judge(
         }
         StabilityMethod::Eigenvalues if spec.eigenvalues_may_decide() => {
             // Without an equilibrium or eigenvalues the run decides.
-            let decide = |structure: &Structure| structure.decide(model, &drive(spec), DECIDING_MODES);
+            let start = beginning.start.as_ref();
+            let coarser_decayed = start.is_some_and(|start| start.outcome == Some(Outcome::Decayed));
+            let decide = |structure: &Structure| {
+                structure.decide(model, &drive(spec), DECIDING_MODES, coarser_decayed)
+            };
             let Ok((point, verdict, is_safely_stable)) = structures.with(spec, model, decide) else {
                 return Ok(Verdict::Undecided(None));
             };
             let mut record = record(spec, model, &point, Outcome::Decayed);
+            // A decided job is stable as far as anybody can know without its run.
+            record.regime = Regime::Stable;
+            for stability in
+                record.stability.iter_mut().filter(|own| coarser_decayed && !own.above_band.is_known())
+            {
+                stability.above_band = AboveBand::CoarserRun;
+            }
             record.start.clone_from(&beginning.start);
             Ok(match (record.non_finite_figure(), is_safely_stable) {
                 (None, true) => Verdict::Decided(Box::new(record)),
@@ -161,12 +176,24 @@ fn growth(mode: &Mode) -> f64 {
 fn complex_mode(mode: &Mode) -> ComplexMode {
     let eigenvalue = mode.eigenvalue_per_s;
     let size = libm::hypot(eigenvalue.re, eigenvalue.im);
+    // Rounding gives an eigenvalue without a vibration a small imaginary part of either sign.
+    let vibrates = eigenvalue.im > NO_VIBRATION * size;
     ComplexMode {
-        frequency_hz: eigenvalue.im / TAU,
+        frequency_hz: if vibrates { eigenvalue.im / TAU } else { 0.0 },
         growth_rate_per_s: eigenvalue.re,
         damping_ratio: if size == 0.0 { 0.0 } else { -eigenvalue.re / size },
         residual: mode.residual,
         is_converged: mode.is_converged,
+    }
+}
+
+/// What is known above the band of a point.
+fn above_band(point: &SlidingPoint) -> AboveBand {
+    // The reduced way has modes near the end of its band badly; the sparse way has all of them.
+    match point.damped_above_hz {
+        _ if point.has_all_modes => AboveBand::Nothing,
+        Some(limit_hz) if limit_hz <= point.sure_hz() => AboveBand::Damped,
+        _ => AboveBand::NotLookedAt,
     }
 }
 
@@ -180,6 +207,8 @@ fn sliding_stability(point: &SlidingPoint, decided: bool) -> SlidingStability {
         lifted_nodes: in_contact.len() - contact_nodes,
         mu_star: *mu_star,
         band_hz: point.band_hz,
+        above_band: above_band(point),
+        damped_above_hz: point.damped_above_hz,
         modes: point.modes.iter().map(complex_mode).collect(),
     }
 }
@@ -220,6 +249,7 @@ impl SlidingNode {
 fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome) -> JobRecord {
     let drive = drive(spec);
     let stability = sliding_stability(point, true);
+    let is_stable = outcome == Outcome::Decayed && stability.above_band.is_known();
     let of = |(slave, node)| SlidingNode::of(slave, node, &point.equilibrium, &drive);
     let nodes: Vec<SlidingNode> = model.slaves().iter().enumerate().map(of).collect();
     let largest = |value: fn(&SlidingNode) -> f64| nodes.iter().map(value).fold(0.0, f64::max);
@@ -232,7 +262,7 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
     let observed = OBSERVED_NAMES.iter().zip(model.interface().edge_centres());
     JobRecord {
         outcome,
-        regime: if outcome == Outcome::Decayed { Regime::Stable } else { Regime::Undecided },
+        regime: if is_stable { Regime::Stable } else { Regime::Undecided },
         mu_star,
         mu_star_se: 0.0,
         mu_star_contact: mu_star,
@@ -332,6 +362,8 @@ mod tests {
             band_hz: 5.0e4,
             basis: 40,
             has_all_modes: true,
+            damped_above_hz: None,
+            is_reduced: true,
         }
     }
 
@@ -352,6 +384,35 @@ mod tests {
         let stability = record.stability.unwrap();
         assert!(stability.decided && stability.modes[0].damping_ratio == 0.8);
         assert_eq!((stability.contact_nodes, stability.lifted_nodes), (19, 1));
+    }
+
+    /// Protects: a mode that does not vibrate has the frequency 0 whatever rounding its eigenvalue has, and a slow vibration keeps its own.
+    #[test]
+    fn a_mode_that_does_not_vibrate_has_no_frequency() {
+        let mut mode =
+            point(&Model::from_scene(&spec().scene, &spec().numerics).unwrap(), -400.0).modes.remove(0);
+        for (im, expected_hz) in [(-2.0e-11, 0.0), (2.0e-11, 0.0), (TAU, 1.0)] {
+            mode.eigenvalue_per_s = Complex::new(-15_649.9, im);
+            assert_eq!(complex_mode(&mode).frequency_hz, expected_hz);
+        }
+    }
+
+    /// Protects: what is above a band is known only if the basis has all modes, or if none can grow from where its modes are sure.
+    #[test]
+    fn what_is_above_the_band_is_said() {
+        let mut point = point(&Model::from_scene(&spec().scene, &spec().numerics).unwrap(), -400.0);
+        assert_eq!(above_band(&point), AboveBand::Nothing);
+        point.has_all_modes = false;
+        assert_eq!(above_band(&point), AboveBand::NotLookedAt);
+        for (limit_hz, is_reduced, expected) in [
+            (4.9e4, true, AboveBand::NotLookedAt),
+            (4.2e4, true, AboveBand::Damped),
+            (4.9e4, false, AboveBand::Damped),
+            (5.1e4, false, AboveBand::NotLookedAt),
+        ] {
+            (point.damped_above_hz, point.is_reduced) = (Some(limit_hz), is_reduced);
+            assert_eq!(above_band(&point), expected);
+        }
     }
 
     /// Protects: threads share the structure of a model, whatever the friction, speed, load and run of their jobs.

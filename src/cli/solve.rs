@@ -5,7 +5,7 @@ use super::foreground;
 use super::output::{log, print, write_file};
 use super::warnings;
 use crate::analysis::program::{Hysteresis, Leading};
-use crate::analysis::{self, ElasticDisk, JobObserver, JobRecord, Moment, SlidingStability};
+use crate::analysis::{self, AboveBand, ElasticDisk, JobObserver, JobRecord, Moment, SlidingStability};
 use crate::exit;
 use crate::publish::value::quantity;
 use crate::spec::{FrictionLaw, JobSpec, Scene, Shape};
@@ -190,7 +190,15 @@ fn sliding_lines(stability: &SlidingStability) -> String {
             mode.frequency_hz, mode.growth_rate_per_s, mode.damping_ratio
         )
     });
-    format!("decided by             {decided}\n{leading}")
+    let above = match stability.above_band {
+        AboveBand::Nothing => "all modes of the mesh".to_owned(),
+        AboveBand::Damped => format!("up to {:.1} Hz; above, damping wins", stability.band_hz),
+        AboveBand::CoarserRun => {
+            format!("up to {:.1} Hz; above, by a run on a coarser mesh that decayed", stability.band_hz)
+        }
+        AboveBand::NotLookedAt => format!("up to {:.1} Hz; not above", stability.band_hz),
+    };
+    format!("decided by             {decided}\n{leading}looked for modes       {above}\n")
 }
 
 /// The mesh of the elastic disk and the convergence of its contact solves.

@@ -14,8 +14,11 @@ use crate::analysis::stability::MODES;
 use crate::exit;
 use crate::publish::value;
 use crate::queue::{Location, Queue, Scope, Shard};
-use crate::report::{SHAPES, STABILITY_PAGE, modes_table, thresholds_table};
-use crate::sweep::{self, Forecast, StabilitySweep, WAVES, read_stability, write_stability_report};
+use crate::report::{Along, SHAPES, STABILITY_PAGE, modes_table, thresholds_table};
+use crate::sweep::Plan;
+use crate::sweep::{
+    self, Forecast, StabilitySweep, WAVES, read_stability, ways_to_thresholds, write_stability_report,
+};
 use crate::worker::WorkOptions;
 use std::path::PathBuf;
 
@@ -37,9 +40,13 @@ pub(crate) struct Args {
     /// points at most.
     #[arg(long)]
     shapes: bool,
-    /// Compute the points of the grid alone, and do not look for the μ at which sliding becomes unstable.
+    /// Compute the points of the grid alone, and do not look for places at which sliding becomes unstable.
     #[arg(long)]
     no_thresholds: bool,
+    /// Look for thresholds of this parameter of the grid or of samples.zip. Without it they are those of μ or, if the study does not
+    /// vary μ, of the first number that it varies.
+    #[arg(long, value_name = "NAME", conflicts_with = "no_thresholds")]
+    along: Option<String>,
     #[command(flatten)]
     threads: Threads,
     #[command(flatten)]
@@ -54,7 +61,9 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let on_grid = if args.shapes { shapes::points(&plan)? } else { Vec::new() };
     let name = plan.name().to_owned();
     report::create_folder(&name, &args.out)?;
-    let mut sweep = StabilitySweep::new(plan, !args.no_thresholds);
+    let along = along(&plan, args)?;
+    let mut sweep = StabilitySweep::new(plan, along.clone().filter(|_| !args.no_thresholds));
+    let shown = along.clone().unwrap_or_else(Along::mu);
     sweep::block_on(async {
         let mut queue = sweep::open(db.clone()).await?;
         sweep.add_stored(&mut queue).await?;
@@ -69,8 +78,17 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             stream(|out| Ok(table.write_json_lines(out)?))?;
         } else {
             print(&table.as_text())?;
-            if sweep.has_thresholds() && !points.is_empty() {
-                print(&format!("\nThresholds\n{}", thresholds_table(&points).as_text()))?;
+            if sweep.along().is_some() && !points.is_empty() {
+                let (table, notes) = thresholds_table(&points, &shown);
+                print(&format!("\nThresholds\n{}", table.as_text()))?;
+                for note in &notes {
+                    print(&format!("{note}\n"))?;
+                }
+            }
+            if along.is_none() && !args.no_thresholds {
+                log(
+                    "no thresholds: no number varies alone in `grid`, and none together with others in `samples.zip`",
+                );
             }
         }
         let folder = args.out.of(&name);
@@ -81,11 +99,25 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             code = code.max(written);
         }
         // The page comes last, because it names the shapes.
-        write_stability_report(&mut queue, &name, &points, &folder).await?;
+        write_stability_report(&mut queue, &name, &points, &shown, &folder).await?;
         queue.close().await?;
         log(format_args!("report written to {}", folder.join(STABILITY_PAGE).display()));
         Ok(code)
     })
+}
+
+/// What thresholds are thresholds of; none if the study varies no number in a way that has them.
+fn along(plan: &Plan, args: &Args) -> Result<Option<Along>, CliError> {
+    let mut ways = ways_to_thresholds(plan.study());
+    let Some(name) = &args.along else { return Ok(ways.into_iter().next()) };
+    if let Some(at) = ways.iter().position(|along| along.parameter == *name) {
+        return Ok(Some(ways.swap_remove(at)));
+    }
+    let names: Vec<&str> = ways.iter().map(|along| along.parameter.as_str()).collect();
+    let names = if names.is_empty() { "it has none".to_owned() } else { names.join(", ") };
+    Err(CliError::Usage(format!(
+        "--along {name}: expected a number with two values or more in `grid`, or one of `samples.zip`; in this study: {names}"
+    )))
 }
 
 /// Runs the jobs, and then the waves of jobs that narrow the thresholds down.

@@ -74,6 +74,21 @@ impl Dimension {
         }
     }
 
+    /// A number in the unit of the axis.
+    pub fn scaled(&self, x: f64) -> f64 {
+        x / self.factor
+    }
+
+    /// The symbol or short name without the unit.
+    pub fn symbol(&self) -> &str {
+        self.label.split(" [").next().unwrap_or_default()
+    }
+
+    /// `name = number` with the unit, for a number that no row need have.
+    pub fn near(&self, x: f64) -> String {
+        format!("{} = {}", self.symbol(), with_unit(value::significant(self.scaled(x), 4), self.unit))
+    }
+
     fn with_unit(&self, value: &Value) -> String {
         if value.is_number() { with_unit(self.text(value), self.unit) } else { self.text(value) }
     }

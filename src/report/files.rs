@@ -99,9 +99,9 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
     let programs = write_programs(&mut folder, rows, out_dir)?;
     data_files.extend(programs.iter().map(|_| program::WINDOWS.to_owned()));
     data_files.extend(write_findings(&mut folder, report)?);
-    let stability_rows = stability::rows(report.stability);
-    let analysis =
-        (!report.stability.is_empty()).then(|| Analysis::of(report.stability, &stability_rows, view));
+    let stability_rows = stability::rows(report.stability, report.along);
+    let analysis = (!report.stability.is_empty())
+        .then(|| Analysis::of(report.stability, &stability_rows, report.along, view));
     let of_stability = analysis.as_ref().map(|own| stability::write_files(own, &mut folder)).transpose()?;
     let stability = analysis.as_ref().zip(of_stability.as_ref());
     data_files.extend(of_stability.iter().flat_map(|files| &files.data).map(|(file, _)| (*file).to_owned()));

@@ -3,6 +3,7 @@
 use super::growth::Findings;
 use super::provenance::Provenance;
 use super::row::JobRow;
+use super::stability::Along;
 use super::stability_point::StabilityPoint;
 use super::view::View;
 use crate::publish::Sheet;
@@ -26,6 +27,8 @@ pub struct Report<'a> {
     pub warnings: &'a [String],
     /// The complex modes of steady sliding at the grid points of one study and between them; empty if they were not computed.
     pub stability: &'a [StabilityPoint],
+    /// What the thresholds of these modes are thresholds of.
+    pub along: &'a Along,
     /// What the only study found that grows; none for other studies.
     pub findings: Option<&'a Findings>,
     /// When it is written, in milliseconds since 1970-01-01 UTC.

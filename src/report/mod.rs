@@ -65,7 +65,7 @@ pub use provenance::{BuildInfo, Provenance, ResultGroup};
 pub use row::{JobNumerics, JobRow, RowState};
 pub use scalar::{SCALARS, Scalar};
 pub use stability::{
-    PAGE as STABILITY_PAGE, SHAPES, StabilityTable, modes_table, thresholds_table, write_stability,
+    Along, PAGE as STABILITY_PAGE, SHAPES, StabilityTable, modes_table, thresholds_table, write_stability,
 };
 pub use stability_point::StabilityPoint;
 pub use view::View;

@@ -21,7 +21,7 @@ pub struct StabilityPoint {
 
 impl StabilityPoint {
     /// The value of a parameter; null if the point has none of that name.
-    pub(super) fn parameter(&self, name: &str) -> Value {
+    pub fn parameter(&self, name: &str) -> Value {
         let further = || self.parameters.iter().find(|(own, _)| own == name).map(|(_, value)| value.clone());
         match name {
             OMEGA => self.omega_rpm.into(),
@@ -31,7 +31,7 @@ impl StabilityPoint {
     }
 
     /// The mode that grows fastest, or decays slowest.
-    pub(super) fn leading(&self) -> Option<&ComplexMode> {
+    pub fn leading(&self) -> Option<&ComplexMode> {
         leading(&self.stability)
     }
 }

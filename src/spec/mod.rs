@@ -91,26 +91,16 @@ impl JobSpec {
         self.run.check(&mut found);
         self.detection.check(&mut found);
         self.scene.check_program(self.run.limit_s, &mut found);
-        if self.run.window_s.is_some() && self.scene.program.is_constant() {
-            let right =
-                "absent without scene.program: a run with a constant speed and load is not cut into windows";
-            found.add("run.window_s", "given", right);
-        }
-        if self.scene.load.ramp_s >= self.run.limit_s {
-            found.add(
-                "scene.load.ramp_s",
-                self.scene.load.ramp_s,
-                format!("less than the run's time limit (run.limit_s = {})", self.run.limit_s),
-            );
+        if self.has_run() {
+            self.check_run(&mut found);
+        } else {
+            self.check_modes(&mut found);
         }
         if self.scene.disk.kind == DiskKind::Elastic {
             self.check_elastic_disk(&mut found);
         }
         if self.numerics.precision == Precision::Single {
             self.check_single_precision(&mut found);
-        }
-        if self.stability == StabilityMethod::Modes {
-            self.check_modes(&mut found);
         }
         if !self.scene.holder.is_ideal() && self.numerics.beta2 != 0.5 {
             found.add(
@@ -126,18 +116,6 @@ impl JobSpec {
                              a holder that moves, a layer, a law that uses the past, or a speed or load that changes";
                 found.add("continue", "given", right);
             }
-        }
-        let observation_s = self.detection.decay_observation_s;
-        let shortest_s = SHORTEST_OBSERVATION * self.scene.pin.shear_transit_s();
-        if observation_s < shortest_s {
-            found.add(
-                "detection.decay_observation_s",
-                check::readable(observation_s),
-                format!(
-                    "at least {shortest_s:e} s, {SHORTEST_OBSERVATION} transit times of shear waves over the pin's \
-                     height: slower oscillations would not be seen to grow"
-                ),
-            );
         }
         found.into_result()
     }
@@ -158,6 +136,60 @@ impl JobSpec {
         let goes_on = self.continuation.is_some();
         (is_nested && is_carried_over && !goes_on && elements.iter().all(|&n| n >= FEWEST_COARSER_ELEMENTS))
             .then_some(elements)
+    }
+
+    /// Whether there is a run. Modes alone have none, and nothing that only a run needs can forbid them.
+    pub fn has_run(&self) -> bool {
+        self.stability != StabilityMethod::Modes
+    }
+
+    /// The time limit \[s\] of the run; 0 without a run.
+    pub fn limit_of_run_s(&self) -> f64 {
+        if self.has_run() { self.run.limit_s } else { 0.0 }
+    }
+
+    /// What a run needs: windows, a ramp and an observation that fit into it, and a disk that is fine wherever the pin passes.
+    fn check_run(&self, found: &mut Violations) {
+        if self.run.window_s.is_some() && self.scene.program.is_constant() {
+            let right =
+                "absent without scene.program: a run with a constant speed and load is not cut into windows";
+            found.add("run.window_s", "given", right);
+        }
+        if self.scene.load.ramp_s >= self.run.limit_s {
+            found.add(
+                "scene.load.ramp_s",
+                self.scene.load.ramp_s,
+                format!("less than the run's time limit (run.limit_s = {})", self.run.limit_s),
+            );
+        }
+        let observation_s = self.detection.decay_observation_s;
+        let shortest_s = SHORTEST_OBSERVATION * self.scene.pin.shear_transit_s();
+        if observation_s < shortest_s {
+            found.add(
+                "detection.decay_observation_s",
+                check::readable(observation_s),
+                format!(
+                    "at least {shortest_s:e} s, {SHORTEST_OBSERVATION} transit times of shear waves over the pin's \
+                     height: slower oscillations would not be seen to grow"
+                ),
+            );
+        }
+        if self.scene.disk.kind == DiskKind::Elastic {
+            let swept_deg = self.scene.disk.omega_rpm * 6.0 * self.run.limit_s;
+            let arc_deg = self.scene.disk.ring.track_arc_deg;
+            if arc_deg < 360.0 && swept_deg > arc_deg * ring::ROUNDING {
+                found.add(
+                    "scene.disk.ring.track_arc_deg",
+                    arc_deg,
+                    format!(
+                        "at least {:.4}, the arc that the pin sweeps at {} rpm during run.limit_s = {} s, or 360",
+                        swept_deg.min(360.0),
+                        self.scene.disk.omega_rpm,
+                        self.run.limit_s
+                    ),
+                );
+            }
+        }
     }
 
     /// Whether displacements and velocities are all that the future of a run depends on, apart from that of an elastic disk.
@@ -300,20 +332,6 @@ impl JobSpec {
     /// Limits that an elastic disk sets: its mesh is fine only where the pin passes, its energy balance holds for the
     /// central difference only, and it has double precision only.
     fn check_elastic_disk(&self, found: &mut Violations) {
-        let swept_deg = self.scene.disk.omega_rpm * 6.0 * self.run.limit_s;
-        let arc_deg = self.scene.disk.ring.track_arc_deg;
-        if arc_deg < 360.0 && swept_deg > arc_deg * ring::ROUNDING {
-            found.add(
-                "scene.disk.ring.track_arc_deg",
-                arc_deg,
-                format!(
-                    "at least {:.4}, the arc that the pin sweeps at {} rpm during run.limit_s = {} s, or 360",
-                    swept_deg.min(360.0),
-                    self.scene.disk.omega_rpm,
-                    self.run.limit_s
-                ),
-            );
-        }
         if let Some([stiffness, ..]) = self.scene.contact.layer() {
             let right = "absent with an elastic disk; a layer is for rigid disks";
             found.add("scene.contact.stiffness_pa_m", check::readable(stiffness), right);

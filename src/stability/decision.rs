@@ -9,20 +9,19 @@
 //! * the growth rates of the known modes up to [`JUDGED`] of the basis's band are negative by more than their errors, in
 //!   continuous time and with the time step of the run; the errors are estimated from the residuals of right and left
 //!   eigenvectors,
-//! * above that frequency damping wins: with the largest gain g = (Re λ + βω²/2)/ω of a known mode, gω < βω²/2; near the end
-//!   of its band the basis has the modes badly, so that their gains are known but not their signs,
+//! * above that frequency nothing is left unseen: the basis has all modes, or no mode can grow there (`bound`), or a run of the
+//!   job on a coarser mesh, which carries such vibrations, decayed, and damping wins: with the largest gain g = (Re λ + βω²/2)/ω
+//!   of a known mode, gω < βω²/2; near the end of its band the basis has the modes badly, so that their gains are known but
+//!   not their signs,
 //! * every number is finite.
 
-use super::sliding::SlidingPoint;
+use super::sliding::{JUDGED, SlidingPoint};
 use std::f64::consts::TAU;
 
 /// The distance from the threshold, over μ, that a fast disk needs.
 const DISTANCE: f64 = 0.08;
 /// The larger μ is rounded up to a multiple of this, so that points of many speeds share an equilibrium.
 const STEP: f64 = 0.01;
-
-/// Share of the basis's band in which modes are judged one by one.
-pub const JUDGED: f64 = 0.85;
 
 /// A larger μ at which sliding must be stable, too.
 ///
@@ -46,8 +45,8 @@ pub enum Decision {
     Open,
 }
 
-/// What the eigenvalues of a point say, with a damping β \[s\].
-pub fn verdict(point: &SlidingPoint, damping_s: f64) -> Decision {
+/// What the eigenvalues of a point say, with a damping β \[s\]. `coarser_decayed`: a run of the job on a coarser mesh decayed.
+pub fn verdict(point: &SlidingPoint, damping_s: f64, coarser_decayed: bool) -> Decision {
     let judged_hz = JUDGED * point.band_hz;
     let mut gain: f64 = 0.0;
     let mut verdict = Decision::Stable;
@@ -69,7 +68,9 @@ pub fn verdict(point: &SlidingPoint, damping_s: f64) -> Decision {
             gain = gain.max(growth_per_s / value.im + damping_s * value.im / 2.0);
         }
     }
-    let is_covered = point.has_all_modes || 2.0 * gain < damping_s * TAU * judged_hz;
+    let is_damped = point.damped_above_hz.is_some_and(|limit_hz| limit_hz <= judged_hz);
+    let is_seen = coarser_decayed && 2.0 * gain < damping_s * TAU * judged_hz;
+    let is_covered = point.has_all_modes || is_damped || is_seen;
     if point.modes.is_empty() || !is_covered { Decision::Open } else { verdict }
 }
 
@@ -102,7 +103,9 @@ mod tests {
             modes: modes.iter().map(mode).collect(),
             band_hz,
             has_all_modes: false,
+            damped_above_hz: None,
             basis: 0,
+            is_reduced: true,
         }
     }
 
@@ -111,7 +114,11 @@ mod tests {
     #[test]
     fn a_sign_needs_more_than_the_error() {
         let of = |growth_per_s, in_steps_per_s| {
-            verdict(&point(&[(-500.0, -500.0, 0.0), (growth_per_s, in_steps_per_s, 300.0)], 5.0e4), 1.0e-6)
+            verdict(
+                &point(&[(-500.0, -500.0, 0.0), (growth_per_s, in_steps_per_s, 300.0)], 5.0e4),
+                1.0e-6,
+                true,
+            )
         };
         assert_eq!(of(-310.0, -310.0), Decision::Stable);
         assert_eq!(of(-290.0, -310.0), Decision::Open);
@@ -119,19 +126,34 @@ mod tests {
         assert_eq!(of(310.0, 310.0), Decision::Unstable);
         assert_eq!(of(310.0, 290.0), Decision::Open);
         assert_eq!(of(f64::NAN, -310.0), Decision::Open);
-        assert_eq!(verdict(&point(&[], 5.0e4), 1.0e-6), Decision::Open);
+        assert_eq!(verdict(&point(&[], 5.0e4), 1.0e-6, true), Decision::Open);
     }
 
     /// Protects: without enough damping, modes beyond the band of the basis may grow. A mode at 10⁵ rad/s that decays with
     /// 100 1/s has the gain β·10⁵/2 − 10⁻³, which a band of 20 kHz covers for β = 10⁻⁷ s and not for β = 0.
     #[test]
     fn modes_beyond_the_band_must_be_damped() {
-        let at = |damping_s, band_hz| verdict(&point(&[(-100.0, -100.0, 0.0)], band_hz), damping_s);
+        let at = |damping_s, band_hz| verdict(&point(&[(-100.0, -100.0, 0.0)], band_hz), damping_s, true);
         assert_eq!(at(1.0e-7, 2.0e4), Decision::Stable);
         assert_eq!(at(0.0, 2.0e4), Decision::Open);
         // The gain is 0.004, so 85 % of the band have to reach 2·0.004/10⁻⁷ rad/s = 12.7 kHz.
         assert_eq!(at(1.0e-7, 1.45e4), Decision::Open);
         assert_eq!(at(1.0e-7, 1.55e4), Decision::Stable);
+    }
+
+    /// Protects: eigenvalues do not decide by a band beyond which nobody looked. Beyond it must be nothing, or a proof that
+    /// nothing grows from 85 % of the band on, or a run on a coarser mesh that decayed.
+    #[test]
+    fn what_is_beyond_the_band_must_be_known() {
+        let mut point = point(&[(-100.0, -100.0, 0.0)], 5.0e4);
+        let of = |point: &SlidingPoint, coarser_decayed| verdict(point, 1.0e-7, coarser_decayed);
+        assert_eq!([of(&point, false), of(&point, true)], [Decision::Open, Decision::Stable]);
+        for (damped_above_hz, expected) in [(4.3e4, Decision::Open), (4.2e4, Decision::Stable)] {
+            point.damped_above_hz = Some(damped_above_hz);
+            assert_eq!(of(&point, false), expected);
+        }
+        (point.damped_above_hz, point.has_all_modes) = (None, true);
+        assert_eq!(of(&point, false), Decision::Stable);
     }
 
     /// Protects: a mode near the end of the band is not judged by its own growth rate, because the basis does not have it
@@ -144,7 +166,7 @@ mod tests {
             let mut point = point(&modes, band_hz);
             point.modes[0].eigenvalue_per_s.im = 0.5e5;
             point.has_all_modes = has_all_modes;
-            verdict(&point, 1.0e-6)
+            verdict(&point, 1.0e-6, true)
         };
         assert_eq!(of(1.59e4 / 0.8, -290.0, false), Decision::Open);
         assert_eq!(of(1.59e4 / 0.9, -290.0, false), Decision::Stable);

@@ -58,21 +58,29 @@ impl SlidingFriction {
         }
     }
 
+    /// Whether friction falls with the speed somewhere, so that it feeds vibrations.
+    pub fn falls(&self) -> bool {
+        self.slope.iter().any(|(slope_s_m, _)| slope_s_m.iter().any(|slope| *slope < 0.0))
+    }
+
     /// The friction coefficient of a slave node.
     pub fn mu_of(&self, slave: usize) -> f64 {
         self.mu * self.share[slave]
     }
 }
 
-/// The same law with another coefficient μ. The static coefficient changes in proportion.
+/// The same law with another coefficient μ. The static coefficient changes in proportion; without kinetic friction there is no
+/// proportion, and it stays.
 pub fn with_mu(law: Law, mu: f64) -> Law {
+    let scaled =
+        |mu_static: f64, before: f64| if before == 0.0 { mu_static } else { mu_static * mu / before };
     match law {
         Law::Coulomb { .. } => Law::Coulomb { mu },
         Law::StaticKinetic { mu: before, mu_static } => {
-            Law::StaticKinetic { mu, mu_static: mu_static * mu / before }
+            Law::StaticKinetic { mu, mu_static: scaled(mu_static, before) }
         }
         Law::Exponential { mu: before, mu_static, speed_m_s, slope_s_m } => {
-            Law::Exponential { mu, mu_static: mu_static * mu / before, speed_m_s, slope_s_m }
+            Law::Exponential { mu, mu_static: scaled(mu_static, before), speed_m_s, slope_s_m }
         }
         Law::Regularised { speed_m_s, .. } => Law::Regularised { mu, speed_m_s },
         Law::PrakashClifton { length_m, .. } => Law::PrakashClifton { mu, length_m },
@@ -100,5 +108,33 @@ impl Conditions {
             rate: if depends_on_speed { drive.rate } else { 0.0 },
             force_n: if has_gaps { drive.force_n } else { 0.0 },
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects: a law without kinetic friction has finite coefficients at another μ: the static one stays, and elsewhere it
+    /// changes in proportion.
+    #[test]
+    fn a_law_without_kinetic_friction_has_another_mu() {
+        let exponential = |mu, mu_static| Law::Exponential { mu, mu_static, speed_m_s: 0.1, slope_s_m: 0.0 };
+        let static_kinetic = |mu, mu_static| Law::StaticKinetic { mu, mu_static };
+        assert_eq!(with_mu(exponential(0.0, 0.3), 0.0), exponential(0.0, 0.3));
+        assert_eq!(with_mu(static_kinetic(0.0, 0.3), 0.01), static_kinetic(0.01, 0.3));
+        assert_eq!(with_mu(static_kinetic(0.2, 0.3), 0.4), static_kinetic(0.4, 0.6));
+    }
+
+    /// Protects: friction counts as falling only where its slope at the speed of sliding is negative.
+    #[test]
+    fn only_a_negative_slope_falls() {
+        let falls = |law| {
+            let drive = Drive { law, rate: 1.0, force_n: 30.0, ramp_s: 0.0 };
+            SlidingFriction::new(&[0.1, 0.2], &drive).unwrap().falls()
+        };
+        let exponential = |mu, mu_static| Law::Exponential { mu, mu_static, speed_m_s: 0.1, slope_s_m: 0.0 };
+        assert!(falls(exponential(0.2, 0.3)) && !falls(exponential(0.3, 0.3)));
+        assert!(!falls(Law::Regularised { mu: 0.3, speed_m_s: 0.1 }) && !falls(Law::Coulomb { mu: 0.3 }));
     }
 }

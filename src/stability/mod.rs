@@ -3,6 +3,7 @@
 #![warn(clippy::disallowed_methods)]
 
 mod basis;
+mod bound;
 mod coarse;
 mod dashpots;
 mod decision;
@@ -33,6 +34,7 @@ use pencil::{Clock, Sampling};
 pub use point::{Accuracy, Aim};
 use point::{Friction, Point};
 use separable::Separable;
+use sliding::JUDGED;
 pub use sliding::{Equilibrium, Mode, SlidingPoint};
 use solve::Bilateral;
 use space::{Elasticity, Space};
@@ -115,7 +117,8 @@ impl Structure {
 
     /// The modes of a point, what they say, and whether they show that a run decays: sliding is stable at such a distance from the
     /// threshold that no limit cycle was found beside it. The modes are exact only as far as this question needs it. On an elastic
-    /// disk they show nothing, because no distance was measured there.
+    /// disk they show nothing, because no distance was measured there. `coarser_decayed`: a run of the job on a coarser mesh
+    /// decayed, which is what is known beyond the band of the modes if nothing else is.
     ///
     /// # Errors
     /// As [`Structure::point`].
@@ -124,9 +127,10 @@ impl Structure {
         model: &Model,
         drive: &Drive,
         modes: usize,
+        coarser_decayed: bool,
     ) -> Result<(SlidingPoint, Decision, bool), StabilityError> {
         match self {
-            Self::Reduced(structure) => structure.decide(model, drive, modes),
+            Self::Reduced(structure) => structure.decide(model, drive, modes, coarser_decayed),
             Self::Sparse(structure) => Ok((structure.point(model, drive, modes)?, Decision::Open, false)),
         }
     }
@@ -203,7 +207,9 @@ impl ReducedStructure {
             modes,
             band_hz: self.basis.band_hz,
             has_all_modes: self.basis.is_complete,
+            damped_above_hz: self.damped_above_hz(model, &friction),
             basis: self.basis.len(),
+            is_reduced: !self.basis.is_complete,
         })
     }
 
@@ -212,15 +218,17 @@ impl ReducedStructure {
         model: &Model,
         drive: &Drive,
         modes: usize,
+        coarser_decayed: bool,
     ) -> Result<(SlidingPoint, Decision, bool), StabilityError> {
         let mu = drive.law.mu();
         let further = further_mu(mu, natural_speed_ratio(model, drive, mu));
         let further = Drive { law: with_mu(drive.law, further), ..*drive };
-        let (point, verdict) = self.resolve(model, drive, modes)?;
+        let resolve = |drive| self.resolve(model, drive, modes, coarser_decayed);
+        let (point, verdict) = resolve(drive)?;
         let is_stable = |resolved: Result<(SlidingPoint, Decision), _>| {
             resolved.is_ok_and(|(_, verdict)| verdict == Decision::Stable)
         };
-        let is_safe = verdict == Decision::Stable && is_stable(self.resolve(model, &further, modes));
+        let is_safe = verdict == Decision::Stable && is_stable(resolve(&further));
         Ok((point, verdict, is_safe))
     }
 
@@ -230,11 +238,32 @@ impl ReducedStructure {
         model: &Model,
         drive: &Drive,
         modes: usize,
+        coarser_decayed: bool,
     ) -> Result<(SlidingPoint, Decision), StabilityError> {
         let signs = Accuracy { aim: Aim::Signs, rounds: 3, ..Accuracy::default() };
         let point = self.point_with(model, drive, modes, signs)?;
-        let verdict = verdict(&point, damping_s(model));
+        let verdict = verdict(&point, damping_s(model), coarser_decayed);
         Ok((point, verdict))
+    }
+
+    /// The frequency above which no mode grows. It is not looked for where it cannot lie in the band.
+    fn damped_above_hz(&self, model: &Model, friction: &Friction) -> Option<f64> {
+        let damping_s = damping_s(model);
+        let coefficients = &friction.coefficients;
+        let largest = coefficients.share.iter().fold(0.0, |largest: f64, share| largest.max(share.abs()));
+        let least_hz = bound::least_hz(coefficients.mu * largest, model.pin().material(), damping_s);
+        // NaN, of no friction and no damping, gives no frequency either.
+        let is_hopeless = least_hz.is_nan() || least_hz > JUDGED * self.basis.band_hz;
+        if self.basis.is_complete || self.holders.is_some() || coefficients.falls() || is_hopeless {
+            return None;
+        }
+        let bilateral = Bilateral {
+            space: &self.space,
+            separable: &self.separable,
+            contact: point::contact(&friction.equilibrium),
+        };
+        let sector = friction.sector.get_or_init(|| vibration::sector(model, &bilateral, coefficients));
+        bound::damped_above_hz((*sector)?, damping_s)
     }
 
     /// What the points of one equilibrium share. It is computed once for as many of them as are remembered.

@@ -2,16 +2,17 @@
 
 use super::basis::Basis;
 use super::dashpots::{Dashpot, Dashpots};
-use super::decision::JUDGED;
 use super::equilibrium::UnitEquilibrium;
 use super::extension::Extension;
 use super::friction::SlidingFriction;
 use super::pencil::{Clock, Pair, Pencil};
+use super::sliding::JUDGED;
 use super::solve::Bilateral;
 use super::space::{Contact, Elasticity, SlidingNode, Space, Vectors};
 use super::vibration::{PAIRS, Vibration};
 use faer::{Mat, c64};
 use std::f64::consts::TAU;
+use std::sync::OnceLock;
 
 /// Steps of conjugate gradients for one correction.
 const CORRECTION_STEPS: usize = 8;
@@ -39,6 +40,8 @@ pub struct Friction {
     sideways: Mat<f64>,
     /// μN₀/|v| of each slave node, for a load of 1 N and a drive's rate of 1.
     sideways_of_nodes: Vec<f64>,
+    /// γ of [`bound`](super::bound), once it is asked for.
+    pub sector: OnceLock<Option<f64>>,
 }
 
 /// An approximate mode in the full space.
@@ -97,7 +100,7 @@ impl Friction {
             Mat::from_fn(basis.len(), basis.len(), |i, j| basis.stiffness[(i, j)] - follow[(i, j)]);
         let sideways =
             rows(&basis.sideways, &|i| sideways_of_nodes[i]).transpose() * rows(&basis.sideways, &|_| 1.0);
-        Self { coefficients, equilibrium, stiffness, sideways, sideways_of_nodes }
+        Self { coefficients, equilibrium, stiffness, sideways, sideways_of_nodes, sector: OnceLock::new() }
     }
 
     /// The dampers that stand for the slope of the law, for this load \[N\].

@@ -49,6 +49,20 @@ pub struct SlidingPoint {
     pub band_hz: f64,
     /// Whether all modes of the mesh were looked for.
     pub has_all_modes: bool,
+    /// A frequency \[Hz\] above which no mode can grow, because damping wins there; none if none is known.
+    pub damped_above_hz: Option<f64>,
     /// Number of vectors of the basis in which the modes were found.
     pub basis: usize,
+    /// Whether that basis is smaller than the space of the mesh, so that it has the modes near the end of the band badly.
+    pub is_reduced: bool,
+}
+
+/// Share of a reduced basis's band in which modes are judged one by one.
+pub const JUDGED: f64 = 0.85;
+
+impl SlidingPoint {
+    /// Frequency \[Hz\] up to which the modes are sure.
+    pub fn sure_hz(&self) -> f64 {
+        if self.is_reduced { JUDGED * self.band_hz } else { self.band_hz }
+    }
 }

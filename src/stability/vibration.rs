@@ -8,10 +8,12 @@
 //! Friction follows it, so K_μ is not symmetric. D comes from the turn of the friction's direction by sideways slip. C are other
 //! dampers: those of holders, and the slope of friction that depends on the slip speed.
 
+use super::bound::{self, Coupling};
 use super::dashpots::Dashpots;
 use super::friction::SlidingFriction;
 use super::solve::Bilateral;
-use super::space::{Elasticity, LANES, Vectors, add};
+use super::space::{Elasticity, LANES, Space, Vectors, add};
+use crate::solver::Model;
 use faer::c64;
 
 /// Number of complex vectors in eight lanes: real and imaginary parts beside each other.
@@ -142,4 +144,60 @@ fn add_complex(y: &mut Vectors, factor: &[c64; PAIRS], x: &Vectors) {
             }
         }
     }
+}
+
+/// Steps of conjugate gradients for one displacement of [`sector`].
+const SECTOR_STEPS: usize = 40;
+
+/// γ of [`bound`](super::bound) for nodes in contact with these friction coefficients.
+pub fn sector(model: &Model, bilateral: &Bilateral<'_>, friction: &SlidingFriction) -> Option<f64> {
+    let Bilateral { space, contact, .. } = *bilateral;
+    let nodes = || space.sliding().iter().enumerate().filter(|(i, _)| contact.in_contact[*i]);
+    let projected = |values: &[f64]| {
+        let mut field = space.gather(&[values]);
+        space.project(contact, &mut field);
+        field
+    };
+    let product = |x: &Vectors| {
+        let mut y = space.zeros();
+        Elasticity::new(model, space).product(x, &mut y);
+        y
+    };
+    let mut b = |x: &[f64]| {
+        let forces = Space::lane(&product(&projected(x)), 0);
+        let mut friction_n = vec![0.0; x.len()];
+        for (i, slave) in nodes() {
+            for c in 0..2 {
+                friction_n[3 * slave.node + c] =
+                    friction.mu_of(i) * slave.forward[c] * forces[3 * slave.node + 2];
+            }
+        }
+        Space::lane(&projected(&friction_n), 0)
+    };
+    let mut transposed = |x: &[f64]| {
+        let x = Space::lane(&projected(x), 0);
+        let mut moved = vec![0.0; x.len()];
+        for (i, slave) in nodes() {
+            let [dx, dy] = slave.forward;
+            moved[3 * slave.node + 2] =
+                friction.mu_of(i) * (dx * x[3 * slave.node] + dy * x[3 * slave.node + 1]);
+        }
+        let mut force = product(&space.gather(&[&moved]));
+        space.project(contact, &mut force);
+        Space::lane(&force, 0)
+    };
+    let mut solve = |force: &[f64]| {
+        let mut x = space.zeros();
+        let mut elasticity = Elasticity::new(model, space);
+        bilateral.solve(&mut elasticity, &projected(force), &mut x, SECTOR_STEPS);
+        Space::lane(&x, 0)
+    };
+    // A force on all nodes in contact that has no symmetry.
+    let mut start = vec![0.0; space.len()];
+    for (i, slave) in nodes() {
+        start[3 * slave.node] = libm::sin(1.0 + i as f64);
+        start[3 * slave.node + 1] = libm::cos(0.3 * i as f64);
+    }
+    let start = Space::lane(&projected(&start), 0);
+    bound::sector(&mut Coupling { b: &mut b, transposed: &mut transposed, solve: &mut solve }, &start)
 }

@@ -54,6 +54,14 @@ impl Study {
         &self.base
     }
 
+    /// The parameters of `samples.zip`, whose values move together; none for other samples.
+    pub fn zipped(&self) -> &[&'static Parameter] {
+        match &self.grid.samples {
+            Some(samples) if samples.written().get("zip").is_some() => &samples.parameters,
+            _ => &[],
+        }
+    }
+
     /// The grid's parameters and their values, in the order of the file.
     pub fn axes(&self) -> impl Iterator<Item = (&'static Parameter, &[Value])> {
         self.grid.axes.iter().map(|axis| (axis.parameter, axis.values.as_slice()))

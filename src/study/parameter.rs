@@ -166,6 +166,11 @@ impl Parameter {
         Some(unit).filter(|unit| !matches!(*unit, "-" | "name" | "true or false"))
     }
 
+    /// Whether a value between two of its values is one, too.
+    pub fn is_continuous(&self) -> bool {
+        matches!(self.kind, Kind::Number)
+    }
+
     /// Whether its values are single numbers.
     pub fn is_number(&self) -> bool {
         matches!(self.kind, Kind::Number | Kind::Count)

@@ -92,16 +92,21 @@ impl Plan {
         Ok(Self { document: study.document(), study, jobs, batches, workloads, workload_of })
     }
 
-    /// Adds jobs that are not points of the study's grid, but share the models of its jobs. Jobs that the plan has are not
-    /// added again, and neither are jobs of other models.
+    /// Adds jobs that are not points of the study's grid. Jobs that the plan has are not added again, and neither are those that the
+    /// solver refuses.
     pub(super) fn extend(&mut self, further: Vec<Job>) {
         let mut keys: HashSet<String> = self.jobs.iter().map(|job| job.key.clone()).collect();
         let places = self.batches.iter().cloned().zip(self.workload_of.iter().copied());
-        let workload_of: HashMap<String, usize> = places.collect();
+        let mut workload_of: HashMap<String, Option<usize>> =
+            places.map(|(batch, number)| (batch, Some(number))).collect();
         let mut batches = SharedKeys::new(solver::VERSION);
         for job in further {
             let batch = batches.key(job.spec.shared_part());
-            if let Some(&workload) = workload_of.get(&batch)
+            let known = *workload_of.entry(batch.clone()).or_insert_with(|| {
+                self.workloads.push(Workload::examine(&job.spec).ok()?);
+                Some(self.workloads.len() - 1)
+            });
+            if let Some(workload) = known
                 && keys.insert(job.key.clone())
             {
                 self.jobs.push(job);
@@ -303,12 +308,12 @@ fn preflight(
             let estimate = Workload::estimate(spec)?;
             let is_certain = spec.numerics.time_step_s.is_none()
                 && spec.scene.disk.kind == DiskKind::Rigid
-                && estimate.steps(spec.run.limit_s / MANY_STEPS).is_ok();
+                && estimate.steps(spec.limit_of_run_s() / MANY_STEPS).is_ok();
             if examines_all || !is_certain { Workload::examine(spec) } else { Ok(estimate) }
         })
         .collect();
     let is_refused = |(job, &number): (&Job, &usize)| match &workloads[number] {
-        Ok(workload) => workload.steps(job.spec.run.limit_s).is_err(),
+        Ok(workload) => workload.steps(job.spec.limit_of_run_s()).is_err(),
         Err(_) => true,
     };
     let refused: Vec<bool> = jobs.iter().zip(&workload_of).map(is_refused).collect();
@@ -317,7 +322,7 @@ fn preflight(
     };
     let job = &jobs[first];
     let workload = workloads.swap_remove(workload_of[first]);
-    let Err(reason) = workload.and_then(|workload| workload.steps(job.spec.run.limit_s)) else {
+    let Err(reason) = workload.and_then(|workload| workload.steps(job.spec.limit_of_run_s())) else {
         unreachable!("the job is refused");
     };
     let point: Vec<String> =

@@ -4,10 +4,11 @@ use super::error::SweepError;
 use super::growth::read_growth;
 use super::request::{ReportContent, ReportRequest};
 use super::rows::read_rows;
-use super::stability::{name_of_modes, read_stability};
+use super::stability::{name_of_modes, natural_way, read_stability};
 use super::{provenance, sheet};
 use crate::publish::Sheet;
 use crate::queue::{Counts, Queue, Scope};
+use crate::report::Along;
 use crate::report::{JobRow, Provenance, Report, StabilityPoint, View, write, write_stability};
 use crate::study::{Study, Warning};
 use std::path::{Path, PathBuf};
@@ -66,14 +67,22 @@ async fn write_viewed(
     refresh_s: Option<u32>,
 ) -> Result<Vec<PathBuf>, SweepError> {
     let surroundings = Surroundings::read(queue, studies, rows).await?;
-    let stability = stability(queue, studies).await?;
+    let (stability, along) = stability(queue, studies).await?;
     let findings = match studies {
         [study] => read_growth(queue, study, rows).await?,
         _ => None,
     };
     let findings = findings.as_ref();
-    let report =
-        Report { title, rows, view, stability: &stability, findings, refresh_s, ..surroundings.report() };
+    let report = Report {
+        title,
+        rows,
+        view,
+        stability: &stability,
+        along: &along,
+        findings,
+        refresh_s,
+        ..surroundings.report()
+    };
     Ok(write(&report, folder)?)
 }
 
@@ -86,13 +95,14 @@ pub async fn write_stability_report(
     queue: &mut Queue,
     study: &str,
     points: &[StabilityPoint],
+    along: &Along,
     folder: &Path,
 ) -> Result<Vec<PathBuf>, SweepError> {
     let rows = read_rows(queue, study).await?;
     let request = ReportRequest::of_study(study);
     let view = request.view_of_study(queue, &rows).await?;
     let surroundings = Surroundings::read(queue, &request.studies, &rows).await?;
-    let report = Report { title: study, view: &view, stability: points, ..surroundings.report() };
+    let report = Report { title: study, view: &view, stability: points, along, ..surroundings.report() };
     Ok(write_stability(&report, folder)?)
 }
 
@@ -138,18 +148,18 @@ async fn definitions(queue: &mut Queue, studies: &[String]) -> Result<Vec<Study>
     Ok(definitions)
 }
 
-/// The complex modes of the only study, if the database has them.
-async fn stability(queue: &mut Queue, studies: &[String]) -> Result<Vec<StabilityPoint>, SweepError> {
-    let [study] = studies else { return Ok(Vec::new()) };
+/// The complex modes of the only study, if the database has them, and what their thresholds are thresholds of.
+async fn stability(
+    queue: &mut Queue,
+    studies: &[String],
+) -> Result<(Vec<StabilityPoint>, Along), SweepError> {
+    let none = || (Vec::new(), Along::mu());
+    let [study] = studies else { return Ok(none()) };
     let modes = name_of_modes(study);
-    if queue.study(&modes).await?.is_none() {
-        return Ok(Vec::new());
-    }
-    match read_stability(queue, &modes).await {
-        // Modes of a version whose study this one cannot read are left out.
-        Err(SweepError::Study(_)) => Ok(Vec::new()),
-        read => read,
-    }
+    let Some(stored) = queue.study(&modes).await? else { return Ok(none()) };
+    // Modes of a version whose study this one cannot read are left out.
+    let Ok(definition) = Study::parse_stored(&stored.document, &modes) else { return Ok(none()) };
+    Ok((read_stability(queue, &modes).await?, natural_way(&definition)))
 }
 
 /// What the studies are for, in their authors' words. With several studies, each text names its study.

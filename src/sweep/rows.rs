@@ -71,28 +71,6 @@ pub(super) async fn for_each_spec(
     read
 }
 
-/// Calls `visit` with the key and the specification of each job of a study. Specifications that this version cannot read
-/// are left out.
-pub(super) async fn for_each_job(
-    queue: &mut Queue,
-    study: &str,
-    mut visit: impl FnMut(&str, JobSpec),
-) -> Result<(), SweepError> {
-    let mut read = Ok(());
-    let convert = |row: &StudyRow| {
-        let spec = job_spec(&row.key, row.payload.as_deref().unwrap_or_default()).ok();
-        Ok((row.key.clone(), spec))
-    };
-    let visit_page = page_visitor(&mut read, convert, |(key, spec)| {
-        if let Some(spec) = spec {
-            visit(&key, spec);
-        }
-        Ok(())
-    });
-    queue.each_page_with_payloads(study, Rows::All, visit_page).await?;
-    read
-}
-
 /// Calls `visit` with the ordinal and the content of each of `which` rows of a study, up to the first error. The records
 /// of a whole study as text would take several times the memory of the rows, so this never holds more than a page of
 /// them.

@@ -4,10 +4,10 @@ use super::signals::coarse;
 use std::sync::Arc;
 use tribosweep::analysis::lanes::{Lanes, LanesOf};
 use tribosweep::analysis::{
-    ComplexMode, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Unobserved, solve,
+    AboveBand, ComplexMode, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Unobserved, solve,
 };
 use tribosweep::solver::{Model, RunNumber};
-use tribosweep::spec::{JobSpec, Precision, StabilityMethod};
+use tribosweep::spec::{ClampSide, JobSpec, Precision, Shape, StabilityMethod};
 
 fn short(method: StabilityMethod) -> JobSpec {
     let mut spec = JobSpec { stability: method, ..coarse() };
@@ -29,6 +29,8 @@ fn eigenvalues() -> SlidingStability {
         lifted_nodes: 3,
         mu_star: 0.4,
         band_hz: 5e4,
+        above_band: AboveBand::NotLookedAt,
+        damped_above_hz: None,
         modes: vec![mode],
     }
 }
@@ -121,6 +123,7 @@ impl JobObserver for Counting {
 fn an_observer_can_need_the_run() {
     let mut spec = JobSpec { stability: StabilityMethod::Eigenvalues, ..coarse() };
     spec.scene.contact.mu = 0.1;
+    spec.numerics.beta_r_s = 5.0e-7;
     let decided = solve(&spec, &mut Unobserved).unwrap();
     assert!(decided.steps == 0 && decided.stability.as_ref().is_some_and(|modes| modes.decided));
     let mut counting = Counting(0);
@@ -130,4 +133,49 @@ fn an_observer_can_need_the_run() {
     let simulated =
         solve(&JobSpec { stability: StabilityMethod::Simulate, ..spec }, &mut Unobserved).unwrap();
     assert_eq!(JobRecord { stability: None, ..observed }, simulated);
+}
+
+/// Protects: eigenvalues spare no run if nobody looked above their band and nothing proves that no mode grows there. With ten times the
+/// damping of the reference scene it is proved, and a mesh whose modes are all looked for needs no proof.
+#[test]
+fn a_band_that_nobody_looked_beyond_decides_nothing() {
+    let of = |beta_r_s: f64, elements: [usize; 3]| {
+        let mut spec = JobSpec { stability: StabilityMethod::Eigenvalues, ..coarse() };
+        spec.scene.contact.mu = 0.1;
+        spec.scene.pin.elements = elements;
+        spec.scene.clamp.width_m = 0.012 / elements[0] as f64;
+        spec.numerics.beta_r_s = beta_r_s;
+        spec.run.limit_s = 0.002;
+        let record = solve(&spec, &mut Unobserved).unwrap();
+        let stability = record.stability.unwrap();
+        (stability.decided, stability.above_band, stability.damped_above_hz.is_some())
+    };
+    assert_eq!(of(5.0e-8, [6, 8, 5]), (false, AboveBand::NotLookedAt, false));
+    assert_eq!(of(5.0e-7, [6, 8, 5]), (true, AboveBand::Damped, true));
+    assert_eq!(of(5.0e-8, [3, 4, 3]), (true, AboveBand::Nothing, false));
+}
+
+/// Protects: a cylinder that squeals above the usual band is not called stable: the search goes on until it finds the mode, and says
+/// how far it went. On this mesh it reaches the highest mode, and without friction it finds that none grows.
+#[test]
+fn a_cylinder_that_squeals_high_is_unstable() {
+    let of = |mu: f64| {
+        let mut spec = JobSpec { stability: StabilityMethod::Modes, ..JobSpec::default() };
+        spec.scene.pin.shape = Shape::Cylinder;
+        spec.scene.pin.diameter_m = Some(0.012);
+        spec.scene.pin.size_m = [0.012, 0.012, 0.010];
+        spec.scene.pin.elements = [4, 4, 3];
+        spec.scene.clamp.side = ClampSide::WholeTop;
+        spec.scene.contact.mu = mu;
+        spec.numerics.beta_r_s = 0.0;
+        solve(&spec, &mut Unobserved).unwrap()
+    };
+    let record = of(0.6);
+    let stability = record.stability.as_ref().unwrap();
+    assert_eq!((record.outcome, stability.above_band), (Outcome::Unstable, AboveBand::Nothing));
+    let usual_hz = 2.5 * 392.0 / 0.04;
+    assert!(
+        stability.modes[0].frequency_hz > usual_hz && stability.band_hz > 2.0 * usual_hz,
+        "{stability:?}"
+    );
 }

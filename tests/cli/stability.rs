@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use crate::support::{ExportRow, Folder, rows, small, stderr, stdout, wall_times};
 
 const COLUMNS: &str = "omega_rpm,mu,mode,frequency_hz,growth_rate_1_s,damping_ratio,residual,converged,\
-contact_nodes,lifted_nodes";
+contact_nodes,lifted_nodes,band_hz,above_band";
 
 fn number(row: &ExportRow, column: &str) -> f64 {
     row[column].parse().unwrap_or_else(|_| panic!("{column} of {row:?}"))
@@ -162,8 +162,8 @@ fn the_folder_is_a_report() {
     let printed: Vec<&str> =
         text.split("\nThresholds\n").nth(1).unwrap().lines().map(str::trim_start).collect();
     let thresholds = rows(&folder.read(path("thresholds.csv")));
-    assert_eq!(printed.len(), 3, "{text}");
-    for (line, omega_rpm) in printed[1..].iter().zip(["7", "20"]) {
+    assert!(printed.len() >= 3, "{text}");
+    for (line, omega_rpm) in printed[1..3].iter().zip(["7", "20"]) {
         let first = thresholds.iter().find(|row| row["omega_rpm"] == omega_rpm).unwrap();
         let words = line.strip_prefix(omega_rpm).unwrap().trim_start();
         let is_same = match (first["mu_c"].is_empty(), first["mu_below"].is_empty()) {

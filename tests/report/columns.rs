@@ -5,8 +5,8 @@ use serde_json::{Value, json};
 use std::collections::BTreeSet;
 use tribosweep::analysis::program::{Direction, ProgramWindow};
 use tribosweep::analysis::{
-    CoarseStart, ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode, Obstacle,
-    Outcome, Regime, SlidingStability,
+    AboveBand, CoarseStart, ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode,
+    Obstacle, Outcome, Regime, SlidingStability,
 };
 use tribosweep::report::columns::{Column, InputColumn, all, plain};
 use tribosweep::report::{RowState, SCALARS, name_and_unit};
@@ -152,6 +152,8 @@ fn units_are_those_of_the_names() {
         lifted_nodes: 0,
         mu_star: 0.3,
         band_hz: 5e4,
+        above_band: AboveBand::NotLookedAt,
+        damped_above_hz: None,
         modes: vec![mode],
     };
     let windows = [Direction::Up, Direction::Down].map(window).into();

@@ -6,7 +6,7 @@ use crate::synthetic::{done, periodic, record, report, row, with};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use tribosweep::analysis::{ComplexMode, Outcome, Regime, SlidingStability};
+use tribosweep::analysis::{AboveBand, ComplexMode, Outcome, Regime, SlidingStability};
 use tribosweep::report::{JobRow, Report, RowState, StabilityPoint, write, write_stability};
 
 const SPEEDS: [f64; 4] = [1.0, 5.0, 20.0, 100.0];
@@ -31,6 +31,8 @@ fn point(omega_rpm: f64, mu: f64) -> StabilityPoint {
         lifted_nodes: 2,
         mu_star: mu,
         band_hz: 5e4,
+        above_band: AboveBand::NotLookedAt,
+        damped_above_hz: None,
         modes,
     };
     let parameters = vec![("omega_rpm".to_owned(), omega_rpm.into()), ("mu".to_owned(), mu.into())];

@@ -162,3 +162,21 @@ fn modes_cover_holders_laws_and_bases() {
         assert_eq!(is_chosen, at == 0, "case {at}");
     }
 }
+
+/// Protects: modes alone are not refused for what only a run needs: the arc that the pin sweeps on an elastic disk, a ramp that fits
+/// into the run, and its observation. The same study is refused as a run.
+#[test]
+fn modes_need_no_limits_of_a_run() {
+    let elastic = r#"{ "scene": { "disk": { "kind": "elastic", "omega_rpm": 5000, "ring": { "track_arc_deg": 25 } } }, "grid": { "mu": [0.1] } }"#;
+    let ramp = r#"{ "scene": { "load": { "ramp_s": 0.5 } }, "grid": { "mu": [0.1] } }"#;
+    let observation = r#"{ "detection": { "decay_observation_s": 1e-5 }, "grid": { "mu": [0.1] } }"#;
+    let modes = Changes { is_of_modes: true, ..Changes::default() };
+    for (text, refused) in
+        [(elastic, "track_arc_deg"), (ramp, "ramp_s"), (observation, "decay_observation_s")]
+    {
+        assert_contains(&refusal(text), &[refused]);
+        let study = Study::parse_changed(text, "x.json", &modes).unwrap();
+        let spec = &study.expand("1").unwrap()[0].spec;
+        assert!(!spec.has_run() && spec.limit_of_run_s() == 0.0);
+    }
+}

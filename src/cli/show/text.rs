@@ -1,7 +1,7 @@
 //! A job as text.
 
 use super::parsed;
-use crate::analysis::{ComplexMode, SlidingStability};
+use crate::analysis::{AboveBand, ComplexMode, SlidingStability};
 use crate::cli::aligned;
 use crate::publish::value::{self, MISSING};
 use crate::report::columns::{Column, FURTHER, Group, PLAIN};
@@ -142,7 +142,15 @@ fn modes(stability: &SlidingStability) -> String {
     let lines: Vec<[String; 5]> =
         std::iter::once(head).chain(stability.modes.iter().enumerate().map(line)).collect();
     let band = value::quantity(stability.band_hz, "Hz");
-    format!("\nModes of steady sliding below {band}\n{}", aligned::lines(2, &lines, None))
+    let above = match stability.above_band {
+        AboveBand::Nothing => "; the mesh has no others".to_owned(),
+        AboveBand::Damped => "; damping keeps all others from growing".to_owned(),
+        AboveBand::CoarserRun => {
+            "; nobody looked for others, but a run on a coarser mesh, which carries them, decayed".to_owned()
+        }
+        AboveBand::NotLookedAt => "; nobody looked for others".to_owned(),
+    };
+    format!("\nModes of steady sliding below {band}{above}\n{}", aligned::lines(2, &lines, None))
 }
 
 /// The share that an energy has of the energy put in, as text; empty for other figures.

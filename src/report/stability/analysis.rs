@@ -1,10 +1,12 @@
 //! The points in groups, as figures and tables show them: branches over μ at each speed, and where they begin to grow.
 
-use crate::analysis::branches::{Branch, Sample, branches, threads};
+use super::along::Along;
+use super::ranges::{Crossing, Edge, Interval, Known, intervals};
+use crate::analysis::ComplexMode;
+use crate::analysis::branches::{Branch, BranchPoint, Sample, branches, crossing, threads};
 use crate::publish::value;
 use crate::report::Discretisation;
 use crate::report::layout::{Group, Layout};
-use crate::report::parameters::{MU, OMEGA};
 use crate::report::row::{JobRow, RowState};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::view::View;
@@ -12,12 +14,17 @@ use nalgebra::Complex;
 use serde_json::Value;
 use std::f64::consts::TAU;
 
-/// The points as rows, so that a [`Layout`] can group them. The key of a row is the number of its point.
-pub(in crate::report) fn rows(points: &[StabilityPoint]) -> Vec<JobRow> {
+/// The points as rows, so that a [`Layout`] can group them. The key of a row is the number of its point. Parameters that move along
+/// the way of the thresholds do not tell groups apart.
+pub(in crate::report) fn rows(points: &[StabilityPoint], along: &Along) -> Vec<JobRow> {
+    let kept = |point: &StabilityPoint| {
+        let parameters = point.parameters.iter();
+        parameters.filter(|(name, _)| !along.with.contains(name)).cloned().collect()
+    };
     let row = |(number, point): (usize, &StabilityPoint)| JobRow {
         study: String::new(),
         job: number.to_string(),
-        parameters: point.parameters.clone(),
+        parameters: kept(point),
         omega_rpm: point.omega_rpm,
         mu: point.mu,
         state: RowState::Pending,
@@ -33,7 +40,10 @@ pub(in crate::report) fn rows(points: &[StabilityPoint]) -> Vec<JobRow> {
 /// Points with their branches.
 pub(in crate::report) struct Analysis<'a> {
     points: &'a [StabilityPoint],
-    /// ω along the axis, μ over the series, a group for each combination of the other parameters.
+    /// What thresholds are thresholds of.
+    pub along: &'a Along,
+    /// The parameter of the thresholds over the series, ω along the axis (or μ, if ω has thresholds), a group for each combination of
+    /// the other parameters.
     pub layout: Layout<'a>,
     /// The modes of each group of the layout.
     pub groups: Vec<GroupModes>,
@@ -56,10 +66,14 @@ pub(in crate::report) struct Speed {
     pub mus: [f64; 2],
     /// The modes over μ.
     pub branches: Vec<Branch>,
-    /// Where modes begin to grow, by ascending μ.
+    /// Where modes grow, by ascending μ.
     pub onsets: Vec<Onset>,
+    /// The ranges in which sliding is unstable, by ascending μ.
+    pub intervals: Vec<Interval>,
     /// Each μ at which no mode was found, so that it is not known whether sliding is stable.
     pub without_modes: Vec<f64>,
+    /// How far it was looked where no mode grows.
+    pub known: Known,
 }
 
 /// Where a mode begins to grow.
@@ -73,6 +87,8 @@ pub(in crate::report) struct Onset {
     pub below: Option<f64>,
     /// The smallest μ above with a point of the branch.
     pub above: f64,
+    /// Where it ceases to grow; none if it still grows at the last point.
+    pub ends: Option<Crossing>,
     /// Its frequency \[Hz\] there.
     pub frequency_hz: f64,
     /// Whether the eigenvalues on both sides are converged.
@@ -83,16 +99,16 @@ pub(in crate::report) struct Onset {
 
 impl<'a> Analysis<'a> {
     /// Analyses points, whose rows are `rows`.
-    pub fn of(points: &'a [StabilityPoint], rows: &'a [JobRow], view: &View) -> Self {
+    pub fn of(points: &'a [StabilityPoint], rows: &'a [JobRow], along: &'a Along, view: &View) -> Self {
         let view = View {
-            x: Some(OMEGA.to_owned()),
-            by: Some(MU.to_owned()),
+            x: Some(along.across().to_owned()),
+            by: Some(along.parameter.clone()),
             descriptions: view.descriptions.clone(),
             ..View::DEFAULT
         };
         let layout = Layout::of(rows, &view);
-        let groups = layout.groups.iter().map(|group| group_modes(points, group)).collect();
-        Self { points, layout, groups }
+        let groups = layout.groups.iter().map(|group| group_modes(points, along, group)).collect();
+        Self { points, along, layout, groups }
     }
 
     /// All points.
@@ -105,43 +121,80 @@ impl<'a> Analysis<'a> {
         point_of(self.points, row)
     }
 
-    /// The lowest threshold of a speed, the frequency of its mode, and what else there is to say.
-    pub fn words(&self, speed: &Speed) -> [String; 3] {
-        let frequency = speed.lowest().map(|onset| value::quantity(onset.frequency_hz, "Hz"));
+    /// Of a series: the place at which sliding becomes unstable first, the ranges in which it is unstable, the frequency of the mode
+    /// that grows first, and what else there is to say.
+    pub fn words(&self, speed: &Speed) -> [String; 4] {
+        let frequency = speed.intervals.first().map(|interval| value::quantity(interval.frequency_hz, "Hz"));
         let frequency = frequency.unwrap_or_else(|| value::MISSING.to_owned());
-        [speed.threshold_in_words(), frequency, self.note(speed)]
+        [speed.threshold_in_words(), speed.intervals_in_words(), frequency, self.note(speed)]
     }
 
     fn note(&self, speed: &Speed) -> String {
         let mut words = Vec::new();
-        match speed.lowest() {
-            Some(onset) if onset.below.is_none() && onset.mu > speed.mus[0] => {
-                words.push("the mode is not among those of smaller μ".to_owned());
-            }
-            Some(onset) if onset.below.is_none() => {
-                words.push("unstable at the smallest μ already".to_owned());
-            }
-            Some(onset) if !onset.is_converged => words.push("not converged".to_owned()),
-            Some(_) => {}
-            None if !speed.without_modes.is_empty() => {}
-            None => {
-                let largest = self.layout.dimension(MU).assignment(&speed.mus[1].into());
-                words.push(format!("stable up to {largest}"));
+        let value_of = |x: f64| self.layout.dimension(&self.along.parameter).near(x);
+        match speed.intervals.as_slice() {
+            _ if speed.mus[0] >= speed.mus[1] => {}
+            [] if !speed.without_modes.is_empty() => {}
+            [] => words.push(format!("{} up to {}", speed.known.no_growth(), value_of(speed.mus[1]))),
+            [first, ..] => {
+                if matches!(first.from, Edge::Outside(_)) {
+                    words.push("unstable at the smallest value already".to_owned());
+                }
+                if let Some(Interval { to: Edge::At(end), .. }) = speed.intervals.last() {
+                    words.push(format!("{} from {} on", speed.known.no_growth(), value_of(*end)));
+                }
+                if !first.is_converged {
+                    words.push("not converged".to_owned());
+                }
             }
         }
         if !speed.without_modes.is_empty() {
+            let name = self.layout.dimension(&self.along.parameter).symbol();
             let places = speed.without_modes.iter().map(|mu| value::significant(*mu, 4)).collect::<Vec<_>>();
             let places = places.join(", ");
             words.push(format!(
-                "no mode was found at μ = {places}: whether sliding is stable there is not known"
+                "no mode was found at {name} = {places}: whether sliding is stable there is not known"
             ));
         }
-        let more = speed.onsets.len().saturating_sub(1);
-        if more > 0 {
-            let verb = if more == 1 { "grows" } else { "grow" };
-            words.push(format!("{} {verb} at larger μ", value::count(more, "more mode")));
+        let first = speed.onsets.first().map(|onset| onset.branch);
+        let more: std::collections::BTreeSet<usize> =
+            speed.onsets.iter().map(|onset| onset.branch).filter(|branch| Some(*branch) != first).collect();
+        if !more.is_empty() {
+            let verb = if more.len() == 1 { "grows, too" } else { "grow, too" };
+            words.push(format!("{} {verb}", value::count(more.len() as u32, "more mode")));
         }
         words.join("; ")
+    }
+
+    /// What is known above the frequencies up to which modes were looked for, in a sentence; none if nothing can grow there at any
+    /// point.
+    pub fn above_band(&self) -> Option<String> {
+        let open = self.points.iter().filter(|point| !point.stability.above_band.is_known());
+        let bands: Vec<f64> = open.map(|point| point.stability.band_hz).collect();
+        let (low, high) =
+            bands.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &hz| (low.min(hz), high.max(hz)));
+        let words = |hz: f64| value::quantity(hz, "Hz");
+        let band =
+            if words(low) == words(high) { words(low) } else { format!("{} to {}", words(low), words(high)) };
+        (!bands.is_empty()).then(|| {
+            let points = if bands.len() == self.points.len() {
+                String::new()
+            } else {
+                format!(" at {} of {}", bands.len(), value::count(self.points.len() as u32, "point"))
+            };
+            format!(
+                "Nobody looked for modes above {band}{points}: a mode may grow there. Below it, all modes were looked for."
+            )
+        })
+    }
+
+    /// Which parameter the thresholds belong to, in a sentence, if it is not μ alone.
+    pub fn along_in_words(&self) -> Option<String> {
+        let Along { parameter, with } = self.along;
+        let together =
+            if with.is_empty() { String::new() } else { format!(", with which {} move", with.join(", ")) };
+        (!self.along.is_mu() || !with.is_empty())
+            .then(|| format!("Thresholds are those of {parameter}, which this study varies{together}."))
     }
 }
 
@@ -150,54 +203,79 @@ fn point_of<'a>(points: &'a [StabilityPoint], row: &JobRow) -> &'a StabilityPoin
     &points[row.job.parse::<usize>().unwrap_or_default()]
 }
 
-fn group_modes(points: &[StabilityPoint], group: &Group) -> GroupModes {
+fn group_modes(points: &[StabilityPoint], along: &Along, group: &Group) -> GroupModes {
     let of_speed = |(index, omega): (usize, &Value)| {
         let own = group.jobs.iter().filter(|job| job.axis_index == index);
         let mut own: Vec<&StabilityPoint> = own.map(|job| point_of(points, job.row)).collect();
         // Of two results at one μ that of the grid counts.
         own.sort_by_key(|point| !point.on_grid);
-        speed(omega, &own)
+        speed(omega, along, &own)
     };
     let mut speeds: Vec<Speed> = group.axis_values.iter().enumerate().map(of_speed).collect();
     let families = name_families(&mut speeds);
     GroupModes { speeds, families }
 }
 
-fn speed(omega: &Value, points: &[&StabilityPoint]) -> Speed {
-    let sample = |point: &&StabilityPoint| Sample { mu: point.mu, modes: point.stability.modes.clone() };
-    let mus = points.iter().map(|point| point.mu);
+fn speed(omega: &Value, along: &Along, points: &[&StabilityPoint]) -> Speed {
+    let place = |point: &StabilityPoint| point.parameter(&along.parameter).as_f64().unwrap_or(f64::NAN);
+    let sample = |point: &&StabilityPoint| Sample { mu: place(point), modes: point.stability.modes.clone() };
+    let mus = points.iter().map(|point| place(point));
     let mus = mus.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], mu| [low.min(mu), high.max(mu)]);
     let branches = branches(&points.iter().map(sample).collect::<Vec<_>>());
     let mut onsets: Vec<Onset> =
-        branches.iter().enumerate().filter_map(|(number, branch)| onset(number, branch)).collect();
+        branches.iter().enumerate().flat_map(|(number, branch)| onsets_of(number, branch)).collect();
     onsets.sort_by(|a, b| a.mu.total_cmp(&b.mu).then(a.frequency_hz.total_cmp(&b.frequency_hz)));
-    let without_modes = points.iter().filter(|point| point.stability.modes.is_empty()).map(|point| point.mu);
+    let without_modes =
+        points.iter().filter(|point| point.stability.modes.is_empty()).map(|point| place(point));
     let mut without_modes: Vec<f64> = without_modes.collect();
     without_modes.sort_by(f64::total_cmp);
-    Speed { omega: omega.clone(), mus, branches, onsets, without_modes }
+    let mut leading: Vec<(f64, Option<ComplexMode>)> =
+        points.iter().map(|point| (place(point), point.leading().copied())).collect();
+    leading.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+    leading.dedup_by(|later, earlier| later.0 == earlier.0);
+    let known = Known::of_stable(points);
+    let intervals = intervals(&leading, &onsets);
+    Speed { omega: omega.clone(), mus, branches, onsets, intervals, without_modes, known }
 }
 
-/// Where a branch begins to grow; none if it does not.
-fn onset(branch: usize, points: &Branch) -> Option<Onset> {
-    let first = points.points.first()?;
-    if first.mode.growth_rate_per_s >= 0.0 {
-        let is_converged = first.mode.is_converged;
-        let frequency_hz = first.mode.frequency_hz;
-        let (mu, family) = (first.mu, 0);
-        return Some(Onset { branch, mu, below: None, above: mu, frequency_hz, is_converged, family });
-    }
-    let (mu, [below, above]) = (points.mu_c?, points.around_mu_c()?);
-    let share = (mu - below.mu) / (above.mu - below.mu);
-    let (from, to) = (below.mode.frequency_hz, above.mode.frequency_hz);
-    Some(Onset {
-        branch,
-        mu,
-        below: Some(below.mu),
-        above: above.mu,
-        frequency_hz: from + share * (to - from),
-        is_converged: below.mode.is_converged && above.mode.is_converged,
-        family: 0,
-    })
+/// Where a branch grows; nothing if it does not.
+fn onsets_of(branch: usize, points: &Branch) -> Vec<Onset> {
+    let place =
+        |pair: [BranchPoint; 2]| Crossing { at: crossing(pair), below: pair[0].mu, above: pair[1].mu };
+    let onset = |[begins, ends]: [Option<[BranchPoint; 2]>; 2]| {
+        let ends_converged = ends.is_none_or(|[a, b]| a.mode.is_converged && b.mode.is_converged);
+        let ends = ends.map(place);
+        let Some([below, above]) = begins else {
+            let first = points.points.first()?;
+            let is_converged = first.mode.is_converged && ends_converged;
+            let frequency_hz = first.mode.frequency_hz;
+            let (mu, family) = (first.mu, 0);
+            return Some(Onset {
+                branch,
+                mu,
+                below: None,
+                above: mu,
+                ends,
+                frequency_hz,
+                is_converged,
+                family,
+            });
+        };
+        let mu = crossing([below, above]);
+        let share = (mu - below.mu) / (above.mu - below.mu);
+        let (from, to) = (below.mode.frequency_hz, above.mode.frequency_hz);
+        Some(Onset {
+            branch,
+            mu,
+            below: Some(below.mu),
+            above: above.mu,
+            ends,
+            frequency_hz: from + share * (to - from),
+            is_converged: below.mode.is_converged && above.mode.is_converged && ends_converged,
+            family: 0,
+        })
+    };
+    points.spans().into_iter().filter_map(onset).collect()
 }
 
 /// Finds the families of a group and names them in the onsets; returns their frequencies.
@@ -240,28 +318,12 @@ impl Speed {
     pub fn onset_of(&self, branch: usize) -> Option<&Onset> {
         self.onsets.iter().find(|onset| onset.branch == branch)
     }
-
-    /// The threshold in words: `0.3142`, `≤ 0.1` if sliding is unstable at the smallest μ already or not known at a smaller one, `> 0.6` if it is stable at
-    /// every μ, and a dash if no mode grows but points without modes leave it open.
-    pub fn threshold_in_words(&self) -> String {
-        let text = |mu: f64| value::significant(mu, 4);
-        match self.lowest() {
-            Some(onset) if onset.below.is_some() && !self.without_modes.iter().any(|mu| *mu < onset.mu) => {
-                text(onset.mu)
-            }
-            Some(onset) => format!("≤ {}", text(onset.mu)),
-            None if self.mus[1].is_finite() && self.without_modes.is_empty() => {
-                format!("> {}", text(self.mus[1]))
-            }
-            None => value::MISSING.to_owned(),
-        }
-    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::{ComplexMode, SlidingStability};
+    use crate::analysis::{AboveBand, SlidingStability};
 
     fn point(omega_rpm: f64, mu: f64, modes: &[(f64, f64)]) -> StabilityPoint {
         let mode = |(frequency_hz, growth_rate_per_s): &(f64, f64)| ComplexMode {
@@ -277,6 +339,8 @@ mod tests {
             lifted_nodes: 0,
             mu_star: mu,
             band_hz: 5e4,
+            above_band: AboveBand::NotLookedAt,
+            damped_above_hz: None,
             modes: modes.iter().map(mode).collect(),
         };
         StabilityPoint { omega_rpm, mu, parameters: Vec::new(), on_grid: true, stability }
@@ -297,14 +361,15 @@ mod tests {
             point(8.0, 0.1, &[(10_200.0, -30.0)]),
             point(8.0, 0.3, &[]),
         ];
-        let rows = rows(&points);
-        let found = Analysis::of(&points, &rows, &View::DEFAULT);
+        let along = Along::mu();
+        let rows = rows(&points, &along);
+        let found = Analysis::of(&points, &rows, &along, &View::DEFAULT);
         let group = &found.groups[0];
         assert_eq!(group.families, [20_100.0, 10_100.0]);
         let words: Vec<String> = group.speeds.iter().map(Speed::threshold_in_words).collect();
         assert_eq!(words, ["≤ 0.1", "0.2", "> 0.3", value::MISSING]);
         let notes: Vec<String> = group.speeds.iter().map(|speed| found.note(speed)).collect();
-        assert_eq!(notes[2], "stable up to μ = 0.3");
+        assert_eq!(notes[2], "no mode below 50 kHz grows up to μ = 0.3");
         assert_eq!(notes[3], "no mode was found at μ = 0.3: whether sliding is stable there is not known");
         let families: Vec<Vec<usize>> = group
             .speeds
@@ -313,5 +378,37 @@ mod tests {
             .collect();
         assert_eq!(families, [vec![0, 1], vec![0, 1], vec![], vec![]]);
         assert_eq!(group.speeds[1].onsets[0].frequency_hz, 20_100.0);
+        let ranges: Vec<String> = group.speeds.iter().map(Speed::intervals_in_words).collect();
+        assert_eq!(ranges, ["≤ 0.1 to ≥ 0.3", "0.2 to ≥ 0.3", "none", value::MISSING]);
+        let all = "Nobody looked for modes above 50 kHz: a mode may grow there. Below it, all modes were looked for.";
+        assert_eq!(found.above_band().as_deref(), Some(all));
+        assert_eq!(found.along_in_words(), None);
+    }
+
+    /// Protects: thresholds are those of the parameter that is varied, in a zip with all that move with it, and the table says so.
+    /// Sliding that is unstable at small values and stable at large ones gets its range, not a threshold.
+    #[test]
+    fn thresholds_of_a_zip_are_along_it() {
+        let at = |modulus_pa: f64, rate: f64| {
+            let mut point = point(7.0, 0.3, &[(10_000.0, rate)]);
+            point.parameters = vec![
+                ("young_modulus_pa".to_owned(), modulus_pa.into()),
+                ("load_n".to_owned(), (1.0e-8 * modulus_pa).into()),
+            ];
+            point.stability.above_band = AboveBand::Damped;
+            point
+        };
+        let points = [at(1.0e9, 30.0), at(2.0e9, 10.0), at(3.0e9, -10.0), at(4.0e9, -20.0)];
+        let along = Along { parameter: "young_modulus_pa".to_owned(), with: vec!["load_n".to_owned()] };
+        let (table, notes) = super::super::thresholds_table(&points, &along);
+        assert_eq!(table.columns, ["omega_rpm", "young_modulus_pa_c", "unstable", "frequency", "note"]);
+        assert_eq!(table.lines.len(), 1);
+        let line: Vec<String> = table.lines[0].iter().map(value::text).collect();
+        let [first, end] = [1.0e9, 2.5e9].map(|at| value::significant(at, 4));
+        assert_eq!(line[1..3], [format!("≤ {first}"), format!("≤ {first} to {end}")]);
+        assert!(line[4].contains("stable from young_modulus = 2.5 GPa on"), "{}", line[4]);
+        let said =
+            "Thresholds are those of young_modulus_pa, which this study varies, with which load_n move.";
+        assert_eq!(notes, [said]);
     }
 }

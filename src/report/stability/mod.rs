@@ -1,18 +1,21 @@
 //! The linear stability of steady sliding: where small vibrations about it grow, and which modes do.
 //!
 //! ```text
-//! points ──► analysis (branches over μ, onsets, families over ω) ──► figures, table, section ──► write (a page of its own)
+//! points ──► analysis (branches over μ, onsets, ranges, families over ω) ──► figures, table, section ──► write (a page of its own)
 //!    └─────► contour (zero line of the leading growth rate) ───────► map, regime map
 //!    └─────► verdict (what linear stability says about a job) ─────► regime map
 //! ```
 
+mod along;
 mod analysis;
 mod contour;
+mod ranges;
 mod section;
 mod table;
 mod verdict;
 mod write;
 
+pub use along::Along;
 pub(super) use analysis::{Analysis, GroupModes, Onset, Speed, rows};
 pub(super) use contour::{Node, zero_line};
 pub(super) use section::{markdown, markup};

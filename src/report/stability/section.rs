@@ -5,7 +5,6 @@ use super::write::Files;
 use crate::publish::{html, value};
 use crate::report::figure::stability::StabilityPlot;
 use crate::report::markdown;
-use crate::report::parameters::OMEGA;
 use maud::{Markup, html};
 use std::fmt::Write;
 
@@ -19,25 +18,34 @@ const MAX_DATA: usize = 1_000_000;
 const MEANING: [&str; 3] = [
     "The figures show the linear stability of steady sliding. Small vibrations about steady sliding are complex modes. Each mode \
      has a frequency and a growth rate: the imaginary part of its eigenvalue over 2π, and the real part.",
-    "If a growth rate is positive, the vibration grows, and steady sliding is unstable. The friction coefficient at which this \
-     begins is the threshold μ_c.",
+    "If a growth rate is positive, the vibration grows, and steady sliding is unstable. A threshold is a value of the parameter \
+     that is varied, usually μ, at which this begins or ends. With friction that falls with the speed, sliding can be unstable \
+     below a threshold and stable above it.",
     "The eigenvalues say nothing about the size that the vibration reaches. A limit cycle can also exist below the threshold, \
      because stable sliding and a stick–slip cycle exist side by side; the start of a run decides which of them it reaches.",
 ];
 
+/// What else must be said: along which parameter, and what nobody looked at.
+fn sentences(analysis: &Analysis) -> Vec<String> {
+    [analysis.along_in_words(), analysis.above_band(), not_converged(analysis)]
+        .into_iter()
+        .flatten()
+        .collect()
+}
+
 fn caption(plot: StabilityPlot) -> &'static str {
     match plot {
         StabilityPlot::Map => {
-            "Growth rate of the leading mode, which grows fastest or decays slowest, over ω and μ. Blue decays, red grows. The \
+            "Growth rate of the leading mode, which grows fastest or decays slowest. Blue decays, red grows. The \
              line is the threshold, interpolated between the points."
         }
         StabilityPlot::LockIn => {
-            "Frequencies of the modes over μ and, below them, their growth rates. Where two frequencies meet and the growth \
+            "Frequencies of the modes over the parameter that is varied and, below them, their growth rates. Where two frequencies meet and the growth \
              rates part, two modes lock in. At most six speeds are shown."
         }
         StabilityPlot::Thresholds => {
-            "Thresholds μ_c over ω: the friction coefficient at which the growth rate of a mode becomes positive. Above the \
-             lowest threshold steady sliding is unstable."
+            "Thresholds: where the growth rate of a mode becomes positive (filled) or negative again (hollow). Steady sliding is \
+             unstable where at least one mode grows; the table has these ranges."
         }
     }
 }
@@ -46,11 +54,10 @@ fn caption(plot: StabilityPlot) -> &'static str {
 pub(in crate::report) fn markup(analysis: &Analysis, files: &Files) -> Markup {
     let shown = analysis.groups.len().min(MAX_GROUPS);
     let left_out = analysis.groups.len() - shown;
-    let unclear = not_converged(analysis);
     let has_sheets_left = files.figures.iter().any(|(_, figures)| figures.len() > MAX_SHEETS);
     html! {
         @for paragraph in MEANING { p { (paragraph) } }
-        @if let Some(sentence) = &unclear { p { (sentence) } }
+        @for sentence in sentences(analysis) { p { (sentence) } }
         @for (plot, figures) in &files.figures {
             @for (number, figure) in figures.iter().take(MAX_SHEETS).enumerate() {
                 @if !figure.caption.is_empty() { h3 { (figure.caption) } }
@@ -89,17 +96,17 @@ fn not_converged(analysis: &Analysis) -> Option<String> {
     (count > 0).then(|| format!("Of {all}, {count} {verb} not converged. They are drawn grey or hollow."))
 }
 
-const NUMBERS: [&str; 2] = ["μ_c", "frequency"];
-
 fn header(analysis: &Analysis) -> Vec<String> {
-    let omega = analysis.layout.dimension(OMEGA).label.clone();
-    [omega].into_iter().chain(NUMBERS.map(str::to_owned)).chain(["note".to_owned()]).collect()
+    let across = analysis.layout.dimension(analysis.along.across()).label.clone();
+    let threshold = if analysis.along.is_mu() { "μ_c".to_owned() } else { analysis.along.threshold() };
+    let own = ["unstable", "frequency", "note"].map(str::to_owned);
+    [across, threshold].into_iter().chain(own).collect()
 }
 
-/// The lines of the table of a group: ω, the lowest threshold, the frequency of its mode, and what else there is to say.
+/// The lines of the table of a group: ω, the first threshold, where sliding is unstable, the frequency, and what else there is to say.
 fn lines(analysis: &Analysis, modes: &GroupModes) -> Vec<Vec<String>> {
     let line = |speed: &Speed| {
-        let omega = analysis.layout.dimension(OMEGA).text(&speed.omega);
+        let omega = analysis.layout.dimension(analysis.along.across()).text(&speed.omega);
         [omega].into_iter().chain(analysis.words(speed)).collect()
     };
     modes.speeds.iter().map(line).collect()
@@ -119,8 +126,9 @@ pub(in crate::report) fn markdown(analysis: &Analysis, files: &Files) -> String 
     for paragraph in MEANING {
         let _ = write!(text, "{}\n\n", markdown::escape(paragraph));
     }
-    let unclear = not_converged(analysis).map(|sentence| format!("{sentence}\n\n"));
-    text += unclear.as_deref().unwrap_or_default();
+    for sentence in sentences(analysis) {
+        let _ = write!(text, "{}\n\n", markdown::escape(&sentence));
+    }
     for (plot, figures) in &files.figures {
         for figure in figures {
             if !figure.caption.is_empty() {

@@ -1,5 +1,6 @@
 //! Modes and thresholds as tables for people and for programs.
 
+use super::along::Along;
 use super::analysis::{Analysis, Onset, Speed, rows};
 use crate::publish::value::{self, MISSING};
 use crate::report::export::{add_further_names, io_error};
@@ -23,7 +24,7 @@ pub struct StabilityTable {
 const DIGITS: usize = 6;
 
 /// The columns of a mode, after those of its point.
-const OF_MODE: [&str; 8] = [
+const OF_MODE: [&str; 10] = [
     "mode",
     "frequency_hz",
     "growth_rate_1_s",
@@ -32,6 +33,8 @@ const OF_MODE: [&str; 8] = [
     "converged",
     "contact_nodes",
     "lifted_nodes",
+    "band_hz",
+    "above_band",
 ];
 
 /// The leading `modes` modes at each point: a line for each of them.
@@ -56,6 +59,8 @@ pub fn modes_table<'a>(points: impl IntoIterator<Item = &'a StabilityPoint>, mod
                 mode.is_converged.into(),
                 stability.contact_nodes.into(),
                 stability.lifted_nodes.into(),
+                stability.band_hz.into(),
+                stability.above_band.name().into(),
             ];
             lines.push(place.iter().cloned().chain(own).collect());
         }
@@ -63,42 +68,54 @@ pub fn modes_table<'a>(points: impl IntoIterator<Item = &'a StabilityPoint>, mod
     StabilityTable { columns: names().chain(OF_MODE).map(str::to_owned).collect(), lines }
 }
 
-/// A line for each mode that grows at a speed, and one for a speed at which none does.
+/// A line for each range in which a mode grows, and one for a series in which none does.
 pub(in crate::report) fn onsets_table(analysis: &Analysis) -> StabilityTable {
-    let of_onset = |onset: &Onset| -> [Value; 5] {
+    let of_onset = |onset: &Onset| -> [Value; 8] {
+        let ends = onset.ends;
         [
             onset.below.map(|_| onset.mu).into(),
             onset.below.into(),
             onset.above.into(),
+            ends.map(|ends| ends.at).into(),
+            ends.map(|ends| ends.below).into(),
+            ends.map(|ends| ends.above).into(),
             onset.frequency_hz.into(),
             onset.is_converged.into(),
         ]
     };
-    let of_speed = |speed: &Speed| -> Vec<[Value; 5]> {
+    let of_speed = |speed: &Speed| -> Vec<[Value; 8]> {
         if speed.onsets.is_empty() && speed.mus[1].is_finite() {
-            return vec![[Value::Null, speed.mus[1].into(), Value::Null, Value::Null, Value::Null]];
+            let mut line = [const { Value::Null }; 8];
+            line[1] = speed.mus[1].into();
+            return vec![line];
         }
         speed.onsets.iter().map(of_onset).collect()
     };
     let mut lines = Vec::new();
     for_each_speed(analysis, |place, speed| {
-        lines.extend(of_speed(speed).into_iter().map(|own| place.iter().cloned().chain(own).collect()));
+        let known: [Value; 2] = [speed.known.band_hz.into(), speed.known.above.name().into()];
+        let line = |own| place.iter().cloned().chain(own).chain(known.clone()).collect();
+        lines.extend(of_speed(speed).into_iter().map(line));
     });
-    let columns = columns(analysis, &["mu_c", "mu_below", "mu_above", "frequency_hz", "converged"]);
-    StabilityTable { columns, lines }
+    let name = &analysis.along.parameter;
+    let own = ["c", "below", "above", "end", "end_below", "end_above"].map(|end| format!("{name}_{end}"));
+    let further = ["frequency_hz", "converged", "band_hz", "above_band"].map(str::to_owned);
+    StabilityTable { columns: columns(analysis, own.into_iter().chain(further)), lines }
 }
 
-/// The lowest threshold at each speed, in words: `0.3142`, `≤ 0.1` if sliding is unstable at the smallest μ already, `> 0.6` if
-/// it is stable at every μ.
-pub fn thresholds_table(points: &[StabilityPoint]) -> StabilityTable {
-    let rows = rows(points);
-    let analysis = Analysis::of(points, &rows, &View::DEFAULT);
+/// Where sliding is unstable in each series, in words: the first place at which it becomes so (`0.3142`, `≤ 0.1` if it is unstable at
+/// the smallest one already, `> 0.6` if no mode grows), and the ranges in which it is. The lines after it say what the table does not.
+pub fn thresholds_table(points: &[StabilityPoint], along: &Along) -> (StabilityTable, Vec<String>) {
+    let rows = rows(points, along);
+    let analysis = Analysis::of(points, &rows, along, &View::DEFAULT);
     let mut lines = Vec::new();
     for_each_speed(&analysis, |place, speed| {
         let words = analysis.words(speed).map(Value::from);
         lines.push(place.into_iter().chain(words).collect());
     });
-    StabilityTable { columns: columns(&analysis, &["mu_c", "frequency", "note"]), lines }
+    let own = [along.threshold()].into_iter().chain(["unstable", "frequency", "note"].map(str::to_owned));
+    let notes = analysis.along_in_words().into_iter().chain(analysis.above_band()).collect();
+    (StabilityTable { columns: columns(&analysis, own), lines }, notes)
 }
 
 /// Calls `visit` with the parameters of each speed and its modes.
@@ -111,9 +128,9 @@ fn for_each_speed(analysis: &Analysis, mut visit: impl FnMut(Vec<Value>, &Speed)
     }
 }
 
-fn columns(analysis: &Analysis, own: &[&str]) -> Vec<String> {
-    let names = [OMEGA].into_iter().chain(analysis.layout.further.iter().copied());
-    names.chain(own.iter().copied()).map(str::to_owned).collect()
+fn columns(analysis: &Analysis, own: impl IntoIterator<Item = String>) -> Vec<String> {
+    let names = [analysis.along.across()].into_iter().chain(analysis.layout.further.iter().copied());
+    names.map(str::to_owned).chain(own).collect()
 }
 
 impl StabilityTable {

@@ -65,8 +65,8 @@ pub(in crate::report) fn write_files(
 /// The first file that could not be written. Files before it are complete, and nothing is removed.
 pub fn write_stability(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishError> {
     let mut folder = Folder::create(out_dir, "stability")?;
-    let rows = rows(report.stability);
-    let analysis = Analysis::of(report.stability, &rows, report.view);
+    let rows = rows(report.stability, report.along);
+    let analysis = Analysis::of(report.stability, &rows, report.along, report.view);
     let files = if report.stability.is_empty() {
         Files { figures: Vec::new(), data: Vec::new() }
     } else {

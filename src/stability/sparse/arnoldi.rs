@@ -154,7 +154,7 @@ fn scale(x: &mut [c64], to: f64) {
 }
 
 /// A number between −1 and 1 that depends on nothing but `i`.
-fn pseudo_random(i: usize) -> f64 {
+pub fn pseudo_random(i: usize) -> f64 {
     let mixed = (i as u64).wrapping_add(1).wrapping_mul(0x9E37_79B9_7F4A_7C15);
     let mixed = (mixed ^ (mixed >> 29)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     (mixed >> 11) as f64 / (1_u64 << 52) as f64 - 1.0

@@ -5,6 +5,7 @@ mod arnoldi;
 mod bodies;
 mod system;
 
+use super::bound::{self, Coupling};
 use super::error::StabilityError;
 use super::friction::SlidingFriction;
 use super::sliding::{Equilibrium, Mode, SlidingPoint};
@@ -26,6 +27,13 @@ const BAND: f64 = 2.5;
 /// Parts of the band that are searched at first, and how often a part without enough eigenvalues is halved.
 const PARTS: usize = 4;
 const HALVINGS: usize = 4;
+/// Beyond the band this many steps of [`near`] are taken, over the number of unknowns: the time of a point stays within bounds.
+const WORK_BEYOND: usize = 50_000;
+const MOST_BEYOND: usize = 120;
+/// Smallest width of a search, over its frequency.
+const NARROWEST: f64 = 1.0e-3;
+/// Frequencies are searched up to this multiple of the mesh's largest one, which friction changes a little.
+const ALL: f64 = 1.1;
 /// Least radius around the middle of a part over half its width, so that modes away from the imaginary axis are found, too.
 const OVERLAP: f64 = 1.15;
 
@@ -94,8 +102,19 @@ impl SparseStructure {
                 break;
             }
         }
+        let band_per_s = TAU * self.band_hz;
+        let damped_above_hz = self.damped_above_hz(&settled, &system, damping_s);
+        let highest_per_s = model.ring().is_none().then(|| ALL * model.pin().omega_max_rad_s());
+        let last_per_s = damped_above_hz.map(|limit_hz| TAU * limit_hz).into_iter().chain(highest_per_s);
+        let last_per_s = last_per_s.fold(f64::INFINITY, f64::min);
+        if reached_per_s >= band_per_s && last_per_s.is_finite() {
+            let most = (WORK_BEYOND / system.matrices.size()).min(MOST_BEYOND);
+            reached_per_s = beyond(&system, damping_s, [band_per_s, last_per_s], part, most, &mut all)?;
+        }
+        // A mode above what was covered is one, too, but others may be missing there.
         all.retain(|found: &Found| {
-            found.value.im >= -1.0e-9 * found.value.norm() && found.value.im <= reached_per_s
+            found.value.im >= -1.0e-9 * found.value.norm()
+                && (found.value.im <= reached_per_s || found.value.re > 0.0)
         });
         let mut distinct: Vec<Found> = Vec::new();
         for found in all {
@@ -109,10 +128,39 @@ impl SparseStructure {
         Ok(SlidingPoint {
             modes: distinct.iter().map(|found| self.mode(&system, found)).collect(),
             band_hz: reached_per_s / TAU,
-            has_all_modes: false,
+            has_all_modes: highest_per_s.is_some_and(|highest| reached_per_s >= highest),
+            damped_above_hz,
             basis: system.matrices.size(),
+            is_reduced: false,
             equilibrium: settled.equilibrium,
         })
+    }
+
+    /// The frequency above which no mode grows. It is known on a rigid disk without holders whose friction does not fall.
+    fn damped_above_hz(&self, settled: &Settled, system: &System, damping_s: f64) -> Option<f64> {
+        let bodies = &self.bodies;
+        let is_rigid = bodies.masses_kg.len() == bodies.pin;
+        if !is_rigid || !bodies.holders.is_empty() || damping_s <= 0.0 || settled.friction.falls() {
+            return None;
+        }
+        let in_contact = &settled.equilibrium.in_contact;
+        let symmetric = System::new(bodies, in_contact, &vec![0.0; in_contact.len()], &[]).matrices;
+        let factors = symmetric.factored(|[_, k, _]| *k).ok()?;
+        let difference = |is_transposed: bool| {
+            let symmetric = &symmetric;
+            move |x: &[f64]| -> Vec<f64> {
+                let own = symmetric.stiffness_times(x, is_transposed);
+                let with_friction = system.matrices.stiffness_times(x, is_transposed);
+                own.iter().zip(with_friction).map(|(own, with)| own - with).collect()
+            }
+        };
+        let mut coupling = Coupling {
+            b: &mut difference(false),
+            transposed: &mut difference(true),
+            solve: &mut |force| factors.solve(force),
+        };
+        let start: Vec<f64> = (0..symmetric.size()).map(arnoldi::pseudo_random).collect();
+        bound::damped_above_hz(bound::sector(&mut coupling, &start)?, damping_s)
     }
 
     /// Modes near a frequency.
@@ -229,6 +277,34 @@ impl SparseStructure {
         }
         forces
     }
+}
+
+/// Adds the eigenvalues between two frequencies \[1/s\] from the lower one on, with at most `most` searches, the first of which is to
+/// be `width` wide. Returns the frequency up to which none is missing.
+fn beyond(
+    system: &System,
+    damping_s: f64,
+    [from, to]: [f64; 2],
+    width: f64,
+    most: usize,
+    all: &mut Vec<Found>,
+) -> Result<f64, StabilityError> {
+    let (mut reached, mut width) = (from, width);
+    for _ in 0..most {
+        if reached >= to || width < NARROWEST * reached {
+            break;
+        }
+        let middle = reached + 0.5 * width;
+        let Near { found, radius_per_s } = near(&system.matrices, damping_s, c64::new(0.0, middle), STEPS)?;
+        all.extend(found);
+        let covered = radius_per_s / OVERLAP;
+        if covered >= 0.5 * width {
+            reached = middle + covered;
+        }
+        // A radius of the same size is likely next to it.
+        width = if radius_per_s > 0.0 { (1.8 * covered).min(to) } else { 0.5 * width };
+    }
+    Ok(reached.min(to))
 }
 
 struct Settled {

@@ -174,6 +174,19 @@ impl Matrices {
         Ok(Factors(lu))
     }
 
+    /// K or its transpose times x.
+    pub fn stiffness_times(&self, x: &[f64], is_transposed: bool) -> Vec<f64> {
+        let mut product = vec![0.0; self.size];
+        for column in 0..self.size {
+            for at in self.starts[column]..self.starts[column + 1] {
+                let (row, [_, stiffness, _]) = (self.rows[at], self.values[at]);
+                let (to, from) = if is_transposed { (column, row) } else { (row, column) };
+                product[to] += stiffness * x[from];
+            }
+        }
+        product
+    }
+
     /// Σ factor·matrix times x.
     pub fn times(&self, factors: [c64; 3], x: &[c64]) -> Vec<c64> {
         let mut product = vec![c64::new(0.0, 0.0); self.size];

@@ -1,7 +1,8 @@
 //! The points of a stored study of complex modes.
 
+use super::along::rest;
 use crate::queue::Queue;
-use crate::report::{JobRow, StabilityPoint};
+use crate::report::{Along, JobRow, StabilityPoint};
 use crate::solver;
 use crate::study::Study;
 use crate::sweep::database::document;
@@ -42,43 +43,37 @@ fn point(row: &JobRow, on_grid: bool) -> Option<StabilityPoint> {
 }
 
 /// The parameters other than ω and μ.
-pub(super) fn further(parameters: &[(String, Value)]) -> Vec<(String, Value)> {
+fn further(parameters: &[(String, Value)]) -> Vec<(String, Value)> {
     parameters.iter().filter(|(name, _)| !matches!(name.as_str(), "omega_rpm" | "mu")).cloned().collect()
 }
 
-/// What all points share that differ in μ alone: the speed and the further parameters.
-#[derive(Debug, Clone, PartialEq)]
-pub(super) struct Series {
-    pub omega_rpm: f64,
-    pub parameters: Vec<(String, Value)>,
+/// The parameters that all points of a series share.
+pub(super) type Series = Vec<(String, Value)>;
+
+/// A name that no other series has.
+pub(super) fn id(series: &Series) -> String {
+    series.iter().map(|(name, value)| format!("{name}={value}")).collect::<Vec<_>>().join(";")
 }
 
-impl Series {
-    pub fn of(point: &StabilityPoint) -> Self {
-        Self { omega_rpm: point.omega_rpm, parameters: point.parameters.clone() }
-    }
-
-    /// A name that no other series has.
-    fn id(&self) -> String {
-        let values: Value = self.parameters.iter().map(|(_, value)| value.clone()).collect();
-        format!("{} {values}", self.omega_rpm)
-    }
-}
-
-/// The points of each series, from the smallest μ to the largest. The series are in the order of their first points.
-pub(super) fn by_series(points: &[StabilityPoint]) -> Vec<(Series, Vec<&StabilityPoint>)> {
+/// The points of each series with their places along it, from the smallest to the largest. The series are in the order of their
+/// first points. Points without a number there are in none.
+pub(super) fn by_series<'a>(
+    along: &Along,
+    points: &'a [StabilityPoint],
+) -> Vec<(Series, Vec<(f64, &'a StabilityPoint)>)> {
     let mut places = std::collections::HashMap::new();
-    let mut found: Vec<(Series, Vec<&StabilityPoint>)> = Vec::new();
+    let mut found: Vec<(Series, Vec<(f64, &StabilityPoint)>)> = Vec::new();
     for point in points {
-        let series = Series::of(point);
-        let place = *places.entry(series.id()).or_insert(found.len());
+        let Some(at) = point.parameter(&along.parameter).as_f64() else { continue };
+        let series = rest(along, point.omega_rpm, point.mu, &point.parameters);
+        let place = *places.entry(id(&series)).or_insert(found.len());
         if place == found.len() {
             found.push((series, Vec::new()));
         }
-        found[place].1.push(point);
+        found[place].1.push((at, point));
     }
     for (_, points) in &mut found {
-        points.sort_by(|a, b| a.mu.total_cmp(&b.mu));
+        points.sort_by(|(a, _), (b, _)| a.total_cmp(b));
     }
     found
 }

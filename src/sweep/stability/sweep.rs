@@ -1,20 +1,17 @@
 //! The study of complex modes and how it grows.
 
+use super::along::{parameters_at, position, rest, ways};
 use super::ladder::ladder;
-use super::points::{further, read_stability};
+use super::points::{id, read_stability};
 use super::waves::next_wave;
-use crate::queue::Queue;
+use crate::queue::{Queue, Rows};
+use crate::report::Along;
 use crate::solver;
-use crate::spec::{Contact, JobSpec};
-use crate::study::{Job, job_key};
+use crate::study::Job;
 use crate::sweep::error::SweepError;
 use crate::sweep::plan::Plan;
-use crate::sweep::rows::for_each_job;
-use serde_json::Value;
-use std::collections::{BTreeSet, HashMap};
-
-/// The parameter over which thresholds are looked for.
-const MU: &str = "mu";
+use crate::sweep::rows::for_each_row;
+use std::collections::BTreeMap;
 
 /// A study of complex modes, with points between those of its grid.
 #[derive(Debug)]
@@ -22,22 +19,25 @@ pub struct StabilitySweep {
     plan: Plan,
     /// The jobs of the grid.
     grid: Vec<Job>,
-    has_thresholds: bool,
+    /// What thresholds are thresholds of; none if they are not looked for.
+    along: Option<Along>,
 }
 
 impl StabilitySweep {
-    /// The sweep of a plan whose jobs compute modes without a run. If it looks for thresholds and the grid varies μ, points
-    /// are added where the grid is too coarse.
-    pub fn new(plan: Plan, finds_thresholds: bool) -> Self {
-        let varies_mu = plan.study().varied().any(|parameter| parameter.name == MU);
+    /// The sweep of a plan whose jobs compute modes without a run. Points are added along the parameter of the thresholds that are
+    /// looked for: between those of the grid if it is μ and an axis of the grid, and near thresholds.
+    pub fn new(plan: Plan, along: Option<Along>) -> Self {
         let grid = plan.jobs().to_vec();
-        let mut sweep = Self { plan, grid, has_thresholds: finds_thresholds && varies_mu };
-        if sweep.has_thresholds {
-            let mus: Vec<f64> = sweep.grid.iter().map(mu).collect();
+        let mut sweep = Self { plan, grid, along };
+        let is_axis = sweep.plan.study().axes().any(|(parameter, _)| parameter.name == MU);
+        if let Some(along) = sweep.along.clone().filter(|along| along.is_mu() && is_axis) {
+            let mus: Vec<f64> = sweep.grid.iter().map(|job| job.spec.scene.contact.mu).collect();
             let steps = ladder(&distinct(&mus));
-            let firsts = sweep.firsts();
-            let jobs = firsts.iter().flat_map(|first| steps.iter().map(|&mu| at(first, mu)));
-            sweep.plan.extend(jobs.collect());
+            let jobs = sweep.series(&along).into_values().flat_map(|anchors| {
+                steps.iter().filter_map(|&mu| sweep.at(&along, &anchors, mu)).collect::<Vec<_>>()
+            });
+            let jobs = jobs.collect();
+            sweep.plan.extend(jobs);
         }
         sweep
     }
@@ -47,13 +47,13 @@ impl StabilitySweep {
         &self.plan
     }
 
-    /// Whether it looks for thresholds.
-    pub fn has_thresholds(&self) -> bool {
-        self.has_thresholds
+    /// What thresholds are thresholds of; none if they are not looked for.
+    pub fn along(&self) -> Option<&Along> {
+        self.along.as_ref()
     }
 
-    /// Adds the points that the database has of this study and that differ from those of the grid in μ alone: they were
-    /// computed to find thresholds, and their results must not go out of view.
+    /// Adds the points that the database has of this study and that lie between those of its grid: they were computed to find
+    /// thresholds, and their results must not go out of view.
     ///
     /// # Errors
     /// If the database cannot be read.
@@ -61,15 +61,27 @@ impl StabilitySweep {
         if queue.study(self.plan.name()).await?.is_none() {
             return Ok(());
         }
-        let firsts = self.firsts();
-        let by_rest: HashMap<String, &Job> = firsts.iter().map(|first| (rest(&first.spec), first)).collect();
+        let mut ways = ways(self.plan.study());
+        if !ways.iter().any(Along::is_mu) {
+            ways.push(Along::mu());
+        }
+        let ways: Vec<_> = ways
+            .into_iter()
+            .map(|along| {
+                let series = self.series(&along);
+                (along, series)
+            })
+            .collect();
         let mut stored = Vec::new();
-        for_each_job(queue, self.plan.name(), |key, spec| {
-            // A job of another version has another key, and is computed again.
-            if let Some(first) = by_rest.get(&rest(&spec)) {
-                let job = at(first, spec.scene.contact.mu);
-                stored.extend(Some(job).filter(|job| job.key == key));
+        for_each_row(queue, self.plan.name(), Rows::All, |_, row| {
+            for (along, series) in &ways {
+                let own = id(&rest(along, row.omega_rpm, row.mu, &row.parameters));
+                let at = position(along, row.omega_rpm, row.mu, &row.parameters);
+                let (Some(anchors), Some(at)) = (series.get(&own), at) else { continue };
+                // A job of another version has another key, and is computed again.
+                stored.extend(self.at(along, anchors, at).filter(|job| job.key == row.job));
             }
+            Ok(())
         })
         .await?;
         self.plan.extend(stored);
@@ -81,56 +93,46 @@ impl StabilitySweep {
     /// # Errors
     /// If the database cannot be read.
     pub async fn add_wave(&mut self, queue: &mut Queue) -> Result<usize, SweepError> {
-        if !self.has_thresholds {
-            return Ok(0);
-        }
+        let Some(along) = self.along.clone() else { return Ok(0) };
         let points = read_stability(queue, self.plan.name()).await?;
-        let firsts = self.firsts();
-        let mut jobs = Vec::new();
-        for (series, wave) in next_wave(&points) {
-            let first = firsts.iter().find(|first| {
-                first.spec.scene.disk.omega_rpm == series.omega_rpm
-                    && further(&first.parameters) == series.parameters
-            });
-            jobs.extend(first.iter().flat_map(|first| wave.iter().map(|&mu| at(first, mu))));
-        }
+        let series = self.series(&along);
+        let jobs = next_wave(&along, &points).into_iter().flat_map(|(own, wave)| {
+            let anchors = series.get(&id(&own));
+            wave.into_iter().filter_map(|at| self.at(&along, anchors?, at)).collect::<Vec<_>>()
+        });
+        let jobs = jobs.collect();
         let before = self.plan.jobs().len();
         self.plan.extend(jobs);
         Ok(self.plan.jobs().len() - before)
     }
 
-    /// Of the jobs of the grid that differ in μ alone, the first.
-    fn firsts(&self) -> Vec<Job> {
-        let mut known = BTreeSet::new();
-        self.grid.iter().filter(|job| known.insert(rest(&job.spec))).cloned().collect()
+    /// The jobs of the grid by their series, in the order of their places along it.
+    fn series(&self, along: &Along) -> BTreeMap<String, Vec<(f64, &Job)>> {
+        let mut found: BTreeMap<String, Vec<(f64, &Job)>> = BTreeMap::new();
+        for job in &self.grid {
+            let (omega_rpm, mu) = (job.spec.scene.disk.omega_rpm, job.spec.scene.contact.mu);
+            if let Some(at) = position(along, omega_rpm, mu, &job.parameters) {
+                found.entry(id(&rest(along, omega_rpm, mu, &job.parameters))).or_default().push((at, job));
+            }
+        }
+        for anchors in found.values_mut() {
+            anchors.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        }
+        found
+    }
+
+    /// The job at a place of a series; none if the study forbids it.
+    fn at(&self, along: &Along, anchors: &[(f64, &Job)], x: f64) -> Option<Job> {
+        self.plan.study().job_at(&parameters_at(along, anchors, x)?, solver::VERSION)
     }
 }
 
-fn mu(job: &Job) -> f64 {
-    job.spec.scene.contact.mu
-}
+/// The parameter of the friction coefficient.
+const MU: &str = "mu";
 
 fn distinct(values: &[f64]) -> Vec<f64> {
     let mut values = values.to_vec();
     values.sort_by(f64::total_cmp);
     values.dedup();
     values
-}
-
-/// The job with another μ.
-fn at(job: &Job, mu: f64) -> Job {
-    let mut job = job.clone();
-    job.spec.scene.contact.mu = mu;
-    for (_, value) in job.parameters.iter_mut().filter(|(name, _)| name == MU) {
-        *value = Value::from(mu);
-    }
-    job.key = job_key(&job.spec, solver::VERSION);
-    job
-}
-
-/// The key of everything but μ.
-fn rest(spec: &JobSpec) -> String {
-    let mut rest = spec.clone();
-    rest.scene.contact.mu = Contact::default().mu;
-    job_key(&rest, solver::VERSION)
 }

@@ -1,51 +1,51 @@
-//! Friction coefficients near those at which sliding becomes unstable.
+//! Places near those at which sliding becomes unstable, or stable.
 //!
-//! Only the lowest threshold of a series is narrowed down. Where other modes begin to grow at a larger μ, the branches are
-//! interpolated between the points of the ladder.
+//! Every change of sign of the leading growth rate is narrowed down. Where other modes begin or cease to grow while sliding is
+//! unstable anyway, the branches are interpolated between the points there are.
 
 use super::ladder::rounded;
 use super::points::{Series, by_series};
-use crate::report::StabilityPoint;
+use crate::report::{Along, StabilityPoint};
 
 /// The largest number of waves.
 pub const WAVES: usize = 4;
 
-/// The relative width of the range of μ within which a crossing is known.
+/// The relative width of the range within which a crossing is known.
 const TOLERANCE: f64 = 0.002;
 
 /// In a range of up to so many widths of tolerance the secant is likely to find the crossing.
 const NARROW: f64 = 16.0;
 
-/// Friction coefficients that are nearer to each other than this are the same.
+/// Places that are nearer to each other than this share of them are the same.
 const SAME: f64 = 1.0e-7;
 
-/// For each series the friction coefficients of the next wave; series that need none are left out.
-pub(super) fn next_wave(points: &[StabilityPoint]) -> Vec<(Series, Vec<f64>)> {
-    let of_series = by_series(points).into_iter().map(|(series, points)| {
-        let mut leading: Vec<(f64, f64)> = points
+/// For each series the places of the next wave along it; series that need none are left out.
+pub(super) fn next_wave(along: &Along, points: &[StabilityPoint]) -> Vec<(Series, Vec<f64>)> {
+    let of_series = by_series(along, points).into_iter().map(|(series, points)| {
+        let leading: Vec<(f64, f64)> = points
             .iter()
-            .filter_map(|point| Some((point.mu, point.stability.modes.first()?.growth_rate_per_s)))
+            .filter_map(|(at, point)| Some((*at, point.stability.modes.first()?.growth_rate_per_s)))
             .collect();
-        leading.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-        let crossing = leading.windows(2).find(|pair| pair[0].1 < 0.0 && pair[1].1 >= 0.0);
-        let mut wave = crossing.map_or_else(Vec::new, |pair| between(pair[0], pair[1]));
-        wave.retain(|mu| points.iter().all(|other| (other.mu - mu).abs() > SAME));
+        let is_crossing = |pair: &&[(f64, f64)]| (pair[0].1 < 0.0) != (pair[1].1 < 0.0);
+        let crossings = leading.windows(2).filter(is_crossing);
+        let mut wave: Vec<f64> =
+            crossings.flat_map(|pair| between(pair[0], pair[1], along.is_mu())).collect();
+        wave.retain(|at| points.iter().all(|(other, _)| (other - at).abs() > SAME * at.abs()));
         wave.sort_by(f64::total_cmp);
         (series, wave)
     });
     of_series.filter(|(_, wave)| !wave.is_empty()).collect()
 }
 
-/// The friction coefficients that narrow down the crossing between two points (μ, growth rate); none if it is known well
-/// enough.
-fn between(low: (f64, f64), high: (f64, f64)) -> Vec<f64> {
+/// The places that narrow down the crossing between two points (place, growth rate); none if it is known well enough.
+fn between(low: (f64, f64), high: (f64, f64), is_mu: bool) -> Vec<f64> {
     let width = high.0 - low.0;
-    let wanted = TOLERANCE * high.0;
+    let wanted = TOLERANCE * high.0.abs().max(low.0.abs());
     // Rounding must not make another wave of a range that has the wanted width.
     if width <= wanted * (1.0 + 1.0e-6) {
         return Vec::new();
     }
-    // Four waves of quarters are enough for a step of 0.05, also where the growth rate bends.
+    // Four waves of quarters are enough for a step of 0.05 of μ or a factor of two, also where the growth rate bends.
     let mut wave = [0.25, 0.5, 0.75].map(|share| low.0 + share * width).to_vec();
     if width <= NARROW * wanted {
         let secant = low.0 + width * low.1 / (low.1 - high.1);
@@ -53,13 +53,14 @@ fn between(low: (f64, f64), high: (f64, f64)) -> Vec<f64> {
         let inside = low.0 + 0.1 * width..=high.0 - 0.1 * width;
         wave.extend([secant - reach, secant + reach].into_iter().filter(|mu| inside.contains(mu)));
     }
-    wave.into_iter().map(rounded).collect()
+    // Other parameters than μ may be tiny numbers, whose digits must stay.
+    wave.into_iter().map(|at| if is_mu { rounded(at) } else { at }).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::analysis::{ComplexMode, SlidingStability};
+    use crate::analysis::{AboveBand, ComplexMode, SlidingStability};
 
     fn point(mu: f64, rate: f64) -> StabilityPoint {
         let mode = ComplexMode {
@@ -75,6 +76,8 @@ mod tests {
             lifted_nodes: 0,
             mu_star: mu,
             band_hz: 5.0e4,
+            above_band: AboveBand::NotLookedAt,
+            damped_above_hz: None,
             modes: vec![mode],
         };
         StabilityPoint { omega_rpm: 7.0, mu, parameters: Vec::new(), on_grid: true, stability }
@@ -92,8 +95,8 @@ mod tests {
             let mut points: Vec<_> =
                 (1..=14).map(|i| 0.05 * f64::from(i)).map(|mu| point(mu, rate(mu))).collect();
             for _ in 0..WAVES {
-                for (series, wave) in next_wave(&points) {
-                    assert_eq!(series.omega_rpm, 7.0);
+                for (series, wave) in next_wave(&Along::mu(), &points) {
+                    assert_eq!(series, [("omega_rpm".to_owned(), 7.0.into())]);
                     assert!(wave.len() <= 6, "{wave:?}");
                     points.extend(wave.into_iter().map(|mu| point(mu, rate(mu))));
                 }
@@ -101,8 +104,29 @@ mod tests {
             let below = points.iter().filter(|p| p.mu <= threshold).map(|p| p.mu).fold(0.0, f64::max);
             let above = points.iter().filter(|p| p.mu > threshold).map(|p| p.mu).fold(1.0, f64::min);
             assert!(above - below <= 1.01 * TOLERANCE * above, "{threshold}: {below} to {above}");
-            assert_eq!(next_wave(&points), Vec::new(), "{threshold}");
+            assert_eq!(next_wave(&Along::mu(), &points), Vec::new(), "{threshold}");
         }
-        assert_eq!(next_wave(&[point(0.1, -1.0), point(0.2, -2.0)]), Vec::new());
+        assert_eq!(next_wave(&Along::mu(), &[point(0.1, -1.0), point(0.2, -2.0)]), Vec::new());
+    }
+
+    /// Protects: where sliding becomes stable again is narrowed down as well, along any parameter, and tiny numbers keep their digits.
+    #[test]
+    fn a_threshold_downwards_is_found_too() {
+        let along = Along { parameter: "beta_r_s".to_owned(), with: Vec::new() };
+        let at = |beta_r_s: f64| {
+            let mut point = point(0.3, 500.0 * (3.3e-8 - beta_r_s) / 1.0e-8);
+            point.parameters = vec![("beta_r_s".to_owned(), beta_r_s.into())];
+            point
+        };
+        let mut points = vec![at(2.0e-8), at(4.0e-8), at(8.0e-8)];
+        for _ in 0..WAVES {
+            for (_, wave) in next_wave(&along, &points) {
+                points.extend(wave.into_iter().map(at));
+            }
+        }
+        let places = || points.iter().map(|p| p.parameter("beta_r_s").as_f64().unwrap());
+        let below = places().filter(|x| *x <= 3.3e-8).fold(0.0, f64::max);
+        let above = places().filter(|x| *x > 3.3e-8).fold(1.0, f64::min);
+        assert!(above - below <= 1.01 * TOLERANCE * above, "{below} to {above}");
     }
 }

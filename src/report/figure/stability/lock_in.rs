@@ -1,4 +1,4 @@
-//! The lock-in plot: frequencies of the modes over μ and, below them, their growth rates, at up to six speeds.
+//! The lock-in plot: frequencies of the modes over μ (or what is varied in its place) and, below them, their growth rates, at up to six speeds.
 
 use super::GREY;
 use super::boundary::{self, Sign};
@@ -12,7 +12,6 @@ use crate::publish::plot::{CURVE_WIDTH, DASH, DrawError, FONT, GUIDE_WIDTH, MARG
 use crate::publish::value;
 use crate::report::figure::panels::{self, SMALL, TITLE};
 use crate::report::layout::{Group, Layout};
-use crate::report::parameters::{MU, OMEGA};
 use crate::report::stability::{GroupModes, Speed};
 use plotters::chart::ChartBuilder;
 use plotters::prelude::{BLACK, DashedLineSeries, PathElement, RGBColor};
@@ -55,7 +54,7 @@ pub(super) fn draw(layout: &Layout, group: &Group, modes: &GroupModes) -> Result
     let frame = Frame {
         layout,
         modes,
-        mu: layout.dimension(MU).axis(false),
+        mu: layout.dimension(layout.by).axis(false),
         frequency: Scale::spanning(
             &format!("frequency [{unit}]"),
             frequencies,
@@ -75,7 +74,7 @@ pub(super) fn draw(layout: &Layout, group: &Group, modes: &GroupModes) -> Result
         let (left, _) = left.split_vertically(down * (TITLE + upper + lower));
         let mut targets = Vec::new();
         for (speed, part) in speeds.iter().zip(left.split_evenly((down as usize, across))) {
-            let words = layout.dimension(OMEGA).assignment(&speed.omega);
+            let words = layout.dimension(layout.axis).assignment(&speed.omega);
             let middle = (part.dim_in_pixel().0 as i32 + Y_LABELS as i32) / 2;
             let below = panels::title(&part, &words, middle)?;
             let (top, bottom) = below.split_vertically(upper);
@@ -95,6 +94,11 @@ fn chosen(speeds: &[Speed]) -> Vec<&Speed> {
 }
 
 impl Frame<'_> {
+    /// A place on the axis of the parameter along which modes are followed.
+    fn x(&self, at: f64) -> f64 {
+        self.layout.dimension(self.layout.by).scaled(at)
+    }
+
     /// The colour and the width of a branch.
     fn look(&self, speed: &Speed, branch: usize) -> (RGBColor, u32) {
         match speed.onset_of(branch) {
@@ -117,7 +121,7 @@ impl Frame<'_> {
         mesh.x_labels(5).x_label_style((FONT, SMALL)).y_label_style((FONT, SMALL));
         mesh.axis_desc_style((FONT, SMALL)).y_desc(scale.label.as_str());
         if is_growth {
-            mesh.x_desc(self.layout.dimension(MU).title.as_str());
+            mesh.x_desc(self.layout.dimension(self.layout.by).title.as_str());
         }
         mesh.draw()?;
         canvas::whole_frame(&chart)?;
@@ -129,9 +133,11 @@ impl Frame<'_> {
         for onset in speed.onsets.iter().filter(|onset| onset.below.is_some()) {
             let up = chart.y_range();
             let colour = palette::colour(onset.family, self.modes.families.len());
-            let line =
-                PathElement::new([(onset.mu, up.start), (onset.mu, up.end)], colour.stroke_width(FINE));
-            chart.draw_series([line])?;
+            let ends = onset.ends.map(|ends| ends.at);
+            for at in [Some(onset.mu), ends].into_iter().flatten().map(|at| self.x(at)) {
+                let line = PathElement::new([(at, up.start), (at, up.end)], colour.stroke_width(FINE));
+                chart.draw_series([line])?;
+            }
         }
         self.draw_branches(area, &mut chart, speed, is_growth)
     }
@@ -154,7 +160,7 @@ impl Frame<'_> {
             let place = |point: &crate::analysis::branches::BranchPoint| {
                 let mode = &point.mode;
                 let y = if is_growth { mode.growth_rate_per_s } else { mode.frequency_hz / self.per_unit_hz };
-                (point.mu, y)
+                (self.x(point.mu), y)
             };
             let line: Vec<(f64, f64)> = branch.points.iter().map(place).collect();
             chart.draw_series([PathElement::new(line, colour.stroke_width(width))])?;
@@ -167,8 +173,8 @@ impl Frame<'_> {
                 targets.push(TooltipTarget {
                     shape: Shape::Around { at: (x, y), radius: TOOLTIP_RADIUS },
                     title: format!(
-                        "μ = {}\n{}, growth rate {} 1/s{note}",
-                        value::short(point.mu),
+                        "{}\n{}, growth rate {} 1/s{note}",
+                        self.layout.dimension(self.layout.by).near(point.mu),
                         value::quantity(mode.frequency_hz, "Hz"),
                         value::significant(mode.growth_rate_per_s, 3).replace('-', "−")
                     ),
@@ -199,11 +205,11 @@ impl Frame<'_> {
             Sign::Line(colour, CURVE_WIDTH, value::quantity(*frequency_hz, "Hz"))
         }));
         if onsets().any(|onset| onset.below.is_some()) {
-            signs.push(Sign::Heading("vertical: threshold μ_c"));
+            signs.push(Sign::Heading("vertical: it begins or\nceases to grow"));
         }
         let decays = |speed: &&Speed| (0..speed.branches.len()).any(|n| speed.onset_of(n).is_none());
         if speeds.iter().any(decays) {
-            signs.push(Sign::Line(GREY, FINE, "decays at every μ".to_owned()));
+            signs.push(Sign::Line(GREY, FINE, "decays at every point".to_owned()));
         }
         let mut points = speeds.iter().flat_map(|speed| &speed.branches).flat_map(|branch| &branch.points);
         if points.any(|point| !point.mode.is_converged) {

@@ -13,6 +13,7 @@ use crate::publish::value;
 use crate::report::figure::marker;
 use crate::report::figure::panels::{self, SMALL, TITLE};
 use crate::report::layout::{Group, Layout};
+use crate::report::parameters::MU;
 use crate::report::stability::{GroupModes, Onset, Speed};
 use plotters::chart::ChartBuilder;
 use plotters::prelude::{BLACK, PathElement, RGBColor};
@@ -39,11 +40,14 @@ struct Frame<'a> {
 /// Draws a panel for each group, with the same axes.
 pub(super) fn draw(layout: &Layout, groups: &[Group], modes: &[GroupModes]) -> Result<String, FigureError> {
     let speeds = || modes.iter().flat_map(|group| &group.speeds);
-    let ends = speeds().flat_map(|speed| speed.mus);
+    let along = layout.dimension(layout.by);
+    let ends = speeds().flat_map(|speed| speed.mus).map(|at| along.scaled(at));
+    let label =
+        if layout.by == MU { "threshold μ_c".to_owned() } else { format!("threshold: {}", along.title) };
     let frame = Frame {
         layout,
         x: layout.x_axis(),
-        y: Scale::spanning("threshold μ_c", ends, 0.02),
+        y: Scale::spanning(&label, ends, 0.02),
         is_alone: groups.len() == 1,
     };
     let columns = panels::columns(groups.len());
@@ -88,12 +92,14 @@ impl Frame<'_> {
         mesh.x_desc(self.layout.axis_name()).y_desc(self.y.label.as_str()).draw()?;
         canvas::frame(&chart)?;
         let x = |speed: &Speed| self.layout.position(&self.x, &speed.omega);
-        let lowest = |speed: &Speed| speed.lowest().filter(|onset| onset.below.is_some()).copied();
+        let along = self.layout.dimension(self.layout.by);
+        let place = |onset: &Onset| along.scaled(onset.mu);
+        let lowest = |speed: &Speed| speed.lowest().filter(|onset| onset.below.is_some()).map(place);
         join(&mut chart, modes, &x, lowest, EMPHASIS, EMPHASIS_WIDTH)?;
         for family in 0..modes.families.len() {
             let own = |speed: &Speed| {
                 let mut own = speed.onsets.iter().filter(|onset| onset.family == family);
-                own.find(|onset| onset.below.is_some()).copied()
+                own.find(|onset| onset.below.is_some()).map(place)
             };
             let colour = palette::colour(family, modes.families.len());
             join(&mut chart, modes, &x, own, colour, CURVE_WIDTH)?;
@@ -117,8 +123,9 @@ impl Frame<'_> {
         x: f64,
     ) -> Result<Vec<TooltipTarget>, DrawError> {
         let (left, top) = area.get_base_pixel();
-        let pixel = |mu: f64| {
-            let (x, y) = chart.backend_coord(&(x, mu));
+        let along = self.layout.dimension(self.layout.by);
+        let pixel = |at: f64| {
+            let (x, y) = chart.backend_coord(&(x, along.scaled(at)));
             (x - left, y - top)
         };
         let is_lowest = |onset: &Onset| speed.lowest() == Some(onset);
@@ -137,9 +144,9 @@ impl Frame<'_> {
             targets.push(TooltipTarget {
                 shape: Shape::Around { at: (at.0 + left, at.1 + top), radius: TOOLTIP_RADIUS },
                 title: format!(
-                    "{}\nμ_c = {}\n{}{note}",
+                    "{}\nthreshold: {}\n{}{note}",
                     self.layout.dimension(self.layout.axis).assignment(&speed.omega),
-                    value::significant(onset.mu, 4),
+                    along.near(onset.mu),
                     value::quantity(onset.frequency_hz, "Hz")
                 ),
                 data: vec![
@@ -149,6 +156,10 @@ impl Frame<'_> {
                     ("family", onset.family.to_string()),
                 ],
             });
+        }
+        // Where a mode ceases to grow, the dot is hollow.
+        for (onset, end) in speed.onsets.iter().filter_map(|onset| Some((onset, onset.ends?))) {
+            draw_dot(area, pixel(end.at), DOT, colour(onset, modes), true)?;
         }
         if speed.onsets.is_empty() && speed.mus[1].is_finite() {
             marker::draw_outside(area, pixel(speed.mus[1]), true, BLACK)?;
@@ -162,12 +173,12 @@ fn join(
     chart: &mut Chart,
     modes: &GroupModes,
     x: &impl Fn(&Speed) -> Option<f64>,
-    of: impl Fn(&Speed) -> Option<Onset>,
+    of: impl Fn(&Speed) -> Option<f64>,
     colour: RGBColor,
     width: u32,
 ) -> Result<(), DrawError> {
     let places: Vec<Option<(f64, f64)>> =
-        modes.speeds.iter().map(|speed| Some((x(speed)?, of(speed)?.mu))).collect();
+        modes.speeds.iter().map(|speed| Some((x(speed)?, of(speed)?))).collect();
     let lines: Vec<Vec<(f64, f64)>> = places
         .split(Option::is_none)
         .filter(|line| line.len() > 1)
@@ -186,7 +197,7 @@ fn signs(modes: &[GroupModes]) -> Vec<Sign> {
         signs.push(Sign::Line(
             EMPHASIS,
             EMPHASIS_WIDTH,
-            "lowest: steady sliding\nis unstable above".to_owned(),
+            "first: steady sliding\nbecomes unstable".to_owned(),
         ));
     }
     if let [group] = modes {
@@ -204,10 +215,13 @@ fn signs(modes: &[GroupModes]) -> Vec<Sign> {
         signs.push(Sign::Dot { is_hollow: true, label: "not converged" });
     }
     if speeds().any(|speed| speed.lowest().is_some_and(|onset| onset.below.is_none())) {
-        signs.push(Sign::Arrow { is_up: false, label: "unstable at the\nsmallest μ already" });
+        signs.push(Sign::Arrow { is_up: false, label: "unstable at the\nfirst point already" });
+    }
+    if speeds().flat_map(|speed| &speed.onsets).any(|onset| onset.ends.is_some()) {
+        signs.push(Sign::Dot { is_hollow: true, label: "ceases to grow" });
     }
     if speeds().any(|speed| speed.onsets.is_empty()) {
-        signs.push(Sign::Arrow { is_up: true, label: "stable at every μ" });
+        signs.push(Sign::Arrow { is_up: true, label: "no mode grows\nat any point" });
     }
     signs
 }

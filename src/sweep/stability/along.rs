@@ -1,0 +1,155 @@
+//! The parameters along which thresholds can be looked for, and the one that is chosen.
+
+use crate::report::Along;
+use crate::study::{Job, Study};
+use serde_json::Value;
+
+/// The parameters of the friction coefficient and of the speed.
+const MU: &str = "mu";
+const OMEGA: &str = "omega_rpm";
+
+/// All ways along which a study can have thresholds, the most natural one first: μ, then other parameters but ω in the order of the
+/// file, then ω. A parameter of a zip is one way with all that move with it.
+pub fn ways(study: &Study) -> Vec<Along> {
+    let mut ways = Vec::new();
+    for (parameter, values) in study.axes() {
+        if parameter.is_continuous() && has_two(values) {
+            ways.push(Along { parameter: parameter.name.to_owned(), with: Vec::new() });
+        }
+    }
+    let zipped: Vec<&str> = study.zipped().iter().map(|parameter| parameter.name).collect();
+    // The figures have ω and μ along their axes, so that one of them has to stay.
+    let has_both = [MU, OMEGA].iter().all(|name| zipped.contains(name));
+    for parameter in study.zipped().iter().filter(|parameter| parameter.is_continuous() && !has_both) {
+        // Beside ω or μ the others are read along it.
+        let is_led = [MU, OMEGA].iter().any(|name| zipped.contains(name) && *name != parameter.name);
+        if !is_led {
+            let with = zipped.iter().filter(|name| **name != parameter.name);
+            let with = with.map(|name| (*name).to_owned()).collect();
+            ways.push(Along { parameter: parameter.name.to_owned(), with });
+        }
+    }
+    ways.sort_by_key(|along| match along.parameter.as_str() {
+        MU => 0,
+        OMEGA => 2,
+        _ => 1,
+    });
+    ways
+}
+
+/// The way that thresholds of a stored study have been looked for; μ if the study varies no number.
+pub fn natural(study: &Study) -> Along {
+    ways(study).into_iter().next().unwrap_or_else(Along::mu)
+}
+
+fn has_two(values: &[Value]) -> bool {
+    values.iter().any(|value| *value != values[0])
+}
+
+/// What all points of a series share: every parameter that does not move along it.
+pub fn rest(along: &Along, omega_rpm: f64, mu: f64, parameters: &[(String, Value)]) -> Vec<(String, Value)> {
+    let own = [(OMEGA, omega_rpm), (MU, mu)].map(|(name, value)| (name.to_owned(), Value::from(value)));
+    let further = parameters.iter().filter(|(name, _)| !matches!(name.as_str(), OMEGA | MU)).cloned();
+    own.into_iter().chain(further).filter(|(name, _)| !along.moves(name)).collect()
+}
+
+/// The value along it of a job or a row with this speed, μ and parameters.
+pub fn position(along: &Along, omega_rpm: f64, mu: f64, parameters: &[(String, Value)]) -> Option<f64> {
+    match along.parameter.as_str() {
+        OMEGA => Some(omega_rpm),
+        MU => Some(mu),
+        name => parameters.iter().find(|(own, _)| own == name).and_then(|(_, value)| value.as_f64()),
+    }
+}
+
+/// The values of the parameters at a place of the series of these grid jobs, which are sorted by their place. Parameters that move
+/// together keep doing so: between two points each of them has its share of the way. None outside of theirs, and where one of them
+/// has no values in between.
+pub fn parameters_at(along: &Along, anchors: &[(f64, &Job)], x: f64) -> Option<Vec<(String, Value)>> {
+    if along.with.is_empty() {
+        let (_, job) = anchors.first()?;
+        let others = job.parameters.iter().filter(|(name, _)| *name != along.parameter);
+        let mut parameters: Vec<(String, Value)> = others.cloned().collect();
+        let place = job.parameters.iter().position(|(name, _)| *name == along.parameter);
+        parameters.insert(place.unwrap_or(0), (along.parameter.clone(), x.into()));
+        return Some(parameters);
+    }
+    let above = anchors.iter().position(|(at, _)| *at >= x)?;
+    let (high, upper) = anchors[above];
+    let (low, lower) = anchors[above.saturating_sub(1)];
+    if x < low {
+        return None;
+    }
+    let share = if high > low { (x - low) / (high - low) } else { 0.0 };
+    let moved = |((name, from), (_, to)): (&(String, Value), &(String, Value))| {
+        let value = if *name == along.parameter {
+            x.into()
+        } else if !along.moves(name) || from == to {
+            from.clone()
+        } else if x == high {
+            to.clone()
+        } else {
+            let (from, to) = (from.as_f64()?, to.as_f64()?);
+            (from + share * (to - from)).into()
+        };
+        Some((name.clone(), value))
+    };
+    lower.parameters.iter().zip(&upper.parameters).map(moved).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn study(text: &str) -> Study {
+        Study::parse(&format!("{{ \"name\": \"s\", {text} }}"), "s.json").unwrap()
+    }
+
+    fn names(text: &str) -> Vec<String> {
+        ways(&study(text)).into_iter().map(|along| along.parameter).collect()
+    }
+
+    /// Protects: thresholds are those of what a study varies: μ before all, ω after all, whole numbers and single values never, and of
+    /// points without an order there are none.
+    #[test]
+    fn thresholds_are_those_of_what_is_varied() {
+        let all = r#""grid": { "omega_rpm": [5, 7], "young_modulus_pa": [1e9, 2e9], "nx": [3, 4], "mu": [0.1, 0.2] }"#;
+        assert_eq!(names(all), ["mu", "young_modulus_pa", "omega_rpm"]);
+        assert_eq!(names(r#""grid": { "omega_rpm": [5, 7], "mu": [0.1] }"#), ["omega_rpm"]);
+        assert_eq!(names(r#""samples": { "points": [{ "mu": 0.1 }, { "mu": 0.3 }] }"#), [""; 0]);
+        assert_eq!(natural(&study(r#""grid": { "nx": [3, 4] }"#)), Along::mu());
+    }
+
+    /// Protects: the values of a zip move together, and so do those of a point in between: none belongs to another problem. Outside of
+    /// the list there is no point, and its points themselves keep their values.
+    #[test]
+    fn a_zip_moves_together() {
+        let study = study(
+            r#""samples": { "zip": { "mu": [0.1, 0.3], "load_n": [10, 30] } }, "grid": { "omega_rpm": [7] }"#,
+        );
+        let [along] = &ways(&study)[..] else { panic!("one way") };
+        assert_eq!((along.parameter.as_str(), along.with.as_slice()), ("mu", &["load_n".to_owned()][..]));
+        let jobs = study.expand("v").unwrap();
+        let anchors: Vec<(f64, &Job)> = jobs.iter().map(|job| (job.spec.scene.contact.mu, job)).collect();
+        let at = |x: f64| {
+            let job = study.job_at(&parameters_at(along, &anchors, x)?, "v")?;
+            Some((job.spec.scene.contact.mu, job.spec.scene.load.force_n, job.key))
+        };
+        let (mu, force_n, _) = at(0.15).unwrap();
+        assert!(mu == 0.15 && (force_n - 15.0).abs() < 1.0e-12, "{force_n}");
+        assert_eq!(at(0.3).unwrap(), (0.3, 30.0, jobs[1].key.clone()));
+        assert_eq!((at(0.05), at(0.31)), (None, None));
+        assert_eq!(names(r#""samples": { "zip": { "mu": [0.1, 0.3], "omega_rpm": [5, 7] } }"#), [""; 0]);
+    }
+
+    /// Protects: a series is what differs along the way alone.
+    #[test]
+    fn the_rest_is_what_does_not_move() {
+        let along = Along { parameter: "force_n".to_owned(), with: vec!["mu".to_owned()] };
+        let parameters = [("mu", 0.2), ("force_n", 30.0), ("young_modulus_pa", 1.0e9)];
+        let parameters = parameters.map(|(name, value)| (name.to_owned(), Value::from(value)));
+        let own = rest(&along, 7.0, 0.2, &parameters);
+        let expected = [("omega_rpm", 7.0), ("young_modulus_pa", 1.0e9)];
+        assert_eq!(own, expected.map(|(name, value)| (name.to_owned(), Value::from(value))));
+    }
+}
