@@ -50,6 +50,9 @@ use crate::queue::Location;
 use clap::builder::{OsStringValueParser, TypedValueParser};
 use clap::{Parser, Subcommand};
 
+/// The database of commands without `--db`.
+const DEFAULT_DB: &str = "tribosweep.db";
+
 /// Sweeps of explicit dynamic contact simulations of a pin-on-disk tribometer.
 ///
 /// A study file describes a scene and a grid of parameters. `run` plans the jobs, solves them and writes a report.
@@ -64,7 +67,7 @@ pub struct Cli {
     command: Command,
     /// The database of studies, jobs and results: a file, or postgres://USER@HOST/DATABASE.
     #[arg(long, global = true, value_name = "PATH|URL", env = "TRIBOSWEEP_DB", hide_env_values = true,
-          default_value = "tribosweep.db", value_parser = OsStringValueParser::new().map(Location::parse))]
+          default_value = DEFAULT_DB, value_parser = OsStringValueParser::new().map(Location::parse))]
     db: Location,
 }
 

@@ -102,7 +102,14 @@ pub(crate) async fn write(
     folder: &Path,
     refresh_s: Option<u32>,
 ) -> Result<(), CliError> {
-    sweep::write_content(queue, content, folder, refresh_s).await?;
+    for sentence in &content.left_out {
+        log(format_args!("warning: {sentence}"));
+    }
+    let written = sweep::write_content(queue, content, folder, refresh_s).await?;
+    if let [head, lines @ ..] = &written.contradictions[..] {
+        log(format_args!("warning: {head}"));
+        lines.iter().for_each(|line| log(format_args!("  {line}")));
+    }
     log(format_args!("report written to {}", folder.display()));
     Ok(())
 }

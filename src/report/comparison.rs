@@ -24,6 +24,10 @@ pub(super) const MAX_LISTED: usize = 60;
 pub(super) struct Comparison {
     /// The name of the first source.
     pub reference: String,
+    /// Where one source squeals and the reference does not, or the reverse.
+    pub contradictions: Vec<Contradiction>,
+    /// Points at which both say whether it squeals.
+    compared_squeals: usize,
     /// What a reader must know, one sentence each: inputs that differ, points without a counterpart.
     pub notes: Vec<String>,
     /// All differences.
@@ -48,6 +52,21 @@ pub(super) struct Difference {
     reference: f64,
     reference_error: Option<f64>,
     interpolated: bool,
+}
+
+/// A point at which only one of a source and the reference squeals.
+pub(super) struct Contradiction {
+    source: String,
+    is_measured: bool,
+    /// Whether the source squeals; the reference does the opposite.
+    squeals: bool,
+    /// The frequency \[Hz\] of the source, if it squeals and that is known.
+    frequency_hz: Option<f64>,
+    /// Values of the parameters, as in [`Comparison::names`], and their texts.
+    parameters: Vec<Value>,
+    texts: Vec<String>,
+    /// Whether the reference is known on both sides of the point only.
+    is_between: bool,
 }
 
 /// What a source has at the points of the reference.
@@ -80,6 +99,8 @@ impl Comparison {
         let names: Vec<&str> = layout.further.iter().copied().chain(by).chain([layout.axis]).collect();
         let mut comparison = Self {
             reference: layout.sources[0].name.to_owned(),
+            contradictions: Vec::new(),
+            compared_squeals: 0,
             notes: view.notes.clone(),
             differences: Vec::new(),
             labels: names.iter().map(|name| layout.dimension(name).label.clone()).collect(),
@@ -104,7 +125,7 @@ impl Comparison {
             ));
         }
         let order = |source: &str| layout.sources.iter().position(|own| own.name == source);
-        comparison.differences.sort_by_key(|found| {
+        comparison.differences.sort_by_cached_key(|found| {
             let scalar = scalars.iter().position(|scalar| *scalar == found.scalar);
             (order(&found.source), scalar, found.curve.clone())
         });
@@ -134,18 +155,33 @@ impl Comparison {
                 continue;
             }
             place = place.max(position_in(curve, x, x_axis));
+            let by_of_curve = Some(by).filter(|_| layout.by != SOURCE);
+            if let Some(squeals) = job.row.squeals()
+                && let Some((of_reference, is_between)) = squeals_at(curve, x, x_axis)
+            {
+                self.compared_squeals += 1;
+                if squeals != of_reference {
+                    let (parameters, texts) = self.parameters(layout, group, by_of_curve, at);
+                    self.contradictions.push(Contradiction {
+                        source: job.row.study.clone(),
+                        is_measured: job.row.is_measured(),
+                        squeals,
+                        frequency_hz: FREQUENCY.value(job.row),
+                        parameters,
+                        texts,
+                        is_between,
+                    });
+                }
+            }
             for scalar in scalars.iter().filter(|scalar| scalar.is_settled(job.row)) {
                 let Some(value) = scalar.value(job.row) else { continue };
                 let Some(reference) = reference_at(curve, x, x_axis, scalar) else { continue };
-                let by = Some(by).filter(|_| layout.by != SOURCE);
-                let parameters: Vec<Value> =
-                    group.key.iter().map(|(_, value)| value).chain(by).chain([at]).cloned().collect();
-                let texts = self.names.iter().zip(&parameters);
+                let (parameters, texts) = self.parameters(layout, group, by_of_curve, at);
                 let words = [group.caption(), layout.series_name(&layout.series[*index])];
                 self.differences.push(Difference {
                     source: job.row.study.clone(),
                     scalar,
-                    texts: texts.map(|(name, value)| layout.dimension(name).text(value)).collect(),
+                    texts,
                     parameters,
                     curve: words.into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>().join(", "),
                     value,
@@ -161,6 +197,51 @@ impl Comparison {
             Some(Place::Between) => &mut matches.between,
             None => &mut matches.elsewhere,
         } += 1;
+    }
+
+    /// The values of the parameters at a point, and their texts.
+    fn parameters(
+        &self,
+        layout: &Layout,
+        group: &Group,
+        by: Option<&Value>,
+        at: &Value,
+    ) -> (Vec<Value>, Vec<String>) {
+        let values: Vec<Value> =
+            group.key.iter().map(|(_, value)| value).chain(by).chain([at]).cloned().collect();
+        let texts = self.names.iter().zip(&values).map(|(name, value)| layout.dimension(name).text(value));
+        let texts = texts.collect();
+        (values, texts)
+    }
+
+    /// Where only one of a source and the reference squeals: a head, and a line for each of the first points; empty if nowhere.
+    /// Nothing that a model can say is further from what is measured.
+    pub fn contradictions_in_words(&self) -> Vec<String> {
+        if self.contradictions.is_empty() {
+            return Vec::new();
+        }
+        let (count, of) = (self.contradictions.len(), self.compared_squeals);
+        let head = format!("Squeal is contradicted at {count} of {} where both say whether it squeals:", value::count(of, "point"));
+        let listed = self.contradictions.iter().take(MAX_CONTRADICTIONS).map(|found| self.in_words(found));
+        let more = count.saturating_sub(MAX_CONTRADICTIONS);
+        let more = (more > 0).then(|| format!("and {more} more: see differences.csv"));
+        std::iter::once(head).chain(listed).chain(more).collect()
+    }
+
+    fn in_words(&self, found: &Contradiction) -> String {
+        let Contradiction { source, is_measured, squeals, frequency_hz, texts, is_between, .. } = found;
+        let place: Vec<String> =
+            self.names.iter().zip(texts).map(|(name, text)| format!("{name} = {text}")).collect();
+        let own = if *is_measured { format!("{source} (measured)") } else { source.clone() };
+        let frequency = frequency_hz.map_or_else(String::new, |f| format!(" at {}", value::quantity(f, "Hz")));
+        let between = if *is_between { " on both sides" } else { "" };
+        let reference = &self.reference;
+        let words = if *squeals {
+            format!("{own} squeals{frequency}, and {reference} is stable{between}")
+        } else {
+            format!("{own} does not squeal, and {reference} squeals{between}")
+        };
+        format!("{}: {words}", place.join(", "))
     }
 
     /// A summary for each curve of the reference: heads and lines of a table.
@@ -317,6 +398,9 @@ enum Place {
     Equal,
 }
 
+/// Largest number of contradictions in a list. All of them are in `differences.csv`.
+const MAX_CONTRADICTIONS: usize = 20;
+
 /// Positions on the axis that differ by less than this share are equal.
 const SAME: f64 = 1e-9;
 
@@ -324,8 +408,15 @@ fn is_same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs())
 }
 
+/// The points of a curve at a position. Curves ascend, and a study may have many points.
+fn points_at<'c, 'a>(curve: &'c [(f64, &'a JobRow)], x: f64) -> &'c [(f64, &'a JobRow)] {
+    let first = curve.partition_point(|(at, _)| *at < x && !is_same(*at, x));
+    let count = curve[first..].partition_point(|(at, _)| is_same(*at, x));
+    &curve[first..first + count]
+}
+
 fn position_in(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis) -> Option<Place> {
-    if curve.iter().any(|(at, _)| is_same(*at, x)) {
+    if !points_at(curve, x).is_empty() {
         return Some(Place::Equal);
     }
     neighbours(curve, x, x_axis).map(|_| Place::Between)
@@ -336,14 +427,30 @@ fn neighbours(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis) -> Option<(f64, f
     if let Axis::Names(_) = x_axis {
         return None;
     }
-    let left = curve.iter().rev().find(|(at, _)| *at < x)?.0;
-    let right = curve.iter().find(|(at, _)| *at > x)?.0;
-    Some((left, right))
+    let above = curve.partition_point(|(at, _)| *at <= x);
+    let below = curve.partition_point(|(at, _)| *at < x).checked_sub(1)?;
+    Some((curve[below].0, curve.get(above)?.0))
+}
+
+/// Whether the reference squeals at a position, and whether that is known of the neighbours on both sides alone. None if jobs do not
+/// say it, or say different things.
+fn squeals_at(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis) -> Option<(bool, bool)> {
+    let all = |x: f64| {
+        let mut found = points_at(curve, x).iter().map(|(_, row)| row.squeals());
+        let first = found.next()??;
+        found.all(|other| other == Some(first)).then_some(first)
+    };
+    if !points_at(curve, x).is_empty() {
+        return Some((all(x)?, false));
+    }
+    let (left, right) = neighbours(curve, x, x_axis)?;
+    let (left, right) = (all(left)?, all(right)?);
+    (left == right).then_some((left, true))
 }
 
 /// The reference at a position: the mean of the jobs there, or interpolated between the neighbours, if both have a value.
 fn reference_at(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis, scalar: &Scalar) -> Option<ReferencePoint> {
-    if curve.iter().any(|(at, _)| is_same(*at, x)) {
+    if !points_at(curve, x).is_empty() {
         return mean_at(curve, x, scalar);
     }
     let (left, right) = neighbours(curve, x, x_axis)?;
@@ -357,8 +464,7 @@ fn reference_at(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis, scalar: &Scalar
 }
 
 fn mean_at(curve: &[(f64, &JobRow)], x: f64, scalar: &Scalar) -> Option<ReferencePoint> {
-    let here =
-        || curve.iter().filter(|(at, row)| is_same(*at, x) && scalar.is_settled(row)).map(|(_, row)| *row);
+    let here = || points_at(curve, x).iter().map(|(_, row)| *row).filter(|row| scalar.is_settled(row));
     let values: Vec<f64> = here().filter_map(|row| scalar.value(row)).collect();
     let count = values.len() as f64;
     let errors: Option<Vec<f64>> = here().map(|row| scalar.error(row)).collect();
@@ -374,7 +480,13 @@ fn mean_at(curve: &[(f64, &JobRow)], x: f64, scalar: &Scalar) -> Option<Referenc
 /// The section of `report.md`.
 pub(super) fn markdown(comparison: &Comparison) -> String {
     let notes = comparison.notes.iter().map(|note| format!("- {}\n", markdown::escape(note)));
-    let mut text = format!("\n## Comparison\n\n{}", notes.collect::<String>());
+    let mut text = "\n## Comparison\n\n".to_owned();
+    if let [head, lines @ ..] = &comparison.contradictions_in_words()[..] {
+        text += &format!("**{}**\n\n", markdown::escape(head));
+        text.extend(lines.iter().map(|line| format!("- {}\n", markdown::escape(line))));
+        text += "\n";
+    }
+    text.extend(notes);
     let (head, lines) = comparison.summary();
     if !lines.is_empty() {
         text += "\n";
@@ -389,7 +501,7 @@ pub(super) fn markdown(comparison: &Comparison) -> String {
     )
 }
 
-/// All differences as CSV, one line each, with numbers in full and in the units of their names.
+/// Contradictions about squeal (1: it squeals) and then all differences as CSV, one line each, with numbers in full and in the units of their names.
 pub(super) fn csv(comparison: &Comparison, out: &mut Vec<u8>) -> io::Result<()> {
     let mut writer = ::csv::Writer::from_writer(out);
     let results = [
@@ -406,6 +518,21 @@ pub(super) fn csv(comparison: &Comparison, out: &mut Vec<u8>) -> io::Result<()> 
     writer
         .write_record(head.chain(comparison.names.iter().map(String::as_str)).chain(results))
         .map_err(io_error)?;
+    for found in &comparison.contradictions {
+        let number = |squeals: bool| value::number(f64::from(u8::from(squeals)));
+        let own = [found.source.clone(), comparison.reference.clone(), "squeals".to_owned()];
+        let line = own.into_iter().chain(found.parameters.iter().map(value::text)).chain([
+            number(found.squeals),
+            String::new(),
+            number(!found.squeals),
+            String::new(),
+            value::number(if found.squeals { 1.0 } else { -1.0 }),
+            String::new(),
+            String::new(),
+            (if found.is_between { "yes" } else { "no" }).to_owned(),
+        ]);
+        writer.write_record(line).map_err(io_error)?;
+    }
     for found in &comparison.differences {
         let optional = |x: Option<f64>| x.map_or_else(String::new, value::number);
         let own = [found.source.clone(), comparison.reference.clone(), found.scalar.name.to_owned()];

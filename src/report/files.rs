@@ -31,6 +31,23 @@ const QUANTITIES: [(Quantity, &str); 3] =
 /// # Errors
 /// The first file that could not be written. Files before it are complete, and nothing is removed.
 pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishError> {
+    Ok(write_compared(report, out_dir)?.files)
+}
+
+/// A report that has been written.
+#[derive(Debug)]
+pub struct Written {
+    /// Its files.
+    pub files: Vec<PathBuf>,
+    /// Where only one of a source and the first source squeals: a head and lines; empty if nowhere.
+    pub contradictions: Vec<String>,
+}
+
+/// As [`write`]. Also returns what a reader must know first.
+///
+/// # Errors
+/// As [`write`].
+pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, PublishError> {
     let mut folder = Folder::create(out_dir, "report")?;
     let Report { title, rows, view, .. } = *report;
 
@@ -133,7 +150,9 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         pages,
     };
     folder.write_text("report.html", &html::page(&parts))?;
-    folder.finish(|name| could_be_of_a_report(name, out_dir))
+    let contradictions = comparison.as_ref().map_or_else(Vec::new, Comparison::contradictions_in_words);
+    let files = folder.finish(|name| could_be_of_a_report(name, out_dir))?;
+    Ok(Written { files, contradictions })
 }
 
 /// Writes the data behind the figures, and returns the files.

@@ -57,6 +57,9 @@ pub(super) fn of_report(
         page += &lines;
         page.push('\n');
     }
+    for remark in report.remarks {
+        let _ = writeln!(page, "Cost, without an effect on results: {}\n", markdown::escape(remark));
+    }
     page += &differences.map_or_else(String::new, comparison::markdown);
     page += &errors(rows);
     page += &report.sheet.map_or_else(String::new, scene);

@@ -1,6 +1,7 @@
 //! A speed of the disk and a load that change in time.
 
 use super::check::{Violations, readable};
+use super::limit::LEAST_LOAD_N;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -35,9 +36,6 @@ pub enum Change {
     /// It rises and falls.
     Both,
 }
-
-/// Least load \[N\].
-pub(super) const LEAST_LOAD_N: f64 = 1.0e-20;
 
 /// Largest number of points of a table.
 const MOST_POINTS: usize = 10_000;

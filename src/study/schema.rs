@@ -2,15 +2,27 @@
 
 use super::file::StudyFile;
 use super::time_defaults;
+use crate::spec::{End, LIMITS, Limit};
 use schemars::schema_for;
-use serde_json::Value;
+use serde_json::{Map, Value};
 
 /// The JSON schema (draft 2020-12) of a study file.
 ///
-/// It describes names and types. The physical limits are checked by [`Study::parse`](super::Study::parse).
+/// It describes names, types and the [limits](LIMITS) of single fields. Limits that depend on several fields are checked by
+/// [`Study::parse`](super::Study::parse).
 pub fn schema() -> Value {
     let mut schema = schema_for!(StudyFile).to_value();
     remove_defaults(&mut schema);
+    for limit in LIMITS {
+        let pointer = pointer_to(limit.field, &schema);
+        if let Some(Value::Object(field)) = schema.pointer_mut(&pointer) {
+            field.extend(keywords(limit));
+            // A field that must be given has a default that nobody can use.
+            if field.get("default").and_then(Value::as_f64).is_some_and(|value| !limit.holds(value)) {
+                field.remove("default");
+            }
+        }
+    }
     schema
 }
 
@@ -31,4 +43,36 @@ fn remove_defaults(schema: &mut Value) {
         Value::Array(entries) => entries.iter_mut().for_each(remove_defaults),
         _ => {}
     }
+}
+
+/// The keywords of a schema that say what a limit says.
+pub(super) fn keywords(limit: &Limit) -> Map<String, Value> {
+    let [low, high] = [limit.low, limit.high].map(|end| match end {
+        End::Open => None,
+        End::At(value) => Some((value, ["minimum", "maximum"])),
+        End::Beyond(value) => Some((value, ["exclusiveMinimum", "exclusiveMaximum"])),
+    });
+    // A limit of a whole number is one, too.
+    let number = |value: f64| {
+        if value.fract() == 0.0 && value.abs() < 1.0e15 { Value::from(value as i64) } else { value.into() }
+    };
+    let low = low.map(|(value, names)| (names[0].to_owned(), number(value)));
+    let high = high.map(|(value, names)| (names[1].to_owned(), number(value)));
+    low.into_iter().chain(high).collect()
+}
+
+/// The JSON pointer to the schema of a field, `scene.pin.size_m[]`.
+fn pointer_to(field: &str, schema: &Value) -> String {
+    let mut pointer = String::new();
+    for step in field.replace("[]", ".[]").split('.') {
+        // An optional field may be the object or null.
+        let node = schema.pointer(&pointer);
+        let forms = node.and_then(|node| node.get("anyOf")).and_then(Value::as_array);
+        let reference = node.into_iter().chain(forms.into_iter().flatten()).find_map(|form| form.get("$ref"));
+        if let Some(target) = reference.and_then(Value::as_str).and_then(|target| target.strip_prefix('#')) {
+            target.clone_into(&mut pointer);
+        }
+        pointer += &if step == "[]" { "/items".to_owned() } else { format!("/properties/{step}") };
+    }
+    pointer
 }
