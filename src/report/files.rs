@@ -49,6 +49,8 @@ pub struct Written {
 /// As [`write`].
 pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, PublishError> {
     let mut folder = Folder::create(out_dir, "report")?;
+    let (whole, shown) = (report, thinned(report.rows));
+    let report = &Report { rows: shown.as_deref().unwrap_or(whole.rows), ..*whole };
     let Report { title, rows, view, .. } = *report;
 
     let layout = Layout::of(rows.iter().filter(|row| !row.is_at_boundary()), view);
@@ -73,7 +75,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let figures = || plots.clone().into_par_iter().map(draw);
     let jobs = || {
         let mut out = Vec::new();
-        export::csv(rows, &mut out).map(|()| out)
+        export::csv(whole.rows, &mut out).map(|()| out)
     };
     let residuals = || figure::residuals::draw(rows);
     let ((tables, figures), (jobs, residuals)): ((Vec<_>, Vec<_>), _) = rayon::join(
@@ -126,7 +128,16 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         *out = jobs?;
         Ok(())
     })?;
-    let comparison = Comparison::of(&layout, view);
+    let layout_of_all =
+        shown.as_ref().map(|_| Layout::of(whole.rows.iter().filter(|row| !row.is_at_boundary()), view));
+    let mut comparison = Comparison::of(layout_of_all.as_ref().unwrap_or(&layout), view);
+    if let (Some(comparison), Some(shown)) = (&mut comparison, &shown) {
+        let [all, part] = [whole.rows, shown].map(|rows| rows.iter().filter(|row| row.is_measured()).count());
+        comparison.notes.push(format!(
+            "Tables and figures show {part} of the {all} measured points, evenly through the files; this summary, differences.csv and \
+             jobs.csv have all."
+        ));
+    }
     if let Some(comparison) = &comparison {
         folder.write_with("differences.csv", |out| comparison::csv(comparison, out))?;
     }
@@ -153,6 +164,24 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let contradictions = comparison.as_ref().map_or_else(Vec::new, Comparison::contradictions_in_words);
     let files = folder.finish(|name| could_be_of_a_report(name, out_dir))?;
     Ok(Written { files, contradictions })
+}
+
+/// Most measured points in tables and figures: more would make pages that no browser shows.
+const MOST_MEASURED: usize = 2000;
+
+/// The rows without most of the measured points, of which every k-th stays; none if there are few of them.
+fn thinned(rows: &[JobRow]) -> Option<Vec<JobRow>> {
+    let measured = rows.iter().filter(|row| row.is_measured()).count();
+    let every = measured.div_ceil(MOST_MEASURED);
+    if every <= 1 {
+        return None;
+    }
+    let mut number = 0;
+    let is_shown = |row: &&JobRow| {
+        number += usize::from(row.is_measured());
+        !row.is_measured() || number % every == 1
+    };
+    Some(rows.iter().filter(is_shown).cloned().collect())
 }
 
 /// Writes the data behind the figures, and returns the files.

@@ -43,6 +43,7 @@ pub use limit::{End, LIMITS, Limit};
 pub use mesh::{MeshContent, MeshFile};
 pub use numerics::{Numerics, Precision, RunControl, Start};
 pub use pin::{FEWEST_ACROSS, Pin, Region, Shape, core_elements};
+pub(crate) use program::MOST_POINTS;
 pub use program::{Change, Program, Table};
 pub use ring::{DiskTimeStep, Ring, TargetSurface};
 pub(crate) use roughness::MOST_HEIGHTS;

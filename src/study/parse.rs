@@ -23,7 +23,7 @@ use super::samples::{self, given::SamplesFile};
 use super::source::{Change, SourceText, shorten};
 use super::text::{STDIN, StudyText};
 use super::validate::check_jobs;
-use crate::spec::{FieldError, JobSpec, StabilityMethod};
+use crate::spec::{FieldError, JobSpec, MOST_HEIGHTS, MOST_POINTS, StabilityMethod};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
@@ -74,6 +74,7 @@ impl Study {
     ) -> Result<Self, StudyError> {
         let (mut value, mut source) = SourceText::read(text, source_name)?;
         refuse(source.repeated_keys())?;
+        refuse(long_lists(&value, &source))?;
         for with_file in [height_file::with_heights, mesh_file::with_mesh, samples::with_points] {
             if reads_files && let Some(text) = with_file(&value, &source)? {
                 let (with_content, read) = SourceText::read(&text, source_name)?;
@@ -248,6 +249,25 @@ fn refused_modes(spec: &JobSpec) -> Option<FieldError> {
             StabilityMethod::OF_FILES.join("` or `")
         ),
     })
+}
+
+/// Lists that are longer than any that a job may have. Reading them as data would take long and then be refused.
+fn long_lists(value: &Value, source: &SourceText) -> Vec<Problem> {
+    let map = "/scene/pin/base/height_map/heights_m";
+    let count = |entry: &Value| entry.as_array().map_or(1, Vec::len);
+    let lists = [
+        ("/scene/program/omega_rpm", MOST_POINTS, "points"),
+        ("/scene/program/force_n", MOST_POINTS, "points"),
+        (map, MOST_HEIGHTS, "heights"),
+    ];
+    let too_long = |(pointer, most, what): (&str, usize, &str)| {
+        let list = value.pointer(pointer)?.as_array()?;
+        let length = if pointer == map { list.iter().map(count).sum() } else { list.len() };
+        let field = pointer[1..].replace('/', ".");
+        let problem = source.problem(&field, format!("expected at most {most} {what}"));
+        (length > most).then(|| Problem { value: Some(format!("{length} {what}")), ..problem })
+    };
+    lists.into_iter().filter_map(too_long).collect()
 }
 
 fn refuse(problems: Vec<Problem>) -> Result<(), StudyError> {
