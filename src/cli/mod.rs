@@ -155,7 +155,8 @@ fn with_suggestion(mut error: clap::Error) -> clap::Error {
         let command = Cli::command();
         let names = command.get_subcommands().map(clap::Command::get_name);
         let distance = |name: &&str| strsim::osa_distance(wrong, name);
-        let nearest = names.min_by_key(distance).filter(|name| distance(name) <= MOST_CHANGES.min(wrong.len() / 2));
+        let nearest =
+            names.min_by_key(distance).filter(|name| distance(name) <= MOST_CHANGES.min(wrong.len() / 2));
         if let Some(name) = nearest.map(str::to_owned) {
             error.insert(ContextKind::SuggestedSubcommand, ContextValue::Strings(vec![name]));
         }

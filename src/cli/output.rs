@@ -82,7 +82,9 @@ fn shown(text: &str) -> String {
 /// The length of the colour with which a text begins; 0 if it begins with something else. Colours are those of letters (30 to 37, 90
 /// to 97) and their end (0): no text can be hidden.
 fn colour_length(text: &str) -> usize {
-    let Some((code, _)) = text.strip_prefix("\u{1b}[").and_then(|rest| rest.split_once('m')) else { return 0 };
+    let Some((code, _)) = text.strip_prefix("\u{1b}[").and_then(|rest| rest.split_once('m')) else {
+        return 0;
+    };
     let is_colour = matches!(code.parse::<u8>(), Ok(0 | 30..=37 | 90..=97)) && code.len() <= 2;
     if is_colour { code.len() + 3 } else { 0 }
 }

@@ -64,12 +64,7 @@ async fn all_studies(queue: &mut Queue, as_json: bool) -> Result<String, CliErro
     Ok(text)
 }
 
-async fn one_study(
-    queue: &mut Queue,
-    name: &str,
-    as_json: bool,
-    db: &Location,
-) -> Result<String, CliError> {
+async fn one_study(queue: &mut Queue, name: &str, as_json: bool, db: &Location) -> Result<String, CliError> {
     let trouble = Trouble::read(queue, name).await?;
     let counts = queue.counts(&Scope::Study(name.to_owned())).await?;
     let outlook = Outlook::read(queue, name, counts).await?;

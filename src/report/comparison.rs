@@ -221,7 +221,10 @@ impl Comparison {
             return Vec::new();
         }
         let (count, of) = (self.contradictions.len(), self.compared_squeals);
-        let head = format!("Squeal is contradicted at {count} of {} where both say whether it squeals:", value::count(of, "point"));
+        let head = format!(
+            "Squeal is contradicted at {count} of {} where both say whether it squeals:",
+            value::count(of, "point")
+        );
         let listed = self.contradictions.iter().take(MAX_CONTRADICTIONS).map(|found| self.in_words(found));
         let more = count.saturating_sub(MAX_CONTRADICTIONS);
         let more = (more > 0).then(|| format!("and {more} more: see differences.csv"));
@@ -233,7 +236,8 @@ impl Comparison {
         let place: Vec<String> =
             self.names.iter().zip(texts).map(|(name, text)| format!("{name} = {text}")).collect();
         let own = if *is_measured { format!("{source} (measured)") } else { source.clone() };
-        let frequency = frequency_hz.map_or_else(String::new, |f| format!(" at {}", value::quantity(f, "Hz")));
+        let frequency =
+            frequency_hz.map_or_else(String::new, |f| format!(" at {}", value::quantity(f, "Hz")));
         let between = if *is_between { " on both sides" } else { "" };
         let reference = &self.reference;
         let words = if *squeals {

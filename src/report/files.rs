@@ -49,8 +49,8 @@ pub struct Written {
 /// As [`write`].
 pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, PublishError> {
     let mut folder = Folder::create(out_dir, "report")?;
-    let (whole, shown) = (report, thinned(report.rows));
-    let report = &Report { rows: shown.as_deref().unwrap_or(whole.rows), ..*whole };
+    let (given, shown) = (report, thinned(report.rows));
+    let report = &Report { rows: shown.as_deref().unwrap_or(given.rows), ..*given };
     let Report { title, rows, view, .. } = *report;
 
     let layout = Layout::of(rows.iter().filter(|row| !row.is_at_boundary()), view);
@@ -75,7 +75,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let figures = || plots.clone().into_par_iter().map(draw);
     let jobs = || {
         let mut out = Vec::new();
-        export::csv(whole.rows, &mut out).map(|()| out)
+        export::csv(given.rows, &mut out).map(|()| out)
     };
     let residuals = || figure::residuals::draw(rows);
     let ((tables, figures), (jobs, residuals)): ((Vec<_>, Vec<_>), _) = rayon::join(
@@ -129,10 +129,11 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         Ok(())
     })?;
     let layout_of_all =
-        shown.as_ref().map(|_| Layout::of(whole.rows.iter().filter(|row| !row.is_at_boundary()), view));
+        shown.as_ref().map(|_| Layout::of(given.rows.iter().filter(|row| !row.is_at_boundary()), view));
     let mut comparison = Comparison::of(layout_of_all.as_ref().unwrap_or(&layout), view);
     if let (Some(comparison), Some(shown)) = (&mut comparison, &shown) {
-        let [all, part] = [whole.rows, shown].map(|rows| rows.iter().filter(|row| row.is_measured()).count());
+        let [all, part] =
+            [given.rows, shown.as_slice()].map(|rows| rows.iter().filter(|row| row.is_measured()).count());
         comparison.notes.push(format!(
             "Tables and figures show {part} of the {all} measured points, evenly through the files; this summary, differences.csv and \
              jobs.csv have all."

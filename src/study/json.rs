@@ -160,10 +160,15 @@ pub(super) fn number_hint(text: &str) -> Option<String> {
         && !fraction.is_empty()
         && fraction.bytes().all(|byte| byte.is_ascii_digit())
     {
-        return Some(format!("a number has a decimal point: {whole}.{fraction}; a list is [{whole}, {fraction}]"));
+        return Some(format!(
+            "a number has a decimal point: {whole}.{fraction}; a list is [{whole}, {fraction}]"
+        ));
     }
     if parts.len() > 1 && parts.iter().all(|part| is_number(part)) {
-        return Some(format!("a list is [{}]", parts.iter().map(|part| part.trim()).collect::<Vec<_>>().join(", ")));
+        return Some(format!(
+            "a list is [{}]",
+            parts.iter().map(|part| part.trim()).collect::<Vec<_>>().join(", ")
+        ));
     }
     let ends: Vec<&str> = text.split(':').flat_map(|part| part.split("..")).collect();
     if let [from, .., to] = ends[..]
@@ -173,7 +178,8 @@ pub(super) fn number_hint(text: &str) -> Option<String> {
     }
     let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)))?;
     let (number, unit) = (text[..end].trim_end_matches(['e', 'E']), text[end..].trim());
-    (is_number(number) && !unit.is_empty()).then(|| "write the number alone, in the unit that the name ends with".to_owned())
+    (is_number(number) && !unit.is_empty())
+        .then(|| "write the number alone, in the unit that the name ends with".to_owned())
 }
 
 /// Rewrites a message of serde.

@@ -175,8 +175,11 @@ impl Reader<'_> {
                 for (index, entry) in array.elements.iter().enumerate() {
                     // The places of entries are for messages, and nobody looks for the millionth one.
                     let is_beyond = self.found.by_path.len() >= MOST_LOCATED;
-                    let path =
-                        if is_beyond { Cow::Borrowed(path) } else { below(path, || format!("{path}[{index}]")) };
+                    let path = if is_beyond {
+                        Cow::Borrowed(path)
+                    } else {
+                        below(path, || format!("{path}[{index}]"))
+                    };
                     self.beyond += usize::from(is_beyond);
                     entries.push(self.visit(entry, &path, None, depth + 1)?.0);
                     self.beyond -= usize::from(is_beyond);

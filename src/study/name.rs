@@ -23,7 +23,9 @@ pub fn refused_name(name: &str) -> Option<String> {
     }
     if name.len() > LONGEST {
         let length = name.len();
-        return Some(format!("{length} letters; expected at most {LONGEST}, because folders and files have the name"));
+        return Some(format!(
+            "{length} letters; expected at most {LONGEST}, because folders and files have the name"
+        ));
     }
     if name.starts_with('-') {
         return Some("expected a name that does not begin with -, as options do".to_owned());

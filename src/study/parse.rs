@@ -153,8 +153,19 @@ impl Study {
             specs.iter().zip(&mut violations).for_each(|(spec, found)| found.extend(refused_strain(spec)));
         }
         let description = document.get("description").and_then(Value::as_str).map(str::to_owned);
-        let study =
-            Self { name, description, base, document, grid, specs, report, growth, source, allows_modes, is_new };
+        let study = Self {
+            name,
+            description,
+            base,
+            document,
+            grid,
+            specs,
+            report,
+            growth,
+            source,
+            allows_modes,
+            is_new,
+        };
         refuse(check_jobs(&study, &violations))?;
         Ok(study)
     }

@@ -5,7 +5,8 @@ use std::borrow::Cow;
 /// Whether a terminal may do something else with the character than show it: control characters, which begin escape sequences,
 /// and those that change the direction of text or break lines.
 fn is_unsafe(c: char) -> bool {
-    let turns_text = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+    let turns_text =
+        matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
     c.is_control() || turns_text || matches!(c, '\u{2028}' | '\u{2029}' | '\u{feff}')
 }
 

@@ -197,8 +197,7 @@ fn syntax_hint(text: &str, file: &str, position: Position) -> String {
     } else {
         let line = text.lines().nth(position.line - 1).unwrap_or_default();
         let before: Vec<char> = line.chars().take(position.column - 1).collect();
-        let after: String =
-            line.chars().skip(position.column - 1).take_while(char::is_ascii_digit).collect();
+        let after: String = line.chars().skip(position.column - 1).take_while(char::is_ascii_digit).collect();
         if let [.., digit, ','] = before[..]
             && digit.is_ascii_digit()
             && !after.is_empty()

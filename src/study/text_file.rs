@@ -86,7 +86,11 @@ mod tests {
         assert_eq!(refusal("{\"μ\": 1}".as_bytes()).unwrap(), "{\"μ\": 1}");
         assert_eq!(refusal(&[b'x'; 20]).unwrap().len(), 20);
         assert!(refusal(&[b'x'; 21]).unwrap_err().contains("more than"));
-        assert!(refusal(b"a\nMessung \xdc").unwrap_err().contains("line 2 has a byte 0xdc that is not UTF-8; save it as UTF-8"));
+        assert!(
+            refusal(b"a\nMessung \xdc")
+                .unwrap_err()
+                .contains("line 2 has a byte 0xdc that is not UTF-8; save it as UTF-8")
+        );
         for utf16 in [&b"\xff\xfe{\0}\0"[..], b"\xfe\xff\0{", b"{\0}\0", b"\0{\0}"] {
             assert!(refusal(utf16).unwrap_err().contains("UTF-16; save it as UTF-8"), "{utf16:?}");
         }

@@ -230,7 +230,8 @@ fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, Measured
     }
     if !columns.iter().any(|column| matches!(column, Column::Result(_) | Column::Squeals)) {
         let message =
-            "expected a column with results: mu_star, frequency_hz, squeals or another number of the export".to_owned();
+            "expected a column with results: mu_star, frequency_hz, squeals or another number of the export"
+                .to_owned();
         return Err(place.error(None, message));
     }
     Ok(columns)
@@ -423,19 +424,25 @@ mod tests {
         let (yes, no) = (Some(true), Some(false));
         assert_eq!(found, [yes, no, None, no, yes, no, yes, None, no]);
         // 0 Hz is no frequency that could be compared.
-        assert_eq!(rows[1].state, RowState::Measured(Measurement {
-            values: vec![MeasuredValue { name: "mu_star".to_owned(), value: 0.3, error: None }],
-            squeals: no,
-        }));
+        assert_eq!(
+            rows[1].state,
+            RowState::Measured(Measurement {
+                values: vec![MeasuredValue { name: "mu_star".to_owned(), value: 0.3, error: None }],
+                squeals: no,
+            })
+        );
     }
 
     /// Protects: the lines of a long file are counted in one pass: each record adds what lies between it and the one before.
     #[test]
     fn lines_are_counted_in_one_pass() {
         let rows = 200_000;
-        let text: String = std::iter::once("omega_rpm,mu_star\n".to_owned())
-            .chain((0..rows).map(|row| format!("{}{}.5,0.3\n", if row % 1000 == 0 { "\n# day\n" } else { "" }, row % 50)))
-            .collect();
+        let text: String =
+            std::iter::once("omega_rpm,mu_star\n".to_owned())
+                .chain((0..rows).map(|row| {
+                    format!("{}{}.5,0.3\n", if row % 1000 == 0 { "\n# day\n" } else { "" }, row % 50)
+                }))
+                .collect();
         let found = parse(&text, "p", "p").unwrap();
         assert_eq!(found.rows.len(), rows);
         assert_eq!(found.rows[rows - 1].job, format!("p:{}", text.lines().count()));

@@ -180,7 +180,8 @@ async fn warnings(queue: &mut Queue, studies: &[String]) -> Result<[Vec<String>;
                 [doubts, remarks].map(|part| part.iter().map(Warning::in_words).collect())
             }
             Err(error) => {
-                let text = format!("this version cannot read the study, so its inputs are not checked: {error}");
+                let text =
+                    format!("this version cannot read the study, so its inputs are not checked: {error}");
                 [vec![text], Vec::new()]
             }
         };

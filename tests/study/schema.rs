@@ -5,12 +5,13 @@ use super::mini_schema::{KNOWN, for_each, violation};
 use super::{refusal, shipped};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
+use std::sync::LazyLock;
 use tribosweep::spec::{End, LIMITS, Limit, Program, Table};
 use tribosweep::study::{PARAMETERS, Study, schema};
 
 fn problem(study: &Value) -> Option<String> {
-    let schema = schema();
-    violation(&schema, &schema, study, "")
+    static SCHEMA: LazyLock<Value> = LazyLock::new(schema);
+    violation(&SCHEMA, &SCHEMA, study, "")
 }
 
 #[test]
@@ -183,8 +184,7 @@ fn the_grid_has_exactly_the_parameters_of_the_registry() {
 
 /// Values just outside of a limit, and those at its ends that are allowed.
 fn around(limit: &Limit) -> (Vec<f64>, Vec<f64>) {
-    let is_whole =
-        ["elements[]", "count", "seed", "cycles"].iter().any(|name| limit.field.ends_with(name));
+    let is_whole = ["elements[]", "count", "seed", "cycles"].iter().any(|name| limit.field.ends_with(name));
     let step = |value: f64| if is_whole { 1.0 } else { 1.0e-9 * value.abs().max(1.0e-12) };
     let (mut outside, mut inside) = (Vec::new(), Vec::new());
     for (end, sign) in [(limit.low, -1.0), (limit.high, 1.0)] {
@@ -205,7 +205,8 @@ fn around(limit: &Limit) -> (Vec<f64>, Vec<f64>) {
 
 /// A study in which nothing but the field has a value of its own, besides what makes the program look at the field.
 fn study_with(limit: &Limit, value: f64) -> Value {
-    let number = if value.fract() == 0.0 && value.abs() < 1.0e15 { json!(value as i64) } else { json!(value) };
+    let number =
+        if value.fract() == 0.0 && value.abs() < 1.0e15 { json!(value as i64) } else { json!(value) };
     let mut study = match limit.field {
         field if field.contains(".ring.") => json!({ "scene": { "disk": { "kind": "elastic" } } }),
         field if field.contains(".mesh.") => json!({ "scene": { "pin": { "shape": "mesh" } } }),
@@ -225,7 +226,9 @@ fn study_with(limit: &Limit, value: f64) -> Value {
         "scene.disk.waviness_count" => json!({ "scene": { "disk": { "waviness_height_m": 1e-6 } } }),
         "scene.pin.size_m[]" => json!({ "scene": { "pin": { "size_m": [0.012, 0.015, 0.010] } } }),
         "scene.pin.elements[]" => json!({ "scene": { "pin": { "elements": [12, 15, 10] } } }),
-        "scene.program.omega_rpm[][]" => json!({ "scene": { "program": { "omega_rpm": [[0, 7], [0.01, 7]] } } }),
+        "scene.program.omega_rpm[][]" => {
+            json!({ "scene": { "program": { "omega_rpm": [[0, 7], [0.01, 7]] } } })
+        }
         "scene.program.force_n[][]" => json!({ "scene": { "program": { "force_n": [[0, 7], [0.01, 7]] } } }),
         "damping.frequency_hz" => json!({ "damping": { "ratio": 0.1 } }),
         field if field.starts_with("damping.") => json!({ "damping": { "frequency_hz": 15000 } }),
@@ -266,13 +269,17 @@ fn the_schema_has_the_limits_of_the_program() {
     for parameter in PARAMETERS {
         let Some(limit) = Limit::of(&parameter.field()) else { continue };
         for value in around(limit).0 {
-            let value = if value.fract() == 0.0 && value.abs() < 1.0e15 { json!(value as i64) } else { json!(value) };
+            let value =
+                if value.fract() == 0.0 && value.abs() < 1.0e15 { json!(value as i64) } else { json!(value) };
             for axis in [json!([value]), json!({ "from": value, "to": value, "count": 1 })] {
                 let study = json!({ "grid": { parameter.name: axis } });
                 assert!(problem(&study).is_some(), "the schema takes {study}");
                 // Some fields are looked at only beside others, as above.
                 let is_used = !limit.field.contains(".ring.") && !limit.field.contains(".diameter_m");
-                assert!(!is_used || Study::parse(&study.to_string(), "x").is_err(), "the program takes {study}");
+                assert!(
+                    !is_used || Study::parse(&study.to_string(), "x").is_err(),
+                    "the program takes {study}"
+                );
             }
             of_grid += 1;
         }

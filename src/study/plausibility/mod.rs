@@ -100,7 +100,8 @@ pub fn job_warnings(spec: &JobSpec) -> Vec<Warning> {
             Problem { file: String::new(), position: None, field, value, message, help: vec![help] };
         Warning::new(kind, 1, problem)
     };
-    let is_meant = |doubt: &Doubt| doubt.kind != "size" || spec.scene.pin.size_m != JobSpec::default().scene.pin.size_m;
+    let is_meant =
+        |doubt: &Doubt| doubt.kind != "size" || spec.scene.pin.size_m != JobSpec::default().scene.pin.size_m;
     doubts(spec).into_iter().filter(is_meant).map(warning).collect()
 }
 
@@ -134,8 +135,9 @@ impl Study {
         let all = self.specs.par_iter().enumerate().map(|(point, spec)| (point, of(spec)));
         for (point, doubts) in all.filter(|(_, doubts)| !doubts.is_empty()).collect::<Vec<_>>() {
             // Edges of a block that nobody gives say nothing about a cylinder.
-            let is_meant =
-                |doubt: &Doubt| doubt.kind != "size" || doubt.fields.iter().any(|field| self.has_value(field));
+            let is_meant = |doubt: &Doubt| {
+                doubt.kind != "size" || doubt.fields.iter().any(|field| self.has_value(field))
+            };
             for doubt in doubts.into_iter().filter(is_meant) {
                 let same = |other: &&mut Shared| {
                     (other.doubt.kind, other.doubt.fields) == (doubt.kind, doubt.fields)

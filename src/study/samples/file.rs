@@ -46,10 +46,8 @@ pub(in crate::study) fn with_points(
 /// What follows the file's name in a message.
 fn columns(path: &Path) -> Result<Map<String, Value>, String> {
     let text = read_text(path, MOST_BYTES).map_err(|error| format!(": cannot be read: {error}"))?;
-    let mut reader = csv::ReaderBuilder::new()
-        .comment(Some(b'#'))
-        .trim(csv::Trim::All)
-        .from_reader(text.as_bytes());
+    let mut reader =
+        csv::ReaderBuilder::new().comment(Some(b'#')).trim(csv::Trim::All).from_reader(text.as_bytes());
     let not_csv = |error: csv::Error| {
         let line = error.position().map_or(1, csv::Position::line);
         format!(":{line}: not a row of the table: {error}")

@@ -104,7 +104,10 @@ fn caption(spec: &JobSpec, survey: &Survey) -> String {
         "size_x_m",
         "size_y_m",
         "diameter_m",
-        "track_radius_m", "disk_kind", "disk_inner_radius_m", "disk_outer_radius_m",
+        "track_radius_m",
+        "disk_kind",
+        "disk_inner_radius_m",
+        "disk_outer_radius_m",
     ];
     let first = if drawn.iter().any(|name| survey.varies(name)) { " Drawn is the first job." } else { "" };
     format!(
