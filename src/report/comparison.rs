@@ -4,9 +4,7 @@
 //! the reference has no job at its place on the axis, but neighbours on both sides, it is interpolated between them, along
 //! the line that the figures show.
 
-use super::export::io_error;
 use super::layout::{Group, Layout, PlacedJob};
-use super::markdown;
 use super::parameters::SOURCE;
 use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
@@ -15,7 +13,6 @@ use crate::publish::plot::axis::Axis;
 use crate::publish::value;
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::io;
 
 /// Largest number of differences on a page. All of them are in `differences.csv`.
 pub(super) const MAX_LISTED: usize = 60;
@@ -33,40 +30,40 @@ pub(super) struct Comparison {
     /// All differences.
     pub differences: Vec<Difference>,
     /// Names of the parameters: those of the groups, of the curves and of the axis.
-    names: Vec<String>,
+    pub names: Vec<String>,
     /// Short names with units of the same parameters.
     labels: Vec<String>,
 }
 
 /// One quantity of a point, and of the reference at the same place.
 pub(super) struct Difference {
-    source: String,
-    scalar: &'static Scalar,
+    pub source: String,
+    pub scalar: &'static Scalar,
     /// Values of the parameters, as in [`Comparison::names`], and their texts.
-    parameters: Vec<Value>,
-    texts: Vec<String>,
+    pub parameters: Vec<Value>,
+    pub texts: Vec<String>,
     /// The curve of the reference in words.
-    curve: String,
-    value: f64,
-    error: Option<f64>,
-    reference: f64,
-    reference_error: Option<f64>,
-    interpolated: bool,
+    pub curve: String,
+    pub value: f64,
+    pub error: Option<f64>,
+    pub reference: f64,
+    pub reference_error: Option<f64>,
+    pub interpolated: bool,
 }
 
 /// A point at which only one of a source and the reference squeals.
 pub(super) struct Contradiction {
-    source: String,
-    is_measured: bool,
+    pub source: String,
+    pub is_measured: bool,
     /// Whether the source squeals; the reference does the opposite.
-    squeals: bool,
+    pub squeals: bool,
     /// The frequency \[Hz\] of the source, if it squeals and that is known.
-    frequency_hz: Option<f64>,
+    pub frequency_hz: Option<f64>,
     /// Values of the parameters, as in [`Comparison::names`], and their texts.
-    parameters: Vec<Value>,
-    texts: Vec<String>,
+    pub parameters: Vec<Value>,
+    pub texts: Vec<String>,
     /// Whether the reference is known on both sides of the point only.
-    is_between: bool,
+    pub is_between: bool,
 }
 
 /// What a source has at the points of the reference.
@@ -334,15 +331,15 @@ impl Comparison {
 }
 
 impl Difference {
-    fn difference(&self) -> f64 {
+    pub fn difference(&self) -> f64 {
         self.value - self.reference
     }
 
-    fn relative(&self) -> Option<f64> {
+    pub fn relative(&self) -> Option<f64> {
         Some(self.difference() / self.reference.abs()).filter(|share| share.is_finite())
     }
 
-    fn combined_error(&self) -> Option<f64> {
+    pub fn combined_error(&self) -> Option<f64> {
         match (self.error, self.reference_error) {
             (None, None) => None,
             (a, b) => Some(a.unwrap_or(0.0).hypot(b.unwrap_or(0.0))),
@@ -479,78 +476,4 @@ fn mean_at(curve: &[(f64, &JobRow)], x: f64, scalar: &Scalar) -> Option<Referenc
         error,
         interpolated: false,
     })
-}
-
-/// The section of `report.md`.
-pub(super) fn markdown(comparison: &Comparison) -> String {
-    let notes = comparison.notes.iter().map(|note| format!("- {}\n", markdown::escape(note)));
-    let mut text = "\n## Comparison\n\n".to_owned();
-    if let [head, lines @ ..] = &comparison.contradictions_in_words()[..] {
-        text += &format!("**{}**\n\n", markdown::escape(head));
-        text.extend(lines.iter().map(|line| format!("- {}\n", markdown::escape(line))));
-        text += "\n";
-    }
-    text.extend(notes);
-    let (head, lines) = comparison.summary();
-    if !lines.is_empty() {
-        text += "\n";
-        text += &markdown::table(&head, &lines, false);
-        let (head, lines) = comparison.table();
-        text += "\n";
-        text += &markdown::table(&head, &lines, false);
-    }
-    text + &format!(
-        "\n{} All differences: [differences.csv](differences.csv).\n",
-        markdown::escape(&comparison.explanation())
-    )
-}
-
-/// Contradictions about squeal (1: it squeals) and then all differences as CSV, one line each, with numbers in full and in the units of their names.
-pub(super) fn csv(comparison: &Comparison, out: &mut Vec<u8>) -> io::Result<()> {
-    let mut writer = ::csv::Writer::from_writer(out);
-    let results = [
-        "value",
-        "error",
-        "reference_value",
-        "reference_error",
-        "difference",
-        "combined_error",
-        "relative_difference",
-        "interpolated",
-    ];
-    let head = ["source", "reference", "quantity"].into_iter();
-    writer
-        .write_record(head.chain(comparison.names.iter().map(String::as_str)).chain(results))
-        .map_err(io_error)?;
-    for found in &comparison.contradictions {
-        let number = |squeals: bool| value::number(f64::from(u8::from(squeals)));
-        let own = [found.source.clone(), comparison.reference.clone(), "squeals".to_owned()];
-        let line = own.into_iter().chain(found.parameters.iter().map(value::text)).chain([
-            number(found.squeals),
-            String::new(),
-            number(!found.squeals),
-            String::new(),
-            value::number(if found.squeals { 1.0 } else { -1.0 }),
-            String::new(),
-            String::new(),
-            (if found.is_between { "yes" } else { "no" }).to_owned(),
-        ]);
-        writer.write_record(line).map_err(io_error)?;
-    }
-    for found in &comparison.differences {
-        let optional = |x: Option<f64>| x.map_or_else(String::new, value::number);
-        let own = [found.source.clone(), comparison.reference.clone(), found.scalar.name.to_owned()];
-        let line = own.into_iter().chain(found.parameters.iter().map(value::text)).chain([
-            value::number(found.value),
-            optional(found.error),
-            value::number(found.reference),
-            optional(found.reference_error),
-            value::number(found.difference()),
-            optional(found.combined_error()),
-            optional(found.relative()),
-            (if found.interpolated { "yes" } else { "no" }).to_owned(),
-        ]);
-        writer.write_record(line).map_err(io_error)?;
-    }
-    writer.flush()
 }

@@ -1,6 +1,7 @@
 //! The report as a folder of files.
 
-use super::comparison::{self, Comparison};
+use super::comparison::Comparison;
+use super::comparison_files;
 use super::export;
 use super::figure::{self, DataFile, Figure, Plot, RESIDUALS, RUN_TIMES};
 use super::growth::Findings;
@@ -140,7 +141,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         ));
     }
     if let Some(comparison) = &comparison {
-        folder.write_with("differences.csv", |out| comparison::csv(comparison, out))?;
+        folder.write_with("differences.csv", |out| comparison_files::csv(comparison, out))?;
     }
     let differences = comparison.as_ref();
     let mut section = report.findings.map_or_else(String::new, Findings::markdown);

@@ -16,6 +16,7 @@
 mod accuracy;
 pub mod columns;
 mod comparison;
+mod comparison_files;
 mod digits;
 mod dimension;
 mod discretisation;

@@ -1,7 +1,6 @@
 //! The limits of single fields: one table for the refusals of [`JobSpec::check`](super::JobSpec::check) and for the JSON schema
 //! of studies. Limits that depend on other fields are where these fields are.
 
-use super::numerics::RunControl;
 use End::{At, Beyond, Open};
 use std::collections::HashMap;
 use std::ops::RangeInclusive;
@@ -83,6 +82,9 @@ impl Limit {
 /// that the solver computes from them (squares of forces and speeds, masses, stiffness over mass) stays far inside the
 /// range of f64. Outside of it a frequency can overflow before the first step.
 pub(super) const MAGNITUDES: RangeInclusive<f64> = 1.0e-20..=1.0e20;
+
+/// The longest time limit of a run \[s\]; more is taken for a typing error.
+pub(super) const LONGEST_LIMIT_S: f64 = 100.0;
 
 /// Least load \[N\].
 pub(super) const LEAST_LOAD_N: f64 = 1.0e-20;
@@ -192,9 +194,9 @@ pub static LIMITS: &[Limit] = &[
     not_negative("numerics.beta_r_s", "a damping time >= 0 s"),
     between("numerics.safety_factor", Beyond(0.0), At(1.0), "a fraction of the stability limit, 0 < safety_factor <= 1"),
     between("numerics.time_step_s", Beyond(0.0), Open, "a time step > 0 s"),
-    between("run.limit_s", Beyond(0.0), At(RunControl::LONGEST_LIMIT_S), "a time limit, 0 < limit_s <= 100 s"),
+    between("run.limit_s", Beyond(0.0), At(LONGEST_LIMIT_S), "a time limit, 0 < limit_s <= 100 s"),
     between("run.average_last_fraction", Beyond(0.0), Beyond(1.0), "a fraction of the run, 0 < average_last_fraction < 1"),
-    between("run.window_s", Beyond(0.0), At(RunControl::LONGEST_LIMIT_S), "a length > 0 s, within run.limit_s"),
+    between("run.window_s", Beyond(0.0), At(LONGEST_LIMIT_S), "a length > 0 s, within run.limit_s"),
     between("detection.cycles", At(2.0), At(10_000.0), "a number of cycles from 2 to 10000"),
     between("detection.tolerance", Beyond(0.0), Beyond(1.0), "0 < tolerance < 1"),
     between("detection.drift_tolerance", Beyond(0.0), Beyond(1.0), "0 < drift_tolerance < 1"),

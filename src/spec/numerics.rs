@@ -1,6 +1,7 @@
 //! Integrator settings and run length.
 
 use super::check::Violations;
+use super::limit::LONGEST_LIMIT_S;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::{EnumString, IntoStaticStr, VariantArray};
@@ -131,7 +132,7 @@ impl Default for RunControl {
 
 impl RunControl {
     /// The longest `limit_s` \[s\]; more is taken for a typing error.
-    pub const LONGEST_LIMIT_S: f64 = 100.0;
+    pub const LONGEST_LIMIT_S: f64 = LONGEST_LIMIT_S;
 
     /// The largest number of windows of a run.
     const MOST_WINDOWS: f64 = 1000.0;

@@ -1,9 +1,9 @@
 //! The JSON schemas of objects whose fields are parameters: a grid, points, distributions and conditions.
 
+use super::limit_schema::keywords;
 use super::parameter::{Kind, PARAMETERS, Parameter};
 use super::range::Range;
 use super::samples::distribution::Distribution;
-use super::schema::keywords;
 use crate::spec::Limit;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};

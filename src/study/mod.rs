@@ -32,6 +32,7 @@ mod height_file;
 mod input;
 mod json;
 mod key;
+mod limit_schema;
 mod limits;
 mod locate;
 mod mesh_file;

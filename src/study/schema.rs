@@ -1,10 +1,11 @@
 //! The JSON schema of study files.
 
 use super::file::StudyFile;
+use super::limit_schema::keywords;
 use super::time_defaults;
-use crate::spec::{End, LIMITS, Limit};
+use crate::spec::LIMITS;
 use schemars::schema_for;
-use serde_json::{Map, Value};
+use serde_json::Value;
 
 /// The JSON schema (draft 2020-12) of a study file.
 ///
@@ -43,22 +44,6 @@ fn remove_defaults(schema: &mut Value) {
         Value::Array(entries) => entries.iter_mut().for_each(remove_defaults),
         _ => {}
     }
-}
-
-/// The keywords of a schema that say what a limit says.
-pub(super) fn keywords(limit: &Limit) -> Map<String, Value> {
-    let [low, high] = [limit.low, limit.high].map(|end| match end {
-        End::Open => None,
-        End::At(value) => Some((value, ["minimum", "maximum"])),
-        End::Beyond(value) => Some((value, ["exclusiveMinimum", "exclusiveMaximum"])),
-    });
-    // A limit of a whole number is one, too.
-    let number = |value: f64| {
-        if value.fract() == 0.0 && value.abs() < 1.0e15 { Value::from(value as i64) } else { value.into() }
-    };
-    let low = low.map(|(value, names)| (names[0].to_owned(), number(value)));
-    let high = high.map(|(value, names)| (names[1].to_owned(), number(value)));
-    low.into_iter().chain(high).collect()
 }
 
 /// The JSON pointer to the schema of a field, `scene.pin.size_m[]`.

@@ -118,7 +118,7 @@ fn doubtful_inputs_stand_at_the_head() {
     let page = page_of(&Report { warnings: &warnings, remarks: &remarks, ..report(&rows) });
     let (head, _) = page.split_once("<nav").unwrap();
     // A remark about the cost is in no box.
-    let (boxed, after) = head.rsplit_once("</ul>").unwrap();
+    let (boxed, after) = head.split_once("</ul>").unwrap();
     assert!(!boxed.contains("shortens the time step") && after.contains("shortens the time step"), "{head}");
     let remark_alone = page_of(&Report { remarks: &remarks, ..report(&rows) });
     assert!(!remark_alone.contains("Check these inputs") && remark_alone.contains("shortens the time step"));
