@@ -131,7 +131,9 @@ pub(crate) async fn write(
     let written = sweep::write_content(queue, content, folder, refresh_s).await?;
     if let [head, lines @ ..] = &written.contradictions[..] {
         log(format_args!("warning: {head}"));
-        lines.iter().for_each(|line| log(format_args!("  {line}")));
+        for line in lines {
+            log(format_args!("  {line}"));
+        }
     }
     log(format_args!("report written to {}", folder.display()));
     Ok(())

@@ -11,7 +11,7 @@ pub(super) fn markdown(comparison: &Comparison) -> String {
     let notes = comparison.notes.iter().map(|note| format!("- {}\n", markdown::escape(note)));
     let mut text = "\n## Comparison\n\n".to_owned();
     if let [head, lines @ ..] = &comparison.contradictions_in_words()[..] {
-        text += &format!("**{}**\n\n", markdown::escape(head));
+        text.extend(["**", &markdown::escape(head), "**\n\n"]);
         text.extend(lines.iter().map(|line| format!("- {}\n", markdown::escape(line))));
         text += "\n";
     }

@@ -57,7 +57,8 @@ fn pointer_to(field: &str, schema: &Value) -> String {
         if let Some(target) = reference.and_then(Value::as_str).and_then(|target| target.strip_prefix('#')) {
             target.clone_into(&mut pointer);
         }
-        pointer += &if step == "[]" { "/items".to_owned() } else { format!("/properties/{step}") };
+        pointer.push_str(if step == "[]" { "/items" } else { "/properties/" });
+        pointer.push_str(if step == "[]" { "" } else { step });
     }
     pointer
 }

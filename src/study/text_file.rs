@@ -65,7 +65,7 @@ fn decoded(bytes: Vec<u8>) -> Result<String> {
     }
     String::from_utf8(bytes).map_err(|error| {
         let at = error.utf8_error().valid_up_to();
-        let line = error.as_bytes()[..at].iter().filter(|byte| **byte == b'\n').count() + 1;
+        let line = error.as_bytes()[..at].split(|byte| *byte == b'\n').count();
         wrong(format!("line {line} has a byte {:#04x} that is not UTF-8", error.as_bytes()[at]))
     })
 }
