@@ -1,6 +1,5 @@
 //! The `tribosweep` command: parses the arguments, runs the command and returns its exit code.
 
-use clap::Parser;
 use std::process::ExitCode;
 use tribosweep::cli::{self, Cli};
 
@@ -9,5 +8,5 @@ use tribosweep::cli::{self, Cli};
 static ALLOCATOR: mimalloc::MiMalloc = mimalloc::MiMalloc;
 
 fn main() -> ExitCode {
-    ExitCode::from(cli::main(Cli::parse()))
+    ExitCode::from(cli::main(Cli::from_arguments()))
 }

@@ -356,20 +356,8 @@ impl JobRecord {
         ];
         figures.extend(frequency_hz.map(|value| ("frequency_hz".to_owned(), value)));
         figures.extend(growth_rate_per_s.map(|value| ("growth_rate_per_s".to_owned(), value)));
-        match obstacle {
-            Some(Obstacle::Unsteady { figure: _, spread, drift }) => {
-                figures.push(("obstacle.spread".to_owned(), *spread));
-                figures.push(("obstacle.drift".to_owned(), *drift));
-            }
-            Some(Obstacle::Swing { imbalance, covered_s }) => {
-                figures.push(("obstacle.imbalance".to_owned(), *imbalance));
-                figures.extend(covered_s.map(|value| ("obstacle.covered_s".to_owned(), value)));
-            }
-            Some(Obstacle::Creep { still_to_come, imbalance }) => {
-                figures.push(("obstacle.still_to_come".to_owned(), *still_to_come));
-                figures.push(("obstacle.imbalance".to_owned(), *imbalance));
-            }
-            Some(Obstacle::FewCycles { .. } | Obstacle::SlipOnly) | None => {}
+        if let Some(obstacle) = obstacle {
+            figures.extend(obstacle.figures().map(|(path, value)| (format!("obstacle.{path}"), value)));
         }
         if let Some(stability) = stability {
             let own = stability.figures();

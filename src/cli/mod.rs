@@ -49,7 +49,11 @@ mod workers;
 use crate::exit;
 use crate::queue::Location;
 use clap::builder::{OsStringValueParser, TypedValueParser};
-use clap::{Parser, Subcommand};
+use clap::error::{ContextKind, ContextValue};
+use clap::{CommandFactory, Parser, Subcommand};
+
+/// The database of commands without `--db`.
+const DEFAULT_DB: &str = "tribosweep.db";
 
 /// Sweeps of explicit dynamic contact simulations of a pin-on-disk tribometer.
 ///
@@ -65,7 +69,7 @@ pub struct Cli {
     command: Command,
     /// The database of studies, jobs and results: a file, or postgres://USER@HOST/DATABASE.
     #[arg(long, global = true, value_name = "PATH|URL", env = "TRIBOSWEEP_DB", hide_env_values = true,
-          default_value = "tribosweep.db", value_parser = OsStringValueParser::new().map(Location::parse))]
+          default_value = DEFAULT_DB, value_parser = OsStringValueParser::new().map(Location::parse))]
     db: Location,
 }
 
@@ -131,6 +135,34 @@ enum Command {
     Completions(completions::Args),
     /// Write the manual pages of all commands to a folder.
     Man(man::Args),
+}
+
+impl Cli {
+    /// Reads the arguments of the process. Help, the version and errors end the process.
+    pub fn from_arguments() -> Self {
+        Self::try_parse().unwrap_or_else(|error| with_suggestion(error).exit())
+    }
+}
+
+/// Most letters to change from a wrong name of a command to the one that is meant: `rnu`, `stauts`.
+const MOST_CHANGES: usize = 2;
+
+/// An unknown command with the one that it may mean. The usual suggestions miss exchanged letters in short names.
+fn with_suggestion(mut error: clap::Error) -> clap::Error {
+    let has_one = error.get(ContextKind::SuggestedSubcommand).is_some();
+    if let Some(ContextValue::String(wrong)) = error.get(ContextKind::InvalidSubcommand)
+        && !has_one
+    {
+        let command = Cli::command();
+        let names = command.get_subcommands().map(clap::Command::get_name);
+        let distance = |name: &&str| strsim::osa_distance(wrong, name);
+        let nearest =
+            names.min_by_key(distance).filter(|name| distance(name) <= MOST_CHANGES.min(wrong.len() / 2));
+        if let Some(name) = nearest.map(str::to_owned) {
+            error.insert(ContextKind::SuggestedSubcommand, ContextValue::Strings(vec![name]));
+        }
+    }
+    error
 }
 
 /// Runs the command and returns its exit code (see `exit`).

@@ -25,7 +25,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     axes: Axes,
     #[command(flatten)]
-    out: OutFolder,
+    out: ComparisonFolder,
     /// Check every so many seconds whether the study has changed, and then write the report again, until no job is
     /// pending or running. Until then an open page reloads itself.
     #[arg(long, value_name = "SECONDS", num_args = 0..=1, default_missing_value = "5",
@@ -50,9 +50,32 @@ struct Axes {
 /// The folder of a report.
 #[derive(Debug, clap::Args)]
 pub(crate) struct OutFolder {
+    /// Folder for the report; default: reports/STUDY.
+    #[arg(long = "out", value_name = "DIR")]
+    folder: Option<PathBuf>,
+}
+
+/// The folder of a report that may be a comparison.
+#[derive(Debug, clap::Args)]
+struct ComparisonFolder {
     /// Folder for the report; default: reports/STUDY, and reports/A-vs-B for a comparison.
     #[arg(long = "out", value_name = "DIR")]
     folder: Option<PathBuf>,
+}
+
+/// The folder of a report on stability.
+#[derive(Debug, clap::Args)]
+pub(crate) struct StabilityFolder {
+    /// Folder for the report; default: reports/STUDY-stability.
+    #[arg(long = "out", value_name = "DIR")]
+    folder: Option<PathBuf>,
+}
+
+impl StabilityFolder {
+    /// The folder, with the usual one of the study's modes.
+    pub(crate) fn of_modes(&self) -> OutFolder {
+        OutFolder { folder: self.folder.clone() }
+    }
 }
 
 impl OutFolder {
@@ -68,7 +91,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let Axes { x, by, y } = &args.axes;
     let request =
         ReportRequest { studies, data: args.data.clone(), x: x.clone(), by: by.clone(), y: y.clone() };
-    let folder = args.out.of(&request.folder_name());
+    let folder = OutFolder { folder: args.out.folder.clone() }.of(&request.folder_name());
     sweep::block_on(async {
         let mut queue = sweep::open_to_read(db.clone()).await?;
         let code;
@@ -105,7 +128,16 @@ pub(crate) async fn write(
     folder: &Path,
     refresh_s: Option<u32>,
 ) -> Result<(), CliError> {
-    sweep::write_content(queue, content, folder, refresh_s).await?;
+    for sentence in &content.left_out {
+        log(format_args!("warning: {sentence}"));
+    }
+    let written = sweep::write_content(queue, content, folder, refresh_s).await?;
+    if let [head, lines @ ..] = &written.contradictions[..] {
+        log(format_args!("warning: {head}"));
+        for line in lines {
+            log(format_args!("  {line}"));
+        }
+    }
     log(format_args!("report written to {}", folder.display()));
     Ok(())
 }

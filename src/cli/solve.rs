@@ -87,7 +87,8 @@ impl JobObserver for Recorder {
 }
 
 fn as_json(record: &JobRecord) -> Result<String, CliError> {
-    Ok(serde_json::to_string_pretty(record)? + "\n")
+    // The first field, by the name that it has in the export.
+    Ok(serde_json::to_string_pretty(record)?.replacen("\"outcome\":", "\"status\":", 1) + "\n")
 }
 
 /// The most important inputs of a job.

@@ -6,7 +6,7 @@ use super::error::CliError;
 use super::forecast;
 use super::output::{fill_file, log, print, stream};
 use super::replace::Replacement;
-use super::report::{self, OutFolder};
+use super::report::{self, StabilityFolder};
 use super::study_args::StudyArgs;
 use super::submit::{Priority, submit};
 use super::work::{Threads, work};
@@ -52,7 +52,7 @@ pub(crate) struct Args {
     #[command(flatten)]
     replacement: Replacement,
     #[command(flatten)]
-    out: OutFolder,
+    out: StabilityFolder,
 }
 
 /// Computes the modes. If it is interrupted, the tables have the points that are done.
@@ -60,7 +60,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let plan = args.study.plan_of_modes()?;
     let on_grid = if args.shapes { shapes::points(&plan)? } else { Vec::new() };
     let name = plan.name().to_owned();
-    report::create_folder(&name, &args.out)?;
+    report::create_folder(&name, &args.out.of_modes())?;
     let along = along(&plan, args)?;
     let mut sweep = StabilitySweep::new(plan, along.clone().filter(|_| !args.no_thresholds));
     let shown = along.clone().unwrap_or_else(Along::mu);
@@ -91,7 +91,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
                 );
             }
         }
-        let folder = args.out.of(&name);
+        let folder = args.out.of_modes().of(&name);
         // Who interrupts the computation does not wait for the shapes.
         if code != exit::WORK_LEFT && !on_grid.is_empty() {
             let written =

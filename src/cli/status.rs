@@ -1,5 +1,6 @@
 //! `tribosweep status`: the progress of the studies.
 
+use super::DEFAULT_DB;
 use super::error::CliError;
 use super::output::{self, print};
 use super::{outlook, workers};
@@ -32,7 +33,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let text = sweep::block_on(async {
         let mut queue = sweep::open_to_read(db.clone()).await?;
         let text = match &name {
-            Some(name) => one_study(&mut queue, name, args.json).await,
+            Some(name) => one_study(&mut queue, name, args.json, db).await,
             None => all_studies(&mut queue, args.json).await,
         }?;
         queue.close().await?;
@@ -63,7 +64,7 @@ async fn all_studies(queue: &mut Queue, as_json: bool) -> Result<String, CliErro
     Ok(text)
 }
 
-async fn one_study(queue: &mut Queue, name: &str, as_json: bool) -> Result<String, CliError> {
+async fn one_study(queue: &mut Queue, name: &str, as_json: bool, db: &Location) -> Result<String, CliError> {
     let trouble = Trouble::read(queue, name).await?;
     let counts = queue.counts(&Scope::Study(name.to_owned())).await?;
     let outlook = Outlook::read(queue, name, counts).await?;
@@ -104,12 +105,23 @@ async fn one_study(queue: &mut Queue, name: &str, as_json: bool) -> Result<Strin
         let _ = writeln!(text, "{line}");
     }
     if counts.pending + counts.running > 0 {
-        text.push_str("continue with `tribosweep work`\n");
+        let _ = writeln!(text, "continue with `tribosweep{} work`", option_of(db));
     }
     if counts.cancelled > 0 {
-        let _ = writeln!(text, "make cancelled jobs pending again with `tribosweep retry {name}`");
+        let option = option_of(db);
+        let _ = writeln!(text, "make cancelled jobs pending again with `tribosweep{option} retry {name}`");
     }
     Ok(text)
+}
+
+/// The option with which another command takes the same database; empty if it does without.
+fn option_of(db: &Location) -> String {
+    let usual = std::env::var("TRIBOSWEEP_DB").unwrap_or_else(|_| DEFAULT_DB.to_owned());
+    if *db == Location::parse(usual.into()) {
+        return String::new();
+    }
+    let name = db.to_string();
+    format!(" --db {}", shlex::try_quote(&name).unwrap_or(std::borrow::Cow::Borrowed(&name)))
 }
 
 fn study_json(name: &str, counts: Counts, outlook: Option<&Outlook>, trouble: &Trouble) -> Value {

@@ -2,18 +2,24 @@
 
 use super::output::log;
 use crate::spec::JobSpec;
-use crate::study::{Study, Warning, job_warnings};
+use crate::study::{Study, job_warnings};
 
 /// Logs what is doubtful about a study.
 pub(crate) fn of_study(study: &Study) {
     for warning in study.warnings() {
-        log(format_args!("warning: {warning}"));
+        if warning.is_doubt() {
+            log(format_args!("warning: {warning}"));
+        } else {
+            // Nothing is wrong, so it need not stand out.
+            log(format_args!("note: {}", warning.in_words()));
+        }
     }
 }
 
 /// Logs what is doubtful about one job.
 pub(crate) fn of_job(spec: &JobSpec) {
-    for warning in job_warnings(spec).iter().map(Warning::in_words) {
-        log(format_args!("warning: {warning}"));
+    for warning in &job_warnings(spec) {
+        let word = if warning.is_doubt() { "warning" } else { "note" };
+        log(format_args!("{word}: {}", warning.in_words()));
     }
 }

@@ -9,6 +9,7 @@ use crate::publish::value::count;
 use crate::queue::{Clock, Location, Queue, Scope, Settings, TakenBack};
 use crate::sweep;
 use crate::worker::{self, Interrupt, WorkError, WorkOptions};
+use std::sync::Once;
 use std::time::Duration;
 
 /// Arguments of `work`.
@@ -48,6 +49,9 @@ fn parse_duration(text: &str) -> Result<Duration, String> {
         .map_err(|error| format!("{error}; expected a duration such as 60s, 5m or 2h"))
 }
 
+/// More threads per core are taken for a mistake.
+const MOST_PER_CORE: usize = 8;
+
 /// The number of worker threads.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Threads {
@@ -59,7 +63,18 @@ pub(crate) struct Threads {
 impl Threads {
     /// Their number.
     pub(crate) fn number(&self) -> usize {
-        self.threads.map_or_else(sweep::available_threads, usize::from)
+        static SAID: Once = Once::new();
+        let cores = sweep::available_threads();
+        let number = self.threads.map_or(cores, usize::from);
+        if number > MOST_PER_CORE * cores {
+            SAID.call_once(|| {
+                log(format_args!(
+                    "warning: --threads {number}: this machine has {}; more threads make nothing faster and take more memory",
+                    count(cores as u64, "core")
+                ));
+            });
+        }
+        number
     }
 }
 

@@ -5,7 +5,7 @@ use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Component, Path, PathBuf};
 
-/// A folder that files are written into, each with [`write_atomically`].
+/// A folder that files are written into, each as a whole. Links in it are replaced and not followed; the folder itself may be a link.
 ///
 /// The folder has a hidden file that lists what was written. The next time, files of that list that were not written
 /// again are removed, so that the folder has exactly the files of one result. Other files are never touched.
@@ -26,7 +26,8 @@ impl<'a> Folder<'a> {
     /// If it cannot be created.
     pub fn create(path: &'a Path, kind: &'static str) -> Result<Self, PublishError> {
         fs::create_dir_all(path).map_err(|source| PublishError::Folder { path: path.to_owned(), source })?;
-        let earlier = fs::read_to_string(path.join(list_name(kind))).ok();
+        let list = path.join(list_name(kind));
+        let earlier = if list.is_symlink() { None } else { fs::read_to_string(list).ok() };
         let earlier =
             earlier.map(|text| text.lines().filter(|line| is_inside(line)).map(str::to_owned).collect());
         Ok(Self { path, kind, written: Vec::new(), earlier })
@@ -59,7 +60,7 @@ impl<'a> Folder<'a> {
     ) -> Result<(), PublishError> {
         let path = self.path_of(name);
         let mut contents = Vec::new();
-        match fill(&mut contents).and_then(|()| write_atomically(&path, |out| out.write_all(&contents))) {
+        match fill(&mut contents).and_then(|()| replace(&path, |out| out.write_all(&contents))) {
             Ok(()) => {
                 self.written.push(name.to_owned());
                 Ok(())
@@ -74,6 +75,10 @@ impl<'a> Folder<'a> {
     /// If it cannot be created.
     pub fn create_inside(&self, name: &str) -> Result<(), PublishError> {
         let path = self.path_of(name);
+        // A link would lead the files of the folder elsewhere.
+        if path.is_symlink() {
+            fs::remove_file(&path).map_err(|source| PublishError::Removal { path: path.clone(), source })?;
+        }
         fs::create_dir_all(&path).map_err(|source| PublishError::Folder { path, source })
     }
 
@@ -130,7 +135,7 @@ impl<'a> Folder<'a> {
     fn store(&self, names: &[String]) -> Result<(), PublishError> {
         let path = self.path.join(list_name(self.kind));
         let text: String = names.iter().flat_map(|name| [name.as_str(), "\n"]).collect();
-        write_atomically(&path, |out| out.write_all(text.as_bytes()))
+        replace(&path, |out| out.write_all(text.as_bytes()))
             .map_err(|source| PublishError::File { path, source })
     }
 }
@@ -173,14 +178,19 @@ pub fn write_atomically(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::R
     if path.metadata().is_ok_and(|metadata| !metadata.is_file()) {
         return fill(fs::File::create(path)?, write);
     }
-    let target = path.canonicalize().unwrap_or_else(|_| path.to_owned());
+    replace(&path.canonicalize().unwrap_or_else(|_| path.to_owned()), write)
+}
+
+/// As [`write_atomically`], but whatever is at `path` is replaced, except for a folder: of a symbolic link the link itself. A folder
+/// that somebody else prepared leads to no other file.
+fn replace(path: &Path, write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> io::Result<()> {
     // A bare file name has the empty path as its parent.
-    let parent = target.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let parent = path.parent().filter(|parent| !parent.as_os_str().is_empty()).unwrap_or(Path::new("."));
     // Created like any new file, so that it has the permissions that the umask leaves, and so that errors do not name it.
     let create = |path: &Path| fs::OpenOptions::new().write(true).create_new(true).open(path);
     let mut temporary = tempfile::Builder::new().suffix(".tmp").make_in(parent, create)?;
     fill(temporary.as_file_mut(), write)?;
-    temporary.persist(&target).map_err(|error| error.error)?;
+    temporary.persist(path).map_err(|error| error.error)?;
     Ok(())
 }
 
@@ -296,6 +306,31 @@ mod tests {
         fs::write(&ordinary, "").unwrap();
         write_atomically(&atomic, |_| Ok(())).unwrap();
         assert_eq!(mode(&atomic), mode(&ordinary));
+    }
+
+    /// Protects: in a folder of results links are replaced and not followed, be they files, folders or the list, so that no file
+    /// outside is written or removed.
+    #[cfg(unix)]
+    #[test]
+    fn links_in_a_folder_are_replaced() {
+        use std::os::unix::fs::symlink;
+        let outside = tempfile::tempdir().unwrap();
+        let (path, precious) = (outside.path().join("result"), outside.path().join("precious"));
+        fs::create_dir(&path).unwrap();
+        fs::create_dir(outside.path().join("elsewhere")).unwrap();
+        fs::write(&precious, "precious\n").unwrap();
+        symlink("../precious", path.join("page")).unwrap();
+        symlink("../elsewhere", path.join("frames")).unwrap();
+        symlink("../precious", path.join(list_name("test"))).unwrap();
+        let mut folder = Folder::create(&path, "test").unwrap();
+        folder.write_text("page", "new").unwrap();
+        folder.create_inside("frames").unwrap();
+        folder.write_text("frames/1", "new").unwrap();
+        folder.finish(|_| false).unwrap();
+        assert_eq!(fs::read_to_string(&precious).unwrap(), "precious\n");
+        assert_eq!(names(&outside.path().join("elsewhere")), [""; 0]);
+        assert!(!path.join("page").is_symlink() && fs::read_to_string(path.join("page")).unwrap() == "new");
+        assert_eq!(names(&path.join("frames")), ["1"]);
     }
 
     /// Protects: a symbolic link stays a link, and the file it points to is replaced.

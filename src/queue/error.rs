@@ -34,6 +34,15 @@ pub enum QueueError {
         path: PathBuf,
     },
 
+    /// The path is that of something else than a file.
+    #[error("{path} is {kind} and no database; give the path of a file")]
+    NotAFile {
+        /// The path as given.
+        path: PathBuf,
+        /// What is there.
+        kind: &'static str,
+    },
+
     /// The path contains a database of another program.
     #[error(
         "{path} is a SQLite database of another program and is left as it is; give another database path"

@@ -4,9 +4,7 @@
 //! the reference has no job at its place on the axis, but neighbours on both sides, it is interpolated between them, along
 //! the line that the figures show.
 
-use super::export::io_error;
 use super::layout::{Group, Layout, PlacedJob};
-use super::markdown;
 use super::parameters::SOURCE;
 use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
@@ -15,7 +13,6 @@ use crate::publish::plot::axis::Axis;
 use crate::publish::value;
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::io;
 
 /// Largest number of differences on a page. All of them are in `differences.csv`.
 pub(super) const MAX_LISTED: usize = 60;
@@ -24,30 +21,49 @@ pub(super) const MAX_LISTED: usize = 60;
 pub(super) struct Comparison {
     /// The name of the first source.
     pub reference: String,
+    /// Where one source squeals and the reference does not, or the reverse.
+    pub contradictions: Vec<Contradiction>,
+    /// Points at which both say whether it squeals.
+    compared_squeals: usize,
     /// What a reader must know, one sentence each: inputs that differ, points without a counterpart.
     pub notes: Vec<String>,
     /// All differences.
     pub differences: Vec<Difference>,
     /// Names of the parameters: those of the groups, of the curves and of the axis.
-    names: Vec<String>,
+    pub names: Vec<String>,
     /// Short names with units of the same parameters.
     labels: Vec<String>,
 }
 
 /// One quantity of a point, and of the reference at the same place.
 pub(super) struct Difference {
-    source: String,
-    scalar: &'static Scalar,
+    pub source: String,
+    pub scalar: &'static Scalar,
     /// Values of the parameters, as in [`Comparison::names`], and their texts.
-    parameters: Vec<Value>,
-    texts: Vec<String>,
+    pub parameters: Vec<Value>,
+    pub texts: Vec<String>,
     /// The curve of the reference in words.
-    curve: String,
-    value: f64,
-    error: Option<f64>,
-    reference: f64,
-    reference_error: Option<f64>,
-    interpolated: bool,
+    pub curve: String,
+    pub value: f64,
+    pub error: Option<f64>,
+    pub reference: f64,
+    pub reference_error: Option<f64>,
+    pub interpolated: bool,
+}
+
+/// A point at which only one of a source and the reference squeals.
+pub(super) struct Contradiction {
+    pub source: String,
+    pub is_measured: bool,
+    /// Whether the source squeals; the reference does the opposite.
+    pub squeals: bool,
+    /// The frequency \[Hz\] of the source, if it squeals and that is known.
+    pub frequency_hz: Option<f64>,
+    /// Values of the parameters, as in [`Comparison::names`], and their texts.
+    pub parameters: Vec<Value>,
+    pub texts: Vec<String>,
+    /// Whether the reference is known on both sides of the point only.
+    pub is_between: bool,
 }
 
 /// What a source has at the points of the reference.
@@ -80,6 +96,8 @@ impl Comparison {
         let names: Vec<&str> = layout.further.iter().copied().chain(by).chain([layout.axis]).collect();
         let mut comparison = Self {
             reference: layout.sources[0].name.to_owned(),
+            contradictions: Vec::new(),
+            compared_squeals: 0,
             notes: view.notes.clone(),
             differences: Vec::new(),
             labels: names.iter().map(|name| layout.dimension(name).label.clone()).collect(),
@@ -104,7 +122,7 @@ impl Comparison {
             ));
         }
         let order = |source: &str| layout.sources.iter().position(|own| own.name == source);
-        comparison.differences.sort_by_key(|found| {
+        comparison.differences.sort_by_cached_key(|found| {
             let scalar = scalars.iter().position(|scalar| *scalar == found.scalar);
             (order(&found.source), scalar, found.curve.clone())
         });
@@ -134,18 +152,33 @@ impl Comparison {
                 continue;
             }
             place = place.max(position_in(curve, x, x_axis));
+            let by_of_curve = Some(by).filter(|_| layout.by != SOURCE);
+            if let Some(squeals) = job.row.squeals()
+                && let Some((of_reference, is_between)) = squeals_at(curve, x, x_axis)
+            {
+                self.compared_squeals += 1;
+                if squeals != of_reference {
+                    let (parameters, texts) = self.parameters(layout, group, by_of_curve, at);
+                    self.contradictions.push(Contradiction {
+                        source: job.row.study.clone(),
+                        is_measured: job.row.is_measured(),
+                        squeals,
+                        frequency_hz: FREQUENCY.value(job.row),
+                        parameters,
+                        texts,
+                        is_between,
+                    });
+                }
+            }
             for scalar in scalars.iter().filter(|scalar| scalar.is_settled(job.row)) {
                 let Some(value) = scalar.value(job.row) else { continue };
                 let Some(reference) = reference_at(curve, x, x_axis, scalar) else { continue };
-                let by = Some(by).filter(|_| layout.by != SOURCE);
-                let parameters: Vec<Value> =
-                    group.key.iter().map(|(_, value)| value).chain(by).chain([at]).cloned().collect();
-                let texts = self.names.iter().zip(&parameters);
+                let (parameters, texts) = self.parameters(layout, group, by_of_curve, at);
                 let words = [group.caption(), layout.series_name(&layout.series[*index])];
                 self.differences.push(Difference {
                     source: job.row.study.clone(),
                     scalar,
-                    texts: texts.map(|(name, value)| layout.dimension(name).text(value)).collect(),
+                    texts,
                     parameters,
                     curve: words.into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>().join(", "),
                     value,
@@ -161,6 +194,55 @@ impl Comparison {
             Some(Place::Between) => &mut matches.between,
             None => &mut matches.elsewhere,
         } += 1;
+    }
+
+    /// The values of the parameters at a point, and their texts.
+    fn parameters(
+        &self,
+        layout: &Layout,
+        group: &Group,
+        by: Option<&Value>,
+        at: &Value,
+    ) -> (Vec<Value>, Vec<String>) {
+        let values: Vec<Value> =
+            group.key.iter().map(|(_, value)| value).chain(by).chain([at]).cloned().collect();
+        let texts = self.names.iter().zip(&values).map(|(name, value)| layout.dimension(name).text(value));
+        let texts = texts.collect();
+        (values, texts)
+    }
+
+    /// Where only one of a source and the reference squeals: a head, and a line for each of the first points; empty if nowhere.
+    /// Nothing that a model can say is further from what is measured.
+    pub fn contradictions_in_words(&self) -> Vec<String> {
+        if self.contradictions.is_empty() {
+            return Vec::new();
+        }
+        let (count, of) = (self.contradictions.len(), self.compared_squeals);
+        let head = format!(
+            "Squeal is contradicted at {count} of {} where both say whether it squeals:",
+            value::count(of, "point")
+        );
+        let listed = self.contradictions.iter().take(MAX_CONTRADICTIONS).map(|found| self.in_words(found));
+        let more = count.saturating_sub(MAX_CONTRADICTIONS);
+        let more = (more > 0).then(|| format!("and {more} more: see differences.csv"));
+        std::iter::once(head).chain(listed).chain(more).collect()
+    }
+
+    fn in_words(&self, found: &Contradiction) -> String {
+        let Contradiction { source, is_measured, squeals, frequency_hz, texts, is_between, .. } = found;
+        let place: Vec<String> =
+            self.names.iter().zip(texts).map(|(name, text)| format!("{name} = {text}")).collect();
+        let own = if *is_measured { format!("{source} (measured)") } else { source.clone() };
+        let frequency =
+            frequency_hz.map_or_else(String::new, |f| format!(" at {}", value::quantity(f, "Hz")));
+        let between = if *is_between { " on both sides" } else { "" };
+        let reference = &self.reference;
+        let words = if *squeals {
+            format!("{own} squeals{frequency}, and {reference} is stable{between}")
+        } else {
+            format!("{own} does not squeal, and {reference} squeals{between}")
+        };
+        format!("{}: {words}", place.join(", "))
     }
 
     /// A summary for each curve of the reference: heads and lines of a table.
@@ -249,15 +331,15 @@ impl Comparison {
 }
 
 impl Difference {
-    fn difference(&self) -> f64 {
+    pub fn difference(&self) -> f64 {
         self.value - self.reference
     }
 
-    fn relative(&self) -> Option<f64> {
+    pub fn relative(&self) -> Option<f64> {
         Some(self.difference() / self.reference.abs()).filter(|share| share.is_finite())
     }
 
-    fn combined_error(&self) -> Option<f64> {
+    pub fn combined_error(&self) -> Option<f64> {
         match (self.error, self.reference_error) {
             (None, None) => None,
             (a, b) => Some(a.unwrap_or(0.0).hypot(b.unwrap_or(0.0))),
@@ -317,6 +399,9 @@ enum Place {
     Equal,
 }
 
+/// Largest number of contradictions in a list. All of them are in `differences.csv`.
+const MAX_CONTRADICTIONS: usize = 20;
+
 /// Positions on the axis that differ by less than this share are equal.
 const SAME: f64 = 1e-9;
 
@@ -324,8 +409,15 @@ fn is_same(a: f64, b: f64) -> bool {
     (a - b).abs() <= SAME * a.abs().max(b.abs())
 }
 
+/// The points of a curve at a position. Curves ascend, and a study may have many points.
+fn points_at<'c, 'a>(curve: &'c [(f64, &'a JobRow)], x: f64) -> &'c [(f64, &'a JobRow)] {
+    let first = curve.partition_point(|(at, _)| *at < x && !is_same(*at, x));
+    let count = curve[first..].partition_point(|(at, _)| is_same(*at, x));
+    &curve[first..first + count]
+}
+
 fn position_in(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis) -> Option<Place> {
-    if curve.iter().any(|(at, _)| is_same(*at, x)) {
+    if !points_at(curve, x).is_empty() {
         return Some(Place::Equal);
     }
     neighbours(curve, x, x_axis).map(|_| Place::Between)
@@ -336,14 +428,30 @@ fn neighbours(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis) -> Option<(f64, f
     if let Axis::Names(_) = x_axis {
         return None;
     }
-    let left = curve.iter().rev().find(|(at, _)| *at < x)?.0;
-    let right = curve.iter().find(|(at, _)| *at > x)?.0;
-    Some((left, right))
+    let above = curve.partition_point(|(at, _)| *at <= x);
+    let below = curve.partition_point(|(at, _)| *at < x).checked_sub(1)?;
+    Some((curve[below].0, curve.get(above)?.0))
+}
+
+/// Whether the reference squeals at a position, and whether that is known of the neighbours on both sides alone. None if jobs do not
+/// say it, or say different things.
+fn squeals_at(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis) -> Option<(bool, bool)> {
+    let all = |x: f64| {
+        let mut found = points_at(curve, x).iter().map(|(_, row)| row.squeals());
+        let first = found.next()??;
+        found.all(|other| other == Some(first)).then_some(first)
+    };
+    if !points_at(curve, x).is_empty() {
+        return Some((all(x)?, false));
+    }
+    let (left, right) = neighbours(curve, x, x_axis)?;
+    let (left, right) = (all(left)?, all(right)?);
+    (left == right).then_some((left, true))
 }
 
 /// The reference at a position: the mean of the jobs there, or interpolated between the neighbours, if both have a value.
 fn reference_at(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis, scalar: &Scalar) -> Option<ReferencePoint> {
-    if curve.iter().any(|(at, _)| is_same(*at, x)) {
+    if !points_at(curve, x).is_empty() {
         return mean_at(curve, x, scalar);
     }
     let (left, right) = neighbours(curve, x, x_axis)?;
@@ -357,8 +465,7 @@ fn reference_at(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis, scalar: &Scalar
 }
 
 fn mean_at(curve: &[(f64, &JobRow)], x: f64, scalar: &Scalar) -> Option<ReferencePoint> {
-    let here =
-        || curve.iter().filter(|(at, row)| is_same(*at, x) && scalar.is_settled(row)).map(|(_, row)| *row);
+    let here = || points_at(curve, x).iter().map(|(_, row)| *row).filter(|row| scalar.is_settled(row));
     let values: Vec<f64> = here().filter_map(|row| scalar.value(row)).collect();
     let count = values.len() as f64;
     let errors: Option<Vec<f64>> = here().map(|row| scalar.error(row)).collect();
@@ -369,57 +476,4 @@ fn mean_at(curve: &[(f64, &JobRow)], x: f64, scalar: &Scalar) -> Option<Referenc
         error,
         interpolated: false,
     })
-}
-
-/// The section of `report.md`.
-pub(super) fn markdown(comparison: &Comparison) -> String {
-    let notes = comparison.notes.iter().map(|note| format!("- {}\n", markdown::escape(note)));
-    let mut text = format!("\n## Comparison\n\n{}", notes.collect::<String>());
-    let (head, lines) = comparison.summary();
-    if !lines.is_empty() {
-        text += "\n";
-        text += &markdown::table(&head, &lines, false);
-        let (head, lines) = comparison.table();
-        text += "\n";
-        text += &markdown::table(&head, &lines, false);
-    }
-    text + &format!(
-        "\n{} All differences: [differences.csv](differences.csv).\n",
-        markdown::escape(&comparison.explanation())
-    )
-}
-
-/// All differences as CSV, one line each, with numbers in full and in the units of their names.
-pub(super) fn csv(comparison: &Comparison, out: &mut Vec<u8>) -> io::Result<()> {
-    let mut writer = ::csv::Writer::from_writer(out);
-    let results = [
-        "value",
-        "error",
-        "reference_value",
-        "reference_error",
-        "difference",
-        "combined_error",
-        "relative_difference",
-        "interpolated",
-    ];
-    let head = ["source", "reference", "quantity"].into_iter();
-    writer
-        .write_record(head.chain(comparison.names.iter().map(String::as_str)).chain(results))
-        .map_err(io_error)?;
-    for found in &comparison.differences {
-        let optional = |x: Option<f64>| x.map_or_else(String::new, value::number);
-        let own = [found.source.clone(), comparison.reference.clone(), found.scalar.name.to_owned()];
-        let line = own.into_iter().chain(found.parameters.iter().map(value::text)).chain([
-            value::number(found.value),
-            optional(found.error),
-            value::number(found.reference),
-            optional(found.reference_error),
-            value::number(found.difference()),
-            optional(found.combined_error()),
-            optional(found.relative()),
-            (if found.interpolated { "yes" } else { "no" }).to_owned(),
-        ]);
-        writer.write_record(line).map_err(io_error)?;
-    }
-    writer.flush()
 }

@@ -1,6 +1,7 @@
 //! The report as a folder of files.
 
-use super::comparison::{self, Comparison};
+use super::comparison::Comparison;
+use super::comparison_files;
 use super::export;
 use super::figure::{self, DataFile, Figure, Plot, RESIDUALS, RUN_TIMES};
 use super::growth::Findings;
@@ -31,7 +32,27 @@ const QUANTITIES: [(Quantity, &str); 3] =
 /// # Errors
 /// The first file that could not be written. Files before it are complete, and nothing is removed.
 pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishError> {
+    Ok(write_compared(report, out_dir)?.files)
+}
+
+/// A report that has been written.
+#[derive(Debug)]
+pub struct Written {
+    /// Its files.
+    pub files: Vec<PathBuf>,
+    /// Where only one of a source and the first source squeals: a head and lines; empty if nowhere.
+    pub contradictions: Vec<String>,
+}
+
+/// As [`write`]. Also returns what a reader must know first.
+///
+/// # Errors
+/// As [`write`].
+#[expect(clippy::too_many_lines, reason = "one file after the other")]
+pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, PublishError> {
     let mut folder = Folder::create(out_dir, "report")?;
+    let (given, shown) = (report, thinned(report.rows));
+    let report = &Report { rows: shown.as_deref().unwrap_or(given.rows), ..*given };
     let Report { title, rows, view, .. } = *report;
 
     let layout = Layout::of(rows.iter().filter(|row| !row.is_at_boundary()), view);
@@ -56,7 +77,7 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
     let figures = || plots.clone().into_par_iter().map(draw);
     let jobs = || {
         let mut out = Vec::new();
-        export::csv(rows, &mut out).map(|()| out)
+        export::csv(given.rows, &mut out).map(|()| out)
     };
     let residuals = || figure::residuals::draw(rows);
     let ((tables, figures), (jobs, residuals)): ((Vec<_>, Vec<_>), _) = rayon::join(
@@ -109,9 +130,19 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         *out = jobs?;
         Ok(())
     })?;
-    let comparison = Comparison::of(&layout, view);
+    let layout_of_all =
+        shown.as_ref().map(|_| Layout::of(given.rows.iter().filter(|row| !row.is_at_boundary()), view));
+    let mut comparison = Comparison::of(layout_of_all.as_ref().unwrap_or(&layout), view);
+    if let (Some(comparison), Some(shown)) = (&mut comparison, &shown) {
+        let [all, part] =
+            [given.rows, shown.as_slice()].map(|rows| rows.iter().filter(|row| row.is_measured()).count());
+        comparison.notes.push(format!(
+            "Tables and figures show {part} of the {all} measured points, evenly through the files; this summary, differences.csv and \
+             jobs.csv have all."
+        ));
+    }
     if let Some(comparison) = &comparison {
-        folder.write_with("differences.csv", |out| comparison::csv(comparison, out))?;
+        folder.write_with("differences.csv", |out| comparison_files::csv(comparison, out))?;
     }
     let differences = comparison.as_ref();
     let mut section = report.findings.map_or_else(String::new, Findings::markdown);
@@ -133,7 +164,27 @@ pub fn write(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, PublishErr
         pages,
     };
     folder.write_text("report.html", &html::page(&parts))?;
-    folder.finish(|name| could_be_of_a_report(name, out_dir))
+    let contradictions = comparison.as_ref().map_or_else(Vec::new, Comparison::contradictions_in_words);
+    let files = folder.finish(|name| could_be_of_a_report(name, out_dir))?;
+    Ok(Written { files, contradictions })
+}
+
+/// Most measured points in tables and figures: more would make pages that no browser shows.
+const MOST_MEASURED: usize = 2000;
+
+/// The rows without most of the measured points, of which every k-th stays; none if there are few of them.
+fn thinned(rows: &[JobRow]) -> Option<Vec<JobRow>> {
+    let measured = rows.iter().filter(|row| row.is_measured()).count();
+    let every = measured.div_ceil(MOST_MEASURED);
+    if every <= 1 {
+        return None;
+    }
+    let mut number = 0;
+    let is_shown = |row: &&JobRow| {
+        number += usize::from(row.is_measured());
+        !row.is_measured() || number % every == 1
+    };
+    Some(rows.iter().filter(is_shown).cloned().collect())
 }
 
 /// Writes the data behind the figures, and returns the files.

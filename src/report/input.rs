@@ -25,6 +25,8 @@ pub struct Report<'a> {
     pub provenance: Option<&'a Provenance>,
     /// What is doubtful about the study's inputs, each in words.
     pub warnings: &'a [String],
+    /// What its jobs cost more than they would have to, each in words. Results are not in doubt.
+    pub remarks: &'a [String],
     /// The complex modes of steady sliding at the grid points of one study and between them; empty if they were not computed.
     pub stability: &'a [StabilityPoint],
     /// What the thresholds of these modes are thresholds of.

@@ -5,6 +5,8 @@
 pub struct Measurement {
     /// Quantities by the names of the export's columns, such as `mu_star`.
     pub values: Vec<MeasuredValue>,
+    /// Whether it squeals, if that is known.
+    pub squeals: Option<bool>,
 }
 
 /// One result of a measured point.

@@ -16,6 +16,7 @@
 mod accuracy;
 pub mod columns;
 mod comparison;
+mod comparison_files;
 mod digits;
 mod dimension;
 mod discretisation;
@@ -52,7 +53,7 @@ mod view;
 mod words;
 
 pub use discretisation::{Discretisation, MeshError};
-pub use files::write;
+pub use files::{Written, write, write_compared};
 pub use growth::{Basin, BranchPoint, Crossing, Endpoint, Findings, Minimum, basins};
 pub use input::Report;
 pub use inspections::{FoundInspection, INSPECTIONS, inspections};

@@ -6,7 +6,7 @@ use super::layout::parameters_in_words;
 use super::row::{JobRow, RowState};
 use super::summary::{self, Summary};
 use super::tables::{self, Quantity};
-use super::{accuracy, comparison, digits, markdown, trouble};
+use super::{accuracy, comparison, comparison_files, digits, markdown, trouble};
 use crate::analysis::{JobRecord, Outcome};
 use crate::publish::{Sheet, SheetLine, value};
 use std::fmt::Write;
@@ -57,7 +57,10 @@ pub(super) fn of_report(
         page += &lines;
         page.push('\n');
     }
-    page += &differences.map_or_else(String::new, comparison::markdown);
+    for remark in report.remarks {
+        let _ = writeln!(page, "Cost, without an effect on results: {}\n", markdown::escape(remark));
+    }
+    page += &differences.map_or_else(String::new, comparison_files::markdown);
     page += &errors(rows);
     page += &report.sheet.map_or_else(String::new, scene);
     for table in tables {

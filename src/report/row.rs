@@ -3,7 +3,7 @@
 use super::discretisation::Discretisation;
 use super::measurement::Measurement;
 use super::parameters::{MU, OMEGA, SOURCE, is_further};
-use crate::analysis::JobRecord;
+use crate::analysis::{JobRecord, Outcome};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -147,6 +147,20 @@ impl JobRow {
     /// Whether this is a measured point and no job.
     pub fn is_measured(&self) -> bool {
         matches!(self.state, RowState::Measured(_))
+    }
+
+    /// Whether it squeals: a limit cycle, or a mode that grows. None if nobody knows: a run that did not settle, a measured point
+    /// without a frequency.
+    pub fn squeals(&self) -> Option<bool> {
+        match &self.state {
+            RowState::Measured(measurement) => measurement.squeals,
+            RowState::Done(record) => match record.outcome {
+                Outcome::Periodic | Outcome::Unstable => Some(true),
+                Outcome::Decayed => Some(false),
+                Outcome::NotPeriodic | Outcome::Completed => None,
+            },
+            _ => None,
+        }
     }
 
     /// The parameters other than ω and μ.

@@ -85,8 +85,7 @@ impl Base {
         {
             if let Some(height) = height {
                 let field = format!("scene.pin.base.{name}");
-                found.require(&field, height, height >= 0.0, "a height >= 0 m");
-                found.limit_magnitude(&field, height);
+                found.within(&field, height);
             }
         }
         if let Some(roughness) = &self.roughness {
@@ -106,13 +105,7 @@ impl Base {
             if self.wave_height_m.is_none() {
                 found.add("scene.pin.base.wave_height_m", "absent", "a height beside wave_direction_deg");
             }
-            let holds = (-360.0..=360.0).contains(&direction);
-            found.require(
-                "scene.pin.base.wave_direction_deg",
-                direction,
-                holds,
-                "an angle from -360 to 360 degrees",
-            );
+            found.within("scene.pin.base.wave_direction_deg", direction);
         }
     }
 }

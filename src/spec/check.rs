@@ -1,5 +1,6 @@
 //! Violations of physical or numerical limits: the field, its value and the expectation.
 
+use super::limit::{Limit, MAGNITUDES};
 use std::fmt;
 
 /// One value that violates a limit.
@@ -40,13 +41,23 @@ impl Violations {
         }
     }
 
-    /// Records a violation unless `value` is positive and within [`MAGNITUDES`].
-    pub(super) fn require_magnitude(&mut self, field: &str, value: f64, expected: &str) {
-        let (low, high) = (*MAGNITUDES.start(), *MAGNITUDES.end());
-        if value.is_finite() && value > 0.0 && !MAGNITUDES.contains(&value) {
-            self.add(field, readable(value), format!("{expected}, from {low:e} to {high:e}"));
-        } else {
-            self.require(field, value, value > 0.0, expected);
+    /// Records a violation unless `value` is within the [limit](Limit) of `field`. Returns whether it is.
+    ///
+    /// # Panics
+    /// If the field has no limit.
+    pub(super) fn within(&mut self, field: &str, value: f64) -> bool {
+        let limit = Limit::of(field).unwrap_or_else(|| panic!("{field} has no limit"));
+        let holds = limit.holds(value);
+        if !holds {
+            self.add(field, readable(value), limit.expected(value));
+        }
+        holds
+    }
+
+    /// As [`Self::within`], if there is a value.
+    pub(super) fn within_if_given(&mut self, field: &str, value: Option<f64>) {
+        if let Some(value) = value {
+            self.within(field, value);
         }
     }
 
@@ -63,11 +74,6 @@ impl Violations {
         if self.0.is_empty() { Ok(()) } else { Err(self) }
     }
 }
-
-/// Usable magnitudes of positive quantities in SI units; no tribometer has values outside. Within this range everything
-/// that the solver computes from them (squares of forces and speeds, masses, stiffness over mass) stays far inside the
-/// range of f64. Outside of it a frequency can overflow before the first step.
-const MAGNITUDES: std::ops::RangeInclusive<f64> = 1.0e-20..=1.0e20;
 
 /// The number in plain notation, or with an exponent where plain notation would have many zeros.
 pub(super) fn readable(value: f64) -> String {

@@ -36,26 +36,10 @@ impl Default for Detection {
 
 impl Detection {
     pub(super) fn check(&self, found: &mut Violations) {
-        if !(2..=10_000).contains(&self.cycles) {
-            found.add("detection.cycles", self.cycles, "a number of cycles from 2 to 10000");
-        }
-        let tol = self.tolerance;
-        found.require("detection.tolerance", tol, tol > 0.0 && tol < 1.0, "0 < tolerance < 1");
-        let drift = self.drift_tolerance;
-        found.require(
-            "detection.drift_tolerance",
-            drift,
-            drift > 0.0 && drift < 1.0,
-            "0 < drift_tolerance < 1",
-        );
-        let threshold = self.regime_threshold;
-        found.require(
-            "detection.regime_threshold",
-            threshold,
-            (0.0..1.0).contains(&threshold),
-            "a share, 0 <= regime_threshold < 1",
-        );
-        let observation = self.decay_observation_s;
-        found.require("detection.decay_observation_s", observation, observation > 0.0, "a duration > 0 s");
+        found.within("detection.cycles", self.cycles as f64);
+        found.within("detection.tolerance", self.tolerance);
+        found.within("detection.drift_tolerance", self.drift_tolerance);
+        found.within("detection.regime_threshold", self.regime_threshold);
+        found.within("detection.decay_observation_s", self.decay_observation_s);
     }
 }

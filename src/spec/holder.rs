@@ -147,18 +147,12 @@ impl Holder {
 
     /// Adds every violated limit to `found`.
     pub(super) fn check(&self, found: &mut Violations) {
-        if let Some(mass) = self.mass_kg {
-            found.require("scene.holder.mass_kg", mass, mass >= 0.0, "a mass >= 0 kg");
-            found.limit_magnitude("scene.holder.mass_kg", mass);
-        }
+        found.within_if_given("scene.holder.mass_kg", self.mass_kg);
         let axes = ["x", "y", "z"].into_iter().zip(self.stiffnesses()).zip(self.dampings());
         for ((axis, stiffness), damping) in axes {
             let field = format!("scene.holder.stiffness_{axis}_n_m");
             match stiffness {
-                Some(stiffness) => {
-                    found.require(&field, stiffness, stiffness >= 0.0, "a stiffness >= 0 N/m");
-                    found.limit_magnitude(&field, stiffness);
-                }
+                Some(stiffness) => _ = found.within(&field, stiffness),
                 None if damping.is_some() => {
                     found.add(
                         &field,
@@ -168,18 +162,9 @@ impl Holder {
                 }
                 None => {}
             }
-            if let Some(damping) = damping {
-                let field = format!("scene.holder.damping_{axis}_n_s_m");
-                found.require(&field, damping, damping >= 0.0, "a damper >= 0 N s/m");
-                found.limit_magnitude(&field, damping);
-            }
+            found.within_if_given(&format!("scene.holder.damping_{axis}_n_s_m"), damping);
         }
         self.check_rotations(found);
-        if let Some(stiffness) = self.stiffness_z_n_m.filter(|stiffness| *stiffness > 0.0) {
-            let right =
-                "0 N/m, a mass that moves with the load: a spring in z would carry a part of the load";
-            found.add("scene.holder.stiffness_z_n_m", stiffness, right);
-        }
         if self.mass_kg.is_some() && self.stiffnesses().iter().all(Option::is_none) {
             found.add(
                 "scene.holder.stiffness_y_n_m",
@@ -206,28 +191,13 @@ impl Holder {
             ),
         ];
         for (axis, stiffness, damping, inertia) in ways {
-            let fields = [
-                (
-                    format!("scene.holder.rotational_stiffness_{axis}_nm_rad"),
-                    stiffness,
-                    "a stiffness >= 0 N m/rad",
-                ),
-                (
-                    format!("scene.holder.rotational_damping_{axis}_nm_s_rad"),
-                    damping,
-                    "a damper >= 0 N m s/rad",
-                ),
-                (format!("scene.holder.inertia_{axis}_kg_m2"), inertia, "an inertia >= 0 kg m²"),
-            ];
-            for (field, value, right) in &fields {
-                if let Some(value) = *value {
-                    found.require(field, value, value >= 0.0, right);
-                    found.limit_magnitude(field, value);
-                }
-            }
+            let field = format!("scene.holder.rotational_stiffness_{axis}_nm_rad");
+            found.within_if_given(&field, stiffness);
+            found.within_if_given(&format!("scene.holder.rotational_damping_{axis}_nm_s_rad"), damping);
+            found.within_if_given(&format!("scene.holder.inertia_{axis}_kg_m2"), inertia);
             if stiffness.is_none() && (damping.is_some() || inertia.is_some()) {
                 let right = "a rotational stiffness, which may be 0, beside its damper and its inertia";
-                found.add(&fields[0].0, "absent", right);
+                found.add(&field, "absent", right);
             }
         }
     }

@@ -133,7 +133,7 @@ impl MeshFile {
 
     /// Adds every violated limit to `found`, for a pin of this size.
     pub(super) fn check(&self, size_m: [f64; 3], found: &mut Violations) {
-        found.require_magnitude("scene.pin.mesh.length_unit_m", self.length_unit_m, "a length > 0 m");
+        found.within("scene.pin.mesh.length_unit_m", self.length_unit_m);
         let Some(content) = self.decoded() else {
             let right = "a mesh that was read from scene.pin.mesh.file";
             found.add("scene.pin.mesh.content", "no mesh", right);

@@ -1,6 +1,7 @@
 //! Integrator settings and run length.
 
 use super::check::Violations;
+use super::limit::LONGEST_LIMIT_S;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::{EnumString, IntoStaticStr, VariantArray};
@@ -70,26 +71,10 @@ impl Default for Numerics {
 
 impl Numerics {
     pub(super) fn check(&self, found: &mut Violations) {
-        let b = self.beta2;
-        found.require(
-            "numerics.beta2",
-            b,
-            (0.5..=1.0).contains(&b),
-            "0.5 <= β₂ <= 1 (0.5 is the central difference)",
-        );
-        let damping = self.beta_r_s;
-        found.require("numerics.beta_r_s", damping, damping >= 0.0, "a damping time >= 0 s");
-        found.limit_magnitude("numerics.beta_r_s", damping);
-        let safety = self.safety_factor;
-        found.require(
-            "numerics.safety_factor",
-            safety,
-            safety > 0.0 && safety <= 1.0,
-            "a fraction of the stability limit, 0 < safety_factor <= 1",
-        );
-        if let Some(dt) = self.time_step_s {
-            found.require("numerics.time_step_s", dt, dt > 0.0, "a time step > 0 s");
-        }
+        found.within("numerics.beta2", self.beta2);
+        found.within("numerics.beta_r_s", self.beta_r_s);
+        found.within("numerics.safety_factor", self.safety_factor);
+        found.within_if_given("numerics.time_step_s", self.time_step_s);
     }
 }
 
@@ -147,26 +132,15 @@ impl Default for RunControl {
 
 impl RunControl {
     /// The longest `limit_s` \[s\]; more is taken for a typing error.
-    pub const LONGEST_LIMIT_S: f64 = 100.0;
+    pub const LONGEST_LIMIT_S: f64 = LONGEST_LIMIT_S;
 
     /// The largest number of windows of a run.
     const MOST_WINDOWS: f64 = 1000.0;
 
     pub(super) fn check(&self, found: &mut Violations) {
         let limit = self.limit_s;
-        found.require(
-            "run.limit_s",
-            limit,
-            limit > 0.0 && limit <= Self::LONGEST_LIMIT_S,
-            "a time limit, 0 < limit_s <= 100 s",
-        );
-        let fraction = self.average_last_fraction;
-        found.require(
-            "run.average_last_fraction",
-            fraction,
-            fraction > 0.0 && fraction < 1.0,
-            "a fraction of the run, 0 < average_last_fraction < 1",
-        );
+        found.within("run.limit_s", limit);
+        found.within("run.average_last_fraction", self.average_last_fraction);
         if let Some(window) = self.window_s {
             let right = format!("a length > 0 s, from {:e} to 1 of run.limit_s", 1.0 / Self::MOST_WINDOWS);
             let holds = window > 0.0 && window <= limit && window * Self::MOST_WINDOWS >= limit;

@@ -8,17 +8,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use strum::IntoStaticStr;
 
-/// Largest number of elements per direction: more are taken for a typing error.
-const MAX_ELEMENTS: usize = 1000;
-
 /// Largest number of elements in all: about a gigabyte of fields, and days of run time.
 const MAX_TOTAL_ELEMENTS: f64 = 2.0e6;
 
 /// Fewest elements over the diameter of a cylinder: a core and a ring around it.
 pub const FEWEST_ACROSS: usize = 3;
-
-/// Largest angle (°) of a tilt. The contact is that of small tilts: nodes touch with their base only.
-const MAX_TILT_DEG: f64 = 30.0;
 
 /// The shape of a pin.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema, IntoStaticStr)]
@@ -232,16 +226,10 @@ impl Pin {
     /// Adds every violated limit to `found`.
     pub(super) fn check(&self, found: &mut Violations) {
         for (axis, size) in self.size_m.iter().enumerate() {
-            found.require_magnitude(&format!("scene.pin.size_m[{axis}]"), *size, "a length > 0 m");
+            found.within(&format!("scene.pin.size_m[{axis}]"), *size);
         }
         for (axis, &count) in self.elements.iter().enumerate() {
-            if !(1..=MAX_ELEMENTS).contains(&count) {
-                found.add(
-                    &format!("scene.pin.elements[{axis}]"),
-                    count,
-                    format!("a number of elements from 1 to {MAX_ELEMENTS}"),
-                );
-            }
+            found.within(&format!("scene.pin.elements[{axis}]"), count as f64);
         }
         let total = self.element_count();
         if total > MAX_TOTAL_ELEMENTS {
@@ -255,17 +243,9 @@ impl Pin {
         let [lx, ly, _] = self.extent_m();
         let [hx, hy, _] = self.element_edges_m();
         self.base.check([lx, ly], [hx, hy], found);
-        let e = self.young_modulus_pa;
-        found.require_magnitude("scene.pin.young_modulus_pa", e, "a modulus > 0 Pa");
-        let nu = self.poisson_ratio;
-        found.require(
-            "scene.pin.poisson_ratio",
-            nu,
-            nu > -1.0 && nu < 0.5,
-            "a Poisson's ratio with -1 < ν < 0.5 (0.5 is incompressible: no finite wave speed)",
-        );
-        let rho = self.density_kg_m3;
-        found.require_magnitude("scene.pin.density_kg_m3", rho, "a density > 0 kg/m³");
+        found.within("scene.pin.young_modulus_pa", self.young_modulus_pa);
+        found.within("scene.pin.poisson_ratio", self.poisson_ratio);
+        found.within("scene.pin.density_kg_m3", self.density_kg_m3);
         self.check_regions(found);
     }
 
@@ -274,9 +254,7 @@ impl Pin {
             (Shape::Cylinder, None) => {
                 found.add("scene.pin.diameter_m", "absent", "a diameter > 0 m of the cylinder");
             }
-            (Shape::Cylinder, Some(diameter)) => {
-                found.require_magnitude("scene.pin.diameter_m", diameter, "a diameter > 0 m");
-            }
+            (Shape::Cylinder, Some(diameter)) => _ = found.within("scene.pin.diameter_m", diameter),
             (Shape::Block | Shape::Mesh, Some(diameter)) => {
                 let right = "absent, because only scene.pin.shape = cylinder has a diameter";
                 found.add("scene.pin.diameter_m", diameter, right);
@@ -298,13 +276,8 @@ impl Pin {
             );
             found.add("scene.pin.elements", format!("{:?}", self.elements), right);
         }
-        for (name, angle) in [("tilt_x_deg", self.tilt_x_deg), ("tilt_y_deg", self.tilt_y_deg)] {
-            if let Some(angle) = angle {
-                let right = format!("an angle from -{MAX_TILT_DEG} to {MAX_TILT_DEG} degrees");
-                let holds = angle.abs() <= MAX_TILT_DEG;
-                found.require(&format!("scene.pin.{name}"), angle, holds, &right);
-            }
-        }
+        found.within_if_given("scene.pin.tilt_x_deg", self.tilt_x_deg);
+        found.within_if_given("scene.pin.tilt_y_deg", self.tilt_y_deg);
     }
 
     fn check_regions(&self, found: &mut Violations) {
@@ -344,11 +317,9 @@ impl Pin {
                     "a height, without group, which is for meshes from files",
                 ),
             }
-            found.require_magnitude(&field("young_modulus_pa"), region.young_modulus_pa, "a modulus > 0 Pa");
-            let nu = region.poisson_ratio;
-            let right = "a Poisson's ratio with -1 < ν < 0.5";
-            found.require(&field("poisson_ratio"), nu, nu > -1.0 && nu < 0.5, right);
-            found.require_magnitude(&field("density_kg_m3"), region.density_kg_m3, "a density > 0 kg/m³");
+            found.within(&field("young_modulus_pa"), region.young_modulus_pa);
+            found.within(&field("poisson_ratio"), region.poisson_ratio);
+            found.within(&field("density_kg_m3"), region.density_kg_m3);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! A speed of the disk and a load that change in time.
 
 use super::check::{Violations, readable};
+use super::limit::LEAST_LOAD_N;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -36,11 +37,8 @@ pub enum Change {
     Both,
 }
 
-/// Least load \[N\].
-pub(super) const LEAST_LOAD_N: f64 = 1.0e-20;
-
 /// Largest number of points of a table.
-const MOST_POINTS: usize = 10_000;
+pub(crate) const MOST_POINTS: usize = 10_000;
 
 impl Table {
     /// The value at a time \[s\]. At a step it is the later one. NaN without points.
@@ -104,6 +102,9 @@ impl Table {
                 "at least two points [time, value] and at most {MOST_POINTS}; without a program it is constant"
             );
             found.add(field, format!("{} points", points.len()), right);
+        }
+        if points.len() > MOST_POINTS {
+            return;
         }
         if points.len() >= 2 && points.iter().all(|&[time_s, _]| time_s == 0.0) {
             found.add(field, "all times 0", "a last time > 0 s, at which the run ends");

@@ -105,32 +105,19 @@ impl Ring {
     /// Adds every violated limit to `found`, for a disk on which `pin` slides at the radius `track_m` [m].
     pub(super) fn check(&self, pin: &Pin, track_m: f64, found: &mut Violations) {
         let field = |name: &str| format!("scene.disk.ring.{name}");
-        let lengths = [
+        for (name, value) in [
             ("inner_radius_m", self.inner_radius_m),
             ("outer_radius_m", self.outer_radius_m),
             ("thickness_m", self.thickness_m),
             ("element_size_m", self.element_size_m),
             ("coarse_element_size_m", self.coarse_element_size_m),
-        ];
-        for (name, length) in lengths {
-            found.require_magnitude(&field(name), length, "a length > 0 m");
+            ("young_modulus_pa", self.young_modulus_pa),
+            ("poisson_ratio", self.poisson_ratio),
+            ("density_kg_m3", self.density_kg_m3),
+            ("track_arc_deg", self.track_arc_deg),
+        ] {
+            found.within(&field(name), value);
         }
-        found.require_magnitude(&field("young_modulus_pa"), self.young_modulus_pa, "a modulus > 0 Pa");
-        let nu = self.poisson_ratio;
-        found.require(
-            &field("poisson_ratio"),
-            nu,
-            nu > -1.0 && nu < 0.5,
-            "a Poisson's ratio with -1 < ν < 0.5",
-        );
-        found.require_magnitude(&field("density_kg_m3"), self.density_kg_m3, "a density > 0 kg/m³");
-        let arc = self.track_arc_deg;
-        found.require(
-            &field("track_arc_deg"),
-            arc,
-            arc > 0.0 && arc <= 360.0,
-            "an arc, 0 < track_arc_deg <= 360",
-        );
         let (fine, coarse) = (self.element_size_m, self.coarse_element_size_m);
         found.require(
             &field("coarse_element_size_m"),

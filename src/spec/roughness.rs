@@ -36,10 +36,8 @@ impl Roughness {
     /// Adds every violated limit to `found`, for a base whose shortest wavelength is `resolved_m`.
     pub(super) fn check(&self, resolved_m: f64, found: &mut Violations) {
         let field = |name: &str| format!("scene.pin.base.roughness.{name}");
-        found.require(&field("rms_m"), self.rms_m, self.rms_m >= 0.0, "a height >= 0 m");
-        found.limit_magnitude(&field("rms_m"), self.rms_m);
-        let holds = self.hurst > 0.0 && self.hurst <= 1.0;
-        found.require(&field("hurst"), self.hurst, holds, "a Hurst exponent above 0, at most 1");
+        found.within(&field("rms_m"), self.rms_m);
+        found.within(&field("hurst"), self.hurst);
         let (Some(longest), Some(shortest)) = (self.longest_m, self.shortest_m) else {
             for (name, length) in [("longest_m", self.longest_m), ("shortest_m", self.shortest_m)] {
                 if length.is_none() {
@@ -113,7 +111,7 @@ impl HeightMap {
         found.require(field, largest, true, "numbers");
         found.limit_magnitude(field, largest);
         let field = "scene.pin.base.height_map.spacing_m";
-        found.require_magnitude(field, self.spacing_m, "a distance > 0 m");
+        found.within(field, self.spacing_m);
         let least_m = (size_m[0] / (columns - 1) as f64).max(size_m[1] / (self.heights_m.len() - 1) as f64);
         if self.spacing_m > 0.0 && self.spacing_m < least_m * (1.0 - 1.0e-9) {
             let right = format!(

@@ -5,8 +5,9 @@ use super::contact::Contact;
 use super::disk::{Disk, DiskKind};
 use super::elasticity;
 use super::holder::{Holder, SlowTimes};
+use super::limit::LEAST_LOAD_N;
 use super::pin::{Pin, Shape};
-use super::program::{LEAST_LOAD_N, Program};
+use super::program::Program;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -219,8 +220,7 @@ impl Scene {
             }
         }
         let width = self.clamp.width_m;
-        found.require("scene.clamp.width_m", width, width >= 0.0, "a width >= 0 m (0 holds one node row)");
-        found.limit_magnitude("scene.clamp.width_m", width);
+        found.within("scene.clamp.width_m", width);
         if let Some(axis) = self.clamp.side.axis_across().filter(|_| self.pin.shape != Shape::Mesh) {
             // A pin of a wrong size is refused for that.
             let edge = self.pin.extent_m()[axis];
@@ -234,13 +234,13 @@ impl Scene {
             }
         }
         let force = self.load.force_n;
-        found.require("scene.load.force_n", force, force > 0.0, "a load > 0 N, pressing the pin on the disk");
         if force > 0.0 && force < LEAST_LOAD_N {
             let right =
                 format!("at least {LEAST_LOAD_N:e} N: the energies of less are below the range of numbers");
             found.add("scene.load.force_n", readable(force), right);
+        } else {
+            found.within("scene.load.force_n", force);
         }
-        let ramp = self.load.ramp_s;
-        found.require("scene.load.ramp_s", ramp, ramp >= 0.0, "a duration >= 0 s (0 is a sudden load)");
+        found.within("scene.load.ramp_s", self.load.ramp_s);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::error::Problem;
 use super::file::StudyFile;
-use super::json::{Decoded, decode, decode_all};
+use super::json::{Decoded, decode, decode_all, number_hint};
 use super::locate::join;
 use super::parameter::{Kind, Parameter};
 use super::range::{Range, Unusable};
@@ -98,7 +98,8 @@ impl Axis {
         for (index, value) in self.values.iter().enumerate() {
             let (path, words) = self.value_path(index);
             if let Err(message) = check_type(self.parameter, value, template) {
-                problems.push(source.problem(&path, message).with_help(self.parameter.help()));
+                let problem = source.problem(&path, message).with_help(self.parameter.help());
+                problems.push(self.parameter.with_hint(problem, value));
             } else if let Some(first) = first_with.insert(value.to_string(), words) {
                 let message = format!("the same value as {first}; expected all values to differ");
                 problems.push(source.problem(&path, message));
@@ -153,7 +154,16 @@ fn values(
         ]),
         Value::Array(list) => Ok(list.clone()),
         Value::Object(_) => range_values(parameter, given, path, source),
-        _ => Err(vec![source.problem(path, format!("expected {}", axis_form(parameter)))]),
+        _ => {
+            let problem = source.problem(path, format!("expected {}", axis_form(parameter)));
+            let list = json!([given]);
+            let hint = match given {
+                // A text may stand for several numbers.
+                Value::String(text) if parameter.is_number() => number_hint(text),
+                _ => Some(format!("write {list} for one value")),
+            };
+            Err(vec![Problem { help: hint.into_iter().collect(), ..problem }])
+        }
     }?;
     Ok(values.into_iter().map(|value| parameter.normalise(value)).collect())
 }

@@ -72,7 +72,12 @@ impl Outline {
         for (place, name, text) in preset.into_iter().chain(settings) {
             let problem = |message: String| Problem::of_change(place, name, text, message);
             let Some(parameter) = Parameter::find(name) else {
-                problems.push(Problem { help: unknown_help(name), ..problem("no such parameter".into()) });
+                let help = match (name, forms) {
+                    ("name", Forms::AxesToo) => vec![format!("use --name {text}")],
+                    ("name", Forms::Single) => vec!["one job has no name, and nothing is stored".to_owned()],
+                    _ => unknown_help(name),
+                };
+                problems.push(Problem { help, ..problem("no such parameter".into()) });
                 continue;
             };
             if let Some(other) = named.iter().find(|other| other.overlaps(parameter)) {
@@ -91,7 +96,10 @@ impl Outline {
                     value,
                     is_axis,
                 }),
-                Err(message) => problems.push(problem(message).with_help(parameter.help())),
+                Err(message) => {
+                    let problem = problem(message).with_help(parameter.help());
+                    problems.push(parameter.with_hint(problem, &value));
+                }
             }
         }
         for setting in &accepted {

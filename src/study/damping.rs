@@ -1,7 +1,7 @@
 //! Damping as it is measured: a ratio at a frequency.
 
 use super::json::present;
-use crate::spec::{FieldError, Numerics};
+use crate::spec::{FieldError, Limit, Numerics};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::PI;
@@ -51,20 +51,20 @@ impl Damping {
                     None => refuse("damping", "{}".to_owned(), "a ratio or a loss_factor, and frequency_hz"),
                 };
             }
-            (Some(ratio), None) if !(0.0..1.0).contains(&ratio) => {
-                return refuse(
-                    "damping.ratio",
-                    ratio.to_string(),
-                    "a fraction of critical damping, 0 <= ratio < 1",
-                );
-            }
-            (None, Some(loss)) if !(0.0..2.0).contains(&loss) => {
-                let expected = "twice a damping ratio, 0 <= loss_factor < 2";
-                return refuse("damping.loss_factor", loss.to_string(), expected);
-            }
             (Some(ratio), None) => ratio,
             (None, Some(loss)) => loss / 2.0,
         };
+        let given = [
+            ("damping.ratio", self.ratio),
+            ("damping.loss_factor", self.loss_factor),
+            ("damping.frequency_hz", self.frequency_hz),
+        ];
+        let outside = given.into_iter().find_map(|(field, value)| {
+            Some((field, value?, Limit::of(field).filter(|limit| !limit.holds(value.unwrap_or_default()))?))
+        });
+        if let Some((field, value, limit)) = outside {
+            return refuse(field, value.to_string(), &limit.expected(value));
+        }
         let Some(frequency_hz) = self.frequency_hz else {
             let expected = "the frequency too at which it holds: damping.frequency_hz";
             return match self.loss_factor {
@@ -72,9 +72,6 @@ impl Damping {
                 None => refuse("damping.ratio", ratio.to_string(), expected),
             };
         };
-        if !(frequency_hz > 0.0 && frequency_hz.is_finite()) {
-            return refuse("damping.frequency_hz", frequency_hz.to_string(), "a frequency > 0 Hz");
-        }
         numerics.beta_r_s = ratio / (PI * frequency_hz);
         Ok(())
     }

@@ -26,6 +26,7 @@ pub struct Study {
     pub(super) growth: Growth,
     pub(super) source: SourceText,
     pub(super) allows_modes: bool,
+    pub(super) is_new: bool,
 }
 
 impl Study {

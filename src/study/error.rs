@@ -2,6 +2,7 @@
 
 use super::limits::MAX_JOBS;
 use super::locate::Position;
+use super::printable::printable;
 use serde::Serialize;
 use std::fmt;
 
@@ -12,7 +13,7 @@ const SHOWN: usize = 20;
 #[derive(Debug, thiserror::Error)]
 pub enum StudyError {
     /// The file cannot be read.
-    #[error("{file}: cannot be read: {reason}")]
+    #[error("{}: cannot be read: {reason}", printable(file))]
     Read {
         /// The file as given.
         file: String,
@@ -20,7 +21,7 @@ pub enum StudyError {
         reason: std::io::Error,
     },
     /// The text is not JSON.
-    #[error("{file}:{position}: not valid JSON: {message}")]
+    #[error("{}:{position}: not valid JSON: {message}", printable(file))]
     Syntax {
         /// The file as given.
         file: String,
@@ -86,13 +87,13 @@ impl Problem {
 
 impl fmt::Display for Problem {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "{}", self.file)?;
+        write!(f, "{}", printable(&self.file))?;
         if let Some(position) = self.position {
             write!(f, ":{position}")?;
         }
-        write!(f, ": {}", self.field)?;
+        write!(f, ": {}", printable(&self.field))?;
         if let Some(value) = &self.value {
-            write!(f, " = {value}")?;
+            write!(f, " = {}", printable(value))?;
         }
         write!(f, ": {}", self.message)?;
         self.help.iter().try_for_each(|help| write!(f, "\n  help: {help}"))

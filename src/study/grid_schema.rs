@@ -1,8 +1,10 @@
 //! The JSON schemas of objects whose fields are parameters: a grid, points, distributions and conditions.
 
+use super::limit_schema::keywords;
 use super::parameter::{Kind, PARAMETERS, Parameter};
 use super::range::Range;
 use super::samples::distribution::Distribution;
+use crate::spec::Limit;
 use schemars::{Schema, SchemaGenerator, json_schema};
 use serde_json::{Map, Value, json};
 
@@ -92,14 +94,27 @@ fn of_parameters(
 /// A value of a parameter.
 fn value_schema(parameter: &Parameter, schemas: &mut SchemaGenerator) -> Value {
     match parameter.kind {
-        Kind::Number => json!({ "type": "number" }),
-        Kind::Count => json!({ "type": "integer", "minimum": 1 }),
+        Kind::Number | Kind::Count => {
+            let kind = if matches!(parameter.kind, Kind::Number) { "number" } else { "integer" };
+            let mut number = Map::from_iter([("type".to_owned(), kind.into())]);
+            number.extend(limit_of(parameter));
+            number.into()
+        }
         Kind::Counts => {
-            json!({ "type": "array", "items": { "type": "integer", "minimum": 1 }, "minItems": 3, "maxItems": 3 })
+            let mut count = Map::from_iter([("type".to_owned(), "integer".into())]);
+            count.extend(limit_of(parameter));
+            json!({ "type": "array", "items": count, "minItems": 3, "maxItems": 3 })
         }
         Kind::Flag => json!({ "type": "boolean" }),
         Kind::Name(names) => names(schemas).to_value(),
     }
+}
+
+/// What a schema says about the limit of a parameter's values.
+fn limit_of(parameter: &Parameter) -> Map<String, Value> {
+    let field = parameter.field();
+    let limit = Limit::of(&field).or_else(|| Limit::of(&format!("{field}[]")));
+    limit.map_or_else(Map::new, keywords)
 }
 
 /// Values of a parameter, which may be repeated.
@@ -116,7 +131,12 @@ fn axis_schema(parameter: &Parameter, schemas: &mut SchemaGenerator) -> Value {
 
 fn forms_of_values(parameter: &Parameter, list: Value, schemas: &mut SchemaGenerator) -> Value {
     let forms = match parameter.kind {
-        Kind::Number | Kind::Count => vec![list, schemas.subschema_for::<Range>().to_value()],
+        Kind::Number | Kind::Count => {
+            // `from` is always a value; `to` need not be one, with a step.
+            let range = schemas.subschema_for::<Range>().to_value();
+            let from = json!({ "properties": { "from": limit_of(parameter) } });
+            vec![list, json!({ "allOf": [range, from] })]
+        }
         Kind::Counts | Kind::Flag | Kind::Name(_) => vec![list],
     };
     json!({ "description": parameter.doc, "anyOf": forms })

@@ -5,9 +5,10 @@
 
 use super::error::StudyError;
 use super::source::SourceText;
+use super::text_file::read_text;
 use crate::spec::MOST_HEIGHTS;
 use serde_json::{Value, json};
-use std::io::Read;
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// The field of the map.
@@ -46,13 +47,13 @@ pub(super) fn with_heights(value: &Value, source: &SourceText) -> Result<Option<
 /// Reads a text file that is not larger than a map can be.
 fn read(path: &Path) -> std::io::Result<String> {
     let most = MOST_HEIGHTS * BYTES_OF_HEIGHT;
-    let mut text = String::new();
-    std::fs::File::open(path)?.take(most as u64 + 1).read_to_string(&mut text)?;
-    if text.len() > most {
-        let message = format!("more than {most} bytes; a map has at most {MOST_HEIGHTS} heights");
-        return Err(std::io::Error::other(message));
-    }
-    Ok(text)
+    read_text(path, most as u64).map_err(|error| match error.kind() {
+        ErrorKind::FileTooLarge => {
+            let message = format!("more than {most} bytes; a map has at most {MOST_HEIGHTS} heights");
+            std::io::Error::other(message)
+        }
+        _ => error,
+    })
 }
 
 /// The numbers of a text, a row for each line. Empty lines and lines that begin with `#` are passed over. The error is a line and

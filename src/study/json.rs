@@ -146,6 +146,42 @@ fn same_shape(value: &Value, template: &Value, path: &str, found: &mut Vec<TypeM
     }
 }
 
+/// What to write instead of a text where a number is expected; none if the text says nothing about that.
+pub(super) fn number_hint(text: &str) -> Option<String> {
+    let text = text.trim();
+    if text.parse::<f64>().is_ok() {
+        return Some(format!("write {text} without quotes"));
+    }
+    let is_number = |part: &str| part.trim().parse::<f64>().is_ok();
+    let parts: Vec<&str> = text.split([',', ';']).collect();
+    if let [whole, fraction] = parts[..]
+        && text.contains(',')
+        && whole.trim_start_matches('-').bytes().all(|byte| byte.is_ascii_digit())
+        && !fraction.is_empty()
+        && fraction.bytes().all(|byte| byte.is_ascii_digit())
+    {
+        return Some(format!(
+            "a number has a decimal point: {whole}.{fraction}; a list is [{whole}, {fraction}]"
+        ));
+    }
+    if parts.len() > 1 && parts.iter().all(|part| is_number(part)) {
+        return Some(format!(
+            "a list is [{}]",
+            parts.iter().map(|part| part.trim()).collect::<Vec<_>>().join(", ")
+        ));
+    }
+    let ends: Vec<&str> = text.split(':').flat_map(|part| part.split("..")).collect();
+    if let [from, .., to] = ends[..]
+        && ends.iter().all(|end| is_number(end))
+    {
+        return Some(format!("a range is {{\"from\": {from}, \"to\": {to}, \"count\": 5}}"));
+    }
+    let end = text.find(|c: char| !(c.is_ascii_digit() || "+-.eE".contains(c)))?;
+    let (number, unit) = (text[..end].trim_end_matches(['e', 'E']), text[end..].trim());
+    (is_number(number) && !unit.is_empty())
+        .then(|| "write the number alone, in the unit that the name ends with".to_owned())
+}
+
 /// Rewrites a message of serde.
 fn explain(path: String, message: &str) -> TypeMismatch {
     let is_name = message.starts_with("unknown field");
@@ -164,6 +200,9 @@ fn explain(path: String, message: &str) -> TypeMismatch {
     TypeMismatch { path, message, suggestion, is_name }
 }
 
+/// The message about a value that is no number.
+pub(super) const NUMBER: &str = "expected a number";
+
 /// Translates type names of Rust and serde into the words of JSON.
 fn in_json_words(expected: &str) -> &str {
     match expected {
@@ -174,5 +213,32 @@ fn in_json_words(expected: &str) -> &str {
         "fewer elements in array" => "fewer entries in the list",
         other if other.starts_with("an array of length 3") => "a list of 3 entries",
         other => other,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::number_hint;
+
+    /// Protects: who writes a number as people do is told how JSON has it.
+    #[test]
+    fn numbers_of_people_get_a_hint() {
+        for (text, part) in [
+            ("0,3", "0.3"),
+            ("-0,3", "-0.3"),
+            ("0.2,0.3", "[0.2, 0.3]"),
+            ("0.2; 0.3;0.4", "[0.2, 0.3, 0.4]"),
+            ("50:400", "{\"from\": 50, \"to\": 400, \"count\": 5}"),
+            ("50..400", "\"from\": 50, \"to\": 400"),
+            ("20N", "the number alone"),
+            ("8 mm", "the number alone"),
+            ("3", "3 without quotes"),
+        ] {
+            let hint = number_hint(text).unwrap_or_default();
+            assert!(hint.contains(part), "{text}: {hint}");
+        }
+        for text in ["", "high", "x:y", "a,b"] {
+            assert_eq!(number_hint(text), None, "{text}");
+        }
     }
 }

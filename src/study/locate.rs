@@ -67,7 +67,7 @@ pub(super) struct FieldSpans {
 /// # Errors
 /// If the text is not JSON with comments and trailing commas, or is nested more than [`DEEPEST`] deep.
 pub(super) fn read(text: &str) -> Result<(Value, FieldSpans), NotJson> {
-    let mut reader = Reader { text, cursor: Cursor::new(text), found: FieldSpans::default() };
+    let mut reader = Reader { text, cursor: Cursor::new(text), found: FieldSpans::default(), beyond: 0 };
     let parsed = parse_to_ast(text, &CollectOptions::default(), &JSON_WITH_COMMENTS)
         .map_err(|error| not_json(text, error.range().start, describe(error.kind())))?;
     let Some(tree) = parsed.value else { return Err(not_json(text, 0, "the text is empty".to_owned())) };
@@ -113,6 +113,9 @@ const JSON_WITH_COMMENTS: ParseOptions = ParseOptions {
 /// The deepest nesting of a text. Values of a deeper one could exhaust the stack.
 const DEEPEST: usize = 128;
 
+/// Entries of lists are located as long as so few fields are.
+const MOST_LOCATED: usize = 200_000;
+
 /// Fields with longer paths are not located. No study has them, and a text with a long key above many values would take
 /// memory with the square of its length.
 const LONGEST_PATH: usize = 200;
@@ -131,6 +134,8 @@ struct Reader<'t> {
     text: &'t str,
     cursor: Cursor<'t>,
     found: FieldSpans,
+    /// How many of the lists around are at entries that are not located.
+    beyond: usize,
 }
 
 impl Reader<'_> {
@@ -168,8 +173,16 @@ impl Reader<'_> {
             ast::Value::Array(array) => {
                 let mut entries = Vec::with_capacity(array.elements.len());
                 for (index, entry) in array.elements.iter().enumerate() {
-                    let path = below(path, || format!("{path}[{index}]"));
+                    // The places of entries are for messages, and nobody looks for the millionth one.
+                    let is_beyond = self.found.by_path.len() >= MOST_LOCATED;
+                    let path = if is_beyond {
+                        Cow::Borrowed(path)
+                    } else {
+                        below(path, || format!("{path}[{index}]"))
+                    };
+                    self.beyond += usize::from(is_beyond);
                     entries.push(self.visit(entry, &path, None, depth + 1)?.0);
+                    self.beyond -= usize::from(is_beyond);
                 }
                 Value::Array(entries)
             }
@@ -190,8 +203,8 @@ impl Reader<'_> {
             ast::Value::NullKeyword(_) => Value::Null,
         };
         let span = FieldSpan { key: key.unwrap_or(start), value: start, bytes: tree.start()..tree.end() };
-        if path.len() <= LONGEST_PATH {
-            self.found.by_path.entry(path.to_owned()).or_insert_with(|| span.clone());
+        if self.beyond == 0 && path.len() <= LONGEST_PATH && !self.found.by_path.contains_key(path) {
+            self.found.by_path.insert(path.to_owned(), span.clone());
         }
         Ok((value, span))
     }

@@ -16,6 +16,8 @@ pub(super) struct Outline {
     pub source: SourceText,
     /// Whether its jobs may compute complex modes without a run. A study file cannot ask for that.
     pub allows_modes: bool,
+    /// Whether it is a new study, and not one that a database has already.
+    pub is_new: bool,
 }
 
 impl Outline {

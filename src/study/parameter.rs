@@ -1,5 +1,7 @@
 //! The registry of parameters: what a grid or an override can set, by short name.
 
+use super::error::Problem;
+use super::json::number_hint;
 use super::preset::Preset;
 use super::suggest;
 use crate::spec::{
@@ -203,6 +205,14 @@ impl Parameter {
         }
     }
 
+    /// A problem with a value that has the wrong type, with what to write instead if that can be seen.
+    pub(super) fn with_hint(&self, mut problem: Problem, value: &Value) -> Problem {
+        if let Some(text) = value.as_str().filter(|_| self.is_number()) {
+            problem.help.splice(0..0, number_hint(text));
+        }
+        problem
+    }
+
     /// A line of help: name and description.
     pub(super) fn help(&self) -> String {
         format!("`{}`: {}", self.name, self.doc)
@@ -289,13 +299,9 @@ pub(super) fn unknown_help(wrong: &str) -> Vec<String> {
         let last = field.rsplit('.').next().unwrap_or_default().to_owned();
         (parameter.name, vec![parameter.name.to_owned(), last, field])
     };
-    let mut help = Vec::new();
-    if let Some(name) = suggest::nearest(wrong, PARAMETERS.iter().map(spellings)) {
-        help.push(format!("did you mean `{name}`?"));
-    }
-    let names: Vec<_> = PARAMETERS.iter().map(|parameter| parameter.name).collect();
-    help.push(format!("the parameters are {}", names.join(", ")));
-    help
+    let nearest = suggest::nearest(wrong, PARAMETERS.iter().map(spellings));
+    let suggestion = nearest.map(|name| format!("did you mean `{name}`?"));
+    suggestion.into_iter().chain(["`tribosweep parameters` lists all of them".to_owned()]).collect()
 }
 
 impl PartialEq for Parameter {

@@ -13,16 +13,17 @@ use super::json::{Decoded, decode_all};
 use super::limits::MAX_JOBS;
 use super::locate::join;
 use super::mesh_file;
-use super::name::{EXPECTED, is_study_name};
+use super::name::{EXPECTED, is_study_name, refused_name, similar_name};
 use super::outline::Outline;
 use super::parameter::{Parameter, unknown_help};
+use super::plausibility::refused_strain;
 use super::range;
 use super::report_axes::ReportAxes;
 use super::samples::{self, given::SamplesFile};
-use super::source::{Change, SourceText};
+use super::source::{Change, SourceText, shorten};
 use super::text::{STDIN, StudyText};
 use super::validate::check_jobs;
-use crate::spec::{FieldError, JobSpec, StabilityMethod};
+use crate::spec::{FieldError, JobSpec, MOST_HEIGHTS, MOST_POINTS, StabilityMethod};
 use serde_json::{Map, Value, json};
 use std::path::Path;
 
@@ -73,6 +74,7 @@ impl Study {
     ) -> Result<Self, StudyError> {
         let (mut value, mut source) = SourceText::read(text, source_name)?;
         refuse(source.repeated_keys())?;
+        refuse(long_lists(&value, &source))?;
         for with_file in [height_file::with_heights, mesh_file::with_mesh, samples::with_points] {
             if reads_files && let Some(text) = with_file(&value, &source)? {
                 let (with_content, read) = SourceText::read(&text, source_name)?;
@@ -102,8 +104,9 @@ impl Study {
             Ok(conditions) => grid.set_conditions(conditions),
             Err(found) => problems.extend(found),
         }
-        let mut outline = Outline { document: value, grid, source, allows_modes };
+        let mut outline = Outline { document: value, grid, source, allows_modes, is_new: reads_files };
         let name = outline.rename(changes).and_then(|()| outline.name());
+        let name = name.and_then(|name| outline.allowed(name));
         if !problems.iter().any(|problem| problem.field == "name") {
             problems.extend(name.err().into_iter().flatten());
         }
@@ -132,7 +135,7 @@ impl Study {
         let name = outline.name().map_err(StudyError::Invalid)?;
         refuse(report.problems(&outline.source))?;
         let draft = outline.draft();
-        let Outline { document, mut grid, source, allows_modes } = outline;
+        let Outline { document, mut grid, source, allows_modes, is_new } = outline;
         let base = draft.resolve().spec;
         if grid.select(&base) == 0 {
             let field = if document.get("include").is_some() { "include" } else { "exclude" };
@@ -145,9 +148,24 @@ impl Study {
         if !allows_modes {
             specs.iter().zip(&mut violations).for_each(|(spec, found)| found.extend(refused_modes(spec)));
         }
+        if is_new {
+            // Databases may have such jobs of older versions.
+            specs.iter().zip(&mut violations).for_each(|(spec, found)| found.extend(refused_strain(spec)));
+        }
         let description = document.get("description").and_then(Value::as_str).map(str::to_owned);
-        let study =
-            Self { name, description, base, document, grid, specs, report, growth, source, allows_modes };
+        let study = Self {
+            name,
+            description,
+            base,
+            document,
+            grid,
+            specs,
+            report,
+            growth,
+            source,
+            allows_modes,
+            is_new,
+        };
         refuse(check_jobs(&study, &violations))?;
         Ok(study)
     }
@@ -157,6 +175,14 @@ impl Outline {
     /// The study's name: as given, or the stem of the file's name.
     fn name(&self) -> Result<String, Vec<Problem>> {
         name(self.document.get("name").and_then(Value::as_str).map(str::to_owned), &self.source)
+    }
+
+    /// The name, if the study can have it.
+    fn allowed(&self, name: String) -> Result<String, Vec<Problem>> {
+        let Some(message) = refused_name(&name).filter(|_| self.is_new) else { return Ok(name) };
+        let problem = self.source.problem("name", message);
+        let value = problem.value.clone().unwrap_or_else(|| shorten(&name));
+        Err(vec![offer(&name, Problem { value: Some(value), ..problem })])
     }
 
     /// Gives the study another name, or appends that of the preset.
@@ -236,6 +262,25 @@ fn refused_modes(spec: &JobSpec) -> Option<FieldError> {
     })
 }
 
+/// Lists that are longer than any that a job may have. Reading them as data would take long and then be refused.
+fn long_lists(value: &Value, source: &SourceText) -> Vec<Problem> {
+    let map = "/scene/pin/base/height_map/heights_m";
+    let count = |entry: &Value| entry.as_array().map_or(1, Vec::len);
+    let lists = [
+        ("/scene/program/omega_rpm", MOST_POINTS, "points"),
+        ("/scene/program/force_n", MOST_POINTS, "points"),
+        (map, MOST_HEIGHTS, "heights"),
+    ];
+    let too_long = |(pointer, most, what): (&str, usize, &str)| {
+        let list = value.pointer(pointer)?.as_array()?;
+        let length = if pointer == map { list.iter().map(count).sum() } else { list.len() };
+        let field = pointer[1..].replace('/', ".");
+        let problem = source.problem(&field, format!("expected at most {most} {what}"));
+        (length > most).then(|| Problem { value: Some(format!("{length} {what}")), ..problem })
+    };
+    lists.into_iter().filter_map(too_long).collect()
+}
+
 fn refuse(problems: Vec<Problem>) -> Result<(), StudyError> {
     if problems.is_empty() { Ok(()) } else { Err(StudyError::Invalid(problems)) }
 }
@@ -243,7 +288,7 @@ fn refuse(problems: Vec<Problem>) -> Result<(), StudyError> {
 fn name(given: Option<String>, source: &SourceText) -> Result<String, Vec<Problem>> {
     match given {
         Some(name) if is_study_name(&name) => Ok(name),
-        Some(_) => Err(vec![source.problem("name", EXPECTED)]),
+        Some(name) => Err(vec![offer(&name, source.problem("name", EXPECTED))]),
         None => {
             let stem = Path::new(&source.file).file_stem().unwrap_or_default().to_string_lossy();
             if is_study_name(&stem) {
@@ -254,9 +299,17 @@ fn name(given: Option<String>, source: &SourceText) -> Result<String, Vec<Proble
                 return Err(vec![source.problem("name", EXPECTED).with_help(help)]);
             }
             let help = "add \"name\": \"…\" to the file, or rename it";
-            let problem = source.problem("name", EXPECTED).with_help(help);
+            let problem = offer(&stem, source.problem("name", EXPECTED)).with_help(help);
             Err(vec![Problem { value: Some(format!("{stem:?} (from the file's name)")), ..problem }])
         }
+    }
+}
+
+/// The problem of a name, with a name that a study can have.
+fn offer(wrong: &str, problem: Problem) -> Problem {
+    match similar_name(wrong) {
+        Some(name) => problem.with_help(format!("`{name}` is possible; `description` takes any text")),
+        None => problem,
     }
 }
 

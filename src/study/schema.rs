@@ -1,16 +1,29 @@
 //! The JSON schema of study files.
 
 use super::file::StudyFile;
+use super::limit_schema::keywords;
 use super::time_defaults;
+use crate::spec::LIMITS;
 use schemars::schema_for;
 use serde_json::Value;
 
 /// The JSON schema (draft 2020-12) of a study file.
 ///
-/// It describes names and types. The physical limits are checked by [`Study::parse`](super::Study::parse).
+/// It describes names, types and the [limits](LIMITS) of single fields. Limits that depend on several fields are checked by
+/// [`Study::parse`](super::Study::parse).
 pub fn schema() -> Value {
     let mut schema = schema_for!(StudyFile).to_value();
     remove_defaults(&mut schema);
+    for limit in LIMITS {
+        let pointer = pointer_to(limit.field, &schema);
+        if let Some(Value::Object(field)) = schema.pointer_mut(&pointer) {
+            field.extend(keywords(limit));
+            // A field that must be given has a default that nobody can use.
+            if field.get("default").and_then(Value::as_f64).is_some_and(|value| !limit.holds(value)) {
+                field.remove("default");
+            }
+        }
+    }
     schema
 }
 
@@ -31,4 +44,21 @@ fn remove_defaults(schema: &mut Value) {
         Value::Array(entries) => entries.iter_mut().for_each(remove_defaults),
         _ => {}
     }
+}
+
+/// The JSON pointer to the schema of a field, `scene.pin.size_m[]`.
+fn pointer_to(field: &str, schema: &Value) -> String {
+    let mut pointer = String::new();
+    for step in field.replace("[]", ".[]").split('.') {
+        // An optional field may be the object or null.
+        let node = schema.pointer(&pointer);
+        let forms = node.and_then(|node| node.get("anyOf")).and_then(Value::as_array);
+        let reference = node.into_iter().chain(forms.into_iter().flatten()).find_map(|form| form.get("$ref"));
+        if let Some(target) = reference.and_then(Value::as_str).and_then(|target| target.strip_prefix('#')) {
+            target.clone_into(&mut pointer);
+        }
+        pointer.push_str(if step == "[]" { "/items" } else { "/properties/" });
+        pointer.push_str(if step == "[]" { "" } else { step });
+    }
+    pointer
 }

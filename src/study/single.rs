@@ -107,8 +107,8 @@ impl Study {
         overrides: &[(String, String)],
     ) -> (Result<Self, StudyError>, Vec<Axis>) {
         let (document, grid, source_text) = (self.document.clone(), self.grid.clone(), self.source.clone());
-        let allows_modes = self.allows_modes;
-        let mut outline = Outline { document, grid, source: source_text, allows_modes };
+        let (allows_modes, is_new) = (self.allows_modes, self.is_new);
+        let mut outline = Outline { document, grid, source: source_text, allows_modes, is_new };
         let problems = outline.set(source, preset, overrides, Forms::Single);
         let of_samples = outline.grid.samples.iter().flat_map(|samples| {
             samples

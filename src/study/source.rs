@@ -1,7 +1,7 @@
 //! The text of a study file: turns field paths into positions and values for messages.
 
 use super::error::{Problem, StudyError};
-use super::json::TypeMismatch;
+use super::json::{NUMBER, TypeMismatch, number_hint};
 use super::locate::{self, FieldSpan, FieldSpans, NotJson, Position, RepeatedKey, join};
 use super::parameter::Parameter;
 use serde_json::Value;
@@ -85,6 +85,7 @@ impl SourceText {
         // Some editors begin a file with a byte order mark, which is not a part of the text.
         let text = text.strip_prefix('\u{feff}').unwrap_or(text);
         let (value, spans) = locate::read(text).map_err(|NotJson { position, message }| {
+            let message = message + &syntax_hint(text, file, position);
             StudyError::Syntax { file: file.to_owned(), position, message }
         })?;
         Ok((value, Self { file: file.to_owned(), text: text.to_owned(), spans, changes: Vec::new() }))
@@ -158,6 +159,11 @@ impl SourceText {
             self.problem(&field, mismatch.message)
         };
         problem.help.extend(mismatch.suggestion.map(|name| format!("did you mean `{name}`?")));
+        if problem.message == NUMBER {
+            // The value as the file has it, in quotes.
+            let text = problem.value.as_deref().and_then(|value| serde_json::from_str::<String>(value).ok());
+            problem.help.extend(text.as_deref().and_then(number_hint));
+        }
         problem
     }
 
@@ -178,6 +184,32 @@ impl SourceText {
     fn value_text(&self, span: &FieldSpan) -> String {
         shorten(&self.text[span.bytes.clone()])
     }
+}
+
+/// What to do about a text that is not JSON, as lines of help; empty if nothing is known.
+fn syntax_hint(text: &str, file: &str, position: Position) -> String {
+    let ends_with = |ending: &str| file.to_ascii_lowercase().ends_with(ending);
+    let start = text.trim_start();
+    let hint = if [".yaml", ".yml", ".toml"].into_iter().any(ends_with) {
+        "a study is JSON, { \"name\": value, … }, and no YAML or TOML"
+    } else if !start.is_empty() && !start.starts_with(['{', '[', '/', '"']) {
+        "a study is a JSON object: { \"scene\": { … }, \"grid\": { … } }"
+    } else {
+        let line = text.lines().nth(position.line - 1).unwrap_or_default();
+        let before: Vec<char> = line.chars().take(position.column - 1).collect();
+        let after: String = line.chars().skip(position.column - 1).take_while(char::is_ascii_digit).collect();
+        if let [.., digit, ','] = before[..]
+            && digit.is_ascii_digit()
+            && !after.is_empty()
+        {
+            let whole: Vec<char> =
+                before[..before.len() - 1].iter().rev().take_while(|c| c.is_ascii_digit()).copied().collect();
+            let whole: String = whole.into_iter().rev().collect();
+            return format!("\n  help: a number has a decimal point: {whole}.{after}, not {whole},{after}");
+        }
+        return String::new();
+    };
+    format!("\n  help: {hint}")
 }
 
 /// The text on one line, cut after [`SHOWN_CHARS`].

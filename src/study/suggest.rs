@@ -3,26 +3,123 @@
 /// Least similarity (Jaro–Winkler) of a suggestion; less similar names mislead more often than they help.
 const LEAST_SIMILARITY: f64 = 0.75;
 
-/// The candidate most similar to `wrong`, if one is similar enough.
+/// What people call a quantity, in small letters, and the names that it can have: that of the parameter and that of the field.
+#[rustfmt::skip]
+const ALIASES: &[(&[&str], &[&str])] = &[
+    (&["e", "e_pa", "e_gpa", "e_mpa", "modulus", "youngs_modulus", "young", "elastic_modulus"], &["young_modulus_pa"]),
+    (&["nu", "ν", "poisson", "poissons_ratio"], &["poisson_ratio"]),
+    (&["rho", "ρ", "density"], &["density_kg_m3"]),
+    (&["f", "f_n", "force", "load", "normal_force", "fn", "normal_load"], &["load_n", "force_n"]),
+    (&["omega", "ω", "rpm", "speed", "speed_rpm", "n_rpm", "rotation_speed", "speed_m_s", "v", "velocity"], &["omega_rpm"]),
+    (&["r", "r_m", "radius", "radius_m", "track_radius", "wear_track_radius"], &["track_radius_m"]),
+    (&["d", "d_m", "diameter", "pin_diameter"], &["diameter_m"]),
+    (&["μ", "friction", "friction_coefficient", "cof", "mu_k", "mu_kinetic", "mu_d"], &["mu"]),
+    (&["mu_s", "μ_s", "μs", "mus"], &["mu_static"]),
+    (&["law"], &["friction_law", "law"]),
+    (&["eta", "η"], &["loss_factor"]),
+    (&["zeta", "ζ", "damping"], &["damping_ratio", "ratio"]),
+    (&["beta_r", "β_r", "beta"], &["beta_r_s"]),
+    (&["dt", "time_step", "timestep"], &["time_step_s"]),
+    (&["mesh"], &["elements"]),
+    (&["height", "height_m", "length_z_m", "lz", "l_z"], &["size_z_m", "size_m"]),
+    (&["length", "length_m", "ly", "l_y"], &["size_y_m", "size_m"]),
+    (&["width", "width_m", "lx", "l_x"], &["size_x_m", "size_m"]),
+    (&["size"], &["size_m", "size_x_m"]),
+    (&["clamp_width", "clamp"], &["clamp_width_m", "clamp_side"]),
+    (&["mass", "m", "mass_kg", "holder_mass"], &["holder_mass_kg", "mass_kg"]),
+    // Of the three directions this is the one in which friction pulls.
+    (&["holder_stiffness", "stiffness", "k", "holder_stiffness_n_m", "stiffness_n_m"], &["holder_stiffness_y_n_m", "stiffness_y_n_m"]),
+    (&["holder_damping", "c", "holder_damping_n_s_m", "damping_n_s_m"], &["holder_damping_y_n_s_m", "damping_y_n_s_m"]),
+];
+
+/// Similarity from which on a name is taken for a misspelt one rather than for a name of something else.
+const MISSPELT: f64 = 0.9;
+
+/// The candidate that `wrong` means: one that people call so, or the most similar one, if it is similar enough.
 ///
 /// A candidate is a name with the spellings by which it is recognised.
 pub(super) fn nearest<'a>(
     wrong: &str,
     candidates: impl IntoIterator<Item = (&'a str, Vec<String>)>,
 ) -> Option<&'a str> {
+    most_similar(wrong, candidates, LEAST_SIMILARITY)
+}
+
+fn most_similar<'a>(
+    wrong: &str,
+    candidates: impl IntoIterator<Item = (&'a str, Vec<String>)>,
+    least: f64,
+) -> Option<&'a str> {
     let wrong = wrong.to_lowercase();
+    let candidates: Vec<_> = candidates.into_iter().collect();
+    let meant = ALIASES.iter().filter(|(aliases, _)| aliases.contains(&wrong.as_str()));
+    let known = |meant: &&str| candidates.iter().find(|(name, _)| name == meant).map(|(name, _)| *name);
+    if let Some(name) = meant.flat_map(|(_, names)| *names).find_map(known) {
+        return Some(name);
+    }
     candidates
-        .into_iter()
+        .iter()
         .map(|(name, spellings)| {
             let score = |spelling: &String| strsim::jaro_winkler(&wrong, &spelling.to_lowercase());
-            (name, spellings.iter().map(score).fold(0.0, f64::max))
+            (*name, spellings.iter().map(score).fold(0.0, f64::max))
         })
-        .filter(|(_, score)| *score >= LEAST_SIMILARITY)
+        .filter(|(_, score)| *score >= least)
         .max_by(|a, b| a.1.total_cmp(&b.1))
         .map(|(name, _)| name)
 }
 
-/// The name most similar to `wrong`, if one is similar enough.
+/// The name that `wrong` means: one that people call so, or the most similar one, if it is similar enough.
 pub fn nearest_name<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     nearest(wrong, names.into_iter().map(|name| (name, vec![name.to_owned()])))
+}
+
+/// As [`nearest_name`], but only if `wrong` is hardly a name of something else.
+pub fn misspelt_name<'a>(wrong: &str, names: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
+    most_similar(wrong, names.into_iter().map(|name| (name, vec![name.to_owned()])), MISSPELT)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::study::PARAMETERS;
+
+    /// Protects: symbols and everyday words lead to the parameter that they mean, and not to one with similar letters.
+    #[test]
+    fn symbols_lead_to_parameters() {
+        let names = || PARAMETERS.iter().map(|parameter| parameter.name);
+        for (wrong, right) in [
+            ("E", "young_modulus_pa"),
+            ("nu", "poisson_ratio"),
+            ("radius", "track_radius_m"),
+            ("force", "load_n"),
+            ("omega", "omega_rpm"),
+            ("rpm", "omega_rpm"),
+            ("speed", "omega_rpm"),
+            ("R", "track_radius_m"),
+            ("rho", "density_kg_m3"),
+            ("holder_stiffness", "holder_stiffness_y_n_m"),
+            ("height_m", "size_z_m"),
+            // A misspelt name is still found by its letters.
+            ("omega_rmp", "omega_rpm"),
+            ("young_modulus", "young_modulus_pa"),
+        ] {
+            assert_eq!(nearest_name(wrong, names()), Some(right), "{wrong}");
+        }
+        // Among other names, an alias means nothing.
+        assert_eq!(nearest_name("E", ["run", "work"]), None);
+    }
+
+    /// Protects: every alias leads to a name that exists, and no alias is a name itself or stands twice.
+    #[test]
+    fn aliases_lead_to_names() {
+        let names: Vec<&str> = PARAMETERS.iter().map(|parameter| parameter.name).collect();
+        let mut seen = std::collections::HashSet::new();
+        for (aliases, of) in ALIASES {
+            assert!(of.iter().any(|name| names.contains(name)), "{of:?}");
+            for alias in *aliases {
+                assert!(!names.contains(alias) && seen.insert(alias), "{alias}");
+                assert_eq!(alias.to_lowercase(), **alias);
+            }
+        }
+    }
 }

@@ -2,12 +2,15 @@
 
 use super::error::StudyError;
 use super::source::SourceText;
+use super::text_file::{bounded, read_text};
 use serde_json::Value;
-use std::io::Read;
 use std::path::Path;
 
 /// The path that stands for standard input.
 const FROM_STDIN: &str = "-";
+
+/// The largest file \[byte\]. The points of the largest study take less.
+const MOST_BYTES: u64 = 256_000_000;
 
 /// What messages call standard input.
 pub(super) const STDIN: &str = "<stdin>";
@@ -28,10 +31,9 @@ impl StudyText {
     /// [`StudyError::Read`].
     pub fn read(path: &Path) -> Result<Self, StudyError> {
         let (source_name, read) = if Self::is_stdin(path) {
-            let mut text = String::new();
-            (STDIN.to_owned(), std::io::stdin().read_to_string(&mut text).map(|_| text))
+            (STDIN.to_owned(), bounded(std::io::stdin(), MOST_BYTES))
         } else {
-            (path.display().to_string(), std::fs::read_to_string(path))
+            (path.display().to_string(), read_text(path, MOST_BYTES))
         };
         match read {
             Ok(text) => Ok(Self { text, source_name }),

@@ -41,8 +41,13 @@ pub enum SweepError {
     #[error(transparent)]
     Publish(#[from] PublishError),
     /// A study cannot have this name.
-    #[error("`{0}` is no name for a study: expected letters A-Z a-z, digits, _ and -")]
-    BadName(String),
+    #[error("`{name}` is no name for a study: {reason}")]
+    BadName {
+        /// The name as given.
+        name: String,
+        /// Why no study can have it.
+        reason: String,
+    },
     /// The database is both the source and the target of a transfer.
     #[error("{0} is both what is read and what is written; give two databases")]
     SameDatabase(Location),

@@ -3,9 +3,10 @@
 use crate::report::{
     Discretisation, JobRow, MeasuredValue, Measurement, RowState, SCALARS, Scalar, name_and_unit,
 };
-use crate::study::{PARAMETERS, Parameter, nearest_name};
+use crate::study::{PARAMETERS, Parameter, misspelt_name, read_text};
 use csv::{ReaderBuilder, StringRecord, Trim};
 use serde_json::Value;
+use std::collections::HashSet;
 use std::path::Path;
 use thiserror::Error;
 
@@ -41,29 +42,68 @@ pub(super) struct MeasuredFile {
     pub parameters: Vec<&'static str>,
     /// The points. Parameters other than ω and μ are in the order of `parameters`.
     pub rows: Vec<JobRow>,
+    /// What was left out of the file, in a sentence; none if nothing was.
+    pub left_out: Option<String>,
 }
 
 /// Columns that are not read: names and states, as an export has them, and remarks.
-const IGNORED: [&str; 8] = ["study", "job", "status", "regime", "error", "wall_s", "note", "comment"];
+const IGNORED: [&str; 7] = ["study", "job", "regime", "error", "wall_s", "note", "comment"];
+
+/// The column that says whether a point squeals, and that of an export, whose outcomes say it.
+const SQUEALS: &str = "squeals";
+const STATUS: &str = "status";
+
+/// The largest file \[byte\]: some ten million rows.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// The result that only what squeals has.
+const FREQUENCY: &str = "frequency_hz";
 
 /// What a column has.
 enum Column {
     Parameter(&'static Parameter),
     Result(&'static Scalar),
     Error(&'static Scalar),
+    Squeals,
+    Status,
     Ignored,
+    /// A column of the file's author, which is ignored and named.
+    Unknown,
 }
 
 /// A file while it is read, for messages.
 struct Place<'a> {
     file: &'a str,
     line: u64,
+    /// Whether numbers have a decimal comma where they have no point: commas separate no cells.
+    has_decimal_comma: bool,
+}
+
+/// The lines of a text, counted on the way from record to record.
+struct Lines<'a> {
+    text: &'a str,
+    byte: usize,
+    line: u64,
+}
+
+impl Lines<'_> {
+    /// The line of the next record, counted from 1. The reader's own position is before the blank lines and comments above the
+    /// record.
+    fn of(&mut self, record: &StringRecord) -> u64 {
+        let start = record.position().and_then(|position| usize::try_from(position.byte()).ok()).unwrap_or(0);
+        let Some(between) = self.text.get(self.byte..start) else { return self.line };
+        self.line += between.matches('\n').count() as u64;
+        self.byte = start;
+        let below = self.text[start..].lines();
+        let skipped = below.take_while(|line| line.trim().is_empty() || line.starts_with('#')).count();
+        self.line + skipped as u64
+    }
 }
 
 /// Reads a file of points, which get `source_name` as their study.
 pub(super) fn read(path: &Path, source_name: &str) -> Result<MeasuredFile, MeasuredError> {
     let file = path.display().to_string();
-    match std::fs::read_to_string(path) {
+    match read_text(path, MOST_BYTES) {
         Ok(text) => parse(&text, &file, source_name),
         Err(reason) => Err(MeasuredError::Read { file, reason }),
     }
@@ -72,23 +112,26 @@ pub(super) fn read(path: &Path, source_name: &str) -> Result<MeasuredFile, Measu
 fn parse(text: &str, file: &str, source_name: &str) -> Result<MeasuredFile, MeasuredError> {
     // Spreadsheets begin their files with a byte order mark.
     let text = text.trim_start_matches('\u{feff}');
+    let delimiter = delimiter(text);
+    let has_decimal_comma = delimiter != b',';
     let mut reader = ReaderBuilder::new()
         .comment(Some(b'#'))
-        .delimiter(delimiter(text))
+        .delimiter(delimiter)
         .trim(Trim::All)
         .flexible(true)
         .from_reader(text.as_bytes());
     let not_csv = |error: csv::Error| {
         let line = error.position().map_or(1, csv::Position::line);
-        Place { file, line }.error(None, format!("not a CSV file: {error}"))
+        Place { file, line, has_decimal_comma }.error(None, format!("not a CSV file: {error}"))
     };
     let header = reader.headers().map_err(not_csv)?.clone();
-    let place = Place { file, line: line(text, &header) };
+    let mut lines = Lines { text, byte: 0, line: 1 };
+    let place = Place { file, line: lines.of(&header), has_decimal_comma };
     let columns = columns(&header, &place)?;
     let mut rows = Vec::new();
     for record in reader.records() {
         let record = record.map_err(not_csv)?;
-        let place = Place { file, line: line(text, &record) };
+        let place = Place { file, line: lines.of(&record), has_decimal_comma };
         if record.iter().all(str::is_empty) {
             continue;
         }
@@ -105,16 +148,20 @@ fn parse(text: &str, file: &str, source_name: &str) -> Result<MeasuredFile, Meas
         Column::Parameter(parameter) => Some(parameter.name),
         _ => None,
     });
-    Ok(MeasuredFile { parameters: parameters.collect(), rows })
+    let unknown = header.iter().zip(&columns).filter(|(_, column)| matches!(column, Column::Unknown));
+    let unknown: Vec<String> = unknown.map(|(name, _)| format!("`{name}`")).collect();
+    let left_out = (!unknown.is_empty()).then(|| {
+        let (columns, are) = if unknown.len() == 1 { ("column", "is") } else { ("columns", "are") };
+        let names = unknown.iter().take(MOST_NAMED).cloned().collect::<Vec<_>>().join(", ");
+        let more = unknown.len().saturating_sub(MOST_NAMED);
+        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+        format!("{file}: {columns} {names}{more} {are} no parameter and no result, and left out")
+    });
+    Ok(MeasuredFile { parameters: parameters.collect(), rows, left_out })
 }
 
-/// The line of a record, counted from 1. The reader's own position is before the blank lines and comments above the record.
-fn line(text: &str, record: &StringRecord) -> u64 {
-    let start = record.position().and_then(|position| usize::try_from(position.byte()).ok()).unwrap_or(0);
-    let (above, below) = text.split_at_checked(start).unwrap_or(("", text));
-    let skipped = below.lines().take_while(|line| line.trim().is_empty() || line.starts_with('#')).count();
-    (above.matches('\n').count() + skipped) as u64 + 1
-}
+/// Most columns that a message names.
+const MOST_NAMED: usize = 10;
 
 /// The character between cells: the first of comma, semicolon and tab in the header that occurs.
 fn delimiter(text: &str) -> u8 {
@@ -138,14 +185,17 @@ fn error_column(scalar: &Scalar) -> String {
 /// All names that a column can have.
 fn known_names() -> Vec<String> {
     let parameters = PARAMETERS.iter().map(|parameter| parameter.name.to_owned());
+    let own = IGNORED.iter().chain(&[SQUEALS, STATUS]).map(|name| (*name).to_owned());
     let results = SCALARS.iter().flat_map(|scalar| [scalar.name.to_owned(), error_column(scalar)]);
-    parameters.chain(results).chain(IGNORED.map(str::to_owned)).collect()
+    parameters.chain(results).chain(own).collect()
 }
 
 fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, MeasuredError> {
+    let known = known_names();
     let mut columns = Vec::new();
-    for (index, name) in header.iter().enumerate() {
-        if header.iter().take(index).any(|other| other == name) {
+    let mut names = HashSet::new();
+    for name in header {
+        if !names.insert(name) {
             return Err(
                 place.error(Some(name), "the file has this column twice; expected it once".to_owned())
             );
@@ -155,6 +205,10 @@ fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, Measured
         let parameter = name.strip_prefix("parameter_").unwrap_or(name);
         columns.push(if IGNORED.contains(&name) {
             Column::Ignored
+        } else if name == SQUEALS {
+            Column::Squeals
+        } else if name == STATUS {
+            Column::Status
         } else if let Some(scalar) = (name == "mu_star_se").then(|| Scalar::find("mu_star")).flatten() {
             // An export calls the error of μ* so.
             Column::Error(scalar)
@@ -164,18 +218,20 @@ fn columns(header: &StringRecord, place: &Place) -> Result<Vec<Column>, Measured
             Column::Parameter(parameter)
         } else if let Some(scalar) = of_error() {
             Column::Error(scalar)
-        } else {
-            let known = known_names();
-            let nearest = nearest_name(name, known.iter().map(String::as_str));
-            let advice = nearest.map_or_else(String::new, |name| format!("; did you mean `{name}`?"));
+        } else if let Some(meant) = misspelt_name(name, known.iter().map(String::as_str)) {
+            // Without it, a misspelt result would be missing in silence.
             let expected = "expected omega_rpm, mu or another parameter, a result such as mu_star or frequency_hz, its error \
-                            such as mu_star_error or frequency_error_hz, or note";
-            return Err(place.error(Some(name), format!("no such column{advice}\n  help: {expected}")));
+                            such as mu_star_error or frequency_error_hz, squeals, or note";
+            let message = format!("no such column; did you mean `{meant}`?\n  help: {expected}");
+            return Err(place.error(Some(name), message));
+        } else {
+            Column::Unknown
         });
     }
-    if !columns.iter().any(|column| matches!(column, Column::Result(_))) {
-        let message = "expected a column with results: mu_star, frequency_hz or another number of the export"
-            .to_owned();
+    if !columns.iter().any(|column| matches!(column, Column::Result(_) | Column::Squeals)) {
+        let message =
+            "expected a column with results: mu_star, frequency_hz, squeals or another number of the export"
+                .to_owned();
         return Err(place.error(None, message));
     }
     Ok(columns)
@@ -193,13 +249,14 @@ fn row(
     let mut values: Vec<MeasuredValue> = Vec::new();
     let mut errors: Vec<(&str, f64)> = Vec::new();
     let (mut omega_rpm, mut mu) = (f64::NAN, f64::NAN);
+    let mut squeals = None;
     for ((column, name), text) in columns.iter().zip(header).zip(record) {
-        let number = || number(text).map_err(|message| place.error(Some(name), message));
+        let number = || number(text, place).map_err(|message| place.error(Some(name), message));
         let require = |holds: bool, x: f64, expected: &str| {
             if holds { Ok(x) } else { Err(place.error(Some(name), format!("{text}: expected {expected}"))) }
         };
         match column {
-            Column::Ignored => {}
+            Column::Ignored | Column::Unknown => {}
             Column::Parameter(parameter) if text.is_empty() => {
                 if !matches!(parameter.name, "omega_rpm" | "mu") {
                     parameters.push((name.to_owned(), Value::Null));
@@ -212,7 +269,26 @@ fn row(
                 _ => parameters.push((name.to_owned(), text.into())),
             },
             _ if text.is_empty() => {}
+            Column::Squeals => {
+                squeals = Some(match text.to_ascii_lowercase().as_str() {
+                    "yes" | "true" | "1" => true,
+                    "no" | "false" | "0" => false,
+                    _ => return Err(place.error(Some(name), format!("{text}: expected yes or no"))),
+                });
+            }
+            Column::Status => match text {
+                "periodic" | "unstable" => squeals = squeals.or(Some(true)),
+                "decayed" => squeals = squeals.or(Some(false)),
+                _ => {}
+            },
+            // Of what does not vibrate, people write 0 Hz.
+            Column::Result(scalar) if scalar.name == FREQUENCY && number()? == 0.0 => {
+                squeals = squeals.or(Some(false));
+            }
             Column::Result(scalar) => {
+                if scalar.name == FREQUENCY {
+                    squeals = squeals.or(Some(true));
+                }
                 values.push(MeasuredValue { name: scalar.name.to_owned(), value: number()?, error: None });
             }
             Column::Error(scalar) => {
@@ -229,13 +305,14 @@ fn row(
             value.error = Some(error);
         }
     }
-    Ok((!values.is_empty()).then(|| JobRow {
+    let has_result = !values.is_empty() || squeals.is_some();
+    Ok(has_result.then(|| JobRow {
         study: source_name.to_owned(),
         job: format!("{}:{}", place.file, place.line),
         parameters,
         omega_rpm,
         mu,
-        state: RowState::Measured(Measurement { values }),
+        state: RowState::Measured(Measurement { values, squeals }),
         wall_s: None,
         numerics: None,
         discretisation: Discretisation::NotMeasured,
@@ -244,8 +321,10 @@ fn row(
     }))
 }
 
-fn number(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
+fn number(text: &str, place: &Place) -> Result<f64, String> {
+    let pointed = text.replacen(',', ".", 1);
+    let is_german = place.has_decimal_comma && !text.contains('.');
+    match if is_german { &pointed } else { text }.parse::<f64>() {
         Ok(number) if number.is_finite() => Ok(number),
         _ if text.contains(',') => {
             Err(format!("{text}: expected a number with a point: {}", text.replace(',', ".")))
@@ -275,11 +354,13 @@ mod tests {
         assert_eq!(first.parameters, [("clamp_side".to_owned(), "inner_side".into())]);
         let value = |name: &str, value, error| MeasuredValue { name: name.to_owned(), value, error };
         let values = vec![value("mu_star", 0.27, Some(0.01)), value("frequency_hz", 15_200.0, Some(50.0))];
-        assert_eq!(first.state, RowState::Measured(Measurement { values }));
+        assert_eq!(first.state, RowState::Measured(Measurement { values, squeals: Some(true) }));
         assert!(second.mu.is_nan() && second.job == "points.csv:8", "{second:?}");
         assert_eq!(second.parameters, [("clamp_side".to_owned(), Value::Null)]);
         for text in [
             "omega_rpm;mu_star\n7;0.3\n",
+            "omega_rpm;mu_star\n7;0,3\n",
+            "omega_rpm\tmu_star\n7,0\t0,3\n",
             "omega_rpm\tmu_star\n7\t0.3\n",
             "study,job,omega_rpm,mu_star,mu_star_se\na,b,7,0.3,0.01",
         ] {
@@ -297,9 +378,11 @@ mod tests {
             ),
             ("omega_rpm,mu_star\n7,0.3\n\n8,high\n", "points.csv:4: column mu_star: high: expected a number"),
             (
-                "omega_rpm;mu_star\n7;0,3\n",
+                "omega_rpm,mu_star\n7,\"0,3\"\n",
                 "points.csv:2: column mu_star: 0,3: expected a number with a point: 0.3",
             ),
+            ("rpm,mu_star\n7,0.3\n", "points.csv:1: column rpm: no such column; did you mean `omega_rpm`?"),
+            ("omega_rpm,squeals\n7,maybe\n", "points.csv:2: column squeals: maybe: expected yes or no"),
             ("omega_rpm,mu_star\n7,NaN\n", "points.csv:2: column mu_star: NaN: expected a number"),
             ("omega_rpm,mu_star\n-7,0.3\n", "points.csv:2: column omega_rpm: -7: expected a number > 0"),
             ("mu,mu_star\n-1,0.3\n", "points.csv:2: column mu: -1: expected a number >= 0"),
@@ -317,5 +400,51 @@ mod tests {
             let found = refusal(text);
             assert!(found.starts_with(expected), "{text:?}: {found}");
         }
+    }
+
+    /// Protects: a column of the author's own is left out and named, and the others are read.
+    #[test]
+    fn unknown_columns_are_left_out_and_named() {
+        let found = parse("omega_rpm;mu_star;Bemerkung\n7;0,3;erste\n", "points.csv", "points").unwrap();
+        assert_eq!(found.rows.len(), 1);
+        let left_out = "points.csv: column `Bemerkung` is no parameter and no result, and left out";
+        assert_eq!(found.left_out.as_deref(), Some(left_out));
+        let found = parse("omega_rpm,mu_star,note\n7,0.3,first\n", "points.csv", "points").unwrap();
+        assert_eq!(found.left_out, None);
+    }
+
+    /// Protects: a point says whether it squeals: in a column of its own, by a frequency, by none of 0 Hz, or by the outcome in an
+    /// export; an empty cell says nothing.
+    #[test]
+    fn points_say_whether_they_squeal() {
+        let text = "omega_rpm,mu_star,frequency_hz,squeals,status\n1,0.3,15200,,\n2,0.3,0,,\n3,0.3,,,\n4,,,no,\n5,,,Yes,\n6,0.3,,,decayed\n\
+                    7,0.3,,,periodic\n8,0.3,,,not_periodic\n9,0.3,15200,no,\n";
+        let rows = parse(text, "points.csv", "points").unwrap().rows;
+        let found: Vec<Option<bool>> = rows.iter().map(JobRow::squeals).collect();
+        let (yes, no) = (Some(true), Some(false));
+        assert_eq!(found, [yes, no, None, no, yes, no, yes, None, no]);
+        // 0 Hz is no frequency that could be compared.
+        assert_eq!(
+            rows[1].state,
+            RowState::Measured(Measurement {
+                values: vec![MeasuredValue { name: "mu_star".to_owned(), value: 0.3, error: None }],
+                squeals: no,
+            })
+        );
+    }
+
+    /// Protects: the lines of a long file are counted in one pass: each record adds what lies between it and the one before.
+    #[test]
+    fn lines_are_counted_in_one_pass() {
+        let rows = 200_000;
+        let text: String =
+            std::iter::once("omega_rpm,mu_star\n".to_owned())
+                .chain((0..rows).map(|row| {
+                    format!("{}{}.5,0.3\n", if row % 1000 == 0 { "\n# day\n" } else { "" }, row % 50)
+                }))
+                .collect();
+        let found = parse(&text, "p", "p").unwrap();
+        assert_eq!(found.rows.len(), rows);
+        assert_eq!(found.rows[rows - 1].job, format!("p:{}", text.lines().count()));
     }
 }

@@ -9,7 +9,9 @@ use super::{provenance, sheet};
 use crate::publish::Sheet;
 use crate::queue::{Counts, Queue, Scope};
 use crate::report::Along;
-use crate::report::{JobRow, Provenance, Report, StabilityPoint, View, write, write_stability};
+use crate::report::{
+    JobRow, Provenance, Report, StabilityPoint, View, Written, write_compared, write_stability,
+};
 use crate::study::{Study, Warning};
 use std::path::{Path, PathBuf};
 
@@ -40,7 +42,7 @@ pub async fn write_refreshing_report(
 ) -> Result<Vec<PathBuf>, SweepError> {
     let request = ReportRequest::of_study(study);
     let view = request.view_of_study(queue, rows).await?;
-    write_viewed(queue, study, &request.studies, rows, &view, folder, refresh_s).await
+    Ok(write_viewed(queue, study, &request.studies, rows, &view, folder, refresh_s).await?.files)
 }
 
 /// Writes the page, tables and figures of a report's content into a folder, as [`write_refreshing_report`].
@@ -52,8 +54,8 @@ pub async fn write_content(
     content: &ReportContent,
     folder: &Path,
     refresh_s: Option<u32>,
-) -> Result<Vec<PathBuf>, SweepError> {
-    let ReportContent { title, studies, rows, view } = content;
+) -> Result<Written, SweepError> {
+    let ReportContent { title, studies, rows, view, .. } = content;
     write_viewed(queue, title, studies, rows, view, folder, refresh_s).await
 }
 
@@ -65,7 +67,7 @@ async fn write_viewed(
     view: &View,
     folder: &Path,
     refresh_s: Option<u32>,
-) -> Result<Vec<PathBuf>, SweepError> {
+) -> Result<Written, SweepError> {
     let surroundings = Surroundings::read(queue, studies, rows).await?;
     let (stability, along) = stability(queue, studies).await?;
     let findings = match studies {
@@ -83,7 +85,7 @@ async fn write_viewed(
         refresh_s,
         ..surroundings.report()
     };
-    Ok(write(&report, folder)?)
+    Ok(write_compared(&report, folder)?)
 }
 
 /// Writes the page, tables and figures of a study of complex modes, whose `points` were read, into a folder, which is created
@@ -112,6 +114,7 @@ struct Surroundings {
     sheet: Option<Sheet>,
     provenance: Option<Provenance>,
     warnings: Vec<String>,
+    remarks: Vec<String>,
     written_ms: i64,
 }
 
@@ -119,10 +122,10 @@ impl Surroundings {
     async fn read(queue: &mut Queue, studies: &[String], rows: &[JobRow]) -> Result<Self, SweepError> {
         let provenance = provenance::read(queue, studies).await?;
         let written_ms = queue.now_ms().await?;
-        let warnings = warnings(queue, studies).await?;
+        let [warnings, remarks] = warnings(queue, studies).await?;
         let definitions = definitions(queue, studies).await?;
         let sheet = sheet::read(queue, studies, &definitions, rows).await?;
-        Ok(Self { description: description(&definitions), sheet, provenance, warnings, written_ms })
+        Ok(Self { description: description(&definitions), sheet, provenance, warnings, remarks, written_ms })
     }
 
     /// A report without title and results.
@@ -132,6 +135,7 @@ impl Surroundings {
             sheet: self.sheet.as_ref(),
             provenance: self.provenance.as_ref(),
             warnings: &self.warnings,
+            remarks: &self.remarks,
             written_ms: self.written_ms,
             ..Report::default()
         }
@@ -172,22 +176,31 @@ fn description(definitions: &[Study]) -> Option<String> {
     (!texts.is_empty()).then(|| texts.join(" "))
 }
 
-/// What is doubtful about the inputs of stored studies. With several studies, each warning names its study.
-async fn warnings(queue: &mut Queue, studies: &[String]) -> Result<Vec<String>, SweepError> {
-    let mut warnings = Vec::new();
+/// What is doubtful about the inputs of stored studies, and then what is to be said about their cost. With several studies, each
+/// warning names its study.
+async fn warnings(queue: &mut Queue, studies: &[String]) -> Result<[Vec<String>; 2], SweepError> {
+    let mut found = [Vec::new(), Vec::new()];
     for name in studies {
         // A study may have been removed in between.
-        let Some(found) = queue.study(name).await? else { continue };
-        let own: Vec<String> = match Study::parse_stored(&found.document, name) {
-            Ok(study) => study.warnings().iter().map(Warning::in_words).collect(),
+        let Some(stored) = queue.study(name).await? else { continue };
+        let [doubts, remarks] = match Study::parse_stored(&stored.document, name) {
+            Ok(study) => {
+                let (doubts, remarks): (Vec<Warning>, Vec<Warning>) =
+                    study.warnings().into_iter().partition(Warning::is_doubt);
+                [doubts, remarks].map(|part| part.iter().map(Warning::in_words).collect())
+            }
             Err(error) => {
-                vec![format!("this version cannot read the study, so its inputs are not checked: {error}")]
+                let text =
+                    format!("this version cannot read the study, so its inputs are not checked: {error}");
+                [vec![text], Vec::new()]
             }
         };
         let named = |warning: String| if studies.len() > 1 { format!("{name}: {warning}") } else { warning };
-        warnings.extend(own.into_iter().map(named));
+        for (all, own) in found.iter_mut().zip([doubts, remarks]) {
+            all.extend(own.into_iter().map(named));
+        }
     }
-    Ok(warnings)
+    Ok(found)
 }
 
 /// Changes whenever the report of a study would: reading this is much faster than reading the rows.

@@ -41,6 +41,8 @@ pub struct ReportContent {
     pub rows: Vec<JobRow>,
     /// How they are laid out.
     pub view: View,
+    /// What was left out of files of measured points, in sentences.
+    pub left_out: Vec<String>,
 }
 
 /// A study of the database as it was submitted.
@@ -220,11 +222,13 @@ pub async fn read_report(queue: &mut Queue, request: &ReportRequest) -> Result<R
     }
     let mut rows: Vec<JobRow> = of_studies.into_iter().flatten().collect();
     let jobs = rows.len();
-    for file in files {
+    let mut left_out = Vec::new();
+    for mut file in files {
+        left_out.extend(file.left_out.take());
         rows.extend(completed(file, &rows[..jobs], &names));
     }
     let view = request.view(&studies, &rows)?;
-    Ok(ReportContent { title: request.title(), studies: request.studies.clone(), rows, view })
+    Ok(ReportContent { title: request.title(), studies: request.studies.clone(), rows, view, left_out })
 }
 
 /// Gives the rows of a study the parameters that its grid does not have, with the values of the jobs.

@@ -190,7 +190,7 @@ fn settings_of_a_single_job() {
     refuses(
         &folder,
         "solve mine.json --set my=1",
-        &["no such parameter", "the parameters are omega_rpm, mu"],
+        &["no such parameter", "`tribosweep parameters` lists all of them"],
     );
     refuses(
         &folder,

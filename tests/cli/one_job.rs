@@ -93,7 +93,7 @@ fn a_single_job_is_that_of_the_sweep() {
         assert_eq!(record[name].as_f64().unwrap(), row[name].parse::<f64>().unwrap(), "{name}");
     }
     assert_eq!(record["regime"], row["regime"].as_str());
-    assert_eq!(record["outcome"], row["status"].as_str());
+    assert_eq!(record["status"], row["status"].as_str());
 }
 
 /// Protects: the text has the figures of the record, and a setting reaches the solver.

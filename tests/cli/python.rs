@@ -34,6 +34,18 @@ record = tribosweep.solve(study, mu=0.4, omega_rpm=20)
 same = jobs[(jobs["mu"] == 0.4) & (jobs["omega_rpm"] == 20)].iloc[0]
 assert math.isclose(record["mu_star"], same["mu_star"], rel_tol=1e-12), (record["mu_star"], same["mu_star"])
 
+import warnings
+with warnings.catch_warnings(record=True) as said:
+    warnings.simplefilter("always")
+    soft = tribosweep.run({**study, "name": "soft"}, db="sweep.db", out="soft", settings={"mu": 0.4, "omega_rpm": 5, "load_n": 9000})
+    tribosweep.solve(study, mu=0.4, omega_rpm=5, load_n=9000)
+texts = [str(one.message) for one in said if one.category is tribosweep.InputWarning]
+assert len(texts) == 2 and all("mean strain" in text for text in texts), texts
+assert all(one.filename == "<string>" for one in said), [one.filename for one in said]
+[text] = soft.attrs["warnings"]
+assert "mean strain" in text and "\n  help: check the units" in text, text
+assert jobs.attrs["warnings"] == [], jobs.attrs
+
 for call, part, code in [
     (lambda: tribosweep.run({"grid": {"muu": [0.2]}}, db="sweep.db"), "did you mean `mu`?", 2),
     (lambda: tribosweep.run("missing.json", db="sweep.db"), "missing.json", 2),

@@ -1,11 +1,12 @@
 //! Several sources side by side: studies, and measured points.
 
 use crate::svg;
-use crate::synthetic::{measured, periodic, report, row};
+use crate::synthetic::{measured, periodic, record, report, row};
 use std::fs;
+use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::figure::{Plot, figures};
 use tribosweep::report::tables::{self, Quantity};
-use tribosweep::report::{JobRow, Report, RowState, View, write};
+use tribosweep::report::{JobRow, Measurement, Report, RowState, View, write, write_compared};
 
 /// A study called `name` at 1, 10 and 100 rpm, with μ* = `offset` + 0.01 log₁₀ ω and an error of 0.0005.
 fn study(name: &str, offset: f64) -> Vec<JobRow> {
@@ -121,4 +122,61 @@ fn one_study_has_no_comparison() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     write(&report(&[row(7.0, 0.4, RowState::Pending)]), folder.path()).expect("the report is written");
     assert!(!folder.path().join("differences.csv").exists());
+}
+
+/// Protects: what squeals in one source and not in the other comes first, in the file, on both pages and for the caller, at equal speeds
+/// and between neighbours that agree; where one of the two does not say it, nothing is said.
+#[test]
+fn contradictions_about_squeal_come_first() {
+    let mut rows = study("simulated", 0.3);
+    rows.push(JobRow {
+        study: "simulated".to_owned(),
+        job: "stable".to_owned(),
+        ..row(200.0, 0.4, RowState::Done(Box::new(record(Outcome::Decayed, Regime::Stable, 0.4))))
+    });
+    let at = |omega: f64, squeals: Option<bool>| {
+        let RowState::Measured(measurement) = measured(omega, 0.4, 0.33, None).state else { unreachable!() };
+        JobRow {
+            state: RowState::Measured(Measurement { squeals, ..measurement }),
+            ..measured(omega, 0.4, 0.33, None)
+        }
+    };
+    rows.extend([
+        at(1.0, Some(true)),
+        at(5.0, Some(false)),
+        at(150.0, Some(false)),
+        at(200.0, Some(true)),
+        at(100.0, None),
+    ]);
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    let written = write_compared(&report(&rows), folder.path()).expect("the report is written");
+    assert_eq!(
+        written.contradictions,
+        [
+            "Squeal is contradicted at 2 of 3 points where both say whether it squeals:",
+            "omega_rpm = 5: rig (measured) does not squeal, and simulated squeals on both sides",
+            "omega_rpm = 200: rig (measured) squeals, and simulated is stable",
+        ]
+    );
+    let (lines, markdown) = differences(&rows, &View::default());
+    let first: Vec<(&str, &str)> = lines.iter().take(3).map(|line| (&line[2], &line[4])).collect();
+    assert_eq!(first[..2], [("squeals", "0"), ("squeals", "1")]);
+    assert_eq!(first[2].0, "mu_star");
+    let html = fs::read_to_string(folder.path().join("report.html")).expect("a page");
+    for page in [markdown, html] {
+        let place = |part: &str| page.find(part).unwrap_or_else(|| panic!("no {part}"));
+        assert!(place("Squeal is contradicted at 2 of 3") < place("points of rig are at the parameters"));
+    }
+}
+
+/// Protects: a file of many measured points is compared as a whole, and tables and figures show an even part of it and say so.
+#[test]
+fn many_measured_points_stay_readable() {
+    let mut rows = study("simulated", 0.3);
+    let count = 5000;
+    rows.extend((0..count).map(|point| measured(1.0 + 0.01 * f64::from(point), 0.4, 0.33, None)));
+    let (lines, page) = differences(&rows, &View::default());
+    assert_eq!(lines.iter().filter(|line| &line[2] == "mu_star").count(), count as usize);
+    assert!(page.contains("Tables and figures show 1667 of the 5000 measured points"), "{}", &page[..3000]);
+    assert!(page.lines().count() < 6000, "{}", page.lines().count());
 }

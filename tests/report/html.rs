@@ -114,8 +114,14 @@ fn what_a_study_says_is_text() {
 fn doubtful_inputs_stand_at_the_head() {
     let rows = [row(7.0, 0.4, periodic(0.35))];
     let warnings = ["scene.load.force_n = 30000: <much>".to_owned()];
-    let page = page_of(&Report { warnings: &warnings, ..report(&rows) });
+    let remarks = ["numerics.beta_r_s: damping shortens the time step".to_owned()];
+    let page = page_of(&Report { warnings: &warnings, remarks: &remarks, ..report(&rows) });
     let (head, _) = page.split_once("<nav").unwrap();
+    // A remark about the cost is in no box.
+    let (boxed, after) = head.split_once("</ul>").unwrap();
+    assert!(!boxed.contains("shortens the time step") && after.contains("shortens the time step"), "{head}");
+    let remark_alone = page_of(&Report { remarks: &remarks, ..report(&rows) });
+    assert!(!remark_alone.contains("Check these inputs") && remark_alone.contains("shortens the time step"));
     assert!(
         text(head)
             .contains("Check these inputs before you use the results:scene.load.force_n = 30000: <much>"),

@@ -39,7 +39,7 @@ pub fn measured(omega_rpm: f64, mu: f64, mu_star: f64, error: Option<f64>) -> Jo
         job: format!("rig.csv:{omega_rpm}"),
         parameters: Vec::new(),
         discretisation: Discretisation::NotMeasured,
-        ..row(omega_rpm, mu, RowState::Measured(Measurement { values: vec![value] }))
+        ..row(omega_rpm, mu, RowState::Measured(Measurement { values: vec![value], squeals: None }))
     }
 }
 

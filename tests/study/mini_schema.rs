@@ -9,7 +9,8 @@ pub const KNOWN: &[&str] = &[
     "$schema", "$defs", "title", "description", "default", "format",
     // Keywords that do.
     "$ref", "type", "const", "enum", "anyOf", "oneOf", "properties", "additionalProperties", "required",
-    "minProperties", "items", "minItems", "maxItems", "uniqueItems", "minimum", "maximum", "pattern",
+    "minProperties", "items", "minItems", "maxItems", "uniqueItems", "minimum", "maximum",
+    "exclusiveMinimum", "exclusiveMaximum", "allOf", "pattern",
 ];
 
 /// Where and why `value` violates `schema`, if it does.
@@ -71,6 +72,16 @@ pub fn violation(root: &Value, schema: &Value, value: &Value, at: &str) -> Optio
             }
             ("minimum", Value::Number(_)) if number(value) < number(rule) => fail("too small".into()),
             ("maximum", Value::Number(_)) if number(value) > number(rule) => fail("too large".into()),
+            ("exclusiveMinimum", Value::Number(_)) if number(value) <= number(rule) => {
+                fail("too small".into())
+            }
+            ("exclusiveMaximum", Value::Number(_)) if number(value) >= number(rule) => {
+                fail("too large".into())
+            }
+            ("allOf", _) => {
+                let forms = rule.as_array().expect("forms are a list");
+                forms.iter().find_map(|form| violation(root, form, value, at))
+            }
             ("pattern", Value::String(text)) => {
                 assert_eq!(rule, "^[A-Za-z0-9_-]+$", "only the pattern of names is supported");
                 let allowed = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';

@@ -96,7 +96,12 @@ fn a_modulus_in_gpa_is_named_as_the_reason() {
              expected Pa"
         );
         assert!(text.starts_with(&expected), "{text}");
-        assert!(!text.contains("strain") && !text.contains("surface waves"), "{text}");
+        assert!(!text.contains("surface waves"), "{text}");
+        // What follows from it is refused, and says how far the pin would be compressed.
+        assert!(
+            text.contains("scene.load.force_n = 30: expected a mean strain F/(E A) of the pin far below 1"),
+            "{text}"
+        );
     }
     // What is refused anyway has no second message.
     let text = refusal(&gpa("-1"));
@@ -267,4 +272,90 @@ fn a_job_has_the_doubts_of_its_study() {
         of_job.iter().map(|words| words.split(": ").nth(1)).collect::<Vec<_>>(),
         of_study.iter().map(|words| words.split(": ").nth(1)).collect::<Vec<_>>()
     );
+}
+
+/// Protects: a diameter in mm, and a holder in g or kN/mm, are named as such, and a usual holder is not.
+#[test]
+fn diameters_and_holders_in_other_units_are_named() {
+    let text =
+        refusal(&of_scene(r#""pin": { "shape": "cylinder", "diameter_m": 8, "elements": [12, 12, 10] }"#));
+    assert!(
+        text.starts_with("studies/x.json:1:")
+            && text.contains("scene.pin.diameter_m = 8: a length of a metre or more, as if it were in mm"),
+        "{text}"
+    );
+    let warning = only(r#""holder": { "mass_kg": 80, "stiffness_y_n_m": 500 }"#);
+    assert_eq!(warning.kind, "unit");
+    // √(500/80)/2π Hz.
+    assert_contains(&warning.to_string(), &["scene.holder.stiffness_y_n_m = 500: ", "swings at 0.398 Hz"]);
+    assert_eq!(warnings(&of_scene(r#""holder": { "mass_kg": 0.08, "stiffness_y_n_m": 5e6 }"#)), []);
+}
+
+/// Protects: edges that a cylinder does not use are named where the study gives them, and a static coefficient below the kinetic one is.
+#[test]
+fn values_that_contradict_each_other_are_named() {
+    let cylinder = |size: &str| {
+        let pin = format!(
+            r#""pin": {{ "shape": "cylinder", "diameter_m": 0.008, "elements": [12, 12, 10]{size} }}, "clamp": {{ "side": "whole_top" }}"#
+        );
+        warnings(&of_scene(&pin))
+    };
+    assert_eq!(cylinder(""), []);
+    assert_eq!(cylinder(r#", "size_m": [0.008, 0.008, 0.012]"#), []);
+    // Also the edges of the reference pin, if somebody gives them.
+    let found = cylinder(r#", "size_m": [0.012, 0.015, 0.012]"#);
+    assert_eq!(found.iter().map(|warning| warning.kind).collect::<Vec<_>>(), ["size"]);
+    assert_contains(
+        &found[0].to_string(),
+        &["size_m = [0.012, 0.015, 0.012]: a cylinder uses the height", "0.008 m"],
+    );
+
+    let friction = |law: &str, mu_static: f64| {
+        warnings(&of_scene(&format!(
+            r#""contact": {{ "law": "{law}", "mu": 0.35, "mu_static": {mu_static}, "speed_m_s": 0.1 }}"#
+        )))
+    };
+    assert_eq!(friction("exponential", 0.35), []);
+    assert_contains(
+        &friction("static_kinetic", 0.25)[0].to_string(),
+        &["mu_static = 0.25: less than mu = 0.35", "exchanged"],
+    );
+    // Coulomb's law has no such coefficient.
+    assert_eq!(friction("coulomb", 0.25), []);
+}
+
+/// Protects: what costs time and changes no result is no doubt about the result.
+#[test]
+fn cost_is_no_doubt() {
+    let about = |text: &str| {
+        warnings(text).iter().map(|warning| (warning.kind, warning.is_doubt())).collect::<Vec<_>>()
+    };
+    assert_eq!(about(r#"{ "numerics": { "beta_r_s": 2e-6 } }"#), [("damping", false)]);
+    assert_eq!(
+        about(r#"{ "grid": { "omega_rpm": [10, 20], "load_n": [30, 60] } }"#),
+        [("repetition", false)]
+    );
+    assert_eq!(about(&of_scene(r#""load": { "force_n": 30000 }"#)), [("strain", true)]);
+}
+
+/// Protects: a load that would compress the pin to nothing is refused in a new study, and a database that has one is still read.
+#[test]
+fn a_pin_compressed_to_nothing_is_refused() {
+    let study = |force: f64| format!(r#"{{ "name": "x", "scene": {{ "load": {{ "force_n": {force} }} }} }}"#);
+    // E A of the reference pin is 180 kN.
+    assert!(Study::parse(&study(179_000.0), "x").is_ok());
+    assert_contains(&refusal(&study(181_000.0)), &["mean strain", "it is 1.01", "E = 1e9 Pa"]);
+    assert!(Study::parse_stored(&study(181_000.0), "x").is_ok());
+}
+
+/// Protects: names that make trouble are refused before anything runs, with one that is possible; stored ones are read.
+#[test]
+fn bad_names_get_an_offer() {
+    let named = |name: &str| format!(r#"{{ "name": "{name}" }}"#);
+    assert_contains(&refusal(&named("Messung Ü")), &["name = \"Messung Ü\"", "`Messung-Ue` is possible"]);
+    assert_contains(&refusal(&named(&"x".repeat(300))), &["300 letters", "at most 200"]);
+    for name in ["-rf", "con", &"x".repeat(300)] {
+        refusal(&named(name));
+        assert!(Study::parse_stored(&named(name), name).is_ok(), "{name}");
+    }
 }

@@ -5,12 +5,13 @@ use super::mini_schema::{KNOWN, for_each, violation};
 use super::{refusal, shipped};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use tribosweep::spec::{Program, Table};
+use std::sync::LazyLock;
+use tribosweep::spec::{End, LIMITS, Limit, Program, Table};
 use tribosweep::study::{PARAMETERS, Study, schema};
 
 fn problem(study: &Value) -> Option<String> {
-    let schema = schema();
-    violation(&schema, &schema, study, "")
+    static SCHEMA: LazyLock<Value> = LazyLock::new(schema);
+    violation(&SCHEMA, &SCHEMA, study, "")
 }
 
 #[test]
@@ -39,6 +40,8 @@ fn a_complete_job_fits() {
     let mut full = full();
     let table = || Some(Table(vec![[0.0, 7.0], [0.01, 7.0]]));
     full.scene.program = Program { omega_rpm: table(), force_n: table() };
+    // The other value that this field can have; a spring in z is refused.
+    full.scene.holder.stiffness_z_n_m = Some(0.0);
     let job = serde_json::to_value(full).unwrap();
     assert_eq!(problem(&job), None);
     let schema = schema();
@@ -177,4 +180,109 @@ fn the_grid_has_exactly_the_parameters_of_the_registry() {
     for parameter in PARAMETERS {
         assert_eq!(grid["properties"][parameter.name]["description"], parameter.doc);
     }
+}
+
+/// Values just outside of a limit, and those at its ends that are allowed.
+fn around(limit: &Limit) -> (Vec<f64>, Vec<f64>) {
+    let is_whole = ["elements[]", "count", "seed", "cycles"].iter().any(|name| limit.field.ends_with(name));
+    let step = |value: f64| if is_whole { 1.0 } else { 1.0e-9 * value.abs().max(1.0e-12) };
+    let (mut outside, mut inside) = (Vec::new(), Vec::new());
+    for (end, sign) in [(limit.low, -1.0), (limit.high, 1.0)] {
+        match end {
+            End::Open => {}
+            End::At(value) => {
+                outside.push(value + sign * step(value));
+                inside.push(value);
+            }
+            End::Beyond(value) => {
+                outside.push(value);
+                inside.push(value - sign * step(value));
+            }
+        }
+    }
+    (outside, inside)
+}
+
+/// A study in which nothing but the field has a value of its own, besides what makes the program look at the field.
+fn study_with(limit: &Limit, value: f64) -> Value {
+    let number =
+        if value.fract() == 0.0 && value.abs() < 1.0e15 { json!(value as i64) } else { json!(value) };
+    let mut study = match limit.field {
+        field if field.contains(".ring.") => json!({ "scene": { "disk": { "kind": "elastic" } } }),
+        field if field.contains(".mesh.") => json!({ "scene": { "pin": { "shape": "mesh" } } }),
+        field if field.contains(".diameter_m") => {
+            json!({ "scene": { "pin": { "shape": "cylinder", "elements": [12, 12, 10] } } })
+        }
+        field if field.contains(".height_map.") => {
+            json!({ "scene": { "pin": { "base": { "height_map": { "heights_m": [[0, 1e-7], [0, 0]] } } } } })
+        }
+        field if field.contains(".regions[]") => {
+            let region = json!({ "above_m": 0.005, "young_modulus_pa": 2e9, "poisson_ratio": 0.3, "density_kg_m3": 2000 });
+            json!({ "scene": { "pin": { "regions": [region] } } })
+        }
+        field if field.contains(".roughness.") => {
+            json!({ "scene": { "pin": { "base": { "roughness": { "longest_m": 0.008, "shortest_m": 0.004 } } } } })
+        }
+        "scene.disk.waviness_count" => json!({ "scene": { "disk": { "waviness_height_m": 1e-6 } } }),
+        "scene.pin.size_m[]" => json!({ "scene": { "pin": { "size_m": [0.012, 0.015, 0.010] } } }),
+        "scene.pin.elements[]" => json!({ "scene": { "pin": { "elements": [12, 15, 10] } } }),
+        "scene.program.omega_rpm[][]" => {
+            json!({ "scene": { "program": { "omega_rpm": [[0, 7], [0.01, 7]] } } })
+        }
+        "scene.program.force_n[][]" => json!({ "scene": { "program": { "force_n": [[0, 7], [0.01, 7]] } } }),
+        "damping.frequency_hz" => json!({ "damping": { "ratio": 0.1 } }),
+        field if field.starts_with("damping.") => json!({ "damping": { "frequency_hz": 15000 } }),
+        _ => json!({}),
+    };
+    let mut place = &mut study;
+    for step in limit.field.replace("[]", ".1").replace("regions.1", "regions.0").split('.') {
+        place = match step.parse::<usize>() {
+            Ok(index) => &mut place[index],
+            Err(_) => &mut place[step],
+        };
+    }
+    *place = number;
+    study
+}
+
+/// Protects: what the program refuses because of the value of a single field, an editor with the schema marks, at both ends of every
+/// limit, in the fields and in the grid; and the schema takes what the limit allows.
+#[test]
+fn the_schema_has_the_limits_of_the_program() {
+    for limit in LIMITS {
+        let name = limit.field.trim_end_matches("[]").rsplit('.').next().unwrap();
+        let (outside, inside) = around(limit);
+        assert!(!outside.is_empty(), "{} has no limit", limit.field);
+        for value in outside {
+            assert!(!limit.holds(value), "{} = {value}", limit.field);
+            let study = study_with(limit, value);
+            assert!(problem(&study).is_some(), "the schema takes {study}");
+            let message = refusal(&study.to_string());
+            assert!(message.contains(name), "{study}: {message}");
+        }
+        for value in inside {
+            let study = study_with(limit, value);
+            assert_eq!(problem(&study), None, "{study}");
+        }
+    }
+    let mut of_grid = 0;
+    for parameter in PARAMETERS {
+        let Some(limit) = Limit::of(&parameter.field()) else { continue };
+        for value in around(limit).0 {
+            let value =
+                if value.fract() == 0.0 && value.abs() < 1.0e15 { json!(value as i64) } else { json!(value) };
+            for axis in [json!([value]), json!({ "from": value, "to": value, "count": 1 })] {
+                let study = json!({ "grid": { parameter.name: axis } });
+                assert!(problem(&study).is_some(), "the schema takes {study}");
+                // Some fields are looked at only beside others, as above.
+                let is_used = !limit.field.contains(".ring.") && !limit.field.contains(".diameter_m");
+                assert!(
+                    !is_used || Study::parse(&study.to_string(), "x").is_err(),
+                    "the program takes {study}"
+                );
+            }
+            of_grid += 1;
+        }
+    }
+    assert!(of_grid > 80, "{of_grid}");
 }

@@ -7,7 +7,7 @@ use super::output::{print, terminal_width};
 use crate::exit;
 use crate::publish::value::utc_iso;
 use crate::queue::Location;
-use crate::study::{inputs, json_value};
+use crate::study::{inputs, json_value, printable_lines};
 use crate::sweep::{self, StoredJob, StudyOfJob};
 use serde_json::{Map, Value, json};
 
@@ -31,7 +31,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     })?;
     let text =
         if args.json { format!("{:#}\n", as_json(&job)) } else { text::of_job(&job, terminal_width()) };
-    print(&text)?;
+    // Errors, notes and names may be those of a stranger's database.
+    print(printable_lines(&text).as_ref())?;
     Ok(exit::SUCCESS)
 }
 
@@ -74,8 +75,18 @@ fn as_json(job: &StoredJob) -> Value {
         "inputs": inputs,
         "spec": parsed(&details.payload),
         "unreadable": unreadable,
-        "record": details.record.as_deref().filter(|_| unreadable.is_none()).map(parsed),
+        "record": details.record.as_deref().filter(|_| unreadable.is_none()).map(parsed).map(with_status),
     })
+}
+
+/// A record with the name that the export has for the way in which the run ended.
+fn with_status(mut record: Value) -> Value {
+    if let Value::Object(fields) = &mut record
+        && let Some(outcome) = fields.remove("outcome")
+    {
+        fields.insert("status".to_owned(), outcome);
+    }
+    record
 }
 
 /// A text as JSON, or as a string if it is not JSON.

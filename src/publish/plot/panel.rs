@@ -4,6 +4,7 @@ use super::axis::Axis;
 use super::canvas::{self, Area, Chart, WIDTH, write};
 use super::{CURVE_WIDTH, DASH, DrawError, FONT, GUIDE_WIDTH, MARGIN, TEXT};
 use crate::publish::error::FigureError;
+use crate::publish::value;
 use plotters::chart::{ChartBuilder, LabelAreaPosition};
 use plotters::prelude::{BLACK, Circle, DashedLineSeries, PathElement, RGBColor, Rectangle};
 use plotters::style::text_anchor::HPos;
@@ -121,6 +122,14 @@ pub struct Level {
     pub at: f64,
     /// Whether it belongs to the scale on the right side.
     pub right: bool,
+}
+
+impl Level {
+    /// What the legend says of a level beyond the axis, which is not drawn; none if it is.
+    fn beyond(&self, scale: &Scale) -> Option<String> {
+        let is_beyond = matches!(&scale.axis, Axis::Linear(range) if !range.contains(&self.at));
+        is_beyond.then(|| format!("{}: {} (off the axis)", self.label, value::significant(self.at, 3)))
+    }
 }
 
 /// One of the drawings of a figure.
@@ -251,8 +260,10 @@ fn lightened(RGBColor(r, g, b): RGBColor) -> RGBColor {
 }
 
 fn draw_curves(chart: &mut Chart, panel: &Panel, right: bool) -> Result<(), DrawError> {
-    let across = chart.x_range();
-    for level in panel.levels.iter().filter(|level| level.right == right) {
+    let (across, up) = (chart.x_range(), chart.y_range());
+    // At the edge of the axis a line would have another value than its own. The legend says it.
+    let is_shown = |level: &&Level| level.right == right && up.contains(&level.at);
+    for level in panel.levels.iter().filter(is_shown) {
         let ends = [(across.start, level.at), (across.end, level.at)];
         chart.draw_series(DashedLineSeries::new(ends, DASH, DASH, BLACK.stroke_width(GUIDE_WIDTH)))?;
     }
@@ -300,7 +311,7 @@ fn draw_marks(area: &Area, chart: &Chart, panel: &Panel) -> Result<(), DrawError
     let (_, high) = chart.backend_coord(&(across.start, up.end));
     let (_, low) = chart.backend_coord(&(across.start, up.start));
     let mut taken = [i32::MIN; 2];
-    for mark in &panel.marks {
+    for mark in panel.marks.iter().filter(|mark| (across.start..=across.end).contains(&mark.at)) {
         let x = chart.backend_coord(&(mark.at, up.start)).0 - left;
         for y in (high - top..low - top).step_by(DASH as usize * 2) {
             area.draw(&PathElement::new([(x, y), (x, (y + DASH).min(low - top))], BLACK.stroke_width(2)))?;
@@ -335,6 +346,11 @@ fn draw_legend(area: &Area, panel: &Panel) -> Result<(), DrawError> {
         })?;
     }
     for level in &panel.levels {
+        let scale = panel.right.as_ref().filter(|_| level.right).unwrap_or(&panel.y);
+        if let Some(label) = level.beyond(scale) {
+            line(area, &label, &|_| Ok(()))?;
+            continue;
+        }
         line(area, &level.label, &|y| {
             let dash =
                 |from| PathElement::new([(from, y), (from + DASH, y)], BLACK.stroke_width(GUIDE_WIDTH));
@@ -352,4 +368,26 @@ fn draw_legend(area: &Area, panel: &Panel) -> Result<(), DrawError> {
         }
     }
     Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects: a level beyond the axis is named with its value and not drawn at the edge, where a reader would take it for another
+    /// value; one on the axis is drawn.
+    #[test]
+    fn no_level_is_moved_to_the_edge() {
+        let drawing = |at: f64| {
+            let x = Scale::from_to("time", 0.0, 1.0);
+            let mut panel = Panel::new("node", x, Scale::from_to("velocity [mm/s]", -250.0, 250.0));
+            panel.levels = vec![Level { label: "disk".to_owned(), at, right: false }];
+            stack(&[panel]).unwrap()
+        };
+        let (within, beyond) = (drawing(67.0), drawing(628.0));
+        assert!(beyond.contains("disk: 628 (off the axis)") && !within.contains("off the axis"));
+        // Dashes are lines of their own: those of the level, and those of its sample in the legend.
+        let lines = |svg: &str| svg.matches("<polyline").count();
+        assert!(lines(&within) > lines(&beyond) + 10, "{} {}", lines(&within), lines(&beyond));
+    }
 }

@@ -16,6 +16,7 @@ import shutil
 import subprocess
 import sys
 import tempfile
+import warnings
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from io import StringIO
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     import pandas
     import xarray
 
-__all__ = ["Error", "grid", "program", "read", "run", "solve"]
+__all__ = ["Error", "InputWarning", "grid", "program", "read", "run", "solve"]
 
 Study = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
@@ -40,6 +41,10 @@ class Error(Exception):
     def __init__(self, message: str, code: int) -> None:
         super().__init__(message)
         self.code = code
+
+
+class InputWarning(UserWarning):
+    """The program doubts something: an input in another unit, a strain that no material bears, a column that it left out."""
 
 
 def program() -> str:
@@ -70,6 +75,8 @@ def run(
     Jobs that the database has are not solved again. Failed jobs have a status `failed` and a text in `error`. `settings` are
     parameters with other values: a number, a name, or a list that becomes an axis.
 
+    What the program warns of is an InputWarning, and in `attrs["warnings"]` of the frame, a list of texts.
+
     Raises Error if the study or the database is refused, or if the run was interrupted.
     """
     _pandas()  # Without it nothing is begun.
@@ -79,28 +86,40 @@ def run(
         others = [] if threads is None else ["--threads", str(threads)]
         others += [] if out is None else ["--out", os.fspath(out)]
         others += ["--replace"] if replace else []
-        _call(["run", path, *changes, *others, *options], codes=_WITH_RESULTS)
-        name = json.loads(_call(["validate", path, *changes, "--json", "--replace", *options]))["study"]
-    return read(db, name)
+        _, doubts = _call(["run", path, *changes, *others, *options], codes=_WITH_RESULTS)
+        # It repeats the warnings of the run.
+        plan, _ = _call(["validate", path, *changes, "--json", "--replace", *options])
+    jobs, further = _read(db, json.loads(plan)["study"])
+    jobs.attrs["warnings"] = doubts + further
+    _warn(doubts + further)
+    return jobs
 
 
 def read(db: str | os.PathLike[str], study: str) -> pandas.DataFrame:
     """The jobs of a study in a database: a row for each job with all columns of the export.
 
+    What the program warns of is an InputWarning, and in `attrs["warnings"]` of the frame, a list of texts.
+
     Raises Error if there is no such database or study.
     """
-    jobs: pandas.DataFrame = _pandas().read_csv(StringIO(_call(["export", study, "--all", "--db", os.fspath(db)])))
+    jobs, doubts = _read(db, study)
+    jobs.attrs["warnings"] = doubts
+    _warn(doubts)
     return jobs
 
 
 def solve(study: Study, *, preset: str | None = None, **settings: Any) -> dict[str, Any]:
     """Solves one job and returns its record. Nothing is stored. `settings` are parameters such as mu=0.4.
 
+    What the program warns of is an InputWarning.
+
     Raises Error if the job is refused or fails.
     """
     changes = _settings(settings) + ([] if preset is None else ["--preset", preset])
     with _file_of(study) as path:
-        record: dict[str, Any] = json.loads(_call(["solve", path, *changes, "--json"]))
+        text, doubts = _call(["solve", path, *changes, "--json"])
+    record: dict[str, Any] = json.loads(text)
+    _warn(doubts)
     return record
 
 
@@ -143,9 +162,37 @@ def _file_of(study: Study) -> Iterator[str]:
         yield str(path)
 
 
-def _call(arguments: Sequence[str], codes: Sequence[int] = (0,)) -> str:
+def _read(db: str | os.PathLike[str], study: str) -> tuple[pandas.DataFrame, list[str]]:
+    text, doubts = _call(["export", study, "--all", "--db", os.fspath(db)])
+    jobs: pandas.DataFrame = _pandas().read_csv(StringIO(text))
+    return jobs, doubts
+
+
+def _warn(doubts: Sequence[str]) -> None:
+    # At the line that has called a function of this module.
+    for doubt in doubts:
+        warnings.warn(doubt, InputWarning, stacklevel=3)
+
+
+def _doubts(messages: str) -> list[str]:
+    """The warnings among the messages of the program, each with the lines of help below it."""
+    doubts: list[str] = []
+    is_inside = False
+    for line in messages.splitlines():
+        if line.startswith("warning: "):
+            doubts.append(line.removeprefix("warning: "))
+            is_inside = True
+        elif is_inside and line.startswith("  "):
+            doubts[-1] += "\n" + line
+        else:
+            is_inside = False
+    return doubts
+
+
+def _call(arguments: Sequence[str], codes: Sequence[int] = (0,)) -> tuple[str, list[str]]:
+    """The output of the program and its warnings."""
     done = subprocess.run([program(), *arguments], capture_output=True, text=True, encoding="utf-8", check=False)
     if done.returncode not in codes:
         message = "\n".join(line for line in done.stderr.splitlines() if line)
         raise Error(message or f"the program ended with code {done.returncode}", done.returncode)
-    return done.stdout
+    return done.stdout, _doubts(done.stderr)

@@ -51,6 +51,7 @@ pub(in crate::queue) async fn open(path: &Path, settings: Settings) -> Result<Fi
 /// Opens the database at `path`, which must exist, for reading. This also works if the file and its folder are
 /// read-only.
 pub(in crate::queue) async fn open_to_read(path: &Path, settings: Settings) -> Result<File, QueueError> {
+    check_kind(path)?;
     if is_writable(path) {
         return open(path, settings).await;
     }
@@ -75,10 +76,14 @@ fn check_path(path: &Path) -> Result<(), QueueError> {
     if let Some(kind) = filesystem::network_kind(folder) {
         return Err(QueueError::NetworkFileSystem { path: path.into(), kind });
     }
-    if path.is_dir() {
-        return Err(QueueError::NotADatabase { path: path.into() });
-    }
-    Ok(())
+    check_kind(path)
+}
+
+/// Refuses what is no regular file. Opening a pipe would wait for another program.
+fn check_kind(path: &Path) -> Result<(), QueueError> {
+    let Ok(metadata) = path.metadata() else { return Ok(()) };
+    let kind = if metadata.is_dir() { "a folder" } else { "a pipe or a device" };
+    if metadata.is_file() { Ok(()) } else { Err(QueueError::NotAFile { path: path.into(), kind }) }
 }
 
 /// Checks whether a database can be created at `path`, without creating it.

@@ -11,7 +11,11 @@ pub(super) fn section(comparison: &Comparison) -> Markup {
     let cells = |lines: &[Vec<String>]| -> Vec<Vec<Markup>> {
         lines.iter().map(|line| line.iter().map(|text| html! { (text) }).collect()).collect()
     };
+    let contradictions = comparison.contradictions_in_words();
     html! {
+        @if let [head, lines @ ..] = &contradictions[..] {
+            (html::warning(&html! { strong { (head) } ul { @for line in lines { li { (line) } } } }))
+        }
         @if !comparison.notes.is_empty() {
             ul { @for note in &comparison.notes { li { (note) } } }
         }

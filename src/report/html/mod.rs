@@ -33,7 +33,7 @@ pub(super) fn stability_page(
     sections.extend(report.provenance.map(|from| ("provenance", "Provenance", provenance::section(from))));
     let body = html! {
         @if let Some(description) = report.description { p.description { (description) } }
-        (warnings::list(report.warnings))
+        (warnings::list(report.warnings, report.remarks))
         @if sections.len() > 1 { (html::navigation(sections.iter().map(|(id, heading, _)| (*id, *heading)))) }
         @for (id, heading, content) in &sections { (html::section(id, heading, content)) }
         footer {
@@ -77,7 +77,7 @@ pub(super) fn page(parts: &Parts) -> String {
     let body = html! {
         @if let Some(description) = report.description { p.description { (description) } }
         (head::summary(report))
-        (warnings::list(report.warnings))
+        (warnings::list(report.warnings, report.remarks))
         (scene::errors(report.rows))
         (html::navigation(sections.iter().map(|(id, heading, _)| (*id, *heading))))
         @for (id, heading, content) in &sections { (html::section(id, heading, content)) }

@@ -4,7 +4,9 @@ use crate::publish::html;
 use maud::{Markup, html};
 
 /// The doubts in a box at the beginning of the page; nothing if there are none.
-pub(super) fn list(warnings: &[String]) -> Markup {
+///
+/// Remarks about the cost stand below it and do not stand out: the results are right.
+pub(super) fn list(warnings: &[String], remarks: &[String]) -> Markup {
     html! {
         @if !warnings.is_empty() {
             (html::warning(&html! {
@@ -12,5 +14,6 @@ pub(super) fn list(warnings: &[String]) -> Markup {
                 ul { @for warning in warnings { li { (warning) } } }
             }))
         }
+        @for remark in remarks { p.note { "Cost, without an effect on results: " (remark) } }
     }
 }

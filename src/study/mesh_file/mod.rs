@@ -7,9 +7,11 @@ mod gmsh;
 
 use super::error::StudyError;
 use super::source::SourceText;
+use super::text_file::read_text;
 use crate::spec::{MeshContent, MeshFile};
 use serde_json::{Value, json};
 use std::collections::{BTreeMap, BTreeSet};
+use std::io::ErrorKind;
 use std::path::Path;
 
 /// The field of the mesh.
@@ -82,17 +84,14 @@ pub(super) fn with_mesh(value: &Value, source: &SourceText) -> Result<Option<Str
 /// A message with the file, the line where there is one, and what would be right.
 fn read(mesh: &MeshFile, path: &Path, regions: &[&str]) -> Result<MeshFile, String> {
     let named = |message: String| format!("{}: {message}", path.display());
-    let size = std::fs::metadata(path).map_err(|error| named(format!("cannot be read: {error}")))?.len();
-    if size > MOST_BYTES {
-        return Err(named(format!("{size} bytes; expected at most {MOST_BYTES}")));
-    }
-    let bytes = std::fs::read(path).map_err(|error| named(format!("cannot be read: {error}")))?;
     let is_abaqus = path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("inp"));
-    let text = match String::from_utf8(bytes) {
-        Ok(text) => text,
-        Err(_) if is_abaqus => return Err(named("not a text file".to_owned())),
-        Err(_) => return Err(named("not a text file; save it with Mesh.Binary = 0".to_owned())),
-    };
+    let text = read_text(path, MOST_BYTES).map_err(|error| {
+        named(match error.kind() {
+            ErrorKind::InvalidData if is_abaqus => "not a text file".to_owned(),
+            ErrorKind::InvalidData => "not a text file; save it with Mesh.Binary = 0".to_owned(),
+            _ => format!("cannot be read: {error}"),
+        })
+    })?;
     let read = if is_abaqus { abaqus::read(&text) } else { gmsh::read(&text) };
     let file_mesh = read.map_err(|(line, message)| format!("{}:{line}: {message}", path.display()))?;
     resolved(mesh, &file_mesh, regions).map_err(named)

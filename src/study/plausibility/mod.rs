@@ -15,12 +15,25 @@ use serde::Serialize;
 use std::fmt;
 
 pub use physics::LOCKING_POISSON_RATIO;
+pub(super) use physics::refused_strain;
+
+/// What a warning is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum About {
+    /// The result: it may not be what the author wants to know.
+    Result,
+    /// The cost alone: the result is right, and could be had for less.
+    Cost,
+}
 
 /// Something in a study that is allowed and yet doubtful. Displayed like a [`Problem`].
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Warning {
-    /// What is doubtful, in one word: `unit`, `strain`, `speed`, `locking`, `damping`, `clamp` or `repetition`.
+    /// What is doubtful, in one word: `unit`, `size`, `friction`, `strain`, `speed`, `locking`, `damping`, `clamp` or `repetition`.
     pub kind: &'static str,
+    /// Whether it is about the result or the cost.
+    pub about: About,
     /// Number of jobs that it concerns; a job that appears twice in the grid counts twice.
     pub jobs: usize,
     /// Place, value, message and advice.
@@ -29,6 +42,16 @@ pub struct Warning {
 }
 
 impl Warning {
+    fn new(kind: &'static str, jobs: usize, problem: Problem) -> Self {
+        let about = if matches!(kind, "damping" | "repetition") { About::Cost } else { About::Result };
+        Self { kind, about, jobs, problem }
+    }
+
+    /// Whether it is a doubt about the result, and not a remark about the cost alone.
+    pub fn is_doubt(&self) -> bool {
+        self.about == About::Result
+    }
+
     /// The warning on one line and without its place in the file, for readers who do not edit the file now.
     pub fn in_words(&self) -> String {
         let Problem { field, value, message, help, .. } = &self.problem;
@@ -75,9 +98,11 @@ pub fn job_warnings(spec: &JobSpec) -> Vec<Warning> {
         let field = field.to_owned();
         let problem =
             Problem { file: String::new(), position: None, field, value, message, help: vec![help] };
-        Warning { kind, jobs: 1, problem }
+        Warning::new(kind, 1, problem)
     };
-    doubts(spec).into_iter().map(warning).collect()
+    let is_meant =
+        |doubt: &Doubt| doubt.kind != "size" || spec.scene.pin.size_m != JobSpec::default().scene.pin.size_m;
+    doubts(spec).into_iter().filter(is_meant).map(warning).collect()
 }
 
 /// The doubts of one kind about one field in all jobs.
@@ -109,7 +134,11 @@ impl Study {
         let mut found: Vec<Shared> = Vec::new();
         let all = self.specs.par_iter().enumerate().map(|(point, spec)| (point, of(spec)));
         for (point, doubts) in all.filter(|(_, doubts)| !doubts.is_empty()).collect::<Vec<_>>() {
-            for doubt in doubts {
+            // Edges of a block that nobody gives say nothing about a cylinder.
+            let is_meant = |doubt: &Doubt| {
+                doubt.kind != "size" || doubt.fields.iter().any(|field| self.has_value(field))
+            };
+            for doubt in doubts.into_iter().filter(is_meant) {
                 let same = |other: &&mut Shared| {
                     (other.doubt.kind, other.doubt.fields) == (doubt.kind, doubt.fields)
                 };
@@ -127,12 +156,14 @@ impl Study {
         found
     }
 
+    /// Whether the study or its grid gives a field.
+    fn has_value(&self, field: &str) -> bool {
+        self.source.gives(field) || self.grid.parameters().any(|parameter| parameter.sets(field))
+    }
+
     fn warning(&self, Shared { doubt, worst, first, jobs }: &Shared) -> Warning {
         // The study's author can change what the study gives, and only knows that.
-        let gives = |field: &&&str| {
-            self.source.gives(field) || self.grid.parameters().any(|parameter| parameter.sets(field))
-        };
-        let field = doubt.fields.iter().find(gives).unwrap_or(&doubt.fields[0]);
+        let field = doubt.fields.iter().find(|field| self.has_value(field)).unwrap_or(&doubt.fields[0]);
         let (mut problem, _) = self.problem_at(field, &doubt.message, *worst);
         problem.value = problem.value.or_else(|| value_of(field, &self.specs[*worst]));
         problem.help.push(doubt.help.clone());
@@ -141,7 +172,7 @@ impl Study {
             let most = if first == worst { String::new() } else { format!(", the worst is {worst}") };
             problem.help.push(format!("in {jobs} of {} jobs, first at {first}{most}", self.grid_size()));
         }
-        Warning { kind: doubt.kind, jobs: *jobs, problem }
+        Warning::new(doubt.kind, *jobs, problem)
     }
 }
 

@@ -1,13 +1,15 @@
 //! Jobs outside of what the model and its elements describe.
 
 use super::{Doubt, percent, short};
-use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, elasticity};
+use crate::spec::{ClampSide, DiskKind, FieldError, JobSpec, Shape, elasticity};
 use std::f64::consts::PI;
 
 /// Mean strain of the pin from which on the linear model is in doubt.
 const LARGE_STRAIN: f64 = 0.01;
 /// Mean strain at which no material is linear elastic.
 const HUGE_STRAIN: f64 = 0.1;
+/// Mean strain at which a linear spring of the pin's stiffness is compressed to nothing. No study with more is taken.
+const TOTAL_STRAIN: f64 = 1.0;
 /// Sliding speed as a fraction of the speed of surface waves from which on the linear model is in doubt. A node that sticks
 /// moves with the disk, and this fraction is of the order of the strain in the wave that it sends out.
 const FAST: f64 = 0.1;
@@ -22,7 +24,7 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     let (pin, disk) = (&spec.scene.pin, &spec.scene.disk);
     let mut found = Vec::new();
 
-    let strain = spec.scene.load.force_n / (pin.young_modulus_pa * pin.base_area_m2());
+    let strain = mean_strain(spec);
     if strain > LARGE_STRAIN {
         let meaning = if strain > HUGE_STRAIN {
             "no material is linear elastic at this strain, so the result means nothing"
@@ -108,7 +110,65 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
         });
     }
     found.extend(clamp(spec));
+    found.extend(cylinder(spec));
+    found.extend(friction(spec));
     found
+}
+
+fn mean_strain(spec: &JobSpec) -> f64 {
+    let pin = &spec.scene.pin;
+    spec.scene.load.force_n / (pin.young_modulus_pa * pin.base_area_m2())
+}
+
+/// Why no new study can have the job: the load compresses the pin by more than its height.
+pub(in crate::study) fn refused_strain(spec: &JobSpec) -> Option<FieldError> {
+    let strain = mean_strain(spec);
+    (strain > TOTAL_STRAIN).then(|| FieldError {
+        field: "scene.load.force_n".to_owned(),
+        value: short(spec.scene.load.force_n),
+        expected: format!(
+            "a mean strain F/(E A) of the pin far below 1; it is {}, with E = {} Pa and A = {} m²",
+            short(strain),
+            short(spec.scene.pin.young_modulus_pa),
+            short(spec.scene.pin.base_area_m2())
+        ),
+    })
+}
+
+/// Edges that do not belong to the cylinder, which uses none of them.
+fn cylinder(spec: &JobSpec) -> Option<Doubt> {
+    let pin = &spec.scene.pin;
+    let diameter_m = pin.diameter_m.filter(|_| pin.shape == Shape::Cylinder)?;
+    let differs = |edge_m: f64| (edge_m / diameter_m - 1.0).abs() > 1.0e-9;
+    let [x, y, _] = pin.size_m;
+    (differs(x) || differs(y)).then(|| Doubt {
+        kind: "size",
+        fields: &["scene.pin.size_m", "scene.pin.size_m[0]", "scene.pin.size_m[1]"],
+        size: (x / diameter_m - 1.0).abs().max((y / diameter_m - 1.0).abs()),
+        message: format!(
+            "a cylinder uses the height size_m[2] alone; the edges of {} m and {} m have no effect beside diameter_m = {} m",
+            short(x),
+            short(y),
+            short(diameter_m)
+        ),
+        help: "write the diameter in both places".to_owned(),
+    })
+}
+
+/// A law whose friction rises as soon as a node slips.
+fn friction(spec: &JobSpec) -> Option<Doubt> {
+    let contact = spec.scene.contact.in_use();
+    let mu_static = contact.mu_static.filter(|mu_static| *mu_static < contact.mu)?;
+    Some(Doubt {
+        kind: "friction",
+        fields: &["scene.contact.mu_static", "scene.contact.mu"],
+        size: contact.mu - mu_static,
+        message: format!(
+            "less than mu = {}, so that friction rises as soon as a node slips; are the two exchanged?",
+            short(contact.mu)
+        ),
+        help: "mu_static is the coefficient without slip, and mu that of fast slip".to_owned(),
+    })
 }
 
 /// A strip that is no strip: the outermost row of nodes, or the whole face. The mesh of a block says which rows are held. On other

@@ -82,6 +82,6 @@ impl Study {
         }
         .with_help(format!("{second} repeats {first}: μ*, frequency, shares and N/F are equal, and {scaled}"))
         .with_help("vary one of them, or values that are not in proportion");
-        Some(Warning { kind: "repetition", jobs: repeated, problem })
+        Some(Warning::new("repetition", repeated, problem))
     }
 }

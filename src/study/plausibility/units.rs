@@ -1,7 +1,7 @@
 //! Values that look as if they were given in another unit.
 
 use super::{Doubt, short};
-use crate::spec::{ClampSide, DiskKind, JobSpec};
+use crate::spec::{ClampSide, DiskKind, JobSpec, Shape};
 use std::f64::consts::PI;
 
 /// Softest material that is not taken for a mistake \[Pa\]. Gels begin above it.
@@ -23,6 +23,9 @@ const ROUGHEST: f64 = 2.0;
 const LONGEST_S: f64 = 1.0;
 const LONGEST_TRANSITS: f64 = 1.0e5;
 
+/// Holders that swing more slowly are suspected \[Hz\]. Soft arms of tribometers have some tens of Hz.
+const SLOWEST_HOLDER_HZ: f64 = 1.0;
+
 type Fields = &'static [&'static str];
 
 pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
@@ -36,6 +39,9 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
     length(&["scene.pin.size_m[0]"], pin.size_m[0], &mut found);
     length(&["scene.pin.size_m[1]"], pin.size_m[1], &mut found);
     length(&["scene.pin.size_m[2]"], pin.size_m[2], &mut found);
+    if let Some(diameter_m) = pin.diameter_m.filter(|_| pin.shape == Shape::Cylinder) {
+        length(&["scene.pin.diameter_m"], diameter_m, &mut found);
+    }
     if is_elastic {
         young_modulus(&["scene.disk.ring.young_modulus_pa"], ring.young_modulus_pa, &mut found);
         density(&["scene.disk.ring.density_kg_m3"], ring.density_kg_m3, &mut found);
@@ -55,7 +61,7 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
         let help = "1 rad/s is 9.55 rpm, and 1 Hz is 60 rpm";
         add(&mut found, &["scene.disk.omega_rpm"], speed_m_s, message, help);
     }
-    let base_m = pin.size_m[0].max(pin.size_m[1]);
+    let base_m = pin.extent_m()[0].max(pin.extent_m()[1]);
     if disk.track_radius_m < base_m && base_m < LONGEST_M {
         let message = format!("less than the longest edge of the pin's base, {} m", short(base_m));
         let help = "expected the distance in metres of the pin's centre from the disk's axis";
@@ -66,6 +72,7 @@ pub(super) fn doubts(spec: &JobSpec) -> Vec<Doubt> {
         let message = "an unusually large friction coefficient".to_owned();
         add(&mut found, &["scene.contact.mu"], mu, message, "expected a number, not per cent");
     }
+    holder(spec, &mut found);
     // A time of the pin is in doubt with its material and its size.
     if found.is_empty() {
         overdamped(spec, &mut found);
@@ -95,6 +102,30 @@ fn overdamped(spec: &JobSpec, found: &mut Vec<Doubt>) {
         let fields: Fields =
             &["damping.frequency_hz", "damping.loss_factor", "damping.ratio", "numerics.beta_r_s"];
         add(found, fields, ratio, message, "frequency_hz is in Hz (1 kHz is 1000 Hz), and ζ = π β_R f");
+    }
+}
+
+/// A holder that swings more slowly than any tribometer's, as if its mass were in g or its stiffness in kN/mm.
+fn holder(spec: &JobSpec, found: &mut Vec<Doubt>) {
+    let pin = &spec.scene.pin;
+    let pin_kg = pin.density_kg_m3 * pin.base_area_m2() * pin.extent_m()[2];
+    let fields: [Fields; 2] = [
+        &["scene.holder.stiffness_x_n_m", "scene.holder.mass_kg"],
+        &["scene.holder.stiffness_y_n_m", "scene.holder.mass_kg"],
+    ];
+    for (way, fields) in spec.scene.holder.directions().into_iter().zip(fields) {
+        // A damper alone has no frequency.
+        let Some(way) = way.filter(|way| way.stiffness_n_m > 0.0) else { continue };
+        let frequency_hz = (way.stiffness_n_m / (way.mass_kg + pin_kg)).sqrt() / (2.0 * PI);
+        if frequency_hz < SLOWEST_HOLDER_HZ {
+            let message = format!(
+                "with a mass of {} kg the holder swings at {} Hz, as if the stiffness were in kN/mm or the mass in g; expected N/m \
+                 and kg",
+                short(way.mass_kg),
+                short(frequency_hz)
+            );
+            add(found, fields, 1.0 / frequency_hz, message, "1 kN/mm is 1e6 N/m, and 1 g is 0.001 kg");
+        }
     }
 }
 

@@ -8,7 +8,7 @@ use crate::publish::Drawing;
 use crate::publish::plot::RGBColor;
 use crate::publish::plot::palette::BLUE;
 use crate::publish::plot::sketch::{Anchor, At, Line, Sketch};
-use crate::spec::{DiskKind, JobSpec};
+use crate::spec::{DiskKind, JobSpec, Shape};
 
 const SIZE: (u32, u32) = (470, 470);
 const CENTRE: At = (225.0, 215.0);
@@ -42,9 +42,13 @@ pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
     sketch.circle(CENTRE, track_m * scale, None, Line { dashed: true, ..Line::solid(INK, 1.0) });
     let half = [0, 1].map(|axis| (pin.extent_m()[axis] * scale / 2.0).max(SMALLEST / 2.0));
     let at = on_circle(track_m * scale, 0.0);
-    let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
-    let footprint = corners.map(|(x, y)| (at.0 + x * half[0], at.1 + y * half[1]));
-    sketch.polygon(&footprint, (PIN, 1.0), Some(Line::solid(INK, 1.6)));
+    if pin.shape == Shape::Cylinder {
+        sketch.circle(at, half[0], Some(PIN), Line::solid(INK, 1.6));
+    } else {
+        let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
+        let footprint = corners.map(|(x, y)| (at.0 + x * half[0], at.1 + y * half[1]));
+        sketch.polygon(&footprint, (PIN, 1.0), Some(Line::solid(INK, 1.6)));
+    }
 
     let radius = format!("R = {}", lines::values(survey.values("track_radius_m"), "m"));
     let beside = ((CENTRE.0 + at.0) / 2.0, CENTRE.1 - 13.0);
@@ -92,11 +96,22 @@ fn caption(spec: &JobSpec, survey: &Survey) -> String {
             )
         }
     };
-    let drawn =
-        ["size_x_m", "size_y_m", "track_radius_m", "disk_kind", "disk_inner_radius_m", "disk_outer_radius_m"];
+    let footprint = match spec.scene.pin.shape {
+        Shape::Block | Shape::Cylinder => "the footprint of the pin",
+        Shape::Mesh => "the rectangle around the pin's footprint",
+    };
+    let drawn = [
+        "size_x_m",
+        "size_y_m",
+        "diameter_m",
+        "track_radius_m",
+        "disk_kind",
+        "disk_inner_radius_m",
+        "disk_outer_radius_m",
+    ];
     let first = if drawn.iter().any(|name| survey.varies(name)) { " Drawn is the first job." } else { "" };
     format!(
-        "The disk from above, with the footprint of the pin and its track (dashed), to scale. {ring} It turns under the pin \
+        "The disk from above, with {footprint} and its track (dashed), to scale. {ring} It turns under the pin \
          towards +y.{first}"
     )
 }
