@@ -142,7 +142,7 @@ fn growth_rate_of_a_decaying_line() {
             monitor.push(&sample(t, 1.0 + line)).then(|| monitor.growth_rate_per_s())?
         });
         // An observation has sixteen hops.
-        let bound = 1.0e-7 * (12.0 / 28.0) * 16.0 / detection.decay_observation_s;
+        let bound = 1.0e-7 * (12.0 / 28.0) * 16.0 / Detection::default().decay_observation_s;
         evidence.bounded(format!("{hz} Hz, {rate} /s"), found.expect("a rate"), rate, 1.0, bound);
     }
     evidence.judge_bounded("leakage of the window, 10⁻⁷, over seven hops");
