@@ -63,7 +63,7 @@ def main():
             measured(options.program, folder, "solve", "scale.json", *settings, "--set", f"limit_s={limit}")[0].strip()
             for limit in (0.02, 0.003)
         ]
-        labels = [json.loads(record)["outcome"] for record in records]
+        labels = [json.loads(record)["status"] for record in records]
 
         def tell(name, *arguments):
             _, seconds, megabytes = measured(options.program, folder, *arguments)

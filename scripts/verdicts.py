@@ -92,9 +92,9 @@ def of_modes(found):
 
 def vibrates(record):
     """Whether the run ended in a vibration that does not decay: none if its end says neither."""
-    if record["outcome"] == "decayed":
+    if record["status"] == "decayed":
         return False
-    if record["outcome"] == "periodic" or record["regime"] not in ("stable", "undecided"):
+    if record["status"] == "periodic" or record["regime"] not in ("stable", "undecided"):
         return True
     return None
 

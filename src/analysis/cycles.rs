@@ -58,7 +58,7 @@ enum Section {
     Normal,
     /// The force T that the holder carries rises through its mean. A holder that sticks and slips below the squeal has a cycle that N,
     /// which shows the squeal, does not show.
-    Holder { mean: Smoother, gain: f64 },
+    Holder { mean: Smoother, gain: f64, steps: f64 },
 }
 
 impl Section {
@@ -66,8 +66,10 @@ impl Section {
     fn force_n(&mut self, sample: &Sample) -> f64 {
         match self {
             Self::Normal => sample.normal_n,
-            Self::Holder { mean, gain } => {
-                sample.clamp_tangential_n - mean.push(sample.clamp_tangential_n, *gain)
+            Self::Holder { mean, gain, steps } => {
+                // The first steps are averaged with equal weights, so that the mean does not come from zero.
+                *steps += 1.0;
+                sample.clamp_tangential_n - mean.push(sample.clamp_tangential_n, gain.max(1.0 / *steps))
             }
         }
     }
@@ -107,7 +109,7 @@ impl CycleCutter {
     /// A cutter at the mean of T that starts after the load's ramp, for a holder that swings with periods of up to `swing_s`.
     pub fn of_holder(time_step_s: f64, ramp_s: f64, swing_s: f64) -> Self {
         let gain = smoothing_gain(time_step_s, SWING_MEAN * swing_s);
-        let section = Section::Holder { mean: Smoother::default(), gain };
+        let section = Section::Holder { mean: Smoother::default(), gain, steps: 0.0 };
         Self::at(section, time_step_s, [SWING_SMOOTHING * swing_s, SWING_MEMORY * swing_s], ramp_s)
     }
 

@@ -178,7 +178,7 @@ pub struct SlidingStability {
     #[serde(default)]
     pub above_band: AboveBand,
     /// A frequency \[Hz\] above which damping is proved to win; none if none is known.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[serde(default)]
     pub damped_above_hz: Option<f64>,
     /// The leading modes, largest growth rate first.
     pub modes: Vec<ComplexMode>,
@@ -188,6 +188,7 @@ pub struct SlidingStability {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct JobRecord {
     /// How the run ended.
+    #[serde(rename = "status", alias = "outcome")]
     pub outcome: Outcome,
     /// The contact regime.
     pub regime: Regime,

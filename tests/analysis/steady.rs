@@ -214,7 +214,7 @@ fn swings(duration_s: f64, swing_hz: f64, n_amplitude: f64, force_over_f: impl F
 }
 
 /// Protects: a holder that sticks and slips below the squeal has a cycle, which is found although N shows only the squeal. Its frequency is that
-/// of the holder, whose period is resolved to a step in twenty cycles.
+/// of the holder: either end of the window is known to a step, and the mean of T is within a step of its end.
 #[test]
 fn a_holder_that_sticks_and_slips_has_a_cycle() {
     for ratio in [5.0, 11.3, 40.0] {
@@ -229,7 +229,7 @@ fn a_holder_that_sticks_and_slips_has_a_cycle() {
         let state = steady::find_swing(&cycles, &Detection::default(), slow);
         assert_eq!(state, Some(SteadyState { crossings_per_cycle: 1, window_crossings: 20 }), "{ratio}");
         let found_hz = steady::frequency_hz(&cycles[cycles.len() - 20..], 1);
-        assert!((found_hz / swing_hz - 1.0).abs() < STEP_S * swing_hz / 20.0, "{found_hz} Hz");
+        assert!((found_hz / swing_hz - 1.0).abs() < 3.0 * STEP_S * swing_hz / 20.0, "{found_hz} Hz");
         // The means of a motion without a swing must have settled, too.
         let slow = SlowTimes { relaxation_s: 100.0 / swing_hz, ..slow };
         assert_eq!(steady::find_swing(&cycles, &Detection::default(), slow), None);

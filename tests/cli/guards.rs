@@ -97,7 +97,9 @@ fn a_study_is_renamed() {
     folder.add("plain", &small(&json!({ "mu": [0.4] })));
     folder.ok("run mine.json");
     folder.ok("submit plain.json");
-    for (name, expected) in [("plain", "there is a study `plain` already"), ("a.b", "expected letters")] {
+    for (name, expected) in
+        [("plain", "there is a study `plain` already"), ("a.b", "expected a name of letters")]
+    {
         let message = stderr(&folder.command(&format!("rename mine {name}")).assert().code(2));
         assert!(message.contains(expected), "{message}");
     }

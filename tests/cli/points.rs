@@ -61,7 +61,7 @@ fn sensitivities_are_printed_and_written() {
     // μ* is mostly μ itself.
     assert!(of("mu", "pawn").unwrap() > of("omega_rpm", "pawn").unwrap());
     assert!(of("mu", "first_order").unwrap() > 0.5);
-    assert_eq!(of("clamp_side", "first_order"), None, "a name has no order");
+    assert!(of("clamp_side", "first_order").is_some(), "the points of a name have a mean, too");
     assert!(of("clamp_side", "pawn").is_some());
     assert_eq!(stdout(&folder.command("sensitivity mine --of mu_star,stick_share").assert()), text);
     assert!(refused("sensitivity mine --of mu_stat").contains("--of mu_stat: no such quantity"));

@@ -178,6 +178,14 @@ pub fn small(grid: &Value) -> Value {
     })
 }
 
+/// Jobs at 7 rpm, and jobs at a speed that single precision cannot hold: these diverge.
+pub fn diverging(mu: &[f64]) -> Value {
+    let mut study = small(&json!({ "omega_rpm": [7, 1e20], "mu": mu }));
+    study["scene"]["disk"] = json!({ "track_radius_m": 1e19 });
+    study["numerics"] = json!({ "precision": "single" });
+    study
+}
+
 /// Jobs that all take some tenths of a second, so that they can be interrupted. There are more than two threads advance
 /// together, so that some are left when the first ones are done.
 pub fn long() -> Value {

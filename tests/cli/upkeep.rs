@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 
-use crate::support::{Folder, rows, small, stderr, stdout};
+use crate::support::{Folder, diverging, rows, small, stderr, stdout};
 
 /// Protects: cancelled jobs are not run and are counted as cancelled. `retry` or another submission makes them pending.
 #[test]
@@ -25,7 +25,7 @@ fn cancelled_jobs_are_not_run_until_requested() {
 /// Protects: `retry --failed` runs failed jobs again and no others.
 #[test]
 fn failed_jobs_are_retried() {
-    let folder = Folder::with("bad", &small(&json!({ "load_n": [30, 1e200] })));
+    let folder = Folder::with("bad", &diverging(&[0.2]));
     folder.command("run bad.json").assert().code(1);
     let done = |export: &str| rows(export)[0]["wall_s"].clone();
     let before = done(&folder.ok("export bad"));

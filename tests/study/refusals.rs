@@ -178,7 +178,7 @@ fn unknown_parameters_are_refused_with_a_suggestion_and_the_list() {
         let suggestion = format!("did you mean `{meant}`?");
         assert_contains(
             &text,
-            &["1:13: grid.", wrong, "no such parameter", &suggestion, "decay_observation_s"],
+            &["1:13: grid.", wrong, "no such parameter", &suggestion, "`tribosweep parameters` lists all"],
         );
     }
     let far = refusal(r#"{ "grid": { "zzz": [1] } }"#);

@@ -16,9 +16,12 @@ fn ordinary_pins_need_no_times() {
         let nu = random.between(0.0, 0.49);
         let density = random.between(900.0, 20_000.0);
         let side = random.pick(&["inner_side", "leading_end", "both_ends", "whole_top"]);
+        // A load of the reference scene, or one that compresses a soft pin by a hundredth.
+        let force = (0.01 * young * x * y).min(30.0);
         let study = parse(&format!(
             r#"{{ "scene": {{ "pin": {{ "size_m": [{x:e}, {y:e}, {z:e}], "young_modulus_pa": {young:e},
-                "poisson_ratio": {nu:e}, "density_kg_m3": {density:e} }}, "clamp": {{ "side": "{side}" }} }} }}"#
+                "poisson_ratio": {nu:e}, "density_kg_m3": {density:e} }}, "clamp": {{ "side": "{side}" }},
+                "load": {{ "force_n": {force:e} }} }} }}"#
         ));
         let job = study.base();
         let transit_s = z / (young / (2.0 * (1.0 + nu) * density)).sqrt();

@@ -75,18 +75,8 @@ fn as_json(job: &StoredJob) -> Value {
         "inputs": inputs,
         "spec": parsed(&details.payload),
         "unreadable": unreadable,
-        "record": details.record.as_deref().filter(|_| unreadable.is_none()).map(parsed).map(with_status),
+        "record": details.record.as_deref().filter(|_| unreadable.is_none()).map(parsed),
     })
-}
-
-/// A record with the name that the export has for the way in which the run ended.
-fn with_status(mut record: Value) -> Value {
-    if let Value::Object(fields) = &mut record
-        && let Some(outcome) = fields.remove("outcome")
-    {
-        fields.insert("status".to_owned(), outcome);
-    }
-    record
 }
 
 /// A text as JSON, or as a string if it is not JSON.

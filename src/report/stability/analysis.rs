@@ -1,7 +1,7 @@
 //! The points in groups, as figures and tables show them: branches over μ at each speed, and where they begin to grow.
 
 use super::along::Along;
-use super::ranges::{Crossing, Edge, Interval, Known, intervals};
+use super::ranges::{Crossing, Edge, Interval, Known, Onset, Speed, intervals};
 use crate::analysis::ComplexMode;
 use crate::analysis::branches::{Branch, BranchPoint, Sample, branches, crossing, threads};
 use crate::publish::value;
@@ -56,45 +56,6 @@ pub(in crate::report) struct GroupModes {
     /// The frequencies \[Hz\] of modes that grow and are alike at neighbouring speeds: the median of those at which they begin
     /// to grow. The family that grows at the smallest μ comes first.
     pub families: Vec<f64>,
-}
-
-/// The modes at one speed.
-pub(in crate::report) struct Speed {
-    /// ω in revolutions per minute.
-    pub omega: Value,
-    /// The smallest and the largest μ with a point.
-    pub mus: [f64; 2],
-    /// The modes over μ.
-    pub branches: Vec<Branch>,
-    /// Where modes grow, by ascending μ.
-    pub onsets: Vec<Onset>,
-    /// The ranges in which sliding is unstable, by ascending μ.
-    pub intervals: Vec<Interval>,
-    /// Each μ at which no mode was found, so that it is not known whether sliding is stable.
-    pub without_modes: Vec<f64>,
-    /// How far it was looked where no mode grows.
-    pub known: Known,
-}
-
-/// Where a mode begins to grow.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(in crate::report) struct Onset {
-    /// Index of the branch.
-    pub branch: usize,
-    /// The threshold μ_c; the first μ at which the mode is known, if it grows there already.
-    pub mu: f64,
-    /// The largest μ below with a point of the branch; none if the mode grows at its first point already.
-    pub below: Option<f64>,
-    /// The smallest μ above with a point of the branch.
-    pub above: f64,
-    /// Where it ceases to grow; none if it still grows at the last point.
-    pub ends: Option<Crossing>,
-    /// Its frequency \[Hz\] there.
-    pub frequency_hz: f64,
-    /// Whether the eigenvalues on both sides are converged.
-    pub is_converged: bool,
-    /// Index of the family.
-    pub family: usize,
 }
 
 impl<'a> Analysis<'a> {
@@ -306,18 +267,6 @@ fn name_families(speeds: &mut [Speed]) -> Vec<f64> {
         frequencies.push(own.get(own.len() / 2).copied().unwrap_or_default());
     }
     frequencies
-}
-
-impl Speed {
-    /// The onset at the smallest μ.
-    pub fn lowest(&self) -> Option<&Onset> {
-        self.onsets.first()
-    }
-
-    /// The onset of a branch.
-    pub fn onset_of(&self, branch: usize) -> Option<&Onset> {
-        self.onsets.iter().find(|onset| onset.branch == branch)
-    }
 }
 
 #[cfg(test)]

@@ -16,8 +16,9 @@ mod verdict;
 mod write;
 
 pub use along::Along;
-pub(super) use analysis::{Analysis, GroupModes, Onset, Speed, rows};
+pub(super) use analysis::{Analysis, GroupModes, rows};
 pub(super) use contour::{Node, zero_line};
+pub(super) use ranges::{Onset, Speed};
 pub(super) use section::{markdown, markup};
 pub use table::{StabilityTable, modes_table, thresholds_table};
 pub(super) use verdict::{Verdict, Verdicts};

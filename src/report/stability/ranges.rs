@@ -1,9 +1,49 @@
 //! Where sliding is unstable along a series, and how far that is known.
 
-use super::analysis::{Onset, Speed};
+use crate::analysis::branches::Branch;
 use crate::analysis::{AboveBand, ComplexMode};
 use crate::publish::value;
 use crate::report::stability_point::StabilityPoint;
+use serde_json::Value;
+
+/// The modes at one speed.
+pub(in crate::report) struct Speed {
+    /// ω in revolutions per minute.
+    pub omega: Value,
+    /// The smallest and the largest μ with a point.
+    pub mus: [f64; 2],
+    /// The modes over μ.
+    pub branches: Vec<Branch>,
+    /// Where modes grow, by ascending μ.
+    pub onsets: Vec<Onset>,
+    /// The ranges in which sliding is unstable, by ascending μ.
+    pub intervals: Vec<Interval>,
+    /// Each μ at which no mode was found, so that it is not known whether sliding is stable.
+    pub without_modes: Vec<f64>,
+    /// How far it was looked where no mode grows.
+    pub known: Known,
+}
+
+/// Where a mode begins to grow.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(in crate::report) struct Onset {
+    /// Index of the branch.
+    pub branch: usize,
+    /// The threshold μ_c; the first μ at which the mode is known, if it grows there already.
+    pub mu: f64,
+    /// The largest μ below with a point of the branch; none if the mode grows at its first point already.
+    pub below: Option<f64>,
+    /// The smallest μ above with a point of the branch.
+    pub above: f64,
+    /// Where it ceases to grow; none if it still grows at the last point.
+    pub ends: Option<Crossing>,
+    /// Its frequency \[Hz\] there.
+    pub frequency_hz: f64,
+    /// Whether the eigenvalues on both sides are converged.
+    pub is_converged: bool,
+    /// Index of the family.
+    pub family: usize,
+}
 
 /// How far modes were looked for along a series.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -133,6 +173,16 @@ pub(super) fn intervals(leading: &[(f64, Option<ComplexMode>)], onsets: &[Onset]
 }
 
 impl Speed {
+    /// The onset at the smallest μ.
+    pub fn lowest(&self) -> Option<&Onset> {
+        self.onsets.first()
+    }
+
+    /// The onset of a branch.
+    pub fn onset_of(&self, branch: usize) -> Option<&Onset> {
+        self.onsets.iter().find(|onset| onset.branch == branch)
+    }
+
     /// The place in words at which sliding becomes unstable first: `0.3142`, `≤ 0.1` if sliding is unstable at the smallest one already or
     /// not known at a smaller one, `> 0.6` if no mode grows at any point, and a dash if points without modes leave it open.
     pub fn threshold_in_words(&self) -> String {

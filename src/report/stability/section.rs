@@ -1,6 +1,7 @@
 //! The section on linear stability of a page, in HTML and in Markdown.
 
-use super::analysis::{Analysis, GroupModes, Speed};
+use super::analysis::{Analysis, GroupModes};
+use super::ranges::Speed;
 use super::write::Files;
 use crate::publish::{html, value};
 use crate::report::figure::stability::StabilityPlot;

@@ -1,7 +1,8 @@
 //! Modes and thresholds as tables for people and for programs.
 
 use super::along::Along;
-use super::analysis::{Analysis, Onset, Speed, rows};
+use super::analysis::{Analysis, rows};
+use super::ranges::{Onset, Speed};
 use crate::publish::value::{self, MISSING};
 use crate::report::export::{add_further_names, io_error};
 use crate::report::parameters::{MU, OMEGA};

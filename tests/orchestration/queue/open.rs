@@ -59,10 +59,10 @@ async fn a_file_that_is_not_a_database_is_refused() {
     let sandbox = Sandbox::new();
     let text = "this is a study, not a database\n".repeat(100);
     fs::write(sandbox.database(), &text).unwrap();
-    for path in [sandbox.database().as_path(), sandbox.folder.path()] {
-        let error = error_of(path).await;
-        assert!(matches!(error, QueueError::NotADatabase { .. }), "{error:?}");
-    }
+    let error = error_of(&sandbox.database()).await;
+    assert!(matches!(error, QueueError::NotADatabase { .. }), "{error:?}");
+    let error = error_of(sandbox.folder.path()).await;
+    assert!(matches!(error, QueueError::NotAFile { .. }), "{error:?}");
     assert_eq!(fs::read_to_string(sandbox.database()).unwrap(), text);
 }
 
