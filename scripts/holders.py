@@ -25,6 +25,8 @@ CLAMPS = ["inner_side", "outer_side", "leading_end", "trailing_end", "both_sides
 LONGEST_S = 0.25
 # Largest difference that counts as agreement: relative, or in standard errors of both.
 RELATIVE, ERRORS = 0.01, 3.0
+# What the detection lets the means drift.
+DRIFT = 0.001
 
 
 def log_uniform(draw, low, high):
@@ -46,11 +48,22 @@ def scene(draw):
     mass, stiffness = log_uniform(draw, 0.01, 3.0), log_uniform(draw, 1e4, 1e8)
     damping = 2.0 * log_uniform(draw, 0.003, 0.5) * math.sqrt(mass * stiffness)
     holder = {"mass_kg": mass, "stiffness_y_n_m": stiffness, "damping_y_n_s_m": damping}
-    kind = draw.random()
-    if kind < 0.2:
+    kind = draw.choice(["y", "y", "y", "y and z", "y and x", "y and rotation", "undamped", "damper alone in x"])
+    if kind == "y and z":
         holder |= {"stiffness_z_n_m": 0.0, "damping_z_n_s_m": damping}
-    elif kind < 0.4:
+    elif kind == "y and x":
         holder |= {"stiffness_x_n_m": stiffness, "damping_x_n_s_m": damping}
+    elif kind == "y and rotation":
+        rotational = stiffness * 1e-4
+        holder |= {
+            "rotational_stiffness_x_nm_rad": rotational,
+            "inertia_x_kg_m2": mass * 1e-4,
+            "rotational_damping_x_nm_s_rad": damping * 1e-4,
+        }
+    elif kind == "undamped":
+        del holder["damping_y_n_s_m"]
+    elif kind == "damper alone in x":
+        holder |= {"stiffness_x_n_m": 0.0, "damping_x_n_s_m": damping}
     return {
         "name": "holder",
         "scene": {
@@ -59,7 +72,7 @@ def scene(draw):
             "contact": contact,
             "holder": holder,
         },
-        "grid": {"omega_rpm": [log_uniform(draw, 2.0, 200.0)]},
+        "grid": {"omega_rpm": [log_uniform(draw, 0.05, 200.0)]},
     }
 
 
@@ -117,8 +130,9 @@ def main():
         found = list(pool.map(lambda n: compare(given.program, n, given.seed), range(given.scenes)))
     counts = collections.Counter(status(short) for _, _, short, _ in found)
     compared = [(n, study, short, long, *difference(short, long)) for n, study, short, long in found if long]
-    wrong = [row for row in compared if row[4] > RELATIVE and row[5] > ERRORS]
     beyond_one = [row for row in compared if row[4] > RELATIVE]
+    # Errors of long runs can be rounding, so that the tolerated drift is allowed, too.
+    beyond_errors = [row for row in compared if row[5] > ERRORS and abs(row[2]["mu_star"] - row[3]["mu_star"]) > DRIFT]
     relative = sorted(row[4] for row in compared)
     above_mu = sum(
         short["mu_star"] > 1.0001 * study["scene"]["contact"]["mu"]
@@ -129,10 +143,11 @@ def main():
     text = f"""# Holders
 
 `scripts/holders.py` wrote this page. It draws {given.scenes} scenes (seed {given.seed}): holders of 0.01 to 3 kg on springs of 10⁴ to 10⁸ N/m, with 0.3 to 50 % of the
-critical damping, some of which also move in x or z; five friction laws, seven clamps, 2 to 200 rpm, μ of 0.1 to 0.6, on meshes of 4 × 5 × 4 elements. A job may
+critical damping or none, some of which also move in x or z or rotate; five friction laws, seven clamps, 0.05 to 200 rpm, μ of 0.1 to 0.6, on meshes of 4 × 5 × 4 elements. A job may
 simulate {LONGEST_S} s. Each result that is `periodic` or `decayed` stands beside a run that lasts ten times as long and does not stop early.
 
-**Of {len(compared)} results, {len(wrong)} differ from the long run by more than 1 % and more than three standard errors**, and {len(beyond_one)} by more than 1 %.
+**Of {len(compared)} results, {len(beyond_one)} differ from the long run by more than 1 %**, and {len(beyond_errors)} by more than three standard errors and the
+tolerated drift of {DRIFT}.
 With Coulomb's law {above_mu} have a μ\\* above μ.
 
 | | |

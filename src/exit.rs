@@ -16,10 +16,7 @@ const MEANINGS: [(u8, &str); 4] = [
     (SUCCESS, "All jobs succeeded, or the command did its work. Other workers may still run jobs."),
     (SOME_FAILED, "Some jobs failed, or stored results cannot be read; the others have results."),
     (ERROR, "Error: bad input, usage or environment, such as a damaged database or a full disk."),
-    (
-        WORK_LEFT,
-        "Jobs are left: the command was interrupted, jobs were cancelled while it ran, or a stopped process holds them.",
-    ),
+    (WORK_LEFT, "Jobs are left: interrupted, cancelled meanwhile, or held by a stopped process."),
 ];
 
 /// The text about exit codes at the end of the help.

@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub enum AboveBand {
     /// There is none: all modes of the mesh were looked for.
     Nothing,
-    /// None grows: damping is proved to win there.
+    /// None grows: damping wins there, by an estimated bound.
     Damped,
     /// Nobody looked for one, but a run of the job on a coarser mesh, which carries such vibrations, decayed.
     CoarserRun,

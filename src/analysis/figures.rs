@@ -12,6 +12,8 @@ pub struct Figures {
     weight: f64,
     load: f64,
     normal: f64,
+    /// Sums of N x/lx and N y/ly.
+    moments: [f64; 2],
     contact_tangential: f64,
     clamp_tangential: f64,
     stick_deficit: f64,
@@ -81,6 +83,7 @@ impl Figures {
         weight: 0.0,
         load: 0.0,
         normal: 0.0,
+        moments: [0.0; 2],
         contact_tangential: 0.0,
         clamp_tangential: 0.0,
         stick_deficit: 0.0,
@@ -102,6 +105,8 @@ impl Figures {
         self.weight += weight;
         self.load += weight * sample.load_n;
         self.normal += weight * sample.normal_n;
+        self.moments[0] += weight * sample.x_moment_n;
+        self.moments[1] += weight * sample.y_moment_n;
         self.contact_tangential += weight * sample.contact_tangential_n;
         self.clamp_tangential += weight * sample.clamp_tangential_n;
         self.stick_deficit += weight * sample.stick_deficit_n;
@@ -135,6 +140,8 @@ impl Figures {
         self.weight += factor * other.weight;
         self.load += factor * other.load;
         self.normal += factor * other.normal;
+        self.moments[0] += factor * other.moments[0];
+        self.moments[1] += factor * other.moments[1];
         self.contact_tangential += factor * other.contact_tangential;
         self.clamp_tangential += factor * other.clamp_tangential;
         self.stick_deficit += factor * other.stick_deficit;
@@ -210,6 +217,16 @@ impl Figures {
     /// ⟨T⟩/⟨N⟩ of the contact forces.
     pub fn mu_star_contact(&self) -> f64 {
         ratio(self.contact_tangential, self.normal)
+    }
+
+    /// The mean friction coefficient of the nodes, weighted by their normal forces: ⟨Σ μ_i N_i⟩/⟨N⟩.
+    pub fn mu_of_nodes(&self) -> f64 {
+        ratio(self.contact_tangential + self.stick_deficit + self.slip_deficit, self.normal)
+    }
+
+    /// Where the mean normal force acts: its distances from the pin's axis in x and y over the pin's width and length.
+    pub fn centre(&self) -> [f64; 2] {
+        self.moments.map(|moment| ratio(moment, self.normal))
     }
 
     /// ⟨N⟩/⟨F⟩.

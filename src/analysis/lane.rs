@@ -2,6 +2,7 @@
 
 use super::cycles::{Cycle, CycleCutter};
 use super::decay::{self, DecayMonitor};
+use super::drive::drive;
 use super::figures::Figures;
 use super::lines;
 use super::nested::CoarseStart;
@@ -18,6 +19,7 @@ use crate::solver::body::ring::RingBody;
 use crate::solver::energy::Energies;
 use crate::solver::interface::solve::Solves;
 use crate::spec::{FrictionLaw, Holder, JobSpec, Precision, SlowTimes};
+use crate::stability::SlidingFriction;
 use serde::{Deserialize, Serialize};
 
 /// Evaluates the run of one job and creates its record.
@@ -45,6 +47,8 @@ pub struct LaneAnalysis {
     /// Whether they know a growing mode that the run may not show: in single precision a growth that begins at rounding is
     /// hidden for a long time.
     may_grow_from_rounding: bool,
+    /// Width and length \[m\] of the contact face.
+    extent_m: [f64; 2],
     /// The run on a coarser mesh, if there was one.
     start: Option<CoarseStart>,
 }
@@ -82,14 +86,14 @@ impl LaneAnalysis {
         let observation_s = spec.observation_s();
         let observes = !has_program && observation_s <= slidable_s;
         let (time_step_s, floor) = (model.time_step_s(), decay_floor(model, &spec));
-        let slow = spec.scene.slow_times();
+        let moves = !spec.scene.holder.is_ideal();
+        let slow = spec.scene.slow_times().filter(|_| moves && !has_program);
         Self {
             cutter: CycleCutter::new(model, ramp_s),
-            monitor: observes
-                .then(|| DecayMonitor::new(time_step_s, ramp_s, observation_s, floor, slow.is_some())),
+            monitor: observes.then(|| DecayMonitor::new(time_step_s, ramp_s, observation_s, floor, moves)),
             cycles: Vec::new(),
             steady: None,
-            swings: slow.filter(|_| !has_program).map(|slow| Swings::of(slow, time_step_s, ramp_s)),
+            swings: slow.map(|slow| Swings::of(slow, time_step_s, ramp_s)),
             oscillations_decay: false,
             decays: false,
             late: LateWindow::from(if has_program { ramp_s } else { late_s }),
@@ -97,6 +101,7 @@ impl LaneAnalysis {
             windows: has_program.then(|| ProgramWindows::of(&spec)),
             stability: None,
             may_grow_from_rounding: false,
+            extent_m: model.interface().extent_m(),
             start: None,
             spec,
         }
@@ -153,10 +158,15 @@ impl LaneAnalysis {
         // The means hardly change from step to step.
         let is_due = decay && (!self.oscillations_decay || self.trailing.begins_block());
         if is_due && !self.decays {
-            self.decays = self.trailing.settling().is_done(self.spec.detection.drift_tolerance);
+            self.decays = self.settling().is_done(self.spec.detection.drift_tolerance);
         }
         self.decays &= decay;
         self.oscillations_decay = decay;
+    }
+
+    /// How far the means of decaying sliding are from their ends.
+    fn settling(&self) -> Settling {
+        self.trailing.settling(|[x, y]| steady_mu(&self.spec, self.extent_m, [x, y]))
     }
 
     /// Whether the holder moves, with the pin's top.
@@ -200,12 +210,17 @@ impl LaneAnalysis {
         let [stick, slip, separated] = figures.shares();
         let load_n = self.spec.scene.load.force_n;
         let holder_moves = self.holder_moves();
-        let still_to_come = if self.decays { self.trailing.settling().still_to_come } else { 0.0 };
+        // The blocks of a decay have its trend in them, and the window is tapered.
+        let mu_star_se = if self.decays {
+            self.settling().error()
+        } else {
+            steady::standard_error_with_drift(&window.mu_star_parts)
+        };
         JobRecord {
             outcome,
             regime: regime(outcome, stick, separated, self.spec.detection.regime_threshold),
             mu_star: figures.mu_star_without_momentum(holder_moves),
-            mu_star_se: libm::hypot(steady::standard_error_with_drift(&window.mu_star_parts), still_to_come),
+            mu_star_se,
             mu_star_contact: figures.mu_star_contact(),
             frequency_hz: window.frequency_hz,
             stick_share: stick,
@@ -266,7 +281,7 @@ impl LaneAnalysis {
     /// Why the end of the run counts neither as periodic nor as decayed.
     fn obstacle(&self) -> Obstacle {
         if self.oscillations_decay {
-            let Settling { still_to_come, imbalance } = self.trailing.settling();
+            let Settling { still_to_come, imbalance, .. } = self.settling();
             return Obstacle::Creep { still_to_come, imbalance };
         }
         steady::obstacle(&self.cycles, &self.spec.detection, self.spec.scene.slow_times())
@@ -324,6 +339,14 @@ impl LaneAnalysis {
             frequency_hz: Some(steady::frequency_hz(whole, crossings)),
         }
     }
+}
+
+/// The friction coefficient of steady sliding at a point of the contact face, in its width and length from the pin's axis; none for a law that
+/// uses the past. The disk moves there as fast as its distance from the axis of the disk says.
+fn steady_mu(spec: &JobSpec, [width_m, length_m]: [f64; 2], [x, y]: [f64; 2]) -> Option<f64> {
+    let radius_m = libm::hypot(spec.scene.disk.track_radius_m + width_m * x, length_m * y);
+    let friction = SlidingFriction::new(&[radius_m], &drive(spec)).ok()?;
+    Some(friction.mu_of(0))
 }
 
 /// Amplitude, over F, below which growth and decay cannot be measured.

@@ -177,7 +177,7 @@ pub struct SlidingStability {
     /// What is known above that frequency.
     #[serde(default)]
     pub above_band: AboveBand,
-    /// A frequency \[Hz\] above which damping is proved to win; none if none is known.
+    /// A frequency \[Hz\] above which damping wins, by an estimated bound; none if none is known.
     #[serde(default)]
     pub damped_above_hz: Option<f64>,
     /// The leading modes, largest growth rate first.

@@ -78,9 +78,11 @@ impl Trailing {
         self.steps.is_multiple_of(self.steps_per_block)
     }
 
-    /// How far the means of decaying sliding are from their ends.
-    pub fn settling(&self) -> Settling {
+    /// How far the means of decaying sliding are from their ends. In steady sliding nodes have the coefficient `steady_mu` where the mean normal
+    /// force acts ([`Figures::centre`]); none if the law does not say.
+    pub fn settling(&self, steady_mu: impl FnOnce([f64; 2]) -> Option<f64>) -> Settling {
         let all = || self.blocks.iter().map(|block| &block.figures);
+        let whole = Figures::tapered(all());
         let [clamp, contact] = [Figures::mu_star, Figures::mu_star_contact].map(|of| {
             let values: Vec<f64> = all().map(of).collect();
             let quarter = self.blocks.len() / 4;
@@ -88,9 +90,17 @@ impl Trailing {
                 let part = self.blocks.range(first * quarter..(first + 2) * quarter);
                 of(&Figures::tapered(part.map(|block| &block.figures)))
             });
-            still_to_come(&means, LEAK * scatter(&values))
+            let noise = LEAK * scatter(&values);
+            (still_to_come(&means, noise), noise)
         });
-        Settling { imbalance: Figures::tapered(all()).imbalance().abs(), still_to_come: clamp.max(contact) }
+        let steady_mu = steady_mu(whole.centre());
+        let creep = steady_mu.map_or(contact.0, |mu| (whole.mu_of_nodes() - mu).abs());
+        Settling {
+            imbalance: whole.imbalance().abs(),
+            still_to_come: clamp.0.max(creep),
+            oscillation: clamp.1.max(contact.1),
+            steady_mu,
+        }
     }
 
     /// The window of all blocks.
@@ -119,12 +129,22 @@ pub(super) struct Settling {
     pub imbalance: f64,
     /// What the means over the observation will still change.
     pub still_to_come: f64,
+    /// What an oscillation leaves in them.
+    pub oscillation: f64,
+    /// The coefficient of steady sliding, if the law says it.
+    pub steady_mu: Option<f64>,
 }
 
 impl Settling {
-    /// Whether both are within `tolerance`.
+    /// Whether both are within `tolerance`, and what is still to come within half a per cent of the coefficient of steady sliding.
     pub fn is_done(&self, tolerance: f64) -> bool {
-        self.imbalance <= tolerance && self.still_to_come <= tolerance
+        let of_friction = self.steady_mu.map_or(f64::INFINITY, |mu| 0.005 * mu);
+        self.imbalance <= tolerance && self.still_to_come <= tolerance.min(of_friction)
+    }
+
+    /// The error of the means.
+    pub fn error(&self) -> f64 {
+        libm::hypot(self.still_to_come, self.oscillation)
     }
 }
 

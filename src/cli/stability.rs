@@ -87,7 +87,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             }
             if along.is_none() && !args.no_thresholds {
                 log(
-                    "no thresholds: no number varies alone in `grid`, and none together with others in `samples.zip`",
+                    "no thresholds: no number varies alone in `grid` or with others in `samples.zip`, or `mu` and `omega_rpm` move together, which has no thresholds yet",
                 );
             }
         }

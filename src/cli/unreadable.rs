@@ -12,7 +12,7 @@ pub(crate) fn log_unreadable(unreadable: &Unreadable) -> u8 {
         return exit::SUCCESS;
     }
     let jobs = count(unreadable.count, "job");
-    log(format_args!("{jobs} left out, whose stored results cannot be read:"));
+    log(format_args!("warning: {jobs} left out, whose stored results cannot be read:"));
     for line in &unreadable.jobs {
         log(format_args!("  {line}"));
     }

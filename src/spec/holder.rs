@@ -131,6 +131,25 @@ impl Holder {
         along.chain(about).fold(0.0, f64::max)
     }
 
+    /// The sum of mass over stiffness \[s²\] of its springs, with a pin of this mass and height below the axes of rotation.
+    pub(super) fn sum_of_squares_s2(&self, pin_kg: f64, height_m: f64) -> f64 {
+        let of = |way: HolderDirection, pin: f64| (way.mass_kg + pin) / way.stiffness_n_m;
+        let has_spring = |way: &HolderDirection| way.stiffness_n_m > 0.0;
+        let along = self.directions().into_iter().flatten().filter(has_spring).map(|way| of(way, pin_kg));
+        let rod = pin_kg * height_m * height_m / 3.0;
+        let about = self.rotations().into_iter().flatten().filter(has_spring).map(|way| of(way, rod));
+        along.chain(about).sum()
+    }
+
+    /// How far \[m/N\] its springs let the base of a pin of this height move in y under a unit force.
+    pub(super) fn softness_y_m_n(&self, height_m: f64) -> f64 {
+        let of = |way: Option<HolderDirection>, lever: f64| {
+            let stiffness = way.map(|way| way.stiffness_n_m).filter(|stiffness| *stiffness > 0.0);
+            stiffness.map_or(0.0, |stiffness| lever * lever / stiffness)
+        };
+        of(self.directions()[1], 1.0) + of(self.rotations()[0], height_m)
+    }
+
     /// The longest time \[s\] in which its dampers let a motion without a swing fall to 1/e, with a pin of this mass and height:
     /// d/k of a spring with a damper, m/d of a damper alone.
     pub(super) fn relaxation_time_s(&self, pin_kg: f64, height_m: f64) -> f64 {

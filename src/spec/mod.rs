@@ -79,7 +79,7 @@ pub struct JobSpec {
 const SHORTEST_OBSERVATION: f64 = 100.0;
 
 /// Swings of a holder in an observation of a decay. The first line that is judged has 7 periods in 10/16 of it, which is 11.2.
-const SWINGS_OBSERVED: f64 = 12.0;
+const SWINGS_OBSERVED: f64 = 14.0;
 
 impl JobSpec {
     /// Checks every value against its physical or numerical limits.

@@ -1,7 +1,7 @@
 //! The scene: pin, disk, contact law, boundary conditions and load.
 
 use super::check::{Violations, readable};
-use super::contact::Contact;
+use super::contact::{Contact, FrictionLaw};
 use super::disk::{Disk, DiskKind};
 use super::elasticity;
 use super::holder::{Holder, SlowTimes};
@@ -136,6 +136,9 @@ impl Default for Load {
     }
 }
 
+/// Times of a creep by friction over which a state must stay the same.
+const CREEPS: f64 = 3.0;
+
 impl Scene {
     /// Time \[s\] that the slowest vibrations scale with: the time in which a shear wave crosses the pin's longest
     /// edge, or the longest length ℓ²/h of a part that bends, or √(mass over stiffness) of the holder. NaN for an unphysical material.
@@ -160,26 +163,48 @@ impl Scene {
         if holder_s > wave_s { holder_s } else { wave_s }
     }
 
-    /// How slowly the pin moves with its holder; none if the holder is ideal.
+    /// How slowly the pin moves with its holder and under its friction law; none if the holder is ideal and friction has no damper.
     ///
-    /// The squares of the periods of three oscillators are added: the holder with a rigid pin on the springs, the pin alone, and the
-    /// holder's mass on the elastic pin. By Dunkerley's formula the true period is not longer.
+    /// The squares of the periods of oscillators are added: the holder with a rigid pin on each of its springs, the pin alone, and the
+    /// holder's mass on the elastic pin. By Dunkerley's formula the true period is about that or shorter.
     pub fn slow_times(&self) -> Option<SlowTimes> {
-        if self.holder.is_ideal() {
+        let creep_s = self.friction_creep_s();
+        let moves = !self.holder.is_ideal();
+        if !moves && creep_s == 0.0 {
             return None;
         }
-        let pin = &self.pin;
-        let [x, y, z] = pin.extent_m();
-        let pin_kg = pin.density_kg_m3 * x * y * z;
-        let shear_pa = pin.young_modulus_pa / (2.0 * (1.0 + pin.poisson_ratio));
-        let on_pin_s = (self.holder.mass_kg.unwrap_or(0.0) * z / (shear_pa * x * y)).sqrt();
+        let [x, y, z] = self.pin.extent_m();
+        let pin_kg = self.pin.density_kg_m3 * x * y * z;
+        let on_pin_s = (self.holder.mass_kg.unwrap_or(0.0) * z / (self.shear_modulus_pa() * x * y)).sqrt();
         let alone_s = Self { holder: Holder::default(), ..self.clone() }.vibration_time_s();
-        let on_springs_s = self.holder.vibration_time_s(pin_kg, z);
-        let sum_s2 = on_springs_s * on_springs_s + alone_s * alone_s + on_pin_s * on_pin_s;
+        let sum_s2 = self.holder.sum_of_squares_s2(pin_kg, z) + alone_s * alone_s + on_pin_s * on_pin_s;
         Some(SlowTimes {
-            swing_s: TAU * sum_s2.sqrt(),
-            relaxation_s: self.holder.relaxation_time_s(pin_kg, z),
+            swing_s: if moves { TAU * sum_s2.sqrt() } else { 0.0 },
+            relaxation_s: self.holder.relaxation_time_s(pin_kg, z) + CREEPS * creep_s,
         })
+    }
+
+    fn shear_modulus_pa(&self) -> f64 {
+        self.pin.young_modulus_pa / (2.0 * (1.0 + self.pin.poisson_ratio))
+    }
+
+    /// The time \[s\] in which a friction that rises with the speed lets a displacement of the base fall to 1/e: the damper F ∂μ/∂v over the stiffness of the
+    /// pin in shear, of which a strip as the clamp leaves about a half, and the springs of the holder. 0 for the other laws.
+    fn friction_creep_s(&self) -> f64 {
+        let contact = &self.contact;
+        let v = self.disk.omega_rpm * TAU / 60.0 * self.disk.track_radius_m;
+        let slope_s_m = match contact.law {
+            FrictionLaw::Regularised => {
+                let v0 = contact.speed_m_s.unwrap_or(0.0);
+                contact.mu * v0 / ((v + v0) * (v + v0))
+            }
+            FrictionLaw::Exponential => contact.slope_s_m.unwrap_or(0.0),
+            FrictionLaw::Coulomb | FrictionLaw::StaticKinetic | FrictionLaw::PrakashClifton => 0.0,
+        };
+        let [x, y, z] = self.pin.extent_m();
+        let softness_m_n = 2.0 * z / (self.shear_modulus_pa() * x * y) + self.holder.softness_y_m_n(z);
+        let creep_s = self.load.force_n * slope_s_m * softness_m_n;
+        if creep_s.is_finite() { creep_s } else { 0.0 }
     }
 
     /// Sets the speed and the load to the largest ones of the program, as far as it changes them and `keeps` [speed, load] does

@@ -21,6 +21,7 @@ mod sparse;
 mod vibration;
 
 pub use error::StabilityError;
+pub use friction::SlidingFriction;
 
 use crate::solver::support::Support;
 use crate::solver::{Drive, Model};
@@ -29,7 +30,7 @@ use dashpots::{Dashpot, Dashpots};
 pub use decision::Decision;
 use decision::{further_mu, verdict};
 use equilibrium::UnitEquilibrium;
-use friction::{Conditions, SlidingFriction, with_mu};
+use friction::{Conditions, with_mu};
 use pencil::{Clock, Sampling};
 pub use point::{Accuracy, Aim};
 use point::{Friction, Point};

@@ -163,7 +163,7 @@ def _file_of(study: Study) -> Iterator[str]:
 
 
 def _read(db: str | os.PathLike[str], study: str) -> tuple[pandas.DataFrame, list[str]]:
-    text, doubts = _call(["export", study, "--all", "--db", os.fspath(db)])
+    text, doubts = _call(["export", study, "--all", "--db", os.fspath(db)], codes=_WITH_RESULTS)
     jobs: pandas.DataFrame = _pandas().read_csv(StringIO(text))
     return jobs, doubts
 
