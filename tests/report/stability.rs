@@ -255,15 +255,28 @@ fn the_stability_has_a_report_of_its_own() {
     assert_eq!(modes.matches(",false,30,2,").count(), 1);
     let thresholds = read("thresholds.csv");
     let lines: Vec<Vec<&str>> = thresholds.lines().map(|line| line.split(',').collect()).collect();
-    assert_eq!(lines[0], ["omega_rpm", "mu_c", "mu_below", "mu_above", "frequency_hz", "converged"]);
+    let columns = [
+        "omega_rpm",
+        "mu_c",
+        "mu_below",
+        "mu_above",
+        "mu_end",
+        "mu_end_below",
+        "mu_end_above",
+        "frequency_hz",
+        "converged",
+        "band_hz",
+        "above_band",
+    ];
+    assert_eq!(lines[0], columns);
     let near = |text: &str, expected: f64| (text.parse::<f64>().expect("a number") - expected).abs() < 1e-9;
     assert!(
-        near(lines[1][1], mu_c(1.0)) && lines[1][2..] == ["0.2", "0.225", "15000", "true"],
+        near(lines[1][1], mu_c(1.0)) && lines[1][2..9] == ["0.2", "0.225", "", "", "", "15000", "true"],
         "{thresholds}"
     );
-    assert!(near(lines[2][1], mu_c(5.0)) && lines[2][5] == "false", "{thresholds}");
-    assert_eq!(lines[3], ["20", "", "", "0.1", "15000", "true"]);
-    assert_eq!(lines[4], ["100", "", "0.5", "", "", ""]);
+    assert!(near(lines[2][1], mu_c(5.0)) && lines[2][8] == "false", "{thresholds}");
+    assert_eq!(lines[3][..9], ["20", "", "", "0.1", "", "", "", "15000", "true"]);
+    assert_eq!(lines[4][..9], ["100", "", "0.5", "", "", "", "", "", ""]);
 
     let page = read("stability.html");
     for text in [

@@ -158,15 +158,6 @@ fn cylinder(spec: &JobSpec) -> Option<Doubt> {
 /// A law whose friction rises as soon as a node slips.
 fn friction(spec: &JobSpec) -> Option<Doubt> {
     let contact = spec.scene.contact.in_use();
-    if let (Some(unused), None) = (spec.scene.contact.mu_static, contact.mu_static) {
-        return Some(Doubt {
-            kind: "friction",
-            fields: &["scene.contact.mu_static"],
-            size: unused,
-            message: format!("no effect with the law `{}`", contact.law.name()),
-            help: "the laws `static_kinetic` and `exponential` have a static coefficient".to_owned(),
-        });
-    }
     let mu_static = contact.mu_static.filter(|mu_static| *mu_static < contact.mu)?;
     Some(Doubt {
         kind: "friction",
