@@ -31,7 +31,7 @@ fn point(omega_rpm: f64, mu: f64) -> StabilityPoint {
         lifted_nodes: 2,
         mu_star: mu,
         band_hz: 5e4,
-        above_band: AboveBand::NotLookedAt,
+        above_band: AboveBand::Nothing,
         damped_above_hz: None,
         modes,
     };
@@ -297,9 +297,9 @@ fn the_stability_has_a_report_of_its_own() {
         ("stability_map.svg", "point that refines"),
         ("lock_in.svg", "not converged"),
         ("lock_in.svg", "15 kHz"),
-        ("lock_in.svg", "decays at every μ"),
+        ("lock_in.svg", "decays at every point"),
         ("thresholds.svg", "not converged"),
-        ("thresholds.svg", "stable at every μ"),
+        ("thresholds.svg", "no mode grows"),
         ("thresholds.svg", "unstable at the"),
     ] {
         assert!(legend(file).any(|own| own == text), "{text} in {file}");
