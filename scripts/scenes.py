@@ -119,7 +119,7 @@ def main():
         "part of the result. The springs that change most for each mass, with the holder's own frequency √(stiffness/mass)/(2π):\n"
         f"{near}.\nThe squeal is at 15 to 16 kHz. A holder that is heavier than the pin (4.5 g) matters if its own frequency is near that of\n"
         "the squeal. A lighter one matters in a wider range, because the mass of the pin moves with it. A holder of "
-        f"{1000 * heaviest:g} g\nchanges μ\\* by at most {100 * most_of_heaviest:.0f} % with each of these springs, because its mass hardly moves at the frequency of\n"
+        f"{1000 * heaviest:g} g\nchanges μ\\* by at most {100 * most_of_heaviest:.1f} % with each of these springs, because its mass hardly moves at the frequency of\n"
         "the squeal. A static test of the stiffness does not tell them apart.\n\n"
         "![μ\\* at 7 rpm against the stiffness of the holder, for three masses](holder.svg)\n\n"
         "## The friction law\n\n"

@@ -189,7 +189,7 @@ def page(pins, seed, counts, known, kinds, differences):
     drawn = runs.table(["what is drawn", "how often"],
                        [[name, ", ".join(f"{value} {count}" for value, count in sorted(values.items()))]
                         for name, values in kinds.items()])
-    words = {"nothing": "all modes of the mesh were looked for", "damped": "damping is proved to win above the band",
+    words = {"nothing": "all modes of the mesh were looked for", "damped": "damping wins above the band, by an estimated bound",
              "not_looked_at": "nobody looked above the band"}
     above = runs.table(["above the band", "pins"], [[words.get(name, name), count] for name, count in sorted(known.items())])
     unexplained = sum("not explained" in line[-1] for line in differences)
