@@ -6,7 +6,7 @@ use crate::solver::Model;
 use crate::solver::energy::Energies;
 use serde::{Deserialize, Serialize};
 
-/// The part of a run from one upward crossing of the section to the next. The section is N = F, or T = its mean (see [`Section`]).
+/// The part of a run from one upward crossing of the section to the next. The section is N = F, or T = its mean.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Cycle {
     /// Start \[s\], interpolated between two steps.

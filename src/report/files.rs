@@ -44,10 +44,10 @@ pub struct Written {
     pub contradictions: Vec<String>,
 }
 
-/// As [`write`]. Also returns what a reader must know first.
+/// As [`write`](fn@write). Also returns what a reader must know first.
 ///
 /// # Errors
-/// As [`write`].
+/// As [`write`](fn@write).
 #[expect(clippy::too_many_lines, reason = "one file after the other")]
 pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, PublishError> {
     let mut folder = Folder::create(out_dir, "report")?;
