@@ -148,6 +148,15 @@ impl Scene {
     /// its top face, in x and in y. What is beside a clamped strip bends across it, in the face's plane. In z nothing bends,
     /// because the disk and the top face guide it.
     pub fn vibration_time_s(&self) -> f64 {
+        let wave_s = self.wave_time_s();
+        let [x, y, z] = self.pin.extent_m();
+        let holder_s = self.holder.vibration_time_s(self.pin.density_kg_m3 * x * y * z, z);
+        // NaN must remain.
+        if holder_s > wave_s { holder_s } else { wave_s }
+    }
+
+    /// That time of the pin alone.
+    fn wave_time_s(&self) -> f64 {
         let pin = &self.pin;
         let [x, y, z] = pin.extent_m();
         let beside_strip_m = match self.clamp.side.axis_across() {
@@ -156,11 +165,9 @@ impl Scene {
             None => 0.0,
         };
         let longest_m = x.max(y).max(z).max(z * z / x.min(y)).max(beside_strip_m);
-        let wave_s = longest_m
-            / elasticity::shear_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3);
-        // The frequency 0.16 c/ℓ is that of an oscillator with √(m/k) = ℓ/c. NaN must remain.
-        let holder_s = self.holder.vibration_time_s(pin.density_kg_m3 * x * y * z, z);
-        if holder_s > wave_s { holder_s } else { wave_s }
+        // The frequency 0.16 c/ℓ is that of an oscillator with √(m/k) = ℓ/c.
+        longest_m
+            / elasticity::shear_wave_speed_m_s(pin.young_modulus_pa, pin.poisson_ratio, pin.density_kg_m3)
     }
 
     /// How slowly the pin moves with its holder and under its friction law; none if the holder is ideal and friction has no damper.
@@ -176,7 +183,7 @@ impl Scene {
         let [x, y, z] = self.pin.extent_m();
         let pin_kg = self.pin.density_kg_m3 * x * y * z;
         let on_pin_s = (self.holder.mass_kg.unwrap_or(0.0) * z / (self.shear_modulus_pa() * x * y)).sqrt();
-        let alone_s = Self { holder: Holder::default(), ..self.clone() }.vibration_time_s();
+        let alone_s = self.wave_time_s();
         let sum_s2 = self.holder.sum_of_squares_s2(pin_kg, z) + alone_s * alone_s + on_pin_s * on_pin_s;
         Some(SlowTimes {
             swing_s: if moves { TAU * sum_s2.sqrt() } else { 0.0 },
