@@ -110,7 +110,7 @@ pub enum Obstacle {
     Swing {
         /// ⟨T⟩/⟨F⟩ of the clamp minus ⟨T⟩/⟨N⟩ of the contact over the last cycles.
         imbalance: f64,
-        /// The time \[s\] over which the cycles must repeat; none if the holder does not move.
+        /// The time \[s\] over which the cycles must repeat; none if nothing in the scene is slow.
         covered_s: Option<f64>,
     },
     /// All oscillations decay, but the mean friction has not come to its end.

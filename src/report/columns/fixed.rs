@@ -195,7 +195,7 @@ fn in_words(obstacle: &Obstacle) -> String {
             format!("{figure} is not steady: spread {}, drift {}", number(*spread), number(*drift))
         }
         Obstacle::Swing { imbalance, .. } => {
-            format!("the holder swings: clamp and contact differ by {}", number(*imbalance))
+            format!("something still swings or creeps: clamp and contact differ by {}", number(*imbalance))
         }
         Obstacle::Creep { still_to_come, .. } => {
             format!("the mean friction creeps: {} still to come", number(*still_to_come))

@@ -45,7 +45,7 @@ fn obstacle(record: &JobRecord, numerics: Option<&JobNumerics>) -> (String, Stri
         Some(Obstacle::Swing { imbalance, covered_s }) => (
             "swing".to_owned(),
             format!(
-                "the last cycles repeat, but the pin still swings with its holder: the mean forces of clamp and contact differ by {} of the load{}",
+                "the last cycles repeat, but something still swings or creeps: the mean forces of clamp and contact differ by {} of the load{}",
                 significant(imbalance.abs()),
                 covered_s.map_or_else(String::new, |time_s| format!(
                     ", and the cycles must repeat over {}",
