@@ -9,12 +9,16 @@
 //! `value`, `plot` and `html` are for this crate only. The signatures of the last two have types of plotters and maud, but
 //! what they make are strings: SVG and HTML.
 
+pub mod chart;
 mod error;
 mod folder;
 pub(crate) mod html;
+pub(crate) mod markdown;
+pub mod page;
 pub(crate) mod plot;
 pub(crate) mod rounding;
 mod sheet;
+pub mod table;
 pub(crate) mod value;
 
 pub use error::{FigureError, PublishError};

@@ -13,6 +13,7 @@ mod sheet;
 
 pub use sheet::sheet;
 
+use super::page::{self, Block, Grid, Page, Span, Text, Tile};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("style.css");
@@ -20,6 +21,124 @@ const SCRIPT: &str = include_str!("script.js");
 /// The page may load nothing. The empty icon below keeps browsers from requesting one.
 const POLICY: &str =
     "default-src 'none'; style-src 'unsafe-inline'; script-src 'unsafe-inline'; img-src data:";
+
+/// A page of sections.
+pub fn of_page(page: &Page) -> String {
+    let body = html! {
+        (blocks(&page.lead))
+        @if page.sections.len() > 1 {
+            (navigation(page.sections.iter().map(|section| (&*section.id, section.heading.as_str()))))
+        }
+        @for own in &page.sections { (section(&own.id, &own.heading, &blocks(&own.blocks))) }
+        @if !page.foot.is_empty() { footer { (blocks(&page.foot)) } }
+    };
+    self::page(&page.title, page.refresh_s, &body)
+}
+
+/// Blocks below one another.
+pub fn blocks(blocks: &[Block]) -> Markup {
+    html! { @for own in blocks { (block(own)) } }
+}
+
+fn block(block: &Block) -> Markup {
+    match block {
+        Block::Heading(words) => html! { h3 { (words) } },
+        Block::Text(text) => html! { p { (spans(text)) } },
+        Block::Note(text) => html! { p.note { (spans(text)) } },
+        Block::List(items) => {
+            html! { @if !items.is_empty() { ul { @for item in items { li { (spans(item)) } } } } }
+        }
+        Block::Table(grid) => of_grid(grid),
+        Block::Figures(figures) => match figures.as_slice() {
+            [only] => of_figure(only),
+            several => html! { div.drawings { @for own in several { (of_figure(own)) } } },
+        },
+        Block::Tiles(own) => {
+            let tile = |tile: &Tile| (tile.name.clone(), tile.value.clone(), tile.note.clone());
+            let own: Vec<_> = own.iter().map(tile).collect();
+            html! {
+                dl.tiles {
+                    @for (name, value, note) in &own {
+                        div { dt { (name) } dd { strong { (value) } @if !note.is_empty() { small { (note) } } } }
+                    }
+                }
+            }
+        }
+        Block::Warning(head, lines) => warning(&html! {
+            strong { (spans(head)) }
+            @if !lines.is_empty() { ul { @for line in lines { li { (spans(line)) } } } }
+        }),
+        Block::Fold(summary, own) => details(summary, &blocks(own)),
+        Block::Code(text) => html! { pre { code { (text) } } },
+    }
+}
+
+fn of_figure(own: &page::Figure) -> Markup {
+    html! {
+        figure {
+            (PreEscaped(&own.svg))
+            figcaption {
+                (own.caption)
+                @match &own.data {
+                    Some((file, Some(csv))) => { " " (download(file, csv)) }
+                    Some((file, None)) => { " Data: " code { (file) } "." }
+                    None => {}
+                }
+            }
+        }
+    }
+}
+
+fn of_grid(grid: &Grid) -> Markup {
+    let line = |cells: &[Text]| {
+        html! {
+            tr {
+                @for (column, cell) in cells.iter().enumerate() {
+                    @if column == 0 { th scope="row" { (spans(cell)) } } @else { td { (spans(cell)) } }
+                }
+            }
+        }
+    };
+    html! {
+        div.scroll.words[grid.has_words] tabindex="0" role="group" aria-label="table" {
+            table {
+                thead { tr { @for head in &grid.heads { th scope="col" { (head) } } } }
+                @for (heading, lines) in &grid.groups {
+                    tbody {
+                        @if !heading.is_empty() {
+                            tr.group { th scope="rowgroup" colspan=(grid.heads.len()) { (heading) } }
+                        }
+                        @for cells in lines { (line(cells)) }
+                    }
+                }
+            }
+        }
+        @if !grid.rest.is_empty() { p.note { (spans(&Text::marked(&grid.rest))) } }
+    }
+}
+
+fn spans(text: &Text) -> Markup {
+    html! {
+        @for span in &text.0 {
+            @match span {
+                Span::Plain(words) => (words),
+                Span::Strong(words) => strong { (words) },
+                Span::Code(words) => code { (words) },
+                Span::Symbol(words) => i { (symbol(words)) },
+                Span::Link(words, address) => a href=(address) { (words) },
+                Span::Break => br;,
+            }
+        }
+    }
+}
+
+/// A symbol; what follows a `_` is a subscript, up to the next sign.
+fn symbol(text: &str) -> Markup {
+    let Some((before, after)) = text.split_once('_') else { return html! { (text) } };
+    let end = after.find(|c: char| !c.is_alphanumeric()).unwrap_or(after.len());
+    let (index, rest) = after.split_at(end);
+    html! { (before) sub { (index) } (symbol(rest)) }
+}
 
 /// The whole page. `body` follows the title. The page reloads itself every `refresh_s` seconds, if that is given.
 pub fn page(title: &str, refresh_s: Option<u32>, body: &Markup) -> String {

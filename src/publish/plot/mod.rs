@@ -7,10 +7,15 @@ pub mod axis;
 pub mod canvas;
 pub mod palette;
 pub mod panel;
-pub mod sketch;
 pub mod tooltip;
 
 pub use plotters::prelude::RGBColor;
+
+impl From<crate::publish::chart::Rgb> for RGBColor {
+    fn from(colour: crate::publish::chart::Rgb) -> Self {
+        Self(colour.0, colour.1, colour.2)
+    }
+}
 
 /// An error of the drawing library.
 pub type DrawError = plotters::drawing::DrawingAreaErrorKind<std::io::Error>;

@@ -186,7 +186,9 @@ impl Frame<'_> {
     /// The height at which a point is drawn: its value, or the edge of the axis if it is beyond.
     fn shown(&self, point: &Point) -> f64 {
         match &self.y_axis {
-            Axis::Linear(range) | Axis::Log(range) => point.y.clamp(range.start, range.end),
+            Axis::Linear(range) | Axis::Log(range) | Axis::Signed { range, .. } => {
+                point.y.clamp(range.start, range.end)
+            }
             Axis::Names(_) => point.y,
         }
     }

@@ -6,8 +6,8 @@ use super::surface;
 use super::survey::Survey;
 use super::view::{DIRECTIONS, View};
 use crate::publish::Drawing;
-use crate::publish::plot::palette::{BLUE, VERMILLION};
-use crate::publish::plot::sketch::{Anchor, At, Line, Sketch};
+use crate::publish::chart::palette::{BLUE, VERMILLION};
+use crate::publish::chart::{Anchor, At, Pen, Svg};
 use crate::publish::value::quantity;
 use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, TopFace};
 use std::fmt::Write;
@@ -37,49 +37,49 @@ pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
     let view =
         View::of(&[on(0.0, disk), on(-depth, disk), on(h, [[-x, -y], [x, -y], [x, y], [-x, y]])].concat());
 
-    let mut sketch = Sketch::new(SIZE);
-    draw_disk(&mut sketch, &view, disk, depth);
+    let mut svg = Svg::new((f64::from(SIZE.0), f64::from(SIZE.1)));
+    draw_disk(&mut svg, &view, disk, depth);
     if spec.scene.pin.is_plain_block() {
-        draw_block(&mut sketch, &view, spec);
+        draw_block(&mut svg, &view, spec);
     } else {
-        surface::draw(&mut sketch, &view, spec);
+        surface::draw(&mut svg, &view, spec);
     }
-    draw_load(&mut sketch, &view, [x, y, h], survey);
-    draw_dimensions(&mut sketch, &view, [x, y, h], spec.scene.pin.shape, survey);
-    draw_motion(&mut sketch, &view, [x + 0.72 * before, y], elastic);
-    draw_axes(&mut sketch);
-    Drawing { stem: "scene", svg: sketch.finish(), caption: caption(spec, survey) }
+    draw_load(&mut svg, &view, [x, y, h], survey);
+    draw_dimensions(&mut svg, &view, [x, y, h], spec.scene.pin.shape, survey);
+    draw_motion(&mut svg, &view, [x + 0.72 * before, y], elastic);
+    draw_axes(&mut svg);
+    Drawing { stem: "scene", svg: svg.finish(""), caption: caption(spec, survey) }
 }
 
-fn draw_block(sketch: &mut Sketch, view: &View, spec: &JobSpec) {
+fn draw_block(svg: &mut Svg, view: &View, spec: &JobSpec) {
     let [x, y, h] = spec.scene.pin.extent_m();
     let (x, y) = (x / 2.0, y / 2.0);
     let place = |points: &[[f64; 3]]| -> Vec<At> { points.iter().map(|point| view.at(*point)).collect() };
-    let outline = Some(Line::solid(INK, 1.6));
-    sketch.polygon(&place(&[[x, -y, 0.0], [x, y, 0.0], [x, y, h], [x, -y, h]]), (SIDE, 1.0), None);
-    sketch.polygon(&place(&[[-x, -y, 0.0], [x, -y, 0.0], [x, -y, h], [-x, -y, h]]), (FRONT, 1.0), None);
-    sketch.polygon(&place(&[[-x, -y, h], [x, -y, h], [x, y, h], [-x, y, h]]), (TOP, 1.0), None);
-    draw_clamp(sketch, view, spec);
-    draw_mesh(sketch, view, spec);
+    let outline = Some(Pen::solid(INK, 1.6));
+    svg.polygon(&place(&[[x, -y, 0.0], [x, y, 0.0], [x, y, h], [x, -y, h]]), (SIDE, 1.0), None);
+    svg.polygon(&place(&[[-x, -y, 0.0], [x, -y, 0.0], [x, -y, h], [-x, -y, h]]), (FRONT, 1.0), None);
+    svg.polygon(&place(&[[-x, -y, h], [x, -y, h], [x, y, h], [-x, y, h]]), (TOP, 1.0), None);
+    draw_clamp(svg, view, spec);
+    draw_mesh(svg, view, spec);
     for face in [
         [[x, -y, 0.0], [x, y, 0.0], [x, y, h], [x, -y, h]],
         [[-x, -y, 0.0], [x, -y, 0.0], [x, -y, h], [-x, -y, h]],
         [[-x, -y, h], [x, -y, h], [x, y, h], [-x, y, h]],
     ] {
-        sketch.polygon(&place(&face), (TOP, 0.0), outline);
+        svg.polygon(&place(&face), (TOP, 0.0), outline);
     }
 }
 
-fn draw_disk(sketch: &mut Sketch, view: &View, disk: [[f64; 2]; 4], depth: f64) {
+fn draw_disk(svg: &mut Svg, view: &View, disk: [[f64; 2]; 4], depth: f64) {
     let corner = |index: usize, z: f64| view.at([disk[index][0], disk[index][1], z]);
-    let line = Line::solid(DISK_EDGE, 1.2);
+    let line = Pen::solid(DISK_EDGE, 1.2);
     if depth > 0.0 {
         for (from, to) in [(0, 1), (1, 2)] {
             let side = [corner(from, 0.0), corner(to, 0.0), corner(to, -depth), corner(from, -depth)];
-            sketch.polygon(&side, (DISK_EDGE, 0.35), Some(line));
+            svg.polygon(&side, (DISK_EDGE, 0.35), Some(line));
         }
     }
-    sketch.polygon(&[0, 1, 2, 3].map(|index| corner(index, 0.0)), (DISK, 1.0), Some(line));
+    svg.polygon(&[0, 1, 2, 3].map(|index| corner(index, 0.0)), (DISK, 1.0), Some(line));
     if depth == 0.0 {
         // Strokes below an edge are the sign of a rigid body.
         for (from, to) in [(corner(0, 0.0), corner(1, 0.0)), (corner(1, 0.0), corner(2, 0.0))] {
@@ -87,7 +87,7 @@ fn draw_disk(sketch: &mut Sketch, view: &View, disk: [[f64; 2]; 4], depth: f64) 
             for number in 1..=strokes {
                 let share = f64::from(number) / f64::from(strokes);
                 let at = (from.0 + share * (to.0 - from.0), from.1 + share * (to.1 - from.1));
-                sketch.lines(&[at, (at.0 - 7.0, at.1 + 8.0)], Line::solid(DISK_EDGE, 1.0));
+                svg.lines(&[at, (at.0 - 7.0, at.1 + 8.0)], Pen::solid(DISK_EDGE, 1.0));
             }
         }
     }
@@ -114,21 +114,21 @@ fn clamped(spec: &JobSpec) -> Vec<[[f64; 2]; 2]> {
     }
 }
 
-fn draw_clamp(sketch: &mut Sketch, view: &View, spec: &JobSpec) {
+fn draw_clamp(svg: &mut Svg, view: &View, spec: &JobSpec) {
     let h = spec.scene.pin.extent_m()[2];
     for [[left, right], [near, far]] in clamped(spec) {
         let strip = [[left, near, h], [right, near, h], [right, far, h], [left, far, h]];
-        sketch.polygon(&strip.map(|point| view.at(point)), (VERMILLION, 0.75), None);
+        svg.polygon(&strip.map(|point| view.at(point)), (VERMILLION, 0.75), None);
     }
 }
 
-fn draw_mesh(sketch: &mut Sketch, view: &View, spec: &JobSpec) {
+fn draw_mesh(svg: &mut Svg, view: &View, spec: &JobSpec) {
     let counts = spec.scene.pin.elements;
     if counts.iter().any(|&count| count > MAX_DRAWN_ELEMENTS) {
         return;
     }
     let size = spec.scene.pin.extent_m();
-    let thin = Line::solid(MESH, 0.6);
+    let thin = Pen::solid(MESH, 0.6);
     // Each visible face is at one end of an axis, and has lines of constant coordinate along the two others.
     for (normal, end) in [(0, size[0] / 2.0), (1, -size[1] / 2.0), (2, size[2])] {
         for across in (0..3).filter(|axis| *axis != normal) {
@@ -141,23 +141,23 @@ fn draw_mesh(sketch: &mut Sketch, view: &View, spec: &JobSpec) {
                 from[along] = start(along);
                 let mut to = from;
                 to[along] += size[along];
-                sketch.lines(&[view.at(from), view.at(to)], thin);
+                svg.lines(&[view.at(from), view.at(to)], thin);
             }
         }
     }
 }
 
-fn draw_load(sketch: &mut Sketch, view: &View, [x, y, h]: [f64; 3], survey: &Survey) {
+fn draw_load(svg: &mut Svg, view: &View, [x, y, h]: [f64; 3], survey: &Survey) {
     for (share_x, share_y) in [(-0.6, -0.6), (0.6, -0.6), (0.0, 0.0), (-0.6, 0.6), (0.6, 0.6)] {
         let tip = view.at([share_x * x, share_y * y, h]);
-        sketch.arrow(&[(tip.0, tip.1 - LOAD_ARROW), tip], Line::solid(BLUE, 2.2));
+        svg.arrow(&[(tip.0, tip.1 - LOAD_ARROW), tip], Pen::solid(BLUE, 2.2));
     }
     let (at_x, at_y) = view.at([0.0, 0.0, h]);
     let text = format!("F = {}", lines::values(survey.values("load_n"), "N"));
-    sketch.text((at_x, (at_y - LOAD_ARROW - 34.0).max(14.0)), Anchor::Middle, BLUE, &text);
+    svg.text((at_x, (at_y - LOAD_ARROW - 34.0).max(14.0)), Anchor::Middle, BLUE, &text);
 }
 
-fn draw_dimensions(sketch: &mut Sketch, view: &View, [x, y, h]: [f64; 3], shape: Shape, survey: &Survey) {
+fn draw_dimensions(svg: &mut Svg, view: &View, [x, y, h]: [f64; 3], shape: Shape, survey: &Survey) {
     let text = |symbol: &str, name: &str| format!("{symbol} = {}", lines::values(survey.values(name), "m"));
     // Dimensions are so many pixels away from their edges, whatever the size of the pin.
     let away = |px: f64| px / view.scale;
@@ -165,35 +165,35 @@ fn draw_dimensions(sketch: &mut Sketch, view: &View, [x, y, h]: [f64; 3], shape:
     let (from, to) = (view.at([-x, near, 0.0]), view.at([x, near, 0.0]));
     let beside = (f64::midpoint(from.0, to.0) - 12.0, f64::midpoint(from.1, to.1) + 12.0);
     let (symbol, name) = if shape == Shape::Cylinder { ("d", "diameter_m") } else { ("l_x", "size_x_m") };
-    sketch.dimension(from, to, INK, &text(symbol, name), (beside, Anchor::End));
+    svg.dimension(from, to, INK, &text(symbol, name), (beside, Anchor::End));
     if shape != Shape::Cylinder {
         let (from, to) = (view.at([side, -y, 0.0]), view.at([side, y, 0.0]));
         let below = (f64::midpoint(from.0, to.0) + 8.0, f64::midpoint(from.1, to.1) + 12.0);
-        sketch.dimension(from, to, INK, &text("l_y", "size_y_m"), (below, Anchor::Start));
+        svg.dimension(from, to, INK, &text("l_y", "size_y_m"), (below, Anchor::Start));
     }
     let (from, to) = (view.at([-x, -y, 0.0]), view.at([-x, -y, h]));
     let (from, to) = ((from.0 - 16.0, from.1), (to.0 - 16.0, to.1));
     let left = (from.0 - 8.0, f64::midpoint(from.1, to.1));
-    sketch.dimension(from, to, INK, &text("h", "size_z_m"), (left, Anchor::End));
+    svg.dimension(from, to, INK, &text("h", "size_z_m"), (left, Anchor::End));
     let leading = view.at([0.0, -y, 0.45 * h]);
-    sketch.text(leading, Anchor::Middle, INK, "leading end");
+    svg.text(leading, Anchor::Middle, INK, "leading end");
 }
 
-fn draw_motion(sketch: &mut Sketch, view: &View, [x, y]: [f64; 2], elastic: bool) {
+fn draw_motion(svg: &mut Svg, view: &View, [x, y]: [f64; 2], elastic: bool) {
     let (from, to) = (view.at([x, -y, 0.0]), view.at([x, y, 0.0]));
-    sketch.arrow(&[from, to], Line::solid(BLUE, 3.0));
+    svg.arrow(&[from, to], Pen::solid(BLUE, 3.0));
     let text = if elastic { "surface of the ring, moves in +y" } else { "rigid disk, moves in +y" };
     let below = (f64::midpoint(from.0, to.0) + 16.0, f64::midpoint(from.1, to.1) + 20.0);
-    sketch.text(below, Anchor::Middle, BLUE, text);
+    svg.text(below, Anchor::Middle, BLUE, text);
 }
 
 /// The directions of the axes, in the lower left corner.
-fn draw_axes(sketch: &mut Sketch) {
+fn draw_axes(svg: &mut Svg) {
     let origin = (34.0, f64::from(SIZE.1) - 42.0);
     for ((dx, dy), name) in DIRECTIONS.into_iter().zip(["x", "y", "z"]) {
         let tip = (origin.0 + 40.0 * dx, origin.1 + 40.0 * dy);
-        sketch.arrow(&[origin, tip], Line::solid(INK, 1.6));
-        sketch.text((origin.0 + 52.0 * dx, origin.1 + 52.0 * dy), Anchor::Middle, INK, name);
+        svg.arrow(&[origin, tip], Pen::solid(INK, 1.6));
+        svg.text((origin.0 + 52.0 * dx, origin.1 + 52.0 * dy), Anchor::Middle, INK, name);
     }
 }
 

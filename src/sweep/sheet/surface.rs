@@ -2,9 +2,9 @@
 
 use super::colours::{FRONT, INK, MESH, SIDE, TOP};
 use super::view::View;
-use crate::publish::plot::RGBColor;
-use crate::publish::plot::palette::VERMILLION;
-use crate::publish::plot::sketch::{At, Line, Sketch};
+use crate::publish::chart::Rgb;
+use crate::publish::chart::palette::VERMILLION;
+use crate::publish::chart::{At, Pen, Svg};
 use crate::solver::Model;
 use crate::solver::body::pin::PinMesh;
 use crate::solver::support::clamp::clamped_strip;
@@ -32,21 +32,21 @@ struct Face {
 }
 
 /// Draws the surface of the pin, and the nodes that the clamp holds. A mesh that cannot be used is not drawn.
-pub(super) fn draw(sketch: &mut Sketch, view: &View, spec: &JobSpec) {
+pub(super) fn draw(svg: &mut Svg, view: &View, spec: &JobSpec) {
     let Ok(mesh) = Model::mesh_of(&spec.scene) else { return };
     let mut faces: Vec<Face> =
         surface(&mesh).into_iter().filter(|face| dot(face.normal, EYE) > 0.0).collect();
     // Faces that are nearer cover those behind them.
     let depth = |face: &Face| face.corners_m.iter().map(|corner| dot(*corner, EYE)).sum::<f64>();
     faces.sort_by(|a, b| depth(a).total_cmp(&depth(b)));
-    let edge = (faces.len() <= MOST_EDGED).then(|| Line::solid(MESH, 0.6));
+    let edge = (faces.len() <= MOST_EDGED).then(|| Pen::solid(MESH, 0.6));
     for face in &faces {
         let corners: Vec<At> = face.corners_m.iter().map(|corner| view.at(*corner)).collect();
-        sketch.polygon(&corners, (colour(face), 1.0), edge);
+        svg.polygon(&corners, (colour(face), 1.0), edge);
     }
     let Ok(strip) = clamped_strip(&mesh, &spec.scene.clamp) else { return };
     for node in strip.nodes {
-        sketch.circle(view.at(mesh.coordinates_m(node)), 2.6, Some(VERMILLION), Line::solid(INK, 0.4));
+        svg.circle(view.at(mesh.coordinates_m(node)), 2.6, Some(VERMILLION), Some(Pen::solid(INK, 0.4)));
     }
 }
 
@@ -77,7 +77,7 @@ fn surface(mesh: &PinMesh) -> Vec<Face> {
     found.into_values().flatten().collect()
 }
 
-fn colour(face: &Face) -> RGBColor {
+fn colour(face: &Face) -> Rgb {
     let [x, y, z] = face.normal.map(f64::abs);
     let plain = if z > x.max(y) {
         TOP
@@ -90,7 +90,7 @@ fn colour(face: &Face) -> RGBColor {
         return plain;
     }
     let shaded = |level: u8| (f64::from(level) * REGION_SHADE) as u8;
-    RGBColor(shaded(plain.0), shaded(plain.1), shaded(plain.2))
+    Rgb(shaded(plain.0), shaded(plain.1), shaded(plain.2))
 }
 
 fn mean(points: &[[f64; 3]]) -> [f64; 3] {

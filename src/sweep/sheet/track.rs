@@ -5,9 +5,9 @@ use super::derived::SLIDING_SPEED;
 use super::lines;
 use super::survey::Survey;
 use crate::publish::Drawing;
-use crate::publish::plot::RGBColor;
-use crate::publish::plot::palette::BLUE;
-use crate::publish::plot::sketch::{Anchor, At, Line, Sketch};
+use crate::publish::chart::Rgb;
+use crate::publish::chart::palette::{BLUE, PAPER};
+use crate::publish::chart::{Anchor, At, Pen, Svg};
 use crate::spec::{DiskKind, JobSpec, Shape};
 
 const SIZE: (u32, u32) = (470, 470);
@@ -17,8 +17,7 @@ const RADIUS: f64 = 180.0;
 /// Smallest edge of the pin's footprint on the sheet [px].
 const SMALLEST: f64 = 5.0;
 
-const PIN: RGBColor = RGBColor(0xCD, 0xDC, 0xEA);
-const WHITE: RGBColor = RGBColor(0xFF, 0xFF, 0xFF);
+const PIN: Rgb = Rgb(0xCD, 0xDC, 0xEA);
 
 /// Draws the disk of a job. Texts give the values of all jobs.
 pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
@@ -33,53 +32,53 @@ pub(super) fn draw(spec: &JobSpec, survey: &Survey) -> Drawing {
         (CENTRE.0 + radius * angle.cos(), CENTRE.1 - radius * angle.sin())
     };
 
-    let mut sketch = Sketch::new(SIZE);
-    let edge = Line { dashed: !elastic, ..Line::solid(DISK_EDGE, 1.2) };
-    sketch.circle(CENTRE, RADIUS, Some(DISK), edge);
+    let mut svg = Svg::new((f64::from(SIZE.0), f64::from(SIZE.1)));
+    let edge = if elastic { Pen::solid(DISK_EDGE, 1.2) } else { Pen::dashed(DISK_EDGE, 1.2) };
+    svg.circle(CENTRE, RADIUS, Some(DISK), Some(edge));
     if elastic {
-        sketch.circle(CENTRE, disk.ring.inner_radius_m * scale, Some(WHITE), edge);
+        svg.circle(CENTRE, disk.ring.inner_radius_m * scale, Some(PAPER), Some(edge));
     }
-    sketch.circle(CENTRE, track_m * scale, None, Line { dashed: true, ..Line::solid(INK, 1.0) });
+    svg.circle(CENTRE, track_m * scale, None, Some(Pen::dashed(INK, 1.0)));
     let half = [0, 1].map(|axis| (pin.extent_m()[axis] * scale / 2.0).max(SMALLEST / 2.0));
     let at = on_circle(track_m * scale, 0.0);
     if pin.shape == Shape::Cylinder {
-        sketch.circle(at, half[0], Some(PIN), Line::solid(INK, 1.6));
+        svg.circle(at, half[0], Some(PIN), Some(Pen::solid(INK, 1.6)));
     } else {
         let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0)];
         let footprint = corners.map(|(x, y)| (at.0 + x * half[0], at.1 + y * half[1]));
-        sketch.polygon(&footprint, (PIN, 1.0), Some(Line::solid(INK, 1.6)));
+        svg.polygon(&footprint, (PIN, 1.0), Some(Pen::solid(INK, 1.6)));
     }
 
     let radius = format!("R = {}", lines::values(survey.values("track_radius_m"), "m"));
     let beside = ((CENTRE.0 + at.0) / 2.0, CENTRE.1 - 13.0);
-    sketch.dimension(CENTRE, (at.0 - half[0], at.1), INK, &radius, (beside, Anchor::Middle));
-    sketch.circle(CENTRE, 3.5, Some(INK), Line::solid(INK, 1.0));
-    sketch.text((CENTRE.0, CENTRE.1 + 18.0), Anchor::Middle, INK, "disk axis");
+    svg.dimension(CENTRE, (at.0 - half[0], at.1), INK, &radius, (beside, Anchor::Middle));
+    svg.circle(CENTRE, 3.5, Some(INK), Some(Pen::solid(INK, 1.0)));
+    svg.text((CENTRE.0, CENTRE.1 + 18.0), Anchor::Middle, INK, "disk axis");
 
     // Seen from above, the disk turns counter-clockwise: its surface moves towards +y under the pin.
     let arc: Vec<At> = (0..=30).map(|step| on_circle(0.45 * RADIUS, 110.0 + 4.0 * f64::from(step))).collect();
-    sketch.arrow(&arc, Line::solid(BLUE, 2.4));
-    sketch.text(on_circle(0.45 * RADIUS, 100.0), Anchor::Start, BLUE, "ω");
+    svg.arrow(&arc, Pen::solid(BLUE, 2.4));
+    svg.text(on_circle(0.45 * RADIUS, 100.0), Anchor::Start, BLUE, "ω");
     let beside_pin = at.0 + half[0] + 14.0;
-    sketch.arrow(&[(beside_pin, at.1 + 30.0), (beside_pin, at.1 - 30.0)], Line::solid(BLUE, 2.4));
-    sketch.text((beside_pin + 9.0, at.1 - 22.0), Anchor::Start, BLUE, "V");
-    draw_axes(&mut sketch);
+    svg.arrow(&[(beside_pin, at.1 + 30.0), (beside_pin, at.1 - 30.0)], Pen::solid(BLUE, 2.4));
+    svg.text((beside_pin + 9.0, at.1 - 22.0), Anchor::Start, BLUE, "V");
+    draw_axes(&mut svg);
     let below = f64::from(SIZE.1);
     let speed = survey.derived.iter().find(|(derived, _)| derived.name == SLIDING_SPEED);
     let omega = lines::values(survey.values("omega_rpm"), "rpm");
-    sketch.text((90.0, below - 44.0), Anchor::Start, BLUE, &format!("ω = {omega}"));
+    svg.text((90.0, below - 44.0), Anchor::Start, BLUE, &format!("ω = {omega}"));
     if let Some((_, [low, high])) = speed {
         let speed = format!("V = ωR = {}", lines::range(*low, *high, "m/s"));
-        sketch.text((90.0, below - 22.0), Anchor::Start, BLUE, &speed);
+        svg.text((90.0, below - 22.0), Anchor::Start, BLUE, &speed);
     }
-    Drawing { stem: "track", svg: sketch.finish(), caption: caption(spec, survey) }
+    Drawing { stem: "track", svg: svg.finish(""), caption: caption(spec, survey) }
 }
 
-fn draw_axes(sketch: &mut Sketch) {
+fn draw_axes(svg: &mut Svg) {
     let origin = (22.0, f64::from(SIZE.1) - 22.0);
     for ((dx, dy), name) in [((1.0, 0.0), "x"), ((0.0, -1.0), "y")] {
-        sketch.arrow(&[origin, (origin.0 + 36.0 * dx, origin.1 + 36.0 * dy)], Line::solid(INK, 1.6));
-        sketch.text((origin.0 + 46.0 * dx, origin.1 + 46.0 * dy), Anchor::Middle, INK, name);
+        svg.arrow(&[origin, (origin.0 + 36.0 * dx, origin.1 + 36.0 * dy)], Pen::solid(INK, 1.6));
+        svg.text((origin.0 + 46.0 * dx, origin.1 + 46.0 * dy), Anchor::Middle, INK, name);
     }
 }
 

@@ -1,6 +1,6 @@
 //! The view of a scene: obliquely from above.
 
-use crate::publish::plot::sketch::At;
+use crate::publish::chart::At;
 
 /// The part of the sheet for the bodies: left, top, right, bottom [px]. The rest is for texts.
 const FRAME: [f64; 4] = [70.0, 92.0, 500.0, 400.0];

@@ -1,0 +1,298 @@
+//! Tables: columns with a name, a unit and a meaning, and their only writer as CSV, JSON lines, aligned text and Markdown.
+//!
+//! A [`Column`] says in one row what it is called, what it means, and how it is read from a line's subject. The header, the
+//! cells, the command `columns` and the pages of columns come from the same list, and can thus never differ.
+
+use super::value;
+use serde::ser::{SerializeMap, Serializer};
+use serde_json::Value;
+use std::borrow::Cow;
+use std::io::{self, Write};
+use std::sync::Arc;
+
+/// What a column is called and what it means.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Head {
+    /// Its name in the header, unique in its table.
+    pub name: Cow<'static, str>,
+    /// The unit of its numbers; empty for text and for numbers without a unit.
+    pub unit: Cow<'static, str>,
+    /// What its values mean.
+    pub meaning: Cow<'static, str>,
+}
+
+/// A column of a table whose lines are about a `T`.
+pub struct Column<T: ?Sized> {
+    /// Its name, its unit and its meaning.
+    pub head: Head,
+    read: Read<T>,
+}
+
+enum Read<T: ?Sized> {
+    Plain(fn(&T) -> Value),
+    Made(Arc<dyn Fn(&T) -> Value + Send + Sync>),
+}
+
+impl<T: ?Sized> Clone for Read<T> {
+    fn clone(&self) -> Self {
+        match self {
+            Self::Plain(read) => Self::Plain(*read),
+            Self::Made(read) => Self::Made(Arc::clone(read)),
+        }
+    }
+}
+
+impl<T: ?Sized> Clone for Column<T> {
+    fn clone(&self) -> Self {
+        Self { head: self.head.clone(), read: self.read.clone() }
+    }
+}
+
+impl<T: ?Sized> std::fmt::Debug for Column<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.debug_struct("Column").field("head", &self.head).finish_non_exhaustive()
+    }
+}
+
+impl<T: ?Sized> Column<T> {
+    /// A column of a fixed list.
+    pub const fn new(
+        name: &'static str,
+        unit: &'static str,
+        meaning: &'static str,
+        read: fn(&T) -> Value,
+    ) -> Self {
+        let head =
+            Head { name: Cow::Borrowed(name), unit: Cow::Borrowed(unit), meaning: Cow::Borrowed(meaning) };
+        Self { head, read: Read::Plain(read) }
+    }
+
+    /// A column that depends on what a study varies.
+    pub fn made(head: Head, read: impl Fn(&T) -> Value + Send + Sync + 'static) -> Self {
+        Self { head, read: Read::Made(Arc::new(read)) }
+    }
+
+    /// Its value; null where there is none, and for a number that is not finite, because JSON has no such numbers.
+    pub fn value(&self, of: &T) -> Value {
+        match &self.read {
+            Read::Plain(read) => read(of),
+            Read::Made(read) => read(of),
+        }
+    }
+}
+
+impl Head {
+    /// A name that depends on what a study varies.
+    pub fn new(
+        name: impl Into<Cow<'static, str>>,
+        unit: impl Into<Cow<'static, str>>,
+        meaning: impl Into<Cow<'static, str>>,
+    ) -> Self {
+        Self { name: name.into(), unit: unit.into(), meaning: meaning.into() }
+    }
+}
+
+/// A table that is in memory.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Table {
+    /// The name of its file without the ending.
+    pub stem: Cow<'static, str>,
+    /// Its columns.
+    pub heads: Vec<Head>,
+    /// Its lines; each has a value for every column.
+    pub lines: Vec<Vec<Value>>,
+}
+
+impl Table {
+    /// A line for each of the subjects.
+    pub fn of<'a, T: ?Sized + 'a>(
+        stem: impl Into<Cow<'static, str>>,
+        columns: &[Column<T>],
+        subjects: impl IntoIterator<Item = &'a T>,
+    ) -> Self {
+        let line = |of: &T| columns.iter().map(|column| column.value(of)).collect();
+        Self {
+            stem: stem.into(),
+            heads: columns.iter().map(|column| column.head.clone()).collect(),
+            lines: subjects.into_iter().map(line).collect(),
+        }
+    }
+
+    /// The names of its columns.
+    pub fn names(&self) -> impl Iterator<Item = &str> {
+        self.heads.iter().map(|head| &*head.name)
+    }
+
+    /// Writes it in a format that programs read.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn write(&self, format: Format, out: impl Write) -> io::Result<()> {
+        let mut writer = TableWriter::new(format, &self.heads, out)?;
+        self.lines.iter().try_for_each(|line| writer.line(line.iter().cloned()))?;
+        writer.finish()
+    }
+
+    /// It as CSV.
+    ///
+    /// # Panics
+    /// Never: writing to memory cannot fail, and CSV of texts is text.
+    pub fn csv(&self) -> String {
+        let mut bytes = Vec::new();
+        self.write(Format::Csv, &mut bytes).expect("memory takes everything");
+        String::from_utf8(bytes).expect("cells are texts")
+    }
+
+    /// Its cells as a reader sees them: numbers with at most ten digits.
+    pub fn cells(&self) -> Vec<Vec<String>> {
+        self.lines.iter().map(|line| line.iter().map(value::rounded_text).collect()).collect()
+    }
+
+    /// Aligned columns for a terminal: texts on the left side of their column, numbers on the right side.
+    pub fn text(&self) -> String {
+        let names: Vec<String> = self.names().map(str::to_owned).collect();
+        let is_number = |column: usize| {
+            let mut known =
+                self.lines.iter().map(|line| &line[column]).filter(|value| !value.is_null()).peekable();
+            known.peek().is_some() && known.all(Value::is_number)
+        };
+        let numbers: Vec<bool> = (0..names.len()).map(is_number).collect();
+        aligned(&names, &self.cells(), |column| numbers[column])
+    }
+}
+
+/// Aligned columns, two spaces apart. Cells of the columns for which `is_right` is true are on the right side.
+pub fn aligned(names: &[String], lines: &[Vec<String>], is_right: impl Fn(usize) -> bool) -> String {
+    let width = |column: usize| {
+        let cells = lines.iter().map(|line| &line[column]).chain([&names[column]]);
+        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..names.len()).map(width).collect();
+    let mut text = String::new();
+    for line in std::iter::once(names).chain(lines.iter().map(Vec::as_slice)) {
+        let padded = line.iter().enumerate().map(|(column, cell)| {
+            let width = widths[column];
+            if is_right(column) { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
+        });
+        text.push_str(padded.collect::<Vec<_>>().join("  ").trim_end());
+        text.push('\n');
+    }
+    text
+}
+
+/// A format that programs read.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Format {
+    /// Comma-separated values with a header; cells without a value are empty.
+    Csv,
+    /// A JSON object in each line; cells without a value are null.
+    JsonLines,
+}
+
+/// Writes a table line by line, so that a large one need not be in memory.
+pub struct TableWriter<W: Write> {
+    names: Vec<Cow<'static, str>>,
+    lines: Lines<W>,
+}
+
+enum Lines<W: Write> {
+    Csv(Box<::csv::Writer<W>>),
+    Json(W),
+}
+
+impl<W: Write> TableWriter<W> {
+    /// Begins a table; CSV gets its header.
+    ///
+    /// # Errors
+    /// Those of `out`.
+    pub fn new(format: Format, heads: &[Head], out: W) -> io::Result<Self> {
+        let names: Vec<_> = heads.iter().map(|head| head.name.clone()).collect();
+        let lines = match format {
+            Format::Csv => {
+                let mut writer = ::csv::Writer::from_writer(out);
+                writer.write_record(names.iter().map(|name| name.as_bytes())).map_err(io_error)?;
+                Lines::Csv(Box::new(writer))
+            }
+            Format::JsonLines => Lines::Json(out),
+        };
+        Ok(Self { names, lines })
+    }
+
+    /// Writes a line; `cells` has a value for every column.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn line(&mut self, cells: impl IntoIterator<Item = Value>) -> io::Result<()> {
+        match &mut self.lines {
+            Lines::Csv(writer) => {
+                writer.write_record(cells.into_iter().map(|cell| value::text(&cell))).map_err(io_error)
+            }
+            Lines::Json(out) => {
+                let mut line = serde_json::Serializer::new(&mut *out);
+                let mut map = line.serialize_map(Some(self.names.len()))?;
+                for (name, cell) in self.names.iter().zip(cells) {
+                    map.serialize_entry(name, &cell)?;
+                }
+                map.end()?;
+                out.write_all(b"\n")
+            }
+        }
+    }
+
+    /// Writes what is still buffered.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn finish(self) -> io::Result<()> {
+        match self.lines {
+            Lines::Csv(mut writer) => writer.flush(),
+            Lines::Json(mut out) => out.flush(),
+        }
+    }
+}
+
+/// The I/O error behind a CSV error, so that a caller can recognise a closed pipe.
+fn io_error(error: ::csv::Error) -> io::Error {
+    match error.into_kind() {
+        ::csv::ErrorKind::Io(source) => source,
+        other => io::Error::other(format!("{other:?}")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    struct Mode {
+        name: &'static str,
+        rate: Option<f64>,
+    }
+
+    const COLUMNS: [Column<Mode>; 2] = [
+        Column::new("mode", "", "name of the mode", |mode| mode.name.into()),
+        Column::new("rate", "1/s", "growth rate", |mode| mode.rate.into()),
+    ];
+
+    fn table() -> Table {
+        let modes = [Mode { name: "first, \"fast\"", rate: Some(0.1 + 0.2) }, Mode { name: "b", rate: None }];
+        Table::of("modes", &COLUMNS, &modes)
+    }
+
+    /// Protects: header and cells come from the same columns in every format, texts are quoted, a number reads back as the same
+    /// number, and a value that is missing is an empty cell or null.
+    #[test]
+    fn formats_have_the_same_cells() {
+        let table = table();
+        assert_eq!(table.csv(), "mode,rate\n\"first, \"\"fast\"\"\",0.30000000000000004\nb,\n");
+        let mut json = Vec::new();
+        table.write(Format::JsonLines, &mut json).unwrap();
+        let lines: Vec<Value> = String::from_utf8(json)
+            .unwrap()
+            .lines()
+            .map(|line| serde_json::from_str(line).unwrap())
+            .collect();
+        assert_eq!(lines[0]["rate"].as_f64(), Some(0.1 + 0.2));
+        assert_eq!(lines[1], serde_json::json!({ "mode": "b", "rate": null }));
+        assert_eq!(table.text(), "mode           rate\nfirst, \"fast\"   0.3\nb\n");
+    }
+}
