@@ -33,6 +33,11 @@ impl<'a> Folder<'a> {
         Ok(Self { path, kind, written: Vec::new(), earlier })
     }
 
+    /// The names of the files written so far.
+    pub fn written(&self) -> &[String] {
+        &self.written
+    }
+
     /// The path of the file with this name, which need not exist. A name may have folders in it, separated by `/`.
     pub fn path_of(&self, name: &str) -> PathBuf {
         self.path.join(name)

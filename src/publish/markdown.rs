@@ -3,6 +3,13 @@
 use super::page::{Block, Figure, Grid, Page, Span, Text, Tile};
 use std::fmt::Write;
 
+/// Blocks below one another.
+pub fn of_blocks(blocks: &[Block]) -> String {
+    let mut text = String::new();
+    blocks.iter().for_each(|block| write_block(&mut text, block));
+    text
+}
+
 /// A page.
 pub fn of_page(page: &Page) -> String {
     let mut text = format!("# {}\n\n", escape(&page.title));
@@ -117,6 +124,7 @@ fn spans(text: &Text) -> String {
         Span::Strong(words) => format!("**{}**", escape(words)),
         Span::Code(words) => code(words),
         Span::Link(words, address) => format!("[{}]({address})", escape(words)),
+        Span::Download(file, _) => format!("[{file}]({file})"),
         Span::Break => " ".to_owned(),
     };
     text.0.iter().map(span).collect()

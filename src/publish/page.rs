@@ -115,6 +115,8 @@ pub enum Span {
     Symbol(String),
     /// Words that lead to an address.
     Link(String, String),
+    /// A link that contains a file of data: its name and its contents.
+    Download(String, String),
     /// The end of a line.
     Break,
 }
@@ -177,7 +179,8 @@ impl Text {
             | Span::Strong(words)
             | Span::Code(words)
             | Span::Symbol(words)
-            | Span::Link(words, _) => words.clone(),
+            | Span::Link(words, _)
+            | Span::Download(words, _) => words.clone(),
             Span::Break => " ".to_owned(),
         };
         self.0.iter().map(word).collect()

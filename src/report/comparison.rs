@@ -14,9 +14,6 @@ use crate::publish::value;
 use serde_json::Value;
 use std::collections::BTreeMap;
 
-/// Largest number of differences on a page. All of them are in `differences.csv`.
-pub(super) const MAX_LISTED: usize = 60;
-
 /// The differences between the sources of a report.
 pub(super) struct Comparison {
     /// The name of the first source.
@@ -286,8 +283,8 @@ impl Comparison {
         (head.map(str::to_owned).into(), self.differences.chunk_by(same).map(line).collect())
     }
 
-    /// The first differences: heads and lines of a table.
-    pub fn table(&self) -> (Vec<String>, Vec<Vec<String>>) {
+    /// All differences: heads and lines of a table.
+    pub fn table(&self) -> (Vec<String>, impl Iterator<Item = Vec<String>>) {
         let head = ["source", "quantity"].map(str::to_owned).into_iter().chain(self.labels.iter().cloned());
         let results = ["value", &self.reference, "difference", "error", "relative"];
         let head = head.chain(results.map(str::to_owned)).collect();
@@ -315,7 +312,7 @@ impl Comparison {
                 ])
                 .collect()
         };
-        (head, self.differences.iter().take(MAX_LISTED).map(line).collect())
+        (head, self.differences.iter().map(line))
     }
 
     /// What the tables mean.

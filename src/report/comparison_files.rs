@@ -2,33 +2,8 @@
 
 use super::comparison::Comparison;
 use super::export::io_error;
-use super::markdown;
 use crate::publish::value;
 use std::io;
-
-/// The section of `report.md`.
-pub(super) fn markdown(comparison: &Comparison) -> String {
-    let notes = comparison.notes.iter().map(|note| format!("- {}\n", markdown::escape(note)));
-    let mut text = "\n## Comparison\n\n".to_owned();
-    if let [head, lines @ ..] = &comparison.contradictions_in_words()[..] {
-        text.extend(["**", &markdown::escape(head), "**\n\n"]);
-        text.extend(lines.iter().map(|line| format!("- {}\n", markdown::escape(line))));
-        text += "\n";
-    }
-    text.extend(notes);
-    let (head, lines) = comparison.summary();
-    if !lines.is_empty() {
-        text += "\n";
-        text += &markdown::table(&head, &lines, false);
-        let (head, lines) = comparison.table();
-        text += "\n";
-        text += &markdown::table(&head, &lines, false);
-    }
-    text + &format!(
-        "\n{} All differences: [differences.csv](differences.csv).\n",
-        markdown::escape(&comparison.explanation())
-    )
-}
 
 /// Contradictions about squeal (1: it squeals) and then all differences as CSV, one line each, with numbers in full and in the units of their names.
 pub(super) fn csv(comparison: &Comparison, out: &mut Vec<u8>) -> io::Result<()> {

@@ -4,24 +4,21 @@ use super::comparison::Comparison;
 use super::comparison_files;
 use super::export;
 use super::figure::{self, DataFile, Figure, Plot, RESIDUALS, RUN_TIMES};
-use super::growth::Findings;
-use super::html::{self, Layouts, Parts};
 use super::input::Report;
 use super::inspections::inspections;
 use super::layout::Layout;
-use super::page::{self, FigureLink, Table};
+use super::page::{self, Layouts, Parts};
 use super::program::{self, Programs};
 use super::row::JobRow;
 use super::spectra;
 use super::stability::{self, Analysis};
 use super::stale::could_be_of_a_report;
 use super::tables::{self, Quantity};
-use crate::publish::{FigureError, Folder, PublishError};
+use crate::publish::{FigureError, Folder, PublishError, html, markdown};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
 
-const QUANTITIES: [(Quantity, &str); 3] =
-    [(Quantity::MuStar, "mu_star"), (Quantity::Frequency, "frequency"), (Quantity::Regime, "regime")];
+const QUANTITIES: [Quantity; 3] = [Quantity::MuStar, Quantity::Frequency, Quantity::Regime];
 
 /// Writes the page `report.html`, tables, figures with the data behind them, the export and `report.md` into `out_dir`;
 /// returns the files.
@@ -53,7 +50,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let mut folder = Folder::create(out_dir, "report")?;
     let (given, shown) = (report, thinned(report.rows));
     let report = &Report { rows: shown.as_deref().unwrap_or(given.rows), ..*given };
-    let Report { title, rows, view, .. } = *report;
+    let Report { rows, view, .. } = *report;
 
     let layout = Layout::of(rows.iter().filter(|row| !row.is_at_boundary()), view);
     let spectra = spectra::read(out_dir, rows);
@@ -68,11 +65,8 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let layouts = Layouts { all: &layout, jobs: jobs_layout, whole: whole.as_ref().unwrap_or(jobs_layout) };
     let plots: Vec<Plot> =
         Plot::ALL.into_iter().chain(view.y.iter().map(|scalar| Plot::Of(scalar))).collect();
-    let quantities =
-        QUANTITIES.into_iter().chain(view.y.iter().map(|scalar| (Quantity::Of(scalar), scalar.name)));
-    let quantities: Vec<(Quantity, &'static str)> = quantities.collect();
+    let quantities = QUANTITIES.into_iter().chain(view.y.iter().map(|scalar| Quantity::Of(scalar)));
 
-    let tables = || quantities.into_par_iter().map(|(quantity, stem)| table(&layout, quantity, stem));
     let draw = |plot: Plot| (plot, figure::figures_of(layouts.of(plot), plot, &spectra, report.stability));
     let figures = || plots.clone().into_par_iter().map(draw);
     let jobs = || {
@@ -80,20 +74,16 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         export::csv(given.rows, &mut out).map(|()| out)
     };
     let residuals = || figure::residuals::draw(rows);
-    let ((tables, figures), (jobs, residuals)): ((Vec<_>, Vec<_>), _) = rayon::join(
-        || rayon::join(|| tables().collect(), || figures().collect()),
-        || rayon::join(jobs, residuals),
-    );
+    let (figures, (jobs, residuals)): (Vec<_>, _) =
+        rayon::join(|| figures().collect(), || rayon::join(jobs, residuals));
     for drawing in report.sheet.iter().flat_map(|sheet| &sheet.drawings) {
         folder.write_text(&format!("{}.svg", drawing.stem), &drawing.svg)?;
     }
-    for table in &tables {
-        folder.write_text(&format!("{}.md", table.stem), &page::of_table(table, title))?;
+    for quantity in quantities {
         folder
-            .write_with(&format!("{}.csv", table.stem), |out| tables::csv_of(&layout, table.quantity, out))?;
+            .write_with(&format!("{}.csv", quantity.stem()), |out| tables::csv_of(&layout, quantity, out))?;
     }
 
-    let mut links = Vec::new();
     let mut drawn: Vec<(Plot, Vec<Figure>)> = Vec::new();
     for (plot, figures) in figures {
         let mut figures = figures.map_err(|source| cannot_draw(out_dir, plot.stem(), source))?;
@@ -102,30 +92,26 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         for figure in &figures {
             let file = format!("{}{}.svg", plot.stem(), figure.suffix);
             folder.write_text(&file, &figure.svg)?;
-            links.push(FigureLink { plot, caption: figure.caption.clone(), file });
         }
         drawn.push((plot, figures));
     }
     let residuals = residuals.map_err(|source| cannot_draw(out_dir, &RESIDUALS.stem, source))?;
     folder.write_text(&format!("{}.svg", RESIDUALS.stem), &residuals)?;
 
-    let mut data_files = write_data(&mut folder, rows, &layout, &plots)?;
+    write_data(&mut folder, rows, &layout, &plots)?;
     if !spectra.is_empty() {
         folder.write_with("waterfall.csv", |out| {
             *out = figure::waterfall::csv(&layout, &spectra)?;
             Ok(())
         })?;
-        data_files.push("waterfall.csv".to_owned());
     }
     let programs = write_programs(&mut folder, rows, out_dir)?;
-    data_files.extend(programs.iter().map(|_| program::WINDOWS.to_owned()));
-    data_files.extend(write_findings(&mut folder, report)?);
+    write_findings(&mut folder, report)?;
     let stability_rows = stability::rows(report.stability, report.along);
     let analysis = (!report.stability.is_empty())
         .then(|| Analysis::of(report.stability, &stability_rows, report.along, view));
     let of_stability = analysis.as_ref().map(|own| stability::write_files(own, &mut folder)).transpose()?;
     let stability = analysis.as_ref().zip(of_stability.as_ref());
-    data_files.extend(of_stability.iter().flat_map(|files| &files.data).map(|(file, _)| (*file).to_owned()));
     folder.write_with("jobs.csv", |out| {
         *out = jobs?;
         Ok(())
@@ -145,11 +131,6 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         folder.write_with("differences.csv", |out| comparison_files::csv(comparison, out))?;
     }
     let differences = comparison.as_ref();
-    let mut section = report.findings.map_or_else(String::new, Findings::markdown);
-    section += &programs.as_ref().map_or_else(String::new, Programs::markdown);
-    section += &stability.map_or_else(String::new, |(own, files)| stability::markdown(own, files));
-    let markdown = page::of_report(report, &tables, &links, &data_files, differences, &section);
-    folder.write_text("report.md", &markdown)?;
     let pages = inspections(out_dir).into_iter().filter_map(|found| Some((found.job.clone(), found.page()?)));
     let pages = pages.collect();
     let parts = Parts {
@@ -158,12 +139,14 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         figures: &drawn,
         comparison: differences,
         residuals: &residuals,
-        spectra: &spectra,
         programs: programs.as_ref(),
         stability,
+        files: folder.written().to_vec(),
         pages,
     };
-    folder.write_text("report.html", &html::page(&parts))?;
+    let page = page::of_report(&parts);
+    folder.write_text("report.html", &html::of_page(&page))?;
+    folder.write_text("report.md", &markdown::of_page(&page))?;
     let contradictions = comparison.as_ref().map_or_else(Vec::new, Comparison::contradictions_in_words);
     let files = folder.finish(|name| could_be_of_a_report(name, out_dir))?;
     Ok(Written { files, contradictions })
@@ -187,42 +170,40 @@ fn thinned(rows: &[JobRow]) -> Option<Vec<JobRow>> {
     Some(rows.iter().filter(is_shown).cloned().collect())
 }
 
-/// Writes the data behind the figures, and returns the files.
+/// Writes the data behind the figures.
 fn write_data(
     folder: &mut Folder,
     rows: &[JobRow],
     layout: &Layout,
     plots: &[Plot],
-) -> Result<Vec<String>, PublishError> {
-    let mut data_files = Vec::new();
+) -> Result<(), PublishError> {
+    let mut written = Vec::new();
     let behind_figures = plots.iter().map(|plot| plot.data());
     for DataFile { stem, columns } in behind_figures.chain([RESIDUALS, RUN_TIMES]) {
         let file = format!("{stem}.csv");
         // Two figures may share a file of data.
-        if data_files.contains(&file) {
+        if written.contains(&file) {
             continue;
         }
         folder.write_with(&file, |out| {
             *out = export::selection(rows, &layout.further, &columns)?;
             Ok(())
         })?;
-        data_files.push(file);
+        written.push(file);
     }
-    Ok(data_files)
+    Ok(())
 }
 
-/// Writes the tables of what a study that grows has found, and returns the files.
-fn write_findings(folder: &mut Folder, report: &Report) -> Result<Vec<String>, PublishError> {
-    let mut files = Vec::new();
+/// Writes the tables of what a study that grows has found.
+fn write_findings(folder: &mut Folder, report: &Report) -> Result<(), PublishError> {
     for table in report.findings.iter().flat_map(|own| own.tables()) {
         let file = format!("{}.csv", table.stem);
         folder.write_with(&file, |out| {
             *out = table.csv()?;
             Ok(())
         })?;
-        files.push(file);
     }
-    Ok(files)
+    Ok(())
 }
 
 /// Writes the figures and the windows of the jobs whose speed or load changes in time; none if there are no such jobs.
@@ -237,7 +218,7 @@ fn write_programs<'a>(
     }
     if let Some(programs) = &programs {
         folder.write_with(program::WINDOWS, |out| {
-            out.extend_from_slice(programs.csv());
+            out.extend_from_slice(programs.csv().as_bytes());
             Ok(())
         })?;
     }
@@ -246,8 +227,4 @@ fn write_programs<'a>(
 
 fn cannot_draw(out_dir: &Path, stem: &str, source: FigureError) -> PublishError {
     PublishError::Figure { path: out_dir.join(format!("{stem}.svg")), source }
-}
-
-fn table(layout: &Layout, quantity: Quantity, stem: &'static str) -> Table {
-    Table { quantity, stem, markdown: tables::markdown_of(layout, quantity) }
 }

@@ -1,13 +1,11 @@
 //! What a study that grows has found: boundaries, minima, branches and basins.
 
 use super::export::io_error;
-use super::markdown;
 use crate::analysis::{JobRecord, Outcome};
-use crate::publish::{html, value};
-use maud::{Markup, html};
+use crate::publish::page::Grid;
+use crate::publish::value;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
 use std::io;
 
 /// A boundary between two kinds of jobs along a parameter.
@@ -371,45 +369,13 @@ impl Findings {
         let waves: Vec<Value> = self.waves.iter().map(|wave| json!(wave)).collect();
         json!({ "waves": waves, "state": self.state })
     }
-
-    /// The section of a page.
-    pub(super) fn markup(&self) -> Markup {
-        html! {
-            p { (self.state) }
-            @for table in self.tables() {
-                h3 { (table.heading) }
-                p { (table.meaning) }
-                (html::table(&table.header, &table.shown()))
-                @if table.lines.len() > MAX_LISTED { p.note { "… and more: see " code { (table.stem) ".csv" } "." } }
-            }
-        }
-    }
-
-    /// The section of a Markdown page.
-    pub(super) fn markdown(&self) -> String {
-        let mut text = format!("\n## What was found\n\n{}\n\n", markdown::escape(&self.state));
-        for table in self.tables() {
-            let _ = write!(
-                text,
-                "### {}\n\n{}\n\n{}\n[{}.csv]({}.csv)\n\n",
-                table.heading,
-                markdown::escape(table.meaning),
-                markdown::table(&table.header, &table.lines, false),
-                table.stem,
-                table.stem
-            );
-        }
-        text
-    }
 }
 
-/// Largest number of lines of a table of a page.
-const MAX_LISTED: usize = 200;
-
 impl FindingsTable {
-    fn shown(&self) -> Vec<Vec<Markup>> {
-        let line = |line: &Vec<String>| line.iter().map(|cell| html! { (cell) }).collect();
-        self.lines.iter().take(MAX_LISTED).map(line).collect()
+    /// The table for readers.
+    pub fn grid(&self) -> Grid {
+        let heads: Vec<&str> = self.header.iter().map(String::as_str).collect();
+        Grid::of(&heads, self.lines.iter().cloned(), &format!("{}.csv", self.stem))
     }
 
     /// The table as CSV.

@@ -25,7 +25,6 @@ pub mod figure;
 mod files;
 mod glyph;
 mod growth;
-mod html;
 mod input;
 mod inspections;
 mod layout;

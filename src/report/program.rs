@@ -2,30 +2,24 @@
 
 use super::export::io_error;
 use super::layout::parameters_in_words;
-use super::markdown;
 use super::row::JobRow;
 use crate::analysis::program::{Direction, Hysteresis, Leading, ProgramWindow};
 use crate::publish::plot::RGBColor;
 use crate::publish::plot::palette;
 use crate::publish::plot::panel::{self, Band, Panel, Scale, Series, Stroke};
-use crate::publish::{FigureError, html, value};
-use maud::{Markup, html};
-use std::fmt::Write as _;
+use crate::publish::{FigureError, value};
 use std::io::{self, Write};
 
 /// Largest number of jobs that have a figure.
 const MAX_FIGURES: usize = 12;
-/// Largest number of jobs in the table of a page.
-const MAX_LISTED: usize = 100;
-/// Longer data is not in the page \[byte\].
-const MAX_DATA: usize = 1_000_000;
 /// The name of the file with all windows.
 pub(super) const WINDOWS: &str = "windows.csv";
 const GREY: RGBColor = RGBColor(0x60, 0x60, 0x60);
 /// Hertz per kilohertz.
 const KILO: f64 = 1.0e3;
 
-const MEANING: &str = "The speed or the load of these jobs changes in time. Their runs are cut into windows, and every figure is a \
+/// What the figures and the table mean.
+pub(super) const MEANING: &str = "The speed or the load of these jobs changes in time. Their runs are cut into windows, and every figure is a \
                        mean over a window. The hysteresis is the largest difference of μ* between the way up and the way down \
                        at the same speed (or load), up minus down, interpolated between windows.";
 
@@ -105,7 +99,7 @@ impl<W: Write> WindowsCsv<W> {
 pub(super) struct Programs<'a> {
     jobs: Vec<Job<'a>>,
     figures: Vec<ProgramFigure>,
-    csv: Vec<u8>,
+    csv: String,
 }
 
 struct Job<'a> {
@@ -155,48 +149,17 @@ impl<'a> Programs<'a> {
     }
 
     /// The contents of [`WINDOWS`].
-    pub fn csv(&self) -> &[u8] {
+    pub fn csv(&self) -> &str {
         &self.csv
     }
 
-    /// The section of a page.
-    pub fn markup(&self) -> Markup {
-        let data = std::str::from_utf8(&self.csv).ok().filter(|text| text.len() <= MAX_DATA);
-        let lines = self.lines(MAX_LISTED).into_iter();
-        let lines: Vec<Vec<Markup>> =
-            lines.map(|line| line.into_iter().map(|text| html! { (text) }).collect()).collect();
-        let drawn = self.figures.len();
-        html! {
-            p { (MEANING) }
-            (html::table(&HEADER.map(str::to_owned), &lines))
-            @if self.jobs.len() > lines.len() { p.note { "… and more jobs: see " code { (WINDOWS) } "." } }
-            @for (number, figure) in self.figures.iter().enumerate() {
-                h3 { (figure.caption) }
-                (html::figure(&figure.svg, CAPTION, data.filter(|_| number == 0).map(|csv| (WINDOWS, csv))))
-            }
-            @if self.jobs.len() > drawn {
-                p.note { "The first " (drawn) " of " (value::count(self.jobs.len(), "job")) " have a figure; " code { (WINDOWS) } " has all of them." }
-            }
-        }
+    /// Number of jobs whose speed or load changes in time.
+    pub fn jobs(&self) -> usize {
+        self.jobs.len()
     }
 
-    /// The section of a Markdown page.
-    pub fn markdown(&self) -> String {
-        let mut text = format!("\n## Speed and load in time\n\n{}\n\n", markdown::escape(MEANING));
-        let _ =
-            writeln!(text, "{}", markdown::table(&HEADER.map(str::to_owned), &self.lines(usize::MAX), false));
-        for figure in &self.figures {
-            let _ = write!(
-                text,
-                "{}:\n\n![μ* over speed or load, and over time]({})\n\n",
-                markdown::escape(&figure.caption),
-                figure.file
-            );
-        }
-        text + &format!("All windows: [{WINDOWS}]({WINDOWS})\n")
-    }
-
-    fn lines(&self, most: usize) -> Vec<Vec<String>> {
+    /// The lines of the table.
+    pub fn lines(&self) -> impl Iterator<Item = Vec<String>> {
         let line = |job: &Job| {
             let [difference, at] = match job.hysteresis {
                 Some(Hysteresis { difference, at }) => {
@@ -206,14 +169,12 @@ impl<'a> Programs<'a> {
             };
             vec![parameters_in_words(job.row), job.windows.len().to_string(), difference, at]
         };
-        self.jobs.iter().take(most).map(line).collect()
+        self.jobs.iter().map(line)
     }
 }
 
-const HEADER: [&str; 4] = ["parameters", "windows", "hysteresis of μ*", "at"];
-
-const CAPTION: &str = "Above: μ* of the windows against the speed (or the load), on the way up and on the way down. Below: μ* and \
-                       the rate of the cycles of N against time. A window whose N hardly varies has no frequency.";
+/// The heads of [`Programs::lines`].
+pub(super) const HEADS: [&str; 4] = ["parameters", "windows", "hysteresis of μ*", "at"];
 
 fn unit(leading: Leading) -> &'static str {
     match leading {
@@ -222,7 +183,7 @@ fn unit(leading: Leading) -> &'static str {
     }
 }
 
-fn windows_of(rows: &[JobRow]) -> Vec<u8> {
+fn windows_of(rows: &[JobRow]) -> String {
     let mut out = Vec::new();
     let mut write = || {
         let mut csv = WindowsCsv::new(&mut out)?;
@@ -230,7 +191,7 @@ fn windows_of(rows: &[JobRow]) -> Vec<u8> {
         csv.finish()
     };
     write().expect("memory can be written");
-    out
+    String::from_utf8(out).expect("cells are texts")
 }
 
 /// The colour of a direction and its name; none for windows that are on no way.

@@ -3,14 +3,17 @@
 use super::digits;
 use super::export::io_error;
 use super::layout::{Group, Layout};
-use super::markdown;
+use super::page::tables_of;
 use super::row::{JobRow, RowState};
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
 use super::view::View;
 use crate::analysis::{JobRecord, Outcome, Regime};
+use crate::publish::markdown;
+use crate::publish::page::Page;
 use crate::publish::value::{self, MISSING};
 use serde_json::Value;
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::io::{self, Write};
 
 /// What a table shows.
@@ -37,6 +40,16 @@ impl Quantity {
             Self::Frequency => "frequency [Hz]".into(),
             Self::Regime => "contact regime".into(),
             Self::Of(scalar) => scalar.title().into(),
+        }
+    }
+
+    /// The name of its files without the ending.
+    pub(super) fn stem(self) -> &'static str {
+        match self {
+            Self::MuStar => "mu_star",
+            Self::Frequency => "frequency",
+            Self::Regime => "regime",
+            Self::Of(scalar) => scalar.name,
         }
     }
 
@@ -128,38 +141,14 @@ pub(super) enum Digits {
 
 /// The tables of one quantity as Markdown: one per combination of further parameters, and a legend of the marks that occur.
 pub fn markdown(rows: &[JobRow], quantity: Quantity) -> String {
-    markdown_of(&Layout::new(rows), quantity)
+    markdown::of_blocks(&tables_of(&Layout::new(rows), quantity, &HashMap::new()))
 }
 
 /// The tables of one quantity as a page in Markdown: below a title, and with the axes of a `view`.
 pub fn page(rows: &[JobRow], view: &View, quantity: Quantity, title: &str) -> String {
     let rows = rows.iter().filter(|row| !row.is_at_boundary());
-    titled(title, quantity, &markdown_of(&Layout::of(rows, view), quantity))
-}
-
-/// Tables in Markdown below a title.
-pub(super) fn titled(title: &str, quantity: Quantity, tables: &str) -> String {
-    format!("# {}: {}\n\n{tables}", markdown::escape(title), quantity.title())
-}
-
-pub(super) fn markdown_of(layout: &Layout, quantity: Quantity) -> String {
-    let mut parts = vec![constants(layout)];
-    let header = header(layout);
-    for group in &layout.groups {
-        if !group.key.is_empty() {
-            parts.push(format!("### {}\n\n", markdown::escape(&group.caption())));
-        }
-        let lines: Vec<Vec<String>> = lines(layout, group, quantity, Digits::ByError)
-            .map(|(at, cells)| std::iter::once(layout.axis_text(at)).chain(cells).collect())
-            .collect();
-        parts.push(markdown::table(&header, &lines, quantity != Quantity::Regime));
-        parts.push("\n".to_owned());
-    }
-    parts.extend(legend(layout, quantity).into_iter().map(|(mark, meaning)| match mark {
-        "" => format!("- {meaning}\n"),
-        mark => format!("- `{mark}` {meaning}\n"),
-    }));
-    parts.concat()
+    let lead = tables_of(&Layout::of(rows, view), quantity, &HashMap::new());
+    markdown::of_page(&Page { title: format!("{title}: {}", quantity.title()), lead, ..Page::default() })
 }
 
 /// The marks that occur in the tables of a quantity with their meaning.
@@ -223,9 +212,4 @@ pub(super) fn lines<'a>(
     group.axis_values.iter().zip(cells).map(|(at, cells)| {
         (at, cells.into_iter().map(|cell| cell.unwrap_or_else(|| MISSING.to_owned())).collect())
     })
-}
-
-fn constants(layout: &Layout) -> String {
-    let words = layout.constants_in_words();
-    if words.is_empty() { words } else { format!("In all jobs: {}.\n\n", markdown::escape(&words)) }
 }

@@ -126,6 +126,7 @@ fn spans(text: &Text) -> Markup {
                 Span::Code(words) => code { (words) },
                 Span::Symbol(words) => i { (symbol(words)) },
                 Span::Link(words, address) => a href=(address) { (words) },
+                Span::Download(file, csv) => (download(file, csv)),
                 Span::Break => br;,
             }
         }

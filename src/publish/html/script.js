@@ -81,21 +81,6 @@
   }
   for (const box of document.querySelectorAll(".scroll")) {
     const markOverflow = () => box.classList.toggle("more", box.scrollLeft + box.clientWidth < box.scrollWidth - 2);
-    const caption = box.parentElement.querySelector("figcaption");
-    if (caption) {
-      // A wide figure can also be seen as a whole, with small text.
-      const fit = document.createElement("button");
-      fit.type = "button";
-      fit.className = "fit";
-      const label = () => {
-        fit.textContent = box.classList.contains("whole") ? "large text, scroll sideways" : "fit to the screen";
-      };
-      fit.addEventListener("click", () => { box.classList.toggle("whole"); label(); markOverflow(); });
-      label();
-      caption.prepend(fit);
-      const offer = () => { fit.hidden = !box.classList.contains("whole") && box.scrollWidth <= box.clientWidth + 2; };
-      new ResizeObserver(offer).observe(box);
-    }
     box.addEventListener("scroll", markOverflow, { passive: true });
     new ResizeObserver(markOverflow).observe(box);
   }

@@ -1,7 +1,7 @@
 //! The linear stability of steady sliding: where small vibrations about it grow, and which modes do.
 //!
 //! ```text
-//! points ──► analysis (branches over μ, onsets, ranges, families over ω) ──► figures, table, section ──► write (a page of its own)
+//! points ──► analysis (branches over μ, onsets, ranges, families over ω) ──► figures, table ──► write (a page of its own)
 //!    └─────► contour (zero line of the leading growth rate) ───────► map, regime map
 //!    └─────► verdict (what linear stability says about a job) ─────► regime map
 //! ```
@@ -10,7 +10,6 @@ mod along;
 mod analysis;
 mod contour;
 mod ranges;
-mod section;
 mod table;
 mod verdict;
 mod write;
@@ -19,7 +18,6 @@ pub use along::Along;
 pub(super) use analysis::{Analysis, GroupModes, rows};
 pub(super) use contour::{Node, zero_line};
 pub(super) use ranges::{Onset, Speed};
-pub(super) use section::{markdown, markup};
 pub use table::{StabilityTable, modes_table, thresholds_table};
 pub(super) use verdict::{Verdict, Verdicts};
 pub(super) use write::{Files, write_files};

@@ -2,11 +2,12 @@
 
 use super::analysis::{Analysis, rows};
 use super::table::{StabilityTable, modes_table, onsets_table};
+use crate::publish::html;
 use crate::publish::{Folder, PublishError};
 use crate::report::figure::Figure;
 use crate::report::figure::stability::{StabilityPlot, figures};
-use crate::report::html;
 use crate::report::input::Report;
+use crate::report::page;
 use std::path::{Path, PathBuf};
 
 /// The name of the page.
@@ -73,6 +74,6 @@ pub fn write_stability(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, 
         write_files(&analysis, &mut folder)?
     };
     let has_shapes = out_dir.join(SHAPES).is_dir();
-    folder.write_text(PAGE, &html::stability_page(report, &analysis, &files, has_shapes))?;
+    folder.write_text(PAGE, &html::of_page(&page::of_stability(report, &analysis, &files, has_shapes)))?;
     folder.finish(|_| false)
 }

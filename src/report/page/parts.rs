@@ -5,7 +5,6 @@ use crate::report::figure::{Figure, Plot};
 use crate::report::input::Report;
 use crate::report::layout::Layout;
 use crate::report::program::Programs;
-use crate::report::spectra::Spectra;
 use crate::report::stability::{Analysis, Files};
 use std::collections::HashMap;
 
@@ -19,12 +18,12 @@ pub(in crate::report) struct Parts<'a> {
     pub comparison: Option<&'a Comparison>,
     /// The figure of residuals, as SVG.
     pub residuals: &'a str,
-    /// The stored spectra of jobs.
-    pub spectra: &'a Spectra,
     /// The jobs whose speed or load changes in time, if there are some.
     pub programs: Option<&'a Programs<'a>>,
     /// The linear stability of steady sliding with its figures, if it is known.
     pub stability: Option<(&'a Analysis<'a>, &'a Files)>,
+    /// The names of all files of the report.
+    pub files: Vec<String>,
     /// For jobs that were inspected, the address of the page, relative to the folder of the report.
     pub pages: HashMap<String, String>,
 }

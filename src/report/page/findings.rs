@@ -1,0 +1,78 @@
+//! Sections on what several sources, runs in time and studies that grow have found.
+
+use crate::publish::page::{Block, Figure, Grid, Section, Text};
+use crate::publish::value;
+use crate::report::comparison::Comparison;
+use crate::report::growth::Findings;
+use crate::report::program::{self, Programs};
+
+/// The differences between several sources.
+pub(super) fn comparison(own: &Comparison) -> Section {
+    let mut blocks = Vec::new();
+    if let [head, lines @ ..] = &own.contradictions_in_words()[..] {
+        blocks.push(Block::Warning(Text::strong(head.as_str()), lines.iter().map(Text::from).collect()));
+    }
+    if !own.notes.is_empty() {
+        blocks.push(Block::list(own.notes.iter().map(Text::from)));
+    }
+    let (heads, lines) = own.summary();
+    if lines.is_empty() {
+        let words = format!("No point of another source can be compared with {}.", own.reference);
+        blocks.push(Block::Text(words.into()));
+    } else {
+        blocks.push(Block::Table(grid(&heads, lines)));
+        let (heads, lines) = own.table();
+        let all = vec![Block::Table(grid(&heads, lines))];
+        blocks.push(Block::Fold("Table: all differences".to_owned(), all));
+        blocks.push(Block::Note(own.explanation().into()));
+    }
+    Section::new("comparison", "Comparison", blocks)
+}
+
+fn grid(heads: &[String], lines: impl IntoIterator<Item = Vec<String>>) -> Grid {
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    Grid::of(&heads, lines, "differences.csv")
+}
+
+const CAPTION: &str = "Above: μ* of the windows against the speed (or the load), on the way up and on the way down. Below: μ* and \
+                       the rate of the cycles of N against time. A window whose N hardly varies has no frequency.";
+
+/// Longer data is not in the page \[byte\].
+const MAX_DATA: usize = 1_000_000;
+
+/// Runs whose speed or load changes in time.
+pub(super) fn programs(own: &Programs) -> Section {
+    let grid = Grid::of(&program::HEADS, own.lines(), program::WINDOWS);
+    let mut blocks = vec![Block::text(program::MEANING), Block::Table(grid)];
+    let data = own.csv();
+    for (number, figure) in own.figures().iter().enumerate() {
+        let contents = (number == 0 && data.len() <= MAX_DATA).then(|| data.to_owned());
+        blocks.push(Block::Heading(figure.caption.clone()));
+        blocks.push(Block::figure(Figure {
+            file: figure.file.clone(),
+            svg: figure.svg.clone(),
+            caption: CAPTION.to_owned(),
+            data: (number == 0).then(|| (program::WINDOWS.to_owned(), contents)),
+        }));
+    }
+    if own.jobs() > own.figures().len() {
+        blocks.push(Block::note(&format!(
+            "The first {} of {} have a figure; `{}` has all of them.",
+            own.figures().len(),
+            value::count(own.jobs(), "job"),
+            program::WINDOWS
+        )));
+    }
+    Section::new("program", "Speed and load in time", blocks)
+}
+
+/// What a study that grows has found.
+pub(super) fn growth(own: &Findings) -> Section {
+    let mut blocks = vec![Block::Text(own.state.as_str().into())];
+    for table in own.tables() {
+        blocks.push(Block::Heading(table.heading.to_owned()));
+        blocks.push(Block::text(table.meaning));
+        blocks.push(Block::Table(table.grid()));
+    }
+    Section::new("findings", "What was found", blocks)
+}

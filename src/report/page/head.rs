@@ -1,0 +1,203 @@
+//! The beginning of the page: what was found in a sentence for each study, what is missing, and doubts about inputs; and the
+//! main numbers.
+
+use super::{Parts, stability};
+use crate::analysis::{JobRecord, Outcome};
+use crate::publish::page::{Block, Span, Text, Tile};
+use crate::publish::value;
+use crate::report::accuracy;
+use crate::report::input::Report;
+use crate::report::layout::parameters_in_words;
+use crate::report::row::JobRow;
+use crate::report::scalar::FREQUENCY;
+use crate::report::summary::{self, Summary};
+use crate::report::tooltip::residual_text;
+use crate::report::{Discretisation, digits};
+
+/// What comes before the links to sections.
+pub(super) fn lead(parts: &Parts) -> Vec<Block> {
+    let report = parts.report;
+    let mut blocks: Vec<Block> =
+        report.description.map(|text| Block::Text(text.into())).into_iter().collect();
+    blocks.extend(found(parts).into_iter().map(|sentence| Block::Text(Text::strong(sentence))));
+    blocks.extend(incomplete(report.rows));
+    blocks.extend(doubts(report));
+    blocks
+}
+
+/// What each study found, in a sentence.
+fn found(parts: &Parts) -> Vec<String> {
+    let rows = parts.report.rows;
+    let sources = &parts.layouts.jobs.sources;
+    let threshold = parts.stability.and_then(|(analysis, _)| stability::found(analysis));
+    let of_source = |name: &str| {
+        let own: Vec<&JobRow> = rows.iter().filter(|row| row.study == name).collect();
+        let words: Vec<String> =
+            [friction(&own), frequencies(&own), not_solved(&own)].into_iter().flatten().collect();
+        let prefix = if sources.len() > 1 { format!("{name}: ") } else { String::new() };
+        (!words.is_empty()).then(|| prefix + &words.join(" "))
+    };
+    sources.iter().filter_map(|source| of_source(source.name)).chain(threshold).collect()
+}
+
+/// The job whose macroscopic coefficient is the smallest in relation to the local one.
+fn lowest<'a>(rows: &[&'a JobRow]) -> Option<(&'a JobRow, &'a JobRecord)> {
+    let ratio = |row: &JobRow| Some(row.record()?.mu_star / row.mu).filter(|ratio| ratio.is_finite());
+    let ratios = rows.iter().filter_map(|row| Some((ratio(row)?, *row)));
+    let (_, row) = ratios.min_by(|a, b| a.0.total_cmp(&b.0))?;
+    Some((row, row.record()?))
+}
+
+fn friction(rows: &[&JobRow]) -> Option<String> {
+    let (row, record) = lowest(rows)?;
+    Some(format!(
+        "μ* falls to {} ({} of μ) at {}.",
+        digits::mu_star_with_error(row, record),
+        digits::ratio(row, record),
+        parameters_in_words(row)
+    ))
+}
+
+/// The frequencies of limit cycles \[kHz\]; none if there are no limit cycles.
+fn range_khz(rows: &[&JobRow]) -> Option<String> {
+    // The mean rate of a run that is not periodic is no frequency of a limit cycle.
+    let settled = rows.iter().filter(|row| !row.is_measured() && FREQUENCY.is_settled(row));
+    let found = settled.filter_map(|row| FREQUENCY.value(row));
+    let (low, high) =
+        found.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), f| (low.min(f), high.max(f)));
+    let [low_khz, high_khz] = [low, high].map(|f| value::fixed(f / 1e3, 1));
+    let range = if low_khz == high_khz { low_khz } else { format!("{low_khz}–{high_khz}") };
+    (low <= high).then(|| format!("{range} kHz"))
+}
+
+fn frequencies(rows: &[&JobRow]) -> Option<String> {
+    let done = rows.iter().filter_map(|row| row.record());
+    let decayed = done.clone().filter(|record| record.outcome == Outcome::Decayed).count();
+    match range_khz(rows) {
+        Some(range) => Some(format!("Limit cycles have {range}.")),
+        None if decayed > 0 && decayed == done.count() => Some("Every oscillation decays.".to_owned()),
+        None => None,
+    }
+}
+
+fn not_solved(rows: &[&JobRow]) -> Option<String> {
+    let jobs = rows.iter().filter(|row| !row.is_measured()).count();
+    let open = rows
+        .iter()
+        .filter_map(|row| row.record())
+        .filter(|record| record.outcome == Outcome::NotPeriodic)
+        .count();
+    let without = rows.iter().filter(|row| !row.is_measured() && row.record().is_none()).count();
+    let of_jobs = value::count(jobs, "job");
+    match (open, without) {
+        (0, 0) => None,
+        (0, without) => Some(format!("{without} of {of_jobs} have no result.")),
+        (open, 0) => Some(format!("{open} of {of_jobs} did not become periodic.")),
+        (open, without) => {
+            Some(format!("Of {of_jobs}, {open} did not become periodic, and {without} have no result."))
+        }
+    }
+}
+
+/// Warnings about missing and failed jobs.
+fn incomplete(rows: &[JobRow]) -> Vec<Block> {
+    let summary = Summary::of(rows);
+    let mut blocks = Vec::new();
+    if summary.missing() > 0 {
+        let verb = if summary.missing() == 1 { "is" } else { "are" };
+        blocks.push(Block::Warning(
+            format!(
+                "This report is incomplete: {} of {} {verb} missing ({}). Figures and tables hold only the jobs that are done.",
+                summary.missing(),
+                value::count(summary.total, "job"),
+                summary.missing_in_words()
+            )
+            .into(),
+            Vec::new(),
+        ));
+    }
+    if summary.failed > 0 {
+        let head = if summary.failed == 1 {
+            "1 job has failed".to_owned()
+        } else {
+            format!("{} jobs have failed", summary.failed)
+        };
+        let link = Span::Link("where and why".to_owned(), "#trouble".to_owned());
+        blocks.push(Block::Warning(Text::from(head + ": see ").and(link).and("."), Vec::new()));
+    }
+    blocks
+}
+
+/// What is doubtful about the study's inputs, and, without standing out, what they cost: the results are right then.
+pub(super) fn doubts(report: &Report) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    if !report.warnings.is_empty() {
+        let head = "Check these inputs before you use the results:";
+        blocks.push(Block::Warning(head.into(), report.warnings.iter().map(Text::from).collect()));
+    }
+    let remark =
+        |remark: &String| Block::Note(format!("Cost, without an effect on results: {remark}").into());
+    blocks.extend(report.remarks.iter().map(remark));
+    blocks
+}
+
+/// The main numbers, and what is known about their errors.
+pub(super) fn numbers(rows: &[JobRow]) -> Vec<Block> {
+    let summary = Summary::of(rows);
+    let all: Vec<&JobRow> = rows.iter().collect();
+    let missing = if summary.missing() > 0 { summary.missing_in_words() } else { String::new() };
+    let mut tiles = vec![
+        Tile::new("jobs done", format!("{} of {}", summary.done(), summary.total), summary.done_in_words()),
+        Tile::new("failed", summary.failed.to_string(), ""),
+        Tile::new("missing", summary.missing().to_string(), missing),
+    ];
+    tiles.extend(
+        lowest(&all).map(|(row, record)| {
+            Tile::new("lowest μ*/μ", digits::ratio(row, record), parameters_in_words(row))
+        }),
+    );
+    tiles.extend(error_of_friction(rows));
+    tiles.extend(range_khz(&all).map(|range| Tile::new("frequencies", range, "")));
+    tiles.extend(residuals(rows));
+    let sentences = accuracy::in_words(rows);
+    let accuracy = (!sentences.is_empty())
+        .then(|| Block::Fold("How accurate the results are".to_owned(), vec![Block::list(sentences)]));
+    std::iter::once(Block::Tiles(tiles)).chain(accuracy).collect()
+}
+
+/// The largest error of μ\* that mesh and step make, or that it is not measured.
+fn error_of_friction(rows: &[JobRow]) -> Option<Tile> {
+    let done = || rows.iter().filter(|row| row.record().is_some());
+    let errors: Vec<Option<f64>> =
+        done().map(|row| Some(row.discretisation.error()?.mu_star_relative)).collect();
+    if errors.is_empty() {
+        return None;
+    }
+    let Some(largest) = errors.iter().flatten().copied().max_by(f64::total_cmp) else {
+        return Some(Tile::new("error of mesh and step", "not measured", ""));
+    };
+    let is_indicative = |row: &JobRow| matches!(row.discretisation, Discretisation::Indicative(_));
+    let note = if errors.contains(&None) {
+        "of μ*; in some jobs not measured"
+    } else if done().all(is_indicative) {
+        "of μ*, indicative: of another scene, friction or speed"
+    } else if done().any(is_indicative) {
+        "of μ*; indicative in some jobs"
+    } else {
+        "of μ*, measured on this scene"
+    };
+    let largest = format!("≤ {} %", value::significant(100.0 * largest, 2));
+    Some(Tile::new("error of mesh and step", largest, note))
+}
+
+fn residuals(rows: &[JobRow]) -> Option<Tile> {
+    let (energy, one) = summary::worst(rows, |record| record.energy_residual.abs())?;
+    let (identity, other) = summary::worst(rows, JobRecord::identity_residual)?;
+    let note = if one.job == other.job {
+        format!("energy, identities; both at {}", parameters_in_words(one))
+    } else {
+        format!("energy at {}; identities at {}", parameters_in_words(one), parameters_in_words(other))
+    };
+    let both = format!("{}, {}", residual_text(energy), residual_text(identity));
+    Some(Tile::new("largest residuals", both, note))
+}
