@@ -7,6 +7,7 @@ use super::unreadable::log_unreadable_rows;
 use crate::exit;
 use crate::queue::{Location, Queue};
 use crate::sweep::{self, ReportContent, ReportRequest, Revision};
+use crate::study::Spacing;
 use crate::worker::Interrupt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -45,6 +46,20 @@ struct Axes {
     /// Quantities with figures and tables besides the usual ones, by their names in the export, such as n_over_f_max.
     #[arg(long, value_name = "QUANTITY", num_args = 1.., value_delimiter = ',')]
     y: Vec<String>,
+    /// How the axis of a parameter is scaled, such as load_n=log or omega_rpm=linear; may be repeated. Default: that of the
+    /// study's file, or as the values are given there.
+    #[arg(long, value_name = "NAME=SCALE", value_parser = scale)]
+    scale: Vec<(String, Spacing)>,
+}
+
+/// A parameter with the scale of its axis.
+fn scale(text: &str) -> Result<(String, Spacing), String> {
+    let (name, scale) = text.split_once('=').ok_or("expected a parameter and its scale, such as load_n=log")?;
+    match scale {
+        "log" => Ok((name.to_owned(), Spacing::Log)),
+        "linear" => Ok((name.to_owned(), Spacing::Linear)),
+        _ => Err(format!("{scale}: expected log or linear")),
+    }
 }
 
 /// The folder of a report.
@@ -88,9 +103,9 @@ impl OutFolder {
 /// Writes the report and prints the path of its page.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let studies = args.studies.iter().map(|study| sweep::study_name(study)).collect::<Result<_, _>>()?;
-    let Axes { x, by, y } = &args.axes;
+    let Axes { x, by, y, scale } = &args.axes;
     let request =
-        ReportRequest { studies, data: args.data.clone(), x: x.clone(), by: by.clone(), y: y.clone() };
+        ReportRequest { studies, data: args.data.clone(), x: x.clone(), by: by.clone(), y: y.clone(), scale: scale.clone() };
     let folder = OutFolder { folder: args.out.folder.clone() }.of(&request.folder_name());
     sweep::block_on(async {
         let mut queue = sweep::open_to_read(db.clone()).await?;

@@ -21,11 +21,13 @@ pub(super) struct Dimension {
     unit: &'static str,
     /// The labels of the values by their text.
     labels: HashMap<String, String>,
+    /// Whether the axis is logarithmic, if that is known.
+    is_log: Option<bool>,
 }
 
 impl Dimension {
     /// The parameter `name` of these rows. Its description, if there is one, is a phrase without a unit.
-    pub fn new(name: &str, description: Option<&str>, rows: &[&JobRow]) -> Self {
+    pub fn new(name: &str, description: Option<&str>, is_log: Option<bool>, rows: &[&JobRow]) -> Self {
         let mut values: Vec<Value> = Vec::new();
         let mut labels: HashMap<String, String> = HashMap::new();
         for row in rows {
@@ -55,7 +57,7 @@ impl Dimension {
             if unit.is_empty() { words.to_owned() } else { format!("{words} [{unit}]") }
         };
         let (title, label) = (bracketed(title), bracketed(symbol));
-        Self { name: name.to_owned(), title, label, values, factor, unit, labels }
+        Self { name: name.to_owned(), title, label, values, factor, unit, labels, is_log }
     }
 
     /// A value in the unit of [`Dimension::label`], without the unit.
@@ -93,11 +95,13 @@ impl Dimension {
         if value.is_number() { with_unit(self.text(value), self.unit) } else { self.text(value) }
     }
 
-    /// The axis of a figure: names if some values are not numbers.
+    /// The axis of a figure: names if some values are not numbers. `logarithmic` says what an axis is of whose values nothing is
+    /// known but themselves.
     pub fn axis(&self, logarithmic: bool) -> Axis {
         let scaled =
             |value: &Value| value.as_f64().map_or_else(|| value.clone(), |x| (x / self.factor).into());
-        Axis::for_values(&self.values.iter().map(scaled).collect::<Vec<_>>(), logarithmic)
+        let values: Vec<Value> = self.values.iter().map(scaled).collect();
+        Axis::for_values(&values, self.is_log.or(logarithmic.then_some(true)))
     }
 
     /// The position of a value on the axis; none if it is not on it.

@@ -2,6 +2,7 @@
 
 use super::comparison::Comparison;
 use super::comparison_files;
+use super::explore;
 use super::export;
 use super::figure::{self, DataFile, Figure, Plot, RESIDUALS, RUN_TIMES};
 use super::input::Report;
@@ -16,6 +17,7 @@ use super::stale::could_be_of_a_report;
 use super::tables::{self, Quantity};
 use crate::publish::{FigureError, Folder, PublishError, html, markdown};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 
 const QUANTITIES: [Quantity; 3] = [Quantity::MuStar, Quantity::Frequency, Quantity::Regime];
@@ -132,7 +134,8 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     }
     let differences = comparison.as_ref();
     let pages = inspections(out_dir).into_iter().filter_map(|found| Some((found.job.clone(), found.page()?)));
-    let pages = pages.collect();
+    let pages: HashMap<String, String> = pages.collect();
+    folder.write_text(explore::PAGE, &explore::page(given, &pages))?;
     let parts = Parts {
         report,
         layouts,

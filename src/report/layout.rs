@@ -186,7 +186,7 @@ impl<'a> Layout<'a> {
         let dimensions = names
             .map(|name| {
                 let description = view.descriptions.get(name).map(String::as_str);
-                (name, Dimension::new(name, description, &varying.rows))
+                (name, Dimension::new(name, description, view.is_log.get(name).copied(), &varying.rows))
             })
             .collect();
         let (series, series_of) = series(&varying, by);

@@ -20,6 +20,7 @@ mod comparison_files;
 mod digits;
 mod dimension;
 mod discretisation;
+mod explore;
 pub mod export;
 pub mod figure;
 mod files;

@@ -14,6 +14,8 @@ pub struct View {
     pub y: Vec<&'static Scalar>,
     /// Parameters in words, by name, for the titles of axes: `pin's Young's modulus`, without the unit.
     pub descriptions: BTreeMap<String, String>,
+    /// Parameters whose axes are known to be logarithmic (true) or linear; the values of others decide.
+    pub is_log: BTreeMap<String, bool>,
     /// What a reader must know to compare the sources, one sentence each.
     pub notes: Vec<String>,
 }
@@ -21,7 +23,14 @@ pub struct View {
 impl View {
     /// The default, for a layout that outlives its caller.
     pub(super) const DEFAULT: Self =
-        Self { x: None, by: None, y: Vec::new(), descriptions: BTreeMap::new(), notes: Vec::new() };
+        Self {
+        x: None,
+        by: None,
+        y: Vec::new(),
+        descriptions: BTreeMap::new(),
+        is_log: BTreeMap::new(),
+        notes: Vec::new(),
+    };
 }
 
 static DEFAULT: View = View::DEFAULT;

@@ -6,6 +6,7 @@ use super::error::Problem;
 use super::grid::Grid;
 use super::growth::Growth;
 use super::parameter::Parameter;
+use super::range::Spacing;
 use super::report_axes::ReportAxes;
 use super::source::SourceText;
 use crate::spec::JobSpec;
@@ -87,6 +88,27 @@ impl Study {
     /// Axes and quantities of the report.
     pub fn report(&self) -> &ReportAxes {
         &self.report
+    }
+
+    /// How the values of a parameter are spaced, as the file gives them: by a range or by a distribution. Returns `None` for a list
+    /// of values, and for a parameter that does not vary.
+    pub fn spacing(&self, parameter: &str) -> Option<Spacing> {
+        let range = self.document.get("grid").and_then(|grid| grid.get(parameter));
+        let of_range = |range: &serde_json::Map<String, Value>| match range.get("spacing") {
+            Some(spacing) if spacing == "log" => Spacing::Log,
+            _ => Spacing::Linear,
+        };
+        let of_design = |of: &serde_json::Map<String, Value>| {
+            let name = of.keys().next()?.as_str();
+            match name {
+                "log_uniform" => Some(Spacing::Log),
+                "uniform" | "normal" | "truncated_normal" => Some(Spacing::Linear),
+                _ => None,
+            }
+        };
+        let design = self.document.pointer("/samples/of").and_then(|of| of.get(parameter));
+        let design = design.and_then(Value::as_object).and_then(of_design);
+        range.and_then(Value::as_object).map(of_range).or(design)
     }
 
     /// A problem with the value of a field such as `report.y[0]`, at its place in the file, with lines of advice.

@@ -72,6 +72,7 @@ pub use parameter::{PARAMETERS, Parameter};
 pub use plausibility::{About, LOCKING_POISSON_RATIO, Warning, job_warnings};
 pub use preset::{CaseEvidence, Evidence, Preset, PresetError, PresetEvidence, ReferenceEvidence};
 pub use printable::{printable, printable_lines};
+pub use range::Spacing;
 pub use report_axes::ReportAxes;
 pub use schema::schema;
 pub use single::SingleJob;

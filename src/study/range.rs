@@ -31,14 +31,14 @@ pub(super) struct Range {
     pub digits: usize,
 }
 
-/// How the values of a range are spaced.
+/// How the values of a range, or the ticks of an axis, are spaced.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize, serde::Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub(super) enum Spacing {
+pub enum Spacing {
     /// Equal steps.
     #[default]
     Linear,
-    /// Equal ratios; both ends must be > 0.
+    /// Equal ratios; all values must be > 0.
     Log,
 }
 

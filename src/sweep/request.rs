@@ -10,7 +10,7 @@ use crate::queue::Queue;
 use crate::report::{JobRow, SCALARS, Scalar, View};
 use crate::solver;
 use crate::spec::JobSpec;
-use crate::study::{DIRECTION, PARAMETERS, Study, StudyError, nearest_name};
+use crate::study::{DIRECTION, PARAMETERS, Spacing, Study, StudyError, nearest_name};
 use serde_json::Value;
 use std::collections::HashMap;
 use std::path::PathBuf;
@@ -28,6 +28,8 @@ pub struct ReportRequest {
     pub by: Option<String>,
     /// Further quantities; the study's own choice if empty.
     pub y: Vec<String>,
+    /// How the axes of parameters are scaled; the study's own choice if absent, and otherwise as the values are given.
+    pub scale: Vec<(String, Spacing)>,
 }
 
 /// What a report shows.
@@ -140,7 +142,18 @@ impl ReportRequest {
                 y.push(scalar);
             }
         }
-        Ok(View { x, by, y, descriptions: descriptions(), notes: different_inputs(studies, &known)? })
+        let mut is_log = std::collections::BTreeMap::new();
+        let given = studies.iter().rev().filter_map(|stored| stored.study.as_ref());
+        let given = given.flat_map(|study| {
+            study.varied().filter_map(|own| Some((own.name.to_owned(), study.spacing(own.name)?)))
+        });
+        for (name, spacing) in given.chain(own.scale).chain(self.scale.iter().cloned()) {
+            is_log.insert(name, spacing == Spacing::Log);
+        }
+        if let Some((name, _)) = self.scale.iter().find(|(name, _)| !known.contains(&name.as_str())) {
+            return Err(no_such_name("--scale", name, &known));
+        }
+        Ok(View { x, by, y, descriptions: descriptions(), is_log, notes: different_inputs(studies, &known)? })
     }
 }
 

@@ -29,9 +29,9 @@ const FINE_DECADES: f64 = 5.0;
 const LINEAR_TICKS: f64 = 6.0;
 
 impl Axis {
-    /// The axis for these values: names if some are not numbers. It is logarithmic if that is asked for or if the values
-    /// span a factor of 20, but only if all of them are positive.
-    pub fn for_values(values: &[Value], logarithmic: bool) -> Self {
+    /// The axis for these values: names if some are not numbers. It is logarithmic if that is asked for, or if nothing is asked
+    /// for and the values span a factor of 20, but only if all of them are positive.
+    pub fn for_values(values: &[Value], logarithmic: Option<bool>) -> Self {
         let numbers: Option<Vec<f64>> =
             values.iter().map(|value| value.as_f64().filter(|x| x.is_finite())).collect();
         let Some(numbers) = numbers.filter(|numbers| !numbers.is_empty()) else {
@@ -39,7 +39,7 @@ impl Axis {
         };
         let low = numbers.iter().copied().fold(f64::INFINITY, f64::min);
         let high = numbers.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-        if low > 0.0 && (logarithmic || high / low >= 20.0) {
+        if low > 0.0 && logarithmic.unwrap_or(high / low >= 20.0) {
             let margin = (high / low).powf(0.04).clamp(1.12, 10.0);
             // The search for ticks would not end at zero or infinity.
             Self::Log((low / margin).max(f64::MIN_POSITIVE)..(high * margin).min(f64::MAX))

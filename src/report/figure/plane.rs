@@ -117,7 +117,7 @@ impl CellEdges {
         values.sort_by(f64::total_cmp);
         values.dedup();
         let as_values: Vec<Value> = values.iter().map(|x| (*x).into()).collect();
-        let is_log = matches!(Axis::for_values(&as_values, logarithmic), Axis::Log(_));
+        let is_log = matches!(Axis::for_values(&as_values, logarithmic.then_some(true)), Axis::Log(_));
         let to = |x: f64| if is_log { x.ln() } else { x };
         let from = |t: f64| if is_log { t.exp() } else { t };
         let at: Vec<f64> = values.iter().map(|x| to(*x)).collect();

@@ -79,7 +79,7 @@ fn draw_plot(area: &Area, rows: &[JobRow]) -> Result<Vec<TooltipTarget>, DrawErr
         .margin(MARGIN)
         .x_label_area_size(X_LABELS)
         .y_label_area_size(Y_LABELS)
-        .build_cartesian_2d(Axis::spanning(1.0, rows.len() as f64, 1.0), Axis::for_values(&all, true))?;
+        .build_cartesian_2d(Axis::spanning(1.0, rows.len() as f64, 1.0), Axis::for_values(&all, Some(true)))?;
     canvas::mesh(&mut chart).x_desc("job, in the order of the study").y_desc("residual").draw()?;
     canvas::frame(&chart)?;
     let mut targets = Vec::new();

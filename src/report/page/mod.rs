@@ -132,10 +132,13 @@ fn build(group: &ResultGroup) -> Vec<Text> {
 fn files(names: &[String]) -> Section {
     let link = |name: &String| Text::from(Span::Link(name.clone(), name.clone()));
     let list = vec![Block::List(names.iter().map(link).collect())];
+    let explore = Text::from("All jobs can be plotted, filtered and sorted in ")
+        .and(Span::Link("the page to explore".to_owned(), super::explore::PAGE.to_owned()))
+        .and(".");
     let words = "All results are in `jobs.csv`, one line per job. The figures are there as SVG, and the tables and the data \
                  behind the figures as CSV.";
     let fold = Block::Fold(value::count(names.len(), "file"), list);
-    Section::new("files", "Files", vec![Block::text(words), fold])
+    Section::new("files", "Files", vec![Block::Text(explore), Block::text(words), fold])
 }
 
 /// When the page was written.

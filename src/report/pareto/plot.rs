@@ -80,7 +80,7 @@ fn points(case: &Case, meshes: &[[usize; 3]]) -> Vec<Point> {
 
 fn axis(values: impl Iterator<Item = f64>) -> Axis {
     let values: Vec<Value> = values.map(Value::from).collect();
-    Axis::for_values(&values, true)
+    Axis::for_values(&values, Some(true))
 }
 
 fn draw_plot(area: &Area, points: &[Point]) -> Result<(), DrawError> {

@@ -1,0 +1,274 @@
+// Charts that the reader chooses, over the columns of all jobs. Rows are numbers from 0; a column has a value for each row.
+"use strict";
+(() => {
+  const data = JSON.parse(document.getElementById("data").textContent);
+  const columns = new Map(data.columns.map((column) => [column.name, column]));
+  const count = data.columns.length ? data.columns[0].values.length : 0;
+  const rows = [...Array(count).keys()];
+  const isNumber = (column) => column.values.every((value) => value === null || typeof value === "number");
+  const varies = (column) => new Set(column.values.filter((value) => value !== null)).size > 1;
+  const numbers = data.columns.filter(isNumber);
+  const parameters = data.columns.filter((column) => column.kind === "parameter" && varies(column));
+  const results = numbers.filter((column) => column.kind !== "parameter" && varies(column));
+  const title = (column) => column.unit ? `${column.name} [${column.unit}]` : column.name;
+  const short = (value) => value === null ? "–" : typeof value === "number" ? String(Number(value.toPrecision(5))) : String(value);
+  const MOST_SERIES = 24;
+
+  const root = document.getElementById("explore");
+  const make = (name, attributes = {}, ...children) => {
+    const element = document.createElement(name);
+    for (const [key, value] of Object.entries(attributes)) element.setAttribute(key, value);
+    element.append(...children);
+    return element;
+  };
+  const select = (label, options, chosen) => {
+    const box = make("select", { "aria-label": label });
+    for (const column of options) {
+      const option = make("option", { value: column.name, title: column.meaning || "" }, column.name ? title(column) : column.label);
+      option.selected = column.name === chosen;
+      box.append(option);
+    }
+    return [make("label", {}, label, box), box];
+  };
+  const flag = (label, checked) => {
+    const box = make("input", { type: "checkbox", "aria-label": label });
+    box.checked = checked;
+    return [make("label", { class: "flag" }, box, label), box];
+  };
+
+  const known = (name, list) => list.some((column) => column.name === name) ? name : (list[0] || { name: "" }).name;
+  const none = { name: "", label: "–" };
+  const startY = known(data.start.y, numbers);
+  const [xLabel, x] = select("x", numbers, known(data.start.x, numbers));
+  const [yLabel, y] = select("y", numbers, startY);
+  const [byLabel, by] = select("colour", [none, ...data.columns.filter(varies)],
+    known(data.start.by, [none, ...parameters]) || known("regime", [none, ...data.columns]));
+  const second = select("second panel", [none, ...numbers], "");
+  const third = select("third panel", [none, ...numbers], "");
+  const [xLogLabel, xLog] = flag("log x", isLog(columns.get(x.value)));
+  const [yLogLabel, yLog] = flag("log y", false);
+  const [joinLabel, join] = flag("lines", parameters.length <= 2);
+
+  // As the report does: logarithmic if the values are positive and span a factor of 20.
+  function isLog(column) {
+    const values = column ? column.values.filter((value) => value !== null) : [];
+    return values.length > 0 && Math.min(...values) > 0 && Math.max(...values) >= 20 * Math.min(...values);
+  }
+
+  const tabs = make("div", { class: "tabs", role: "tablist" });
+  const views = ["plot", "parallel coordinates", "importance", "table"].filter((name) =>
+    (name !== "parallel coordinates" || parameters.length > 1) && (name !== "importance" || data.importance.length));
+  let view = views[0];
+  for (const name of views) {
+    const tab = make("button", { type: "button", role: "tab" }, name);
+    tab.addEventListener("click", () => { view = name; draw(); });
+    tabs.append(tab);
+  }
+  const controls = make("div", { class: "controls" }, xLabel, yLabel, byLabel, second[0], third[0], xLogLabel, yLogLabel, joinLabel);
+  const box = make("div", { class: "chart", role: "img", "aria-label": "chart of the chosen quantities; the table has the same values" });
+  const table = make("div", { class: "table", tabindex: "0" });
+  const job = make("div", { id: "job" });
+  job.hidden = true;
+  root.append(tabs, controls, box, table, job);
+
+  const dark = window.matchMedia("(prefers-color-scheme: dark)");
+  let chart = null;
+  const renew = () => {
+    if (chart) chart.dispose();
+    chart = echarts.init(box, dark.matches ? "dark" : null);
+    chart.on("click", (event) => { if (event.data && event.data.row !== undefined) showJob(event.data.row); });
+  };
+
+  // A click leads to the job: all its values, its page if it was inspected, and the command that shows it.
+  const showJob = (row) => {
+    const key = columns.get("job") ? columns.get("job").values[row] : String(row);
+    job.replaceChildren(make("h3", {}, `job ${String(key).slice(0, 12)}`));
+    const page = data.pages[row];
+    const line = make("p", {}, make("code", {}, `tribosweep show ${String(key).slice(0, 12)}`));
+    if (page) line.append(" · ", make("a", { href: page }, "what happens in this job"));
+    job.append(line);
+    const list = make("dl");
+    for (const column of data.columns) {
+      const value = column.values[row];
+      if (value !== null) list.append(make("div", {}, make("dt", { title: column.meaning }, title(column)), make("dd", {}, short(value))));
+    }
+    job.append(list);
+    job.hidden = false;
+    job.dataset.key = key;
+    job.scrollIntoView({ block: "nearest" });
+  };
+
+  const axisOf = (column, log, extra) => ({
+    type: log ? "log" : "value", scale: true, name: title(column), nameLocation: "middle", nameGap: extra.gap, ...extra.own,
+    axisLabel: { formatter: (value) => short(value) },
+  });
+  const palette = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#666666", "#F0E442"];
+
+  const drawPlot = () => {
+    const panels = [y.value, second[1].value, third[1].value].filter((name) => name);
+    const X = columns.get(x.value);
+    const colour = columns.get(by.value);
+    const isContinuous = colour && isNumber(colour) && new Set(colour.values).size > MOST_SERIES;
+    const groups = new Map();
+    for (const row of rows) {
+      const key = colour && !isContinuous ? short(colour.values[row]) : "";
+      if (!groups.has(key)) groups.set(key, []);
+      groups.get(key).push(row);
+    }
+    const order = [...groups.keys()].sort((a, b) => colour && isNumber(colour) ? Number(a) - Number(b) : a.localeCompare(b));
+    const height = 78 / panels.length;
+    const series = [];
+    panels.forEach((name, panel) => {
+      const Y = columns.get(name);
+      const usable = (row) => X.values[row] !== null && Y.values[row] !== null
+        && (!xLog.checked || X.values[row] > 0) && (!yLog.checked || Y.values[row] > 0);
+      order.forEach((key, number) => {
+        const own = groups.get(key).filter(usable);
+        if (join.checked) own.sort((a, b) => X.values[a] - X.values[b]);
+        series.push({
+          name: key || name, type: join.checked && !isContinuous ? "line" : "scatter", xAxisIndex: panel, yAxisIndex: panel,
+          symbolSize: rows.length > 1000 ? 4 : 8, color: isContinuous ? undefined : palette[number % palette.length],
+          showSymbol: true, large: false, animation: false,
+          data: own.map((row) => ({ value: [X.values[row], Y.values[row], isContinuous ? colour.values[row] : 0], row })),
+        });
+      });
+    });
+    chart.setOption({
+      animation: false,
+      backgroundColor: "transparent",
+      tooltip: {
+        trigger: "item",
+        formatter: (event) => event.data && event.data.row !== undefined
+          ? [...parameters, ...panels.map((name) => columns.get(name))].map((column) =>
+            `${title(column)} = ${short(column.values[event.data.row])}`).map(echarts.format.encodeHTML).join("<br>") : "",
+      },
+      legend: colour && !isContinuous ? { type: "scroll", top: 0, formatter: (key) => `${colour.name} ${key}` } : undefined,
+      toolbox: { right: 10, feature: { dataZoom: {}, restore: {}, saveAsImage: {} } },
+      visualMap: isContinuous ? [{
+        type: "continuous", dimension: 2, calculable: true, right: 0, top: "middle", text: [title(colour), ""],
+        min: Math.min(...colour.values.filter((value) => value !== null)), max: Math.max(...colour.values.filter((value) => value !== null)),
+        inRange: { color: ["#440154", "#3B528B", "#21918C", "#5EC962", "#FDE725"] },
+      }] : [],
+      grid: panels.map((_, panel) => ({ left: 80, right: isContinuous ? 130 : 30, top: `${10 + panel * (height + 3)}%`, height: `${height - 5}%` })),
+      xAxis: panels.map((_, panel) => axisOf(X, xLog.checked, { gap: 28, own: { gridIndex: panel } })),
+      yAxis: panels.map((name, panel) => axisOf(columns.get(name), yLog.checked, { gap: 58, own: { gridIndex: panel } })),
+      dataZoom: [{ type: "inside", xAxisIndex: panels.map((_, panel) => panel), filterMode: "none" },
+        { type: "inside", yAxisIndex: panels.map((_, panel) => panel), filterMode: "none" }],
+      series,
+    }, true);
+  };
+
+  const drawParallel = () => {
+    const shown = [...parameters, columns.get(y.value), ...[second, third].map((own) => columns.get(own[1].value)).filter((own) => own)];
+    const Y = columns.get(y.value);
+    const values = Y.values.filter((value) => value !== null);
+    chart.setOption({
+      animation: false,
+      backgroundColor: "transparent",
+      parallel: { left: 60, right: 140, top: 50, bottom: 40 },
+      parallelAxis: shown.map((column, dim) => isNumber(column)
+        ? { dim, name: title(column), type: "value", scale: true, axisLabel: { formatter: (value) => short(value) } }
+        : { dim, name: column.name, type: "category", data: [...new Set(column.values.map(short))] }),
+      visualMap: {
+        type: "continuous", dimension: parameters.length, min: Math.min(...values), max: Math.max(...values), right: 0, top: "middle",
+        text: [title(Y), ""], calculable: true, inRange: { color: ["#440154", "#3B528B", "#21918C", "#5EC962", "#FDE725"] },
+      },
+      series: [{
+        type: "parallel", animation: false, lineStyle: { width: 1, opacity: rows.length > 1000 ? 0.15 : 0.5 }, progressive: 500,
+        data: rows.filter((row) => Y.values[row] !== null)
+          .map((row) => ({ value: shown.map((column) => isNumber(column) ? column.values[row] : short(column.values[row])), row })),
+      }],
+    }, true);
+  };
+
+  const drawImportance = () => {
+    const of = data.importance.find((own) => own.of === y.value) || data.importance[0];
+    const bars = [...of.bars].sort((a, b) => a.value - b.value);
+    chart.setOption({
+      animation: false,
+      backgroundColor: "transparent",
+      title: { text: `importance of the parameters for ${of.of} (${of.points} points)`, textStyle: { fontSize: 14 } },
+      tooltip: {
+        formatter: (event) => {
+          const bar = bars[event.dataIndex];
+          const interval = bar.interval ? ` (${bar.interval.map(short).join(" … ")})` : "";
+          return echarts.format.encodeHTML(`${bar.name}: ${bar.kind} ${short(bar.value)}${interval}`);
+        },
+      },
+      grid: { left: 220, right: 40, top: 50, bottom: 50 },
+      xAxis: { type: "value", name: "index", nameLocation: "middle", nameGap: 28 },
+      yAxis: { type: "category", data: bars.map((bar) => bar.name) },
+      series: [{ type: "bar", animation: false, itemStyle: { color: palette[0] }, data: bars.map((bar) => bar.value) }],
+    }, true);
+  };
+
+  // The table sorts by a click on a head, and a field below it filters: `>0.3`, `<=5`, `1..10`, or a part of a text.
+  const shownColumns = data.columns.filter((column) => column.kind === "parameter" || varies(column));
+  const MOST_LINES = 250;
+  let sortBy = null;
+  let ascending = true;
+  const filters = new Map();
+  const passes = (value, filter) => {
+    const range = filter.match(/^\s*(-?[\d.e+-]+)\s*\.\.\s*(-?[\d.e+-]+)\s*$/i);
+    if (range) return value !== null && value >= Number(range[1]) && value <= Number(range[2]);
+    const compared = filter.match(/^\s*(<=|>=|<|>|=)\s*(-?[\d.e+-]+)\s*$/i);
+    if (compared && typeof value === "number") {
+      const limit = Number(compared[2]);
+      return { "<": value < limit, ">": value > limit, "<=": value <= limit, ">=": value >= limit, "=": value === limit }[compared[1]];
+    }
+    return String(value === null ? "" : value).toLowerCase().includes(filter.trim().toLowerCase());
+  };
+  const body = make("tbody");
+  const note = make("p", { class: "note" });
+  const fillTable = () => {
+    let kept = rows.filter((row) => [...filters].every(([name, filter]) => !filter || passes(columns.get(name).values[row], filter)));
+    if (sortBy) {
+      const values = columns.get(sortBy).values;
+      const compare = (a, b) => typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b));
+      // Rows without a value are last in either order.
+      kept = kept.sort((a, b) => (values[a] === null) - (values[b] === null) || (ascending ? 1 : -1) * compare(values[a], values[b]));
+    }
+    body.replaceChildren(...kept.slice(0, MOST_LINES).map((row) => {
+      const line = make("tr", { "data-row": row, tabindex: "0" }, ...shownColumns.map((column) => make("td", {}, short(column.values[row]))));
+      const open = () => showJob(row);
+      line.addEventListener("click", open);
+      line.addEventListener("keydown", (event) => { if (event.key === "Enter") open(); });
+      return line;
+    }));
+    note.textContent = kept.length > MOST_LINES
+      ? `The first ${MOST_LINES} of ${kept.length} jobs: filter them, or see jobs.csv.` : `${kept.length} of ${rows.length} jobs`;
+  };
+  const makeTable = () => {
+    const head = make("tr");
+    const fields = make("tr");
+    for (const column of shownColumns) {
+      const cell = make("th", { scope: "col", title: column.meaning }, title(column));
+      cell.addEventListener("click", () => { ascending = sortBy === column.name ? !ascending : true; sortBy = column.name; fillTable(); });
+      head.append(cell);
+      const field = make("input", { "aria-label": `filter ${column.name}`, placeholder: isNumber(column) ? ">, <, a..b" : "text" });
+      field.addEventListener("input", () => { filters.set(column.name, field.value); fillTable(); });
+      fields.append(make("th", {}, field));
+    }
+    table.append(note, make("table", {}, make("thead", {}, head, fields), body));
+  };
+
+  const draw = () => {
+    [...tabs.children].forEach((tab, number) => tab.setAttribute("aria-selected", String(views[number] === view)));
+    const isTable = view === "table";
+    box.hidden = isTable;
+    controls.hidden = isTable;
+    table.hidden = !isTable;
+    if (isTable) {
+      if (!table.childElementCount) makeTable();
+      fillTable();
+      return;
+    }
+    renew();
+    ({ plot: drawPlot, "parallel coordinates": drawParallel, importance: drawImportance })[view]();
+  };
+  x.addEventListener("change", () => { xLog.checked = isLog(columns.get(x.value)); });
+  for (const control of [x, y, by, second[1], third[1], xLog, yLog, join]) control.addEventListener("change", draw);
+  dark.addEventListener("change", draw);
+  new ResizeObserver(() => { if (chart && !box.hidden) chart.resize(); }).observe(box);
+  if (numbers.length) draw();
+})();
