@@ -99,7 +99,7 @@
   };
 
   const axisOf = (column, log, extra) => ({
-    type: log ? "log" : "value", scale: true, name: title(column), nameLocation: "middle", nameGap: extra.gap, ...extra.own,
+    type: log ? "log" : "value", scale: true, min: log ? "dataMin" : null, max: log ? "dataMax" : null, name: title(column), nameLocation: "middle", nameGap: extra.gap, ...extra.own,
     axisLabel: { formatter: (value) => short(value) },
   });
   const palette = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#666666", "#F0E442"];

@@ -50,12 +50,9 @@ fn lowest<'a>(rows: &[&'a JobRow]) -> Option<(&'a JobRow, &'a JobRecord)> {
 
 fn friction(rows: &[&JobRow]) -> Option<String> {
     let (row, record) = lowest(rows)?;
-    Some(format!(
-        "μ* falls to {} ({} of μ) at {}.",
-        digits::mu_star_with_error(row, record),
-        digits::ratio(row, record),
-        parameters_in_words(row)
-    ))
+    let [mu_star, place] = [digits::mu_star_with_error(row, record), parameters_in_words(row)];
+    let percent = value::significant(100.0 * record.mu_star / row.mu, 2);
+    Some(format!("μ* falls to {mu_star} at {place}: {percent} % of μ."))
 }
 
 /// The frequencies of limit cycles \[kHz\]; none if there are no limit cycles.
