@@ -190,7 +190,7 @@ def page(mutants, results):
 
 `scripts/mutants.py` writes this page. It makes one error at a time in the sources and runs one test. The error is caught
 if this test fails. `scripts/mutants.toml` has the exact changes, and a digest stands for them here.
-{len(rows)} of its {len(mutants)} errors were tried.
+{len(rows)} of its {len(mutants)} errors were tried, and {len(rows) - len(alive)} of these were caught.
 
 A row says what came out when its error was tried for the last time. It goes if the error or the name of its test has
 changed since then. Other changes of the sources do not remove it.
