@@ -12,12 +12,15 @@ cargo and Python 3.11.
 """
 
 import argparse
+import contextlib
+import hashlib
 import os
 import re
 import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import tomllib
 from pathlib import Path
@@ -28,6 +31,7 @@ SOURCE = ROOT / "target/mutants/source"
 BUILDS = ROOT / "target/mutants/target"
 # The tests of the unchanged copy run together, and their first build compiles all dependencies.
 UNCHANGED_LIMIT_S, MUTANT_LIMIT_S = 60 * 60, 15 * 60
+KILLED = "killed"
 
 
 class Mutant(NamedTuple):
@@ -92,18 +96,31 @@ def run_tests(target, tests, limit_s):
     # These variables name tools and folders. Without them, the tests need nothing but this machine.
     environment = {name: value for name, value in os.environ.items() if not name.startswith("TRIBOSWEEP_")}
     environment["CARGO_TARGET_DIR"] = str(BUILDS)
+    # A mutant may name another compiler, which must not be used.
+    environment["RUSTUP_TOOLCHAIN"] = tomllib.loads((ROOT / "rust-toolchain.toml").read_text())["toolchain"]["channel"]
     command = ["cargo", "test", "--locked", *target.split(), "--", "--color=never", "--exact", *tests]
-    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE, "text": True, "errors": "replace"}
-    # cargo and its tests have a group of their own, so that they end together.
-    process = subprocess.Popen(command, cwd=SOURCE, env=environment, start_new_session=True, **pipes)
-    try:
-        return process.communicate(timeout=limit_s)
-    except subprocess.TimeoutExpired:
-        return None
-    finally:
-        if process.poll() is None:
-            os.killpg(process.pid, signal.SIGKILL)
-            process.communicate()
+    # A test that fails may leave processes behind. They would hold a pipe open, and the script would wait for them.
+    with (
+        tempfile.TemporaryFile("w+", errors="replace") as output,
+        tempfile.TemporaryFile("w+", errors="replace") as messages,
+    ):
+        # cargo and its tests have a group of their own, so that they end together.
+        process = subprocess.Popen(
+            command, cwd=SOURCE, env=environment, stdout=output, stderr=messages, start_new_session=True
+        )
+        try:
+            process.wait(timeout=limit_s)
+        except subprocess.TimeoutExpired:
+            return None
+        finally:
+            with contextlib.suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+        texts = []
+        for file in (output, messages):
+            file.seek(0)
+            texts.append(file.read())
+        return tuple(texts)
 
 
 def result_of(test, output):
@@ -148,21 +165,38 @@ def try_out(mutant):
         reason = reason_alive(mutant.test, run_tests(mutant.target, [mutant.test], MUTANT_LIMIT_S))
     finally:
         file.write_text(text)
-    print(f"{time.monotonic() - begun:6.1f} s  {mutant.area}: {mutant.name}: {reason or 'killed'}", flush=True)
+    print(f"{time.monotonic() - begun:6.1f} s  {mutant.area}: {mutant.name}: {reason or KILLED}", flush=True)
     return reason
 
 
-def page(results, count):
-    """The results as a Markdown page. `count` is the length of the list."""
-    rows = [f"| {m.area} | {m.name} | `{m.file}` | `{m.target}`: `{m.test}` |\n" for m, _ in results]
-    alive = [f"* {mutant.name}: {reason}\n" for mutant, reason in results if reason]
+def cells(mutant):
+    """The first cells of a mutant's row in the page. They change with its entry in the list, whose texts have a digest."""
+    change = hashlib.sha256(f"{mutant.old}\0{mutant.new}".encode()).hexdigest()[:8]
+    return f"| {mutant.area} | {mutant.name} | `{mutant.file}` | {change} | `{mutant.target}`: `{mutant.test}` |"
+
+
+def earlier_results(mutants, page_file):
+    """The results that a page has of mutants whose entries are as they were. The keys are the names of the mutants."""
+    lines = page_file.read_text().splitlines() if page_file.is_file() else []
+    rows = [(mutant, line) for mutant in mutants for line in lines if line.startswith(cells(mutant))]
+    return {mutant.name: line.removeprefix(cells(mutant)).strip(" |") for mutant, line in rows}
+
+
+def page(mutants, results):
+    """The results as a Markdown page. `mutants` is the whole list, and `results` has the results by the names."""
+    rows = [f"{cells(mutant)} {results[mutant.name]} |\n" for mutant in mutants if mutant.name in results]
+    alive = [f"* {name}\n" for name, result in results.items() if result != KILLED]
     return f"""# Deliberately wrong programs
 
 `scripts/mutants.py` writes this page. It makes one error at a time in the sources and runs one test. The error is caught
-if this test fails. `scripts/mutants.toml` has the exact changes. {len(rows)} of its {count} errors were tried.
+if this test fails. `scripts/mutants.toml` has the exact changes, and a digest stands for them here.
+{len(rows)} of its {len(mutants)} errors were tried, and {len(rows) - len(alive)} of these were caught.
 
-| area | error | file | test that must fail |
-|---|---|---|---|
+A row says what came out when its error was tried for the last time. It goes if the error or the name of its test has
+changed since then. Other changes of the sources do not remove it.
+
+| area | error | file | change | test that must fail | result |
+|---|---|---|---|---|---|
 {"".join(rows)}
 ## Survivors
 
@@ -174,7 +208,8 @@ def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("names", nargs="*", metavar="NAME", help="a mutant to run; without names, all of them run")
     parser.add_argument("--check", action="store_true", help="compare the list with the sources, and build nothing")
-    parser.add_argument("--table", type=Path, metavar="FILE", help="write the results as a Markdown page")
+    help_of_table = "write the results to a Markdown page, which keeps those of the mutants that do not run"
+    parser.add_argument("--table", type=Path, metavar="FILE", help=help_of_table)
     options = parser.parse_args()
     mutants = [Mutant(**entry) for entry in tomllib.loads((ROOT / "scripts/mutants.toml").read_text())["mutant"]]
     names = [mutant.name for mutant in mutants]
@@ -187,15 +222,17 @@ def main():
     copy_sources()
     if not passes_unchanged(chosen):
         return 1
-    results = []
+    results = earlier_results(mutants, options.table) if options.table else {}
+    alive = 0
     for mutant in chosen:
-        results.append((mutant, try_out(mutant)))
+        reason = try_out(mutant)
+        results[mutant.name] = reason or KILLED
+        alive += bool(reason)
         # The page has all results so far, if the script is stopped.
         if options.table:
             options.table.parent.mkdir(parents=True, exist_ok=True)
-            options.table.write_text(page(results, len(mutants)))
-    alive = sum(bool(reason) for _, reason in results)
-    print(f"{len(results) - alive} of {len(results)} mutants are killed")
+            options.table.write_text(page(mutants, results))
+    print(f"{len(chosen) - alive} of {len(chosen)} mutants are killed")
     return 1 if alive else 0
 
 
