@@ -107,7 +107,7 @@ fn header(analysis: &Analysis) -> Vec<String> {
 /// The lines of the table of a group: ω, the first threshold, where sliding is unstable, the frequency, and what else there is to say.
 fn lines(analysis: &Analysis, modes: &GroupModes) -> Vec<Vec<String>> {
     let line = |speed: &Speed| {
-        let omega = analysis.layout.dimension(analysis.along.across()).text(&speed.omega);
+        let omega = analysis.across_in_words(speed);
         [omega].into_iter().chain(analysis.words(speed)).collect()
     };
     modes.speeds.iter().map(line).collect()
