@@ -96,7 +96,7 @@ def summary(lines, found):
             what = name if name != "job" else verdict
             text.append(f"| {study} | {omega:g} | {mu:g} | {what} | {expected} | {value} | {difference} | {tolerance} |")
         text.append("")
-    text.append("| study | ω [rpm] | μ | outcome | decided by | regime | μ\\* | f [Hz] | time [s] |")
+    text.append("| study | ω [rpm] | μ | status | decided by | regime | μ\\* | f [Hz] | time [s] |")
     text.append("| :--- | ---: | ---: | :--- | :--- | :--- | ---: | ---: | ---: |")
     for (study, omega, mu), line in sorted(found.items(), key=lambda item: (item[0][0], item[0][2], item[0][1])):
         figures = [line["status"], line["decided_by"], line["regime"], rounded(line["mu_star"], 4), rounded(line["frequency_hz"], 0)]

@@ -38,6 +38,10 @@ import time
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 LANES = 8
 FILES = ["tribosweep.db", "tribosweep.db-wal", "tribosweep.db-shm"]
+# A job may be killed as often as the draw wants. With the usual limit, whoever takes such a job back lets it fail.
+WORK = ["work", "--max-crashes", "1000000"]
+# Room for a write-ahead log and for what is small.
+ROOM_BYTES = 24_000_000
 
 
 def study(jobs):
@@ -67,7 +71,7 @@ class Sweep:
     def worker(self, draw):
         often = draw.choice(["0", "0", "0.02"])
         return subprocess.Popen(
-            [self.program, "work", "--threads", "1", "--max-crashes", "1000000", "--checkpoint-every", often],
+            [self.program, *WORK, "--threads", "1", "--checkpoint-every", often],
             cwd=self.folder,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
@@ -158,7 +162,7 @@ def torture(sweep, options, draw):
             break
     for worker in workers:
         check(worker.wait() in (0, 3), f"a worker ended with {worker.returncode}")
-    sweep.call("work")
+    sweep.call(*WORK)
     return counts
 
 
@@ -166,10 +170,11 @@ NAMED = re.compile(r"Everything that was stored.* is in (.+?): move that file")
 
 
 class Place:
-    """A sweep on a disk of its own, if this process may mount one."""
+    """A sweep on a disk of its own with this room, if this process may mount one."""
 
-    def __init__(self, program, folder, jobs):
-        mount = ["mount", "-t", "tmpfs", "-o", "size=24M", "tmpfs", folder]
+    def __init__(self, program, folder, jobs, room):
+        self.room = room
+        mount = ["mount", "-t", "tmpfs", "-o", f"size={room}", "tmpfs", folder]
         self.is_mounted = subprocess.run(mount, capture_output=True).returncode == 0
         self.sweep = Sweep(program, folder, jobs)
         self.folder = self.sweep.folder
@@ -182,7 +187,7 @@ class Place:
 
     def start(self, count, user=None):
         def worker():
-            command = [self.sweep.program, "work", "--threads", "1", "--max-crashes", "1000000"]
+            command = [self.sweep.program, *WORK, "--threads", "1"]
             return subprocess.Popen(
                 command, cwd=self.folder, user=user, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True
             )
@@ -245,7 +250,7 @@ class Place:
     def fill(self, workers, draw):
         filler = self.folder / "filler"
         try:
-            filler.write_bytes(bytes(32_000_000))
+            filler.write_bytes(bytes(self.room))
         except OSError:
             pass
         for worker in workers:
@@ -268,7 +273,7 @@ def attack_places(place, options, draw):
     counts = dict.fromkeys([action.__name__ for action in actions], 0)
     for number in range(options.places):
         before = finished(place.sweep.export())
-        if len(before) > options.jobs - 200:
+        if len(before) > options.jobs - min(200, options.jobs // 2):
             break
         workers = place.start(options.workers)
         time.sleep(draw.uniform(0.2, 1.0))
@@ -279,7 +284,7 @@ def attack_places(place, options, draw):
         now = finished(place.sweep.export())
         lost = [job for job, line in before.items() if now.get(job) != line]
         check(not lost, f"{action.__name__}: lost or run again: {lost}")
-    place.sweep.call("work")
+    place.sweep.call(*WORK)
     return counts
 
 
@@ -313,7 +318,10 @@ def main():
         check(repeated <= allowed, f"{repeated} jobs repeated, at most {allowed} were running")
         with tempfile.TemporaryDirectory() as other:
             pathlib.Path(other).chmod(0o755)
-            place = Place(options.program, other, options.jobs)
+            # Each worker may save the results of a database that has left its place in a file of its own.
+            files = options.workers + 2
+            room = ROOM_BYTES + files * (reference.folder / FILES[0]).stat().st_size
+            place = Place(options.program, other, options.jobs, room)
             try:
                 attacks = attack_places(place, options, draw)
                 check(timeless(place.sweep.export()) == timeless(reference.export()), "after attacks, the export differs")

@@ -1,14 +1,32 @@
-//! Advice for a study file that does not exist.
+//! Advice for a study file that does not exist, and for a database that cannot be used.
 
 use super::error::CliError;
-use crate::queue::Location;
+use crate::queue::{Location, QueueError};
 use crate::study::{StudyError, is_study_name};
 use crate::sweep::{self, SweepError};
+use crate::worker::WorkError;
 use std::io::ErrorKind;
 use std::path::Path;
 
-/// What the user may have meant; empty unless the error is a missing study file.
+/// The database of a command whose error is one of a database that does not say which; none for other errors.
+fn unnamed_database(error: &CliError, db: &Location) -> Option<String> {
+    let (CliError::Queue(error)
+    | CliError::Work(WorkError::Queue(error))
+    | CliError::Sweep(SweepError::Queue(error) | SweepError::Work(WorkError::Queue(error)))) = error
+    else {
+        return None;
+    };
+    let is_unnamed =
+        matches!(error, QueueError::Damaged(_) | QueueError::Inconsistent(_) | QueueError::Database(_));
+    is_unnamed.then(|| format!("the database is {db}"))
+}
+
+/// What the user may have meant, if the error is a missing study file, and which database is damaged. `db` is the only database of the
+/// command.
 pub(crate) fn advice(error: &CliError, db: &Location) -> Vec<String> {
+    if let Some(line) = unnamed_database(error, db) {
+        return vec![line];
+    }
     let (CliError::Study(study) | CliError::Sweep(SweepError::Study(study))) = error else {
         return Vec::new();
     };

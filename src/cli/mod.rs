@@ -119,7 +119,8 @@ enum Command {
     Doctor(doctor::Args),
     /// Solve one job in the foreground.
     Solve(solve::Args),
-    /// Compute the complex modes of steady sliding at every point of a study, and the μ at which sliding becomes unstable.
+    /// Compute the complex modes of steady sliding at every point of a study, and the thresholds: the values of μ, or of another
+    /// parameter, at which sliding becomes unstable or stable.
     Stability(stability::Args),
     /// Run one job again and show it in detail: histories, cycles, snapshots, fields for ParaView.
     Inspect(inspect::Args),
@@ -168,6 +169,8 @@ fn with_suggestion(mut error: clap::Error) -> clap::Error {
 /// Runs the command and returns its exit code (see `exit`).
 pub fn main(cli: Cli) -> u8 {
     let db = &cli.db;
+    // A damaged database may be either of their two.
+    let has_two = matches!(cli.command, Command::Merge(_) | Command::Copy(_));
     let result = match cli.command {
         Command::Run(args) => run::run(&args, db),
         Command::Submit(args) => submit::run(&args, db),
@@ -204,7 +207,8 @@ pub fn main(cli: Cli) -> u8 {
         Ok(code) => code,
         Err(error) => {
             output::log(format_args!("error: {error}"));
-            for line in missing::advice(&error, db) {
+            let advice = if has_two { Vec::new() } else { missing::advice(&error, db) };
+            for line in advice {
                 output::log(format_args!("  help: {line}"));
             }
             exit::ERROR

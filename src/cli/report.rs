@@ -147,6 +147,9 @@ pub(crate) async fn write(
         log(format_args!("warning: {sentence}"));
     }
     let written = sweep::write_content(queue, content, folder, refresh_s).await?;
+    for sentence in &written.unmatched {
+        log(format_args!("warning: {sentence}"));
+    }
     if let [head, lines @ ..] = &written.contradictions[..] {
         log(format_args!("warning: {head}"));
         for line in lines {

@@ -41,8 +41,9 @@ pub(crate) struct Args {
 
 /// Solves the job and prints its figures; nothing is stored.
 pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
-    let spec = Study::load(&args.study)?.single_with_preset(args.preset, &args.settings)?;
-    warnings::of_job(&spec);
+    let study = Study::load(&args.study)?;
+    let spec = study.single_with_preset(args.preset, &args.settings)?;
+    warnings::of_job(&study, &spec);
     let interrupt = foreground::interrupt();
     let mut recorder = Recorder {
         interrupt,
@@ -153,7 +154,7 @@ pub(crate) fn as_text(record: &JobRecord) -> String {
     });
     let sliding = record.stability.as_ref().map_or_else(String::new, sliding_lines);
     format!(
-        "outcome                {} {}\n\
+        "status                 {} {}\n\
          regime                 {}\n\
          mu*                    {:.5} ± {:.5} (at the contact {:.5})\n\
          frequency              {frequency}\n\
@@ -182,7 +183,7 @@ pub(crate) fn as_text(record: &JobRecord) -> String {
     )
 }
 
-/// Who decided the outcome, and the leading mode of steady sliding.
+/// Who decided the status, and the leading mode of steady sliding.
 fn sliding_lines(stability: &SlidingStability) -> String {
     let decided = if stability.decided { "the eigenvalues, without a run" } else { "the run" };
     let leading = stability.modes.first().map_or_else(String::new, |mode| {

@@ -40,11 +40,12 @@ pub(crate) struct Args {
     /// points at most.
     #[arg(long)]
     shapes: bool,
-    /// Compute the points of the grid alone, and do not look for places at which sliding becomes unstable.
+    /// Compute the points of the grid alone, and look for no thresholds.
     #[arg(long)]
     no_thresholds: bool,
-    /// Look for thresholds of this parameter of the grid or of samples.zip. Without it they are those of μ or, if the study does not
-    /// vary μ, of the first number that it varies.
+    /// The parameter whose thresholds are looked for: the values at which sliding becomes unstable or stable. It varies in the
+    /// grid or in samples.zip and is no whole number; what else is in the zip moves with it. Default: mu; if the study does not vary
+    /// it, the first other such parameter, and omega_rpm only if there is no other.
     #[arg(long, value_name = "NAME", conflicts_with = "no_thresholds")]
     along: Option<String>,
     #[command(flatten)]
@@ -86,9 +87,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
                 }
             }
             if along.is_none() && !args.no_thresholds {
-                log(
-                    "no thresholds: no number varies alone in `grid` or with others in `samples.zip`, or `mu` and `omega_rpm` move together, which has no thresholds yet",
-                );
+                log("no thresholds: no number varies alone in `grid` or with others in `samples.zip`");
             }
         }
         let folder = args.out.of_modes().of(&name);
@@ -116,7 +115,8 @@ fn along(plan: &Plan, args: &Args) -> Result<Option<Along>, CliError> {
     let names: Vec<&str> = ways.iter().map(|along| along.parameter.as_str()).collect();
     let names = if names.is_empty() { "it has none".to_owned() } else { names.join(", ") };
     Err(CliError::Usage(format!(
-        "--along {name}: expected a number with two values or more in `grid`, or one of `samples.zip`; in this study: {names}"
+        "--along {name}: expected a parameter with two values or more in `grid`, or one of `samples.zip`, that is no whole number; in \
+         this study: {names}"
     )))
 }
 

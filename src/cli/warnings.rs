@@ -2,7 +2,7 @@
 
 use super::output::log;
 use crate::spec::JobSpec;
-use crate::study::{Study, job_warnings};
+use crate::study::Study;
 
 /// Logs what is doubtful about a study.
 pub(crate) fn of_study(study: &Study) {
@@ -16,9 +16,9 @@ pub(crate) fn of_study(study: &Study) {
     }
 }
 
-/// Logs what is doubtful about one job.
-pub(crate) fn of_job(spec: &JobSpec) {
-    for warning in &job_warnings(spec) {
+/// Logs what is doubtful about one job of a study.
+pub(crate) fn of_job(study: &Study, spec: &JobSpec) {
+    for warning in &study.warnings_of(spec) {
         let word = if warning.is_doubt() { "warning" } else { "note" };
         log(format_args!("{word}: {}", warning.in_words()));
     }

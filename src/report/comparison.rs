@@ -24,6 +24,8 @@ pub(super) struct Comparison {
     compared_squeals: usize,
     /// What a reader must know, one sentence each: inputs that differ, points without a counterpart.
     pub notes: Vec<String>,
+    /// Of each source none of whose points can be compared with the reference, a sentence.
+    pub unmatched: Vec<String>,
     /// All differences.
     pub differences: Vec<Difference>,
     /// Names of the parameters: those of the groups, of the curves and of the axis.
@@ -96,6 +98,7 @@ impl Comparison {
             contradictions: Vec::new(),
             compared_squeals: 0,
             notes: view.notes.clone(),
+            unmatched: Vec::new(),
             differences: Vec::new(),
             labels: names.iter().map(|name| layout.dimension(name).label.clone()).collect(),
             names: names.iter().map(|&name| name.to_owned()).collect(),
@@ -111,6 +114,7 @@ impl Comparison {
                     comparison.compare(layout, group, job, &curves, &x_axis, &scalars, &mut matches);
                 }
             }
+            comparison.unmatched.extend(matches.none_in_words(source.name, layout.sources[0].name));
             comparison.notes.extend(matches.in_words(
                 source.name,
                 &layout.sources[0],
@@ -345,6 +349,16 @@ impl Difference {
 }
 
 impl Matches {
+    /// That no point has a counterpart, in a sentence; none if one has.
+    fn none_in_words(&self, source: &str, reference: &str) -> Option<String> {
+        (self.equal + self.between == 0 && self.elsewhere > 0).then(|| {
+            format!(
+                "no point of {source} is at the parameters of a job of {reference}, or between two of its jobs: nothing of {source} is \
+                 compared"
+            )
+        })
+    }
+
     fn in_words(
         &self,
         source: &str,

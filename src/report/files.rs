@@ -41,6 +41,8 @@ pub struct Written {
     pub files: Vec<PathBuf>,
     /// Where only one of a source and the first source squeals: a head and lines; empty if nowhere.
     pub contradictions: Vec<String>,
+    /// Of each source none of whose points can be compared with the first source, a sentence.
+    pub unmatched: Vec<String>,
 }
 
 /// As [`write`](fn@write). Also returns what a reader must know first.
@@ -151,8 +153,9 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     folder.write_text("report.html", &html::of_page(&page))?;
     folder.write_text("report.md", &markdown::of_page(&page))?;
     let contradictions = comparison.as_ref().map_or_else(Vec::new, Comparison::contradictions_in_words);
+    let unmatched = comparison.map_or_else(Vec::new, |comparison| comparison.unmatched);
     let files = folder.finish(|name| could_be_of_a_report(name, out_dir))?;
-    Ok(Written { files, contradictions })
+    Ok(Written { files, contradictions, unmatched })
 }
 
 /// Most measured points in tables and figures: more would make pages that no browser shows.

@@ -40,6 +40,17 @@ impl FrictionLaw {
     pub fn name(self) -> &'static str {
         self.into()
     }
+
+    /// The fields of a contact that the law uses besides `mu`.
+    pub fn coefficients(self) -> &'static [&'static str] {
+        match self {
+            Self::Coulomb => &[],
+            Self::StaticKinetic => &["mu_static"],
+            Self::Exponential => &["mu_static", "speed_m_s", "slope_s_m"],
+            Self::Regularised => &["speed_m_s"],
+            Self::PrakashClifton => &["length_m"],
+        }
+    }
 }
 
 /// Unilateral contact with friction, the same at every node.
@@ -108,45 +119,39 @@ impl Contact {
     pub fn in_use(&self) -> Self {
         let exponent =
             self.stiffness_exponent.filter(|exponent| self.stiffness_pa_m.is_some() && *exponent != 1.0);
-        let rest = Self {
+        let of_law =
+            |name: &str, value: Option<f64>| value.filter(|_| self.law.coefficients().contains(&name));
+        Self {
             mu: self.mu,
             law: self.law,
+            mu_static: of_law("mu_static", self.mu_static),
+            speed_m_s: of_law("speed_m_s", self.speed_m_s),
+            slope_s_m: of_law("slope_s_m", self.slope_s_m).filter(|slope| *slope != 0.0),
+            length_m: of_law("length_m", self.length_m),
             stiffness_pa_m: self.stiffness_pa_m,
             stiffness_exponent: exponent,
             stiffness_pressure_pa: self.stiffness_pressure_pa.filter(|_| exponent.is_some()),
-            ..Self::default()
-        };
-        match self.law {
-            FrictionLaw::Coulomb => rest,
-            FrictionLaw::StaticKinetic => Self { mu_static: self.mu_static, ..rest },
-            FrictionLaw::Exponential => Self {
-                mu_static: self.mu_static,
-                speed_m_s: self.speed_m_s,
-                slope_s_m: self.slope_s_m.filter(|slope| *slope != 0.0),
-                ..rest
-            },
-            FrictionLaw::Regularised => Self { speed_m_s: self.speed_m_s, ..rest },
-            FrictionLaw::PrakashClifton => Self { length_m: self.length_m, ..rest },
         }
     }
 
     /// Adds every violated limit to `found`.
     pub(super) fn check(&self, found: &mut Violations) {
         let name = self.law.name();
-        let uses = |laws: &[FrictionLaw]| laws.contains(&self.law);
+        let uses = |field: &str| self.law.coefficients().contains(&field);
         found.within("scene.contact.mu", self.mu);
         let missing = |found: &mut Violations, field: &str, what: &str| {
             found.add(field, "absent", format!("{what} for the friction law {name}"));
         };
-        let is_static = uses(&[FrictionLaw::StaticKinetic, FrictionLaw::Exponential]);
         match self.mu_static {
             Some(mu) => _ = found.within("scene.contact.mu_static", mu),
-            None if is_static => missing(found, "scene.contact.mu_static", "a friction coefficient >= 0"),
+            None if uses("mu_static") => {
+                missing(found, "scene.contact.mu_static", "a friction coefficient >= 0")
+            }
             None => {}
         }
         match self.speed_m_s {
             Some(speed) => _ = found.within("scene.contact.speed_m_s", speed),
-            None if uses(&[FrictionLaw::Exponential, FrictionLaw::Regularised]) => {
+            None if uses("speed_m_s") => {
                 missing(found, "scene.contact.speed_m_s", "a slip speed > 0 m/s");
             }
             None => {}
@@ -155,7 +160,7 @@ impl Contact {
         self.check_layer(found);
         match self.length_m {
             Some(length) => _ = found.within("scene.contact.length_m", length),
-            None if uses(&[FrictionLaw::PrakashClifton]) => {
+            None if uses("length_m") => {
                 missing(found, "scene.contact.length_m", "a length > 0 m");
             }
             None => {}

@@ -146,11 +146,19 @@ fn same_shape(value: &Value, template: &Value, path: &str, found: &mut Vec<TypeM
     }
 }
 
+/// What is said of a number beyond the largest double.
+pub(super) const TOO_LARGE: &str = "the number is too large for a double, which ends at 1.8e308";
+
 /// What to write instead of a text where a number is expected; none if the text says nothing about that.
 pub(super) fn number_hint(text: &str) -> Option<String> {
     let text = text.trim();
-    if text.parse::<f64>().is_ok() {
-        return Some(format!("write {text} without quotes"));
+    // Rust reads `1e999` as infinity, and the words `inf` and `nan` as numbers.
+    let has_digit = text.bytes().any(|byte| byte.is_ascii_digit());
+    match text.parse::<f64>() {
+        Ok(number) if number.is_finite() => return Some(format!("write {text} without quotes")),
+        Ok(_) if has_digit => return Some(TOO_LARGE.to_owned()),
+        Ok(_) => return Some("expected a finite number".to_owned()),
+        Err(_) => {}
     }
     let is_number = |part: &str| part.trim().parse::<f64>().is_ok();
     let parts: Vec<&str> = text.split([',', ';']).collect();
@@ -233,6 +241,9 @@ mod tests {
             ("20N", "the number alone"),
             ("8 mm", "the number alone"),
             ("3", "3 without quotes"),
+            ("1e999", "too large for a double"),
+            ("-1e999", "too large for a double"),
+            ("inf", "a finite number"),
         ] {
             let hint = number_hint(text).unwrap_or_default();
             assert!(hint.contains(part), "{text}: {hint}");

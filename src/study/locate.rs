@@ -4,6 +4,7 @@
 //! position of any field later on, and a repeated axis must not be lost silently. So `jsonc-parser` makes a tree with
 //! positions, which becomes a value here. Numbers are read by `serde_json`, to the last bit.
 
+use super::json::TOO_LARGE;
 use jsonc_parser::ast;
 use jsonc_parser::common::Ranged;
 use jsonc_parser::errors::ParseErrorKind;
@@ -188,7 +189,12 @@ impl Reader<'_> {
             }
             ast::Value::NumberLit(number) => match number.value.parse::<Number>() {
                 Ok(number) => Value::Number(number),
-                Err(error) => return refuse(without_place(&error.to_string()).to_owned()),
+                Err(error) => {
+                    let text = error.to_string();
+                    let message = without_place(&text);
+                    let is_large = message == "number out of range";
+                    return refuse(if is_large { TOO_LARGE } else { message }.to_owned());
+                }
             },
             // Other programs that read JSON refuse such a text.
             ast::Value::StringLit(string)

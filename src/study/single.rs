@@ -16,8 +16,11 @@ use serde_json::Value;
 /// Stands for the file in messages about overrides.
 const SOURCE: &str = "--set";
 
-/// Largest number of values that a message lists to choose from.
-const MAX_LISTED: usize = 40;
+/// Largest number of values that a message lists in full.
+const MAX_LISTED: usize = 6;
+
+/// The first values of a longer list that a message names; it names the last one, too.
+const LISTED_OF_MORE: usize = 3;
 
 /// One job of a study.
 #[derive(Debug, Clone, PartialEq)]
@@ -62,7 +65,9 @@ impl Study {
             Err(StudyError::Invalid(problems)) => problems,
             _ => Vec::new(),
         };
-        problems.extend(left_open.iter().map(|axis| self.left_open(axis)));
+        // A parameter whose value is refused is not open, and its problem is said.
+        let is_given = |axis: &&Axis| overrides.iter().any(|(name, _)| name == axis.parameter.name);
+        problems.extend(left_open.iter().filter(|axis| !is_given(axis)).map(|axis| self.left_open(axis)));
         Err(StudyError::Invalid(problems))
     }
 
@@ -130,12 +135,14 @@ impl Study {
     }
 
     fn left_open(&self, axis: &Axis) -> Problem {
-        let mut values: Vec<_> = axis.values.iter().take(MAX_LISTED).map(Value::to_string).collect();
-        if axis.values.len() > MAX_LISTED {
-            values.push("…".to_owned());
+        let mut values: Vec<_> = axis.values.iter().map(Value::to_string).collect();
+        let mut message = "expected one value for a single job".to_owned();
+        if values.len() > MAX_LISTED {
+            message += &format!(", of {}", values.len());
+            values.splice(LISTED_OF_MORE..values.len() - 1, ["…".to_owned()]);
         }
         let name = axis.parameter.name;
-        let problem = self.source.problem(&axis.path(), "expected one value for a single job");
+        let problem = self.source.problem(&axis.path(), message);
         Problem { value: Some(format!("[{}]", values.join(", "))), ..problem }
             .with_help(format!("pick one with --set {name}={}", values[0].trim_matches('"')))
     }

@@ -16,7 +16,7 @@ pub enum SweepError {
     #[error(transparent)]
     Study(#[from] StudyError),
     /// A job of the study would be refused before its first step.
-    #[error("{source_name}: {reason}{}{}", at(.point, *.jobs, *.of), lines(.doubts))]
+    #[error("{}{source_name}: {reason}{}{}", causes(.doubts), at(.point, *.jobs, *.of), lines(.doubts))]
     RefusedJob {
         /// The study's file as given.
         source_name: String,
@@ -137,9 +137,20 @@ fn at(point: &str, jobs: usize, of: usize) -> String {
     }
 }
 
-/// A line for each warning.
+/// A value that looks like another unit is the likely reason, so that it comes before what follows from it.
+fn is_cause(doubt: &&Warning) -> bool {
+    doubt.kind == "unit"
+}
+
+/// A line for each likely reason.
+fn causes(doubts: &[Warning]) -> String {
+    doubts.iter().filter(is_cause).map(|cause| cause.to_string() + "\n").collect()
+}
+
+/// A line for each other warning.
 fn lines(doubts: &[Warning]) -> String {
-    doubts.iter().fold(String::new(), |text, warning| text + "\nwarning: " + &warning.to_string())
+    let others = doubts.iter().filter(|doubt| !is_cause(doubt));
+    others.fold(String::new(), |text, warning| text + "\nwarning: " + &warning.to_string())
 }
 
 fn of(study: Option<&str>) -> String {

@@ -39,6 +39,20 @@ fn studies_and_measured_points_are_in_one_report() {
     assert_eq!(rows(&folder.read("mine/differences.csv")).len(), 2);
 }
 
+/// Protects: who compares a study with points of which none matches a job reads so on the terminal, and not on the page alone. One point that
+/// matches is enough to say nothing.
+#[test]
+fn points_without_a_counterpart_are_said_at_once() {
+    let folder = Folder::with("first", &small(&json!({ "mu": [0.2], "omega_rpm": [2, 20] })));
+    folder.ok("run first.json");
+    for (points, is_said) in [("50,0.2,0.19\n70,0.2,0.18\n", true), ("50,0.2,0.19\n2,0.2,0.18\n", false)] {
+        folder.write("rig.csv", &format!("omega_rpm,mu,mu_star\n{points}"));
+        let messages = stderr(&folder.command("report first --data rig.csv").assert().code(0)).to_owned();
+        let warning = "warning: no point of rig is at the parameters of a job of first";
+        assert_eq!(messages.contains(warning), is_said, "{messages}");
+    }
+}
+
 /// Protects: axes are those of the command line, then those of the study, and an unknown name or file is refused with advice.
 #[test]
 fn axes_are_those_that_were_asked_for() {

@@ -172,11 +172,17 @@ fn usage() {
 fn jobs_with_too_many_steps() {
     let endless = "more than the 5e7 that a run may have";
     refuses_study(&with("/numerics", json!({ "time_step_s": 1e-12 })), &["steps of 1.000e-12 s", endless]);
-    // What is doubtful about the study may be the reason.
+    // A value that looks like another unit is the likely reason, and comes first.
     refuses_study(
         &with("/scene/pin/density_kg_m3", json!(2.5e-9)),
-        &[endless, "\nwarning: bad.json:1:", "density_kg_m3 = 2.5e-9: lighter than cork"],
+        &[endless, "error: bad.json:1:", "density_kg_m3 = 2.5e-9: lighter than cork"],
     );
+    let folder = Folder::new();
+    folder.write("slow.json", r#"{ "scene": { "holder": { "mass_kg": 80, "stiffness_y_n_m": 5 } } }"#);
+    let message = stderr(&folder.command("validate slow.json").assert().code(2));
+    let [cause, consequence] = ["stiffness_y_n_m = 5: with a mass of 80 kg", "run.limit_s"]
+        .map(|part| message.find(part).expect(part));
+    assert!(message.starts_with("error: slow.json:1:") && cause < consequence, "{message}");
     let study = small(&json!({ "beta_r_s": [5e-8, 1, 2], "mu": [0.2, 0.3] }));
     refuses_study(&study.to_string(), &[endless, "(in 4 of 6 jobs, first at beta_r_s = 1, mu = 0.2)"]);
 }

@@ -1,4 +1,4 @@
-//! The comparison of the nightly sweep with its reference values.
+//! The scripts of the nightly runs: the comparison of the sweep with its reference values, and the kill storm.
 
 use std::process::Command;
 
@@ -10,8 +10,13 @@ type Change<'a> = &'a dyn Fn(&str) -> String;
 
 /// Exit code and output of the comparison of a folder; `None` without Python.
 fn compared(folder: &Folder, name: &str) -> Option<(i32, String)> {
-    let script = concat!(env!("CARGO_MANIFEST_DIR"), "/scripts/nightly.py");
-    let Ok(output) = Command::new("python3").arg(script).arg(folder.path(name)).output() else {
+    script("nightly.py", &[&folder.path(name).to_string_lossy()])
+}
+
+/// Exit code and output of a script; `None` without Python.
+fn script(name: &str, arguments: &[&str]) -> Option<(i32, String)> {
+    let script = format!("{}/scripts/{name}", env!("CARGO_MANIFEST_DIR"));
+    let Ok(output) = Command::new("python3").arg(script).args(arguments).output() else {
         tools::missing("python3 cannot be started", "install Python 3 (Debian: apt-get install python3)");
         return None;
     };
@@ -72,4 +77,17 @@ fn drifts_are_listed() {
     }
     assert_eq!(compared(&folder, "none").unwrap().0, 2);
     assert_eq!(write("broken", "mini", &|_| "study\n".to_owned()).unwrap().0, 2);
+}
+
+/// Protects: the script of the kill storm runs to its end: a job may be killed as often as the draw wants, and no job fails by it.
+#[test]
+fn a_short_kill_storm_ends_well() {
+    let program = env!("CARGO_BIN_EXE_tribosweep");
+    let arguments =
+        ["--program", program, "--kills", "10", "--workers", "2", "--jobs", "60", "--pause", "0.1"];
+    let Some((code, text)) = script("torture.py", &[&arguments[..], &["--places", "0"]].concat()) else {
+        return;
+    };
+    assert_eq!(code, 0, "{text}");
+    assert!(text.contains("jobs: 60, results: 60") && text.contains("lost: 0"), "{text}");
 }

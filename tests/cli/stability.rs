@@ -253,3 +253,32 @@ fn an_elastic_disk_that_is_too_fine_is_refused() {
     );
     folder.command("export study-stability").assert().code(2);
 }
+
+/// Protects: a zip that moves μ and ω has thresholds: those of μ or, on request, of ω. Points between those of the list are on the way
+/// between them, and the table has one line.
+#[test]
+fn a_zip_of_speed_and_friction_has_thresholds() {
+    let mut study = small(&json!({}));
+    study["samples"] = json!({ "zip": { "mu": [0.1, 0.3, 0.6], "omega_rpm": [5, 7, 10] } });
+    let folder = Folder::with("study", &study);
+    for (along, parameter) in [("", "mu"), (" --along omega_rpm", "omega_rpm")] {
+        let printed = folder.ok(&format!("stability study.json{along}"));
+        let (_, thresholds) = printed.split_once("Thresholds").unwrap();
+        assert!(thresholds.contains(&format!("Thresholds are those of {parameter}, ")), "{thresholds}");
+        assert!(
+            thresholds.contains("moves") && thresholds.contains(&format!("{parameter}_c")),
+            "{thresholds}"
+        );
+        let lines = rows(&folder.read("reports/study-stability/thresholds.csv"));
+        assert!(!lines[0][&format!("{parameter}_c")].is_empty(), "{thresholds}");
+        // Figures over the other of the two would have no axis.
+        let drawn = ["lock_in.svg", "stability_map.svg", "thresholds.svg"]
+            .map(|file| folder.path(format!("reports/study-stability/{file}")).exists());
+        assert_eq!(drawn, [true, false, false]);
+    }
+    for row in rows(&folder.ok("export study-stability")) {
+        let [mu, omega_rpm] = ["mu", "omega_rpm"].map(|name| number(&row, name));
+        let on_the_way = if mu <= 0.3 { 5.0 + 10.0 * (mu - 0.1) } else { 7.0 + 10.0 * (mu - 0.3) };
+        assert!((omega_rpm - on_the_way).abs() < 1.0e-6, "{row:?}");
+    }
+}

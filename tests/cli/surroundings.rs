@@ -154,6 +154,7 @@ fn a_damaged_file() {
     assert!(stdout(&message).contains("PROBLEM"), "{}", stdout(&message));
     for arguments in ["export study", "report study", "run study.json"] {
         assert_refused(&folder, arguments, "the database is damaged");
+        assert_refused(&folder, arguments, "help: the database is tribosweep.db");
     }
     assert_eq!(fs::read(&path).unwrap(), bytes);
 }

@@ -359,3 +359,43 @@ fn bad_names_get_an_offer() {
         assert!(Study::parse_stored(&named(name), name).is_ok(), "{name}");
     }
 }
+
+/// Protects: a coefficient that the friction law does not use is named, with the laws that use it; a grid over laws, one of which uses it, is
+/// silent, and so is a job of such a grid.
+#[test]
+fn coefficients_without_effect_are_named() {
+    let warning = only(r#""contact": { "mu": 0.4, "mu_static": 0.5 }"#);
+    assert_eq!((warning.kind, warning.jobs), ("unused", 1));
+    let expected = "scene.contact.mu_static = 0.5: without effect: the friction law coulomb does not use it";
+    assert_contains(
+        &warning.to_string(),
+        &[expected, "the laws static_kinetic, exponential: give scene.contact.law"],
+    );
+    let of_laws = |laws: &str| {
+        parse(&format!(
+            r#"{{ "scene": {{ "contact": {{ "mu_static": 0.5, "speed_m_s": 0.02 }} }}, "grid": {{ "friction_law": {laws} }} }}"#
+        ))
+    };
+    let study = of_laws(r#"["coulomb", "exponential"]"#);
+    assert_eq!(study.warnings(), []);
+    let job = study.single(&[("friction_law".to_owned(), "coulomb".to_owned())]).unwrap();
+    assert_eq!(study.warnings_of(&job), []);
+    let found = of_laws(r#"["coulomb", "regularised"]"#).warnings();
+    assert_eq!(found.len(), 1, "{found:?}");
+    assert_contains(
+        &found[0].to_string(),
+        &["mu_static = 0.5", "the friction laws coulomb, regularised do not use it"],
+    );
+    // In a grid, and in a single job that is given a coefficient.
+    let found = warnings(r#"{ "grid": { "mu_static": [0.5, 0.6] } }"#);
+    assert_eq!(found.iter().map(|warning| (warning.kind, warning.jobs)).collect::<Vec<_>>(), [("unused", 2)]);
+    let study = parse("{}");
+    let job = study.single(&[("mu_static".to_owned(), "0.5".to_owned())]).unwrap();
+    assert_contains(
+        &study.warnings_of(&job)[0].in_words(),
+        &["scene.contact.mu_static = 0.5: without effect"],
+    );
+    // A slope of zero is one that its law uses.
+    let law = r#""law": "exponential", "mu_static": 0.5, "speed_m_s": 0.05, "slope_s_m": 0"#;
+    assert_eq!(warnings(&of_scene(&format!(r#""contact": {{ {law} }}"#))), []);
+}

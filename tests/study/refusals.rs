@@ -14,7 +14,10 @@ fn a_missing_file_is_named() {
 #[test]
 fn broken_json_is_reported_with_line_and_column() {
     assert_contains(&refusal("{\n  \"scene\": {,\n"), &["studies/x.json:2:13: not valid JSON: "]);
-    assert_contains(&refusal("{ \"run\": { \"limit_s\": 1e999 } }"), &["number out of range"]);
+    assert_contains(
+        &refusal("{ \"run\": { \"limit_s\": 1e999 } }"),
+        &["the number is too large for a double"],
+    );
     // A position that an editor can go to, although serde_json reports column 0.
     assert_contains(&refusal(""), &["studies/x.json:1:1: not valid JSON: "]);
 }

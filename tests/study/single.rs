@@ -154,3 +154,21 @@ fn the_registry_sets_these_fields() {
     assert_eq!(set("regime_threshold", "0.1").detection.regime_threshold, 0.1);
     assert_eq!(set("decay_observation_s", "0.1").detection.decay_observation_s, 0.1);
 }
+
+/// Protects: a value that is refused is said once, and the parameter does not count as left open, too. Of a long list a message has the
+/// first values and the last one.
+#[test]
+fn a_refused_value_is_no_open_parameter() {
+    let study = parse(r#"{ "grid": { "mu": [0.2, 0.4], "omega_rpm": [1, 2, 3, 4, 5, 6, 7, 8, 9, 10] } }"#);
+    let refused = |overrides: &[(&str, &str)]| message(&single(&study, overrides).unwrap_err());
+    let text = refused(&[("mu", "bad"), ("omega_rpm", "7")]);
+    assert_eq!(text.matches("mu = ").count(), 1, "{text}");
+    let text = refused(&[("mu", "0.2")]);
+    let omega = text.lines().find(|line| line.contains("omega_rpm")).unwrap();
+    assert!(
+        omega.contains("= [1.0, 2.0, 3.0, …, 10.0]: expected one value for a single job, of 10"),
+        "{text}"
+    );
+    let text = refused(&[("mu", "1e999"), ("omega_rpm", "7")]);
+    assert!(text.contains("too large for a double") && !text.contains("quotes"), "{text}");
+}

@@ -146,9 +146,10 @@ fn modes(stability: &SlidingStability) -> String {
         AboveBand::Nothing => "; the mesh has no others".to_owned(),
         AboveBand::Damped => "; damping keeps all others from growing".to_owned(),
         AboveBand::CoarserRun => {
-            "; nobody looked for others, but a run on a coarser mesh, which carries them, decayed".to_owned()
+            "; others were not looked for, but a run on a coarser mesh, which carries them, decayed"
+                .to_owned()
         }
-        AboveBand::NotLookedAt => "; nobody looked for others".to_owned(),
+        AboveBand::NotLookedAt => "; others were not looked for".to_owned(),
     };
     format!("\nModes of steady sliding below {band}{above}\n{}", aligned::lines(2, &lines, None))
 }

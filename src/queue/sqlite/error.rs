@@ -21,7 +21,12 @@ const NOTADB: u32 = 26;
 /// The queue's error for an error of `SQLite` or of sqlx.
 pub(super) fn classify(source: sqlx::Error) -> QueueError {
     let extended = extended_code(&source);
+    // This program writes no such values: a text that is no UTF-8, a word where a number is.
+    let is_unreadable = matches!(source, sqlx::Error::ColumnDecode { .. });
     let source = Box::new(source);
+    if is_unreadable {
+        return QueueError::Damaged(source);
+    }
     match extended.map(primary_code) {
         Some(BUSY | LOCKED) => QueueError::Locked { source, holder: None },
         Some(READONLY) => QueueError::ReadOnly(source),

@@ -56,7 +56,7 @@ pub static FURTHER: [Column; 65] = [
     Column::of_row("mu_reduction_slip", "", Result, "part of μ − μ* that is due to nodes that slip sideways or backwards", |row| of(row, |record| record.mu_reduction_slip)),
     Column::of_row("hysteresis", "", Result, "largest difference of μ* between the way up and the way down of a program at the same speed or load, up minus down", |row| hysteresis(row, |found| found.difference)),
     Column::of_row("hysteresis_at", "", Result, "the speed in rpm or the load in N at that difference", |row| hysteresis(row, |found| found.at)),
-    Column::of_row("decided_by", "", Stability, "what decided the outcome: run, or eigenvalues, and then there was no run", |row| of(row, decided_by)),
+    Column::of_row("decided_by", "", Stability, "what decided the status: run, or eigenvalues, and then there was no run", |row| of(row, decided_by)),
     Column::of_row("mode_frequency_hz", "Hz", Stability, "frequency of the leading mode of steady sliding, which grows fastest or decays most slowly", |row| mode(row, |mode| mode.frequency_hz)),
     Column::of_row("mode_growth_rate_per_s", "1/s", Stability, "growth rate of the leading mode; negative: it decays", |row| mode(row, |mode| mode.growth_rate_per_s)),
     Column::of_row("mode_damping_ratio", "", Stability, "damping ratio ζ of the leading mode; negative: it grows", |row| mode(row, |mode| mode.damping_ratio)),

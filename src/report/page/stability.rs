@@ -125,7 +125,7 @@ fn table(analysis: &Analysis) -> Grid {
     let mut left_out = String::new();
     let group = |(group, modes): (&Group, &GroupModes)| {
         let line = |speed: &Speed| {
-            let place = across.text(&speed.omega);
+            let place = analysis.across_in_words(speed);
             [place].into_iter().chain(analysis.words(speed)).map(Into::into).collect()
         };
         let (lines, rest) = limited(modes.speeds.iter().map(line), "thresholds.csv");

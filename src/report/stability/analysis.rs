@@ -7,6 +7,7 @@ use crate::analysis::branches::{Branch, BranchPoint, Sample, branches, crossing,
 use crate::publish::value;
 use crate::report::Discretisation;
 use crate::report::layout::{Group, Layout};
+use crate::report::parameters::{MU, OMEGA, name_and_unit};
 use crate::report::row::{JobRow, RowState};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::view::View;
@@ -15,18 +16,20 @@ use serde_json::Value;
 use std::f64::consts::TAU;
 
 /// The points as rows, so that a [`Layout`] can group them. The key of a row is the number of its point. Parameters that move along
-/// the way of the thresholds do not tell groups apart.
+/// the way of the thresholds do not tell groups apart. If ω or μ is one of them, the rows do not say it.
 pub(in crate::report) fn rows(points: &[StabilityPoint], along: &Along) -> Vec<JobRow> {
     let kept = |point: &StabilityPoint| {
         let parameters = point.parameters.iter();
         parameters.filter(|(name, _)| !along.with.contains(name)).cloned().collect()
     };
+    let unless_moved =
+        |name: &str, x: f64| if along.with.iter().any(|with| with == name) { f64::NAN } else { x };
     let row = |(number, point): (usize, &StabilityPoint)| JobRow {
         study: String::new(),
         job: number.to_string(),
         parameters: kept(point),
-        omega_rpm: point.omega_rpm,
-        mu: point.mu,
+        omega_rpm: unless_moved(OMEGA, point.omega_rpm),
+        mu: unless_moved(MU, point.mu),
         state: RowState::Pending,
         wall_s: None,
         numerics: None,
@@ -36,6 +39,9 @@ pub(in crate::report) fn rows(points: &[StabilityPoint], along: &Along) -> Vec<J
     };
     points.iter().enumerate().map(row).collect()
 }
+
+/// What stands in place of a value that moves along the way.
+pub(super) const MOVES: &str = "moves";
 
 /// Points with their branches.
 pub(in crate::report) struct Analysis<'a> {
@@ -82,12 +88,22 @@ impl<'a> Analysis<'a> {
         point_of(self.points, row)
     }
 
+    /// The value of a series on the other axis, without the name of the parameter.
+    pub fn across_in_words(&self, speed: &Speed) -> String {
+        let across = self.along.across();
+        if self.along.moves(across) {
+            return MOVES.to_owned();
+        }
+        self.layout.dimension(across).text(&speed.omega)
+    }
+
     /// Of a series: the place at which sliding becomes unstable first, the ranges in which it is unstable, the frequency of the mode
     /// that grows first, and what else there is to say.
     pub fn words(&self, speed: &Speed) -> [String; 4] {
         let frequency = speed.intervals.first().map(|interval| value::quantity(interval.frequency_hz, "Hz"));
         let frequency = frequency.unwrap_or_else(|| value::MISSING.to_owned());
-        [speed.threshold_in_words(), speed.intervals_in_words(), frequency, self.note(speed)]
+        let (_, unit) = name_and_unit(&self.along.parameter);
+        [speed.threshold_in_words(unit), speed.intervals_in_words(unit), frequency, self.note(speed)]
     }
 
     fn note(&self, speed: &Speed) -> String {
@@ -111,10 +127,18 @@ impl<'a> Analysis<'a> {
         }
         if !speed.without_modes.is_empty() {
             let name = self.layout.dimension(&self.along.parameter).symbol();
-            let places = speed.without_modes.iter().map(|mu| value::significant(*mu, 4)).collect::<Vec<_>>();
+            let (_, unit) = name_and_unit(&self.along.parameter);
+            let places = speed.without_modes.iter().map(|at| value::quantity(*at, unit)).collect::<Vec<_>>();
             let places = places.join(", ");
             words.push(format!(
                 "no mode was found at {name} = {places}: whether sliding is stable there is not known"
+            ));
+        }
+        if !speed.shared.is_empty() {
+            let places = speed.shared.iter().map(|at| value_of(*at)).collect::<Vec<_>>().join(", ");
+            words.push(format!(
+                "several points have {places}, because {} there",
+                self.along.with_in_words("changes", "change")
             ));
         }
         let first = speed.onsets.first().map(|onset| onset.branch);
@@ -135,8 +159,11 @@ impl<'a> Analysis<'a> {
         let (low, high) =
             bands.iter().fold((f64::INFINITY, 0.0_f64), |(low, high), &hz| (low.min(hz), high.max(hz)));
         let words = |hz: f64| value::quantity(hz, "Hz");
-        let band =
-            if words(low) == words(high) { words(low) } else { format!("{} to {}", words(low), words(high)) };
+        let band = if words(low) == words(high) {
+            words(low)
+        } else {
+            format!("{} (for some points {})", words(low), words(high))
+        };
         (!bands.is_empty()).then(|| {
             let points = if bands.len() == self.points.len() {
                 String::new()
@@ -144,7 +171,7 @@ impl<'a> Analysis<'a> {
                 format!(" at {} of {}", bands.len(), value::count(self.points.len() as u32, "point"))
             };
             format!(
-                "Nobody looked for modes above {band}{points}: a mode may grow there. Below it, all modes were looked for."
+                "Above {band} no modes were looked for{points}: a mode may grow there. Below it, all modes were looked for."
             )
         })
     }
@@ -152,8 +179,11 @@ impl<'a> Analysis<'a> {
     /// Which parameter the thresholds belong to, in a sentence, if it is not μ alone.
     pub fn along_in_words(&self) -> Option<String> {
         let Along { parameter, with } = self.along;
-        let together =
-            if with.is_empty() { String::new() } else { format!(", with which {} move", with.join(", ")) };
+        let together = if with.is_empty() {
+            String::new()
+        } else {
+            format!("; {} with it", self.along.with_in_words("moves", "move"))
+        };
         (!self.along.is_mu() || !with.is_empty())
             .then(|| format!("Thresholds are those of {parameter}, which this study varies{together}."))
     }
@@ -179,24 +209,32 @@ fn group_modes(points: &[StabilityPoint], along: &Along, group: &Group) -> Group
 
 fn speed(omega: &Value, along: &Along, points: &[&StabilityPoint]) -> Speed {
     let place = |point: &StabilityPoint| point.parameter(&along.parameter).as_f64().unwrap_or(f64::NAN);
-    let sample = |point: &&StabilityPoint| Sample { mu: place(point), modes: point.stability.modes.clone() };
-    let mus = points.iter().map(|point| place(point));
+    let moved = |point: &StabilityPoint| {
+        let with = along.with.iter().map(|name| value::text(&point.parameter(name)));
+        (place(point).to_bits(), with.collect::<Vec<_>>())
+    };
+    let mut known = std::collections::HashSet::new();
+    let points: Vec<&StabilityPoint> =
+        points.iter().copied().filter(|point| known.insert(moved(point))).collect();
+    let mut sorted: Vec<(f64, &StabilityPoint)> = points.iter().map(|point| (place(point), *point)).collect();
+    Along::sort(&mut sorted, |point| point.on_grid);
+    let sample = |&(mu, point): &(f64, &StabilityPoint)| Sample { mu, modes: point.stability.modes.clone() };
+    let mus = sorted.iter().map(|(at, _)| *at);
     let mus = mus.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], mu| [low.min(mu), high.max(mu)]);
-    let branches = branches(&points.iter().map(sample).collect::<Vec<_>>());
+    let branches = branches(&sorted.iter().map(sample).collect::<Vec<_>>());
     let mut onsets: Vec<Onset> =
         branches.iter().enumerate().flat_map(|(number, branch)| onsets_of(number, branch)).collect();
     onsets.sort_by(|a, b| a.mu.total_cmp(&b.mu).then(a.frequency_hz.total_cmp(&b.frequency_hz)));
-    let without_modes =
-        points.iter().filter(|point| point.stability.modes.is_empty()).map(|point| place(point));
-    let mut without_modes: Vec<f64> = without_modes.collect();
-    without_modes.sort_by(f64::total_cmp);
-    let mut leading: Vec<(f64, Option<ComplexMode>)> =
-        points.iter().map(|point| (place(point), point.leading().copied())).collect();
-    leading.sort_by(|(a, _), (b, _)| a.total_cmp(b));
-    leading.dedup_by(|later, earlier| later.0 == earlier.0);
-    let known = Known::of_stable(points);
+    let without_modes = sorted.iter().filter(|(_, point)| point.stability.modes.is_empty());
+    let without_modes = without_modes.map(|(at, _)| *at).collect();
+    let leading: Vec<(f64, Option<ComplexMode>)> =
+        sorted.iter().map(|(at, point)| (*at, point.leading().copied())).collect();
+    let mut shared: Vec<f64> =
+        sorted.windows(2).filter(|pair| pair[0].0 == pair[1].0).map(|pair| pair[0].0).collect();
+    shared.dedup();
+    let known = Known::of_stable(&points);
     let intervals = intervals(&leading, &onsets);
-    Speed { omega: omega.clone(), mus, branches, onsets, intervals, without_modes, known }
+    Speed { omega: omega.clone(), mus, branches, onsets, intervals, without_modes, shared, known }
 }
 
 /// Where a branch grows; nothing if it does not.
@@ -223,7 +261,9 @@ fn onsets_of(branch: usize, points: &Branch) -> Vec<Onset> {
             });
         };
         let mu = crossing([below, above]);
-        let share = (mu - below.mu) / (above.mu - below.mu);
+        // Two points of a zip may share a place.
+        let width = above.mu - below.mu;
+        let share = if width > 0.0 { (mu - below.mu) / width } else { 0.0 };
         let (from, to) = (below.mode.frequency_hz, above.mode.frequency_hz);
         Some(Onset {
             branch,
@@ -315,7 +355,7 @@ mod tests {
         let found = Analysis::of(&points, &rows, &along, &View::DEFAULT);
         let group = &found.groups[0];
         assert_eq!(group.families, [20_100.0, 10_100.0]);
-        let words: Vec<String> = group.speeds.iter().map(Speed::threshold_in_words).collect();
+        let words: Vec<String> = group.speeds.iter().map(|speed| speed.threshold_in_words("")).collect();
         assert_eq!(words, ["≤ 0.1", "0.2", "> 0.3", value::MISSING]);
         let notes: Vec<String> = group.speeds.iter().map(|speed| found.note(speed)).collect();
         assert_eq!(notes[2], "no mode below 50 kHz grows up to μ = 0.3");
@@ -327,10 +367,17 @@ mod tests {
             .collect();
         assert_eq!(families, [vec![0, 1], vec![0, 1], vec![], vec![]]);
         assert_eq!(group.speeds[1].onsets[0].frequency_hz, 20_100.0);
-        let ranges: Vec<String> = group.speeds.iter().map(Speed::intervals_in_words).collect();
+        let ranges: Vec<String> = group.speeds.iter().map(|speed| speed.intervals_in_words("")).collect();
         assert_eq!(ranges, ["≤ 0.1 to ≥ 0.3", "0.2 to ≥ 0.3", "none", value::MISSING]);
-        let all = "Nobody looked for modes above 50 kHz: a mode may grow there. Below it, all modes were looked for.";
+        let all = "Above 50 kHz no modes were looked for: a mode may grow there. Below it, all modes were looked for.";
         assert_eq!(found.above_band().as_deref(), Some(all));
+        let mut others = points.clone();
+        others[0].stability.band_hz = 5.5e4;
+        let found = Analysis::of(&others, &rows, &along, &View::DEFAULT).above_band().unwrap();
+        assert!(
+            found.starts_with("Above 50 kHz (for some points 55 kHz) no modes were looked for: "),
+            "{found}"
+        );
         assert_eq!(found.along_in_words(), None);
     }
 
@@ -353,11 +400,63 @@ mod tests {
         assert_eq!(table.columns, ["omega_rpm", "young_modulus_pa_c", "unstable", "frequency", "note"]);
         assert_eq!(table.lines.len(), 1);
         let line: Vec<String> = table.lines[0].iter().map(value::text).collect();
-        let [first, end] = [1.0e9, 2.5e9].map(|at| value::significant(at, 4));
-        assert_eq!(line[1..3], [format!("≤ {first}"), format!("≤ {first} to {end}")]);
+        assert_eq!(line[1..3], ["≤ 1 GPa", "≤ 1 GPa to 2.5 GPa"]);
         assert!(line[4].contains("stable from young_modulus = 2.5 GPa on"), "{}", line[4]);
-        let said =
-            "Thresholds are those of young_modulus_pa, which this study varies, with which load_n move.";
+        let said = "Thresholds are those of young_modulus_pa, which this study varies; load_n moves with it.";
         assert_eq!(notes, [said]);
+    }
+
+    /// Protects: along a zip that moves μ and ω there is one series. Thresholds are those of μ or of ω, each with all its ranges.
+    #[test]
+    fn a_zip_may_move_both() {
+        let points = [-10.0, 10.0, 20.0, -20.0, -30.0, 30.0].into_iter().enumerate().map(|(k, rate)| {
+            let mut point = point(5.0 + k as f64, 0.1 * (k + 1) as f64, &[(10_000.0, rate)]);
+            point.stability.above_band = AboveBand::Damped;
+            point
+        });
+        let points: Vec<StabilityPoint> = points.collect();
+        for (parameter, with, expected) in [
+            ("mu", "omega_rpm", ["omega_rpm", "mu_c", "0.15", "0.15 to 0.35; 0.55 to ≥ 0.6"]),
+            ("omega_rpm", "mu", ["mu", "omega_rpm_c", "5.5 rpm", "5.5 rpm to 7.5 rpm; 9.5 rpm to ≥ 10 rpm"]),
+        ] {
+            let along = Along { parameter: parameter.to_owned(), with: vec![with.to_owned()] };
+            let (table, notes) = super::super::thresholds_table(&points, &along);
+            assert_eq!(table.lines.len(), 1, "{table:?}");
+            let line: Vec<String> = table.lines[0].iter().map(value::text).collect();
+            assert_eq!([&table.columns[0], &table.columns[1], &line[1], &line[2]], expected);
+            assert_eq!(line[0], "moves");
+            let said = format!(
+                "Thresholds are those of {parameter}, which this study varies; {with} moves with it."
+            );
+            assert_eq!(notes, [said]);
+        }
+    }
+
+    /// Protects: no point of a zip is left out where a value is there twice. Sliding becomes unstable there if it does so between the two.
+    #[test]
+    fn points_that_share_a_value_both_count() {
+        let at = |mu: f64, load_n: f64, rate: f64| {
+            let mut point = point(7.0, mu, &[(10_000.0, rate)]);
+            point.parameters = vec![("load_n".to_owned(), load_n.into())];
+            point
+        };
+        let mut points =
+            vec![at(0.1, 10.0, -10.0), at(0.3, 30.0, -5.0), at(0.3, 50.0, 5.0), at(0.5, 70.0, 9.0)];
+        let along = Along { parameter: "mu".to_owned(), with: vec!["load_n".to_owned()] };
+        for _ in 0..2 {
+            let (table, _) = super::super::thresholds_table(&points, &along);
+            let line: Vec<String> = table.lines[0].iter().map(value::text).collect();
+            assert_eq!(line[1..4], ["0.3", "0.3 to ≥ 0.5", "10 kHz"]);
+            assert!(
+                line[4].contains("several points have μ = 0.3, because load_n changes there"),
+                "{}",
+                line[4]
+            );
+            points.reverse();
+        }
+        // Two results of one point are one.
+        points.push(at(0.1, 10.0, 30.0));
+        let (table, _) = super::super::thresholds_table(&points, &along);
+        assert_eq!(table.lines[0][1], "0.3");
     }
 }

@@ -20,6 +20,8 @@ pub(in crate::report) struct Speed {
     pub intervals: Vec<Interval>,
     /// Each μ at which no mode was found, so that it is not known whether sliding is stable.
     pub without_modes: Vec<f64>,
+    /// The places that several points of a zip share, because what moves with the parameter changes there.
+    pub shared: Vec<f64>,
     /// How far it was looked where no mode grows.
     pub known: Known,
 }
@@ -185,8 +187,9 @@ impl Speed {
 
     /// The place in words at which sliding becomes unstable first: `0.3142`, `≤ 0.1` if sliding is unstable at the smallest one already or
     /// not known at a smaller one, `> 0.6` if no mode grows at any point, and a dash if points without modes leave it open.
-    pub fn threshold_in_words(&self) -> String {
-        let text = |mu: f64| value::significant(mu, 4);
+    /// `unit` is that of the parameter of the thresholds.
+    pub fn threshold_in_words(&self, unit: &str) -> String {
+        let text = |at: f64| value::quantity(at, unit);
         match self.intervals.first().map(|interval| interval.from) {
             Some(Edge::At(at)) if !self.without_modes.iter().any(|mu| *mu < at) => text(at),
             Some(Edge::At(at) | Edge::Outside(at) | Edge::Unknown(at)) => format!("≤ {}", text(at)),
@@ -198,8 +201,8 @@ impl Speed {
     }
 
     /// The ranges in words in which sliding is unstable: `0.3142 to ≥ 0.6`, `≤ 0.05 to 0.29`, `none`.
-    pub fn intervals_in_words(&self) -> String {
-        let text = |mu: f64| value::significant(mu, 4);
+    pub fn intervals_in_words(&self, unit: &str) -> String {
+        let text = |at: f64| value::quantity(at, unit);
         let words = |interval: &Interval| {
             let from = match interval.from {
                 Edge::At(at) => text(at),

@@ -1,11 +1,11 @@
 //! Modes and thresholds as tables for people and for programs.
 
 use super::along::Along;
-use super::analysis::{Analysis, rows};
+use super::analysis::{Analysis, MOVES, rows};
 use super::ranges::{Onset, Speed};
 use crate::publish::value::{self, MISSING};
 use crate::report::export::{add_further_names, io_error};
-use crate::report::parameters::{MU, OMEGA};
+use crate::report::parameters::{self, MU, OMEGA, is_further};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::view::View;
 use serde::ser::{Serialize, SerializeMap, Serializer};
@@ -110,9 +110,17 @@ pub fn thresholds_table(points: &[StabilityPoint], along: &Along) -> (StabilityT
     let rows = rows(points, along);
     let analysis = Analysis::of(points, &rows, along, &View::DEFAULT);
     let mut lines = Vec::new();
+    let names = [along.across()].into_iter().chain(analysis.layout.further.iter().copied());
+    let names: Vec<&str> = names.collect();
+    // ω and μ are plain numbers everywhere.
+    let in_words = |(name, cell): (&&str, Value)| match cell {
+        Value::Null if along.moves(name) => MOVES.into(),
+        cell if is_further(name) && cell.is_f64() => parameters::in_words(name, &cell).into(),
+        cell => cell,
+    };
     for_each_speed(&analysis, |place, speed| {
         let words = analysis.words(speed).map(Value::from);
-        lines.push(place.into_iter().chain(words).collect());
+        lines.push(names.iter().zip(place).map(in_words).chain(words).collect());
     });
     let own = [along.threshold()].into_iter().chain(["unstable", "frequency", "note"].map(str::to_owned));
     let notes = analysis.along_in_words().into_iter().chain(analysis.above_band()).collect();

@@ -28,7 +28,9 @@ pub(in crate::report) fn write_files(
     folder: &mut Folder,
 ) -> Result<Files, PublishError> {
     let mut drawn = Vec::new();
-    for plot in StabilityPlot::ALL {
+    // Where ω moves with μ there is one series, and no axis besides that of the thresholds.
+    let has_axes = !analysis.along.moves(analysis.along.across());
+    for plot in StabilityPlot::ALL.into_iter().filter(|plot| has_axes || *plot == StabilityPlot::LockIn) {
         let own = figures(analysis, plot).map_err(|source| {
             let path = folder.path_of(&format!("{}.svg", plot.stem()));
             PublishError::Figure { path, source }

@@ -4,6 +4,7 @@
 mod physics;
 mod similarity;
 mod units;
+mod unused;
 
 use super::definition::Study;
 use super::error::Problem;
@@ -30,7 +31,7 @@ pub enum About {
 /// Something in a study that is allowed and yet doubtful. Displayed like a [`Problem`].
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Warning {
-    /// What is doubtful, in one word: `unit`, `size`, `friction`, `strain`, `speed`, `locking`, `damping`, `clamp` or `repetition`.
+    /// What is doubtful, in one word: `unit`, `size`, `friction`, `strain`, `speed`, `locking`, `damping`, `clamp`, `unused` or `repetition`.
     pub kind: &'static str,
     /// Whether it is about the result or the cost.
     pub about: About,
@@ -91,7 +92,15 @@ fn doubts(spec: &JobSpec) -> Vec<Doubt> {
 
 /// What is doubtful about one job.
 pub fn job_warnings(spec: &JobSpec) -> Vec<Warning> {
-    let warning = |Doubt { kind, fields, message, help, .. }: Doubt| {
+    let is_meant =
+        |doubt: &Doubt| doubt.kind != "size" || spec.scene.pin.size_m != JobSpec::default().scene.pin.size_m;
+    doubts(spec).into_iter().filter(is_meant).map(|doubt| doubt.of_job(spec)).collect()
+}
+
+impl Doubt {
+    /// The warning about one job.
+    fn of_job(self, spec: &JobSpec) -> Warning {
+        let Self { kind, fields, message, help, .. } = self;
         // A job has no field for what only a study can give, such as a loss factor.
         let own = fields.iter().find_map(|field| Some((*field, value_of(field, spec)?)));
         let (field, value) = own.map_or((fields[0], None), |(field, value)| (field, Some(value)));
@@ -99,10 +108,7 @@ pub fn job_warnings(spec: &JobSpec) -> Vec<Warning> {
         let problem =
             Problem { file: String::new(), position: None, field, value, message, help: vec![help] };
         Warning::new(kind, 1, problem)
-    };
-    let is_meant =
-        |doubt: &Doubt| doubt.kind != "size" || spec.scene.pin.size_m != JobSpec::default().scene.pin.size_m;
-    doubts(spec).into_iter().filter(is_meant).map(warning).collect()
+    }
 }
 
 /// The doubts of one kind about one field in all jobs.
@@ -118,6 +124,7 @@ impl Study {
     pub fn warnings(&self) -> Vec<Warning> {
         let mut warnings: Vec<Warning> =
             self.shared_doubts(doubts).iter().map(|it| self.warning(it)).collect();
+        warnings.extend(self.unused());
         warnings.extend(self.repetition());
         warnings
     }

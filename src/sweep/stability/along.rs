@@ -18,12 +18,10 @@ pub fn ways(study: &Study) -> Vec<Along> {
         }
     }
     let zipped: Vec<&str> = study.zipped().iter().map(|parameter| parameter.name).collect();
-    // The figures have ω and μ along their axes, so that one of them has to stay.
-    let has_both = [MU, OMEGA].iter().all(|name| zipped.contains(name));
-    for parameter in study.zipped().iter().filter(|parameter| parameter.is_continuous() && !has_both) {
+    for parameter in study.zipped().iter().filter(|parameter| parameter.is_continuous()) {
         // Beside ω or μ the others are read along it.
-        let is_led = [MU, OMEGA].iter().any(|name| zipped.contains(name) && *name != parameter.name);
-        if !is_led {
+        let leads = [MU, OMEGA].contains(&parameter.name);
+        if leads || ![MU, OMEGA].iter().any(|name| zipped.contains(name)) {
             let with = zipped.iter().filter(|name| **name != parameter.name);
             let with = with.map(|name| (*name).to_owned()).collect();
             ways.push(Along { parameter: parameter.name.to_owned(), with });
@@ -139,7 +137,33 @@ mod tests {
         assert!(mu == 0.15 && (force_n - 15.0).abs() < 1.0e-12, "{force_n}");
         assert_eq!(at(0.3).unwrap(), (0.3, 30.0, jobs[1].key.clone()));
         assert_eq!((at(0.05), at(0.31)), (None, None));
-        assert_eq!(names(r#""samples": { "zip": { "mu": [0.1, 0.3], "omega_rpm": [5, 7] } }"#), [""; 0]);
+        let both = r#""samples": { "zip": { "mu": [0.1, 0.3], "omega_rpm": [5, 7], "load_n": [10, 30] } }"#;
+        assert_eq!(names(both), ["mu", "omega_rpm"]);
+        assert_eq!(ways(&self::study(both))[1].with, ["mu", "load_n"]);
+    }
+
+    /// Protects: a zip may have a value twice, with others that differ. All its points stay, and a point in between is between its neighbours
+    /// of the list.
+    #[test]
+    fn a_value_of_a_zip_may_be_there_twice() {
+        let zips =
+            [("[0.1, 0.3, 0.3, 0.5]", "[10, 30, 50, 70]"), ("[0.5, 0.3, 0.3, 0.1]", "[70, 50, 30, 10]")];
+        for (mu, load_n) in zips {
+            let study = study(&format!(r#""samples": {{ "zip": {{ "mu": {mu}, "load_n": {load_n} }} }}"#));
+            let [along] = &ways(&study)[..] else { panic!("one way") };
+            let jobs = study.expand("v").unwrap();
+            let mut anchors: Vec<(f64, &Job)> =
+                jobs.iter().map(|job| (job.spec.scene.contact.mu, job)).collect();
+            Along::sort(&mut anchors, |_| true);
+            let load_n = |x: f64| {
+                let parameters = parameters_at(along, &anchors, x).unwrap();
+                parameters.iter().find(|(name, _)| name == "load_n").unwrap().1.as_f64().unwrap()
+            };
+            let found = [0.1, 0.2, 0.4, 0.5].map(load_n);
+            for (found, expected) in found.into_iter().zip([10.0, 20.0, 60.0, 70.0]) {
+                assert!((found - expected).abs() < 1.0e-9, "{mu}: {found}, not {expected}");
+            }
+        }
     }
 
     /// Protects: a series is what differs along the way alone.

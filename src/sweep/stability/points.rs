@@ -73,7 +73,7 @@ pub(super) fn by_series<'a>(
         found[place].1.push((at, point));
     }
     for (_, points) in &mut found {
-        points.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        Along::sort(points, |point| point.on_grid);
     }
     found
 }

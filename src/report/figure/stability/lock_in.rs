@@ -74,7 +74,9 @@ pub(super) fn draw(layout: &Layout, group: &Group, modes: &GroupModes) -> Result
         let (left, _) = left.split_vertically(down * (TITLE + upper + lower));
         let mut targets = Vec::new();
         for (speed, part) in speeds.iter().zip(left.split_evenly((down as usize, across))) {
-            let words = layout.dimension(layout.axis).assignment(&speed.omega);
+            let axis = layout.dimension(layout.axis);
+            // A speed that moves with what is varied is none.
+            let words = if speed.omega.is_null() { String::new() } else { axis.assignment(&speed.omega) };
             let middle = (part.dim_in_pixel().0 as i32 + Y_LABELS as i32) / 2;
             let below = panels::title(&part, &words, middle)?;
             let (top, bottom) = below.split_vertically(upper);
