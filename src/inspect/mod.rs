@@ -39,7 +39,7 @@ mod waves;
 mod write;
 
 pub use capture::{Audit, Capture, FaceStep, Frame, NodeStep};
-pub use figures::InspectionFigure;
+pub use figures::{InspectionFigure, Picture, figures};
 pub use inspection::{Inspection, InspectionError, NodeFindings, Options};
 pub use loops::{AuditedFriction, LoopEnergies, LoopSummary};
 pub use mode_shapes::write_mode;

@@ -49,6 +49,8 @@ pub enum Block {
     List(Vec<Text>),
     /// A table for readers.
     Table(Grid),
+    /// Tables of data: the names of the files, and their contents if they fit into a page.
+    Data(Vec<(String, Option<String>)>),
     /// Drawings; several stand beside one another where there is room.
     Figures(Vec<Figure>),
     /// The main numbers.
