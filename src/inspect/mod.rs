@@ -45,7 +45,7 @@ pub use loops::{AuditedFriction, LoopEnergies, LoopSummary};
 pub use mode_shapes::write_mode;
 pub use nodes::{NodeSelector, ObservedNode};
 pub use overlay::write_overlay;
-pub use page::PageHeader;
+pub use page::{PageHeader, of as page};
 pub use phases::{Instants, Phase};
 pub use spectra::JobSpectrum;
 pub use spectrum::Spectrum;

@@ -38,7 +38,7 @@ pub fn write_overlay(title: &str, traces: &[Trace], out_dir: &Path) -> Result<Ve
         let line = |step: &NodeStep| (trace.label.clone(), step.time_s - trace.from_s, *step);
         trace.steps.iter().map(line)
     });
-    folder.write_table(&format!("figure8_{node}.csv"), &columns(), lines)?;
+    folder.write_lines(&format!("figure8_{node}.csv"), &columns(), lines)?;
     // The other nodes of the same jobs are in the same folder.
     folder.finish_beside_earlier()
 }

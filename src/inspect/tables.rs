@@ -76,7 +76,7 @@ impl Tables<'_, '_> {
         columns: &[Column<T>],
         subjects: impl IntoIterator<Item = impl Borrow<T>>,
     ) -> Result<(), PublishError> {
-        self.folder.write_table(name, columns, subjects)?;
+        self.folder.write_lines(name, columns, subjects)?;
         let path = self.folder.path_of(name);
         if path.metadata().is_ok_and(|file| file.len() <= MAX_EMBEDDED_BYTES)
             && let Ok(text) = std::fs::read_to_string(path)
@@ -120,7 +120,7 @@ const SPECTRUM: [Column<(f64, f64)>; 2] = [
 /// # Errors
 /// If the file cannot be written.
 pub fn write_spectrum(spectrum: &Spectrum, folder: &mut Folder) -> Result<(), PublishError> {
-    folder.write_table(SPECTRUM_FILE, &SPECTRUM, spectrum.lines())
+    folder.write_lines(SPECTRUM_FILE, &SPECTRUM, spectrum.lines())
 }
 
 /// The columns of a node's history.

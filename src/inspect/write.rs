@@ -36,17 +36,13 @@ pub fn write(
         remove_files_of_older_versions(out_dir);
     }
     let tables = tables::write(inspection, &mut folder)?;
-    let figures = figures::figures(inspection);
-    for figure in &figures {
-        folder.write_text(&figure.file(), &figure.svg())?;
-    }
-    for drawing in &header.sheet.drawings {
-        folder.write_text(&format!("{}.svg", drawing.stem), &drawing.svg)?;
-    }
     fields::write(&inspection.capture, &mut folder)?;
     let summary = Summary { key: header.key.clone(), ..Summary::of(inspection) };
     folder.write_with(SUMMARY, |out| json(&summary, out))?;
-    let page = page::of(inspection, &summary, &figures, &tables, header);
+    let page = page::of(inspection, &summary, &figures::figures(inspection), &tables, header);
+    for figure in page.figures() {
+        folder.write_text(&figure.file, &figure.svg)?;
+    }
     folder.write_text(PAGE, &html::of_page(&page))?;
     folder.finish(|_| false)
 }

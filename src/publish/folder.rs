@@ -82,11 +82,11 @@ impl<'a> Folder<'a> {
         }
     }
 
-    /// Writes a table as CSV, line by line, so that a large one is never in memory.
+    /// Writes a table as CSV, line by line, so that a large one is never in memory as text.
     ///
     /// # Errors
     /// As [`Folder::write_text`].
-    pub fn write_table<T>(
+    pub fn write_lines<T>(
         &mut self,
         name: &str,
         columns: &[Column<T>],

@@ -198,6 +198,14 @@ pub fn limited<T>(items: impl IntoIterator<Item = T>, file: &str) -> (Vec<T>, St
     (shown, if more > 0 { format!("… and {more} more: see `{file}`.") } else { String::new() })
 }
 
+impl Page {
+    /// The drawings of its sections, folded ones left out.
+    pub fn figures(&self) -> impl Iterator<Item = &Figure> {
+        let blocks = self.sections.iter().flat_map(|section| &section.blocks);
+        blocks.flat_map(|block| if let Block::Figures(figures) = block { figures.as_slice() } else { &[] })
+    }
+}
+
 impl Section {
     /// A section.
     pub fn new(id: impl Into<Cow<'static, str>>, heading: impl Into<String>, blocks: Vec<Block>) -> Self {

@@ -270,9 +270,17 @@ impl<W: Write> TableWriter<W> {
     /// # Errors
     /// Those of the writer.
     pub fn finish(self) -> io::Result<()> {
+        self.into_inner()?.flush()
+    }
+
+    /// Writes what is still buffered, and returns the writer.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn into_inner(self) -> io::Result<W> {
         match self.lines {
-            Lines::Csv(mut writer) => writer.flush(),
-            Lines::Json(mut out) => out.flush(),
+            Lines::Csv(writer) => writer.into_inner().map_err(::csv::IntoInnerError::into_error),
+            Lines::Json(out) => Ok(out),
         }
     }
 }
