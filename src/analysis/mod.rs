@@ -40,6 +40,7 @@ pub mod nested;
 mod noted;
 mod outcome;
 pub mod program;
+pub mod quantity;
 pub mod record;
 pub mod sample;
 pub mod stability;

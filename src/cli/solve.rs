@@ -26,8 +26,8 @@ pub(crate) struct Args {
     /// Take mesh, time step and detection from a preset instead of the study; `--set` overrides the preset.
     #[arg(long, value_name = "NAME", value_parser = foreground::parse_preset)]
     preset: Option<Preset>,
-    /// Write the time history as CSV: load, total normal and tangential forces (tangential_n at the clamp,
-    /// contact_tangential_n and mu_eq at the contact), numbers of nodes in each state, and displacement,
+    /// Write the time history as CSV: load, total normal and tangential forces (clamp_tangential_n at the
+    /// clamp, contact_tangential_n and mu_eq at the contact), numbers of nodes in each state, and displacement,
     /// velocity, stress and state of the centres of the leading (front) and trailing (rear) edge.
     #[arg(long, value_name = "FILE")]
     history: Option<PathBuf>,

@@ -39,13 +39,13 @@ mod waves;
 mod write;
 
 pub use capture::{Audit, Capture, FaceStep, Frame, NodeStep};
-pub use figures::InspectionFigure;
+pub use figures::{InspectionFigure, Picture, figures};
 pub use inspection::{Inspection, InspectionError, NodeFindings, Options};
 pub use loops::{AuditedFriction, LoopEnergies, LoopSummary};
 pub use mode_shapes::write_mode;
 pub use nodes::{NodeSelector, ObservedNode};
 pub use overlay::write_overlay;
-pub use page::PageHeader;
+pub use page::{PageHeader, of as page};
 pub use phases::{Instants, Phase};
 pub use spectra::JobSpectrum;
 pub use spectrum::Spectrum;

@@ -1,11 +1,28 @@
 //! The same node in several jobs, drawn one over the other.
 
-use super::figures;
-use super::tables::{csv, history_header, history_line};
+use super::capture::NodeStep;
 use super::trace::Trace;
-use crate::publish::value::number;
+use super::{figures, tables};
+use crate::publish::table::Column;
 use crate::publish::{Folder, PublishError};
 use std::path::{Path, PathBuf};
+
+/// A step of a job: what the job is called, the time \[s\] since a cycle began, and the node.
+type Line = (String, f64, NodeStep);
+
+fn columns() -> Vec<Column<Line>> {
+    let own = [
+        Column::new("job", "", "what the job is called", |(label, ..): &Line| label.as_str().into()),
+        Column::new(
+            "since_cycle_begin_s",
+            "s",
+            "time since the beginning of the cycle",
+            |(_, since_s, _)| (*since_s).into(),
+        ),
+    ];
+    let history = tables::history().into_iter().map(|column| column.within(|(.., step): &Line| step));
+    own.into_iter().chain(history).collect()
+}
 
 /// Writes the figure and the CSV of one node in several jobs; returns the files. `title` names what the jobs have in
 /// common.
@@ -15,23 +32,13 @@ use std::path::{Path, PathBuf};
 pub fn write_overlay(title: &str, traces: &[Trace], out_dir: &Path) -> Result<Vec<PathBuf>, PublishError> {
     let node = traces.first().map_or("", |trace| trace.node.name.as_str());
     let mut folder = Folder::create(out_dir, "overlay")?;
-    let name = format!("figure8_{node}.svg");
-    let svg = figures::overlay(title, traces)
-        .map_err(|source| PublishError::Figure { path: folder.path_of(&name), source })?;
-    folder.write_text(&name, &svg)?;
-    folder.write_with(&format!("figure8_{node}.csv"), |out| {
-        let mut header = vec!["job", "since_cycle_begin_s"];
-        header.extend(history_header());
-        let lines = traces.iter().flat_map(|trace| {
-            trace.steps.iter().map(|step| {
-                let since = number(step.time_s - trace.from_s);
-                let mut line = vec![trace.label.clone(), since];
-                line.extend(history_line(step));
-                line
-            })
-        });
-        csv(&header, lines, out)
-    })?;
+    let chart = figures::overlay(title, traces);
+    folder.write_text(&format!("figure8_{node}.svg"), &chart.svg(&chart.title))?;
+    let lines = traces.iter().flat_map(|trace| {
+        let line = |step: &NodeStep| (trace.label.clone(), step.time_s - trace.from_s, *step);
+        trace.steps.iter().map(line)
+    });
+    folder.write_lines(&format!("figure8_{node}.csv"), &columns(), lines)?;
     // The other nodes of the same jobs are in the same folder.
     folder.finish_beside_earlier()
 }

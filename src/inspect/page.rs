@@ -5,11 +5,12 @@ use super::fields::FIELDS;
 use super::figures::InspectionFigure;
 use super::inspection::Inspection;
 use super::summary::{NodeSummary, Summary};
+use super::waves::Wave;
+use super::write::SUMMARY;
 use crate::publish::Sheet;
-use crate::publish::html::{self, download, figure, navigation, section, table, tiles, warning};
+use crate::publish::page::{Block, Figure, Grid, Page, Section, Text, Tile};
 use crate::publish::rounding::{at_place, last_place};
 use crate::publish::value::{MISSING, fixed, number, significant};
-use maud::{Markup, html};
 use std::collections::BTreeMap;
 
 /// The title of the page, and the program that made it.
@@ -36,79 +37,64 @@ pub fn of(
     figures: &[InspectionFigure],
     tables: &BTreeMap<String, String>,
     header: &PageHeader,
-) -> String {
-    let links = figures.iter().map(|figure| (figure.stem, figure.heading));
-    let first = [("scene", "What was simulated")];
-    let last = [("nodes", "Nodes in numbers"), ("files", "Files")];
-    let sections: Vec<(&str, &str)> = first.into_iter().chain(links).chain(last).collect();
-    let body = html! {
-        (head(inspection, summary, header))
-        @if !header.accuracy.is_empty() { div.accuracy { p { strong { "Accuracy. " } (header.accuracy) } } }
-        (navigation(sections))
-        (section("scene", first[0].1, &html::sheet(&header.sheet)))
-        @for drawn in figures {
-            (section(drawn.stem, drawn.heading, &html! {
-                (figure(&drawn.svg, &drawn.caption, None))
-                p { "Data: " @for name in &drawn.data { (data(name, tables)) " " } }
-                @if drawn.stem == "wave" { (waves(summary)) }
-                @if drawn.stem == "loops" { (energies::table_of(summary)) }
-            }))
+) -> Page {
+    let mut sections = vec![Section::new("scene", "What was simulated", header.sheet.blocks())];
+    sections.extend(figures.iter().map(|own| {
+        let (svg, caption) = (own.svg(), own.caption.clone());
+        let data = own.data.iter().map(|name| (name.clone(), tables.get(name).cloned()));
+        let mut blocks = vec![
+            Block::figure(Figure { file: own.file(), svg, caption, data: None }),
+            Block::Data(data.collect()),
+        ];
+        match own.stem {
+            "wave" => blocks.extend(waves(&summary.waves)),
+            "loops" => blocks.extend(energies::blocks(summary)),
+            _ => {}
         }
-        (section("nodes", last[0].1, &nodes(summary)))
-        (section("files", last[1].1, &html! { (files()) p { "Made with " (header.made_with) "." } }))
-    };
-    html::page(&header.title, None, &body)
+        Section::new(own.stem, own.heading, blocks)
+    }));
+    sections.push(Section::new("nodes", "Nodes in numbers", nodes(summary)));
+    sections.push(Section::new("files", "Files", files(&header.made_with)));
+    let mut lead = lead(inspection, summary, header);
+    if !header.accuracy.is_empty() {
+        lead.push(Block::Text(Text::strong("Accuracy.").and(format!(" {}", header.accuracy))));
+    }
+    Page { title: header.title.clone(), lead, sections, ..Page::default() }
 }
 
-fn head(inspection: &Inspection, summary: &Summary, header: &PageHeader) -> Markup {
+fn lead(inspection: &Inspection, summary: &Summary, header: &PageHeader) -> Vec<Block> {
     let record = &summary.record;
     // As on the page of a report: numbers end at the digit in which the larger error begins.
     let error =
         record.mu_star_se.abs().max(header.mu_star_relative_error.unwrap_or(0.0) * record.mu_star.abs());
     let finest = if header.mu_star_relative_error.is_some() { -4 } else { -3 };
     let place = last_place(error).unwrap_or(finest).clamp(finest, -1);
+    let mu = number(summary.job.scene.contact.mu);
+    let error = significant(record.mu_star_se, 2);
     let frequency = record.frequency_hz.map_or_else(|| "none".to_owned(), |f| format!("{f:.0} Hz"));
-    let numbers = [
-        (
-            "μ*",
-            at_place(record.mu_star, place),
-            format!(
-                "at μ = {}; standard error {}",
-                number(summary.job.scene.contact.mu),
-                significant(record.mu_star_se, 2)
-            ),
-        ),
-        ("frequency", frequency, "of the total normal force".to_owned()),
-        ("regime", record.regime.name().replace('_', "–"), record.outcome.name().replace('_', " ")),
-        (
-            "stick / slip / separated",
-            [record.stick_share, record.slip_share, record.separated_share]
-                .map(|share| format!("{share:.2}"))
-                .join(" / "),
-            "shares of the node-time".to_owned(),
-        ),
-        (
-            "loops",
-            format!("{} of {}", summary.face.counter_clockwise, summary.face.separating),
-            "of the nodes that separate go counter-clockwise (y to the right, z upwards)".to_owned(),
-        ),
+    let regime = record.regime.name().replace('_', "–");
+    let shares = [record.stick_share, record.slip_share, record.separated_share];
+    let shares = shares.map(|share| format!("{share:.2}")).join(" / ");
+    let loops = format!("{} of {}", summary.face.counter_clockwise, summary.face.separating);
+    let sense = "of the nodes that separate go counter-clockwise (y to the right, z upwards)";
+    let tiles = vec![
+        Tile::new("μ*", at_place(record.mu_star, place), format!("at μ = {mu}; standard error {error}")),
+        Tile::new("frequency", frequency, "of the total normal force"),
+        Tile::new("regime", regime, record.outcome.name().replace('_', " ")),
+        Tile::new("stick / slip / separated", shares, "shares of the node-time"),
+        Tile::new("loops", loops, sense),
     ];
-    html! {
-        @if !summary.cycles {
-            (warning(&html! { "This job has no limit cycle. The end of its run is shown instead, in periods of 4h/c_s: those "
-                "of the pin as a quarter-wave resonator in shear." }))
-        }
-        p { (numerics(inspection)) }
-        (tiles(&numbers))
-    }
+    let without_cycles = "This job has no limit cycle. The end of its run is shown instead, in periods of 4h/c_s: those of \
+                          the pin as a quarter-wave resonator in shear.";
+    let warning = (!summary.cycles).then(|| Block::Warning(without_cycles.into(), Vec::new()));
+    warning.into_iter().chain([Block::Text(numerics(inspection).into()), Block::Tiles(tiles)]).collect()
 }
 
 /// Mesh, step and disk in a line.
 fn numerics(inspection: &Inspection) -> String {
-    let elements = inspection.mesh().element_count();
     let elements = match inspection.mesh().block() {
         Some(block) => block.elements().map(|n| n.to_string()).join(" × "),
-        None => elements.to_string(),
+        None => inspection.mesh().element_count().to_string(),
     };
     let record = &inspection.survey.record;
     let disk = if inspection.capture.model.ring().is_some() { "an elastic disk" } else { "a rigid disk" };
@@ -121,116 +107,84 @@ fn numerics(inspection: &Inspection) -> String {
 }
 
 /// The table of waves.
-fn waves(summary: &Summary) -> Markup {
-    let header = ["change", "y from … to [mm]", "begins [µs]", "takes [µs]", "speed [m/s], towards"]
-        .map(str::to_owned);
-    let lines: Vec<Vec<Markup>> = summary
-        .waves
-        .iter()
-        .map(|wave| {
-            let [from, to] = wave.from_to_m.map(|y| y * 1e3);
-            let speed = wave.speed_m_s().map_or_else(
-                || MISSING.to_owned(),
-                |speed| format!("{:.0}, {}", speed.abs(), if speed > 0.0 { "rear" } else { "front" }),
-            );
-            vec![
-                html! { (wave.change.name()) },
-                html! { (fixed(from, 2)) " … " (fixed(to, 2)) },
-                html! { (fixed(wave.start_s * 1e6, 1)) },
-                html! { (fixed(wave.delay_s.abs() * 1e6, 1)) },
-                html! { (speed) },
-            ]
-        })
-        .collect();
-    html! {
-        @if lines.is_empty() { p { "No change of state travels over neighbouring nodes of this line." } }
-        @else {
-            (table(&header, &lines))
-            p { "A wave is a run of neighbouring nodes that all have the change; \"begins\" is the time at its foremost "
-                "node since the start of the cycle." }
-        }
+fn waves(waves: &[Wave]) -> Vec<Block> {
+    if waves.is_empty() {
+        return vec![Block::text("No change of state travels over neighbouring nodes of this line.")];
     }
-}
-
-/// A table to download, or the name of its file.
-fn data(name: &str, tables: &BTreeMap<String, String>) -> Markup {
-    if let Some(text) = tables.get(name) {
-        download(name, text)
-    } else {
-        html! { code { (name) } " (in the folder of this page)" }
-    }
+    let heads = ["change", "y from … to [mm]", "begins [µs]", "takes [µs]", "speed [m/s], towards"];
+    let lines = waves.iter().map(|wave| {
+        let [from, to] = wave.from_to_m.map(|y| fixed(y * 1e3, 2));
+        let speed = wave.speed_m_s().map_or_else(
+            || MISSING.to_owned(),
+            |speed| format!("{:.0}, {}", speed.abs(), if speed > 0.0 { "rear" } else { "front" }),
+        );
+        let [begins, takes] = [wave.start_s, wave.delay_s.abs()].map(|time_s| fixed(time_s * 1e6, 1));
+        vec![wave.change.name().to_owned(), format!("{from} … {to}"), begins, takes, speed]
+    });
+    vec![
+        Block::Table(Grid::of(&heads, lines, SUMMARY)),
+        Block::text(
+            "A wave is a run of neighbouring nodes that all have the change; \"begins\" is the time at its foremost node \
+             since the start of the cycle.",
+        ),
+    ]
 }
 
 /// A line of the table of nodes: its heading, and the value of a node.
 type NodeLine = (&'static str, fn(&NodeSummary) -> String);
 
-fn nodes(summary: &Summary) -> Markup {
-    let header: Vec<String> = std::iter::once(String::new())
-        .chain(summary.nodes.iter().map(|node| node.name.replace('_', " ")))
-        .collect();
-    let figures: [NodeLine; 8] = [
-        ("x, y [mm]", |node| node.at_m.map(|at| format!("{:.2}", at * 1e3)).join(", ")),
-        ("range of x, y, z [µm]", |node| node.peak_to_peak_m.map(|range| fixed(range * 1e6, 2)).join(", ")),
-        ("largest gap [µm]", |node| fixed(node.lift_max_m * 1e6, 3)),
-        ("largest σ_n [MPa], as in the record", |node| fixed(node.sigma_n_max_pa * 1e-6, 3)),
-        ("largest slip speed [mm/s]", |node| fixed(node.slip_speed_max_m_s * 1e3, 0)),
-        ("largest speed relative to the disk [mm/s]", |node| fixed(node.relative_speed_max_m_s * 1e3, 0)),
-        ("stick, slip, separated", |node| node.shares.map(|share| fixed(share, 2)).join(", ")),
-        ("frequency of separation, or of stick [Hz]", |node| {
-            node.frequency_hz.map_or_else(|| MISSING.to_owned(), |f| fixed(f, 0))
-        }),
-    ];
-    let line = |(name, figure): &NodeLine| -> Vec<Markup> {
-        std::iter::once(html! { span.words { (name) } })
-            .chain(summary.nodes.iter().map(|node| html! { (figure(node)) }))
-            .collect()
+const NODE_LINES: [NodeLine; 8] = [
+    ("x, y [mm]", |node| node.at_m.map(|at| format!("{:.2}", at * 1e3)).join(", ")),
+    ("range of x, y, z [µm]", |node| node.peak_to_peak_m.map(|range| fixed(range * 1e6, 2)).join(", ")),
+    ("largest gap [µm]", |node| fixed(node.lift_max_m * 1e6, 3)),
+    ("largest σ_n [MPa], as in the record", |node| fixed(node.sigma_n_max_pa * 1e-6, 3)),
+    ("largest slip speed [mm/s]", |node| fixed(node.slip_speed_max_m_s * 1e3, 0)),
+    ("largest speed relative to the disk [mm/s]", |node| fixed(node.relative_speed_max_m_s * 1e3, 0)),
+    ("stick, slip, separated", |node| node.shares.map(|share| fixed(share, 2)).join(", ")),
+    ("frequency of separation, or of stick [Hz]", |node| {
+        node.frequency_hz.map_or_else(|| MISSING.to_owned(), |f| fixed(f, 0))
+    }),
+];
+
+fn nodes(summary: &Summary) -> Vec<Block> {
+    let names: Vec<String> = summary.nodes.iter().map(|node| node.name.replace('_', " ")).collect();
+    let heads: Vec<&str> = std::iter::once("").chain(names.iter().map(String::as_str)).collect();
+    let lines = NODE_LINES.into_iter().map(|(name, value)| {
+        std::iter::once(name.to_owned()).chain(summary.nodes.iter().map(value)).collect::<Vec<_>>()
+    });
+    let of_node = |node: &NodeSummary| {
+        let heads = ["", "time [µs]", "state", "σ_n [MPa]", "v_y − disk [mm/s]"];
+        let instants = Grid::of(&heads, instants(node, summary.shown_s[0]), "instants.csv");
+        [Block::Heading(node.title.clone()), Block::Table(instants)]
     };
-    let lines: Vec<Vec<Markup>> = figures.iter().map(line).collect();
-    let columns = ["", "time [µs]", "state", "σ_n [MPa]", "v_y − disk [mm/s]"].map(str::to_owned);
-    html! {
-        (table(&header, &lines))
-        @for node in &summary.nodes {
-            h3 { (node.title) }
-            (table(&columns, &instants(node, summary.shown_s[0])))
-        }
-    }
+    let table = Block::Table(Grid::of(&heads, lines, SUMMARY).with_words());
+    std::iter::once(table).chain(summary.nodes.iter().flat_map(of_node)).collect()
 }
 
 /// The lines of the table of instants.
-fn instants(node: &NodeSummary, from_s: f64) -> Vec<Vec<Markup>> {
+fn instants(node: &NodeSummary, from_s: f64) -> impl Iterator<Item = Vec<String>> {
     let at = node.instants.iter().flat_map(|instants| &instants.at);
-    at.map(|(name, time_s, stress_pa, velocity_m_s, state)| {
-        vec![
-            html! { (name) },
-            html! { (fixed((time_s - from_s) * 1e6, 2)) },
-            html! { (state) },
-            html! { (fixed(stress_pa * 1e-6, 3)) },
-            html! { (fixed(velocity_m_s * 1e3, 1)) },
-        ]
+    at.map(move |(name, time_s, stress_pa, velocity_m_s, state)| {
+        let time = fixed((time_s - from_s) * 1e6, 2);
+        vec![name.clone(), time, state.clone(), fixed(stress_pa * 1e-6, 3), fixed(velocity_m_s * 1e3, 1)]
     })
-    .collect()
 }
 
-fn files() -> Markup {
-    html! {
-        ul {
-            li { code { "inspection.json" } " – all numbers of this page, with the job's specification and record" }
-            li { code { "node_*.csv" } " – histories of the observed nodes; " code { "phases.csv" } ", " code { "instants.csv" } }
-            li { code { "face.csv" } " – every contact node at every step of a cycle; " code { "wave.csv" } }
-            li { code { "loops.csv" } " – friction over slip and displacement, of the observed nodes and of the whole face" }
-            li { code { "totals.csv" } ", " code { "run.csv" } ", " code { "cycles.csv" } ", " code { "spectrum.csv" } }
-            li { code { "fields.pvd" } " – the pin over a cycle, for ParaView, with these fields at the nodes:" }
-        }
-        (fields())
-    }
-}
+const FILES: [&str; 6] = [
+    "`inspection.json` – all numbers of this page, with the job's specification and record",
+    "`node_*.csv` – histories of the observed nodes; `phases.csv`, `instants.csv`",
+    "`face.csv` – every contact node at every step of a cycle; `wave.csv`",
+    "`loops.csv` – friction over slip and displacement, of the observed nodes and of the whole face",
+    "`totals.csv`, `run.csv`, `cycles.csv`, `spectrum.csv`",
+    "`fields.pvd` – the pin over a cycle, for ParaView, with these fields at the nodes:",
+];
 
-/// The fields of the files for ParaView, with the colours of the contact states.
-fn fields() -> Markup {
-    let header = ["field", "meaning"].map(str::to_owned);
-    let lines: Vec<Vec<Markup>> = FIELDS
-        .iter()
-        .map(|(name, meaning)| vec![html! { (name) }, html! { span.words { (meaning) } }])
-        .collect();
-    table(&header, &lines)
+/// The files, and the fields of those for ParaView.
+fn files(made_with: &str) -> Vec<Block> {
+    let fields = FIELDS.iter().map(|(name, meaning)| vec![*name, *meaning]);
+    vec![
+        Block::list(FILES.map(Text::marked)),
+        Block::Table(Grid::of(&["field", "meaning"], fields, "fields.pvd").with_words()),
+        Block::Text(format!("Made with {made_with}.").into()),
+    ]
 }

@@ -59,7 +59,7 @@ impl JobSpectrum {
     /// The first file that could not be written.
     pub fn write(&self, spec: &JobSpec, key: &str, out_dir: &Path) -> Result<Vec<PathBuf>, PublishError> {
         let mut folder = Folder::create(out_dir, KIND)?;
-        folder.write_with(tables::SPECTRUM_FILE, |out| tables::spectrum(&self.spectrum, out))?;
+        tables::write_spectrum(&self.spectrum, &mut folder)?;
         let spectrum_peaks = self.spectrum.peaks(5);
         let summary = SpectrumSummary { key, job: spec, record: &self.record, spectrum_peaks };
         folder.write_with(SUMMARY, |out| write::json(&summary, out))?;

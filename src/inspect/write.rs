@@ -4,7 +4,7 @@ use super::inspection::Inspection;
 use super::page::PageHeader;
 use super::summary::Summary;
 use super::{fields, figures, page, tables};
-use crate::publish::{Folder, PublishError};
+use crate::publish::{Folder, PublishError, html};
 use serde::{Deserialize, Serialize};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -36,14 +36,14 @@ pub fn write(
         remove_files_of_older_versions(out_dir);
     }
     let tables = tables::write(inspection, &mut folder)?;
-    let figures = figures::write(inspection, &mut folder)?;
-    for drawing in &header.sheet.drawings {
-        folder.write_text(&format!("{}.svg", drawing.stem), &drawing.svg)?;
-    }
     fields::write(&inspection.capture, &mut folder)?;
     let summary = Summary { key: header.key.clone(), ..Summary::of(inspection) };
     folder.write_with(SUMMARY, |out| json(&summary, out))?;
-    folder.write_text(PAGE, &page::of(inspection, &summary, &figures, &tables, header))?;
+    let page = page::of(inspection, &summary, &figures::figures(inspection), &tables, header);
+    for figure in page.figures() {
+        folder.write_text(&figure.file, &figure.svg)?;
+    }
+    folder.write_text(PAGE, &html::of_page(&page))?;
     folder.finish(|_| false)
 }
 

@@ -1,6 +1,8 @@
 //! Files that are replaced as a whole, alone and in a folder.
 
 use super::error::PublishError;
+use super::table::{Column, Format, Head, TableWriter};
+use std::borrow::Borrow;
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Component, Path, PathBuf};
@@ -63,15 +65,46 @@ impl<'a> Folder<'a> {
         name: &str,
         fill: impl FnOnce(&mut Vec<u8>) -> io::Result<()>,
     ) -> Result<(), PublishError> {
+        self.replace_with(name, |out| {
+            let mut contents = Vec::new();
+            fill(&mut contents)?;
+            out.write_all(&contents)
+        })
+    }
+
+    fn replace_with(
+        &mut self,
+        name: &str,
+        write: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<(), PublishError> {
         let path = self.path_of(name);
-        let mut contents = Vec::new();
-        match fill(&mut contents).and_then(|()| replace(&path, |out| out.write_all(&contents))) {
+        match replace(&path, write) {
             Ok(()) => {
                 self.written.push(name.to_owned());
                 Ok(())
             }
             Err(source) => Err(PublishError::File { path, source }),
         }
+    }
+
+    /// Writes a table as CSV, line by line, so that a large one is never in memory as text.
+    ///
+    /// # Errors
+    /// As [`Folder::write_text`].
+    pub fn write_lines<T>(
+        &mut self,
+        name: &str,
+        columns: &[Column<T>],
+        subjects: impl IntoIterator<Item = impl Borrow<T>>,
+    ) -> Result<(), PublishError> {
+        let heads: Vec<Head> = columns.iter().map(|column| column.head.clone()).collect();
+        self.replace_with(name, |out| {
+            let mut writer = TableWriter::new(Format::Csv, &heads, out)?;
+            for of in subjects {
+                writer.line(columns.iter().map(|column| column.value(of.borrow())))?;
+            }
+            writer.finish()
+        })
     }
 
     /// Creates a folder inside this one. Its files have names with the folder's name before them.

@@ -44,6 +44,10 @@ fn write_block(out: &mut String, block: &Block) {
                 out.push_str("\n\n");
             }
         }
+        Block::Data(files) => {
+            let links: Vec<String> = files.iter().map(|(file, _)| format!("[{file}]({file})")).collect();
+            let _ = write!(out, "Data: {}\n\n", links.join(", "));
+        }
         Block::Tiles(tiles) => {
             let line = |tile: &Tile| {
                 let note = if tile.note.is_empty() { String::new() } else { format!(" ({})", tile.note) };

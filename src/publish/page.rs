@@ -49,6 +49,8 @@ pub enum Block {
     List(Vec<Text>),
     /// A table for readers.
     Table(Grid),
+    /// Tables of data: the names of the files, and their contents if they fit into a page.
+    Data(Vec<(String, Option<String>)>),
     /// Drawings; several stand beside one another where there is room.
     Figures(Vec<Figure>),
     /// The main numbers.
@@ -197,6 +199,14 @@ pub fn limited<T>(items: impl IntoIterator<Item = T>, file: &str) -> (Vec<T>, St
     let shown: Vec<T> = items.by_ref().take(MOST_LINES).collect();
     let more = items.count();
     (shown, if more > 0 { format!("… and {more} more: see `{file}`.") } else { String::new() })
+}
+
+impl Page {
+    /// The drawings of its sections, folded ones left out.
+    pub fn figures(&self) -> impl Iterator<Item = &Figure> {
+        let blocks = self.sections.iter().flat_map(|section| &section.blocks);
+        blocks.flat_map(|block| if let Block::Figures(figures) = block { figures.as_slice() } else { &[] })
+    }
 }
 
 impl Section {

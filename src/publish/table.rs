@@ -81,6 +81,32 @@ impl<T: ?Sized> Column<T> {
     }
 }
 
+impl<T> Column<T> {
+    /// The same column in a table about `U`s that have a `T` each.
+    pub fn within<U>(self, part: impl Fn(&U) -> &T + Send + Sync + 'static) -> Column<U>
+    where
+        T: 'static,
+    {
+        Column::made(self.head.clone(), move |of| self.value(part(of)))
+    }
+
+    /// The same column under another name.
+    #[must_use]
+    pub fn named(mut self, name: impl Into<Cow<'static, str>>) -> Self {
+        self.head.name = name.into();
+        self
+    }
+}
+
+/// A column as a row of a list: its name, its unit, its meaning, and how it is read.
+impl<T: ?Sized> From<(&'static str, &'static str, &'static str, fn(&T) -> Value)> for Column<T> {
+    fn from(
+        (name, unit, meaning, read): (&'static str, &'static str, &'static str, fn(&T) -> Value),
+    ) -> Self {
+        Self::new(name, unit, meaning, read)
+    }
+}
+
 impl Head {
     /// A name that depends on what a study varies.
     pub fn new(
@@ -244,9 +270,17 @@ impl<W: Write> TableWriter<W> {
     /// # Errors
     /// Those of the writer.
     pub fn finish(self) -> io::Result<()> {
+        self.into_inner()?.flush()
+    }
+
+    /// Writes what is still buffered, and returns the writer.
+    ///
+    /// # Errors
+    /// Those of the writer.
+    pub fn into_inner(self) -> io::Result<W> {
         match self.lines {
-            Lines::Csv(mut writer) => writer.flush(),
-            Lines::Json(mut out) => out.flush(),
+            Lines::Csv(writer) => writer.into_inner().map_err(::csv::IntoInnerError::into_error),
+            Lines::Json(out) => Ok(out),
         }
     }
 }

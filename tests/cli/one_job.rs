@@ -4,11 +4,14 @@ use serde_json::{Value, json};
 
 use crate::support::{Folder, handles_interrupts, rows, small, stderr, wait};
 
-const HISTORY: &str = "time_s,load_n,normal_n,tangential_n,contact_tangential_n,mu_eq,stick_nodes,slip_nodes,\
-separated_nodes,front_centre_ux_m,front_centre_uy_m,front_centre_uz_m,front_centre_y_velocity_m_s,\
-front_centre_sigma_n_pa,front_centre_slip_speed_m_s,front_centre_mu_eq,front_centre_state,rear_centre_ux_m,\
-rear_centre_uy_m,rear_centre_uz_m,rear_centre_y_velocity_m_s,rear_centre_sigma_n_pa,rear_centre_slip_speed_m_s,\
-rear_centre_mu_eq,rear_centre_state";
+const HISTORY: &str = "time_s,load_n,normal_n,smooth_normal_n,clamp_tangential_n,contact_tangential_n,contact_sideways_n,mu_eq,\
+stick_nodes,slip_nodes,separated_nodes,\
+front_centre_ux_m,front_centre_uy_m,front_centre_uz_m,front_centre_y_velocity_m_s,front_centre_gap_m,\
+front_centre_friction_x_n,front_centre_friction_y_n,front_centre_normal_n,front_centre_slip_speed_m_s,\
+front_centre_mu_eq,front_centre_state,front_centre_sigma_n_delayed_pa,\
+rear_centre_ux_m,rear_centre_uy_m,rear_centre_uz_m,rear_centre_y_velocity_m_s,rear_centre_gap_m,\
+rear_centre_friction_x_n,rear_centre_friction_y_n,rear_centre_normal_n,rear_centre_slip_speed_m_s,\
+rear_centre_mu_eq,rear_centre_state,rear_centre_sigma_n_delayed_pa";
 
 fn folder() -> Folder {
     Folder::with("mine", &small(&json!({ "mu": [0.2, 0.4], "omega_rpm": [2, 7] })))
@@ -57,7 +60,7 @@ fn the_history_is_that_of_the_run() {
     assert!(start > 0 && start < time.len() - 500, "{start}");
     let normal = mean(&history.column("normal_n")[start..]);
     assert!((normal / 30.0 - 1.0).abs() < 0.01, "mean normal force {normal} N");
-    let mu_star = mean(&history.column("tangential_n")[start..]) / 30.0;
+    let mu_star = mean(&history.column("clamp_tangential_n")[start..]) / 30.0;
     assert!((mu_star - record["mu_star"].as_f64().unwrap()).abs() < 0.005, "{mu_star}");
     for state in history.0.iter().map(|row| row["front_centre_state"].as_str()) {
         assert!(["stick", "slip", "separated"].contains(&state), "{state}");

@@ -188,7 +188,7 @@ fn frames_are_of_the_same_motion() {
     }
 }
 
-/// Protects: a job without cycles can be inspected too. The page says that it has none, and all files exist.
+/// Protects: a job without cycles can be inspected too, and all files exist.
 #[test]
 fn stable_sliding_has_no_cycles() {
     let mut spec = coarse();
@@ -201,8 +201,6 @@ fn stable_sliding_has_no_cycles() {
     let folder = tempfile::tempdir().unwrap();
     let files = write(&inspection, folder.path(), &PageHeader::default()).unwrap();
     assert!(files.iter().all(|file| file.is_file()));
-    let page = std::fs::read_to_string(folder.path().join("index.html")).unwrap();
-    assert!(page.contains("no limit cycle"), "the page says so");
 }
 
 /// Protects: nodes can be selected by name and by coordinates, and the numbers of a node agree with the job's record.

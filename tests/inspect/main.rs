@@ -3,6 +3,7 @@
 #[path = "../support/browser.rs"]
 #[expect(dead_code, reason = "reports are tested with more of it")]
 mod chromium;
+mod figures;
 mod inspections;
 mod page;
 mod readers;

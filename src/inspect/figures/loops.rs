@@ -1,16 +1,15 @@
 //! Hysteresis loops: friction over slip, and friction over displacement.
 
-use super::style::{MICRO, STATES, colour_of};
+use super::style::{MICRO, STATES, colour_of, fine, joined, thick};
 use crate::inspect::inspection::Inspection;
 use crate::inspect::loops::{self, LoopEnergies, LoopPoint};
-use crate::publish::plot::palette;
-use crate::publish::plot::panel::{Panel, Scale, Series, Stroke};
+use crate::publish::chart::{At, Chart, Panel, Pen, Scale, palette};
 use crate::publish::value::significant;
-use crate::solver::interface::ContactState;
 
 /// The abscissa of a panel and what its area is.
 struct Abscissa {
-    label: &'static str,
+    of_node: &'static str,
+    of_face: &'static str,
     of: fn(&LoopPoint) -> Option<f64>,
     energy: fn(&LoopEnergies) -> f64,
     area: &'static str,
@@ -18,101 +17,82 @@ struct Abscissa {
     restarts: bool,
 }
 
-const SLIP: Abscissa = Abscissa {
-    label: "slip of the disk along the node since the cycle began [µm]",
-    of: |point| Some(point.slip_m * MICRO),
-    energy: |energies| energies.friction_j,
-    area: "dissipated",
-    restarts: true,
-};
-const DISPLACEMENT: Abscissa = Abscissa {
-    label: "displacement in y [µm]",
-    of: |point| point.y_m.map(|y_m| y_m * MICRO),
-    energy: |energies| energies.into_pin_j,
-    area: "into the pin",
-    restarts: false,
-};
+const ABSCISSAS: [Abscissa; 2] = [
+    Abscissa {
+        of_node: "slip of the disk along the node since the cycle began [µm]",
+        of_face: "mean slip of the disk along the face since the cycle began [µm]",
+        of: |point| Some(point.slip_m * MICRO),
+        energy: |energies| energies.friction_j,
+        area: "dissipated",
+        restarts: true,
+    },
+    Abscissa {
+        of_node: "displacement in y [µm]",
+        of_face: "mean displacement in y [µm]",
+        of: |point| point.y_m.map(|y_m| y_m * MICRO),
+        energy: |energies| energies.into_pin_j,
+        area: "into the pin",
+        restarts: false,
+    },
+];
 
 /// For every observed node friction over slip and over displacement; the same for the whole face.
-pub fn loops(inspection: &Inspection) -> Vec<Panel> {
+pub fn loops(inspection: &Inspection) -> Chart {
     let summary = loops::summary(inspection);
     let what = if inspection.survey.windows.has_cycles { "per cycle" } else { "per period" };
+    let title = |of: &str, abscissa: &Abscissa, energies: &LoopEnergies| {
+        let microjoules = significant((abscissa.energy)(energies) * MICRO, 3).replace('-', "−");
+        format!("{of}: {microjoules} µJ {} {what}", abscissa.area)
+    };
     let mut panels = Vec::new();
     for (number, (observed, energies)) in inspection.observed.iter().zip(&summary.nodes).enumerate() {
         let points = loops::of_node(inspection, number);
-        for abscissa in [&SLIP, &DISPLACEMENT] {
-            let title = title(&observed.node.title, abscissa, energies, what);
-            panels.push(of_node(&title, abscissa, &points));
-        }
+        let panel = |abscissa| of_node(&title(&observed.node.title, abscissa, energies), abscissa, &points);
+        panels.extend(ABSCISSAS.iter().map(panel));
     }
     let points = loops::of_face(inspection);
-    for abscissa in [&SLIP, &DISPLACEMENT] {
-        let title = title("Whole contact face", abscissa, &summary.face, what);
-        panels.push(of_face(&title, abscissa, &points));
-    }
-    panels
+    let panel = |abscissa| of_face(&title("Whole contact face", abscissa, &summary.face), abscissa, &points);
+    panels.extend(ABSCISSAS.iter().map(panel));
+    Chart::stack(panels)
 }
 
-fn title(of: &str, abscissa: &Abscissa, energies: &LoopEnergies, what: &str) -> String {
-    let microjoules = significant((abscissa.energy)(energies) * MICRO, 3).replace('-', "−");
-    format!("{of}: {microjoules} µJ {} {what}", abscissa.area)
-}
-
+/// The parts of a loop in which a node is in each state. A part ends where the slip begins again at zero.
 fn of_node(title: &str, abscissa: &Abscissa, points: &[LoopPoint]) -> Panel {
-    let series: Vec<Series> = STATES
-        .into_iter()
-        .map(|state| Series {
-            stroke: Stroke::Fine,
-            ..Series::line(state.name(), colour_of(state), path_in(state, abscissa, points))
-        })
-        .collect();
-    panel(title, abscissa, "friction force in y [N]", series)
-}
-
-/// The parts of a loop in which a node is in a state. A part ends where the slip begins again at zero.
-fn path_in(state: ContactState, abscissa: &Abscissa, points: &[LoopPoint]) -> Vec<(f64, f64)> {
     let place = |point: &LoopPoint| (abscissa.of)(point).map(|x| (x, point.friction_n));
-    let mut path = Vec::new();
-    for pair in points.windows(2) {
-        let is_new_cycle = abscissa.restarts && pair[1].slip_m == 0.0 && pair[0].slip_m != 0.0;
-        match (place(&pair[0]), place(&pair[1])) {
-            (Some(from), Some(to)) if pair[0].state == Some(state) && !is_new_cycle => {
-                path.extend([from, to]);
-            }
-            _ if path.last().is_some_and(|last: &(f64, f64)| last.0.is_finite()) => {
-                path.push((f64::NAN, f64::NAN));
-            }
-            _ => {}
-        }
-    }
-    path
+    let lines = STATES.map(|state| {
+        let within = |pair: &[LoopPoint]| {
+            let is_new_cycle = abscissa.restarts && pair[1].slip_m == 0.0 && pair[0].slip_m != 0.0;
+            let is_shown = pair[0].state == Some(state) && !is_new_cycle;
+            is_shown.then(|| Some([place(&pair[0])?, place(&pair[1])?])).flatten()
+        };
+        (state.name(), fine(colour_of(state)), joined(points.windows(2).map(within)))
+    });
+    panel(title, abscissa.of_node, "friction force in y [N]", lines)
 }
 
 fn of_face(title: &str, abscissa: &Abscissa, points: &[LoopPoint]) -> Panel {
     let path = |force: fn(&LoopPoint) -> Option<f64>| {
         let place = |point: &LoopPoint| Some(((abscissa.of)(point)?, force(point)?));
-        let mut path: Vec<(f64, f64)> = points.iter().filter_map(place).collect();
+        let mut path: Vec<At> = points.iter().filter_map(place).collect();
         if !abscissa.restarts {
             path.extend(path.first().copied());
         }
         path
     };
-    let series = vec![
-        Series::line("friction of the face", palette::colour(3, 8), path(|point| Some(point.friction_n))),
-        Series {
-            stroke: Stroke::Fine,
-            ..Series::line("T at the clamp", palette::colour(1, 8), path(|point| point.clamp_n))
-        },
+    let lines = [
+        ("friction of the face", thick(palette::colour(3, 8)), path(|point| Some(point.friction_n))),
+        ("T at the clamp", fine(palette::colour(1, 8)), path(|point| point.clamp_n)),
     ];
-    let mut panel = panel(title, abscissa, "force in y [N]", series);
-    panel.x.label = panel.x.label.replace("the node", "the face");
-    panel.x.label = format!("mean {}", panel.x.label);
-    panel
+    panel(title, abscissa.of_face, "force in y [N]", lines)
 }
 
-fn panel(title: &str, abscissa: &Abscissa, y_label: &str, series: Vec<Series>) -> Panel {
-    let all = || series.iter().flat_map(|series| &series.points);
-    let x = Scale::spanning(abscissa.label, all().map(|point| point.0), 0.01);
-    let y = Scale::spanning(y_label, all().map(|point| point.1), 1e-6);
-    Panel { series, ..Panel::new(title, x, y) }
+fn panel<const N: usize>(title: &str, x: &str, y: &str, lines: [(&str, Pen, Vec<At>); N]) -> Panel {
+    let all = || lines.iter().flat_map(|(.., points)| points);
+    let x = Scale::spanning(x, all().map(|point| point.0), 0.01);
+    let y = Scale::spanning(y, all().map(|point| point.1), 1e-6);
+    let mut panel = Panel::new(title, x, y);
+    for (label, pen, points) in lines {
+        panel.line(label, pen, points);
+    }
+    panel
 }

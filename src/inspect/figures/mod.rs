@@ -12,8 +12,7 @@ pub use overlay::overlay;
 
 use super::inspection::Inspection;
 use super::limit;
-use crate::publish::plot::panel::stack;
-use crate::publish::{FigureError, Folder, PublishError};
+use crate::publish::chart::Chart;
 
 /// A figure of an inspection.
 #[derive(Debug, Clone, PartialEq)]
@@ -26,135 +25,148 @@ pub struct InspectionFigure {
     pub caption: String,
     /// The names of the tables with its data.
     pub data: Vec<String>,
-    /// The drawing as SVG.
-    pub svg: String,
+    /// What it shows.
+    pub picture: Picture,
 }
 
-/// Draws and writes all figures.
-///
-/// # Errors
-/// The first figure that could not be drawn or written.
-pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<Vec<InspectionFigure>, PublishError> {
-    let mut figures = Vec::new();
-    for (stem, heading, caption, data, draw) in of_nodes(inspection).into_iter().chain(of_all(inspection)) {
-        let name = format!("{stem}.svg");
-        let svg = draw().map_err(|source| PublishError::Figure { path: folder.path_of(&name), source })?;
-        folder.write_text(&name, &svg)?;
-        figures.push(InspectionFigure { stem, heading, caption, data, svg });
+/// What a figure shows.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Picture {
+    /// Numbers over axes.
+    Chart(Chart),
+    /// A sketch as SVG.
+    Sketch(String),
+}
+
+impl InspectionFigure {
+    /// The name of its file.
+    pub fn file(&self) -> String {
+        format!("{}.svg", self.stem)
     }
-    Ok(figures)
+
+    /// The drawing.
+    pub fn svg(&self) -> String {
+        match &self.picture {
+            Picture::Chart(chart) => chart.svg(&self.caption),
+            Picture::Sketch(svg) => svg.clone(),
+        }
+    }
 }
 
-/// A figure before it is drawn: stem, heading, caption, data, drawing.
-type Part<'a> = (&'static str, &'static str, String, Vec<String>, Drawing<'a>);
+/// A figure: stem, heading, caption, data, and what draws it.
+type Row = (&'static str, &'static str, &'static str, &'static [&'static str], Draw);
 
-fn only(names: &[&str]) -> Vec<String> {
-    names.iter().map(|&name| name.to_owned()).collect()
+#[derive(Clone, Copy)]
+enum Draw {
+    Chart(fn(&Inspection) -> Chart),
+    Sketch(fn(&Inspection, &str) -> String),
 }
 
-/// The figures of the motion of nodes.
-fn of_nodes(inspection: &Inspection) -> Vec<Part<'_>> {
-    let histories: Vec<String> =
-        inspection.observed.iter().map(|observed| format!("node_{}.csv", observed.node.name)).collect();
-    let with = |more: &[&str]| -> Vec<String> { histories.iter().cloned().chain(only(more)).collect() };
+/// In place of the histories of all observed nodes.
+const HISTORIES: &str = "node_*.csv";
+/// In place of what a node that slips has.
+const LIMIT: &str = "{limit}";
+
+const FIGURES: [Row; 10] = [
+    (
+        "figure2a",
+        "Displacements and velocity",
+        "Displacements in the three directions and velocity in y of the observed nodes (the paper's Figure 2a).",
+        &[HISTORIES],
+        Draw::Chart(histories::displacements),
+    ),
+    (
+        "figure2b",
+        "Stick, slip and separation",
+        "Equivalent friction coefficient |τ/σ_n| and velocity in y (Figure 2b): {limit} is slip, less is stick, 0 is \
+         separation.",
+        &[HISTORIES, "phases.csv"],
+        Draw::Chart(histories::friction),
+    ),
+    (
+        "figure3a",
+        "Trajectories",
+        "Trajectories of the contact nodes in the y–z plane over one cycle (Figure 3a): all of them about their means, \
+         and those on three lines where the nodes are, displacements in y enlarged.",
+        &["face.csv"],
+        Draw::Chart(face::trajectories),
+    ),
+    (
+        "figure3b",
+        "Phase planes",
+        "Phase plane of the observed nodes (Figure 3b): the level is the velocity of the disk under the node.",
+        &[HISTORIES],
+        Draw::Chart(histories::phase_planes),
+    ),
+    (
+        "figure4",
+        "One cycle",
+        "Normal contact stress (after a zero-phase low-pass filter) and velocity in y over one cycle (Figure 4). Contact \
+         begins at t_A, stick at t_B, the stress is largest at t_C, stick ends at t_D, contact at t_E, and the separation \
+         at t_F.",
+        &[HISTORIES, "instants.csv"],
+        Draw::Chart(histories::cycles),
+    ),
+    (
+        "figure5",
+        "Snapshots",
+        "Four instants of a cycle (Figure 5): velocities in the middle plane of the pin with the contact forces under it, \
+         and the contact face from above with the states and friction forces of its nodes.",
+        &["face.csv", "fields.pvd"],
+        Draw::Sketch(snapshots::draw),
+    ),
+    (
+        "wave",
+        "Waves",
+        "States of the nodes along the middle of the contact face over one cycle: the front is below, the rear above.",
+        &["face.csv", "wave.csv"],
+        Draw::Chart(face::waves),
+    ),
+    (
+        "loops",
+        "Hysteresis loops",
+        "Friction force over the slip and over the displacement of the observed nodes in the last cycles, and of the whole \
+         contact face in one cycle. The area under friction over slip is the energy that friction dissipates. The area \
+         inside friction over displacement is the energy that friction gives to the pin.",
+        &["loops.csv"],
+        Draw::Chart(loops::loops),
+    ),
+    (
+        "totals",
+        "Total forces",
+        "Total normal contact force N and tangential force T at the clamp: the whole run, and the last cycles with their \
+         starts, where the filtered N rises through F (the filter delays by a constant time).",
+        &["run.csv", "totals.csv", "cycles.csv"],
+        Draw::Chart(totals::forces),
+    ),
+    (
+        "spectrum",
+        "Spectrum",
+        "Spectrum of the total normal contact force over the averaging window.",
+        &["spectrum.csv"],
+        Draw::Chart(totals::spectrum),
+    ),
+];
+
+/// All figures of an inspection.
+pub fn figures(inspection: &Inspection) -> Vec<InspectionFigure> {
     let limit = limit::in_words(&inspection.spec.scene.contact);
-    vec![
-        (
-            "figure2a",
-            "Displacements and velocity",
-            "Displacements in the three directions and velocity in y of the observed nodes (the paper's Figure 2a)."
-                .to_owned(),
-            histories.clone(),
-            Box::new(|| stack(&histories::displacements(inspection))),
-        ),
-        (
-            "figure2b",
-            "Stick, slip and separation",
-            format!(
-                "Equivalent friction coefficient |τ/σ_n| and velocity in y (Figure 2b): {limit} is slip, less is stick, \
-                 0 is separation."
-            ),
-            with(&["phases.csv"]),
-            Box::new(|| stack(&histories::friction(inspection))),
-        ),
-        (
-            "figure3a",
-            "Trajectories",
-            "Trajectories of the contact nodes in the y–z plane over one cycle (Figure 3a): all of them about their \
-             means, and those on three lines where the nodes are, displacements in y enlarged."
-                .to_owned(),
-            only(&["face.csv"]),
-            Box::new(|| stack(&face::trajectories(inspection))),
-        ),
-        (
-            "figure3b",
-            "Phase planes",
-            "Phase plane of the observed nodes (Figure 3b): the level is the velocity of the disk under the node."
-                .to_owned(),
-            histories.clone(),
-            Box::new(|| stack(&histories::phase_planes(inspection))),
-        ),
-        (
-            "figure4",
-            "One cycle",
-            "Normal contact stress (after a zero-phase low-pass filter) and velocity in y over one cycle (Figure 4). Contact \
-             begins at t_A, stick at t_B, the stress is largest at t_C, stick ends at t_D, contact at t_E, and the \
-             separation at t_F."
-                .to_owned(),
-            with(&["instants.csv"]),
-            Box::new(|| stack(&histories::cycles(inspection))),
-        ),
-    ]
+    let files = |name: &&str| -> Vec<String> {
+        match *name {
+            HISTORIES => {
+                let nodes = inspection.observed.iter();
+                nodes.map(|observed| format!("node_{}.csv", observed.node.name)).collect()
+            }
+            name => vec![name.to_owned()],
+        }
+    };
+    let figure = |(stem, heading, caption, data, draw): Row| {
+        let caption = caption.replace(LIMIT, &limit);
+        let picture = match draw {
+            Draw::Chart(chart) => Picture::Chart(chart(inspection)),
+            Draw::Sketch(sketch) => Picture::Sketch(sketch(inspection, &caption)),
+        };
+        InspectionFigure { stem, heading, caption, data: data.iter().flat_map(files).collect(), picture }
+    };
+    FIGURES.map(figure).into()
 }
-
-/// The figures of the pin, of its contact face and of forces.
-fn of_all(inspection: &Inspection) -> Vec<Part<'_>> {
-    vec![
-        (
-            "figure5",
-            "Snapshots",
-            "Four instants of a cycle (Figure 5): velocities in the middle plane of the pin with the contact forces \
-             under it, and the contact face from above with the states and friction forces of its nodes."
-                .to_owned(),
-            only(&["face.csv", "fields.pvd"]),
-            Box::new(|| snapshots::draw(inspection)),
-        ),
-        (
-            "wave",
-            "Waves",
-            "States of the nodes along the middle of the contact face over one cycle: the front is below, the rear \
-             above."
-                .to_owned(),
-            only(&["face.csv", "wave.csv"]),
-            Box::new(|| stack(&[face::waves(inspection)])),
-        ),
-        (
-            "loops",
-            "Hysteresis loops",
-            "Friction force over the slip and over the displacement of the observed nodes in the last cycles, and of the \
-             whole contact face in one cycle. The area under friction over slip is the energy that friction dissipates. \
-             The area inside friction over displacement is the energy that friction gives to the pin."
-                .to_owned(),
-            only(&["loops.csv"]),
-            Box::new(|| stack(&loops::loops(inspection))),
-        ),
-        (
-            "totals",
-            "Total forces",
-            "Total normal contact force N and tangential force T at the clamp: the whole run, and the last cycles \
-             with their starts, where the filtered N rises through F (the filter delays by a constant time)."
-                .to_owned(),
-            only(&["run.csv", "totals.csv", "cycles.csv"]),
-            Box::new(|| stack(&totals::forces(inspection))),
-        ),
-        (
-            "spectrum",
-            "Spectrum",
-            "Spectrum of the total normal contact force over the averaging window.".to_owned(),
-            only(&["spectrum.csv"]),
-            Box::new(|| stack(&[totals::spectrum(inspection)])),
-        ),
-    ]
-}
-
-type Drawing<'a> = Box<dyn Fn() -> Result<String, FigureError> + 'a>;

@@ -4,25 +4,29 @@ use super::style::{MICRO, STATES, colour_of};
 use crate::inspect::capture::Frame;
 use crate::inspect::grid::FaceGrid;
 use crate::inspect::inspection::Inspection;
-use crate::publish::FigureError;
-use crate::publish::plot::canvas::{Area, WIDTH, sheet, write};
-use crate::publish::plot::{DrawError, MARGIN, TEXT};
+use crate::publish::chart::palette::{INK, Rgb};
+use crate::publish::chart::{Anchor, At, Pen, Svg};
 use crate::solver::body::pin::PinMesh;
 use crate::solver::interface::ContactState;
-use plotters::element::{Circle, PathElement, Polygon};
-use plotters::style::text_anchor::HPos;
-use plotters::style::{BLACK, Color, RGBColor};
 use std::collections::BTreeMap;
 
-const ROW: u32 = 720;
+// All lengths are in pixels.
+
+const WIDTH: f64 = 780.0;
+const ROW: f64 = 312.0;
 /// Height of the title, with space for arrows that point out of the pin.
-const TITLE: i32 = 110;
-const FOOT: u32 = 150;
-const GREY: RGBColor = RGBColor(0xB0, 0xB0, 0xB0);
-/// Largest radius [px] of a contact node's dot.
-const DOT: i32 = 10;
+const TITLE: f64 = 48.0;
+const FOOT: f64 = 66.0;
+const MARGIN: f64 = 14.0;
+const TEXT: f64 = 15.0;
+/// Outlines of the pin.
+const OUTLINE: Pen = Pen::solid(Rgb(0xB0, 0xB0, 0xB0), 1.3);
+/// Largest radius of a contact node's dot.
+const DOT: f64 = 4.3;
 /// Approximate number of arrows along a line, so that a reader can tell them apart.
 const ARROWS: usize = 15;
+/// Shorter arrows are not drawn, because their direction could not be seen.
+const SHORTEST: f64 = 1.3;
 
 /// An instant with the frame that is nearest to it.
 struct Snapshot<'a> {
@@ -31,22 +35,20 @@ struct Snapshot<'a> {
 }
 
 /// Draws the snapshots, one below the other.
-///
-/// # Errors
-/// [`FigureError`].
-pub fn draw(inspection: &Inspection) -> Result<String, FigureError> {
+pub fn draw(inspection: &Inspection, alternative: &str) -> String {
     let snapshots = snapshots(inspection);
     let scales = Scales::of(inspection, &snapshots);
-    sheet((WIDTH, ROW * snapshots.len() as u32 + FOOT), |root| {
-        let mut rest = root.clone();
-        for snapshot in &snapshots {
-            let (row, below) = rest.split_vertically(ROW);
-            draw_row(&row, inspection, snapshot, &scales)?;
-            rest = below;
-        }
-        draw_legend(&rest, &scales)?;
-        Ok(Vec::new())
-    })
+    let rows = ROW * snapshots.len() as f64;
+    let mut svg = Svg::new((WIDTH, rows + FOOT));
+    for (number, snapshot) in snapshots.iter().enumerate() {
+        let top = ROW * number as f64;
+        svg.plain((MARGIN, top + 16.0), Anchor::Start, INK, TEXT, &snapshot.label);
+        let grid = inspection.face_grid();
+        draw_side(&mut svg, inspection.mesh(), &grid, snapshot.frame, &scales, (WIDTH / 4.0, top + TITLE));
+        draw_face(&mut svg, inspection.mesh(), &grid, snapshot.frame, &scales, (0.75 * WIDTH, top + TITLE));
+    }
+    draw_legend(&mut svg, &scales, rows);
+    svg.finish(alternative)
 }
 
 /// The snapshots in the paper's phases of the first observed node that has all of them, or else at the four quarters of
@@ -88,21 +90,18 @@ fn snapshots(inspection: &Inspection) -> Vec<Snapshot<'_>> {
 
 /// The scales, which are the same in all snapshots.
 struct Scales {
-    /// Pixels per metre.
     px_per_m: f64,
-    /// Radius [px] of a node's dot.
-    dot: i32,
+    /// Radius of a node's dot.
+    dot: f64,
     /// Distance of the arrows, in nodes.
     stride: usize,
-    /// Pixels per m/s.
     px_per_m_s: f64,
     /// Largest speed [m/s].
     speed_m_s: f64,
-    /// Pixels per newton.
     px_per_n: f64,
     /// Largest contact force [N].
     force_n: f64,
-    /// Pixels per newton of friction, seen from above.
+    /// Of friction, seen from above.
     px_per_friction_n: f64,
     /// Largest friction force [N].
     friction_n: f64,
@@ -114,8 +113,8 @@ impl Scales {
         let grid = inspection.face_grid();
         let ([hx, hy], [_, ny]) = (grid.width_m, grid.elements);
         let stride = ny.div_ceil(ARROWS);
-        let room = f64::from(WIDTH) / 2.0 - 3.0 * f64::from(MARGIN);
-        let high = f64::from(ROW) - f64::from(TITLE) - f64::from(MARGIN);
+        let room = WIDTH / 2.0 - 3.0 * MARGIN;
+        let high = ROW - TITLE - MARGIN;
         // Below the side view there is space for the forces.
         let px_per_m = (room / ly).min(high / (lz * 1.4)).min(high / lx);
         let plane = || {
@@ -133,7 +132,7 @@ impl Scales {
         let friction_n = largest(|[x, y, _]| x.hypot(y));
         // The longest arrow is one and a half times as long as the distance of the arrows.
         let longest = 1.5 * stride as f64 * hy * px_per_m;
-        let dot = ((0.4 * hx.min(hy) * px_per_m) as i32).clamp(2, DOT);
+        let dot = (0.4 * hx.min(hy) * px_per_m).clamp(1.0, DOT);
         Self {
             px_per_m,
             dot,
@@ -148,35 +147,18 @@ impl Scales {
     }
 }
 
-fn draw_row(
-    area: &Area,
-    inspection: &Inspection,
-    snapshot: &Snapshot,
-    scales: &Scales,
-) -> Result<(), DrawError> {
-    write(area, &snapshot.label, (MARGIN, 34), TEXT, HPos::Left)?;
-    let (left, right) = area.split_horizontally(WIDTH / 2);
-    draw_side(&left, inspection, snapshot.frame, scales)?;
-    draw_face(&right, inspection, snapshot.frame, scales)
-}
-
-/// The middle plane: velocities at its nodes, forces under it.
-fn draw_side(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scales) -> Result<(), DrawError> {
-    let mesh = inspection.mesh();
-    let grid = inspection.face_grid();
+/// The middle plane: velocities at its nodes, forces under it. `top` is the middle of its upper side.
+fn draw_side(svg: &mut Svg, mesh: &PinMesh, grid: &FaceGrid, frame: &Frame, scales: &Scales, top: At) {
     let [_, ly, lz] = mesh.size_m();
-    let middle = i64::from(WIDTH / 4) as f64;
-    let base = f64::from(TITLE) + lz * scales.px_per_m;
-    let pixel = |y: f64, z: f64| (middle + y * scales.px_per_m, base - z * scales.px_per_m);
+    let pixel = |y: f64, z: f64| (top.0 + y * scales.px_per_m, top.1 + (lz - z) * scales.px_per_m);
     let corners = [(-ly / 2.0, 0.0), (ly / 2.0, 0.0), (ly / 2.0, lz), (-ly / 2.0, lz), (-ly / 2.0, 0.0)];
-    let outline = corners.map(|(y, z)| rounded(pixel(y, z)));
-    area.draw(&PathElement::new(outline, GREY.stroke_width(3)))?;
-    for node in middle_plane(mesh, &grid, scales.stride) {
+    svg.lines(&corners.map(|(y, z)| pixel(y, z)), OUTLINE);
+    for node in middle_plane(mesh, grid, scales.stride) {
         let [_, y, z] = mesh.coordinates_m(node);
         let v = &frame.velocity_m_s[3 * node..3 * node + 3];
         let from = pixel(y, z);
         let to = (from.0 + v[1] * scales.px_per_m_s, from.1 - v[2] * scales.px_per_m_s);
-        arrow(area, from, to, BLACK, 2)?;
+        arrow(svg, from, to, Pen::solid(INK, 1.0));
     }
     for (j, slave) in grid.middle().enumerate() {
         let [_, y, _] = mesh.coordinates_m(slave);
@@ -185,12 +167,12 @@ fn draw_side(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scale
         // The arrow of a force on the pin ends at the node on which it acts.
         let from = (tip.0 - friction * scales.px_per_n, tip.1 + normal * scales.px_per_n);
         if node.state != ContactState::Separated && j % scales.stride == 0 {
-            arrow(area, from, tip, colour_of(node.state), 3)?;
+            arrow(svg, from, tip, Pen::solid(colour_of(node.state), 1.5));
         }
-        dot(area, rounded(tip), node.state, scales.dot)?;
+        dot(svg, tip, node.state, scales.dot);
     }
-    write(area, "front", rounded(pixel(-ly / 2.0, -0.12 * lz)), TEXT - 4, HPos::Right)?;
-    write(area, "rear", rounded(pixel(ly / 2.0, -0.12 * lz)), TEXT - 4, HPos::Left)
+    svg.plain(pixel(-ly / 2.0, -0.12 * lz), Anchor::End, INK, TEXT - 2.0, "front");
+    svg.plain(pixel(ly / 2.0, -0.12 * lz), Anchor::Start, INK, TEXT - 2.0, "rear");
 }
 
 /// The nodes of the middle plane that get an arrow: every `stride`th in y and in z.
@@ -217,23 +199,18 @@ fn middle_plane(mesh: &PinMesh, grid: &FaceGrid, stride: usize) -> Vec<usize> {
     nearest.into_values().collect()
 }
 
-/// The contact face from above: states and friction forces.
-fn draw_face(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scales) -> Result<(), DrawError> {
-    let mesh = inspection.mesh();
-    let grid = inspection.face_grid();
+/// The contact face from above: states and friction forces. `top` is the middle of its upper side.
+fn draw_face(svg: &mut Svg, mesh: &PinMesh, grid: &FaceGrid, frame: &Frame, scales: &Scales, top: At) {
     let [lx, ly, _] = mesh.size_m();
-    let middle = f64::from(WIDTH / 4);
-    let centre = f64::from(TITLE) + lx / 2.0 * scales.px_per_m;
-    let pixel = |x: f64, y: f64| (middle + y * scales.px_per_m, centre - x * scales.px_per_m);
+    let pixel = |x: f64, y: f64| (top.0 + y * scales.px_per_m, top.1 + (lx / 2.0 - x) * scales.px_per_m);
     let corners = [(-1.0, -1.0), (1.0, -1.0), (1.0, 1.0), (-1.0, 1.0), (-1.0, -1.0)];
-    let outline = corners.map(|(x, y)| rounded(pixel(x * lx / 2.0, y * ly / 2.0)));
-    area.draw(&PathElement::new(outline, GREY.stroke_width(3)))?;
+    svg.lines(&corners.map(|(x, y)| pixel(x * lx / 2.0, y * ly / 2.0)), OUTLINE);
     let place = |slave| {
         let [x, y, _] = mesh.coordinates_m(slave);
         pixel(x, y)
     };
     for (slave, node) in frame.face.iter().enumerate() {
-        dot(area, rounded(place(slave)), node.state, scales.dot)?;
+        dot(svg, place(slave), node.state, scales.dot);
     }
     // The arrows are drawn after the dots, which would hide them.
     for (slave, node) in frame.face.iter().enumerate() {
@@ -242,70 +219,48 @@ fn draw_face(area: &Area, inspection: &Inspection, frame: &Frame, scales: &Scale
             let from = place(slave);
             let [sideways, along, _] = node.force_n;
             let scale = scales.px_per_friction_n;
-            let to = (from.0 + along * scale, from.1 - sideways * scale);
-            arrow(area, from, to, BLACK, 3)?;
+            arrow(svg, from, (from.0 + along * scale, from.1 - sideways * scale), Pen::solid(INK, 1.5));
         }
     }
-    Ok(())
 }
 
 /// Draws a node. Its shape shows the state as well.
-fn dot(area: &Area, at: (i32, i32), state: ContactState, radius: i32) -> Result<(), DrawError> {
+fn dot(svg: &mut Svg, at: At, state: ContactState, radius: f64) {
     let colour = colour_of(state);
     match state {
-        ContactState::Stick => area.draw(&Circle::new(at, radius, colour.filled())),
+        ContactState::Stick => svg.circle(at, radius, Some(colour), None),
         ContactState::Slip => {
-            let corners =
-                [(0, -radius), (radius, 0), (0, radius), (-radius, 0)].map(|(dx, dy)| (at.0 + dx, at.1 + dy));
-            area.draw(&Polygon::new(corners, colour))
+            let corners = [(0.0, -radius), (radius, 0.0), (0.0, radius), (-radius, 0.0)];
+            svg.polygon(&corners.map(|(dx, dy)| (at.0 + dx, at.1 + dy)), (colour, 1.0), None);
         }
-        ContactState::Separated => area.draw(&Circle::new(at, radius - 1, colour.stroke_width(2))),
+        ContactState::Separated => {
+            svg.circle(at, (radius - 0.5).max(0.8), None, Some(Pen::solid(colour, 1.0)));
+        }
     }
 }
 
-/// Shorter arrows [px] are not drawn, because their direction could not be seen.
-const SHORTEST: f64 = 3.0;
-
-fn arrow(
-    area: &Area,
-    from: (f64, f64),
-    to: (f64, f64),
-    colour: RGBColor,
-    width: u32,
-) -> Result<(), DrawError> {
-    let (dx, dy) = (to.0 - from.0, to.1 - from.1);
-    let length = dx.hypot(dy);
-    if length < SHORTEST {
-        return Ok(());
+fn arrow(svg: &mut Svg, from: At, to: At, pen: Pen) {
+    if (to.0 - from.0).hypot(to.1 - from.1) >= SHORTEST {
+        svg.arrow(&[from, to], pen);
     }
-    area.draw(&PathElement::new([rounded(from), rounded(to)], colour.stroke_width(width)))?;
-    let (ux, uy) = (dx / length, dy / length);
-    let head = (0.4 * length).min(14.0);
-    let corner = |side: f64| {
-        rounded((to.0 - head * ux - 0.4 * side * head * uy, to.1 - head * uy + 0.4 * side * head * ux))
-    };
-    area.draw(&Polygon::new([rounded(to), corner(1.0), corner(-1.0)], colour))
 }
 
-fn draw_legend(area: &Area, scales: &Scales) -> Result<(), DrawError> {
-    let mut x = MARGIN + DOT;
-    for state in STATES {
-        dot(area, (x, 30), state, DOT)?;
-        write(area, state.name(), (x + 26, 30), TEXT, HPos::Left)?;
-        x += 240;
+fn draw_legend(svg: &mut Svg, scales: &Scales, top: f64) {
+    for (number, state) in STATES.into_iter().enumerate() {
+        let at = (MARGIN + DOT + 104.0 * number as f64, top + 14.0);
+        dot(svg, at, state, DOT);
+        svg.plain((at.0 + 12.0, at.1), Anchor::Start, INK, TEXT, state.name());
     }
-    let scale = |x: f64, length: f64, colour, width, text: &str| {
-        arrow(area, (x, 95.0), (x + length, 95.0), colour, width)?;
-        write(area, text, ((x + length) as i32 + 24, 95), TEXT, HPos::Left)
+    let mut scale = |x: f64, length: f64, pen: Pen, text: &str| {
+        let y = top + 44.0;
+        arrow(svg, (x, y), (x + length, y), pen);
+        svg.plain((x + length + 10.0, y), Anchor::Start, INK, TEXT, text);
     };
     let text = format!("velocity {:.0} mm/s", scales.speed_m_s * 1e3);
-    scale(f64::from(MARGIN), scales.speed_m_s * scales.px_per_m_s, BLACK, 2, &text)?;
+    scale(MARGIN, scales.speed_m_s * scales.px_per_m_s, Pen::solid(INK, 1.0), &text);
     let text = format!("contact force {:.2} N", scales.force_n);
-    scale(540.0, scales.force_n * scales.px_per_n, colour_of(ContactState::Slip), 3, &text)?;
+    let pen = Pen::solid(colour_of(ContactState::Slip), 1.5);
+    scale(0.29 * WIDTH, scales.force_n * scales.px_per_n, pen, &text);
     let text = format!("friction, from above, {:.3} N", scales.friction_n);
-    scale(1140.0, scales.friction_n * scales.px_per_friction_n, BLACK, 3, &text)
-}
-
-fn rounded((x, y): (f64, f64)) -> (i32, i32) {
-    (x.round() as i32, y.round() as i32)
+    scale(0.62 * WIDTH, scales.friction_n * scales.px_per_friction_n, Pen::solid(INK, 1.5), &text);
 }

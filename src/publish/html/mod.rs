@@ -53,6 +53,15 @@ fn block(block: &Block) -> Markup {
             [only] => of_figure(only),
             several => html! { div.drawings { @for own in several { (of_figure(own)) } } },
         },
+        Block::Data(files) => html! {
+            p {
+                "Data:"
+                @for (file, csv) in files {
+                    @if let Some(csv) = csv { " " (download(file, csv)) }
+                    @else { " " code { (file) } " (in the folder of this page)" }
+                }
+            }
+        },
         Block::Tiles(own) => {
             let tile = |tile: &Tile| (tile.name.clone(), tile.value.clone(), tile.note.clone());
             let own: Vec<_> = own.iter().map(tile).collect();
