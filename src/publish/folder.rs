@@ -1,6 +1,7 @@
 //! Files that are replaced as a whole, alone and in a folder.
 
 use super::error::PublishError;
+use super::table::{Format, Table};
 use std::fs;
 use std::io::{self, BufWriter, Write};
 use std::path::{Component, Path, PathBuf};
@@ -47,6 +48,16 @@ impl<'a> Folder<'a> {
             contents.extend_from_slice(text.as_bytes());
             Ok(())
         })
+    }
+
+    /// Writes a table as CSV, and returns the name of the file.
+    ///
+    /// # Errors
+    /// As [`Folder::write_text`].
+    pub fn write_table(&mut self, table: &Table) -> Result<String, PublishError> {
+        let name = format!("{}.csv", table.stem);
+        self.write_with(&name, |out| table.write(Format::Csv, out))?;
+        Ok(name)
     }
 
     /// Writes a file whose contents `fill` gives.

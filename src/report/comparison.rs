@@ -93,7 +93,8 @@ impl Comparison {
         let scalars: Vec<&'static Scalar> =
             [*MU_STAR, *FREQUENCY].into_iter().chain(view.y.iter().copied()).collect();
         let by = Some(layout.by).filter(|by| *by != SOURCE);
-        let names: Vec<&str> = layout.further.iter().copied().chain(by).chain([layout.axis]).collect();
+        let outer = layout.further.iter().copied().chain(by);
+        let names: Vec<&str> = outer.chain(layout.scattered.iter().copied()).chain([layout.axis]).collect();
         let mut comparison = Self {
             reference: layout.sources[0].name.to_owned(),
             contradictions: Vec::new(),
@@ -158,7 +159,7 @@ impl Comparison {
             {
                 self.compared_squeals += 1;
                 if squeals != of_reference {
-                    let (parameters, texts) = self.parameters(layout, group, by_of_curve, at);
+                    let (parameters, texts) = self.parameters(layout, group, by_of_curve, job);
                     self.contradictions.push(Contradiction {
                         source: job.row.study.clone(),
                         is_measured: job.row.is_measured(),
@@ -173,7 +174,7 @@ impl Comparison {
             for scalar in scalars.iter().filter(|scalar| scalar.is_settled(job.row)) {
                 let Some(value) = scalar.value(job.row) else { continue };
                 let Some(reference) = reference_at(curve, x, x_axis, scalar) else { continue };
-                let (parameters, texts) = self.parameters(layout, group, by_of_curve, at);
+                let (parameters, texts) = self.parameters(layout, group, by_of_curve, job);
                 let words = [group.caption(), layout.series_name(&layout.series[*index])];
                 self.differences.push(Difference {
                     source: job.row.study.clone(),
@@ -202,10 +203,12 @@ impl Comparison {
         layout: &Layout,
         group: &Group,
         by: Option<&Value>,
-        at: &Value,
+        job: &PlacedJob,
     ) -> (Vec<Value>, Vec<String>) {
-        let values: Vec<Value> =
-            group.key.iter().map(|(_, value)| value).chain(by).chain([at]).cloned().collect();
+        let at = &group.axis_values[job.axis_index];
+        let scattered = layout.scattered.iter().map(|name| job.row.parameter(name));
+        let outer = group.key.iter().map(|(_, value)| value).chain(by).cloned();
+        let values: Vec<Value> = outer.chain(scattered).chain([at.clone()]).collect();
         let texts = self.names.iter().zip(&values).map(|(name, value)| layout.dimension(name).text(value));
         let texts = texts.collect();
         (values, texts)

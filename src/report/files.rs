@@ -16,6 +16,7 @@ use super::spectra;
 use super::stability::{self, Analysis};
 use super::stale::could_be_of_a_report;
 use super::tables::{self, Quantity};
+use crate::publish::table::Format;
 use crate::publish::{FigureError, Folder, PublishError};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::path::{Path, PathBuf};
@@ -77,7 +78,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let figures = || plots.clone().into_par_iter().map(draw);
     let jobs = || {
         let mut out = Vec::new();
-        export::csv(given.rows, &mut out).map(|()| out)
+        export::write(given.rows, Format::Csv, &mut out).map(|()| out)
     };
     let residuals = || figure::residuals::draw(rows);
     let ((tables, figures), (jobs, residuals)): ((Vec<_>, Vec<_>), _) = rayon::join(
@@ -89,8 +90,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     }
     for table in &tables {
         folder.write_text(&format!("{}.md", table.stem), &page::of_table(table, title))?;
-        folder
-            .write_with(&format!("{}.csv", table.stem), |out| tables::csv_of(&layout, table.quantity, out))?;
+        folder.write_table(&tables::table_of(&layout, table.quantity, table.stem))?;
     }
 
     let mut links = Vec::new();
@@ -111,11 +111,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
 
     let mut data_files = write_data(&mut folder, rows, &layout, &plots)?;
     if !spectra.is_empty() {
-        folder.write_with("waterfall.csv", |out| {
-            *out = figure::waterfall::csv(&layout, &spectra)?;
-            Ok(())
-        })?;
-        data_files.push("waterfall.csv".to_owned());
+        data_files.push(folder.write_table(&spectra::table(&layout, &spectra))?);
     }
     let programs = write_programs(&mut folder, rows, out_dir)?;
     data_files.extend(programs.iter().map(|_| program::WINDOWS.to_owned()));
@@ -125,7 +121,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         .then(|| Analysis::of(report.stability, &stability_rows, report.along, view));
     let of_stability = analysis.as_ref().map(|own| stability::write_files(own, &mut folder)).transpose()?;
     let stability = analysis.as_ref().zip(of_stability.as_ref());
-    data_files.extend(of_stability.iter().flat_map(|files| &files.data).map(|(file, _)| (*file).to_owned()));
+    data_files.extend(of_stability.iter().flat_map(|files| &files.data).map(|(file, _)| file.clone()));
     folder.write_with("jobs.csv", |out| {
         *out = jobs?;
         Ok(())
@@ -142,7 +138,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         ));
     }
     if let Some(comparison) = &comparison {
-        folder.write_with("differences.csv", |out| comparison_files::csv(comparison, out))?;
+        folder.write_table(&comparison_files::table(comparison))?;
     }
     let differences = comparison.as_ref();
     let mut section = report.findings.map_or_else(String::new, Findings::markdown);
@@ -202,27 +198,15 @@ fn write_data(
         if data_files.contains(&file) {
             continue;
         }
-        folder.write_with(&file, |out| {
-            *out = export::selection(rows, &layout.further, &columns)?;
-            Ok(())
-        })?;
-        data_files.push(file);
+        data_files.push(folder.write_table(&export::selection(stem, rows, &layout.varied, &columns))?);
     }
     Ok(data_files)
 }
 
 /// Writes the tables of what a study that grows has found, and returns the files.
 fn write_findings(folder: &mut Folder, report: &Report) -> Result<Vec<String>, PublishError> {
-    let mut files = Vec::new();
-    for table in report.findings.iter().flat_map(|own| own.tables()) {
-        let file = format!("{}.csv", table.stem);
-        folder.write_with(&file, |out| {
-            *out = table.csv()?;
-            Ok(())
-        })?;
-        files.push(file);
-    }
-    Ok(files)
+    let tables = report.findings.iter().flat_map(|own| own.tables());
+    tables.map(|found| folder.write_table(&found.table)).collect()
 }
 
 /// Writes the figures and the windows of the jobs whose speed or load changes in time; none if there are no such jobs.

@@ -309,10 +309,7 @@ fn see_files(what: &str, files: &str) -> Markup {
 }
 
 fn csv<'a>(parts: &Parts, rows: impl Iterator<Item = &'a JobRow>, data: &DataFile) -> String {
-    // The CSV consists of strings, so it is valid UTF-8; writing to memory cannot fail.
-    export::selection(rows, &parts.layouts.all.further, &data.columns)
-        .map(|bytes| String::from_utf8_lossy(&bytes).into_owned())
-        .unwrap_or_default()
+    export::selection(data.stem.clone(), rows, &parts.layouts.all.varied, &data.columns).csv()
 }
 
 /// The pages of the inspected jobs of a group by line and column of their cells.

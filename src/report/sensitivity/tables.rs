@@ -2,6 +2,7 @@
 
 use super::design::Design;
 use super::types::{Index, Indices, REGIME, Sensitivity};
+use crate::publish::table::{Column, FileColumns, Table};
 use crate::publish::value::{self, count};
 use crate::report::Scalar;
 use std::fmt::Write;
@@ -102,32 +103,61 @@ pub fn markdown(found: &[Sensitivity]) -> String {
     text
 }
 
-/// The indices as CSV: quantity, points, parameter, index, its value and its interval.
-pub fn csv(found: &[Sensitivity]) -> String {
-    let mut text = "quantity,points,parameter,index,value,low,high,by_chance\n".to_owned();
-    for one in found {
-        for Indices { name, first_order, total, pawn, effects } in &one.parameters {
-            let last_name = if one.of == REGIME { "shares" } else { "pawn" };
-            let sizes = effects.map(|(index, _)| index);
-            let deviations = effects.map(|(_, deviation)| Index { value: deviation, interval: None });
-            let all = [
-                ("first_order", first_order),
-                ("total", total),
-                (last_name, pawn),
-                ("effects_mean_size", &sizes),
-                ("effects_deviation", &deviations),
-            ];
-            for (kind, index) in all {
-                if let Some(Index { value, interval }) = index {
-                    let chance = one.chance.filter(|_| kind == last_name);
-                    let [low, high] = interval.map_or([None; 2], |bounds| bounds.map(Some));
-                    let [low, high, chance] = [low, high, chance]
-                        .map(|number| number.map(|number| number.to_string()).unwrap_or_default());
-                    let Sensitivity { of, points, .. } = one;
-                    let _ = writeln!(text, "{of},{points},{name},{kind},{value},{low},{high},{chance}");
-                }
-            }
-        }
+/// An index of a parameter.
+#[derive(Clone, Copy)]
+struct Line<'a> {
+    of: &'a Sensitivity,
+    parameter: &'a str,
+    kind: &'static str,
+    index: Index,
+}
+
+#[rustfmt::skip]
+fn columns<'a>() -> [Column<Line<'a>>; 8] {
+    [
+        Column::new("quantity", "", "quantity, or regime", |line| line.of.of.as_str().into()),
+        Column::new("points", "", "jobs that count", |line| line.of.points.into()),
+        Column::new("parameter", "", "parameter", |line| line.parameter.into()),
+        Column::new("index", "", "which index: first_order, total, pawn, shares, effects_mean_size or effects_deviation", |line| line.kind.into()),
+        Column::new("value", "", "its value; that of an elementary effect in the unit of the quantity", |line| line.index.value.into()),
+        Column::new("low", "", "5 % of the resamples are below; empty on a full grid", |line| line.index.interval.map(|[low, _]| low).into()),
+        Column::new("high", "", "95 % of the resamples are below; empty on a full grid", |line| line.index.interval.map(|[_, high]| high).into()),
+        Column::new("by_chance", "", "how large the index can be by chance; empty on a full grid", |line| line.of.chance.filter(|_| matches!(line.kind, PAWN | SHARES)).into()),
+    ]
+}
+
+const PAWN: &str = "pawn";
+const SHARES: &str = "shares";
+
+/// The indices: quantity, points, parameter, index, its value and its interval.
+pub fn indices_table(found: &[Sensitivity]) -> Table {
+    fn of_parameter<'a>(of: &'a Sensitivity, own: &'a Indices) -> impl Iterator<Item = Line<'a>> {
+        let Indices { name, first_order, total, pawn, effects } = own;
+        let deviation = effects.map(|(_, deviation)| Index { value: deviation, interval: None });
+        let all = [
+            ("first_order", *first_order),
+            ("total", *total),
+            (if of.of == REGIME { SHARES } else { PAWN }, *pawn),
+            ("effects_mean_size", effects.map(|(index, _)| index)),
+            ("effects_deviation", deviation),
+        ];
+        all.into_iter()
+            .filter_map(move |(kind, index)| Some(Line { of, parameter: name, kind, index: index? }))
     }
-    text
+    let lines = found.iter().flat_map(|of| of.parameters.iter().flat_map(move |own| of_parameter(of, own)));
+    Table::of("sensitivity", &columns(), &lines.collect::<Vec<_>>())
+}
+
+/// The columns, for the page of columns.
+pub(in crate::report) fn described() -> [FileColumns; 2] {
+    let points = "A line is a job that has ended, with the parameters that vary and the quantities. A parameter that is a name has numbers \
+                  from 0.";
+    [
+        FileColumns::new(
+            &["sensitivity.csv"],
+            "A line is an [index](commands.md#sensitivity) of a parameter.",
+            &columns(),
+        ),
+        FileColumns::new::<Line>(&["sensitivity_points.csv"], points, []),
+    ]
 }
