@@ -27,13 +27,18 @@ pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
     let which = if args.all { ExportColumns::All } else { ExportColumns::Plain };
     let of_export = || sweep::columns(which, &[]);
     let text = match (args.tables, args.json) {
-        (true, true) => format!("{:#}\n", columns::of_files().iter().map(file_as_json).collect::<Value>()),
-        (true, false) => columns::of_files().iter().map(file_as_text).collect::<Vec<_>>().join("\n"),
+        (true, true) => format!("{:#}\n", files().map(|own| file_as_json(&own)).collect::<Value>()),
+        (true, false) => files().map(|own| file_as_text(&own)).collect::<Vec<_>>().join("\n"),
         (false, true) => format!("{:#}\n", of_export().iter().map(as_json).collect::<Value>()),
         (false, false) => as_text(0, of_export().iter().map(|own| &own.column.head)),
     };
     print(&text)?;
     Ok(exit::SUCCESS)
+}
+
+/// What the other tables have.
+fn files() -> impl Iterator<Item = FileColumns> {
+    columns::of_files().into_iter().chain([sweep::columns_of_history()])
 }
 
 fn as_json(own: &ExportColumn) -> Value {

@@ -396,6 +396,22 @@ mod tests {
         assert_eq!(table.text(), "mode           rate\nfirst, \"fast\"   0.3\nb                 –\n");
     }
 
+    /// Protects: every number and every text is read back as it was.
+    #[test]
+    fn cells_read_back_exactly() {
+        let numbers = [0.1 + 0.2, 1.0 / 3.0, 2.5e-7, 1.234_567_890_123_456_7e-300, 6.02e23, -1e-5, 0.0];
+        let text = "first line, with \"quotes\"\nsecond line; a comma, and a\r\nthird";
+        let lines = numbers.map(|x| vec![x.into(), text.into()]).to_vec();
+        let heads = ["x", "text"].map(|name| Head::new(name, "", "")).to_vec();
+        let csv = Table { stem: "numbers".into(), heads, lines }.csv();
+        let mut reader = ::csv::Reader::from_reader(csv.as_bytes());
+        for (x, line) in numbers.iter().zip(reader.records()) {
+            let line = line.unwrap();
+            assert_eq!((line[0].parse().ok(), &line[1]), (Some(*x), text));
+            assert!(line[0].len() <= 24, "{} is not the shortest form", &line[0]);
+        }
+    }
+
     /// Protects: cells stand below each other; long ones are broken between words within the terminal and keep all words.
     #[test]
     fn cells_are_aligned_and_broken() {

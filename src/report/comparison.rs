@@ -152,6 +152,8 @@ impl Comparison {
             if !is_own(&by) {
                 continue;
             }
+            let alike = (!layout.scattered.is_empty()).then(|| alike(curve, x, layout, job.row));
+            let curve = alike.as_ref().unwrap_or(curve);
             place = place.max(position_in(curve, x, x_axis));
             let by_of_curve = Some(by).filter(|_| layout.by != SOURCE);
             if let Some(squeals) = job.row.squeals()
@@ -424,6 +426,16 @@ fn position_in(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis) -> Option<Place>
         return Some(Place::Equal);
     }
     neighbours(curve, x, x_axis).map(|_| Place::Between)
+}
+
+/// The points of a curve at a place that have all scattered parameters of a row, as far as those are known: between points that are no grid nothing
+/// can be interpolated.
+fn alike<'a>(curve: &[(f64, &'a JobRow)], x: f64, layout: &Layout, row: &JobRow) -> Vec<(f64, &'a JobRow)> {
+    let is_alike = |(_, other): &&(f64, &JobRow)| {
+        let mut values = layout.scattered.iter().map(|name| [row.parameter(name), other.parameter(name)]);
+        values.all(|[own, other]| own.is_null() || value::text(&own) == value::text(&other))
+    };
+    points_at(curve, x).iter().filter(is_alike).copied().collect()
 }
 
 /// The positions of the next jobs on both sides; none if values cannot be interpolated.

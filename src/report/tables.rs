@@ -1,7 +1,7 @@
 //! Tables of the same layout as the curves: speed by friction coefficient, one cell per job.
 
 use super::digits;
-use super::layout::{Group, Layout};
+use super::layout::{Group, Layout, PlacedJob};
 use super::markdown;
 use super::parameters;
 use super::row::{JobRow, RowState};
@@ -184,16 +184,38 @@ pub(super) fn table_of(layout: &Layout, quantity: Quantity, stem: &'static str) 
         let name = format!("{}={}{source}", layout.by, value::rounded_text(&series.value));
         Head::new(name, "", format!("{} there", quantity.title()))
     });
-    let names = layout.further.iter().chain([&layout.axis]);
+    let names = layout.further.iter().chain(&layout.scattered).chain([&layout.axis]);
     let heads = names.map(|name| parameters::head(name)).chain(of_series).collect();
+    let of_point = |group: &Group, job: &PlacedJob| {
+        let key = group.key.iter().map(|(_, value)| value.clone());
+        let scattered = layout.scattered.iter().map(|name| job.row.parameter(name));
+        let at = value::rounded_value(&group.axis_values[job.axis_index]);
+        let cell = cell_or_null(quantity.cell(job.row, Digits::Fixed));
+        let cells =
+            (0..layout.series.len()).map(|own| if own == job.series { cell.clone() } else { Value::Null });
+        key.chain(scattered).chain([at]).chain(cells).collect()
+    };
+    if !layout.scattered.is_empty() {
+        // Two points at one place along the axis are no neighbours.
+        let jobs = |group: &Group| {
+            let mut jobs: Vec<PlacedJob> = group.jobs.clone();
+            jobs.sort_by_key(|job| job.axis_index);
+            jobs.into_iter().map(|job| of_point(group, &job)).collect::<Vec<_>>()
+        };
+        return Table { stem: stem.into(), heads, lines: layout.groups.iter().flat_map(jobs).collect() };
+    }
     let of_group = |group| {
         lines(layout, group, quantity, Digits::Fixed).map(|(at, cells)| {
             let key = group.key.iter().map(|(_, value)| value.clone());
-            let cells = cells.into_iter().map(|cell| if cell == MISSING { Value::Null } else { cell.into() });
+            let cells = cells.into_iter().map(cell_or_null);
             key.chain([value::rounded_value(at)]).chain(cells).collect()
         })
     };
     Table { stem: stem.into(), heads, lines: layout.groups.iter().flat_map(of_group).collect() }
+}
+
+fn cell_or_null(cell: String) -> Value {
+    if cell == MISSING { Value::Null } else { cell.into() }
 }
 
 /// What the columns are, for the page of columns.

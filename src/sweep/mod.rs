@@ -48,6 +48,8 @@ pub use export::{ExportColumns, Unreadable, columns, export, export_windows};
 pub use forecast::{Forecast, Group, Kind, Known, Speed, TimeRange, expected_s_per_cost};
 pub use growth::{PLANNER, read_growth};
 pub use history::History;
+#[cfg(feature = "cli")]
+pub(crate) use history::described as columns_of_history;
 pub use measured::MeasuredError;
 pub use outlook::{Outlook, available_threads};
 pub use plan::{Plan, Submission};

@@ -5,7 +5,7 @@ mod fixed;
 
 pub use fixed::{FURTHER, PLAIN};
 
-use super::figure::{Plot, RESIDUALS, RUN_TIMES};
+use super::figure::{DataFile, Plot, RESIDUALS, RUN_TIMES};
 use super::parameters::is_further;
 use super::row::JobRow;
 use super::{comparison_files, growth, pareto, sensitivity, spectra, stability, tables, windows};
@@ -144,15 +144,20 @@ pub fn of_files() -> Vec<FileColumns> {
                    So have tables of a quantity and tables of points.";
     let jobs = FileColumns { files: vec!["jobs.csv".to_owned()], lines: further, heads: of_chains.into() };
     let mut data = Vec::<FileColumns>::new();
-    let quantity = ("QUANTITY_points".into(), vec!["regime"].into());
-    let behind = Plot::ALL.map(Plot::data).into_iter().chain([RESIDUALS, RUN_TIMES]);
-    for (stem, columns) in behind.map(|data| (data.stem, data.columns)).chain([quantity]) {
+    for DataFile { stem, columns } in Plot::ALL.map(Plot::data).into_iter().chain([RESIDUALS, RUN_TIMES]) {
         let file = format!("{stem}.csv");
         if data.iter().all(|known| known.files[0] != file) {
             let heads = selected(&columns).map(|own| own.column.head.clone()).collect();
             data.push(FileColumns { files: vec![file], lines: "A line is a job of a figure.", heads });
         }
     }
+    let mut heads: Vec<Head> = selected(&["regime"]).map(|own| own.column.head.clone()).collect();
+    heads.push(any_quantity());
+    data.push(FileColumns {
+        files: vec!["QUANTITY_points.csv".to_owned()],
+        lines: "A line is a job of a figure.",
+        heads,
+    });
     [jobs, tables::described()]
         .into_iter()
         .chain(data)
@@ -162,6 +167,11 @@ pub fn of_files() -> Vec<FileColumns> {
         .chain(pareto::described())
         .chain(stability::described())
         .collect()
+}
+
+/// The head that stands for columns of quantities on the page of columns.
+pub(super) fn any_quantity() -> Head {
+    Head::new("QUANTITY", "", "the quantity, a column of the export")
 }
 
 /// The columns of the data behind a figure that shows these: a job's key, ω and μ come first, and its status last.

@@ -6,6 +6,7 @@ use super::ranges::{Known, Onset, Speed};
 use crate::analysis::ComplexMode;
 use crate::publish::table::{Column, FileColumns, Head, Table};
 use crate::report::export::add_further_names;
+use crate::report::layout::Group;
 use crate::report::parameters::{self, MU, OMEGA};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::view::View;
@@ -129,16 +130,31 @@ pub fn thresholds_table(points: &[StabilityPoint], along: &Along) -> (Table, Vec
 /// Calls `visit` with the parameters of each speed and its modes.
 fn for_each_speed<'a>(analysis: &'a Analysis, mut visit: impl FnMut(Vec<Value>, &'a Speed)) {
     for (group, modes) in analysis.layout.groups.iter().zip(&analysis.groups) {
-        for speed in &modes.speeds {
-            let values = [&speed.omega].into_iter().chain(group.key.iter().map(|(_, value)| value));
-            visit(values.cloned().collect(), speed);
+        for (index, speed) in modes.speeds.iter().enumerate() {
+            let key = group.key.iter().map(|(_, value)| value.clone());
+            let scattered = scattered(analysis).map(|name| common(group, index, name));
+            visit([speed.omega.clone()].into_iter().chain(key).chain(scattered).collect(), speed);
         }
     }
 }
 
 fn place_heads(analysis: &Analysis) -> impl Iterator<Item = Head> {
     let names = [analysis.along.across()].into_iter().chain(analysis.layout.further.iter().copied());
-    names.map(parameters::head)
+    names.chain(scattered(analysis)).map(parameters::head)
+}
+
+/// The parameters of points that are no grid, besides those of the series and of the thresholds.
+fn scattered<'a>(analysis: &'a Analysis) -> impl Iterator<Item = &'a str> {
+    let is_placed = |name: &&str| *name == analysis.along.across() || *name == analysis.along.parameter;
+    analysis.layout.scattered.iter().copied().filter(move |name| !is_placed(name))
+}
+
+/// The value of a parameter that all points of a series have; null if they differ.
+fn common(group: &Group, series: usize, name: &str) -> Value {
+    let mut values =
+        group.jobs.iter().filter(|job| job.axis_index == series).map(|job| job.row.parameter(name));
+    let first = values.next().unwrap_or_default();
+    if values.all(|value| value == first) { first } else { Value::Null }
 }
 
 /// The columns, for the page of columns.
