@@ -1,10 +1,10 @@
-//! `tribosweep columns`: what the columns of the export mean.
+//! `tribosweep columns`: what the columns of the export and of other tables mean.
 
-use super::aligned;
 use super::error::CliError;
 use super::output::{print, terminal_width};
 use crate::exit;
-use crate::report::columns::Column;
+use crate::publish::table::{FileColumns, Head, listed};
+use crate::report::columns::{self, ExportColumn};
 use crate::sweep::{self, ExportColumns};
 use serde_json::{Value, json};
 
@@ -14,36 +14,57 @@ pub(crate) struct Args {
     /// The columns of `export --all`: every input and the whole record too.
     #[arg(long)]
     all: bool,
+    /// The columns of the other tables, which are those of reports.
+    #[arg(long, conflicts_with = "all")]
+    tables: bool,
     /// Print them as JSON.
     #[arg(long)]
     json: bool,
 }
 
-/// Prints the columns. The grid parameters of a study are further columns of its export.
+/// Prints the columns. The grid parameters of a study are further columns of its export and of its tables.
 pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
     let which = if args.all { ExportColumns::All } else { ExportColumns::Plain };
-    let columns = sweep::columns(which, &[]);
-    let text = if args.json {
-        format!("{:#}\n", columns.iter().map(as_json).collect::<Value>())
-    } else {
-        let cells: Vec<[String; 3]> = columns.iter().map(cells).collect();
-        aligned::lines(0, &cells, terminal_width())
+    let of_export = || sweep::columns(which, &[]);
+    let text = match (args.tables, args.json) {
+        (true, true) => format!("{:#}\n", files().map(|own| file_as_json(&own)).collect::<Value>()),
+        (true, false) => files().map(|own| file_as_text(&own)).collect::<Vec<_>>().join("\n"),
+        (false, true) => format!("{:#}\n", of_export().iter().map(as_json).collect::<Value>()),
+        (false, false) => as_text(0, of_export().iter().map(|own| &own.column.head)),
     };
     print(&text)?;
     Ok(exit::SUCCESS)
 }
 
-fn as_json(column: &Column) -> Value {
-    let unit = Some(&column.unit).filter(|unit| !unit.is_empty());
-    json!({
-        "name": column.name,
-        "unit": unit,
-        "meaning": column.meaning,
-        "group": column.group.name(),
-    })
+/// What the other tables have.
+fn files() -> impl Iterator<Item = FileColumns> {
+    columns::of_files().into_iter().chain([sweep::columns_of_history()])
 }
 
-fn cells(column: &Column) -> [String; 3] {
-    let unit = if column.unit.is_empty() { String::new() } else { format!("[{}]", column.unit) };
-    [column.name.to_string(), unit, column.meaning.to_string()]
+fn as_json(own: &ExportColumn) -> Value {
+    let mut column = head_as_json(&own.column.head);
+    column["group"] = own.group.name().into();
+    column
+}
+
+fn head_as_json(head: &Head) -> Value {
+    let unit = Some(&head.unit).filter(|unit| !unit.is_empty());
+    json!({ "name": head.name, "unit": unit, "meaning": head.meaning })
+}
+
+fn file_as_json(own: &FileColumns) -> Value {
+    let heads: Value = own.heads.iter().map(head_as_json).collect();
+    json!({ "files": own.files, "lines": own.lines, "columns": heads })
+}
+
+fn file_as_text(own: &FileColumns) -> String {
+    format!("{}\n{}", own.files.join(", "), as_text(2, own.heads.iter()))
+}
+
+fn as_text<'a>(indent: usize, heads: impl Iterator<Item = &'a Head>) -> String {
+    let cells = |head: &Head| {
+        let unit = if head.unit.is_empty() { String::new() } else { format!("[{}]", head.unit) };
+        [head.name.to_string(), unit, head.meaning.to_string()]
+    };
+    listed(indent, &heads.map(cells).collect::<Vec<_>>(), terminal_width())
 }

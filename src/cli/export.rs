@@ -3,8 +3,9 @@
 use super::error::CliError;
 use super::output::{fill_file, stream};
 use super::unreadable::log_unreadable;
+use crate::publish::table;
 use crate::queue::{Location, Queue};
-use crate::sweep::{self, ExportColumns, ExportFormat, Unreadable};
+use crate::sweep::{self, ExportColumns, Unreadable};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -50,8 +51,8 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     }
     let columns = if args.all { ExportColumns::All } else { ExportColumns::Plain };
     let format = match args.format {
-        Format::Csv => ExportFormat::Csv,
-        Format::Json => ExportFormat::JsonLines,
+        Format::Csv => table::Format::Csv,
+        Format::Json => table::Format::JsonLines,
     };
     let mut unreadable = Unreadable::default();
     let fill = |out: &mut dyn Write| {

@@ -2,6 +2,8 @@
 
 use super::error::CliError;
 use super::output::log;
+use crate::analysis::Workload;
+use crate::publish::table::{Column, Table};
 use crate::publish::value::{count, quantity, significant};
 use crate::queue::{Clock, Location, Queue, Replaced};
 use crate::spec::Precision;
@@ -43,7 +45,7 @@ pub(crate) fn growth(plan: &Plan) -> String {
 
 /// The forecast in lines of at most 80 characters, if the path of the database is short.
 pub(crate) fn as_text(forecast: &Forecast, db: &Location) -> String {
-    let mut lines = table(&forecast.groups);
+    let mut lines = Vec::new();
     lines.push(format!("memory    {}", memory(forecast)));
     let states = forecast.checkpoints_bytes;
     let states =
@@ -59,7 +61,7 @@ pub(crate) fn as_text(forecast: &Forecast, db: &Location) -> String {
         }
     });
     lines.push(format!("time      {}", time(forecast)));
-    lines.join("\n") + "\n"
+    format!("{}{}\n", table(&forecast.groups), lines.join("\n"))
 }
 
 fn memory(forecast: &Forecast) -> String {
@@ -91,57 +93,55 @@ fn with(threads: usize) -> String {
     count(threads, "thread")
 }
 
+/// The columns of a group of jobs.
+const COLUMNS: [Column<Group>; 7] = [
+    Column::new("mesh", "", "", |group| mesh(&group.workload).into()),
+    Column::new("nodes", "", "", |group| nodes(&group.workload).into()),
+    Column::new("jobs", "", "", |group| group.jobs.into()),
+    Column::new("time step", "", "", |group| {
+        format!("{}{}", about(group), quantity(group.workload.time_step_s, "s")).into()
+    }),
+    Column::new("its limit", "", "", |group| {
+        format!("{}{}", about(group), quantity(group.workload.time_step_limit_s, "s")).into()
+    }),
+    Column::new("steps", "", "", |group| format!("{}{}", about(group), grouped(group.steps)).into()),
+    Column::new("memory", "", "", |group| bytes(group.memory_bytes).into()),
+];
+
 /// A table of the groups with a head.
-fn table(groups: &[Group]) -> Vec<String> {
-    let mut rows =
-        vec![["mesh", "nodes", "jobs", "time step", "its limit", "steps", "memory"].map(str::to_owned)];
+fn table(groups: &[Group]) -> String {
     let listed = if groups.len() > MOST_GROUPS { MOST_GROUPS - 1 } else { groups.len() };
-    rows.extend(groups[..listed].iter().map(row));
-    let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
-    let widths: [usize; 7] = std::array::from_fn(width);
-    let line = |row: &[String; 7]| {
-        let [mesh, others @ ..] = row;
-        let cells = others.iter().zip(&widths[1..]).map(|(cell, &width)| format!("  {cell:>width$}"));
-        format!("{mesh:0$}{1}", widths[0], cells.collect::<String>())
-    };
-    let mut lines: Vec<String> = rows.iter().map(line).collect();
-    if listed < groups.len() {
-        let jobs: usize = groups[listed..].iter().map(|group| group.jobs).sum();
-        let jobs = count(jobs, "job");
-        lines.push(format!(
-            "… and {} more meshes, precisions or time steps with {jobs}",
-            groups.len() - listed
-        ));
+    let (shown, left_out) = groups.split_at(listed);
+    let text = Table::of("forecast", &COLUMNS, shown).aligned(|column| column > 0);
+    if left_out.is_empty() {
+        return text;
     }
-    lines
+    let jobs = count(left_out.iter().map(|group| group.jobs).sum::<usize>(), "job");
+    format!("{text}… and {} more meshes, precisions or time steps with {jobs}\n", left_out.len())
 }
 
-fn row(group: &Group) -> [String; 7] {
-    let workload = &group.workload;
-    let about = if workload.is_estimate { "~" } else { "" };
+fn about(group: &Group) -> &'static str {
+    if group.workload.is_estimate { "~" } else { "" }
+}
+
+fn mesh(workload: &Workload) -> String {
     let elements = match workload.elements {
         // A mesh from a file has no directions.
         [count, 1, 1] if workload.is_general => format!("{} elements", grouped(count as u64)),
         [nx, ny, nz] => format!("{nx}×{ny}×{nz}"),
     };
-    let precision = match workload.precision {
-        Precision::Double => "",
-        Precision::Single => ", single",
-    };
-    let disk = if workload.disk_nodes > 0 {
-        format!(" + {}", grouped(workload.disk_nodes as u64))
-    } else {
-        String::new()
-    };
-    [
-        format!("{elements}{precision}"),
-        format!("{}{disk}", grouped(workload.pin_nodes as u64)),
-        group.jobs.to_string(),
-        format!("{about}{}", quantity(workload.time_step_s, "s")),
-        format!("{about}{}", quantity(workload.time_step_limit_s, "s")),
-        format!("{about}{}", grouped(group.steps)),
-        bytes(group.memory_bytes),
-    ]
+    match workload.precision {
+        Precision::Double => elements,
+        Precision::Single => format!("{elements}, single"),
+    }
+}
+
+fn nodes(workload: &Workload) -> String {
+    let pin = grouped(workload.pin_nodes as u64);
+    match workload.disk_nodes {
+        0 => pin,
+        disk => format!("{pin} + {}", grouped(disk as u64)),
+    }
 }
 
 /// `16 275`.

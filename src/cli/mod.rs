@@ -1,7 +1,6 @@
 //! The command line: arguments, messages and exit codes. Each subcommand has a file. Results go to standard output,
 //! everything else to standard error. The work is done by [`sweep`](crate::sweep).
 
-mod aligned;
 mod cancel;
 mod columns;
 mod completions;

@@ -1,9 +1,9 @@
 //! `tribosweep parameters`: the names that a grid and `--set` know.
 
-use super::aligned;
 use super::error::CliError;
 use super::output::{print, terminal_width};
 use crate::exit;
+use crate::publish::table::listed;
 use crate::study::{PARAMETERS, Parameter};
 use serde_json::{Value, json};
 
@@ -21,7 +21,7 @@ pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
         format!("{:#}\n", PARAMETERS.iter().map(as_json).collect::<Value>())
     } else {
         let cells: Vec<[String; 3]> = PARAMETERS.iter().map(cells).collect();
-        aligned::lines(0, &cells, terminal_width())
+        listed(0, &cells, terminal_width())
     };
     print(&text)?;
     Ok(exit::SUCCESS)

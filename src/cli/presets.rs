@@ -3,8 +3,9 @@
 use super::error::CliError;
 use super::output::print;
 use crate::exit;
+use crate::publish::table::{Column, Table, listed};
 use crate::spec::{JobSpec, Scene};
-use crate::study::{Evidence, Preset};
+use crate::study::{Evidence, Preset, PresetEvidence};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -45,37 +46,36 @@ fn settings(preset: Preset) -> Value {
     })
 }
 
+/// A preset with what was measured of it. A test ensures that every shipped preset has evidence.
+type Measured<'a> = (Preset, Option<&'a PresetEvidence>);
+
+fn columns<'a>() -> [Column<Measured<'a>>; 9] {
+    [
+        Column::new("preset", "", "", |(preset, _)| preset.name().into()),
+        Column::new("elements", "", "", |(preset, _)| preset.elements_along_shortest_edge().into()),
+        Column::new("safety", "", "", |(preset, _)| preset.safety_factor().into()),
+        Column::new("tolerance", "", "", |(preset, _)| preset.tolerance().into()),
+        Column::new("drift", "", "", |(preset, _)| preset.drift_tolerance().into()),
+        Column::new("error of μ*", "", "", |(_, of)| of.map(|of| percent(of.mu_star_error)).into()),
+        Column::new("error of f", "", "", |(_, of)| of.map(|of| percent(of.frequency_error)).into()),
+        Column::new("error of shares", "", "", |(_, of)| {
+            of.map(|of| format!("{:.3}", of.shares_error)).into()
+        }),
+        Column::new("cost", "", "", |(_, of)| of.map(|of| format!("{:.2}", of.relative_cost)).into()),
+    ]
+}
+
+fn percent(share: f64) -> String {
+    format!("{:.1} %", 100.0 * share)
+}
+
 fn as_text(evidence: &Evidence) -> String {
-    let mut text = String::from(
-        "preset     elements  safety  tolerance  drift   error of μ*  error of f  error of shares  cost\n",
-    );
-    for preset in Preset::ALL {
-        let _ = write!(
-            text,
-            "{:<11}{:<10}{:<8}{:<11}{:<8}",
-            preset.name(),
-            preset.elements_along_shortest_edge(),
-            preset.safety_factor(),
-            preset.tolerance(),
-            preset.drift_tolerance(),
-        );
-        // A test ensures that every shipped preset has evidence.
-        let _ = match evidence.of(preset) {
-            Some(measured) => writeln!(
-                text,
-                "{:<13}{:<12}{:<17}{:.2}",
-                format!("{:.1} %", 100.0 * measured.mu_star_error),
-                format!("{:.1} %", 100.0 * measured.frequency_error),
-                format!("{:.3}", measured.shares_error),
-                measured.relative_cost,
-            ),
-            None => writeln!(text, "not measured"),
-        };
-    }
+    let measured = Preset::ALL.map(|preset| (preset, evidence.of(preset)));
+    let mut text = Table::of("presets", &columns(), &measured).text();
     let reference = &evidence.reference;
     let [nx, ny, nz] = reference.elements;
     let speeds: Vec<String> = reference.cases.iter().map(|case| case.omega_rpm.to_string()).collect();
-    let ways: String = Preset::ALL.map(way).concat();
+    let ways = listed(0, &Preset::ALL.map(way), None);
     let _ = write!(
         text,
         "\nOn a rigid disk with damping, jobs are solved so (no preset: precision double, start rest, stability simulate):\n{}\n\
@@ -101,10 +101,9 @@ fn as_text(evidence: &Evidence) -> String {
     text
 }
 
-/// A line with the way in which a preset solves jobs, by the names of the parameters that change it.
-fn way(preset: Preset) -> String {
+/// The preset, and the way in which it solves jobs by the names of the parameters that change it.
+fn way(preset: Preset) -> [String; 2] {
     let settings = settings(preset);
     let value = |name: &str| format!("{name} {}", settings[name].as_str().unwrap_or_default());
-    let values = ["precision", "start", "stability"].map(value).join(", ");
-    format!("{:<11}{values}\n", preset.name())
+    [preset.name().to_owned(), ["precision", "start", "stability"].map(value).join(", ")]
 }

@@ -52,9 +52,9 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let path = args.out.of(&names[0]);
     let mut folder = Folder::create(&path, "sensitivity")?;
     folder.write_text("sensitivity.md", &text)?;
-    folder.write_text("sensitivity.csv", &sensitivity::csv(&found))?;
-    let (points, left_out) = sensitivity::points_csv(&rows, &of);
-    folder.write_text("sensitivity_points.csv", &points)?;
+    folder.write_table(&sensitivity::indices_table(&found))?;
+    let (points, left_out) = sensitivity::points_table(&rows, &of);
+    folder.write_table(&points)?;
     folder.finish(|_| false)?;
     if left_out > 0 {
         log(format_args!(

@@ -12,6 +12,7 @@ use super::submit::{Priority, submit};
 use super::work::{Threads, work};
 use crate::analysis::stability::MODES;
 use crate::exit;
+use crate::publish::table::Format;
 use crate::publish::value;
 use crate::queue::{Location, Queue, Scope, Shard};
 use crate::report::{Along, SHAPES, STABILITY_PAGE, modes_table, thresholds_table};
@@ -21,6 +22,9 @@ use crate::sweep::{
 };
 use crate::worker::WorkOptions;
 use std::path::PathBuf;
+
+/// Significant digits of numbers on a terminal.
+const DIGITS: usize = 6;
 
 /// Arguments of `stability`.
 #[derive(Debug, clap::Args)]
@@ -73,15 +77,15 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         let points = read_stability(&mut queue, &name).await?;
         let table = modes_table(points.iter().filter(|point| point.on_grid), args.modes.into());
         if let Some(path) = &args.csv {
-            fill_file(path, |out| Ok(table.write_csv(out)?))?;
+            fill_file(path, |out| Ok(table.write(Format::Csv, out)?))?;
         }
         if args.json {
-            stream(|out| Ok(table.write_json_lines(out)?))?;
+            stream(|out| Ok(table.write(Format::JsonLines, out)?))?;
         } else {
-            print(&table.as_text())?;
+            print(&table.rounded(DIGITS).text())?;
             if sweep.along().is_some() && !points.is_empty() {
                 let (table, notes) = thresholds_table(&points, &shown);
-                print(&format!("\nThresholds\n{}", table.as_text()))?;
+                print(&format!("\nThresholds\n{}", table.rounded(DIGITS).text()))?;
                 for note in &notes {
                     print(&format!("{note}\n"))?;
                 }

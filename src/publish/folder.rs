@@ -1,7 +1,7 @@
 //! Files that are replaced as a whole, alone and in a folder.
 
 use super::error::PublishError;
-use super::table::{Column, Format, Head, TableWriter};
+use super::table::{Column, Format, Head, Table, TableWriter};
 use std::borrow::Borrow;
 use std::fs;
 use std::io::{self, BufWriter, Write};
@@ -56,6 +56,16 @@ impl<'a> Folder<'a> {
         })
     }
 
+    /// Writes a table as CSV, and returns the name of the file.
+    ///
+    /// # Errors
+    /// As [`Folder::write_text`].
+    pub fn write_table(&mut self, table: &Table) -> Result<String, PublishError> {
+        let name = format!("{}.csv", table.stem);
+        self.write_with(&name, |out| table.write(Format::Csv, out))?;
+        Ok(name)
+    }
+
     /// Writes a file whose contents `fill` gives.
     ///
     /// # Errors
@@ -103,7 +113,7 @@ impl<'a> Folder<'a> {
             for of in subjects {
                 writer.line(columns.iter().map(|column| column.value(of.borrow())))?;
             }
-            writer.finish()
+            writer.finish().map(drop)
         })
     }
 

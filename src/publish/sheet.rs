@@ -11,31 +11,6 @@ pub struct Sheet {
     pub groups: Vec<SheetGroup>,
 }
 
-impl Sheet {
-    /// The drawings beside one another, and the table below them.
-    pub fn blocks(&self) -> Vec<Block> {
-        let figure = |drawing: &Drawing| Figure {
-            file: format!("{}.svg", drawing.stem),
-            svg: drawing.svg.clone(),
-            caption: drawing.caption.clone(),
-            data: None,
-        };
-        let line = |line: &SheetLine| {
-            let key = if line.key.is_empty() { Text::default() } else { Text::code(line.key) };
-            let symbol = Span::Symbol(line.symbol.to_owned());
-            vec![symbol.into(), (&line.name).into(), (&line.value).into(), key, line.origin.into()]
-        };
-        let group = |group: &SheetGroup| (group.heading.to_owned(), group.lines.iter().map(line).collect());
-        let grid = Grid {
-            heads: ["symbol", "quantity", "value", "name in files", "from"].map(str::to_owned).to_vec(),
-            groups: self.groups.iter().map(group).collect(),
-            has_words: true,
-            rest: String::new(),
-        };
-        vec![Block::Figures(self.drawings.iter().map(figure).collect()), Block::Table(grid)]
-    }
-}
-
 /// A drawing of this crate.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub struct Drawing {

@@ -42,6 +42,15 @@ impl<T: ?Sized> Clone for Read<T> {
     }
 }
 
+impl<T: ?Sized> Read<T> {
+    fn value(&self, of: &T) -> Value {
+        match self {
+            Self::Plain(read) => read(of),
+            Self::Made(read) => read(of),
+        }
+    }
+}
+
 impl<T: ?Sized> Clone for Column<T> {
     fn clone(&self) -> Self {
         Self { head: self.head.clone(), read: self.read.clone() }
@@ -74,10 +83,7 @@ impl<T: ?Sized> Column<T> {
 
     /// Its value; null where there is none, and for a number that is not finite, because JSON has no such numbers.
     pub fn value(&self, of: &T) -> Value {
-        match &self.read {
-            Read::Plain(read) => read(of),
-            Read::Made(read) => read(of),
-        }
+        self.read.value(of)
     }
 }
 
@@ -156,7 +162,7 @@ impl Table {
     pub fn write(&self, format: Format, out: impl Write) -> io::Result<()> {
         let mut writer = TableWriter::new(format, &self.heads, out)?;
         self.lines.iter().try_for_each(|line| writer.line(line.iter().cloned()))?;
-        writer.finish()
+        writer.finish()?.flush()
     }
 
     /// It as CSV.
@@ -169,41 +175,121 @@ impl Table {
         String::from_utf8(bytes).expect("cells are texts")
     }
 
-    /// Its cells as a reader sees them: numbers with at most ten digits.
+    /// Its cells as a reader sees them: numbers with at most ten digits, and a sign where there is no value.
     pub fn cells(&self) -> Vec<Vec<String>> {
-        self.lines.iter().map(|line| line.iter().map(value::rounded_text).collect()).collect()
+        let cell = |cell: &Value| match cell {
+            Value::Null => value::MISSING.to_owned(),
+            Value::Bool(is_true) => if *is_true { "yes" } else { "no" }.to_owned(),
+            cell => value::rounded_text(cell),
+        };
+        self.lines.iter().map(|line| line.iter().map(cell).collect()).collect()
+    }
+
+    /// With at most so many significant digits in its numbers, for a reader.
+    #[must_use]
+    pub fn rounded(mut self, digits: usize) -> Self {
+        for cell in self.lines.iter_mut().flatten().filter(|cell| cell.is_f64()) {
+            *cell = cell.as_f64().map_or(Value::Null, |x| value::significant_number(x, digits));
+        }
+        self
     }
 
     /// Aligned columns for a terminal: texts on the left side of their column, numbers on the right side.
     pub fn text(&self) -> String {
-        let names: Vec<String> = self.names().map(str::to_owned).collect();
         let is_number = |column: usize| {
             let mut known =
                 self.lines.iter().map(|line| &line[column]).filter(|value| !value.is_null()).peekable();
             known.peek().is_some() && known.all(Value::is_number)
         };
-        let numbers: Vec<bool> = (0..names.len()).map(is_number).collect();
-        aligned(&names, &self.cells(), |column| numbers[column])
+        let numbers: Vec<bool> = (0..self.heads.len()).map(is_number).collect();
+        self.aligned(|column| numbers[column])
+    }
+
+    /// Aligned columns for a terminal, with the columns for which `is_right` is true on the right side.
+    pub fn aligned(&self, is_right: impl Fn(usize) -> bool) -> String {
+        let names: Vec<String> = self.names().map(str::to_owned).collect();
+        aligned(&names, &self.cells(), is_right)
     }
 }
 
-/// Aligned columns, two spaces apart. Cells of the columns for which `is_right` is true are on the right side.
+/// Aligned columns, two spaces apart, below their names. Cells of the columns for which `is_right` is true are on the right side.
 pub fn aligned(names: &[String], lines: &[Vec<String>], is_right: impl Fn(usize) -> bool) -> String {
-    let width = |column: usize| {
-        let cells = lines.iter().map(|line| &line[column]).chain([&names[column]]);
-        cells.map(|cell| cell.chars().count()).max().unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..names.len()).map(width).collect();
-    let mut text = String::new();
-    for line in std::iter::once(names).chain(lines.iter().map(Vec::as_slice)) {
-        let padded = line.iter().enumerate().map(|(column, cell)| {
-            let width = widths[column];
+    let lines: Vec<&[String]> = std::iter::once(names).chain(lines.iter().map(Vec::as_slice)).collect();
+    let widths = widths(&lines);
+    let padded = |line: &&[String]| {
+        let cells = line.iter().zip(&widths).enumerate().map(|(column, (cell, &width))| {
             if is_right(column) { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
         });
-        text.push_str(padded.collect::<Vec<_>>().join("  ").trim_end());
-        text.push('\n');
+        format!("{}\n", cells.collect::<Vec<_>>().join("  ").trim_end())
+    };
+    lines.iter().map(padded).collect()
+}
+
+/// The narrowest last column of [`listed`]: below it, lines are not broken.
+const NARROWEST: usize = 24;
+
+/// Lines without a head whose cells stand below each other, indented by `indent`. On a terminal of `width` characters the last cells are
+/// broken between words.
+pub fn listed<L: AsRef<[String]>>(indent: usize, lines: &[L], width: Option<usize>) -> String {
+    let lines: Vec<&[String]> = lines.iter().map(AsRef::as_ref).collect();
+    let widths = widths(&lines);
+    let Some(before) = widths.len().checked_sub(1) else { return String::new() };
+    let start = indent + widths[..before].iter().map(|width| width + 2).sum::<usize>();
+    let width = width.map(|width| width.saturating_sub(start)).filter(|width| *width >= NARROWEST);
+    let written = |line: &&[String]| {
+        let cells = line[..before].iter().zip(&widths).map(|(cell, &width)| format!("{cell:<width$}  "));
+        let last = broken(&line[before], width.unwrap_or(usize::MAX), start);
+        format!("{}\n", format!("{}{}{last}", " ".repeat(indent), cells.collect::<String>()).trim_end())
+    };
+    lines.iter().map(written).collect()
+}
+
+/// The width of each column.
+fn widths(lines: &[&[String]]) -> Vec<usize> {
+    let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max().unwrap_or(0);
+    (0..lines.first().map_or(0, |line| line.len())).map(width).collect()
+}
+
+/// Words in lines of at most `width` characters, of which all but the first are indented.
+fn broken(words: &str, width: usize, indent: usize) -> String {
+    let mut text = String::new();
+    let mut used = 0;
+    for (number, word) in words.split(' ').enumerate() {
+        let length = word.chars().count();
+        if number > 0 && used + 1 + length > width {
+            text += &format!("\n{}", " ".repeat(indent));
+            used = 0;
+        } else if number > 0 {
+            text.push(' ');
+            used += 1;
+        }
+        text += word;
+        used += length;
     }
     text
+}
+
+/// What a page of columns says about files: their columns, whatever a study varies.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct FileColumns {
+    /// The files; a word in capitals stands for a name.
+    pub files: Vec<String>,
+    /// What their lines are, in Markdown.
+    pub lines: &'static str,
+    /// The columns that they always have.
+    pub heads: Vec<Head>,
+}
+
+impl FileColumns {
+    /// The columns of a list.
+    pub fn new<'a, T: ?Sized + 'a>(
+        files: &[&str],
+        lines: &'static str,
+        columns: impl IntoIterator<Item = &'a Column<T>>,
+    ) -> Self {
+        let heads = columns.into_iter().map(|column| column.head.clone()).collect();
+        Self { files: files.iter().map(|&file| file.to_owned()).collect(), lines, heads }
+    }
 }
 
 /// A format that programs read.
@@ -265,22 +351,14 @@ impl<W: Write> TableWriter<W> {
         }
     }
 
-    /// Writes what is still buffered.
+    /// Writes what is still buffered, and gives back what it was written to.
     ///
     /// # Errors
     /// Those of the writer.
-    pub fn finish(self) -> io::Result<()> {
-        self.into_inner()?.flush()
-    }
-
-    /// Writes what is still buffered, and returns the writer.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn into_inner(self) -> io::Result<W> {
+    pub fn finish(self) -> io::Result<W> {
         match self.lines {
             Lines::Csv(writer) => writer.into_inner().map_err(::csv::IntoInnerError::into_error),
-            Lines::Json(out) => Ok(out),
+            Lines::Json(mut out) => out.flush().map(|()| out),
         }
     }
 }
@@ -327,6 +405,37 @@ mod tests {
             .collect();
         assert_eq!(lines[0]["rate"].as_f64(), Some(0.1 + 0.2));
         assert_eq!(lines[1], serde_json::json!({ "mode": "b", "rate": null }));
-        assert_eq!(table.text(), "mode           rate\nfirst, \"fast\"   0.3\nb\n");
+        assert_eq!(table.text(), "mode           rate\nfirst, \"fast\"   0.3\nb                 –\n");
+    }
+
+    /// Protects: every number and every text is read back as it was.
+    #[test]
+    fn cells_read_back_exactly() {
+        let numbers = [0.1 + 0.2, 1.0 / 3.0, 2.5e-7, 1.234_567_890_123_456_7e-300, 6.02e23, -1e-5, 0.0];
+        let text = "first line, with \"quotes\"\nsecond line; a comma, and a\r\nthird";
+        let lines = numbers.map(|x| vec![x.into(), text.into()]).to_vec();
+        let heads = ["x", "text"].map(|name| Head::new(name, "", "")).to_vec();
+        let csv = Table { stem: "numbers".into(), heads, lines }.csv();
+        let mut reader = ::csv::Reader::from_reader(csv.as_bytes());
+        for (x, line) in numbers.iter().zip(reader.records()) {
+            let line = line.unwrap();
+            assert_eq!((line[0].parse().ok(), &line[1]), (Some(*x), text));
+            assert!(line[0].len() <= 24, "{} is not the shortest form", &line[0]);
+        }
+    }
+
+    /// Protects: cells stand below each other; long ones are broken between words within the terminal and keep all words.
+    #[test]
+    fn cells_are_aligned_and_broken() {
+        let cell = |text: &str| text.to_owned();
+        let long = "one two three four five six seven eight";
+        let cells = [[cell("μ"), cell("0.4"), cell(long)], [cell("load"), cell("30 N"), cell("")]];
+        let text = listed(1, &cells, None);
+        assert_eq!(text, format!(" μ     0.4   {long}\n load  30 N\n"));
+        let text = listed(1, &cells, Some(40));
+        let expected = " μ     0.4   one two three four five six\n             seven eight\n load  30 N\n";
+        assert_eq!(text, expected);
+        assert!(text.lines().all(|line| line.chars().count() <= 40), "{text}");
+        assert_eq!(listed(1, &cells, Some(30)).lines().count(), 2, "too narrow to break");
     }
 }

@@ -29,6 +29,16 @@ pub fn significant(x: f64, digits: usize) -> String {
     format!("{x:.0$e}", digits.max(1) - 1).parse().map_or_else(|_| number(x), number)
 }
 
+/// A number that [`significant`] writes, as a value; null if it is not finite.
+pub fn significant_number(x: f64, digits: usize) -> Value {
+    significant(x, digits).parse::<f64>().unwrap_or(f64::NAN).into()
+}
+
+/// A number with at most so many decimals, as a value; null if it is not finite.
+pub fn fixed_number(x: f64, decimals: usize) -> Value {
+    format!("{x:.decimals$}").parse::<f64>().unwrap_or(f64::NAN).into()
+}
+
 /// A number with a fixed number of decimals; [`MISSING`] if it is not finite.
 pub fn fixed(x: f64, decimals: usize) -> String {
     if x.is_finite() { format!("{x:.decimals$}") } else { MISSING.to_owned() }
@@ -173,6 +183,14 @@ pub fn rounded_text(value: &Value) -> String {
     match value {
         Value::Number(n) if n.is_f64() => n.as_f64().map(rounded).unwrap_or_default(),
         _ => text(value),
+    }
+}
+
+/// A value for a reader: a number without the rounding errors of a computed grid.
+pub fn rounded_value(value: &Value) -> Value {
+    match value {
+        Value::Number(n) if n.is_f64() => n.as_f64().map_or(Value::Null, |x| significant_number(x, 10)),
+        _ => value.clone(),
     }
 }
 

@@ -92,7 +92,8 @@ impl Comparison {
         let scalars: Vec<&'static Scalar> =
             [*MU_STAR, *FREQUENCY].into_iter().chain(view.y.iter().copied()).collect();
         let by = Some(layout.by).filter(|by| *by != SOURCE);
-        let names: Vec<&str> = layout.further.iter().copied().chain(by).chain([layout.axis]).collect();
+        let outer = layout.further.iter().copied().chain(by);
+        let names: Vec<&str> = outer.chain(layout.scattered.iter().copied()).chain([layout.axis]).collect();
         let mut comparison = Self {
             reference: layout.sources[0].name.to_owned(),
             contradictions: Vec::new(),
@@ -152,6 +153,8 @@ impl Comparison {
             if !is_own(&by) {
                 continue;
             }
+            let alike = (!layout.scattered.is_empty()).then(|| alike(curve, x, layout, job.row));
+            let curve = alike.as_ref().unwrap_or(curve);
             place = place.max(position_in(curve, x, x_axis));
             let by_of_curve = Some(by).filter(|_| layout.by != SOURCE);
             if let Some(squeals) = job.row.squeals()
@@ -159,7 +162,7 @@ impl Comparison {
             {
                 self.compared_squeals += 1;
                 if squeals != of_reference {
-                    let (parameters, texts) = self.parameters(layout, group, by_of_curve, at);
+                    let (parameters, texts) = self.parameters(layout, group, by_of_curve, job);
                     self.contradictions.push(Contradiction {
                         source: job.row.study.clone(),
                         is_measured: job.row.is_measured(),
@@ -174,7 +177,7 @@ impl Comparison {
             for scalar in scalars.iter().filter(|scalar| scalar.is_settled(job.row)) {
                 let Some(value) = scalar.value(job.row) else { continue };
                 let Some(reference) = reference_at(curve, x, x_axis, scalar) else { continue };
-                let (parameters, texts) = self.parameters(layout, group, by_of_curve, at);
+                let (parameters, texts) = self.parameters(layout, group, by_of_curve, job);
                 let words = [group.caption(), layout.series_name(&layout.series[*index])];
                 self.differences.push(Difference {
                     source: job.row.study.clone(),
@@ -203,10 +206,12 @@ impl Comparison {
         layout: &Layout,
         group: &Group,
         by: Option<&Value>,
-        at: &Value,
+        job: &PlacedJob,
     ) -> (Vec<Value>, Vec<String>) {
-        let values: Vec<Value> =
-            group.key.iter().map(|(_, value)| value).chain(by).chain([at]).cloned().collect();
+        let at = &group.axis_values[job.axis_index];
+        let scattered = layout.scattered.iter().map(|name| job.row.parameter(name));
+        let outer = group.key.iter().map(|(_, value)| value).chain(by).cloned();
+        let values: Vec<Value> = outer.chain(scattered).chain([at.clone()]).collect();
         let texts = self.names.iter().zip(&values).map(|(name, value)| layout.dimension(name).text(value));
         let texts = texts.collect();
         (values, texts)
@@ -432,6 +437,16 @@ fn position_in(curve: &[(f64, &JobRow)], x: f64, x_axis: &Axis) -> Option<Place>
         return Some(Place::Equal);
     }
     neighbours(curve, x, x_axis).map(|_| Place::Between)
+}
+
+/// The points of a curve at a place that have all scattered parameters of a row, as far as those are known: between points that are no grid nothing
+/// can be interpolated.
+fn alike<'a>(curve: &[(f64, &'a JobRow)], x: f64, layout: &Layout, row: &JobRow) -> Vec<(f64, &'a JobRow)> {
+    let is_alike = |(_, other): &&(f64, &JobRow)| {
+        let mut values = layout.scattered.iter().map(|name| [row.parameter(name), other.parameter(name)]);
+        values.all(|[own, other]| own.is_null() || value::text(&own) == value::text(&other))
+    };
+    points_at(curve, x).iter().filter(is_alike).copied().collect()
 }
 
 /// The positions of the next jobs on both sides; none if values cannot be interpolated.

@@ -1,56 +1,99 @@
 //! The differences between several sources as files.
 
-use super::comparison::Comparison;
-use super::export::io_error;
-use crate::publish::value;
-use std::io;
+use super::comparison::{Comparison, Contradiction, Difference};
+use super::parameters;
+use crate::publish::table::{Column, FileColumns, Table};
+use serde_json::Value;
 
-/// Contradictions about squeal (1: it squeals) and then all differences as CSV, one line each, with numbers in full and in the units of their names.
-pub(super) fn csv(comparison: &Comparison, out: &mut Vec<u8>) -> io::Result<()> {
-    let mut writer = ::csv::Writer::from_writer(out);
-    let results = [
-        "value",
-        "error",
-        "reference_value",
-        "reference_error",
-        "difference",
-        "combined_error",
-        "relative_difference",
-        "interpolated",
-    ];
-    let head = ["source", "reference", "quantity"].into_iter();
-    writer
-        .write_record(head.chain(comparison.names.iter().map(String::as_str)).chain(results))
-        .map_err(io_error)?;
-    for found in &comparison.contradictions {
-        let number = |squeals: bool| value::number(f64::from(u8::from(squeals)));
-        let own = [found.source.clone(), comparison.reference.clone(), "squeals".to_owned()];
-        let line = own.into_iter().chain(found.parameters.iter().map(value::text)).chain([
-            number(found.squeals),
-            String::new(),
-            number(!found.squeals),
-            String::new(),
-            value::number(if found.squeals { 1.0 } else { -1.0 }),
-            String::new(),
-            String::new(),
-            (if found.is_between { "yes" } else { "no" }).to_owned(),
-        ]);
-        writer.write_record(line).map_err(io_error)?;
+/// A line of the differences: a point at which one of two squeals, or a quantity of a point.
+#[derive(Clone, Copy)]
+enum Found<'a> {
+    Contradiction(&'a Contradiction),
+    Difference(&'a Difference),
+}
+
+#[derive(Clone, Copy)]
+struct Line<'a> {
+    reference: &'a str,
+    found: Found<'a>,
+}
+
+impl Line<'_> {
+    fn source(&self) -> &str {
+        match self.found {
+            Found::Contradiction(own) => &own.source,
+            Found::Difference(own) => &own.source,
+        }
     }
-    for found in &comparison.differences {
-        let optional = |x: Option<f64>| x.map_or_else(String::new, value::number);
-        let own = [found.source.clone(), comparison.reference.clone(), found.scalar.name.to_owned()];
-        let line = own.into_iter().chain(found.parameters.iter().map(value::text)).chain([
-            value::number(found.value),
-            optional(found.error),
-            value::number(found.reference),
-            optional(found.reference_error),
-            value::number(found.difference()),
-            optional(found.combined_error()),
-            optional(found.relative()),
-            (if found.interpolated { "yes" } else { "no" }).to_owned(),
-        ]);
-        writer.write_record(line).map_err(io_error)?;
+
+    fn parameters(&self) -> &[Value] {
+        match self.found {
+            Found::Contradiction(own) => &own.parameters,
+            Found::Difference(own) => &own.parameters,
+        }
     }
-    writer.flush()
+
+    fn is_interpolated(&self) -> bool {
+        match self.found {
+            Found::Contradiction(own) => own.is_between,
+            Found::Difference(own) => own.interpolated,
+        }
+    }
+
+    /// A number: 1 or 0 for whether it squeals.
+    fn of(&self, squeals: fn(bool) -> Option<f64>, number: fn(&Difference) -> Option<f64>) -> Value {
+        match self.found {
+            Found::Contradiction(own) => squeals(own.squeals).into(),
+            Found::Difference(own) => number(own).into(),
+        }
+    }
+}
+
+fn as_number(is_true: bool) -> Option<f64> {
+    Some(f64::from(u8::from(is_true)))
+}
+
+#[rustfmt::skip]
+fn names<'a>() -> [Column<Line<'a>>; 3] {
+    [
+        Column::new("source", "", "study or file of the point", |of| of.source().into()),
+        Column::new("reference", "", "study with which it is compared", |of| of.reference.into()),
+        Column::new("quantity", "", "column that is compared; squeals in the first lines, where only one of the two squeals (1)", |of| match of.found {
+            Found::Contradiction(_) => "squeals".into(),
+            Found::Difference(own) => own.scalar.name.into(),
+        }),
+    ]
+}
+
+#[rustfmt::skip]
+fn results<'a>() -> [Column<Line<'a>>; 8] {
+    [
+        Column::new("value", "that of the quantity", "its value", |of| of.of(as_number, |own| Some(own.value))),
+        Column::new("error", "that of the quantity", "its error", |of| of.of(|_| None, |own| own.error)),
+        Column::new("reference_value", "that of the quantity", "the value of the reference at the same parameters", |of| of.of(|own| as_number(!own), |own| Some(own.reference))),
+        Column::new("reference_error", "that of the quantity", "its error", |of| of.of(|_| None, |own| own.reference_error)),
+        Column::new("difference", "that of the quantity", "value minus that of the reference", |of| of.of(|own| Some(if own { 1.0 } else { -1.0 }), |own| Some(own.difference()))),
+        Column::new("combined_error", "that of the quantity", "root of the sum of the squares of both errors", |of| of.of(|_| None, Difference::combined_error)),
+        Column::new("relative_difference", "", "difference over the value of the reference", |of| of.of(|_| None, Difference::relative)),
+        Column::new("interpolated", "", "whether the value of the reference was interpolated: yes or no", |of| if of.is_interpolated() { "yes" } else { "no" }.into()),
+    ]
+}
+
+/// Contradictions about squeal (1: it squeals) and then all differences, one line each, with numbers in full and in the units of their names.
+pub(super) fn table(comparison: &Comparison) -> Table {
+    let of_parameter = |(index, name): (usize, &String)| {
+        Column::made(parameters::head(name), move |of: &Line| of.parameters().get(index).cloned().into())
+    };
+    let parameters = comparison.names.iter().enumerate().map(of_parameter);
+    let columns: Vec<Column<Line>> = names().into_iter().chain(parameters).chain(results()).collect();
+    let contradictions = comparison.contradictions.iter().map(Found::Contradiction);
+    let all = contradictions.chain(comparison.differences.iter().map(Found::Difference));
+    let lines: Vec<Line> = all.map(|found| Line { reference: &comparison.reference, found }).collect();
+    Table::of("differences", &columns, &lines)
+}
+
+/// The columns, for the page of columns.
+pub(super) fn described() -> FileColumns {
+    let lines = "A line is a point of a source that is compared with the first source.";
+    FileColumns::new(&["differences.csv"], lines, names().iter().chain(&results()))
 }

@@ -15,6 +15,7 @@ use super::spectra;
 use super::stability::{self, Analysis};
 use super::stale::could_be_of_a_report;
 use super::tables::{self, Quantity};
+use crate::publish::table::Format;
 use crate::publish::{FigureError, Folder, PublishError, html, markdown};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::collections::HashMap;
@@ -75,7 +76,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let figures = || plots.clone().into_par_iter().map(draw);
     let jobs = || {
         let mut out = Vec::new();
-        export::csv(given.rows, &mut out).map(|()| out)
+        export::write(given.rows, Format::Csv, &mut out).map(|()| out)
     };
     let residuals = || figure::residuals::draw(rows);
     let (figures, (jobs, residuals)): (Vec<_>, _) =
@@ -84,8 +85,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         folder.write_text(&format!("{}.svg", drawing.stem), &drawing.svg)?;
     }
     for quantity in quantities {
-        folder
-            .write_with(&format!("{}.csv", quantity.stem()), |out| tables::csv_of(&layout, quantity, out))?;
+        folder.write_table(&tables::table_of(&layout, quantity))?;
     }
 
     let mut drawn: Vec<(Plot, Vec<Figure>)> = Vec::new();
@@ -104,10 +104,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
 
     write_data(&mut folder, rows, &layout, &plots)?;
     if !spectra.is_empty() {
-        folder.write_with("waterfall.csv", |out| {
-            *out = figure::waterfall::csv(&layout, &spectra)?;
-            Ok(())
-        })?;
+        folder.write_table(&spectra::table(&layout, &spectra))?;
     }
     let programs = write_programs(&mut folder, rows, out_dir)?;
     write_findings(&mut folder, report)?;
@@ -132,7 +129,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         ));
     }
     if let Some(comparison) = &comparison {
-        folder.write_with("differences.csv", |out| comparison_files::csv(comparison, out))?;
+        folder.write_table(&comparison_files::table(comparison))?;
     }
     let differences = comparison.as_ref();
     let pages = inspections(out_dir).into_iter().filter_map(|found| Some((found.job.clone(), found.page()?)));
@@ -191,10 +188,7 @@ fn write_data(
         if written.contains(&file) {
             continue;
         }
-        folder.write_with(&file, |out| {
-            *out = export::selection(rows, &layout.further, &columns)?;
-            Ok(())
-        })?;
+        folder.write_table(&export::selection(stem, rows, &layout.varied, &columns))?;
         written.push(file);
     }
     Ok(())
@@ -202,14 +196,8 @@ fn write_data(
 
 /// Writes the tables of what a study that grows has found.
 fn write_findings(folder: &mut Folder, report: &Report) -> Result<(), PublishError> {
-    for table in report.findings.iter().flat_map(|own| own.tables()) {
-        let file = format!("{}.csv", table.stem);
-        folder.write_with(&file, |out| {
-            *out = table.csv()?;
-            Ok(())
-        })?;
-    }
-    Ok(())
+    let mut tables = report.findings.iter().flat_map(|own| own.tables());
+    tables.try_for_each(|found| folder.write_table(&found.table).map(drop))
 }
 
 /// Writes the figures and the windows of the jobs whose speed or load changes in time; none if there are no such jobs.

@@ -1,12 +1,11 @@
 //! What a study that grows has found: boundaries, minima, branches and basins.
 
-use super::export::io_error;
+use super::parameters;
 use crate::analysis::{JobRecord, Outcome};
-use crate::publish::page::Grid;
+use crate::publish::table::{Column, FileColumns, Table};
 use crate::publish::value;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
-use std::io;
 
 /// A boundary between two kinds of jobs along a parameter.
 #[derive(Debug, Clone, PartialEq)]
@@ -199,168 +198,198 @@ pub struct Findings {
 
 /// A table of findings.
 pub(super) struct FindingsTable {
-    /// The name of its file of data, without the ending.
-    pub stem: &'static str,
     pub heading: &'static str,
     pub meaning: &'static str,
-    pub header: Vec<String>,
-    pub lines: Vec<Vec<String>>,
+    pub table: Table,
 }
 
-/// Names of the parameters of the first entry, as heads of columns.
-fn names(parameters: Option<&Vec<(String, Value)>>) -> Vec<String> {
-    parameters.into_iter().flatten().map(|(name, _)| name.clone()).collect()
+/// Columns of the parameters of points: those that any of the points has.
+fn places<T: 'static>(points: &[T], place: fn(&T) -> Vec<(String, Value)>) -> Vec<Column<T>> {
+    let mut names: Vec<String> = Vec::new();
+    for (name, _) in points.iter().flat_map(place) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    let column = |name: String| {
+        let head = parameters::head(&name);
+        let of_name = move |point: &T| place(point).into_iter().find(|(own, _)| *own == name);
+        Column::made(head, move |point| of_name(point).map(|(_, value)| value).into())
+    };
+    names.into_iter().map(column).collect()
 }
 
-fn values(parameters: &[(String, Value)]) -> Vec<String> {
-    parameters.iter().map(|(_, value)| value::text(value)).collect()
+/// The jobs that a wave added, with its number.
+type Wave = (usize, BTreeMap<String, u64>);
+
+const WAVES: [Column<Wave>; 3] = [
+    Column::new("wave", "", "number of the wave, from 1", |(number, _)| (*number).into()),
+    Column::new("jobs", "", "jobs that it added", |(_, purposes)| purposes.values().sum::<u64>().into()),
+    Column::new("why", "", "what they are for", |(_, purposes)| {
+        let words: Vec<_> = purposes.iter().map(|(purpose, jobs)| format!("{purpose}: {jobs}")).collect();
+        words.join(", ").into()
+    }),
+];
+
+#[rustfmt::skip]
+const BOUNDARIES: [Column<Crossing>; 8] = [
+    Column::new("over", "", "parameter along which the boundary was looked for; its own column has the middle", |own| own.over.as_str().into()),
+    Column::new("below", "", "kind of the job below the boundary", |own| own.between[0].as_str().into()),
+    Column::new("above", "", "kind of the job above it", |own| own.between[1].as_str().into()),
+    Column::new("from", "that of the parameter", "value of the parameter below", |own| own.range[0].into()),
+    Column::new("to", "that of the parameter", "value above", |own| own.range[1].into()),
+    Column::new("middle", "that of the parameter", "half-way between the two", Crossing::middle),
+    Column::new("plus_minus", "that of the parameter", "half of their distance", |own| value::significant_number(0.5 * own.width(), 2)),
+    Column::new("known", "", "whether the boundary is known as well as it was asked for", |own| yes_or_no(own.width() <= own.wanted * NEARLY)),
+];
+
+#[rustfmt::skip]
+const MINIMA: [Column<Minimum>; 7] = [
+    Column::new("of", "", "quantity", |own| own.of.as_str().into()),
+    Column::new("over", "", "parameter along the curve", |own| own.over.as_str().into()),
+    Column::new("at", "that of the parameter", "where the smallest value was found", |own| own.at.into()),
+    Column::new("from", "that of the parameter", "its neighbour below; empty at the end of the curve", |own| own.neighbours[0].into()),
+    Column::new("to", "that of the parameter", "its neighbour above", |own| own.neighbours[1].into()),
+    Column::new("value", "that of the quantity", "the smallest value", |own| value::significant_number(own.value, 5)),
+    Column::new("known", "", "yes, no, or flat if the curve varies by less than was asked for", |own| if own.is_flat { "flat".into() } else { yes_or_no(own.is_known()) }),
+];
+
+#[rustfmt::skip]
+const BRANCHES: [Column<BranchPoint>; 7] = [
+    Column::new("mu_star_up", "", "μ* on the way up", |own| mu_star(own.up.as_ref())),
+    Column::new("frequency_up_hz", "Hz", "frequency on the way up", |own| frequency(own.up.as_ref())),
+    Column::new("regime_up", "", "regime on the way up", |own| regime(own.up.as_ref())),
+    Column::new("mu_star_down", "", "μ* on the way down", |own| mu_star(own.down.as_ref())),
+    Column::new("frequency_down_hz", "Hz", "frequency on the way down", |own| frequency(own.down.as_ref())),
+    Column::new("regime_down", "", "regime on the way down", |own| regime(own.down.as_ref())),
+    Column::new("hysteresis", "", "whether the two ways ended in different states: yes, no, or not known", |own| {
+        own.has_hysteresis().map_or_else(|| "not known".into(), yes_or_no)
+    }),
+];
+
+#[rustfmt::skip]
+const BASINS: [Column<Basin>; 8] = [
+    Column::new("mu_star", "", "mean μ* of the ends; empty for runs that failed or did not settle", |own| mu_star(own.end.as_ref())),
+    Column::new("frequency_hz", "Hz", "mean frequency of the ends", |own| frequency(own.end.as_ref())),
+    Column::new("regime", "", "contact regime", |own| regime(own.end.as_ref())),
+    Column::new("jobs", "", "jobs that ended in this state", |own| own.jobs.into()),
+    Column::new("of", "", "all jobs of the point that have ended", |own| own.of.into()),
+    Column::new("share", "", "their quotient", |own| value::significant_number(own.share()[0], 3)),
+    Column::new("share_from", "", "lower end of the interval that has the true share with 95 %", |own| value::significant_number(own.share()[1], 3)),
+    Column::new("share_to", "", "its upper end", |own| value::significant_number(own.share()[2], 3)),
+];
+
+/// Rounding errors in a distance do not count.
+const NEARLY: f64 = 1.000_001;
+
+fn yes_or_no(is_true: bool) -> Value {
+    if is_true { "yes" } else { "no" }.into()
 }
 
-fn header(parameters: Vec<String>, own: &[&str]) -> Vec<String> {
-    parameters.into_iter().chain(own.iter().map(|name| (*name).to_owned())).collect()
+fn mu_star(end: Option<&Endpoint>) -> Value {
+    end.map(|end| value::fixed_number(end.mu_star, 4)).into()
+}
+
+fn frequency(end: Option<&Endpoint>) -> Value {
+    end.and_then(|end| end.frequency_hz).map(|hz| value::fixed_number(hz, 0)).into()
+}
+
+fn regime(end: Option<&Endpoint>) -> Value {
+    let words = |end: &Endpoint| {
+        if end.is_settled { end.regime.to_owned() } else { format!("{}, not periodic", end.regime) }
+    };
+    end.map(words).into()
+}
+
+impl Crossing {
+    fn middle(&self) -> Value {
+        value::significant_number(0.5 * (self.range[0] + self.range[1]), 6)
+    }
+
+    fn width(&self) -> f64 {
+        self.range[1] - self.range[0]
+    }
+
+    /// All parameters; that along which the boundary was looked for is half-way.
+    fn place(&self) -> Vec<(String, Value)> {
+        self.rest.iter().cloned().chain([(self.over.clone(), self.middle())]).collect()
+    }
+}
+
+impl Minimum {
+    fn is_known(&self) -> bool {
+        let mut sides = self.neighbours.iter().flatten().peekable();
+        sides.peek().is_some() && sides.all(|x| (x - self.at).abs() <= self.wanted * NEARLY)
+    }
+
+    /// All parameters.
+    fn place(&self) -> Vec<(String, Value)> {
+        self.rest.iter().cloned().chain([(self.over.clone(), self.at.into())]).collect()
+    }
+}
+
+/// The columns, for the page of columns.
+pub(super) fn described() -> [FileColumns; 5] {
+    [
+        FileColumns::new(&["waves.csv"], "A line is a wave of jobs that the program added.", &WAVES),
+        FileColumns::new(&["boundaries.csv"], "A line is a boundary between two kinds of jobs.", &BOUNDARIES),
+        FileColumns::new(&["minima.csv"], "A line is the smallest value of a curve.", &MINIMA),
+        FileColumns::new(&["branches.csv"], "A line is a point that was reached on two ways.", &BRANCHES),
+        FileColumns::new(
+            &["basins.csv"],
+            "A line is a state in which jobs ended that were kicked from a point.",
+            &BASINS,
+        ),
+    ]
 }
 
 impl Findings {
     /// The tables, without empty ones.
     pub(super) fn tables(&self) -> Vec<FindingsTable> {
         let tables = [
-            self.waves_table(),
-            self.crossings_table(),
-            self.minima_table(),
-            self.branches_table(),
-            self.basins_table(),
+            FindingsTable {
+                heading: "Waves",
+                meaning: "The jobs that the program added to those of the study, and why.",
+                table: self.waves_table(),
+            },
+            FindingsTable {
+                heading: "Boundaries",
+                meaning: "Where jobs of one kind have a neighbour of another kind. The boundary lies between the two values, at the \
+                          middle plus or minus half of their distance; it is known if that distance is what the study asks for.",
+                table: table("boundaries", &self.crossings, Crossing::place, &BOUNDARIES),
+            },
+            FindingsTable {
+                heading: "Minima",
+                meaning: "The smallest value of each curve. The minimum of a curve with one minimum lies between the neighbours; it is \
+                          known if they are as near as the study asks for. There is no value beyond the ends of a \
+                          curve, and where jobs failed. The minimum of a curve is not looked for if it is flat.",
+                table: table("minima", &self.minima, Minimum::place, &MINIMA),
+            },
+            FindingsTable {
+                heading: "Branches",
+                meaning: "The state that each point reaches from its neighbour, on the way up and on the way down. There is hysteresis \
+                          where the two are different limit cycles, or where one of them is stable sliding.",
+                table: table("branches", &self.branches, |own| own.parameters.clone(), &BRANCHES),
+            },
+            FindingsTable {
+                heading: "Basins",
+                meaning: "The states in which the jobs ended that were kicked from each point, and their shares with the interval that has \
+                          the true share with a probability of 95 % (Wilson). A line without μ* has the runs that failed or did not settle.",
+                table: table("basins", &self.basins, |own| own.parameters.clone(), &BASINS),
+            },
         ];
-        tables.into_iter().filter(|table| !table.lines.is_empty()).collect()
+        tables.into_iter().filter(|found| !found.table.lines.is_empty()).collect()
     }
 
-    fn waves_table(&self) -> FindingsTable {
-        let line = |(wave, purposes): (usize, &BTreeMap<String, u64>)| {
-            let words: Vec<_> = purposes.iter().map(|(purpose, jobs)| format!("{purpose}: {jobs}")).collect();
-            vec![(wave + 1).to_string(), purposes.values().sum::<u64>().to_string(), words.join(", ")]
-        };
-        FindingsTable {
-            stem: "waves",
-            heading: "Waves",
-            meaning: "The jobs that the program added to those of the study, and why.",
-            header: header(Vec::new(), &["wave", "jobs", "why"]),
-            lines: self.waves.iter().enumerate().map(line).collect(),
-        }
-    }
-
-    fn crossings_table(&self) -> FindingsTable {
-        let line = |own: &Crossing| {
-            let [low, high] = own.range;
-            let middle = value::significant(0.5 * (low + high), 6);
-            let reach = value::significant(0.5 * (high - low), 2);
-            let is_known = if high - low <= own.wanted * 1.000_001 { "yes" } else { "no" };
-            let kinds = own.between.iter().cloned();
-            let numbers =
-                [value::text(&low.into()), value::text(&high.into()), middle, reach, is_known.to_owned()];
-            values(&own.rest).into_iter().chain([own.over.clone()]).chain(kinds).chain(numbers).collect()
-        };
-        FindingsTable {
-            stem: "boundaries",
-            heading: "Boundaries",
-            meaning: "Where jobs of one kind have a neighbour of another kind. The boundary lies between the two values, at the \
-                      middle plus or minus half of their distance; it is known if that distance is what the study asks for.",
-            header: header(
-                names(self.crossings.first().map(|own| &own.rest)),
-                &["over", "below", "above", "from", "to", "middle", "plus_minus", "known"],
-            ),
-            lines: self.crossings.iter().map(line).collect(),
-        }
-    }
-
-    fn minima_table(&self) -> FindingsTable {
-        let line = |own: &Minimum| {
-            let side = |side: Option<f64>| side.map_or("no value".to_owned(), |x| value::text(&x.into()));
-            let has_neighbour = own.neighbours.iter().any(Option::is_some);
-            let is_known = has_neighbour
-                && own.neighbours.iter().flatten().all(|x| (x - own.at).abs() <= own.wanted * 1.000_001);
-            let known = match (own.is_flat, is_known) {
-                (true, _) => "flat",
-                (false, true) => "yes",
-                (false, false) => "no",
-            };
-            let numbers = [
-                value::text(&own.at.into()),
-                side(own.neighbours[0]),
-                side(own.neighbours[1]),
-                value::significant(own.value, 5),
-                known.to_owned(),
-            ];
-            let names = [own.of.clone(), own.over.clone()];
-            values(&own.rest).into_iter().chain(names).chain(numbers).collect()
-        };
-        FindingsTable {
-            stem: "minima",
-            heading: "Minima",
-            meaning: "The smallest value of each curve. The minimum of a curve with one minimum lies between the neighbours; it is \
-                      known if they are as near as the study asks for. There is no value beyond the ends of a \
-                      curve, and where jobs failed. The minimum of a curve is not looked for if it is flat.",
-            header: header(
-                names(self.minima.first().map(|own| &own.rest)),
-                &["of", "over", "at", "from", "to", "value", "known"],
-            ),
-            lines: self.minima.iter().map(line).collect(),
-        }
-    }
-
-    fn branches_table(&self) -> FindingsTable {
-        let line = |own: &BranchPoint| {
-            let hysteresis = match own.has_hysteresis() {
-                Some(true) => "yes",
-                Some(false) => "no",
-                None => "not known",
-            };
-            let ends = [&own.up, &own.down].into_iter().flat_map(|end| end_cells(end.as_ref()));
-            values(&own.parameters).into_iter().chain(ends).chain([hysteresis.to_owned()]).collect()
-        };
-        FindingsTable {
-            stem: "branches",
-            heading: "Branches",
-            meaning: "The state that each point reaches from its neighbour, on the way up and on the way down. There is hysteresis \
-                      where the two are different limit cycles, or where one of them is stable sliding.",
-            header: header(
-                names(self.branches.first().map(|own| &own.parameters)),
-                &[
-                    "mu_star_up",
-                    "frequency_up_hz",
-                    "regime_up",
-                    "mu_star_down",
-                    "frequency_down_hz",
-                    "regime_down",
-                    "hysteresis",
-                ],
-            ),
-            lines: self.branches.iter().map(line).collect(),
-        }
-    }
-
-    fn basins_table(&self) -> FindingsTable {
-        let line = |own: &Basin| {
-            let [share, low, high] = own.share().map(|share| value::significant(share, 3));
-            let end = end_cells(own.end.as_ref());
-            let counts = [own.jobs.to_string(), own.of.to_string(), share, low, high];
-            values(&own.parameters).into_iter().chain(end).chain(counts).collect()
-        };
-        FindingsTable {
-            stem: "basins",
-            heading: "Basins",
-            meaning: "The states in which the jobs ended that were kicked from each point, and their shares with the interval that has \
-                      the true share with a probability of 95 % (Wilson). A line without μ* has the runs that failed or did not settle.",
-            header: header(
-                names(self.basins.first().map(|own| &own.parameters)),
-                &["mu_star", "frequency_hz", "regime", "jobs", "of", "share", "share_from", "share_to"],
-            ),
-            lines: self.basins.iter().map(line).collect(),
-        }
+    fn waves_table(&self) -> Table {
+        let waves: Vec<Wave> = (1..).zip(self.waves.iter().cloned()).collect();
+        Table::of("waves", &WAVES, &waves)
     }
 
     /// The waves and the state of the plan, for a terminal.
     pub fn as_text(&self) -> String {
         let line = |line: Vec<String>| format!("wave {}, jobs: {} ({})\n", line[0], line[1], line[2]);
-        let waves: String = self.waves_table().lines.into_iter().map(line).collect();
+        let waves: String = self.waves_table().cells().into_iter().map(line).collect();
         format!("{waves}{}\n", self.state)
     }
 
@@ -371,33 +400,15 @@ impl Findings {
     }
 }
 
-impl FindingsTable {
-    /// The table for readers.
-    pub fn grid(&self) -> Grid {
-        let heads: Vec<&str> = self.header.iter().map(String::as_str).collect();
-        Grid::of(&heads, self.lines.iter().cloned(), &format!("{}.csv", self.stem))
-    }
-
-    /// The table as CSV.
-    ///
-    /// # Errors
-    /// None: it is written into memory.
-    pub fn csv(&self) -> io::Result<Vec<u8>> {
-        let mut out = csv::Writer::from_writer(Vec::new());
-        out.write_record(&self.header).map_err(io_error)?;
-        for line in &self.lines {
-            out.write_record(line).map_err(io_error)?;
-        }
-        out.into_inner().map_err(|error| io::Error::other(error.to_string()))
-    }
-}
-
-/// μ\*, frequency and regime.
-fn end_cells(end: Option<&Endpoint>) -> [String; 3] {
-    let Some(end) = end else { return [String::new(), String::new(), String::new()] };
-    let frequency = end.frequency_hz.map_or(String::new(), |hz| value::fixed(hz, 0));
-    let regime = if end.is_settled { end.regime.to_owned() } else { format!("{}, not periodic", end.regime) };
-    [value::fixed(end.mu_star, 4), frequency, regime]
+/// Points with all their parameters and what was found there.
+fn table<T: 'static>(
+    stem: &'static str,
+    points: &[T],
+    place: fn(&T) -> Vec<(String, Value)>,
+    own: &[Column<T>],
+) -> Table {
+    let columns: Vec<Column<T>> = places(points, place).into_iter().chain(own.iter().cloned()).collect();
+    Table::of(stem, &columns, points)
 }
 
 #[cfg(test)]

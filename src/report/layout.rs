@@ -6,7 +6,7 @@
 
 use super::dimension::Dimension;
 use super::export::further_names;
-use super::parameters::{MU, OMEGA, SOURCE};
+use super::parameters::{MU, OMEGA, SOURCE, is_further};
 use super::row::{JobRow, RowState};
 use super::view::View;
 use crate::publish::plot::axis::Axis;
@@ -35,6 +35,8 @@ pub(super) struct Layout<'a> {
     pub groups: Vec<Group<'a>>,
     /// Parameters that vary freely in the only group, because the jobs are points and no grid. Points are not joined by lines then.
     pub scattered: Vec<&'a str>,
+    /// The parameters other than ω and μ that vary or have a place in the layout, in the order of the study: tables of points have them.
+    pub varied: Vec<&'a str>,
     dimensions: HashMap<&'a str, Dimension>,
 }
 
@@ -189,6 +191,9 @@ impl<'a> Layout<'a> {
                 (name, Dimension::new(name, description, view.is_log.get(name).copied(), &varying.rows))
             })
             .collect();
+        let varied = varying.names.iter().chain(&constant).copied();
+        let varied = varied.filter(|name| is_further(name) && (varying.varies(name) || is_placed(name)));
+        let varied = varied.collect();
         let (series, series_of) = series(&varying, by);
         let mut layout = Self {
             axis,
@@ -199,6 +204,7 @@ impl<'a> Layout<'a> {
             sources: varying.sources,
             groups: Vec::new(),
             scattered,
+            varied,
             dimensions,
         };
         layout.groups = layout.group(&varying.rows, &series_of);

@@ -50,6 +50,7 @@ mod times;
 mod tooltip;
 pub mod trouble;
 mod view;
+mod windows;
 mod words;
 
 pub use discretisation::{Discretisation, MeshError};
@@ -61,12 +62,10 @@ pub use measurement::{MeasuredValue, Measurement};
 #[cfg(feature = "cli")]
 pub(crate) use parameters::assignment;
 pub use parameters::name_and_unit;
-pub use program::WindowsCsv;
 pub use provenance::{BuildInfo, Provenance, ResultGroup};
 pub use row::{JobNumerics, JobRow, RowState};
 pub use scalar::{SCALARS, Scalar};
-pub use stability::{
-    Along, PAGE as STABILITY_PAGE, SHAPES, StabilityTable, modes_table, thresholds_table, write_stability,
-};
+pub use stability::{Along, PAGE as STABILITY_PAGE, SHAPES, modes_table, thresholds_table, write_stability};
 pub use stability_point::StabilityPoint;
 pub use view::View;
+pub use windows::Windows;

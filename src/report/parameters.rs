@@ -1,5 +1,6 @@
 //! The names of parameters and how they are written for a reader.
 
+use crate::publish::table::Head;
 use crate::publish::value::{self, short, text};
 use serde_json::Value;
 
@@ -43,6 +44,17 @@ const UNITS: [(&str, &str); 20] = [
 pub fn name_and_unit(name: &str) -> (&str, &'static str) {
     let split = |(ending, unit): &(&str, &'static str)| Some((name.strip_suffix(*ending)?, *unit));
     UNITS.iter().find_map(split).unwrap_or((name, ""))
+}
+
+/// The head of a column of a parameter.
+pub(super) fn head(name: &str) -> Head {
+    let meaning = match name {
+        OMEGA => "rotation speed ω of the disk",
+        MU => "local friction coefficient μ",
+        SOURCE => "study or file",
+        _ => "the grid parameter of that name",
+    };
+    Head::new(name.to_owned(), name_and_unit(name).1, meaning)
 }
 
 /// `name = value` as people write it: `clamp_width = 2.5 mm`, with the symbols of the field for ω and μ.

@@ -1,14 +1,13 @@
 //! Runs whose speed or load changes in time: figures, a table of their hysteresis, and their windows as data.
 
-use super::export::io_error;
 use super::layout::parameters_in_words;
 use super::row::JobRow;
+use super::windows;
 use crate::analysis::program::{Direction, Hysteresis, Leading, ProgramWindow};
 use crate::publish::plot::RGBColor;
 use crate::publish::plot::palette;
 use crate::publish::plot::panel::{self, Band, Panel, Scale, Series, Stroke};
 use crate::publish::{FigureError, value};
-use std::io::{self, Write};
 
 /// Largest number of jobs that have a figure.
 const MAX_FIGURES: usize = 12;
@@ -22,78 +21,6 @@ const KILO: f64 = 1.0e3;
 pub(super) const MEANING: &str = "The speed or the load of these jobs changes in time. Their runs are cut into windows, and every figure is a \
                        mean over a window. The hysteresis is the largest difference of μ* between the way up and the way down \
                        at the same speed (or load), up minus down, interpolated between windows.";
-
-/// The columns of [`WindowsCsv`].
-const COLUMNS: [&str; 16] = [
-    "study",
-    "job",
-    "parameters",
-    "start_s",
-    "end_s",
-    "direction",
-    "omega_rpm",
-    "load_n",
-    "mu_star",
-    "mu_star_contact",
-    "frequency_hz",
-    "n_amplitude",
-    "y_peak_to_peak_m",
-    "stick_share",
-    "slip_share",
-    "separated_share",
-];
-
-/// All windows as CSV: a row for each window of each job whose speed or load changes in time.
-pub struct WindowsCsv<W: Write>(csv::Writer<W>);
-
-impl<W: Write> WindowsCsv<W> {
-    /// Writes the header.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn new(out: W) -> io::Result<Self> {
-        let mut writer = csv::Writer::from_writer(out);
-        writer.write_record(COLUMNS).map_err(io_error)?;
-        Ok(Self(writer))
-    }
-
-    /// Writes the windows of a job.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn write(&mut self, row: &JobRow) -> io::Result<()> {
-        for window in row.record().iter().flat_map(|record| &record.windows) {
-            let own = [row.study.clone(), row.job.clone(), parameters_in_words(row)];
-            let [start_s, end_s] = window.time_s.map(value::number);
-            let direction = window.direction.name().to_owned();
-            let frequency = window.frequency_hz.map_or_else(String::new, value::number);
-            let before = [window.omega_rpm, window.load_n, window.mu_star, window.mu_star_contact];
-            let after = [
-                window.n_amplitude,
-                window.y_peak_to_peak_m,
-                window.stick_share,
-                window.slip_share,
-                window.separated_share,
-            ];
-            let cells = own
-                .into_iter()
-                .chain([start_s, end_s, direction])
-                .chain(before.map(value::number))
-                .chain([frequency])
-                .chain(after.map(value::number));
-            self.0.write_record(cells).map_err(io_error)?;
-        }
-        Ok(())
-    }
-
-    /// Writes what is still buffered.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn finish(mut self) -> io::Result<()> {
-        self.0.flush()
-    }
-}
 
 /// The jobs of a report whose speed or load changes in time, with their figures.
 pub(super) struct Programs<'a> {
@@ -140,7 +67,7 @@ impl<'a> Programs<'a> {
             Ok(ProgramFigure { file, caption: parameters_in_words(job.row), svg: draw(job)? })
         };
         let figures: Result<_, FigureError> = jobs.iter().take(MAX_FIGURES).enumerate().map(figure).collect();
-        Ok(Some(Self { figures: figures?, csv: windows_of(rows), jobs }))
+        Ok(Some(Self { figures: figures?, csv: windows::table(rows).csv(), jobs }))
     }
 
     /// The figures of the first jobs.
@@ -181,17 +108,6 @@ fn unit(leading: Leading) -> &'static str {
         Leading::Omega => "rpm",
         Leading::Load => "N",
     }
-}
-
-fn windows_of(rows: &[JobRow]) -> String {
-    let mut out = Vec::new();
-    let mut write = || {
-        let mut csv = WindowsCsv::new(&mut out)?;
-        rows.iter().try_for_each(|row| csv.write(row))?;
-        csv.finish()
-    };
-    write().expect("memory can be written");
-    String::from_utf8(out).expect("cells are texts")
 }
 
 /// The colour of a direction and its name; none for windows that are on no way.

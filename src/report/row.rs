@@ -34,6 +34,8 @@ pub struct JobRow {
     pub wave: u64,
     /// Why the program added the job: `curve`, `minimum`, `boundary`.
     pub why: Option<String>,
+    /// The values of all inputs, for an export that has them; otherwise empty.
+    pub inputs: Vec<Value>,
 }
 
 /// What a job's accuracy and cost depend on besides the physics.

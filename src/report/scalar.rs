@@ -1,6 +1,6 @@
 //! The numbers of a record that figures and tables can show.
 
-use super::columns::{self, Column};
+use super::columns::{self, ExportColumn};
 use super::parameters::name_and_unit;
 use super::row::{JobRow, RowState};
 use crate::analysis::Outcome;
@@ -14,7 +14,7 @@ pub struct Scalar {
     pub name: &'static str,
     /// What it is, in words, without the unit.
     pub meaning: &'static str,
-    column: &'static Column,
+    column: &'static ExportColumn,
 }
 
 /// The macroscopic friction coefficient.
@@ -56,18 +56,20 @@ const TITLES: [(&str, &str); 28] = [
 ];
 
 /// Whether a column has the numbers of runs: neither text, nor what only some runs that are not periodic have.
-fn is_scalar(column: &Column) -> bool {
-    let is_text = matches!(&*column.name, "regime" | "decided_by" | "start_outcome");
-    column.group != columns::Group::Job && !is_text && !column.name.starts_with("obstacle")
+fn is_scalar(column: &ExportColumn) -> bool {
+    let name = &*column.column.head.name;
+    let is_text = matches!(name, "regime" | "decided_by" | "start_outcome");
+    column.group != columns::Group::Job && !is_text && !name.starts_with("obstacle")
 }
 
 /// All of them: the columns of the export that are numbers of a record.
 pub static SCALARS: LazyLock<Vec<Scalar>> = LazyLock::new(|| {
     let numbers = columns::PLAIN.iter().chain(&columns::FURTHER).filter(|column| is_scalar(column));
-    let scalar = |column: &'static Column| {
-        let title = TITLES.iter().find(|(name, _)| *name == column.name).map(|(_, title)| *title);
-        let meaning = column.meaning.split([',', ';']).next().unwrap_or_default();
-        Scalar { name: &column.name, meaning: title.unwrap_or(meaning), column }
+    let scalar = |column: &'static ExportColumn| {
+        let head = &column.column.head;
+        let title = TITLES.iter().find(|(name, _)| *name == head.name).map(|(_, title)| *title);
+        let meaning = head.meaning.split([',', ';']).next().unwrap_or_default();
+        Scalar { name: &head.name, meaning: title.unwrap_or(meaning), column }
     };
     numbers.map(scalar).collect()
 });
@@ -130,7 +132,7 @@ impl Scalar {
     /// The value in a row, if it has one that is a number.
     pub fn value(&self, row: &JobRow) -> Option<f64> {
         let value = match &row.state {
-            RowState::Done(_) => self.column.value(row, &[]).as_f64(),
+            RowState::Done(_) => self.column.value(row).as_f64(),
             RowState::Measured(measured) => measured.value(self.name).map(|found| found.value),
             _ => None,
         };

@@ -1,7 +1,10 @@
 //! The spectra that inspections of a report's jobs have stored.
 
 use super::inspections::inspections;
+use super::layout::Layout;
+use super::parameters;
 use super::row::JobRow;
+use crate::publish::table::{Column, FileColumns, Table};
 use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
@@ -43,6 +46,45 @@ fn spectrum(file: &Path) -> Option<StoredSpectrum> {
     };
     let ascends = lines.is_sorted_by(|a, b| a.0 < b.0);
     (lines.len() > 1 && ascends && lines.iter().all(is_sound)).then_some(StoredSpectrum { lines })
+}
+
+/// A line of a job's spectrum: frequency \[Hz\] and amplitude \[N\].
+#[derive(Clone, Copy)]
+struct Line<'a> {
+    row: &'a JobRow,
+    frequency_hz: f64,
+    amplitude_n: f64,
+}
+
+fn columns<'a>() -> [Column<Line<'a>>; 5] {
+    [
+        Column::new("job", "", "key of the job", |of| of.row.job.as_str().into()),
+        Column::new("omega_rpm", "rpm", "rotation speed ω of the disk", |of| of.row.omega_rpm.into()),
+        Column::new("mu", "", "local friction coefficient μ", |of| of.row.mu.into()),
+        Column::new("frequency_hz", "Hz", "frequency of the line", |of| of.frequency_hz.into()),
+        Column::new("normal_amplitude_n", "N", "amplitude of N at it", |of| of.amplitude_n.into()),
+    ]
+}
+
+/// The lines of all stored spectra of the jobs of a layout.
+pub(super) fn table(layout: &Layout, spectra: &Spectra) -> Table {
+    let of_parameter = |name: &&str| {
+        let (head, name) = (parameters::head(name), (*name).to_owned());
+        Column::made(head, move |of: &Line| of.row.parameter(&name))
+    };
+    let columns: Vec<Column<Line>> =
+        columns().into_iter().chain(layout.varied.iter().map(of_parameter)).collect();
+    let jobs = layout.groups.iter().flat_map(|group| &group.jobs).map(|job| job.row);
+    let lines = jobs.flat_map(|row| {
+        let own = spectra.get(&row.job).map_or(&[][..], |own| &own.lines);
+        own.iter().map(move |&(frequency_hz, amplitude_n)| Line { row, frequency_hz, amplitude_n })
+    });
+    Table::of("waterfall", &columns, &lines.collect::<Vec<_>>())
+}
+
+/// The columns, for the page of columns.
+pub(super) fn described() -> FileColumns {
+    FileColumns::new(&["waterfall.csv"], "A line is a line of the spectrum of an inspected job.", &columns())
 }
 
 impl StoredSpectrum {

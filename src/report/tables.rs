@@ -1,20 +1,20 @@
 //! Tables of the same layout as the curves: speed by friction coefficient, one cell per job.
 
 use super::digits;
-use super::export::io_error;
-use super::layout::{Group, Layout};
+use super::layout::{Group, Layout, PlacedJob};
 use super::page::tables_of;
+use super::parameters;
 use super::row::{JobRow, RowState};
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
 use super::view::View;
 use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::publish::markdown;
 use crate::publish::page::Page;
+use crate::publish::table::{FileColumns, Head, Table};
 use crate::publish::value::{self, MISSING};
 use serde_json::Value;
 use std::borrow::Cow;
 use std::collections::HashMap;
-use std::io::{self, Write};
 
 /// What a table shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -158,34 +158,61 @@ pub(super) fn legend(layout: &Layout, quantity: Quantity) -> Vec<(&'static str, 
     quantity.legend(cells.iter().map(String::as_str))
 }
 
-/// The tables of one quantity as one CSV: columns for further parameters, one for the parameter along the rows, and one
+/// The tables of one quantity as one: columns for further parameters, one for the parameter along the rows, and one
 /// for each μ.
 ///
 /// The cells are those of [`markdown`], but μ\* has four decimals and a frequency none, whatever their errors are. A missing result is an empty cell.
-///
-/// # Errors
-/// Those of the writer.
-pub fn csv<W: Write>(rows: &[JobRow], quantity: Quantity, out: W) -> io::Result<()> {
-    csv_of(&Layout::new(rows), quantity, out)
+pub fn table(rows: &[JobRow], quantity: Quantity, stem: &'static str) -> Table {
+    table_of(&Layout::new(rows), quantity)
 }
 
-pub(super) fn csv_of<W: Write>(layout: &Layout, quantity: Quantity, out: W) -> io::Result<()> {
-    let mut writer = ::csv::Writer::from_writer(out);
-    let columns = layout.series.iter().map(|series| {
+pub(super) fn table_of(layout: &Layout, quantity: Quantity) -> Table {
+    let stem = quantity.stem();
+    let of_series = layout.series.iter().map(|series| {
         let of_source = layout.sources.get(series.source).filter(|_| layout.has_sources());
         let source = of_source.map_or_else(String::new, |source| format!(" {}", source.name));
-        format!("{}={}{source}", layout.by, value::rounded_text(&series.value))
+        let name = format!("{}={}{source}", layout.by, value::rounded_text(&series.value));
+        Head::new(name, "", format!("{} there", quantity.title()))
     });
-    let names = layout.further.iter().chain([&layout.axis]).map(|&name| name.to_owned());
-    writer.write_record(names.chain(columns)).map_err(io_error)?;
-    for group in &layout.groups {
-        for (at, cells) in lines(layout, group, quantity, Digits::Fixed) {
-            let key = group.key.iter().map(|(_, value)| value::text(value));
-            let cells = cells.into_iter().map(|cell| if cell == MISSING { String::new() } else { cell });
-            writer.write_record(key.chain([value::rounded_text(at)]).chain(cells)).map_err(io_error)?;
-        }
+    let names = layout.further.iter().chain(&layout.scattered).chain([&layout.axis]);
+    let heads = names.map(|name| parameters::head(name)).chain(of_series).collect();
+    let of_point = |group: &Group, job: &PlacedJob| {
+        let key = group.key.iter().map(|(_, value)| value.clone());
+        let scattered = layout.scattered.iter().map(|name| job.row.parameter(name));
+        let at = value::rounded_value(&group.axis_values[job.axis_index]);
+        let cell = cell_or_null(quantity.cell(job.row, Digits::Fixed));
+        let cells =
+            (0..layout.series.len()).map(|own| if own == job.series { cell.clone() } else { Value::Null });
+        key.chain(scattered).chain([at]).chain(cells).collect()
+    };
+    if !layout.scattered.is_empty() {
+        // Two points at one place along the axis are no neighbours.
+        let jobs = |group: &Group| {
+            let mut jobs: Vec<PlacedJob> = group.jobs.clone();
+            jobs.sort_by_key(|job| job.axis_index);
+            jobs.into_iter().map(|job| of_point(group, &job)).collect::<Vec<_>>()
+        };
+        return Table { stem: stem.into(), heads, lines: layout.groups.iter().flat_map(jobs).collect() };
     }
-    writer.flush()
+    let of_group = |group| {
+        lines(layout, group, quantity, Digits::Fixed).map(|(at, cells)| {
+            let key = group.key.iter().map(|(_, value)| value.clone());
+            let cells = cells.into_iter().map(cell_or_null);
+            key.chain([value::rounded_value(at)]).chain(cells).collect()
+        })
+    };
+    Table { stem: stem.into(), heads, lines: layout.groups.iter().flat_map(of_group).collect() }
+}
+
+fn cell_or_null(cell: String) -> Value {
+    if cell == MISSING { Value::Null } else { cell.into() }
+}
+
+/// What the columns are, for the page of columns.
+pub(super) fn described() -> FileColumns {
+    let lines = "Tables of a quantity. A line has the jobs at one value of the parameter along the axis, with the parameters that tell \
+                 tables apart. There is a column for each value of the parameter of the curves, for example `mu=0.4`.";
+    FileColumns::new::<JobRow>(&["mu_star.csv", "frequency.csv", "regime.csv", "QUANTITY.csv"], lines, [])
 }
 
 /// The headings of all columns.

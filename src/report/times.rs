@@ -62,6 +62,7 @@ mod tests {
             discretisation: crate::report::Discretisation::NotMeasured,
             wave: 0,
             why: None,
+            inputs: Vec::new(),
         }
     }
 

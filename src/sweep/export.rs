@@ -2,22 +2,13 @@
 
 use super::error::SweepError;
 use super::rows::{add_further_names, for_each_row, for_each_row_with_inputs};
+use crate::publish::table::{Format, Head};
 use crate::queue::{Queue, Rows};
-use crate::report::columns::{self, Column, InputColumn};
+use crate::report::columns::{self, ExportColumn};
 use crate::report::export::Export;
-use crate::report::{JobRow, WindowsCsv};
+use crate::report::{JobRow, Windows};
 use crate::study::{Parameter, input_parameters};
 use std::io::Write;
-
-/// The format of an export.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum ExportFormat {
-    /// Comma-separated values with a header.
-    #[default]
-    Csv,
-    /// One JSON object per line.
-    JsonLines,
-}
 
 /// The columns of an export.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -62,20 +53,21 @@ pub async fn export_windows(
     out: &mut dyn Write,
 ) -> Result<Unreadable, SweepError> {
     let mut unreadable = Unreadable::default();
-    let mut csv = WindowsCsv::new(out).map_err(SweepError::Output)?;
+    let further = further_names(queue, studies).await?;
+    let mut windows = Windows::new(&further, out).map_err(SweepError::Output)?;
     for study in studies {
         for_each_row(queue, study, Rows::All, |_, row| {
             unreadable.note(&row);
-            csv.write(&row).map_err(SweepError::Output)
+            windows.write(&row).map_err(SweepError::Output)
         })
         .await?;
     }
-    csv.finish().map_err(SweepError::Output)?;
+    windows.finish().map_err(SweepError::Output)?;
     Ok(unreadable)
 }
 
 /// The columns of an export of studies with these `grid` parameters other than ω and μ.
-pub fn columns(which: ExportColumns, grid: &[String]) -> Vec<Column> {
+pub fn columns(which: ExportColumns, grid: &[String]) -> Vec<ExportColumn> {
     match which {
         ExportColumns::Plain => columns::plain(grid),
         ExportColumns::All => {
@@ -87,13 +79,21 @@ pub fn columns(which: ExportColumns, grid: &[String]) -> Vec<Column> {
     }
 }
 
-fn input_columns() -> Vec<InputColumn> {
-    let column = |parameter: &Parameter| InputColumn {
-        name: parameter.column().to_owned(),
-        unit: parameter.unit().unwrap_or_default().to_owned(),
-        meaning: parameter.description().to_owned(),
+fn input_columns() -> Vec<Head> {
+    let head = |parameter: &Parameter| {
+        let unit = parameter.unit().unwrap_or_default().to_owned();
+        Head::new(parameter.column().to_owned(), unit, parameter.description().to_owned())
     };
-    input_parameters().map(column).collect()
+    input_parameters().map(head).collect()
+}
+
+/// The parameters of the studies other than ω and μ.
+async fn further_names(queue: &mut Queue, studies: &[String]) -> Result<Vec<String>, SweepError> {
+    let mut names = Vec::new();
+    for study in studies {
+        add_further_names(queue, study, &mut names).await?;
+    }
+    Ok(names)
 }
 
 /// Writes one row per job of the studies to `out`, study after study. Each study is read twice, first for the names of its
@@ -107,35 +107,20 @@ pub async fn export(
     queue: &mut Queue,
     studies: &[String],
     which: ExportColumns,
-    format: ExportFormat,
+    format: Format,
     out: &mut dyn Write,
 ) -> Result<Unreadable, SweepError> {
     let mut unreadable = Unreadable::default();
-    let mut grid = Vec::new();
-    for study in studies {
-        add_further_names(queue, study, &mut grid).await?;
-    }
-    let columns = columns(which, &grid);
-    let mut export = match format {
-        ExportFormat::Csv => Export::csv(columns, out).map_err(SweepError::Output)?,
-        ExportFormat::JsonLines => Export::json_lines(columns, out),
+    let grid = further_names(queue, studies).await?;
+    let mut export = Export::new(format, columns(which, &grid), out).map_err(SweepError::Output)?;
+    let mut write = |row: JobRow| {
+        unreadable.note(&row);
+        export.write(&row).map_err(SweepError::Output)
     };
     for study in studies {
         match which {
-            ExportColumns::Plain => {
-                for_each_row(queue, study, Rows::All, |_, row| {
-                    unreadable.note(&row);
-                    export.write(&row, &[]).map_err(SweepError::Output)
-                })
-                .await?;
-            }
-            ExportColumns::All => {
-                for_each_row_with_inputs(queue, study, |row, inputs| {
-                    unreadable.note(&row);
-                    export.write(&row, &inputs).map_err(SweepError::Output)
-                })
-                .await?;
-            }
+            ExportColumns::Plain => for_each_row(queue, study, Rows::All, |_, row| write(row)).await?,
+            ExportColumns::All => for_each_row_with_inputs(queue, study, &mut write).await?,
         }
     }
     export.finish().map_err(SweepError::Output)?;

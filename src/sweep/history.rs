@@ -3,6 +3,8 @@
 use crate::analysis::quantity::{DELAYED_STRESS, NODE, TOTALS, of_holder};
 use crate::analysis::sample::{OBSERVED_NAMES, Sample};
 use crate::publish::table::{Column, Format, Head, TableWriter};
+#[cfg(feature = "cli")]
+use crate::publish::table::FileColumns;
 use crate::spec::Holder;
 use std::io;
 
@@ -26,6 +28,14 @@ fn columns(holder: &Holder) -> Vec<Column<Sample>> {
     let moves = holder.directions().map(|direction| direction.is_some());
     let totals = TOTALS.into_iter().map(Column::from);
     totals.chain(of_nodes).chain(of_holder(moves).map(Column::from)).collect()
+}
+
+/// The columns, for the page of columns.
+#[cfg(feature = "cli")]
+pub(crate) fn described() -> FileColumns {
+    let lines = "The file of `solve --history`. A line is a step. With a holder that moves, there are columns of its displacement and \
+                 acceleration, such as `holder_x_m` and `holder_x_acceleration_m_s2`.";
+    FileColumns::new(&["history.csv"], lines, &columns(&Holder::default()))
 }
 
 impl History {
@@ -57,6 +67,6 @@ impl History {
     /// # Errors
     /// If a line could not be written.
     pub fn into_csv(self) -> io::Result<Vec<u8>> {
-        self.lines?.into_inner()
+        self.lines?.finish()
     }
 }

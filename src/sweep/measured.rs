@@ -318,6 +318,7 @@ fn row(
         discretisation: Discretisation::NotMeasured,
         wave: 0,
         why: None,
+        inputs: Vec::new(),
     }))
 }
 

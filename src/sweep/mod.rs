@@ -44,10 +44,12 @@ pub use deep::{examine_deeply, unreadable_jobs};
 pub use difference::{Difference, InputDifference};
 pub use discretisation::discretisation_of;
 pub use error::SweepError;
-pub use export::{ExportColumns, ExportFormat, Unreadable, columns, export, export_windows};
+pub use export::{ExportColumns, Unreadable, columns, export, export_windows};
 pub use forecast::{Forecast, Group, Kind, Known, Speed, TimeRange, expected_s_per_cost};
 pub use growth::{PLANNER, read_growth};
 pub use history::History;
+#[cfg(feature = "cli")]
+pub(crate) use history::described as columns_of_history;
 pub use measured::MeasuredError;
 pub use outlook::{Outlook, available_threads};
 pub use plan::{Plan, Submission};

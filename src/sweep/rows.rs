@@ -90,7 +90,7 @@ pub async fn for_each_row(
     visited
 }
 
-/// As [`for_each_row`] for all rows, with the values of all inputs of each job, in the order of
+/// As [`for_each_row`] for all rows, with the values of all [`inputs`](JobRow::inputs) of each job, in the order of
 /// [`input_parameters`](crate::study::input_parameters). Inputs without an effect are null.
 ///
 /// # Errors
@@ -98,12 +98,12 @@ pub async fn for_each_row(
 pub async fn for_each_row_with_inputs(
     queue: &mut Queue,
     study: &str,
-    mut visit: impl FnMut(JobRow, Vec<Value>) -> Result<(), SweepError>,
+    mut visit: impl FnMut(JobRow) -> Result<(), SweepError>,
 ) -> Result<(), SweepError> {
     let mut visited = Ok(());
     let convert = |row: &StudyRow| {
         let mut own = report_row(study, row)?;
-        let inputs = match job_spec(&row.key, row.payload.as_deref().unwrap_or_default()) {
+        own.inputs = match job_spec(&row.key, row.payload.as_deref().unwrap_or_default()) {
             Ok(spec) => input_values(&spec),
             // Without its inputs the row would be that of an unknown scene.
             Err(error) => {
@@ -111,9 +111,9 @@ pub async fn for_each_row_with_inputs(
                 input_parameters().map(|_| Value::Null).collect()
             }
         };
-        Ok((own, inputs))
+        Ok(own)
     };
-    let visit_page = page_visitor(&mut visited, convert, |(row, inputs)| visit(row, inputs));
+    let visit_page = page_visitor(&mut visited, convert, |row| visit(row));
     queue.each_page_with_payloads(study, Rows::All, visit_page).await?;
     visited
 }
@@ -191,6 +191,7 @@ pub(super) fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepErr
         discretisation: Discretisation::default(),
         wave: parameters.wave.unwrap_or(0),
         why: parameters.why,
+        inputs: Vec::new(),
     })
 }
 

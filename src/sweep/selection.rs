@@ -202,6 +202,7 @@ impl StoredJob {
             discretisation: discretisation_of(&spec),
             wave: 0,
             why: None,
+            inputs: Vec::new(),
         })
     }
 }

@@ -8,7 +8,8 @@ use tribosweep::analysis::{
     AboveBand, CoarseStart, ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode,
     Obstacle, Outcome, Regime, SlidingStability,
 };
-use tribosweep::report::columns::{Column, InputColumn, all, plain};
+use tribosweep::publish::table::Head;
+use tribosweep::report::columns::{ExportColumn, all, of_files, plain};
 use tribosweep::report::{RowState, SCALARS, name_and_unit};
 
 /// A record in which every optional figure is present.
@@ -84,16 +85,16 @@ fn number_all(value: &mut Value, numbers: &mut BTreeSet<u64>) {
     }
 }
 
-fn inputs(names: &[&str]) -> Vec<InputColumn> {
-    let input =
-        |name: &&str| InputColumn {
-            name: (*name).to_owned(), unit: "m".to_owned(), meaning: "…".to_owned()
-        };
-    names.iter().map(input).collect()
+fn inputs(names: &[&str]) -> Vec<Head> {
+    names.iter().map(|name| Head::new((*name).to_owned(), "m", "…")).collect()
 }
 
-fn names(columns: &[Column]) -> Vec<&str> {
-    columns.iter().map(|column| &*column.name).collect()
+fn heads(columns: &[ExportColumn]) -> impl Iterator<Item = &Head> {
+    columns.iter().map(|own| &own.column.head)
+}
+
+fn names(columns: &[ExportColumn]) -> Vec<&str> {
+    heads(columns).map(|head| &*head.name).collect()
 }
 
 /// Protects: every number that a record stores is in a column of its own, whatever its kind of obstacle.
@@ -106,11 +107,11 @@ fn every_number_of_a_record_has_a_column() {
         number_all(&mut stored, &mut numbers);
         let record: JobRecord = serde_json::from_value(stored).unwrap();
         let row = row(7.0, 0.4, RowState::Done(Box::new(record)));
-        let values = all(&[], &[]).into_iter().map(|column| (column.value(&row, &[]).as_f64(), column));
+        let values = all(&[], &[]).into_iter().map(|column| (column.value(&row).as_f64(), column));
         for number in numbers {
             let own = values.clone().filter(|(value, _)| *value == Some(number as f64));
             // The figure of both identities is the larger one of the two.
-            let own = own.filter(|(_, column)| column.name != "identity_residual");
+            let own = own.filter(|(_, column)| column.column.head.name != "identity_residual");
             assert_eq!(own.count(), 1, "{number}");
         }
     }
@@ -129,15 +130,15 @@ fn names_are_unique() {
     let further = ["load_n", "parameter_cycles", "parameter_time_step_s", "preset"];
     assert_eq!(names(&all)[all.len() - further.len()..], further);
     assert_eq!(names(&all).iter().collect::<BTreeSet<_>>().len(), all.len());
-    assert!(all.iter().all(|column| !column.meaning.is_empty()));
+    assert!(heads(&all).all(|head| !head.meaning.is_empty()));
 }
 
 /// Protects: the unit of a column is the one at the end of its name, and figures and tables can show numbers of the export
 /// only.
 #[test]
 fn units_are_those_of_the_names() {
-    for column in all(&[], &[]) {
-        assert_eq!(name_and_unit(&column.name).1, column.unit, "{}", column.name);
+    for head in heads(&all(&[], &[])) {
+        assert_eq!(name_and_unit(&head.name).1, head.unit, "{}", head.name);
     }
     let mode = ComplexMode {
         frequency_hz: 1.5e4,
@@ -160,8 +161,8 @@ fn units_are_those_of_the_names() {
     let record = JobRecord { stability: Some(stability), windows, ..full(Obstacle::SlipOnly) };
     let row = row(7.0, 0.4, RowState::Done(Box::new(record)));
     for scalar in SCALARS.iter() {
-        let column = Column::find(scalar.name).unwrap_or_else(|| panic!("no column {}", scalar.name));
-        assert!(column.value(&row, &[]).is_number(), "{}", scalar.name);
+        let column = ExportColumn::find(scalar.name).unwrap_or_else(|| panic!("no column {}", scalar.name));
+        assert!(column.value(&row).is_number(), "{}", scalar.name);
     }
 }
 
@@ -169,12 +170,27 @@ fn units_are_those_of_the_names() {
 #[test]
 fn inputs_are_in_their_columns() {
     let columns = all(&inputs(&["mu", "size_x_m", "cycles"]), &[]);
-    let row = row(7.0, 0.4, RowState::Pending);
+    let mut row = row(7.0, 0.4, RowState::Pending);
+    row.inputs = vec![json!(0.4), json!(0.012), json!(20)];
     let value = |name: &str| {
-        let column = columns.iter().find(|column| column.name == name).unwrap();
-        column.value(&row, &[json!(0.4), json!(0.012), json!(20)])
+        let own = columns.iter().find(|own| own.column.head.name == name).unwrap();
+        own.value(&row)
     };
     assert_eq!(value("size_x_m"), json!(0.012));
     assert_eq!(value("parameter_cycles"), json!(20));
     assert_eq!((value("cycles"), value("mu")), (Value::Null, json!(0.4)));
+}
+
+/// Protects: the page of columns has every table of a report once, no column of a table has the name of another one, and each column has a
+/// meaning.
+#[test]
+fn other_tables_are_described() {
+    let files = of_files();
+    let names: Vec<&String> = files.iter().flat_map(|own| &own.files).collect();
+    assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len(), "{names:?}");
+    for own in &files {
+        let columns: BTreeSet<_> = own.heads.iter().map(|head| &head.name).collect();
+        assert_eq!(columns.len(), own.heads.len(), "{:?}", own.files);
+        assert!(own.heads.iter().all(|head| !head.meaning.is_empty()), "{:?}", own.files);
+    }
 }

@@ -14,6 +14,7 @@ mod maps;
 mod overview;
 mod pareto;
 mod planes;
+mod points;
 mod programs;
 #[path = "../support/random.rs"]
 mod random;

@@ -4,7 +4,7 @@ use crate::synthetic::{record, report, row};
 use std::fs;
 use tribosweep::analysis::program::{Direction, ProgramWindow};
 use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::report::columns::Column;
+use tribosweep::report::columns::ExportColumn;
 use tribosweep::report::{JobRow, RowState, write};
 
 /// A run up to 40 rpm and down again in nine windows, with 0.02 more friction on the way up.
@@ -68,8 +68,8 @@ fn a_report_has_the_windows_and_their_hysteresis() {
     assert!(!page.contains("## Not periodic"), "{page}");
     assert!(read("report.html").contains("Speed and load in time"));
 
-    let hysteresis = Column::find("hysteresis").unwrap();
-    let found = hysteresis.value(&rows[0], &[]).as_f64().unwrap();
+    let hysteresis = ExportColumn::find("hysteresis").unwrap();
+    let found = hysteresis.value(&rows[0]).as_f64().unwrap();
     assert!((found - 0.02).abs() < 1e-12, "{found}");
-    assert!(hysteresis.value(&rows[1], &[]).is_null());
+    assert!(hysteresis.value(&rows[1]).is_null());
 }

@@ -111,6 +111,7 @@ pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> JobRow {
         discretisation: Discretisation::Measured(Arc::new(MeshError::default())),
         wave: 0,
         why: None,
+        inputs: Vec::new(),
     }
 }
 

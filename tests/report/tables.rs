@@ -1,7 +1,7 @@
 //! The tables: every job is in its cell, and missing results are marked.
 
 use crate::synthetic::{done, failed, partial_study, periodic, row, with};
-use serde_json::json;
+use serde_json::{Value, json};
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::tables::{self, Quantity};
 use tribosweep::report::{JobRow, RowState};
@@ -15,10 +15,10 @@ fn cells(rows: &[JobRow], quantity: Quantity) -> Vec<Vec<String>> {
         .collect()
 }
 
-fn csv(rows: &[JobRow], quantity: Quantity) -> Vec<String> {
-    let mut out = Vec::new();
-    tables::csv(rows, quantity, &mut out).expect("a vector takes everything");
-    String::from_utf8(out).expect("the table is UTF-8").lines().map(str::to_owned).collect()
+/// The names and the cells of the table.
+fn table(rows: &[JobRow], quantity: Quantity) -> (Vec<String>, Vec<Vec<Value>>) {
+    let table = tables::table(rows, quantity, "table");
+    (table.names().map(str::to_owned).collect(), table.lines)
 }
 
 /// Protects: in a study with every kind of job, each cell has the right position and format.
@@ -37,15 +37,15 @@ fn mu_star_of_a_partial_study() {
     assert_eq!(table, expected);
 }
 
-/// Protects: the CSV has the same cells, and missing results are empty.
+/// Protects: the table for programs has the same cells, and missing results are empty.
 #[test]
-fn csv_has_the_same_cells() {
-    let table = csv(&partial_study(), Quantity::MuStar);
-    assert_eq!(table[0], "omega_rpm,mu=0.2,mu=0.3,mu=0.4");
-    assert_eq!(table[1], "1,0.2000,0.2460,");
-    assert_eq!(table[4], "10,0.2000,0.2700,0.3500~");
-    assert_eq!(table[5], "50,0.2000,failed,");
-    assert_eq!(table.len(), 7);
+fn the_table_for_programs_has_the_same_cells() {
+    let (names, lines) = table(&partial_study(), Quantity::MuStar);
+    assert_eq!(names, ["omega_rpm", "mu=0.2", "mu=0.3", "mu=0.4"]);
+    assert_eq!(lines[0], [json!(1.0), json!("0.2000"), json!("0.2460"), Value::Null]);
+    assert_eq!(lines[3], [json!(10.0), json!("0.2000"), json!("0.2700"), json!("0.3500~")]);
+    assert_eq!(lines[4], [json!(50.0), json!("0.2000"), json!("failed"), Value::Null]);
+    assert_eq!(lines.len(), 6);
 }
 
 /// Protects: frequencies are in whole hertz, `stable` if nothing oscillates, and regimes are names.
@@ -107,7 +107,7 @@ fn duplicates_share_a_cell() {
     let rows =
         [row(7.0, 0.4, periodic(0.35)), row(7.0, 0.4, periodic(0.36)), row(7.0, 0.4, RowState::Pending)];
     assert_eq!(cells(&rows, Quantity::MuStar)[1], ["7", "0.3500 / 0.3600 / –"]);
-    assert_eq!(csv(&rows, Quantity::MuStar)[1], "7,0.3500 / 0.3600 / –");
+    assert_eq!(table(&rows, Quantity::MuStar).1[0], [json!(7.0), json!("0.3500 / 0.3600 / –")]);
 }
 
 /// Protects: where μ is the same in all jobs, another parameter makes the columns, and every combination of the rest has
@@ -142,10 +142,10 @@ fn one_table_per_combination() {
         cells(&rows, Quantity::MuStar)[0],
         ["ω [rpm]", "clamp_side = inner_side", "clamp_side = outer_side"]
     );
-    let table = csv(&rows, Quantity::MuStar);
-    assert_eq!(table[0], "beta_r_s,top,omega_rpm,clamp_side=inner_side,clamp_side=outer_side");
-    assert_eq!(table[1], "0,free_in_z,5,0.2000,0.3000");
-    assert_eq!(table[8], "1e-7,tied_in_z,7,0.2100,0.3100");
+    let (names, lines) = table(&rows, Quantity::MuStar);
+    assert_eq!(names, ["beta_r_s", "top", "omega_rpm", "clamp_side=inner_side", "clamp_side=outer_side"]);
+    assert_eq!(json!(lines[0]), json!([0.0, "free_in_z", 5.0, "0.2000", "0.3000"]));
+    assert_eq!(json!(lines[7]), json!([1e-7, "tied_in_z", 7.0, "0.2100", "0.3100"]));
 }
 
 /// Protects: in a study at one speed, the first parameter that varies is along the rows.

@@ -2,9 +2,9 @@
 
 use super::parsed;
 use crate::analysis::{AboveBand, ComplexMode, SlidingStability};
-use crate::cli::aligned;
+use crate::publish::table::{Column, Table, listed};
 use crate::publish::value::{self, MISSING};
-use crate::report::columns::{Column, FURTHER, Group, PLAIN};
+use crate::report::columns::{ExportColumn, FURTHER, Group, PLAIN};
 use crate::report::{JobRow, assignment};
 use crate::study::{Input, inputs};
 use crate::sweep::{StoredJob, StudyOfJob};
@@ -28,10 +28,10 @@ const ELSEWHERE: [&str; 6] = ["study", "job", "omega_rpm", "mu", "status", "wall
 
 /// Everything about a job, for a terminal of `width` characters or for a file.
 pub(super) fn of_job(job: &StoredJob, width: Option<usize>) -> String {
-    let mut text = aligned::lines(0, &head(job), width);
+    let mut text = listed(0, &head(job), width);
     let mut add = |heading: &str, lines: &[[String; 3]]| {
         if !lines.is_empty() {
-            let _ = write!(text, "\n{heading}\n{}", aligned::lines(2, lines, width));
+            let _ = write!(text, "\n{heading}\n{}", listed(2, lines, width));
         }
     };
     match job.spec() {
@@ -60,7 +60,7 @@ pub(super) fn of_job(job: &StoredJob, width: Option<usize>) -> String {
         }
         Err(error) => add("Result", &[[error.to_string(), String::new(), String::new()]]),
     }
-    let _ = write!(text, "\nProvenance\n{}", aligned::lines(2, &provenance(job), width));
+    let _ = write!(text, "\nProvenance\n{}", listed(2, &provenance(job), width));
     text
 }
 
@@ -116,31 +116,38 @@ fn input_cells(Input { parameter, value }: &Input) -> [String; 3] {
 /// The figures of a group that the record has.
 fn figures(row: &JobRow, group: Group) -> Vec<[String; 3]> {
     let columns = PLAIN.iter().chain(&FURTHER).filter(|column| column.group == group);
-    let shown = columns.filter(|column| !ELSEWHERE.contains(&&*column.name));
-    let cells = shown.map(|column| (column, column.value(row, &[]))).filter(|(_, value)| !value.is_null());
-    let line = |(column, value): (&Column, Value)| {
+    let shown = columns.filter(|column| !ELSEWHERE.contains(&&*column.column.head.name));
+    let cells = shown.map(|column| (column, column.value(row))).filter(|(_, value)| !value.is_null());
+    let line = |(column, value): (&ExportColumn, Value)| {
+        let head = &column.column.head;
         let share = share_of_input(row, group, &value);
-        let text = written(&value, &column.unit, Some(DIGITS)) + &share;
-        [column.name.to_string(), text, column.meaning.to_string()]
+        let text = written(&value, &head.unit, Some(DIGITS)) + &share;
+        [head.name.to_string(), text, head.meaning.to_string()]
     };
     cells.map(line).collect()
 }
 
+/// The columns of a mode with its number.
+fn mode_columns<'a>() -> [Column<(usize, &'a ComplexMode)>; 5] {
+    [
+        Column::new("mode", "", "", |(number, _)| (*number).into()),
+        Column::new("frequency", "", "", |(_, mode)| value::quantity(mode.frequency_hz, "Hz").into()),
+        Column::new("growth rate", "", "", |(_, mode)| {
+            format!("{} 1/s", value::significant(mode.growth_rate_per_s, 4)).into()
+        }),
+        Column::new("damping ratio", "", "", |(_, mode)| value::significant_number(mode.damping_ratio, 3)),
+        Column::new("residual", "", "", |(_, mode)| {
+            let doubt = if mode.is_converged { "" } else { ", not converged" };
+            format!("{:.1e}{doubt}", mode.residual).into()
+        }),
+    ]
+}
+
 /// The modes of steady sliding as a table.
 fn modes(stability: &SlidingStability) -> String {
-    let head = ["mode", "frequency", "growth rate", "damping ratio", "residual"].map(str::to_owned);
-    let line = |(index, mode): (usize, &ComplexMode)| {
-        let doubt = if mode.is_converged { "" } else { ", not converged" };
-        [
-            (index + 1).to_string(),
-            value::quantity(mode.frequency_hz, "Hz"),
-            format!("{} 1/s", value::significant(mode.growth_rate_per_s, 4)),
-            value::significant(mode.damping_ratio, 3),
-            format!("{:.1e}{doubt}", mode.residual),
-        ]
-    };
-    let lines: Vec<[String; 5]> =
-        std::iter::once(head).chain(stability.modes.iter().enumerate().map(line)).collect();
+    let numbered: Vec<(usize, &ComplexMode)> = (1..).zip(&stability.modes).collect();
+    let table = Table::of("modes", &mode_columns(), &numbered).text();
+    let lines: String = table.lines().map(|line| format!("  {line}\n")).collect();
     let band = value::quantity(stability.band_hz, "Hz");
     let above = match stability.above_band {
         AboveBand::Nothing => "; the mesh has no others".to_owned(),
@@ -151,7 +158,7 @@ fn modes(stability: &SlidingStability) -> String {
         }
         AboveBand::NotLookedAt => "; others were not looked for".to_owned(),
     };
-    format!("\nModes of steady sliding below {band}{above}\n{}", aligned::lines(2, &lines, None))
+    format!("\nModes of steady sliding below {band}{above}\n{lines}")
 }
 
 /// The share that an energy has of the energy put in, as text; empty for other figures.

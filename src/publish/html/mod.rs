@@ -9,9 +9,6 @@
 //! inserted as they are. Without the script the browser shows the same tooltips after a delay.
 
 mod data_uri;
-mod sheet;
-
-pub use sheet::sheet;
 
 use super::page::{self, Block, Grid, Page, Span, Text, Tile};
 use maud::{DOCTYPE, Markup, PreEscaped, html};

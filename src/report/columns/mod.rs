@@ -5,23 +5,20 @@ mod fixed;
 
 pub use fixed::{FURTHER, PLAIN};
 
+use super::figure::{DataFile, Plot, RESIDUALS, RUN_TIMES};
 use super::parameters::is_further;
 use super::row::JobRow;
+use super::{comparison_files, growth, pareto, sensitivity, spectra, stability, tables, windows};
+use crate::publish::table::{Column, FileColumns, Head};
 use serde_json::Value;
-use std::borrow::Cow;
 
 /// A column of the export.
 #[derive(Debug, Clone)]
-pub struct Column {
-    /// Its name in the header, unique among the columns of an export.
-    pub name: Cow<'static, str>,
-    /// The unit of its numbers; empty for text and for numbers without a unit.
-    pub unit: Cow<'static, str>,
-    /// What its values mean.
-    pub meaning: Cow<'static, str>,
+pub struct ExportColumn {
     /// What it is about.
     pub group: Group,
-    source: Source,
+    /// Its name, unique among the columns of an export, with its values.
+    pub column: Column<JobRow>,
 }
 
 /// What a column is about.
@@ -84,64 +81,35 @@ impl Group {
     }
 }
 
-/// Where the values of a column are.
-#[derive(Debug, Clone)]
-enum Source {
-    /// In the row, or in its record.
-    Row(fn(&JobRow) -> Value),
-    /// The grid parameter of this name.
-    Parameter(String),
-    /// The input of this number.
-    Input(usize),
+const fn of_row(
+    name: &'static str,
+    unit: &'static str,
+    group: Group,
+    meaning: &'static str,
+    read: fn(&JobRow) -> Value,
+) -> ExportColumn {
+    ExportColumn { group, column: Column::new(name, unit, meaning, read) }
 }
 
-/// An input of a job, for a column of its own.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct InputColumn {
-    /// Its name.
-    pub name: String,
-    /// The unit of its numbers; empty for text and for numbers without a unit.
-    pub unit: String,
-    /// What it means.
-    pub meaning: String,
-}
-
-impl Column {
-    const fn of_row(
-        name: &'static str,
-        unit: &'static str,
-        group: Group,
-        meaning: &'static str,
-        read: fn(&JobRow) -> Value,
-    ) -> Self {
-        Self {
-            name: Cow::Borrowed(name),
-            unit: Cow::Borrowed(unit),
-            meaning: Cow::Borrowed(meaning),
-            group,
-            source: Source::Row(read),
-        }
-    }
-
+impl ExportColumn {
     /// The fixed column of that name, of a job or of its record.
     pub fn find(name: &str) -> Option<&'static Self> {
-        PLAIN.iter().chain(&FURTHER).find(|column| column.name == name)
+        PLAIN.iter().chain(&FURTHER).find(|own| own.column.head.name == name)
     }
 
-    /// Its value for a job; `inputs` are those of the export's [`InputColumn`]s. Null where the job has no value, and for a
-    /// number that is not finite, because JSON has no such numbers.
-    pub fn value(&self, row: &JobRow, inputs: &[Value]) -> Value {
-        match &self.source {
-            Source::Row(read) => read(row),
-            Source::Parameter(name) => row.parameter(name),
-            Source::Input(index) => inputs.get(*index).cloned().unwrap_or_default(),
-        }
+    /// Its value for a job.
+    pub fn value(&self, row: &JobRow) -> Value {
+        self.column.value(row)
+    }
+
+    fn of_input(head: Head, read: impl Fn(&JobRow) -> Value + Send + Sync + 'static) -> Self {
+        Self { group: Group::Input, column: Column::made(head, read) }
     }
 }
 
 /// The columns of the plain export: the fixed ones, and one for each of the `grid` parameters other than ω and μ.
-pub fn plain(grid: &[String]) -> Vec<Column> {
-    with_grid(PLAIN.to_vec(), grid)
+pub fn plain(grid: &[String]) -> Vec<ExportColumn> {
+    PLAIN.iter().cloned().chain(of_parameters(grid)).collect()
 }
 
 /// All columns: those of the plain export, the rest of the record, the `inputs`, and `grid` parameters that are not among
@@ -149,34 +117,81 @@ pub fn plain(grid: &[String]) -> Vec<Column> {
 ///
 /// An input or a parameter may have the name of a result, which it does not mean: its column is called `parameter_NAME`. ω and
 /// μ are plain columns already.
-pub fn all(inputs: &[InputColumn], grid: &[String]) -> Vec<Column> {
-    let mut columns: Vec<Column> = PLAIN.iter().chain(&FURTHER).cloned().collect();
-    for (index, input) in inputs.iter().enumerate().filter(|(_, input)| is_further(&input.name)) {
-        columns.push(Column {
-            name: unlike_results(&input.name).into(),
-            unit: input.unit.clone().into(),
-            meaning: input.meaning.clone().into(),
-            group: Group::Input,
-            source: Source::Input(index),
-        });
-    }
+pub fn all(inputs: &[Head], grid: &[String]) -> Vec<ExportColumn> {
+    let of_input = |(index, input): (usize, &Head)| {
+        let head = Head { name: unlike_results(&input.name).into(), ..input.clone() };
+        ExportColumn::of_input(head, move |row| row.inputs.get(index).cloned().unwrap_or_default())
+    };
+    let inputs_left = inputs.iter().enumerate().filter(|(_, input)| is_further(&input.name));
     let is_new = |name: &&String| !inputs.iter().any(|input| input.name == **name);
-    let grid: Vec<String> = grid.iter().filter(is_new).cloned().collect();
-    with_grid(columns, &grid)
+    PLAIN
+        .iter()
+        .chain(&FURTHER)
+        .cloned()
+        .chain(inputs_left.map(of_input))
+        .chain(of_parameters(grid.iter().filter(is_new)))
+        .collect()
 }
 
-fn with_grid(mut columns: Vec<Column>, grid: &[String]) -> Vec<Column> {
-    columns.extend(grid.iter().map(|name| Column {
-        name: unlike_results(name).into(),
-        unit: Cow::Borrowed(""),
-        meaning: Cow::Borrowed("the grid parameter of that name"),
-        group: Group::Input,
-        source: Source::Parameter(name.clone()),
-    }));
-    columns
+/// The columns of all tables of reports but the export, for the page of columns. Parameters of a study follow.
+pub fn of_files() -> Vec<FileColumns> {
+    let of_chains = [
+        Head::new("direction", "", "way along the parameter of `continue`: up or down"),
+        Head::new("kick", "", "number of the kick of a job that continues another one"),
+        Head::new("source", "", "study or file, in reports of several sources"),
+    ];
+    let further = "A line is a job, with the columns of the export. Jobs that continue others, and reports of several sources, have these, too. \
+                   So have tables of a quantity and tables of points.";
+    let jobs = FileColumns { files: vec!["jobs.csv".to_owned()], lines: further, heads: of_chains.into() };
+    let mut data = Vec::<FileColumns>::new();
+    for DataFile { stem, columns } in Plot::ALL.map(Plot::data).into_iter().chain([RESIDUALS, RUN_TIMES]) {
+        let file = format!("{stem}.csv");
+        if data.iter().all(|known| known.files[0] != file) {
+            let heads = selected(&columns).map(|own| own.column.head.clone()).collect();
+            data.push(FileColumns { files: vec![file], lines: "A line is a job of a figure.", heads });
+        }
+    }
+    let mut heads: Vec<Head> = selected(&["regime"]).map(|own| own.column.head.clone()).collect();
+    heads.push(any_quantity());
+    data.push(FileColumns {
+        files: vec!["QUANTITY_points.csv".to_owned()],
+        lines: "A line is a job of a figure.",
+        heads,
+    });
+    [jobs, tables::described()]
+        .into_iter()
+        .chain(data)
+        .chain([comparison_files::described(), windows::described(), spectra::described()])
+        .chain(growth::described())
+        .chain(sensitivity::described())
+        .chain(pareto::described())
+        .chain(stability::described())
+        .collect()
+}
+
+/// The head that stands for columns of quantities on the page of columns.
+pub(super) fn any_quantity() -> Head {
+    Head::new("QUANTITY", "", "the quantity, a column of the export")
+}
+
+/// The columns of the data behind a figure that shows these: a job's key, ω and μ come first, and its status last.
+pub(super) fn selected<'a>(columns: &'a [&'a str]) -> impl Iterator<Item = &'static ExportColumn> + 'a {
+    let names = ["job", "omega_rpm", "mu"].into_iter().chain(columns.iter().copied()).chain(["status"]);
+    names.filter_map(ExportColumn::find)
+}
+
+/// Columns of grid parameters.
+pub(super) fn of_parameters<'a, N: AsRef<str> + 'a + ?Sized>(
+    names: impl IntoIterator<Item = &'a N>,
+) -> impl Iterator<Item = ExportColumn> {
+    names.into_iter().map(|name| {
+        let name = name.as_ref().to_owned();
+        let head = Head::new(unlike_results(&name), "", "the grid parameter of that name");
+        ExportColumn::of_input(head, move |row| row.parameter(&name))
+    })
 }
 
 /// The column's name of a parameter that may have the name of a result.
-fn unlike_results(name: &str) -> String {
-    if Column::find(name).is_some() { format!("parameter_{name}") } else { name.to_owned() }
+pub(super) fn unlike_results(name: &str) -> String {
+    if ExportColumn::find(name).is_some() { format!("parameter_{name}") } else { name.to_owned() }
 }

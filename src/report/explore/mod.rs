@@ -59,9 +59,10 @@ fn data(report: &Report, pages: &HashMap<String, String>) -> Value {
         let words = report.view.descriptions.get(*name).map_or(*name, String::as_str);
         column(name, name_and_unit(name).1, words, "parameter", &|row| row.parameter(name))
     });
-    let results = columns::PLAIN.iter().chain(&columns::FURTHER).filter(|own| own.name != OMEGA && own.name != MU);
+    let results = columns::PLAIN.iter().chain(&columns::FURTHER).filter(|own| own.column.head.name != OMEGA && own.column.head.name != MU);
     let results = results.filter_map(|own| {
-        column(&own.name, &own.unit, &own.meaning, own.group.name(), &|row| own.value(row, &[]))
+        let head = &own.column.head;
+        column(&head.name, &head.unit, &head.meaning, own.group.name(), &|row| own.value(row))
     });
     let pages: Vec<Value> = rows.iter().map(|row| pages.get(&row.job).cloned().into()).collect();
     let start = json!({

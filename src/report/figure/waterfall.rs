@@ -257,23 +257,6 @@ fn draw_scale(area: &Area, highest: f64) -> Result<(), DrawError> {
     canvas::write(area, "fundamental", (width + 14, y + 44), size, HPos::Left)
 }
 
-/// The lines of all stored spectra of these jobs as CSV: key, ω and μ of the job, frequency, amplitude.
-pub(in crate::report) fn csv(layout: &Layout, spectra: &Spectra) -> std::io::Result<Vec<u8>> {
-    let mut writer = ::csv::Writer::from_writer(Vec::new());
-    let io_error = |error: ::csv::Error| std::io::Error::other(error);
-    writer
-        .write_record(["job", "omega_rpm", "mu", "frequency_hz", "normal_amplitude_n"])
-        .map_err(io_error)?;
-    for job in layout.groups.iter().flat_map(|group| &group.jobs) {
-        for (frequency_hz, amplitude_n) in spectra.get(&job.row.job).iter().flat_map(|own| &own.lines) {
-            let numbers = [job.row.omega_rpm, job.row.mu, *frequency_hz, *amplitude_n].map(value::number);
-            let line = std::iter::once(job.row.job.clone()).chain(numbers);
-            writer.write_record(line).map_err(io_error)?;
-        }
-    }
-    writer.into_inner().map_err(|error| std::io::Error::other(error.to_string()))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

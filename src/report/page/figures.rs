@@ -172,10 +172,8 @@ fn data<'a>(
     count: usize,
     data: &DataFile,
 ) -> (String, Option<String>) {
-    // The CSV consists of strings, so it is valid UTF-8; writing to memory cannot fail.
-    let csv = |rows| export::selection(rows, &parts.layouts.all.further, &data.columns).ok();
-    let csv = if count <= MAX_TIPS { csv(rows.collect::<Vec<_>>()) } else { None };
-    (format!("{}.csv", data.stem), csv.map(|bytes| String::from_utf8_lossy(&bytes).into_owned()))
+    let csv = |rows| export::selection(data.stem.clone(), rows, &parts.layouts.all.varied, &data.columns).csv();
+    (format!("{}.csv", data.stem), (count <= MAX_TIPS).then(|| csv(rows.collect::<Vec<_>>())))
 }
 
 /// The figures of one kind, with the data behind them; nothing if the study has none.

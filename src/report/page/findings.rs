@@ -69,10 +69,10 @@ pub(super) fn programs(own: &Programs) -> Section {
 /// What a study that grows has found.
 pub(super) fn growth(own: &Findings) -> Section {
     let mut blocks = vec![Block::Text(own.state.as_str().into())];
-    for table in own.tables() {
-        blocks.push(Block::Heading(table.heading.to_owned()));
-        blocks.push(Block::text(table.meaning));
-        blocks.push(Block::Table(table.grid()));
+    for found in own.tables() {
+        blocks.push(Block::Heading(found.heading.to_owned()));
+        blocks.push(Block::text(found.meaning));
+        blocks.push(Block::Table(Grid::of_table(&found.table)));
     }
     Section::new("findings", "What was found", blocks)
 }

@@ -37,6 +37,7 @@ mod settings;
 
 pub use case::Case;
 pub use compare::{Comparison, compare};
+pub(super) use csv::described;
 pub use done::DoneJob;
 pub use early::EarlyStop;
 pub use error::ParetoError;
@@ -64,8 +65,8 @@ pub fn write(comparison: &Comparison, out_dir: &Path, title: &str) -> Result<Vec
         folder.write_text(&name, &svg)?;
         figures.push(name);
     }
-    folder.write_with("pareto.csv", |out| csv::write(comparison, out))?;
-    folder.write_with("refinement.csv", |out| csv::write_refinement(comparison, out))?;
+    folder.write_table(&csv::jobs(comparison))?;
+    folder.write_table(&csv::refinements(comparison))?;
     folder.write_text("pareto.md", &page::page(comparison, &figures, title))?;
     folder.finish(|_| false)
 }

@@ -7,7 +7,7 @@ use super::early::EarlyStop;
 use super::reference::{Chain, Direction, FIGURE_NAMES, FIGURES, FREQUENCY, MU_STAR, Reference};
 use super::refinement::{Limit, Unclean};
 use super::score::{Score, exceeds};
-use super::settings;
+use super::settings::{self, SETTINGS};
 use crate::publish::value::{self, MISSING};
 use crate::report::markdown;
 
@@ -120,12 +120,12 @@ fn limit_in_words(limit: &Limit) -> String {
 /// Indices of the settings that vary within the case.
 fn varying(case: &Case) -> Vec<usize> {
     let texts: Vec<_> = case.jobs.iter().map(|job| settings::texts(job.numerics)).collect();
-    (0..settings::NAMES.len()).filter(|&i| texts.iter().any(|text| text[i] != texts[0][i])).collect()
+    (0..SETTINGS.len()).filter(|&i| texts.iter().any(|text| text[i] != texts[0][i])).collect()
 }
 
 fn jobs_table(case: &Case) -> String {
     let varying = varying(case);
-    let mut header: Vec<String> = varying.iter().map(|&i| settings::NAMES[i].to_owned()).collect();
+    let mut header: Vec<String> = varying.iter().map(|&i| SETTINGS[i].head.name.to_string()).collect();
     header.extend(
         ["Δt [µs]", "μ*", "error of μ*", "error of f", "error of shares", "time [s]", "node-steps", "front"]
             .map(str::to_owned),
@@ -144,9 +144,9 @@ fn jobs_table(case: &Case) -> String {
         .collect();
     let constant: Vec<String> = {
         let texts = settings::texts(case.jobs[0].numerics);
-        (0..settings::NAMES.len())
+        (0..SETTINGS.len())
             .filter(|i| !varying.contains(i))
-            .map(|i| format!("{} {}", settings::NAMES[i], texts[i]))
+            .map(|i| format!("{} {}", SETTINGS[i].head.name, texts[i]))
             .collect()
     };
     let constant = if constant.is_empty() {
@@ -200,8 +200,8 @@ fn early_table(case: &Case) -> String {
         return String::new();
     }
     let mut shown = varying(case);
-    shown.retain(|&i| settings::NAMES[i] != "stop early" && settings::NAMES[i] != "limit [s]");
-    let mut header: Vec<String> = shown.iter().map(|&i| settings::NAMES[i].to_owned()).collect();
+    shown.retain(|&i| SETTINGS[i].head.name != "stop early" && SETTINGS[i].head.name != "limit [s]");
+    let mut header: Vec<String> = shown.iter().map(|&i| SETTINGS[i].head.name.to_string()).collect();
     header.extend(
         ["stopped at [ms]", "change of μ*", "change of f", "change of shares", "steps saved", "time saved"]
             .map(str::to_owned),

@@ -1,5 +1,6 @@
 //! The numerics of a job in words, and the parameters of a grid that belong to them.
 
+use crate::publish::table::Column;
 use crate::publish::value;
 use crate::report::parameters::{MU, OMEGA, assignments};
 use crate::report::row::{JobNumerics, JobRow};
@@ -35,37 +36,25 @@ pub(super) fn physics_in_words(row: &JobRow) -> String {
     assignments(own.into_iter().chain(further))
 }
 
-/// Names of the settings, in the order of [`texts`].
-pub(super) const NAMES: [&str; 12] = [
-    "elements",
-    "safety factor",
-    "β₂",
-    "β_R [s]",
-    "stop early",
-    "limit [s]",
-    "averaged",
-    "cycles",
-    "tolerance",
-    "drift tolerance",
-    "precision",
-    "start",
+/// The settings of a job in words.
+pub(super) const SETTINGS: [Column<JobNumerics>; 12] = [
+    Column::new("elements", "", "", |of| of.elements.map(|count| count.to_string()).join("×").into()),
+    Column::new("safety factor", "", "", |of| {
+        of.safety_factor.map_or_else(|| "step given".to_owned(), value::rounded).into()
+    }),
+    Column::new("β₂", "", "", |of| of.beta2.into()),
+    Column::new("β_R [s]", "", "", |of| of.beta_r_s.into()),
+    Column::new("stop early", "", "", |of| if of.stop_early { "yes" } else { "no" }.into()),
+    Column::new("limit [s]", "", "", |of| of.limit_s.into()),
+    Column::new("averaged", "", "", |of| of.average_last_fraction.into()),
+    Column::new("cycles", "", "", |of| of.cycles.into()),
+    Column::new("tolerance", "", "", |of| of.tolerance.into()),
+    Column::new("drift tolerance", "", "", |of| of.drift_tolerance.into()),
+    Column::new("precision", "", "", |of| of.precision.as_str().into()),
+    Column::new("start", "", "", |of| of.start.as_str().into()),
 ];
 
 /// The settings of a job as text.
-pub(super) fn texts(numerics: &JobNumerics) -> [String; 12] {
-    let [nx, ny, nz] = numerics.elements;
-    [
-        format!("{nx}×{ny}×{nz}"),
-        numerics.safety_factor.map_or_else(|| "step given".to_owned(), value::rounded),
-        value::rounded(numerics.beta2),
-        value::rounded(numerics.beta_r_s),
-        if numerics.stop_early { "yes" } else { "no" }.to_owned(),
-        value::rounded(numerics.limit_s),
-        value::rounded(numerics.average_last_fraction),
-        numerics.cycles.to_string(),
-        value::rounded(numerics.tolerance),
-        value::rounded(numerics.drift_tolerance),
-        numerics.precision.clone(),
-        numerics.start.clone(),
-    ]
+pub(super) fn texts(numerics: &JobNumerics) -> Vec<String> {
+    SETTINGS.iter().map(|setting| value::rounded_text(&setting.value(numerics))).collect()
 }

@@ -7,13 +7,15 @@ mod tables;
 mod types;
 
 pub use design::Design;
-pub use tables::{csv, markdown};
+pub(super) use tables::described;
+pub use tables::{indices_table, markdown};
 pub use types::{Index, Indices, REGIME, Sensitivity};
 
 use super::export::further_names;
-use super::parameters::{MU, OMEGA};
+use super::parameters::{MU, OMEGA, head};
 use super::row::{JobRow, RowState};
 use super::scalar::Scalar;
+use crate::publish::table::{Column, Head, Table};
 use crate::publish::value;
 use design::{Estimator, design_of, estimator};
 use indices::{first_order, levels, of_classes, of_levels, on_grid, pawn, slices};
@@ -328,25 +330,34 @@ impl Random {
     }
 }
 
+/// A point with the numbers of its varied parameters and of some quantities.
+struct PointOfStudy {
+    parameters: Vec<f64>,
+    results: Vec<f64>,
+}
+
 /// The points and their results as a table of numbers, for other programs: a column for each parameter that varies, then one for each
 /// quantity. Jobs without a value of every quantity are left out. Parameters that are names have numbers from 0.
 ///
-/// Returns the text and the number of jobs that are left out.
-pub fn points_csv(rows: &[JobRow], of: &[&'static Scalar]) -> (String, usize) {
+/// Returns the table and the number of jobs that are left out.
+pub fn points_table(rows: &[JobRow], of: &[&'static Scalar]) -> (Table, usize) {
     let ended = |row: &&JobRow| matches!(row.state, RowState::Done(_) | RowState::Failed { .. });
     let rows: Vec<&JobRow> = rows.iter().filter(ended).collect();
     let parameters = parameters(&rows);
-    let names = parameters.iter().map(|parameter| parameter.name.as_str());
-    let mut text = names.chain(of.iter().map(|scalar| scalar.name)).collect::<Vec<_>>().join(",") + "\n";
-    let mut left_out = 0;
-    for (at, row) in rows.iter().enumerate() {
-        let values: Option<Vec<f64>> = of.iter().map(|scalar| scalar.value(row)).collect();
-        let Some(values) = values else {
-            left_out += 1;
-            continue;
-        };
-        let numbers = parameters.iter().map(|parameter| parameter.values[at]).chain(values);
-        text += &(numbers.map(|number| number.to_string()).collect::<Vec<_>>().join(",") + "\n");
-    }
-    (text, left_out)
+    let point = |(at, row): (usize, &&JobRow)| {
+        let results = of.iter().map(|scalar| scalar.value(row)).collect::<Option<_>>()?;
+        Some(PointOfStudy { parameters: parameters.iter().map(|own| own.values[at]).collect(), results })
+    };
+    let points: Vec<PointOfStudy> = rows.iter().enumerate().filter_map(point).collect();
+    let of_parameter = |(index, own): (usize, &Parameter)| {
+        Column::made(head(&own.name), move |point: &PointOfStudy| point.parameters[index].into())
+    };
+    let of_result = |(index, scalar): (usize, &&'static Scalar)| {
+        let head = Head::new(scalar.name, scalar.unit(), scalar.meaning);
+        Column::made(head, move |point: &PointOfStudy| point.results[index].into())
+    };
+    let of_parameters = parameters.iter().enumerate().map(of_parameter);
+    let columns: Vec<_> = of_parameters.chain(of.iter().enumerate().map(of_result)).collect();
+    let left_out = rows.len() - points.len();
+    (Table::of("sensitivity_points", &columns, &points), left_out)
 }

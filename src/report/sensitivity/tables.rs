@@ -2,8 +2,11 @@
 
 use super::design::Design;
 use super::types::{Index, Indices, REGIME, Sensitivity};
+use crate::publish::markdown;
+use crate::publish::table::{Column, FileColumns, Table};
 use crate::publish::value::{self, count};
 use crate::report::Scalar;
+use crate::report::columns::any_quantity;
 use std::fmt::Write;
 
 /// With fewer points, estimates say little.
@@ -13,16 +16,6 @@ const FEW_POINTS: usize = 100;
 pub fn markdown(found: &[Sensitivity]) -> String {
     let mut text = String::new();
     for one in found {
-        let index = |index: &Option<Index>| {
-            let text = |index: &Index| match index.interval {
-                Some(interval) => {
-                    let [low, high] = interval.map(|bound| value::fixed(bound, 2));
-                    format!("{} ({low} … {high})", value::fixed(index.value, 2))
-                }
-                None => value::fixed(index.value, 3),
-            };
-            index.as_ref().map_or_else(|| value::MISSING.to_owned(), text)
-        };
         let is_regime = one.of == REGIME;
         let title = Scalar::find(&one.of).map_or_else(|| one.of.clone(), Scalar::title);
         let _ = writeln!(text, "# {title}: {} points\n", one.points);
@@ -30,38 +23,11 @@ pub fn markdown(found: &[Sensitivity]) -> String {
         let of = |index: &Option<Index>| index.as_ref().map_or(-1.0, |index| index.value);
         ranked.sort_by(|a, b| of(&b.pawn).total_cmp(&of(&a.pawn)).then(a.name.cmp(&b.name)));
         let is_morris = one.parameters.iter().any(|own| own.effects.is_some());
-        let columns: &[&str] = match (&one.design, is_regime) {
-            _ if is_morris => &["mean size of effects", "their deviation"],
-            (Design::Unknown(_), _) => &[],
-            (_, true) => &["shares"],
-            (Design::Grid(_), false) => &["first order", "total", "PAWN"],
-            (Design::Sample, false) => &["first order", "PAWN"],
-        };
-        if !columns.is_empty() {
-            let _ = writeln!(text, "| parameter | {} |", columns.join(" | "));
-            let _ = writeln!(text, "| --- |{}", " --- |".repeat(columns.len()));
-        }
-        for Indices { name, first_order, total, pawn, effects } in ranked {
-            let cells = match (&one.design, is_regime) {
-                _ if is_morris => {
-                    let size = |(index, deviation): &(Index, f64)| {
-                        let number = |number: f64| value::significant(number, 3);
-                        let interval = index.interval.map(|bounds| bounds.map(number));
-                        let interval =
-                            interval.map(|[low, high]| format!(" ({low} … {high})")).unwrap_or_default();
-                        vec![number(index.value) + &interval, number(*deviation)]
-                    };
-                    effects.as_ref().map_or_else(|| vec![value::MISSING.to_owned(); 2], size)
-                }
-                (Design::Unknown(_), _) => continue,
-                (_, true) => vec![index(pawn)],
-                (Design::Grid(_), false) => vec![index(first_order), index(total), index(pawn)],
-                (Design::Sample, false) => vec![index(first_order), index(pawn)],
-            };
-            let _ = writeln!(text, "| `{name}` | {} |", cells.join(" | "));
-        }
-        if !columns.is_empty() {
-            text += "\n";
+        let columns = shown(&one.design, is_regime, is_morris);
+        if columns.len() > 1 {
+            let table = Table::of("sensitivity", &columns, ranked);
+            let heads: Vec<String> = table.names().map(str::to_owned).collect();
+            let _ = writeln!(text, "{}", markdown::table(&heads, &table.cells(), false));
         }
         let what = if is_regime { "shares" } else { "PAWN" };
         let _ = match &one.design {
@@ -102,32 +68,102 @@ pub fn markdown(found: &[Sensitivity]) -> String {
     text
 }
 
-/// The indices as CSV: quantity, points, parameter, index, its value and its interval.
-pub fn csv(found: &[Sensitivity]) -> String {
-    let mut text = "quantity,points,parameter,index,value,low,high,by_chance\n".to_owned();
-    for one in found {
-        for Indices { name, first_order, total, pawn, effects } in &one.parameters {
-            let last_name = if one.of == REGIME { "shares" } else { "pawn" };
-            let sizes = effects.map(|(index, _)| index);
-            let deviations = effects.map(|(_, deviation)| Index { value: deviation, interval: None });
-            let all = [
-                ("first_order", first_order),
-                ("total", total),
-                (last_name, pawn),
-                ("effects_mean_size", &sizes),
-                ("effects_deviation", &deviations),
-            ];
-            for (kind, index) in all {
-                if let Some(Index { value, interval }) = index {
-                    let chance = one.chance.filter(|_| kind == last_name);
-                    let [low, high] = interval.map_or([None; 2], |bounds| bounds.map(Some));
-                    let [low, high, chance] = [low, high, chance]
-                        .map(|number| number.map(|number| number.to_string()).unwrap_or_default());
-                    let Sensitivity { of, points, .. } = one;
-                    let _ = writeln!(text, "{of},{points},{name},{kind},{value},{low},{high},{chance}");
-                }
-            }
-        }
+/// The columns of a parameter for readers.
+fn shown(design: &Design, is_regime: bool, is_morris: bool) -> Vec<Column<Indices>> {
+    let parameter = Column::new("parameter", "", "", |own: &Indices| format!("`{}`", own.name).into());
+    let first = Column::new("first order", "", "", |own: &Indices| in_words(own.first_order).into());
+    let total = Column::new("total", "", "", |own: &Indices| in_words(own.total).into());
+    let pawn = Column::new("PAWN", "", "", |own: &Indices| in_words(own.pawn).into());
+    let shares = Column::new("shares", "", "", |own: &Indices| in_words(own.pawn).into());
+    let size = Column::new("mean size of effects", "", "", |own: &Indices| {
+        let number = |number: f64| value::significant(number, 3);
+        let size = |(Index { value, interval }, _)| match interval {
+            Some([low, high]) => format!("{} ({} … {})", number(value), number(low), number(high)),
+            None => number(value),
+        };
+        own.effects.map(size).into()
+    });
+    let deviation = Column::new("their deviation", "", "", |own: &Indices| {
+        own.effects.map(|(_, deviation)| value::significant_number(deviation, 3)).into()
+    });
+    match (design, is_regime) {
+        _ if is_morris => vec![parameter, size, deviation],
+        (Design::Unknown(_), _) => vec![parameter],
+        (_, true) => vec![parameter, shares],
+        (Design::Grid(_), false) => vec![parameter, first, total, pawn],
+        (Design::Sample, false) => vec![parameter, first, pawn],
     }
-    text
+}
+
+/// An index with its interval; none if there is no index.
+fn in_words(index: Option<Index>) -> Option<String> {
+    index.map(|Index { value, interval }| match interval {
+        Some(interval) => {
+            let [low, high] = interval.map(|bound| value::fixed(bound, 2));
+            format!("{} ({low} … {high})", value::fixed(value, 2))
+        }
+        None => value::fixed(value, 3),
+    })
+}
+
+/// An index of a parameter.
+#[derive(Clone, Copy)]
+struct Line<'a> {
+    of: &'a Sensitivity,
+    parameter: &'a str,
+    kind: &'static str,
+    index: Index,
+}
+
+#[rustfmt::skip]
+fn columns<'a>() -> [Column<Line<'a>>; 8] {
+    [
+        Column::new("quantity", "", "quantity, or regime", |line| line.of.of.as_str().into()),
+        Column::new("points", "", "jobs that count", |line| line.of.points.into()),
+        Column::new("parameter", "", "parameter", |line| line.parameter.into()),
+        Column::new("index", "", "which index: first_order, total, pawn, shares, effects_mean_size or effects_deviation", |line| line.kind.into()),
+        Column::new("value", "", "its value; that of an elementary effect in the unit of the quantity", |line| line.index.value.into()),
+        Column::new("low", "", "5 % of the resamples are below; empty on a full grid", |line| line.index.interval.map(|[low, _]| low).into()),
+        Column::new("high", "", "95 % of the resamples are below; empty on a full grid", |line| line.index.interval.map(|[_, high]| high).into()),
+        Column::new("by_chance", "", "how large the index can be by chance; empty on a full grid", |line| line.of.chance.filter(|_| matches!(line.kind, PAWN | SHARES)).into()),
+    ]
+}
+
+const PAWN: &str = "pawn";
+const SHARES: &str = "shares";
+
+/// The indices: quantity, points, parameter, index, its value and its interval.
+pub fn indices_table(found: &[Sensitivity]) -> Table {
+    fn of_parameter<'a>(of: &'a Sensitivity, own: &'a Indices) -> impl Iterator<Item = Line<'a>> {
+        let Indices { name, first_order, total, pawn, effects } = own;
+        let deviation = effects.map(|(_, deviation)| Index { value: deviation, interval: None });
+        let all = [
+            ("first_order", *first_order),
+            ("total", *total),
+            (if of.of == REGIME { SHARES } else { PAWN }, *pawn),
+            ("effects_mean_size", effects.map(|(index, _)| index)),
+            ("effects_deviation", deviation),
+        ];
+        all.into_iter()
+            .filter_map(move |(kind, index)| Some(Line { of, parameter: name, kind, index: index? }))
+    }
+    let lines = found.iter().flat_map(|of| of.parameters.iter().flat_map(move |own| of_parameter(of, own)));
+    Table::of("sensitivity", &columns(), &lines.collect::<Vec<_>>())
+}
+
+/// The columns, for the page of columns.
+pub(in crate::report) fn described() -> [FileColumns; 2] {
+    let points = "A line is a job that has ended, with the parameters that vary and the quantities. A parameter that is a name has numbers \
+                  from 0.";
+    [
+        FileColumns::new(
+            &["sensitivity.csv"],
+            "A line is an [index](commands.md#sensitivity) of a parameter.",
+            &columns(),
+        ),
+        FileColumns {
+            heads: vec![any_quantity()],
+            ..FileColumns::new::<Line>(&["sensitivity_points.csv"], points, [])
+        },
+    ]
 }

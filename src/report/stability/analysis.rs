@@ -36,6 +36,7 @@ pub(in crate::report) fn rows(points: &[StabilityPoint], along: &Along) -> Vec<J
         discretisation: Discretisation::NotMeasured,
         wave: 0,
         why: None,
+        inputs: Vec::new(),
     };
     points.iter().enumerate().map(row).collect()
 }

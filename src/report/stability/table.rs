@@ -2,111 +2,118 @@
 
 use super::along::Along;
 use super::analysis::{Analysis, MOVES, rows};
-use super::ranges::{Onset, Speed};
-use crate::publish::value::{self, MISSING};
-use crate::report::export::{add_further_names, io_error};
+use super::ranges::{Known, Onset, Speed};
+use crate::analysis::ComplexMode;
+use crate::publish::table::{Column, FileColumns, Head, Table};
+use crate::report::export::add_further_names;
+use crate::report::layout::Group;
 use crate::report::parameters::{self, MU, OMEGA, is_further};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::view::View;
-use serde::ser::{Serialize, SerializeMap, Serializer};
 use serde_json::Value;
-use std::io::{self, Write};
 
-/// A table with named columns.
-#[derive(Debug, Clone, PartialEq)]
-pub struct StabilityTable {
-    /// The names of the columns.
-    pub columns: Vec<String>,
-    /// Its lines, with a value for each column.
-    pub lines: Vec<Vec<Value>>,
+/// A mode at a point, with its number from 1.
+#[derive(Clone, Copy)]
+struct NumberedMode<'a> {
+    point: &'a StabilityPoint,
+    number: usize,
+    mode: &'a ComplexMode,
 }
 
-/// Significant digits of numbers in a text.
-const DIGITS: usize = 6;
+#[rustfmt::skip]
+fn of_mode<'a>() -> [Column<NumberedMode<'a>>; 10] {
+    [
+        Column::new("mode", "", "number of the mode, from 1, the fastest growing one first", |of| of.number.into()),
+        Column::new("frequency_hz", "Hz", "its frequency", |of| of.mode.frequency_hz.into()),
+        Column::new("growth_rate_1_s", "1/s", "growth rate; negative: it decays", |of| of.mode.growth_rate_per_s.into()),
+        Column::new("damping_ratio", "", "ζ = −Re λ/|λ|", |of| of.mode.damping_ratio.into()),
+        Column::new("residual", "", "relative residual of the mode in the full problem", |of| of.mode.residual.into()),
+        Column::new("converged", "", "whether the residual is within its tolerance", |of| of.mode.is_converged.into()),
+        Column::new("contact_nodes", "", "nodes in contact in steady sliding", |of| of.point.stability.contact_nodes.into()),
+        Column::new("lifted_nodes", "", "nodes that steady sliding lifts off", |of| of.point.stability.lifted_nodes.into()),
+        Column::new("band_hz", "Hz", "modes are known below this frequency", |of| of.point.stability.band_hz.into()),
+        Column::new("above_band", "", ABOVE, |of| of.point.stability.above_band.name().into()),
+    ]
+}
 
-/// The columns of a mode, after those of its point.
-const OF_MODE: [&str; 10] = [
-    "mode",
-    "frequency_hz",
-    "growth_rate_1_s",
-    "damping_ratio",
-    "residual",
-    "converged",
-    "contact_nodes",
-    "lifted_nodes",
-    "band_hz",
-    "above_band",
-];
+const ABOVE: &str = "what is known above band_hz: nothing is there, damped, coarser_run or not_looked_at";
 
 /// The leading `modes` modes at each point: a line for each of them.
-pub fn modes_table<'a>(points: impl IntoIterator<Item = &'a StabilityPoint>, modes: usize) -> StabilityTable {
+pub fn modes_table<'a>(points: impl IntoIterator<Item = &'a StabilityPoint>, modes: usize) -> Table {
     let points: Vec<&StabilityPoint> = points.into_iter().collect();
     let mut further: Vec<&str> = Vec::new();
     for point in &points {
         add_further_names(&mut further, &point.parameters);
     }
-    let names = || [OMEGA, MU].into_iter().chain(further.iter().copied());
-    let mut lines = Vec::new();
-    for point in points {
-        let stability = &point.stability;
-        let place: Vec<Value> = names().map(|name| point.parameter(name)).collect();
-        for (index, mode) in stability.modes.iter().take(modes).enumerate() {
-            let own: [Value; OF_MODE.len()] = [
-                (index + 1).into(),
-                mode.frequency_hz.into(),
-                mode.growth_rate_per_s.into(),
-                mode.damping_ratio.into(),
-                mode.residual.into(),
-                mode.is_converged.into(),
-                stability.contact_nodes.into(),
-                stability.lifted_nodes.into(),
-                stability.band_hz.into(),
-                stability.above_band.name().into(),
-            ];
-            lines.push(place.iter().cloned().chain(own).collect());
-        }
+    let of_parameter = |name: &str| {
+        let (head, name) = (parameters::head(name), name.to_owned());
+        Column::made(head, move |of: &NumberedMode| of.point.parameter(&name))
+    };
+    let place = [OMEGA, MU].into_iter().chain(further).map(of_parameter);
+    let columns: Vec<_> = place.chain(of_mode()).collect();
+    let of_point = |point: &'a StabilityPoint| {
+        let modes = (1..).zip(point.stability.modes.iter().take(modes));
+        modes.map(move |(number, mode)| NumberedMode { point, number, mode })
+    };
+    Table::of("modes", &columns, &points.into_iter().flat_map(of_point).collect::<Vec<_>>())
+}
+
+/// A series of points along the parameter of the thresholds, with the other parameters, and a range in which a mode grows.
+struct Range<'a> {
+    place: Vec<Value>,
+    onset: Option<&'a Onset>,
+    /// The largest value of a series in which no mode grows.
+    last: Option<f64>,
+    known: &'a Known,
+}
+
+impl Range<'_> {
+    fn read<T: Into<Value>>(&self, read: impl FnOnce(&Onset) -> Option<T>) -> Value {
+        self.onset.and_then(read).into()
     }
-    StabilityTable { columns: names().chain(OF_MODE).map(str::to_owned).collect(), lines }
+}
+
+/// The columns of a range along the parameter of this name.
+#[rustfmt::skip]
+fn of_range<'a>(along: &str) -> [Column<Range<'a>>; 10] {
+    let symbol = if along == MU { "μ" } else { along };
+    let edge = |end: &str, meaning: String, read: fn(&Range) -> Value| {
+        Column::made(Head::new(format!("{along}_{end}"), parameters::name_and_unit(along).1, meaning), read)
+    };
+    [
+        edge("c", format!("{symbol} at which the mode begins to grow; empty if it grows at the smallest {symbol} already, or at none"), |of| of.read(|onset| onset.below.map(|_| onset.mu))),
+        edge("below", format!("largest {symbol} below; of a series without a mode that grows, the largest one"), |of| of.last.map_or_else(|| of.read(|onset| onset.below), Value::from)),
+        edge("above", format!("smallest {symbol} above"), |of| of.read(|onset| Some(onset.above))),
+        edge("end", format!("{symbol} at which the mode ceases to grow; empty if it still grows at its last point"), |of| of.read(|onset| onset.ends.map(|ends| ends.at))),
+        edge("end_below", format!("largest {symbol} below that"), |of| of.read(|onset| onset.ends.map(|ends| ends.below))),
+        edge("end_above", format!("smallest {symbol} above that"), |of| of.read(|onset| onset.ends.map(|ends| ends.above))),
+        Column::new("frequency_hz", "Hz", "frequency of the mode where it begins to grow", |of| of.read(|onset| Some(onset.frequency_hz))),
+        Column::new("converged", "", "whether the modes on both sides are converged", |of| of.read(|onset| Some(onset.is_converged))),
+        Column::new("band_hz", "Hz", "lowest frequency, of the points of the series at which no mode grows, below which modes are known", |of| of.known.band_hz.into()),
+        Column::new("above_band", "", "the worst of what is known above band_hz at the points of the series at which no mode grows", |of| of.known.above.name().into()),
+    ]
 }
 
 /// A line for each range in which a mode grows, and one for a series in which none does.
-pub(in crate::report) fn onsets_table(analysis: &Analysis) -> StabilityTable {
-    let of_onset = |onset: &Onset| -> [Value; 8] {
-        let ends = onset.ends;
-        [
-            onset.below.map(|_| onset.mu).into(),
-            onset.below.into(),
-            onset.above.into(),
-            ends.map(|ends| ends.at).into(),
-            ends.map(|ends| ends.below).into(),
-            ends.map(|ends| ends.above).into(),
-            onset.frequency_hz.into(),
-            onset.is_converged.into(),
-        ]
-    };
-    let of_speed = |speed: &Speed| -> Vec<[Value; 8]> {
-        if speed.onsets.is_empty() && speed.mus[1].is_finite() {
-            let mut line = [const { Value::Null }; 8];
-            line[1] = speed.mus[1].into();
-            return vec![line];
-        }
-        speed.onsets.iter().map(of_onset).collect()
-    };
-    let mut lines = Vec::new();
+pub(in crate::report) fn onsets_table(analysis: &Analysis) -> Table {
+    let mut ranges: Vec<Range> = Vec::new();
     for_each_speed(analysis, |place, speed| {
-        let known: [Value; 2] = [speed.known.band_hz.into(), speed.known.above.name().into()];
-        let line = |own| place.iter().cloned().chain(own).chain(known.clone()).collect();
-        lines.extend(of_speed(speed).into_iter().map(line));
+        let range = |onset, last| Range { place: place.clone(), onset, last, known: &speed.known };
+        if speed.onsets.is_empty() && speed.mus[1].is_finite() {
+            ranges.push(range(None, Some(speed.mus[1])));
+        }
+        ranges.extend(speed.onsets.iter().map(|onset| range(Some(onset), None)));
     });
-    let name = &analysis.along.parameter;
-    let own = ["c", "below", "above", "end", "end_below", "end_above"].map(|end| format!("{name}_{end}"));
-    let further = ["frequency_hz", "converged", "band_hz", "above_band"].map(str::to_owned);
-    StabilityTable { columns: columns(analysis, own.into_iter().chain(further)), lines }
+    let of_place =
+        |(index, head): (usize, Head)| Column::made(head, move |of: &Range| of.place[index].clone());
+    let place = place_heads(analysis).enumerate().map(of_place);
+    let columns: Vec<Column<Range>> = place.chain(of_range(&analysis.along.parameter)).collect();
+    Table::of("thresholds", &columns, &ranges)
 }
 
 /// Where sliding is unstable in each series, in words: the first place at which it becomes so (`0.3142`, `≤ 0.1` if it is unstable at
 /// the smallest one already, `> 0.6` if no mode grows), and the ranges in which it is. The lines after it say what the table does not.
-pub fn thresholds_table(points: &[StabilityPoint], along: &Along) -> (StabilityTable, Vec<String>) {
+pub fn thresholds_table(points: &[StabilityPoint], along: &Along) -> (Table, Vec<String>) {
     let rows = rows(points, along);
     let analysis = Analysis::of(points, &rows, along, &View::DEFAULT);
     let mut lines = Vec::new();
@@ -123,90 +130,50 @@ pub fn thresholds_table(points: &[StabilityPoint], along: &Along) -> (StabilityT
         lines.push(names.iter().zip(place).map(in_words).chain(words).collect());
     });
     let own = [along.threshold()].into_iter().chain(["unstable", "frequency", "note"].map(str::to_owned));
+    let heads = place_heads(&analysis).chain(own.map(|name| Head::new(name, "", ""))).collect();
     let notes = analysis.along_in_words().into_iter().chain(analysis.above_band()).collect();
-    (StabilityTable { columns: columns(&analysis, own), lines }, notes)
+    (Table { stem: "thresholds".into(), heads, lines }, notes)
 }
 
 /// Calls `visit` with the parameters of each speed and its modes.
-fn for_each_speed(analysis: &Analysis, mut visit: impl FnMut(Vec<Value>, &Speed)) {
+fn for_each_speed<'a>(analysis: &'a Analysis, mut visit: impl FnMut(Vec<Value>, &'a Speed)) {
     for (group, modes) in analysis.layout.groups.iter().zip(&analysis.groups) {
-        for speed in &modes.speeds {
-            let values = [&speed.omega].into_iter().chain(group.key.iter().map(|(_, value)| value));
-            visit(values.cloned().collect(), speed);
+        for (index, speed) in modes.speeds.iter().enumerate() {
+            let key = group.key.iter().map(|(_, value)| value.clone());
+            let scattered = scattered(analysis).map(|name| common(group, index, name));
+            visit([speed.omega.clone()].into_iter().chain(key).chain(scattered).collect(), speed);
         }
     }
 }
 
-fn columns(analysis: &Analysis, own: impl IntoIterator<Item = String>) -> Vec<String> {
+fn place_heads(analysis: &Analysis) -> impl Iterator<Item = Head> {
     let names = [analysis.along.across()].into_iter().chain(analysis.layout.further.iter().copied());
-    names.map(str::to_owned).chain(own).collect()
+    names.chain(scattered(analysis)).map(parameters::head)
 }
 
-impl StabilityTable {
-    /// Writes CSV with a header. A cell without a value is empty.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn write_csv(&self, out: &mut dyn Write) -> io::Result<()> {
-        let mut writer = ::csv::Writer::from_writer(out);
-        writer.write_record(&self.columns).map_err(io_error)?;
-        for line in &self.lines {
-            let cells =
-                line.iter().map(|cell| if cell.is_null() { String::new() } else { value::text(cell) });
-            writer.write_record(cells).map_err(io_error)?;
-        }
-        writer.flush()
-    }
-
-    /// Writes a JSON object per line.
-    ///
-    /// # Errors
-    /// Those of the writer.
-    pub fn write_json_lines(&self, out: &mut dyn Write) -> io::Result<()> {
-        for line in &self.lines {
-            serde_json::to_writer(&mut *out, &Object(&self.columns, line))?;
-            out.write_all(b"\n")?;
-        }
-        Ok(())
-    }
-
-    /// The table as text, with the cells at the right of their columns.
-    pub fn as_text(&self) -> String {
-        let cells = |line: &Vec<Value>| line.iter().map(in_words).collect::<Vec<_>>();
-        let lines: Vec<Vec<String>> =
-            std::iter::once(self.columns.clone()).chain(self.lines.iter().map(cells)).collect();
-        let width = |column: usize| lines.iter().map(|line| line[column].chars().count()).max();
-        let widths: Vec<usize> =
-            (0..self.columns.len()).map(|column| width(column).unwrap_or_default()).collect();
-        let text = |line: &Vec<String>| {
-            let padded: Vec<String> =
-                line.iter().zip(&widths).map(|(cell, &width)| format!("{cell:>width$}")).collect();
-            padded.join("  ") + "\n"
-        };
-        lines.iter().map(text).collect()
-    }
+/// The parameters of points that are no grid, besides those of the series and of the thresholds.
+fn scattered<'a>(analysis: &'a Analysis) -> impl Iterator<Item = &'a str> {
+    let is_placed = |name: &&str| *name == analysis.along.across() || *name == analysis.along.parameter;
+    analysis.layout.scattered.iter().copied().filter(move |name| !is_placed(name))
 }
 
-fn in_words(cell: &Value) -> String {
-    match cell {
-        Value::Null => MISSING.to_owned(),
-        Value::Bool(is_true) => if *is_true { "yes" } else { "no" }.to_owned(),
-        Value::Number(number) if number.is_f64() => {
-            number.as_f64().map_or_else(|| MISSING.to_owned(), |x| value::significant(x, DIGITS))
-        }
-        cell => value::text(cell),
-    }
+/// The value of a parameter that all points of a series have; null if they differ.
+fn common(group: &Group, series: usize, name: &str) -> Value {
+    let mut values =
+        group.jobs.iter().filter(|job| job.axis_index == series).map(|job| job.row.parameter(name));
+    let first = values.next().unwrap_or_default();
+    if values.all(|value| value == first) { first } else { Value::Null }
 }
 
-/// A line as an object whose fields have the order of the columns.
-struct Object<'a>(&'a [String], &'a [Value]);
-
-impl Serialize for Object<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut map = serializer.serialize_map(Some(self.0.len()))?;
-        for (name, value) in self.0.iter().zip(self.1) {
-            map.serialize_entry(name, value)?;
-        }
-        map.end()
-    }
+/// The columns, for the page of columns.
+pub(in crate::report) fn described() -> [FileColumns; 2] {
+    [
+        FileColumns::new(&["modes.csv"], "A line is a mode of steady sliding at a point.", &of_mode()),
+        FileColumns::new(
+            &["thresholds.csv"],
+            "A line is a range in which a mode grows, along the parameter of the thresholds, whose name takes the place of `mu` if it is \
+             another one.",
+            &of_range(MU),
+        ),
+    ]
 }

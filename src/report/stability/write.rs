@@ -1,7 +1,7 @@
 //! The files of the stability: a part of a study's report, or a report of its own.
 
 use super::analysis::{Analysis, rows};
-use super::table::{StabilityTable, modes_table, onsets_table};
+use super::table::{modes_table, onsets_table};
 use crate::publish::html;
 use crate::publish::{Folder, PublishError};
 use crate::report::figure::Figure;
@@ -19,7 +19,7 @@ pub const SHAPES: &str = "modes";
 pub(in crate::report) struct Files {
     pub figures: Vec<(StabilityPlot, Vec<Figure>)>,
     /// File names of data with their contents.
-    pub data: Vec<(&'static str, String)>,
+    pub data: Vec<(String, String)>,
 }
 
 /// Writes figures and data of the stability.
@@ -40,20 +40,9 @@ pub(in crate::report) fn write_files(
         }
         drawn.push((plot, own));
     }
-    let tables: [(&str, StabilityTable); 2] = [
-        ("modes.csv", modes_table(analysis.points(), usize::MAX)),
-        ("thresholds.csv", onsets_table(analysis)),
-    ];
     let mut data = Vec::new();
-    for (file, table) in tables {
-        let mut text = String::new();
-        folder.write_with(file, |out| {
-            table.write_csv(out)?;
-            // The CSV consists of strings, so it is valid UTF-8.
-            text = String::from_utf8_lossy(out).into_owned();
-            Ok(())
-        })?;
-        data.push((file, text));
+    for table in [modes_table(analysis.points(), usize::MAX), onsets_table(analysis)] {
+        data.push((folder.write_table(&table)?, table.csv()));
     }
     Ok(Files { figures: drawn, data })
 }

@@ -9,8 +9,20 @@ fn names(text: &str) -> impl Iterator<Item = &str> {
     text.lines().filter_map(|line| line.strip_prefix("| `")).filter_map(|line| line.split('`').next())
 }
 
-/// Asserts that each column of each table is in its section of the page, or has the name of a column of the export or of a
-/// parameter, which the other pages have; and that the page has no other column.
+/// The name that stands for columns of quantities.
+const QUANTITY: &str = "QUANTITY";
+
+/// A section of the page.
+struct Section<'a> {
+    /// The patterns of its files.
+    files: Vec<&'a str>,
+    own: BTreeSet<&'a str>,
+    /// Those of its columns that no table has had yet.
+    unused: BTreeSet<&'a str>,
+}
+
+/// Asserts that each column of each table is in the section of its file, or is a parameter; and that the page has no other column. Tables
+/// without a section have columns of the export.
 pub fn assert_documented<'a>(
     page: &str,
     common: [&str; 2],
@@ -19,30 +31,39 @@ pub fn assert_documented<'a>(
     let [columns, fields] = common;
     let grid = fields.split("\n## grid\n").nth(1).expect("the page of fields has the parameters");
     let of_jobs = page.split("\n## ").find(|section| section.starts_with("`jobs.csv`")).expect("a section");
-    let common: BTreeSet<&str> = names(columns).chain(names(grid)).chain(names(of_jobs)).collect();
-    assert!(common.contains("mu_star") && common.len() > 150, "{common:?}");
-    // The files of each section, and those of its columns that no table has had yet.
-    let mut sections: Vec<(Vec<&str>, BTreeSet<&str>, BTreeSet<&str>)> = Vec::new();
-    for section in page.split("\n## ").skip(1) {
-        let files = section.lines().next().unwrap().split('`').skip(1).step_by(2).collect();
-        let own: BTreeSet<&str> = names(section).collect();
-        sections.push((files, own.clone(), own));
-    }
+    let parameters: BTreeSet<&str> = names(grid).chain(names(of_jobs)).collect();
+    let of_export: BTreeSet<&str> = names(columns).collect();
+    assert!(of_export.contains("mu_star") && of_export.len() > 150, "{of_export:?}");
+    let section = |text| {
+        let files = text.lines().next().unwrap().split('`').skip(1).step_by(2).collect();
+        let own: BTreeSet<&str> = names(text).collect();
+        Section { files, own: own.clone(), unused: own }
+    };
+    let mut sections: Vec<Section> = page.split("\n## ").skip(1).map(section).collect();
     let mut missing = BTreeSet::new();
     for (path, header) in tables {
         let file = path.rsplit('/').next().unwrap();
         // `mu=0.4` is a column for a value of a parameter.
         let columns = header.split(',').map(|name| name.trim_matches('"').split('=').next().unwrap());
         let mut unknown: BTreeSet<&str> = columns.collect();
-        for (files, own, unused) in &mut sections {
-            if files.iter().any(|pattern| matches(pattern, file)) {
-                unused.retain(|name| !unknown.contains(name));
-                unknown.retain(|name| !own.contains(name));
-            }
+        // The section of the export has columns that other tables have, too.
+        let is_of_jobs = |section: &Section| section.files == ["jobs.csv"];
+        let is_own = |section: &Section| section.files.iter().any(|pattern| matches(pattern, file));
+        let mut is_of_export = !sections.iter().any(|section| is_own(section) && !is_of_jobs(section));
+        for section in sections.iter_mut().filter(|section| is_own(section) || is_of_jobs(section)) {
+            // `QUANTITY` is any column of the export.
+            is_of_export |= is_own(section) && section.own.contains(QUANTITY);
+            let is_used =
+                |name: &&str| unknown.contains(name) || *name == QUANTITY && !unknown.is_disjoint(&of_export);
+            section.unused.retain(|name| !is_used(name));
+            unknown.retain(|name| !section.own.contains(name));
         }
-        missing.extend(unknown.difference(&common).map(|name| format!("{file}: {name}")));
+        let is_parameter = |name: &str| parameters.contains(name.strip_prefix("parameter_").unwrap_or(name));
+        let is_known = |name: &str| is_parameter(name) || is_of_export && of_export.contains(name);
+        missing.extend(unknown.iter().filter(|name| !is_known(name)).map(|name| format!("{file}: {name}")));
     }
     assert!(missing.is_empty(), "docs/tables.md does not have {missing:?}");
-    let unused: Vec<_> = sections.iter().filter(|(.., unused)| !unused.is_empty()).collect();
+    let unused = sections.iter().filter(|section| !section.unused.is_empty());
+    let unused: Vec<_> = unused.map(|section| (&section.files, &section.unused)).collect();
     assert!(unused.is_empty(), "no table of the examples has these columns of docs/tables.md: {unused:?}");
 }

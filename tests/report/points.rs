@@ -1,0 +1,182 @@
+//! Tables of points: each of them has every parameter that the study varies, whatever is along the axes.
+
+use crate::synthetic::{periodic, record, report, row, with};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use tribosweep::analysis::program::{Direction, ProgramWindow};
+use tribosweep::analysis::{AboveBand, ComplexMode, Outcome, Regime, SlidingStability};
+use tribosweep::report::{
+    Basin, BranchPoint, Crossing, Findings, JobRow, Minimum, Report, RowState, StabilityPoint, write,
+};
+
+const WIDTHS_M: [f64; 3] = [0.002, 0.003, 0.004];
+
+/// Tables of points are all files but these.
+const OTHERS: [&str; 1] = ["waves.csv"];
+
+fn window() -> ProgramWindow {
+    ProgramWindow {
+        time_s: [0.0, 0.01],
+        direction: Direction::Hold,
+        omega_rpm: 7.0,
+        load_n: 30.0,
+        mu_star: 0.3,
+        mu_star_contact: 0.3,
+        frequency_hz: None,
+        n_amplitude: 0.1,
+        y_peak_to_peak_m: 1e-6,
+        stick_share: 0.25,
+        slip_share: 0.5,
+        separated_share: 0.25,
+    }
+}
+
+/// A job with a window, so that the report has a table of windows.
+fn job(study: &str, omega_rpm: f64, mu: f64, width_m: f64) -> JobRow {
+    let mut record = record(Outcome::Completed, Regime::StickSlip, mu);
+    record.windows = vec![window()];
+    let mut job = with(row(omega_rpm, mu, RowState::Done(Box::new(record))), "clamp_width_m", width_m);
+    job.study = study.to_owned();
+    job.job = format!("{study}-{}", job.job);
+    job
+}
+
+fn point(row: &JobRow) -> StabilityPoint {
+    let growth_rate_per_s = 1000.0 * (row.mu - 0.3);
+    let mode = ComplexMode {
+        frequency_hz: 15e3,
+        growth_rate_per_s,
+        damping_ratio: 1e-3,
+        residual: 1e-9,
+        is_converged: true,
+    };
+    let stability = SlidingStability {
+        decided: false,
+        contact_nodes: 30,
+        lifted_nodes: 2,
+        mu_star: row.mu,
+        band_hz: 5e4,
+        above_band: AboveBand::Nothing,
+        damped_above_hz: None,
+        modes: vec![mode],
+    };
+    let parameters = row.parameters.clone();
+    StabilityPoint { omega_rpm: row.omega_rpm, mu: row.mu, parameters, on_grid: true, stability }
+}
+
+/// Boundaries and minima along both parameters.
+fn findings(rows: &[JobRow]) -> Findings {
+    let without = |over: &str| -> Vec<(String, Value)> {
+        rows[0].parameters.iter().filter(|(name, _)| name != over).cloned().collect()
+    };
+    let crossing = |over: &str| Crossing {
+        rest: without(over),
+        over: over.to_owned(),
+        between: ["a".to_owned(), "b".to_owned()],
+        range: [0.002, 0.003],
+        wanted: 0.001,
+    };
+    let minimum = |over: &str| Minimum {
+        rest: without(over),
+        over: over.to_owned(),
+        of: "mu_star".to_owned(),
+        at: 0.003,
+        value: 0.25,
+        neighbours: [Some(0.002), None],
+        wanted: 0.001,
+        is_flat: false,
+    };
+    let parameters = rows[0].parameters.clone();
+    Findings {
+        waves: vec![BTreeMap::from([("curve".to_owned(), 3)])],
+        state: "finished".to_owned(),
+        crossings: ["clamp_width_m", "mu"].map(crossing).into(),
+        minima: ["mu", "clamp_width_m"].map(minimum).into(),
+        branches: vec![BranchPoint { parameters: parameters.clone(), up: None, down: None }],
+        basins: vec![Basin { parameters, end: None, jobs: 1, of: 2 }],
+    }
+}
+
+/// The lines of the tables of a folder by their columns.
+fn tables(folder: &Path) -> BTreeMap<String, Vec<BTreeMap<String, String>>> {
+    let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let files = files.filter(|path| path.extension().is_some_and(|extension| extension == "csv"));
+    let read = |path: std::path::PathBuf| {
+        let mut reader = csv::Reader::from_path(&path).unwrap();
+        let lines = reader.deserialize().map(|line| line.unwrap()).collect();
+        (path.file_name().unwrap().to_str().unwrap().to_owned(), lines)
+    };
+    files.map(read).collect()
+}
+
+/// Asserts that each table of a report's points has a value of each of the parameters in every line.
+fn assert_complete(report: &Report, parameters: &[&str], least: usize) {
+    let folder = tempfile::tempdir().unwrap();
+    write(report, folder.path()).unwrap();
+    let tables = tables(folder.path());
+    assert!(tables.len() >= least, "{:?}", tables.keys());
+    for (file, lines) in tables.iter().filter(|(file, _)| !OTHERS.contains(&file.as_str())) {
+        assert!(!lines.is_empty(), "{file}");
+        for (line, parameter) in lines.iter().flat_map(|line| parameters.iter().map(move |own| (line, own))) {
+            let is_own = |(name, cell): (&String, &String)| {
+                // A parameter of the curves is a column for each of its values; a threshold is a value of its parameter.
+                let is_curve = name.starts_with(&format!("{parameter}="));
+                let is_threshold = file == "thresholds.csv"
+                    && name.strip_prefix(parameter).is_some_and(|end| end.starts_with('_'));
+                (name == parameter || is_curve || is_threshold) && !cell.is_empty()
+            };
+            assert!(line.iter().any(is_own), "{file} has no {parameter}: {line:?}");
+        }
+    }
+}
+
+/// Protects: in a report of two studies at one speed, over a clamp's width and μ, with stability, windows, and everything that plans can
+/// find, each table of points has μ and the width, which is the abscissa.
+#[test]
+fn each_table_of_points_has_every_parameter() {
+    let grid =
+        |study| WIDTHS_M.into_iter().flat_map(move |width| [0.2, 0.4].map(|mu| job(study, 7.0, mu, width)));
+    let rows: Vec<JobRow> = grid("one").chain(grid("two")).collect();
+    let points: Vec<StabilityPoint> = rows[..6].iter().map(point).collect();
+    let findings = findings(&rows);
+    let report = Report { findings: Some(&findings), stability: &points, ..report(&rows) };
+    assert_complete(&report, &["mu", "clamp_width_m"], 19);
+}
+
+/// Protects: the same for points that are no grid.
+#[test]
+fn tables_of_samples_have_every_parameter() {
+    let sample = |i: i32| {
+        let x = f64::from(i);
+        job("one", 7.0 + x, 0.2 + 0.013 * x, 0.002 + 0.0001 * x)
+    };
+    let rows: Vec<JobRow> = (0..8).map(sample).collect();
+    let points: Vec<StabilityPoint> = rows.iter().map(point).collect();
+    let report = Report { stability: &points, ..report(&rows) };
+    assert_complete(&report, &["omega_rpm", "mu", "clamp_width_m"], 13);
+}
+
+/// Protects: samples are compared where all of their parameters are equal, and nothing is interpolated between them.
+#[test]
+fn samples_are_compared_at_equal_points_alone() {
+    let sample = |study: &str, i: i32, shift: f64| {
+        let x = f64::from(i);
+        let mut row =
+            with(row(7.0 + x, 0.2 + 0.013 * x + shift, periodic(0.3)), "clamp_width_m", 0.002 + 0.0001 * x);
+        row.study = study.to_owned();
+        row
+    };
+    let mut rows: Vec<JobRow> = (0..8).map(|i| sample("one", i, 0.0)).collect();
+    rows.extend([sample("two", 3, 0.0), sample("two", 5, 0.001)]);
+    let folder = tempfile::tempdir().unwrap();
+    write(&report(&rows), folder.path()).unwrap();
+    let lines = &tables(folder.path())["differences.csv"];
+    let speeds: Vec<&str> = lines
+        .iter()
+        .filter(|line| line["quantity"] == "mu_star")
+        .map(|line| line["omega_rpm"].as_str())
+        .collect();
+    assert_eq!(speeds, ["10"]);
+}
