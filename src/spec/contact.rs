@@ -40,6 +40,11 @@ impl FrictionLaw {
     pub fn name(self) -> &'static str {
         self.into()
     }
+
+    /// Whether a node that slips steadily has the friction force μN at every speed, and begins to slip at it.
+    pub fn has_one_mu(self) -> bool {
+        matches!(self, Self::Coulomb | Self::PrakashClifton)
+    }
 }
 
 /// Unilateral contact with friction, the same at every node.

@@ -94,6 +94,21 @@ impl Axis {
         (to(value) - to(start)) / (to(end) - to(start))
     }
 
+    /// The value at a place; the inverse of [`Axis::place`].
+    pub fn value_at(&self, place: f64) -> f64 {
+        let Range { start, end } = self.range();
+        let between = |start: f64, end: f64| start + place * (end - start);
+        match self {
+            Self::Log(_) => between(start.ln(), end.ln()).exp(),
+            Self::Signed { linear, .. } => {
+                let to = |x: f64| x.signum() * (x.abs() / linear).ln_1p();
+                let t = between(to(start), to(end));
+                t.signum() * linear * t.abs().exp_m1()
+            }
+            Self::Linear(_) | Self::Names(_) => between(start, end),
+        }
+    }
+
     fn ticks(&self) -> Vec<f64> {
         match self {
             Self::Log(range) => log_ticks(range),
@@ -209,5 +224,9 @@ mod tests {
         near(names.place(0.0), 0.25);
         near(names.place(1.0), 0.75);
         near(Axis::Linear(-1.0..3.0).place(0.0), 0.25);
+        let signed = Axis::around_zero([-1e5, 1.0].into_iter(), 1.0);
+        for axis in [log, names, signed] {
+            near(axis.place(axis.value_at(0.3)), 0.3);
+        }
     }
 }

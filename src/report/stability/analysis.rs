@@ -27,6 +27,7 @@ pub(in crate::report) fn rows(points: &[StabilityPoint], along: &Along) -> Vec<J
         parameters: kept(point),
         omega_rpm: point.omega_rpm,
         mu: point.mu,
+        has_one_mu: false,
         state: RowState::Pending,
         wall_s: None,
         numerics: None,
