@@ -123,6 +123,19 @@ pub(super) struct ProgramFigure {
     pub chart: Chart,
 }
 
+/// The figure of a job whose speed or load changes in time; none for other jobs.
+pub fn chart(row: &JobRow) -> Option<Chart> {
+    Job::of(row).as_ref().map(draw)
+}
+
+impl<'a> Job<'a> {
+    fn of(row: &'a JobRow) -> Option<Self> {
+        let windows = row.record()?.windows.as_slice();
+        let (leading, hysteresis) = (Leading::of(windows), Hysteresis::of(windows));
+        (!windows.is_empty()).then_some(Self { row, windows, leading, hysteresis })
+    }
+}
+
 impl ProgramFigure {
     /// The drawing as SVG.
     pub fn svg(&self) -> String {
@@ -133,12 +146,7 @@ impl ProgramFigure {
 impl<'a> Programs<'a> {
     /// Those of the rows; none if there are no such jobs.
     pub fn of(rows: &'a [JobRow]) -> Option<Self> {
-        let job = |row: &'a JobRow| {
-            let windows = row.record()?.windows.as_slice();
-            let (leading, hysteresis) = (Leading::of(windows), Hysteresis::of(windows));
-            (!windows.is_empty()).then_some(Job { row, windows, leading, hysteresis })
-        };
-        let jobs: Vec<Job> = rows.iter().filter_map(job).collect();
+        let jobs: Vec<Job> = rows.iter().filter_map(Job::of).collect();
         if jobs.is_empty() {
             return None;
         }

@@ -71,7 +71,7 @@ impl Axis {
         }
         // Six decades on each side are enough.
         let linear = 10f64.powf(smallest.max(largest * 1e-6).log10().floor());
-        let end = |x: f64| 10f64.powf((x.abs() + linear).log10() + 0.15) * x.signum();
+        let end = |x: f64| 10f64.powf((x.abs() + linear).log10() + 0.3) * x.signum();
         Self::Signed { range: end(low)..end(high), linear }
     }
 
@@ -120,7 +120,7 @@ impl Axis {
 
     fn label(&self, tick: f64) -> String {
         match self {
-            Self::Log(_) | Self::Signed { .. } => value::number(tick).replace('-', "−"),
+            Self::Log(_) | Self::Signed { .. } => with_power(tick),
             Self::Names(names) => names.get(tick as usize).cloned().unwrap_or_default(),
             Self::Linear(range) => {
                 let step = nice_step(range);
@@ -146,6 +146,26 @@ impl Axis {
         self.ticks().into_iter().map(|tick| (tick, self.label(tick))).collect()
     }
 }
+
+/// A number with a power of ten where plain digits are hard to read: `2·10⁻⁷`, `10⁵`.
+fn with_power(x: f64) -> String {
+    let plain = value::number(x).replace('-', "−");
+    if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
+        return plain;
+    }
+    let scientific = format!("{x:e}");
+    let Some((factor, exponent)) = scientific.split_once('e') else { return plain };
+    let raised: String =
+        exponent.chars().filter_map(|c| "-0123456789".find(c)).map(|at| RAISED[at]).collect();
+    match factor {
+        "1" => format!("10{raised}"),
+        "-1" => format!("−10{raised}"),
+        _ => format!("{}·10{raised}", factor.replace('-', "−")),
+    }
+}
+
+/// A minus and the digits as superscripts.
+const RAISED: [char; 11] = ['⁻', '⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
 fn log_ticks(range: &Range<f64>) -> Vec<f64> {
     let decades = range.start.log10().floor() as i32..=range.end.log10().ceil() as i32;
@@ -211,6 +231,13 @@ mod tests {
         assert!(ticks.iter().any(|(at, label)| *at == 0.0 && label == "0"), "{ticks:?}");
         assert!(ticks.len() >= 5 && ticks.len() <= 13, "{ticks:?}");
         assert!(matches!(Axis::around_zero([-3.0, 4.0].into_iter(), 1.0), Axis::Linear(_)));
+    }
+
+    /// Protects: large and small numbers at ticks are powers of ten, and others are plain.
+    #[test]
+    fn ticks_have_powers_of_ten() {
+        let texts = [1e-11, -1e5, 2e-4, 1e4, 0.002, 0.0].map(with_power);
+        assert_eq!(texts, ["10⁻¹¹", "−10⁵", "2·10⁻⁴", "10000", "0.002", "0"]);
     }
 
     /// Protects: decades have equal lengths on a logarithmic axis, and names have equal distances.

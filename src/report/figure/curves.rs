@@ -47,6 +47,8 @@ struct Frame<'a> {
     x: Scale,
     /// So many units of the scalar are one of the ordinate.
     per_unit: f64,
+    /// Half the size of a marker \[px\].
+    radius: f64,
 }
 
 /// The curves of some groups.
@@ -60,7 +62,7 @@ pub(super) fn draw(layout: &Layout, groups: &[Group], scalar: &Scalar) -> Chart 
     let largest =
         counted.iter().filter_map(|place| scalar.value(place.row)).map(f64::abs).fold(0.0, f64::max);
     let (per_unit, unit) = value::multiple(scalar.unit(), largest);
-    let frame = Frame { layout, scalar, x, per_unit };
+    let frame = Frame { layout, scalar, x, per_unit, radius: radius(&results) };
     let guides: Vec<Vec<(f64, Rgb)>> = groups.iter().map(|group| frame.guides(group)).collect();
     let label = if unit.is_empty() { scalar.title() } else { format!("{} [{unit}]", scalar.meaning) };
     let y = Scale::new(&label, frame.y_axis(&counted, guides.iter().flatten().map(|guide| guide.0)));
@@ -80,6 +82,22 @@ fn counted<'a>(scalar: &Scalar, results: &[Vec<Place<'a>>]) -> Vec<Place<'a>> {
     let with_value = || results.iter().flatten().filter(|place| scalar.value(place.row).is_some()).copied();
     let settled: Vec<Place> = with_value().filter(|place| scalar.is_settled(place.row)).collect();
     if settled.is_empty() { with_value().collect() } else { settled }
+}
+
+/// Half the size of the markers \[px\]: they are smaller where there are many of them.
+fn radius(results: &[Vec<Place>]) -> f64 {
+    let of_panel = |own: &Vec<Place>| own.chunk_by(|a, b| a.series == b.series).map(<[Place]>::len).max();
+    let beside_one_another = match results.len() {
+        0 | 1 => 1,
+        2..=4 => 2,
+        _ => 3,
+    };
+    match beside_one_another * results.iter().filter_map(of_panel).max().unwrap_or(0) {
+        0..=16 => 5.0,
+        17..=40 => 4.0,
+        41..=90 => 3.0,
+        _ => 2.0,
+    }
 }
 
 fn note(scalar: &Scalar) -> &'static str {
@@ -287,6 +305,7 @@ impl Frame<'_> {
         };
         let mu = if place.row.mu.is_nan() { String::new() } else { value::number(place.row.mu) };
         let tip = place.tip([("y", value::number(self.scalar.value(place.row)?)), ("mu", mu)]);
+        let marker = marker.sized(self.radius);
         Some(Point { at: (place.x, y), error: self.error(place), marker, tip: Some(tip) })
     }
 

@@ -23,7 +23,7 @@ const HARMONICS: f64 = 6.0;
 const COLOURS: u32 = 12;
 const DECIBELS: f64 = 5.0;
 /// Largest height of a strip relative to the plot.
-const STRIP: f64 = 0.3;
+const STRIP: f64 = 0.31;
 
 /// A job whose spectrum is stored.
 struct Strip<'a> {

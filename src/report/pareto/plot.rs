@@ -28,7 +28,7 @@ fn marker(colour: Rgb, is_early: bool, is_resolved: bool) -> Marker {
 
 /// The figure of a case. Jobs without a run time and jobs whose error and resolution are both zero are left out, because the axes
 /// are logarithmic.
-pub(super) fn draw(case: &Case) -> Chart {
+pub fn chart(case: &Case) -> Chart {
     let meshes = meshes(case);
     let solved = solved(case, &meshes);
     let axis =
