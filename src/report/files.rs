@@ -99,14 +99,14 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         }
         drawn.push((plot, figures));
     }
-    let residuals = residuals.map_err(|source| cannot_draw(out_dir, &RESIDUALS.stem, source))?;
+    let residuals = residuals.svg("residuals of the energy balance and of the identities");
     folder.write_text(&format!("{}.svg", RESIDUALS.stem), &residuals)?;
 
     write_data(&mut folder, rows, &layout, &plots)?;
     if !spectra.is_empty() {
         folder.write_table(&spectra::table(&layout, &spectra))?;
     }
-    let programs = write_programs(&mut folder, rows, out_dir)?;
+    let programs = write_programs(&mut folder, rows)?;
     write_findings(&mut folder, report)?;
     let stability_rows = stability::rows(report.stability, report.along);
     let analysis = (!report.stability.is_empty())
@@ -201,14 +201,10 @@ fn write_findings(folder: &mut Folder, report: &Report) -> Result<(), PublishErr
 }
 
 /// Writes the figures and the windows of the jobs whose speed or load changes in time; none if there are no such jobs.
-fn write_programs<'a>(
-    folder: &mut Folder,
-    rows: &'a [JobRow],
-    out_dir: &Path,
-) -> Result<Option<Programs<'a>>, PublishError> {
-    let programs = Programs::of(rows).map_err(|source| cannot_draw(out_dir, "program", source))?;
+fn write_programs<'a>(folder: &mut Folder, rows: &'a [JobRow]) -> Result<Option<Programs<'a>>, PublishError> {
+    let programs = Programs::of(rows);
     for figure in programs.iter().flat_map(Programs::figures) {
-        folder.write_text(&figure.file, &figure.svg)?;
+        folder.write_text(&figure.file, &figure.svg())?;
     }
     if let Some(programs) = &programs {
         folder.write_with(program::WINDOWS, |out| {

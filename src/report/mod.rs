@@ -62,6 +62,7 @@ pub use measurement::{MeasuredValue, Measurement};
 #[cfg(feature = "cli")]
 pub(crate) use parameters::assignment;
 pub use parameters::name_and_unit;
+pub use program::chart as program_chart;
 pub use provenance::{BuildInfo, Provenance, ResultGroup};
 pub use row::{JobNumerics, JobRow, RowState};
 pub use scalar::{SCALARS, Scalar};

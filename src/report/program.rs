@@ -4,16 +4,14 @@ use super::layout::parameters_in_words;
 use super::row::JobRow;
 use super::windows;
 use crate::analysis::program::{Direction, Hysteresis, Leading, ProgramWindow};
-use crate::publish::plot::RGBColor;
-use crate::publish::plot::palette;
-use crate::publish::plot::panel::{self, Band, Panel, Scale, Series, Stroke};
-use crate::publish::{FigureError, value};
+use crate::publish::chart::palette::{self, GREY, Rgb};
+use crate::publish::chart::{At, Cell, Chart, Entry, Layer, Marker, Panel, Pen, Point, Scale, Shape};
+use crate::publish::value;
 
 /// Largest number of jobs that have a figure.
 const MAX_FIGURES: usize = 12;
 /// The name of the file with all windows.
 pub(super) const WINDOWS: &str = "windows.csv";
-const GREY: RGBColor = RGBColor(0x60, 0x60, 0x60);
 /// Hertz per kilohertz.
 const KILO: f64 = 1.0e3;
 
@@ -42,32 +40,44 @@ pub(super) struct ProgramFigure {
     pub file: String,
     /// The job, in words.
     pub caption: String,
+    /// The drawing.
+    pub chart: Chart,
+}
+
+/// The figure of a job whose speed or load changes in time; none for other jobs.
+pub fn chart(row: &JobRow) -> Option<Chart> {
+    Job::of(row).as_ref().map(draw)
+}
+
+impl<'a> Job<'a> {
+    fn of(row: &'a JobRow) -> Option<Self> {
+        let windows = row.record()?.windows.as_slice();
+        let (leading, hysteresis) = (Leading::of(windows), Hysteresis::of(windows));
+        (!windows.is_empty()).then_some(Self { row, windows, leading, hysteresis })
+    }
+}
+
+impl ProgramFigure {
     /// The drawing as SVG.
-    pub svg: String,
+    pub fn svg(&self) -> String {
+        self.chart.svg(&format!("μ* over speed or load, and over time: {}", self.caption))
+    }
 }
 
 impl<'a> Programs<'a> {
     /// Those of the rows; none if there are no such jobs.
-    ///
-    /// # Errors
-    /// Those of the drawing library.
-    pub fn of(rows: &'a [JobRow]) -> Result<Option<Self>, FigureError> {
-        let job = |row: &'a JobRow| {
-            let windows = row.record()?.windows.as_slice();
-            let (leading, hysteresis) = (Leading::of(windows), Hysteresis::of(windows));
-            (!windows.is_empty()).then_some(Job { row, windows, leading, hysteresis })
-        };
-        let jobs: Vec<Job> = rows.iter().filter_map(job).collect();
+    pub fn of(rows: &'a [JobRow]) -> Option<Self> {
+        let jobs: Vec<Job> = rows.iter().filter_map(Job::of).collect();
         if jobs.is_empty() {
-            return Ok(None);
+            return None;
         }
         let figure = |(number, job): (usize, &Job)| {
             let file =
                 if number == 0 { "program.svg".to_owned() } else { format!("program-{}.svg", number + 1) };
-            Ok(ProgramFigure { file, caption: parameters_in_words(job.row), svg: draw(job)? })
+            ProgramFigure { file, caption: parameters_in_words(job.row), chart: draw(job) }
         };
-        let figures: Result<_, FigureError> = jobs.iter().take(MAX_FIGURES).enumerate().map(figure).collect();
-        Ok(Some(Self { figures: figures?, csv: windows::table(rows).csv(), jobs }))
+        let figures = jobs.iter().take(MAX_FIGURES).enumerate().map(figure).collect();
+        Some(Self { figures, csv: windows::table(rows).csv(), jobs })
     }
 
     /// The figures of the first jobs.
@@ -111,7 +121,7 @@ fn unit(leading: Leading) -> &'static str {
 }
 
 /// The colour of a direction and its name; none for windows that are on no way.
-fn look(direction: Direction) -> Option<(RGBColor, &'static str)> {
+fn look(direction: Direction) -> Option<(Rgb, &'static str)> {
     match direction {
         Direction::Up => Some((palette::VERMILLION, "up")),
         Direction::Down => Some((palette::BLUE, "down")),
@@ -119,77 +129,77 @@ fn look(direction: Direction) -> Option<(RGBColor, &'static str)> {
     }
 }
 
-fn draw(job: &Job) -> Result<String, FigureError> {
+fn draw(job: &Job) -> Chart {
     let windows = job.windows;
-    let (name, least) = match job.leading {
-        Leading::Omega => ("ω [rpm]", 1.0e-3),
-        Leading::Load => ("F [N]", 1.0e-3),
+    let name = match job.leading {
+        Leading::Omega => "ω [rpm]",
+        Leading::Load => "F [N]",
     };
-    let leading = |window: &ProgramWindow| job.leading.value(window);
-    let mu_scale = || Scale::spanning("μ*", windows.iter().map(|window| window.mu_star), 0.01);
-    let lead_scale = || Scale::spanning(name, windows.iter().map(leading), least);
-    let time_scale = || {
-        let [from_s, to_s] = [windows[0].time_s[0], windows[windows.len() - 1].time_s[1]];
-        Scale::from_to("t [s]", from_s, to_s)
-    };
-
-    let mut over_lead = Panel::new(&title(job), lead_scale(), mu_scale());
-    over_lead.height = 720;
-    let mut named: Vec<&str> = Vec::new();
-    for way in windows.chunk_by(|a, b| a.direction == b.direction) {
-        let points: Vec<(f64, f64)> = way.iter().map(|window| (leading(window), window.mu_star)).collect();
-        let (colour, label) = look(way[0].direction).unwrap_or((GREY, "start, hold, turn"));
-        let is_new = !named.contains(&label);
-        named.push(label);
-        let label = is_new.then(|| label.to_owned());
-        if look(way[0].direction).is_some() {
-            let line =
-                Series { label: None, colour, stroke: Stroke::Fine, right: false, points: points.clone() };
-            over_lead.series.push(line);
-        }
-        over_lead.series.push(Series { label, colour, stroke: Stroke::Dots, right: false, points });
-    }
-
-    let over_time = |read: fn(&ProgramWindow) -> f64| -> Vec<(f64, f64)> {
+    let mu = || Scale::spanning("μ*", windows.iter().map(|window| window.mu_star), 0.01);
+    let lead = || Scale::spanning(name, windows.iter().map(|window| job.leading.value(window)), 1.0e-3);
+    let time = || Scale::from_to("t [s]", windows[0].time_s[0], windows[windows.len() - 1].time_s[1]);
+    let over_time = |read: &dyn Fn(&ProgramWindow) -> f64| -> Vec<At> {
         windows.iter().map(|window| (window.middle_s(), read(window))).collect()
     };
-    let mut in_time = Panel::new("", time_scale(), mu_scale());
-    in_time.right = Some(lead_scale());
-    in_time.bands = bands(windows);
-    let lead_points = windows.iter().map(|window| (window.middle_s(), leading(window))).collect();
-    let lead = Series {
-        label: Some(name.to_owned()),
-        colour: GREY,
-        stroke: Stroke::Fine,
-        right: true,
-        points: lead_points,
-    };
-    in_time.series = vec![Series::line("μ*", palette::GREEN, over_time(|window| window.mu_star)), lead];
+    let over_lead = over_lead(job, Panel::new("", lead(), mu()));
+
+    let mut in_time =
+        Panel { right: Some(lead()), layers: vec![ways(windows)], ..Panel::new("", time(), mu()) };
+    in_time.line("μ*", Pen::solid(palette::GREEN, 2.0), over_time(&|window| window.mu_star));
+    on_the_right(&mut in_time, name, over_time(&|window| job.leading.value(window)));
 
     let khz = |window: &ProgramWindow| window.frequency_hz.unwrap_or(f64::NAN) / KILO;
-    let mut frequency =
-        Panel::new("", time_scale(), Scale::spanning("f [kHz]", windows.iter().map(khz), 0.01));
-    let amplitude = |window: &ProgramWindow| window.n_amplitude;
-    frequency.right = Some(Scale::spanning("amplitude of N/F", windows.iter().map(amplitude), 0.01));
-    frequency.bands = bands(windows);
-    let rates = over_time(|window| window.frequency_hz.unwrap_or(f64::NAN) / KILO);
-    let rates: Vec<(f64, f64)> = rates.into_iter().filter(|(_, rate)| rate.is_finite()).collect();
-    let dots = Series {
-        label: Some("frequency".to_owned()),
-        colour: palette::PURPLE,
-        stroke: Stroke::Dots,
-        right: false,
-        points: rates,
+    let amplitudes = over_time(&|window| window.n_amplitude);
+    let of_n = "amplitude of N/F";
+    let mut frequency = Panel {
+        right: Some(Scale::spanning(of_n, amplitudes.iter().map(|at| at.1), 0.01)),
+        layers: vec![ways(windows)],
+        ..Panel::new("", time(), Scale::spanning("f [kHz]", windows.iter().map(khz), 0.01))
     };
-    let amplitudes = Series {
-        label: Some("amplitude of N/F".to_owned()),
-        colour: GREY,
-        stroke: Stroke::Fine,
-        right: true,
-        points: over_time(|window| window.n_amplitude),
-    };
-    frequency.series = vec![dots, amplitudes];
-    panel::stack(&[over_lead, in_time, frequency])
+    let mut rates = over_time(&khz);
+    rates.retain(|(_, rate)| rate.is_finite());
+    frequency.legend.push(Entry::marker(dot(palette::PURPLE), "frequency"));
+    on_the_right(&mut frequency, of_n, amplitudes);
+    frequency.layers.push(dots(palette::PURPLE, &rates));
+
+    for panel in [&mut in_time, &mut frequency] {
+        for (colour, label) in windows.iter().filter_map(|window| look(window.direction)) {
+            panel.explain(Entry::cell(palette::lightened(colour), "", label));
+        }
+    }
+    Chart { title: title(job), ..Chart::stack(vec![over_lead, in_time, frequency]) }
+}
+
+/// μ\* over the speed or the load, in the colours of the ways.
+fn over_lead(job: &Job, mut panel: Panel) -> Panel {
+    panel.height = 300.0;
+    for way in job.windows.chunk_by(|a, b| a.direction == b.direction) {
+        let points: Vec<At> = way.iter().map(|window| (job.leading.value(window), window.mu_star)).collect();
+        let (colour, label) = look(way[0].direction).unwrap_or((GREY, "start, hold, turn"));
+        panel.explain(Entry::marker(dot(colour), label));
+        let dots = dots(colour, &points);
+        if look(way[0].direction).is_some() {
+            panel.layers.push(Layer::Line { points, pen: Pen::solid(colour, 1.0), right: false });
+        }
+        panel.layers.push(dots);
+    }
+    panel
+}
+
+fn dot(colour: Rgb) -> Marker {
+    Marker::new(Shape::Circle, colour).sized(3.0)
+}
+
+fn dots(colour: Rgb, points: &[At]) -> Layer {
+    let point = |at: &At| Point { at: *at, error: 0.0, marker: dot(colour), tip: None };
+    Layer::Points(points.iter().map(point).collect())
+}
+
+/// Adds a thin grey line on the scale on the right side.
+fn on_the_right(panel: &mut Panel, label: &str, points: Vec<At>) {
+    let pen = Pen::solid(GREY, 1.0);
+    panel.layers.push(Layer::Line { points, pen, right: true });
+    panel.legend.push(Entry::line(pen, &format!("{label} (right axis)")));
 }
 
 fn title(job: &Job) -> String {
@@ -206,11 +216,13 @@ fn title(job: &Job) -> String {
 }
 
 /// Backgrounds of the ways up and down.
-fn bands(windows: &[ProgramWindow]) -> Vec<Band> {
+fn ways(windows: &[ProgramWindow]) -> Layer {
     let ways = windows.chunk_by(|a, b| a.direction == b.direction);
-    let band = |way: &[ProgramWindow]| {
-        let (colour, label) = look(way[0].direction)?;
-        Some(Band { label, colour, span: (way[0].time_s[0], way[way.len() - 1].time_s[1]) })
+    let cell = |way: &[ProgramWindow]| {
+        let (colour, _) = look(way[0].direction)?;
+        let x = [way[0].time_s[0], way[way.len() - 1].time_s[1]];
+        let y = [f64::NEG_INFINITY, f64::INFINITY];
+        Some(Cell { x, y, fill: Some(palette::lightened(colour)), ..Cell::default() })
     };
-    ways.filter_map(band).collect()
+    Layer::Cells(ways.filter_map(cell).collect())
 }

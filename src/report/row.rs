@@ -22,6 +22,8 @@ pub struct JobRow {
     /// Local friction coefficient μ of the job, whether or not it is a parameter of the grid. It is NaN for a measured
     /// point of unknown μ.
     pub mu: f64,
+    /// Whether the friction law is known to have no coefficient but μ, so that steady sliding has μ\* = μ.
+    pub has_one_mu: bool,
     /// The state of the job.
     pub state: RowState,
     /// The job's share of the time of its thread \[s\]. Jobs that are advanced together have equal shares.

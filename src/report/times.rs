@@ -56,6 +56,7 @@ mod tests {
             parameters: Vec::new(),
             omega_rpm: 1.0,
             mu: 0.1,
+            has_one_mu: true,
             state: RowState::Pending,
             wall_s,
             numerics: None,

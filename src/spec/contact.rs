@@ -51,6 +51,11 @@ impl FrictionLaw {
             Self::PrakashClifton => &["length_m"],
         }
     }
+
+    /// Whether a node that slips steadily has the friction force μN at every speed, and begins to slip at it.
+    pub fn has_one_mu(self) -> bool {
+        matches!(self, Self::Coulomb | Self::PrakashClifton)
+    }
 }
 
 /// Unilateral contact with friction, the same at every node.

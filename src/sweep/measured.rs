@@ -312,6 +312,7 @@ fn row(
         parameters,
         omega_rpm,
         mu,
+        has_one_mu: false,
         state: RowState::Measured(Measurement { values, squeals }),
         wall_s: None,
         numerics: None,

@@ -43,8 +43,9 @@ pub async fn read_rows(queue: &mut Queue, study: &str) -> Result<Vec<JobRow>, Sw
     let convert = |row: &StudyRow| {
         // A specification of another version that this one cannot read has no known error.
         let spec = job_spec(&row.key, row.payload.as_deref().unwrap_or_default()).ok();
+        let has_one_mu = spec.as_ref().is_some_and(|spec| spec.scene.contact.law.has_one_mu());
         let discretisation = spec.map_or(Discretisation::NotMeasured, |spec| errors.of(&spec));
-        Ok(JobRow { discretisation, ..report_row(study, row)? })
+        Ok(JobRow { has_one_mu, discretisation, ..report_row(study, row)? })
     };
     let visit_page = page_visitor(&mut read, convert, |row| {
         rows.push(row);
@@ -170,7 +171,8 @@ pub(super) async fn add_further_names(
     Ok(())
 }
 
-/// A row of the queue as a row of a report. A result that cannot be read is a state of the row.
+/// A row of the queue as a row of a report, without what only the specification says. A result that cannot be read is a state of
+/// the row.
 pub(super) fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepError> {
     let unreadable = |reason| SweepError::Unreadable {
         subject: format!("job {} of {study}", row.key),
@@ -185,6 +187,7 @@ pub(super) fn report_row(study: &str, row: &StudyRow) -> Result<JobRow, SweepErr
         parameters: parameters.grid,
         omega_rpm: parameters.omega_rpm,
         mu: parameters.mu,
+        has_one_mu: false,
         state,
         wall_s: row.wall_s,
         numerics: parameters.numerics,

@@ -196,6 +196,7 @@ impl StoredJob {
             parameters: Vec::new(),
             omega_rpm: spec.scene.disk.omega_rpm,
             mu: spec.scene.contact.mu,
+            has_one_mu: spec.scene.contact.law.has_one_mu(),
             state,
             wall_s: *wall_s,
             numerics: None,

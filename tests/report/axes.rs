@@ -1,8 +1,9 @@
 //! The axes of tables and figures: any parameter along the axis, over the columns and in panels, in units that people use.
 
-use crate::svg;
+use crate::charts::{data, only, points, texts};
 use crate::synthetic::{partial_study, periodic, record, report, row, with};
 use tribosweep::analysis::{Outcome, Regime};
+use tribosweep::publish::chart::Axis;
 use tribosweep::report::figure::{Plot, figures};
 use tribosweep::report::tables::{self, Quantity};
 use tribosweep::report::{JobRow, RowState, SCALARS, Scalar, View, name_and_unit, write};
@@ -29,13 +30,6 @@ fn view(x: Option<&str>, by: Option<&str>) -> View {
 fn heads(rows: &[JobRow], view: &View) -> Vec<String> {
     let page = tables::page(rows, view, Quantity::MuStar, "t");
     page.lines().filter(|line| line.starts_with('#') || line.starts_with("| ")).map(str::to_owned).collect()
-}
-
-fn texts(rows: &[JobRow], view: &View, plot: Plot) -> Vec<String> {
-    let all = figures(rows, view, plot).expect("a string takes everything");
-    assert_eq!(all.len(), 1);
-    let elements = svg::parse(&all[0].svg);
-    elements.into_iter().filter(|element| element.name == "text").map(|element| element.text).collect()
 }
 
 /// Protects: a view puts any parameter along the axis and over the columns; the others make the groups, and no job is lost.
@@ -66,13 +60,13 @@ fn any_parameter_can_be_an_axis() {
 fn figures_have_the_units_that_people_use() {
     let mut view = view(Some("young_modulus_pa"), None);
     view.descriptions.insert("young_modulus_pa".to_owned(), "Young's modulus of the pin".to_owned());
-    let texts = texts(&study(), &view, Plot::MuStar);
-    assert!(texts.iter().any(|text| text == "Young's modulus of the pin [GPa]"), "{texts:?}");
-    assert!(
-        texts.iter().any(|text| text == "0.5") && !texts.iter().any(|text| text.contains("00000")),
-        "{texts:?}"
-    );
-    assert!(texts.iter().any(|text| text == "ω = 7 rpm"), "{texts:?}");
+    let figures = figures(&study(), &view, Plot::MuStar).expect("a string takes everything");
+    let panels = &figures[0].chart.panels;
+    assert_eq!(panels[0].x.label, "Young's modulus of the pin [GPa]");
+    let ticks: Vec<String> = panels[0].x.labelled_ticks().into_iter().map(|tick| tick.1).collect();
+    assert_eq!(ticks, ["0.5", "1", "2"]);
+    let titles: Vec<&str> = panels.iter().map(|panel| panel.title.as_str()).collect();
+    assert_eq!(titles, ["ω = 2 rpm", "ω = 7 rpm"]);
 }
 
 /// Protects: the axis is that of the frequencies of periodic jobs, and the others are at its edge. Colours and curves without
@@ -92,15 +86,13 @@ fn only_periodic_jobs_set_the_axis_of_frequencies() {
         at(1.0, 0.1, Outcome::Decayed, None),
         at(2.0, 0.1, Outcome::Decayed, None),
     ];
-    let found = texts(&rows, &View::default(), Plot::Frequency);
-    let ticks: Vec<f64> =
-        found.iter().filter_map(|text| text.parse().ok()).filter(|tick| *tick > 1000.0).collect();
-    assert!(ticks.iter().all(|tick| (14_000.0..16_500.0).contains(tick)), "{ticks:?}");
-    assert!(found.iter().any(|text| text == "outside of the axis"), "{found:?}");
-    assert!(found.iter().any(|text| text == "0.4") && !found.iter().any(|text| text == "0.1"), "{found:?}");
-    let map = texts(&rows, &View::default(), Plot::FrequencyMap);
-    assert!(map.iter().any(|text| text == "113.0~"), "{map:?}");
-    assert!(!map.iter().any(|text| text == "100" || text == "60"), "no tick of the colour scale: {map:?}");
+    let chart = only(&rows, Plot::Frequency);
+    let Axis::Linear(range) = &chart.panels[0].y.axis else { panic!("{:?}", chart.panels[0].y.axis) };
+    assert!(range.start > 14.0 && range.end < 16.5, "{range:?}");
+    let beyond: Vec<f64> = points(&chart.panels[0]).iter().map(|point| point.at.1).collect();
+    assert_eq!(beyond, [15.0, 15.4, 113.0], "also the one that is beyond the axis");
+    let legend = texts(&chart.legend);
+    assert!(legend.contains(&"0.4") && !legend.contains(&"0.1"), "{legend:?}");
 }
 
 /// Protects: every number of the record can be drawn and tabulated, and its title has the unit.
@@ -108,8 +100,14 @@ fn only_periodic_jobs_set_the_axis_of_frequencies() {
 fn every_scalar_has_a_figure_and_a_table() {
     for scalar in SCALARS.iter() {
         let rows = partial_study();
-        let all = figures(&rows, &View::default(), Plot::Of(scalar)).expect("a string takes everything");
-        let points = all[0].svg.matches("data-job").count();
+        let chart = only(&rows, Plot::Of(scalar));
+        let points = points(&chart.panels[0]);
+        for point in &points {
+            let tip = point.tip.as_ref().expect("a tooltip");
+            let row = rows.iter().find(|row| row.job == data(tip, "job")).expect("its job");
+            assert_eq!(data(tip, "y").parse().ok(), scalar.value(row), "{}", scalar.name);
+        }
+        let points = points.len();
         // These are not in every record.
         let is_optional = [
             "frequency",

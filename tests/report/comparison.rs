@@ -1,10 +1,12 @@
 //! Several sources side by side: studies, and measured points.
 
-use crate::svg;
+use crate::charts::{self, only, texts};
 use crate::synthetic::{measured, periodic, record, report, row};
 use std::fs;
 use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::report::figure::{Plot, figures};
+use tribosweep::publish::chart::Rgb;
+use tribosweep::publish::chart::palette::{BLUE, VERMILLION};
+use tribosweep::report::figure::Plot;
 use tribosweep::report::tables::{self, Quantity};
 use tribosweep::report::{JobRow, Measurement, Report, RowState, View, write, write_compared};
 
@@ -80,17 +82,11 @@ fn studies_are_compared() {
         table.contains("|      a |      b |") && table.contains("|     100 | 0.3200 |      – |"),
         "{table}"
     );
-    let all = figures(&rows, &View::default(), Plot::MuStar).expect("a string takes everything");
-    let elements = svg::parse(&all[0].svg);
-    let texts: Vec<&str> = elements.iter().filter(|e| e.name == "text").map(|e| e.text.as_str()).collect();
+    let chart = only(&rows, Plot::MuStar);
+    let texts = texts(&chart.legend);
     assert!(texts.contains(&"source") && texts.contains(&"a") && texts.contains(&"b"), "{texts:?}");
-    let curves = |colour: &str| {
-        elements
-            .iter()
-            .filter(|e| e.name == "polyline" && e.is("stroke", colour) && e.is("stroke-width", "4"))
-            .count()
-    };
-    assert!(curves("#0072B2") > 0 && curves("#D55E00") > 0, "a colour for each study");
+    let colours: Vec<Rgb> = charts::lines(&chart.panels[0]).iter().map(|(_, pen)| pen.colour).collect();
+    assert_eq!(colours, [BLUE, VERMILLION], "a colour for each study");
 }
 
 /// Protects: with several μ the colour is μ, and each source has a line or mark of its own. A measured point of unknown μ is

@@ -1,157 +1,144 @@
-//! The figures: every result has a marker, and every μ has a curve and an entry in the legend.
+//! The figures of curves, shares and residuals: every result has a marker, and every μ has a curve and an entry in the legend.
 
-use crate::svg::{self, Element};
-use crate::synthetic::{done, partial_study, periodic, record, row, with};
+use crate::charts::{all, coloured, data, lines, only, points, texts};
+use crate::synthetic::{done, measured, partial_study, periodic, record, report, row, with};
 use std::collections::HashSet;
 use std::sync::Arc;
 use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::report::figure::{Plot, figures};
-use tribosweep::report::{Discretisation, JobRow, MeshError, RowState, View};
+use tribosweep::publish::chart::palette::{BLUE, GREEN, VERMILLION};
+use tribosweep::publish::chart::{Axis, Chart, Guide, Layer, Panel, Rgb, Sample, Shape};
+use tribosweep::report::figure::Plot;
+use tribosweep::report::{Discretisation, JobRow, MeshError, RowState, Scalar, write};
 
 /// The first colours of the palette, in the order of ascending μ.
-const COLOURS: [&str; 3] = ["#0072B2", "#D55E00", "#009E73"];
-const CURVE_WIDTH: &str = "4";
+const COLOURS: [Rgb; 3] = [BLUE, VERMILLION, GREEN];
 
-fn only(rows: &[JobRow], plot: Plot) -> Vec<Element> {
-    let mut all = figures(rows, &View::default(), plot).expect("a string takes everything");
-    assert_eq!(all.len(), 1);
-    svg::parse(&all.remove(0).svg)
+/// The only panel of the only figure.
+fn panel(rows: &[JobRow], plot: Plot) -> Panel {
+    let mut chart = only(rows, plot);
+    assert_eq!(chart.panels.len(), 1);
+    chart.panels.remove(0)
 }
 
-fn texts(elements: &[Element]) -> Vec<&str> {
-    elements.iter().filter(|element| element.name == "text").map(|element| element.text.as_str()).collect()
+fn guides(panel: &Panel) -> Vec<Guide> {
+    let guide = |layer: &Layer| match layer {
+        Layer::Guide(guide) => Some(guide.clone()),
+        _ => None,
+    };
+    panel.layers.iter().filter_map(guide).collect()
 }
 
-/// Points of every line of a curve's width in this colour: the curve's stretches and its legend entry.
-fn lines(elements: &[Element], colour: &str) -> Vec<Vec<(i32, i32)>> {
-    elements
-        .iter()
-        .filter(|e| e.name == "polyline" && e.is("stroke", colour) && e.is("stroke-width", CURVE_WIDTH))
-        .map(|e| {
-            let point = |pair: &str| {
-                let (x, y) = pair.split_once(',').expect("a pair");
-                (x.parse().expect("a pixel"), y.parse().expect("a pixel"))
-            };
-            e.attribute("points").expect("points").split_whitespace().map(point).collect()
-        })
-        .collect()
+/// Corners and cover of the areas in a colour.
+fn areas(panel: &Panel, colour: Rgb) -> Vec<(Vec<(f64, f64)>, f64)> {
+    let area = |layer: &Layer| match layer {
+        Layer::Area(corners, own, cover) if *own == colour => Some((corners.clone(), *cover)),
+        _ => None,
+    };
+    panel.layers.iter().filter_map(area).collect()
 }
 
-/// Number of markers (polygons, circles) in this colour.
-fn markers(elements: &[Element], shape: &str, colour: &str) -> usize {
-    elements.iter().filter(|element| element.name == shape && element.is("fill", colour)).count()
-}
-
-fn all_markers(elements: &[Element], colour: &str) -> usize {
-    markers(elements, "circle", colour) + markers(elements, "polygon", colour)
-}
-
-/// Protects the figure's completeness: one curve, one legend entry and one guide per μ, one marker per
+/// Protects the figure's completeness: one curve, one legend entry and one guide per μ, one marker with the job's values per
 /// result.
 #[test]
 fn each_mu_has_a_curve_and_each_result_a_marker() {
-    let elements = only(&partial_study(), Plot::MuStar);
-    for (colour, results) in COLOURS.into_iter().zip([6, 5, 3]) {
-        let lines = lines(&elements, colour);
-        let lengths: Vec<usize> = lines.iter().map(Vec::len).collect();
-        assert_eq!(lengths, [results, 2], "curve and legend entry of {colour}");
-        assert!(lines[1].iter().all(|entry| lines[0].iter().all(|point| point.0 < entry.0)), "legend apart");
-        assert_eq!(all_markers(&elements, colour), results, "markers of {colour}");
-        let dashes =
-            |e: &&Element| e.name == "polyline" && e.is("stroke", colour) && e.is("stroke-width", "3");
-        assert!(elements.iter().filter(dashes).count() > 10, "a dashed guide in {colour}");
+    let rows = partial_study();
+    let chart = only(&rows, Plot::MuStar);
+    let panel = &chart.panels[0];
+    for ((colour, results), mu) in COLOURS.into_iter().zip([6, 5, 3]).zip([0.2, 0.3, 0.4]) {
+        let own: Vec<_> = lines(panel).into_iter().filter(|(_, pen)| pen.colour == colour).collect();
+        assert_eq!((own.len(), own[0].0.len()), (1, results), "the curve of {colour}");
+        assert_eq!(coloured(panel, colour).len(), results, "markers of {colour}");
+        let guide = guides(panel).into_iter().find(|guide| guide.pen.colour == colour).expect("a guide");
+        assert!(guide.at == mu && guide.pen.dash.0 > 0.0 && !guide.is_vertical);
     }
-    let texts = texts(&elements);
+    let texts = texts(&chart.legend);
     for label in ["0.2", "0.3", "0.4", "μ* = μ", "stable", "stick–slip", "stick–slip–separation"] {
         assert!(texts.contains(&label), "{label} in {texts:?}");
     }
     assert!(!texts.contains(&"undecided"), "a regime that does not occur is not in the legend");
+    for point in points(panel) {
+        let tip = point.tip.as_ref().expect("a tooltip");
+        let row = rows.iter().find(|row| row.job == data(tip, "job")).expect("its job");
+        assert_eq!(point.at, (row.omega_rpm, row.record().expect("a result").mu_star));
+        assert_eq!(data(tip, "mu").parse(), Ok(row.mu));
+    }
 }
 
-/// Protects: both axes of both figures have quantity, symbol and unit.
+/// Protects: there is no line μ\* = μ where the friction law has other coefficients too, or where nobody knows it.
+#[test]
+fn only_laws_with_one_coefficient_have_its_line() {
+    let mut rows = partial_study();
+    for row in rows.iter_mut().filter(|row| row.mu == 0.3) {
+        row.has_one_mu = row.omega_rpm > 10.0;
+    }
+    let levels: Vec<f64> = guides(&panel(&rows, Plot::MuStar)).iter().map(|guide| guide.at).collect();
+    assert_eq!(levels, [0.2, 0.4]);
+    rows.iter_mut().for_each(|row| row.has_one_mu = false);
+    let chart = only(&rows, Plot::MuStar);
+    assert!(guides(&chart.panels[0]).is_empty() && !texts(&chart.legend).contains(&"μ* = μ"));
+}
+
+/// Protects: both axes of both figures have quantity, symbol and unit, and frequencies have the unit that fits them.
 #[test]
 fn axes_carry_quantity_and_unit() {
-    let mu_star = only(&partial_study(), Plot::MuStar);
-    assert!(texts(&mu_star).contains(&"disk speed ω [rpm]"));
-    assert!(texts(&mu_star).contains(&"macroscopic friction coefficient μ*"));
-    let frequency = only(&partial_study(), Plot::Frequency);
-    assert!(texts(&frequency).contains(&"disk speed ω [rpm]"));
-    assert!(texts(&frequency).contains(&"frequency [Hz]"));
+    let mu_star = panel(&partial_study(), Plot::MuStar);
+    assert_eq!(mu_star.x.label, "disk speed ω [rpm]");
+    assert_eq!(mu_star.y.label, "macroscopic friction coefficient μ*");
+    let frequency = panel(&partial_study(), Plot::Frequency);
+    assert_eq!((&*frequency.x.label, &*frequency.y.label), ("disk speed ω [rpm]", "frequency [kHz]"));
+    let point = points(&frequency)[0];
+    assert_eq!(point.at.1, 14.5124);
+    assert_eq!(data(point.tip.as_ref().expect("a tooltip"), "y"), "14512.4", "as in the record");
 }
 
-/// Ticks of the abscissa with their pixel, from left to right.
-fn x_ticks(elements: &[Element]) -> Vec<(String, i32)> {
-    let texts: Vec<&Element> = elements.iter().filter(|element| element.name == "text").collect();
-    let height =
-        |element: &Element| element.attribute("y").and_then(|y| y.parse::<i32>().ok()).expect("a pixel");
-    // The lowest line of text is the axis label; the ticks are the line above it.
-    let label = texts.iter().map(|text| height(text)).max().expect("a label");
-    let line = texts.iter().map(|text| height(text)).filter(|y| *y < label).max().expect("ticks");
-    let place =
-        |text: &&Element| (text.text.clone(), text.attribute("x").and_then(|x| x.parse().ok()).expect("x"));
-    let mut ticks: Vec<(String, i32)> = texts.iter().filter(|text| height(text) == line).map(place).collect();
-    ticks.sort_by_key(|tick| tick.1);
-    ticks
-}
-
-/// Protects: the ticks of the logarithmic axis are 0.5 1 2 5 … 100, and every doubling has the same length.
+/// Protects: the ticks are the speeds that people chose, every doubling has the same length, and with many speeds, or with those
+/// that the program adds, the ticks are round numbers.
 #[test]
 fn speed_is_on_a_logarithmic_axis() {
-    let rows = [0.5, 6.0, 35.0, 100.0].map(|omega| row(omega, 0.4, periodic(0.3)));
-    let ticks = x_ticks(&only(&rows, Plot::MuStar));
-    let labels: Vec<&str> = ticks.iter().map(|tick| tick.0.as_str()).collect();
-    assert_eq!(labels, ["0.5", "1", "2", "5", "10", "20", "50", "100"]);
-    let doubling = ticks[1].1 - ticks[0].1;
-    assert!(doubling > 50);
-    assert!((ticks[2].1 - ticks[1].1 - doubling).abs() <= 1, "{ticks:?}");
-    assert!((ticks[7].1 - ticks[6].1 - doubling).abs() <= 1, "{ticks:?}");
+    let rows = [35.0, 0.5, 100.0, 6.0].map(|omega| row(omega, 0.4, periodic(0.3)));
+    let scale = panel(&rows, Plot::MuStar).x;
+    let labels: Vec<String> = scale.labelled_ticks().into_iter().map(|tick| tick.1).collect();
+    assert_eq!(labels, ["0.5", "6", "35", "100"]);
+    let doubling = |from: f64| scale.axis.place(2.0 * from) - scale.axis.place(from);
+    assert!(doubling(0.5) > 0.05 && (doubling(0.5) - doubling(50.0)).abs() < 1e-12);
+
+    let added: Vec<JobRow> =
+        rows.iter().cloned().chain([JobRow { wave: 1, ..row(7.123, 0.4, periodic(0.3)) }]).collect();
+    assert_eq!(panel(&added, Plot::MuStar).x.labelled_ticks(), scale.labelled_ticks());
+    let many: Vec<JobRow> = (0..40).map(|k| row(1.3f64.powi(k), 0.4, periodic(0.3))).collect();
+    let labels: Vec<String> =
+        panel(&many, Plot::MuStar).x.labelled_ticks().into_iter().map(|tick| tick.1).collect();
+    assert_eq!(labels[..4], ["1", "2", "5", "10"]);
 }
 
 /// Protects: a disk at rest is drawn too, because the axis is linear if there is ω = 0.
 #[test]
 fn zero_speed_makes_the_axis_linear() {
     let rows = [0.0, 5.0, 10.0, 20.0].map(|omega| row(omega, 0.4, periodic(0.3)));
-    let elements = only(&rows, Plot::MuStar);
-    assert_eq!(all_markers(&elements, COLOURS[0]), 4);
-    let ticks = x_ticks(&elements);
-    assert_eq!(ticks[0].0, "0");
-    let steps: Vec<i32> = ticks.windows(2).map(|pair| pair[1].1 - pair[0].1).collect();
-    assert!(steps.iter().all(|step| (step - steps[0]).abs() <= 1), "{ticks:?}");
+    let panel = panel(&rows, Plot::MuStar);
+    assert_eq!(points(&panel).len(), 4);
+    assert!(matches!(panel.x.axis, Axis::Linear(_)));
 }
 
 /// Protects: the shape of a marker is the regime, and a hollow marker means that the state is not periodic.
 #[test]
 fn shape_is_the_regime_and_hollow_is_not_periodic() {
-    let shape = |outcome, regime| {
-        let elements = only(&[row(7.0, 0.4, done(outcome, regime, 0.3))], Plot::MuStar);
-        let own: Vec<&Element> = elements
-            .iter()
-            .filter(|e| matches!(e.name.as_str(), "circle" | "polygon") && e.is("fill", COLOURS[0]))
-            .collect();
-        assert_eq!(own.len(), 1);
-        let corners: Vec<&str> = own[0].attribute("points").unwrap_or_default().split_whitespace().collect();
-        let heights: HashSet<&str> =
-            corners.iter().filter_map(|corner| Some(corner.split_once(',')?.1)).collect();
-        let name = match (corners.len(), heights.len()) {
-            (0, 0) => own[0].name.as_str(),
-            (3, 2) => "triangle",
-            (4, 2) => "square",
-            (4, 3) => "diamond",
-            other => panic!("{other:?} corners and heights"),
-        };
-        // White circles and polygons are holes, in the plot and in the legend. The background is a rectangle.
-        (name.to_owned(), all_markers(&elements, "#FFFFFF"))
-    };
     let expected = [
-        (Outcome::Decayed, Regime::Stable, "circle", 0),
-        (Outcome::Periodic, Regime::StickSlip, "triangle", 0),
-        (Outcome::Periodic, Regime::StickSlipSeparation, "square", 0),
-        (Outcome::Periodic, Regime::SlipSeparation, "diamond", 0),
-        (Outcome::NotPeriodic, Regime::StickSlip, "triangle", 2),
-        (Outcome::NotPeriodic, Regime::Undecided, "circle", 2),
+        (Outcome::Decayed, Regime::Stable, Shape::Circle, false),
+        (Outcome::Periodic, Regime::StickSlip, Shape::Up, false),
+        (Outcome::Periodic, Regime::StickSlipSeparation, Shape::Square, false),
+        (Outcome::Periodic, Regime::SlipSeparation, Shape::Diamond, false),
+        (Outcome::NotPeriodic, Regime::StickSlip, Shape::Up, true),
+        (Outcome::NotPeriodic, Regime::Undecided, Shape::Circle, true),
     ];
-    for (outcome, regime, name, holes) in expected {
-        assert_eq!(shape(outcome, regime), (name.to_owned(), holes), "{outcome:?} {regime:?}");
+    for (outcome, regime, shape, is_hollow) in expected {
+        let chart = only(&[row(7.0, 0.4, done(outcome, regime, 0.3))], Plot::MuStar);
+        let marker = points(&chart.panels[0])[0].marker;
+        assert_eq!((marker.shape, marker.is_hollow), (shape, is_hollow), "{outcome:?} {regime:?}");
+        let in_legend = chart.legend.iter().any(|entry| {
+            matches!(&entry.sample, Sample::Marker(own) if own.shape == shape && own.is_hollow == is_hollow)
+        });
+        assert!(in_legend, "{outcome:?} {regime:?}");
     }
 }
 
@@ -159,25 +146,22 @@ fn shape_is_the_regime_and_hollow_is_not_periodic() {
 #[test]
 fn a_curve_runs_from_left_to_right() {
     let rows = [50.0, 1.0, 20.0, 5.0].map(|omega| row(omega, 0.4, periodic(0.3)));
-    let curve = &lines(&only(&rows, Plot::MuStar), COLOURS[0])[0];
-    assert_eq!(curve.len(), 4);
-    assert!(curve.windows(2).all(|pair| pair[0].0 < pair[1].0), "{curve:?}");
+    let panel = panel(&rows, Plot::MuStar);
+    assert_eq!(lines(&panel)[0].0, [1.0, 5.0, 20.0, 50.0].map(|omega| (omega, 0.3)));
 }
 
 /// Protects: of two jobs at one point both are drawn, and the curve goes through their mean.
 #[test]
 fn duplicates_are_both_drawn() {
     let rows = [
-        row(5.0, 0.4, periodic(0.30)),
-        row(7.0, 0.4, periodic(0.32)),
-        row(7.0, 0.4, periodic(0.36)),
-        row(9.0, 0.4, periodic(0.34)),
+        row(5.0, 0.4, periodic(0.25)),
+        row(7.0, 0.4, periodic(0.25)),
+        row(7.0, 0.4, periodic(0.5)),
+        row(9.0, 0.4, periodic(0.25)),
     ];
-    let elements = only(&rows, Plot::MuStar);
-    assert_eq!(all_markers(&elements, COLOURS[0]), 4);
-    let curve = &lines(&elements, COLOURS[0])[0];
-    assert_eq!(curve.len(), 3);
-    assert!((curve[1].1 - curve[2].1).abs() <= 1, "the mean of 0.32 and 0.36 is as high as 0.34: {curve:?}");
+    let panel = panel(&rows, Plot::MuStar);
+    assert_eq!(points(&panel).len(), 4);
+    assert_eq!(lines(&panel)[0].0, [(5.0, 0.25), (7.0, 0.375), (9.0, 0.25)]);
 }
 
 /// Protects: the frequency curve is interrupted at a speed at which nothing oscillates.
@@ -187,38 +171,39 @@ fn a_stable_job_interrupts_the_frequency_curve() {
         if omega == 5.0 { done(Outcome::Decayed, Regime::Stable, 0.4) } else { periodic(0.3) }
     };
     let rows = [1.0, 2.0, 5.0, 10.0, 20.0].map(|omega| row(omega, 0.4, state(omega)));
-    let elements = only(&rows, Plot::Frequency);
-    let lengths: Vec<usize> = lines(&elements, COLOURS[0]).iter().map(Vec::len).collect();
-    assert_eq!(lengths, [2, 2, 2], "two stretches and the legend entry");
-    assert_eq!(all_markers(&elements, COLOURS[0]), 4);
+    let panel = panel(&rows, Plot::Frequency);
+    let curve = lines(&panel)[0].0;
+    let lengths: Vec<usize> = curve.split(|(_, y)| !y.is_finite()).map(<[_]>::len).collect();
+    assert_eq!(lengths, [2, 2]);
+    assert_eq!(points(&panel).len(), 4);
 }
 
-/// Protects: error bars are drawn if they are longer than the marker, and only then.
+/// Protects: a point has the standard error of its value, and none if that is no number. Measured points have their own and
+/// crosses without lines.
 #[test]
-fn error_bars_show_where_they_are_visible() {
-    let bars = |error: f64| {
+fn points_have_their_errors() {
+    let errors = |error: f64| {
         let mut own = record(Outcome::Periodic, Regime::StickSlip, 0.35);
         own.mu_star_se = error;
-        let rows = [row(5.0, 0.4, periodic(0.3)), row(7.0, 0.4, RowState::Done(Box::new(own)))];
-        let elements = only(&rows, Plot::MuStar);
-        let bar =
-            |e: &&Element| e.name == "polyline" && e.is("stroke", COLOURS[0]) && e.is("stroke-width", "2");
-        elements.iter().filter(bar).count()
+        let rows = [row(7.0, 0.4, RowState::Done(Box::new(own))), measured(9.0, 0.4, 0.3, Some(0.01))];
+        let panel = panel(&rows, Plot::MuStar);
+        assert!(lines(&panel).is_empty() && points(&panel)[1].marker.shape == Shape::Cross);
+        points(&panel).iter().map(|point| point.error).collect::<Vec<f64>>()
     };
-    assert_eq!(bars(0.02), 3, "a bar with two caps");
-    assert_eq!(bars(1e-5), 0);
-    assert_eq!(bars(f64::NAN), 0);
+    assert_eq!(errors(0.02), [0.02, 0.01]);
+    assert_eq!(errors(f64::NAN), [0.0, 0.01]);
 }
 
 /// Protects: a result that is NaN has no marker, and the drawing has no NaN.
 #[test]
 fn a_result_that_is_not_finite_is_not_drawn() {
     let mut rows = partial_study();
-    let before = all_markers(&only(&rows, Plot::MuStar), COLOURS[1]);
+    let count = |rows: &[JobRow]| coloured(&panel(rows, Plot::MuStar), COLOURS[1]).len();
+    let before = count(&rows);
     rows[6].state = done(Outcome::NotPeriodic, Regime::Undecided, f64::NAN);
-    let all = figures(&rows, &View::default(), Plot::MuStar).expect("a string takes everything");
-    assert!(!all[0].svg.contains("NaN") && !all[0].svg.contains("inf"));
-    assert_eq!(all_markers(&svg::parse(&all[0].svg), COLOURS[1]), before - 1);
+    assert_eq!(count(&rows), before - 1);
+    let svg = &all(&rows, Plot::MuStar)[0].svg;
+    assert!(!svg.contains("NaN") && !svg.contains("inf"));
 }
 
 /// Protects: every combination has its panel with its own caption in one figure, and all panels have the same axes. With
@@ -231,18 +216,17 @@ fn each_combination_has_its_panel() {
             .map(|name| partial_study().into_iter().map(move |row| with(row, "note", name.as_str())));
         rows.flatten().collect()
     };
-    let names = ["a/b", "a b", "<&\u{1}\">"].map(str::to_owned);
-    let elements = only(&named(&names), Plot::MuStar);
-    let texts = texts(&elements);
-    for caption in ["note = a/b", "note = a b", "note = <& \">"] {
-        assert!(texts.contains(&caption), "{caption} in {texts:?}");
+    let names = ["a/b", "a b", "<&\">"].map(str::to_owned);
+    let chart = only(&named(&names), Plot::MuStar);
+    let titles: Vec<&str> = chart.panels.iter().map(|panel| panel.title.as_str()).collect();
+    assert_eq!(titles, ["note = a/b", "note = a b", "note = <&\">"]);
+    for panel in &chart.panels {
+        assert_eq!(coloured(panel, COLOURS[1]).len(), 5, "the results of every panel");
+        assert_eq!((&panel.x, &panel.y), (&chart.panels[0].x, &chart.panels[0].y));
     }
-    assert_eq!(all_markers(&elements, COLOURS[1]), 3 * 5, "the results of every panel");
-    assert_eq!(texts.iter().filter(|text| **text == "100").count(), 3, "the same ticks in every panel");
-    assert_eq!(texts.iter().filter(|text| **text == "disk speed ω [rpm]").count(), 1);
 
     let many: Vec<String> = (0..25).map(|number| format!("n{number}")).collect();
-    let all = figures(&named(&many), &View::default(), Plot::MuStar).expect("a string takes everything");
+    let all = all(&named(&many), Plot::MuStar);
     let parts: Vec<(&str, &str)> =
         all.iter().map(|figure| (figure.suffix.as_str(), figure.caption.as_str())).collect();
     let expected = [
@@ -256,12 +240,11 @@ fn each_combination_has_its_panel() {
 /// Protects: a study without speeds has the names of another parameter on the axis, in the order of the study.
 #[test]
 fn a_named_parameter_makes_a_named_axis() {
-    let rows = ["whole_top", "inner_side", "both_ends"]
-        .map(|side| with(row(7.0, 0.4, periodic(0.35)), "clamp_side", side));
-    let elements = only(&rows, Plot::MuStar);
-    let labels: Vec<String> = x_ticks(&elements).into_iter().map(|tick| tick.0).collect();
-    assert_eq!(labels, ["whole_top", "inner_side", "both_ends"]);
-    assert!(texts(&elements).contains(&"clamp_side"));
+    let names = ["whole_top", "inner_side", "both_ends"];
+    let rows = names.map(|side| with(row(7.0, 0.4, periodic(0.35)), "clamp_side", side));
+    let x = panel(&rows, Plot::MuStar).x;
+    assert_eq!(x.axis, Axis::Names(names.map(str::to_owned).into()));
+    assert_eq!(x.label, "clamp_side");
 }
 
 /// Protects: all curves have different colours, even if there are more of them than the palette has.
@@ -270,54 +253,103 @@ fn many_coefficients_have_many_colours() {
     let rows: Vec<JobRow> = (1..=20)
         .flat_map(|k| [5.0, 7.0].map(|omega| row(omega, f64::from(k) * 0.05, periodic(f64::from(k) * 0.04))))
         .collect();
-    let elements = only(&rows, Plot::MuStar);
-    let curves: HashSet<&str> = elements
-        .iter()
-        .filter(|e| e.name == "polyline" && e.is("stroke-width", CURVE_WIDTH))
-        .filter_map(|e| e.attribute("stroke"))
-        .collect();
-    assert_eq!(curves.len(), 20);
-    let lowest = elements.iter().filter_map(|e| e.attribute("y")?.parse::<i32>().ok()).max();
-    assert!(lowest.is_some_and(|y| y <= 1120), "the legend stays on the page");
+    let panel = panel(&rows, Plot::MuStar);
+    let colours: HashSet<Rgb> = lines(&panel).iter().map(|(_, pen)| pen.colour).collect();
+    assert_eq!(colours.len(), 20);
 }
 
-/// Protects: a figure without results says that there are none.
+/// Protects: a figure without results says that there are none, and has no ticks that would suggest a scale.
 #[test]
 fn a_study_without_results_says_so() {
-    for plot in [Plot::MuStar, Plot::Frequency] {
+    for plot in [Plot::MuStar, Plot::Frequency, Plot::Shares, Plot::Bifurcation] {
         for rows in [vec![], vec![row(7.0, 0.4, RowState::Pending)]] {
-            let elements = only(&rows, plot);
-            assert!(texts(&elements).iter().any(|text| text.contains("no results yet")));
+            for panel in only(&rows, plot).panels {
+                assert!(panel.layers.is_empty() && panel.note.contains("no results yet"), "{plot:?}");
+                assert!(plot == Plot::Shares || panel.y.labelled_ticks().is_empty(), "{plot:?}");
+            }
         }
     }
 }
 
-/// Protects: a curve has a band as wide as the error of mesh and step, a single point has one too, and there is none where
-/// the error is not measured.
+/// Protects: a curve has a band as wide as the error of mesh and step, a single point has one too, an indicative error has a
+/// paler one, and there is none where the error is not measured.
 #[test]
 fn the_error_of_the_mesh_is_a_band() {
-    let error = MeshError { mu_star_relative: 0.1, ..MeshError::default() };
-    let job = |omega, mu, discretisation: &Discretisation| {
-        let mut row = row(omega, mu, periodic(0.8 * mu));
-        row.discretisation = discretisation.clone();
-        row
-    };
-    let opacity = |element: &Element| element.attribute("opacity").and_then(|text| text.parse::<f64>().ok());
+    let error = MeshError { mu_star_relative: 0.25, ..MeshError::default() };
     let bands = |discretisation: Discretisation| {
-        let rows = [(2.0, 0.2), (7.0, 0.2), (7.0, 0.4)].map(|(omega, mu)| job(omega, mu, &discretisation));
-        let elements = only(&rows, Plot::MuStar);
-        let of_curve = |name: &str, colour: &str| -> Vec<Element> {
-            let is_band =
-                |e: &&Element| e.name == name && e.is("fill", colour) && opacity(e).is_some_and(|o| o < 0.5);
-            elements.iter().filter(is_band).cloned().collect()
-        };
-        let legend = texts(&elements).contains(&"error of mesh and step");
-        (of_curve("polygon", COLOURS[0]), of_curve("rect", COLOURS[1]), legend)
+        let rows = [(2.0, 0.2), (7.0, 0.2), (7.0, 0.4)].map(|(omega, mu)| {
+            let mut row = row(omega, mu, periodic(0.5));
+            row.discretisation = discretisation.clone();
+            row
+        });
+        let chart = only(&rows, Plot::MuStar);
+        let of = |colour| areas(&chart.panels[0], colour);
+        (of(COLOURS[0]), of(COLOURS[1]), texts(&chart.legend).contains(&"error of mesh and step"))
     };
     let (curve, point, legend) = bands(Discretisation::Measured(Arc::new(error.clone())));
     assert_eq!((curve.len(), point.len(), legend), (1, 1, true));
+    assert_eq!(curve[0].0, [(2.0, 0.375), (7.0, 0.375), (7.0, 0.625), (2.0, 0.625)]);
+    assert_eq!(point[0].0.iter().map(|corner| corner.1).collect::<Vec<_>>(), [0.375, 0.375, 0.625, 0.625]);
     let (pale, _, _) = bands(Discretisation::Indicative(Arc::new(error)));
-    assert!(opacity(&pale[0]) < opacity(&curve[0]));
+    assert!(pale[0].1 < curve[0].1);
     let (curve, point, legend) = bands(Discretisation::NotMeasured);
     assert_eq!((curve.len(), point.len(), legend), (0, 0, false));
+}
+
+/// Protects: a change of the sign of a growth rate is seen beside rates that are 10⁵ times as large.
+#[test]
+fn growth_rates_show_their_sign() {
+    let rows = [(1.0, -1e5), (2.0, -1.0), (3.0, 1.0), (4.0, 1e5)].map(|(omega, rate)| {
+        let mut own = record(Outcome::Decayed, Regime::Stable, 0.3);
+        own.growth_rate_per_s = Some(rate);
+        row(omega, 0.4, RowState::Done(Box::new(own)))
+    });
+    let axis = panel(&rows, Plot::Of(Scalar::find("growth_rate_per_s").expect("a scalar"))).y.axis;
+    assert!(axis.place(1.0) - axis.place(-1.0) > 0.04, "{axis:?}");
+    let frequencies = panel(&partial_study(), Plot::Frequency).y.axis;
+    assert!(matches!(frequencies, Axis::Linear(_)), "{frequencies:?}");
+}
+
+/// Protects: the figure of shares has a panel for every friction coefficient. Areas connect neighbours in the grid, but
+/// not across a job without a result, which has no tooltip either.
+#[test]
+fn shares_have_a_panel_for_each_mu() {
+    let chart: Chart = only(&partial_study(), Plot::Shares);
+    let titles: Vec<&str> = chart.panels.iter().map(|panel| panel.title.as_str()).collect();
+    assert_eq!(titles, ["μ = 0.2", "μ = 0.3", "μ = 0.4"]);
+    assert_eq!(chart.tips().count(), 14);
+    // μ = 0.3 lacks 50 rpm: an area up to 10 rpm and a bar at 100. μ = 0.4 has 2 to 10 rpm.
+    let stick: Vec<usize> = chart.panels.iter().map(|panel| areas(panel, BLUE).len()).collect();
+    assert_eq!(stick, [1, 2, 1]);
+    let tip = chart.tips().find(|tip| data(tip, "job") == "job-5-0.3").expect("a tooltip");
+    assert_eq!(["stick", "slip", "separated"].map(|name| data(tip, name)), ["25", "50", "25"]);
+    // Tooltips do not cover one another.
+    let cells = chart.panels[0].layers.iter().find_map(|layer| match layer {
+        Layer::Cells(cells) => Some(cells),
+        _ => None,
+    });
+    assert!(cells.expect("cells").windows(2).all(|pair| pair[0].x[1] <= pair[1].x[0] * (1.0 + 1e-12)));
+}
+
+/// Protects: the shares of a study without speeds have bars at the names of its parameter.
+#[test]
+fn shares_of_names_are_bars() {
+    let rows =
+        ["whole_top", "inner_side"].map(|side| with(row(7.0, 0.4, periodic(0.35)), "clamp_side", side));
+    let panel = panel(&rows, Plot::Shares);
+    assert_eq!(areas(&panel, BLUE).len(), 2);
+    assert!(matches!(panel.x.axis, Axis::Names(_)));
+}
+
+/// Protects: every job with a result has both residuals in the figure of the report, in the order of the study.
+#[test]
+fn residuals_are_those_of_all_jobs() {
+    let rows = partial_study();
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    write(&report(&rows), folder.path()).expect("the report is written");
+    let svg = std::fs::read_to_string(folder.path().join("residuals.svg")).expect("the figure");
+    for kind in ["energy_residual", "identity_residual"] {
+        assert_eq!(svg.matches(&format!("data-kind=\"{kind}\"")).count(), 14);
+    }
+    assert!(svg.contains("data-job=\"job-100-0.3\" data-x=\"12\" data-y=\"1.5e-9\""));
 }

@@ -1,5 +1,6 @@
 //! The page for a browser: its contents, what it leaves out, and that texts of a study are never markup.
 
+use crate::charts::drawings;
 use crate::synthetic::{failed, partial_study, periodic, report, row, with};
 use std::fs;
 use std::sync::Arc;
@@ -56,7 +57,7 @@ fn a_partial_study_says_what_is_missing() {
     at("the mesh has no node row at the clamp's width");
     // 18 jobs of 12.5 s.
     at("3.8 min");
-    assert_eq!(page.matches("<svg ").count(), 9 + 2, "with the drawings of the scene");
+    assert_eq!(drawings(&page), 9 + 2, "with the drawings of the scene");
     for file in [
         "mu_star_points",
         "frequency_map",
@@ -216,7 +217,7 @@ fn a_large_study_is_drawn() {
         (0..5_000).map(|i| row(f64::from(i % 100), 0.1 + f64::from(i / 100) * 0.01, periodic(0.3))).collect();
     let page = page(&rows);
     assert!(page.len() < 12_000_000, "{} bytes", page.len());
-    assert!(page.matches("<svg ").count() == 9 + 2 && !page.contains("data-job"));
+    assert!(drawings(&page) == 9 + 2 && !page.contains("data-job"));
     assert!(text(&page).contains("There are too many jobs for tooltips"));
 }
 

@@ -2,10 +2,12 @@
 
 mod axes;
 mod browser;
+mod charts;
 #[path = "../support/browser.rs"]
 mod chromium;
 mod columns;
 mod comparison;
+mod cycles;
 mod export;
 mod figure;
 mod folder;

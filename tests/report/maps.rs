@@ -1,4 +1,4 @@
-//! Maps and shares: every job is in them with its values.
+//! Maps: every job is in them with its values.
 
 use crate::svg::{self, Element};
 use crate::synthetic::{done, failed, partial_study, periodic, row, with};
@@ -120,30 +120,13 @@ fn frequencies_are_numbers_and_colours() {
     assert_eq!((fill("job-1-0.4"), fill("job-2-0.4")), ("#440154", "#B5DE2B"), "the ends of the scale");
 }
 
-/// Protects: the figure of shares has a panel for every friction coefficient. Areas connect neighbours in the grid, but
-/// not across a job without a result, which has no tooltip either.
-#[test]
-fn shares_have_a_panel_for_each_mu() {
-    let elements = only(&partial_study(), Plot::Shares);
-    let titles = elements.iter().filter(|e| e.name == "text" && e.text.starts_with("μ = ")).count();
-    assert_eq!((titles, targets(&elements).len()), (3, 14));
-    let stick = |e: &&Element| e.name == "polygon" && e.is("fill", "#0072B2");
-    // μ = 0.3 lacks 50 rpm: an area up to 10 rpm and a bar at 100. μ = 0.4 has 2 to 10 rpm.
-    assert_eq!(elements.iter().filter(stick).count(), 3);
-    let target = target(&elements, "job-5-0.3");
-    assert_eq!(
-        ["stick", "slip", "separated"].map(|name| number(target, &format!("data-{name}"))),
-        [25.0, 50.0, 25.0]
-    );
-}
-
 /// Protects: the maps of a study without speeds have the names of its parameter, and a study without results or jobs is
 /// no error.
 #[test]
 fn odd_studies_have_maps() {
     let rows =
         ["whole_top", "inner_side"].map(|side| with(row(7.0, 0.4, periodic(0.35)), "clamp_side", side));
-    for plot in [Plot::RegimeMap, Plot::FrequencyMap, Plot::Shares] {
+    for plot in [Plot::RegimeMap, Plot::FrequencyMap] {
         let elements = only(&rows, plot);
         assert!(elements.iter().any(|e| e.text == "inner_side"), "{plot:?}");
         assert_eq!(targets(&elements).len(), 2, "{plot:?}");

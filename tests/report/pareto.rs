@@ -1,12 +1,12 @@
 //! Error against run time, with synthetic jobs whose errors are known.
 
+use crate::charts::{points, texts};
 use crate::random::Random;
-use crate::svg;
 use crate::synthetic::{failed, record, row, with};
 use std::fs;
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::report::pareto::refinement::{Level, Unclean, limit, observed_order};
-use tribosweep::report::pareto::{Direction, ParetoError, compare, markdown, on_front, write};
+use tribosweep::report::pareto::{Direction, ParetoError, chart, compare, markdown, on_front, write};
 use tribosweep::report::{JobNumerics, JobRow, RowState};
 
 /// A cube of n × n × n elements of 1/n mm; the step is in proportion.
@@ -337,19 +337,21 @@ fn the_files_hold_the_comparison() {
     }
     assert_eq!(lines.iter().filter(|line| &line[at("reference")] == "true").count(), 1);
 
-    let elements = svg::parse(&read("pareto.svg"));
-    let circles =
-        |test: fn(&svg::Element) -> bool| elements.iter().filter(|e| e.name == "circle" && test(e)).count();
-    let hollow = case.scores.iter().filter(|score| !score.is_resolved()).count();
-    let front = case.scores.iter().filter(|score| score.on_wall_front).count();
-    // The legend has one ring, and markers for three meshes and three kinds.
-    let rings = circles(|e| e.is("fill", "none"));
-    assert_eq!(rings, front + 1);
-    assert_eq!(circles(|e| e.is("fill", "#FFFFFF")), hollow + usize::from(hollow > 0));
-    let texts: Vec<&str> = elements.iter().map(|e| e.text.as_str()).collect();
-    for label in
-        ["solver time of the job [s]", "relative error of μ*", "4 × 4 × 4", "16 × 16 × 16", "Pareto front"]
-    {
-        assert!(texts.contains(&label), "no {label:?} in {texts:?}");
+    let chart = chart(case);
+    let panel = &chart.panels[0];
+    assert_eq!((&*panel.x.label, &*panel.y.label), ("solver time of the job [s]", "relative error of μ*"));
+    let (rings, markers): (Vec<_>, Vec<_>) =
+        points(panel).into_iter().partition(|point| point.marker.radius > 9.0);
+    let expected = |is_ringed: bool| -> Vec<(f64, f64)> {
+        let own = case.scores.iter().filter(|score| !is_ringed || score.on_wall_front);
+        own.map(|score| (score.wall_s.unwrap(), score.claimed_error())).collect()
+    };
+    assert_eq!(rings.iter().map(|point| point.at).collect::<Vec<_>>(), expected(true));
+    assert_eq!(markers.iter().map(|point| point.at).collect::<Vec<_>>(), expected(false));
+    let hollow: Vec<bool> = markers.iter().map(|point| point.marker.is_hollow).collect();
+    assert_eq!(hollow, case.scores.iter().map(|score| !score.is_resolved()).collect::<Vec<_>>());
+    let legend = texts(&chart.legend);
+    for label in ["4 × 4 × 4", "16 × 16 × 16", "on the Pareto front", "Pareto front"] {
+        assert!(legend.contains(&label), "no {label:?} in {legend:?}");
     }
 }

@@ -1,11 +1,14 @@
 //! Jobs whose speed or load changes in time.
 
+use crate::charts::{coloured, lines, points, texts};
 use crate::synthetic::{record, report, row};
 use std::fs;
 use tribosweep::analysis::program::{Direction, ProgramWindow};
 use tribosweep::analysis::{Outcome, Regime};
+use tribosweep::publish::chart::Layer;
+use tribosweep::publish::chart::palette::{BLUE, VERMILLION};
 use tribosweep::report::columns::ExportColumn;
-use tribosweep::report::{JobRow, RowState, write};
+use tribosweep::report::{JobRow, RowState, program_chart, write};
 
 /// A run up to 40 rpm and down again in nine windows, with 0.02 more friction on the way up.
 fn up_and_down(mu: f64) -> JobRow {
@@ -36,6 +39,39 @@ fn up_and_down(mu: f64) -> JobRow {
     row(40.0, mu, RowState::Done(Box::new(record)))
 }
 
+/// Protects: the figure has every window on its way, over the speed and over time, with the frequencies that are known.
+#[test]
+fn every_window_is_in_the_figure() {
+    let row = up_and_down(0.3);
+    let windows = &row.record().expect("a result").windows;
+    let chart = program_chart(&row).expect("a figure");
+    assert!(chart.title.ends_with("hysteresis 0.0200 at 40 rpm"), "{}", chart.title);
+    let [over_lead, in_time, frequency] = &chart.panels[..] else { panic!("three panels") };
+    let of_way =
+        |colour| -> Vec<(f64, f64)> { coloured(over_lead, colour).iter().map(|point| point.at).collect() };
+    let expected = |direction| -> Vec<(f64, f64)> {
+        let own = windows.iter().filter(|window| window.direction == direction);
+        own.map(|window| (window.omega_rpm, window.mu_star)).collect()
+    };
+    assert_eq!(of_way(VERMILLION), expected(Direction::Up));
+    assert_eq!(of_way(BLUE), expected(Direction::Down));
+    assert_eq!(points(over_lead).len(), 9);
+    let over_time = |read: fn(&ProgramWindow) -> f64| -> Vec<(f64, f64)> {
+        windows.iter().map(|window| (window.middle_s(), read(window))).collect()
+    };
+    assert_eq!(lines(in_time)[0].0, over_time(|window| window.mu_star));
+    assert_eq!(lines(in_time)[1].0, over_time(|window| window.omega_rpm));
+    assert_eq!(lines(frequency)[0].0, over_time(|window| window.n_amplitude));
+    assert_eq!(points(frequency).len(), 4, "only windows with a frequency");
+    assert_eq!(texts(&in_time.legend), ["μ*", "ω [rpm] (right axis)", "up", "down"]);
+    let Layer::Cells(ways) = &in_time.layers[0] else { panic!("the ways are behind the curves") };
+    let spans: Vec<[f64; 2]> = ways.iter().map(|way| way.x).collect();
+    assert_eq!(
+        spans,
+        [[windows[1].time_s[0], windows[4].time_s[1]], [windows[5].time_s[0], windows[8].time_s[1]]]
+    );
+}
+
 /// Protects: a report has a figure, the windows and the hysteresis of every such job, the page says so, and the export has the
 /// hysteresis. A job without windows has none.
 #[test]
@@ -52,13 +88,7 @@ fn a_report_has_the_windows_and_their_hysteresis() {
     let own = format!("reference,{},\"", rows[0].job);
     assert!(first.starts_with(&own), "{first}");
     assert!(first.contains(",0.01,0.02,up,10,30,0.31,0.3,15000,0.25,"), "{first}");
-    for svg in ["program.svg", "program-2.svg"] {
-        let svg = read(svg);
-        assert!(
-            svg.contains("hysteresis 0.0200") && svg.contains("ω [rpm]") && svg.contains("down"),
-            "{svg}"
-        );
-    }
+    assert!(read("program.svg").contains("hysteresis 0.0200") && !read("program-2.svg").is_empty());
     assert!(!folder.path().join("program-3.svg").exists());
 
     let page = read("report.md");

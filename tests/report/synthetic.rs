@@ -104,6 +104,7 @@ pub fn row(omega_rpm: f64, mu: f64, state: RowState) -> JobRow {
         parameters: vec![("omega_rpm".to_owned(), omega_rpm.into()), ("mu".to_owned(), mu.into())],
         omega_rpm,
         mu,
+        has_one_mu: true,
         state,
         wall_s: Some(12.5),
         numerics: None,

@@ -71,7 +71,7 @@ impl Axis {
         }
         // Six decades on each side are enough.
         let linear = 10f64.powf(smallest.max(largest * 1e-6).log10().floor());
-        let end = |x: f64| 10f64.powf((x.abs() + linear).log10() + 0.15) * x.signum();
+        let end = |x: f64| 10f64.powf((x.abs() + linear).log10() + 0.3) * x.signum();
         Self::Signed { range: end(low)..end(high), linear }
     }
 
@@ -94,6 +94,21 @@ impl Axis {
         (to(value) - to(start)) / (to(end) - to(start))
     }
 
+    /// The value at a place; the inverse of [`Axis::place`].
+    pub fn value_at(&self, place: f64) -> f64 {
+        let Range { start, end } = self.range();
+        let between = |start: f64, end: f64| start + place * (end - start);
+        match self {
+            Self::Log(_) => between(start.ln(), end.ln()).exp(),
+            Self::Signed { linear, .. } => {
+                let to = |x: f64| x.signum() * (x.abs() / linear).ln_1p();
+                let t = between(to(start), to(end));
+                t.signum() * linear * t.abs().exp_m1()
+            }
+            Self::Linear(_) | Self::Names(_) => between(start, end),
+        }
+    }
+
     fn ticks(&self) -> Vec<f64> {
         match self {
             Self::Log(range) => log_ticks(range),
@@ -105,7 +120,7 @@ impl Axis {
 
     fn label(&self, tick: f64) -> String {
         match self {
-            Self::Log(_) | Self::Signed { .. } => value::number(tick).replace('-', "−"),
+            Self::Log(_) | Self::Signed { .. } => with_power(tick),
             Self::Names(names) => names.get(tick as usize).cloned().unwrap_or_default(),
             Self::Linear(range) => {
                 let step = nice_step(range);
@@ -131,6 +146,26 @@ impl Axis {
         self.ticks().into_iter().map(|tick| (tick, self.label(tick))).collect()
     }
 }
+
+/// A number with a power of ten where plain digits are hard to read: `2·10⁻⁷`, `10⁵`.
+fn with_power(x: f64) -> String {
+    let plain = value::number(x).replace('-', "−");
+    if x == 0.0 || (1e-3..1e5).contains(&x.abs()) {
+        return plain;
+    }
+    let scientific = format!("{x:e}");
+    let Some((factor, exponent)) = scientific.split_once('e') else { return plain };
+    let raised: String =
+        exponent.chars().filter_map(|c| "-0123456789".find(c)).map(|at| RAISED[at]).collect();
+    match factor {
+        "1" => format!("10{raised}"),
+        "-1" => format!("−10{raised}"),
+        _ => format!("{}·10{raised}", factor.replace('-', "−")),
+    }
+}
+
+/// A minus and the digits as superscripts.
+const RAISED: [char; 11] = ['⁻', '⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
 
 fn log_ticks(range: &Range<f64>) -> Vec<f64> {
     let decades = range.start.log10().floor() as i32..=range.end.log10().ceil() as i32;
@@ -198,6 +233,13 @@ mod tests {
         assert!(matches!(Axis::around_zero([-3.0, 4.0].into_iter(), 1.0), Axis::Linear(_)));
     }
 
+    /// Protects: large and small numbers at ticks are powers of ten, and others are plain.
+    #[test]
+    fn ticks_have_powers_of_ten() {
+        let texts = [1e-11, -1e5, 2e-4, 1e4, 0.002, 0.0].map(with_power);
+        assert_eq!(texts, ["10⁻¹¹", "−10⁵", "2·10⁻⁴", "10000", "0.002", "0"]);
+    }
+
     /// Protects: decades have equal lengths on a logarithmic axis, and names have equal distances.
     #[test]
     fn places_follow_the_scale() {
@@ -209,5 +251,9 @@ mod tests {
         near(names.place(0.0), 0.25);
         near(names.place(1.0), 0.75);
         near(Axis::Linear(-1.0..3.0).place(0.0), 0.25);
+        let signed = Axis::around_zero([-1e5, 1.0].into_iter(), 1.0);
+        for axis in [log, names, signed] {
+            near(axis.place(axis.value_at(0.3)), 0.3);
+        }
     }
 }

@@ -237,10 +237,14 @@ impl Chart {
 
     /// Removes the tooltips if there are more than [`MAX_TIPS`].
     #[must_use]
-    pub fn with_few_tips(mut self) -> Self {
-        if self.tips().count() > MAX_TIPS {
-            self.tips_mut().for_each(|tip| *tip = None);
-        }
+    pub fn with_few_tips(self) -> Self {
+        if self.tips().count() > MAX_TIPS { self.without_tips() } else { self }
+    }
+
+    /// Removes the tooltips.
+    #[must_use]
+    pub fn without_tips(mut self) -> Self {
+        self.tips_mut().for_each(|tip| *tip = None);
         self
     }
 

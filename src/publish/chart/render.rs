@@ -21,6 +21,8 @@ const TEXT: f64 = 15.0;
 const SMALL: f64 = 12.5;
 /// Width of a character relative to the size of the text; a little more than the mean of the usual fonts.
 const CHARACTER: f64 = 0.54;
+/// The same of a label of a tick, because digits are wider than other characters.
+const DIGIT: f64 = 0.6;
 /// Length of a tick.
 const TICK: f64 = 5.0;
 /// Length of a sample in the legend.
@@ -36,6 +38,15 @@ const NEAR: f64 = 0.7;
 
 fn width_of(text: &str, size: f64) -> f64 {
     text.chars().count() as f64 * size * CHARACTER
+}
+
+fn tick_width(label: &str, size: f64) -> f64 {
+    label.chars().count() as f64 * size * DIGIT
+}
+
+/// The largest width of the labels of a scale.
+fn ticks_width(scale: &Scale, size: f64) -> f64 {
+    scale.labelled_ticks().iter().map(|(_, label)| tick_width(label, size)).fold(0.0, f64::max)
 }
 
 /// Words in lines that are not wider than `room`.
@@ -74,7 +85,6 @@ struct Labels {
 
 struct Layout<'a> {
     chart: &'a Chart,
-    columns: usize,
     text: f64,
     labels: Vec<Labels>,
     plots: Vec<Plot>,
@@ -142,21 +152,14 @@ impl<'a> Layout<'a> {
         let legend_width = legend_width(chart, text);
         let left = |number: usize| {
             let (panel, labels) = (&chart.panels[number], labels[number]);
-            let longest = |scale: &Scale| {
-                let ticks = scale.labelled_ticks();
-                ticks.iter().map(|(_, label)| width_of(label, text)).fold(0.0, f64::max)
-            };
-            let ticks = if labels.y_ticks { TICK + 5.0 + longest(&panel.y) } else { 0.0 };
-            ticks + if labels.y_name { text + 10.0 } else { 0.0 }
+            let ticks = if labels.y_ticks { TICK + 5.0 + ticks_width(&panel.y, text) } else { 0.0 };
+            ticks + if labels.y_name { text + 12.0 } else { 0.0 }
         };
         let of_column = |column: usize, room: &dyn Fn(usize) -> f64| {
             (column..count).step_by(columns).map(room).fold(0.0, f64::max)
         };
         let right = |number: usize| match &chart.panels[number].right {
-            Some(scale) => {
-                let ticks = scale.labelled_ticks();
-                TICK + 12.0 + text + ticks.iter().map(|(_, label)| width_of(label, text)).fold(0.0, f64::max)
-            }
+            Some(scale) => TICK + 14.0 + text + ticks_width(scale, text),
             // The last label of the abscissa reaches beyond the plot.
             None => 10.0,
         };
@@ -188,7 +191,7 @@ impl<'a> Layout<'a> {
                 let title = if panel.title.is_empty() {
                     0.0
                 } else {
-                    wrapped(&panel.title, text, width).len() as f64 * text * 1.25 + 4.0
+                    wrapped(&panel.title, text, width + 2.0 * GAP).len() as f64 * text * 1.25 + 4.0
                 };
                 let has_marks = panel.layers.iter().any(
                     |layer| matches!(layer, Layer::Guide(guide) if guide.is_vertical && !guide.label.is_empty()),
@@ -219,9 +222,11 @@ impl<'a> Layout<'a> {
         }
         let legend = (WIDTH - MARGIN - legend_width, first + 6.0);
         let beside = entries_height(&legend_entries(chart), legend_width, text)
-            + chart.colours.as_ref().map_or(0.0, |_| COLOURS + 3.5 * TEXT);
+            + chart.colours.as_ref().map_or(0.0, |scale| {
+                COLOURS + wrapped(&scale.title, TEXT, LEGEND[1]).len() as f64 * pitch(TEXT) + 2.5 * TEXT
+            });
         let height = (top + MARGIN).max(legend.1 + beside + MARGIN);
-        Self { chart, columns, text, labels, plots, legend, legend_width, size: (WIDTH, height.ceil()) }
+        Self { chart, text, labels, plots, legend, legend_width, size: (WIDTH, height.ceil()) }
     }
 
     fn draw(&self, svg: &mut Svg) {
@@ -242,7 +247,7 @@ impl<'a> Layout<'a> {
     fn draw_panel(&self, svg: &mut Svg, panel: &Panel, plot: Plot, labels: Labels) {
         let (Plot { from, to }, text) = (plot, self.text);
         if !panel.title.is_empty() {
-            let lines = wrapped(&panel.title, text, to.0 - from.0);
+            let lines = wrapped(&panel.title, text, to.0 - from.0 + 2.0 * GAP);
             let marks = panel.layers.iter().any(
                 |layer| matches!(layer, Layer::Guide(guide) if guide.is_vertical && !guide.label.is_empty()),
             );
@@ -281,29 +286,25 @@ impl<'a> Layout<'a> {
 
     fn draw_axes(&self, svg: &mut Svg, panel: &Panel, plot: Plot, labels: Labels) {
         let (Plot { from, to }, text) = (plot, self.text);
-        let pitch = (to.0 - from.0) / panel.x.labelled_ticks().len().max(1) as f64;
-        let mut free = f64::NEG_INFINITY;
-        for (at, label) in panel.x.labelled_ticks() {
-            let x = plot.x(&panel.x.axis, at);
-            if x < from.0 - 0.1 || x > to.0 + 0.1 {
-                continue;
+        let ticks: Vec<(f64, String)> = panel.x.labelled_ticks();
+        let ticks: Vec<(f64, String)> =
+            ticks.into_iter().map(|(at, label)| (plot.x(&panel.x.axis, at), label)).collect();
+        let inside = ticks.iter().filter(|(x, _)| *x > from.0 - 0.1 && *x < to.0 + 0.1);
+        let ticks: Vec<&(f64, String)> = inside.collect();
+        let is_named = matches!(panel.x.axis, Axis::Names(_));
+        for (x, _) in &ticks {
+            if panel.x.has_grid && !is_named {
+                svg.lines(&[(*x, from.1), (*x, to.1)], Pen::solid(GRID, 1.0));
             }
-            if panel.x.has_grid && !matches!(panel.x.axis, Axis::Names(_)) {
-                svg.lines(&[(x, from.1), (x, to.1)], Pen::solid(GRID, 1.0));
-            }
-            svg.lines(&[(x, to.1), (x, to.1 + TICK)], Pen::solid(INK, 1.0));
-            // Names are written smaller where they are long; other labels are left out where there is no room for them.
-            let size = match &panel.x.axis {
-                Axis::Names(_) => {
-                    text.min(pitch / (CHARACTER * label.chars().count().max(1) as f64)).max(9.0)
-                }
-                _ => text,
-            };
-            let half = width_of(&label, size) / 2.0;
-            if labels.x_ticks && x - half > free {
-                svg.plain((x, to.1 + TICK + 2.0 + text / 2.0), Anchor::Middle, INK, size, &label);
-                free = x + half + 4.0;
-            }
+            svg.lines(&[(*x, to.1), (*x, to.1 + TICK)], Pen::solid(INK, 1.0));
+        }
+        // Names are written smaller where they are long; other labels are left out where there is no room for them.
+        let pitch = (to.0 - from.0) / ticks.len().max(1) as f64;
+        let longest = ticks.iter().map(|(_, label)| width_of(label, text)).fold(0.0, f64::max);
+        let size = if is_named { (text * (pitch / longest.max(1.0)).min(1.0)).max(9.0) } else { text };
+        let y = to.1 + TICK + 2.0 + text / 2.0;
+        for (x, label) in with_room(&ticks, size).into_iter().filter(|_| labels.x_ticks) {
+            svg.plain((*x, y), Anchor::Middle, INK, size, label);
         }
         if labels.x_name {
             let y = to.1 + 1.5 * text + 12.0;
@@ -317,33 +318,52 @@ impl<'a> Layout<'a> {
     }
 }
 
+/// The labels that do not cover one another: from left to right, and in any case the last one.
+fn with_room<'a>(ticks: &[&'a (f64, String)], size: f64) -> Vec<&'a (f64, String)> {
+    let covers = |(a, left): &(f64, String), (b, right): &(f64, String)| {
+        b - a < (tick_width(left, size) + tick_width(right, size)) / 2.0 + 4.0
+    };
+    let mut kept: Vec<&(f64, String)> = Vec::new();
+    for (number, tick) in ticks.iter().enumerate() {
+        let is_last = number + 1 == ticks.len();
+        while is_last && kept.len() > 1 && kept.last().is_some_and(|last| covers(last, tick)) {
+            kept.pop();
+        }
+        if kept.last().is_none_or(|last| !covers(last, tick)) {
+            kept.push(tick);
+        }
+    }
+    kept
+}
+
 fn draw_ordinate(svg: &mut Svg, scale: &Scale, plot: Plot, text: f64, labels: Labels, is_right: bool) {
     let Plot { from, to } = plot;
     let (edge, side, anchor) =
         if is_right { (to.0, 1.0, Anchor::Start) } else { (from.0, -1.0, Anchor::End) };
-    let mut longest = 0.0_f64;
-    let mut free = f64::INFINITY;
-    for (at, label) in scale.labelled_ticks() {
+    let mut ticks: Vec<(f64, String)> = scale.labelled_ticks();
+    let is_named = matches!(scale.axis, Axis::Names(_));
+    // Zero is labelled in any case, because it says where the sign changes.
+    ticks.sort_by_key(|(at, _)| *at != 0.0);
+    let mut taken: Vec<f64> = Vec::new();
+    for (at, label) in ticks {
         let y = plot.y(&scale.axis, at);
         if y < from.1 - 0.1 || y > to.1 + 0.1 {
             continue;
         }
-        if scale.has_grid && !is_right && !matches!(scale.axis, Axis::Names(_)) {
-            svg.lines(&[(from.0, y), (to.0, y)], Pen::solid(GRID, 1.0));
+        if scale.has_grid && !is_right && !is_named {
+            let is_zero = at == 0.0 && matches!(scale.axis, Axis::Signed { .. });
+            svg.lines(&[(from.0, y), (to.0, y)], Pen::solid(if is_zero { GREY } else { GRID }, 1.0));
         }
         svg.lines(&[(edge, y), (edge + side * TICK, y)], Pen::solid(INK, 1.0));
-        longest = longest.max(width_of(&label, text));
-        if labels.y_ticks
-            && (y + text / 2.0 < free || matches!(scale.axis, Axis::Names(_)) && y - text / 2.0 > free)
-        {
+        if labels.y_ticks && taken.iter().all(|other| (y - other).abs() >= 0.9 * text) {
             svg.plain((edge + side * (TICK + 3.0), y), anchor, INK, text, &label);
-            free = y - text / 2.0;
+            taken.push(y);
         }
     }
     if labels.y_name {
         let room = width_of(&scale.label, text);
         let size = if room > to.1 - from.1 + 60.0 { text * (to.1 - from.1 + 60.0) / room } else { text };
-        let x = edge + side * (TICK + 6.0 + longest + text / 2.0);
+        let x = edge + side * (TICK + 9.0 + ticks_width(scale, text) + text / 2.0);
         svg.upwards((x, (from.1 + to.1) / 2.0), size, &scale.label);
     }
 }
@@ -403,7 +423,10 @@ fn legend_width(chart: &Chart, text: f64) -> f64 {
             entry.text.split('\n').map(|line| beside + width_of(line, text)).collect::<Vec<_>>()
         })
         .fold(0.0, f64::max);
-    let colours = chart.colours.as_ref().map_or(0.0, |scale| width_of(&scale.title, text).max(LEGEND[0]));
+    let colours = chart.colours.as_ref().map_or(0.0, |scale| {
+        let lines = wrapped(&scale.title, TEXT, LEGEND[1]);
+        lines.iter().map(|line| width_of(line, TEXT)).fold(LEGEND[0], f64::max)
+    });
     match longest.max(colours) {
         0.0 => 0.0,
         width => width.clamp(LEGEND[0], LEGEND[1]),
@@ -419,15 +442,24 @@ fn pitch(text: f64) -> f64 {
     text * 1.28
 }
 
+/// The space above an entry: headings stand apart from what is above them.
+fn space_above(entries: &[Entry], number: usize, text: f64) -> f64 {
+    if number > 0 && entries[number].sample == Sample::Heading { 0.6 * text } else { 0.0 }
+}
+
 fn entries_height(entries: &[Entry], width: f64, text: f64) -> f64 {
-    let lines: usize = entries.iter().map(|entry| lines_of(entry, width, text).len()).sum();
-    lines as f64 * pitch(text) + entries.len() as f64 * 4.0
+    let height = |(number, entry): (usize, &Entry)| {
+        let lines = lines_of(entry, width, text).len() as f64;
+        space_above(entries, number, text) + lines * pitch(text) + 4.0
+    };
+    entries.iter().enumerate().map(height).sum()
 }
 
 /// Draws the entries below one another and returns where they end.
 fn draw_entries(svg: &mut Svg, entries: &[Entry], (x, top): At, width: f64, text: f64) -> f64 {
     let mut y = top;
-    for entry in entries {
+    for (number, entry) in entries.iter().enumerate() {
+        y += space_above(entries, number, text);
         let lines = lines_of(entry, width, text);
         let middle = y + pitch(text) * lines.len() as f64 / 2.0;
         match &entry.sample {
@@ -452,8 +484,11 @@ fn draw_entries(svg: &mut Svg, entries: &[Entry], (x, top): At, width: f64, text
 }
 
 fn draw_colours(svg: &mut Svg, scale: &ColourScale, (x, top): At) {
-    svg.plain((x, top + TEXT / 2.0), Anchor::Start, INK, TEXT, &scale.title);
-    let (top, width) = (top + 1.6 * TEXT, SAMPLE);
+    let title = wrapped(&scale.title, TEXT, LEGEND[1]);
+    for (line, words) in title.iter().enumerate() {
+        svg.plain((x, top + TEXT / 2.0 + line as f64 * pitch(TEXT)), Anchor::Start, INK, TEXT, words);
+    }
+    let (top, width) = (top + title.len() as f64 * pitch(TEXT) + 8.0, SAMPLE);
     let y = |share: f64| top + (1.0 - share) * COLOURS;
     let count = scale.colours.len() as f64;
     for (step, colour) in scale.colours.iter().enumerate() {

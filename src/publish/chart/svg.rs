@@ -124,13 +124,13 @@ impl Svg {
             writeln!(self.body, "<polygon points=\"{}\"{}/>", points(corners), paint(Some(fill), outline));
     }
 
-    /// Fills the rectangle between two corners.
+    /// Fills the rectangle between two corners. Its sides are sharp, so that nothing is seen between neighbours.
     pub fn rectangle(&mut self, from: At, to: At, colour: Rgb) {
         let (x, y) = (px(from.0.min(to.0)), px(from.1.min(to.1)));
         let (width, height) = (px((to.0 - from.0).abs()), px((to.1 - from.1).abs()));
         let _ = writeln!(
             self.body,
-            "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\"{}/>",
+            "<rect x=\"{x}\" y=\"{y}\" width=\"{width}\" height=\"{height}\" shape-rendering=\"crispEdges\"{}/>",
             paint(Some((colour, 1.0)), None)
         );
     }

@@ -1,14 +1,11 @@
-//! Figure 7 and its companions, as SVG: curves against disk speed, maps over speed and friction, shares, residuals.
+//! Figure 7 and its companions: curves against disk speed, maps over speed and friction, shares, residuals.
 
 #![expect(clippy::cast_possible_wrap, reason = "pixels and legend lines: thousands, not billions")]
 
-mod band;
 mod bifurcation;
-mod chart;
 mod colour_key;
-mod data;
+mod curves;
 mod growth;
-mod legend;
 mod map;
 mod marker;
 mod panels;
@@ -17,19 +14,21 @@ mod plane;
 pub(super) mod residuals;
 mod shares;
 pub(super) mod stability;
-mod style;
 pub(super) mod waterfall;
 
-use super::layout::{Layout, MAX_TOOLTIPS};
+use super::layout::{Group, Layout, MAX_TOOLTIPS};
 use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
 use super::spectra::Spectra;
 use super::stability_point::StabilityPoint;
 use super::view::View;
 use crate::publish::FigureError;
-use panels::MAX_PANELS;
+use crate::publish::chart::Chart;
 use std::borrow::Cow;
 use std::ops::Range;
+
+/// Largest number of panels in a figure. A report with more combinations has several figures of a kind.
+const MAX_PANELS: usize = 12;
 
 /// What a figure shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -159,8 +158,7 @@ impl Plot {
 
     /// Why a study has no figure of this kind, in a sentence; none if it has.
     pub(super) fn absence(self, layout: &Layout, spectra: &Spectra) -> Option<&'static str> {
-        let has_spectrum =
-            |group: &super::layout::Group| group.jobs.iter().any(|job| spectra.contains_key(&job.row.job));
+        let has_spectrum = |group: &Group| group.jobs.iter().any(|job| spectra.contains_key(&job.row.job));
         match self {
             Self::RegimePlane | Self::GrowthRate
                 if !layout.on_true_axes().as_ref().map_or_else(|| plane::exists(layout), plane::exists) =>
@@ -182,7 +180,7 @@ impl Plot {
 }
 
 /// One figure: a panel for each of some combinations of the further parameters.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// The part of its file name after the stem: empty for the first figure, then `-2`, `-3` …
     pub suffix: String,
@@ -190,26 +188,64 @@ pub struct Figure {
     pub caption: String,
     /// The combinations by their numbers.
     pub groups: Range<usize>,
+    /// The drawing.
+    pub chart: Chart,
     /// The drawing as SVG.
     pub svg: String,
 }
 
+/// A drawing as data, or one of the kinds that are not data yet, as SVG.
+enum Drawn {
+    Chart(Chart),
+    Svg(String),
+}
+
+impl From<Chart> for Drawn {
+    fn from(chart: Chart) -> Self {
+        Self::Chart(chart)
+    }
+}
+
+impl From<String> for Drawn {
+    fn from(svg: String) -> Self {
+        Self::Svg(svg)
+    }
+}
+
 impl Figure {
-    /// The figure on sheet `number` of a layout with `of_sheet` combinations on a sheet.
-    fn of_sheet(layout: &Layout, number: usize, of_sheet: usize, svg: String) -> Self {
+    /// The figure on sheet `number` of a layout with `of_sheet` combinations on a sheet. `title` says what it shows.
+    fn of_sheet(
+        layout: &Layout,
+        number: usize,
+        of_sheet: usize,
+        title: &str,
+        drawn: impl Into<Drawn>,
+    ) -> Self {
         let count = layout.groups.len();
         let first = number * of_sheet;
         let groups = first..(first + of_sheet).min(count);
-        if count <= of_sheet {
-            return Self { suffix: String::new(), caption: String::new(), groups, svg };
-        }
         let suffix = if number == 0 { String::new() } else { format!("-{}", number + 1) };
-        let caption = if of_sheet == 1 {
-            layout.groups[first].caption()
-        } else {
-            format!("combinations {} to {} of {count}", first + 1, groups.end)
+        let caption = match of_sheet {
+            _ if count <= of_sheet => String::new(),
+            1 => layout.groups[first].caption(),
+            _ => format!("combinations {} to {} of {count}", first + 1, groups.end),
         };
-        Self { suffix, caption, groups, svg }
+        Self::new(suffix, caption, groups, title, drawn)
+    }
+
+    fn new(
+        suffix: String,
+        caption: String,
+        groups: Range<usize>,
+        title: &str,
+        drawn: impl Into<Drawn>,
+    ) -> Self {
+        let words = [title, &caption].into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>();
+        let (chart, svg) = match drawn.into() {
+            Drawn::Chart(chart) => (chart.clone(), chart.svg(&words.join(", "))),
+            Drawn::Svg(svg) => (Chart::default(), svg),
+        };
+        Self { suffix, caption, groups, chart, svg }
     }
 }
 
@@ -240,14 +276,17 @@ pub(super) fn over_others(
     let is_number = |name: &&&str| rows.iter().any(|row| row.parameter(name).is_number());
     let draw = |name: &&str| {
         let own = Layout::of(rows, &View { x: Some((*name).to_owned()), ..view.clone() });
-        Ok(Figure {
-            suffix: format!("-over-{name}"),
-            caption: format!("over {}", own.axis_name()),
-            groups: 0..1,
-            svg: chart::draw(&own, &own.groups, scalar)?,
-        })
+        let chart = with_tips_of_few(&own.groups, curves::draw(&own, &own.groups, scalar));
+        let caption = format!("over {}", own.axis_name());
+        Figure::new(format!("-over-{name}"), caption, 0..1, &plot.title(), chart)
     };
-    layout.scattered.iter().filter(is_number).map(draw).collect()
+    Ok(layout.scattered.iter().filter(is_number).map(draw).collect())
+}
+
+/// The chart without tooltips, if they would make its file too large.
+fn with_tips_of_few(groups: &[Group], chart: Chart) -> Chart {
+    let jobs: usize = groups.iter().map(|group| group.jobs.len()).sum();
+    if jobs <= MAX_TOOLTIPS { chart } else { chart.without_tips() }
 }
 
 pub(super) fn figures_of(
@@ -271,20 +310,24 @@ pub(super) fn figures_of(
         Plot::Bifurcation | Plot::RegimePlane | Plot::GrowthRate | Plot::Waterfall => 1,
         _ => MAX_PANELS,
     };
-    let draw = |(number, groups): (usize, &[super::layout::Group])| {
-        let svg = match plot {
-            Plot::MuStar => chart::draw(layout, groups, &MU_STAR),
-            Plot::Frequency => chart::draw(layout, groups, &FREQUENCY),
-            Plot::Of(scalar) => chart::draw(layout, groups, scalar),
-            Plot::RegimeMap => map::regimes(layout, groups),
-            Plot::FrequencyMap => map::frequencies(layout, groups),
-            Plot::Shares => shares::draw(layout, groups),
-            Plot::Bifurcation => bifurcation::draw(layout, &groups[0]),
-            Plot::RegimePlane => plane::regimes(layout, &groups[0], points),
-            Plot::GrowthRate => growth::draw(layout, &groups[0]),
-            Plot::Waterfall => waterfall::draw(layout, &groups[0], spectra),
-        }?;
-        Ok(Figure::of_sheet(layout, number, of_sheet, svg))
+    let draw = |(number, groups): (usize, &[Group])| {
+        let drawn: Drawn = match plot {
+            Plot::MuStar => curves::draw(layout, groups, &MU_STAR).into(),
+            Plot::Frequency => curves::draw(layout, groups, &FREQUENCY).into(),
+            Plot::Of(scalar) => curves::draw(layout, groups, scalar).into(),
+            Plot::RegimeMap => map::regimes(layout, groups)?.into(),
+            Plot::FrequencyMap => map::frequencies(layout, groups)?.into(),
+            Plot::Shares => shares::draw(layout, groups).into(),
+            Plot::Bifurcation => bifurcation::draw(layout, &groups[0]).into(),
+            Plot::RegimePlane => plane::regimes(layout, &groups[0], points)?.into(),
+            Plot::GrowthRate => growth::draw(layout, &groups[0])?.into(),
+            Plot::Waterfall => waterfall::draw(layout, &groups[0], spectra).into(),
+        };
+        let drawn = match drawn {
+            Drawn::Chart(chart) => Drawn::Chart(with_tips_of_few(groups, chart)),
+            svg @ Drawn::Svg(_) => svg,
+        };
+        Ok(Figure::of_sheet(layout, number, of_sheet, &plot.title(), drawn))
     };
     layout.groups.chunks(of_sheet).enumerate().map(draw).collect()
 }

@@ -4,8 +4,8 @@ use crate::publish::plot::canvas::{self, Area};
 use crate::publish::plot::{DrawError, MARGIN};
 use plotters::style::text_anchor::HPos;
 
-/// Largest number of panels in a figure. A report with more combinations has several figures of a kind.
-pub(super) const MAX_PANELS: usize = 12;
+pub(super) use super::MAX_PANELS;
+
 /// Height of a panel's title [px].
 pub(super) const TITLE: u32 = 80;
 /// Largest number of lines in it.

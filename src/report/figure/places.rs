@@ -1,11 +1,14 @@
 //! Where jobs are in a figure: along its axis, and in which series.
 
-use super::style;
-use crate::publish::plot::axis::Axis;
-use crate::report::layout::{Group, Layout, PlacedJob};
+use crate::publish::chart::{Axis, Rgb, Scale, Tip, palette};
+use crate::publish::value;
+use crate::report::layout::{Group, Layout, PlacedJob, Series};
 use crate::report::row::JobRow;
-use plotters::prelude::RGBColor;
+use crate::report::tooltip::tooltip_text;
 use serde_json::Value;
+
+/// Up to so many values that people chose are the ticks of an axis.
+const MOST_CHOSEN: usize = 12;
 
 /// A job in a figure.
 #[derive(Clone, Copy)]
@@ -22,7 +25,7 @@ pub(super) struct Place<'a> {
 /// The jobs with one value of the parameter that has colours.
 pub(super) struct SeriesLook {
     pub name: String,
-    pub colour: RGBColor,
+    pub colour: Rgb,
     /// The position of its value on an axis of its own; none if it is no number.
     pub y: Option<f64>,
 }
@@ -38,15 +41,47 @@ pub(super) fn places<'a>(layout: &Layout, group: &'a Group, x_axis: &Axis) -> Ve
     places
 }
 
+/// The abscissa of all panels. Its ticks are the values that the study's author chose, if they are few.
+pub(super) fn x_scale(layout: &Layout) -> Scale {
+    let mut scale = Scale::new(layout.axis_name(), layout.x_axis());
+    if matches!(scale.axis, Axis::Names(_)) {
+        return scale;
+    }
+    for (group, job) in layout.groups.iter().flat_map(|group| group.jobs.iter().map(move |job| (group, job)))
+    {
+        let value = &group.axis_values[job.axis_index];
+        let is_chosen = !job.row.is_measured() && job.row.wave == 0;
+        if let Some(x) = layout.position(&scale.axis, value).filter(|_| is_chosen)
+            && !scale.ticks.iter().any(|(at, _)| *at == x)
+        {
+            scale.ticks.push((x, layout.axis_text(value).replace('-', "−")));
+        }
+        if scale.ticks.len() > MOST_CHOSEN {
+            scale.ticks.clear();
+            break;
+        }
+    }
+    scale.ticks.sort_by(|a, b| a.0.total_cmp(&b.0));
+    scale
+}
+
 /// All series of a study.
 pub(super) fn series(layout: &Layout) -> Vec<SeriesLook> {
     let y_of = y_of(layout);
     let look = |series| SeriesLook {
         name: layout.series_name(series),
-        colour: style::colour(layout, series),
+        colour: colour(layout, series),
         y: y_of(&series.value),
     };
     layout.series.iter().map(look).collect()
+}
+
+/// The colour of a series: one for each value of the curves' parameter, and black where it is not known.
+pub(super) fn colour(layout: &Layout, series: &Series) -> Rgb {
+    let known =
+        layout.series.iter().filter(|series| !series.value.is_null()).map(|series| series.value_index);
+    let count = known.max().map_or(1, |last| last + 1);
+    if series.value.is_null() { palette::INK } else { palette::colour(series.value_index, count) }
 }
 
 /// The position of a value of the parameter that has colours, on an axis of its own; none if it is no number.
@@ -67,4 +102,12 @@ pub(super) fn series_title<'a>(layout: &'a Layout) -> &'a str {
 /// Whether the figure of a group has tooltips.
 pub(super) fn has_tooltips(group: &Group) -> bool {
     group.jobs.len() <= super::MAX_TOOLTIPS
+}
+
+impl Place<'_> {
+    /// The job's tooltip with its key and its value along the axis, and further values for programs.
+    pub fn tip(&self, further: impl IntoIterator<Item = (&'static str, String)>) -> Tip {
+        let own = [("job", self.row.job.clone()), ("x", value::text(self.at))];
+        Tip { title: tooltip_text(self.row), data: own.into_iter().chain(further).collect() }
+    }
 }

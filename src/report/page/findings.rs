@@ -50,7 +50,7 @@ pub(super) fn programs(own: &Programs) -> Section {
         blocks.push(Block::Heading(figure.caption.clone()));
         blocks.push(Block::figure(Figure {
             file: figure.file.clone(),
-            svg: figure.svg.clone(),
+            svg: figure.svg(),
             caption: CAPTION.to_owned(),
             data: (number == 0).then(|| (program::WINDOWS.to_owned(), contents)),
         }));

@@ -43,6 +43,7 @@ pub use early::EarlyStop;
 pub use error::ParetoError;
 pub use front::on_front;
 pub use page::markdown;
+pub use plot::chart;
 pub use reference::{Chain, Direction, Reference, Target};
 pub use score::Score;
 
@@ -60,9 +61,8 @@ pub fn write(comparison: &Comparison, out_dir: &Path, title: &str) -> Result<Vec
     let mut figures = Vec::new();
     for (index, case) in comparison.cases.iter().enumerate() {
         let name = if index == 0 { "pareto.svg".to_owned() } else { format!("pareto-{}.svg", index + 1) };
-        let svg =
-            plot::draw(case).map_err(|source| PublishError::Figure { path: out_dir.join(&name), source })?;
-        folder.write_text(&name, &svg)?;
+        let alternative = format!("{} over solver time {}", page::figure_title(), case.caption);
+        folder.write_text(&name, &plot::chart(case).svg(alternative.trim_end()))?;
         figures.push(name);
     }
     folder.write_table(&csv::jobs(comparison))?;

@@ -30,6 +30,7 @@ pub(in crate::report) fn rows(points: &[StabilityPoint], along: &Along) -> Vec<J
         parameters: kept(point),
         omega_rpm: unless_moved(OMEGA, point.omega_rpm),
         mu: unless_moved(MU, point.mu),
+        has_one_mu: false,
         state: RowState::Pending,
         wall_s: None,
         numerics: None,

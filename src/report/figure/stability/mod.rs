@@ -65,7 +65,7 @@ pub(in crate::report) fn figures(
             StabilityPlot::LockIn => lock_in::draw(layout, &groups[0], &modes[0]),
             StabilityPlot::Thresholds => thresholds::draw(layout, groups, modes),
         }?;
-        Ok(Figure::of_sheet(layout, number, of_sheet, svg))
+        Ok(Figure::of_sheet(layout, number, of_sheet, plot.title(), svg))
     };
     sheets.map(draw).collect()
 }
