@@ -4,16 +4,14 @@
 
 mod band;
 mod bifurcation;
+mod cells;
 mod chart;
 mod colour_key;
 mod data;
-mod growth;
 mod legend;
-mod map;
 mod marker;
 mod panels;
 mod places;
-mod plane;
 pub(super) mod residuals;
 mod shares;
 pub(super) mod stability;
@@ -27,7 +25,9 @@ use super::spectra::Spectra;
 use super::stability_point::StabilityPoint;
 use super::view::View;
 use crate::publish::FigureError;
+use crate::publish::chart::Chart;
 use panels::MAX_PANELS;
+pub use stability::{StabilityPlot, stability_figures};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -163,7 +163,10 @@ impl Plot {
             |group: &super::layout::Group| group.jobs.iter().any(|job| spectra.contains_key(&job.row.job));
         match self {
             Self::RegimePlane | Self::GrowthRate
-                if !layout.on_true_axes().as_ref().map_or_else(|| plane::exists(layout), plane::exists) =>
+                if !layout
+                    .on_true_axes()
+                    .as_ref()
+                    .map_or_else(|| cells::has_true_axes(layout), cells::has_true_axes) =>
             {
                 Some("There is no map on true axes, because an axis has names and no numbers.")
             }
@@ -182,7 +185,7 @@ impl Plot {
 }
 
 /// One figure: a panel for each of some combinations of the further parameters.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Figure {
     /// The part of its file name after the stem: empty for the first figure, then `-2`, `-3` …
     pub suffix: String,
@@ -192,6 +195,8 @@ pub struct Figure {
     pub groups: Range<usize>,
     /// The drawing as SVG.
     pub svg: String,
+    /// The drawing, of maps and of the stability.
+    pub chart: Chart,
 }
 
 impl Figure {
@@ -201,7 +206,13 @@ impl Figure {
         let first = number * of_sheet;
         let groups = first..(first + of_sheet).min(count);
         if count <= of_sheet {
-            return Self { suffix: String::new(), caption: String::new(), groups, svg };
+            return Self {
+                suffix: String::new(),
+                caption: String::new(),
+                groups,
+                svg,
+                chart: Chart::default(),
+            };
         }
         let suffix = if number == 0 { String::new() } else { format!("-{}", number + 1) };
         let caption = if of_sheet == 1 {
@@ -209,7 +220,11 @@ impl Figure {
         } else {
             format!("combinations {} to {} of {count}", first + 1, groups.end)
         };
-        Self { suffix, caption, groups, svg }
+        Self { suffix, caption, groups, svg, chart: Chart::default() }
+    }
+
+    fn of_chart(layout: &Layout, number: usize, of_sheet: usize, chart: Chart) -> Self {
+        Self { chart: chart.clone(), ..Self::of_sheet(layout, number, of_sheet, chart.svg("")) }
     }
 }
 
@@ -220,7 +235,20 @@ impl Figure {
 /// # Errors
 /// [`FigureError`].
 pub fn figures(rows: &[JobRow], view: &View, plot: Plot) -> Result<Vec<Figure>, FigureError> {
-    figures_of(&Layout::of(rows, view), plot, &Spectra::new(), &[])
+    figures_with(rows, view, plot, &[])
+}
+
+/// As [`figures`], with the boundary of the linear stability of steady sliding at these points.
+///
+/// # Errors
+/// [`FigureError`].
+pub fn figures_with(
+    rows: &[JobRow],
+    view: &View,
+    plot: Plot,
+    points: &[StabilityPoint],
+) -> Result<Vec<Figure>, FigureError> {
+    figures_of(&Layout::of(rows, view), plot, &Spectra::new(), points)
 }
 
 /// The figures of a number over the other parameters of jobs that are points and no grid, one for each parameter that is a number. There
@@ -245,6 +273,7 @@ pub(super) fn over_others(
             caption: format!("over {}", own.axis_name()),
             groups: 0..1,
             svg: chart::draw(&own, &own.groups, scalar)?,
+            chart: Chart::default(),
         })
     };
     layout.scattered.iter().filter(is_number).map(draw).collect()
@@ -271,20 +300,27 @@ pub(super) fn figures_of(
         Plot::Bifurcation | Plot::RegimePlane | Plot::GrowthRate | Plot::Waterfall => 1,
         _ => MAX_PANELS,
     };
+    let map = |groups: &[super::layout::Group]| match plot {
+        Plot::RegimeMap => Some(cells::regimes(layout, groups)),
+        Plot::FrequencyMap => Some(cells::frequencies(layout, groups)),
+        Plot::RegimePlane => Some(cells::regimes_on_true_axes(layout, &groups[0], points)),
+        Plot::GrowthRate => Some(cells::growth_rates(layout, &groups[0])),
+        _ => None,
+    };
     let draw = |(number, groups): (usize, &[super::layout::Group])| {
+        if let Some(chart) = map(groups) {
+            return Ok(chart.map(|chart| Figure::of_chart(layout, number, of_sheet, chart)));
+        }
         let svg = match plot {
             Plot::MuStar => chart::draw(layout, groups, &MU_STAR),
             Plot::Frequency => chart::draw(layout, groups, &FREQUENCY),
             Plot::Of(scalar) => chart::draw(layout, groups, scalar),
-            Plot::RegimeMap => map::regimes(layout, groups),
-            Plot::FrequencyMap => map::frequencies(layout, groups),
             Plot::Shares => shares::draw(layout, groups),
             Plot::Bifurcation => bifurcation::draw(layout, &groups[0]),
-            Plot::RegimePlane => plane::regimes(layout, &groups[0], points),
-            Plot::GrowthRate => growth::draw(layout, &groups[0]),
             Plot::Waterfall => waterfall::draw(layout, &groups[0], spectra),
+            _ => return Ok(None),
         }?;
-        Ok(Figure::of_sheet(layout, number, of_sheet, svg))
+        Ok(Some(Figure::of_sheet(layout, number, of_sheet, svg)))
     };
-    layout.groups.chunks(of_sheet).enumerate().map(draw).collect()
+    layout.groups.chunks(of_sheet).enumerate().map(draw).filter_map(Result::transpose).collect()
 }

@@ -1,8 +1,8 @@
 //! The waterfall: spectra of the normal force over the speed, one strip for each job whose spectrum is stored, and a panel
 //! for each friction coefficient.
 
+use super::cells::CellEdges;
 use super::places::{self, Place};
-use super::plane::CellEdges;
 use crate::analysis::Outcome;
 use crate::publish::FigureError;
 use crate::publish::plot::axis::Axis;

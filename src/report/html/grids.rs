@@ -249,9 +249,10 @@ fn linked<'a>(parts: &Parts, svg: &'a str) -> Cow<'a, str> {
 fn figures(parts: &Parts, plot: Plot, caption: &str) -> Markup {
     let layout = parts.layouts.of(plot);
     let data = plot.data();
-    let all = parts.figures.iter().filter(|(own, _)| *own == plot).flat_map(|(_, figures)| figures);
+    let all = || parts.figures.iter().filter(|(own, _)| *own == plot).flat_map(|(_, figures)| figures);
+    let exists = all().next().is_some();
     let mut jobs = 0;
-    let fitting = all.enumerate().take_while(|(number, figure)| {
+    let fitting = all().enumerate().take_while(|(number, figure)| {
         jobs += jobs_of(layout, figure);
         let sheets = if layout.scattered.is_empty() { MAX_SHEETS } else { MAX_MARGINAL };
         if *number == 0 {
@@ -279,7 +280,7 @@ fn figures(parts: &Parts, plot: Plot, caption: &str) -> Markup {
                 p.note { "All lines of the spectra are in " code { "waterfall.csv" } "." }
             }
         }
-        @if absence.is_none() && shown < layout.groups.len() {
+        @if exists && shown < layout.groups.len() {
             @let files = format!("{}*.svg", plot.stem());
             (see_files(&what_is_left_out(layout, shown), &files))
         }

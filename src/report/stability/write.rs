@@ -28,10 +28,7 @@ pub(in crate::report) fn write_files(
 ) -> Result<Files, PublishError> {
     let mut drawn = Vec::new();
     for plot in StabilityPlot::ALL {
-        let own = figures(analysis, plot).map_err(|source| {
-            let path = folder.path_of(&format!("{}.svg", plot.stem()));
-            PublishError::Figure { path, source }
-        })?;
+        let own = figures(analysis, plot);
         for figure in &own {
             folder.write_text(&format!("{}{}.svg", plot.stem(), figure.suffix), &figure.svg)?;
         }
