@@ -29,26 +29,4 @@ pub enum PublishError {
         /// Why not.
         source: std::io::Error,
     },
-    /// A figure could not be drawn.
-    #[error("cannot draw {}: {source}", path.display())]
-    Figure {
-        /// The file that was to hold it.
-        path: PathBuf,
-        /// Why not.
-        source: FigureError,
-    },
-}
-
-/// A figure could not be drawn.
-///
-/// Drawings are made in memory, so the drawing library has no reason to fail.
-#[derive(Debug, thiserror::Error)]
-#[error(transparent)]
-pub struct FigureError(Box<dyn std::error::Error + Send + Sync>);
-
-impl FigureError {
-    /// Wraps an error of the drawing library.
-    pub(crate) fn new(error: impl std::error::Error + Send + Sync + 'static) -> Self {
-        Self(Box::new(error))
-    }
 }

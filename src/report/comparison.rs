@@ -9,7 +9,7 @@ use super::parameters::SOURCE;
 use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
 use super::view::View;
-use crate::publish::plot::axis::Axis;
+use crate::publish::chart::Axis;
 use crate::publish::value;
 use serde_json::Value;
 use std::collections::BTreeMap;

@@ -2,7 +2,7 @@
 
 use super::parameters::{self, MU, OMEGA, SOURCE, name_and_unit, with_unit};
 use super::row::JobRow;
-use crate::publish::plot::axis::Axis;
+use crate::publish::chart::Axis;
 use crate::publish::value;
 use serde_json::Value;
 use std::collections::HashMap;

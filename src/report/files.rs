@@ -16,7 +16,7 @@ use super::stability::{self, Analysis};
 use super::stale::could_be_of_a_report;
 use super::tables::{self, Quantity};
 use crate::publish::table::Format;
-use crate::publish::{FigureError, Folder, PublishError, html, markdown};
+use crate::publish::{Folder, PublishError, html, markdown};
 use rayon::iter::{IntoParallelIterator, ParallelIterator};
 use std::collections::HashMap;
 use std::path::{Path, PathBuf};
@@ -89,10 +89,8 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     }
 
     let mut drawn: Vec<(Plot, Vec<Figure>)> = Vec::new();
-    for (plot, figures) in figures {
-        let mut figures = figures.map_err(|source| cannot_draw(out_dir, plot.stem(), source))?;
-        let over_others = figure::over_others(rows, view, layouts.of(plot), plot);
-        figures.extend(over_others.map_err(|source| cannot_draw(out_dir, plot.stem(), source))?);
+    for (plot, mut figures) in figures {
+        figures.extend(figure::over_others(rows, view, layouts.of(plot), plot));
         for figure in &figures {
             let file = format!("{}{}.svg", plot.stem(), figure.suffix);
             folder.write_text(&file, &figure.svg)?;
@@ -213,8 +211,4 @@ fn write_programs<'a>(folder: &mut Folder, rows: &'a [JobRow]) -> Result<Option<
         })?;
     }
     Ok(programs)
-}
-
-fn cannot_draw(out_dir: &Path, stem: &str, source: FigureError) -> PublishError {
-    PublishError::Figure { path: out_dir.join(format!("{stem}.svg")), source }
 }

@@ -2,9 +2,8 @@
 
 use super::row::{JobRow, RowState};
 use crate::analysis::{Outcome, Regime};
-use crate::publish::plot::palette;
+use crate::publish::chart::{Rgb, palette};
 use anstyle::AnsiColor;
-use plotters::style::{RGBColor, WHITE};
 
 /// The status of a job as a letter, its meaning, and colours. The colours say nothing that the letter does not say.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,11 +13,11 @@ pub(super) struct StatusGlyph {
     /// Colour of the letter on a terminal.
     pub terminal_colour: AnsiColor,
     /// Colour of a cell in a figure.
-    pub fill: RGBColor,
+    pub fill: Rgb,
 }
 
-const GREY: RGBColor = RGBColor(0xDD, 0xDD, 0xDD);
-const LIGHT: RGBColor = RGBColor(0xF2, 0xF2, 0xF2);
+const GREY: Rgb = Rgb(0xDD, 0xDD, 0xDD);
+const LIGHT: Rgb = Rgb(0xF2, 0xF2, 0xF2);
 
 /// Stands for several jobs.
 pub(super) const SEVERAL_JOBS: StatusGlyph =
@@ -75,7 +74,12 @@ pub(super) fn status_glyph(row: &JobRow) -> StatusGlyph {
                 Regime::StickSlipSeparation => "stick–slip–separation, not periodic",
                 _ => "slip–separation, not periodic",
             };
-            glyph(letter.to_ascii_lowercase(), meaning, colour, palette::mix(fill, WHITE, 0.5))
+            glyph(
+                letter.to_ascii_lowercase(),
+                meaning,
+                colour,
+                palette::mix(fill, Rgb(0xFF, 0xFF, 0xFF), 0.5),
+            )
         }
     }
 }

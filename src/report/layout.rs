@@ -9,7 +9,7 @@ use super::export::further_names;
 use super::parameters::{MU, OMEGA, SOURCE, is_further};
 use super::row::{JobRow, RowState};
 use super::view::View;
-use crate::publish::plot::axis::Axis;
+use crate::publish::chart::Axis;
 use crate::publish::value;
 use serde_json::Value;
 use std::collections::{HashMap, HashSet};

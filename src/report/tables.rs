@@ -162,7 +162,7 @@ pub(super) fn legend(layout: &Layout, quantity: Quantity) -> Vec<(&'static str, 
 /// for each μ.
 ///
 /// The cells are those of [`markdown`], but μ\* has four decimals and a frequency none, whatever their errors are. A missing result is an empty cell.
-pub fn table(rows: &[JobRow], quantity: Quantity, stem: &'static str) -> Table {
+pub fn table(rows: &[JobRow], quantity: Quantity) -> Table {
     table_of(&Layout::new(rows), quantity)
 }
 

@@ -1,9 +1,11 @@
 //! The maps on true axes: every job is at its values.
 
+use crate::maps;
 use crate::svg::{self, Element};
 use crate::synthetic::{done, partial_study, periodic, record, report, row, with};
 use std::fs;
 use tribosweep::analysis::{Outcome, Regime};
+use tribosweep::publish::chart::{Axis, Scale};
 use tribosweep::report::figure::{Plot, figures};
 use tribosweep::report::{JobRow, RowState, View, write};
 
@@ -27,36 +29,45 @@ fn texts(elements: &[Element]) -> Vec<&str> {
 }
 
 /// Protects: cells of the map of regimes end half-way to their neighbours, on the axis of speeds in the logarithm, so that
-/// their sizes are those of the grid and not equal.
+/// their sizes are those of the grid and not equal. A dot is at the place of the job, and ticks are at the jobs' values.
 #[test]
 fn cells_are_on_true_axes() {
     let speeds = [1.0, 10.0, 20.0, 40.0];
     let rows: Vec<JobRow> =
         [0.1, 0.2, 0.6].into_iter().flat_map(|mu| speeds.map(|omega| row(omega, mu, periodic(mu)))).collect();
-    let elements = only(&rows, Plot::RegimePlane);
-    let cell = |omega: f64, mu: f64| {
-        let own = targets(&elements, &format!("job-{omega}-{mu}"))[0];
-        assert_eq!(own.attribute("data-value"), Some("K"));
-        ["x", "y", "width", "height"].map(|name| number(own, name))
+    let chart = maps::only(&rows, Plot::RegimePlane);
+    let across = |at: f64, [low, high]: [f64; 2], expected: [f64; 2]| {
+        // A mean of two numbers has two roundings, and one in the logarithm a few more.
+        let is_near = |a: f64, b: f64| (a - b).abs() <= 16.0 * f64::EPSILON * b;
+        assert!(is_near(low, expected[0]) && is_near(high, expected[1]), "{at}: {low} {high} {expected:?}");
     };
-    let decade = cell(1.0, 0.1)[2];
-    // From 1 to 10 half a decade on both sides of 1; from there, cells of ln 2 with a half on each side.
-    for (omega, decades) in [(10.0, (1.0 + 2f64.log10()) / 2.0), (20.0, 2f64.log10()), (40.0, 2f64.log10())] {
-        assert!((cell(omega, 0.1)[2] - decades * decade).abs() <= 1.5, "{omega}");
+    let half = 10f64.sqrt();
+    let [second, third, last] = [200f64.sqrt(), 800f64.sqrt(), 40.0 * 2f64.sqrt()];
+    for (omega, x) in
+        speeds.into_iter().zip([[1.0 / half, half], [half, second], [second, third], [third, last]])
+    {
+        for (mu, y) in [(0.1, [0.05, 0.15]), (0.2, [0.15, 0.4]), (0.6, [0.4, 0.8])] {
+            let (cell, tip) = maps::cell(&chart, &format!("job-{omega}-{mu}"));
+            across(omega, cell.x, x);
+            across(mu, cell.y, y);
+            assert_eq!(
+                (cell.dot, cell.text.as_str(), maps::data(tip, "value")),
+                (Some((omega, mu)), "K", "K")
+            );
+        }
     }
-    let unit = cell(1.0, 0.1)[3] / 0.1;
-    for (mu, height) in [(0.2, 0.25), (0.6, 0.4)] {
-        assert!((cell(1.0, mu)[3] - height * unit).abs() <= 1.5, "{mu}");
-    }
-    let (low, high) = (cell(1.0, 0.2), cell(1.0, 0.6));
-    assert!(
-        (high[1] + high[3] - low[1]).abs() <= 1.0 && high[1] < low[1],
-        "they touch, and friction goes up"
+    let panel = &chart.panels[0];
+    assert!(matches!(panel.x.axis, Axis::Log(_)) && matches!(panel.y.axis, Axis::Linear(_)));
+    let labels = |scale: &Scale| scale.ticks.iter().map(|(_, label)| label.clone()).collect::<Vec<_>>();
+    assert_eq!(
+        (labels(&panel.x), labels(&panel.y)),
+        (
+            vec!["1", "10", "20", "40"].into_iter().map(str::to_owned).collect(),
+            vec!["0.1".to_owned(), "0.2".to_owned(), "0.6".to_owned()]
+        )
     );
-    let texts = texts(&elements);
-    for label in ["disk speed ω [rpm]", "local friction coefficient μ", "stick–slip", "K"] {
-        assert!(texts.contains(&label), "{label} in {texts:?}");
-    }
+    assert_eq!([&panel.x.label, &panel.y.label], ["disk speed ω [rpm]", "local friction coefficient μ"]);
+    assert_eq!(maps::legend(&chart), ["stick–slip"]);
 }
 
 /// Protects: the map has every job of an incomplete study, also several at one point, and points that are on no grid have
@@ -65,61 +76,58 @@ fn cells_are_on_true_axes() {
 fn every_job_is_in_the_plane() {
     let mut rows = partial_study();
     rows.push(JobRow { job: "other".to_owned(), ..rows[0].clone() });
-    let elements = only(&rows, Plot::RegimePlane);
+    let chart = maps::only(&rows, Plot::RegimePlane);
     for row in &rows {
-        assert_eq!(targets(&elements, &row.job).len(), 1, "{}", row.job);
+        maps::cell(&chart, &row.job);
     }
-    let (first, other) = (targets(&elements, &rows[0].job)[0], targets(&elements, "other")[0]);
-    assert!(number(first, "x") + number(first, "width") <= number(other, "x"), "none hides another one");
+    let [first, other] = [rows[0].job.as_str(), "other"].map(|job| maps::cell(&chart, job).0.x);
+    assert_eq!(first[1], other[0], "none hides another one");
+    // Both parts are equally wide on the logarithmic axis.
+    assert!((first[1] / first[0] / (other[1] / other[0]) - 1.0).abs() < 16.0 * f64::EPSILON);
 
     let scattered: Vec<JobRow> =
         (1..=10).map(|k| row(f64::from(k), 0.1 + 0.05 * f64::from(k * 7 % 10), periodic(0.3))).collect();
-    let elements = only(&scattered, Plot::RegimePlane);
-    let widths: Vec<f64> =
-        scattered.iter().map(|row| number(targets(&elements, &row.job)[0], "width")).collect();
-    assert!(widths.iter().all(|width| *width == widths[0] && *width < 50.0), "{widths:?}");
+    let chart = maps::only(&scattered, Plot::RegimePlane);
+    let panel = &chart.panels[0];
+    let widths: Vec<[f64; 2]> = scattered
+        .iter()
+        .map(|row| {
+            let cell = maps::cell(&chart, &row.job).0;
+            let share = |axis: &Axis, [low, high]: [f64; 2]| axis.place(high) - axis.place(low);
+            [share(&panel.x.axis, cell.x), share(&panel.y.axis, cell.y)]
+        })
+        .collect();
+    let is_small =
+        |[wide, high]: &[f64; 2]| (wide - widths[0][0]).abs() < 1e-12 && *wide < 0.05 && *high < 0.05;
+    assert!(widths.iter().all(is_small), "{widths:?}");
 }
 
 /// Protects: the colours of growth rates have the sign: decay is blue, growth is red, and a job without a rate is grey with
 /// its letter. The number is in the cell, and in full precision in its attribute.
 #[test]
 fn growth_rates_have_their_sign() {
-    let with_rate = |omega: f64, rate: Option<f64>, regime| {
+    let with_rate = |omega: f64, mu: f64, rate: Option<f64>, regime| {
         let mut own = record(Outcome::Decayed, regime, 0.3);
         own.growth_rate_per_s = rate;
-        row(omega, 0.4, RowState::Done(Box::new(own)))
+        row(omega, mu, RowState::Done(Box::new(own)))
     };
     let rows = [
-        with_rate(1.0, Some(-233.04), Regime::Stable),
-        with_rate(5.0, Some(100.0), Regime::Undecided),
-        with_rate(25.0, None, Regime::StickSlip),
+        with_rate(1.0, 0.4, Some(-233.04), Regime::Stable),
+        with_rate(5.0, 0.4, Some(100.0), Regime::Undecided),
+        with_rate(25.0, 0.3, None, Regime::StickSlip),
     ];
-    let elements = only(&rows, Plot::GrowthRate);
-    let values: Vec<Option<&str>> =
-        rows.iter().map(|row| targets(&elements, &row.job)[0].attribute("data-value")).collect();
-    assert_eq!(values, [Some("-233.04"), Some("100"), Some("")]);
-    // The cell of a job is drawn as a rectangle of the size of its target.
-    let fill = |row: &JobRow| {
-        let target = targets(&elements, &row.job)[0];
-        let same = |e: &&Element| {
-            e.name == "rect"
-                && e.attribute("data-job").is_none()
-                && ["x", "y"].iter().all(|name| e.attribute(name) == target.attribute(name))
-        };
-        let colour = elements.iter().rfind(same).expect("a cell").attribute("fill").expect("a colour");
-        let channel = |at: usize| u8::from_str_radix(&colour[at..at + 2], 16).expect("a colour");
-        [channel(1), channel(3), channel(5)]
-    };
-    let [decays, grows, neither] = [0, 1, 2].map(|at| fill(&rows[at]));
-    assert!(decays[2] > decays[0], "{decays:?}");
-    assert!(grows[0] > grows[2], "{grows:?}");
-    assert!(neither[0] == neither[1] && neither[1] == neither[2], "{neither:?}");
-    let found = texts(&elements);
-    for text in ["−233", "100", "K", "growth rate [1/s]", "decays"] {
-        assert!(found.contains(&text), "{text} in {found:?}");
-    }
-    let none = only(&[row(7.0, 0.4, periodic(0.3))], Plot::GrowthRate);
-    assert!(texts(&none).contains(&"no growth rates"));
+    let chart = maps::only(&rows, Plot::GrowthRate);
+    let own = rows.each_ref().map(|row| maps::cell(&chart, &row.job));
+    assert_eq!(own.map(|(_, tip)| maps::data(tip, "value")), ["-233.04", "100", ""]);
+    assert_eq!(own.map(|(cell, _)| cell.text.as_str()), ["−233", "100", "K"]);
+    let [decays, grows, neither] = own.map(|(cell, _)| cell.fill.expect("a colour"));
+    assert!(decays.2 > decays.0, "{decays:?}");
+    assert!(grows.0 > grows.2, "{grows:?}");
+    assert!(neither.0 == neither.1 && neither.1 == neither.2, "{neither:?}");
+    assert_eq!(chart.colours.as_ref().expect("a scale").title, "growth rate [1/s]");
+    assert_eq!(maps::legend(&chart), ["grows", "decays", "stick–slip"]);
+    let none = maps::only(&[row(7.0, 0.4, periodic(0.3)), row(8.0, 0.3, periodic(0.3))], Plot::GrowthRate);
+    assert!(maps::legend(&none).contains(&"no growth rates") && none.colours.is_none());
 }
 
 /// Protects: without numbers on an axis there is no map on true axes, and the page says so. The other figures exist.

@@ -1,13 +1,17 @@
 //! The linear stability of steady sliding: its zero line, the jobs that it does not explain, its files.
 
+use crate::maps;
 use crate::report_files::{REPORT, STABILITY};
-use crate::svg::{self, Element};
 use crate::synthetic::{done, periodic, record, report, row, with};
 use std::collections::BTreeSet;
+use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
 use tribosweep::analysis::{AboveBand, ComplexMode, Outcome, Regime, SlidingStability};
-use tribosweep::report::{JobRow, Report, RowState, StabilityPoint, write, write_stability};
+use tribosweep::publish::chart::palette::INK;
+use tribosweep::publish::chart::{At, Axis, Chart, Layer, Panel, Pen, Point, Sample, Shape};
+use tribosweep::report::figure::{Plot, StabilityPlot, figures, figures_with, stability_figures};
+use tribosweep::report::{Along, JobRow, Report, RowState, StabilityPoint, View, write, write_stability};
 
 const SPEEDS: [f64; 4] = [1.0, 5.0, 20.0, 100.0];
 const FRICTION: [f64; 5] = [0.1, 0.2, 0.3, 0.4, 0.5];
@@ -18,7 +22,7 @@ fn mu_c(omega_rpm: f64) -> f64 {
 }
 
 fn mode(frequency_hz: f64, growth_rate_per_s: f64) -> ComplexMode {
-    let damping_ratio = -growth_rate_per_s / (std::f64::consts::TAU * frequency_hz);
+    let damping_ratio = -growth_rate_per_s / (TAU * frequency_hz);
     ComplexMode { frequency_hz, growth_rate_per_s, damping_ratio, residual: 1e-9, is_converged: true }
 }
 
@@ -47,79 +51,57 @@ fn with_points<'a>(rows: &'a [JobRow], points: &'a [StabilityPoint]) -> Report<'
     Report { stability: points, ..report(rows) }
 }
 
-fn drawing(folder: &Path, name: &str) -> Vec<Element> {
-    svg::parse(&fs::read_to_string(folder.join(name)).unwrap_or_else(|_| panic!("no {name}")))
+/// The figures of the stability of one kind.
+fn charts(points: &[StabilityPoint], plot: StabilityPlot) -> Vec<Chart> {
+    let all = stability_figures(points, &Along::mu(), <&View>::default(), plot);
+    all.into_iter().map(|figure| figure.chart).collect()
 }
 
-fn number(element: &Element, name: &str) -> f64 {
-    element.attribute(name).expect(name).parse().expect("a number")
+/// The map of regimes on true axes.
+fn plane(rows: &[JobRow], points: &[StabilityPoint]) -> Chart {
+    let all = figures_with(rows, <&View>::default(), Plot::RegimePlane, points).expect("a drawing");
+    assert_eq!(all.len(), 1);
+    all.into_iter().next().expect("a figure").chart
 }
 
-fn texts(elements: &[Element]) -> Vec<&str> {
-    elements.iter().filter(|element| element.name == "text").map(|element| element.text.as_str()).collect()
+/// The lines of a panel with their pens.
+fn lines(panel: &Panel) -> Vec<(&[At], Pen)> {
+    let line = |layer| if let Layer::Line { points, pen, .. } = layer { Some((points, *pen)) } else { None };
+    panel.layers.iter().filter_map(line).map(|(points, pen)| (points.as_slice(), pen)).collect()
 }
 
-/// The zero lines: black, and of their own width. The one in the legend has two points at the same height.
-fn zero_lines(elements: &[Element]) -> Vec<Vec<(f64, f64)>> {
-    let own = elements.iter().filter(|element| {
-        element.name == "polyline" && element.is("stroke", "#000000") && element.is("stroke-width", "6")
-    });
-    let vertices = |element: &Element| {
-        let pairs = element.attribute("points").expect("points").split_whitespace();
-        let pair = |text: &str| {
-            let (x, y) = text.split_once(',').expect("a pair");
-            (x.parse().expect("x"), y.parse().expect("y"))
-        };
-        pairs.map(pair).collect()
-    };
-    own.map(vertices).collect()
+/// The zero lines: black, and not dashed.
+fn zero_lines(chart: &Chart) -> Vec<&[At]> {
+    let is_black = |(points, pen): (_, Pen)| (pen.colour == INK && pen.dash.0 == 0.0).then_some(points);
+    lines(&chart.panels[0]).into_iter().filter_map(is_black).collect()
 }
 
-/// The pixel of each point in a map on true axes: the dot inside of its cell.
-fn places(elements: &[Element]) -> Vec<(&Element, f64, f64)> {
-    let dots = || elements.iter().filter(|element| element.name == "circle" && element.is("r", "4"));
-    let cells =
-        elements.iter().filter(|element| element.name == "rect" && element.attribute("data-y").is_some());
-    let place = |cell| {
-        let [left, top, width, height] = ["x", "y", "width", "height"].map(|name| number(cell, name));
-        let inside = |dot: &&Element| {
-            let (x, y) = (number(dot, "cx"), number(dot, "cy"));
-            (left..left + width).contains(&x) && (top..top + height).contains(&y)
-        };
-        let dot = dots().find(inside).expect("a dot in the cell");
-        (cell, number(dot, "cx"), number(dot, "cy"))
-    };
-    cells.map(place).collect()
+/// The points of a panel.
+fn dots(panel: &Panel) -> Vec<&Point> {
+    let of_layer = |layer| if let Layer::Points(points) = layer { points.as_slice() } else { &[] };
+    panel.layers.iter().flat_map(of_layer).collect()
 }
 
 /// Protects: at every speed the zero line lies between the points of opposite sign next to each other, in the stability map and
-/// in the map of regimes, and it is at the interpolated place.
+/// in the map of regimes, and it is at the interpolated place. A wider line in the colour of the ground is below it.
 #[test]
 fn the_zero_line_lies_between_points_of_opposite_sign() {
     let rows: Vec<JobRow> =
         SPEEDS.into_iter().flat_map(|omega| FRICTION.map(|mu| row(omega, mu, periodic(0.9 * mu)))).collect();
-    let (points, folder) = (points(), tempfile::tempdir().expect("a temporary folder"));
-    write(&with_points(&rows, &points), folder.path()).expect("the report is written");
-    for file in ["stability_map.svg", "regime_plane.svg"] {
-        let elements = drawing(folder.path(), file);
-        let line = zero_lines(&elements).into_iter().max_by_key(Vec::len).expect("a line");
-        let places = places(&elements);
-        assert_eq!(places.len(), points.len(), "{file}");
+    let points = points();
+    for chart in [charts(&points, StabilityPlot::Map).remove(0), plane(&rows, &points)] {
+        assert_eq!(maps::cells(&chart).len(), points.len());
+        let found = zero_lines(&chart);
+        assert_eq!(found.len(), 1);
         for omega in SPEEDS {
-            let column: Vec<_> = places.iter().filter(|(cell, ..)| number(cell, "data-x") == omega).collect();
-            let x = column[0].1;
-            let (_, y) =
-                *line.iter().find(|(own, _)| (own - x).abs() <= 1.0).expect("the line crosses the column");
-            let height =
-                |mu: f64| column.iter().find(|(cell, ..)| number(cell, "data-y") == mu).expect("a cell").2;
-            let below = FRICTION.into_iter().rfind(|mu| *mu < mu_c(omega)).expect("a stable point");
-            let above = FRICTION.into_iter().find(|mu| *mu > mu_c(omega)).expect("an unstable point");
-            let (low, high) = (height(below), height(above));
-            assert!(high < y && y < low, "{file} {omega}: {high} {y} {low}");
-            let expected = low + (high - low) * (mu_c(omega) - below) / (above - below);
-            assert!((y - expected).abs() <= 2.0, "{file} {omega}: {y} {expected}");
+            let at = found[0].iter().find(|at| at.0 == omega).expect("the line crosses the column");
+            // The growth rate of the points is linear in μ, so that interpolation has rounding errors only.
+            assert!((at.1 - mu_c(omega)).abs() < 1e-12, "{omega}: {} {}", at.1, mu_c(omega));
         }
-        assert!(texts(&elements).contains(&"threshold: the leading"), "{file}");
+        let wider =
+            lines(&chart.panels[0]).into_iter().find(|(points, _)| *points == found[0]).expect("a line");
+        assert!(wider.1.colour != INK && wider.1.width > 3.0, "{:?}", wider.1);
+        assert!(maps::legend(&chart).contains(&"threshold: the leading growth rate is zero"));
     }
 }
 
@@ -156,27 +138,18 @@ fn exactly_the_unexplained_jobs_are_marked() {
         (row(101.0, 0.4, RowState::Pending), None),
     ];
     let jobs: Vec<JobRow> = rows.iter().map(|(row, _)| row.clone()).collect();
-    let (points, folder) = (points(), tempfile::tempdir().expect("a temporary folder"));
-    write(&with_points(&jobs, &points), folder.path()).expect("the report is written");
-    let elements = drawing(folder.path(), "regime_plane.svg");
+    let points = points();
+    let chart = plane(&jobs, &points);
     for (row, mark) in &rows {
-        let target = elements.iter().find(|element| element.is("data-job", &row.job)).expect("a cell");
-        assert_eq!(target.attribute("data-mark"), *mark, "{}", row.job);
+        let (cell, tip) = maps::cell(&chart, &row.job);
+        assert_eq!(maps::data(tip, "mark"), mark.unwrap_or_default(), "{}", row.job);
+        assert_eq!(cell.mark.is_some(), mark.is_some(), "{}", row.job);
     }
-    let legend = texts(&elements);
-    assert!(
-        legend.contains(&"limit cycle, although") && legend.contains(&"a mode grows, but μ* is"),
-        "{legend:?}"
-    );
-
-    let one = [rows[4].0.clone()];
-    write(&with_points(&one, &points), folder.path()).expect("the report is written");
-    let elements = drawing(folder.path(), "regime_plane.svg");
-    let legend = texts(&elements);
-    assert!(
-        !legend.contains(&"limit cycle, although") && legend.contains(&"a mode grows, but μ* is"),
-        "{legend:?}"
-    );
+    let kinds = ["limit cycle, although every mode decays", "a mode grows, but μ* is that of steady sliding"];
+    let explained = |chart: &Chart| kinds.map(|words| maps::legend(chart).contains(&words));
+    assert_eq!(explained(&chart), [true, true]);
+    let two = [&rows[4], &rows[10]].map(|(row, _)| row.clone());
+    assert_eq!(explained(&plane(&two, &points)), [false, true]);
 }
 
 fn names(folder: &Path) -> BTreeSet<String> {
@@ -199,9 +172,9 @@ fn without_points_there_is_nothing() {
     let expected: BTreeSet<String> = REPORT.map(str::to_owned).into();
     assert_eq!(names(path), expected);
     let before = read("regime_plane.svg");
-    let elements = svg::parse(&before);
-    assert!(zero_lines(&elements).is_empty());
-    assert!(elements.iter().all(|element| element.attribute("data-mark").is_none()));
+    let chart = maps::only(&rows, Plot::RegimePlane);
+    assert!(zero_lines(&chart).is_empty());
+    assert!(maps::cells(&chart).iter().all(|cell| cell.mark.is_none()));
     assert!(
         !read("report.html").contains("Linear stability") && !read("report.md").contains("Linear stability")
     );
@@ -290,20 +263,31 @@ fn the_stability_has_a_report_of_its_own() {
         assert!(page.contains(text), "{text}");
     }
     assert!(!page.contains("src=") && page.matches("<svg ").count() == 3 + 2);
-    let legend =
-        |name: &str| drawing(path, name).into_iter().filter(|own| own.name == "text").map(|own| own.text);
-    for (file, text) in [
-        ("stability_map.svg", "not converged"),
-        ("stability_map.svg", "point that refines"),
-        ("lock_in.svg", "not converged"),
-        ("lock_in.svg", "15 kHz"),
-        ("lock_in.svg", "decays at every point"),
-        ("thresholds.svg", "not converged"),
-        ("thresholds.svg", "no mode grows"),
-        ("thresholds.svg", "unstable at the"),
+    for (plot, text) in [
+        (StabilityPlot::Map, "not converged"),
+        (StabilityPlot::Map, "point that refines a threshold"),
+        (StabilityPlot::LockIn, "not converged"),
+        (StabilityPlot::LockIn, "15 kHz"),
+        (StabilityPlot::LockIn, "decays at every point"),
+        (StabilityPlot::Thresholds, "not converged"),
+        (StabilityPlot::Thresholds, "no mode grows at any point"),
+        (StabilityPlot::Thresholds, "unstable at the first point already"),
     ] {
-        assert!(legend(file).any(|own| own == text), "{text} in {file}");
+        let charts = charts(&points, plot);
+        assert!(maps::legend(&charts[0]).contains(&text), "{text} in {plot:?}");
     }
+    let thresholds = charts(&points, StabilityPlot::Thresholds).remove(0);
+    let dots = dots(&thresholds.panels[0]);
+    let shapes: Vec<(f64, Shape, bool)> =
+        dots.iter().map(|dot| (dot.at.0, dot.marker.shape, dot.marker.is_hollow)).collect();
+    let expected = [
+        (1.0, Shape::Circle, false),
+        (5.0, Shape::Circle, true),
+        (20.0, Shape::Down, false),
+        (100.0, Shape::Up, false),
+    ];
+    assert_eq!(shapes, expected);
+    assert!(near(&dots[0].at.1.to_string(), mu_c(1.0)) && dots[2].at.1 == 0.1 && dots[3].at.1 == 0.5);
     let before: Vec<String> = STABILITY.map(read).into();
     write_stability(&with_points(&[], &points), path).expect("the report is written");
     assert_eq!(before, STABILITY.map(read), "the same points make the same files");
@@ -340,24 +324,130 @@ fn panels_are_speeds_and_sheets_are_combinations() {
         assert!(folder.path().join(file).is_file(), "{file} in {:?}", names(folder.path()));
     }
     assert!(!folder.path().join("thresholds-2.svg").exists(), "both combinations are panels");
-    let elements = drawing(folder.path(), "lock_in.svg");
-    let dots: Vec<&Element> =
-        elements.iter().filter(|element| element.attribute("data-branch").is_some()).collect();
-    let shown: BTreeSet<&str> = dots.iter().filter_map(|dot| dot.attribute("data-omega")).collect();
+    let lock_in = charts(&points, StabilityPlot::LockIn);
+    assert_eq!(lock_in.len(), 2);
+    let tips: Vec<_> = lock_in[0].tips().collect();
+    let shown: BTreeSet<&str> = tips.iter().map(|tip| maps::data(tip, "omega")).collect();
     assert_eq!(shown, ["1", "3", "5", "7", "9", "11"].into());
     // Frequencies and growth rates of two modes at five μ.
-    assert_eq!(dots.len(), 6 * 2 * 2 * FRICTION.len());
-    let growth: BTreeSet<String> = dots
+    assert_eq!(tips.len(), 6 * 2 * 2 * FRICTION.len());
+    let growth: BTreeSet<&str> = tips
         .iter()
-        .filter(|dot| dot.is("data-omega", "11") && dot.is("data-x", "0.4"))
-        .map(|dot| dot.attribute("data-growth").expect("a rate").to_owned())
+        .filter(|tip| maps::data(tip, "omega") == "11" && maps::data(tip, "x") == "0.4")
+        .map(|tip| maps::data(tip, "growth"))
         .collect();
     assert!(growth.len() == 2 && growth.contains("-800"), "{growth:?}");
+    let titles: Vec<&str> = lock_in[0].panels.iter().map(|panel| panel.title.as_str()).collect();
+    let above = |omegas: [i32; 3]| omegas.map(|omega| format!("ω = {omega} rpm"));
+    assert_eq!(
+        (&titles[..3], &titles[6..9]),
+        (
+            &above([1, 3, 5]).each_ref().map(String::as_str)[..],
+            &above([7, 9, 11]).each_ref().map(String::as_str)[..]
+        )
+    );
     let lines = fs::read_to_string(folder.path().join("thresholds.csv")).expect("the thresholds");
     assert!(lines.starts_with("omega_rpm,load_n,mu_c,") && lines.lines().count() == 1 + 22, "{lines}");
-    assert!(texts(&drawing(folder.path(), "stability_map-2.svg")).contains(&"load = 30 N"));
-    for file in ["regime_plane.svg", "regime_plane-2.svg"] {
-        // The other line is that of the legend.
-        assert_eq!(zero_lines(&drawing(folder.path(), file)).len(), 2, "{file}");
+    let maps = charts(&points, StabilityPlot::Map);
+    assert_eq!(
+        maps.iter().map(|chart| chart.title.as_str()).collect::<Vec<_>>(),
+        ["load = 10 N", "load = 30 N"]
+    );
+    let planes = figures_with(&rows, <&View>::default(), Plot::RegimePlane, &points).expect("drawings");
+    assert_eq!(planes.iter().map(|figure| zero_lines(&figure.chart).len()).collect::<Vec<_>>(), [1, 1]);
+    let alone = figures(&rows, <&View>::default(), Plot::RegimePlane).expect("drawings");
+    assert!(alone.iter().all(|figure| zero_lines(&figure.chart).is_empty()));
+}
+
+/// Two oscillators that friction couples, and a mode that decays. Up to the friction coefficient 0.2 at 1 rpm, and more at higher
+/// speeds, the two have frequencies of their own; then they have a common one, and one of them grows.
+pub fn coupled() -> Vec<StabilityPoint> {
+    let mut points = Vec::new();
+    for omega in SPEEDS {
+        for step in 1..=12 {
+            let mu = 0.04 * f64::from(step);
+            let [low, high] = [14.0e3, 15.0e3].map(|hz: f64| (TAU * hz).powi(2));
+            let coupling = (high - low) / 2.0 * mu / (mu_c(omega) - 0.02);
+            let inside = ((high - low) / 2.0).powi(2) - coupling.powi(2);
+            let root = inside.abs().sqrt();
+            // Both squares λ² = −s of the eigenvalues.
+            let mut modes: Vec<ComplexMode> = [1.0, -1.0]
+                .map(|sign| {
+                    let (re, im) = if inside > 0.0 {
+                        ((low + high) / 2.0 + sign * root, 0.0)
+                    } else {
+                        ((low + high) / 2.0, sign * root)
+                    };
+                    let (size, angle) = (re.hypot(im).sqrt(), im.atan2(re) / 2.0);
+                    mode(size * angle.cos() / TAU, -size * angle.sin() - 40.0 - 10.0 * sign)
+                })
+                .into();
+            modes.push(mode(21_000.0, -9.0e4));
+            let stability = SlidingStability { modes, ..point(omega, mu).stability };
+            points.push(StabilityPoint { stability, ..point(omega, mu) });
+        }
     }
+    points
+}
+
+/// Protects: both modes that lock in have the colour of the one that grows, the other mode is grey, and the growth rates cross
+/// zero at a visible place although another mode decays much faster.
+#[test]
+fn both_modes_that_lock_in_have_a_colour() {
+    let chart = charts(&coupled(), StabilityPlot::LockIn).remove(0);
+    let across = chart.columns;
+    assert_eq!((across, chart.panels.len()), (2, 8));
+    for (number, panel) in chart.panels.iter().enumerate().filter(|(number, _)| number / across % 2 == 0) {
+        let pens: Vec<Pen> = lines(panel).into_iter().map(|(_, pen)| pen).collect();
+        let (dashed, others): (Vec<Pen>, Vec<Pen>) = pens.iter().partition(|pen| pen.dash.0 > 0.0);
+        assert_eq!((pens.len(), dashed.len()), (3, 1), "panel {number}");
+        let same = others.iter().filter(|pen| pen.colour == dashed[0].colour).count();
+        assert_eq!(same, 1, "panel {number}: the mode that grows");
+    }
+    assert!(maps::legend(&chart).contains(&"locks in with the mode of this colour"));
+    let growth = &chart.panels[across];
+    let (line, _) =
+        lines(growth).into_iter().find(|(line, _)| line.iter().any(|at| at.1 > 0.0)).expect("a line");
+    let axis = &growth.y.axis;
+    assert!(matches!(axis, Axis::Signed { .. }));
+    let [lowest, highest] = [f64::min, f64::max].map(|of| line.iter().map(|at| axis.place(at.1)).reduce(of));
+    let [above, below] =
+        [highest.expect("a place") - axis.place(0.0), axis.place(0.0) - lowest.expect("a place")];
+    assert!(above > 0.05 && below > 0.05, "{above} {below}");
+    assert!(line.iter().any(|at| at.1 == 0.0), "the crossing is on the line");
+}
+
+/// Protects: thresholds of another parameter than μ are in the multiple of its unit that people write, in ticks, labels and
+/// tooltips.
+#[test]
+fn thresholds_have_multiples_of_units() {
+    let at = |omega: f64, modulus_pa: f64| {
+        let mut own = point(omega, 0.3);
+        own.parameters.push(("young_modulus_pa".to_owned(), modulus_pa.into()));
+        own.stability.modes = vec![mode(15_000.0, 1e-7 * (modulus_pa - 2.5e8))];
+        own
+    };
+    let points: Vec<StabilityPoint> = [1.0, 5.0]
+        .into_iter()
+        .flat_map(|omega| [1e8, 2e8, 3e8, 4e8].map(|modulus| at(omega, modulus)))
+        .collect();
+    let along = Along { parameter: "young_modulus_pa".to_owned(), with: Vec::new() };
+    for plot in [StabilityPlot::Thresholds, StabilityPlot::LockIn, StabilityPlot::Map] {
+        let figures = stability_figures(&points, &along, <&View>::default(), plot);
+        let panel = figures[0].chart.panels.last().expect("a panel");
+        let scale = if plot == StabilityPlot::LockIn { &panel.x } else { &panel.y };
+        assert!(scale.label.ends_with("young_modulus [GPa]"), "{}", scale.label);
+        let ticks = scale.labelled_ticks();
+        assert!(
+            ticks.len() > 2 && ticks.iter().all(|(at, label)| *at < 1.0 && label.len() <= 4),
+            "{ticks:?}"
+        );
+    }
+    let chart =
+        stability_figures(&points, &along, <&View>::default(), StabilityPlot::Thresholds).remove(0).chart;
+    let tip = chart.tips().next().expect("a threshold");
+    assert!(tip.title.contains("young_modulus = 0.25 GPa"), "{}", tip.title);
+    assert_eq!(maps::data(tip, "y"), "250000000");
+    let pens: Vec<&Sample> = chart.legend.iter().map(|entry| &entry.sample).collect();
+    assert!(pens.iter().any(|sample| matches!(sample, Sample::Line(_))));
 }

@@ -292,6 +292,12 @@ impl Panel {
         }
     }
 
+    /// A place without a drawing, which fills a row of panels.
+    pub fn blank() -> Self {
+        let scale = || Scale::new("", Axis::Names(Vec::new()));
+        Self::new("", scale(), scale())
+    }
+
     /// Adds a line with an entry in the panel's legend.
     pub fn line(&mut self, label: &str, pen: Pen, points: Vec<At>) {
         self.layers.push(Layer::Line { points, pen, right: false });

@@ -235,7 +235,8 @@ impl<'a> Layout<'a> {
             let y = MARGIN + TEXT * (0.8 + 1.5 * line as f64);
             svg.plain((WIDTH / 2.0, y), Anchor::Middle, INK, TEXT, words);
         }
-        for (number, panel) in self.chart.panels.iter().enumerate() {
+        let blank = Panel::blank();
+        for (number, panel) in self.chart.panels.iter().enumerate().filter(|(_, panel)| **panel != blank) {
             self.draw_panel(svg, panel, self.plots[number], self.labels[number]);
         }
         let end = draw_entries(svg, &legend_entries(self.chart), self.legend, self.legend_width, self.text);

@@ -194,27 +194,6 @@ pub fn section(id: &str, heading: &str, content: &Markup) -> Markup {
     }
 }
 
-/// A drawing with its caption and the data behind it: file name and contents of a CSV to download.
-///
-/// `svg` is inserted without escaping, so it must be a drawing of this crate.
-pub fn figure(svg: &str, caption: &str, data: Option<(&str, &str)>) -> Markup {
-    html! {
-        figure {
-            div.scroll tabindex="0" role="group" aria-label=(caption) { (PreEscaped(labelled(svg, caption))) }
-            figcaption {
-                (caption)
-                @if let Some((file, csv)) = data { " " (download(file, csv)) }
-            }
-        }
-    }
-}
-
-/// The drawing with a name for screen readers.
-fn labelled(svg: &str, caption: &str) -> String {
-    let label = html! { (caption) }.into_string().replace('"', "&quot;");
-    svg.replacen("<svg ", &format!("<svg role=\"graphics-document\" aria-label=\"{label}\" "), 1)
-}
-
 /// A link that contains a CSV file.
 pub fn download(file: &str, csv: &str) -> Markup {
     html! { a.download download=(file) href=(data_uri::csv(csv)) { (file) } }
@@ -223,45 +202,6 @@ pub fn download(file: &str, csv: &str) -> Markup {
 /// The address of a file beside the page, from its relative path.
 pub fn address(path: &str) -> String {
     data_uri::of_path(path)
-}
-
-/// A table in a box, in which it scrolls if the page is narrow. The first cell of a line is its heading.
-pub fn table(header: &[String], lines: &[Vec<Markup>]) -> Markup {
-    html! {
-        div.scroll tabindex="0" role="group" aria-label="table" {
-            table {
-                thead { tr { @for cell in header { th scope="col" { (cell) } } } }
-                tbody {
-                    @for line in lines {
-                        tr {
-                            @for (column, cell) in line.iter().enumerate() {
-                                @if column == 0 { th scope="row" { (cell) } } @else { td { (cell) } }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-    }
-}
-
-/// As [`table`], but its cells may be broken into lines.
-pub fn wrapping_table(header: &[String], lines: &[Vec<Markup>]) -> Markup {
-    html! { div.wrapping { (table(header, lines)) } }
-}
-
-/// The main numbers: name, value, and a note that may be empty.
-pub fn tiles(tiles: &[(&str, String, String)]) -> Markup {
-    html! {
-        dl.tiles {
-            @for (name, value, note) in tiles {
-                div {
-                    dt { (name) }
-                    dd { strong { (value) } @if !note.is_empty() { small { (note) } } }
-                }
-            }
-        }
-    }
 }
 
 /// A warning.

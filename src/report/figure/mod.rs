@@ -1,16 +1,9 @@
 //! Figure 7 and its companions: curves against disk speed, maps over speed and friction, shares, residuals.
 
-#![expect(clippy::cast_possible_wrap, reason = "pixels and legend lines: thousands, not billions")]
-
 mod bifurcation;
-mod colour_key;
+mod cells;
 mod curves;
-mod growth;
-mod map;
-mod marker;
-mod panels;
 mod places;
-mod plane;
 pub(super) mod residuals;
 mod shares;
 pub(super) mod stability;
@@ -22,8 +15,8 @@ use super::scalar::{FREQUENCY, MU_STAR, Scalar};
 use super::spectra::Spectra;
 use super::stability_point::StabilityPoint;
 use super::view::View;
-use crate::publish::FigureError;
 use crate::publish::chart::Chart;
+pub use stability::{StabilityPlot, stability_figures};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -156,20 +149,16 @@ impl Plot {
         }
     }
 
-    /// Why a study has no figure of this kind, in a sentence; none if it has.
-    pub(super) fn absence(self, layout: &Layout, spectra: &Spectra) -> Option<&'static str> {
+    /// Whether a study has a figure of this kind: a map on true axes needs numbers on both axes, and a waterfall needs stored
+    /// spectra.
+    fn exists(self, layout: &Layout, spectra: &Spectra) -> bool {
         let has_spectrum = |group: &Group| group.jobs.iter().any(|job| spectra.contains_key(&job.row.job));
         match self {
-            Self::RegimePlane | Self::GrowthRate
-                if !layout.on_true_axes().as_ref().map_or_else(|| plane::exists(layout), plane::exists) =>
-            {
-                Some("There is no map on true axes, because an axis has names and no numbers.")
+            Self::RegimePlane | Self::GrowthRate => {
+                layout.on_true_axes().as_ref().map_or_else(|| cells::has_true_axes(layout), cells::has_true_axes)
             }
-            Self::Waterfall if !layout.groups.iter().any(has_spectrum) => Some(
-                "There is no waterfall of spectra, because no spectrum is stored. `tribosweep inspect STUDY --all --only \
-                 spectrum` stores them; write the report again afterwards.",
-            ),
-            _ => None,
+            Self::Waterfall => layout.groups.iter().any(has_spectrum),
+            _ => true,
         }
     }
 
@@ -194,24 +183,6 @@ pub struct Figure {
     pub svg: String,
 }
 
-/// A drawing as data, or one of the kinds that are not data yet, as SVG.
-enum Drawn {
-    Chart(Chart),
-    Svg(String),
-}
-
-impl From<Chart> for Drawn {
-    fn from(chart: Chart) -> Self {
-        Self::Chart(chart)
-    }
-}
-
-impl From<String> for Drawn {
-    fn from(svg: String) -> Self {
-        Self::Svg(svg)
-    }
-}
-
 impl Figure {
     /// The figure on sheet `number` of a layout with `of_sheet` combinations on a sheet. `title` says what it shows.
     fn of_sheet(
@@ -219,7 +190,7 @@ impl Figure {
         number: usize,
         of_sheet: usize,
         title: &str,
-        drawn: impl Into<Drawn>,
+        chart: Chart,
     ) -> Self {
         let count = layout.groups.len();
         let first = number * of_sheet;
@@ -230,7 +201,7 @@ impl Figure {
             1 => layout.groups[first].caption(),
             _ => format!("combinations {} to {} of {count}", first + 1, groups.end),
         };
-        Self::new(suffix, caption, groups, title, drawn)
+        Self::new(suffix, caption, groups, title, chart)
     }
 
     fn new(
@@ -238,13 +209,10 @@ impl Figure {
         caption: String,
         groups: Range<usize>,
         title: &str,
-        drawn: impl Into<Drawn>,
+        chart: Chart,
     ) -> Self {
         let words = [title, &caption].into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>();
-        let (chart, svg) = match drawn.into() {
-            Drawn::Chart(chart) => (chart.clone(), chart.svg(&words.join(", "))),
-            Drawn::Svg(svg) => (Chart::default(), svg),
-        };
+        let svg = chart.svg(&words.join(", "));
         Self { suffix, caption, groups, chart, svg }
     }
 }
@@ -252,11 +220,18 @@ impl Figure {
 /// Draws the combinations of the further parameters, up to twelve in one figure, with the same axes and colours. There is no
 /// figure if the plot does not exist for these rows: a map on true axes needs numbers on both axes, and a waterfall needs
 /// stored spectra.
-///
-/// # Errors
-/// [`FigureError`].
-pub fn figures(rows: &[JobRow], view: &View, plot: Plot) -> Result<Vec<Figure>, FigureError> {
-    figures_of(&Layout::of(rows, view), plot, &Spectra::new(), &[])
+pub fn figures(rows: &[JobRow], view: &View, plot: Plot) -> Vec<Figure> {
+    figures_with(rows, view, plot, &[])
+}
+
+/// As [`figures`], with the boundary of the linear stability of steady sliding at these points.
+pub fn figures_with(
+    rows: &[JobRow],
+    view: &View,
+    plot: Plot,
+    points: &[StabilityPoint],
+) -> Vec<Figure> {
+    figures_of(&Layout::of(rows, view), plot, &Spectra::new(), points)
 }
 
 /// The figures of a number over the other parameters of jobs that are points and no grid, one for each parameter that is a number. There
@@ -266,12 +241,12 @@ pub(super) fn over_others(
     view: &View,
     layout: &Layout,
     plot: Plot,
-) -> Result<Vec<Figure>, FigureError> {
+) -> Vec<Figure> {
     let scalar = match plot {
         Plot::MuStar => &MU_STAR,
         Plot::Frequency => &FREQUENCY,
         Plot::Of(scalar) => scalar,
-        _ => return Ok(Vec::new()),
+        _ => return Vec::new(),
     };
     let is_number = |name: &&&str| rows.iter().any(|row| row.parameter(name).is_number());
     let draw = |name: &&str| {
@@ -280,7 +255,7 @@ pub(super) fn over_others(
         let caption = format!("over {}", own.axis_name());
         Figure::new(format!("-over-{name}"), caption, 0..1, &plot.title(), chart)
     };
-    Ok(layout.scattered.iter().filter(is_number).map(draw).collect())
+    layout.scattered.iter().filter(is_number).map(draw).collect()
 }
 
 /// The chart without tooltips, if they would make its file too large.
@@ -294,9 +269,9 @@ pub(super) fn figures_of(
     plot: Plot,
     spectra: &Spectra,
     points: &[StabilityPoint],
-) -> Result<Vec<Figure>, FigureError> {
-    if plot.absence(layout, spectra).is_some() {
-        return Ok(Vec::new());
+) -> Vec<Figure> {
+    if !plot.exists(layout, spectra) {
+        return Vec::new();
     }
     let own = match plot {
         Plot::RegimePlane | Plot::GrowthRate => layout.on_true_axes(),
@@ -311,23 +286,19 @@ pub(super) fn figures_of(
         _ => MAX_PANELS,
     };
     let draw = |(number, groups): (usize, &[Group])| {
-        let drawn: Drawn = match plot {
-            Plot::MuStar => curves::draw(layout, groups, &MU_STAR).into(),
-            Plot::Frequency => curves::draw(layout, groups, &FREQUENCY).into(),
-            Plot::Of(scalar) => curves::draw(layout, groups, scalar).into(),
-            Plot::RegimeMap => map::regimes(layout, groups)?.into(),
-            Plot::FrequencyMap => map::frequencies(layout, groups)?.into(),
-            Plot::Shares => shares::draw(layout, groups).into(),
-            Plot::Bifurcation => bifurcation::draw(layout, &groups[0]).into(),
-            Plot::RegimePlane => plane::regimes(layout, &groups[0], points)?.into(),
-            Plot::GrowthRate => growth::draw(layout, &groups[0])?.into(),
-            Plot::Waterfall => waterfall::draw(layout, &groups[0], spectra).into(),
+        let chart = match plot {
+            Plot::MuStar => curves::draw(layout, groups, &MU_STAR),
+            Plot::Frequency => curves::draw(layout, groups, &FREQUENCY),
+            Plot::Of(scalar) => curves::draw(layout, groups, scalar),
+            Plot::RegimeMap => cells::regimes(layout, groups)?,
+            Plot::FrequencyMap => cells::frequencies(layout, groups)?,
+            Plot::Shares => shares::draw(layout, groups),
+            Plot::Bifurcation => bifurcation::draw(layout, &groups[0]),
+            Plot::RegimePlane => cells::regimes_on_true_axes(layout, &groups[0], points)?,
+            Plot::GrowthRate => cells::growth_rates(layout, &groups[0])?,
+            Plot::Waterfall => waterfall::draw(layout, &groups[0], spectra),
         };
-        let drawn = match drawn {
-            Drawn::Chart(chart) => Drawn::Chart(with_tips_of_few(groups, chart)),
-            svg @ Drawn::Svg(_) => svg,
-        };
-        Ok(Figure::of_sheet(layout, number, of_sheet, &plot.title(), drawn))
+        Some(Figure::of_sheet(layout, number, of_sheet, &plot.title(), with_tips_of_few(groups, chart)))
     };
-    layout.groups.chunks(of_sheet).enumerate().map(draw).collect()
+    layout.groups.chunks(of_sheet).enumerate().filter_map(draw).collect()
 }

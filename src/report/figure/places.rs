@@ -99,11 +99,6 @@ pub(super) fn series_title<'a>(layout: &'a Layout) -> &'a str {
     &layout.dimension(layout.by).title
 }
 
-/// Whether the figure of a group has tooltips.
-pub(super) fn has_tooltips(group: &Group) -> bool {
-    group.jobs.len() <= super::MAX_TOOLTIPS
-}
-
 impl Place<'_> {
     /// The job's tooltip with its key and its value along the axis, and further values for programs.
     pub fn tip(&self, further: impl IntoIterator<Item = (&'static str, String)>) -> Tip {

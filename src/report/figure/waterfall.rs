@@ -1,19 +1,16 @@
 //! The waterfall: spectra of the normal force over the speed, one strip for each job whose spectrum is stored, and a panel
 //! for each friction coefficient.
 
+use super::cells::CellEdges;
 use super::places::{self, Place};
-use super::plane::CellEdges;
 use crate::analysis::Outcome;
 use crate::publish::chart::palette::{self, INK, PAPER};
 use crate::publish::chart::{
     Axis, Cell, Chart, ColourScale, Entry, Layer, Marker, Panel, Point, Rgb, Scale, Shape,
 };
-use crate::publish::table::{Format, Head, TableWriter};
 use crate::publish::value;
 use crate::report::layout::{Group, Layout};
-use crate::report::parameters::{SOURCE, is_further, name_and_unit};
 use crate::report::spectra::{Spectra, StoredSpectrum};
-use serde_json::Value;
 
 /// Number of bands of frequencies in a strip.
 const BANDS: usize = 150;

@@ -29,17 +29,12 @@ impl Verdict {
         }
     }
 
-    /// What it is, for a legend, in two lines.
-    pub fn lines(self) -> [&'static str; 2] {
+    /// What it is, for a legend and a tooltip.
+    pub fn words(self) -> &'static str {
         match self {
-            Self::CycleBelowThreshold => ["limit cycle, although", "every mode decays"],
-            Self::NoEffect => ["a mode grows, but μ* is", "that of steady sliding"],
+            Self::CycleBelowThreshold => "limit cycle, although every mode decays",
+            Self::NoEffect => "a mode grows, but μ* is that of steady sliding",
         }
-    }
-
-    /// What it is, for a tooltip.
-    pub fn words(self) -> String {
-        self.lines().join(" ")
     }
 }
 

@@ -31,10 +31,7 @@ pub(in crate::report) fn write_files(
     // Where ω moves with μ there is one series, and no axis besides that of the thresholds.
     let has_axes = !analysis.along.moves(analysis.along.across());
     for plot in StabilityPlot::ALL.into_iter().filter(|plot| has_axes || *plot == StabilityPlot::LockIn) {
-        let own = figures(analysis, plot).map_err(|source| {
-            let path = folder.path_of(&format!("{}.svg", plot.stem()));
-            PublishError::Figure { path, source }
-        })?;
+        let own = figures(analysis, plot);
         for figure in &own {
             folder.write_text(&format!("{}{}.svg", plot.stem(), figure.suffix), &figure.svg)?;
         }

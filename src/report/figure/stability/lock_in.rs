@@ -1,91 +1,72 @@
-//! The lock-in plot: frequencies of the modes over μ (or what is varied in its place) and, below them, their growth rates, at up to six speeds.
+//! The lock-in plot: frequencies of the modes over μ (or what is varied in its place) and, below them, their growth rates, at up
+//! to six speeds.
 
 use super::GREY;
-use super::boundary::{self, Sign};
-use super::key::draw_dot;
-use crate::publish::FigureError;
-use crate::publish::plot::axis::Axis;
-use crate::publish::plot::canvas::{self, Area, Chart};
-use crate::publish::plot::panel::Scale;
-use crate::publish::plot::tooltip::{Shape, TooltipTarget};
-use crate::publish::plot::{CURVE_WIDTH, DASH, DrawError, FONT, GUIDE_WIDTH, MARGIN, palette};
+use crate::analysis::branches::{Branch, BranchPoint, crossing};
+use crate::publish::chart::palette::{self, INK};
+use crate::publish::chart::{
+    At, Axis, Chart, Entry, Guide, Layer, Marker, Panel, Pen, Point, Scale, Shape, Tip,
+};
 use crate::publish::value;
-use crate::report::figure::panels::{self, SMALL, TITLE};
 use crate::report::layout::{Group, Layout};
 use crate::report::stability::{GroupModes, Speed};
-use plotters::chart::ChartBuilder;
-use plotters::prelude::{BLACK, DashedLineSeries, PathElement, RGBColor};
-use plotters::style::Color;
+use std::f64::consts::TAU;
 
-const LEGEND_WIDTH: u32 = 400;
-const Y_LABELS: u32 = 130;
-const X_LABELS: u32 = 84;
 /// Largest number of speeds.
 const MAX_SPEEDS: usize = 6;
-/// Height of the frequencies and of the growth rates in a panel [px], alone and beside other panels.
-const HEIGHTS: [(u32, u32); 2] = [(560, 480), (400, 380)];
-const DOT: i32 = 6;
-/// Width of the line of a mode that never grows [px].
-const FINE: u32 = 2;
-/// Radius of the tooltip area around a dot [px].
-const TOOLTIP_RADIUS: i32 = 12;
-/// Figures with more dots have no tooltips.
-const MAX_TOOLTIPS: usize = 1_500;
+/// Heights of frequencies and growth rates of a single speed \[px\].
+const HEIGHTS: [f64; 2] = [260.0, 220.0];
+const DOT: f64 = 3.0;
+const CURVE: f64 = 2.0;
 
 /// What all panels share.
 struct Frame<'a> {
     layout: &'a Layout<'a>,
     modes: &'a GroupModes,
-    mu: Axis,
+    x: Scale,
     frequency: Scale,
     /// Hertz per unit of the frequency axis.
     per_unit_hz: f64,
     growth: Scale,
 }
 
-/// Draws the panels of a group: of all speeds, or of some that are spread over them.
-pub(super) fn draw(layout: &Layout, group: &Group, modes: &GroupModes) -> Result<String, FigureError> {
+/// The panels of a group: of all speeds, or of some that are spread over them.
+pub(super) fn chart(layout: &Layout, group: &Group, modes: &GroupModes) -> Chart {
     let speeds = chosen(&modes.speeds);
-    let points = || speeds.iter().flat_map(|speed| &speed.branches).flat_map(|branch| &branch.points);
-    let largest_hz = points().map(|point| point.mode.frequency_hz).fold(0.0, f64::max);
+    let branches = || speeds.iter().flat_map(|speed| &speed.branches);
+    let frequencies = || branches().flat_map(|branch| &branch.points).map(|point| point.mode.frequency_hz);
+    let largest_hz = frequencies().fold(0.0, f64::max);
     let (per_unit_hz, unit) = if largest_hz >= 1000.0 { (1000.0, "kHz") } else { (1.0, "Hz") };
-    let frequencies = points().map(|point| point.mode.frequency_hz / per_unit_hz);
-    let rates = points().map(|point| point.mode.growth_rate_per_s).chain([0.0]);
+    let least = 0.02 * largest_hz / per_unit_hz;
+    let along = layout.dimension(layout.by);
     let frame = Frame {
         layout,
         modes,
-        mu: layout.dimension(layout.by).axis(false),
+        x: Scale::new(&along.title, along.axis(false)),
         frequency: Scale::spanning(
             &format!("frequency [{unit}]"),
-            frequencies,
-            0.02 * largest_hz / per_unit_hz,
+            frequencies().map(|hz| hz / per_unit_hz),
+            least,
         ),
         per_unit_hz,
-        growth: Scale::spanning("growth rate [1/s]", rates, 1.0),
+        growth: Scale::new("growth rate [1/s]", Axis::around_zero(branches().flat_map(extremes), 1.0)),
     };
-    let caption = group.caption();
-    let across = panels::columns(speeds.len()).min(3);
-    let down = speeds.len().div_ceil(across).max(1) as u32;
-    let (upper, lower) = HEIGHTS[usize::from(speeds.len() > 1)];
-    let height = canvas::caption_height(&caption) + down * (TITLE + upper + lower) + MARGIN as u32;
-    canvas::sheet((canvas::WIDTH, height), |root| {
-        let below = canvas::caption(root, &caption)?;
-        let (left, right) = below.split_horizontally(canvas::WIDTH - LEGEND_WIDTH);
-        let (left, _) = left.split_vertically(down * (TITLE + upper + lower));
-        let mut targets = Vec::new();
-        for (speed, part) in speeds.iter().zip(left.split_evenly((down as usize, across))) {
-            let axis = layout.dimension(layout.axis);
-            // A speed that moves with what is varied is none.
-            let words = if speed.omega.is_null() { String::new() } else { axis.assignment(&speed.omega) };
-            let middle = (part.dim_in_pixel().0 as i32 + Y_LABELS as i32) / 2;
-            let below = panels::title(&part, &words, middle)?;
-            let (top, bottom) = below.split_vertically(upper);
-            targets.extend(frame.fill(&top, speed, false)?);
-            targets.extend(frame.fill(&bottom, speed, true)?);
+    let across = match speeds.len() {
+        0 | 1 => 1,
+        2..=4 => 2,
+        _ => 3,
+    };
+    let heights = if speeds.len() > 1 { [0.0; 2] } else { HEIGHTS };
+    let mut panels = Vec::with_capacity(2 * speeds.len());
+    for row in speeds.chunks(across) {
+        for (is_growth, height) in [false, true].into_iter().zip(heights) {
+            let panel = |speed: &&Speed| Panel { height, ..frame.panel(speed, is_growth) };
+            let blanks = if speeds.len() > across { across - row.len() } else { 0 };
+            panels.extend(row.iter().map(panel).chain((0..blanks).map(|_| Panel::blank())));
         }
-        boundary::draw_signs(&right, MARGIN, &frame.signs(&speeds))?;
-        Ok(if targets.len() <= MAX_TOOLTIPS { targets } else { Vec::new() })
-    })
+    }
+    let legend = frame.legend(&speeds);
+    Chart { title: group.caption(), panels, columns: across, legend, colours: None }.with_few_tips()
 }
 
 /// Up to six speeds, the lowest and the highest among them.
@@ -95,129 +76,164 @@ fn chosen(speeds: &[Speed]) -> Vec<&Speed> {
     (0..count).map(|k| &speeds[at(k)]).collect()
 }
 
+/// The growth rates of a branch that a reader must be able to tell from zero: the largest on both sides of it.
+fn extremes(branch: &Branch) -> Vec<f64> {
+    let rates = || branch.points.iter().map(|point| point.mode.growth_rate_per_s).filter(|x| x.is_finite());
+    let ends = [rates().fold(0.0, f64::min), rates().fold(0.0, f64::max)];
+    ends.into_iter().filter(|end| *end != 0.0).collect()
+}
+
+/// The mode that locks in with a mode that grows: its frequency comes so near that both eigenvalues differ less in their
+/// imaginary parts than in their real parts, though elsewhere they differ more. Two equal oscillators that friction couples
+/// differ in the imaginary parts alone before they lock in, and in the real parts alone after that; damping turns the
+/// difference between both.
+fn partner(speed: &Speed, branch: usize) -> Option<usize> {
+    let own = &speed.branches[branch];
+    let nearest = |other: &Branch| {
+        let at = |mu: f64| other.points.iter().find(|point| point.mu == mu);
+        let common = own.points.iter().filter_map(|point| Some((&point.mode, &at(point.mu)?.mode)));
+        let [mut nearest, mut furthest] = [f64::INFINITY, 0.0_f64];
+        for (a, b) in common {
+            let parts = a.growth_rate_per_s - b.growth_rate_per_s;
+            let ratio = TAU * (a.frequency_hz - b.frequency_hz).abs() / parts.abs();
+            furthest = furthest.max(ratio);
+            if parts > 0.0 {
+                nearest = nearest.min(ratio);
+            }
+        }
+        (nearest < 1.0 && furthest > 1.0).then_some(nearest)
+    };
+    let others = speed.branches.iter().enumerate().filter(|(number, _)| *number != branch);
+    let found = others.filter_map(|(number, other)| Some((nearest(other)?, number)));
+    found.min_by(|a, b| a.0.total_cmp(&b.0)).map(|(_, number)| number)
+}
+
 impl Frame<'_> {
     /// A place on the axis of the parameter along which modes are followed.
     fn x(&self, at: f64) -> f64 {
         self.layout.dimension(self.layout.by).scaled(at)
     }
 
-    /// The colour and the width of a branch.
-    fn look(&self, speed: &Speed, branch: usize) -> (RGBColor, u32) {
-        match speed.onset_of(branch) {
-            Some(onset) => (palette::colour(onset.family, self.modes.families.len()), CURVE_WIDTH),
-            None => (GREY, FINE),
-        }
+    fn colour(&self, family: usize) -> palette::Rgb {
+        palette::colour(family, self.modes.families.len())
     }
 
-    /// Draws frequencies or growth rates between their axes.
-    fn fill(&self, area: &Area, speed: &Speed, is_growth: bool) -> Result<Vec<TooltipTarget>, DrawError> {
-        let scale = if is_growth { &self.growth } else { &self.frequency };
-        let mut chart = ChartBuilder::on(area)
-            .margin_right(24)
-            .margin_left(8)
-            .margin_bottom(if is_growth { 0 } else { 16 })
-            .x_label_area_size(if is_growth { X_LABELS } else { 0 })
-            .y_label_area_size(Y_LABELS)
-            .build_cartesian_2d(self.mu.clone(), scale.axis.clone())?;
-        let mut mesh = canvas::mesh(&mut chart);
-        mesh.x_labels(5).x_label_style((FONT, SMALL)).y_label_style((FONT, SMALL));
-        mesh.axis_desc_style((FONT, SMALL)).y_desc(scale.label.as_str());
-        if is_growth {
-            mesh.x_desc(self.layout.dimension(self.layout.by).title.as_str());
+    /// How the branches of a speed are drawn: those that grow in their colours, those that lock in with them dashed, and the
+    /// other ones fine and grey.
+    fn pens(&self, speed: &Speed) -> Vec<Pen> {
+        let mut pens = vec![Pen::solid(GREY, CURVE / 2.0); speed.branches.len()];
+        for onset in &speed.onsets {
+            if let Some(partner) = partner(speed, onset.branch) {
+                pens[partner] = Pen::dashed(self.colour(onset.family), CURVE);
+            }
         }
-        mesh.draw()?;
-        canvas::whole_frame(&chart)?;
+        // Of several onsets of a branch, the first one counts.
+        for onset in speed.onsets.iter().rev() {
+            pens[onset.branch] = Pen::solid(self.colour(onset.family), CURVE);
+        }
+        pens
+    }
+
+    /// Frequencies or growth rates of a speed.
+    fn panel(&self, speed: &Speed, is_growth: bool) -> Panel {
+        let omega = self.layout.dimension(self.layout.axis).assignment(&speed.omega);
+        let title = if is_growth { String::new() } else { omega };
+        let y = if is_growth { &self.growth } else { &self.frequency };
+        let mut panel = Panel::new(&title, self.x.clone(), y.clone());
         if is_growth {
-            let ends = chart.x_range();
-            let ends = [(ends.start, 0.0), (ends.end, 0.0)];
-            chart.draw_series(DashedLineSeries::new(ends, DASH, DASH, BLACK.stroke_width(GUIDE_WIDTH)))?;
+            panel.layers.push(Layer::Guide(Guide::level(0.0, INK)));
         }
         for onset in speed.onsets.iter().filter(|onset| onset.below.is_some()) {
-            let up = chart.y_range();
-            let colour = palette::colour(onset.family, self.modes.families.len());
-            let ends = onset.ends.map(|ends| ends.at);
-            for at in [Some(onset.mu), ends].into_iter().flatten().map(|at| self.x(at)) {
-                let line = PathElement::new([(at, up.start), (at, up.end)], colour.stroke_width(FINE));
-                chart.draw_series([line])?;
-            }
+            let pen = Pen::solid(self.colour(onset.family), 1.0);
+            let ends = [Some(onset.mu), onset.ends.map(|ends| ends.at)];
+            let guide = |at| Guide { pen, ..Guide::mark(self.x(at), "") };
+            panel.layers.extend(ends.into_iter().flatten().map(|at| Layer::Guide(guide(at))));
         }
-        self.draw_branches(area, &mut chart, speed, is_growth)
-    }
-
-    fn draw_branches(
-        &self,
-        area: &Area,
-        chart: &mut Chart,
-        speed: &Speed,
-        is_growth: bool,
-    ) -> Result<Vec<TooltipTarget>, DrawError> {
-        let (left, top) = area.get_base_pixel();
-        let mut targets = Vec::new();
+        let pens = self.pens(speed);
         // Modes that grow are drawn over the other ones.
-        let mut order: Vec<usize> = (0..speed.branches.len()).collect();
+        let mut order: Vec<usize> = (0..pens.len()).collect();
         order.sort_by_key(|branch| speed.onset_of(*branch).is_some());
+        let mut dots = Vec::new();
         for number in order {
-            let branch = &speed.branches[number];
-            let (colour, width) = self.look(speed, number);
-            let place = |point: &crate::analysis::branches::BranchPoint| {
-                let mode = &point.mode;
-                let y = if is_growth { mode.growth_rate_per_s } else { mode.frequency_hz / self.per_unit_hz };
-                (self.x(point.mu), y)
+            let points = &speed.branches[number].points;
+            let line = if is_growth {
+                self.growth_line(points)
+            } else {
+                points.iter().map(|own| self.at(own, false)).collect()
             };
-            let line: Vec<(f64, f64)> = branch.points.iter().map(place).collect();
-            chart.draw_series([PathElement::new(line, colour.stroke_width(width))])?;
-            for point in &branch.points {
-                let (x, y) = chart.backend_coord(&place(point));
-                let mode = &point.mode;
-                let colour = if mode.is_converged { colour } else { GREY };
-                draw_dot(area, (x - left, y - top), DOT, colour, !mode.is_converged)?;
-                let note = if mode.is_converged { "" } else { "\nnot converged" };
-                targets.push(TooltipTarget {
-                    shape: Shape::Around { at: (x, y), radius: TOOLTIP_RADIUS },
-                    title: format!(
-                        "{}\n{}, growth rate {} 1/s{note}",
-                        self.layout.dimension(self.layout.by).near(point.mu),
-                        value::quantity(mode.frequency_hz, "Hz"),
-                        value::significant(mode.growth_rate_per_s, 3).replace('-', "−")
-                    ),
-                    data: vec![
-                        ("branch", number.to_string()),
-                        ("omega", value::text(&speed.omega)),
-                        ("x", value::number(point.mu)),
-                        ("frequency", value::number(mode.frequency_hz)),
-                        ("growth", value::number(mode.growth_rate_per_s)),
-                    ],
-                });
-            }
+            panel.layers.push(Layer::Line { points: line, pen: pens[number], right: false });
+            dots.extend(points.iter().map(|point| self.dot(speed, number, point, pens[number], is_growth)));
         }
-        Ok(targets)
+        panel.layers.push(Layer::Points(dots));
+        panel
     }
 
-    /// The legend: what occurs at these speeds.
-    fn signs(&self, speeds: &[&Speed]) -> Vec<Sign> {
-        let mut signs = Vec::new();
+    fn at(&self, point: &BranchPoint, is_growth: bool) -> At {
+        let mode = &point.mode;
+        let y = if is_growth { mode.growth_rate_per_s } else { mode.frequency_hz / self.per_unit_hz };
+        (self.x(point.mu), y)
+    }
+
+    /// The growth rates of a branch, with the places at which they are zero: these are on the line on every axis.
+    fn growth_line(&self, points: &[BranchPoint]) -> Vec<At> {
+        let mut line: Vec<At> = points.iter().take(1).map(|point| self.at(point, true)).collect();
+        for pair in points.windows(2) {
+            let [from, to] = [pair[0], pair[1]].map(|point| point.mode.growth_rate_per_s);
+            line.extend((from * to < 0.0).then(|| (self.x(crossing([pair[0], pair[1]])), 0.0)));
+            line.push(self.at(&pair[1], true));
+        }
+        line
+    }
+
+    fn dot(&self, speed: &Speed, branch: usize, point: &BranchPoint, pen: Pen, is_growth: bool) -> Point {
+        let mode = &point.mode;
+        let colour = if mode.is_converged { pen.colour } else { GREY };
+        let note = if mode.is_converged { "" } else { "\nnot converged" };
+        let title = format!(
+            "{}\n{}, growth rate {} 1/s{note}",
+            self.layout.dimension(self.layout.by).near(point.mu),
+            value::quantity(mode.frequency_hz, "Hz"),
+            value::significant(mode.growth_rate_per_s, 3).replace('-', "−")
+        );
+        let data = vec![
+            ("branch", branch.to_string()),
+            ("omega", value::text(&speed.omega)),
+            ("x", value::number(point.mu)),
+            ("frequency", value::number(mode.frequency_hz)),
+            ("growth", value::number(mode.growth_rate_per_s)),
+        ];
+        let marker = Marker::new(Shape::Circle, colour).hollow(!mode.is_converged).sized(DOT);
+        Point { at: self.at(point, is_growth), error: 0.0, marker, tip: Some(Tip { title, data }) }
+    }
+
+    /// What occurs at these speeds.
+    fn legend(&self, speeds: &[&Speed]) -> Vec<Entry> {
+        let mut legend = Vec::new();
         let onsets = || speeds.iter().flat_map(|speed| &speed.onsets);
         let families = self.modes.families.iter().enumerate();
         let shown: Vec<_> = families.filter(|(n, _)| onsets().any(|onset| onset.family == *n)).collect();
         if !shown.is_empty() {
-            signs.push(Sign::Heading("modes that grow,\nby frequency there"));
+            legend.push(Entry::heading("modes that grow, by frequency there"));
         }
-        signs.extend(shown.into_iter().map(|(number, frequency_hz)| {
-            let colour = palette::colour(number, self.modes.families.len());
-            Sign::Line(colour, CURVE_WIDTH, value::quantity(*frequency_hz, "Hz"))
+        legend.extend(shown.into_iter().map(|(number, frequency_hz)| {
+            Entry::line(Pen::solid(self.colour(number), CURVE), &value::quantity(*frequency_hz, "Hz"))
         }));
-        if onsets().any(|onset| onset.below.is_some()) {
-            signs.push(Sign::Heading("vertical: it begins or\nceases to grow"));
+        let pens: Vec<Pen> = speeds.iter().flat_map(|speed| self.pens(speed)).collect();
+        if pens.iter().any(|pen| pen.dash.0 > 0.0) {
+            legend.push(Entry::line(Pen::dashed(GREY, CURVE), "locks in with the mode of this colour"));
         }
-        let decays = |speed: &&Speed| (0..speed.branches.len()).any(|n| speed.onset_of(n).is_none());
-        if speeds.iter().any(decays) {
-            signs.push(Sign::Line(GREY, FINE, "decays at every point".to_owned()));
+        if pens.iter().any(|pen| pen.colour == GREY) {
+            legend.push(Entry::line(Pen::solid(GREY, CURVE / 2.0), "decays at every point"));
+        }
+        if onsets().any(|onset| onset.below.is_some()) {
+            legend.push(Entry::heading("vertical: it begins or ceases to grow"));
         }
         let mut points = speeds.iter().flat_map(|speed| &speed.branches).flat_map(|branch| &branch.points);
         if points.any(|point| !point.mode.is_converged) {
-            signs.push(Sign::Dot { is_hollow: true, label: "not converged" });
+            let marker = Marker::new(Shape::Circle, GREY).hollow(true).sized(DOT);
+            legend.push(Entry::marker(marker, "not converged"));
         }
-        signs.push(Sign::Dashes("zero growth rate"));
-        signs
+        legend.push(Entry::line(Guide::level(0.0, INK).pen, "zero growth rate"));
+        legend
     }
 }

@@ -1,23 +1,22 @@
 //! Figures of the linear stability of steady sliding.
 
-pub(super) mod boundary;
-mod key;
 mod lock_in;
 mod map;
 mod thresholds;
 
 use super::Figure;
-use super::panels::MAX_PANELS;
-use crate::publish::FigureError;
-use crate::report::stability::Analysis;
-use plotters::prelude::RGBColor;
+use super::MAX_PANELS;
+use crate::publish::chart::Rgb;
+use crate::report::stability::{Along, Analysis, rows};
+use crate::report::stability_point::StabilityPoint;
+use crate::report::view::View;
 
 /// The colour of a mode that never grows, and of one that is not converged.
-const GREY: RGBColor = RGBColor(0x9A, 0x9A, 0x9A);
+const GREY: Rgb = Rgb(0x9A, 0x9A, 0x9A);
 
 /// A figure of the stability of steady sliding.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::report) enum StabilityPlot {
+pub enum StabilityPlot {
     /// The growth rate of the leading mode over ω and μ.
     Map,
     /// Frequencies and growth rates of the modes over μ.
@@ -49,23 +48,29 @@ impl StabilityPlot {
     }
 }
 
-/// Draws the figures of one kind, one sheet for each combination of the further parameters; thresholds have panels.
-pub(in crate::report) fn figures(
-    analysis: &Analysis,
+/// The figures of one kind from the points of a study.
+pub fn stability_figures(
+    points: &[StabilityPoint],
+    along: &Along,
+    view: &View,
     plot: StabilityPlot,
-) -> Result<Vec<Figure>, FigureError> {
+) -> Vec<Figure> {
+    let rows = rows(points, along);
+    figures(&Analysis::of(points, &rows, along, view), plot)
+}
+
+/// The figures of one kind, one sheet for each combination of the further parameters; thresholds have panels.
+pub(in crate::report) fn figures(analysis: &Analysis, plot: StabilityPlot) -> Vec<Figure> {
     let layout = &analysis.layout;
     let of_sheet = if plot == StabilityPlot::Thresholds { MAX_PANELS } else { 1 };
     let sheets = layout.groups.chunks(of_sheet).zip(analysis.groups.chunks(of_sheet)).enumerate();
-    let draw = |(number, (groups, modes))| {
-        let groups: &[crate::report::layout::Group] = groups;
-        let modes: &[crate::report::stability::GroupModes] = modes;
-        let svg = match plot {
-            StabilityPlot::Map => map::draw(analysis, &groups[0]),
-            StabilityPlot::LockIn => lock_in::draw(layout, &groups[0], &modes[0]),
-            StabilityPlot::Thresholds => thresholds::draw(layout, groups, modes),
-        }?;
-        Ok(Figure::of_sheet(layout, number, of_sheet, plot.title(), svg))
+    let figure = |(number, (groups, modes)): (usize, (&[_], &[_]))| {
+        let chart = match plot {
+            StabilityPlot::Map => map::chart(analysis, &groups[0]),
+            StabilityPlot::LockIn => lock_in::chart(layout, &groups[0], &modes[0]),
+            StabilityPlot::Thresholds => thresholds::chart(layout, groups, modes),
+        };
+        Figure::of_sheet(layout, number, of_sheet, plot.title(), chart)
     };
-    sheets.map(draw).collect()
+    sheets.map(figure).collect()
 }
