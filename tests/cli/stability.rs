@@ -258,7 +258,7 @@ fn an_elastic_disk_that_is_too_fine_is_refused() {
 /// between them, and the table has one line.
 #[test]
 fn a_zip_of_speed_and_friction_has_thresholds() {
-    let mut study = small(&json!({}));
+    let mut study = small(&json!({ "young_modulus_pa": [1e9] }));
     study["samples"] = json!({ "zip": { "mu": [0.1, 0.3, 0.6], "omega_rpm": [5, 7, 10] } });
     let folder = Folder::with("study", &study);
     for (along, parameter) in [("", "mu"), (" --along omega_rpm", "omega_rpm")] {

@@ -375,10 +375,10 @@ mod tests {
         assert_eq!(found.above_band().as_deref(), Some(all));
         let mut others = points.clone();
         others[0].stability.band_hz = 5.5e4;
-        let found = Analysis::of(&others, &rows, &along, &View::DEFAULT).above_band().unwrap();
+        let bands = Analysis::of(&others, &rows, &along, &View::DEFAULT).above_band().unwrap();
         assert!(
-            found.starts_with("Above 50 kHz (for some points 55 kHz) no modes were looked for: "),
-            "{found}"
+            bands.starts_with("Above 50 kHz (for some points 55 kHz) no modes were looked for: "),
+            "{bands}"
         );
         assert_eq!(found.along_in_words(), None);
     }
