@@ -85,12 +85,17 @@ struct Labels {
 
 struct Layout<'a> {
     chart: &'a Chart,
+    columns: usize,
     text: f64,
     labels: Vec<Labels>,
     plots: Vec<Plot>,
     /// Where the legend begins.
     legend: At,
     legend_width: f64,
+    /// Whether panels in several columns have one name for all abscissas, and one for all ordinates.
+    common: [bool; 2],
+    /// The height of the common name of the abscissas.
+    foot: f64,
     size: At,
 }
 
@@ -148,12 +153,18 @@ impl<'a> Layout<'a> {
         };
         let text = if columns > 2 { SMALL } else { TEXT };
         let rows = count.div_ceil(columns);
-        let labels: Vec<Labels> = (0..count).map(|number| labels(chart, columns, number)).collect();
+        let common = common_names(chart, columns);
+        let own_labels = |number| {
+            let own = labels(chart, columns, number);
+            Labels { x_name: own.x_name && !common[0], y_name: own.y_name && !common[1], ..own }
+        };
+        let labels: Vec<Labels> = (0..count).map(own_labels).collect();
         let legend_width = legend_width(chart, text);
         let left = |number: usize| {
             let (panel, labels) = (&chart.panels[number], labels[number]);
             let ticks = if labels.y_ticks { TICK + 5.0 + ticks_width(&panel.y, text) } else { 0.0 };
-            ticks + if labels.y_name { text + 12.0 } else { 0.0 }
+            let has_name = labels.y_name || common[1] && number % columns == 0;
+            ticks + if has_name { text + 12.0 } else { 0.0 }
         };
         let of_column = |column: usize, room: &dyn Fn(usize) -> f64| {
             (column..count).step_by(columns).map(room).fold(0.0, f64::max)
@@ -220,13 +231,16 @@ impl<'a> Layout<'a> {
             }
             top += above + height + below + if row + 1 < rows { GAP / 2.0 } else { 0.0 };
         }
+        let foot = top + 0.5 * text + 3.0;
+        top += if common[0] { text + 10.0 } else { 0.0 };
         let legend = (WIDTH - MARGIN - legend_width, first + 6.0);
         let beside = entries_height(&legend_entries(chart), legend_width, text)
             + chart.colours.as_ref().map_or(0.0, |scale| {
                 COLOURS + wrapped(&scale.title, TEXT, LEGEND[1]).len() as f64 * pitch(TEXT) + 2.5 * TEXT
             });
         let height = (top + MARGIN).max(legend.1 + beside + MARGIN);
-        Self { chart, text, labels, plots, legend, legend_width, size: (WIDTH, height.ceil()) }
+        let size = (WIDTH, height.ceil());
+        Self { chart, columns, text, labels, plots, legend, legend_width, common, foot, size }
     }
 
     fn draw(&self, svg: &mut Svg) {
@@ -239,9 +253,24 @@ impl<'a> Layout<'a> {
         for (number, panel) in self.chart.panels.iter().enumerate().filter(|(_, panel)| **panel != blank) {
             self.draw_panel(svg, panel, self.plots[number], self.labels[number]);
         }
+        self.draw_common_names(svg);
         let end = draw_entries(svg, &legend_entries(self.chart), self.legend, self.legend_width, self.text);
         if let Some(scale) = &self.chart.colours {
             draw_colours(svg, scale, (self.legend.0, end + TEXT));
+        }
+    }
+
+    /// Writes the names that all panels have in common once, in the middle of all of them.
+    fn draw_common_names(&self, svg: &mut Svg) {
+        let Some(panel) = self.chart.panels.first() else { return };
+        let from = self.plots[0].from;
+        let to = self.plots.iter().fold(from, |to, plot| (to.0.max(plot.to.0), to.1.max(plot.to.1)));
+        if self.common[0] {
+            svg.plain(((from.0 + to.0) / 2.0, self.foot), Anchor::Middle, INK, self.text, &panel.x.label);
+        }
+        if self.common[1] {
+            let x = MARGIN + 0.5 * self.text;
+            upwards(svg, (x, (from.1 + to.1) / 2.0), to.1 - from.1, self.text, &panel.y.label);
         }
     }
 
@@ -304,7 +333,20 @@ impl<'a> Layout<'a> {
         let longest = ticks.iter().map(|(_, label)| width_of(label, text)).fold(0.0, f64::max);
         let size = if is_named { (text * (pitch / longest.max(1.0)).min(1.0)).max(9.0) } else { text };
         let y = to.1 + TICK + 2.0 + text / 2.0;
-        for (x, label) in with_room(&ticks, size).into_iter().filter(|_| labels.x_ticks) {
+        // A label may reach beyond the plot, but not to the neighbouring panel.
+        let beyond = if self.columns == 1 { 22.0 } else { 12.0 };
+        let fits = |(x, label): &&(f64, String)| {
+            let half = tick_width(label, size) / 2.0;
+            is_named || x - half > from.0 - beyond && x + half < to.0 + beyond
+        };
+        let ticks: Vec<&(f64, String)> = ticks.into_iter().filter(fits).collect();
+        let mut shown = with_room(&ticks, size);
+        if matches!(panel.x.axis, Axis::Log(_)) && panel.x.ticks.is_empty() && shown.len() < ticks.len() {
+            // Whole decades are easier to read than what room is left for.
+            let decades: Vec<_> = ticks.iter().copied().filter(|(_, label)| is_decade(label)).collect();
+            shown = if decades.len() > 1 { with_room(&decades, size) } else { shown };
+        }
+        for (x, label) in shown.into_iter().filter(|_| labels.x_ticks) {
             svg.plain((*x, y), Anchor::Middle, INK, size, label);
         }
         if labels.x_name {
@@ -317,6 +359,11 @@ impl<'a> Layout<'a> {
             draw_ordinate(svg, right, plot, text, all, true);
         }
     }
+}
+
+/// Whether a label is that of a power of ten.
+fn is_decade(label: &str) -> bool {
+    !label.contains('·') && label.chars().filter(char::is_ascii_digit).all(|c| matches!(c, '0' | '1'))
 }
 
 /// The labels that do not cover one another: from left to right, and in any case the last one.
@@ -362,10 +409,8 @@ fn draw_ordinate(svg: &mut Svg, scale: &Scale, plot: Plot, text: f64, labels: La
         }
     }
     if labels.y_name {
-        let room = width_of(&scale.label, text);
-        let size = if room > to.1 - from.1 + 60.0 { text * (to.1 - from.1 + 60.0) / room } else { text };
         let x = edge + side * (TICK + 9.0 + ticks_width(scale, text) + text / 2.0);
-        svg.upwards((x, (from.1 + to.1) / 2.0), size, &scale.label);
+        upwards(svg, (x, (from.1 + to.1) / 2.0), to.1 - from.1 + 40.0, text, &scale.label);
     }
 }
 
@@ -409,8 +454,25 @@ fn labels(chart: &Chart, columns: usize, number: usize) -> Labels {
     }
 }
 
+/// Whether panels in several columns have the same name of the abscissa, and the same of the ordinate.
+fn common_names(chart: &Chart, columns: usize) -> [bool; 2] {
+    let is_common = |name: &dyn Fn(&Panel) -> String| {
+        let mut names = chart.panels.iter().map(name);
+        let first = names.next().unwrap_or_default();
+        columns > 1 && !first.is_empty() && names.all(|own| own == first)
+    };
+    let has_right = chart.panels.iter().any(|panel| panel.right.is_some());
+    [is_common(&|panel| panel.x.label.clone()), !has_right && is_common(&|panel| panel.y.label.clone())]
+}
+
+/// Writes a name upwards, smaller if it is longer than `room`.
+fn upwards(svg: &mut Svg, middle: At, room: f64, text: f64, name: &str) {
+    svg.upwards(middle, text * (room / width_of(name, text)).min(1.0), name);
+}
+
 fn legend_entries(chart: &Chart) -> Vec<Entry> {
-    let outside = has_outside(chart).then(|| Entry::shape(Shape::Up, "outside of the axis"));
+    let outside = has_outside(chart)
+        .then(|| Entry::marker(Marker::new(Shape::Up, GREY).sized(3.3), "outside of the axis"));
     chart.legend.iter().cloned().chain(outside).collect()
 }
 
@@ -725,7 +787,8 @@ mod tests {
         assert_eq!(count(&beyond, "<polygon"), count(&within, "<polygon") + 2, "an arrow, and its entry");
     }
 
-    /// Protects: panels with the same axes share names and ticks, and panels with different ones have their own.
+    /// Protects: panels with the same names of axes have them once, those with the same axes share ticks, and panels with different
+    /// ones have their own.
     #[test]
     fn equal_axes_are_labelled_once() {
         let texts = |other: Scale| {
@@ -733,8 +796,9 @@ mod tests {
             let svg = Chart { panels, ..Chart::default() }.svg("");
             ["velocity [mm/s]", "time", ">−200<"].map(|text| count(&svg, &format!("{text}")))
         };
-        assert_eq!(texts(panel().y), [2, 2, 2]);
-        assert_eq!(texts(Scale::from_to("velocity [mm/s]", -300.0, 250.0))[2], 3);
+        assert_eq!(texts(panel().y), [1, 1, 2]);
+        assert_eq!(texts(Scale::from_to("velocity [mm/s]", -300.0, 250.0)), [1, 1, 3]);
+        assert_eq!(texts(Scale::from_to("force [N]", -250.0, 250.0))[..2], [2, 1]);
     }
 
     /// Protects: a line is interrupted where a value is missing, and a long one has no more points than a reader can see.
