@@ -6,8 +6,8 @@ use super::signals::raise_on_signal;
 use super::unreadable::log_unreadable_rows;
 use crate::exit;
 use crate::queue::{Location, Queue};
-use crate::sweep::{self, ReportContent, ReportRequest, Revision};
 use crate::study::Spacing;
+use crate::sweep::{self, ReportContent, ReportRequest, Revision};
 use crate::worker::Interrupt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -54,7 +54,8 @@ struct Axes {
 
 /// A parameter with the scale of its axis.
 fn scale(text: &str) -> Result<(String, Spacing), String> {
-    let (name, scale) = text.split_once('=').ok_or("expected a parameter and its scale, such as load_n=log")?;
+    let (name, scale) =
+        text.split_once('=').ok_or("expected a parameter and its scale, such as load_n=log")?;
     match scale {
         "log" => Ok((name.to_owned(), Spacing::Log)),
         "linear" => Ok((name.to_owned(), Spacing::Linear)),
@@ -104,8 +105,14 @@ impl OutFolder {
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let studies = args.studies.iter().map(|study| sweep::study_name(study)).collect::<Result<_, _>>()?;
     let Axes { x, by, y, scale } = &args.axes;
-    let request =
-        ReportRequest { studies, data: args.data.clone(), x: x.clone(), by: by.clone(), y: y.clone(), scale: scale.clone() };
+    let request = ReportRequest {
+        studies,
+        data: args.data.clone(),
+        x: x.clone(),
+        by: by.clone(),
+        y: y.clone(),
+        scale: scale.clone(),
+    };
     let folder = OutFolder { folder: args.out.folder.clone() }.of(&request.folder_name());
     sweep::block_on(async {
         let mut queue = sweep::open_to_read(db.clone()).await?;

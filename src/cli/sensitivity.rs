@@ -55,7 +55,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     folder.write_table(&sensitivity::indices_table(&found))?;
     let (points, left_out) = sensitivity::points_table(&rows, &of);
     folder.write_table(&points)?;
-    folder.finish(|_| false)?;
+    folder.finish()?;
     if left_out > 0 {
         log(format_args!(
             "{} without a value left out of sensitivity_points.csv",

@@ -90,7 +90,7 @@ mod tests {
         let path = tempfile::tempdir().unwrap();
         let mut folder = Folder::create(path.path(), "modes").unwrap();
         write_mode(&mut folder, &mesh, "mode_01", 12_500.0, &shape, 1e-4).unwrap();
-        assert_eq!(folder.finish(|_| false).unwrap().len(), PHASES + 1);
+        assert_eq!(folder.finish().unwrap().len(), PHASES + 1);
 
         let series = fs::read_to_string(path.path().join("mode_01.pvd")).unwrap();
         let document = roxmltree::Document::parse(&series).unwrap();

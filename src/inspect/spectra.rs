@@ -63,7 +63,7 @@ impl JobSpectrum {
         let spectrum_peaks = self.spectrum.peaks(5);
         let summary = SpectrumSummary { key, job: spec, record: &self.record, spectrum_peaks };
         folder.write_with(SUMMARY, |out| write::json(&summary, out))?;
-        folder.finish(|_| false)
+        folder.finish()
     }
 }
 

@@ -44,7 +44,7 @@ pub fn write(
         folder.write_text(&figure.file, &figure.svg)?;
     }
     folder.write_text(PAGE, &html::of_page(&page))?;
-    folder.finish(|_| false)
+    folder.finish()
 }
 
 /// Writes a document as JSON.

@@ -131,14 +131,12 @@ impl<'a> Folder<'a> {
     }
 
     /// Removes the files of the last time that were not written again, and stores the list of those that were; returns
-    /// their paths. If there is no list because an older version wrote the folder, the files for which `is_old` is true are
-    /// removed.
+    /// their paths.
     ///
     /// # Errors
     /// If a file cannot be removed, or the list cannot be written.
-    pub fn finish(mut self, is_old: impl Fn(&str) -> bool) -> Result<Vec<PathBuf>, PublishError> {
-        let old = |name: &String| is_old(name);
-        let earlier = self.earlier.clone().unwrap_or_else(|| self.names().filter(old).collect());
+    pub fn finish(mut self) -> Result<Vec<PathBuf>, PublishError> {
+        let earlier = self.earlier.clone().unwrap_or_default();
         for name in earlier.iter().filter(|name| !self.written.contains(name)) {
             let path = self.path_of(name);
             // Somebody may have removed the file, or put a folder in its place.
@@ -172,12 +170,6 @@ impl<'a> Folder<'a> {
 
     fn paths(&self) -> Vec<PathBuf> {
         self.written.iter().map(|name| self.path.join(name)).collect()
-    }
-
-    /// The names of the files in the folder.
-    fn names(&self) -> impl Iterator<Item = String> {
-        let entries = fs::read_dir(self.path).into_iter().flatten().flatten();
-        entries.filter_map(|entry| entry.file_name().into_string().ok())
     }
 
     fn store(&self, names: &[String]) -> Result<(), PublishError> {
@@ -273,7 +265,7 @@ mod tests {
             for name in names {
                 folder.write_text(name, name).unwrap();
             }
-            folder.finish(|_| false).unwrap()
+            folder.finish().unwrap()
         };
         assert_eq!(write(&["a", "b", "frames/1", "frames/2"]).len(), 4);
         fs::write(path.join("notes"), "mine").unwrap();
@@ -294,28 +286,28 @@ mod tests {
         let begin = || Folder::create(path.path(), "test").unwrap();
         let mut folder = begin();
         folder.write_text("a", "").unwrap();
-        folder.finish(|_| false).unwrap();
+        folder.finish().unwrap();
         let mut folder = begin();
         folder.write_text("b", "").unwrap();
         drop(folder);
         assert_eq!(names(path.path()), [".tribosweep-test", "a", "b"]);
         let mut folder = begin();
         folder.write_text("c", "").unwrap();
-        folder.finish(|_| false).unwrap();
+        folder.finish().unwrap();
         assert_eq!(names(path.path()), [".tribosweep-test", "c"]);
     }
 
-    /// Protects: in a folder without a list only the named files are removed.
+    /// Protects: in a folder without a list no file is removed: a name alone does not tell whose it is.
     #[test]
-    fn a_folder_of_an_older_version_loses_its_old_files_alone() {
+    fn a_folder_without_a_list_loses_nothing() {
         let path = tempfile::tempdir().unwrap();
         for name in ["old", "mine"] {
             fs::write(path.path().join(name), "").unwrap();
         }
         let mut folder = Folder::create(path.path(), "test").unwrap();
         folder.write_text("new", "").unwrap();
-        folder.finish(|name| name == "old").unwrap();
-        assert_eq!(names(path.path()), [".tribosweep-test", "mine", "new"]);
+        folder.finish().unwrap();
+        assert_eq!(names(path.path()), [".tribosweep-test", "mine", "new", "old"]);
     }
 
     /// Protects: if writing fails half-way, the old file stays as it was and no temporary file is left.
@@ -374,7 +366,7 @@ mod tests {
         folder.write_text("page", "new").unwrap();
         folder.create_inside("frames").unwrap();
         folder.write_text("frames/1", "new").unwrap();
-        folder.finish(|_| false).unwrap();
+        folder.finish().unwrap();
         assert_eq!(fs::read_to_string(&precious).unwrap(), "precious\n");
         assert_eq!(names(&outside.path().join("elsewhere")), [""; 0]);
         assert!(!path.join("page").is_symlink() && fs::read_to_string(path.join("page")).unwrap() == "new");

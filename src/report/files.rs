@@ -13,7 +13,6 @@ use super::program::{self, Programs};
 use super::row::JobRow;
 use super::spectra;
 use super::stability::{self, Analysis};
-use super::stale::could_be_of_a_report;
 use super::tables::{self, Quantity};
 use crate::publish::table::Format;
 use crate::publish::{Folder, PublishError, html, markdown};
@@ -149,7 +148,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     folder.write_text("report.md", &markdown::of_page(&page))?;
     let contradictions = comparison.as_ref().map_or_else(Vec::new, Comparison::contradictions_in_words);
     let unmatched = comparison.map_or_else(Vec::new, |comparison| comparison.unmatched);
-    let files = folder.finish(|name| could_be_of_a_report(name, out_dir))?;
+    let files = folder.finish()?;
     Ok(Written { files, contradictions, unmatched })
 }
 

@@ -22,8 +22,7 @@ pub struct View {
 
 impl View {
     /// The default, for a layout that outlives its caller.
-    pub(super) const DEFAULT: Self =
-        Self {
+    pub(super) const DEFAULT: Self = Self {
         x: None,
         by: None,
         y: Vec::new(),

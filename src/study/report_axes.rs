@@ -44,7 +44,12 @@ fn name_schema(_: &mut SchemaGenerator) -> Schema {
 impl ReportAxes {
     /// An example with all fields, for checks of a file's shape.
     pub(super) fn template() -> Self {
-        Self { x: Some("omega_rpm".to_owned()), by: Some("mu".to_owned()), y: Vec::new(), scale: BTreeMap::new() }
+        Self {
+            x: Some("omega_rpm".to_owned()),
+            by: Some("mu".to_owned()),
+            y: Vec::new(),
+            scale: BTreeMap::new(),
+        }
     }
 
     /// What is wrong with the parameters. The names of quantities are not known here.

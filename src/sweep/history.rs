@@ -2,9 +2,9 @@
 
 use crate::analysis::quantity::{DELAYED_STRESS, NODE, TOTALS, of_holder};
 use crate::analysis::sample::{OBSERVED_NAMES, Sample};
-use crate::publish::table::{Column, Format, Head, TableWriter};
 #[cfg(feature = "cli")]
 use crate::publish::table::FileColumns;
+use crate::publish::table::{Column, Format, Head, TableWriter};
 use crate::spec::Holder;
 use std::io;
 

@@ -59,9 +59,9 @@ fn charts(points: &[StabilityPoint], plot: StabilityPlot) -> Vec<Chart> {
 
 /// The map of regimes on true axes.
 fn plane(rows: &[JobRow], points: &[StabilityPoint]) -> Chart {
-    let all = figures_with(rows, <&View>::default(), Plot::RegimePlane, points).expect("a drawing");
+    let all = figures_with(rows, <&View>::default(), Plot::RegimePlane, points);
     assert_eq!(all.len(), 1);
-    all.into_iter().next().expect("a figure").chart
+    all.into_iter().next().chart
 }
 
 /// The lines of a panel with their pens.
@@ -353,9 +353,9 @@ fn panels_are_speeds_and_sheets_are_combinations() {
         maps.iter().map(|chart| chart.title.as_str()).collect::<Vec<_>>(),
         ["load = 10 N", "load = 30 N"]
     );
-    let planes = figures_with(&rows, <&View>::default(), Plot::RegimePlane, &points).expect("drawings");
+    let planes = figures_with(&rows, <&View>::default(), Plot::RegimePlane, &points);
     assert_eq!(planes.iter().map(|figure| zero_lines(&figure.chart).len()).collect::<Vec<_>>(), [1, 1]);
-    let alone = figures(&rows, <&View>::default(), Plot::RegimePlane).expect("drawings");
+    let alone = figures(&rows, <&View>::default(), Plot::RegimePlane);
     assert!(alone.iter().all(|figure| zero_lines(&figure.chart).is_empty()));
 }
 

@@ -17,7 +17,7 @@ fn cells(rows: &[JobRow], quantity: Quantity) -> Vec<Vec<String>> {
 
 /// The names and the cells of the table.
 fn table(rows: &[JobRow], quantity: Quantity) -> (Vec<String>, Vec<Vec<Value>>) {
-    let table = tables::table(rows, quantity, "table");
+    let table = tables::table(rows, quantity);
     (table.names().map(str::to_owned).collect(), table.lines)
 }
 

@@ -63,7 +63,7 @@ pub(super) fn write(points: &[Job], modes: usize, threads: usize, folder: &Path)
             }
         }
     }
-    files.finish(|_| false)?;
+    files.finish()?;
     log(format_args!("{} written to {}", value::count(written, "mode shape"), folder.display()));
     Ok(code)
 }

@@ -51,15 +51,18 @@ fn data(report: &Report, pages: &HashMap<String, String>) -> Value {
     let column = |name: &str, unit: &str, meaning: &str, kind: &str, of: &dyn Fn(&JobRow) -> Value| {
         let values: Vec<Value> = rows.iter().map(|row| shortened(of(row))).collect();
         // A column without values would only be in the way.
-        values.iter().any(|value| !value.is_null()).then(|| {
-            json!({ "name": name, "unit": unit, "meaning": meaning, "kind": kind, "values": values })
-        })
+        values.iter().any(|value| !value.is_null()).then(
+            || json!({ "name": name, "unit": unit, "meaning": meaning, "kind": kind, "values": values }),
+        )
     };
     let given = parameters.iter().filter_map(|name| {
         let words = report.view.descriptions.get(*name).map_or(*name, String::as_str);
         column(name, name_and_unit(name).1, words, "parameter", &|row| row.parameter(name))
     });
-    let results = columns::PLAIN.iter().chain(&columns::FURTHER).filter(|own| own.column.head.name != OMEGA && own.column.head.name != MU);
+    let results = columns::PLAIN
+        .iter()
+        .chain(&columns::FURTHER)
+        .filter(|own| own.column.head.name != OMEGA && own.column.head.name != MU);
     let results = results.filter_map(|own| {
         let head = &own.column.head;
         column(&head.name, &head.unit, &head.meaning, own.group.name(), &|row| own.value(row))
@@ -99,7 +102,9 @@ fn importance(report: &Report) -> Vec<Value> {
         let bar = |indices: &super::sensitivity::Indices| {
             let index = indices.first_order.or(indices.pawn)?;
             let kind = if indices.first_order.is_some() { "first-order index" } else { "PAWN index" };
-            Some(json!({ "name": indices.name, "value": index.value, "interval": index.interval, "kind": kind }))
+            Some(
+                json!({ "name": indices.name, "value": index.value, "interval": index.interval, "kind": kind }),
+            )
         };
         let bars: Vec<Value> = own.parameters.iter().filter_map(bar).collect();
         let is_shown = own.of != REGIME && bars.len() > 1;

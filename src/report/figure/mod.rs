@@ -154,9 +154,10 @@ impl Plot {
     fn exists(self, layout: &Layout, spectra: &Spectra) -> bool {
         let has_spectrum = |group: &Group| group.jobs.iter().any(|job| spectra.contains_key(&job.row.job));
         match self {
-            Self::RegimePlane | Self::GrowthRate => {
-                layout.on_true_axes().as_ref().map_or_else(|| cells::has_true_axes(layout), cells::has_true_axes)
-            }
+            Self::RegimePlane | Self::GrowthRate => layout
+                .on_true_axes()
+                .as_ref()
+                .map_or_else(|| cells::has_true_axes(layout), cells::has_true_axes),
             Self::Waterfall => layout.groups.iter().any(has_spectrum),
             _ => true,
         }
@@ -185,13 +186,7 @@ pub struct Figure {
 
 impl Figure {
     /// The figure on sheet `number` of a layout with `of_sheet` combinations on a sheet. `title` says what it shows.
-    fn of_sheet(
-        layout: &Layout,
-        number: usize,
-        of_sheet: usize,
-        title: &str,
-        chart: Chart,
-    ) -> Self {
+    fn of_sheet(layout: &Layout, number: usize, of_sheet: usize, title: &str, chart: Chart) -> Self {
         let count = layout.groups.len();
         let first = number * of_sheet;
         let groups = first..(first + of_sheet).min(count);
@@ -204,13 +199,7 @@ impl Figure {
         Self::new(suffix, caption, groups, title, chart)
     }
 
-    fn new(
-        suffix: String,
-        caption: String,
-        groups: Range<usize>,
-        title: &str,
-        chart: Chart,
-    ) -> Self {
+    fn new(suffix: String, caption: String, groups: Range<usize>, title: &str, chart: Chart) -> Self {
         let words = [title, &caption].into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>();
         let svg = chart.svg(&words.join(", "));
         Self { suffix, caption, groups, chart, svg }
@@ -225,23 +214,13 @@ pub fn figures(rows: &[JobRow], view: &View, plot: Plot) -> Vec<Figure> {
 }
 
 /// As [`figures`], with the boundary of the linear stability of steady sliding at these points.
-pub fn figures_with(
-    rows: &[JobRow],
-    view: &View,
-    plot: Plot,
-    points: &[StabilityPoint],
-) -> Vec<Figure> {
+pub fn figures_with(rows: &[JobRow], view: &View, plot: Plot, points: &[StabilityPoint]) -> Vec<Figure> {
     figures_of(&Layout::of(rows, view), plot, &Spectra::new(), points)
 }
 
 /// The figures of a number over the other parameters of jobs that are points and no grid, one for each parameter that is a number. There
 /// are none for a grid, and none of other plots.
-pub(super) fn over_others(
-    rows: &[JobRow],
-    view: &View,
-    layout: &Layout,
-    plot: Plot,
-) -> Vec<Figure> {
+pub(super) fn over_others(rows: &[JobRow], view: &View, layout: &Layout, plot: Plot) -> Vec<Figure> {
     let scalar = match plot {
         Plot::MuStar => &MU_STAR,
         Plot::Frequency => &FREQUENCY,

@@ -26,8 +26,6 @@ pub(super) struct Place<'a> {
 pub(super) struct SeriesLook {
     pub name: String,
     pub colour: Rgb,
-    /// The position of its value on an axis of its own; none if it is no number.
-    pub y: Option<f64>,
 }
 
 /// All jobs of a group that are on the axis, by series and from left to right.
@@ -67,11 +65,9 @@ pub(super) fn x_scale(layout: &Layout) -> Scale {
 
 /// All series of a study.
 pub(super) fn series(layout: &Layout) -> Vec<SeriesLook> {
-    let y_of = y_of(layout);
     let look = |series| SeriesLook {
         name: layout.series_name(series),
         colour: colour(layout, series),
-        y: y_of(&series.value),
     };
     layout.series.iter().map(look).collect()
 }

@@ -172,7 +172,8 @@ fn data<'a>(
     count: usize,
     data: &DataFile,
 ) -> (String, Option<String>) {
-    let csv = |rows| export::selection(data.stem.clone(), rows, &parts.layouts.all.varied, &data.columns).csv();
+    let csv =
+        |rows| export::selection(data.stem.clone(), rows, &parts.layouts.all.varied, &data.columns).csv();
     (format!("{}.csv", data.stem), (count <= MAX_TIPS).then(|| csv(rows.collect::<Vec<_>>())))
 }
 

@@ -47,11 +47,10 @@ pub use plot::chart;
 pub use reference::{Chain, Direction, Reference, Target};
 pub use score::Score;
 
-use crate::publish::Folder;
-use crate::publish::PublishError;
+use crate::publish::{Folder, PublishError, html, markdown as as_markdown};
 use std::path::{Path, PathBuf};
 
-/// Writes `pareto.md`, `pareto.csv`, `refinement.csv` and one figure per case (`pareto.svg`, `pareto-2.svg`, …) into `out_dir`;
+/// Writes the page `pareto.html`, `pareto.md`, `pareto.csv`, `refinement.csv` and one figure per case (`pareto.svg`, `pareto-2.svg`, …) into `out_dir`;
 /// returns the files.
 ///
 /// # Errors
@@ -62,11 +61,14 @@ pub fn write(comparison: &Comparison, out_dir: &Path, title: &str) -> Result<Vec
     for (index, case) in comparison.cases.iter().enumerate() {
         let name = if index == 0 { "pareto.svg".to_owned() } else { format!("pareto-{}.svg", index + 1) };
         let alternative = format!("{} over solver time {}", page::figure_title(), case.caption);
-        folder.write_text(&name, &plot::chart(case).svg(alternative.trim_end()))?;
-        figures.push(name);
+        let svg = plot::chart(case).svg(alternative.trim_end());
+        folder.write_text(&name, &svg)?;
+        figures.push((name, svg));
     }
     folder.write_table(&csv::jobs(comparison))?;
     folder.write_table(&csv::refinements(comparison))?;
-    folder.write_text("pareto.md", &page::page(comparison, &figures, title))?;
-    folder.finish(|_| false)
+    let page = page::page(comparison, &figures, title);
+    folder.write_text("pareto.html", &html::of_page(&page))?;
+    folder.write_text("pareto.md", &as_markdown::of_page(&page))?;
+    folder.finish()
 }

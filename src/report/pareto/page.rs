@@ -1,4 +1,4 @@
-//! The comparison as Markdown that is readable as plain text too.
+//! The page of a comparison.
 
 use super::case::Case;
 use super::compare::Comparison;
@@ -8,72 +8,76 @@ use super::reference::{Chain, Direction, FIGURE_NAMES, FIGURES, FREQUENCY, MU_ST
 use super::refinement::{Limit, Unclean};
 use super::score::{Score, exceeds};
 use super::settings::{self, SETTINGS};
+use crate::publish::markdown;
+use crate::publish::page::{Block, Figure, Grid, Page, Section, Text};
 use crate::publish::value::{self, MISSING};
-use crate::report::markdown;
 
-/// The tables of all cases.
+/// The tables of all cases as Markdown.
 pub fn markdown(comparison: &Comparison) -> String {
-    let sections = comparison
-        .cases
-        .iter()
-        .map(|case| format!("## {}\n\n{}", markdown::escape(&case.caption), body(case)));
-    sections.chain([left_out(comparison)]).collect()
+    markdown::of_page(&Page { sections: sections(comparison, &[]), ..Page::default() })
 }
 
-/// The whole page, with the figures of all cases.
-pub(super) fn page(comparison: &Comparison, figures: &[String], title: &str) -> String {
-    let head = format!(
-        "# {}: error against run time\n\nOne line a job: [pareto.csv](pareto.csv); refinements: [refinement.csv](refinement.csv).\n\n",
-        markdown::escape(title)
-    );
-    let sections = comparison.cases.iter().zip(figures).map(|(case, figure)| {
-        let caption = markdown::escape(&case.caption);
-        format!("## {caption}\n\n![error of μ\\* against run time]({figure})\n\n{}", body(case))
-    });
-    std::iter::once(head).chain(sections).chain([left_out(comparison)]).collect()
-}
-
-fn left_out(comparison: &Comparison) -> String {
-    if comparison.left_out.is_empty() {
-        return String::new();
+/// The whole page; `figures` has the file and the drawing of each case.
+pub(super) fn page(comparison: &Comparison, figures: &[(String, String)], title: &str) -> Page {
+    let words = "One line a job: `pareto.csv`; refinements: `refinement.csv`.";
+    Page {
+        title: format!("{title}: error against run time"),
+        lead: vec![Block::text(words)],
+        sections: sections(comparison, figures),
+        ..Page::default()
     }
-    let lines: Vec<String> =
-        comparison.left_out.iter().map(|line| format!("- {}\n", markdown::escape(line))).collect();
-    format!("## Left out: fewer than two jobs done\n\n{}\n", lines.concat())
 }
 
-fn body(case: &Case) -> String {
-    let incomplete = if case.waiting + case.failed == 0 {
-        String::new()
-    } else {
-        format!(
-            "**Incomplete**: {} not done and {} failed; the reference is the finest of those that are done.\n\n",
+fn sections(comparison: &Comparison, figures: &[(String, String)]) -> Vec<Section> {
+    let section = |(number, case): (usize, &Case)| {
+        let figure = figures.get(number).map(|(file, svg)| {
+            Block::figure(Figure {
+                file: file.clone(),
+                svg: svg.clone(),
+                caption: "Error of μ* against run time.".to_owned(),
+                data: Some(("pareto.csv".to_owned(), None)),
+            })
+        });
+        let blocks = figure.into_iter().chain(body(case)).collect();
+        Section::new(format!("case-{}", number + 1), case.caption.clone(), blocks)
+    };
+    let left_out = (!comparison.left_out.is_empty()).then(|| {
+        let lines = vec![Block::list(comparison.left_out.iter().map(Text::from))];
+        Section::new("left-out", "Left out: fewer than two jobs done", lines)
+    });
+    comparison.cases.iter().enumerate().map(section).chain(left_out).collect()
+}
+
+fn body(case: &Case) -> Vec<Block> {
+    let mut blocks = Vec::new();
+    if case.waiting + case.failed > 0 {
+        let words = format!(
+            "Incomplete: {} not done and {} failed; the reference is the finest of those that are done.",
             value::count(case.waiting, "job"),
             case.failed
-        )
-    };
-    [incomplete, reference_in_words(case), jobs_table(case), LEGEND.to_owned(), early_table(case)].concat()
+        );
+        blocks.push(Block::Warning(words.into(), Vec::new()));
+    }
+    blocks.extend(reference_in_words(case));
+    blocks.extend(jobs_table(case));
+    blocks.push(Block::List(LEGEND.map(Text::marked).into()));
+    blocks.extend(early_table(case));
+    blocks
 }
 
-const LEGEND: &str = "\
-- error of μ\\* and f: relative to the reference; of the shares: the largest absolute difference\n\
-- `≤` not resolved: below standard error and uncertainty of the reference, which is what the number says\n\
-- `~` not periodic: an average over the last part of the run\n\
-- front: `t` no other job is faster (solver time) and better, `n` none has fewer node-steps and is better\n\n";
+const LEGEND: [&str; 4] = [
+    "error of μ* and f: relative to the reference; of the shares: the largest absolute difference",
+    "`≤` not resolved: below standard error and uncertainty of the reference, which is what the number says",
+    "`~` not periodic: an average over the last part of the run",
+    "front: `t` no other job is faster (solver time) and better, `n` none has fewer node-steps and is better",
+];
 
-fn reference_in_words(case: &Case) -> String {
+fn reference_in_words(case: &Case) -> [Block; 2] {
     let Reference { job, chains, targets } = &case.reference;
     let finest = &case.jobs[*job];
     let texts = settings::texts(finest.numerics);
-    let mut text = format!(
-        "Reference: {}, Δt = {:.3e} s, job {}.\n",
-        texts[0],
-        finest.record.time_step_s,
-        markdown::code(&finest.row.job)
-    );
-    for chain in chains {
-        text += &chain_in_words(chain);
-    }
+    let head = format!("Reference: {}, Δt = {:.3e} s, job ", texts[0], finest.record.time_step_s);
+    let head = Text::from(head).and(Text::code(&finest.row.job)).and(".");
     let in_words: Vec<String> = (0..FIGURES)
         .filter_map(|figure| {
             let target = targets[figure]?;
@@ -81,11 +85,11 @@ fn reference_in_words(case: &Case) -> String {
             let uncertainty = target
                 .uncertainty
                 .map_or_else(|| "uncertainty not known".to_owned(), |u| format!("± {u:.digits$}"));
-            let name = markdown::escape(FIGURE_NAMES[figure]);
-            Some(format!("{name} {:.digits$} ({uncertainty})", target.value))
+            Some(format!("{} {:.digits$} ({uncertainty})", FIGURE_NAMES[figure], target.value))
         })
         .collect();
-    text + &format!("- Taken as true: {}.\n\n", in_words.join(", "))
+    let taken = format!("Taken as true: {}.", in_words.join(", "));
+    [Block::Text(head), Block::list(chains.iter().map(chain_in_words).chain([taken]))]
 }
 
 fn chain_in_words(chain: &Chain) -> String {
@@ -98,10 +102,10 @@ fn chain_in_words(chain: &Chain) -> String {
     let limits: Vec<String> = (0..FIGURES)
         .filter_map(|figure| {
             let limit = chain.limits[figure].as_ref()?;
-            Some(format!("{} {}", markdown::escape(FIGURE_NAMES[figure]), limit_in_words(limit)))
+            Some(format!("{} {}", FIGURE_NAMES[figure], limit_in_words(limit)))
         })
         .collect();
-    format!("- Refinement of the {what} ({} {unit}): {}.\n", sizes.join(", "), limits.join("; "))
+    format!("Refinement of the {what} ({} {unit}): {}.", sizes.join(", "), limits.join("; "))
 }
 
 fn limit_in_words(limit: &Limit) -> String {
@@ -123,7 +127,7 @@ fn varying(case: &Case) -> Vec<usize> {
     (0..SETTINGS.len()).filter(|&i| texts.iter().any(|text| text[i] != texts[0][i])).collect()
 }
 
-fn jobs_table(case: &Case) -> String {
+fn jobs_table(case: &Case) -> Vec<Block> {
     let varying = varying(case);
     let mut header: Vec<String> = varying.iter().map(|&i| SETTINGS[i].head.name.to_string()).collect();
     header.extend(
@@ -149,12 +153,14 @@ fn jobs_table(case: &Case) -> String {
             .map(|i| format!("{} {}", SETTINGS[i].head.name, texts[i]))
             .collect()
     };
-    let constant = if constant.is_empty() {
-        String::new()
-    } else {
-        format!("In all jobs: {}.\n\n", markdown::escape(&constant.join(", ")))
-    };
-    format!("{constant}{}\n", markdown::table(&header, &lines, true))
+    let constant = format!("In all jobs: {}.", constant.join(", "));
+    let is_said = varying.len() < SETTINGS.len();
+    is_said.then(|| Block::Text(constant.into())).into_iter().chain([grid(&header, lines)]).collect()
+}
+
+fn grid(heads: &[String], lines: Vec<Vec<String>>) -> Block {
+    let heads: Vec<&str> = heads.iter().map(String::as_str).collect();
+    Block::Table(Grid::of(&heads, lines, "pareto.csv"))
 }
 
 fn results(job: &DoneJob, score: &Score, is_reference: bool) -> [String; 8] {
@@ -195,9 +201,9 @@ fn resolved(error: f64, resolution: f64, write: impl Fn(f64) -> String) -> Strin
     }
 }
 
-fn early_table(case: &Case) -> String {
+fn early_table(case: &Case) -> Vec<Block> {
     if case.early.is_empty() {
-        return String::new();
+        return Vec::new();
     }
     let mut shown = varying(case);
     shown.retain(|&i| SETTINGS[i].head.name != "stop early" && SETTINGS[i].head.name != "limit [s]");
@@ -216,10 +222,8 @@ fn early_table(case: &Case) -> String {
             line
         })
         .collect();
-    format!(
-        "### What stopping early changes\n\nAgainst the same job run to its limit.\n\n{}\n",
-        markdown::table(&header, &lines, true)
-    )
+    let words = "Against the same job run to its limit.";
+    vec![Block::Heading("What stopping early changes".to_owned()), Block::text(words), grid(&header, lines)]
 }
 
 fn changes(case: &Case, pair: &EarlyStop) -> [String; 6] {

@@ -31,8 +31,9 @@ fn marker(colour: Rgb, is_early: bool, is_resolved: bool) -> Marker {
 pub fn chart(case: &Case) -> Chart {
     let meshes = meshes(case);
     let solved = solved(case, &meshes);
-    let axis =
-        |values: Vec<f64>| Axis::for_values(&values.into_iter().map(Value::from).collect::<Vec<_>>(), Some(true));
+    let axis = |values: Vec<f64>| {
+        Axis::for_values(&values.into_iter().map(Value::from).collect::<Vec<_>>(), Some(true))
+    };
     let x = Scale::new("solver time of the job [s]", axis(solved.iter().map(|job| job.at.0).collect()));
     let y = Scale::new(&figure_title(), axis(solved.iter().map(|job| job.at.1).collect()));
     let mut panel = Panel::new(&case.caption, x, y);

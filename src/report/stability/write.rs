@@ -63,5 +63,5 @@ pub fn write_stability(report: &Report, out_dir: &Path) -> Result<Vec<PathBuf>, 
     };
     let has_shapes = out_dir.join(SHAPES).is_dir();
     folder.write_text(PAGE, &html::of_page(&page::of_stability(report, &analysis, &files, has_shapes)))?;
-    folder.finish(|_| false)
+    folder.finish()
 }

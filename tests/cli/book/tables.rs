@@ -34,11 +34,11 @@ pub fn assert_documented<'a>(
     let parameters: BTreeSet<&str> = names(grid).chain(names(of_jobs)).collect();
     let of_export: BTreeSet<&str> = names(columns).collect();
     assert!(of_export.contains("mu_star") && of_export.len() > 150, "{of_export:?}");
-    let section = |text| {
+    fn section(text: &str) -> Section<'_> {
         let files = text.lines().next().unwrap().split('`').skip(1).step_by(2).collect();
         let own: BTreeSet<&str> = names(text).collect();
         Section { files, own: own.clone(), unused: own }
-    };
+    }
     let mut sections: Vec<Section> = page.split("\n## ").skip(1).map(section).collect();
     let mut missing = BTreeSet::new();
     for (path, header) in tables {
