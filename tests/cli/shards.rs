@@ -29,7 +29,7 @@ fn shards_are_the_whole_study() {
     folder.ok("merge 1.db 4.db --db merged.db");
     assert_eq!(folder.ok("export study --db merged.db"), done);
     folder.ok("report study --db 1.db --out part");
-    assert!(folder.read("part/report.md").contains("2 of 2 jobs done"), "{}", folder.read("part/report.md"));
+    assert!(folder.read("part/report.md").contains("jobs done: 2 of 2"), "{}", folder.read("part/report.md"));
 }
 
 /// Protects: wrong shards and databases that cannot be merged are refused before anything is written.

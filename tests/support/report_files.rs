@@ -4,12 +4,12 @@
 pub const LIST: &str = ".tribosweep-report";
 
 /// Every file of the report of a study over ω and μ, sorted.
-pub const REPORT: [&str; 29] = [
+pub const REPORT: [&str; 27] = [
     LIST,
     "bifurcation.csv",
     "bifurcation.svg",
+    "explore.html",
     "frequency.csv",
-    "frequency.md",
     "frequency.svg",
     "frequency_map.csv",
     "frequency_map.svg",
@@ -17,11 +17,9 @@ pub const REPORT: [&str; 29] = [
     "growth_rate.svg",
     "jobs.csv",
     "mu_star.csv",
-    "mu_star.md",
     "mu_star.svg",
     "mu_star_points.csv",
     "regime.csv",
-    "regime.md",
     "regime_map.csv",
     "regime_map.svg",
     "regime_plane.svg",
