@@ -1,6 +1,5 @@
 //! Maps of equal cells: every job is in them with its values.
 
-use crate::svg::{self, Element};
 use crate::synthetic::{done, failed, partial_study, periodic, row, with};
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::publish::chart::{Axis, Cell, Chart, Layer, Sample, Tip};
@@ -22,7 +21,7 @@ pub fn only(rows: &[JobRow], plot: Plot) -> Chart {
 /// The cells of all panels.
 pub fn cells(chart: &Chart) -> Vec<&Cell> {
     let layers = chart.panels.iter().flat_map(|panel| &panel.layers);
-    let of_layer = |layer| if let Layer::Cells(cells) = layer { cells.as_slice() } else { &[] };
+    let of_layer = |layer: &Layer| if let Layer::Cells(cells) = layer { cells.as_slice() } else { &[] };
     layers.flat_map(of_layer).collect()
 }
 

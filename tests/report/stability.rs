@@ -61,12 +61,12 @@ fn charts(points: &[StabilityPoint], plot: StabilityPlot) -> Vec<Chart> {
 fn plane(rows: &[JobRow], points: &[StabilityPoint]) -> Chart {
     let all = figures_with(rows, <&View>::default(), Plot::RegimePlane, points);
     assert_eq!(all.len(), 1);
-    all.into_iter().next().chart
+    all.into_iter().next().expect("a map").chart
 }
 
 /// The lines of a panel with their pens.
 fn lines(panel: &Panel) -> Vec<(&[At], Pen)> {
-    let line = |layer| if let Layer::Line { points, pen, .. } = layer { Some((points, *pen)) } else { None };
+    let line = |layer: &Layer| if let Layer::Line { points, pen, .. } = layer { Some((points, *pen)) } else { None };
     panel.layers.iter().filter_map(line).map(|(points, pen)| (points.as_slice(), pen)).collect()
 }
 
