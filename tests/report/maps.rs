@@ -21,7 +21,9 @@ pub fn only(rows: &[JobRow], plot: Plot) -> Chart {
 /// The cells of all panels.
 pub fn cells(chart: &Chart) -> Vec<&Cell> {
     let layers = chart.panels.iter().flat_map(|panel| &panel.layers);
-    let of_layer = |layer: &Layer| if let Layer::Cells(cells) = layer { cells.as_slice() } else { &[] };
+    fn of_layer(layer: &Layer) -> &[Cell] {
+        if let Layer::Cells(cells) = layer { cells } else { &[] }
+    }
     layers.flat_map(of_layer).collect()
 }
 

@@ -66,8 +66,10 @@ fn plane(rows: &[JobRow], points: &[StabilityPoint]) -> Chart {
 
 /// The lines of a panel with their pens.
 fn lines(panel: &Panel) -> Vec<(&[At], Pen)> {
-    let line = |layer: &Layer| if let Layer::Line { points, pen, .. } = layer { Some((points, *pen)) } else { None };
-    panel.layers.iter().filter_map(line).map(|(points, pen)| (points.as_slice(), pen)).collect()
+    fn line(layer: &Layer) -> Option<(&[At], Pen)> {
+        if let Layer::Line { points, pen, .. } = layer { Some((points, *pen)) } else { None }
+    }
+    panel.layers.iter().filter_map(line).collect()
 }
 
 /// The zero lines: black, and not dashed.
@@ -78,7 +80,9 @@ fn zero_lines(chart: &Chart) -> Vec<&[At]> {
 
 /// The points of a panel.
 fn dots(panel: &Panel) -> Vec<&Point> {
-    let of_layer = |layer| if let Layer::Points(points) = layer { points.as_slice() } else { &[] };
+    fn of_layer(layer: &Layer) -> &[Point] {
+        if let Layer::Points(points) = layer { points } else { &[] }
+    }
     panel.layers.iter().flat_map(of_layer).collect()
 }
 
