@@ -1,8 +1,7 @@
 //! The table of the energies of the hysteresis loops, for the page.
 
 use super::loops::LoopEnergies;
-use super::summary::Summary;
-use super::write::SUMMARY;
+use super::summary::{SUMMARY, Summary};
 use crate::publish::page::{Block, Grid};
 use crate::publish::value::{MISSING, fixed, significant};
 

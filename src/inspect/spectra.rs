@@ -2,8 +2,9 @@
 
 use super::capture::MAX_TOTALS;
 use super::spectrum::Spectrum;
+use super::summary::SUMMARY;
 use super::tables;
-use super::write::{self, KIND, SUMMARY};
+use super::write::{self, KIND};
 use crate::analysis::{self, JobError, JobObserver, JobRecord, Moment};
 use crate::publish::{Folder, PublishError};
 use crate::spec::JobSpec;

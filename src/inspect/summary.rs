@@ -10,6 +10,9 @@ use crate::solver::interface::ContactState;
 use crate::spec::JobSpec;
 use serde::Serialize;
 
+/// The file with all numbers.
+pub(super) const SUMMARY: &str = "inspection.json";
+
 /// The numbers of an inspection.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Summary {

@@ -11,6 +11,7 @@ use crate::analysis::quantity::{DELAYED_STRESS, NODE, TOTALS, of_holder};
 use crate::analysis::sample::{NodeSample, Sample};
 use crate::publish::table::Column;
 use crate::publish::{Folder, PublishError};
+use crate::solver::interface::ContactState;
 use std::borrow::Borrow;
 use std::collections::BTreeMap;
 
@@ -193,6 +194,6 @@ const LOOPS: [Column<(String, LoopPoint)>; 7] = [
         point.clamp_n.into()
     }),
     Column::new("state", "", "contact state, for a node", |(_, point)| {
-        point.state.map(|state| state.name()).into()
+        point.state.map(ContactState::name).into()
     }),
 ];

@@ -2,7 +2,7 @@
 
 use super::inspection::Inspection;
 use super::page::PageHeader;
-use super::summary::Summary;
+use super::summary::{SUMMARY, Summary};
 use super::{fields, figures, page, tables};
 use crate::publish::{Folder, PublishError, html};
 use serde::{Deserialize, Serialize};
@@ -11,9 +11,6 @@ use std::path::{Path, PathBuf};
 
 /// The kind of a folder of an inspection, whole or of the spectrum alone.
 pub(super) const KIND: &str = "inspection";
-
-/// The file with all numbers.
-pub(super) const SUMMARY: &str = "inspection.json";
 
 /// The file name of the page, which links the other files.
 pub const PAGE: &str = "index.html";

@@ -117,14 +117,15 @@ fn waves_have_a_row_for_each_node() {
     let inspection = inspect(&coarse(), &Options::default());
     let figures = figures(&inspection);
     let [panel] = chart(&figures, "wave").panels.as_slice() else { panic!("one panel") };
-    let [start_s, end_s] = inspection.survey.windows.cycle_s;
+    let [_, end_s] = inspection.survey.windows.cycle_s;
     let mut rows: BTreeMap<u64, f64> = BTreeMap::new();
     for cell in cells(panel) {
         *rows.entry((cell.y[0] + 100.0).to_bits()).or_default() += cell.x[1] - cell.x[0];
     }
     let [_, ny, _] = coarse().scene.pin.elements;
     assert_eq!(rows.len(), ny + 1);
-    let cycle_us = (end_s - start_s) * 1e6;
+    // From the first step of the cycle on.
+    let cycle_us = (end_s - inspection.capture.face[0].time_s) * 1e6;
     // Sums of as many differences as a row has phases round.
     assert!(rows.values().all(|shown_us| (shown_us / cycle_us - 1.0).abs() < 1e-12), "{rows:?}");
     let peaks = panel

@@ -27,7 +27,7 @@ fn the_page_is_complete() {
             let script = "[...document.querySelectorAll('.scroll:has(table)')].filter(box => box.scrollWidth > box.clientWidth).length";
             assert_eq!(browser.evaluate(script), 0, "tables that are cut");
         }
-        assert_eq!(browser.evaluate("document.querySelectorAll('figure svg').length"), 10);
+        assert_eq!(browser.evaluate("document.querySelectorAll('figure > svg').length"), 10);
         assert_eq!(browser.evaluate("document.querySelector('h1').textContent"), "<b>mine</b>");
     }
     assert!(browser.complaints().is_empty(), "{:?}", browser.complaints());

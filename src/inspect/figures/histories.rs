@@ -61,8 +61,8 @@ pub fn displacements(inspection: &Inspection) -> Chart {
             let label = format!("displacement in {name}");
             panel.line(&label, thick(palette::colour(c, 3)), steps.iter().map(point).collect());
         }
-        add_velocity(&mut panel, steps, since);
         add_disk(&mut panel, observed, true);
+        add_velocity(&mut panel, steps, since);
         panel
     })
 }
@@ -88,12 +88,12 @@ pub fn phase_planes(inspection: &Inspection) -> Chart {
         let x = Scale::spanning("displacement in y [µm]", steps.iter().map(|step| point(step).0), 0.01);
         let y = Scale::spanning("velocity in y [mm/s]", steps.iter().map(|step| point(step).1), 1.0);
         let mut panel = Panel::new(&observed.node.title, x, y);
+        add_disk(&mut panel, observed, false);
         for state in STATES {
             let within =
                 |pair: &[NodeStep]| (pair[0].node.state == state).then(|| [point(&pair[0]), point(&pair[1])]);
             panel.line(state.name(), thick(colour_of(state)), joined(steps.windows(2).map(within)));
         }
-        add_disk(&mut panel, observed, false);
         panel
     })
 }
@@ -116,8 +116,8 @@ pub fn cycles(inspection: &Inspection) -> Chart {
         let mut panel = Panel::new(&observed.node.title, x, y);
         add_bands(&mut panel, &observed.phases, since);
         panel.line("normal stress", thick(palette::colour(3, 8)), stress);
-        add_velocity(&mut panel, &within, since);
         add_disk(&mut panel, observed, true);
+        add_velocity(&mut panel, &within, since);
         let named = observed.instants.map_or_else(Vec::new, |instants| instants.named());
         add_marks(&mut panel, named.into_iter().map(|(letter, at_s)| (format!("t_{letter}"), since(at_s))));
         panel

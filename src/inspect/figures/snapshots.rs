@@ -16,7 +16,7 @@ const WIDTH: f64 = 780.0;
 const ROW: f64 = 312.0;
 /// Height of the title, with space for arrows that point out of the pin.
 const TITLE: f64 = 48.0;
-const FOOT: f64 = 66.0;
+const FOOT: f64 = 106.0;
 const MARGIN: f64 = 14.0;
 const TEXT: f64 = 15.0;
 /// Outlines of the pin.
@@ -251,16 +251,18 @@ fn draw_legend(svg: &mut Svg, scales: &Scales, top: f64) {
         dot(svg, at, state, DOT);
         svg.plain((at.0 + 12.0, at.1), Anchor::Start, INK, TEXT, state.name());
     }
-    let mut scale = |x: f64, length: f64, pen: Pen, text: &str| {
-        let y = top + 44.0;
-        arrow(svg, (x, y), (x + length, y), pen);
-        svg.plain((x + length + 10.0, y), Anchor::Start, INK, TEXT, text);
-    };
-    let text = format!("velocity {:.0} mm/s", scales.speed_m_s * 1e3);
-    scale(MARGIN, scales.speed_m_s * scales.px_per_m_s, Pen::solid(INK, 1.0), &text);
-    let text = format!("contact force {:.2} N", scales.force_n);
-    let pen = Pen::solid(colour_of(ContactState::Slip), 1.5);
-    scale(0.29 * WIDTH, scales.force_n * scales.px_per_n, pen, &text);
-    let text = format!("friction, from above, {:.3} N", scales.friction_n);
-    scale(0.62 * WIDTH, scales.friction_n * scales.px_per_friction_n, Pen::solid(INK, 1.5), &text);
+    let slip = colour_of(ContactState::Slip);
+    let velocity = format!("velocity {:.0} mm/s", scales.speed_m_s * 1e3);
+    let force = format!("contact force {:.2} N", scales.force_n);
+    let friction = format!("friction, from above, {:.3} N", scales.friction_n);
+    let lines = [
+        (scales.speed_m_s * scales.px_per_m_s, Pen::solid(INK, 1.0), velocity),
+        (scales.force_n * scales.px_per_n, Pen::solid(slip, 1.5), force),
+        (scales.friction_n * scales.px_per_friction_n, Pen::solid(INK, 1.5), friction),
+    ];
+    for (number, (length, pen, text)) in lines.into_iter().enumerate() {
+        let y = top + 40.0 + 24.0 * number as f64;
+        arrow(svg, (MARGIN, y), (MARGIN + length, y), pen);
+        svg.plain((MARGIN + length + 10.0, y), Anchor::Start, INK, TEXT, &text);
+    }
 }

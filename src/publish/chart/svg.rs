@@ -147,19 +147,22 @@ impl Svg {
         let _ = writeln!(self.body, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\"{paint}/>");
     }
 
-    /// Draws an arrow along straight lines; its head is at the last point, and not longer than 0.4 of the last line.
+    /// Draws an arrow along straight lines; its head is at the last point, and not longer than 0.4 of all lines.
     pub fn arrow(&mut self, corners: &[At], pen: Pen) {
         self.lines(corners, pen);
         if let [.., before, tip] = corners {
-            self.head(*before, *tip, pen.colour);
+            let length =
+                corners.windows(2).map(|pair| (pair[1].0 - pair[0].0).hypot(pair[1].1 - pair[0].1)).sum();
+            self.head(*before, *tip, length, pen.colour);
         }
     }
 
-    fn head(&mut self, from: At, tip: At, colour: Rgb) {
+    /// The head of an arrow of a length \[px\], which comes from the direction of `from`.
+    fn head(&mut self, from: At, tip: At, arrow: f64, colour: Rgb) {
         let (dx, dy) = (tip.0 - from.0, tip.1 - from.1);
         let length = dx.hypot(dy);
         if length > 0.0 {
-            let head = HEAD.min(0.4 * length.max(2.0));
+            let head = HEAD.min(0.4 * arrow.max(2.0));
             let (ux, uy) = (dx / length * head, dy / length * head);
             let corner = |side: f64| (tip.0 - ux - side * uy, tip.1 - uy + side * ux);
             self.polygon(&[tip, corner(0.4), corner(-0.4)], (colour, 1.0), None);
@@ -169,8 +172,9 @@ impl Svg {
     /// Draws a dimension: a line with a head at both ends, and its text beside it.
     pub fn dimension(&mut self, from: At, to: At, colour: Rgb, text: &str, at: (At, Anchor)) {
         self.lines(&[from, to], Pen::solid(colour, 1.2));
-        self.head(from, to, colour);
-        self.head(to, from, colour);
+        let length = (to.0 - from.0).hypot(to.1 - from.1);
+        self.head(from, to, length, colour);
+        self.head(to, from, length, colour);
         self.text(at.0, at.1, colour, text);
     }
 
