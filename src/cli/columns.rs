@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::output::{print, terminal_width};
 use crate::exit;
 use crate::publish::table::{FileColumns, Head, listed};
-use crate::report::columns::{self, ExportColumn};
+use crate::report::{self, columns::ExportColumn};
 use crate::sweep::{self, ExportColumns};
 use serde_json::{Value, json};
 
@@ -38,7 +38,7 @@ pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
 
 /// What the other tables have.
 fn files() -> impl Iterator<Item = FileColumns> {
-    columns::of_files().into_iter().chain([sweep::columns_of_history()])
+    report::columns_of_files().into_iter().chain([sweep::columns_of_history()])
 }
 
 fn as_json(own: &ExportColumn) -> Value {

@@ -17,6 +17,7 @@ mod accuracy;
 pub mod columns;
 mod comparison;
 mod comparison_files;
+mod described;
 mod digits;
 mod dimension;
 mod discretisation;
@@ -51,6 +52,7 @@ mod view;
 mod windows;
 mod words;
 
+pub use described::columns_of_files;
 pub use discretisation::{Discretisation, MeshError};
 pub use files::{Written, write, write_compared};
 pub use growth::{Basin, BranchPoint, Crossing, Endpoint, Findings, Minimum, basins};

@@ -9,8 +9,8 @@ use tribosweep::analysis::{
     Obstacle, Outcome, Regime, SlidingStability,
 };
 use tribosweep::publish::table::Head;
-use tribosweep::report::columns::{ExportColumn, all, of_files, plain};
-use tribosweep::report::{RowState, SCALARS, name_and_unit};
+use tribosweep::report::columns::{ExportColumn, all, plain};
+use tribosweep::report::{RowState, SCALARS, columns_of_files, name_and_unit};
 
 /// A record in which every optional figure is present.
 fn full(obstacle: Obstacle) -> JobRecord {
@@ -185,7 +185,7 @@ fn inputs_are_in_their_columns() {
 /// meaning.
 #[test]
 fn other_tables_are_described() {
-    let files = of_files();
+    let files = columns_of_files();
     let names: Vec<&String> = files.iter().flat_map(|own| &own.files).collect();
     assert_eq!(names.iter().collect::<BTreeSet<_>>().len(), names.len(), "{names:?}");
     for own in &files {

@@ -21,6 +21,14 @@ struct Section<'a> {
     unused: BTreeSet<&'a str>,
 }
 
+impl<'a> Section<'a> {
+    fn of(text: &'a str) -> Self {
+        let files = text.lines().next().unwrap().split('`').skip(1).step_by(2).collect();
+        let own: BTreeSet<&str> = names(text).collect();
+        Self { files, unused: own.clone(), own }
+    }
+}
+
 /// Asserts that each column of each table is in the section of its file, or is a parameter; and that the page has no other column. Tables
 /// without a section have columns of the export.
 pub fn assert_documented<'a>(
@@ -34,12 +42,7 @@ pub fn assert_documented<'a>(
     let parameters: BTreeSet<&str> = names(grid).chain(names(of_jobs)).collect();
     let of_export: BTreeSet<&str> = names(columns).collect();
     assert!(of_export.contains("mu_star") && of_export.len() > 150, "{of_export:?}");
-    fn section(text: &str) -> Section<'_> {
-        let files = text.lines().next().unwrap().split('`').skip(1).step_by(2).collect();
-        let own: BTreeSet<&str> = names(text).collect();
-        Section { files, own: own.clone(), unused: own }
-    }
-    let mut sections: Vec<Section> = page.split("\n## ").skip(1).map(section).collect();
+    let mut sections: Vec<Section> = page.split("\n## ").skip(1).map(Section::of).collect();
     let mut missing = BTreeSet::new();
     for (path, header) in tables {
         let file = path.rsplit('/').next().unwrap();
@@ -58,9 +61,9 @@ pub fn assert_documented<'a>(
             section.unused.retain(|name| !is_used(name));
             unknown.retain(|name| !section.own.contains(name));
         }
-        let is_parameter = |name: &str| parameters.contains(name.strip_prefix("parameter_").unwrap_or(name));
-        let is_known = |name: &str| is_parameter(name) || is_of_export && of_export.contains(name);
-        missing.extend(unknown.iter().filter(|name| !is_known(name)).map(|name| format!("{file}: {name}")));
+        unknown.retain(|name| !parameters.contains(name.strip_prefix("parameter_").unwrap_or(name)));
+        unknown.retain(|name| !(is_of_export && of_export.contains(name)));
+        missing.extend(unknown.iter().map(|name| format!("{file}: {name}")));
     }
     assert!(missing.is_empty(), "docs/tables.md does not have {missing:?}");
     let unused = sections.iter().filter(|section| !section.unused.is_empty());
