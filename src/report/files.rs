@@ -97,8 +97,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let mut drawn: Vec<(Plot, Vec<Figure>)> = Vec::new();
     for (plot, figures) in figures {
         let mut figures = figures.map_err(|source| cannot_draw(out_dir, plot.stem(), source))?;
-        let over_others = figure::over_others(rows, view, layouts.of(plot), plot);
-        figures.extend(over_others.map_err(|source| cannot_draw(out_dir, plot.stem(), source))?);
+        figures.extend(figure::over_others(rows, view, layouts.of(plot), plot));
         for figure in &figures {
             let file = format!("{}{}.svg", plot.stem(), figure.suffix);
             folder.write_text(&file, &figure.svg)?;

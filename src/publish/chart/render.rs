@@ -75,6 +75,7 @@ struct Plot {
 }
 
 /// What a panel shows of its axes, because its neighbours do not.
+#[expect(clippy::struct_excessive_bools, reason = "each of both axes has ticks and a name, or not")]
 #[derive(Debug, Clone, Copy)]
 struct Labels {
     x_ticks: bool,
@@ -163,7 +164,7 @@ impl<'a> Layout<'a> {
         let left = |number: usize| {
             let (panel, labels) = (&chart.panels[number], labels[number]);
             let ticks = if labels.y_ticks { TICK + 5.0 + ticks_width(&panel.y, text) } else { 0.0 };
-            let has_name = labels.y_name || common[1] && number % columns == 0;
+            let has_name = labels.y_name || common[1] && number.is_multiple_of(columns);
             ticks + if has_name { text + 12.0 } else { 0.0 }
         };
         let of_column = |column: usize, room: &dyn Fn(usize) -> f64| {
@@ -439,7 +440,7 @@ impl Plot {
 fn labels(chart: &Chart, columns: usize, number: usize) -> Labels {
     let panel = &chart.panels[number];
     let below = chart.panels.get(number + columns);
-    let before = (number % columns > 0).then(|| &chart.panels[number - 1]);
+    let before = (!number.is_multiple_of(columns)).then(|| &chart.panels[number - 1]);
     let shares_x = below.is_some_and(|below| below.x == panel.x);
     // A title between two panels would separate the ticks from the upper one.
     let is_joined = shares_x && below.is_some_and(|below| below.title.is_empty() || columns > 1);

@@ -261,17 +261,12 @@ pub fn figures(rows: &[JobRow], view: &View, plot: Plot) -> Result<Vec<Figure>, 
 
 /// The figures of a number over the other parameters of jobs that are points and no grid, one for each parameter that is a number. There
 /// are none for a grid, and none of other plots.
-pub(super) fn over_others(
-    rows: &[JobRow],
-    view: &View,
-    layout: &Layout,
-    plot: Plot,
-) -> Result<Vec<Figure>, FigureError> {
+pub(super) fn over_others(rows: &[JobRow], view: &View, layout: &Layout, plot: Plot) -> Vec<Figure> {
     let scalar = match plot {
         Plot::MuStar => &MU_STAR,
         Plot::Frequency => &FREQUENCY,
         Plot::Of(scalar) => scalar,
-        _ => return Ok(Vec::new()),
+        _ => return Vec::new(),
     };
     let is_number = |name: &&&str| rows.iter().any(|row| row.parameter(name).is_number());
     let draw = |name: &&str| {
@@ -280,7 +275,7 @@ pub(super) fn over_others(
         let caption = format!("over {}", own.axis_name());
         Figure::new(format!("-over-{name}"), caption, 0..1, &plot.title(), chart)
     };
-    Ok(layout.scattered.iter().filter(is_number).map(draw).collect())
+    layout.scattered.iter().filter(is_number).map(draw).collect()
 }
 
 /// The chart without tooltips, if they would make its file too large.
