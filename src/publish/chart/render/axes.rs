@@ -1,10 +1,20 @@
 //! Axes: ticks, their labels, and names.
 
 use super::marks::Plot;
-use super::{Labels, TICK, tick_width, ticks_width, width_of};
+use super::measures::{TICK, tick_width, ticks_width, width_of};
 use crate::publish::chart::palette::{GREY, GRID, INK};
 use crate::publish::chart::svg::{Anchor, At, Pen, Svg};
 use crate::publish::chart::{Axis, Panel, Scale};
+
+/// What a panel shows of its axes, because its neighbours do not.
+#[expect(clippy::struct_excessive_bools, reason = "each of both axes has ticks and a name, or not")]
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Labels {
+    pub x_ticks: bool,
+    pub x_name: bool,
+    pub y_ticks: bool,
+    pub y_name: bool,
+}
 
 /// Draws both axes of a panel with their ticks, and a second ordinate. `is_alone` says that no panel stands beside it.
 pub(super) fn draw(svg: &mut Svg, panel: &Panel, plot: Plot, labels: Labels, text: f64, is_alone: bool) {

@@ -1,7 +1,7 @@
 //! Legends and colour scales.
 
 use super::marks::{draw_marker, is_outside};
-use super::{LEGEND, SMALL, TEXT, width_of, wrapped};
+use super::measures::{LEGEND, SMALL, TEXT, width_of, wrapped};
 use crate::publish::chart::palette::{self, GREY, INK};
 use crate::publish::chart::svg::{Anchor, At, Pen, Svg};
 use crate::publish::chart::{Chart, ColourScale, Entry, Layer, Marker, Panel, Sample, Shape};

@@ -6,75 +6,17 @@
 mod axes;
 mod legend;
 mod marks;
+mod measures;
 
 use super::palette::{GREY, INK};
 use super::svg::{Anchor, At, Pen, Svg};
-use super::{Chart, Layer, Panel, Scale};
+use super::{Chart, Layer, Panel};
+use axes::Labels;
 use legend::{
     COLOURS, draw_colours, draw_entries, entries_height, entries_of, legend_entries, legend_width, pitch,
 };
 use marks::{Plot, draw_cell_signs, draw_ground, draw_marks, draw_point};
-
-/// Width of a drawing.
-const WIDTH: f64 = 780.0;
-/// Space around everything.
-const MARGIN: f64 = 10.0;
-/// Space between neighbouring panels.
-const GAP: f64 = 14.0;
-/// Size of text, where panels are large and where they are small.
-const TEXT: f64 = 15.0;
-const SMALL: f64 = 12.5;
-/// Width of a character relative to the size of the text; a little more than the mean of the usual fonts.
-const CHARACTER: f64 = 0.54;
-/// The same of a label of a tick, because digits are wider than other characters.
-const DIGIT: f64 = 0.6;
-/// Length of a tick.
-const TICK: f64 = 5.0;
-/// Smallest and largest width of the legend.
-const LEGEND: [f64; 2] = [90.0, 235.0];
-/// Height of a row of labels on top of vertical lines. There are two rows, because the lines may be close to each other.
-const MARK_ROW: f64 = 17.0;
-
-fn width_of(text: &str, size: f64) -> f64 {
-    text.chars().count() as f64 * size * CHARACTER
-}
-
-fn tick_width(label: &str, size: f64) -> f64 {
-    label.chars().count() as f64 * size * DIGIT
-}
-
-/// The largest width of the labels of a scale.
-fn ticks_width(scale: &Scale, size: f64) -> f64 {
-    scale.labelled_ticks().iter().map(|(_, label)| tick_width(label, size)).fold(0.0, f64::max)
-}
-
-/// Words in lines that are not wider than `room`.
-fn wrapped(text: &str, size: f64, room: f64) -> Vec<String> {
-    let mut lines: Vec<String> = Vec::new();
-    for given in text.split('\n') {
-        let mut line = String::new();
-        for word in given.split(' ') {
-            let longer = if line.is_empty() { word.to_owned() } else { format!("{line} {word}") };
-            if line.is_empty() || width_of(&longer, size) <= room {
-                line = longer;
-            } else {
-                lines.push(std::mem::replace(&mut line, word.to_owned()));
-            }
-        }
-        lines.push(line);
-    }
-    lines
-}
-
-/// What a panel shows of its axes, because its neighbours do not.
-#[expect(clippy::struct_excessive_bools, reason = "each of both axes has ticks and a name, or not")]
-#[derive(Debug, Clone, Copy)]
-struct Labels {
-    x_ticks: bool,
-    x_name: bool,
-    y_ticks: bool,
-    y_name: bool,
-}
+use measures::{CHARACTER, GAP, LEGEND, MARGIN, MARK_ROW, SMALL, TEXT, TICK, WIDTH, ticks_width, wrapped};
 
 struct Layout<'a> {
     chart: &'a Chart,
@@ -303,7 +245,7 @@ fn common_names(chart: &Chart, columns: usize) -> [bool; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Guide, Marker, Point, Rgb, Shape, Tip};
+    use super::super::{Guide, Marker, Point, Rgb, Scale, Shape, Tip};
     use super::*;
 
     fn panel() -> Panel {
