@@ -48,8 +48,7 @@ fn any_parameter_can_be_an_axis() {
     // A name that no job has is ignored.
     assert_eq!(heads(&rows, &view(Some("load_n"), Some("omega_rpm"))), heads(&rows, &View::default()));
     for (x, by) in [("mu", "omega_rpm"), ("young_modulus_pa", "mu"), ("omega_rpm", "young_modulus_pa")] {
-        let all =
-            figures(&rows, &view(Some(x), Some(by)), Plot::RegimeMap);
+        let all = figures(&rows, &view(Some(x), Some(by)), Plot::RegimeMap);
         let cells: usize = all.iter().map(|figure| figure.svg.matches("data-job").count()).sum();
         assert_eq!(cells, rows.len(), "{x} {by}");
     }

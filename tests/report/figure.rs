@@ -73,7 +73,9 @@ fn only_laws_with_one_coefficient_have_its_line() {
     }
     let levels: Vec<f64> = guides(&panel(&rows, Plot::MuStar)).iter().map(|guide| guide.at).collect();
     assert_eq!(levels, [0.2, 0.4]);
-    rows.iter_mut().for_each(|row| row.has_one_mu = false);
+    for row in &mut rows {
+        row.has_one_mu = false;
+    }
     let chart = only(&rows, Plot::MuStar);
     assert!(guides(&chart.panels[0]).is_empty() && !texts(&chart.legend).contains(&"μ* = μ"));
 }

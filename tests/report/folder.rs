@@ -54,7 +54,12 @@ fn an_existing_folder_is_updated() {
 #[test]
 fn the_page_says_what_is_missing_and_why() {
     let page = page(&partial_study());
-    assert!(page.contains("- jobs done: 14 of 18 (7 periodic, 6 decayed, 1 not periodic)\n- failed: 1\n- missing: 3"), "{page}");
+    assert!(
+        page.contains(
+            "- jobs done: 14 of 18 (7 periodic, 6 decayed, 1 not periodic)\n- failed: 1\n- missing: 3"
+        ),
+        "{page}"
+    );
     assert!(page.contains("This report is incomplete"));
     let below = |heading: &str| {
         let section = page.split_once(heading).unwrap_or_else(|| panic!("no {heading}")).1;

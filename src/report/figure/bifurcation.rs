@@ -130,7 +130,7 @@ impl Kind {
             Axis::Names(Vec::new())
         };
         let mut panel = Panel::new("", x.clone(), Scale::new(self.label, axis).without_grid());
-        panel.note = "no results yet".to_owned();
+        panel.note = "no results yet".into();
         if low > high {
             return panel;
         }

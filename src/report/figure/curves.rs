@@ -33,6 +33,9 @@ const COVERS: [f64; 2] = [0.22, 0.11];
 /// Half the width of the band of a single point, relative to the plot.
 const HALF_BAND: f64 = 0.008;
 
+/// The friction coefficients with a line μ\* = μ, and its colour.
+type Guides = Vec<(f64, Rgb)>;
+
 /// How the results of a source are drawn: lines of a study, marks of measured points.
 #[derive(Clone, Copy)]
 enum Source {
@@ -63,16 +66,17 @@ pub(super) fn draw(layout: &Layout, groups: &[Group], scalar: &Scalar) -> Chart 
         counted.iter().filter_map(|place| scalar.value(place.row)).map(f64::abs).fold(0.0, f64::max);
     let (per_unit, unit) = value::multiple(scalar.unit(), largest);
     let frame = Frame { layout, scalar, x, per_unit, radius: radius(&results) };
-    let guides: Vec<Vec<(f64, Rgb)>> = groups.iter().map(|group| frame.guides(group)).collect();
+    let guides: Vec<Guides> = groups.iter().map(|group| frame.guides(group)).collect();
     let label = if unit.is_empty() { scalar.title() } else { format!("{} [{unit}]", scalar.meaning) };
     let y = Scale::new(&label, frame.y_axis(&counted, guides.iter().flatten().map(|guide| guide.0)));
     // The guide lines are horizontal; lines of a grid could be taken for them.
     let y = if scalar == *MU_STAR { y.without_grid() } else { y };
-    let panel = |((group, results), guides): ((&Group, &Vec<Place>), &Vec<(f64, Rgb)>)| {
-        let empty = Panel::new(&group.caption(), frame.x.clone(), y.clone());
-        Panel { layers: frame.layers(results, guides), note: note(scalar).to_owned(), ..empty }
+    let panel = |(group, (results, guides)): (&Group, (&Vec<Place>, &Guides))| {
+        let layers = frame.layers(results, guides);
+        let note = note(scalar).to_owned();
+        Panel { layers, note, ..Panel::new(&group.caption(), frame.x.clone(), y.clone()) }
     };
-    let panels = groups.iter().zip(&results).zip(&guides).map(panel).collect();
+    let panels = groups.iter().zip(results.iter().zip(&guides)).map(panel).collect();
     let all: Vec<Place> = results.iter().flatten().copied().collect();
     Chart { panels, legend: frame.legend(&all, guides.iter().any(|own| !own.is_empty())), ..Chart::default() }
 }
@@ -161,7 +165,7 @@ impl Frame<'_> {
 
     /// The friction coefficients at which a panel has a line μ\* = μ, each with its colour. There is none where a law has other
     /// coefficients too, and none if the curves have several coefficients but are not curves of a coefficient.
-    fn guides(&self, group: &Group) -> Vec<(f64, Rgb)> {
+    fn guides(&self, group: &Group) -> Guides {
         if self.scalar != *MU_STAR {
             return Vec::new();
         }
@@ -174,8 +178,7 @@ impl Frame<'_> {
                 let mu = series.value.as_f64().filter(|_| has_one_mu(Some(number)))?;
                 Some((mu, places::colour(self.layout, series)))
             };
-            let mut guides: Vec<(f64, Rgb)> =
-                self.layout.series.iter().enumerate().filter_map(guide).collect();
+            let mut guides: Guides = self.layout.series.iter().enumerate().filter_map(guide).collect();
             guides.dedup_by(|a, b| a.0.to_bits() == b.0.to_bits());
             return guides;
         }

@@ -65,10 +65,7 @@ pub(super) fn x_scale(layout: &Layout) -> Scale {
 
 /// All series of a study.
 pub(super) fn series(layout: &Layout) -> Vec<SeriesLook> {
-    let look = |series| SeriesLook {
-        name: layout.series_name(series),
-        colour: colour(layout, series),
-    };
+    let look = |series| SeriesLook { name: layout.series_name(series), colour: colour(layout, series) };
     layout.series.iter().map(look).collect()
 }
 
@@ -78,16 +75,6 @@ pub(super) fn colour(layout: &Layout, series: &Series) -> Rgb {
         layout.series.iter().filter(|series| !series.value.is_null()).map(|series| series.value_index);
     let count = known.max().map_or(1, |last| last + 1);
     if series.value.is_null() { palette::INK } else { palette::colour(series.value_index, count) }
-}
-
-/// The position of a value of the parameter that has colours, on an axis of its own; none if it is no number.
-pub(super) fn y_of(layout: &Layout) -> impl Fn(&Value) -> Option<f64> {
-    let dimension = layout.dimension(layout.by);
-    let axis = dimension.axis(false);
-    move |value| match axis {
-        Axis::Names(_) => None,
-        _ => dimension.position(&axis, value),
-    }
 }
 
 /// Name and unit of the parameter that has colours.

@@ -51,7 +51,7 @@ pub(in crate::report) fn draw(rows: &[JobRow]) -> Chart {
     let residuals: Vec<Value> = points.iter().map(|point| point.at.1.into()).collect();
     let x = Scale::new("job, in the order of the study", Axis::spanning(1.0, rows.len().max(1) as f64, 1.0));
     let mut panel = Panel::new("", x, Scale::new("residual", Axis::for_values(&residuals, Some(true))));
-    panel.note = "no results yet".to_owned();
+    panel.note = "no results yet".into();
     if !points.is_empty() {
         panel.layers.push(Layer::Points(points));
     }

@@ -37,7 +37,7 @@ pub fn chart(case: &Case) -> Chart {
     let x = Scale::new("solver time of the job [s]", axis(solved.iter().map(|job| job.at.0).collect()));
     let y = Scale::new(&figure_title(), axis(solved.iter().map(|job| job.at.1).collect()));
     let mut panel = Panel::new(&case.caption, x, y);
-    panel.note = "no job has both a run time and an error above zero".to_owned();
+    panel.note = "no job has both a run time and an error above zero".into();
     let ways = ways(&solved);
     let pens: Vec<Pen> =
         FRONTS.iter().cycle().take(ways.len()).map(|colour| Pen::dashed(*colour, 1.5)).collect();
