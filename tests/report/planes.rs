@@ -1,32 +1,12 @@
 //! The maps on true axes: every job is at its values.
 
 use crate::maps;
-use crate::svg::{self, Element};
 use crate::synthetic::{done, partial_study, periodic, record, report, row, with};
 use std::fs;
 use tribosweep::analysis::{Outcome, Regime};
 use tribosweep::publish::chart::{Axis, Scale};
 use tribosweep::report::figure::{Plot, figures};
 use tribosweep::report::{JobRow, RowState, View, write};
-
-fn only(rows: &[JobRow], plot: Plot) -> Vec<Element> {
-    let mut all = figures(rows, &View::default(), plot);
-    assert_eq!(all.len(), 1);
-    svg::parse(&all.remove(0).svg)
-}
-
-fn number(element: &Element, name: &str) -> f64 {
-    element.attribute(name).expect(name).parse().expect("a number")
-}
-
-/// The shapes that have tooltips of a job.
-fn targets<'a>(elements: &'a [Element], job: &str) -> Vec<&'a Element> {
-    elements.iter().filter(|element| element.is("data-job", job)).collect()
-}
-
-fn texts(elements: &[Element]) -> Vec<&str> {
-    elements.iter().filter(|element| element.name == "text").map(|element| element.text.as_str()).collect()
-}
 
 /// Protects: cells of the map of regimes end half-way to their neighbours, on the axis of speeds in the logarithm, so that
 /// their sizes are those of the grid and not equal. A dot is at the place of the job, and ticks are at the jobs' values.
