@@ -6,7 +6,9 @@ use std::fmt::Write;
 /// Blocks below one another.
 pub fn of_blocks(blocks: &[Block]) -> String {
     let mut text = String::new();
-    blocks.iter().for_each(|block| write_block(&mut text, block));
+    for block in blocks {
+        write_block(&mut text, block);
+    }
     text
 }
 
@@ -61,7 +63,9 @@ fn write_block(out: &mut String, block: &Block) {
         }
         Block::Fold(summary, blocks) => {
             let _ = write!(out, "{}:\n\n", escape(summary));
-            blocks.iter().for_each(|block| write_block(out, block));
+            for block in blocks {
+                write_block(out, block);
+            }
         }
         Block::Code(text) => {
             // A fence that the text does not have.
@@ -140,8 +144,6 @@ pub fn escape(text: &str) -> String {
     if text.bytes().all(|c| c.is_ascii_alphanumeric() || matches!(c, b'.' | b'_' | b'~' | b'-' | b' ')) {
         return text.to_owned();
     }
-    let is_spaced = |at: fn(&str, char) -> bool| at(text, ' ');
-    let [before, after] = [is_spaced(|t, c| t.starts_with(c)), is_spaced(|t, c| t.ends_with(c))];
     let line = one_line(text)
         .replace('\\', "\\\\")
         .replace('|', "\\|")
@@ -149,7 +151,11 @@ pub fn escape(text: &str) -> String {
         .replace('*', "\\*")
         .replace('`', "\\`");
     // Words beside another span keep their distance from it.
-    format!("{}{line}{}", if before { " " } else { "" }, if after { " " } else { "" })
+    format!(
+        "{}{line}{}",
+        if text.starts_with(' ') { " " } else { "" },
+        if text.ends_with(' ') { " " } else { "" }
+    )
 }
 
 /// Text as a span of code.

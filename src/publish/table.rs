@@ -257,7 +257,8 @@ fn broken(words: &str, width: usize, indent: usize) -> String {
     for (number, word) in words.split(' ').enumerate() {
         let length = word.chars().count();
         if number > 0 && used + 1 + length > width {
-            text += &format!("\n{}", " ".repeat(indent));
+            text.push('\n');
+            text += &" ".repeat(indent);
             used = 0;
         } else if number > 0 {
             text.push(' ');

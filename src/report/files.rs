@@ -49,7 +49,6 @@ pub struct Written {
 ///
 /// # Errors
 /// As [`write`](fn@write).
-#[expect(clippy::too_many_lines, reason = "one file after the other")]
 pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, PublishError> {
     let mut folder = Folder::create(out_dir, "report")?;
     let (given, shown) = (report, thinned(report.rows));

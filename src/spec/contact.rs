@@ -150,7 +150,7 @@ impl Contact {
         match self.mu_static {
             Some(mu) => _ = found.within("scene.contact.mu_static", mu),
             None if uses("mu_static") => {
-                missing(found, "scene.contact.mu_static", "a friction coefficient >= 0")
+                missing(found, "scene.contact.mu_static", "a friction coefficient >= 0");
             }
             None => {}
         }

@@ -138,7 +138,7 @@ impl Study {
         let mut values: Vec<_> = axis.values.iter().map(Value::to_string).collect();
         let mut message = "expected one value for a single job".to_owned();
         if values.len() > MAX_LISTED {
-            message += &format!(", of {}", values.len());
+            message = format!("{message}, of {}", values.len());
             values.splice(LISTED_OF_MORE..values.len() - 1, ["…".to_owned()]);
         }
         let name = axis.parameter.name;

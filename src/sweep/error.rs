@@ -138,13 +138,13 @@ fn at(point: &str, jobs: usize, of: usize) -> String {
 }
 
 /// A value that looks like another unit is the likely reason, so that it comes before what follows from it.
-fn is_cause(doubt: &&Warning) -> bool {
+fn is_cause(doubt: &Warning) -> bool {
     doubt.kind == "unit"
 }
 
 /// A line for each likely reason.
 fn causes(doubts: &[Warning]) -> String {
-    doubts.iter().filter(is_cause).map(|cause| cause.to_string() + "\n").collect()
+    doubts.iter().filter(|doubt| is_cause(doubt)).map(|cause| cause.to_string() + "\n").collect()
 }
 
 /// A line for each other warning.

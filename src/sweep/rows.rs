@@ -99,7 +99,7 @@ pub async fn for_each_row(
 pub async fn for_each_row_with_inputs(
     queue: &mut Queue,
     study: &str,
-    mut visit: impl FnMut(JobRow) -> Result<(), SweepError>,
+    visit: impl FnMut(JobRow) -> Result<(), SweepError>,
 ) -> Result<(), SweepError> {
     let mut visited = Ok(());
     let convert = |row: &StudyRow| {
@@ -114,7 +114,7 @@ pub async fn for_each_row_with_inputs(
         };
         Ok(own)
     };
-    let visit_page = page_visitor(&mut visited, convert, |row| visit(row));
+    let visit_page = page_visitor(&mut visited, convert, visit);
     queue.each_page_with_payloads(study, Rows::All, visit_page).await?;
     visited
 }

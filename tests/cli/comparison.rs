@@ -47,7 +47,7 @@ fn points_without_a_counterpart_are_said_at_once() {
     folder.ok("run first.json");
     for (points, is_said) in [("50,0.2,0.19\n70,0.2,0.18\n", true), ("50,0.2,0.19\n2,0.2,0.18\n", false)] {
         folder.write("rig.csv", &format!("omega_rpm,mu,mu_star\n{points}"));
-        let messages = stderr(&folder.command("report first --data rig.csv").assert().code(0)).to_owned();
+        let messages = stderr(&folder.command("report first --data rig.csv").assert().code(0));
         let warning = "warning: no point of rig is at the parameters of a job of first";
         assert_eq!(messages.contains(warning), is_said, "{messages}");
     }

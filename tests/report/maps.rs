@@ -20,10 +20,10 @@ pub fn only(rows: &[JobRow], plot: Plot) -> Chart {
 
 /// The cells of all panels.
 pub fn cells(chart: &Chart) -> Vec<&Cell> {
-    let layers = chart.panels.iter().flat_map(|panel| &panel.layers);
     fn of_layer(layer: &Layer) -> &[Cell] {
         if let Layer::Cells(cells) = layer { cells } else { &[] }
     }
+    let layers = chart.panels.iter().flat_map(|panel| &panel.layers);
     layers.flat_map(of_layer).collect()
 }
 

@@ -401,7 +401,9 @@ fn both_modes_that_lock_in_have_a_colour() {
     let chart = charts(&coupled(), StabilityPlot::LockIn).remove(0);
     let across = chart.columns;
     assert_eq!((across, chart.panels.len()), (2, 8));
-    for (number, panel) in chart.panels.iter().enumerate().filter(|(number, _)| number / across % 2 == 0) {
+    for (number, panel) in
+        chart.panels.iter().enumerate().filter(|(number, _)| (number / across).is_multiple_of(2))
+    {
         let pens: Vec<Pen> = lines(panel).into_iter().map(|(_, pen)| pen).collect();
         let (dashed, others): (Vec<Pen>, Vec<Pen>) = pens.iter().partition(|pen| pen.dash.0 > 0.0);
         assert_eq!((pens.len(), dashed.len()), (3, 1), "panel {number}");

@@ -19,7 +19,7 @@ const COEFFICIENTS: [Coefficient; 4] = [
 /// The coefficients of some jobs that are not used by the law of any of `all` jobs, with the number of jobs that have each of them and the
 /// index of the first.
 fn unused<'a>(
-    jobs: impl Iterator<Item = &'a JobSpec> + Clone,
+    jobs: &(impl Iterator<Item = &'a JobSpec> + Clone),
     all: impl Iterator<Item = &'a JobSpec>,
 ) -> Vec<(Doubt, usize, usize)> {
     let mut laws: Vec<FrictionLaw> = Vec::new();
@@ -58,14 +58,14 @@ fn unused<'a>(
 impl Study {
     /// The coefficients of friction that the study gives and none of its jobs uses. A grid over laws may have what one of them uses.
     pub(super) fn unused(&self) -> Vec<Warning> {
-        let found = unused(self.specs.iter(), self.specs.iter()).into_iter();
+        let found = unused(&self.specs.iter(), self.specs.iter()).into_iter();
         found.map(|(doubt, jobs, first)| self.warning(&Shared { doubt, worst: first, first, jobs })).collect()
     }
 
     /// What is doubtful about one job that was made of the study.
     pub fn warnings_of(&self, job: &JobSpec) -> Vec<Warning> {
         let own = std::iter::once(job);
-        let unused = unused(own.clone(), own.chain(&self.specs)).into_iter();
+        let unused = unused(&own.clone(), own.chain(&self.specs)).into_iter();
         job_warnings(job).into_iter().chain(unused.map(|(doubt, ..)| doubt.of_job(job))).collect()
     }
 }

@@ -301,7 +301,7 @@ mod tests {
         let texts = |other: Scale| {
             let panels = vec![panel(), panel(), panel(), Panel { y: other, ..panel() }];
             let svg = Chart { panels, ..Chart::default() }.svg("");
-            ["velocity [mm/s]", "time", ">−200<"].map(|text| count(&svg, &format!("{text}")))
+            ["velocity [mm/s]", "time", ">−200<"].map(|text| count(&svg, text))
         };
         assert_eq!(texts(panel().y), [1, 1, 2]);
         assert_eq!(texts(Scale::from_to("velocity [mm/s]", -300.0, 250.0)), [1, 1, 3]);
