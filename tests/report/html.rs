@@ -14,6 +14,11 @@ fn page_of(report: &Report) -> String {
     fs::read_to_string(folder.path().join("report.html")).expect("the page is there")
 }
 
+/// The number of drawings in a page. A drawing has inner ones, which begin with their place.
+fn drawings(page: &str) -> usize {
+    page.matches("<svg ").count() - page.matches("<svg x=").count()
+}
+
 fn page(rows: &[JobRow]) -> String {
     page_of(&report(rows))
 }
@@ -56,7 +61,7 @@ fn a_partial_study_says_what_is_missing() {
     at("the mesh has no node row at the clamp's width");
     // 18 jobs of 12.5 s.
     at("3.8 min");
-    assert_eq!(page.matches("<svg ").count(), 9 + 2, "with the drawings of the scene");
+    assert_eq!(drawings(&page), 9 + 2, "with the drawings of the scene");
     for file in [
         "mu_star_points",
         "frequency_map",
@@ -216,7 +221,7 @@ fn a_large_study_is_drawn() {
         (0..5_000).map(|i| row(f64::from(i % 100), 0.1 + f64::from(i / 100) * 0.01, periodic(0.3))).collect();
     let page = page(&rows);
     assert!(page.len() < 12_000_000, "{} bytes", page.len());
-    assert!(page.matches("<svg ").count() == 9 + 2 && !page.contains("data-job"));
+    assert!(drawings(&page) == 9 + 2 && !page.contains("data-job"));
     assert!(text(&page).contains("There are too many jobs for tooltips"));
 }
 

@@ -22,8 +22,10 @@ pub fn only(rows: &[JobRow], plot: Plot) -> Chart {
 /// The cells of all panels.
 pub fn cells(chart: &Chart) -> Vec<&Cell> {
     let layers = chart.panels.iter().flat_map(|panel| &panel.layers);
-    let of_layer = |layer| if let Layer::Cells(cells) = layer { cells.as_slice() } else { &[] };
-    layers.flat_map(of_layer).collect()
+    layers
+        .filter_map(|layer| if let Layer::Cells(cells) = layer { Some(cells) } else { None })
+        .flatten()
+        .collect()
 }
 
 /// The value of an attribute of a tooltip; an empty text if it has none of that name.

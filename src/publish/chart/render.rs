@@ -21,6 +21,8 @@ const TEXT: f64 = 15.0;
 const SMALL: f64 = 12.5;
 /// Width of a character relative to the size of the text; a little more than the mean of the usual fonts.
 const CHARACTER: f64 = 0.54;
+/// Width of a digit relative to the size of the text in the widest of the fonts. The texts of neighbouring cells must not touch.
+const DIGIT: f64 = 0.64;
 /// Length of a tick.
 const TICK: f64 = 5.0;
 /// Length of a sample in the legend.
@@ -342,10 +344,13 @@ fn draw_ordinate(svg: &mut Svg, scale: &Scale, plot: Plot, text: f64, labels: La
         }
     }
     if labels.y_name {
+        // A name that is longer than the plot reaches below it, and hardly above it, where the sheet may end.
+        let height = to.1 - from.1;
         let room = width_of(&scale.label, text);
-        let size = if room > to.1 - from.1 + 60.0 { text * (to.1 - from.1 + 60.0) / room } else { text };
-        let x = edge + side * (TICK + 6.0 + longest + text / 2.0);
-        svg.upwards((x, (from.1 + to.1) / 2.0), size, &scale.label);
+        let size = if room > height + 60.0 { text * (height + 60.0) / room } else { text };
+        let beyond = (room * size / text - height) / 2.0;
+        let x = edge + side * (TICK + 11.0 + longest + text / 2.0);
+        svg.upwards((x, (from.1 + to.1) / 2.0 + (beyond - 8.0).max(0.0)), size, &scale.label);
     }
 }
 
@@ -615,7 +620,7 @@ fn draw_cell_signs(svg: &mut Svg, panel: &Panel, plot: Plot, cell: &Cell) {
     let middle = dot.unwrap_or(((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0));
     // The text is centred at the dot, which may be near to a side of the cell.
     let room = 2.0 * (middle.0 - from.0).min(to.0 - middle.0) - 3.0;
-    let fitting = room / (CHARACTER * cell.text.chars().count().max(1) as f64);
+    let fitting = room / (DIGIT * cell.text.chars().count().max(1) as f64);
     let (above, below) = (middle.1 - from.1 - 3.0, to.1 - middle.1 - 3.0);
     let high = if dot.is_some() { above.max(below) } else { 0.75 * (to.1 - from.1) };
     let size = fitting.min(high).min(TEXT);
@@ -624,7 +629,8 @@ fn draw_cell_signs(svg: &mut Svg, panel: &Panel, plot: Plot, cell: &Cell) {
     }
     if size >= 8.0 && !cell.text.is_empty() {
         let y = match dot {
-            Some(dot) if above >= size => dot.1 - 3.0 - size / 2.0,
+            // Both sides of a dot in the middle differ by roundings.
+            Some(dot) if above + 0.1 >= size => dot.1 - 3.0 - size / 2.0,
             Some(dot) => dot.1 + 3.0 + size / 2.0,
             None => middle.1,
         };

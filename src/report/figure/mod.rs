@@ -224,7 +224,8 @@ impl Figure {
     }
 
     fn of_chart(layout: &Layout, number: usize, of_sheet: usize, chart: Chart) -> Self {
-        Self { chart: chart.clone(), ..Self::of_sheet(layout, number, of_sheet, chart.svg("")) }
+        let own = Self::of_sheet(layout, number, of_sheet, chart.svg(""));
+        Self { chart, ..own }
     }
 }
 
