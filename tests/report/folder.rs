@@ -42,8 +42,11 @@ fn writes_exactly_the_documented_files() {
 fn an_existing_folder_is_updated() {
     let folder = tempfile::tempdir().expect("a temporary folder");
     fs::write(folder.path().join("notes.txt"), "mine").expect("a file");
-    write(&report(&[row(7.0, 0.4, RowState::Pending)]), folder.path()).expect("the first report");
-    write(&report(&[row(7.0, 0.4, periodic(0.35))]), folder.path()).expect("the second report");
+    let study = |state: &RowState| -> Vec<JobRow> {
+        [0.3, 0.4].into_iter().flat_map(|mu| [7.0, 9.0].map(|omega| row(omega, mu, state.clone()))).collect()
+    };
+    write(&report(&study(&RowState::Pending)), folder.path()).expect("the first report");
+    write(&report(&study(&periodic(0.35))), folder.path()).expect("the second report");
     let jobs = fs::read_to_string(folder.path().join("jobs.csv")).expect("the export");
     assert!(jobs.contains(",periodic,") && !jobs.contains(",pending,"), "{jobs}");
     assert_eq!(fs::read_to_string(folder.path().join("notes.txt")).expect("a file"), "mine");

@@ -22,11 +22,11 @@ use std::collections::BTreeSet;
 
 /// Height of all rows of equal cells, and the smallest and the largest height of one \[px\].
 const ROWS_HEIGHT: f64 = 440.0;
-const ROW_HEIGHT: [f64; 2] = [12.0, 40.0];
+const ROW_HEIGHT: [f64; 2] = [12.0, 48.0];
 /// Height of a plot with true axes \[px\].
 const HEIGHT: f64 = 420.0;
 /// The side of a cell of a job that is not on a grid, relative to the width and the height of the plot: about 17 px.
-const ALONE: [f64; 2] = [0.037, 0.04];
+const ALONE: [f64; 2] = [0.035, 0.04];
 /// Up to so many values along an axis, its ticks are at them.
 const MAX_TICKS: usize = 12;
 /// Number of colours in a scale.

@@ -1,6 +1,6 @@
 //! What is in a plot: lines, areas, cells, points and guides, and where they are on the sheet.
 
-use super::measures::{CHARACTER, MARK_ROW, TEXT, width_of};
+use super::measures::{CHARACTER, DIGIT, MARK_ROW, TEXT, width_of};
 use crate::publish::chart::palette::{self, INK, PAPER};
 use crate::publish::chart::svg::{Anchor, At, Pen, Svg};
 use crate::publish::chart::{Axis, Cell, Guide, Layer, Marker, Panel, Point, Shape};
@@ -190,7 +190,7 @@ pub(super) fn draw_cell_signs(svg: &mut Svg, panel: &Panel, plot: Plot, cell: &C
     let middle = dot.unwrap_or(((from.0 + to.0) / 2.0, (from.1 + to.1) / 2.0));
     // The text is centred at the dot, which may be near to a side of the cell.
     let room = 2.0 * (middle.0 - from.0).min(to.0 - middle.0) - 3.0;
-    let fitting = room / (CHARACTER * cell.text.chars().count().max(1) as f64);
+    let fitting = room / (DIGIT * cell.text.chars().count().max(1) as f64);
     let (above, below) = (middle.1 - from.1 - 3.0, to.1 - middle.1 - 3.0);
     let high = if dot.is_some() { above.max(below) } else { 0.75 * (to.1 - from.1) };
     let size = fitting.min(high).min(TEXT);
@@ -199,7 +199,8 @@ pub(super) fn draw_cell_signs(svg: &mut Svg, panel: &Panel, plot: Plot, cell: &C
     }
     if size >= 8.0 && !cell.text.is_empty() {
         let y = match dot {
-            Some(dot) if above >= size => dot.1 - 3.0 - size / 2.0,
+            // Both sides of a dot in the middle differ by roundings.
+            Some(dot) if above + 0.1 >= size => dot.1 - 3.0 - size / 2.0,
             Some(dot) => dot.1 + 3.0 + size / 2.0,
             None => middle.1,
         };

@@ -14,7 +14,7 @@ pub const SMALL: f64 = 12.5;
 /// Width of a character relative to the size of the text; a little more than the mean of the usual fonts.
 pub const CHARACTER: f64 = 0.54;
 /// The same of a label of a tick, because digits are wider than other characters.
-pub const DIGIT: f64 = 0.6;
+pub const DIGIT: f64 = 0.64;
 /// Length of a tick.
 pub const TICK: f64 = 5.0;
 /// Smallest and largest width of the legend.

@@ -19,7 +19,7 @@ const FIRST: Pen = Pen::solid(Rgb(0xC4, 0xC4, 0xC4), 8.0);
 pub(super) fn chart(layout: &Layout, groups: &[Group], modes: &[GroupModes]) -> Chart {
     let along = layout.dimension(layout.by);
     let label =
-        if layout.by == MU { "threshold μ_c".to_owned() } else { format!("threshold: {}", along.title) };
+        if layout.by == MU { "threshold of μ".to_owned() } else { format!("threshold: {}", along.title) };
     let (x, y) = (Scale::new(layout.axis_name(), layout.x_axis()), Scale::new(&label, along.axis(false)));
     let is_alone = groups.len() == 1;
     let panel = |(group, modes): (&Group, &GroupModes)| {
