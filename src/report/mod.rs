@@ -37,6 +37,7 @@ mod parameters;
 pub mod pareto;
 mod program;
 mod provenance;
+mod reference_curves;
 mod row;
 mod scalar;
 pub mod sensitivity;

@@ -1,6 +1,6 @@
 //! Conversion between JSON values and typed data. serde's messages are rewritten in the words of a study file.
 
-use super::locate::join;
+use super::locate::{TOO_LARGE, join};
 use super::suggest;
 use crate::spec::JobSpec;
 use serde::de::DeserializeOwned;
@@ -145,9 +145,6 @@ fn same_shape(value: &Value, template: &Value, path: &str, found: &mut Vec<TypeM
         _ => {}
     }
 }
-
-/// What is said of a number beyond the largest double.
-pub(super) const TOO_LARGE: &str = "the number is too large for a double, which ends at 1.8e308";
 
 /// What to write instead of a text where a number is expected; none if the text says nothing about that.
 pub(super) fn number_hint(text: &str) -> Option<String> {

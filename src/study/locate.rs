@@ -4,7 +4,6 @@
 //! position of any field later on, and a repeated axis must not be lost silently. So `jsonc-parser` makes a tree with
 //! positions, which becomes a value here. Numbers are read by `serde_json`, to the last bit.
 
-use super::json::TOO_LARGE;
 use jsonc_parser::ast;
 use jsonc_parser::common::Ranged;
 use jsonc_parser::errors::ParseErrorKind;
@@ -15,6 +14,9 @@ use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
 use std::fmt;
 use std::ops::Range;
+
+/// What is said of a number beyond the largest double.
+pub(super) const TOO_LARGE: &str = "the number is too large for a double, which ends at 1.8e308";
 
 /// Line and column of a character.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize)]

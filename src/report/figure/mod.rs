@@ -3,6 +3,7 @@
 mod bifurcation;
 mod cells;
 mod curves;
+mod edges;
 mod places;
 pub(super) mod residuals;
 mod shares;

@@ -1,7 +1,7 @@
 //! The waterfall: spectra of the normal force over the speed, one strip for each job whose spectrum is stored, and a panel
 //! for each friction coefficient.
 
-use super::cells::CellEdges;
+use super::edges::CellEdges;
 use super::places::{self, Place};
 use crate::analysis::Outcome;
 use crate::publish::chart::palette::{self, INK, PAPER};

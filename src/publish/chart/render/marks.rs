@@ -1,6 +1,6 @@
 //! What is in a plot: lines, areas, cells, points and guides, and where they are on the sheet.
 
-use super::measures::{CHARACTER, DIGIT, MARK_ROW, TEXT, width_of};
+use super::measures::{DIGIT, MARK_ROW, TEXT, width_of};
 use crate::publish::chart::palette::{self, INK, PAPER};
 use crate::publish::chart::svg::{Anchor, At, Pen, Svg};
 use crate::publish::chart::{Axis, Cell, Guide, Layer, Marker, Panel, Point, Shape};
