@@ -3,6 +3,7 @@
 //! The cells are of equal size at names of the values, or on true axes: then each job has the part of the plane that is nearer
 //! to its values than to those of its neighbours.
 
+use super::edges::CellEdges;
 use crate::analysis::Outcome;
 use crate::publish::chart::{
     At, Axis, Cell, Chart, ColourScale, Entry, Layer, MAX_TIPS, Marker, Panel, Pen, Rgb, Scale, Shape, Tip,

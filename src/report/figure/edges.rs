@@ -5,7 +5,7 @@ use serde_json::Value;
 
 /// The values along one axis, ascending, and the boundaries of their cells.
 pub(super) struct CellEdges {
-    values: Vec<f64>,
+    pub values: Vec<f64>,
     /// One more than values.
     edges: Vec<f64>,
     pub axis: Axis,
