@@ -245,7 +245,8 @@ fn broken(words: &str, width: usize, indent: usize) -> String {
     for (number, word) in words.split(' ').enumerate() {
         let length = word.chars().count();
         if number > 0 && used + 1 + length > width {
-            text += &format!("\n{}", " ".repeat(indent));
+            text.push('\n');
+            text.extend(std::iter::repeat_n(' ', indent));
             used = 0;
         } else if number > 0 {
             text.push(' ');

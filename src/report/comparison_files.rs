@@ -74,8 +74,8 @@ impl Line<'_> {
     }
 }
 
-fn as_number(is_true: bool) -> Option<f64> {
-    Some(f64::from(u8::from(is_true)))
+fn as_number(is_true: bool) -> f64 {
+    f64::from(u8::from(is_true))
 }
 
 #[rustfmt::skip]
@@ -93,9 +93,9 @@ fn names<'a>() -> [Column<Line<'a>>; 3] {
 #[rustfmt::skip]
 fn results<'a>() -> [Column<Line<'a>>; 8] {
     [
-        Column::new("value", "that of the quantity", "its value", |of| of.of(as_number, |own| Some(own.value))),
+        Column::new("value", "that of the quantity", "its value", |of| of.of(|own| Some(as_number(own)), |own| Some(own.value))),
         Column::new("error", "that of the quantity", "its error", |of| of.of(|_| None, |own| own.error)),
-        Column::new("reference_value", "that of the quantity", "the value of the reference at the same parameters", |of| of.of(|own| as_number(!own), |own| Some(own.reference))),
+        Column::new("reference_value", "that of the quantity", "the value of the reference at the same parameters", |of| of.of(|own| Some(as_number(!own)), |own| Some(own.reference))),
         Column::new("reference_error", "that of the quantity", "its error", |of| of.of(|_| None, |own| own.reference_error)),
         Column::new("difference", "that of the quantity", "value minus that of the reference", |of| of.of(|own| Some(if own { 1.0 } else { -1.0 }), |own| Some(own.difference()))),
         Column::new("combined_error", "that of the quantity", "root of the sum of the squares of both errors", |of| of.of(|_| None, Difference::combined_error)),

@@ -113,7 +113,7 @@ pub async fn for_each_row_with_inputs(
         };
         Ok(own)
     };
-    let visit_page = page_visitor(&mut visited, convert, |row| visit(row));
+    let visit_page = page_visitor(&mut visited, convert, &mut visit);
     queue.each_page_with_payloads(study, Rows::All, visit_page).await?;
     visited
 }

@@ -38,7 +38,7 @@ fn job(study: &str, omega_rpm: f64, mu: f64, width_m: f64) -> JobRow {
     let mut record = record(Outcome::Completed, Regime::StickSlip, mu);
     record.windows = vec![window()];
     let mut job = with(row(omega_rpm, mu, RowState::Done(Box::new(record))), "clamp_width_m", width_m);
-    job.study = study.to_owned();
+    study.clone_into(&mut job.study);
     job.job = format!("{study}-{}", job.job);
     job
 }

@@ -147,7 +147,8 @@ fn mode_columns<'a>() -> [Column<(usize, &'a ComplexMode)>; 5] {
 fn modes(stability: &SlidingStability) -> String {
     let numbered: Vec<(usize, &ComplexMode)> = (1..).zip(&stability.modes).collect();
     let table = Table::of("modes", &mode_columns(), &numbered).text();
-    let lines: String = table.lines().map(|line| format!("  {line}\n")).collect();
+    let lines: Vec<String> = table.lines().map(|line| format!("  {line}\n")).collect();
+    let lines = lines.concat();
     let band = value::quantity(stability.band_hz, "Hz");
     let above = match stability.above_band {
         AboveBand::Nothing => "; the mesh has no others".to_owned(),
