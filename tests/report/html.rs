@@ -15,11 +15,6 @@ fn page_of(report: &Report) -> String {
     fs::read_to_string(folder.path().join("report.html")).expect("the page is there")
 }
 
-/// The number of drawings in a page. A drawing has inner ones, which begin with their place.
-fn drawings(page: &str) -> usize {
-    page.matches("<svg ").count() - page.matches("<svg x=").count()
-}
-
 fn page(rows: &[JobRow]) -> String {
     page_of(&report(rows))
 }
