@@ -66,6 +66,8 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let jobs_layout = jobs_layout.as_ref().unwrap_or(&layout);
     let whole = rows.iter().any(JobRow::is_at_boundary).then(|| jobs_alone(true));
     let layouts = Layouts { all: &layout, jobs: jobs_layout, whole: whole.as_ref().unwrap_or(jobs_layout) };
+    let pages = inspections(out_dir).into_iter().filter_map(|found| Some((found.job.clone(), found.page()?)));
+    let pages: HashMap<String, String> = pages.collect();
     let plots: Vec<Plot> =
         Plot::ALL.into_iter().chain(view.y.iter().map(|scalar| Plot::Of(scalar))).collect();
     let quantities = QUANTITIES.into_iter().chain(view.y.iter().map(|scalar| Quantity::Of(scalar)));
@@ -89,12 +91,15 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let mut drawn: Vec<(Plot, Vec<Figure>)> = Vec::new();
     for (plot, mut figures) in figures {
         figures.extend(figure::over_others(rows, view, layouts.of(plot), plot));
+        let figures: Vec<Figure> = figures.into_iter().map(|figure| figure.linked(&pages)).collect();
         for figure in &figures {
             let file = format!("{}{}.svg", plot.stem(), figure.suffix);
             folder.write_text(&file, &figure.svg)?;
         }
         drawn.push((plot, figures));
     }
+    let mut residuals = residuals;
+    residuals.link(&pages);
     let residuals = residuals.svg("residuals of the energy balance and of the identities");
     folder.write_text(&format!("{}.svg", RESIDUALS.stem), &residuals)?;
 
@@ -128,8 +133,6 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         folder.write_table(&comparison_files::table(comparison))?;
     }
     let differences = comparison.as_ref();
-    let pages = inspections(out_dir).into_iter().filter_map(|found| Some((found.job.clone(), found.page()?)));
-    let pages: HashMap<String, String> = pages.collect();
     folder.write_text(explore::PAGE, &explore::page(given, &pages))?;
     let parts = Parts {
         report,
@@ -139,7 +142,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         residuals: &residuals,
         programs: programs.as_ref(),
         stability,
-        files: folder.written().to_vec(),
+        files: folder.written().iter().cloned().chain(["report.html".to_owned()]).collect(),
         pages,
     };
     let page = page::of_report(&parts);

@@ -199,7 +199,7 @@ fn many_combinations_are_left_out() {
     assert_eq!(page.matches("data-value=\"K\"").count(), (24 + 2) * 5, "{message}");
     assert!(text(&page).contains("left out of this page: 16 more combinations of parameters, 288 jobs"));
     assert!(text(&page).contains("left out of this page: 34 more combinations of parameters, 612 jobs"));
-    assert!(page.contains("<h3>load = 5 N</h3>") && !page.contains("<h3>load = 6 N</h3>"));
+    assert!(page.contains(">load = 5 N</th>") && !page.contains(">load = 6 N</th>"));
 }
 
 /// Protects: the page of a study of a hundred thousand jobs is small enough for a browser. It has no figures, and says

@@ -289,7 +289,7 @@ fn a_partial_study_says_so() {
     rows[8].state = RowState::Pending;
     rows[7].state = failed("diverged");
     let text = markdown(&compare(&rows).unwrap());
-    assert!(text.contains("**Incomplete**: 1 job not done and 1 failed"), "{text}");
+    assert!(text.contains("**Incomplete: 1 job not done and 1 failed"), "{text}");
     let comparison = compare(&rows).unwrap();
     let case = &comparison.cases[0];
     assert_eq!(case.jobs[case.reference.job].numerics.safety_factor, Some(0.8));
@@ -313,7 +313,7 @@ fn the_files_hold_the_comparison() {
     let folder = tempfile::tempdir().unwrap();
     let written = write(&comparison, folder.path(), "Study").unwrap();
     let names: Vec<_> = written.iter().map(|p| p.file_name().unwrap().to_str().unwrap()).collect();
-    assert_eq!(names, ["pareto.svg", "pareto.csv", "refinement.csv", "pareto.md"]);
+    assert_eq!(names, ["pareto.svg", "pareto.csv", "refinement.csv", "pareto.html", "pareto.md"]);
     let read = |name: &str| fs::read_to_string(folder.path().join(name)).unwrap();
 
     let printed = markdown(&comparison);

@@ -248,14 +248,17 @@ impl Chart {
         self
     }
 
-    /// Lets the marks of jobs lead to pages: `pages` has an address for some values of `data-job`.
-    pub fn link(&mut self, pages: &HashMap<String, String>) {
+    /// Lets the marks of jobs lead to pages: `pages` has an address for some values of `data-job`. Returns whether there is one.
+    pub fn link(&mut self, pages: &HashMap<String, String>) -> bool {
+        let mut has_link = false;
         for tip in self.tips_mut().flatten() {
             let job = tip.data.iter().find(|(name, _)| *name == "job").map(|(_, job)| job.as_str());
             if let Some(page) = job.and_then(|job| pages.get(job)) {
                 tip.data.push(("page", page.clone()));
+                has_link = true;
             }
         }
+        has_link
     }
 }
 

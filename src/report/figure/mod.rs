@@ -19,6 +19,7 @@ use super::view::View;
 use crate::publish::chart::Chart;
 pub use stability::{StabilityPlot, stability_figures};
 use std::borrow::Cow;
+use std::collections::HashMap;
 use std::ops::Range;
 
 /// Largest number of panels in a figure. A report with more combinations has several figures of a kind.
@@ -179,6 +180,8 @@ pub struct Figure {
     pub caption: String,
     /// The combinations by their numbers.
     pub groups: Range<usize>,
+    /// What it shows, in words.
+    pub alternative: String,
     /// The drawing.
     pub chart: Chart,
     /// The drawing as SVG.
@@ -202,8 +205,17 @@ impl Figure {
 
     fn new(suffix: String, caption: String, groups: Range<usize>, title: &str, chart: Chart) -> Self {
         let words = [title, &caption].into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>();
-        let svg = chart.svg(&words.join(", "));
-        Self { suffix, caption, groups, chart, svg }
+        let alternative = words.join(", ");
+        let svg = chart.svg(&alternative);
+        Self { suffix, caption, groups, alternative, chart, svg }
+    }
+
+    /// The figure in which the marks of jobs lead to their pages.
+    pub(super) fn linked(mut self, pages: &HashMap<String, String>) -> Self {
+        if self.chart.link(pages) {
+            self.svg = self.chart.svg(&self.alternative);
+        }
+        self
     }
 }
 

@@ -48,8 +48,14 @@ fn lowest<'a>(rows: &[&'a JobRow]) -> Option<(&'a JobRow, &'a JobRecord)> {
     Some((row, row.record()?))
 }
 
+/// A larger share of μ is no fall.
+const LITTLE: f64 = 0.995;
+
 fn friction(rows: &[&JobRow]) -> Option<String> {
     let (row, record) = lowest(rows)?;
+    if record.mu_star / row.mu > LITTLE {
+        return Some("μ* is μ within half a per cent in all jobs.".to_owned());
+    }
     let [mu_star, place] = [digits::mu_star_with_error(row, record), parameters_in_words(row)];
     let percent = value::significant(100.0 * record.mu_star / row.mu, 2);
     Some(format!("μ* falls to {mu_star} at {place}: {percent} % of μ."))

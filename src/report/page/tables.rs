@@ -74,13 +74,9 @@ pub(in crate::report) fn blocks(
     let group = |group: &Group| {
         let pages = cell_pages(pages, group);
         let line = |(number, (at, cells)): (usize, (_, Vec<String>))| {
-            let cell = |(column, text): (usize, String)| {
-                // Names of regimes may break at a hyphen.
-                let text = if quantity == Quantity::Regime { text.replace('_', "-") } else { text };
-                match pages.get(&(number, column)) {
-                    Some(page) => Span::Link(text, (*page).to_owned()).into(),
-                    None => Text::from(text),
-                }
+            let cell = |(column, text): (usize, String)| match pages.get(&(number, column)) {
+                Some(page) => Span::Link(text, (*page).to_owned()).into(),
+                None => Text::from(text),
             };
             std::iter::once(Text::from(layout.axis_text(at)))
                 .chain(cells.into_iter().enumerate().map(cell))
