@@ -422,7 +422,6 @@ fn square(axis: &Axis, at: f64, share: f64) -> [f64; 2] {
 
 #[cfg(test)]
 mod tests {
-    use super::edges::CellEdges;
     use super::*;
 
     /// Protects: the colours are symmetric about zero, a rate of zero has none, and the labels of their scale are at the places
