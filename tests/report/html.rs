@@ -374,8 +374,11 @@ fn jobs_lead_to_their_inspections() {
     let rows = [7.0, 9.0, 12.0].map(|omega| row(omega, 0.4, periodic(0.35)));
     write(&report(&rows), folder.path()).unwrap();
     let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
-    let links: Vec<&str> =
-        page.split("<a href=\"").skip(1).filter(|link| link.contains("/index.html")).collect();
+    let links: Vec<&str> = page
+        .split("<a href=\"")
+        .skip(1)
+        .filter(|link| link.split('"').next().is_some_and(|address| address.ends_with("/index.html")))
+        .collect();
     assert_eq!(links.len(), 3 * 2, "two jobs in three tables: {links:?}");
     for address in ["mu-0.4/index.html", "inspect/a%20%22%3E%3Cb%3E/index.html"] {
         assert_eq!(links.iter().filter(|link| link.starts_with(&format!("{address}\""))).count(), 3);
