@@ -7,6 +7,7 @@ use super::source::SourceText;
 use super::suggest::nearest_name;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Serialize};
+use serde_json::{Map, Value, json};
 use std::collections::BTreeMap;
 
 /// The axes and quantities of the study's report.
@@ -26,6 +27,7 @@ pub struct ReportAxes {
     /// How the axes of parameters are scaled; as their values are given when absent: a range or a distribution says it, and a list
     /// of values > 0 that spans a factor of 20 is logarithmic, as that of ω is in any case.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    #[schemars(schema_with = "scale_schema")]
     pub scale: BTreeMap<String, Spacing>,
 }
 
@@ -39,6 +41,15 @@ fn names() -> impl Iterator<Item = &'static str> {
 
 fn name_schema(_: &mut SchemaGenerator) -> Schema {
     json_schema!({ "type": "string", "enum": names().collect::<Vec<_>>() })
+}
+
+fn scale_schema(_: &mut SchemaGenerator) -> Schema {
+    let field = |name: &str| {
+        json!({ "description": format!("How the axis of {name} is scaled."), "enum": ["linear", "log"] })
+    };
+    let fields: Map<String, Value> =
+        PARAMETERS.iter().map(|parameter| (parameter.name.to_owned(), field(parameter.name))).collect();
+    json_schema!({ "type": "object", "properties": fields, "additionalProperties": false })
 }
 
 impl ReportAxes {

@@ -234,7 +234,7 @@ fn failed_jobs() {
     assert!(text.lines().any(is_region), "{text}");
     let report = folder.read("reports/bad/report.md");
     assert!(report.contains("## Failed jobs (2)"), "{report}");
-    assert!(report.contains("## Where it fails\n\n- failed: 2 jobs at "), "{report}");
+    assert!(report.contains("form a region:\n\n- failed: 2 jobs at "), "{report}");
 
     let again = folder.command("run bad.json").assert().code(1);
     assert!(stderr(&again).contains("2 already done, 2 failed before"), "{}", stderr(&again));

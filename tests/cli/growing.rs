@@ -37,7 +37,7 @@ fn findings(folder: &Folder, db: &str) -> BTreeMap<String, String> {
     let mut found = BTreeMap::new();
     for file in folder.files().into_iter().filter(|file| file.starts_with("report/")) {
         let has_times =
-            ["report.md", "report.html", "run_times", "jobs.csv"].iter().any(|part| file.contains(part));
+            ["report.md", "report.html", "explore.html", "run_times", "jobs.csv"].iter().any(|part| file.contains(part));
         // The hidden list names the files only.
         if !has_times {
             found.insert(file.clone(), folder.read(&file));

@@ -77,8 +77,8 @@ fn parameters_and_keys_select_the_same_job() {
     let markdown = folder.read("reports/mine/report.md");
     let line = |name: &str| markdown.lines().find(|line| line.contains(&format!("| {name} "))).unwrap();
     let cells = |name: &str| line(name).split('|').map(|cell| cell.trim().to_owned()).collect::<Vec<_>>();
-    assert_eq!(cells("mu")[3..6], ["0.2, 0.4", "mu", "grid"]);
-    assert_eq!(cells("density_kg_m3")[3..6], ["2500 kg/m³", "density_kg_m3", "default"]);
+    assert_eq!(cells("`mu`")[3..6], ["0.2, 0.4", "`mu`", "grid"]);
+    assert_eq!(cells("`density_kg_m3`")[3..6], ["2500 kg/m³", "`density_kg_m3`", "default"]);
     assert_eq!(cells("nodes of the pin")[3], "80");
 }
 

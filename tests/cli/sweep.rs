@@ -17,11 +17,12 @@ fn the_mini_study_in_one_command() {
 
     let table = stdout(&run);
     let mut lines = table.lines();
-    assert_eq!(lines.next().unwrap(), "# mini: macroscopic friction coefficient μ*");
+    assert_eq!(lines.next().unwrap(), "# mini: macroscopic friction coefficient μ\\*");
     assert_eq!(lines.nth(1).unwrap(), "| ω [rpm] | μ = 0.2 | μ = 0.4 |");
     let speeds: Vec<_> = lines.skip(1).take(3).map(|line| line.split('|').nth(1).unwrap().trim()).collect();
     assert_eq!(speeds, ["2", "7", "35"]);
-    assert_eq!(folder.read("reports/mini/mu_star.md"), table);
+    let page = folder.read("reports/mini/report.md");
+    assert!(table.lines().filter(|line| line.starts_with('|')).all(|line| page.contains(line)), "{page}");
     assert!(stderr(&run).contains("mini: 6 jobs, 6 new, 0 already done"), "{}", stderr(&run));
     assert!(stderr(&run).contains("6 done, 0 failed, 0 left"), "{}", stderr(&run));
 

@@ -252,9 +252,9 @@ impl Chart {
     pub fn link(&mut self, pages: &HashMap<String, String>) -> bool {
         let mut has_link = false;
         for tip in self.tips_mut().flatten() {
-            let job = tip.data.iter().find(|(name, _)| *name == "job").map(|(_, job)| job.as_str());
-            if let Some(page) = job.and_then(|job| pages.get(job)) {
-                tip.data.push(("page", page.clone()));
+            let job = tip.data.iter().position(|(name, _)| *name == "job");
+            if let Some((at, page)) = job.and_then(|at| Some((at, pages.get(&tip.data[at].1)?))) {
+                tip.data.insert(at + 1, ("page", page.clone()));
                 has_link = true;
             }
         }

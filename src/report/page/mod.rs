@@ -34,7 +34,7 @@ pub(super) fn of_report(parts: &Parts) -> Page {
     sections.extend([figures::bifurcation(parts), figures::shares(parts)]);
     sections.extend(trouble::section(report.rows));
     sections.extend([figures::residuals(parts), times::section(parts)]);
-    sections.extend(setup(report));
+    sections.extend(setup(report, "What was simulated"));
     sections.extend(report.provenance.map(provenance));
     sections.push(files(&parts.files));
     sections.retain(|section| !section.blocks.is_empty());
@@ -59,7 +59,7 @@ pub(super) fn of_stability(report: &Report, analysis: &Analysis, files: &Files, 
         foot = foot.and(Span::Link("modes".to_owned(), "modes/".to_owned())).and(".");
     }
     let mut sections = vec![stability::section(analysis, files)];
-    sections.extend(setup(report));
+    sections.extend(setup(report, "What was analysed"));
     sections.extend(report.provenance.map(provenance));
     let mut lead: Vec<Block> = report.description.map(|text| Block::Text(text.into())).into_iter().collect();
     lead.extend(stability::found(analysis).map(|words| Block::Text(Text::strong(words))));
@@ -74,7 +74,7 @@ pub(super) fn of_stability(report: &Report, analysis: &Analysis, files: &Files, 
 }
 
 /// What was simulated: drawings, and all inputs below a fold.
-fn setup(report: &Report) -> Option<Section> {
+fn setup(report: &Report, heading: &str) -> Option<Section> {
     let note = Block::note(
         "\"From\" says who gave the value: the study, its grid, its preset, or nobody (default). The names in files are those of \
          grids, of `--set` and of the export.",
@@ -82,7 +82,7 @@ fn setup(report: &Report) -> Option<Section> {
     let blocks = report.sheet?.blocks().into_iter().chain([note]).collect();
     Some(Section::new(
         "scene",
-        "What was simulated",
+        heading,
         vec![Block::Fold("Drawings and all inputs".to_owned(), blocks)],
     ))
 }
