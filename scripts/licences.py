@@ -11,6 +11,11 @@ import pathlib
 import subprocess
 import sys
 
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+# What is in the program and is no package: its name, its licence, where it is from, and the file with the licence's text.
+OTHERS = [
+    ("Apache ECharts 6.1.0", "Apache-2.0", "https://echarts.apache.org", ROOT / "src/report/explore/echarts-NOTICE.txt"),
+]
 # A package brings its licences in files of these names.
 NAMES = ("license", "licence", "copying", "copyright", "unlicense", "notice")
 
@@ -52,6 +57,10 @@ def main():
         print(f"{name}: {package['license'] or 'see below'}, {package['repository'] or 'https://crates.io/crates/' + package['name']}")
         for text in texts(package):
             users.setdefault(text, []).append(name)
+    for name, licence, address, notice in OTHERS:
+        print(f"{name}: {licence}, {address}")
+        for file in [notice, ROOT / "LICENSE-APACHE"]:
+            users.setdefault(file.read_text().strip(), []).append(name)
     for text, names in sorted(users.items(), key=lambda pair: pair[1]):
         print(f"\n{'=' * 80}\n{', '.join(names)}\n{'=' * 80}\n\n{text}")
 

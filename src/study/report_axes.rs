@@ -44,9 +44,7 @@ fn name_schema(_: &mut SchemaGenerator) -> Schema {
 }
 
 fn scale_schema(_: &mut SchemaGenerator) -> Schema {
-    let field = |name: &str| {
-        json!({ "description": format!("How the axis of {name} is scaled."), "enum": ["linear", "log"] })
-    };
+    let field = |name: &str| json!({ "description": format!("How the axis of {name} is scaled."), "enum": ["linear", "log"] });
     let fields: Map<String, Value> =
         PARAMETERS.iter().map(|parameter| (parameter.name.to_owned(), field(parameter.name))).collect();
     json_schema!({ "type": "object", "properties": fields, "additionalProperties": false })

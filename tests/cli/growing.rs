@@ -36,8 +36,9 @@ fn findings(folder: &Folder, db: &str) -> BTreeMap<String, String> {
     folder.ok(&format!("report study --db {db} --out report"));
     let mut found = BTreeMap::new();
     for file in folder.files().into_iter().filter(|file| file.starts_with("report/")) {
-        let has_times =
-            ["report.md", "report.html", "explore.html", "run_times", "jobs.csv"].iter().any(|part| file.contains(part));
+        let has_times = ["report.md", "report.html", "explore.html", "run_times", "jobs.csv"]
+            .iter()
+            .any(|part| file.contains(part));
         // The hidden list names the files only.
         if !has_times {
             found.insert(file.clone(), folder.read(&file));

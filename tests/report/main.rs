@@ -8,6 +8,7 @@ mod chromium;
 mod columns;
 mod comparison;
 mod cycles;
+mod explore;
 mod export;
 mod figure;
 mod folder;

@@ -44,9 +44,8 @@ fn found(parts: &Parts) -> Vec<String> {
 fn lowest<'a>(rows: &[&'a JobRow]) -> Option<(&'a JobRow, &'a JobRecord)> {
     // The average of a run that did not settle is no result to begin with.
     let settled = |row: &JobRow| row.record().is_some_and(|record| record.outcome != Outcome::NotPeriodic);
-    let ratio = |row: &JobRow| {
-        Some(row.record()?.mu_star / row.mu).filter(|ratio| ratio.is_finite() && settled(row))
-    };
+    let ratio =
+        |row: &JobRow| Some(row.record()?.mu_star / row.mu).filter(|ratio| ratio.is_finite() && settled(row));
     let ratios = rows.iter().filter_map(|row| Some((ratio(row)?, *row)));
     let (_, row) = ratios.min_by(|a, b| a.0.total_cmp(&b.0))?;
     Some((row, row.record()?))

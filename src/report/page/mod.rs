@@ -80,11 +80,7 @@ fn setup(report: &Report, heading: &str) -> Option<Section> {
          grids, of `--set` and of the export.",
     );
     let blocks = report.sheet?.blocks().into_iter().chain([note]).collect();
-    Some(Section::new(
-        "scene",
-        heading,
-        vec![Block::Fold("Drawings and all inputs".to_owned(), blocks)],
-    ))
+    Some(Section::new("scene", heading, vec![Block::Fold("Drawings and all inputs".to_owned(), blocks)]))
 }
 
 /// Number of characters of a commit that are shown.

@@ -1,0 +1,90 @@
+//! The page to explore in a browser: thousands of jobs, charts that a reader chooses, a table that sorts and filters.
+
+use std::fs;
+use std::path::PathBuf;
+
+use tempfile::TempDir;
+use tribosweep::report::{JobRow, write};
+
+use crate::chromium::Browser;
+use crate::synthetic::{failed, partial_study, periodic, report, row, with};
+
+const JOBS: i32 = 5_000;
+
+/// Jobs over ω and μ, and a failed one whose message looks like markup.
+fn many() -> Vec<JobRow> {
+    let job = |i: i32| {
+        let (omega_rpm, mu) = (1.0 + f64::from(i % 100), 0.1 + 0.01 * f64::from(i / 100));
+        with(row(omega_rpm, mu, periodic(0.2 + 0.001 * f64::from(i % 70))), "load_n", i % 7)
+    };
+    let mut rows: Vec<JobRow> = (0..JOBS - 1).map(job).collect();
+    rows.push(with(row(200.0, 0.7, failed("</script><script>window.taken = true</script>")), "load_n", 3));
+    rows
+}
+
+fn written(rows: &[JobRow]) -> (TempDir, PathBuf) {
+    let folder = TempDir::new().unwrap();
+    write(&report(rows), folder.path()).unwrap();
+    let page = folder.path().canonicalize().unwrap().join("explore.html");
+    (folder, page)
+}
+
+fn pressed(name: &str) -> String {
+    format!(
+        "[...document.querySelectorAll('#explore .tabs button')].find((tab) => tab.textContent === '{name}').click()"
+    )
+}
+
+/// Protects: the page is one file that loads nothing, and the texts of a study are data and no markup.
+#[test]
+fn the_page_loads_nothing() {
+    let rows = [row(7.0, 0.4, failed("</script><script>alert(1)</script>")), row(9.0, 0.4, periodic(0.3))];
+    let (_folder, page) = written(&rows);
+    let page = fs::read_to_string(page).unwrap();
+    assert!(!page.contains("<script>alert") && page.contains("default-src 'none'"));
+    assert!(!page.contains("<script src") && !page.contains("<link rel=\"stylesheet\""));
+}
+
+/// Protects: with 5 000 jobs every view is drawn without an error, a filter leaves exactly the jobs that it names, a click on a
+/// head sorts by numbers, and a line leads to all values of its job.
+#[test]
+fn thousands_of_jobs_can_be_explored() {
+    let Some(mut browser) = Browser::start() else { return };
+    let (_folder, page) = written(&many());
+    browser.open(&page);
+    for view in ["parallel coordinates", "importance", "plot"] {
+        browser.evaluate(&pressed(view));
+        let drawn = "(() => { const c = document.querySelector('#explore canvas'); return c !== null && c.width > 300; })()";
+        assert_eq!(browser.evaluate(drawn), true, "{view}");
+    }
+    browser.evaluate(&pressed("table"));
+    let note = "document.querySelector('#explore .note').textContent";
+    assert_eq!(
+        browser.evaluate(note),
+        format!("The first 250 of {JOBS} jobs: filter them, or see jobs.csv.")
+    );
+    let filter = "(() => { const f = document.querySelector('[aria-label=\"filter mu\"]'); f.value = '0.1..0.115'; \
+                  f.dispatchEvent(new Event('input')); })()";
+    browser.evaluate(filter);
+    assert_eq!(browser.evaluate(note), format!("200 of {JOBS} jobs"), "two values of μ with 100 speeds each");
+    let speeds = "[...document.querySelectorAll('#explore tbody tr')].map((line) => Number(line.cells[0].textContent))";
+    browser.evaluate("document.querySelector('#explore thead th').click()");
+    let ascending = browser.evaluate(speeds);
+    let found: Vec<f64> = ascending.as_array().unwrap().iter().map(|x| x.as_f64().unwrap()).collect();
+    assert!(found.len() == 200 && found.is_sorted() && found[0] < found[199], "{found:?}");
+    browser.evaluate("document.querySelector('#explore tbody tr').click()");
+    let job = browser.evaluate("document.querySelector('#job').textContent");
+    assert!(job.as_str().unwrap().contains("tribosweep show"), "{job}");
+    assert_eq!(browser.evaluate("window.taken === undefined"), true);
+}
+
+/// Protects: a small study without any result has a page without errors.
+#[test]
+fn few_jobs_can_be_explored() {
+    let Some(mut browser) = Browser::start() else { return };
+    let (_folder, page) = written(&partial_study());
+    browser.open(&page);
+    assert_eq!(browser.evaluate("document.querySelector('#explore canvas') !== null"), true);
+    let names = "[...document.querySelector('[aria-label=y]').options].map((option) => option.value).includes('mu_star')";
+    assert_eq!(browser.evaluate(names), true);
+}
