@@ -52,7 +52,7 @@ fn thousands_of_jobs_can_be_explored() {
     let Some(mut browser) = Browser::start() else { return };
     let (_folder, page) = written(&many());
     browser.open(&page);
-    for view in ["parallel coordinates", "importance", "plot"] {
+    for view in ["parallel coordinates", "plot"] {
         browser.evaluate(&pressed(view));
         let drawn = "(() => { const c = document.querySelector('#explore canvas'); return c !== null && c.width > 300; })()";
         assert_eq!(browser.evaluate(drawn), true, "{view}");
@@ -78,7 +78,28 @@ fn thousands_of_jobs_can_be_explored() {
     assert_eq!(browser.evaluate("window.taken === undefined"), true);
 }
 
-/// Protects: a small study without any result has a page without errors.
+/// Protects: on a full grid the importance of both parameters can be seen, which is exact there.
+#[test]
+fn importance_is_that_of_the_grid() {
+    let Some(mut browser) = Browser::start() else { return };
+    let point = |omega: i32, mu: i32| {
+        let mu = f64::from(mu) / 10.0;
+        row(f64::from(omega), mu, periodic(mu - 0.01 * f64::from(omega)))
+    };
+    let rows: Vec<JobRow> = (1..9).flat_map(|omega| (2..7).map(move |mu| point(omega, mu))).collect();
+    let (_folder, page) = written(&rows);
+    browser.open(&page);
+    browser.evaluate(&pressed("importance"));
+    let bars = "JSON.parse(document.getElementById('data').textContent).importance[0].bars.map((bar) => [bar.name, bar.value])";
+    let bars = browser.evaluate(bars);
+    let share = |at: usize| bars[at][1].as_f64().unwrap();
+    // The variance of a sum of both is the sum of those of μ, 0.02, and of 0.01 ω, 1e-4 · 5.25.
+    let expected = 1e-4 * 5.25 / (0.02 + 1e-4 * 5.25);
+    assert_eq!((&bars[0][0], &bars[1][0]), (&"omega_rpm".into(), &"mu".into()));
+    assert!((share(0) - expected).abs() < 1e-9 && (share(1) - (1.0 - expected)).abs() < 1e-9, "{bars}");
+}
+
+/// Protects: a study in progress has a page without errors.
 #[test]
 fn few_jobs_can_be_explored() {
     let Some(mut browser) = Browser::start() else { return };
