@@ -180,109 +180,6 @@ have a column for each parameter that the study varies, with the name of the [pa
 """
 
 # The tables of an inspection.
-INSPECTION = """
-## `run.csv`
-
-| column | unit | meaning |
-|---|---|---|
-| `start_s` | s | beginning of a part of the run |
-| `normal_min_n` | N | smallest normal contact force N in it, smoothed |
-| `normal_max_n` | N | largest N, smoothed |
-| `clamp_tangential_min_n` | N | smallest tangential force T of the clamp |
-| `clamp_tangential_max_n` | N | largest T |
-
-## `cycles.csv`
-
-| column | unit | meaning |
-|---|---|---|
-| `passage` |  | number of the cycle, from 0 |
-| `start_s` | s | its beginning |
-| `end_s` | s | its end |
-
-## `totals.csv`
-
-| column | unit | meaning |
-|---|---|---|
-| `time_s` | s | simulated time |
-| `load_n` | N | load F |
-| `normal_n` | N | total normal contact force N |
-| `smooth_normal_n` | N | N after the low-pass filter |
-| `clamp_tangential_n` | N | tangential force T of the clamp |
-| `contact_tangential_n` | N | tangential force of the contact, in y |
-| `contact_sideways_n` | N | the same in x |
-| `mu_eq` |  | tangential force of the contact over N |
-| `stick_nodes` |  | nodes that stick |
-| `slip_nodes` |  | nodes that slip |
-| `separated_nodes` |  | nodes without contact |
-
-## `node_NODE.csv`, `face.csv`, `figure8_NODE.csv`
-
-| column | unit | meaning |
-|---|---|---|
-| `time_s` | s | simulated time |
-| `since_cycle_begin_s` | s | time since the beginning of the cycle |
-| `node` |  | number of the node of the contact face |
-| `x_m` | m | its place in x |
-| `y_m` | m | its place in y |
-| `ux_m` | m | displacement in x |
-| `uy_m` | m | displacement in y |
-| `uz_m` | m | displacement in z |
-| `y_velocity_m_s` | m/s | velocity in y |
-| `gap_m` | m | gap to the disk |
-| `friction_x_n` | N | friction force in x |
-| `friction_y_n` | N | friction force in y |
-| `normal_n` | N | normal force |
-| `slip_speed_m_s` | m/s | slip speed |
-| `mu_eq` |  | friction force over normal force |
-| `state` |  | `stick`, `slip` or `separated` |
-| `tau_x_pa` | Pa | shear stress in x, smoothed |
-| `tau_y_pa` | Pa | shear stress in y, smoothed |
-| `sigma_n_pa` | Pa | normal stress, smoothed |
-| `sigma_n_delayed_pa` | Pa | normal stress after the filter of the record, which delays it |
-
-## `phases.csv`, `instants.csv`
-
-| column | unit | meaning |
-|---|---|---|
-| `node` |  | name of the observed node |
-| `state` |  | contact state of the phase |
-| `start_s` | s | beginning of the phase |
-| `end_s` | s | its end |
-| `instant` |  | letter of the instant, as in `figure4.svg` |
-| `time_s` | s | its time |
-
-## `wave.csv`
-
-| column | unit | meaning |
-|---|---|---|
-| `y_m` | m | place of a node on the middle line of the contact face |
-| `contact_s` | s | time at which it touches |
-| `stick_s` | s | time at which it begins to stick |
-| `peak_s` | s | time of its largest normal stress |
-| `slip_s` | s | time at which it begins to slip |
-| `separation_s` | s | time at which it lifts off |
-
-## `loops.csv`
-
-| column | unit | meaning |
-|---|---|---|
-| `place` |  | name of an observed node, or `face` |
-| `time_s` | s | simulated time |
-| `slip_y_m` | m | slip in y since the cycle began |
-| `displacement_y_m` | m | displacement in y |
-| `friction_y_n` | N | friction force in y |
-| `clamp_tangential_n` | N | tangential force T of the clamp, for the face |
-| `state` |  | contact state, for a node |
-
-## `spectrum.csv`
-
-| column | unit | meaning |
-|---|---|---|
-| `frequency_hz` | Hz | frequency of a line |
-| `normal_amplitude_n` | N | amplitude of N at it |
-"""
-
-
 def heads(columns):
     rows = ["| column | unit | meaning |", "|---|---|---|"]
     rows += [f"| `{column['name']}` | {column['unit'] or ''} | {cell(column['meaning'])} |" for column in columns]
@@ -295,7 +192,7 @@ def tables(program):
         title = ", ".join(f"`{name}`" for name in own["files"])
         text = f"## {title}\n\n{own['lines']}\n"
         parts.append(f"{text}\n{heads(own['columns'])}" if own["columns"] else text)
-    return TABLES + "\n".join(parts) + INSPECTION
+    return TABLES + "\n".join(parts)
 
 
 def main():

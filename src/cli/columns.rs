@@ -3,6 +3,7 @@
 use super::error::CliError;
 use super::output::{print, terminal_width};
 use crate::exit;
+use crate::inspect;
 use crate::publish::table::{FileColumns, Head, listed};
 use crate::report::{self, columns::ExportColumn};
 use crate::sweep::{self, ExportColumns};
@@ -14,7 +15,7 @@ pub(crate) struct Args {
     /// The columns of `export --all`: every input and the whole record too.
     #[arg(long)]
     all: bool,
-    /// The columns of the other tables, which are those of reports.
+    /// The columns of the other tables, which are those of reports, histories and inspections.
     #[arg(long, conflicts_with = "all")]
     tables: bool,
     /// Print them as JSON.
@@ -38,7 +39,10 @@ pub(crate) fn run(args: &Args) -> Result<u8, CliError> {
 
 /// What the other tables have.
 fn files() -> impl Iterator<Item = FileColumns> {
-    report::columns_of_files().into_iter().chain([sweep::columns_of_history()])
+    report::columns_of_files()
+        .into_iter()
+        .chain([sweep::columns_of_history()])
+        .chain(inspect::columns_of_files())
 }
 
 fn as_json(own: &ExportColumn) -> Value {

@@ -44,6 +44,8 @@ pub use inspection::{Inspection, InspectionError, NodeFindings, Options};
 pub use loops::{AuditedFriction, LoopEnergies, LoopSummary};
 pub use mode_shapes::write_mode;
 pub use nodes::{NodeSelector, ObservedNode};
+#[cfg(feature = "cli")]
+pub use overlay::columns_of_files;
 pub use overlay::write_overlay;
 pub use page::{PageHeader, of as page};
 pub use phases::{Instants, Phase};

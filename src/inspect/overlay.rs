@@ -4,6 +4,8 @@ use super::capture::NodeStep;
 use super::trace::Trace;
 use super::{figures, tables};
 use crate::publish::table::Column;
+#[cfg(feature = "cli")]
+use crate::publish::table::FileColumns;
 use crate::publish::{Folder, PublishError};
 use std::path::{Path, PathBuf};
 
@@ -22,6 +24,17 @@ fn columns() -> Vec<Column<Line>> {
     ];
     let history = tables::history().into_iter().map(|column| column.within(|(.., step): &Line| step));
     own.into_iter().chain(history).collect()
+}
+
+/// The columns of all files of inspections, for the page of columns.
+#[cfg(feature = "cli")]
+pub fn columns_of_files() -> Vec<FileColumns> {
+    let own = FileColumns::new(
+        &["figure8_NODE.csv"],
+        "A line is a step of a node in one of several jobs.",
+        &columns(),
+    );
+    tables::described().into_iter().chain([own]).collect()
 }
 
 /// Writes the figure and the CSV of one node in several jobs; returns the files. `title` names what the jobs have in

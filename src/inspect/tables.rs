@@ -10,6 +10,8 @@ use super::waves::{Change, Station, stations};
 use crate::analysis::quantity::{DELAYED_STRESS, NODE, TOTALS, of_holder};
 use crate::analysis::sample::{NodeSample, Sample};
 use crate::publish::table::Column;
+#[cfg(feature = "cli")]
+use crate::publish::table::FileColumns;
 use crate::publish::{Folder, PublishError};
 use crate::solver::interface::ContactState;
 use std::borrow::Borrow;
@@ -62,6 +64,26 @@ pub fn write(inspection: &Inspection, folder: &mut Folder) -> Result<BTreeMap<St
     let nodes = nodes.flat_map(|(number, (name, _))| of_place(name, loops::of_node(inspection, number)));
     tables.add("loops.csv", &LOOPS, nodes.chain(of_place("face", loops::of_face(inspection))))?;
     Ok(tables.small)
+}
+
+/// The columns of all files of an inspection, for the page of columns.
+#[cfg(feature = "cli")]
+pub fn described() -> Vec<FileColumns> {
+    let totals: Vec<Column<Sample>> = TOTALS.into_iter().map(Column::from).collect();
+    let holder = "A line is a step of the last cycles. With a holder that moves, there are columns of its displacement and acceleration.";
+    let step = "A line is a step of a cycle.";
+    vec![
+        FileColumns::new(&["run.csv"], "A line is a part of the run.", &RUN),
+        FileColumns::new(&["cycles.csv"], "A line is a cycle.", &CYCLES),
+        FileColumns::new(&["totals.csv"], holder, &totals),
+        FileColumns::new(&["node_NODE.csv"], step, &history()),
+        FileColumns::new(&["face.csv"], "A line is a node of the contact face at a step.", &of_face()),
+        FileColumns::new(&["phases.csv"], "A line is a phase of an observed node.", &PHASES),
+        FileColumns::new(&["instants.csv"], "A line is an instant of an observed node.", &INSTANTS),
+        FileColumns::new(&["wave.csv"], "A line is a node on the middle line of the contact face.", &WAVE),
+        FileColumns::new(&["loops.csv"], "A line is a point of a loop.", &LOOPS),
+        FileColumns::new(&[SPECTRUM_FILE], "A line is a line of the spectrum of N.", &SPECTRUM),
+    ]
 }
 
 struct Tables<'a, 'b> {
