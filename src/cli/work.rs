@@ -212,6 +212,13 @@ async fn work_and_log(
             "no job is left for this worker; other workers are running {}",
             count(counts.running, "job")
         ));
+    } else if counts.pending > 0 && !summary.interrupted && !is_cancelled {
+        log(format_args!(
+            "{} pending, but the database gave this worker no more. If they were submitted a moment ago, run the same command again. \
+             Otherwise an index of the database is damaged: `tribosweep doctor --deep` says which",
+            if counts.pending == 1 { "1 job is".to_owned() } else { format!("{} jobs are", counts.pending) }
+        ));
+        return Ok(exit::WORK_LEFT);
     } else if counts.pending + counts.running > 0 || is_cancelled || may_grow && summary.interrupted {
         log("interrupted; run the same command again to continue");
         return Ok(exit::WORK_LEFT);

@@ -6,6 +6,7 @@ use crate::analysis::{Outcome, Regime};
 use crate::publish::chart::MAX_TIPS;
 use crate::publish::page::{Block, Figure as Shown, Section, Span, Text};
 use crate::report::Discretisation;
+use crate::report::explore;
 use crate::report::export;
 use crate::report::figure::{DataFile, Figure, Plot, RESIDUALS};
 use crate::report::layout::Layout;
@@ -28,13 +29,17 @@ pub(super) fn friction(parts: &Parts) -> Section {
         (true, true) => " Bands: the error of mesh and time step, paler where it is indicative only.",
     };
     let caption = format!(
-        "Macroscopic friction coefficient μ* against {}, one curve for each {} (dashed: μ* = μ). Error bars: standard error \
+        "Macroscopic friction coefficient μ* against {}, one curve for each {}. Error bars: standard error \
          over the cycles, where it is larger than a marker.{bands}",
         parts.layouts.all.axis_label(),
         parts.layouts.all.by_words()
     );
     let mut blocks = figures(parts, Plot::MuStar, &caption);
     blocks.extend(head::numbers(parts.report.rows));
+    let page = Span::Link("page to explore".to_owned(), explore::PAGE.to_owned());
+    blocks.push(Block::Text(
+        Text::from("Other axes, single curves and all jobs in one table: ").and(page).and("."),
+    ));
     blocks.extend(tables::below(parts, Quantity::MuStar));
     Section::new("friction", "Macroscopic friction", blocks)
 }

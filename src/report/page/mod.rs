@@ -50,8 +50,8 @@ pub(super) fn of_report(parts: &Parts) -> Page {
 /// The page of the stability alone. If it has shapes of modes, they are in a folder beside the page.
 pub(super) fn of_stability(report: &Report, analysis: &Analysis, files: &Files, has_shapes: bool) -> Page {
     let mut foot = Text::marked(&format!(
-        "Written {} by tribosweep. The folder of this page has the figures as SVG, all modes in `modes.csv` and the thresholds \
-         in `thresholds.csv`.",
+        "Written {} by tribosweep. The folder of this page has the figures as SVG, all modes in `modes.csv` and the thresholds, \
+         if there are any, in `thresholds.csv`.",
         value::utc_minute(report.written_ms)
     ));
     if has_shapes {
@@ -128,13 +128,10 @@ fn build(group: &ResultGroup) -> Vec<Text> {
 fn files(names: &[String]) -> Section {
     let link = |name: &String| Text::from(Span::Link(name.clone(), name.clone()));
     let list = vec![Block::List(names.iter().map(link).collect())];
-    let explore = Text::from("All jobs can be plotted, filtered and sorted in ")
-        .and(Span::Link("the page to explore".to_owned(), super::explore::PAGE.to_owned()))
-        .and(".");
     let words = "All results are in `jobs.csv`, one line per job. The figures are there as SVG, and the tables and the data \
                  behind the figures as CSV.";
     let fold = Block::Fold(value::count(names.len(), "file"), list);
-    Section::new("files", "Files", vec![Block::Text(explore), Block::text(words), fold])
+    Section::new("files", "Files", vec![Block::text(words), fold])
 }
 
 /// When the page was written.

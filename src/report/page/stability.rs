@@ -26,8 +26,8 @@ const MEANING: [&str; 3] = [
 fn caption(plot: StabilityPlot) -> &'static str {
     match plot {
         StabilityPlot::Map => {
-            "Growth rate of the leading mode, which grows fastest or decays slowest. Blue decays, red grows. The \
-             line is the threshold, interpolated between the points."
+            "Growth rate of the leading mode, which grows fastest or decays slowest. Blue decays, red grows. A \
+             line is a threshold, interpolated between the points."
         }
         StabilityPlot::LockIn => {
             "Frequencies of the modes over the parameter that is varied and, below them, their growth rates. Where two \
@@ -40,8 +40,16 @@ fn caption(plot: StabilityPlot) -> &'static str {
     }
 }
 
-/// The lowest threshold in a sentence; none if no mode grows, or if there are no points.
+/// The lowest threshold in a sentence, or at how many points of no series a mode grows; none if no mode grows in a series, or if there
+/// are no points.
 pub(super) fn found(analysis: &Analysis) -> Option<String> {
+    if !analysis.has_series() && !analysis.points().is_empty() {
+        let [unstable, points] = [analysis.unstable_points(), analysis.points().len()];
+        return Some(format!(
+            "Steady sliding is unstable at {unstable} of {}.",
+            value::count(points, "point")
+        ));
+    }
     let speeds = analysis.groups.iter().flat_map(|modes| &modes.speeds);
     let onsets = speeds.filter_map(|speed| Some((speed.lowest()?, speed)));
     let (onset, speed) = onsets.min_by(|a, b| a.0.mu.total_cmp(&b.0.mu))?;
@@ -85,6 +93,10 @@ pub(super) fn section(analysis: &Analysis, files: &Files) -> Section {
     blocks.extend(further.into_iter().flatten().map(|sentence| Block::Text(sentence.into())));
     if analysis.points().is_empty() {
         blocks.push(Block::text("There are no points."));
+    } else if !analysis.has_series() {
+        blocks.push(Block::text(
+            "There are no thresholds, because several parameters differ from point to point. `modes.csv` has the modes of all points.",
+        ));
     } else {
         blocks.push(Block::Heading("Thresholds".to_owned()));
         blocks.push(Block::Table(table(analysis)));

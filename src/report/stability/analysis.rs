@@ -53,7 +53,7 @@ pub(in crate::report) struct Analysis<'a> {
     /// The parameter of the thresholds over the series, ω along the axis (or μ, if ω has thresholds), a group for each combination of
     /// the other parameters.
     pub layout: Layout<'a>,
-    /// The modes of each group of the layout.
+    /// The modes of each group of the layout; none if the points are no series.
     pub groups: Vec<GroupModes>,
 }
 
@@ -76,8 +76,24 @@ impl<'a> Analysis<'a> {
             ..View::DEFAULT
         };
         let layout = Layout::of(rows, &view);
+        if !layout.scattered.is_empty() {
+            let layout = layout.on_true_axes().unwrap_or(layout);
+            return Self { points, along, layout, groups: Vec::new() };
+        }
         let groups = layout.groups.iter().map(|group| group_modes(points, along, group)).collect();
         Self { points, along, layout, groups }
+    }
+
+    /// Whether points differ in the parameter of the thresholds alone, so that there can be thresholds. Drawn points do not.
+    pub fn has_series(&self) -> bool {
+        !self.groups.is_empty()
+    }
+
+    /// The number of points at which a mode grows.
+    pub fn unstable_points(&self) -> usize {
+        let grows =
+            |point: &&StabilityPoint| point.leading().is_some_and(|mode| mode.growth_rate_per_s >= 0.0);
+        self.points.iter().filter(grows).count()
     }
 
     /// All points.
@@ -315,6 +331,8 @@ fn name_families(speeds: &mut [Speed]) -> Vec<f64> {
 mod tests {
     use super::*;
     use crate::analysis::{AboveBand, SlidingStability};
+    use crate::report::figure::StabilityPlot::{LockIn, Map, Thresholds};
+    use crate::report::figure::stability_figures;
 
     fn point(omega_rpm: f64, mu: f64, modes: &[(f64, f64)]) -> StabilityPoint {
         let mode = |(frequency_hz, growth_rate_per_s): &(f64, f64)| ComplexMode {
@@ -407,6 +425,32 @@ mod tests {
         assert!(line[4].contains("stable from young_modulus = 2.5 GPa on"), "{}", line[4]);
         let said = "Thresholds are those of young_modulus_pa, which this study varies; load_n moves with it.";
         assert_eq!(notes, [said]);
+    }
+
+    /// Protects: drawn points, which differ in several parameters, are no series. They have no thresholds and no lock-in, because a mode
+    /// of one point is not that of the next. With ω and μ alone they have a map.
+    #[test]
+    fn drawn_points_have_no_thresholds() {
+        let drawn = |k: u32| {
+            let mu = 0.1 + 0.05 * f64::from(k);
+            let mut point = point(7.0 + f64::from(k % 5), mu, &[(10_000.0, f64::from(k) - 3.5)]);
+            point.parameters = vec![("load_n".to_owned(), (20 + 7 * k % 11).into())];
+            point
+        };
+        let mut points: Vec<StabilityPoint> = (0..8).map(drawn).collect();
+        for has_load in [true, false] {
+            let along = Along::mu();
+            let rows = rows(&points, &along);
+            let found = Analysis::of(&points, &rows, &along, &View::DEFAULT);
+            assert!(!found.has_series());
+            assert_eq!(found.unstable_points(), 4);
+            let drawn = |plot| stability_figures(&points, &along, &View::DEFAULT, plot).len();
+            assert_eq!([LockIn, Thresholds, Map].map(drawn), [0, 0, usize::from(!has_load)]);
+            for (k, point) in points.iter_mut().enumerate() {
+                point.parameters.clear();
+                point.omega_rpm = 7.0 + k as f64;
+            }
+        }
     }
 
     /// Protects: along a zip that moves μ and ω there is one series. Thresholds are those of μ or of ω, each with all its ranges.

@@ -38,7 +38,8 @@ pub(in crate::report) fn write_files(
         drawn.push((plot, own));
     }
     let mut data = Vec::new();
-    for table in [modes_table(analysis.points(), usize::MAX), onsets_table(analysis)] {
+    let thresholds = analysis.has_series().then(|| onsets_table(analysis));
+    for table in [modes_table(analysis.points(), usize::MAX)].into_iter().chain(thresholds) {
         data.push((folder.write_table(&table)?, table.csv()));
     }
     Ok(Files { figures: drawn, data })

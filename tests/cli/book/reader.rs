@@ -28,7 +28,10 @@ case $script in
 esac
 "#;
 
-/// The files that a page wrote below folders, and the first line of each that is a table in CSV.
+/// The file of `solve --history` in the examples. It is the only table of the program that stands in the current folder.
+const HISTORY: &str = "history.csv";
+
+/// The files that a page wrote below folders, its history, and the first line of each that is a table in CSV.
 pub type Written = BTreeMap<String, Option<String>>;
 
 /// Follows a page. `None` where a server or Python is missing.
@@ -91,7 +94,8 @@ pub fn follow(name: &str, page: &str) -> Option<Written> {
         }
     }
     let is_written = |file: &String| {
-        file.contains('/') && !["bin/", "studies/"].iter().any(|folder| file.starts_with(folder))
+        let is_given = ["bin/", "studies/"].iter().any(|folder| file.starts_with(folder));
+        file.contains('/') && !is_given || file == HISTORY
     };
     let header = |file: &String| {
         file.strip_suffix(".csv").map(|_| folder.read(file).lines().next().unwrap_or_default().to_owned())

@@ -62,15 +62,18 @@ pub fn stability_figures(
 /// The figures of one kind, one sheet for each combination of the further parameters; thresholds have panels.
 pub(in crate::report) fn figures(analysis: &Analysis, plot: StabilityPlot) -> Vec<Figure> {
     let layout = &analysis.layout;
+    if !analysis.has_series() && (plot != StabilityPlot::Map || !layout.scattered.is_empty()) {
+        return Vec::new();
+    }
     let of_sheet = if plot == StabilityPlot::Thresholds { MAX_PANELS } else { 1 };
-    let sheets = layout.groups.chunks(of_sheet).zip(analysis.groups.chunks(of_sheet)).enumerate();
-    let figure = |(number, (groups, modes)): (usize, (&[_], &[_]))| {
+    let modes_of = |sheet: usize| &analysis.groups[sheet * of_sheet..];
+    let figure = |(number, groups): (usize, &[_])| {
         let chart = match plot {
             StabilityPlot::Map => map::chart(analysis, &groups[0]),
-            StabilityPlot::LockIn => lock_in::chart(layout, &groups[0], &modes[0]),
-            StabilityPlot::Thresholds => thresholds::chart(layout, groups, modes),
+            StabilityPlot::LockIn => lock_in::chart(layout, &groups[0], &modes_of(number)[0]),
+            StabilityPlot::Thresholds => thresholds::chart(layout, groups, &modes_of(number)[..groups.len()]),
         };
         Figure::of_sheet(layout, number, of_sheet, plot.title(), chart)
     };
-    sheets.map(figure).collect()
+    layout.groups.chunks(of_sheet).enumerate().map(figure).collect()
 }
