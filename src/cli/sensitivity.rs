@@ -5,8 +5,8 @@ use super::output::{log, print};
 use super::report::OutFolder;
 use super::rows;
 use crate::exit;
-use crate::publish::Folder;
 use crate::publish::value::count;
+use crate::publish::{Folder, html, markdown};
 use crate::queue::Location;
 use crate::report::{Scalar, sensitivity};
 use crate::study::Study;
@@ -47,11 +47,12 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             "{title}: no parameter varies between the jobs that are done; run them first, or vary more"
         )));
     }
-    let text = sensitivity::markdown(&found);
-    print(&text)?;
+    print(&sensitivity::markdown(&found))?;
     let path = args.out.of(&names[0]);
     let mut folder = Folder::create(&path, "sensitivity")?;
-    folder.write_text("sensitivity.md", &text)?;
+    let page = sensitivity::page(&found, &names.join(", "));
+    folder.write_text("sensitivity.html", &html::of_page(&page))?;
+    folder.write_text("sensitivity.md", &markdown::of_page(&page))?;
     folder.write_table(&sensitivity::indices_table(&found))?;
     let (points, left_out) = sensitivity::points_table(&rows, &of);
     folder.write_table(&points)?;

@@ -12,9 +12,10 @@ pub fn of_blocks(blocks: &[Block]) -> String {
     text
 }
 
-/// A page.
+/// A page; a part of one has no title.
 pub fn of_page(page: &Page) -> String {
-    let mut text = format!("# {}\n\n", escape(&page.title));
+    let mut text =
+        if page.title.is_empty() { String::new() } else { format!("# {}\n\n", escape(&page.title)) };
     page.lead.iter().for_each(|block| write_block(&mut text, block));
     for section in &page.sections {
         let _ = write!(text, "## {}\n\n", escape(&section.heading));

@@ -80,7 +80,7 @@ fn exact_if_short(x: f64) -> Option<String> {
 
 /// Multiples of units in which people write quantities: unit, smallest size from which the multiple is used, factor, name.
 /// The largest size comes first.
-const MULTIPLES: [(&str, f64, f64, &str); 17] = [
+const MULTIPLES: [(&str, f64, f64, &str); 19] = [
     ("Pa", 1e8, 1e9, "GPa"),
     ("Pa", 1e5, 1e6, "MPa"),
     ("Pa", 1e2, 1e3, "kPa"),
@@ -93,6 +93,8 @@ const MULTIPLES: [(&str, f64, f64, &str); 17] = [
     ("s", 0.0, 1e-9, "ns"),
     ("Hz", 1e3, 1e3, "kHz"),
     ("N", 1e4, 1e3, "kN"),
+    ("N/m", 1e6, 1e6, "MN/m"),
+    ("N/m", 1e3, 1e3, "kN/m"),
     ("J", 1.0, 1.0, "J"),
     ("J", 1e-4, 1e-3, "mJ"),
     ("J", 0.0, 1e-6, "µJ"),

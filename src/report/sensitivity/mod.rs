@@ -8,7 +8,7 @@ mod types;
 
 pub use design::Design;
 pub(super) use tables::described;
-pub use tables::{indices_table, markdown};
+pub use tables::{indices_table, markdown, page};
 pub use types::{Index, Indices, REGIME, Sensitivity};
 
 use super::export::further_names;

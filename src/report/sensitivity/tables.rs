@@ -1,76 +1,86 @@
-//! Indices as a text and as CSV.
+//! Indices as a page and as CSV.
 
 use super::design::Design;
 use super::types::{Index, Indices, REGIME, Sensitivity};
 use crate::publish::markdown;
+use crate::publish::page::{Block, Grid, Page, Section};
 use crate::publish::table::{Column, FileColumns, Table};
 use crate::publish::value::{self, count};
 use crate::report::Scalar;
 use crate::report::columns::any_quantity;
-use std::fmt::Write;
 
 /// With fewer points, estimates say little.
 const FEW_POINTS: usize = 100;
 
-/// The indices as a text with tables.
+/// The indices as Markdown.
 pub fn markdown(found: &[Sensitivity]) -> String {
-    let mut text = String::new();
-    for one in found {
-        let is_regime = one.of == REGIME;
-        let title = Scalar::find(&one.of).map_or_else(|| one.of.clone(), Scalar::title);
-        let _ = writeln!(text, "# {title}: {} points\n", one.points);
-        let mut ranked: Vec<_> = one.parameters.iter().collect();
-        let of = |index: &Option<Index>| index.as_ref().map_or(-1.0, |index| index.value);
-        ranked.sort_by(|a, b| of(&b.pawn).total_cmp(&of(&a.pawn)).then(a.name.cmp(&b.name)));
-        let is_morris = one.parameters.iter().any(|own| own.effects.is_some());
-        let columns = shown(&one.design, is_regime, is_morris);
-        if columns.len() > 1 {
-            let table = Table::of("sensitivity", &columns, ranked);
-            let heads: Vec<String> = table.names().map(str::to_owned).collect();
-            let _ = writeln!(text, "{}", markdown::table(&heads, &table.cells(), false));
-        }
-        let what = if is_regime { "shares" } else { "PAWN" };
-        let _ = match &one.design {
-            Design::Grid(sizes) => {
-                let sizes = sizes.iter().map(usize::to_string).collect::<Vec<_>>().join(" × ");
-                writeln!(text, "Exact on this grid of {sizes} points, each of which counts the same.")
-            }
-            Design::Unknown(why) => writeln!(
-                text,
-                "No {what}{}: {why}.",
-                if is_regime { "" } else { " and no first-order index" }
-            ),
-            Design::Sample => Ok(()),
-        };
-        if let Some(chance) = one.chance {
-            let chance = value::fixed(chance, 2);
-            let _ = writeln!(text, "A parameter without effect has {what} up to {chance} by chance.");
-            if one.points < FEW_POINTS {
-                let points = one.points;
-                let _ = writeln!(
-                    text,
-                    "Only {points} points: the indices say little; give at least {FEW_POINTS}."
-                );
-            }
-        }
-        if one.missing > 0 {
-            let _ = writeln!(
-                text,
-                "{} without a value here: no index says anything of these points.",
-                count(one.missing as u64, "job")
-            );
-        }
-        for remark in &one.remarks {
-            let _ = writeln!(text, "{remark}");
-        }
-        text += "\n";
+    markdown::of_page(&Page { sections: found.iter().map(section).collect(), ..Page::default() })
+}
+
+/// The page of the indices.
+pub fn page(found: &[Sensitivity], title: &str) -> Page {
+    Page {
+        title: format!("{title}: how much each parameter decides"),
+        lead: vec![Block::text("All indices: `sensitivity.csv`; the points: `sensitivity_points.csv`.")],
+        sections: found.iter().map(section).collect(),
+        ..Page::default()
     }
-    text
+}
+
+/// The indices of a quantity.
+fn section(one: &Sensitivity) -> Section {
+    let is_regime = one.of == REGIME;
+    let title = Scalar::find(&one.of).map_or_else(|| one.of.clone(), Scalar::title);
+    let mut ranked: Vec<_> = one.parameters.iter().collect();
+    let of = |index: &Option<Index>| index.as_ref().map_or(-1.0, |index| index.value);
+    ranked.sort_by(|a, b| of(&b.pawn).total_cmp(&of(&a.pawn)).then(a.name.cmp(&b.name)));
+    let is_morris = one.parameters.iter().any(|own| own.effects.is_some());
+    let columns = shown(&one.design, is_regime, is_morris);
+    let mut blocks = Vec::new();
+    if columns.len() > 1 {
+        blocks.push(Block::Table(Grid::of_table(&Table::of("sensitivity", &columns, ranked))));
+    }
+    let notes = notes(one, is_regime);
+    if !notes.is_empty() {
+        blocks.push(Block::list(notes));
+    }
+    Section::new(one.of.clone(), format!("{title}: {} points", one.points), blocks)
+}
+
+/// What has to be known of the indices, in sentences.
+fn notes(one: &Sensitivity, is_regime: bool) -> Vec<String> {
+    let what = if is_regime { "shares" } else { "PAWN" };
+    let mut notes = Vec::new();
+    match &one.design {
+        Design::Grid(sizes) => {
+            let sizes = sizes.iter().map(usize::to_string).collect::<Vec<_>>().join(" × ");
+            notes.push(format!("Exact on this grid of {sizes} points, each of which counts the same."));
+        }
+        Design::Unknown(why) => {
+            let first_order = if is_regime { "" } else { " and no first-order index" };
+            notes.push(format!("No {what}{first_order}: {why}."));
+        }
+        Design::Sample => {}
+    }
+    if let Some(chance) = one.chance {
+        let chance = value::fixed(chance, 2);
+        notes.push(format!("A parameter without effect has {what} up to {chance} by chance."));
+        if one.points < FEW_POINTS {
+            let points = one.points;
+            notes.push(format!("Only {points} points: the indices say little; give at least {FEW_POINTS}."));
+        }
+    }
+    if one.missing > 0 {
+        let jobs = count(one.missing as u64, "job");
+        notes.push(format!("{jobs} without a value here: no index says anything of these points."));
+    }
+    notes.extend(one.remarks.iter().cloned());
+    notes
 }
 
 /// The columns of a parameter for readers.
 fn shown(design: &Design, is_regime: bool, is_morris: bool) -> Vec<Column<Indices>> {
-    let parameter = Column::new("parameter", "", "", |own: &Indices| format!("`{}`", own.name).into());
+    let parameter = Column::new("parameter", "", "", |own: &Indices| own.name.as_str().into());
     let first = Column::new("first order", "", "", |own: &Indices| in_words(own.first_order).into());
     let total = Column::new("total", "", "", |own: &Indices| in_words(own.total).into());
     let pawn = Column::new("PAWN", "", "", |own: &Indices| in_words(own.pawn).into());

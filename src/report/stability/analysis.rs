@@ -1,9 +1,10 @@
 //! The points in groups, as figures and tables show them: branches over μ at each speed, and where they begin to grow.
 
 use super::along::Along;
-use super::ranges::{Crossing, Edge, Interval, Known, Onset, Speed, intervals};
+use super::onsets::{name_families, onsets_of};
+use super::ranges::{Edge, Interval, Known, Onset, Speed, intervals};
 use crate::analysis::ComplexMode;
-use crate::analysis::branches::{Branch, BranchPoint, Sample, branches, crossing, threads};
+use crate::analysis::branches::{Sample, branches};
 use crate::publish::value;
 use crate::report::Discretisation;
 use crate::report::layout::{Group, Layout};
@@ -11,9 +12,7 @@ use crate::report::parameters::{MU, OMEGA, name_and_unit};
 use crate::report::row::{JobRow, RowState};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::view::View;
-use nalgebra::Complex;
 use serde_json::Value;
-use std::f64::consts::TAU;
 
 /// The points as rows, so that a [`Layout`] can group them. The key of a row is the number of its point. Parameters that move along
 /// the way of the thresholds do not tell groups apart. If ω or μ is one of them, the rows do not say it.
@@ -255,84 +254,13 @@ fn speed(omega: &Value, along: &Along, points: &[&StabilityPoint]) -> Speed {
     Speed { omega: omega.clone(), mus, branches, onsets, intervals, without_modes, shared, known }
 }
 
-/// Where a branch grows; nothing if it does not.
-fn onsets_of(branch: usize, points: &Branch) -> Vec<Onset> {
-    let place =
-        |pair: [BranchPoint; 2]| Crossing { at: crossing(pair), below: pair[0].mu, above: pair[1].mu };
-    let onset = |[begins, ends]: [Option<[BranchPoint; 2]>; 2]| {
-        let ends_converged = ends.is_none_or(|[a, b]| a.mode.is_converged && b.mode.is_converged);
-        let ends = ends.map(place);
-        let Some([below, above]) = begins else {
-            let first = points.points.first()?;
-            let is_converged = first.mode.is_converged && ends_converged;
-            let frequency_hz = first.mode.frequency_hz;
-            let (mu, family) = (first.mu, 0);
-            return Some(Onset {
-                branch,
-                mu,
-                below: None,
-                above: mu,
-                ends,
-                frequency_hz,
-                is_converged,
-                family,
-            });
-        };
-        let mu = crossing([below, above]);
-        // Two points of a zip may share a place.
-        let width = above.mu - below.mu;
-        let share = if width > 0.0 { (mu - below.mu) / width } else { 0.0 };
-        let (from, to) = (below.mode.frequency_hz, above.mode.frequency_hz);
-        Some(Onset {
-            branch,
-            mu,
-            below: Some(below.mu),
-            above: above.mu,
-            ends,
-            frequency_hz: from + share * (to - from),
-            is_converged: below.mode.is_converged && above.mode.is_converged && ends_converged,
-            family: 0,
-        })
-    };
-    points.spans().into_iter().filter_map(onset).collect()
-}
-
-/// Finds the families of a group and names them in the onsets; returns their frequencies.
-fn name_families(speeds: &mut [Speed]) -> Vec<f64> {
-    let value = |onset: &Onset| Complex::new(0.0, TAU * onset.frequency_hz);
-    let positions: Vec<(f64, Vec<Complex<f64>>)> = speeds
-        .iter()
-        .enumerate()
-        .map(|(number, speed)| {
-            let at = speed.omega.as_f64().unwrap_or(number as f64);
-            (at, speed.onsets.iter().map(value).collect())
-        })
-        .collect();
-    let mut found = threads(&positions);
-    let lowest = |family: &Vec<(usize, usize)>| {
-        family.iter().map(|(speed, onset)| speeds[*speed].onsets[*onset].mu).fold(f64::INFINITY, f64::min)
-    };
-    found.sort_by(|a, b| lowest(a).total_cmp(&lowest(b)));
-    let mut frequencies = Vec::new();
-    for (number, family) in found.iter().enumerate() {
-        let mut own = Vec::new();
-        for (speed, onset) in family {
-            let onset = &mut speeds[*speed].onsets[*onset];
-            onset.family = number;
-            own.push(onset.frequency_hz);
-        }
-        own.sort_by(f64::total_cmp);
-        frequencies.push(own.get(own.len() / 2).copied().unwrap_or_default());
-    }
-    frequencies
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::analysis::{AboveBand, SlidingStability};
     use crate::report::figure::StabilityPlot::{LockIn, Map, Thresholds};
     use crate::report::figure::stability_figures;
+    use std::f64::consts::TAU;
 
     fn point(omega_rpm: f64, mu: f64, modes: &[(f64, f64)]) -> StabilityPoint {
         let mode = |(frequency_hz, growth_rate_per_s): &(f64, f64)| ComplexMode {

@@ -9,6 +9,7 @@
 mod along;
 mod analysis;
 mod contour;
+mod onsets;
 mod ranges;
 mod table;
 mod verdict;
