@@ -64,7 +64,7 @@
 //!
 //! # Features
 //! All of them are on by default. Without any there are [`spec`], [`solver`], [`stability`], [`analysis`], [`study`] and
-//! [`units`].
+//! [`random`] and [`units`].
 //!
 //! * `queue` – [`queue`] and [`worker`].
 //! * `postgres` – the queue on a PostgreSQL server too.
@@ -83,6 +83,7 @@ pub mod inspect;
 pub mod publish;
 #[cfg(feature = "queue")]
 pub mod queue;
+pub mod random;
 #[cfg(feature = "report")]
 pub mod report;
 pub mod solver;

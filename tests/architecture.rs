@@ -7,18 +7,19 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 
 /// The modules that each top-level module may use besides itself.
-const MAY_USE: [(&str, &[&str]); 15] = [
+const MAY_USE: [(&str, &[&str]); 16] = [
     ("spec", &[]),
     ("units", &[]),
+    ("random", &[]),
     ("exit", &[]),
     ("queue", &[]),
-    ("solver", &["spec", "units"]),
+    ("solver", &["random", "spec", "units"]),
     ("stability", &["solver", "spec", "units"]),
     ("analysis", &["solver", "spec", "stability", "units"]),
     ("study", &["spec"]),
     ("publish", &["units"]),
     ("inspect", &["analysis", "publish", "solver", "spec", "units"]),
-    ("report", &["analysis", "publish"]),
+    ("report", &["analysis", "publish", "random"]),
     ("worker", &["analysis", "queue", "spec", "units"]),
     // Of `publish` it uses drawings and the error of `report`.
     ("sweep", &["analysis", "publish", "queue", "report", "solver", "spec", "study", "units", "worker"]),

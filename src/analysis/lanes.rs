@@ -355,7 +355,7 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
             return Some(Err(error.into()));
         }
         let record = run.analysis.record(&self.model, steps, energies, self.state.target.solves_of(lane));
-        Some(match record.non_finite_figure() {
+        Some(match record.non_finite_number() {
             None => Ok(record),
             Some(figure) => Err(JobError::NotFinite { figure }),
         })

@@ -50,14 +50,6 @@ impl CoarseStart {
     pub(super) fn spent_s(&self) -> f64 {
         COST * self.simulated_s
     }
-
-    /// The real numbers with their paths.
-    pub(super) fn figures(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let Self { elements: _, outcome: _, simulated_s, mu_star, frequency_hz } = *self;
-        let optional = [("mu_star", mu_star), ("frequency_hz", frequency_hz)];
-        let optional = optional.into_iter().filter_map(|(name, value)| Some((name, value?)));
-        std::iter::once(("simulated_s", simulated_s)).chain(optional)
-    }
 }
 
 /// What a job on its own mesh begins from.

@@ -64,38 +64,6 @@ impl ProgramWindow {
     pub fn middle_s(&self) -> f64 {
         0.5 * (self.time_s[0] + self.time_s[1])
     }
-
-    /// The real numbers with their paths.
-    pub(super) fn figures(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let Self {
-            time_s: [start_s, end_s],
-            direction: _,
-            omega_rpm,
-            load_n,
-            mu_star,
-            mu_star_contact,
-            frequency_hz,
-            n_amplitude,
-            y_peak_to_peak_m,
-            stick_share,
-            slip_share,
-            separated_share,
-        } = *self;
-        let figures = [
-            ("time_s[0]", start_s),
-            ("time_s[1]", end_s),
-            ("omega_rpm", omega_rpm),
-            ("load_n", load_n),
-            ("mu_star", mu_star),
-            ("mu_star_contact", mu_star_contact),
-            ("n_amplitude", n_amplitude),
-            ("y_peak_to_peak_m", y_peak_to_peak_m),
-            ("stick_share", stick_share),
-            ("slip_share", slip_share),
-            ("separated_share", separated_share),
-        ];
-        figures.into_iter().chain(frequency_hz.map(|value| ("frequency_hz", value)))
-    }
 }
 
 /// Fewest cycles that have a frequency in a window.

@@ -114,7 +114,7 @@ pub fn judge(
             let is_stable = point.modes.first().is_some_and(|mode| growth(mode) < 0.0);
             let outcome = if is_stable { Outcome::Decayed } else { Outcome::Unstable };
             let record = record(spec, model, &point, outcome);
-            match record.non_finite_figure() {
+            match record.non_finite_number() {
                 None => Ok(Verdict::Decided(Box::new(record))),
                 Some(figure) => Err(JobError::NotFinite { figure }),
             }
@@ -138,7 +138,7 @@ pub fn judge(
                 stability.above_band = AboveBand::CoarserRun;
             }
             record.start.clone_from(&beginning.start);
-            Ok(match (record.non_finite_figure(), is_safely_stable) {
+            Ok(match (record.non_finite_number(), is_safely_stable) {
                 (None, true) => Verdict::Decided(Box::new(record)),
                 (None, false) => Verdict::Undecided(Some(Noted {
                     stability: sliding_stability(&point, false),
@@ -380,7 +380,7 @@ mod tests {
         let pressure_pa = 30.0 / model.slaves()[1..].iter().map(|node| node.area_m2).sum::<f64>();
         assert!((record.sigma_n_max_pa / pressure_pa - 1.0).abs() < 1.0e-12);
         assert!(record.mu_reduction_slip > 0.0 && record.macroscopic_identity_residual.abs() < 1.0e-12);
-        assert_eq!(record.non_finite_figure(), None);
+        assert_eq!(record.non_finite_number(), None);
         let stability = record.stability.unwrap();
         assert!(stability.decided && stability.modes[0].damping_ratio == 0.8);
         assert_eq!((stability.contact_nodes, stability.lifted_nodes), (19, 1));

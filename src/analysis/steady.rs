@@ -122,23 +122,6 @@ pub enum Obstacle {
     },
 }
 
-impl Obstacle {
-    /// The real numbers with their paths.
-    pub(super) fn figures(&self) -> impl Iterator<Item = (&'static str, f64)> {
-        let figures = match *self {
-            Self::FewCycles { .. } | Self::SlipOnly => [None; 2],
-            Self::Unsteady { figure: _, spread, drift } => [Some(("spread", spread)), Some(("drift", drift))],
-            Self::Swing { imbalance, covered_s } => {
-                [Some(("imbalance", imbalance)), covered_s.map(|value| ("covered_s", value))]
-            }
-            Self::Creep { still_to_come, imbalance } => {
-                [Some(("still_to_come", still_to_come)), Some(("imbalance", imbalance))]
-            }
-        };
-        figures.into_iter().flatten()
-    }
-}
-
 /// Why the end of `cycles` is not periodic, if [`find`] finds nothing.
 pub fn obstacle(cycles: &[Cycle], detection: &Detection, slow: Option<SlowTimes>) -> Obstacle {
     let few = Obstacle::FewCycles { found: cycles.len(), needed: detection.cycles };

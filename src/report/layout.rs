@@ -11,6 +11,7 @@ use super::row::{JobRow, RowState};
 use super::view::View;
 use crate::publish::chart::Axis;
 use crate::publish::value;
+use indexmap::IndexMap;
 use serde_json::Value;
 use std::collections::{HashMap, HashSet};
 
@@ -296,10 +297,8 @@ impl<'a> Layout<'a> {
 /// Groups in the making.
 #[derive(Default)]
 struct Groups<'a> {
-    found: Vec<Group<'a>>,
-    /// Values are compared as they are shown: 1 and 1.0 are equal.
-    known: HashMap<Vec<String>, usize>,
-    axis_indices: Vec<HashMap<String, usize>>,
+    /// The groups with their values along the axis. Values are compared as they are shown: 1 and 1.0 are equal.
+    found: IndexMap<Vec<String>, (Group<'a>, IndexMap<String, Value>)>,
     /// Measured points that are not known to belong to one group.
     anywhere: Vec<Unplaced<'a>>,
 }
@@ -319,21 +318,18 @@ impl<'a> Groups<'a> {
     }
 
     fn number(&mut self, key: Vec<(&'a str, Value)>) -> usize {
-        let texts = key.iter().map(|(_, value)| value::text(value)).collect();
-        let number = *self.known.entry(texts).or_insert(self.found.len());
-        if number == self.found.len() {
-            self.found.push(Group { key, jobs: Vec::new(), axis_values: Vec::new(), words: String::new() });
-            self.axis_indices.push(HashMap::new());
-        }
+        let entry = self.found.entry(key.iter().map(|(_, value)| value::text(value)).collect());
+        let number = entry.index();
+        let group = Group { key, jobs: Vec::new(), axis_values: Vec::new(), words: String::new() };
+        entry.or_insert((group, IndexMap::new()));
         number
     }
 
     fn add(&mut self, number: usize, row: &'a JobRow, series: usize, at: Value) {
-        let (group, indices) = (&mut self.found[number], &mut self.axis_indices[number]);
-        let axis_index = *indices.entry(value::text(&at)).or_insert(group.axis_values.len());
-        if axis_index == group.axis_values.len() {
-            group.axis_values.push(at);
-        }
+        let (group, values) = &mut self.found[number];
+        let value = values.entry(value::text(&at));
+        let axis_index = value.index();
+        value.or_insert(at);
         group.jobs.push(PlacedJob { row, axis_index, series });
     }
 
@@ -343,7 +339,7 @@ impl<'a> Groups<'a> {
                 let pairs = group.key.iter().zip(&key);
                 pairs.clone().all(|((_, a), (_, b))| b.is_null() || value::text(a) == value::text(b))
             };
-            let fitting: Vec<usize> = (0..self.found.len()).filter(|&i| agrees(&self.found[i])).collect();
+            let fitting: Vec<usize> = (0..self.found.len()).filter(|&i| agrees(&self.found[i].0)).collect();
             if fitting.is_empty() {
                 let number = self.number(key);
                 self.add(number, row, series, at);
@@ -357,12 +353,14 @@ impl<'a> Groups<'a> {
             // A study without jobs has empty tables and figures.
             self.number(Vec::new());
         }
-        for group in &mut self.found {
+        let finished = |(mut group, values): (Group<'a>, IndexMap<String, Value>)| {
+            group.axis_values = values.into_values().collect();
             group.sort_axis();
             let words = group.key.iter().map(|(name, value)| layout.dimension(name).assignment(value));
             group.words = words.collect::<Vec<_>>().join(", ");
-        }
-        self.found
+            group
+        };
+        self.found.into_values().map(finished).collect()
     }
 }
 
@@ -395,18 +393,17 @@ impl Group<'_> {
 
 /// The series of the rows, and the index of each row's series.
 fn series(varying: &Varying, by: &str) -> (Vec<Series>, Vec<usize>) {
-    let mut values: Vec<Value> = Vec::new();
-    let mut indices: HashMap<String, usize> = HashMap::new();
+    let mut values: IndexMap<String, Value> = IndexMap::new();
     let mut of_rows = Vec::with_capacity(varying.rows.len());
     for row in &varying.rows {
         let value = row.parameter(by);
-        let index = *indices.entry(value::text(&value)).or_insert(values.len());
-        if index == values.len() {
-            values.push(value);
-        }
+        let entry = values.entry(value::text(&value));
+        let index = entry.index();
+        entry.or_insert(value);
         let source = varying.sources.iter().position(|source| source.name == row.study).unwrap_or(0);
         of_rows.push((index, source));
     }
+    let mut values: Vec<Value> = values.into_values().collect();
     let rank = value::sort_known(&mut values);
     for (index, _) in &mut of_rows {
         *index = rank[*index];

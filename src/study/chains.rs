@@ -6,6 +6,7 @@ use super::growth::{DIRECTION, Direction, Growth, KICK};
 use super::key::job_key;
 use super::parameter::PARAMETERS;
 use crate::spec::{Continuation, StabilityMethod, Start};
+use indexmap::IndexMap;
 use serde_json::Value;
 
 impl Study {
@@ -70,17 +71,12 @@ impl Study {
 
 /// The jobs that differ in one parameter alone, from its smallest value to its largest; the groups in the order of their first jobs.
 pub fn chains_of<'a>(jobs: &'a [Job], along: &str) -> Vec<Vec<&'a Job>> {
-    let mut places = std::collections::HashMap::new();
-    let mut chains: Vec<Vec<&Job>> = Vec::new();
+    let mut chains: IndexMap<String, Vec<&Job>> = IndexMap::new();
     for job in jobs {
         let rest: Vec<_> = job.parameters.iter().filter(|(name, _)| name != along).collect();
-        let rest = serde_json::to_string(&rest).unwrap_or_default();
-        let place = *places.entry(rest).or_insert(chains.len());
-        if place == chains.len() {
-            chains.push(Vec::new());
-        }
-        chains[place].push(job);
+        chains.entry(serde_json::to_string(&rest).unwrap_or_default()).or_default().push(job);
     }
+    let mut chains: Vec<Vec<&Job>> = chains.into_values().collect();
     for chain in &mut chains {
         chain.sort_by(|a, b| a.number(along).total_cmp(&b.number(along)));
     }

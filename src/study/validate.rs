@@ -3,8 +3,8 @@
 use super::definition::Study;
 use super::error::Problem;
 use crate::spec::FieldError;
+use indexmap::IndexMap;
 use serde_json::Value;
-use std::collections::HashMap;
 
 /// A violation and the grid points that have it.
 struct SharedViolation {
@@ -15,18 +15,15 @@ struct SharedViolation {
 
 /// The problems of all jobs, from the violations at each point of the grid; the same violation in many jobs is one problem.
 pub(super) fn check_jobs(study: &Study, violations: &[Vec<FieldError>]) -> Vec<Problem> {
-    let mut found: Vec<SharedViolation> = Vec::new();
-    let mut index_of: HashMap<(String, String, String), usize> = HashMap::new();
+    let mut found: IndexMap<(String, String, String), SharedViolation> = IndexMap::new();
     for (point, violations) in violations.iter().enumerate() {
         for violation in violations {
             let FieldError { field, value, expected } = violation.clone();
-            let index = *index_of.entry((field, value, expected)).or_insert(found.len());
-            if index == found.len() {
-                found.push(SharedViolation { violation: violation.clone(), first_point: point, points: 0 });
-            }
-            found[index].points += 1;
+            let first = || SharedViolation { violation: violation.clone(), first_point: point, points: 0 };
+            found.entry((field, value, expected)).or_insert_with(first).points += 1;
         }
     }
+    let found: Vec<SharedViolation> = found.into_values().collect();
     let refused: Vec<&str> = found.iter().map(|found| found.violation.field.as_str()).collect();
     // A modulus in GPa makes times and speeds unusable. Then the modulus is the reason, and it comes first.
     let mut problems = if found.is_empty() { Vec::new() } else { study.wrong_units(&refused) };

@@ -2,6 +2,7 @@
 
 use crate::publish::value;
 use crate::study::{Job, PARAMETERS, Parameter, inputs};
+use indexmap::IndexMap;
 use rayon::iter::ParallelIterator;
 use rayon::slice::ParallelSlice;
 use serde_json::Value;
@@ -90,6 +91,9 @@ fn values_text(values: &[Value], unit: &str, is_exact: bool) -> String {
     }
 }
 
+/// Different values by their texts, in the order in which they were added.
+type Distinct = IndexMap<String, Value>;
+
 /// Jobs whose values are collected at a time.
 const CHUNK: usize = 1_000;
 
@@ -99,10 +103,17 @@ fn values(jobs: &[Job]) -> Vec<Vec<Value>> {
     let mut all: Vec<Distinct> = PARAMETERS.iter().map(|_| Distinct::default()).collect();
     for part in parts {
         for (all, part) in all.iter_mut().zip(part) {
-            part.values.into_iter().for_each(|value| all.add(value));
+            for (text, value) in part {
+                all.entry(text).or_insert(value);
+            }
         }
     }
-    all.into_iter().map(Distinct::sorted).collect()
+    let sorted = |values: Distinct| {
+        let mut values: Vec<Value> = values.into_values().collect();
+        value::sort_numbers(&mut values);
+        values
+    };
+    all.into_iter().map(sorted).collect()
 }
 
 fn distinct(jobs: &[Job]) -> Vec<Distinct> {
@@ -112,31 +123,11 @@ fn distinct(jobs: &[Job]) -> Vec<Distinct> {
         let mut places = PARAMETERS.iter().zip(&mut found);
         for input in inputs(&job.spec) {
             if let Some((_, values)) = places.find(|(parameter, _)| **parameter == *input.parameter) {
-                values.add(input.value);
+                values.entry(input.value.to_string()).or_insert(input.value);
             }
         }
     }
     found
-}
-
-/// Different values, in the order in which they were added.
-#[derive(Default)]
-struct Distinct {
-    known: HashSet<String>,
-    values: Vec<Value>,
-}
-
-impl Distinct {
-    fn add(&mut self, value: Value) {
-        if self.known.insert(value.to_string()) {
-            self.values.push(value);
-        }
-    }
-
-    fn sorted(mut self) -> Vec<Value> {
-        value::sort_numbers(&mut self.values);
-        self.values
-    }
 }
 
 #[cfg(test)]

@@ -11,9 +11,10 @@ use crate::queue::{NewJob, NewStudy, Queue, Replace, Replaced, Shard, Submitted}
 use crate::solver;
 use crate::spec::{DiskKind, JobSpec};
 use crate::study::{Changes, Job, SharedKeys, Study, StudyText};
+use indexmap::IndexMap;
 use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIterator};
 use serde::Serialize;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{HashMap, HashSet};
 use std::path::Path;
 
 /// A study that has been read, expanded into jobs and checked: no job is refused before its first step.
@@ -291,16 +292,14 @@ fn preflight(
     jobs: &[Job],
     batches: &[String],
 ) -> Result<(Vec<Workload>, Vec<usize>), SweepError> {
-    let mut numbers: BTreeMap<&str, usize> = BTreeMap::new();
-    let mut firsts: Vec<&JobSpec> = Vec::new();
+    let mut firsts: IndexMap<&str, &JobSpec> = IndexMap::new();
     let mut workload_of = Vec::with_capacity(jobs.len());
     for (job, batch) in jobs.iter().zip(batches) {
-        let number = *numbers.entry(batch).or_insert(firsts.len());
-        if number == firsts.len() {
-            firsts.push(&job.spec);
-        }
-        workload_of.push(number);
+        let first = firsts.entry(batch);
+        workload_of.push(first.index());
+        first.or_insert(&job.spec);
     }
+    let firsts: Vec<&JobSpec> = firsts.into_values().collect();
     let examines_all = firsts.len() <= EXAMINED;
     let mut workloads: Vec<Result<Workload, JobError>> = firsts
         .par_iter()

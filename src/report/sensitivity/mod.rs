@@ -17,10 +17,12 @@ use super::row::{JobRow, RowState};
 use super::scalar::Scalar;
 use crate::publish::table::{Column, Head, Table};
 use crate::publish::value;
+use crate::random::SplitMix64;
 use design::{Estimator, design_of, estimator};
+use indexmap::IndexMap;
 use indices::{first_order, levels, of_classes, of_levels, on_grid, pawn, slices};
 use parameter::Parameter;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// Number of resamples for confidence intervals.
 const RESAMPLES: usize = 200;
@@ -106,19 +108,12 @@ impl Points<'_> {
 
     /// The points of each combination of all parameters but one.
     fn without(&self, basis: &Basis, parameter: &Parameter) -> Vec<Vec<usize>> {
-        let mut groups: Vec<Vec<usize>> = Vec::new();
-        let mut known: HashMap<Vec<u64>, usize> = HashMap::new();
+        let mut groups: IndexMap<Vec<u64>, Vec<usize>> = IndexMap::new();
         for (place, &at) in basis.points.iter().enumerate() {
             let others = self.parameters.iter().filter(|other| other.name != parameter.name);
-            let group = *known
-                .entry(others.map(|other| other.values[at].to_bits()).collect())
-                .or_insert(groups.len());
-            if group == groups.len() {
-                groups.push(Vec::new());
-            }
-            groups[group].push(place);
+            groups.entry(others.map(|other| other.values[at].to_bits()).collect()).or_default().push(place);
         }
-        groups
+        groups.into_values().collect()
     }
 
     fn of_scalar(&self, scalar: &Scalar) -> Sensitivity {
@@ -285,7 +280,7 @@ fn of_effects(effects: &[f64]) -> Option<(Index, f64)> {
 fn with_interval(count: usize, index: impl Fn(&[usize]) -> Option<f64>) -> Option<Index> {
     let all: Vec<usize> = (0..count).collect();
     let value = index(&all)?;
-    let mut random = Random(1);
+    let mut random = SplitMix64::new(1);
     let resample = |_| {
         let points: Vec<usize> = (0..count).map(|_| random.below(count)).collect();
         index(&points)
@@ -303,7 +298,7 @@ fn with_interval(count: usize, index: impl Fn(&[usize]) -> Option<f64>) -> Optio
 
 /// The 95 % quantile of an index with shuffled points.
 fn by_chance(count: usize, index: impl Fn(&[usize]) -> Option<f64>) -> Option<f64> {
-    let mut random = Random(2);
+    let mut random = SplitMix64::new(2);
     let mut order: Vec<usize> = (0..count).collect();
     let shuffle = |_| {
         for last in (1..count).rev() {
@@ -314,20 +309,6 @@ fn by_chance(count: usize, index: impl Fn(&[usize]) -> Option<f64>) -> Option<f6
     let mut found: Vec<f64> = (0..RESAMPLES).filter_map(shuffle).collect();
     found.sort_by(f64::total_cmp);
     found.get((0.95 * found.len() as f64) as usize).copied()
-}
-
-/// The generator `SplitMix64` (Steele, Lea and Flood 2014): resamples are the same on every machine.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, count: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut word = self.0;
-        word = (word ^ (word >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        word = (word ^ (word >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        word ^= word >> 31;
-        ((u128::from(word) * count.max(1) as u128) >> 64) as usize
-    }
 }
 
 /// A point with the numbers of its varied parameters and of some quantities.

@@ -1,5 +1,6 @@
 //! Heights of a rough base: a sum of waves from a seed and a spectrum, or a map between its points.
 
+use crate::random::{SplitMix64, mix};
 use crate::spec::{HeightMap, Roughness};
 use std::f64::consts::{PI, TAU};
 
@@ -66,17 +67,9 @@ impl WaveSum {
     }
 }
 
-/// A number from 0 to 1, equally likely everywhere: number `index` of the sequence that `seed` begins (SplitMix64: Steele, Lea and
-/// Flood, 2014).
+/// A number from 0 to 1, equally likely everywhere: number `index` of the sequence that `seed` begins.
 fn uniform(seed: u64, index: u64) -> f64 {
-    let mixed = mix(mix(seed).wrapping_add((index + 1).wrapping_mul(0x9e37_79b9_7f4a_7c15)));
-    (mixed >> 11) as f64 / (1_u64 << 53) as f64
-}
-
-fn mix(mut bits: u64) -> u64 {
-    bits = (bits ^ (bits >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-    bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-    bits ^ (bits >> 31)
+    SplitMix64::from(mix(seed), index).unit()
 }
 
 /// The height \[m\] of a map at a point \[m\] from the pin's axis, bilinear between the four points around it.

@@ -19,6 +19,7 @@ use crate::analysis::{Ending, Workload};
 use crate::queue::{JobState, Queue};
 use crate::spec::{Precision, StabilityMethod};
 use crate::study::Job;
+use indexmap::IndexMap;
 use memory::memory_here_bytes;
 use std::collections::HashMap;
 use std::time::Duration;
@@ -181,26 +182,23 @@ impl Forecast {
 /// The jobs by mesh, precision and time step. Steps that agree in three digits count as the same.
 fn groups(plan: &Plan, threads: usize) -> Vec<Group> {
     type Key = ([usize; 3], Precision, usize, String, String);
-    let mut number_of: HashMap<Key, usize> = HashMap::new();
-    let mut groups: Vec<Group> = Vec::new();
+    // With the longest observation [s] of its jobs.
+    let mut groups: IndexMap<Key, (Group, f64)> = IndexMap::new();
     for (job, workload) in plan.jobs().iter().zip(plan.workloads()) {
         let [step, limit] =
             [workload.time_step_s, workload.time_step_limit_s].map(|seconds| format!("{seconds:.2e}"));
         let key = (workload.elements, workload.precision, workload.disk_nodes, step, limit);
-        let number = *number_of.entry(key).or_insert(groups.len());
-        if number == groups.len() {
-            groups.push(Group {
-                workload: workload.clone(),
-                jobs: 0,
-                limit_s: 0.0,
-                steps: 0,
-                together: 1,
-                memory_bytes: 0.0,
-                modes_bytes: 0.0,
-                node_steps: 0.0,
-            });
-        }
-        let group = &mut groups[number];
+        let empty = || Group {
+            workload: workload.clone(),
+            jobs: 0,
+            limit_s: 0.0,
+            steps: 0,
+            together: 1,
+            memory_bytes: 0.0,
+            modes_bytes: 0.0,
+            node_steps: 0.0,
+        };
+        let (group, observation_s) = groups.entry(key).or_insert_with(|| (empty(), 0.0));
         group.jobs += 1;
         group.limit_s = group.limit_s.max(job.spec.run.limit_s);
         group.node_steps += workload.node_steps(job.spec.run.limit_s);
@@ -210,15 +208,15 @@ fn groups(plan: &Plan, threads: usize) -> Vec<Group> {
         {
             group.modes_bytes = workload.modes_bytes();
         }
-        let observation_s = job.spec.observation_s();
-        group.memory_bytes = group.memory_bytes.max(observation_s);
+        *observation_s = observation_s.max(job.spec.observation_s());
     }
-    for group in &mut groups {
-        let observation_s = group.memory_bytes;
+    let finished = |(mut group, observation_s): (Group, f64)| {
         group.together = group.workload.widest().min(group.jobs.div_ceil(threads));
         group.memory_bytes = group.workload.memory_bytes(group.together, observation_s);
         group.steps = group.workload.steps(group.limit_s).unwrap_or(u64::MAX);
-    }
+        group
+    };
+    let mut groups: Vec<Group> = groups.into_values().map(finished).collect();
     groups.sort_by(|a, b| b.node_steps.total_cmp(&a.node_steps));
     groups
 }

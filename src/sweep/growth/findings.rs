@@ -5,8 +5,9 @@ use crate::queue::{PlanState, PlanStatus, Queue};
 use crate::report::{BranchPoint, Endpoint, Findings, JobRow, RowState, basins};
 use crate::study::{Continue, DIRECTION, Direction, KICK, Study};
 use crate::sweep::error::SweepError;
+use indexmap::IndexMap;
 use serde_json::Value;
-use std::collections::{BTreeMap, HashMap};
+use std::collections::BTreeMap;
 
 /// What a study has found, from all its `rows`; none if it does not grow, or if this version cannot read it.
 ///
@@ -71,23 +72,20 @@ fn state(study: &Study, plan: &PlanStatus, rows: &[JobRow]) -> String {
 
 /// The ends on the two ways at each point, in the order of the rows.
 fn branches(rows: &[JobRow]) -> Vec<BranchPoint> {
-    let mut places: HashMap<String, usize> = HashMap::new();
-    let mut found: Vec<BranchPoint> = Vec::new();
+    let mut found: IndexMap<String, BranchPoint> = IndexMap::new();
     for row in rows {
         let Some(way) = own(row, DIRECTION) else { continue };
         let parameters = without(row, DIRECTION);
-        let place =
-            *places.entry(serde_json::to_string(&parameters).unwrap_or_default()).or_insert(found.len());
-        if place == found.len() {
-            found.push(BranchPoint { parameters, up: None, down: None });
-        }
+        let point = found.entry(serde_json::to_string(&parameters).unwrap_or_default());
+        let point = point.or_insert_with(|| BranchPoint { parameters, up: None, down: None });
         let end = row.record().map(Endpoint::of);
         if way.as_str() == Some(Direction::Up.name()) {
-            found[place].up = end;
+            point.up = end;
         } else {
-            found[place].down = end;
+            point.down = end;
         }
     }
+    let mut found: Vec<BranchPoint> = found.into_values().collect();
     found.sort_by(|a, b| {
         let numbers = |point: &BranchPoint| -> Vec<f64> {
             point.parameters.iter().map(|(_, value)| value.as_f64().unwrap_or(0.0)).collect()
@@ -105,8 +103,7 @@ fn branches(rows: &[JobRow]) -> Vec<BranchPoint> {
 /// The states that the kicked jobs of each point ended in.
 fn basins_of(rows: &[JobRow]) -> Vec<crate::report::Basin> {
     type Ends = Vec<Option<Endpoint>>;
-    let mut places: HashMap<String, usize> = HashMap::new();
-    let mut found: Vec<(Vec<(String, Value)>, Ends)> = Vec::new();
+    let mut found: IndexMap<String, (Vec<(String, Value)>, Ends)> = IndexMap::new();
     for row in rows {
         let is_kicked = own(row, KICK).and_then(Value::as_u64).is_some_and(|kick| kick > 0);
         let has_ended = matches!(row.state, RowState::Done(_) | RowState::Failed { .. });
@@ -114,14 +111,10 @@ fn basins_of(rows: &[JobRow]) -> Vec<crate::report::Basin> {
             continue;
         }
         let parameters = without(row, KICK);
-        let place =
-            *places.entry(serde_json::to_string(&parameters).unwrap_or_default()).or_insert(found.len());
-        if place == found.len() {
-            found.push((parameters, Vec::new()));
-        }
-        found[place].1.push(row.record().map(Endpoint::of));
+        let point = found.entry(serde_json::to_string(&parameters).unwrap_or_default());
+        point.or_insert_with(|| (parameters, Vec::new())).1.push(row.record().map(Endpoint::of));
     }
-    found.iter().flat_map(|(parameters, ends)| basins(parameters, ends)).collect()
+    found.values().flat_map(|(parameters, ends)| basins(parameters, ends)).collect()
 }
 
 fn own<'a>(row: &'a JobRow, name: &str) -> Option<&'a Value> {

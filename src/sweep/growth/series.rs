@@ -3,8 +3,8 @@
 use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::report::JobRow;
 use crate::study::Side;
+use indexmap::IndexMap;
 use serde_json::Value;
-use std::collections::HashMap;
 
 /// The jobs of a study that differ in one parameter alone, from its smallest value to its largest.
 #[derive(Debug)]
@@ -17,24 +17,20 @@ pub struct Series<'a> {
 /// The series along a parameter, in the order of their first jobs. Only those that have two jobs that the study's author asked for: a
 /// point that was added to one series is no beginning of another one.
 pub fn series_along<'a>(rows: &'a [JobRow], along: &str) -> Vec<Series<'a>> {
-    let mut places: HashMap<String, usize> = HashMap::new();
-    let mut found: Vec<(usize, Series<'a>)> = Vec::new();
+    let mut found: IndexMap<String, (usize, Series<'a>)> = IndexMap::new();
     for row in rows {
         let Some(x) = row.parameters.iter().find(|(name, _)| name == along).and_then(|(_, x)| x.as_f64())
         else {
             continue;
         };
         let rest: Vec<_> = row.parameters.iter().filter(|(name, _)| name != along).cloned().collect();
-        let place = *places.entry(serde_json::to_string(&rest).unwrap_or_default()).or_insert(found.len());
-        if place == found.len() {
-            found.push((0, Series { rest, points: Vec::new() }));
-        }
-        let (given, series) = &mut found[place];
+        let key = serde_json::to_string(&rest).unwrap_or_default();
+        let (given, series) = found.entry(key).or_insert_with(|| (0, Series { rest, points: Vec::new() }));
         *given += usize::from(row.wave == 0);
         series.points.push((x, row));
     }
     let mut found: Vec<Series<'a>> =
-        found.into_iter().filter(|(given, _)| *given >= 2).map(|(_, series)| series).collect();
+        found.into_values().filter(|(given, _)| *given >= 2).map(|(_, series)| series).collect();
     for series in &mut found {
         series.points.sort_by(|(a, _), (b, _)| a.total_cmp(b));
         series.points.dedup_by_key(|(x, _)| x.to_bits());

@@ -8,6 +8,7 @@ use crate::study::Study;
 use crate::sweep::database::document;
 use crate::sweep::error::SweepError;
 use crate::sweep::rows::for_each_row;
+use indexmap::IndexMap;
 use serde_json::Value;
 use std::collections::HashSet;
 
@@ -61,17 +62,14 @@ pub(super) fn by_series<'a>(
     along: &Along,
     points: &'a [StabilityPoint],
 ) -> Vec<(Series, Vec<(f64, &'a StabilityPoint)>)> {
-    let mut places = std::collections::HashMap::new();
-    let mut found: Vec<(Series, Vec<(f64, &StabilityPoint)>)> = Vec::new();
+    type Points<'a> = Vec<(f64, &'a StabilityPoint)>;
+    let mut found: IndexMap<String, (Series, Points)> = IndexMap::new();
     for point in points {
         let Some(at) = point.parameter(&along.parameter).as_f64() else { continue };
         let series = rest(along, point.omega_rpm, point.mu, &point.parameters);
-        let place = *places.entry(id(&series)).or_insert(found.len());
-        if place == found.len() {
-            found.push((series, Vec::new()));
-        }
-        found[place].1.push((at, point));
+        found.entry(id(&series)).or_insert_with(|| (series, Vec::new())).1.push((at, point));
     }
+    let mut found: Vec<_> = found.into_values().collect();
     for (_, points) in &mut found {
         Along::sort(points, |point| point.on_grid);
     }

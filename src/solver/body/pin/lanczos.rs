@@ -1,6 +1,7 @@
 //! The largest frequency of a general mesh.
 
 use super::operator::Operator;
+use crate::random::SplitMix64;
 use crate::solver::body::Freedom;
 use crate::solver::field::{Field, Layout};
 use nalgebra::DMatrix;
@@ -125,15 +126,8 @@ fn normalise(v: &mut [f64]) -> f64 {
 
 /// Numbers with a normal distribution, so that every direction is equally likely (Box and Muller, 1958).
 fn random(count: usize) -> Vec<f64> {
-    let mut state = 0_u64;
-    // SplitMix64 (Steele, Lea and Flood, 2014).
-    let mut uniform = move || {
-        state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = state;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        ((z ^ (z >> 31)) >> 11) as f64 / (1_u64 << 53) as f64
-    };
+    let mut random = SplitMix64::new(0);
+    let mut uniform = move || random.unit();
     (0..count).map(|_| (-2.0 * libm::log(1.0 - uniform())).sqrt() * libm::cos(TAU * uniform())).collect()
 }
 
