@@ -5,7 +5,7 @@ use super::output::log;
 use crate::exit;
 use crate::publish::value::count;
 use crate::queue::Location;
-use crate::sweep;
+use crate::sweep::{self, Purpose};
 
 /// Arguments of `cancel`.
 #[derive(Debug, clap::Args)]
@@ -17,12 +17,8 @@ pub(crate) struct Args {
 /// Cancels the jobs.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let name = sweep::study_name(&args.study)?;
-    let cancelled = sweep::block_on(async {
-        let mut queue = sweep::open_to_change(db.clone()).await?;
-        let cancelled = queue.cancel(&name).await?;
-        queue.close().await?;
-        Ok::<_, CliError>(cancelled)
-    })?;
+    let cancelled =
+        sweep::with_queue(db, Purpose::Change, async |queue| Ok::<_, CliError>(queue.cancel(&name).await?))?;
     log(format_args!(
         "{name}: {} cancelled; `tribosweep retry {name}` undoes this",
         count(cancelled.cancelled, "pending job")

@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::output::print;
 use crate::exit;
 use crate::queue::Location;
-use crate::sweep;
+use crate::sweep::{self, Purpose};
 
 /// Arguments of `document`.
 #[derive(Debug, clap::Args)]
@@ -15,11 +15,8 @@ pub(crate) struct Args {
 
 /// Prints the document of the study as it was submitted.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let document = sweep::block_on(async {
-        let mut queue = sweep::open_to_read(db.clone()).await?;
-        let document = sweep::document(&mut queue, &args.study).await?;
-        queue.close().await?;
-        Ok::<_, CliError>(document)
+    let document = sweep::with_queue(db, Purpose::Read, async |queue| {
+        Ok::<_, CliError>(sweep::document(queue, &args.study).await?)
     })?;
     print(&document)?;
     Ok(exit::SUCCESS)

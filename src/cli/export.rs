@@ -5,7 +5,7 @@ use super::output::{fill_file, stream};
 use super::unreadable::log_unreadable;
 use crate::publish::table;
 use crate::queue::{Location, Queue};
-use crate::sweep::{self, ExportColumns, Unreadable};
+use crate::sweep::{self, ExportColumns, Purpose, Unreadable};
 use std::io::Write;
 use std::path::PathBuf;
 
@@ -56,15 +56,13 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     };
     let mut unreadable = Unreadable::default();
     let fill = |out: &mut dyn Write| {
-        sweep::block_on(async {
-            let mut queue = sweep::open_to_read(db.clone()).await?;
-            let studies = if given.is_empty() { every_study(&mut queue).await? } else { given.clone() };
+        sweep::with_queue(db, Purpose::Read, async |queue| {
+            let studies = if given.is_empty() { every_study(queue).await? } else { given.clone() };
             unreadable = if args.windows {
-                sweep::export_windows(&mut queue, &studies, out).await?
+                sweep::export_windows(queue, &studies, out).await?
             } else {
-                sweep::export(&mut queue, &studies, columns, format, out).await?
+                sweep::export(queue, &studies, columns, format, out).await?
             };
-            queue.close().await?;
             Ok(())
         })
     };

@@ -5,7 +5,7 @@ use super::output::print;
 use crate::exit;
 use crate::publish::value::{count, significant};
 use crate::queue::{Garbage, Location};
-use crate::sweep;
+use crate::sweep::{self, Purpose};
 
 /// Arguments of `gc`.
 #[derive(Debug, clap::Args)]
@@ -17,17 +17,11 @@ pub(crate) struct Args {
 
 /// Deletes the jobs that no study needs, with their results, and prints how many they were.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let garbage = sweep::block_on(async {
-        let (mut queue, garbage);
-        if args.dry_run {
-            queue = sweep::open_to_read(db.clone()).await?;
-            garbage = queue.preview_garbage().await?;
-        } else {
-            queue = sweep::open_to_change(db.clone()).await?;
-            garbage = queue.collect_garbage().await?;
-        }
-        queue.close().await?;
-        Ok::<_, CliError>(garbage)
+    let purpose = if args.dry_run { Purpose::Read } else { Purpose::Change };
+    let garbage = sweep::with_queue(db, purpose, async |queue| {
+        let garbage =
+            if args.dry_run { queue.preview_garbage().await } else { queue.collect_garbage().await };
+        Ok::<_, CliError>(garbage?)
     })?;
     let megabytes = significant(garbage.bytes as f64 / 1e6, 2);
     let what = in_words(&garbage);

@@ -3,7 +3,7 @@
 use super::error::CliError;
 use crate::queue::{Location, QueueError};
 use crate::study::{StudyError, is_study_name};
-use crate::sweep::{self, SweepError};
+use crate::sweep::{self, Purpose, SweepError};
 use crate::worker::WorkError;
 use std::io::ErrorKind;
 use std::path::Path;
@@ -57,10 +57,8 @@ fn of_file(file: &str, db: &Location) -> Vec<String> {
 
 /// Whether the database has a study of that name; not if it cannot be read.
 fn has_study(name: &str, db: &Location) -> bool {
-    let found = sweep::block_on(async {
-        let mut queue = sweep::open_to_read(db.clone()).await?;
+    let found = sweep::with_queue(db, Purpose::Read, async |queue| {
         let found = queue.study(name).await?.is_some();
-        queue.close().await?;
         Ok::<_, CliError>(found)
     });
     found.unwrap_or(false)

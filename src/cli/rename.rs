@@ -4,7 +4,7 @@ use super::error::CliError;
 use super::output::log;
 use crate::exit;
 use crate::queue::Location;
-use crate::sweep;
+use crate::sweep::{self, Purpose};
 
 /// Arguments of `rename`.
 #[derive(Debug, clap::Args)]
@@ -19,10 +19,8 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let old = sweep::study_name(&args.study)?;
     let new = &args.name;
-    sweep::block_on(async {
-        let mut queue = sweep::open_to_change(db.clone()).await?;
-        sweep::rename(&mut queue, &old, new).await?;
-        queue.close().await?;
+    sweep::with_queue(db, Purpose::Change, async |queue| {
+        sweep::rename(queue, &old, new).await?;
         Ok::<_, CliError>(())
     })?;
     log(format_args!(

@@ -7,7 +7,7 @@ use super::unreadable::log_unreadable_rows;
 use crate::exit;
 use crate::queue::{Location, Queue};
 use crate::study::Spacing;
-use crate::sweep::{self, ReportContent, ReportRequest, Revision};
+use crate::sweep::{self, Purpose, ReportContent, ReportRequest, Revision};
 use crate::worker::Interrupt;
 use std::path::{Path, PathBuf};
 use std::time::Duration;
@@ -114,16 +114,14 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         scale: scale.clone(),
     };
     let folder = OutFolder { folder: args.out.folder.clone() }.of(&request.folder_name());
-    sweep::block_on(async {
-        let mut queue = sweep::open_to_read(db.clone()).await?;
+    sweep::with_queue(db, Purpose::Read, async |queue| {
         let code;
         if let Some(interval_s) = args.watch {
-            code = watch(&mut queue, &request, &folder, interval_s).await?;
+            code = watch(queue, &request, &folder, interval_s).await?;
         } else {
-            code = read_and_write(&mut queue, &request, &folder, None).await?;
+            code = read_and_write(queue, &request, &folder, None).await?;
             print_page(&folder)?;
         }
-        queue.close().await?;
         Ok(code)
     })
 }

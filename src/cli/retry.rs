@@ -6,7 +6,7 @@ use super::work::log_taken_back;
 use crate::exit;
 use crate::publish::value;
 use crate::queue::{Location, Retry};
-use crate::sweep;
+use crate::sweep::{self, Purpose};
 
 /// Arguments of `retry`.
 #[derive(Debug, clap::Args)]
@@ -29,11 +29,9 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
         return run_again(&name, db);
     }
     let which = if args.failed { Retry::Failed } else { Retry::All };
-    let (retried, stopped) = sweep::block_on(async {
-        let mut queue = sweep::open_to_change(db.clone()).await?;
+    let (retried, stopped) = sweep::with_queue(db, Purpose::Change, async |queue| {
         let retried = queue.retry(&name, which).await?;
         let stopped = queue.stopped_workers().await?;
-        queue.close().await?;
         Ok::<_, CliError>((retried, stopped))
     })?;
     log_taken_back(retried.taken_back);
@@ -46,11 +44,9 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
 }
 
 fn run_again(name: &str, db: &Location) -> Result<u8, CliError> {
-    let again = sweep::block_on(async {
-        let mut queue = sweep::open_to_change(db.clone()).await?;
-        let keys = sweep::unreadable_jobs(&mut queue, name).await?;
+    let again = sweep::with_queue(db, Purpose::Change, async |queue| {
+        let keys = sweep::unreadable_jobs(queue, name).await?;
         let again = if keys.is_empty() { 0 } else { queue.run_again(name, &keys).await? };
-        queue.close().await?;
         Ok::<_, CliError>(again)
     })?;
     let jobs = value::count(again, "job");

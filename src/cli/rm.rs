@@ -5,7 +5,7 @@ use super::output::{log, print};
 use crate::exit;
 use crate::publish::value::count;
 use crate::queue::{Location, Removed};
-use crate::sweep;
+use crate::sweep::{self, Purpose};
 
 /// Arguments of `rm`.
 #[derive(Debug, clap::Args)]
@@ -21,21 +21,14 @@ pub(crate) struct Args {
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let name = sweep::study_name(&args.study)?;
     if args.dry_run {
-        let removed = sweep::block_on(async {
-            let mut queue = sweep::open_to_read(db.clone()).await?;
-            let removed = queue.preview_removal(&name).await?;
-            queue.close().await?;
-            Ok::<_, CliError>(removed)
+        let removed = sweep::with_queue(db, Purpose::Read, async |queue| {
+            Ok::<_, CliError>(queue.preview_removal(&name).await?)
         })?;
         print(&format!("{name}: `rm` would remove {}; nothing has been changed\n", in_words(&removed)))?;
         return Ok(exit::SUCCESS);
     }
-    let removed = sweep::block_on(async {
-        let mut queue = sweep::open_to_change(db.clone()).await?;
-        let removed = queue.remove(&name).await?;
-        queue.close().await?;
-        Ok::<_, CliError>(removed)
-    })?;
+    let removed =
+        sweep::with_queue(db, Purpose::Change, async |queue| Ok::<_, CliError>(queue.remove(&name).await?))?;
     log(format_args!(
         "{name}: removed {}; results stay in the database until `tribosweep gc`",
         in_words(&removed)

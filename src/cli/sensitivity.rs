@@ -10,7 +10,7 @@ use crate::publish::{Folder, html, markdown};
 use crate::queue::Location;
 use crate::report::{Scalar, sensitivity};
 use crate::study::Study;
-use crate::sweep::{self, SweepError};
+use crate::sweep::{self, Purpose};
 
 /// Arguments of `sensitivity`.
 #[derive(Debug, clap::Args)]
@@ -37,7 +37,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let of = args.of.iter().map(scalar).collect::<Result<Vec<_>, _>>()?;
     let (names, rows) = rows::of_studies(&args.studies, db)?;
     let is_morris = match &names[..] {
-        [name] => sweep::block_on(is_morris(name, db))?,
+        [name] => is_morris(name, db)?,
         _ => false,
     };
     let found = sensitivity::sensitivities(&rows, &of, is_morris);
@@ -68,9 +68,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
 }
 
 /// Whether the points of a study are a Morris design and no product of one with a grid.
-async fn is_morris(name: &str, db: &Location) -> Result<bool, CliError> {
-    let mut queue = sweep::open_to_read(db.clone()).await?;
-    let document = sweep::document(&mut queue, name).await?;
-    queue.close().await.map_err(SweepError::from)?;
+fn is_morris(name: &str, db: &Location) -> Result<bool, CliError> {
+    let document = sweep::with_queue(db, Purpose::Read, async |queue| sweep::document(queue, name).await)?;
     Ok(Study::parse_stored(&document, name).is_ok_and(|study| study.is_morris()))
 }

@@ -18,7 +18,8 @@ use crate::queue::{Location, Queue, Scope, Shard};
 use crate::report::{Along, SHAPES, STABILITY_PAGE, modes_table, thresholds_table};
 use crate::sweep::Plan;
 use crate::sweep::{
-    self, Forecast, StabilitySweep, WAVES, read_stability, ways_to_thresholds, write_stability_report,
+    self, Forecast, Purpose, StabilitySweep, WAVES, read_stability, ways_to_thresholds,
+    write_stability_report,
 };
 use crate::worker::WorkOptions;
 use std::path::PathBuf;
@@ -69,12 +70,11 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let along = along(&plan, args)?;
     let mut sweep = StabilitySweep::new(plan, along.clone().filter(|_| !args.no_thresholds));
     let shown = along.clone().unwrap_or_else(Along::mu);
-    sweep::block_on(async {
-        let mut queue = sweep::open(db.clone()).await?;
-        sweep.add_stored(&mut queue).await?;
-        submit(sweep.plan(), &Priority::default(), Shard::WHOLE, &args.replacement, &mut queue).await?;
-        let mut code = compute(&mut sweep, args, &mut queue).await?;
-        let points = read_stability(&mut queue, &name).await?;
+    sweep::with_queue(db, Purpose::Create, async |queue| {
+        sweep.add_stored(queue).await?;
+        submit(sweep.plan(), &Priority::default(), Shard::WHOLE, &args.replacement, queue).await?;
+        let mut code = compute(&mut sweep, args, queue).await?;
+        let points = read_stability(queue, &name).await?;
         let table = modes_table(points.iter().filter(|point| point.on_grid), args.modes.into());
         if let Some(path) = &args.csv {
             fill_file(path, |out| Ok(table.write(Format::Csv, out)?))?;
@@ -102,8 +102,7 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
             code = code.max(written);
         }
         // The page comes last, because it names the shapes.
-        write_stability_report(&mut queue, &name, &points, &shown, &folder).await?;
-        queue.close().await?;
+        write_stability_report(queue, &name, &points, &shown, &folder).await?;
         log(format_args!("report written to {}", folder.join(STABILITY_PAGE).display()));
         Ok(code)
     })

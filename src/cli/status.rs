@@ -10,7 +10,7 @@ use crate::queue::{Counts, Location, Queue, Scope};
 use crate::report::overview::overview;
 use crate::report::trouble::{Region, sentences};
 use crate::report::{JobRow, RowState};
-use crate::sweep::{self, Outlook, Trouble};
+use crate::sweep::{self, Outlook, Purpose, Trouble};
 use serde_json::{Value, json};
 use std::fmt::Write;
 
@@ -30,13 +30,11 @@ pub(crate) struct Args {
 /// Shows the state of one or all studies.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let name = args.study.as_deref().map(sweep::study_name).transpose()?;
-    let text = sweep::block_on(async {
-        let mut queue = sweep::open_to_read(db.clone()).await?;
+    let text = sweep::with_queue(db, Purpose::Read, async |queue| {
         let text = match &name {
-            Some(name) => one_study(&mut queue, name, args.json, db).await,
-            None => all_studies(&mut queue, args.json).await,
+            Some(name) => one_study(queue, name, args.json, db).await,
+            None => all_studies(queue, args.json).await,
         }?;
-        queue.close().await?;
         Ok::<_, CliError>(text)
     })?;
     print(&output::coloured(output::fitted(text)))?;

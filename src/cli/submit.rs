@@ -9,7 +9,7 @@ use super::warnings;
 use crate::exit;
 use crate::publish::value;
 use crate::queue::{Location, Queue, Shard};
-use crate::sweep::{self, Plan, Submission};
+use crate::sweep::{self, Plan, Purpose, Submission};
 
 /// Arguments of `submit`.
 #[derive(Debug, clap::Args)]
@@ -58,11 +58,9 @@ pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     if args.dry_run {
         return dry_run(&plan, args, db);
     }
-    sweep::block_on(async {
-        let mut queue = sweep::open(db.clone()).await?;
+    sweep::with_queue(db, Purpose::Create, async |queue| {
         let shard = args.shard.unwrap_or(Shard::WHOLE);
-        submit(&plan, &args.priority, shard, &args.replacement, &mut queue).await?;
-        queue.close().await?;
+        submit(&plan, &args.priority, shard, &args.replacement, queue).await?;
         Ok(exit::SUCCESS)
     })
 }

@@ -12,7 +12,7 @@ use crate::solver::interface::ContactState;
 const VTK_CORNERS: [usize; 8] = [0, 1, 3, 2, 4, 5, 7, 6];
 
 /// The folder of the files that `fields.pvd` lists.
-pub(super) const FRAMES_FOLDER: &str = "fields";
+const FRAMES_FOLDER: &str = "fields";
 
 /// The names of the principal stresses, largest first.
 const PRINCIPAL: [&str; 3] = ["I", "II", "III"];

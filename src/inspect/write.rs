@@ -29,9 +29,6 @@ pub fn write(
     header: &PageHeader,
 ) -> Result<Vec<PathBuf>, PublishError> {
     let mut folder = Folder::create(out_dir, KIND)?;
-    if !folder.has_list() {
-        remove_files_of_older_versions(out_dir);
-    }
     let tables = tables::write(inspection, &mut folder)?;
     fields::write(&inspection.capture, &mut folder)?;
     let summary = Summary { key: header.key.clone(), ..Summary::of(inspection) };
@@ -64,24 +61,4 @@ pub fn key_of(folder: &Path) -> Option<String> {
 /// Whether a folder holds the spectrum of the job with this key, from an inspection of any kind.
 pub fn has_spectrum(folder: &Path, key: &str) -> bool {
     key_of(folder).is_some_and(|found| found == key) && folder.join(tables::SPECTRUM_FILE).is_file()
-}
-
-/// Removes the files of single nodes and frames that an inspection of an older version left, which had no list of its
-/// files. Their number may differ, and the rest would look like files of this inspection. Errors are ignored: a file that
-/// has to be replaced fails when it is written.
-fn remove_files_of_older_versions(out_dir: &Path) {
-    if !out_dir.join(SUMMARY).is_file() {
-        return;
-    }
-    for (folder, prefix, suffix) in
-        [(out_dir.to_owned(), "node_", ".csv"), (out_dir.join(fields::FRAMES_FOLDER), "pin_", ".vtu")]
-    {
-        let files = std::fs::read_dir(folder).into_iter().flatten().flatten();
-        for file in files.filter(|file| {
-            let name = file.file_name();
-            name.to_str().is_some_and(|name| name.starts_with(prefix) && name.ends_with(suffix))
-        }) {
-            let _ = std::fs::remove_file(file.path());
-        }
-    }
 }

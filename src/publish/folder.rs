@@ -163,11 +163,6 @@ impl<'a> Folder<'a> {
         Ok(self.paths())
     }
 
-    /// Whether the folder had a list of files.
-    pub fn has_list(&self) -> bool {
-        self.earlier.is_some()
-    }
-
     fn paths(&self) -> Vec<PathBuf> {
         self.written.iter().map(|name| self.path.join(name)).collect()
     }

@@ -189,6 +189,9 @@ impl Text {
     }
 }
 
+/// Longer data is beside a page and not in it \[byte\].
+pub const MOST_DATA: usize = 1_000_000;
+
 /// Most lines of a list or of a table on a page.
 pub const MOST_LINES: usize = 100;
 

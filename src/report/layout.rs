@@ -364,8 +364,10 @@ impl<'a> Groups<'a> {
     }
 }
 
-/// Figures with more jobs have no tooltips, because the files would become too large.
-pub(super) const MAX_TOOLTIPS: usize = 2_000;
+/// Largest number of figures of a kind on a page.
+pub(super) const MAX_SHEETS: usize = 2;
+/// Largest number of combinations of further parameters that are shown.
+pub(super) const MAX_GROUPS: usize = 6;
 
 impl Group<'_> {
     /// The combination in words; empty if there are no further parameters.

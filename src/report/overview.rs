@@ -2,14 +2,11 @@
 //! speed.
 
 use super::glyph::{SEVERAL_JOBS, StatusGlyph, status_glyph};
-use super::layout::{Group, Layout};
+use super::layout::{Group, Layout, MAX_GROUPS};
 use super::row::JobRow;
 use super::view::View;
 use anstyle::Style;
 use std::fmt::Write;
-
-/// Largest number of combinations of further parameters that are shown.
-const MAX_GROUPS: usize = 6;
 
 /// The grid in lines of at most `width` characters, as far as its labels leave room. The text has colours in ANSI codes,
 /// which the caller can strip. It is empty if there are no jobs.

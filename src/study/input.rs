@@ -1,8 +1,9 @@
 //! The inputs of a job: every parameter with the value that the job has.
 
+use super::effect::without_effect;
 use super::json::encode;
 use super::parameter::{PARAMETERS, Parameter};
-use crate::spec::{ClampSide, DiskKind, JobSpec, Shape, StabilityMethod, Start};
+use crate::spec::JobSpec;
 use serde_json::Value;
 
 /// A parameter and its value in a job.
@@ -20,33 +21,19 @@ pub fn input_parameters() -> impl Iterator<Item = &'static Parameter> {
     PARAMETERS.iter().filter(is_input)
 }
 
-/// All inputs of a job that have an effect, the defaults among them, each once: the mesh and the size by their components,
-/// no ring of a rigid disk, no coefficient that the friction law does not use, no width of a clamp that holds the whole top, no safety factor beside a given time step, nothing
-/// about the run of a job without one, and no method of stability where eigenvalues may not decide.
+/// All inputs of a job that have an effect, the defaults among them, each once: the mesh and the size by their components.
 pub fn inputs(spec: &JobSpec) -> Vec<Input> {
+    let unused = without_effect(spec);
     let mut spec = spec.clone();
     spec.scene.contact = spec.scene.contact.in_use();
     let job = encode(&spec);
-    let is_run = spec.stability != StabilityMethod::Modes;
-    let has_effect = |parameter: &&'static Parameter| match parameter.name {
-        "time_step_s" | "safety_factor" if !is_run && !spec.modes_need_time_step() => false,
-        "ramp_s" | "precision" if !is_run => false,
-        _ if !is_run && matches!(parameter.part(), Some("run" | "detection")) => false,
-        "stability" => !is_run || spec.eigenvalues_may_decide(),
-        "start" => spec.run.start == Start::Rest || spec.coarser_elements().is_some(),
-        "elements" | "nx" | "ny" | "nz" | "clamp_side" | "clamp_width_m"
-            if spec.scene.pin.shape == Shape::Mesh =>
-        {
-            false
-        }
-        "size_x_m" | "size_y_m" => spec.scene.pin.shape != Shape::Cylinder,
-        "clamp_width_m" => spec.scene.clamp.side != ClampSide::WholeTop,
-        "safety_factor" => spec.numerics.time_step_s.is_none(),
-        _ => spec.scene.disk.kind == DiskKind::Elastic || !parameter.pointer.starts_with("/scene/disk/ring/"),
+    let is_below = |pointer: &str, field: &str| {
+        pointer.strip_prefix(field).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
     };
     let input = |parameter: &'static Parameter| {
-        let value = job.pointer(parameter.pointer)?.clone();
+        let has_effect = !unused.iter().any(|field| is_below(parameter.pointer, field));
+        let value = job.pointer(parameter.pointer).filter(|_| has_effect)?.clone();
         Some(Input { parameter, value })
     };
-    input_parameters().filter(has_effect).filter_map(input).collect()
+    input_parameters().filter_map(input).collect()
 }

@@ -1,37 +1,48 @@
 //! The key of a job: a hash of everything that determines its result.
 
+use super::effect::without_effect;
 use super::json::encode;
-use crate::spec::{
-    Clamp, ClampSide, Detection, DiskKind, FrictionLaw, JobSpec, Load, MeshFile, Numerics, Pin, Precision,
-    RunControl, Shape, StabilityMethod, Start,
-};
+use crate::spec::{Base, Holder, JobSpec, MeshFile, Pin, Shape};
 use serde_json::Value;
 use std::collections::VecDeque;
 use std::fmt::Write;
+use std::sync::LazyLock;
 
 /// Length of a key. 128 bits suffice for a billion jobs without a collision.
 const HEX_DIGITS: usize = 32;
 
 /// The key of a job under a version of the solver: BLAKE3 of its canonical JSON, 32 hex digits.
 ///
-/// In canonical JSON the fields are sorted, there is no space, and numbers have their shortest exact form, with 0 for
-/// −0. Fields without effect do not enter. These have their defaults: coefficients that the friction law does not use; the
-/// clamp's width where no strip uses it; an angle of 0; masses, inertias and dampers of 0; run-out and waviness of no height; the elements and the clamp
-/// where the mesh comes from a file, of which a hash of its content enters; the
-/// safety factor where the time step is given; the time step, the precision, the run, its detection and the load's ramp where
-/// there is no run; the method of stability where eigenvalues may not decide; the start
-/// where the mesh is too coarse for a coarser one; what looks for a steady state where the speed or the load changes. The ring of a rigid disk is left out. A new
-/// `solver_version` changes every key, so that old results are not taken for new ones.
+/// The JSON has the fields that have an effect and not their default values. In canonical JSON the fields are sorted, there is no
+/// space, and numbers have their shortest exact form, with 0 for −0. A field that a later version adds leaves the keys of jobs that do
+/// not use it as they are. A change of a default value must raise the solver's version. A new `solver_version` changes every key, so
+/// that old results are not taken for new ones.
 pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
+    static DEFAULTS: LazyLock<Value> = LazyLock::new(|| encode(&JobSpec::default()));
+    let mut job = encode(&without_synonyms(spec));
+    for pointer in without_effect(spec) {
+        if let Some(field) = job.pointer_mut(pointer) {
+            *field = DEFAULTS.pointer(pointer).cloned().unwrap_or_default();
+        }
+    }
+    leave_out_defaults(&mut job, &DEFAULTS);
+    // The version cannot be confused with the job's text: it is quoted, and the job begins with a brace.
+    let mut text = Value::from(solver_version).to_string();
+    write_canonical(&job, &mut text);
+    blake3::hash(text.as_bytes()).to_hex()[..HEX_DIGITS].to_owned()
+}
+
+/// The job in which what means the same is the same: an angle, a mass, an inertia or a damper of 0 is absent, and so is a surface
+/// without height. A mesh from a file is a hash of its content.
+fn without_synonyms(spec: &JobSpec) -> JobSpec {
     let mut spec = spec.clone();
     spec.scene.contact = spec.scene.contact.in_use();
+    spec.scene.disk = spec.scene.disk.in_use();
     spec.scene.pin.size_m = spec.scene.pin.extent_m();
     if spec.scene.pin.shape == Shape::Mesh {
-        spec.scene.pin.elements = Pin::default().elements;
-        spec.scene.clamp = Clamp::default();
         reduce_mesh(&mut spec.scene.pin);
     }
-    let holder = &mut spec.scene.holder;
+    let (holder, pin) = (&mut spec.scene.holder, &mut spec.scene.pin);
     for nothing in [
         &mut holder.mass_kg,
         &mut holder.damping_x_n_s_m,
@@ -41,84 +52,31 @@ pub fn job_key(spec: &JobSpec, solver_version: &str) -> String {
         &mut holder.rotational_damping_y_nm_s_rad,
         &mut holder.inertia_x_kg_m2,
         &mut holder.inertia_y_kg_m2,
+        &mut pin.tilt_x_deg,
+        &mut pin.tilt_y_deg,
     ] {
         *nothing = nothing.filter(|value| *value != 0.0);
     }
-    for angle in [&mut spec.scene.pin.tilt_x_deg, &mut spec.scene.pin.tilt_y_deg] {
-        *angle = angle.filter(|angle| *angle != 0.0);
+    if holder.is_ideal() {
+        *holder = Holder::default();
     }
-    spec.scene.disk = spec.scene.disk.in_use();
-    if spec.scene.clamp.side == ClampSide::WholeTop {
-        spec.scene.clamp.width_m = Clamp::default().width_m;
+    if pin.base.is_flat() {
+        pin.base = Base::default();
     }
-    if spec.numerics.time_step_s.is_some() {
-        spec.numerics.safety_factor = Numerics::default().safety_factor;
+    spec
+}
+
+/// Takes the fields out of `value` that have the same value in `default`. Null is the value of a field that is absent.
+fn leave_out_defaults(value: &mut Value, default: &Value) {
+    let (Value::Object(fields), Value::Object(defaults)) = (value, default) else { return };
+    for (name, default) in defaults {
+        leave_out_defaults(fields.entry(name).or_insert(Value::Null), default);
     }
-    if spec.stability == StabilityMethod::Modes {
-        if !spec.modes_need_time_step() {
-            spec.numerics.safety_factor = Numerics::default().safety_factor;
-            spec.numerics.time_step_s = None;
-        }
-        spec.numerics.precision = Precision::Double;
-        spec.run = RunControl::default();
-        spec.detection = Detection::default();
-        spec.scene.load.ramp_s = Load::default().ramp_s;
-    } else if !spec.eigenvalues_may_decide() {
-        spec.stability = StabilityMethod::Simulate;
-    }
-    if !spec.scene.program.is_constant() {
-        let RunControl { limit_s, start, window_s, .. } = spec.run;
-        spec.run = RunControl { limit_s, start, window_s, ..RunControl::default() };
-        let regime_threshold = spec.detection.regime_threshold;
-        spec.detection = Detection { regime_threshold, ..Detection::default() };
-    }
-    if spec.coarser_elements().is_none() {
-        spec.run.start = Start::Rest;
-    }
-    let mut job = encode(&spec);
-    if spec.scene.disk.kind == DiskKind::Rigid
-        && let Some(disk) = job.pointer_mut("/scene/disk").and_then(Value::as_object_mut)
-    {
-        disk.remove("ring");
-    }
-    // Keys of jobs in double precision are those of versions without single precision: their results are the same.
-    if spec.numerics.precision == Precision::Double
-        && let Some(numerics) = job.pointer_mut("/numerics").and_then(Value::as_object_mut)
-    {
-        numerics.remove("precision");
-    }
-    // Keys of jobs that always run are those of versions without eigenvalues: their results are the same.
-    if spec.stability == StabilityMethod::Simulate
-        && let Some(job) = job.as_object_mut()
-    {
-        job.remove("stability");
-    }
-    // Likewise for runs that start from rest.
-    if spec.run.start == Start::Rest
-        && let Some(run) = job.pointer_mut("/run").and_then(Value::as_object_mut)
-    {
-        run.remove("start");
-    }
-    // Likewise for Coulomb's law, an ideal holder and a flat base.
-    if spec.scene.holder.is_ideal()
-        && let Some(scene) = job.pointer_mut("/scene").and_then(Value::as_object_mut)
-    {
-        scene.remove("holder");
-    }
-    if spec.scene.contact.law == FrictionLaw::Coulomb
-        && let Some(contact) = job.pointer_mut("/scene/contact").and_then(Value::as_object_mut)
-    {
-        contact.remove("law");
-    }
-    if spec.scene.pin.base.is_flat()
-        && let Some(pin) = job.pointer_mut("/scene/pin").and_then(Value::as_object_mut)
-    {
-        pin.remove("base");
-    }
-    // The version cannot be confused with the job's text: it is quoted, and the job begins with a brace.
-    let mut text = Value::from(solver_version).to_string();
-    write_canonical(&job, &mut text);
-    blake3::hash(text.as_bytes()).to_hex()[..HEX_DIGITS].to_owned()
+    fields.retain(|name, value| {
+        let default = &default[name.as_str()];
+        let is_left_out = default.is_object() && value.as_object().is_some_and(serde_json::Map::is_empty);
+        value != default && !is_left_out
+    });
 }
 
 /// Leaves of a mesh from a file a hash of its nodes, elements, faces and regions: names, units and compression have no effect.

@@ -22,6 +22,7 @@ mod damping;
 mod definition;
 mod document;
 mod draft;
+mod effect;
 mod error;
 mod expand;
 mod file;

@@ -18,6 +18,41 @@ pub fn block_on<T, E: From<SweepError>>(future: impl Future<Output = Result<T, E
     runtime.map_err(SweepError::Runtime)?.block_on(future)
 }
 
+/// What a database is opened for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Purpose {
+    /// To read from an existing database.
+    Read,
+    /// To change an existing database.
+    Change,
+    /// To use a database, which is created if it does not exist.
+    Create,
+}
+
+/// Opens a database, runs `work` with it on this thread, and closes it, for programs without an asynchronous runtime.
+///
+/// # Errors
+/// Those of [`open`], of `work`, and of closing.
+///
+/// # Panics
+/// Inside an asynchronous runtime.
+pub fn with_queue<T, E: From<SweepError>>(
+    database: &Location,
+    access: Purpose,
+    work: impl AsyncFnOnce(&mut Queue) -> Result<T, E>,
+) -> Result<T, E> {
+    block_on(async {
+        let mut queue = match access {
+            Purpose::Read => open_to_read(database.clone()).await,
+            Purpose::Change => open_to_change(database.clone()).await,
+            Purpose::Create => open(database.clone()).await,
+        }?;
+        let result = work(&mut queue).await?;
+        queue.close().await.map_err(SweepError::from)?;
+        Ok(result)
+    })
+}
+
 /// Opens a database; creates it if it does not exist. The location is a path or a [`Location`].
 ///
 /// # Errors

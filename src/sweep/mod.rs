@@ -39,7 +39,9 @@ mod transfer;
 mod trouble;
 mod work;
 
-pub use database::{block_on, document, load_study, open, open_to_change, open_to_read, study_name};
+pub use database::{
+    Purpose, block_on, document, load_study, open, open_to_change, open_to_read, study_name, with_queue,
+};
 pub use deep::{examine_deeply, unreadable_jobs};
 pub use difference::{Difference, InputDifference};
 pub use discretisation::discretisation_of;

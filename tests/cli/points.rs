@@ -44,9 +44,9 @@ fn sensitivities_are_printed_and_written() {
     let end = folder.command("sensitivity mine --of mu_star,stick_share").assert().code(0);
     let text = stdout(&end);
     for expected in [
-        "# macroscopic friction coefficient μ*: 40 points",
-        "# share of stick",
-        "# regime: 40 points",
+        "## macroscopic friction coefficient μ\\*: 40 points",
+        "## share of stick",
+        "## regime: 40 points",
         "Only 40 points",
     ] {
         assert!(text.contains(expected), "{expected} in {text}");

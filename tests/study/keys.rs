@@ -294,11 +294,9 @@ fn a_program_changes_the_key() {
     assert_eq!(key_of(r#"{ "scene": { "program": {} } }"#), key(&JobSpec::default()));
 }
 
-/// Protects: jobs in double precision have the keys of versions without single precision, so their results are found.
+/// Protects: the precision is part of a job.
 #[test]
-fn double_precision_keeps_the_keys_of_before() {
-    assert_eq!(key(&JobSpec::default()), "4f665e793cdc54798186f5795bd1d6b9");
-    assert_eq!(key(&with_elastic_disk()), "b70e786637642d06da75ce2639575b54");
+fn the_precision_changes_the_key() {
     let mut single = JobSpec::default();
     single.numerics.precision = Precision::Single;
     assert_ne!(key(&single), key(&JobSpec::default()));
@@ -368,19 +366,37 @@ fn the_ring_of_a_rigid_disk_does_not_change_the_key() {
     assert_ne!(with(DiskKind::Rigid, 2.1e11), with(DiskKind::Elastic, 2.1e11));
 }
 
-/// Keys are stored: results must be found again by a later build. When a change of the job's fields or
-/// defaults breaks this test, the new text belongs here, and stored results are no longer found.
+/// Protects: a key has the fields that have an effect and not their default values, so that a new field changes no key of a job that does
+/// not use it.
 #[test]
-fn the_key_of_the_reference_job_is_the_hash_of_this_text() {
+fn a_key_has_what_is_not_a_default() {
+    let hash = |text: &str| blake3::hash(text.as_bytes()).to_hex()[..32].to_owned();
+    assert_eq!(key(&JobSpec::default()), hash(r#""1"{}"#));
+    let mut spec = with_elastic_disk();
+    spec.scene.contact.mu = 0.2;
+    spec.numerics.safety_factor = 0.5;
+    let text =
+        r#""1"{"numerics":{"time_step_s":1e-8},"scene":{"contact":{"mu":0.2},"disk":{"kind":"elastic"}}}"#;
+    assert_eq!(key(&spec), hash(text));
+}
+
+/// Protects: keys are stored, and they have no default values. A change of a default value must raise `solver::VERSION`; then the new
+/// version and the new text belong here.
+#[test]
+fn the_defaults_belong_to_the_version() {
     let text = concat!(
-        r#""1"{"detection":{"cycles":20,"decay_observation_s":0.008,"drift_tolerance":0.001,"regime_threshold":0.03,"tolerance":0.01},"#,
-        r#""numerics":{"beta2":0.5,"beta_r_s":5e-8,"safety_factor":0.7},"#,
-        r#""run":{"average_last_fraction":0.4,"limit_s":0.04,"stop_early":true},"#,
-        r#""scene":{"clamp":{"side":"inner_side","width_m":0.001},"contact":{"mu":0.4},"#,
-        r#""disk":{"kind":"rigid","omega_rpm":7.0,"track_radius_m":0.0914},"load":{"force_n":30.0,"ramp_s":0.0005},"#,
-        r#""pin":{"density_kg_m3":2500.0,"elements":[12,15,10],"poisson_ratio":0.3,"#,
-        r#""size_m":[0.012,0.015,0.01],"young_modulus_pa":1000000000.0},"top":"tied_in_z"}}"#,
+        r#"{"detection":{"cycles":20,"decay_observation_s":0.008,"drift_tolerance":0.001,"regime_threshold":0.03,"tolerance":0.01},"#,
+        r#""numerics":{"beta2":0.5,"beta_r_s":5e-8,"precision":"double","safety_factor":0.7},"#,
+        r#""run":{"average_last_fraction":0.4,"limit_s":0.04,"start":"rest","stop_early":true},"#,
+        r#""scene":{"clamp":{"side":"inner_side","width_m":0.001},"contact":{"law":"coulomb","mu":0.4},"#,
+        r#""disk":{"kind":"rigid","omega_rpm":7.0,"ring":{"clock":"own","coarse_element_size_m":0.012,"density_kg_m3":7800.0,"#,
+        r#""element_size_m":0.0025,"inner_radius_m":0.07,"outer_radius_m":0.12,"poisson_ratio":0.3,"target":"bilinear","#,
+        r#""thickness_m":0.085,"track_arc_deg":25.0,"young_modulus_pa":210000000000.0},"track_radius_m":0.0914},"#,
+        r#""holder":{},"load":{"force_n":30.0,"ramp_s":0.0005},"pin":{"base":{},"density_kg_m3":2500.0,"elements":[12,15,10],"#,
+        r#""poisson_ratio":0.3,"size_m":[0.012,0.015,0.01],"young_modulus_pa":1000000000.0},"top":"tied_in_z"},"#,
+        r#""stability":"simulate"}"#,
     );
-    let hash = blake3::hash(text.as_bytes()).to_hex();
-    assert_eq!(key(&JobSpec::default()), hash[..32]);
+    let expected: Value = serde_json::from_str(text).unwrap();
+    let defaults = serde_json::to_value(JobSpec::default()).unwrap();
+    assert_eq!((tribosweep::solver::VERSION, defaults), ("5", expected));
 }

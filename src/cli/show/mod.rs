@@ -8,7 +8,7 @@ use crate::exit;
 use crate::publish::value::utc_iso;
 use crate::queue::Location;
 use crate::study::{inputs, json_value, printable_lines};
-use crate::sweep::{self, StoredJob, StudyOfJob};
+use crate::sweep::{self, Purpose, StoredJob, StudyOfJob};
 use serde_json::{Map, Value, json};
 
 /// Arguments of `show`.
@@ -23,11 +23,8 @@ pub(crate) struct Args {
 
 /// Prints the job.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
-    let job = sweep::block_on(async {
-        let mut queue = sweep::open_to_read(db.clone()).await?;
-        let job = sweep::find_job(&mut queue, &args.job).await?;
-        queue.close().await?;
-        Ok::<_, CliError>(job)
+    let job = sweep::with_queue(db, Purpose::Read, async |queue| {
+        Ok::<_, CliError>(sweep::find_job(queue, &args.job).await?)
     })?;
     let text =
         if args.json { format!("{:#}\n", as_json(&job)) } else { text::of_job(&job, terminal_width()) };

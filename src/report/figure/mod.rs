@@ -10,13 +10,13 @@ mod shares;
 pub(super) mod stability;
 pub(super) mod waterfall;
 
-use super::layout::{Group, Layout, MAX_TOOLTIPS};
+use super::layout::{Group, Layout};
 use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
 use super::spectra::Spectra;
 use super::stability_point::StabilityPoint;
 use super::view::View;
-use crate::publish::chart::Chart;
+use crate::publish::chart::{Chart, MAX_TIPS};
 pub use stability::{StabilityPlot, stability_figures};
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -253,7 +253,7 @@ pub(super) fn over_others(rows: &[JobRow], view: &View, layout: &Layout, plot: P
 /// The chart without tooltips, if they would make its file too large.
 fn with_tips_of_few(groups: &[Group], chart: Chart) -> Chart {
     let jobs: usize = groups.iter().map(|group| group.jobs.len()).sum();
-    if jobs <= MAX_TOOLTIPS { chart } else { chart.without_tips() }
+    if jobs <= MAX_TIPS { chart } else { chart.without_tips() }
 }
 
 pub(super) fn figures_of(

@@ -2,9 +2,8 @@
 
 use crate::analysis::JobRecord;
 use crate::publish::chart::palette::{BLUE, VERMILLION};
-use crate::publish::chart::{Axis, Chart, Entry, Layer, Marker, Panel, Point, Scale, Shape, Tip};
+use crate::publish::chart::{Axis, Chart, Entry, Layer, MAX_TIPS, Marker, Panel, Point, Scale, Shape, Tip};
 use crate::publish::value;
-use crate::report::layout::MAX_TOOLTIPS;
 use crate::report::row::JobRow;
 use crate::report::tooltip::tooltip_text;
 use serde_json::Value;
@@ -42,7 +41,7 @@ pub(in crate::report) fn draw(rows: &[JobRow]) -> Chart {
             ("y", value::number(residual)),
             ("kind", kind.name.to_owned()),
         ];
-        let tip = (rows.len() <= MAX_TOOLTIPS).then(|| Tip { title: tooltip_text(row), data });
+        let tip = (rows.len() <= MAX_TIPS).then(|| Tip { title: tooltip_text(row), data });
         let point = Point { at: (number as f64, residual), error: 0.0, marker: kind.marker, tip };
         (residual.is_finite() && residual > 0.0).then_some(point)
     };

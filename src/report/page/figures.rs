@@ -9,13 +9,11 @@ use crate::report::Discretisation;
 use crate::report::explore;
 use crate::report::export;
 use crate::report::figure::{DataFile, Figure, Plot, RESIDUALS};
-use crate::report::layout::Layout;
+use crate::report::layout::{Layout, MAX_SHEETS};
 use crate::report::row::JobRow;
 use crate::report::scalar::Scalar;
 use crate::report::tables::Quantity;
 
-/// Largest number of figures of a kind.
-const MAX_SHEETS: usize = 2;
 /// Largest number of figures of a kind over different parameters.
 const MAX_MARGINAL: usize = 8;
 

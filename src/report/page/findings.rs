@@ -1,6 +1,6 @@
 //! Sections on what several sources, runs in time and studies that grow have found.
 
-use crate::publish::page::{Block, Figure, Grid, Section, Text};
+use crate::publish::page::{Block, Figure, Grid, MOST_DATA, Section, Text};
 use crate::publish::value;
 use crate::report::comparison::Comparison;
 use crate::report::growth::Findings;
@@ -37,16 +37,13 @@ fn grid(heads: &[String], lines: impl IntoIterator<Item = Vec<String>>) -> Grid 
 const CAPTION: &str = "Above: μ* of the windows against the speed (or the load), on the way up and on the way down. Below: μ* and \
                        the rate of the cycles of N against time. A window whose N hardly varies has no frequency.";
 
-/// Longer data is not in the page \[byte\].
-const MAX_DATA: usize = 1_000_000;
-
 /// Runs whose speed or load changes in time.
 pub(super) fn programs(own: &Programs) -> Section {
     let grid = Grid::of(&program::HEADS, own.lines(), program::WINDOWS);
     let mut blocks = vec![Block::text(program::MEANING), Block::Table(grid)];
     let data = own.csv();
     for (number, figure) in own.figures().iter().enumerate() {
-        let contents = (number == 0 && data.len() <= MAX_DATA).then(|| data.to_owned());
+        let contents = (number == 0 && data.len() <= MOST_DATA).then(|| data.to_owned());
         blocks.push(Block::Heading(figure.caption.clone()));
         blocks.push(Block::figure(Figure {
             file: figure.file.clone(),

@@ -1,16 +1,10 @@
 //! The section on linear stability.
 
-use crate::publish::page::{Block, Figure, Grid, Section, limited};
+use crate::publish::page::{Block, Figure, Grid, MOST_DATA, Section, limited};
 use crate::publish::value;
 use crate::report::figure::stability::StabilityPlot;
-use crate::report::layout::Group;
+use crate::report::layout::{Group, MAX_GROUPS, MAX_SHEETS};
 use crate::report::stability::{Analysis, Files, GroupModes, Speed};
-
-/// Largest number of figures of a kind, and of tables.
-const MAX_SHEETS: usize = 2;
-const MAX_GROUPS: usize = 6;
-/// Longer files of data are not in the page \[byte\].
-const MAX_DATA: usize = 1_000_000;
 
 /// What the section is about.
 const MEANING: [&str; 3] = [
@@ -116,7 +110,7 @@ fn data_of(plot: StabilityPlot, files: &Files) -> Option<(String, Option<String>
         StabilityPlot::Thresholds => "thresholds.csv",
     };
     let (_, text) = files.data.iter().find(|(file, _)| *file == name)?;
-    Some((name.to_owned(), (text.len() <= MAX_DATA).then(|| text.clone())))
+    Some((name.to_owned(), (text.len() <= MOST_DATA).then(|| text.clone())))
 }
 
 /// How many modes are not converged, in a sentence; none if all are.

@@ -3,12 +3,10 @@
 use super::Parts;
 use crate::publish::page::{Block, Grid, Span, Text, limited};
 use crate::publish::value;
-use crate::report::layout::{Group, Layout};
+use crate::report::layout::{Group, Layout, MAX_GROUPS};
 use crate::report::tables::{self, Digits, Quantity};
 use std::collections::HashMap;
 
-/// Largest number of combinations of further parameters that are shown.
-const MAX_GROUPS: usize = 6;
 /// Largest number of jobs in all of these together …
 pub(super) const MAX_JOBS: usize = 4_000;
 /// … unless only the first combination is shown, which may have more. Beyond this number it is not drawn either.

@@ -38,7 +38,8 @@ fn section(one: &Sensitivity) -> Section {
     let columns = shown(&one.design, is_regime, is_morris);
     let mut blocks = Vec::new();
     if columns.len() > 1 {
-        blocks.push(Block::Table(Grid::of_table(&Table::of("sensitivity", &columns, ranked))));
+        let table = Table::of("sensitivity", &columns, ranked);
+        blocks.push(Block::Table(Grid::of_table(&table).with_words()));
     }
     let notes = notes(one, is_regime);
     if !notes.is_empty() {
