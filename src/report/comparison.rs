@@ -369,9 +369,13 @@ impl Matches {
         let all = equal + between + elsewhere;
         let mut words = Vec::new();
         if equal < all {
+            let verb = |count: usize, one, several| if count == 1 { one } else { several };
             words.push(format!(
-                "{equal} of the {all} points of {source} are at the parameters of a job of {0}; {between} are between two \
-                 jobs of {0}, and {elsewhere} have no counterpart there.",
+                "{equal} of the {all} points of {source} {} at the parameters of a job of {3}; {between} {} between two jobs of \
+                 {3}, and {elsewhere} {} no counterpart there.",
+                verb(equal, "is", "are"),
+                verb(between, "is", "are"),
+                verb(elsewhere, "has", "have"),
                 reference.name
             ));
         }

@@ -11,7 +11,7 @@ use crate::publish::value;
 use crate::report::discretisation::Discretisation;
 use crate::report::glyph::regime_label;
 use crate::report::layout::{Group, Layout};
-use crate::report::parameters::MU;
+use crate::report::parameters::{MU, SOURCE};
 use crate::report::row::JobRow;
 use crate::report::scalar::{FREQUENCY, MU_STAR, Scalar};
 
@@ -324,6 +324,8 @@ impl Frame<'_> {
         let mut values: Vec<_> =
             shown.map(|index| &layout.series[index]).filter(|series| !series.value.is_null()).collect();
         values.dedup_by_key(|series| series.value_index);
+        // The points of one study need no name.
+        values.retain(|_| layout.by != SOURCE || layout.sources.len() > 1);
         let sample = |source: Source, colour: Rgb, text: &str| match source {
             Source::Lines(dash) => Entry::line(Pen { dash, ..Pen::solid(colour, CURVE) }, text),
             Source::Marks(shape) => Entry::marker(Marker::new(shape, colour), text),

@@ -27,10 +27,9 @@ pub(super) fn friction(parts: &Parts) -> Section {
         (true, true) => " Bands: the error of mesh and time step, paler where it is indicative only.",
     };
     let caption = format!(
-        "Macroscopic friction coefficient μ* against {}, one curve for each {}. Error bars: standard error \
-         over the cycles, where it is larger than a marker.{bands}",
-        parts.layouts.all.axis_label(),
-        parts.layouts.all.by_words()
+        "Macroscopic friction coefficient μ* {}. Error bars: standard error over the cycles, where it is larger than a \
+         marker.{bands}",
+        curves(parts.layouts.all)
     );
     let mut blocks = figures(parts, Plot::MuStar, &caption);
     blocks.extend(head::numbers(parts.report.rows));
@@ -40,6 +39,25 @@ pub(super) fn friction(parts: &Parts) -> Section {
     ));
     blocks.extend(tables::below(parts, Quantity::MuStar));
     Section::new("friction", "Macroscopic friction", blocks)
+}
+
+/// What the figures of curves have along their axis.
+fn against(layout: &Layout) -> String {
+    if layout.scattered.is_empty() {
+        format!("against {}", layout.axis_label())
+    } else {
+        "against each parameter that varies".to_owned()
+    }
+}
+
+/// What a figure of curves shows.
+fn curves(layout: &Layout) -> String {
+    let what = if layout.scattered.is_empty() {
+        format!("one curve for each {}", layout.by_words())
+    } else {
+        "a point for each job".to_owned()
+    };
+    format!("{}, {what}", against(layout))
 }
 
 /// Whether a job did not become periodic, so that its marks have to be explained.
@@ -52,7 +70,8 @@ pub(super) fn frequency(parts: &Parts) -> Section {
     let (axis, by) = (parts.layouts.all.axis_label(), parts.layouts.all.by_words());
     let aperiodic = has_aperiodic(parts);
     let curves = format!(
-        "Fundamental frequency of the total normal contact force against {axis}.{}",
+        "Fundamental frequency of the total normal contact force {}.{}",
+        against(parts.layouts.all),
         if aperiodic {
             " The axis spans the frequencies of periodic jobs. Hollow: not periodic, the mean rate of the cycles; an arrow: \
              outside of the axis."
@@ -115,10 +134,10 @@ pub(super) fn regimes(parts: &Parts) -> Section {
 
 pub(super) fn bifurcation(parts: &Parts) -> Section {
     let caption = format!(
-        "Bifurcation diagram against {}: the largest and the smallest total normal contact force N over the load F, the range \
+        "Bifurcation diagram {}: the largest and the smallest total normal contact force N over the load F, the range \
          of the displacement in y of the observed nodes, and the largest gap of a node, all in the averaging window. Steady \
          sliding collapses to N/F = 1 and to no amplitude (dashed). N is smoothed. Hollow: not periodic.",
-        parts.layouts.all.axis_label()
+        against(parts.layouts.all)
     );
     Section::new("bifurcation", "Amplitudes", figures(parts, Plot::Bifurcation, &caption))
 }
@@ -133,12 +152,7 @@ pub(super) fn shares(parts: &Parts) -> Section {
 
 /// A quantity that a reader asked for.
 pub(super) fn quantity(parts: &Parts, scalar: &'static Scalar) -> Section {
-    let caption = format!(
-        "{} against {}, one curve for each {}.",
-        scalar.title(),
-        parts.layouts.all.axis_label(),
-        parts.layouts.all.by_words()
-    );
+    let caption = format!("{} {}.", scalar.title(), curves(parts.layouts.all));
     let mut blocks = figures(parts, Plot::Of(scalar), &caption);
     blocks.extend(tables::folded(parts, Quantity::Of(scalar)));
     Section::new(scalar.name, scalar.meaning, blocks)

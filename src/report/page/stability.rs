@@ -20,7 +20,7 @@ const MEANING: [&str; 3] = [
 fn caption(plot: StabilityPlot) -> &'static str {
     match plot {
         StabilityPlot::Map => {
-            "Growth rate of the leading mode, which grows fastest or decays slowest. Blue decays, red grows. A \
+            "Growth rate of the leading mode, which grows fastest or decays slowest. Blue: it decays. Orange: it grows. A \
              line is a threshold, interpolated between the points."
         }
         StabilityPlot::LockIn => {
