@@ -119,7 +119,8 @@ fn not_converged(analysis: &Analysis) -> Option<String> {
     let count = modes().filter(|mode| !mode.is_converged).count();
     let all = value::count(modes().count(), "mode");
     let verb = if count == 1 { "is" } else { "are" };
-    (count > 0).then(|| format!("Of {all}, {count} {verb} not converged. They are drawn grey or hollow."))
+    let drawn = if analysis.has_series() { " They are drawn grey or hollow." } else { "" };
+    (count > 0).then(|| format!("Of {all}, {count} {verb} not converged.{drawn}"))
 }
 
 /// ω, the first threshold, where sliding is unstable, the frequency, and what else there is to say, for each group.
