@@ -159,7 +159,7 @@ impl Progress for Display {
             Planned::Wave { jobs, note } => {
                 format!("{study}: wave {wave} adds {} ({note})", count(jobs.len() as u64, "job"))
             }
-            Planned::Complete { note } => format!("{study}: no more jobs are needed: {note}"),
+            Planned::Complete { note } => format!("{study}: the plan has ended: {note}"),
             Planned::Failed { error } => format!("{study}: wave {wave} cannot be planned: {error}"),
         });
     }

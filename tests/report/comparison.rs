@@ -56,7 +56,7 @@ fn measured_points_are_compared_with_the_study() {
     assert_eq!(&second[x + 8], "yes");
     assert!(
         page.contains(
-            "1 of the 3 points of rig are at the parameters of a job of simulated; 1 are between two jobs"
+            "1 of the 3 points of rig is at the parameters of a job of simulated; 1 is between two jobs"
         ),
         "{page}"
     );

@@ -271,7 +271,7 @@ fn the_stability_has_a_report_of_its_own() {
     assert!(!page.contains("src=") && drawings == 3 + 2, "{drawings}");
     for (plot, text) in [
         (StabilityPlot::Map, "not converged"),
-        (StabilityPlot::Map, "point that refines a threshold"),
+        (StabilityPlot::Map, "point outside the grid"),
         (StabilityPlot::LockIn, "not converged"),
         (StabilityPlot::LockIn, "15 kHz"),
         (StabilityPlot::LockIn, "decays at every point"),

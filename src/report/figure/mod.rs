@@ -161,6 +161,8 @@ impl Plot {
                 .as_ref()
                 .map_or_else(|| cells::has_true_axes(layout), cells::has_true_axes),
             Self::Waterfall => layout.groups.iter().any(has_spectrum),
+            // Their lines and areas would join points that differ in other parameters.
+            Self::Shares | Self::Bifurcation => layout.scattered.is_empty(),
             _ => true,
         }
     }

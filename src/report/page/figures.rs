@@ -28,8 +28,13 @@ pub(super) fn friction(parts: &Parts) -> Section {
     };
     let caption = format!(
         "Macroscopic friction coefficient μ* {}. Error bars: standard error over the cycles, where it is larger than a \
-         marker.{bands}",
-        curves(parts.layouts.all)
+         marker{}.{bands}",
+        curves(parts.layouts.all),
+        if parts.report.rows.iter().any(JobRow::is_measured) {
+            ", and the given error of measured points"
+        } else {
+            ""
+        }
     );
     let mut blocks = figures(parts, Plot::MuStar, &caption);
     blocks.extend(head::numbers(parts.report.rows));

@@ -20,6 +20,10 @@ pub(super) fn lead(parts: &Parts) -> Vec<Block> {
     let mut blocks: Vec<Block> =
         report.description.map(|text| Block::Text(text.into())).into_iter().collect();
     blocks.extend(found(parts).into_iter().map(|sentence| Block::Text(Text::strong(sentence))));
+    if let Some(head) = parts.comparison.and_then(|own| own.contradictions_in_words().into_iter().next()) {
+        let link = Span::Link("where".to_owned(), "#comparison".to_owned());
+        blocks.push(Block::Text(Text::strong(head.trim_end_matches(':')).and(" (").and(link).and(").")));
+    }
     blocks.extend(incomplete(report.rows));
     blocks.extend(doubts(report));
     blocks
@@ -59,9 +63,14 @@ fn friction(rows: &[&JobRow]) -> Option<String> {
     if record.mu_star / row.mu > LITTLE {
         return Some("μ* is μ within half a per cent in all jobs.".to_owned());
     }
-    let [mu_star, place] = [digits::mu_star_with_error(row, record), parameters_in_words(row)];
+    // The error over the cycles alone would claim more than is known.
+    let mu_star = match row.discretisation.error() {
+        Some(_) => digits::mu_star_with_error(row, record),
+        None => digits::mu_star(row, record),
+    };
+    let place = parameters_in_words(row);
     let percent = value::significant(100.0 * record.mu_star / row.mu, 2);
-    Some(format!("μ* falls to {mu_star} at {place}: {percent} % of μ."))
+    Some(format!("μ* falls furthest below μ at {place}: to {mu_star}, {percent} % of μ."))
 }
 
 /// The frequencies of limit cycles \[kHz\]; none if there are no limit cycles.

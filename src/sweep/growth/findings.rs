@@ -51,7 +51,7 @@ fn state(study: &Study, plan: &PlanStatus, rows: &[JobRow]) -> String {
     let note = plan.note.as_deref().unwrap_or_default();
     let waves = plan.waves;
     match plan.state {
-        PlanState::Complete => format!("No more jobs are needed after wave {waves}: {note}."),
+        PlanState::Complete => format!("The plan ended after wave {waves}: {note}."),
         PlanState::Failed => {
             format!("The next wave could not be planned: {note}. `tribosweep retry` tries it again.")
         }

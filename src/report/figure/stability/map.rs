@@ -37,7 +37,7 @@ pub(super) fn chart(analysis: &Analysis, group: &Group) -> Chart {
             tip: None,
         };
         panel.layers.push(Layer::Points(inside.map(dot).collect()));
-        chart.legend.push(Entry::marker(marker, "point that refines a threshold"));
+        chart.legend.push(Entry::marker(marker, "point outside the grid"));
     }
     let is_unclear = |point: &StabilityPoint| point.leading().is_some_and(|mode| !mode.is_converged);
     if points().any(|point| is_cell(point) && is_unclear(point)) {
