@@ -67,13 +67,14 @@ async fn one_study(queue: &mut Queue, name: &str, as_json: bool, db: &Location) 
     let counts = queue.counts(&Scope::Study(name.to_owned())).await?;
     let outlook = Outlook::read(queue, name, counts).await?;
     let workers = queue.workers().await?;
-    let grows = queue.plan_status(name).await?.is_some();
+    let plan = queue.plan_status(name).await?;
     if as_json {
         let mut json = study_json(name, counts, outlook.as_ref(), &trouble);
-        if grows {
+        if let Some(plan) = plan {
             let rows = sweep::read_rows(queue, name).await?;
             json["waves"] =
                 sweep::read_growth(queue, name, &rows).await?.map(|found| found.waves_json()).into();
+            json["plan"] = plan.state.name().into();
         }
         json["workers"] = workers::as_json(&workers);
         return Ok(format!("{json}\n"));
@@ -84,7 +85,7 @@ async fn one_study(queue: &mut Queue, name: &str, as_json: bool, db: &Location) 
         text.push_str(&outlook::as_text(outlook, output::width()));
     }
     text.push_str(&workers::as_text(&workers, output::width()));
-    let rows = if counts.total() <= LARGEST_OVERVIEW || grows {
+    let rows = if counts.total() <= LARGEST_OVERVIEW || plan.is_some() {
         sweep::read_rows(queue, name).await?
     } else {
         Vec::new()

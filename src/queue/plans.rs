@@ -74,6 +74,17 @@ pub enum PlanState {
     Failed,
 }
 
+impl PlanState {
+    /// The word in the database, which programs read too.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Self::Open => "open",
+            Self::Complete => "complete",
+            Self::Failed => "failed",
+        }
+    }
+}
+
 /// A study whose next wave is due: all its jobs have ended, and nobody plans it. $1 is a study or null, $2 the worker that
 /// asks and $3 the time.
 const DUE: &str = "
