@@ -28,11 +28,7 @@ pub(crate) struct Args {
 /// Computes the indices of the finished jobs, prints the tables and writes the files.
 pub(crate) fn run(args: &Args, db: &Location) -> Result<u8, CliError> {
     let scalar = |name: &String| {
-        Scalar::find(name).ok_or_else(|| {
-            CliError::Refused(format!(
-                "--of {name}: no such quantity; expected a column of `tribosweep export` that is a number, such as mu_star"
-            ))
-        })
+        Scalar::find(name).ok_or_else(|| CliError::Refused(sweep::no_such_quantity("--of", name).to_string()))
     };
     let of = args.of.iter().map(scalar).collect::<Result<Vec<_>, _>>()?;
     let (names, rows) = rows::of_studies(&args.studies, db)?;

@@ -31,7 +31,7 @@ fn plain_of(rows: &[JobRow]) -> Vec<ExportColumn> {
 }
 
 fn columns_of(columns: impl IntoIterator<Item = ExportColumn>) -> Vec<Column<JobRow>> {
-    columns.into_iter().map(|own| own.column).collect()
+    columns.into_iter().map(ExportColumn::into_column).collect()
 }
 
 /// An export that is written row by row, so that the rows of a large study need not be in memory all at once.

@@ -133,7 +133,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         folder.write_table(&comparison_files::table(comparison))?;
     }
     let differences = comparison.as_ref();
-    folder.write_text(explore::PAGE, &explore::page(given, &pages))?;
+    folder.write_with(explore::PAGE, |out| explore::write(given, &pages, out))?;
     let parts = Parts {
         report,
         layouts,

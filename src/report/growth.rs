@@ -4,6 +4,7 @@ use super::parameters;
 use crate::analysis::{JobRecord, Outcome};
 use crate::publish::table::{Column, FileColumns, Table};
 use crate::publish::value;
+use indexmap::IndexMap;
 use serde_json::{Value, json};
 use std::collections::BTreeMap;
 
@@ -240,7 +241,7 @@ const BOUNDARIES: [Column<Crossing>; 8] = [
     Column::new("to", "that of the parameter", "value above", |own| own.range[1].into()),
     Column::new("middle", "that of the parameter", "half-way between the two", Crossing::middle),
     Column::new("plus_minus", "that of the parameter", "half of their distance", |own| value::significant_number(0.5 * own.width(), 2)),
-    Column::new("known", "", "whether the boundary is known as well as it was asked for", |own| yes_or_no(own.width() <= own.wanted * NEARLY)),
+    Column::new("known", "", "whether the boundary is known as well as it was asked for", |own| yes_or_no(own.is_known())),
 ];
 
 #[rustfmt::skip]
@@ -304,6 +305,11 @@ fn regime(end: Option<&Endpoint>) -> Value {
 impl Crossing {
     fn middle(&self) -> Value {
         value::significant_number(0.5 * (self.range[0] + self.range[1]), 6)
+    }
+
+    /// Whether it is known as well as was asked for.
+    fn is_known(&self) -> bool {
+        self.width() <= self.wanted * NEARLY
     }
 
     fn width(&self) -> f64 {
@@ -379,6 +385,36 @@ impl Findings {
             },
         ];
         tables.into_iter().filter(|found| !found.table.lines.is_empty()).collect()
+    }
+
+    /// What was found, in sentences.
+    pub(super) fn in_words(&self) -> Vec<String> {
+        let mut kinds: IndexMap<(&str, [&str; 2]), Vec<&Crossing>> = IndexMap::new();
+        for own in &self.crossings {
+            kinds.entry((&own.over, own.between.each_ref().map(String::as_str))).or_default().push(own);
+        }
+        let boundary = |((over, [below, above]), own): ((&str, [&str; 2]), Vec<&Crossing>)| {
+            let least = own.iter().map(|one| one.range[0]).fold(f64::INFINITY, f64::min);
+            let most = own.iter().map(|one| one.range[1]).fold(f64::NEG_INFINITY, f64::max);
+            let range = parameters::range(over, &least.into(), &most.into());
+            let open = own.iter().filter(|one| !one.is_known()).count();
+            let open = match open {
+                0 => String::new(),
+                open => format!(
+                    " ({open} of {} not yet as near as was asked for)",
+                    value::count(own.len(), "place")
+                ),
+            };
+            let [below, above] = [below, above].map(|kind| kind.replace('_', " "));
+            format!("Below {range} jobs are {below}, and above it {above}{open}.")
+        };
+        let mut words: Vec<String> = kinds.into_iter().map(boundary).collect();
+        let ways = || self.branches.iter().filter_map(BranchPoint::has_hysteresis);
+        if ways().count() > 0 {
+            let (with, all) = (ways().filter(|has| *has).count(), value::count(ways().count(), "point"));
+            words.push(format!("The way up and the way down end in different states at {with} of {all}."));
+        }
+        words
     }
 
     fn waves_table(&self) -> Table {

@@ -131,11 +131,7 @@ impl Scalar {
 
     /// The value in a row, if it has one that is a number.
     pub fn value(&self, row: &JobRow) -> Option<f64> {
-        let value = match &row.state {
-            RowState::Done(_) => self.column.value(row).as_f64(),
-            RowState::Measured(measured) => measured.value(self.name).map(|found| found.value),
-            _ => None,
-        };
+        let value = row.has_result().then(|| self.column.value(row).as_f64()).flatten();
         value.filter(|x| x.is_finite())
     }
 

@@ -167,6 +167,10 @@ pub fn table(rows: &[JobRow], quantity: Quantity) -> Table {
 }
 
 pub(super) fn table_of(layout: &Layout, quantity: Quantity) -> Table {
+    table_with(layout, quantity, Digits::Fixed)
+}
+
+pub(super) fn table_with(layout: &Layout, quantity: Quantity, digits: Digits) -> Table {
     let stem = quantity.stem();
     let of_series = layout.series.iter().map(|series| {
         let of_source = layout.sources.get(series.source).filter(|_| layout.has_sources());
@@ -180,7 +184,7 @@ pub(super) fn table_of(layout: &Layout, quantity: Quantity) -> Table {
         let key = group.key.iter().map(|(_, value)| value.clone());
         let scattered = layout.scattered.iter().map(|name| job.row.parameter(name));
         let at = value::rounded_value(&group.axis_values[job.axis_index]);
-        let cell = cell_or_null(quantity.cell(job.row, Digits::Fixed));
+        let cell = cell_or_null(quantity.cell(job.row, digits));
         let cells =
             (0..layout.series.len()).map(|own| if own == job.series { cell.clone() } else { Value::Null });
         key.chain(scattered).chain([at]).chain(cells).collect()
@@ -195,7 +199,7 @@ pub(super) fn table_of(layout: &Layout, quantity: Quantity) -> Table {
         return Table { stem: stem.into(), heads, lines: layout.groups.iter().flat_map(jobs).collect() };
     }
     let of_group = |group| {
-        lines(layout, group, quantity, Digits::Fixed).map(|(at, cells)| {
+        lines(layout, group, quantity, digits).map(|(at, cells)| {
             let key = group.key.iter().map(|(_, value)| value.clone());
             let cells = cells.into_iter().map(cell_or_null);
             key.chain([value::rounded_value(at)]).chain(cells).collect()

@@ -16,6 +16,8 @@ pub struct View {
     pub descriptions: BTreeMap<String, String>,
     /// Parameters whose axes are known to be logarithmic (true) or linear; the values of others decide.
     pub is_log: BTreeMap<String, bool>,
+    /// Whether the jobs are those of a Morris design, in its order. They are no sample.
+    pub is_morris: bool,
     /// What a reader must know to compare the sources, one sentence each.
     pub notes: Vec<String>,
 }
@@ -28,6 +30,7 @@ impl View {
         y: Vec::new(),
         descriptions: BTreeMap::new(),
         is_log: BTreeMap::new(),
+        is_morris: false,
         notes: Vec::new(),
     };
 }

@@ -7,6 +7,7 @@ use super::rows::read_rows;
 use super::selection::values;
 use crate::publish::value;
 use crate::queue::Queue;
+use crate::report::columns::ExportColumn;
 use crate::report::{JobRow, SCALARS, Scalar, View};
 use crate::solver;
 use crate::spec::JobSpec;
@@ -135,7 +136,8 @@ impl ReportRequest {
         let mut y: Vec<&'static Scalar> = Vec::new();
         for name in quantities {
             let scalar = Scalar::find(name).ok_or_else(|| {
-                no_such_name("--y", name, &SCALARS.iter().map(|scalar| scalar.name).collect::<Vec<_>>())
+                let is_parameter = known.contains(&name.as_str());
+                if is_parameter { not_a_result(name) } else { no_such_quantity("--y", name) }
             })?;
             // These two have their figures in every report.
             if !matches!(scalar.name, "mu_star" | "frequency_hz") && !y.contains(&scalar) {
@@ -153,14 +155,41 @@ impl ReportRequest {
         if let Some((name, _)) = self.scale.iter().find(|(name, _)| !known.contains(&name.as_str())) {
             return Err(no_such_name("--scale", name, &known));
         }
-        Ok(View { x, by, y, descriptions: descriptions(), is_log, notes: different_inputs(studies, &known)? })
+        let is_morris = match studies {
+            [StoredStudy { study: Some(only), .. }] => self.data.is_empty() && only.is_morris(),
+            _ => false,
+        };
+        let notes = different_inputs(studies, &known)?;
+        Ok(View { x, by, y, descriptions: descriptions(), is_log, is_morris, notes })
     }
 }
 
 fn no_such_name(option: &'static str, name: &str, known: &[&str]) -> SweepError {
-    let nearest = nearest_name(name, known.iter().copied());
-    let advice = nearest.map_or_else(String::new, |name| format!("; did you mean `{name}`?"));
-    let message = format!("no such name{advice}\n  help: expected one of {}", known.join(", "));
+    let is_parameter = PARAMETERS.iter().any(|parameter| parameter.name == name);
+    let (problem, advice) = match nearest_name(name, known.iter().copied()) {
+        _ if is_parameter => ("does not vary between these jobs", String::new()),
+        Some(near) => ("no such name", format!("; did you mean `{near}`?")),
+        None => ("no such name", String::new()),
+    };
+    let message = format!("{problem}{advice}\n  help: expected one of {}", known.join(", "));
+    SweepError::NoSuchAxis { option, name: name.to_owned(), message }
+}
+
+fn not_a_result(name: &str) -> SweepError {
+    let message = "this is a parameter; expected a result. Give parameters to --x and --by".to_owned();
+    SweepError::NoSuchAxis { option: "--y", name: name.to_owned(), message }
+}
+
+/// A name that is no number of a record.
+pub fn no_such_quantity(option: &'static str, name: &str) -> SweepError {
+    let nearest = nearest_name(name, SCALARS.iter().map(|scalar| scalar.name));
+    let advice = nearest.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
+    let is_text = ExportColumn::find(name).is_some();
+    let problem = if is_text { "is no number" } else { "no such quantity" };
+    let message = format!(
+        "{problem}{advice}\n  help: expected a number of a result, such as mu_star, frequency_hz or stick_share; `tribosweep columns` \
+         lists them"
+    );
     SweepError::NoSuchAxis { option, name: name.to_owned(), message }
 }
 

@@ -63,6 +63,23 @@ fn measured_points_are_compared_with_the_study() {
     assert!(page.contains("## Comparison"), "{page}");
 }
 
+/// Protects: the export beside a comparison has what was measured, with its error, under the names of what was computed.
+#[test]
+fn measured_values_are_in_the_export() {
+    let mut rows = study("simulated", 0.3);
+    rows.push(measured(10.0, 0.4, 0.33, Some(0.0012)));
+    let folder = tempfile::tempdir().expect("a temporary folder");
+    write(&report(&rows), folder.path()).expect("the report is written");
+    for file in ["jobs.csv", "mu_star_points.csv"] {
+        let mut lines = csv::Reader::from_path(folder.path().join(file)).expect("a table");
+        let heads = lines.headers().expect("a head").clone();
+        let own = lines.records().map(Result::unwrap).find(|line| line.iter().any(|cell| cell == "measured"));
+        let own = own.expect("the measured point");
+        let cell = |name: &str| &own[heads.iter().position(|head| head == name).expect("a column")];
+        assert_eq!([cell("mu_star"), cell("mu_star_se")], ["0.33", "0.0012"], "{file}");
+    }
+}
+
 /// Protects: two studies are compared at equal points, each with columns, curves and an entry in the legend of its own. Jobs
 /// without a counterpart are said.
 #[test]
@@ -162,6 +179,8 @@ fn contradictions_about_squeal_come_first() {
     for page in [markdown, html] {
         let place = |part: &str| page.find(part).unwrap_or_else(|| panic!("no {part}"));
         assert!(place("Squeal is contradicted at 2 of 3") < place("points of rig are at the parameters"));
+        // Before all sections.
+        assert!(place("Squeal is contradicted at 2 of 3") < place("Macroscopic friction coefficient"));
     }
 }
 

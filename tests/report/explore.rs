@@ -4,10 +4,11 @@ use std::fs;
 use std::path::PathBuf;
 
 use tempfile::TempDir;
-use tribosweep::report::{JobRow, write};
+use tribosweep::publish::{Sheet, SheetGroup, SheetLine};
+use tribosweep::report::{JobRow, Report, write};
 
 use crate::chromium::Browser;
-use crate::synthetic::{failed, partial_study, periodic, report, row, with};
+use crate::synthetic::{failed, measured, partial_study, periodic, report, row, with};
 
 const JOBS: i32 = 5_000;
 
@@ -97,6 +98,32 @@ fn importance_is_that_of_the_grid() {
     let expected = 1e-4 * 5.25 / (0.02 + 1e-4 * 5.25);
     assert_eq!((&bars[0][0], &bars[1][0]), (&"omega_rpm".into(), &"mu".into()));
     assert!((share(0) - expected).abs() < 1e-9 && (share(1) - (1.0 - expected)).abs() < 1e-9, "{bars}");
+}
+
+/// Protects: the page has what all jobs have in common too, and counts measured points apart.
+#[test]
+fn the_page_has_what_does_not_vary() {
+    let line = SheetLine {
+        name: "load".to_owned(),
+        value: "30 N".to_owned(),
+        key: "load_n",
+        ..SheetLine::default()
+    };
+    let varied = SheetLine { name: "friction coefficient".to_owned(), key: "mu", ..SheetLine::default() };
+    let groups = vec![SheetGroup { heading: "pin", lines: vec![line, varied] }];
+    let sheet = Sheet { groups, ..Sheet::default() };
+    let rows = [row(7.0, 0.4, periodic(0.3)), row(9.0, 0.5, periodic(0.3)), measured(9.0, 0.4, 0.33, None)];
+    let folder = TempDir::new().unwrap();
+    write(&Report { sheet: Some(&sheet), ..report(&rows) }, folder.path()).unwrap();
+    let page = fs::read_to_string(folder.path().join("explore.html")).unwrap();
+    assert!(page.contains("All 2 jobs and 1 measured point."), "jobs and points");
+    assert!(page.contains(r#""setup":[{"name":"load","value":"30 N"}]"#), "the load alone");
+    let Some(mut browser) = Browser::start() else { return };
+    browser.open(&folder.path().canonicalize().unwrap().join("explore.html"));
+    browser.evaluate(&pressed("table"));
+    browser.evaluate("document.querySelector('#explore tbody tr').click()");
+    let job = browser.evaluate("document.querySelector('#job').textContent");
+    assert!(job.as_str().unwrap().contains("load30 N"), "{job}");
 }
 
 /// Protects: a study in progress has a page without errors.

@@ -268,6 +268,20 @@ fn coarse() -> Arc<MeshError> {
     })
 }
 
+/// Protects: the first sentence has an error only where mesh and step are known, because the spread over the cycles alone would claim
+/// more than is known.
+#[test]
+fn the_first_sentence_claims_no_error_that_is_not_known() {
+    let sentence = |discretisation| {
+        let text = text(&page(&[with_error(row(7.0, 0.4, periodic(0.263_429)), discretisation)]));
+        text.split("μ* falls furthest below μ").nth(1).unwrap().split(" % of μ.").next().unwrap().to_owned()
+    };
+    let known = sentence(Discretisation::Measured(coarse()));
+    assert!(known.contains("0.263 ±"), "{known}");
+    let unknown = sentence(Discretisation::NotMeasured);
+    assert!(unknown.contains("to 0.263") && !unknown.contains('±'), "{unknown}");
+}
+
 /// Protects: the error of mesh and step is in the head, and tables do not promise digits that it does not leave. The CSV
 /// keeps them.
 #[test]

@@ -158,6 +158,41 @@ fn tables_of_samples_have_every_parameter() {
     assert_complete(&report, &["omega_rpm", "mu", "clamp_width_m"], 13);
 }
 
+/// Protects: drawn points have no diagrams that join or stack neighbours, and their tables on the page have every parameter.
+#[test]
+fn samples_are_drawn_as_points() {
+    let sample = |i: i32| {
+        let x = f64::from(i);
+        job("one", 7.0 + x, 0.2 + 0.013 * x, 0.002 + 0.0001 * x)
+    };
+    let rows: Vec<JobRow> = (0..8).map(sample).collect();
+    let folder = tempfile::tempdir().unwrap();
+    write(&report(&rows), folder.path()).unwrap();
+    let has = |stem: &str| folder.path().join(format!("{stem}.svg")).exists();
+    assert!(has("mu_star") && !has("shares") && !has("bifurcation"));
+    let page = fs::read_to_string(folder.path().join("report.md")).unwrap();
+    let head =
+        page.lines().find(|line| line.contains("| clamp_width_m |")).unwrap_or_else(|| panic!("{page}"));
+    assert!(
+        [" mu |", "| omega_rpm |", "friction coefficient μ"].iter().all(|own| head.contains(own)),
+        "{head}"
+    );
+}
+
+/// Protects: what a plan has found stands in the sentences at the head of the page.
+#[test]
+fn findings_are_at_the_head() {
+    let rows: Vec<JobRow> = WIDTHS_M.into_iter().map(|width| job("one", 7.0, 0.2, width)).collect();
+    let mut findings = findings(&rows);
+    findings.crossings.push(Crossing { range: [0.0035, 0.0075], ..findings.crossings[0].clone() });
+    let folder = tempfile::tempdir().unwrap();
+    write(&Report { findings: Some(&findings), ..report(&rows) }, folder.path()).unwrap();
+    let page = fs::read_to_string(folder.path().join("report.md")).unwrap();
+    let head = page.split("\n## ").next().unwrap();
+    let expected = "Below clamp_width = 2 … 7.5 mm jobs are a, and above it b (1 of 2 places not yet as near as was asked for).";
+    assert!(head.contains(expected), "{head}");
+}
+
 /// Protects: samples are compared where all of their parameters are equal, and nothing is interpolated between them.
 #[test]
 fn samples_are_compared_at_equal_points_alone() {

@@ -8,7 +8,7 @@ use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
 use tribosweep::analysis::{AboveBand, ComplexMode, Outcome, Regime, SlidingStability};
-use tribosweep::publish::chart::palette::INK;
+use tribosweep::publish::chart::palette::DARK;
 use tribosweep::publish::chart::{At, Axis, Chart, Layer, Panel, Pen, Point, Sample, Shape};
 use tribosweep::report::figure::{Plot, StabilityPlot, figures, figures_with, stability_figures};
 use tribosweep::report::{Along, JobRow, Report, RowState, StabilityPoint, View, write, write_stability};
@@ -74,7 +74,7 @@ fn lines(panel: &Panel) -> Vec<(&[At], Pen)> {
 
 /// The zero lines: black, and not dashed.
 fn zero_lines(chart: &Chart) -> Vec<&[At]> {
-    let is_black = |(points, pen): (_, Pen)| (pen.colour == INK && pen.dash.0 == 0.0).then_some(points);
+    let is_black = |(points, pen): (_, Pen)| (pen.colour == DARK && pen.dash.0 == 0.0).then_some(points);
     lines(&chart.panels[0]).into_iter().filter_map(is_black).collect()
 }
 
@@ -87,7 +87,7 @@ fn dots(panel: &Panel) -> Vec<&Point> {
 }
 
 /// Protects: at every speed the zero line lies between the points of opposite sign next to each other, in the stability map and
-/// in the map of regimes, and it is at the interpolated place. A wider line in the colour of the ground is below it.
+/// in the map of regimes, and it is at the interpolated place. A wider, light line is below it.
 #[test]
 fn the_zero_line_lies_between_points_of_opposite_sign() {
     let rows: Vec<JobRow> =
@@ -104,7 +104,7 @@ fn the_zero_line_lies_between_points_of_opposite_sign() {
         }
         let wider =
             lines(&chart.panels[0]).into_iter().find(|(points, _)| *points == found[0]).expect("a line");
-        assert!(wider.1.colour != INK && wider.1.width > 3.0, "{:?}", wider.1);
+        assert!(wider.1.colour != DARK && wider.1.width > 3.0, "{:?}", wider.1);
         assert!(maps::legend(&chart).contains(&"threshold: the leading growth rate is zero"));
     }
 }

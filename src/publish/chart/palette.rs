@@ -20,10 +20,10 @@ pub const GRID: Rgb = Rgb(0xE4, 0xE4, 0xE4);
 pub const GREY: Rgb = Rgb(0x70, 0x70, 0x70);
 /// A cell without a value.
 pub const NO_VALUE: Rgb = Rgb(0xEC, 0xEC, 0xEC);
-/// Text on a light cell, which stays dark on a dark page.
-const DARK: Rgb = Rgb(0x11, 0x11, 0x11);
+/// Text and marks on a light cell, which stay dark on a dark page.
+pub const DARK: Rgb = Rgb(0x11, 0x11, 0x11);
 /// Text on a dark cell, which stays light on paper.
-const LIGHT: Rgb = Rgb(0xFE, 0xFE, 0xFE);
+pub const LIGHT: Rgb = Rgb(0xFE, 0xFE, 0xFE);
 
 /// A colour of Okabe and Ito's palette.
 pub const BLUE: Rgb = Rgb(0x00, 0x72, 0xB2);

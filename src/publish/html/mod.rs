@@ -11,6 +11,7 @@
 mod data_uri;
 
 use super::page::{self, Block, Grid, Page, Span, Text, Tile};
+use super::value;
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
 const STYLE: &str = include_str!("style.css");
@@ -95,12 +96,37 @@ fn of_figure(own: &page::Figure) -> Markup {
     }
 }
 
+/// Whether most cells of a column are words. Numbers may have signs, errors and units.
+fn is_of_words(grid: &Grid, column: usize) -> bool {
+    let cells =
+        grid.groups.iter().flat_map(|(_, lines)| lines).filter_map(|line| line.get(column)?.0.first());
+    let (mut words, mut numbers) = (0, 0);
+    for span in cells {
+        match span {
+            Span::Plain(text) | Span::Strong(text) | Span::Link(text, _) => {
+                match text.trim_start_matches(['-', '−', '+', '<', '>', '≤', '≥', '±', ' ']).chars().next()
+                {
+                    Some(first) if first.is_ascii_digit() => numbers += 1,
+                    Some(_) if text != value::MISSING => words += 1,
+                    _ => {}
+                }
+            }
+            _ => words += 1,
+        }
+    }
+    words > numbers
+}
+
 fn of_grid(grid: &Grid) -> Markup {
+    let words: Vec<bool> = (0..grid.heads.len()).map(|column| is_of_words(grid, column)).collect();
+    let class = |column: usize| words.get(column).is_some_and(|is_text| *is_text).then_some("text");
     let line = |cells: &[Text]| {
         html! {
             tr {
                 @for (column, cell) in cells.iter().enumerate() {
-                    @if column == 0 { th scope="row" { (spans(cell)) } } @else { td { (spans(cell)) } }
+                    @if column == 0 { th scope="row" { (spans(cell)) } } @else {
+                        td class=[class(column)] { (spans(cell)) }
+                    }
                 }
             }
         }
@@ -108,7 +134,13 @@ fn of_grid(grid: &Grid) -> Markup {
     html! {
         div.scroll.words[grid.has_words] tabindex="0" role="group" aria-label="table" {
             table {
-                thead { tr { @for head in &grid.heads { th scope="col" { (head) } } } }
+                thead {
+                    tr {
+                        @for (column, head) in grid.heads.iter().enumerate() {
+                            th class=[class(column)] scope="col" { (head) }
+                        }
+                    }
+                }
                 @for (heading, lines) in &grid.groups {
                     tbody {
                         @if !heading.is_empty() {

@@ -6,7 +6,7 @@ mod fixed;
 pub use fixed::{FURTHER, PLAIN};
 
 use super::parameters::is_further;
-use super::row::JobRow;
+use super::row::{JobRow, RowState};
 use crate::publish::table::{Column, Head};
 use serde_json::Value;
 
@@ -95,9 +95,22 @@ impl ExportColumn {
         PLAIN.iter().chain(&FURTHER).find(|own| own.column.head.name == name)
     }
 
-    /// Its value for a job.
+    /// Its value for a job or for a measured point, which has what its file gives.
     pub fn value(&self, row: &JobRow) -> Value {
-        self.column.value(row)
+        match &row.state {
+            RowState::Measured(point) if !matches!(self.group, Group::Job | Group::Input) => {
+                match &*self.column.head.name {
+                    "mu_star_se" => point.value("mu_star").and_then(|own| own.error).into(),
+                    name => point.value(name).map(|own| own.value).into(),
+                }
+            }
+            _ => self.column.value(row),
+        }
+    }
+
+    /// As a column of a table that may have measured points.
+    pub(super) fn into_column(self) -> Column<JobRow> {
+        Column::made(self.column.head.clone(), move |row| self.value(row))
     }
 
     fn of_input(head: Head, read: impl Fn(&JobRow) -> Value + Send + Sync + 'static) -> Self {

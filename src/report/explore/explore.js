@@ -2,9 +2,12 @@
 "use strict";
 (() => {
   const data = JSON.parse(document.getElementById("data").textContent);
+  const rows = [...Array(data.count).keys()];
+  for (const column of data.columns) {
+    const [names, places] = column.names || [];
+    column.values = column.numbers || (names ? places.map((place) => place === null ? null : names[place]) : Array(data.count).fill(column.all));
+  }
   const columns = new Map(data.columns.map((column) => [column.name, column]));
-  const count = data.columns.length ? data.columns[0].values.length : 0;
-  const rows = [...Array(count).keys()];
   const isNumber = (column) => column.values.every((value) => value === null || typeof value === "number");
   const varies = (column) => new Set(column.values.filter((value) => value !== null)).size > 1;
   const numbers = data.columns.filter(isNumber);
@@ -13,6 +16,7 @@
   const title = (column) => column.unit ? `${column.name} [${column.unit}]` : column.name;
   const short = (value) => value === null ? "–" : typeof value === "number" ? String(Number(value.toPrecision(5))) : String(value);
   const MOST_SERIES = 24;
+  const MOST_TICKS = 12;
 
   const root = document.getElementById("explore");
   const make = (name, attributes = {}, ...children) => {
@@ -49,11 +53,37 @@
   const [yLogLabel, yLog] = flag("log y", false);
   const [joinLabel, join] = flag("lines", parameters.length <= 2);
 
-  // As the report does: logarithmic if the values are positive and span a factor of 20.
+  // As the report does: as the study's author gave the values, and otherwise logarithmic if they are positive and span a factor of 20.
   function isLog(column) {
-    const values = column ? column.values.filter((value) => value !== null) : [];
-    return values.length > 0 && Math.min(...values) > 0 && Math.max(...values) >= 20 * Math.min(...values);
+    if (!column || column.kind !== "parameter") return false;
+    if (data.log[column.name] !== undefined) return data.log[column.name];
+    const [least, most] = extent(column);
+    return least > 0 && most >= 20 * least;
   }
+  // Math.min(...values) cannot take 10⁵ values.
+  function extent(column) {
+    let [least, most] = [Infinity, -Infinity];
+    for (const value of column.values) {
+      if (value === null) continue;
+      least = Math.min(least, value);
+      most = Math.max(most, value);
+    }
+    return [least, most];
+  }
+  // The values that people chose, if they are few.
+  const chosen = (column) => {
+    const values = [...new Set(column.values.filter((value) => value !== null))].sort((a, b) => a - b);
+    return column.kind === "parameter" && values.length <= MOST_TICKS ? values : undefined;
+  };
+  // On a logarithmic axis 1, 2 and 5 times powers of ten, because the library has only these powers.
+  const decades = (column) => {
+    const [least, most] = extent(column);
+    const ticks = [];
+    for (let power = Math.floor(Math.log10(least)); 10 ** power <= most; power += 1) {
+      ticks.push(...[1, 2, 5].map((digit) => Number((digit * 10 ** power).toPrecision(1))).filter((tick) => tick >= least && tick <= most));
+    }
+    return ticks.length > 1 && ticks.length <= 2 * MOST_TICKS ? ticks : undefined;
+  };
 
   const tabs = make("div", { class: "tabs", role: "tablist" });
   const views = ["plot", "parallel coordinates", "importance", "table"].filter((name) =>
@@ -92,17 +122,31 @@
       const value = column.values[row];
       if (value !== null) list.append(make("div", {}, make("dt", { title: column.meaning }, title(column)), make("dd", {}, short(value))));
     }
+    for (const line of data.setup) list.append(make("div", {}, make("dt", {}, line.name), make("dd", {}, line.value)));
     job.append(list);
     job.hidden = false;
     job.dataset.key = key;
     job.scrollIntoView({ block: "nearest" });
   };
 
-  const axisOf = (column, log, extra) => ({
-    type: log ? "log" : "value", scale: true, min: log ? "dataMin" : null, max: log ? "dataMax" : null, name: title(column), nameLocation: "middle", nameGap: extra.gap, ...extra.own,
-    axisLabel: { formatter: (value) => short(value) },
-  });
+  const axisOf = (column, log, extra) => {
+    const customValues = chosen(column) || (log && extent(column)[0] > 0 ? decades(column) : undefined);
+    return {
+      type: log ? "log" : "value", scale: true, min: log ? "dataMin" : null, max: log ? "dataMax" : null,
+      name: title(column), nameLocation: "middle", nameGap: extra.gap, ...extra.own,
+      axisTick: { customValues }, axisLabel: { formatter: (value) => short(value), customValues, hideOverlap: true },
+    };
+  };
   const palette = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#666666", "#F0E442"];
+  const scale = ["#440154", "#3B528B", "#21918C", "#5EC962", "#FDE725"];
+  // A colour of the continuous scale, from 0 to 1.
+  const shade = (share) => {
+    const at = Math.min(Math.floor(share * (scale.length - 1)), scale.length - 2);
+    const part = share * (scale.length - 1) - at;
+    const channel = (text, place) => parseInt(text.slice(place, place + 2), 16);
+    return `rgb(${[1, 3, 5].map((place) => Math.round(channel(scale[at], place) * (1 - part) + channel(scale[at + 1], place) * part)).join(",")})`;
+  };
+  const symbols = ["circle", "triangle", "rect", "diamond"];
 
   const drawPlot = () => {
     const panels = [y.value, second[1].value, third[1].value].filter((name) => name);
@@ -116,6 +160,10 @@
       groups.get(key).push(row);
     }
     const order = [...groups.keys()].sort((a, b) => colour && isNumber(colour) ? Number(a) - Number(b) : a.localeCompare(b));
+    // More values than colours: numbers have a scale, and names another mark for each round of colours.
+    const isScale = colour && isNumber(colour) && order.length > palette.length;
+    const colourOf = (number) => isScale ? shade(number / (order.length - 1)) : palette[number % palette.length];
+    const symbolOf = (number) => isScale ? symbols[0] : symbols[Math.floor(number / palette.length) % symbols.length];
     const height = 78 / panels.length;
     const series = [];
     panels.forEach((name, panel) => {
@@ -127,7 +175,7 @@
         if (join.checked) own.sort((a, b) => X.values[a] - X.values[b]);
         series.push({
           name: key || name, type: join.checked && !isContinuous ? "line" : "scatter", xAxisIndex: panel, yAxisIndex: panel,
-          symbolSize: rows.length > 1000 ? 4 : 8, color: isContinuous ? undefined : palette[number % palette.length],
+          symbolSize: rows.length > 1000 ? 4 : 8, symbol: symbolOf(number), color: isContinuous ? undefined : colourOf(number),
           showSymbol: true, large: false, animation: false,
           data: own.map((row) => ({ value: [X.values[row], Y.values[row], isContinuous ? colour.values[row] : 0], row })),
         });
@@ -142,12 +190,11 @@
           ? [...parameters, ...panels.map((name) => columns.get(name))].map((column) =>
             `${title(column)} = ${short(column.values[event.data.row])}`).map(echarts.format.encodeHTML).join("<br>") : "",
       },
-      legend: colour && !isContinuous ? { type: "scroll", top: 0, formatter: (key) => `${colour.name} ${key}` } : undefined,
+      legend: colour && !isContinuous ? { type: "scroll", top: 0, left: 70, right: 120, formatter: (key) => `${colour.name} ${key}` } : undefined,
       toolbox: { right: 10, feature: { dataZoom: {}, restore: {}, saveAsImage: {} } },
       visualMap: isContinuous ? [{
         type: "continuous", dimension: 2, calculable: true, right: 0, top: "middle", text: [title(colour), ""],
-        min: Math.min(...colour.values.filter((value) => value !== null)), max: Math.max(...colour.values.filter((value) => value !== null)),
-        inRange: { color: ["#440154", "#3B528B", "#21918C", "#5EC962", "#FDE725"] },
+        min: extent(colour)[0], max: extent(colour)[1], formatter: short, inRange: { color: scale },
       }] : [],
       grid: panels.map((_, panel) => ({ left: 80, right: isContinuous ? 130 : 30, top: `${10 + panel * (height + 3)}%`, height: `${height - 5}%` })),
       xAxis: panels.map((_, panel) => axisOf(X, xLog.checked, { gap: 28, own: { gridIndex: panel } })),
@@ -158,20 +205,24 @@
     }, true);
   };
 
+  const parallelScale = (column) => {
+    const { type, min, max, scale, axisTick, axisLabel } = axisOf(column, isLog(column), { gap: 0 });
+    return { type, min, max, scale, axisTick, axisLabel };
+  };
   const drawParallel = () => {
     const shown = [...parameters, columns.get(y.value), ...[second, third].map((own) => columns.get(own[1].value)).filter((own) => own)];
     const Y = columns.get(y.value);
-    const values = Y.values.filter((value) => value !== null);
+    const [least, most] = extent(Y);
     chart.setOption({
       animation: false,
       backgroundColor: "transparent",
-      parallel: { left: 60, right: 140, top: 50, bottom: 40 },
+      parallel: { left: 80, right: 160, top: 50, bottom: 40, parallelAxisDefault: { nameTextStyle: { width: 140, overflow: "truncate" } } },
       parallelAxis: shown.map((column, dim) => isNumber(column)
-        ? { dim, name: title(column), type: "value", scale: true, axisLabel: { formatter: (value) => short(value) } }
+        ? { dim, name: title(column), ...parallelScale(column) }
         : { dim, name: column.name, type: "category", data: [...new Set(column.values.map(short))] }),
       visualMap: {
-        type: "continuous", dimension: parameters.length, min: Math.min(...values), max: Math.max(...values), right: 0, top: "middle",
-        text: [title(Y), ""], calculable: true, inRange: { color: ["#440154", "#3B528B", "#21918C", "#5EC962", "#FDE725"] },
+        type: "continuous", dimension: parameters.length, min: least, max: most, right: 0, top: "middle",
+        text: [title(Y), ""], calculable: true, formatter: short, inRange: { color: scale },
       },
       series: [{
         type: "parallel", animation: false, lineStyle: { width: 1, opacity: rows.length > 1000 ? 0.15 : 0.5 }, progressive: 500,
@@ -181,24 +232,37 @@
     }, true);
   };
 
+  // The interval of confidence: a line with two ends.
+  const interval = (_, api) => {
+    const [low, high] = [1, 2].map((dim) => api.coord([api.value(dim), api.value(0)]));
+    const line = (x1, y1, x2, y2) => ({ type: "line", shape: { x1, y1, x2, y2 }, style: { stroke: dark.matches ? "#eee" : "#222", lineWidth: 1.5 } });
+    return { type: "group", children: [line(...low, ...high), ...[low, high].map(([x, y]) => line(x, y - 5, x, y + 5))] };
+  };
   const drawImportance = () => {
     const of = data.importance.find((own) => own.of === y.value) || data.importance[0];
     const bars = [...of.bars].sort((a, b) => a.value - b.value);
     chart.setOption({
       animation: false,
       backgroundColor: "transparent",
-      title: { text: `importance of the parameters for ${of.of} (${of.points} points)`, textStyle: { fontSize: 14 } },
+      title: {
+        text: `${of.kind} of the parameters for ${of.of} (${of.points} points)`, subtext: of.notes.join(" "),
+        textStyle: { fontSize: 14 }, subtextStyle: { width: box.clientWidth - 40, overflow: "break" },
+      },
       tooltip: {
         formatter: (event) => {
           const bar = bars[event.dataIndex];
           const interval = bar.interval ? ` (${bar.interval.map(short).join(" … ")})` : "";
-          return echarts.format.encodeHTML(`${bar.name}: ${bar.kind} ${short(bar.value)}${interval}`);
+          return echarts.format.encodeHTML(`${bar.name}: ${of.kind} ${short(bar.value)}${interval}`);
         },
       },
-      grid: { left: 220, right: 40, top: 50, bottom: 50 },
-      xAxis: { type: "value", name: "index", nameLocation: "middle", nameGap: 28 },
+      grid: { left: 220, right: 40, top: 110, bottom: 50 },
+      xAxis: { type: "value", name: of.kind, nameLocation: "middle", nameGap: 28 },
       yAxis: { type: "category", data: bars.map((bar) => bar.name) },
-      series: [{ type: "bar", animation: false, itemStyle: { color: palette[0] }, data: bars.map((bar) => bar.value) }],
+      series: [
+        { type: "bar", animation: false, itemStyle: { color: palette[0] }, data: bars.map((bar) => bar.value) },
+        { type: "custom", animation: false, renderItem: interval, encode: { x: [1, 2], y: 0 }, silent: true,
+          data: bars.flatMap((bar, number) => bar.interval ? [[number, ...bar.interval]] : []) },
+      ],
     }, true);
   };
 

@@ -3,16 +3,23 @@
 //! The page is one file, which loads nothing. Charts are drawn by Apache ECharts, which is in the page; the report itself
 //! needs no script. The data are columns of the export, so that names and meanings are the same everywhere.
 
+mod packed;
+
 use super::columns;
+use super::export::further_names;
 use super::input::Report;
 use super::parameters::{MU, OMEGA, name_and_unit};
 use super::row::JobRow;
 use super::scalar::{FREQUENCY, MU_STAR, Scalar};
-use super::sensitivity::{REGIME, sensitivities};
-use crate::publish::{html, value};
+use super::sensitivity::{self, REGIME, sensitivities};
+use crate::publish::{SheetLine, html, value};
 use maud::{Markup, PreEscaped, html};
+use packed::{Values, write_embedded};
+use rayon::iter::{IntoParallelIterator, ParallelIterator};
+use serde::Serialize;
 use serde_json::{Value, json};
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
+use std::io;
 
 /// The name of the page.
 pub(super) const PAGE: &str = "explore.html";
@@ -24,67 +31,118 @@ const STYLE: &str = include_str!("explore.css");
 const MOST_WEIGHED: usize = 20_000;
 /// Digits of a number. `jobs.csv` has all of them.
 const DIGITS: usize = 7;
+/// Characters of a job's key. Commands take them for the whole key.
+const KEY: usize = 16;
+/// Stands in the page where the data go.
+const DATA: &str = "\u{0}";
 
-/// The page. `pages` has the addresses of the pages of some jobs.
-pub(super) fn page(report: &Report, pages: &HashMap<String, String>) -> String {
-    let data = data(report, pages).to_string().replace('<', "\\u003c");
+/// Writes the page. `pages` has the addresses of the pages of some jobs. The data of many jobs are large, so they go straight to `out`.
+///
+/// # Errors
+/// Those of `out`.
+pub(super) fn write(report: &Report, pages: &HashMap<String, String>, out: &mut Vec<u8>) -> io::Result<()> {
+    let measured = report.rows.iter().filter(|row| row.is_measured()).count();
     let body: Markup = html! {
         p {
-            "All " (value::count(report.rows.len(), "job")) ". "
+            "All " (value::count(report.rows.len() - measured, "job"))
+            @if measured > 0 { " and " (value::count(measured, "measured point")) }
+            ". "
             a href="report.html" { "The report" } " has the findings; " a href="jobs.csv" { "jobs.csv" } " has all digits."
         }
         noscript { p.warning { "This page needs JavaScript. The report needs none." } }
         style { (PreEscaped(STYLE)) }
         div #explore {}
-        script type="application/json" #data { (PreEscaped(data)) }
+        script type="application/json" #data { (PreEscaped(DATA)) }
         script { (PreEscaped(ECHARTS)) }
         script { (PreEscaped(SCRIPT)) }
     };
-    html::page(&format!("{}: explore", report.title), None, &body)
+    let page = html::page(&format!("{}: explore", report.title), None, &body);
+    let (before, after) = page.split_once(DATA).unwrap_or((&page, ""));
+    out.extend_from_slice(before.as_bytes());
+    write_embedded(&data(report, pages), &mut *out)?;
+    out.extend_from_slice(after.as_bytes());
+    Ok(())
 }
 
-/// The columns of all jobs, what they mean, and what is known about the importance of the parameters.
-fn data(report: &Report, pages: &HashMap<String, String>) -> Value {
-    let rows = report.rows;
-    let names = super::export::further_names(rows);
-    let parameters: Vec<&str> = [OMEGA, MU].into_iter().chain(names).collect();
-    let column = |name: &str, unit: &str, meaning: &str, kind: &str, of: &dyn Fn(&JobRow) -> Value| {
-        let values: Vec<Value> = rows.iter().map(|row| shortened(of(row))).collect();
-        // A column without values would only be in the way.
-        values.iter().any(|value| !value.is_null()).then(
-            || json!({ "name": name, "unit": unit, "meaning": meaning, "kind": kind, "values": values }),
-        )
-    };
-    let given = parameters.iter().filter_map(|name| {
-        let words = report.view.descriptions.get(*name).map_or(*name, String::as_str);
-        column(name, name_and_unit(name).1, words, "parameter", &|row| row.parameter(name))
+/// What the script reads.
+#[derive(Serialize)]
+struct Data<'a> {
+    /// The number of rows.
+    count: usize,
+    columns: Vec<ColumnData<'a>>,
+    /// The pages of jobs, by row.
+    pages: BTreeMap<usize, &'a str>,
+    /// Quantities that all jobs have in common, or that the columns do not have.
+    setup: Vec<SetupLine<'a>>,
+    importance: Vec<Value>,
+    /// Whether the axis of a parameter is known to be logarithmic or linear.
+    log: &'a BTreeMap<String, bool>,
+    start: Value,
+}
+
+#[derive(Serialize)]
+struct ColumnData<'a> {
+    name: &'a str,
+    unit: &'a str,
+    meaning: &'a str,
+    kind: &'static str,
+    #[serde(flatten)]
+    values: Values,
+}
+
+#[derive(Serialize)]
+struct SetupLine<'a> {
+    name: &'a str,
+    value: &'a str,
+}
+
+fn data<'a>(report: &Report<'a>, pages: &'a HashMap<String, String>) -> Data<'a> {
+    let Report { rows, view, .. } = *report;
+    let parameters: Vec<&str> = [OMEGA, MU].into_iter().chain(further_names(rows)).collect();
+    let given = parameters.clone().into_par_iter().filter_map(|name| {
+        let values = Values::of(&rows.iter().map(|row| shortened(row.parameter(name))).collect::<Vec<_>>())?;
+        let meaning = view.descriptions.get(name).map_or(name, String::as_str);
+        Some(ColumnData { name, unit: name_and_unit(name).1, meaning, kind: "parameter", values })
     });
-    let results = columns::PLAIN
-        .iter()
-        .chain(&columns::FURTHER)
-        .filter(|own| own.column.head.name != OMEGA && own.column.head.name != MU);
-    let results = results.filter_map(|own| {
+    let of_column = |own: &'static columns::ExportColumn| {
         let head = &own.column.head;
-        column(&head.name, &head.unit, &head.meaning, own.group.name(), &|row| own.value(row))
-    });
-    let pages: Vec<Value> = rows.iter().map(|row| pages.get(&row.job).cloned().into()).collect();
-    let start = json!({
-        "x": report.view.x.as_deref().unwrap_or(OMEGA),
-        "by": report.view.by.as_deref().unwrap_or(MU),
-        "y": report.view.y.iter().map(|scalar| scalar.name).chain(["mu_star"]).next(),
-    });
-    json!({
-        "columns": given.chain(results).collect::<Vec<_>>(),
-        "pages": pages,
-        "importance": importance(report),
-        "start": start,
-    })
+        let value = |row: &JobRow| match &*head.name {
+            "job" => row.job.chars().take(KEY).collect::<String>().into(),
+            _ => shortened(own.value(row)),
+        };
+        let values = Values::of(&rows.iter().map(value).collect::<Vec<_>>())?;
+        let (name, unit, meaning) = (&*head.name, &*head.unit, &*head.meaning);
+        Some(ColumnData { name, unit, meaning, kind: own.group.name(), values })
+    };
+    let results: Vec<_> = columns::PLAIN.iter().chain(&columns::FURTHER).collect();
+    let results = results.into_par_iter().filter(|own| ![OMEGA, MU].contains(&&*own.column.head.name));
+    let mut columns: Vec<_> = given.collect();
+    columns.extend(results.filter_map(of_column).collect::<Vec<_>>());
+    let page = |(number, row): (usize, &JobRow)| Some((number, pages.get(&row.job)?.as_str()));
+    let is_column = |line: &SheetLine| parameters.contains(&line.key);
+    let lines = report.sheet.iter().flat_map(|sheet| &sheet.groups).flat_map(|group| &group.lines);
+    Data {
+        count: rows.len(),
+        columns,
+        pages: rows.iter().enumerate().filter_map(page).collect(),
+        setup: lines
+            .filter(|line| !is_column(line))
+            .map(|line| SetupLine { name: &line.name, value: &line.value })
+            .collect(),
+        importance: importance(report),
+        log: &view.is_log,
+        start: json!({
+            "x": view.x.as_deref().unwrap_or(OMEGA),
+            "by": view.by.as_deref().unwrap_or(MU),
+            "y": view.y.iter().map(|scalar| scalar.name).chain(["mu_star"]).next(),
+        }),
+    }
 }
 
 /// A number with few digits.
 fn shortened(given: Value) -> Value {
     match given.as_f64() {
-        Some(x) if given.is_f64() => value::significant(x, DIGITS).parse::<f64>().map_or(given, Value::from),
+        Some(x) if given.is_f64() => value::significant_number(x, DIGITS),
         _ => given,
     }
 }
@@ -97,18 +155,15 @@ fn importance(report: &Report) -> Vec<Value> {
     let of: Vec<&'static Scalar> =
         [*MU_STAR, *FREQUENCY].into_iter().chain(report.view.y.iter().copied()).collect();
     let jobs: Vec<JobRow> = report.rows.iter().filter(|row| !row.is_measured()).cloned().collect();
-    let found = sensitivities(&jobs, &of, false);
-    let of_quantity = |own: &super::sensitivity::Sensitivity| {
-        let bar = |indices: &super::sensitivity::Indices| {
-            let index = indices.first_order.or(indices.pawn)?;
-            let kind = if indices.first_order.is_some() { "first-order index" } else { "PAWN index" };
-            Some(
-                json!({ "name": indices.name, "value": index.value, "interval": index.interval, "kind": kind }),
-            )
-        };
-        let bars: Vec<Value> = own.parameters.iter().filter_map(bar).collect();
-        let is_shown = own.of != REGIME && bars.len() > 1;
-        is_shown.then(|| json!({ "of": own.of, "points": own.points, "bars": bars }))
+    let found = sensitivities(&jobs, &of, report.view.is_morris);
+    let of_quantity = |own: &sensitivity::Sensitivity| {
+        let (kind, indices) = own.main_indices()?;
+        let bar = |(name, index): &(&str, sensitivity::Index)| json!({ "name": name, "value": index.value, "interval": index.interval });
+        let is_shown = own.of != REGIME && indices.len() > 1;
+        is_shown.then(|| {
+            let bars: Vec<Value> = indices.iter().map(bar).collect();
+            json!({ "of": own.of, "points": own.points, "kind": kind, "bars": bars, "notes": own.notes() })
+        })
     };
     found.iter().filter_map(of_quantity).collect()
 }

@@ -17,7 +17,7 @@ use crate::report::scalar::FREQUENCY;
 use crate::report::stability::{Node, Verdict, Verdicts, zero_line};
 use crate::report::stability_point::StabilityPoint;
 use crate::report::tooltip::tooltip_text;
-use palette::{INK, NO_VALUE, PAPER};
+use palette::{DARK, INK, LIGHT, NO_VALUE, PAPER};
 use serde_json::Value;
 use std::collections::BTreeSet;
 
@@ -233,8 +233,8 @@ pub(super) fn add_boundary(chart: &mut Chart, nodes: &[Node]) {
     let is_log = matches!(panel.x.axis, Axis::Log(_));
     let inside = nodes.iter().copied().filter(|node| across.contains(&node.x) && up.contains(&node.y));
     let lines = zero_line(&inside.collect::<Vec<_>>(), is_log, &across, &up);
-    // The wider line in the colour of the ground keeps the boundary apart from dark cells.
-    for pen in [Pen::solid(PAPER, 5.0), Pen::solid(INK, 3.0)] {
+    // The wider line keeps the boundary apart from dark cells. Cells have the same colours on every ground.
+    for pen in [Pen::solid(LIGHT, 5.0), Pen::solid(DARK, 3.0)] {
         let layer = |line: &Vec<At>| Layer::Line { points: line.clone(), pen, right: false };
         panel.layers.extend(lines.iter().map(layer));
     }
@@ -381,7 +381,15 @@ fn cell(spot: &Spot, [x, y]: [[f64; 2]; 2], dot: Option<At>, look: Look) -> Cell
     data.extend(mark.map(|verdict| ("mark", verdict.name().to_owned())));
     let title = title.unwrap_or_else(|| tooltip_text(spot.row));
     let tip = Some(Tip { title, data });
-    Cell { x, y, fill: Some(fill), text, dot, mark: mark.map(marker), tip }
+    Cell {
+        x,
+        y,
+        fill: Some(fill),
+        text,
+        dot,
+        mark: mark.map(|own| Marker { colour: DARK, ..marker(own) }),
+        tip,
+    }
 }
 
 /// Thin lines between the cells.

@@ -42,6 +42,12 @@ pub(super) fn friction(parts: &Parts) -> Section {
     blocks.push(Block::Text(
         Text::from("Other axes, single curves and all jobs in one table: ").and(page).and("."),
     ));
+    if parts.report.rows.iter().any(JobRow::is_at_boundary) {
+        blocks.push(Block::note(
+            "Jobs that were added at boundaries are in maps, in the page to explore and in `jobs.csv`. Curves and tables \
+             have the other jobs.",
+        ));
+    }
     blocks.extend(tables::below(parts, Quantity::MuStar));
     Section::new("friction", "Macroscopic friction", blocks)
 }
@@ -122,8 +128,8 @@ pub(super) fn regimes(parts: &Parts) -> Section {
          steady sliding."
     };
     let plane = format!(
-        "The same regimes with {axis} and {by} on true axes. A dot is a job; its cell ends half-way to its \
-         neighbours.{boundary}"
+        "The same regimes with {axis} and {by} on true axes. On a grid a dot is a job, whose cell ends half-way to its neighbours; \
+         elsewhere a square is a job.{boundary}"
     );
     let growth = format!(
         "Growth rate of the fastest growing, or slowest decaying, strong line of jobs that ended in steady sliding, over \

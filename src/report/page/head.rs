@@ -41,7 +41,8 @@ fn found(parts: &Parts) -> Vec<String> {
         let prefix = if sources.len() > 1 { format!("{name}: ") } else { String::new() };
         (!words.is_empty()).then(|| prefix + &words.join(" "))
     };
-    sources.iter().filter_map(|source| of_source(source.name)).chain(threshold).collect()
+    let findings = parts.report.findings.iter().flat_map(|own| own.in_words());
+    sources.iter().filter_map(|source| of_source(source.name)).chain(threshold).chain(findings).collect()
 }
 
 /// The job whose macroscopic coefficient is the smallest in relation to the local one.

@@ -11,6 +11,8 @@ use std::collections::HashMap;
 pub(super) const MAX_JOBS: usize = 4_000;
 /// … unless only the first combination is shown, which may have more. Beyond this number it is not drawn either.
 pub(super) const MAX_DRAWN: usize = 20_000;
+/// Digits of a parameter of a drawn point. The file has all of them.
+const DIGITS: usize = 4;
 
 pub(super) fn what_is_left_out(layout: &Layout, shown: usize) -> String {
     let groups = &layout.groups;
@@ -62,12 +64,35 @@ pub(in crate::report) fn blocks(
     pages: &HashMap<String, String>,
 ) -> Vec<Block> {
     let file = format!("{}.csv", quantity.stem());
-    let shown = shown(layout);
     let mut blocks = Vec::new();
     let constants = layout.constants_in_words();
     if !constants.is_empty() {
         blocks.push(Block::Text(format!("In all jobs: {constants}.").into()));
     }
+    if layout.scattered.is_empty() {
+        blocks.extend(of_groups(layout, quantity, pages, &file));
+    } else {
+        // Every point has values of its own for all that varies.
+        let mut table = tables::table_with(layout, quantity, Digits::ByError);
+        if let ([_], Some(head)) = (&layout.series[..], table.heads.last_mut()) {
+            head.name = quantity.title();
+        }
+        blocks.push(Block::Table(Grid::of_table(&table.rounded(DIGITS))));
+    }
+    let mark = |(mark, meaning): (&str, &str)| match mark {
+        "" => Text::from(meaning),
+        mark => Text::code(mark).and(format!(" {meaning}")),
+    };
+    let marks: Vec<Text> = tables::legend(layout, quantity).into_iter().map(mark).collect();
+    if !marks.is_empty() {
+        blocks.push(Block::List(marks));
+    }
+    blocks
+}
+
+/// A table under a heading for each combination of the further parameters, as far as there is room.
+fn of_groups(layout: &Layout, quantity: Quantity, pages: &HashMap<String, String>, file: &str) -> Vec<Block> {
+    let shown = shown(layout);
     let mut rest = String::new();
     let group = |group: &Group| {
         let pages = cell_pages(pages, group);
@@ -81,7 +106,7 @@ pub(in crate::report) fn blocks(
                 .collect()
         };
         let lines = tables::lines(layout, group, quantity, Digits::ByError).enumerate().map(line);
-        let (lines, more) = limited(lines, &file);
+        let (lines, more) = limited(lines, file);
         if !more.is_empty() {
             rest = more;
         }
@@ -89,17 +114,10 @@ pub(in crate::report) fn blocks(
     };
     let groups = layout.groups.iter().take(shown).map(group).collect();
     let has_words = quantity == Quantity::Regime;
-    blocks.push(Block::Table(Grid { heads: tables::header(layout), groups, has_words, rest }));
+    let heads = tables::header(layout);
+    let mut blocks = vec![Block::Table(Grid { heads, groups, has_words, rest })];
     if shown < layout.groups.len() {
-        blocks.push(see_files(&what_is_left_out(layout, shown), &file));
-    }
-    let mark = |(mark, meaning): (&str, &str)| match mark {
-        "" => Text::from(meaning),
-        mark => Text::code(mark).and(format!(" {meaning}")),
-    };
-    let marks: Vec<Text> = tables::legend(layout, quantity).into_iter().map(mark).collect();
-    if !marks.is_empty() {
-        blocks.push(Block::List(marks));
+        blocks.push(see_files(&what_is_left_out(layout, shown), file));
     }
     blocks
 }

@@ -41,42 +41,63 @@ fn section(one: &Sensitivity) -> Section {
         let table = Table::of("sensitivity", &columns, ranked);
         blocks.push(Block::Table(Grid::of_table(&table).with_words()));
     }
-    let notes = notes(one, is_regime);
+    let notes = one.notes();
     if !notes.is_empty() {
         blocks.push(Block::list(notes));
     }
     Section::new(one.of.clone(), format!("{title}: {} points", one.points), blocks)
 }
 
-/// What has to be known of the indices, in sentences.
-fn notes(one: &Sensitivity, is_regime: bool) -> Vec<String> {
-    let what = if is_regime { "shares" } else { "PAWN" };
-    let mut notes = Vec::new();
-    match &one.design {
-        Design::Grid(sizes) => {
-            let sizes = sizes.iter().map(usize::to_string).collect::<Vec<_>>().join(" × ");
-            notes.push(format!("Exact on this grid of {sizes} points, each of which counts the same."));
-        }
-        Design::Unknown(why) => {
-            let first_order = if is_regime { "" } else { " and no first-order index" };
-            notes.push(format!("No {what}{first_order}: {why}."));
-        }
-        Design::Sample => {}
+impl Sensitivity {
+    /// The index that says most: what it is called, and its value for each parameter that has one. None without any index.
+    pub(in crate::report) fn main_indices(&self) -> Option<(&'static str, Vec<(&str, Index)>)> {
+        type Read = fn(&Indices) -> Option<Index>;
+        let kinds: [(&str, Read); 3] = [
+            ("first-order index", |own| own.first_order),
+            (if self.of == REGIME { "index of shares" } else { "PAWN index" }, |own| own.pawn),
+            ("mean size of the elementary effects", |own| own.effects.map(|(index, _)| index)),
+        ];
+        let of_kind = |index: Read| {
+            let named = self.parameters.iter().filter_map(|own| Some((&*own.name, index(own)?)));
+            named.collect::<Vec<_>>()
+        };
+        let mut found = kinds.into_iter().map(|(kind, index)| (kind, of_kind(index)));
+        found.find(|(_, indices)| !indices.is_empty())
     }
-    if let Some(chance) = one.chance {
-        let chance = value::fixed(chance, 2);
-        notes.push(format!("A parameter without effect has {what} up to {chance} by chance."));
-        if one.points < FEW_POINTS {
-            let points = one.points;
-            notes.push(format!("Only {points} points: the indices say little; give at least {FEW_POINTS}."));
+
+    /// What has to be known of the indices, in sentences.
+    pub(in crate::report) fn notes(&self) -> Vec<String> {
+        let is_regime = self.of == REGIME;
+        let what = if is_regime { "shares" } else { "PAWN" };
+        let mut notes = Vec::new();
+        match &self.design {
+            Design::Grid(sizes) => {
+                let sizes = sizes.iter().map(usize::to_string).collect::<Vec<_>>().join(" × ");
+                notes.push(format!("Exact on this grid of {sizes} points, each of which counts the same."));
+            }
+            Design::Unknown(why) => {
+                let first_order = if is_regime { "" } else { " and no first-order index" };
+                notes.push(format!("No {what}{first_order}: {why}."));
+            }
+            Design::Sample => {}
         }
+        if let Some(chance) = self.chance {
+            let chance = value::fixed(chance, 2);
+            notes.push(format!("A parameter without effect has {what} up to {chance} by chance."));
+            if self.points < FEW_POINTS {
+                let points = self.points;
+                notes.push(format!(
+                    "Only {points} points: the indices say little; give at least {FEW_POINTS}."
+                ));
+            }
+        }
+        if self.missing > 0 {
+            let jobs = count(self.missing as u64, "job");
+            notes.push(format!("{jobs} without a value here: no index says anything of these points."));
+        }
+        notes.extend(self.remarks.iter().cloned());
+        notes
     }
-    if one.missing > 0 {
-        let jobs = count(one.missing as u64, "job");
-        notes.push(format!("{jobs} without a value here: no index says anything of these points."));
-    }
-    notes.extend(one.remarks.iter().cloned());
-    notes
 }
 
 /// The columns of a parameter for readers.

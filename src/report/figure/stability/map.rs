@@ -1,6 +1,6 @@
 //! The stability map: the growth rate of the leading mode over ω and μ, with the line on which it is zero.
 
-use crate::publish::chart::palette::{INK, NO_VALUE};
+use crate::publish::chart::palette::{DARK, INK, NO_VALUE};
 use crate::publish::chart::{Chart, Entry, Layer, Marker, Point, Shape};
 use crate::publish::value;
 use crate::report::figure::cells::{self, Look};
@@ -26,7 +26,7 @@ pub(super) fn chart(analysis: &Analysis, group: &Group) -> Chart {
     cells::add_boundary(&mut chart, &cells::nodes(layout, group, analysis.points()));
     let others: Vec<StabilityPoint> = points().filter(|point| !is_cell(point)).cloned().collect();
     if let (false, Some(panel)) = (others.is_empty(), chart.panels.first_mut()) {
-        let marker = Marker::new(Shape::Circle, INK).sized(2.0);
+        let marker = Marker::new(Shape::Circle, DARK).sized(2.0);
         let (across, up) = (panel.x.axis.range(), panel.y.axis.range());
         let others = cells::nodes(layout, group, &others).into_iter();
         let inside = others.filter(|node| across.contains(&node.x) && up.contains(&node.y));
@@ -37,7 +37,7 @@ pub(super) fn chart(analysis: &Analysis, group: &Group) -> Chart {
             tip: None,
         };
         panel.layers.push(Layer::Points(inside.map(dot).collect()));
-        chart.legend.push(Entry::marker(marker, "point outside the grid"));
+        chart.legend.push(Entry::marker(Marker { colour: INK, ..marker }, "point outside the grid"));
     }
     let is_unclear = |point: &StabilityPoint| point.leading().is_some_and(|mode| !mode.is_converged);
     if points().any(|point| is_cell(point) && is_unclear(point)) {
