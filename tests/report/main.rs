@@ -27,6 +27,7 @@ mod stability;
 mod svg;
 mod synthetic;
 mod tables;
+mod texts;
 #[path = "../support/tools.rs"]
 mod tools;
 mod trouble;

@@ -21,28 +21,6 @@ fn study() -> Vec<JobRow> {
     ]
 }
 
-/// Protects: every job has its letter at the right position, the highest friction is on top, and the letters are explained.
-#[test]
-fn every_job_has_its_letter() {
-    let text = plain(&study(), 80);
-    let lines: Vec<&str> = text.lines().collect();
-    assert_eq!(
-        &lines[..3],
-        ["μ \\ ω [rpm] 0.5   7 100", "        0.4   K   x   !", "        0.2   S   >   ."],
-        "{text}"
-    );
-    for meaning in [
-        "S stable",
-        "K stick–slip",
-        "x stick–slip–separation, not periodic",
-        "! failed",
-        "> running",
-        ". pending",
-    ] {
-        assert!(lines[3..].join(" ").contains(meaning), "{meaning} is not in {text}");
-    }
-}
-
 /// Protects: a narrow terminal gets the same letters in several parts, and no line is longer than its width.
 #[test]
 fn narrow_terminals_get_several_parts() {

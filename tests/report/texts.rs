@@ -1,0 +1,63 @@
+//! Whole texts for readers. `UPDATE_EXPECT=1 cargo test --test report texts` writes them again: read what changed.
+
+use crate::synthetic::{partial_study, periodic, report, row};
+use expect_test::{expect, expect_file};
+use std::fs;
+use tribosweep::report::overview::overview;
+use tribosweep::report::sensitivity::{markdown, sensitivities};
+use tribosweep::report::{JobRow, Scalar, write};
+
+/// Protects: the words of a report, in their order, for a study in progress that has every kind of job.
+#[test]
+fn a_report_reads_well() {
+    let folder = tempfile::tempdir().unwrap();
+    write(&report(&partial_study()), folder.path()).unwrap();
+    let page = fs::read_to_string(folder.path().join("report.md")).unwrap();
+    expect_file!["partial_study.md"].assert_eq(&page);
+}
+
+/// Protects: the letters of a study on a terminal, with what they mean.
+#[test]
+fn an_overview_reads_well() {
+    let text = anstream::adapter::strip_str(&overview(&partial_study(), 80)).to_string();
+    expect![[r#"
+        μ \ ω [rpm]   1   2   5  10  50 100
+                0.4   >   K   K   x   .   .
+                0.3   K   K   K   X   !   P
+                0.2   S   S   S   S   S   S
+        S stable  K stick–slip  X stick–slip–separation  ! failed  P slip–separation
+        > running  x stick–slip–separation, not periodic  . pending
+    "#]]
+    .assert_eq(&text);
+}
+
+/// Protects: the words and the numbers of sensitivity indices on a full grid, where they are exact: μ\* is μ − ω/100 here.
+#[test]
+fn indices_read_well() {
+    let point = |omega: i32, mu: i32| {
+        let mu = f64::from(mu) / 10.0;
+        row(f64::from(omega), mu, periodic(mu - 0.01 * f64::from(omega)))
+    };
+    let rows: Vec<JobRow> = (1..5).flat_map(|omega| (2..6).map(move |mu| point(omega, mu))).collect();
+    let found = sensitivities(&rows, &[Scalar::find("mu_star").unwrap()], false);
+    expect![[r#"
+        ## macroscopic friction coefficient μ\*: 16 points
+
+        | parameter | first order | total | PAWN  |
+        | :-------- | :---------- | :---- | :---- |
+        | mu        | 0.990       | 0.990 | 0.625 |
+        | omega_rpm | 0.010       | 0.010 | 0.156 |
+
+        - Exact on this grid of 4 × 4 points, each of which counts the same.
+
+        ## regime: 16 points
+
+        | parameter | shares |
+        | :-------- | :----- |
+        | mu        | 0.000  |
+        | omega_rpm | 0.000  |
+
+        - Exact on this grid of 4 × 4 points, each of which counts the same.
+    "#]]
+    .assert_eq(&markdown(&found));
+}
