@@ -4,7 +4,7 @@ use super::comparison::Comparison;
 use super::comparison_files;
 use super::explore;
 use super::export;
-use super::figure::{self, DataFile, Figure, Plot, RESIDUALS, RUN_TIMES};
+use super::figure::{self, DataFile, Plot, RESIDUALS, RUN_TIMES};
 use super::input::Report;
 use super::inspections::inspections;
 use super::layout::Layout;
@@ -72,7 +72,15 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         Plot::ALL.into_iter().chain(view.y.iter().map(|scalar| Plot::Of(scalar))).collect();
     let quantities = QUANTITIES.into_iter().chain(view.y.iter().map(|scalar| Quantity::Of(scalar)));
 
-    let draw = |plot: Plot| (plot, figure::figures_of(layouts.of(plot), plot, &spectra, report.stability));
+    // The data of this page are large, so they are written while there is nothing else in memory.
+    folder.write_with(explore::PAGE, |out| explore::write(given, &pages, out))?;
+
+    let draw = |plot: Plot| {
+        let mut figures = figure::figures_of(layouts.of(plot), plot, &spectra, report.stability);
+        figures.extend(figure::over_others(rows, view, layouts.of(plot), plot));
+        let figures: Vec<_> = figures.into_iter().map(|figure| figure.finished(&pages)).collect();
+        (plot, figures)
+    };
     let figures = || plots.clone().into_par_iter().map(draw);
     let jobs = || {
         let mut out = Vec::new();
@@ -88,15 +96,10 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         folder.write_table(&tables::table_of(&layout, quantity))?;
     }
 
-    let mut drawn: Vec<(Plot, Vec<Figure>)> = Vec::new();
-    for (plot, mut figures) in figures {
-        figures.extend(figure::over_others(rows, view, layouts.of(plot), plot));
-        let figures: Vec<Figure> = figures.into_iter().map(|figure| figure.linked(&pages)).collect();
-        for figure in &figures {
-            let file = format!("{}{}.svg", plot.stem(), figure.suffix);
-            folder.write_text(&file, &figure.svg)?;
+    for (plot, figures) in &figures {
+        for figure in figures {
+            folder.write_text(&format!("{}{}.svg", plot.stem(), figure.suffix), &figure.svg)?;
         }
-        drawn.push((plot, figures));
     }
     let mut residuals = residuals;
     residuals.link(&pages);
@@ -133,11 +136,10 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         folder.write_table(&comparison_files::table(comparison))?;
     }
     let differences = comparison.as_ref();
-    folder.write_with(explore::PAGE, |out| explore::write(given, &pages, out))?;
     let parts = Parts {
         report,
         layouts,
-        figures: &drawn,
+        figures: &figures,
         comparison: differences,
         residuals: &residuals,
         programs: programs.as_ref(),

@@ -1,5 +1,7 @@
 //! Whole texts for readers. `UPDATE_EXPECT=1 cargo test --test report texts` writes them again: read what changed.
 
+#![allow(clippy::needless_raw_string_hashes, reason = "the macro writes them")]
+
 use crate::synthetic::{partial_study, periodic, report, row};
 use expect_test::{expect, expect_file};
 use std::fs;

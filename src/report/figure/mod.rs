@@ -213,10 +213,13 @@ impl Figure {
     }
 
     /// The figure in which the marks of jobs lead to their pages.
-    pub(super) fn linked(mut self, pages: &HashMap<String, String>) -> Self {
+    ///
+    /// Only the drawing is left, because the points of many jobs take a lot of memory.
+    pub(super) fn finished(mut self, pages: &HashMap<String, String>) -> Self {
         if self.chart.link(pages) {
             self.svg = self.chart.svg(&self.alternative);
         }
+        self.chart = Chart::default();
         self
     }
 }
