@@ -50,10 +50,7 @@ impl<'a> Folder<'a> {
     /// # Errors
     /// If it cannot be written. An earlier version of it is then unchanged.
     pub fn write_text(&mut self, name: &str, text: &str) -> Result<(), PublishError> {
-        self.write_with(name, |contents| {
-            contents.extend_from_slice(text.as_bytes());
-            Ok(())
-        })
+        self.replace_with(name, |out| out.write_all(text.as_bytes()))
     }
 
     /// Writes a table as CSV, and returns the name of the file.

@@ -31,7 +31,7 @@ pub fn significant(x: f64, digits: usize) -> String {
 
 /// A number that [`significant`] writes, as a value; null if it is not finite.
 pub fn significant_number(x: f64, digits: usize) -> Value {
-    significant(x, digits).parse::<f64>().unwrap_or(f64::NAN).into()
+    format!("{x:.0$e}", digits.max(1) - 1).parse::<f64>().unwrap_or(f64::NAN).into()
 }
 
 /// A number with at most so many decimals, as a value; null if it is not finite.

@@ -4,7 +4,7 @@ use super::comparison::Comparison;
 use super::comparison_files;
 use super::explore;
 use super::export;
-use super::figure::{self, DataFile, Plot, RESIDUALS, RUN_TIMES};
+use super::figure::{self, DataFile, Figure, Plot, RESIDUALS, RUN_TIMES};
 use super::input::Report;
 use super::inspections::inspections;
 use super::layout::Layout;
@@ -72,40 +72,35 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         Plot::ALL.into_iter().chain(view.y.iter().map(|scalar| Plot::Of(scalar))).collect();
     let quantities = QUANTITIES.into_iter().chain(view.y.iter().map(|scalar| Quantity::Of(scalar)));
 
-    // The data of this page are large, so they are written while there is nothing else in memory.
-    folder.write_with(explore::PAGE, |out| explore::write(given, &pages, out))?;
-
-    let draw = |plot: Plot| {
-        let mut figures = figure::figures_of(layouts.of(plot), plot, &spectra, report.stability);
-        figures.extend(figure::over_others(rows, view, layouts.of(plot), plot));
-        let figures: Vec<_> = figures.into_iter().map(|figure| figure.finished(&pages)).collect();
-        (plot, figures)
+    // With many jobs the texts of files are large, so that each is written, and forgotten, before the next ones are made.
+    let explored = || {
+        let mut out = Vec::new();
+        explore::write(given, &pages, &mut out).map(|()| out)
     };
-    let figures = || plots.clone().into_par_iter().map(draw);
     let jobs = || {
         let mut out = Vec::new();
         export::write(given.rows, Format::Csv, &mut out).map(|()| out)
     };
-    let residuals = || figure::residuals::draw(rows);
-    let (figures, (jobs, residuals)): (Vec<_>, _) =
-        rayon::join(|| figures().collect(), || rayon::join(jobs, residuals));
+    let residuals = || {
+        let mut chart = figure::residuals::draw(rows);
+        chart.link(&pages);
+        chart.svg("residuals of the energy balance and of the identities")
+    };
+    let (explored, (jobs, residuals)) = rayon::join(explored, || rayon::join(jobs, residuals));
+    for (file, contents) in [(explore::PAGE, explored), ("jobs.csv", jobs)] {
+        folder.write_with(file, |out| {
+            *out = contents?;
+            Ok(())
+        })?;
+    }
+    folder.write_text(&format!("{}.svg", RESIDUALS.stem), &residuals)?;
     for drawing in report.sheet.iter().flat_map(|sheet| &sheet.drawings) {
         folder.write_text(&format!("{}.svg", drawing.stem), &drawing.svg)?;
     }
     for quantity in quantities {
         folder.write_table(&tables::table_of(&layout, quantity))?;
     }
-
-    for (plot, figures) in &figures {
-        for figure in figures {
-            folder.write_text(&format!("{}{}.svg", plot.stem(), figure.suffix), &figure.svg)?;
-        }
-    }
-    let mut residuals = residuals;
-    residuals.link(&pages);
-    let residuals = residuals.svg("residuals of the energy balance and of the identities");
-    folder.write_text(&format!("{}.svg", RESIDUALS.stem), &residuals)?;
-
+    let figures = write_figures(&mut folder, report, &layouts, &plots, (&spectra, &pages))?;
     write_data(&mut folder, rows, &layout, &plots)?;
     if !spectra.is_empty() {
         folder.write_table(&spectra::table(&layout, &spectra))?;
@@ -117,10 +112,6 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         .then(|| Analysis::of(report.stability, &stability_rows, report.along, view));
     let of_stability = analysis.as_ref().map(|own| stability::write_files(own, &mut folder)).transpose()?;
     let stability = analysis.as_ref().zip(of_stability.as_ref());
-    folder.write_with("jobs.csv", |out| {
-        *out = jobs?;
-        Ok(())
-    })?;
     let layout_of_all =
         shown.as_ref().map(|_| Layout::of(given.rows.iter().filter(|row| !row.is_at_boundary()), view));
     let mut comparison = Comparison::of(layout_of_all.as_ref().unwrap_or(&layout), view);
@@ -154,6 +145,37 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
     let unmatched = comparison.map_or_else(Vec::new, |comparison| comparison.unmatched);
     let files = folder.finish()?;
     Ok(Written { files, contradictions, unmatched })
+}
+
+/// Writes the figures of the plots, and returns those that have room in the page with their drawings.
+fn write_figures(
+    folder: &mut Folder,
+    report: &Report,
+    layouts: &Layouts,
+    plots: &[Plot],
+    (spectra, pages): (&spectra::Spectra, &HashMap<String, String>),
+) -> Result<Vec<(Plot, Vec<Figure>)>, PublishError> {
+    let draw = |plot: &Plot| {
+        let layout = layouts.of(*plot);
+        let mut figures = figure::figures_of(layout, *plot, spectra, report.stability);
+        figures.extend(figure::over_others(report.rows, report.view, layout, *plot));
+        let figures: Vec<_> = figures.into_iter().map(|figure| figure.finished(pages)).collect();
+        (*plot, figures)
+    };
+    let mut all = Vec::new();
+    for some in plots.chunks(rayon::current_num_threads()) {
+        let mut drawn: Vec<_> = some.into_par_iter().map(draw).collect();
+        for (plot, figures) in &mut drawn {
+            for figure in figures {
+                folder.write_text(&format!("{}{}.svg", plot.stem(), figure.suffix), &figure.svg)?;
+                if !page::has_room_for(layouts.of(*plot), figure) {
+                    figure.svg = String::new();
+                }
+            }
+        }
+        all.extend(drawn);
+    }
+    Ok(all)
 }
 
 /// Most measured points in tables and figures: more would make pages that no browser shows.

@@ -1,7 +1,7 @@
 //! The inputs of a job: every parameter with the value that the job has.
 
 use super::effect::without_effect;
-use super::json::encode;
+use super::json::{at, encode};
 use super::parameter::{PARAMETERS, Parameter};
 use crate::spec::JobSpec;
 use serde_json::Value;
@@ -32,7 +32,7 @@ pub fn inputs(spec: &JobSpec) -> Vec<Input> {
     };
     let input = |parameter: &'static Parameter| {
         let has_effect = !unused.iter().any(|field| is_below(parameter.pointer, field));
-        let value = job.pointer(parameter.pointer).filter(|_| has_effect)?.clone();
+        let value = at(&job, parameter.pointer).filter(|_| has_effect)?.clone();
         Some(Input { parameter, value })
     };
     input_parameters().filter_map(input).collect()

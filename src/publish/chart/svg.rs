@@ -61,11 +61,19 @@ pub struct Svg {
     hits: String,
 }
 
-/// A number with at most one decimal.
-fn px(x: f64) -> String {
-    let text = format!("{x:.1}");
-    let short = text.strip_suffix(".0").unwrap_or(&text);
-    if short == "-0" { "0".to_owned() } else { short.to_owned() }
+/// A coordinate with at most one decimal, in tenths. A report has hundreds of thousands of them.
+struct Px(i64);
+
+impl std::fmt::Display for Px {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let sign = if self.0 < 0 { "-" } else { "" };
+        let (whole, tenths) = (self.0.unsigned_abs() / 10, self.0.unsigned_abs() % 10);
+        if tenths == 0 { write!(f, "{sign}{whole}") } else { write!(f, "{sign}{whole}.{tenths}") }
+    }
+}
+
+fn px(x: f64) -> Px {
+    Px((10.0 * x).round() as i64)
 }
 
 /// The attributes of a shape that is filled, as far as the fill covers (0 to 1), and has an outline. Colours that change with
@@ -108,8 +116,11 @@ fn paint(fill: Option<(Rgb, f64)>, pen: Option<Pen>) -> String {
 }
 
 fn points(corners: &[At]) -> String {
-    let words: Vec<String> = corners.iter().map(|(x, y)| format!("{},{}", px(*x), px(*y))).collect();
-    words.join(" ")
+    let mut text = String::new();
+    for (number, (x, y)) in corners.iter().enumerate() {
+        let _ = write!(text, "{}{},{}", if number == 0 { "" } else { " " }, px(*x), px(*y));
+    }
+    text
 }
 
 impl Svg {

@@ -253,6 +253,11 @@ fn figures(parts: &Parts, plot: Plot, caption: &str) -> Vec<Block> {
     blocks
 }
 
+/// Whether a figure can stand in a page. Larger ones are in their files alone.
+pub(in crate::report) fn has_room_for(layout: &Layout, figure: &Figure) -> bool {
+    jobs_of(layout, figure) <= MAX_DRAWN
+}
+
 fn jobs_of(layout: &Layout, figure: &Figure) -> usize {
     layout.groups[figure.groups.clone()].iter().map(|group| group.jobs.len()).sum()
 }

@@ -12,6 +12,7 @@ mod tables;
 mod times;
 mod trouble;
 
+pub(super) use figures::has_room_for;
 pub(super) use parts::{Layouts, Parts};
 pub(super) use tables::blocks as tables_of;
 
