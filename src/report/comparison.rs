@@ -292,18 +292,13 @@ impl Comparison {
         let results = ["value", &self.reference, "difference", "error", "relative"];
         let head = head.chain(results.map(str::to_owned)).collect();
         let line = |found: &Difference| {
-            let with_error = |x: f64, error: Option<f64>| {
-                let error =
-                    error.map_or_else(String::new, |error| format!(" ± {}", found.scalar.error_text(error)));
-                found.scalar.text(x) + &error
-            };
             let mark = if found.interpolated { "*" } else { "" };
             let own = [found.source.clone(), found.scalar.short_title()];
             own.into_iter()
                 .chain(found.texts.iter().cloned())
                 .chain([
-                    with_error(found.value, found.error),
-                    with_error(found.reference, found.reference_error) + mark,
+                    found.scalar.text_with_error(found.value, found.error),
+                    found.scalar.text_with_error(found.reference, found.reference_error) + mark,
                     found.scalar.text(found.difference()),
                     found
                         .combined_error()

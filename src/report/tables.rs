@@ -111,10 +111,8 @@ impl Quantity {
             Self::Of(scalar) => scalar,
             Self::Regime => return MISSING.to_owned(),
         };
-        let text = |x: f64| scalar.text(x);
         match (scalar.value(row), scalar.error(row)) {
-            (Some(x), Some(error)) => format!("{} ± {}", text(x), scalar.error_text(error)),
-            (Some(x), None) => text(x),
+            (Some(x), error) => scalar.text_with_error(x, error),
             (None, _) => MISSING.to_owned(),
         }
     }

@@ -163,7 +163,7 @@ fn an_error_names_the_path() {
         names(folder.path())
     );
 
-    let file = folder.path().join("mu_star.csv");
+    let file = folder.path().join("explore.html");
     let error = write(&report(&[]), &file).expect_err("a file is not a folder");
     assert!(matches!(&error, PublishError::Folder { path, .. } if *path == file), "{error:?}");
 }

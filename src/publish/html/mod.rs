@@ -137,7 +137,7 @@ fn of_grid(grid: &Grid) -> Markup {
                 thead {
                     tr {
                         @for (column, head) in grid.heads.iter().enumerate() {
-                            th class=[class(column)] scope="col" { (head) }
+                            th class=[class(column)] scope="col" { (head.replace(" = ", "\u{a0}=\u{a0}")) }
                         }
                     }
                 }

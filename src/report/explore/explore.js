@@ -14,7 +14,12 @@
   const parameters = data.columns.filter((column) => column.kind === "parameter" && varies(column));
   const results = numbers.filter((column) => column.kind !== "parameter" && varies(column));
   const title = (column) => column.unit ? `${column.name} [${column.unit}]` : column.name;
-  const short = (value) => value === null ? "–" : typeof value === "number" ? String(Number(value.toPrecision(5))) : String(value);
+  const short = (value) => {
+    if (value === null || typeof value !== "number") return value === null ? "–" : String(value);
+    const near = Number(value.toPrecision(5));
+    const size = Math.abs(near);
+    return near !== 0 && (size >= 1e6 || size < 1e-3) ? near.toExponential().replace("e+", "e") : String(near);
+  };
   const MOST_SERIES = 24;
   const MOST_TICKS = 12;
 
@@ -259,8 +264,8 @@
       xAxis: { type: "value", name: of.kind, nameLocation: "middle", nameGap: 28 },
       yAxis: { type: "category", data: bars.map((bar) => bar.name) },
       series: [
-        { type: "bar", animation: false, itemStyle: { color: palette[0] }, data: bars.map((bar) => bar.value) },
-        { type: "custom", animation: false, renderItem: interval, encode: { x: [1, 2], y: 0 }, silent: true,
+        { type: "bar", animation: false, itemStyle: { color: palette[5] }, data: bars.map((bar) => bar.value) },
+        { type: "custom", z: 10, animation: false, renderItem: interval, encode: { x: [1, 2], y: 0 }, silent: true,
           data: bars.flatMap((bar, number) => bar.interval ? [[number, ...bar.interval]] : []) },
       ],
     }, true);
