@@ -21,7 +21,7 @@ NAMES = ("license", "licence", "copying", "copyright", "unlicense", "notice")
 
 
 def packages(target):
-    """The packages that are linked into the program, without this one, those of builds and those of tests."""
+    """The packages that are linked into the program, without those of this repository, of builds and those of tests."""
     arguments = ["cargo", "metadata", "--format-version", "1", "--locked", "--filter-platform", target]
     data = json.loads(subprocess.run(arguments, stdout=subprocess.PIPE, check=True).stdout)
     nodes = {node["id"]: node for node in data["resolve"]["nodes"]}
@@ -34,7 +34,8 @@ def packages(target):
             if is_linked and dependency["pkg"] not in found:
                 found.add(dependency["pkg"])
                 next_ones.append(dependency["pkg"])
-    return sorted((p for p in data["packages"] if p["id"] in found), key=lambda p: (p["name"], p["version"]))
+    own = set(data["workspace_members"])
+    return sorted((p for p in data["packages"] if p["id"] in found - own), key=lambda p: (p["name"], p["version"]))
 
 
 def texts(package):

@@ -72,26 +72,21 @@
 //! * `sweep` – [`sweep`], with `queue` and `report`.
 //! * `cli` – [`cli`] and the command, with `sweep`.
 
-pub mod analysis;
 #[cfg(feature = "cli")]
 pub mod cli;
 #[cfg(feature = "cli")]
 mod exit;
-#[cfg(feature = "report")]
-pub mod inspect;
-#[cfg(feature = "report")]
-pub mod publish;
-#[cfg(feature = "queue")]
-pub mod queue;
-pub mod random;
-#[cfg(feature = "report")]
-pub mod report;
-pub mod solver;
-pub mod spec;
-pub mod stability;
 pub mod study;
 #[cfg(feature = "sweep")]
 pub mod sweep;
-pub mod units;
 #[cfg(feature = "queue")]
 pub mod worker;
+
+#[doc(inline)]
+pub use tribosweep_mechanics::{analysis, random, solver, spec, stability, units};
+#[doc(inline)]
+#[cfg(feature = "report")]
+pub use tribosweep_output::{inspect, publish, report};
+#[doc(inline)]
+#[cfg(feature = "queue")]
+pub use tribosweep_queue::queue;

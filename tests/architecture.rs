@@ -40,11 +40,15 @@ fn src() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("src")
 }
 
-/// The source files below src: path relative to src, and text.
+/// Members of the workspace that are made of several rooms, which are beside them.
+const MEMBERS: [&str; 2] = ["mechanics", "output"];
+
+/// The source files below src: path relative to src, and text. The heads of members only list their rooms.
 fn sources() -> Vec<(String, String)> {
     let files = walk::below(&src())
         .into_iter()
-        .filter(|file| Path::new(file).extension().is_some_and(|extension| extension == "rs"));
+        .filter(|file| Path::new(file).extension().is_some_and(|extension| extension == "rs"))
+        .filter(|file| !file.ends_with("/lib.rs"));
     let with_text = files.map(|file| {
         let text = std::fs::read_to_string(src().join(&file)).unwrap();
         (file, text)
@@ -179,6 +183,21 @@ fn modules_use_only_what_they_may() {
     }
 }
 
+/// Protects: a member of the workspace names no other member but those that it may use, so that the compiler holds these arrows. The
+/// queue and the mechanics can be used alone.
+#[test]
+fn members_depend_on_few_others() {
+    for (member, may_use) in [("mechanics", None), ("queue", None), ("output", Some("tribosweep-mechanics"))]
+    {
+        let manifest = read(&format!("src/{member}/Cargo.toml"));
+        let (_, dependencies) = manifest.split_once("[dependencies]\n").unwrap();
+        let own = dependencies.lines().take_while(|line| !line.starts_with('['));
+        let own =
+            own.filter(|line| line.starts_with("tribosweep")).map(|line| line.split('.').next().unwrap());
+        assert_eq!(own.collect::<Vec<_>>(), may_use.into_iter().collect::<Vec<_>>(), "{member}");
+    }
+}
+
 /// Protects: the queue depends on no other module and contains no terms of mechanics, so that other programs can use it.
 #[test]
 fn the_queue_stands_alone() {
@@ -218,6 +237,11 @@ fn public_modules() -> BTreeMap<String, String> {
     for line in text.lines() {
         if let Some(name) = line.strip_prefix("pub mod ").and_then(|rest| rest.strip_suffix(';')) {
             modules.insert(name.to_owned(), feature.to_owned());
+        }
+        // The rooms of a member of the workspace.
+        let of_member = line.strip_prefix("pub use tribosweep_").and_then(|rest| rest.split_once("::"));
+        for name in of_member.map_or_else(Vec::new, |(_, rooms)| heads(rooms)) {
+            modules.insert(name, feature.to_owned());
         }
         let condition = line.strip_prefix("#[cfg(feature = \"").and_then(|rest| rest.strip_suffix("\")]"));
         feature = condition.unwrap_or_default();
@@ -301,7 +325,8 @@ fn the_map_is_true() {
     let entries: BTreeMap<&str, &str> = entries.collect();
     let named: BTreeSet<String> = entries.keys().map(|&name| name.to_owned()).collect();
     // The Python module is no room of the library: it calls the program.
-    let rooms: BTreeSet<String> = folders("src").into_iter().filter(|room| room != "python").collect();
+    let is_room = |name: &String| name != "python" && !MEMBERS.contains(&name.as_str());
+    let rooms: BTreeSet<String> = folders("src").into_iter().filter(is_room).collect();
     assert_eq!(named, rooms);
     for (name, text) in entries {
         assert!(is_description(text), "{name}: {text}");
@@ -335,7 +360,7 @@ fn the_map_has_the_features() {
     }
     let manifest = read("Cargo.toml");
     let (_, features) = manifest.split_once("[features]\n").unwrap();
-    let lines = features.lines().take_while(|line| !line.starts_with("[dependencies]"));
+    let lines = features.lines().take_while(|line| !line.starts_with('['));
     let features = lines.filter_map(|line| Some(line.split_once(" = [")?.0));
     let features = features.filter(|feature| *feature != "default");
     let mut expected: BTreeMap<String, BTreeSet<String>> =

@@ -308,7 +308,8 @@ fn pushes_run_the_check_with_the_pinned_compiler() {
     };
     let version = value(&read("rust-toolchain.toml"), "channel");
     assert!(version.split('.').count() == 3, "{version} is no exact version");
-    let least = value(&read("Cargo.toml"), "rust-version");
+    let manifest = read("Cargo.toml");
+    let least = value(manifest.split_once("[workspace.package]").unwrap().1, "rust-version");
     assert!(version == least || version.starts_with(&format!("{least}.")), "{least} and {version}");
     let gitlab = read(".gitlab-ci.yml");
     assert_eq!(value(&gitlab, "image:"), format!("rust:{version}"));

@@ -10,13 +10,13 @@
 pub mod chart;
 mod error;
 mod folder;
-pub(crate) mod html;
-pub(crate) mod markdown;
+pub mod html;
+pub mod markdown;
 pub mod page;
-pub(crate) mod rounding;
+pub mod rounding;
 mod sheet;
 pub mod table;
-pub(crate) mod value;
+pub mod value;
 
 pub use error::PublishError;
 pub use folder::{Folder, write_atomically};

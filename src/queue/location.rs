@@ -52,7 +52,7 @@ impl Server {
     ///
     /// # Errors
     /// A text that names the schemes that are possible.
-    pub(crate) fn check_scheme(&self) -> Result<(), String> {
+    pub fn check_scheme(&self) -> Result<(), String> {
         let (scheme, _) = self.url.split_once("://").unwrap_or_default();
         if SCHEMES.iter().any(|known| known.eq_ignore_ascii_case(scheme)) {
             return Ok(());
@@ -63,7 +63,7 @@ impl Server {
     }
 
     /// Whether the URL contains a password.
-    pub(crate) fn has_password(&self) -> bool {
+    pub fn has_password(&self) -> bool {
         match Url::parse(&self.url) {
             Ok(url) => url.password().is_some() || pairs(&url).any(is_password),
             Err(_) => is_guarded(&self.url) || self.url.to_ascii_lowercase().contains("password="),

@@ -90,7 +90,7 @@ pub(super) fn further_names<'a>(rows: impl IntoIterator<Item = &'a JobRow>) -> V
 }
 
 /// Adds to `names` the parameters of a job other than ω and μ, each name once.
-pub(crate) fn add_further_names<'a, N>(names: &mut Vec<N>, parameters: &'a [(String, Value)])
+pub fn add_further_names<'a, N>(names: &mut Vec<N>, parameters: &'a [(String, Value)])
 where
     N: AsRef<str> + From<&'a str>,
 {

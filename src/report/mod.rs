@@ -61,7 +61,7 @@ pub use input::Report;
 pub use inspections::{FoundInspection, INSPECTIONS, inspections};
 pub use measurement::{MeasuredValue, Measurement};
 #[cfg(feature = "cli")]
-pub(crate) use parameters::assignment;
+pub use parameters::assignment;
 pub use parameters::name_and_unit;
 pub use program::chart as program_chart;
 pub use provenance::{BuildInfo, Provenance, ResultGroup};

@@ -159,7 +159,7 @@ pub(super) fn legend(layout: &Layout, quantity: Quantity) -> Vec<(&'static str, 
 /// The tables of one quantity as one: columns for further parameters, one for the parameter along the rows, and one
 /// for each μ.
 ///
-/// The cells are those of [`markdown`], but μ\* has four decimals and a frequency none, whatever their errors are. A missing result is an empty cell.
+/// The cells are those of [`markdown`](fn@markdown), but μ\* has four decimals and a frequency none, whatever their errors are. A missing result is an empty cell.
 pub fn table(rows: &[JobRow], quantity: Quantity) -> Table {
     table_of(&Layout::new(rows), quantity)
 }

@@ -47,7 +47,7 @@ impl Limit {
     }
 
     /// What would be right instead of `value`.
-    pub(crate) fn expected(&self, value: f64) -> String {
+    pub fn expected(&self, value: f64) -> String {
         let (least, most) = (*MAGNITUDES.start(), *MAGNITUDES.end());
         let is_too_large = value.is_finite() && value > most && self.high == End::At(most);
         if self.low == End::At(least) && value.is_finite() && value > 0.0 {

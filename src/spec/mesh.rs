@@ -72,7 +72,7 @@ pub struct MeshContent {
 
 impl MeshFile {
     /// An example that has every field.
-    pub(crate) fn template() -> Self {
+    pub fn template() -> Self {
         Self {
             file: Some(String::new()),
             content: Some(String::new()),

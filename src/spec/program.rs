@@ -38,7 +38,7 @@ pub enum Change {
 }
 
 /// Largest number of points of a table.
-pub(crate) const MOST_POINTS: usize = 10_000;
+pub const MOST_POINTS: usize = 10_000;
 
 impl Table {
     /// The value at a time \[s\]. At a step it is the later one. NaN without points.

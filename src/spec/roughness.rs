@@ -72,7 +72,7 @@ pub struct HeightMap {
 }
 
 /// Most heights of a map. Every job of a study contains them.
-pub(crate) const MOST_HEIGHTS: usize = 65_536;
+pub const MOST_HEIGHTS: usize = 65_536;
 
 impl HeightMap {
     /// Whether all heights are equal.

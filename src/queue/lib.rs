@@ -1,0 +1,4 @@
+//! The queue, which knows no mechanics: its payloads are texts.
+
+#[path = "mod.rs"]
+pub mod queue;
