@@ -44,6 +44,8 @@ pub struct SheetLine {
     pub key: &'static str,
     /// Where the value comes from; may be empty.
     pub origin: &'static str,
+    /// Whether it has several values, so that it is that of no single job.
+    pub varies: bool,
 }
 
 const HEADS: [&str; 5] = ["symbol", "quantity", "value", "name in files", "from"];

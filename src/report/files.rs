@@ -72,7 +72,7 @@ pub fn write_compared(report: &Report, out_dir: &Path) -> Result<Written, Publis
         Plot::ALL.into_iter().chain(view.y.iter().map(|scalar| Plot::Of(scalar))).collect();
     let quantities = QUANTITIES.into_iter().chain(view.y.iter().map(|scalar| Quantity::Of(scalar)));
 
-    // With many jobs the texts of files are large, so that each is written, and forgotten, before the next ones are made.
+    // With many jobs the texts of files are large, so that only some of them are in memory at a time.
     let explored = || {
         let mut out = Vec::new();
         explore::write(given, &pages, &mut out).map(|()| out)

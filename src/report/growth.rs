@@ -1,7 +1,8 @@
 //! What a study that grows has found: boundaries, minima, branches and basins.
 
+use super::glyph::regime_label;
 use super::parameters;
-use crate::analysis::{JobRecord, Outcome};
+use crate::analysis::{JobRecord, Outcome, Regime};
 use crate::publish::table::{Column, FileColumns, Table};
 use crate::publish::value;
 use indexmap::IndexMap;
@@ -394,19 +395,26 @@ impl Findings {
             kinds.entry((&own.over, own.between.each_ref().map(String::as_str))).or_default().push(own);
         }
         let boundary = |((over, [below, above]), own): ((&str, [&str; 2]), Vec<&Crossing>)| {
+            let place = match &own[..] {
+                [only] if only.rest.is_empty() => String::new(),
+                [only] => format!(
+                    " at {}",
+                    parameters::assignments(only.rest.iter().map(|(name, value)| (&**name, value.clone())))
+                ),
+                several => format!(" in {} places", several.len()),
+            };
             let least = own.iter().map(|one| one.range[0]).fold(f64::INFINITY, f64::min);
             let most = own.iter().map(|one| one.range[1]).fold(f64::NEG_INFINITY, f64::max);
-            let range = parameters::range(over, &least.into(), &most.into());
+            let [least, most] =
+                [parameters::assignment(over, &least.into()), parameters::in_words(over, &most.into())];
             let open = own.iter().filter(|one| !one.is_known()).count();
             let open = match open {
                 0 => String::new(),
-                open => format!(
-                    " ({open} of {} not yet as near as was asked for)",
-                    value::count(own.len(), "place")
-                ),
+                _ if own.len() == 1 => " (not yet as near as was asked for)".to_owned(),
+                open => format!(" ({open} of them not yet as near as was asked for)"),
             };
-            let [below, above] = [below, above].map(|kind| kind.replace('_', " "));
-            format!("Below {range} jobs are {below}, and above it {above}{open}.")
+            let [below, above] = [below, above].map(kind_in_words);
+            format!("The boundary from {below} to {above} lies between {least} and {most}{place}{open}.")
         };
         let mut words: Vec<String> = kinds.into_iter().map(boundary).collect();
         let ways = || self.branches.iter().filter_map(BranchPoint::has_hysteresis);
@@ -434,6 +442,13 @@ impl Findings {
         let waves: Vec<Value> = self.waves.iter().map(|wave| json!(wave)).collect();
         json!({ "waves": waves, "state": self.state })
     }
+}
+
+/// The name of a kind of jobs for a reader.
+fn kind_in_words(kind: &str) -> String {
+    let regimes = [Regime::Stable, Regime::StickSlip, Regime::StickSlipSeparation, Regime::SlipSeparation];
+    let regime = regimes.into_iter().find(|regime| regime.name() == kind);
+    regime.map_or_else(|| kind.replace('_', " "), |regime| regime_label(regime).to_owned())
 }
 
 /// Points with all their parameters and what was found there.

@@ -123,11 +123,12 @@ impl Scalar {
     /// A value with its error, if that is known: the error has two digits, and the value the same decimals.
     pub(super) fn text_with_error(&self, x: f64, error: Option<f64>) -> String {
         match error {
-            Some(error) if error > 0.0 => {
-                let decimals = (1.0 - error.log10().floor()).clamp(0.0, 12.0) as usize;
+            // Smaller errors would have more decimals than a reader counts.
+            Some(error) if error > 1e-7 => {
+                let decimals = (1.0 - error.log10().floor()).max(0.0) as usize;
                 format!("{} ± {}", value::fixed(x, decimals), value::fixed(error, decimals))
             }
-            Some(error) => format!("{} ± {}", self.text(x), self.text(error)),
+            Some(error) => format!("{} ± {}", self.text(x), value::significant(error, 2)),
             None => self.text(x),
         }
     }

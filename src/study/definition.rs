@@ -82,7 +82,7 @@ impl Study {
     /// Whether its points are a Morris design, and no product of one with a grid.
     pub fn is_morris(&self) -> bool {
         let design = self.document.pointer("/samples/design").and_then(Value::as_str);
-        design == Some("morris") && self.grid.axes.is_empty()
+        design == Some("morris") && self.grid.axes.iter().all(|axis| axis.values.len() == 1)
     }
 
     /// Axes and quantities of the report.

@@ -137,7 +137,7 @@ impl ReportRequest {
         for name in quantities {
             let scalar = Scalar::find(name).ok_or_else(|| {
                 let is_parameter = known.contains(&name.as_str());
-                if is_parameter { not_a_result(name) } else { no_such_quantity("--y", name) }
+                if is_parameter { not_a_result("--y", name) } else { no_such_quantity("--y", name) }
             })?;
             // These two have their figures in every report.
             if !matches!(scalar.name, "mu_star" | "frequency_hz") && !y.contains(&scalar) {
@@ -155,10 +155,7 @@ impl ReportRequest {
         if let Some((name, _)) = self.scale.iter().find(|(name, _)| !known.contains(&name.as_str())) {
             return Err(no_such_name("--scale", name, &known));
         }
-        let is_morris = match studies {
-            [StoredStudy { study: Some(only), .. }] => self.data.is_empty() && only.is_morris(),
-            _ => false,
-        };
+        let is_morris = matches!(studies, [StoredStudy { study: Some(only), .. }] if only.is_morris());
         let notes = different_inputs(studies, &known)?;
         Ok(View { x, by, y, descriptions: descriptions(), is_log, is_morris, notes })
     }
@@ -168,6 +165,9 @@ fn no_such_name(option: &'static str, name: &str, known: &[&str]) -> SweepError 
     let is_parameter = PARAMETERS.iter().any(|parameter| parameter.name == name);
     let (problem, advice) = match nearest_name(name, known.iter().copied()) {
         _ if is_parameter => ("does not vary between these jobs", String::new()),
+        _ if Scalar::find(name).is_some() => {
+            ("this is a result; expected a parameter", "; results go to --y".to_owned())
+        }
         Some(near) => ("no such name", format!("; did you mean `{near}`?")),
         None => ("no such name", String::new()),
     };
@@ -175,13 +175,17 @@ fn no_such_name(option: &'static str, name: &str, known: &[&str]) -> SweepError 
     SweepError::NoSuchAxis { option, name: name.to_owned(), message }
 }
 
-fn not_a_result(name: &str) -> SweepError {
-    let message = "this is a parameter; expected a result. Give parameters to --x and --by".to_owned();
-    SweepError::NoSuchAxis { option: "--y", name: name.to_owned(), message }
+fn not_a_result(option: &'static str, name: &str) -> SweepError {
+    let message =
+        "this is a parameter; expected a result. `report` takes parameters with --x and --by".to_owned();
+    SweepError::NoSuchAxis { option, name: name.to_owned(), message }
 }
 
 /// A name that is no number of a record.
 pub fn no_such_quantity(option: &'static str, name: &str) -> SweepError {
+    if PARAMETERS.iter().any(|parameter| parameter.name == name) {
+        return not_a_result(option, name);
+    }
     let nearest = nearest_name(name, SCALARS.iter().map(|scalar| scalar.name));
     let advice = nearest.map_or_else(String::new, |near| format!("; did you mean `{near}`?"));
     let is_text = ExportColumn::find(name).is_some();

@@ -74,6 +74,8 @@ fn axes_are_those_that_were_asked_for() {
         ("report mine --y mu_stra", "--y mu_stra: no such quantity; did you mean `mu_star`?"),
         ("report mine --y omega_rpm", "--y omega_rpm: this is a parameter; expected a result"),
         ("report mine --y regime", "--y regime: is no number"),
+        ("report mine --y load_n", "--y load_n: this is a parameter; expected a result"),
+        ("report mine --x mu_star", "--x mu_star: this is a result; expected a parameter"),
         ("report mine --by beta2", "--by beta2: does not vary between these jobs"),
         ("report mine mine", "mine is given twice"),
         ("report mine --data none.csv", "none.csv: cannot be read"),

@@ -60,10 +60,7 @@ fn thousands_of_jobs_can_be_explored() {
     }
     browser.evaluate(&pressed("table"));
     let note = "document.querySelector('#explore .note').textContent";
-    assert_eq!(
-        browser.evaluate(note),
-        format!("The first 250 of {JOBS} jobs: filter them, or see jobs.csv.")
-    );
+    assert_eq!(browser.evaluate(note), format!("The first 250 of {JOBS} jobs: filter them."));
     let filter = "(() => { const f = document.querySelector('[aria-label=\"filter mu\"]'); f.value = '0.1..0.115'; \
                   f.dispatchEvent(new Event('input')); })()";
     browser.evaluate(filter);
@@ -109,8 +106,9 @@ fn the_page_has_what_does_not_vary() {
         key: "load_n",
         ..SheetLine::default()
     };
+    let several = SheetLine { name: "time step".to_owned(), varies: true, ..SheetLine::default() };
     let varied = SheetLine { name: "friction coefficient".to_owned(), key: "mu", ..SheetLine::default() };
-    let groups = vec![SheetGroup { heading: "pin", lines: vec![line, varied] }];
+    let groups = vec![SheetGroup { heading: "pin", lines: vec![line, several, varied] }];
     let sheet = Sheet { groups, ..Sheet::default() };
     let rows = [row(7.0, 0.4, periodic(0.3)), row(9.0, 0.5, periodic(0.3)), measured(9.0, 0.4, 0.33, None)];
     let folder = TempDir::new().unwrap();
@@ -124,6 +122,38 @@ fn the_page_has_what_does_not_vary() {
     browser.evaluate("document.querySelector('#explore tbody tr').click()");
     let job = browser.evaluate("document.querySelector('#job').textContent");
     assert!(job.as_str().unwrap().contains("load30 N"), "{job}");
+}
+
+/// Protects: a measured point is a mark of its own and in no line of jobs, and a click on it names no command; jobs without the coloured
+/// value come last.
+#[test]
+fn measured_points_are_in_no_line() {
+    let Some(mut browser) = Browser::start() else { return };
+    let mut rows: Vec<JobRow> =
+        [2.0, 7.0, 20.0].map(|omega| row(omega, 0.4, periodic(0.3 + 0.001 * omega))).into();
+    rows.push(row(30.0, 0.4, failed("diverged")));
+    rows.push(measured(7.0, 0.4, 0.33, None));
+    let (_folder, page) = written(&rows);
+    browser.open(&page);
+    let series = "echarts.getInstanceByDom(document.querySelector('#explore .chart')).getOption().series";
+    let kinds = browser.evaluate(&format!("{series}.map((own) => [own.type, own.data.length])"));
+    assert_eq!(kinds, serde_json::json!([["line", 3], ["scatter", 1]]));
+    let note = browser.evaluate("document.querySelector('#explore .left').textContent");
+    assert!(note.as_str().unwrap().starts_with("1 of 5 points"), "{note}");
+    let choose = "(() => { const c = document.querySelector('[aria-label=colour]'); c.value = 'mu_star_contact'; \
+                  c.dispatchEvent(new Event('change')); })()";
+    browser.evaluate(choose);
+    let names = browser.evaluate(&format!("{series}.map((own) => own.name)"));
+    assert_eq!(
+        names,
+        serde_json::json!(["0.302", "0.307", "0.32", "–"]),
+        "the measured point has no such value"
+    );
+    browser.evaluate(&pressed("table"));
+    browser.evaluate("document.querySelector('#explore tbody tr:last-child').click()");
+    let job = browser.evaluate("document.querySelector('#job').textContent");
+    let job = job.as_str().unwrap();
+    assert!(job.starts_with("measured point") && !job.contains("tribosweep show"), "{job}");
 }
 
 /// Protects: a study in progress has a page without errors.

@@ -184,13 +184,19 @@ fn samples_are_drawn_as_points() {
 fn findings_are_at_the_head() {
     let rows: Vec<JobRow> = WIDTHS_M.into_iter().map(|width| job("one", 7.0, 0.2, width)).collect();
     let mut findings = findings(&rows);
-    findings.crossings.push(Crossing { range: [0.0035, 0.0075], ..findings.crossings[0].clone() });
+    // Another line of jobs, with another boundary of the same kind.
+    let rest = vec![("omega_rpm".to_owned(), 7.0.into()), ("mu".to_owned(), 0.4.into())];
+    findings.crossings.push(Crossing { range: [0.0035, 0.0075], rest, ..findings.crossings[0].clone() });
     let folder = tempfile::tempdir().unwrap();
     write(&Report { findings: Some(&findings), ..report(&rows) }, folder.path()).unwrap();
     let page = fs::read_to_string(folder.path().join("report.md")).unwrap();
     let head = page.split("\n## ").next().unwrap();
-    let expected = "Below clamp_width = 2 … 7.5 mm jobs are a, and above it b (1 of 2 places not yet as near as was asked for).";
+    let expected = "The boundary from a to b lies between clamp_width = 2 mm and 7.5 mm in 2 places (1 of them not yet as near as was \
+                    asked for).";
     assert!(head.contains(expected), "{head}");
+    let single =
+        "The boundary from a to b lies between μ = 0.002 and 0.003 at ω = 7 rpm, clamp_width = 2 mm.";
+    assert!(head.contains(single), "{head}");
 }
 
 /// Protects: samples are compared where all of their parameters are equal, and nothing is interpolated between them.

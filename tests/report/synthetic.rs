@@ -21,6 +21,7 @@ static SHEET: LazyLock<Sheet> = LazyLock::new(|| {
         value: "0.5 GPa".to_owned(),
         key: "disk_young_modulus_pa",
         origin: "study",
+        varies: false,
     };
     let group = SheetGroup { heading: "Disk", lines: vec![line] };
     Sheet { drawings: ["scene", "track"].map(drawing).into(), groups: vec![group] }

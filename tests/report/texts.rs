@@ -5,15 +5,24 @@
 use crate::synthetic::{partial_study, periodic, report, row};
 use expect_test::{expect, expect_file};
 use std::fs;
+use std::sync::Arc;
 use tribosweep::report::overview::overview;
 use tribosweep::report::sensitivity::{markdown, sensitivities};
-use tribosweep::report::{JobRow, Scalar, write};
+use tribosweep::report::{Discretisation, JobRow, MeshError, Scalar, write};
 
 /// Protects: the words of a report, in their order, for a study in progress that has every kind of job.
 #[test]
 fn a_report_reads_well() {
     let folder = tempfile::tempdir().unwrap();
-    write(&report(&partial_study()), folder.path()).unwrap();
+    let error = Arc::new(MeshError {
+        mu_star_relative: 0.066,
+        frequency_relative: 0.01,
+        preset: "draft".to_owned(),
+        measured_at: "on the reference scene".to_owned(),
+    });
+    let of_draft = |row| JobRow { discretisation: Discretisation::Measured(Arc::clone(&error)), ..row };
+    let rows: Vec<JobRow> = partial_study().into_iter().map(of_draft).collect();
+    write(&report(&rows), folder.path()).unwrap();
     let page = fs::read_to_string(folder.path().join("report.md")).unwrap();
     expect_file!["partial_study.md"].assert_eq(&page);
 }

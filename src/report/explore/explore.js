@@ -21,7 +21,10 @@
     return near !== 0 && (size >= 1e6 || size < 1e-3) ? near.toExponential().replace("e+", "e") : String(near);
   };
   const MOST_SERIES = 24;
+  const MOST_JOINED = 200;
   const MOST_TICKS = 12;
+  const GREY = "#999999";
+  const CROSS = "path://M0,2L2,0L5,3L8,0L10,2L7,5L10,8L8,10L5,7L2,10L0,8L3,5Z";
 
   const root = document.getElementById("explore");
   const make = (name, attributes = {}, ...children) => {
@@ -45,10 +48,18 @@
     return [make("label", { class: "flag" }, box, label), box];
   };
 
+  const status = columns.get("status");
+  const study = columns.get("study");
+  const isMeasured = (row) => status !== undefined && status.values[row] === "measured";
+  // The mean rate of a run that is not periodic is no frequency of a limit cycle.
+  const isSettled = (column, row) => column.name !== "frequency_hz" || status === undefined || status.values[row] !== "not_periodic";
   const known = (name, list) => list.some((column) => column.name === name) ? name : (list[0] || { name: "" }).name;
   const none = { name: "", label: "–" };
   const startY = known(data.start.y, numbers);
-  const [xLabel, x] = select("x", numbers, known(data.start.x, numbers));
+  // The axis of the report, if there is something along it.
+  const startX = parameters.some((column) => column.name === data.start.x) || !parameters.length ? data.start.x
+    : (parameters.find(isNumber) || parameters[0]).name;
+  const [xLabel, x] = select("x", numbers, known(startX, numbers));
   const [yLabel, y] = select("y", numbers, startY);
   const [byLabel, by] = select("colour", [none, ...data.columns.filter(varies)],
     known(data.start.by, [none, ...parameters]) || known("regime", [none, ...data.columns]));
@@ -66,10 +77,10 @@
     return least > 0 && most >= 20 * least;
   }
   // Math.min(...values) cannot take 10⁵ values.
-  function extent(column) {
+  function extent(column, counts = () => true) {
     let [least, most] = [Infinity, -Infinity];
-    for (const value of column.values) {
-      if (value === null) continue;
+    for (const [row, value] of column.values.entries()) {
+      if (value === null || !counts(row)) continue;
       least = Math.min(least, value);
       most = Math.max(most, value);
     }
@@ -93,7 +104,8 @@
   const tabs = make("div", { class: "tabs", role: "tablist" });
   const views = ["plot", "parallel coordinates", "importance", "table"].filter((name) =>
     (name !== "parallel coordinates" || parameters.length > 1) && (name !== "importance" || data.importance.length));
-  let view = views[0];
+  // Without a result there is nothing to draw.
+  let view = results.length || data.count === 1 ? views[0] : "table";
   for (const name of views) {
     const tab = make("button", { type: "button", role: "tab" }, name);
     tab.addEventListener("click", () => { view = name; draw(); });
@@ -104,7 +116,8 @@
   const table = make("div", { class: "table", tabindex: "0" });
   const job = make("div", { id: "job" });
   job.hidden = true;
-  root.append(tabs, controls, box, table, job);
+  const left = make("p", { class: "left" });
+  root.append(tabs, controls, box, left, table, job);
 
   const dark = window.matchMedia("(prefers-color-scheme: dark)");
   let chart = null;
@@ -117,9 +130,11 @@
   // A click leads to the job: all its values, its page if it was inspected, and the command that shows it.
   const showJob = (row) => {
     const key = columns.get("job") ? columns.get("job").values[row] : String(row);
-    job.replaceChildren(make("h3", {}, `job ${String(key).slice(0, 12)}`));
+    const measured = isMeasured(row);
+    job.replaceChildren(make("h3", {}, measured ? `measured point ${key}` : `job ${String(key).slice(0, 12)}`));
     const page = data.pages[row];
-    const line = make("p", {}, make("code", {}, `tribosweep show ${String(key).slice(0, 12)}`));
+    const line = make("p");
+    if (!measured) line.append(make("code", {}, `tribosweep show ${String(key).slice(0, 12)}`));
     if (page) line.append(" · ", make("a", { href: page }, "what happens in this job"));
     job.append(line);
     const list = make("dl");
@@ -127,7 +142,7 @@
       const value = column.values[row];
       if (value !== null) list.append(make("div", {}, make("dt", { title: column.meaning }, title(column)), make("dd", {}, short(value))));
     }
-    for (const line of data.setup) list.append(make("div", {}, make("dt", {}, line.name), make("dd", {}, line.value)));
+    for (const line of measured ? [] : data.setup) list.append(make("div", {}, make("dt", {}, line.name), make("dd", {}, line.value)));
     job.append(list);
     job.hidden = false;
     job.dataset.key = key;
@@ -135,7 +150,8 @@
   };
 
   const axisOf = (column, log, extra) => {
-    const customValues = chosen(column) || (log && extent(column)[0] > 0 ? decades(column) : undefined);
+    const ticks = chosen(column);
+    const customValues = (log && ticks ? ticks.filter((tick) => tick > 0) : ticks) || (log && extent(column)[0] > 0 ? decades(column) : undefined);
     return {
       type: log ? "log" : "value", scale: true, min: log ? "dataMin" : null, max: log ? "dataMax" : null,
       name: title(column), nameLocation: "middle", nameGap: extra.gap, ...extra.own,
@@ -157,35 +173,49 @@
     const panels = [y.value, second[1].value, third[1].value].filter((name) => name);
     const X = columns.get(x.value);
     const colour = columns.get(by.value);
-    const isContinuous = colour && isNumber(colour) && new Set(colour.values).size > MOST_SERIES;
-    const groups = new Map();
-    for (const row of rows) {
-      const key = colour && !isContinuous ? short(colour.values[row]) : "";
-      if (!groups.has(key)) groups.set(key, []);
-      groups.get(key).push(row);
-    }
-    const order = [...groups.keys()].sort((a, b) => colour && isNumber(colour) ? Number(a) - Number(b) : a.localeCompare(b));
+    const different = colour ? [...new Set(colour.values)] : [];
+    const isContinuous = colour && isNumber(colour) && different.length > (join.checked ? MOST_JOINED : MOST_SERIES);
+    const [least, most] = isContinuous ? extent(colour, (row) => isSettled(colour, row)) : [0, 1];
+    // Rows without a value are last.
+    const order = isContinuous || !colour ? [undefined] : different.sort((a, b) => (a === null) - (b === null)
+      || (typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b))));
+    const coloured = order.filter((value) => value !== null).length;
     // More values than colours: numbers have a scale, and names another mark for each round of colours.
-    const isScale = colour && isNumber(colour) && order.length > palette.length;
-    const colourOf = (number) => isScale ? shade(number / (order.length - 1)) : palette[number % palette.length];
+    const isScale = colour && isNumber(colour) && coloured > palette.length;
+    const colourOf = (number) => order[number] === null ? GREY : isScale ? shade(number / (coloured - 1)) : palette[number % palette.length];
     const symbolOf = (number) => isScale ? symbols[0] : symbols[Math.floor(number / palette.length) % symbols.length];
+    const inFull = (value) => value === undefined ? "" : order.filter((other) => short(other) === short(value)).length > 1 ? String(value) : short(value);
+    const sources = study ? [...new Set(study.values)] : [null];
     const height = 78 / panels.length;
     const series = [];
+    let without = 0;
     panels.forEach((name, panel) => {
       const Y = columns.get(name);
       const usable = (row) => X.values[row] !== null && Y.values[row] !== null
         && (!xLog.checked || X.values[row] > 0) && (!yLog.checked || Y.values[row] > 0);
-      order.forEach((key, number) => {
-        const own = groups.get(key).filter(usable);
-        if (join.checked) own.sort((a, b) => X.values[a] - X.values[b]);
+      without += rows.filter((row) => !usable(row)).length;
+      const add = (own, label, symbol, ink, source) => {
+        if (!own.length) return;
+        const joined = join.checked && !isContinuous && !isMeasured(own[0]);
+        if (joined) own.sort((a, b) => X.values[a] - X.values[b]);
         series.push({
-          name: key || name, type: join.checked && !isContinuous ? "line" : "scatter", xAxisIndex: panel, yAxisIndex: panel,
-          symbolSize: rows.length > 1000 ? 4 : 8, symbol: symbolOf(number), color: isContinuous ? undefined : colourOf(number),
-          showSymbol: true, large: false, animation: false,
-          data: own.map((row) => ({ value: [X.values[row], Y.values[row], isContinuous ? colour.values[row] : 0], row })),
+          name: label || name, type: joined ? "line" : "scatter", xAxisIndex: panel, yAxisIndex: panel,
+          symbolSize: rows.length > 1000 ? 4 : 8, symbol: isMeasured(own[0]) ? CROSS : symbol, color: ink,
+          lineStyle: { type: ["solid", "dashed", "dotted"][source % 3] }, showSymbol: true, large: false, animation: false,
+          data: own.map((row) => ({ value: isContinuous && ink === undefined ? [X.values[row], Y.values[row], colour.values[row]] : [X.values[row], Y.values[row]], row })),
+        });
+      };
+      order.forEach((value, number) => {
+        const own = rows.filter((row) => usable(row) && (value === undefined || colour.values[row] === value));
+        sources.forEach((source, at) => {
+          const there = own.filter((row) => !study || study.values[row] === source);
+          if (!isContinuous) return add(there, inFull(value), symbolOf(number), colourOf(number), at);
+          add(there.filter((row) => colour.values[row] !== null), "", "circle", undefined, at);
+          add(there.filter((row) => colour.values[row] === null), `no ${colour.name}`, "circle", GREY, at);
         });
       });
     });
+    left.textContent = without ? `${without} of ${rows.length * panels.length} points are not drawn: they have no value, or none above 0 for a logarithmic axis.` : "";
     chart.setOption({
       animation: false,
       backgroundColor: "transparent",
@@ -198,8 +228,8 @@
       legend: colour && !isContinuous ? { type: "scroll", top: 0, left: 70, right: 120, formatter: (key) => `${colour.name} ${key}` } : undefined,
       toolbox: { right: 10, feature: { dataZoom: {}, restore: {}, saveAsImage: {} } },
       visualMap: isContinuous ? [{
-        type: "continuous", dimension: 2, calculable: true, right: 0, top: "middle", text: [title(colour), ""],
-        min: extent(colour)[0], max: extent(colour)[1], formatter: short, inRange: { color: scale },
+        type: "continuous", dimension: 2, calculable: true, seriesIndex: series.flatMap((own, at) => own.color === undefined ? [at] : []), right: 0, top: "middle", text: [title(colour), ""],
+        min: least, max: most, formatter: short, inRange: { color: scale },
       }] : [],
       grid: panels.map((_, panel) => ({ left: 80, right: isContinuous ? 130 : 30, top: `${10 + panel * (height + 3)}%`, height: `${height - 5}%` })),
       xAxis: panels.map((_, panel) => axisOf(X, xLog.checked, { gap: 28, own: { gridIndex: panel } })),
@@ -211,7 +241,7 @@
   };
 
   const parallelScale = (column) => {
-    const { type, min, max, scale, axisTick, axisLabel } = axisOf(column, isLog(column), { gap: 0 });
+    const { type, min, max, scale, axisTick, axisLabel } = axisOf(column, isLog(column) && extent(column)[0] > 0, { gap: 0 });
     return { type, min, max, scale, axisTick, axisLabel };
   };
   const drawParallel = () => {
@@ -244,14 +274,19 @@
     return { type: "group", children: [line(...low, ...high), ...[low, high].map(([x, y]) => line(x, y - 5, x, y + 5))] };
   };
   const drawImportance = () => {
-    const of = data.importance.find((own) => own.of === y.value) || data.importance[0];
+    const of = data.importance.find((own) => own.of === y.value);
+    if (!of) {
+      chart.clear();
+      left.textContent = `There is no index for ${y.value}; there are indices for ${data.importance.map((own) => own.of).join(", ")}.`;
+      return;
+    }
     const bars = [...of.bars].sort((a, b) => a.value - b.value);
     chart.setOption({
       animation: false,
       backgroundColor: "transparent",
       title: {
         text: `${of.kind} of the parameters for ${of.of} (${of.points} points)`, subtext: of.notes.join(" "),
-        textStyle: { fontSize: 14 }, subtextStyle: { width: box.clientWidth - 40, overflow: "break" },
+        textStyle: { fontSize: 14, width: box.clientWidth - 40, overflow: "break" }, subtextStyle: { width: box.clientWidth - 40, overflow: "break" },
       },
       tooltip: {
         formatter: (event) => {
@@ -260,9 +295,9 @@
           return echarts.format.encodeHTML(`${bar.name}: ${of.kind} ${short(bar.value)}${interval}`);
         },
       },
-      grid: { left: 220, right: 40, top: 110, bottom: 50 },
+      grid: { left: Math.min(220, box.clientWidth / 3), right: 40, top: box.clientWidth < 600 ? 170 : 110, bottom: 50 },
       xAxis: { type: "value", name: of.kind, nameLocation: "middle", nameGap: 28 },
-      yAxis: { type: "category", data: bars.map((bar) => bar.name) },
+      yAxis: { type: "category", data: bars.map((bar) => bar.name), axisLabel: { width: Math.min(200, box.clientWidth / 3 - 20), overflow: "break" } },
       series: [
         { type: "bar", animation: false, itemStyle: { color: palette[5] }, data: bars.map((bar) => bar.value) },
         { type: "custom", z: 10, animation: false, renderItem: interval, encode: { x: [1, 2], y: 0 }, silent: true,
@@ -305,7 +340,7 @@
       return line;
     }));
     note.textContent = kept.length > MOST_LINES
-      ? `The first ${MOST_LINES} of ${kept.length} jobs: filter them, or see jobs.csv.` : `${kept.length} of ${rows.length} jobs`;
+      ? `The first ${MOST_LINES} of ${kept.length} jobs: filter them.` : `${kept.length} of ${rows.length} jobs`;
   };
   const makeTable = () => {
     const head = make("tr");
@@ -327,11 +362,13 @@
     box.hidden = isTable;
     controls.hidden = isTable;
     table.hidden = !isTable;
+    left.hidden = isTable;
     if (isTable) {
       if (!table.childElementCount) makeTable();
       fillTable();
       return;
     }
+    left.textContent = "";
     renew();
     ({ plot: drawPlot, "parallel coordinates": drawParallel, importance: drawImportance })[view]();
   };

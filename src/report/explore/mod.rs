@@ -29,7 +29,7 @@ const SCRIPT: &str = include_str!("explore.js");
 const STYLE: &str = include_str!("explore.css");
 /// More jobs have no importance of parameters, because their intervals of confidence take long.
 const MOST_WEIGHED: usize = 20_000;
-/// Digits of a number. `jobs.csv` has all of them.
+/// Digits of a number. `export --all` writes all of them.
 const DIGITS: usize = 7;
 /// Characters of a job's key. Commands take them for the whole key.
 const KEY: usize = 16;
@@ -47,7 +47,8 @@ pub(super) fn write(report: &Report, pages: &HashMap<String, String>, out: &mut 
             "All " (value::count(report.rows.len() - measured, "job"))
             @if measured > 0 { " and " (value::count(measured, "measured point")) }
             ". "
-            a href="report.html" { "The report" } " has the findings; " a href="jobs.csv" { "jobs.csv" } " has all digits."
+            a href="report.html" { "The report" } " has the findings. Numbers have seven digits here; "
+            code { "tribosweep export STUDY --all" } " writes all digits of all columns."
         }
         noscript { p.warning { "This page needs JavaScript. The report needs none." } }
         style { (PreEscaped(STYLE)) }
@@ -72,7 +73,7 @@ struct Data<'a> {
     columns: Vec<ColumnData<'a>>,
     /// The pages of jobs, by row.
     pages: BTreeMap<usize, &'a str>,
-    /// Quantities that all jobs have in common, or that the columns do not have.
+    /// Quantities that all jobs have in common.
     setup: Vec<SetupLine<'a>>,
     importance: Vec<Value>,
     /// Whether the axis of a parameter is known to be logarithmic or linear.
@@ -107,7 +108,7 @@ fn data<'a>(report: &Report<'a>, pages: &'a HashMap<String, String>) -> Data<'a>
     let of_column = |own: &'static columns::ExportColumn| {
         let head = &own.column.head;
         let value = |row: &JobRow| match &*head.name {
-            "job" => row.job.chars().take(KEY).collect::<String>().into(),
+            "job" if !row.is_measured() => row.job.chars().take(KEY).collect::<String>().into(),
             _ => shortened(own.value(row)),
         };
         let values = Values::of(&rows.iter().map(value).collect::<Vec<_>>())?;
@@ -119,14 +120,14 @@ fn data<'a>(report: &Report<'a>, pages: &'a HashMap<String, String>) -> Data<'a>
     let mut columns: Vec<_> = given.collect();
     columns.extend(results.filter_map(of_column).collect::<Vec<_>>());
     let page = |(number, row): (usize, &JobRow)| Some((number, pages.get(&row.job)?.as_str()));
-    let is_column = |line: &SheetLine| parameters.contains(&line.key);
+    let is_common = |line: &&SheetLine| !line.varies && !parameters.contains(&line.key);
     let lines = report.sheet.iter().flat_map(|sheet| &sheet.groups).flat_map(|group| &group.lines);
     Data {
         count: rows.len(),
         columns,
         pages: rows.iter().enumerate().filter_map(page).collect(),
         setup: lines
-            .filter(|line| !is_column(line))
+            .filter(is_common)
             .map(|line| SetupLine { name: &line.name, value: &line.value })
             .collect(),
         importance: importance(report),
@@ -157,12 +158,12 @@ fn importance(report: &Report) -> Vec<Value> {
     let jobs: Vec<JobRow> = report.rows.iter().filter(|row| !row.is_measured()).cloned().collect();
     let found = sensitivities(&jobs, &of, report.view.is_morris);
     let of_quantity = |own: &sensitivity::Sensitivity| {
-        let (kind, indices) = own.main_indices()?;
+        let sensitivity::MainIndex { kind, indices, notes } = own.main_index()?;
         let bar = |(name, index): &(&str, sensitivity::Index)| json!({ "name": name, "value": index.value, "interval": index.interval });
         let is_shown = own.of != REGIME && indices.len() > 1;
         is_shown.then(|| {
             let bars: Vec<Value> = indices.iter().map(bar).collect();
-            json!({ "of": own.of, "points": own.points, "kind": kind, "bars": bars, "notes": own.notes() })
+            json!({ "of": own.of, "points": own.points, "kind": kind, "bars": bars, "notes": notes })
         })
     };
     found.iter().filter_map(of_quantity).collect()

@@ -7,7 +7,7 @@ mod tables;
 mod types;
 
 pub use design::Design;
-pub(super) use tables::described;
+pub(super) use tables::{MainIndex, described};
 pub use tables::{indices_table, markdown, page};
 pub use types::{Index, Indices, REGIME, Sensitivity};
 

@@ -41,32 +41,47 @@ fn section(one: &Sensitivity) -> Section {
         let table = Table::of("sensitivity", &columns, ranked);
         blocks.push(Block::Table(Grid::of_table(&table).with_words()));
     }
-    let notes = one.notes();
+    let notes = one.notes(true);
     if !notes.is_empty() {
         blocks.push(Block::list(notes));
     }
     Section::new(one.of.clone(), format!("{title}: {} points", one.points), blocks)
 }
 
+/// One index of all parameters.
+pub(in crate::report) struct MainIndex<'a> {
+    /// What it is called.
+    pub kind: &'static str,
+    /// Its values, by the names of the parameters that have one.
+    pub indices: Vec<(&'a str, Index)>,
+    /// What has to be known of them, in sentences.
+    pub notes: Vec<String>,
+}
+
 impl Sensitivity {
-    /// The index that says most: what it is called, and its value for each parameter that has one. None without any index.
-    pub(in crate::report) fn main_indices(&self) -> Option<(&'static str, Vec<(&str, Index)>)> {
+    /// The index that says most. Returns `None` without any index.
+    pub(in crate::report) fn main_index(&self) -> Option<MainIndex<'_>> {
         type Read = fn(&Indices) -> Option<Index>;
-        let kinds: [(&str, Read); 3] = [
-            ("first-order index", |own| own.first_order),
-            (if self.of == REGIME { "index of shares" } else { "PAWN index" }, |own| own.pawn),
-            ("mean size of the elementary effects", |own| own.effects.map(|(index, _)| index)),
+        let kinds: [(&str, Read, bool); 3] = [
+            ("first-order index", |own| own.first_order, false),
+            (if self.of == REGIME { "index of shares" } else { "PAWN index" }, |own| own.pawn, true),
+            ("mean size of the elementary effects", |own| own.effects.map(|(index, _)| index), false),
         ];
         let of_kind = |index: Read| {
             let named = self.parameters.iter().filter_map(|own| Some((&*own.name, index(own)?)));
             named.collect::<Vec<_>>()
         };
-        let mut found = kinds.into_iter().map(|(kind, index)| (kind, of_kind(index)));
-        found.find(|(_, indices)| !indices.is_empty())
+        let mut found = kinds.into_iter().map(|(kind, index, has_chance)| (kind, of_kind(index), has_chance));
+        let (kind, indices, has_chance) = found.find(|(_, indices, _)| !indices.is_empty())?;
+        let without = self.parameters.iter().map(|own| &*own.name);
+        let without = without.filter(|name| indices.iter().all(|(known, _)| known != name));
+        let without = without.map(|name| format!("No {kind} of {name}."));
+        let notes = self.notes(has_chance).into_iter().chain(without).collect();
+        Some(MainIndex { kind, indices, notes })
     }
 
-    /// What has to be known of the indices, in sentences.
-    pub(in crate::report) fn notes(&self) -> Vec<String> {
+    /// What has to be known of the indices, in sentences. How large one is by chance is known of the last index alone.
+    fn notes(&self, has_chance: bool) -> Vec<String> {
         let is_regime = self.of == REGIME;
         let what = if is_regime { "shares" } else { "PAWN" };
         let mut notes = Vec::new();
@@ -81,15 +96,13 @@ impl Sensitivity {
             }
             Design::Sample => {}
         }
-        if let Some(chance) = self.chance {
+        if let Some(chance) = self.chance.filter(|_| has_chance) {
             let chance = value::fixed(chance, 2);
             notes.push(format!("A parameter without effect has {what} up to {chance} by chance."));
-            if self.points < FEW_POINTS {
-                let points = self.points;
-                notes.push(format!(
-                    "Only {points} points: the indices say little; give at least {FEW_POINTS}."
-                ));
-            }
+        }
+        if self.chance.is_some() && self.points < FEW_POINTS {
+            let points = self.points;
+            notes.push(format!("Only {points} points: the indices say little; give at least {FEW_POINTS}."));
         }
         if self.missing > 0 {
             let jobs = count(self.missing as u64, "job");

@@ -41,6 +41,7 @@ fn line(input: &InputValues, origin: impl Fn(&Parameter) -> &'static str) -> She
         value: values(&input.values, parameter.unit().unwrap_or_default()),
         key: parameter.name,
         origin: origin(parameter),
+        varies: input.values.len() > 1,
     }
 }
 
@@ -78,10 +79,14 @@ fn with_unit(text: &str, unit: &str) -> String {
     if unit.is_empty() { text.to_owned() } else { format!("{text} {unit}") }
 }
 
+/// Whether the ends of a range are two values: a difference of rounding is none.
+fn differ(low: f64, high: f64) -> bool {
+    (high - low).abs() > 1e-9 * high.abs()
+}
+
 /// A quantity, or the range of it, as people write it.
 pub(super) fn range(low: f64, high: f64, unit: &str) -> String {
-    // A difference of rounding is none.
-    if (high - low).abs() <= 1e-9 * high.abs() {
+    if !differ(low, high) {
         return quantity(high, unit);
     }
     let (factor, name) = multiple(unit, high);
@@ -93,16 +98,15 @@ type FoundFigure = (&'static str, &'static str, &'static str, fn(&JobRecord) -> 
 
 /// The derived quantities: those that follow from the inputs, and those that the runs found.
 pub(super) fn of_derived(survey: &Survey, rows: &[JobRow]) -> SheetGroup {
-    let line = |symbol, name: &str, value| SheetLine {
+    let line = |symbol, name: &str, [low, high]: [f64; 2], unit| SheetLine {
         symbol,
         name: name.to_owned(),
-        value,
+        value: range(low, high, unit),
+        varies: differ(low, high),
         ..SheetLine::default()
     };
-    let of_inputs = survey
-        .derived
-        .iter()
-        .map(|(found, [low, high])| line(found.symbol, found.name, range(*low, *high, found.unit)));
+    let of_inputs =
+        survey.derived.iter().map(|(found, ends)| line(found.symbol, found.name, *ends, found.unit));
     let records = || rows.iter().filter_map(JobRow::record);
     let of_runs: [FoundFigure; 3] = [
         ("Δt", "time step that was used", "s", |record| record.time_step_s),
@@ -115,7 +119,7 @@ pub(super) fn of_derived(survey: &Survey, rows: &[JobRow]) -> SheetGroup {
             // Modes without a run have no time step.
             .filter(|x| *x > 0.0)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)));
-        (low <= high).then(|| line(symbol, name, range(low, high, unit)))
+        (low <= high).then(|| line(symbol, name, [low, high], unit))
     });
     SheetGroup { heading: "What follows from them", lines: of_inputs.chain(of_runs).collect() }
 }
