@@ -200,7 +200,7 @@
         if (joined) own.sort((a, b) => X.values[a] - X.values[b]);
         series.push({
           name: label || name, type: joined ? "line" : "scatter", xAxisIndex: panel, yAxisIndex: panel,
-          symbolSize: rows.length > 1000 ? 4 : 8, symbol: isMeasured(own[0]) ? CROSS : symbol, color: ink,
+          z: isMeasured(own[0]) ? 5 : 2, symbolSize: isMeasured(own[0]) ? 13 : rows.length > 1000 ? 4 : 8, symbol: isMeasured(own[0]) ? CROSS : symbol, color: ink,
           lineStyle: { type: ["solid", "dashed", "dotted"][source % 3] }, showSymbol: true, large: false, animation: false,
           data: own.map((row) => ({ value: isContinuous && ink === undefined ? [X.values[row], Y.values[row], colour.values[row]] : [X.values[row], Y.values[row]], row })),
         });
