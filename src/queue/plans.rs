@@ -75,6 +75,10 @@ pub enum PlanState {
 }
 
 impl PlanState {
+    fn of(name: &str) -> Self {
+        [Self::Complete, Self::Failed].into_iter().find(|state| state.name() == name).unwrap_or(Self::Open)
+    }
+
     /// The word in the database, which programs read too.
     pub const fn name(self) -> &'static str {
         match self {
@@ -196,11 +200,7 @@ impl Queue {
         let found = plan_rows::read(&mut self.connection, id).await?;
         Ok(found.map(|(waves, state, note)| PlanStatus {
             waves: waves.unsigned_abs(),
-            state: match state.as_str() {
-                "complete" => PlanState::Complete,
-                "failed" => PlanState::Failed,
-                _ => PlanState::Open,
-            },
+            state: PlanState::of(&state),
             note,
         }))
     }

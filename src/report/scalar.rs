@@ -120,15 +120,15 @@ impl Scalar {
         }
     }
 
-    /// A value with its error, if that is known: the error has two digits, and the value the same decimals.
+    /// A value with its error, if that is known: the error has two digits, and the value the same decimals, but never more than without it,
+    /// because a small statistical error says nothing of that of the mesh.
     pub(super) fn text_with_error(&self, x: f64, error: Option<f64>) -> String {
         match error {
-            // Smaller errors would have more decimals than a reader counts.
-            Some(error) if error > 1e-7 => {
-                let decimals = (1.0 - error.log10().floor()).max(0.0) as usize;
+            Some(error) if self == *MU_STAR && (1e-3..1.0).contains(&error) => {
+                let decimals = (1.0 - error.log10().floor()) as usize;
                 format!("{} ± {}", value::fixed(x, decimals), value::fixed(error, decimals))
             }
-            Some(error) => format!("{} ± {}", self.text(x), value::significant(error, 2)),
+            Some(error) => format!("{} ± {}", self.text(x), self.error_text(error)),
             None => self.text(x),
         }
     }

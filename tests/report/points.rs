@@ -99,6 +99,15 @@ fn findings(rows: &[JobRow]) -> Findings {
     }
 }
 
+/// Points that are no grid.
+fn samples() -> Vec<JobRow> {
+    let sample = |i: i32| {
+        let x = f64::from(i);
+        job("one", 7.0 + x, 0.2 + 0.013 * x, 0.002 + 0.0001 * x)
+    };
+    (0..8).map(sample).collect()
+}
+
 /// The lines of the tables of a folder by their columns.
 fn tables(folder: &Path) -> BTreeMap<String, Vec<BTreeMap<String, String>>> {
     let files = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
@@ -148,11 +157,7 @@ fn each_table_of_points_has_every_parameter() {
 /// Protects: the same for points that are no grid.
 #[test]
 fn tables_of_samples_have_every_parameter() {
-    let sample = |i: i32| {
-        let x = f64::from(i);
-        job("one", 7.0 + x, 0.2 + 0.013 * x, 0.002 + 0.0001 * x)
-    };
-    let rows: Vec<JobRow> = (0..8).map(sample).collect();
+    let rows = samples();
     let points: Vec<StabilityPoint> = rows.iter().map(point).collect();
     let report = Report { stability: &points, ..report(&rows) };
     assert_complete(&report, &["omega_rpm", "mu", "clamp_width_m"], 13);
@@ -161,11 +166,7 @@ fn tables_of_samples_have_every_parameter() {
 /// Protects: drawn points have no diagrams that join or stack neighbours, and their tables on the page have every parameter.
 #[test]
 fn samples_are_drawn_as_points() {
-    let sample = |i: i32| {
-        let x = f64::from(i);
-        job("one", 7.0 + x, 0.2 + 0.013 * x, 0.002 + 0.0001 * x)
-    };
-    let rows: Vec<JobRow> = (0..8).map(sample).collect();
+    let rows = samples();
     let folder = tempfile::tempdir().unwrap();
     write(&report(&rows), folder.path()).unwrap();
     let has = |stem: &str| folder.path().join(format!("{stem}.svg")).exists();
