@@ -1,5 +1,8 @@
 //! Formulas of linear isotropic elasticity. They give NaN for an unphysical material.
 
+/// Poisson's ratio from which on the elements are noticeably too stiff; `tests/verification/locking.rs` has measured it.
+pub const LOCKING_POISSON_RATIO: f64 = 0.48;
+
 /// Lamé's first parameter λ = Eν / ((1+ν)(1−2ν)) (Pa).
 pub fn lame_lambda_pa(young_modulus_pa: f64, poisson_ratio: f64) -> f64 {
     young_modulus_pa * poisson_ratio / ((1.0 + poisson_ratio) * (1.0 - 2.0 * poisson_ratio))

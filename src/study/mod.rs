@@ -70,7 +70,7 @@ pub use locate::Position;
 pub use name::{is_study_name, refused_name, renamed};
 pub use origin::{Origin, is_set_by_presets};
 pub use parameter::{PARAMETERS, Parameter};
-pub use plausibility::{About, LOCKING_POISSON_RATIO, Warning, job_warnings};
+pub use plausibility::{About, Warning, job_warnings};
 pub use preset::{CaseEvidence, Evidence, Preset, PresetError, PresetEvidence, ReferenceEvidence};
 pub use printable::{printable, printable_lines};
 pub use range::Spacing;

@@ -3,10 +3,10 @@
 use crate::signals::coarse;
 use std::collections::BTreeMap;
 use strum::VariantArray;
-use tribosweep::analysis::batch::{Batch, Begun};
-use tribosweep::analysis::continuation::PinMotion;
-use tribosweep::analysis::{CoarseStart, JobRecord, Outcome, Unobserved, solve};
-use tribosweep::spec::{
+use tribosweep_mechanics::analysis::batch::{Batch, Begun};
+use tribosweep_mechanics::analysis::continuation::PinMotion;
+use tribosweep_mechanics::analysis::{CoarseStart, JobRecord, Outcome, Unobserved, solve};
+use tribosweep_mechanics::spec::{
     ClampSide, Continuation, DiskKind, FrictionLaw, JobSpec, Precision, Region, Shape, StabilityMethod,
     Start, Table,
 };

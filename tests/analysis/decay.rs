@@ -2,9 +2,9 @@
 
 use crate::random::Random;
 use crate::signals::{STEP_S, sample, sine};
-use tribosweep::analysis::decay::DecayMonitor;
-use tribosweep::analysis::lines::ROUNDING;
-use tribosweep::analysis::sample::Sample;
+use tribosweep_mechanics::analysis::decay::DecayMonitor;
+use tribosweep_mechanics::analysis::lines::ROUNDING;
+use tribosweep_mechanics::analysis::sample::Sample;
 
 /// The default observation time [s].
 const OBSERVATION_S: f64 = 0.008;

@@ -1,9 +1,9 @@
 //! Short runs and extreme but legal inputs. They give a record without NaN, or a clear error.
 
 use crate::signals::coarse;
-use tribosweep::analysis::{JobError, JobRecord, Outcome, Regime, Unobserved, solve};
-use tribosweep::solver::SolverError;
-use tribosweep::spec::{ClampSide, JobSpec, TopFace};
+use tribosweep_mechanics::analysis::{JobError, JobRecord, Outcome, Regime, Unobserved, solve};
+use tribosweep_mechanics::solver::SolverError;
+use tribosweep_mechanics::spec::{ClampSide, JobSpec, TopFace};
 
 /// The record after a round trip through JSON. JSON would store NaN and ∞ as null, which cannot be read back.
 fn finite_record(what: &str, spec: &JobSpec) -> JobRecord {

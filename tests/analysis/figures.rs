@@ -2,8 +2,8 @@
 
 use crate::random::Random;
 use crate::signals::{LOAD_N, SQUEAL_HZ, STEP_S, cut, sample, sine};
-use tribosweep::analysis::figures::Figures;
-use tribosweep::analysis::sample::Sample;
+use tribosweep_mechanics::analysis::figures::Figures;
+use tribosweep_mechanics::analysis::sample::Sample;
 
 fn random_samples(count: usize) -> Vec<Sample> {
     let mut random = Random::new(31);

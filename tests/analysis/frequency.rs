@@ -2,9 +2,9 @@
 
 use crate::random::Random;
 use crate::signals::{SQUEAL_HZ, STEP_S, cut, sample, sine};
-use tribosweep::analysis::cycles::Cycle;
-use tribosweep::analysis::steady;
-use tribosweep::spec::Detection;
+use tribosweep_mechanics::analysis::cycles::Cycle;
+use tribosweep_mechanics::analysis::steady;
+use tribosweep_mechanics::spec::Detection;
 
 /// The frequency as a record reports it, over the window in which the state was found periodic.
 fn reported_hz(cycles: &[Cycle]) -> (f64, usize) {

@@ -2,10 +2,10 @@
 
 use crate::random::Random;
 use std::ops::ControlFlow;
-use tribosweep::analysis::figures::Figures;
-use tribosweep::analysis::sample::{HolderSample, Sample};
-use tribosweep::analysis::{self, JobObserver, JobRecord, Moment, Outcome};
-use tribosweep::spec::{Clamp, ClampSide, Contact, FrictionLaw, Holder, JobSpec};
+use tribosweep_mechanics::analysis::figures::Figures;
+use tribosweep_mechanics::analysis::sample::{HolderSample, Sample};
+use tribosweep_mechanics::analysis::{self, JobObserver, JobRecord, Moment, Outcome};
+use tribosweep_mechanics::spec::{Clamp, ClampSide, Contact, FrictionLaw, Holder, JobSpec};
 
 #[derive(Default)]
 struct Motions(Vec<(f64, [HolderSample; 3])>);

@@ -1,8 +1,8 @@
 //! The identities and the early stop in real, but coarse runs.
 
 use crate::signals::coarse;
-use tribosweep::analysis::{JobRecord, Outcome, Unobserved, solve};
-use tribosweep::spec::JobSpec;
+use tribosweep_mechanics::analysis::{JobRecord, Outcome, Unobserved, solve};
+use tribosweep_mechanics::spec::JobSpec;
 
 fn spec(omega_rpm: f64, mu: f64) -> JobSpec {
     let mut spec = coarse();

@@ -2,7 +2,7 @@
 
 use crate::signals::coarse;
 use std::ops::ControlFlow;
-use tribosweep::analysis::{JobError, JobObserver, Moment, solve};
+use tribosweep_mechanics::analysis::{JobError, JobObserver, Moment, solve};
 
 /// Interrupts the job at a simulated time. It counts the steps and checks that their times increase.
 struct StopsAt {

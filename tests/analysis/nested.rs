@@ -1,8 +1,8 @@
 //! Runs that start from a limit cycle of a coarser mesh.
 
-use tribosweep::analysis::nested::coarser;
-use tribosweep::analysis::{JobRecord, Outcome, Unobserved, solve};
-use tribosweep::spec::{JobSpec, Numerics, Start};
+use tribosweep_mechanics::analysis::nested::coarser;
+use tribosweep_mechanics::analysis::{JobRecord, Outcome, Unobserved, solve};
+use tribosweep_mechanics::spec::{JobSpec, Numerics, Start};
 
 /// A scene that can be halved once.
 fn scene() -> JobSpec {

@@ -1,8 +1,8 @@
 //! The analysis of jobs on an elastic disk.
 
 use crate::signals::coarse;
-use tribosweep::analysis::{JobRecord, Outcome, Regime, Unobserved, solve};
-use tribosweep::spec::{DiskKind, JobSpec};
+use tribosweep_mechanics::analysis::{JobRecord, Outcome, Regime, Unobserved, solve};
+use tribosweep_mechanics::spec::{DiskKind, JobSpec};
 
 /// Size of the disk's elements under the track.
 const ELEMENT_M: f64 = 0.008;

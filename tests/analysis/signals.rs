@@ -1,11 +1,11 @@
 //! Artificial samples, a random generator with a fixed seed, and the coarse scene.
 
 use std::f64::consts::TAU;
-use tribosweep::analysis::cycles::{Cycle, CycleCutter};
-use tribosweep::analysis::sample::Sample;
-use tribosweep::solver::Model;
-use tribosweep::solver::energy::Energies;
-use tribosweep::spec::{JobSpec, StabilityMethod};
+use tribosweep_mechanics::analysis::cycles::{Cycle, CycleCutter};
+use tribosweep_mechanics::analysis::sample::Sample;
+use tribosweep_mechanics::solver::Model;
+use tribosweep_mechanics::solver::energy::Energies;
+use tribosweep_mechanics::spec::{JobSpec, StabilityMethod};
 
 /// The load of all artificial signals [N].
 pub const LOAD_N: f64 = 30.0;

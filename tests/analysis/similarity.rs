@@ -1,8 +1,8 @@
 //! The similarity that `study::Study::warnings` uses: on a rigid disk jobs with the same ω E/F and ρ/E have the same result.
 
 use crate::signals::coarse;
-use tribosweep::analysis::{JobRecord, Unobserved, solve};
-use tribosweep::spec::JobSpec;
+use tribosweep_mechanics::analysis::{JobRecord, Unobserved, solve};
+use tribosweep_mechanics::spec::JobSpec;
 
 fn record(change: impl Fn(&mut JobSpec)) -> JobRecord {
     let mut spec = coarse();

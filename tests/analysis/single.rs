@@ -5,8 +5,8 @@
 //! 1/(slave nodes × steps of the window).
 
 use crate::signals::coarse;
-use tribosweep::analysis::{JobRecord, Outcome, Unobserved, solve};
-use tribosweep::spec::{JobSpec, Precision};
+use tribosweep_mechanics::analysis::{JobRecord, Outcome, Unobserved, solve};
+use tribosweep_mechanics::spec::{JobSpec, Precision};
 
 /// Half an ulp of f32 over the number.
 const EPSILON: f64 = f32::EPSILON as f64 / 2.0;

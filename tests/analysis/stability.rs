@@ -2,12 +2,12 @@
 
 use super::signals::coarse;
 use std::sync::Arc;
-use tribosweep::analysis::lanes::{Lanes, LanesOf};
-use tribosweep::analysis::{
+use tribosweep_mechanics::analysis::lanes::{Lanes, LanesOf};
+use tribosweep_mechanics::analysis::{
     AboveBand, ComplexMode, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Unobserved, solve,
 };
-use tribosweep::solver::{Model, RunNumber};
-use tribosweep::spec::{ClampSide, JobSpec, Precision, Shape, StabilityMethod};
+use tribosweep_mechanics::solver::{Model, RunNumber};
+use tribosweep_mechanics::spec::{ClampSide, JobSpec, Precision, Shape, StabilityMethod};
 
 fn short(method: StabilityMethod) -> JobSpec {
     let mut spec = JobSpec { stability: method, ..coarse() };
@@ -108,7 +108,7 @@ fn a_known_growth_is_not_hidden_by_rounding() {
 struct Counting(u64);
 
 impl JobObserver for Counting {
-    fn step(&mut self, _: &tribosweep::analysis::Moment<'_>) {
+    fn step(&mut self, _: &tribosweep_mechanics::analysis::Moment<'_>) {
         self.0 += 1;
     }
 

@@ -1,7 +1,7 @@
 //! The standard error of correlated figures.
 
 use crate::random::Random;
-use tribosweep::analysis::steady::{standard_error, standard_error_with_drift};
+use tribosweep_mechanics::analysis::steady::{standard_error, standard_error_with_drift};
 
 /// Protects: the standard error of an AR(1) sequence's mean is right. With ρ = 0.5 and unit innovations the
 /// variance of a mean of n values is s²(n) = [1 − 2ρ(1 − ρⁿ)/(n(1 − ρ²))]/(n(1 − ρ)²). The means of ⌊√n⌋ = 20

@@ -1,10 +1,10 @@
 //! When a sequence of cycles counts as periodic.
 
 use crate::signals::{LOAD_N, SQUEAL_HZ, STEP_S, cut, sample, sine};
-use tribosweep::analysis::cycles::{Cycle, CycleCutter};
-use tribosweep::analysis::steady::{self, Obstacle, SteadyState};
-use tribosweep::solver::energy::Energies;
-use tribosweep::spec::{Detection, SlowTimes};
+use tribosweep_mechanics::analysis::cycles::{Cycle, CycleCutter};
+use tribosweep_mechanics::analysis::steady::{self, Obstacle, SteadyState};
+use tribosweep_mechanics::solver::energy::Energies;
+use tribosweep_mechanics::spec::{Detection, SlowTimes};
 
 /// The result of `steady::find` for every prefix of `cycles`.
 fn along(cycles: &[Cycle]) -> Vec<Option<SteadyState>> {

@@ -4,6 +4,7 @@ mod accuracy;
 mod book;
 mod commands;
 mod comparison;
+mod corners;
 mod data;
 mod determinism;
 mod exit_codes;

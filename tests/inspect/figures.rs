@@ -2,9 +2,9 @@
 
 use crate::{coarse, inspect};
 use std::collections::BTreeMap;
-use tribosweep::inspect::{InspectionFigure, Options, PageHeader, Picture, Summary, figures, page};
-use tribosweep::publish::chart::{Cell, Chart, Guide, Layer, Panel};
-use tribosweep::publish::page::Block;
+use tribosweep_output::inspect::{InspectionFigure, Options, PageHeader, Picture, Summary, figures, page};
+use tribosweep_output::publish::chart::{Cell, Chart, Guide, Layer, Panel};
+use tribosweep_output::publish::page::Block;
 
 fn chart<'a>(figures: &'a [InspectionFigure], stem: &str) -> &'a Chart {
     match &figures.iter().find(|figure| figure.stem == stem).unwrap().picture {

@@ -3,13 +3,13 @@
 use crate::{coarse, inspect};
 use std::collections::BTreeSet;
 use std::ops::ControlFlow;
-use tribosweep::analysis::{JobError, Outcome, Regime, Unobserved, solve};
-use tribosweep::inspect::{
+use tribosweep_mechanics::analysis::{JobError, Outcome, Regime, Unobserved, solve};
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_mechanics::spec::DiskKind;
+use tribosweep_output::inspect::{
     Change, Inspection, InspectionError, JobSpectrum, NodeSelector, Options, PageHeader, Summary,
     has_spectrum, write,
 };
-use tribosweep::solver::interface::ContactState;
-use tribosweep::spec::DiskKind;
 
 /// Protects: both runs of an inspection have the same record as the job solved alone, to the last bit, and the cycles that
 /// are shown have its frequency.

@@ -11,8 +11,8 @@ mod readers;
 mod tools;
 
 use std::ops::ControlFlow;
-use tribosweep::inspect::{Inspection, Options};
-use tribosweep::spec::JobSpec;
+use tribosweep_mechanics::spec::JobSpec;
+use tribosweep_output::inspect::{Inspection, Options};
 
 /// 6 × 8 × 5 elements, 2 mm strip, 7 rpm, μ = 0.4: a stick–slip–separation cycle in half a second.
 pub fn coarse() -> JobSpec {

@@ -2,7 +2,7 @@
 
 use crate::chromium::Browser;
 use crate::{coarse, inspect};
-use tribosweep::inspect::{Options, PAGE, PageHeader, write};
+use tribosweep_output::inspect::{Options, PAGE, PageHeader, write};
 
 /// Protects: the page loads nothing but itself, has no errors, and has all drawings. It is not wider than its window on a
 /// desktop and on a phone, and on a desktop its tables do not scroll.

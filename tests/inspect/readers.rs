@@ -4,10 +4,10 @@ use crate::{coarse, inspect, tools};
 use serde_json::{Value, json};
 use std::path::Path;
 use std::process::Command;
-use tribosweep::analysis::sample::NodeSample;
-use tribosweep::inspect::{Frame, Inspection, Options, PageHeader, write};
-use tribosweep::solver::body::pin::stress;
-use tribosweep::solver::interface::ContactState;
+use tribosweep_mechanics::analysis::sample::NodeSample;
+use tribosweep_mechanics::solver::body::pin::stress;
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_output::inspect::{Frame, Inspection, Options, PageHeader, write};
 
 /// The start of both scripts.
 const HEAD: &str = r"

@@ -2,12 +2,11 @@
 
 use crate::charts::{data, only, points, texts};
 use crate::synthetic::{partial_study, periodic, record, report, row, with};
-use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::publish::chart::Axis;
-use tribosweep::report::figure::{Plot, figures};
-use tribosweep::report::tables::{self, Quantity};
-use tribosweep::report::{JobRow, RowState, SCALARS, Scalar, View, name_and_unit, write};
-use tribosweep::study::PARAMETERS;
+use tribosweep_mechanics::analysis::{Outcome, Regime};
+use tribosweep_output::publish::chart::Axis;
+use tribosweep_output::report::figure::{Plot, figures};
+use tribosweep_output::report::tables::{self, Quantity};
+use tribosweep_output::report::{JobRow, RowState, SCALARS, Scalar, View, write};
 
 /// Two speeds, two μ and three stiffnesses of the pin.
 fn study() -> Vec<JobRow> {
@@ -132,19 +131,6 @@ fn every_scalar_has_a_figure_and_a_table() {
         Scalar::find("sigma_n_max_pa").expect("a stress").title(),
         "largest normal contact stress [Pa]"
     );
-}
-
-/// Protects: the unit at the end of a parameter's name is its unit in the registry, so that values are shown in it.
-#[test]
-fn names_end_with_their_units() {
-    for parameter in PARAMETERS {
-        assert_eq!(
-            name_and_unit(parameter.name).1,
-            parameter.unit().unwrap_or_default(),
-            "{}",
-            parameter.name
-        );
-    }
 }
 
 /// Protects: the values of a logarithmic range have short and different heads.

@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use serde_json::Value;
 use tempfile::TempDir;
-use tribosweep::report::{JobRow, write};
+use tribosweep_output::report::{JobRow, write};
 
 use crate::chromium::Browser;
 use crate::synthetic::{failed, partial_study, report, row};

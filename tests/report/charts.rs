@@ -1,8 +1,8 @@
 //! What tests read from charts.
 
-use tribosweep::publish::chart::{At, Chart, Entry, Layer, Panel, Pen, Point, Rgb, Tip};
-use tribosweep::report::figure::{Figure, Plot, figures};
-use tribosweep::report::{JobRow, View};
+use tribosweep_output::publish::chart::{At, Chart, Entry, Layer, Panel, Pen, Point, Rgb, Tip};
+use tribosweep_output::report::figure::{Figure, Plot, figures};
+use tribosweep_output::report::{JobRow, View};
 
 /// All figures of a kind.
 pub fn all(rows: &[JobRow], plot: Plot) -> Vec<Figure> {

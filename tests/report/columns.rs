@@ -3,14 +3,14 @@
 use crate::synthetic::{record, row};
 use serde_json::{Value, json};
 use std::collections::BTreeSet;
-use tribosweep::analysis::program::{Direction, ProgramWindow};
-use tribosweep::analysis::{
+use tribosweep_mechanics::analysis::program::{Direction, ProgramWindow};
+use tribosweep_mechanics::analysis::{
     AboveBand, CoarseStart, ComplexMode, ElasticDisk, EnergyTotals, HolderMotion, JobRecord, ObservedNode,
     Obstacle, Outcome, Regime, SlidingStability,
 };
-use tribosweep::publish::table::Head;
-use tribosweep::report::columns::{ExportColumn, all, plain};
-use tribosweep::report::{RowState, SCALARS, columns_of_files, name_and_unit};
+use tribosweep_output::publish::table::Head;
+use tribosweep_output::report::columns::{ExportColumn, all, plain};
+use tribosweep_output::report::{RowState, SCALARS, columns_of_files, name_and_unit};
 
 /// A record in which every optional figure is present.
 fn full(obstacle: Obstacle) -> JobRecord {

@@ -3,12 +3,12 @@
 use crate::charts::{self, only, texts};
 use crate::synthetic::{measured, periodic, record, report, row};
 use std::fs;
-use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::publish::chart::Rgb;
-use tribosweep::publish::chart::palette::{BLUE, VERMILLION};
-use tribosweep::report::figure::Plot;
-use tribosweep::report::tables::{self, Quantity};
-use tribosweep::report::{JobRow, Measurement, Report, RowState, View, write, write_compared};
+use tribosweep_mechanics::analysis::{Outcome, Regime};
+use tribosweep_output::publish::chart::Rgb;
+use tribosweep_output::publish::chart::palette::{BLUE, VERMILLION};
+use tribosweep_output::report::figure::Plot;
+use tribosweep_output::report::tables::{self, Quantity};
+use tribosweep_output::report::{JobRow, Measurement, Report, RowState, View, write, write_compared};
 
 /// A study called `name` at 1, 10 and 100 rpm, with μ* = `offset` + 0.01 log₁₀ ω and an error of 0.0005.
 fn study(name: &str, offset: f64) -> Vec<JobRow> {

@@ -5,10 +5,10 @@ use crate::svg::{self, Element};
 use crate::synthetic::{periodic, record, report, row, with};
 use std::fs;
 use std::path::Path;
-use tribosweep::analysis::{ObservedNode, Outcome, Regime};
-use tribosweep::publish::chart::Axis;
-use tribosweep::report::figure::Plot;
-use tribosweep::report::{JobRow, RowState, inspections, write};
+use tribosweep_mechanics::analysis::{ObservedNode, Outcome, Regime};
+use tribosweep_output::publish::chart::Axis;
+use tribosweep_output::report::figure::Plot;
+use tribosweep_output::report::{JobRow, RowState, inspections, write};
 
 /// A job whose N/F is within `range`, with an observed node that moves by `reach_m`.
 fn oscillating(omega_rpm: f64, outcome: Outcome, range: [f64; 2], reach_m: f64) -> JobRow {

@@ -4,8 +4,8 @@ use std::fs;
 use std::path::PathBuf;
 
 use tempfile::TempDir;
-use tribosweep::publish::{Sheet, SheetGroup, SheetLine};
-use tribosweep::report::{JobRow, Report, write};
+use tribosweep_output::publish::{Sheet, SheetGroup, SheetLine};
+use tribosweep_output::report::{JobRow, Report, write};
 
 use crate::chromium::Browser;
 use crate::synthetic::{failed, measured, partial_study, periodic, report, row, with};

@@ -3,9 +3,9 @@
 use crate::synthetic::{failed, partial_study, periodic, record, row, with};
 use serde_json::{Value, json};
 use std::io;
-use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::publish::table::Format;
-use tribosweep::report::{JobRow, RowState, export};
+use tribosweep_mechanics::analysis::{Outcome, Regime};
+use tribosweep_output::publish::table::Format;
+use tribosweep_output::report::{JobRow, RowState, export};
 
 const HEADER: &str = "study,job,omega_rpm,mu,status,regime,mu_star,mu_star_se,mu_star_contact,frequency_hz,\
                       stick_share,slip_share,separated_share,n_over_f_min,n_over_f_max,sigma_n_max_pa,\

@@ -4,11 +4,11 @@ use crate::charts::{all, coloured, data, lines, only, points, texts};
 use crate::synthetic::{done, measured, partial_study, periodic, record, report, row, with};
 use std::collections::HashSet;
 use std::sync::Arc;
-use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::publish::chart::palette::{BLUE, GREEN, VERMILLION};
-use tribosweep::publish::chart::{Axis, Chart, Guide, Layer, Panel, Rgb, Sample, Shape};
-use tribosweep::report::figure::Plot;
-use tribosweep::report::{Discretisation, JobRow, MeshError, RowState, Scalar, write};
+use tribosweep_mechanics::analysis::{Outcome, Regime};
+use tribosweep_output::publish::chart::palette::{BLUE, GREEN, VERMILLION};
+use tribosweep_output::publish::chart::{Axis, Chart, Guide, Layer, Panel, Rgb, Sample, Shape};
+use tribosweep_output::report::figure::Plot;
+use tribosweep_output::report::{Discretisation, JobRow, MeshError, RowState, Scalar, write};
 
 /// The first colours of the palette, in the order of ascending μ.
 const COLOURS: [Rgb; 3] = [BLUE, VERMILLION, GREEN];

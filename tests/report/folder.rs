@@ -5,8 +5,8 @@ use crate::synthetic::{failed, partial_study, periodic, report, row, with};
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
-use tribosweep::publish::PublishError;
-use tribosweep::report::{JobRow, RowState, write};
+use tribosweep_output::publish::PublishError;
+use tribosweep_output::report::{JobRow, RowState, write};
 
 fn names(folder: &Path) -> BTreeSet<String> {
     let entries = fs::read_dir(folder).expect("the folder is there");

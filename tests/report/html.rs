@@ -4,7 +4,7 @@ use crate::charts::drawings;
 use crate::synthetic::{failed, partial_study, periodic, report, row, with};
 use std::fs;
 use std::sync::Arc;
-use tribosweep::report::{
+use tribosweep_output::report::{
     BuildInfo, Discretisation, JobRow, MeshError, Provenance, Report, ResultGroup, RowState, inspections,
     write,
 };

@@ -1,10 +1,10 @@
 //! Maps of equal cells: every job is in them with its values.
 
 use crate::synthetic::{done, failed, partial_study, periodic, row, with};
-use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::publish::chart::{Axis, Cell, Chart, Layer, Sample, Tip};
-use tribosweep::report::figure::{Plot, figures};
-use tribosweep::report::{JobRow, RowState, View};
+use tribosweep_mechanics::analysis::{Outcome, Regime};
+use tribosweep_output::publish::chart::{Axis, Cell, Chart, Layer, Sample, Tip};
+use tribosweep_output::report::figure::{Plot, figures};
+use tribosweep_output::report::{JobRow, RowState, View};
 
 /// The charts of some rows.
 pub fn charts(rows: &[JobRow], plot: Plot) -> Vec<Chart> {

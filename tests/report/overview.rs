@@ -1,9 +1,9 @@
 //! The grid of letters for a terminal.
 
 use crate::synthetic::{done, failed, periodic, row};
-use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::report::overview::overview;
-use tribosweep::report::{JobRow, RowState};
+use tribosweep_mechanics::analysis::{Outcome, Regime};
+use tribosweep_output::report::overview::overview;
+use tribosweep_output::report::{JobRow, RowState};
 
 /// Without colours.
 fn plain(rows: &[JobRow], width: usize) -> String {

@@ -4,10 +4,10 @@ use crate::charts::{points, texts};
 use crate::random::Random;
 use crate::synthetic::{failed, record, row, with};
 use std::fs;
-use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::report::pareto::refinement::{Level, Unclean, limit, observed_order};
-use tribosweep::report::pareto::{Direction, ParetoError, chart, compare, markdown, on_front, write};
-use tribosweep::report::{JobNumerics, JobRow, RowState};
+use tribosweep_mechanics::analysis::{Outcome, Regime};
+use tribosweep_output::report::pareto::refinement::{Level, Unclean, limit, observed_order};
+use tribosweep_output::report::pareto::{Direction, ParetoError, chart, compare, markdown, on_front, write};
+use tribosweep_output::report::{JobNumerics, JobRow, RowState};
 
 /// A cube of n × n × n elements of 1/n mm; the step is in proportion.
 fn numerics(n: usize, safety_factor: f64) -> JobNumerics {

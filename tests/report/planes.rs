@@ -3,10 +3,10 @@
 use crate::maps;
 use crate::synthetic::{done, partial_study, periodic, record, report, row, with};
 use std::fs;
-use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::publish::chart::{Axis, Scale};
-use tribosweep::report::figure::{Plot, figures};
-use tribosweep::report::{JobRow, RowState, View, write};
+use tribosweep_mechanics::analysis::{Outcome, Regime};
+use tribosweep_output::publish::chart::{Axis, Scale};
+use tribosweep_output::report::figure::{Plot, figures};
+use tribosweep_output::report::{JobRow, RowState, View, write};
 
 /// Protects: cells of the map of regimes end half-way to their neighbours, on the axis of speeds in the logarithm, so that
 /// their sizes are those of the grid and not equal. A dot is at the place of the job, and ticks are at the jobs' values.

@@ -5,9 +5,9 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use tribosweep::analysis::program::{Direction, ProgramWindow};
-use tribosweep::analysis::{AboveBand, ComplexMode, Outcome, Regime, SlidingStability};
-use tribosweep::report::{
+use tribosweep_mechanics::analysis::program::{Direction, ProgramWindow};
+use tribosweep_mechanics::analysis::{AboveBand, ComplexMode, Outcome, Regime, SlidingStability};
+use tribosweep_output::report::{
     Basin, BranchPoint, Crossing, Findings, JobRow, Minimum, Report, RowState, StabilityPoint, write,
 };
 

@@ -3,12 +3,12 @@
 use crate::charts::{coloured, lines, points, texts};
 use crate::synthetic::{record, report, row};
 use std::fs;
-use tribosweep::analysis::program::{Direction, ProgramWindow};
-use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::publish::chart::Layer;
-use tribosweep::publish::chart::palette::{BLUE, VERMILLION};
-use tribosweep::report::columns::ExportColumn;
-use tribosweep::report::{JobRow, RowState, program_chart, write};
+use tribosweep_mechanics::analysis::program::{Direction, ProgramWindow};
+use tribosweep_mechanics::analysis::{Outcome, Regime};
+use tribosweep_output::publish::chart::Layer;
+use tribosweep_output::publish::chart::palette::{BLUE, VERMILLION};
+use tribosweep_output::report::columns::ExportColumn;
+use tribosweep_output::report::{JobRow, RowState, program_chart, write};
 
 /// A run up to 40 rpm and down again in nine windows, with 0.02 more friction on the way up.
 fn up_and_down(mu: f64) -> JobRow {

@@ -7,11 +7,13 @@ use std::collections::BTreeSet;
 use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
-use tribosweep::analysis::{AboveBand, ComplexMode, Outcome, Regime, SlidingStability};
-use tribosweep::publish::chart::palette::DARK;
-use tribosweep::publish::chart::{At, Axis, Chart, Layer, Panel, Pen, Point, Sample, Shape};
-use tribosweep::report::figure::{Plot, StabilityPlot, figures, figures_with, stability_figures};
-use tribosweep::report::{Along, JobRow, Report, RowState, StabilityPoint, View, write, write_stability};
+use tribosweep_mechanics::analysis::{AboveBand, ComplexMode, Outcome, Regime, SlidingStability};
+use tribosweep_output::publish::chart::palette::DARK;
+use tribosweep_output::publish::chart::{At, Axis, Chart, Layer, Panel, Pen, Point, Sample, Shape};
+use tribosweep_output::report::figure::{Plot, StabilityPlot, figures, figures_with, stability_figures};
+use tribosweep_output::report::{
+    Along, JobRow, Report, RowState, StabilityPoint, View, write, write_stability,
+};
 
 const SPEEDS: [f64; 4] = [1.0, 5.0, 20.0, 100.0];
 const FRICTION: [f64; 5] = [0.1, 0.2, 0.3, 0.4, 0.5];

@@ -2,9 +2,9 @@
 
 use serde_json::Value;
 use std::sync::{Arc, LazyLock};
-use tribosweep::analysis::{EnergyTotals, JobRecord, Outcome, Regime};
-use tribosweep::publish::{Drawing, Sheet, SheetGroup, SheetLine};
-use tribosweep::report::{
+use tribosweep_mechanics::analysis::{EnergyTotals, JobRecord, Outcome, Regime};
+use tribosweep_output::publish::{Drawing, Sheet, SheetGroup, SheetLine};
+use tribosweep_output::report::{
     Discretisation, JobRow, MeasuredValue, Measurement, MeshError, Report, RowState, View,
 };
 

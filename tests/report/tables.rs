@@ -2,9 +2,9 @@
 
 use crate::synthetic::{done, failed, partial_study, periodic, row, with};
 use serde_json::{Value, json};
-use tribosweep::analysis::{Outcome, Regime};
-use tribosweep::report::tables::{self, Quantity};
-use tribosweep::report::{JobRow, RowState};
+use tribosweep_mechanics::analysis::{Outcome, Regime};
+use tribosweep_output::report::tables::{self, Quantity};
+use tribosweep_output::report::{JobRow, RowState};
 
 /// The lines of the Markdown tables as cells without padding, rules left out.
 fn cells(rows: &[JobRow], quantity: Quantity) -> Vec<Vec<String>> {

@@ -6,9 +6,9 @@ use crate::synthetic::{partial_study, periodic, report, row};
 use expect_test::{expect, expect_file};
 use std::fs;
 use std::sync::Arc;
-use tribosweep::report::overview::overview;
-use tribosweep::report::sensitivity::{markdown, sensitivities};
-use tribosweep::report::{Discretisation, JobRow, MeshError, Scalar, write};
+use tribosweep_output::report::overview::overview;
+use tribosweep_output::report::sensitivity::{markdown, sensitivities};
+use tribosweep_output::report::{Discretisation, JobRow, MeshError, Scalar, write};
 
 /// Protects: the words of a report, in their order, for a study in progress that has every kind of job.
 #[test]

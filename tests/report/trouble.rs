@@ -1,9 +1,9 @@
 //! Where jobs fail or do not become periodic.
 
 use crate::synthetic::{failed, periodic, record, row, with};
-use tribosweep::analysis::{Obstacle, Outcome, Regime};
-use tribosweep::report::trouble::{Grid, MAX_LISTED, Region, cause, regions, sentences};
-use tribosweep::report::{JobRow, RowState};
+use tribosweep_mechanics::analysis::{Obstacle, Outcome, Regime};
+use tribosweep_output::report::trouble::{Grid, MAX_LISTED, Region, cause, regions, sentences};
+use tribosweep_output::report::{JobRow, RowState};
 
 fn unsteady(figure: &str, spread: f64) -> RowState {
     let mut record = record(Outcome::NotPeriodic, Regime::StickSlip, 0.3);

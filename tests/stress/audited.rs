@@ -25,12 +25,12 @@
 //!
 //! Terms in ε² are neglected: no run here has 10¹³ steps.
 
-use tribosweep::solver::body::pin::operator::{AssembledOperator, Operator};
-use tribosweep::solver::body::pin::{BlockMesh, PinMesh};
-use tribosweep::solver::energy::{Energies, EnergyLedger};
-use tribosweep::solver::material::Material;
-use tribosweep::solver::support::{RockingWay, Support};
-use tribosweep::solver::{Drive, Model, RunNumber, StateOf, step};
+use tribosweep_mechanics::solver::body::pin::operator::{AssembledOperator, Operator};
+use tribosweep_mechanics::solver::body::pin::{BlockMesh, PinMesh};
+use tribosweep_mechanics::solver::energy::{Energies, EnergyLedger};
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::support::{RockingWay, Support};
+use tribosweep_mechanics::solver::{Drive, Model, RunNumber, StateOf, step};
 
 /// The numbers of a run's fields.
 pub trait Rounded: RunNumber {
@@ -53,7 +53,7 @@ const ROUNDINGS: f64 = 200.0;
 const FRICTION_ROUNDINGS: f64 = 16.0;
 
 /// Steps between two audits of a job.
-pub const JOB_INTERVAL: u64 = tribosweep::analysis::lanes::AUDIT_INTERVAL;
+pub const JOB_INTERVAL: u64 = tribosweep_mechanics::analysis::lanes::AUDIT_INTERVAL;
 
 /// A run whose energies are balanced at every step.
 pub struct Audited<'a, R: Rounded = f64> {

@@ -4,11 +4,11 @@ use crate::modes::{self, Mode};
 use crate::scenes::{IDLE, in_the_air, lifted, pin};
 use crate::summary;
 use serde_json::{Value, json};
-use tribosweep::analysis;
-use tribosweep::solver::energy::{Energies, EnergyLedger};
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, Model, ModelDefinition, SolverError, State, guard, step};
-use tribosweep::spec::{Clamp, ClampSide, JobSpec};
+use tribosweep_mechanics::analysis;
+use tribosweep_mechanics::solver::energy::{Energies, EnergyLedger};
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, SolverError, State, guard, step};
+use tribosweep_mechanics::spec::{Clamp, ClampSide, JobSpec};
 
 /// Steps between two checks by the guard, as in a job.
 const INTERVAL: u64 = 16;

@@ -7,7 +7,7 @@ use crate::{generator, summary};
 use rayon::prelude::*;
 use serde_json::{Value, json};
 use std::time::Instant;
-use tribosweep::spec::JobSpec;
+use tribosweep_mechanics::spec::JobSpec;
 
 /// Number of cases in the ordinary suite.
 const CASES: u64 = 1000;

@@ -1,7 +1,7 @@
 //! The corners of the parameter space that the stress test must reach.
 
-use tribosweep::solver::Model;
-use tribosweep::spec::{ClampSide, FrictionLaw, JobSpec, Precision, TopFace};
+use tribosweep_mechanics::solver::Model;
+use tribosweep_mechanics::spec::{ClampSide, FrictionLaw, JobSpec, Precision, TopFace};
 
 /// The name of a corner, and whether a job is in it.
 type Corner = (&'static str, fn(&JobSpec) -> bool);
@@ -15,7 +15,8 @@ fn aspect(spec: &JobSpec) -> f64 {
 
 /// ½ β_R ω of the highest mode. Above 1 the mode is over-critically damped.
 fn damping_of_highest_mode(spec: &JobSpec) -> f64 {
-    let undamped = tribosweep::spec::Numerics { beta_r_s: 0.0, time_step_s: None, ..spec.numerics.clone() };
+    let undamped =
+        tribosweep_mechanics::spec::Numerics { beta_r_s: 0.0, time_step_s: None, ..spec.numerics.clone() };
     let limit_s = Model::from_scene(&spec.scene, &undamped).map_or(0.0, |model| model.time_step_limit_s());
     if limit_s > 0.0 {
         spec.numerics.beta_r_s * (2.0 / spec.numerics.beta2).sqrt() / limit_s / 2.0
@@ -27,7 +28,7 @@ fn damping_of_highest_mode(spec: &JobSpec) -> f64 {
 /// Ratio of the given time step to the limit; 0 where none is given.
 fn given_over_limit(spec: &JobSpec) -> f64 {
     let Some(given_s) = spec.numerics.time_step_s else { return 0.0 };
-    let free = tribosweep::spec::Numerics { time_step_s: None, ..spec.numerics.clone() };
+    let free = tribosweep_mechanics::spec::Numerics { time_step_s: None, ..spec.numerics.clone() };
     Model::from_scene(&spec.scene, &free).map_or(0.0, |model| given_s / model.time_step_limit_s())
 }
 

@@ -4,9 +4,9 @@ use crate::audited::{Audited, Rounded};
 use serde_json::Value;
 use std::ops::ControlFlow;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use tribosweep::analysis::{JobError, JobObserver, JobRecord, Moment, drive, drive_at, solve};
-use tribosweep::solver::{Model, SolverError, StateOf};
-use tribosweep::spec::{FrictionLaw, JobSpec, Precision};
+use tribosweep_mechanics::analysis::{JobError, JobObserver, JobRecord, Moment, drive, drive_at, solve};
+use tribosweep_mechanics::solver::{Model, SolverError, StateOf};
+use tribosweep_mechanics::spec::{FrictionLaw, JobSpec, Precision};
 
 /// A legal ending.
 #[derive(Debug, Clone)]

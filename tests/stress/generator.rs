@@ -6,8 +6,8 @@
 
 use crate::random::Random;
 use strum::VariantArray;
-use tribosweep::solver::Model;
-use tribosweep::spec::{
+use tribosweep_mechanics::solver::Model;
+use tribosweep_mechanics::spec::{
     Base, ClampSide, FrictionLaw, HeightMap, JobSpec, Precision, Region, Roughness, Scene, Shape,
     StabilityMethod, Table, TopFace,
 };
@@ -302,7 +302,7 @@ fn numerics(random: &mut Random, spec: &mut JobSpec) {
 
 /// The program's own limit; none if the solver refuses the scene.
 fn time_step_limit_s(spec: &JobSpec) -> Option<f64> {
-    let numerics = tribosweep::spec::Numerics { time_step_s: None, ..spec.numerics.clone() };
+    let numerics = tribosweep_mechanics::spec::Numerics { time_step_s: None, ..spec.numerics.clone() };
     Some(Model::from_scene(&spec.scene, &numerics).ok()?.time_step_limit_s())
 }
 

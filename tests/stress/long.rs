@@ -8,9 +8,9 @@ use crate::random::Random;
 use crate::scenes::{IDLE, in_the_air, pin};
 use crate::summary;
 use serde_json::json;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::support::Support;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State};
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::support::Support;
+use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State};
 
 const FRACTION: f64 = 0.99;
 const SHORT: u64 = 20_000;

@@ -15,7 +15,6 @@ mod ending;
 mod generator;
 mod long;
 mod modes;
-mod queue;
 #[path = "../support/random.rs"]
 mod random;
 mod scenes;

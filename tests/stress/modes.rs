@@ -1,9 +1,9 @@
 //! The true highest mode of a constrained block, from dense eigenvalues of the program's own operator.
 
 use nalgebra::DMatrix;
-use tribosweep::solver::body::Freedom;
-use tribosweep::solver::support::{self, Support};
-use tribosweep::solver::{Model, ModelDefinition, SolverError, TimeStep, scheme};
+use tribosweep_mechanics::solver::body::Freedom;
+use tribosweep_mechanics::solver::support::{self, Support};
+use tribosweep_mechanics::solver::{Model, ModelDefinition, SolverError, TimeStep, scheme};
 
 /// The highest mode.
 pub struct Mode {

@@ -1,14 +1,14 @@
 //! Small scenes for time steps below and above the limit.
 
-use tribosweep::solver::body::pin::Stiffness;
-use tribosweep::solver::body::pin::{BlockMesh, PinMesh};
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::interface::target;
-use tribosweep::solver::interface::target::TargetDefinition;
-use tribosweep::solver::support::clamp;
-use tribosweep::solver::support::load::{self, LoadShare};
-use tribosweep::solver::{Drive, ModelDefinition, State, TimeStep, material::Material};
-use tribosweep::spec::{Clamp, ClampSide, Holder, TopFace};
+use tribosweep_mechanics::solver::body::pin::Stiffness;
+use tribosweep_mechanics::solver::body::pin::{BlockMesh, PinMesh};
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::interface::target;
+use tribosweep_mechanics::solver::interface::target::TargetDefinition;
+use tribosweep_mechanics::solver::support::clamp;
+use tribosweep_mechanics::solver::support::load::{self, LoadShare};
+use tribosweep_mechanics::solver::{Drive, ModelDefinition, State, TimeStep, material::Material};
+use tribosweep_mechanics::spec::{Clamp, ClampSide, Holder, TopFace};
 
 /// The reference pin's material.
 pub const MATERIAL: Material =
@@ -41,7 +41,12 @@ pub fn in_the_air(definition: ModelDefinition) -> ModelDefinition {
 }
 
 /// The state of an undeformed pin `height_m` above the plane. It moves with `speed_m_s` times `shape`.
-pub fn lifted(model: &tribosweep::solver::Model, height_m: f64, speed_m_s: f64, shape: &[f64]) -> State<1> {
+pub fn lifted(
+    model: &tribosweep_mechanics::solver::Model,
+    height_m: f64,
+    speed_m_s: f64,
+    shape: &[f64],
+) -> State<1> {
     let mut state = State::at_rest(model);
     for (dof, shape) in shape.iter().enumerate() {
         state.p[dof] = speed_m_s * shape;

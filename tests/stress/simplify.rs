@@ -1,7 +1,7 @@
 //! Simplifies a failing case as long as it still fails, so that its cause is easier to find.
 
 use serde_json::{Value, json};
-use tribosweep::spec::JobSpec;
+use tribosweep_mechanics::spec::JobSpec;
 
 /// Plain values. They are tried one after the other until none of them simplifies the case any more.
 fn plain() -> Vec<(&'static str, Value)> {

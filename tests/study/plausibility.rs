@@ -1,7 +1,8 @@
 //! Protects: doubtful studies are accepted with a warning that names the reason, and ordinary ones have no warning.
 
 use super::{assert_contains, parse, refusal, shipped};
-use tribosweep::study::{LOCKING_POISSON_RATIO, Study, Warning, job_warnings};
+use tribosweep::spec::elasticity::LOCKING_POISSON_RATIO;
+use tribosweep::study::{Study, Warning, job_warnings};
 
 fn warnings(text: &str) -> Vec<Warning> {
     parse(text).warnings()

@@ -288,3 +288,17 @@ fn the_schema_has_the_limits_of_the_program() {
     }
     assert!(of_grid > 80, "{of_grid}");
 }
+
+/// Protects: the unit at the end of a parameter's name is its unit in the registry, so that values are shown in it.
+#[cfg(feature = "report")]
+#[test]
+fn names_end_with_their_units() {
+    for parameter in PARAMETERS {
+        assert_eq!(
+            tribosweep::report::name_and_unit(parameter.name).1,
+            parameter.unit().unwrap_or_default(),
+            "{}",
+            parameter.name
+        );
+    }
+}

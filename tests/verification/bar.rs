@@ -36,8 +36,8 @@ use crate::common::{
 };
 use crate::evidence::Evidence;
 use std::f64::consts::PI;
-use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::{Model, ModelDefinition, State};
+use tribosweep_mechanics::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::{Model, ModelDefinition, State};
 
 const SPEED_M_S: f64 = 0.1;
 const SAINT_VENANT: &str = "Saint-Venant's impact of a bar (1867)";

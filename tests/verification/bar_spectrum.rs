@@ -17,8 +17,8 @@ use crate::common::{
 use crate::evidence::Evidence;
 use nalgebra::DMatrix;
 use std::f64::consts::{PI, TAU};
-use tribosweep::solver::material::Material;
-use tribosweep::solver::{Model, ModelDefinition, State};
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::{Model, ModelDefinition, State};
 
 const DISCRETE: &str = "dispersion relation of masses and springs (Brillouin 1946)";
 

@@ -32,10 +32,10 @@ use crate::common::advance;
 use crate::evidence::Evidence;
 use crate::particles::{Particles, Y, Z, audited_step};
 use std::f64::consts::PI;
-use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::interface::ContactState;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, Model, State, TimeStep};
+use tribosweep_mechanics::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, Model, State, TimeStep};
 
 const MASS_KG: f64 = 2.0;
 const STIFFNESS_N_M: f64 = 50.0;

@@ -22,12 +22,12 @@
 use crate::common::{COLUMN_AREA_M2, COLUMN_HEIGHT_M, advance, all_of, column_mesh, definition, level_ties};
 use crate::evidence::Evidence;
 use crate::particles::{Particles, Y, Z};
-use tribosweep::solver::interface::ContactState;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::material::Material;
-use tribosweep::solver::support::Support;
-use tribosweep::solver::support::load::LoadShare;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::support::Support;
+use tribosweep_mechanics::solver::support::load::LoadShare;
+use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State, TimeStep};
 
 const MU: f64 = 0.3;
 const LOAD_N: f64 = 1000.0;

@@ -30,10 +30,10 @@ use crate::common::{
     FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, axial_bar, normal_force_n, step_at_cfl,
 };
 use crate::evidence::Evidence;
-use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::material::Material;
-use tribosweep::solver::support::load::LoadShare;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State};
+use tribosweep_mechanics::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::support::load::LoadShare;
+use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State};
 
 const DOYEN: &str = "bouncing bar of Doyen, Ern, Piperno (2011), d'Alembert";
 const FRONT: &str = "the dispersed front and the whole steps of contact shift single values";

@@ -21,9 +21,9 @@ use crate::common::{
     FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, axial_bar, normal_force_n, step_at_cfl,
 };
 use crate::evidence::Evidence;
-use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::material::Material;
-use tribosweep::solver::{Model, ModelDefinition, State};
+use tribosweep_mechanics::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::{Model, ModelDefinition, State};
 
 const PERIODS: usize = 3;
 const DABAGHI: &str = "clamped bar of Dabaghi et al. (2016), d'Alembert";

@@ -8,11 +8,11 @@
 use crate::common::{ROUNDINGS_PER_FORCE, advance};
 use crate::elastic::{coarse_scene, drive};
 use crate::evidence::Evidence;
-use tribosweep::analysis::{JobError, Unobserved, solve};
-use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, Model, SolverError, State};
-use tribosweep::spec::{DiskKind, DiskTimeStep, JobSpec, TargetSurface};
+use tribosweep_mechanics::analysis::{JobError, Unobserved, solve};
+use tribosweep_mechanics::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, Model, SolverError, State};
+use tribosweep_mechanics::spec::{DiskKind, DiskTimeStep, JobSpec, TargetSurface};
 
 const SPAN_S: f64 = 3.0e-4;
 const ONE_CLOCK: &str = "one clock with a sixteenth of the step";
@@ -150,7 +150,10 @@ fn nothing_grows_without_damping() {
 
 /// Degrees of freedom that the scene holds or ties. Their velocities cannot be chosen freely.
 fn clamped(spec: &JobSpec) -> Vec<usize> {
-    let mesh = tribosweep::solver::body::pin::BlockMesh::new(spec.scene.pin.size_m, spec.scene.pin.elements);
+    let mesh = tribosweep_mechanics::solver::body::pin::BlockMesh::new(
+        spec.scene.pin.size_m,
+        spec.scene.pin.elements,
+    );
     mesh.top_nodes().flat_map(|node| [3 * node, 3 * node + 1, 3 * node + 2]).collect()
 }
 

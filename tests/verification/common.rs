@@ -1,12 +1,12 @@
 //! One-dimensional columns and small helpers shared by the other files.
 
-use tribosweep::solver::body::pin::{BlockMesh, PinMesh, Stiffness};
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::interface::target::{self, TargetDefinition};
-use tribosweep::solver::material::Material;
-use tribosweep::solver::support::Support;
-use tribosweep::solver::support::load::LoadShare;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep, step};
+use tribosweep_mechanics::solver::body::pin::{BlockMesh, PinMesh, Stiffness};
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::interface::target::{self, TargetDefinition};
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::support::Support;
+use tribosweep_mechanics::solver::support::load::LoadShare;
+use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State, TimeStep, step};
 
 /// The reference pin's material with another Poisson's ratio.
 pub fn pin_material(poisson_ratio: f64) -> Material {

@@ -20,13 +20,13 @@
 use crate::common::ROUNDINGS_PER_FORCE;
 use crate::evidence::Evidence;
 use crate::modes::stiffness_rows;
-use tribosweep::analysis::figures::Figures;
-use tribosweep::analysis::sample::Sampler;
-use tribosweep::solver::energy::{Energies, EnergyLedger};
-use tribosweep::solver::interface::ContactState;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, Model, State, step};
-use tribosweep::spec::JobSpec;
+use tribosweep_mechanics::analysis::figures::Figures;
+use tribosweep_mechanics::analysis::sample::Sampler;
+use tribosweep_mechanics::solver::energy::{Energies, EnergyLedger};
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, Model, State, step};
+use tribosweep_mechanics::spec::JobSpec;
 
 const MU: f64 = 0.4;
 const LOAD_N: f64 = 30.0;

@@ -4,13 +4,13 @@
 //! width.
 
 use std::f64::consts::TAU;
-use tribosweep::solver::body::pin::BlockMesh;
-use tribosweep::solver::body::ring::{RingDefinition, RingMesh};
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::interface::target::TargetDefinition;
-use tribosweep::solver::material::Material;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State};
-use tribosweep::spec::{DiskTimeStep, TargetSurface};
+use tribosweep_mechanics::solver::body::pin::BlockMesh;
+use tribosweep_mechanics::solver::body::ring::{RingDefinition, RingMesh};
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::interface::target::TargetDefinition;
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State};
+use tribosweep_mechanics::spec::{DiskTimeStep, TargetSurface};
 
 /// Radius of the ring over the block's width.
 const STRAIGHT: f64 = 1.0e7;
@@ -59,11 +59,11 @@ pub fn momentum(model: &Model, state: &State<1>) -> [f64; 2] {
 }
 
 /// A pin of 6 × 8 × 5 elements on a ring with elements of 6 mm under the track, for runs that must be quick.
-pub fn coarse_scene() -> tribosweep::spec::JobSpec {
-    let mut spec = tribosweep::spec::JobSpec::default();
+pub fn coarse_scene() -> tribosweep_mechanics::spec::JobSpec {
+    let mut spec = tribosweep_mechanics::spec::JobSpec::default();
     spec.scene.pin.elements = [6, 8, 5];
     spec.scene.clamp.width_m = 0.002;
-    spec.scene.disk.kind = tribosweep::spec::DiskKind::Elastic;
+    spec.scene.disk.kind = tribosweep_mechanics::spec::DiskKind::Elastic;
     spec.scene.disk.ring.element_size_m = 0.006;
     spec.scene.disk.ring.coarse_element_size_m = 0.03;
     spec

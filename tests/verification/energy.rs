@@ -6,19 +6,19 @@
 
 use crate::common::ROUNDINGS_PER_FORCE;
 use crate::evidence::Evidence;
-use tribosweep::solver::body::pin::Stiffness;
-use tribosweep::solver::body::pin::{BlockMesh, PinMesh};
-use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::interface::target;
-use tribosweep::solver::interface::target::TargetDefinition;
-use tribosweep::solver::support::clamp;
-use tribosweep::solver::support::load;
-use tribosweep::solver::{
+use tribosweep_mechanics::solver::body::pin::Stiffness;
+use tribosweep_mechanics::solver::body::pin::{BlockMesh, PinMesh};
+use tribosweep_mechanics::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::interface::target;
+use tribosweep_mechanics::solver::interface::target::TargetDefinition;
+use tribosweep_mechanics::solver::support::clamp;
+use tribosweep_mechanics::solver::support::load;
+use tribosweep_mechanics::solver::{
     Drive, Model, ModelDefinition, RunNumber, SolverError, State, StateOf, TimeStep, guard,
     material::Material, step,
 };
-use tribosweep::spec::{Clamp, Holder, JobSpec, TopFace};
+use tribosweep_mechanics::spec::{Clamp, Holder, JobSpec, TopFace};
 
 /// A small reference scene that sticks, slips and separates within a millisecond.
 fn spec() -> JobSpec {

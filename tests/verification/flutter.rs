@@ -27,11 +27,11 @@
 
 use crate::evidence::Evidence;
 use nalgebra::{Complex, DMatrix, DVector};
-use tribosweep::analysis::{Outcome, Unobserved, drive, solve};
-use tribosweep::solver::field::Field;
-use tribosweep::solver::interface::ContactState;
-use tribosweep::solver::{Drive, Model, State, step};
-use tribosweep::spec::{JobSpec, StabilityMethod};
+use tribosweep_mechanics::analysis::{Outcome, Unobserved, drive, solve};
+use tribosweep_mechanics::solver::field::Field;
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_mechanics::solver::{Drive, Model, State, step};
+use tribosweep_mechanics::spec::{JobSpec, StabilityMethod};
 
 const SOURCE: &str = "complex eigenvalues of the linearised sliding problem, dense";
 

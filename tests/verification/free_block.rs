@@ -30,9 +30,9 @@ use crate::common::{all_of, definition, pin_material};
 use crate::evidence::Evidence;
 use crate::modes::{CLASSES, MirrorClass, Mode, lowest_modes, stiffness_rows};
 use crate::ritz;
-use tribosweep::solver::Model;
-use tribosweep::solver::body::pin::BlockMesh;
-use tribosweep::solver::support::Support;
+use tribosweep_mechanics::solver::Model;
+use tribosweep_mechanics::solver::body::pin::BlockMesh;
+use tribosweep_mechanics::solver::support::Support;
 
 const PIN_M: [f64; 3] = [0.012, 0.015, 0.010];
 const SIDE_M: f64 = 0.010;

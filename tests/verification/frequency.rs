@@ -19,14 +19,14 @@
 
 use crate::evidence::Evidence;
 use std::f64::consts::{PI, TAU};
-use tribosweep::analysis::cycles::{Cycle, CycleCutter};
-use tribosweep::analysis::decay::DecayMonitor;
-use tribosweep::analysis::lines::ROUNDING;
-use tribosweep::analysis::sample::Sample;
-use tribosweep::analysis::steady;
-use tribosweep::solver::Model;
-use tribosweep::solver::energy::Energies;
-use tribosweep::spec::{Detection, JobSpec};
+use tribosweep_mechanics::analysis::cycles::{Cycle, CycleCutter};
+use tribosweep_mechanics::analysis::decay::DecayMonitor;
+use tribosweep_mechanics::analysis::lines::ROUNDING;
+use tribosweep_mechanics::analysis::sample::Sample;
+use tribosweep_mechanics::analysis::steady;
+use tribosweep_mechanics::solver::Model;
+use tribosweep_mechanics::solver::energy::Energies;
+use tribosweep_mechanics::spec::{Detection, JobSpec};
 
 const SQUEAL_HZ: f64 = 14_500.0;
 const LOAD_N: f64 = 30.0;

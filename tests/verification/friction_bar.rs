@@ -43,8 +43,8 @@
 use crate::evidence::Evidence;
 use crate::friction_chain::{AREA_M2, CAPACITY_N_M, Chain, DENSITY_KG_M3, YOUNG_MODULUS_PA};
 use crate::particles::audited_step;
-use tribosweep::solver::energy::{Energies, EnergyLedger};
-use tribosweep::solver::{State, TimeStep};
+use tribosweep_mechanics::solver::energy::{Energies, EnergyLedger};
+use tribosweep_mechanics::solver::{State, TimeStep};
 
 const PRESSURE_PA: f64 = 1.0e6;
 /// L [m].

@@ -10,9 +10,9 @@
 //! μN = qh. The bar slips over 2F/q under a sudden load and over F/q under a slow one.
 
 use crate::particles::{Particles, Y, Z};
-use tribosweep::solver::body::pin::BlockMesh;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, Model, State, TimeStep};
+use tribosweep_mechanics::solver::body::pin::BlockMesh;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, Model, State, TimeStep};
 
 pub const YOUNG_MODULUS_PA: f64 = 1.0e9;
 pub const DENSITY_KG_M3: f64 = 2500.0;

@@ -15,10 +15,10 @@
 use crate::evidence::Evidence;
 use crate::particles::{Particles, X, Y, Z, audited_step};
 use std::f64::consts::PI;
-use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::interface::ContactState;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, Model, State, TimeStep};
+use tribosweep_mechanics::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, Model, State, TimeStep};
 
 const MASS_KG: f64 = 2.0;
 const OMEGA: f64 = 5.0;

@@ -15,9 +15,9 @@
 
 use crate::evidence::Evidence;
 use std::f64::consts::PI;
-use tribosweep::analysis::drive;
-use tribosweep::solver::{Model, State, step};
-use tribosweep::spec::{Base, ClampSide, JobSpec, TopFace};
+use tribosweep_mechanics::analysis::drive;
+use tribosweep_mechanics::solver::{Model, State, step};
+use tribosweep_mechanics::spec::{Base, ClampSide, JobSpec, TopFace};
 
 const RADIUS_M: f64 = 0.02;
 

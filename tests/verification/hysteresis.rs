@@ -32,8 +32,8 @@ use crate::evidence::Evidence;
 use crate::friction_chain::{AREA_M2, CAPACITY_N_M, Chain, DENSITY_KG_M3, YOUNG_MODULUS_PA};
 use crate::particles::audited_step;
 use std::f64::consts::{FRAC_PI_2, PI};
-use tribosweep::solver::TimeStep;
-use tribosweep::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::TimeStep;
+use tribosweep_mechanics::solver::energy::EnergyLedger;
 
 const FORCE_N: f64 = 100.0;
 const SLIP_LENGTH_M: f64 = FORCE_N / CAPACITY_N_M;

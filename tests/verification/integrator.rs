@@ -12,7 +12,7 @@
 use crate::common::{IDLE, ROUNDINGS_PER_FORCE, advance, bar};
 use crate::evidence::Evidence;
 use std::f64::consts::PI;
-use tribosweep::solver::{Model, ModelDefinition, SolverError, State, TimeStep};
+use tribosweep_mechanics::solver::{Model, ModelDefinition, SolverError, State, TimeStep};
 
 const LAYERS: usize = 12;
 const SOURCE: &str = "amplification matrix of Newmark's method, β = 0, γ = β₂";

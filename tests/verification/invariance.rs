@@ -8,16 +8,18 @@
 
 use crate::common::{IDLE, ROUNDINGS_PER_FORCE, advance, definition, pin_material};
 use crate::evidence::Evidence;
-use tribosweep::solver::body::pin::Stiffness;
-use tribosweep::solver::body::pin::{BlockMesh, PinMesh};
-use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::field::Field;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::interface::target::TargetDefinition;
-use tribosweep::solver::support::clamp;
-use tribosweep::solver::support::load;
-use tribosweep::solver::{Drive, Model, ModelDefinition, RunNumber, State, StateOf, TimeStep, step};
-use tribosweep::spec::{Clamp, ClampSide, Holder, JobSpec, TopFace};
+use tribosweep_mechanics::solver::body::pin::Stiffness;
+use tribosweep_mechanics::solver::body::pin::{BlockMesh, PinMesh};
+use tribosweep_mechanics::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::field::Field;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::interface::target::TargetDefinition;
+use tribosweep_mechanics::solver::support::clamp;
+use tribosweep_mechanics::solver::support::load;
+use tribosweep_mechanics::solver::{
+    Drive, Model, ModelDefinition, RunNumber, State, StateOf, TimeStep, step,
+};
+use tribosweep_mechanics::spec::{Clamp, ClampSide, Holder, JobSpec, TopFace};
 
 fn small_model() -> Model {
     let mut spec = JobSpec::default();
@@ -256,7 +258,8 @@ fn a_change_of_bits_raises_the_version() {
     spec.scene.clamp.width_m = 0.002;
     spec.numerics.time_step_s = Some(1.5e-6);
     let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
-    let found = (tribosweep::solver::VERSION, hash_of_bits::<f64>(&model), hash_of_bits::<f32>(&model));
+    let found =
+        (tribosweep_mechanics::solver::VERSION, hash_of_bits::<f64>(&model), hash_of_bits::<f32>(&model));
     let expected = ("5", "adbc250cfb330667".to_owned(), "2d06398b7d543222".to_owned());
     assert_eq!(found, expected, "raise solver::VERSION and write its bits here");
 }

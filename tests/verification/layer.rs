@@ -11,12 +11,12 @@
 use crate::common::{ROUNDINGS_PER_FORCE, advance};
 use crate::evidence::Evidence;
 use crate::particles::{Particles, Z, audited_step};
-use tribosweep::analysis::drive;
-use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::interface::Layer;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, Model, State, TimeStep};
-use tribosweep::spec::JobSpec;
+use tribosweep_mechanics::analysis::drive;
+use tribosweep_mechanics::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::interface::Layer;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, Model, State, TimeStep};
+use tribosweep_mechanics::spec::JobSpec;
 
 const MASS_KG: f64 = 0.5;
 const LOAD_N: f64 = 2.0;

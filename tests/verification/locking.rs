@@ -9,9 +9,9 @@
 //! table of docs/accuracy.md from both.
 //! The threshold of the warning in `study::plausibility` follows from this table.
 
-use tribosweep::solver::Model;
-use tribosweep::spec::{Clamp, JobSpec, Scene};
-use tribosweep::study::LOCKING_POISSON_RATIO;
+use tribosweep_mechanics::solver::Model;
+use tribosweep_mechanics::spec::elasticity::LOCKING_POISSON_RATIO;
+use tribosweep_mechanics::spec::{Clamp, JobSpec, Scene};
 
 const DRAFT: [usize; 3] = [12, 15, 10];
 const STANDARD: [usize; 3] = [24, 30, 20];

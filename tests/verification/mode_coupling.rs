@@ -34,9 +34,9 @@
 use crate::evidence::Evidence;
 use crate::particles::{Particles, Y, Z};
 use std::f64::consts::PI;
-use tribosweep::solver::interface::ContactState;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, Model, State, TimeStep, step};
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, Model, State, TimeStep, step};
 
 const TIME_STEPS_S: [f64; 3] = [0.1, 0.05, 0.025];
 pub const NORMAL_N: f64 = 1.0;

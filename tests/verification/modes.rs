@@ -6,8 +6,8 @@
 
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
-use tribosweep::solver::Model;
-use tribosweep::solver::body::pin::BlockMesh;
+use tribosweep_mechanics::solver::Model;
+use tribosweep_mechanics::solver::body::pin::BlockMesh;
 
 /// Per direction +1 where the displacement field is its own mirror image and −1 where it is the
 /// reverse of it: u_c(−x_a) = class_a · (−1 if c = a, else 1) · u_c(x_a).

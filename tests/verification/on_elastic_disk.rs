@@ -11,11 +11,11 @@
 use crate::common::advance;
 use crate::elastic::{Below, coarse_scene, drive, free_block, on_block};
 use crate::evidence::Evidence;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::material::Material;
-use tribosweep::solver::support::load;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
-use tribosweep::spec::{DiskKind, DiskTimeStep, JobSpec, TargetSurface};
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::support::load;
+use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State, TimeStep};
+use tribosweep_mechanics::spec::{DiskKind, DiskTimeStep, JobSpec, TargetSurface};
 
 const COULOMB: &str = "Coulomb's law";
 
@@ -102,7 +102,8 @@ fn action_is_reaction() {
             // −Σ K u over the free nodes is all other force on them.
             let u = &state.target.ring().unwrap().1.u;
             let mut product = u.clone();
-            let mut scratch = tribosweep::solver::body::ring::operator::RingScratch::new(body.operator());
+            let mut scratch =
+                tribosweep_mechanics::solver::body::ring::operator::RingScratch::new(body.operator());
             body.operator().product(u, &mut product, &mut scratch);
             (0..body.mesh().node_count())
                 .filter(|&node| body.inverse_mass()[node] > 0.0)
@@ -201,7 +202,7 @@ fn pressed(upper: usize, lower: usize, target: TargetSurface) -> Pressed {
     );
     // At rest the contact forces on the top nodes are K u.
     let mut product = disk.u.clone();
-    let mut scratch = tribosweep::solver::body::ring::operator::RingScratch::new(body.operator());
+    let mut scratch = tribosweep_mechanics::solver::body::ring::operator::RingScratch::new(body.operator());
     body.operator().product(&disk.u, &mut product, &mut scratch);
     let nodes = body.mesh().nodes_per_axis();
     let top = nodes[0] * nodes[1];

@@ -5,16 +5,16 @@
 //! the contact face whose z is released is a contact node.
 
 use std::collections::BTreeSet;
-use tribosweep::solver::body::pin::BlockMesh;
-use tribosweep::solver::body::pin::Stiffness;
-use tribosweep::solver::body::pin::operator::AssembledOperator;
-use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::interface::target;
-use tribosweep::solver::interface::target::TargetDefinition;
-use tribosweep::solver::material::Material;
-use tribosweep::solver::support::Support;
-use tribosweep::solver::support::load::LoadShare;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep, step};
+use tribosweep_mechanics::solver::body::pin::BlockMesh;
+use tribosweep_mechanics::solver::body::pin::Stiffness;
+use tribosweep_mechanics::solver::body::pin::operator::AssembledOperator;
+use tribosweep_mechanics::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::interface::target;
+use tribosweep_mechanics::solver::interface::target::TargetDefinition;
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::support::Support;
+use tribosweep_mechanics::solver::support::load::LoadShare;
+use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State, TimeStep, step};
 
 /// Components of a node.
 pub const X: usize = 0;

@@ -17,12 +17,12 @@
 use crate::common::{ROUNDINGS_PER_FORCE, advance, all_of, definition, pin_material};
 use crate::evidence::Evidence;
 use crate::modes::stiffness_rows;
-use tribosweep::solver::body::pin::BlockMesh;
-use tribosweep::solver::field::Field;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::support::Support;
-use tribosweep::solver::support::load;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
+use tribosweep_mechanics::solver::body::pin::BlockMesh;
+use tribosweep_mechanics::solver::field::Field;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::support::Support;
+use tribosweep_mechanics::solver::support::load;
+use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State, TimeStep};
 
 const SIZE_M: [f64; 3] = [0.012, 0.015, 0.010];
 const LOAD_N: f64 = 30.0;
@@ -63,7 +63,7 @@ fn rounding(model: &Model, confined: bool, steps: usize) -> [f64; 2] {
     let u = exact_m(model, confined);
     let rows = stiffness_rows(model);
     let size = |dof: usize| rows[dof].iter().map(|(c, k)| (k * u[*c]).abs()).sum::<f64>();
-    let relative = |slave: &tribosweep::solver::interface::SlaveNode| {
+    let relative = |slave: &tribosweep_mechanics::solver::interface::SlaveNode| {
         size(3 * slave.node + 2) / (PRESSURE_PA * slave.area_m2)
     };
     let force = model.slaves().iter().map(relative).fold(0.0, f64::max);

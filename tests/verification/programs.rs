@@ -9,11 +9,11 @@
 //!   vanishes with the rate of the ramp.
 
 use crate::particles::{Particles, Y, Z};
-use tribosweep::analysis::program::{Direction, Hysteresis};
-use tribosweep::analysis::{JobObserver, JobRecord, Moment, Outcome, Unobserved, drive_at, solve};
-use tribosweep::solver::interface::ContactState;
-use tribosweep::solver::{State, TimeStep, step};
-use tribosweep::spec::{FrictionLaw, JobSpec, Program, StabilityMethod, Table};
+use tribosweep_mechanics::analysis::program::{Direction, Hysteresis};
+use tribosweep_mechanics::analysis::{JobObserver, JobRecord, Moment, Outcome, Unobserved, drive_at, solve};
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_mechanics::solver::{State, TimeStep, step};
+use tribosweep_mechanics::spec::{FrictionLaw, JobSpec, Program, StabilityMethod, Table};
 
 const MASS_KG: f64 = 0.25;
 const LOAD_N: f64 = 1000.0;
@@ -232,7 +232,7 @@ fn energies(record: &JobRecord) -> String {
 /// Protects: a program that changes nothing is the constant run, bit by bit, in both precisions.
 #[test]
 fn a_program_without_a_change_is_the_constant_run() {
-    use tribosweep::spec::Precision;
+    use tribosweep_mechanics::spec::Precision;
     for precision in [Precision::Double, Precision::Single] {
         let mut spec = coarse();
         spec.numerics.precision = precision;

@@ -11,8 +11,8 @@
 //! * A share of node-time may differ by the threshold of a regime (3 %), because it depends on when a node at
 //!   rest to rounding counts as sticking.
 
-use tribosweep::analysis::{JobRecord, Outcome, Unobserved, solve};
-use tribosweep::spec::{JobSpec, StabilityMethod};
+use tribosweep_mechanics::analysis::{JobRecord, Outcome, Unobserved, solve};
+use tribosweep_mechanics::spec::{JobSpec, StabilityMethod};
 
 /// The independent solver's scene, which also runs if it is stable, at `omega_rpm` and μ.
 fn spec(omega_rpm: f64, mu: f64) -> JobSpec {

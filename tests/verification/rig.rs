@@ -1,15 +1,15 @@
 //! B34 The rig of Allgaier, Gaul, Keiper and Willner (1999): a beam on an elastic disk.
 
 use std::f64::consts::TAU;
-use tribosweep::solver::body::pin::{BlockMesh, GeneralMesh, MeshParts, Stiffness, Tilt};
-use tribosweep::solver::body::ring::{RingDefinition, RingMesh};
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::interface::target::TargetDefinition;
-use tribosweep::solver::material::Material;
-use tribosweep::solver::support::Support;
-use tribosweep::solver::{Drive, Model, ModelDefinition, TimeStep};
-use tribosweep::spec::{DiskTimeStep, TargetSurface};
-use tribosweep::stability::SparseStructure;
+use tribosweep_mechanics::solver::body::pin::{BlockMesh, GeneralMesh, MeshParts, Stiffness, Tilt};
+use tribosweep_mechanics::solver::body::ring::{RingDefinition, RingMesh};
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::interface::target::TargetDefinition;
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::support::Support;
+use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, TimeStep};
+use tribosweep_mechanics::spec::{DiskTimeStep, TargetSurface};
+use tribosweep_mechanics::stability::SparseStructure;
 
 const ALUMINIUM: Material = Material { young_modulus_pa: 7.0e10, poisson_ratio: 0.33, density_kg_m3: 2700.0 };
 

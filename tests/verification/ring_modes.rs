@@ -29,7 +29,7 @@ use crate::ring_ritz;
 use crate::ring_tools::{RADII_M, RingBody, STEEL, THICKNESS_M};
 use nalgebra::DMatrix;
 use std::f64::consts::{PI, TAU};
-use tribosweep::solver::body::ring::RingMesh;
+use tribosweep_mechanics::solver::body::ring::RingMesh;
 
 const RITZ: &str = "Rayleigh–Ritz in cylindrical coordinates, Legendre polynomials to degree 14";
 const TORSION: &str = "torsional modes of a free hollow cylinder (Graff 1975)";

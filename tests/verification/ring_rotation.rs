@@ -9,7 +9,7 @@
 
 use crate::evidence::Evidence;
 use crate::ring_tools::{Nodal, RADII_M, RingBody, THICKNESS_M, graded_mesh};
-use tribosweep::solver::body::ring::RingMesh;
+use tribosweep_mechanics::solver::body::ring::RingMesh;
 
 /// The six rigid motions: translations, then rotations.
 fn rigid_motions(body: &RingBody) -> Vec<Nodal> {

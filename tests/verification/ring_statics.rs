@@ -29,7 +29,7 @@
 use crate::evidence::Evidence;
 use crate::ring_tools::{RADII_M, RingBody, STEEL, graded_mesh};
 use std::f64::consts::PI;
-use tribosweep::solver::body::ring::RingMesh;
+use tribosweep_mechanics::solver::body::ring::RingMesh;
 
 const PATCH: &str = "linear fields (Irons and Razzaque 1972)";
 const BOUSSINESQ: &str = "Boussinesq's half-space, the far surface held at its displacements";

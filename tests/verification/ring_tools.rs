@@ -2,11 +2,11 @@
 //! the other files.
 
 use std::f64::consts::PI;
-use tribosweep::solver::body::ring::RingMesh;
-use tribosweep::solver::body::ring::operator::{RingOperator, RingScratch};
-use tribosweep::solver::field::Field;
-use tribosweep::solver::material::Material;
-use tribosweep::spec::{DiskTimeStep, Pin, Ring, TargetSurface};
+use tribosweep_mechanics::solver::body::ring::RingMesh;
+use tribosweep_mechanics::solver::body::ring::operator::{RingOperator, RingScratch};
+use tribosweep_mechanics::solver::field::Field;
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::spec::{DiskTimeStep, Pin, Ring, TargetSurface};
 
 /// The reference ring's steel.
 pub const STEEL: Material = Material { young_modulus_pa: 2.1e11, poisson_ratio: 0.3, density_kg_m3: 7800.0 };

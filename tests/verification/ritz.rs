@@ -9,7 +9,7 @@
 use crate::modes::{MirrorClass, mirror_sign};
 use nalgebra::DMatrix;
 use std::f64::consts::TAU;
-use tribosweep::solver::material::Material;
+use tribosweep_mechanics::solver::material::Material;
 
 /// A basis function: component and degrees in x, y and z.
 type Basis = (usize, [usize; 3]);

@@ -5,8 +5,8 @@
 //! * **From a map** whose points are the nodes it is that map. The heights of a sine wave give the gaps of the wave base.
 
 use crate::evidence::Evidence;
-use tribosweep::solver::Model;
-use tribosweep::spec::{Base, HeightMap, JobSpec, Roughness};
+use tribosweep_mechanics::solver::Model;
+use tribosweep_mechanics::spec::{Base, HeightMap, JobSpec, Roughness};
 
 const RMS_M: f64 = 1.0e-6;
 

@@ -18,10 +18,10 @@
 use crate::evidence::Evidence;
 use crate::mode_coupling::{BODY_Z, NORMAL_N, oscillator, steady};
 use crate::particles::{Y, Z, audited_step};
-use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::interface::ContactState;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, State};
+use tribosweep_mechanics::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, State};
 
 /// Averages over a window of the saturated oscillation, in units of the load N0.
 #[derive(Default)]

@@ -12,12 +12,14 @@
 use crate::common::{all_of, definition, pin_material};
 use crate::evidence::Evidence;
 use std::f64::consts::{PI, TAU};
-use tribosweep::analysis::drive;
-use tribosweep::solver::body::pin::{BlockMesh, GeneralMesh, Hexahedron, MeshParts, PinMesh, Tilt, cylinder};
-use tribosweep::solver::material::Material;
-use tribosweep::solver::support::Support;
-use tribosweep::solver::{Model, ModelDefinition, State, step};
-use tribosweep::spec::{JobSpec, Region};
+use tribosweep_mechanics::analysis::drive;
+use tribosweep_mechanics::solver::body::pin::{
+    BlockMesh, GeneralMesh, Hexahedron, MeshParts, PinMesh, Tilt, cylinder,
+};
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::support::Support;
+use tribosweep_mechanics::solver::{Model, ModelDefinition, State, step};
+use tribosweep_mechanics::spec::{JobSpec, Region};
 
 const MATERIAL: Material = Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
 

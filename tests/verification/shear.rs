@@ -24,11 +24,11 @@ use crate::common::{
     pin_material,
 };
 use crate::evidence::Evidence;
-use tribosweep::solver::interface::ContactState;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::material::Material;
-use tribosweep::solver::support::Support;
-use tribosweep::solver::{Drive, Model, ModelDefinition, State, TimeStep};
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::support::Support;
+use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State, TimeStep};
 
 const MU: f64 = 0.4;
 const SHEAR_LIMIT_PA: f64 = 66_666.666_666_666_67;

@@ -12,9 +12,9 @@
 use crate::common::advance;
 use crate::evidence::Evidence;
 use crate::particles::{Particles, X, Y, Z};
-use tribosweep::solver::interface::ContactState;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, State, TimeStep};
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, State, TimeStep};
 
 const DECELERATION_M_S2: f64 = 3.0;
 const ACROSS_M_S: f64 = 0.4;

@@ -11,11 +11,11 @@
 use crate::sliding_modes::{EXACT, SURE, scene};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
-use tribosweep::analysis;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, Model, State, step};
-use tribosweep::spec::{ClampSide, JobSpec, Numerics};
-use tribosweep::stability::{Accuracy, Aim, Mode, SlidingPoint, Structure};
+use tribosweep_mechanics::analysis;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, Model, State, step};
+use tribosweep_mechanics::spec::{ClampSide, JobSpec, Numerics};
+use tribosweep_mechanics::stability::{Accuracy, Aim, Mode, SlidingPoint, Structure};
 
 /// Largest amplitude of the vibration over that of the equilibrium. Nodes near the edge press with a hundredth of the mean.
 const AMPLITUDE: f64 = 1.0e-5;

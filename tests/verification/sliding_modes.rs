@@ -11,14 +11,14 @@
 use faer::linalg::solvers::Solve;
 use faer::{Mat, c64};
 use std::f64::consts::TAU;
-use tribosweep::analysis;
-use tribosweep::solver::Model;
-use tribosweep::solver::body::Freedom;
-use tribosweep::solver::body::hexahedron;
-use tribosweep::solver::body::pin::operator::AssembledOperator;
-use tribosweep::spec::{ClampSide, JobSpec, TopFace};
-use tribosweep::stability::{Accuracy, Aim, Mode, SlidingPoint, Structure};
-use tribosweep::units::rad_per_s_from_rpm;
+use tribosweep_mechanics::analysis;
+use tribosweep_mechanics::solver::Model;
+use tribosweep_mechanics::solver::body::Freedom;
+use tribosweep_mechanics::solver::body::hexahedron;
+use tribosweep_mechanics::solver::body::pin::operator::AssembledOperator;
+use tribosweep_mechanics::spec::{ClampSide, JobSpec, TopFace};
+use tribosweep_mechanics::stability::{Accuracy, Aim, Mode, SlidingPoint, Structure};
+use tribosweep_mechanics::units::rad_per_s_from_rpm;
 
 /// Corrections until only rounding is left.
 pub const EXACT: Accuracy =

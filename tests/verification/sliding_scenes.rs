@@ -12,11 +12,11 @@ use crate::sliding_in_time::Pin;
 use crate::sliding_modes::{EXACT, scene};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
-use tribosweep::analysis;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, Model, State, step};
-use tribosweep::spec::{ClampSide, FrictionLaw, JobSpec};
-use tribosweep::stability::{StabilityError, Structure};
+use tribosweep_mechanics::analysis;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, Model, State, step};
+use tribosweep_mechanics::spec::{ClampSide, FrictionLaw, JobSpec};
+use tribosweep_mechanics::stability::{StabilityError, Structure};
 
 /// Damping that leaves the lead to the mode near 15 kHz, which grows much faster than all others. The shapes of the start are those
 /// without a time step, and friction that a run takes a step later changes them. The periods before the fit leave the fastest

@@ -10,17 +10,17 @@ use crate::elastic::coarse_scene;
 use crate::sliding_modes::{EXACT, scene};
 use faer::{Mat, Side, c64};
 use std::f64::consts::TAU;
-use tribosweep::analysis;
-use tribosweep::solver::body::pin::{BlockMesh, Stiffness};
-use tribosweep::solver::body::ring::operator::RingOperator;
-use tribosweep::solver::body::ring::{RingDefinition, RingMesh};
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::interface::target::TargetDefinition;
-use tribosweep::solver::material::Material;
-use tribosweep::solver::support::Support;
-use tribosweep::solver::{Drive, Model, ModelDefinition, TimeStep};
-use tribosweep::spec::{ClampSide, DiskKind, DiskTimeStep, FrictionLaw, JobSpec, TargetSurface};
-use tribosweep::stability::{SparseStructure, Structure};
+use tribosweep_mechanics::analysis;
+use tribosweep_mechanics::solver::body::pin::{BlockMesh, Stiffness};
+use tribosweep_mechanics::solver::body::ring::operator::RingOperator;
+use tribosweep_mechanics::solver::body::ring::{RingDefinition, RingMesh};
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::interface::target::TargetDefinition;
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::support::Support;
+use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, TimeStep};
+use tribosweep_mechanics::spec::{ClampSide, DiskKind, DiskTimeStep, FrictionLaw, JobSpec, TargetSurface};
+use tribosweep_mechanics::stability::{SparseStructure, Structure};
 
 fn model(spec: &JobSpec) -> Model {
     Model::from_scene(&spec.scene, &spec.numerics).unwrap()

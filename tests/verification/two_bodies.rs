@@ -18,10 +18,10 @@
 use crate::common::{FRONT_ORDER, IDLE, ROUNDINGS_PER_FORCE, advance, normal_force_n};
 use crate::elastic::{Below, free_block, momentum, on_block};
 use crate::evidence::Evidence;
-use tribosweep::solver::energy::EnergyLedger;
-use tribosweep::solver::material::Material;
-use tribosweep::solver::{ModelDefinition, State, TimeStep};
-use tribosweep::spec::{DiskTimeStep, TargetSurface};
+use tribosweep_mechanics::solver::energy::EnergyLedger;
+use tribosweep_mechanics::solver::material::Material;
+use tribosweep_mechanics::solver::{ModelDefinition, State, TimeStep};
+use tribosweep_mechanics::spec::{DiskTimeStep, TargetSurface};
 
 const LENGTH: f64 = 10.0;
 const SPEED: f64 = 0.1;

@@ -12,9 +12,9 @@
 use crate::common::advance;
 use crate::evidence::Evidence;
 use crate::particles::{Particles, Y, Z};
-use tribosweep::solver::interface::ContactState;
-use tribosweep::solver::interface::law::Law;
-use tribosweep::solver::{Drive, State, TimeStep};
+use tribosweep_mechanics::solver::interface::ContactState;
+use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::{Drive, State, TimeStep};
 
 const SLOPE: f64 = 0.1;
 const STEPS: usize = 100;

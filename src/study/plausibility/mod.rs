@@ -15,7 +15,6 @@ use rayon::iter::{IndexedParallelIterator, IntoParallelRefIterator, ParallelIter
 use serde::Serialize;
 use std::fmt;
 
-pub use physics::LOCKING_POISSON_RATIO;
 pub(super) use physics::refused_strain;
 
 /// What a warning is about.

@@ -1,7 +1,8 @@
 //! Jobs outside of what the model and its elements describe.
 
 use super::{Doubt, percent, short};
-use crate::spec::{ClampSide, DiskKind, FieldError, JobSpec, Shape, elasticity};
+use crate::spec::elasticity::{self, LOCKING_POISSON_RATIO};
+use crate::spec::{ClampSide, DiskKind, FieldError, JobSpec, Shape};
 use std::f64::consts::PI;
 
 /// Mean strain of the pin from which on the linear model is in doubt.
@@ -13,8 +14,6 @@ const TOTAL_STRAIN: f64 = 1.0;
 /// Sliding speed as a fraction of the speed of surface waves from which on the linear model is in doubt. A node that sticks
 /// moves with the disk, and this fraction is of the order of the strain in the wave that it sends out.
 const FAST: f64 = 0.1;
-/// Poisson's ratio from which on the elements are noticeably too stiff; `tests/verification/locking.rs` has measured it.
-pub const LOCKING_POISSON_RATIO: f64 = 0.48;
 /// Change of the clamp's width by the mesh from which on it is named.
 const MOVED: f64 = 0.01;
 /// The time step with damping over the one without, below which damping decides about the cost.

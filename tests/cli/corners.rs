@@ -1,5 +1,6 @@
 //! The whole path: a study file, the queue, the database, the export.
 
+use crate::support::Folder;
 use serde_json::{Value, json};
 
 /// A study with corners along every axis. All combinations are jobs.
@@ -26,22 +27,17 @@ fn study() -> Value {
 /// the database: none is lost or left unfinished, and no figure is null because it is not a number.
 #[test]
 fn hostile_jobs_come_out_of_the_database() {
-    let folder = tempfile::TempDir::new().unwrap();
-    std::fs::write(folder.path().join("corners.json"), study().to_string()).unwrap();
-    let run = |arguments: &[&str]| {
-        let mut command = assert_cmd::Command::new(env!("CARGO_BIN_EXE_tribosweep"));
-        command.current_dir(&folder).env_remove("TRIBOSWEEP_DB").env("XDG_CACHE_HOME", folder.path());
-        command.args(arguments).timeout(std::time::Duration::from_mins(5)).output().unwrap()
-    };
-    let refused = run(&["run", "corners.json"]);
+    let folder = Folder::with("corners", &study());
+    let run = |arguments: &str| folder.command(arguments).output().unwrap();
+    let refused = run("run corners.json");
     let message = String::from_utf8(refused.stderr).unwrap();
     assert_eq!(refused.status.code(), Some(2), "{message}");
     assert!(message.contains("run.limit_s") && message.contains("beta_r_s"), "{message}");
-    assert!(!folder.path().join("tribosweep.db").exists());
+    assert!(!folder.path("tribosweep.db").exists());
 
-    let status = run(&["run", "corners.json", "--set", "beta_r_s=[0, 1e-5]"]).status;
+    let status = run("run corners.json --set beta_r_s=[0,1e-5]").status;
     assert_eq!(status.code(), Some(0));
-    let exported = run(&["export", "corners", "--format", "json"]);
+    let exported = run("export corners --format json");
     let text = String::from_utf8(exported.stdout).unwrap();
     let rows: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).unwrap()).collect();
     assert_eq!(rows.len(), 2_usize.pow(8));
