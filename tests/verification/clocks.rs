@@ -22,11 +22,22 @@ fn model(spec: &JobSpec) -> Model {
     Model::from_scene(&spec.scene, &spec.numerics).unwrap()
 }
 
-/// Protects: the energies of pin and disk close to rounding over 20 ms of squeal with several stages per
-/// step, if every step is audited. This holds with bilinear and with smooth patches.
+/// Protects: the energies of pin and disk close to rounding in squeal with several stages per step, if every
+/// step is audited. This holds with bilinear and with smooth patches.
 #[test]
 fn energies_close_with_stages() {
-    let mut evidence = Evidence::new("R4", "imbalance over the energy put in, 20 ms", KRENK);
+    energies_close(4);
+}
+
+/// Protects: the same over a longer squeal.
+#[test]
+#[ignore = "20 ms of squeal on an elastic disk"]
+fn energies_close_over_a_long_squeal() {
+    energies_close(20);
+}
+
+fn energies_close(span_ms: u32) {
+    let mut evidence = Evidence::new("R4", format!("imbalance over the energy put in, {span_ms} ms"), KRENK);
     let mut most_steps = 0.0_f64;
     for target in [TargetSurface::Bilinear, TargetSurface::Ferguson] {
         let mut spec = coarse_scene();
@@ -36,7 +47,7 @@ fn energies_close_with_stages() {
         let drive = drive(0.4, 7.0);
         let mut state = State::<1>::at_rest(&model);
         let mut ledger = EnergyLedger::new(&model, 1);
-        let steps = (0.02 / model.time_step_s()) as usize;
+        let steps = (1.0e-3 * f64::from(span_ms) / model.time_step_s()) as usize;
         for _ in 0..steps {
             ledger.before_step(&model, &state);
             advance(&model, &drive, &mut state, 1);
@@ -91,17 +102,27 @@ fn stages_change_less_than_the_step_does() {
     evidence.judge_bounded("the error of the same step on a rigid disk");
 }
 
-/// Protects: without any damping, nothing grows over ten thousand steps of a shaken pin that bounces on the
-/// disk, for every number of stages and for disks from softer than the pin to much stiffer. A frictionless
+/// Protects: without any damping, nothing grows over many steps of a shaken pin that bounces on the disk, for every number of stages and for disks from softer than the pin to much stiffer. A frictionless
 /// contact force N takes N g_{n−1}/2 ≥ 0 over the increments before and after its time. At that time, between
 /// the two increments, the force has yet to take N g_n/2. So the stored energy is at most what was put in
 /// plus N g_n/2. (Clocks that exchange held forces grow by a percent per step where a multiple of the longer
 /// step is in resonance with the finer mesh.)
 #[test]
 fn nothing_grows_without_damping() {
+    nothing_grows(1_000);
+}
+
+/// Protects: nothing grows slowly, either.
+#[test]
+#[ignore = "ten thousand audited steps on five elastic disks"]
+fn nothing_grows_slowly() {
+    nothing_grows(10_000);
+}
+
+fn nothing_grows(steps: u32) {
     let mut seen = std::collections::BTreeSet::new();
-    let mut evidence =
-        Evidence::new("R4", "undamped, frictionless, stored energy above what was put in", KRENK);
+    let what = format!("undamped, frictionless, stored energy above what was put in, {steps} steps");
+    let mut evidence = Evidence::new("R4", what, KRENK);
     for (young_modulus_pa, density_kg_m3) in
         [(3.0e8, 2500.0), (1.0e10, 7800.0), (9.0e10, 7800.0), (2.1e11, 7800.0), (3.5e11, 7800.0)]
     {
@@ -124,7 +145,6 @@ fn nothing_grows_without_damping() {
         }
         let mut ledger = EnergyLedger::new(&model, 1);
         let mut worst = 0.0_f64;
-        let steps = 10_000;
         for _ in 0..steps {
             ledger.before_step(&model, &state);
             advance(&model, &drive, &mut state, 1);
@@ -172,32 +192,44 @@ fn a_solve_that_fails_is_an_error() {
     }
 }
 
-/// Protects: a disk that turns several times under a pin without contact has no strain. The energies of a
+/// Protects: a disk that turns more than once under a pin without contact has no strain. The energies of a
 /// disk that carries the pin all the time, over every sector and over the end of the ring's numbering, close.
 #[test]
+fn more_than_a_turn_strains_nothing() {
+    turns_strain_nothing(1.2);
+}
+
+/// Protects: the same over three turns.
+#[test]
+#[ignore = "three turns of an elastic disk"]
 fn several_turns_strain_nothing() {
+    turns_strain_nothing(3.0);
+}
+
+fn turns_strain_nothing(turns: f64) {
     let mut spec = coarse_scene();
     spec.scene.disk.ring.track_arc_deg = 360.0;
-    // At a thousand turns per second, three turns take little time, and the pin passes many edges.
+    // At a thousand turns per second, a turn takes little time, and the pin passes many edges.
     spec.scene.disk.omega_rpm = 60_000.0;
     let model = model(&spec);
-    let steps = (3.0e-3 / model.time_step_s()) as usize;
-    let turns = drive(0.1, spec.scene.disk.omega_rpm);
+    let steps = (1.0e-3 * turns / model.time_step_s()) as usize;
+    let loaded = drive(0.1, spec.scene.disk.omega_rpm);
     let mut state = State::<1>::at_rest(&model);
     for node in 0..model.mesh().block().unwrap().node_count() {
         state.u[3 * node + 2] = 1.0e-6;
     }
-    advance(&model, &Drive { force_n: 0.0, ..turns }, &mut state, steps);
+    advance(&model, &Drive { force_n: 0.0, ..loaded }, &mut state, steps);
     let disk = state.target.ring().unwrap().1;
     assert!(disk.u.values().chain(disk.p.values()).all(|value| value == 0.0), "the disk turns rigidly");
 
-    let mut evidence = Evidence::new("R4", "three turns under load, imbalance over the energy put in", KRENK);
+    let mut evidence =
+        Evidence::new("R4", format!("{turns} turns under load, imbalance over the energy put in"), KRENK);
     let mut state = State::<1>::at_rest(&model);
     let mut ledger = EnergyLedger::new(&model, 1);
     for _ in 0..steps {
         ledger.before_step(&model, &state);
-        advance(&model, &turns, &mut state, 1);
-        ledger.after_step(&model, &[turns], &state);
+        advance(&model, &loaded, &mut state, 1);
+        ledger.after_step(&model, &[loaded], &state);
     }
     let energies = ledger.energies(0);
     evidence.found("360° of track", energies.imbalance_j(), 0.0, energies.input_j());

@@ -106,22 +106,22 @@ fn converged(poisson_ratio: f64) -> serde_json::Value {
 /// converged value it is 7.6 % and 3.8 % away at ν = 0.3, and half as far again at the threshold.
 #[test]
 fn elements_lock_near_incompressibility() {
-    let error = |nu| {
+    let error = |nu, elements| {
         let known = converged(nu);
-        [DRAFT, STANDARD].map(|elements| {
-            let found = deflection_m(nu, elements);
-            let place = usize::from(elements == STANDARD);
-            let same = known["trilinear_m"][place].as_f64().unwrap();
-            assert!((found / same - 1.0).abs() < 1e-6, "ν = {nu}, {elements:?}: {found:e}, not {same:e}");
-            found / known["value"].as_f64().unwrap() - 1.0
-        })
+        let found = deflection_m(nu, elements);
+        let place = usize::from(elements == STANDARD);
+        let same = known["trilinear_m"][place].as_f64().unwrap();
+        assert!((found / same - 1.0).abs() < 1e-6, "ν = {nu}, {elements:?}: {found:e}, not {same:e}");
+        found / known["value"].as_f64().unwrap() - 1.0
     };
-    let (usual, at_threshold, nearly) = (error(0.3), error(LOCKING_POISSON_RATIO), error(0.499));
+    let usual = [DRAFT, STANDARD].map(|elements| error(0.3, elements));
+    // The other ratios are solved on the coarser mesh alone, because the finer one takes long near ½.
+    let (at_threshold, nearly) = (error(LOCKING_POISSON_RATIO, DRAFT), error(0.499, DRAFT));
     // The converged value is known to 0.1 %.
     for (found, stated) in usual.into_iter().zip([-0.076, -0.038]) {
         assert!((found - stated).abs() < 1.5e-3, "{found}, not {stated}");
     }
-    assert!(at_threshold[0] < 1.4 * usual[0] && nearly[0] < 1.9 * usual[0], "{at_threshold:?} {nearly:?}");
+    assert!(at_threshold < 1.4 * usual[0] && nearly < 1.9 * usual[0], "{at_threshold} {nearly}");
 }
 
 /// Prints the lines from which `scripts/accuracy.py` makes its table: ν, and the deflections on the two meshes in metres.
