@@ -2,7 +2,7 @@
 
 use super::signals::coarse;
 use std::sync::Arc;
-use tribosweep::analysis::lanes::{Lanes, LanesOf};
+use tribosweep::analysis::lanes::{AnyLanes, Lanes, LanesOf};
 use tribosweep::analysis::{
     AboveBand, ComplexMode, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Unobserved, solve,
 };
