@@ -5,7 +5,7 @@ use crate::timing::{ROUNDS, seconds};
 use serde::Serialize;
 use std::sync::Arc;
 use tribosweep::analysis::batch::Batch;
-use tribosweep::analysis::lanes::{AUDIT_INTERVAL, LanesOf};
+use tribosweep::analysis::lanes::{AUDIT_INTERVAL, AnyLanes, LanesOf};
 use tribosweep::solver::body::hexahedron;
 use tribosweep::solver::body::pin::operator::{AssembledOperator, Operator, TensorOperator};
 use tribosweep::solver::energy::EnergyLedger;
@@ -101,7 +101,7 @@ fn mesh<const L: usize, R: RunNumber>(
         format!("mesh_{nx}x{ny}x{nz}_{}_{what}_{L}", precision.name())
     };
     let drives: [Drive; L] = std::array::from_fn(|lane| Drive {
-        law: Law::Coulomb { mu: 0.4 },
+        law: Law::coulomb(0.4),
         rate: 0.5 + 0.1 * lane as f64,
         force_n: 30.0,
         ramp_s: 5e-4,
@@ -111,7 +111,7 @@ fn mesh<const L: usize, R: RunNumber>(
     let x = state.u.clone();
     let mut y = state.u.clone();
     let mut scratch = model.pin().operator().scratch::<R>(model.mesh().layout(), L);
-    let product_s = seconds(&name("product"), || model.pin().operator().product(&x, &mut y, &mut scratch));
+    let product_s = seconds(&name("product"), || model.pin().operator().tangent(&x, &mut y, &mut scratch));
     let step_s = seconds(&name("step"), || step(&model, &drives, &mut state));
     let mut lanes = lanes::<L, R>(&spec, L);
     let job_s = seconds(&name("job"), || _ = lanes.advance(&mut |_| {}));
@@ -209,7 +209,7 @@ impl Pair {
 /// Time of a step of one scene with eight lanes, in ns per node, step and job.
 fn stepping<R: RunNumber>(name: &str, spec: &JobSpec, mu: f64) -> f64 {
     let model = model(spec);
-    let drives = [Drive { law: Law::Coulomb { mu }, rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
+    let drives = [Drive { law: Law::coulomb(mu), rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
     let mut state = StateOf::<8, R>::at_rest(&model);
     settle(spec, || (0..STEPS).for_each(|_| step(&model, &drives, &mut state)));
     per_node(&model, 8, 1, seconds(name, || step(&model, &drives, &mut state)))
@@ -236,7 +236,7 @@ fn round_of_pairs() -> Vec<Pair> {
     let mut free = base.clone();
     free.scene.top = TopFace::FreeInZ;
     let model = model(&base);
-    let drives = [Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
+    let drives = [Drive { law: Law::coulomb(0.4), rate: 0.7, force_n: 30.0, ramp_s: 5.0e-4 }; 8];
     let mut state = State::<8>::at_rest(&model);
     let mut ledger = EnergyLedger::new(&model, AUDIT_INTERVAL);
     let audited_s = seconds("pair_energies", || {
@@ -265,7 +265,7 @@ fn round_of_pairs() -> Vec<Pair> {
     let mut y = state.u.clone();
     let [assembled, tensor] = forms.map(|(name, operator)| {
         let mut scratch = operator.scratch(model.mesh().layout(), 8);
-        per_node(&model, 8, 1, seconds(name, || operator.product(&x, &mut y, &mut scratch)))
+        per_node(&model, 8, 1, seconds(name, || operator.tangent(&x, &mut y, &mut scratch)))
     });
     vec![
         Pair::new("damping: β_R > 0, or 0", full, stepping::<f64>("pair_undamped", &undamped, 0.4)),

@@ -3,17 +3,16 @@
 use super::checkpoint::Unreadable;
 use super::continuation;
 use super::error::{JobError, step_count};
-use super::lanes::{Ended, LanesOf};
+use super::lanes::{AnyLanes, Ended, one_lane};
 use super::nested::{Beginning, COST, CoarseStart, coarser};
 use super::record::JobRecord;
 use super::stability::{Structures, Verdict, judge};
 use super::workload::Workload;
 use crate::solver::body::pin::BlockMesh;
-use crate::solver::{Model, PinMotion, RunNumber};
-use crate::spec::{JobSpec, Precision};
+use crate::solver::{Model, PinMotion};
+use crate::spec::JobSpec;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 /// Jobs that share a model, advanced together.
 ///
@@ -22,7 +21,7 @@ use std::sync::Arc;
 pub struct Batch {
     shared: JobSpec,
     widest: usize,
-    lanes: AnyLanes,
+    lanes: Box<dyn AnyLanes>,
     structures: Structures,
     /// The jobs that run on the coarser mesh from which they start.
     coarser: Option<CoarserBatch>,
@@ -37,74 +36,11 @@ pub enum Begun {
     Decided(Box<JobRecord>),
 }
 
-enum AnyLanes {
-    Double(LanesIn<f64>),
-    Single(LanesIn<f32>),
-}
-
-/// Lanes in one precision.
-enum LanesIn<R: RunNumber> {
-    One(Box<LanesOf<1, R>>),
-    Two(Box<LanesOf<2, R>>),
-    Four(Box<LanesOf<4, R>>),
-    Eight(Box<LanesOf<8, R>>),
-}
-
-/// Calls the same method for every number of lanes in one precision.
-macro_rules! each_in {
-    ($lanes:expr, $of:ident => $call:expr) => {
-        match $lanes {
-            LanesIn::One($of) => $call,
-            LanesIn::Two($of) => $call,
-            LanesIn::Four($of) => $call,
-            LanesIn::Eight($of) => $call,
-        }
-    };
-}
-
-/// Calls the same method for every number of lanes.
-macro_rules! each {
-    ($lanes:expr, $of:ident => $call:expr) => {
-        match $lanes {
-            AnyLanes::Double(lanes) => each_in!(lanes, $of => $call),
-            AnyLanes::Single(lanes) => each_in!(lanes, $of => $call),
-        }
-    };
-}
-
-impl AnyLanes {
-    fn new(model: Model, precision: Precision) -> Self {
-        let model = Arc::new(model);
-        match precision {
-            Precision::Double => Self::Double(LanesIn::One(Box::new(LanesOf::new(model)))),
-            Precision::Single => Self::Single(LanesIn::One(Box::new(LanesOf::new(model)))),
-        }
-    }
-
-    /// Moves the jobs to this number of lanes.
-    fn fit(&mut self, lanes: usize) {
-        match self {
-            Self::Double(now) => now.fit(lanes),
-            Self::Single(now) => now.fit(lanes),
-        }
-    }
-}
-
-impl<R: RunNumber> LanesIn<R> {
-    fn fit(&mut self, lanes: usize) {
-        if each_in!(self, now => now.lanes()) != lanes {
-            *self = each_in!(self, from => Self::taken_over(from, lanes));
-        }
-    }
-
-    fn taken_over<const L: usize>(from: &mut LanesOf<L, R>, lanes: usize) -> Self {
-        match lanes {
-            1 => Self::One(Box::new(LanesOf::taken_over(from))),
-            2 => Self::Two(Box::new(LanesOf::taken_over(from))),
-            4 => Self::Four(Box::new(LanesOf::taken_over(from))),
-            _ => Self::Eight(Box::new(LanesOf::taken_over(from))),
-        }
-    }
+/// Where a job runs. A job that starts from a coarser mesh is there first.
+#[derive(Clone, Copy)]
+enum Stage {
+    Own,
+    Coarse,
 }
 
 impl Batch {
@@ -127,7 +63,7 @@ impl Batch {
         Ok(Self {
             shared: spec.shared_part(),
             widest: Workload::of(&model, spec.numerics.precision).widest(),
-            lanes: AnyLanes::new(model, spec.numerics.precision),
+            lanes: one_lane(model, spec.numerics.precision),
             structures,
             coarser: None,
         })
@@ -145,18 +81,12 @@ impl Batch {
 
     /// What the jobs take.
     pub fn workload(&self) -> Workload {
-        let precision = self.shared.numerics.precision;
-        each!(&self.lanes, lanes => Workload::of(lanes.model(), precision))
+        Workload::of(self.lanes.model(), self.shared.numerics.precision)
     }
 
     /// Number of jobs.
     pub fn jobs(&self) -> usize {
-        self.own_jobs() + self.coarser.as_ref().map_or(0, CoarserBatch::jobs)
-    }
-
-    /// Number of jobs on their own mesh.
-    fn own_jobs(&self) -> usize {
-        each!(&self.lanes, lanes => lanes.jobs())
+        self.lanes.jobs() + self.coarser.as_ref().map_or(0, CoarserBatch::jobs)
     }
 
     /// Begins a job that continues no other one, as [`Batch::begin_after`].
@@ -192,19 +122,19 @@ impl Batch {
         assert!(self.jobs() < self.widest, "no more jobs than the widest");
         step_count(spec.limit_of_run_s(), self.workload().time_step_s)?;
         if let Some(key) = spec.parent() {
-            let beginning = each!(&self.lanes, lanes => {
-                parent.and_then(|motion| continuation::beginning(&spec, lanes.model(), motion))
-            });
+            let model = self.lanes.model();
+            let beginning = parent.and_then(|motion| continuation::beginning(&spec, model, motion));
             let parent = key.to_owned();
             let beginning = beginning.ok_or(JobError::NoParentMotion { parent })?;
-            return self.begin_ready(Ready { ticket, spec, beginning });
+            return self.begin_own(Ready { ticket, spec, beginning });
         }
-        let rest = Ready { ticket, spec, beginning: Beginning::REST };
-        let ready = match self.coarser_of(&rest.spec) {
-            Some(coarser) => coarser.begin(ticket, rest.spec),
-            None => Some(rest),
-        };
-        ready.map_or(Ok(Begun::Runs), |ready| self.begin_ready(ready))
+        match self.coarser_of(&spec) {
+            Some(coarser) => match coarser.begin(ticket, spec) {
+                Some(refused) => self.begin_own(refused),
+                None => Ok(Begun::Runs),
+            },
+            None => self.begin_own(Ready { ticket, spec, beginning: Beginning::REST }),
+        }
     }
 
     /// The batch on the coarser mesh from which a job starts; none if it starts from rest.
@@ -217,21 +147,17 @@ impl Batch {
     }
 
     /// Begins a job on its own mesh, unless eigenvalues decide it.
-    fn begin_ready(&mut self, ready: Ready) -> Result<Begun, JobError> {
+    fn begin_own(&mut self, ready: Ready) -> Result<Begun, JobError> {
         let Ready { ticket, spec, beginning } = ready;
-        let verdict = each!(&self.lanes, lanes => judge(&spec, lanes.model(), &beginning, &self.structures));
-        let stability = match verdict? {
+        let stability = match judge(&spec, self.lanes.model(), &beginning, &self.structures)? {
             Verdict::Decided(record) => return Ok(Begun::Decided(record)),
             Verdict::Undecided(stability) => stability,
         };
-        self.make_room(&spec);
-        each!(&mut self.lanes, lanes => {
-            let lane = lanes.free_lane().expect("a lane was made");
-            lanes.begin_from(lane, ticket, spec, beginning)?;
-            if let Some(stability) = stability {
-                lanes.note(lane, stability);
-            }
-        });
+        let lane = self.free_lane();
+        self.lanes.begin_from(lane, ticket, spec, beginning)?;
+        if let Some(stability) = stability {
+            self.lanes.note(lane, stability);
+        }
         Ok(Begun::Runs)
     }
 
@@ -247,44 +173,44 @@ impl Batch {
         assert!(self.takes(&spec), "a job of another model");
         assert!(self.jobs() < self.widest, "no more jobs than the widest");
         let Some((stage, bytes)) = checkpoint.split_last() else { return Err(Unreadable) };
-        if *stage == COARSER {
+        if *stage == Stage::Coarse as u8 {
             let coarser = self.coarser_of(&spec).ok_or(Unreadable)?;
             return coarser.resume(ticket, spec, bytes);
         }
-        self.make_room(&spec);
-        each!(&mut self.lanes, lanes => {
-            let lane = lanes.free_lane().expect("a lane was made");
-            lanes.resume(lane, ticket, spec, bytes)
-        })
+        let lane = self.free_lane();
+        self.lanes.resume(lane, ticket, spec, bytes)
     }
 
     /// The checkpoint of a job, for [`Batch::resume`] of the same program; none if there is no such job.
     pub fn checkpoint(&self, ticket: u64) -> Option<Vec<u8>> {
-        let with = |mut bytes: Vec<u8>, stage: u8| {
-            bytes.push(stage);
-            bytes
-        };
-        let coarser = || Some(with(self.coarser.as_ref()?.checkpoint(ticket)?, COARSER));
-        let own = each!(&self.lanes, lanes => lanes.checkpoint(ticket));
-        own.map(|bytes| with(bytes, OWN)).or_else(coarser)
+        let own = self.lanes.checkpoint(ticket).map(|bytes| (bytes, Stage::Own));
+        let coarse = || Some((self.coarser.as_ref()?.checkpoint(ticket)?, Stage::Coarse));
+        let (mut bytes, stage) = own.or_else(coarse)?;
+        // The last byte says where the job goes on.
+        bytes.push(stage as u8);
+        Some(bytes)
     }
 
-    fn make_room(&mut self, spec: &JobSpec) {
-        assert!(self.takes(spec), "a job of another model");
-        if each!(&self.lanes, lanes => lanes.free_lane()).is_none() {
-            self.fit(self.own_jobs() + 1);
+    /// A lane without a job. If there is none, the jobs move to more lanes.
+    fn free_lane(&mut self) -> usize {
+        if self.lanes.free_lane().is_none() {
+            self.fit(self.lanes.jobs() + 1);
         }
+        self.lanes.free_lane().expect("a lane was made")
     }
 
     /// Moves the jobs to as few lanes as possible. This is useful when no other job will come.
     pub fn narrow(&mut self) {
-        self.fit(self.own_jobs());
+        self.fit(self.lanes.jobs());
         self.coarser.iter_mut().for_each(CoarserBatch::narrow);
     }
 
     /// Changes the number of lanes to the smallest that holds `jobs` jobs.
     fn fit(&mut self, jobs: usize) {
-        self.lanes.fit(jobs.max(1).next_power_of_two().min(8));
+        let lanes = jobs.max(1).next_power_of_two().min(8);
+        if self.lanes.lanes() != lanes {
+            self.lanes = self.lanes.taken_over(lanes);
+        }
     }
 
     /// Advances all jobs by a few steps and returns those that ended.
@@ -292,35 +218,32 @@ impl Batch {
         let mut ended = Vec::new();
         for ready in self.coarser.as_mut().map(CoarserBatch::advance).unwrap_or_default() {
             let ticket = ready.ticket;
-            let result = match self.begin_ready(ready) {
+            let result = match self.begin_own(ready) {
                 Ok(Begun::Runs) => continue,
                 Ok(Begun::Decided(record)) => Ok(*record),
                 Err(error) => Err(error),
             };
             ended.push(Ended { ticket, result, motion: None });
         }
-        if self.own_jobs() > 0 {
+        if self.lanes.jobs() > 0 {
             // A lane without a job costs as much as one with a job. A job on the coarser mesh gets one when it is ready.
             if self.coarser.as_ref().is_some_and(|coarser| coarser.jobs() > 0) {
-                self.fit(self.own_jobs());
+                self.fit(self.lanes.jobs());
             }
-            ended.extend(each!(&mut self.lanes, lanes => lanes.advance(&mut |_| {})));
+            ended.extend(self.lanes.advance(&mut |_| {}));
         }
         ended
     }
 
     /// Simulated time \[s\] of every job, by its ticket. That on a coarser mesh counts by its cost.
     pub fn simulated(&self) -> Vec<(u64, f64)> {
-        let own: Vec<_> = each!(&self.lanes, lanes => lanes.simulated().collect());
-        own.into_iter().chain(self.coarser.iter().flat_map(CoarserBatch::simulated)).collect()
+        self.lanes
+            .simulated()
+            .into_iter()
+            .chain(self.coarser.iter().flat_map(CoarserBatch::simulated))
+            .collect()
     }
 }
-
-/// The last byte of the checkpoint of a job on its own mesh.
-const OWN: u8 = 0;
-
-/// The last byte of the checkpoint of a job on the coarser mesh.
-const COARSER: u8 = 1;
 
 /// Turns of a coarser batch in one turn of the batch: they take about the same time.
 const TURNS: usize = 8;

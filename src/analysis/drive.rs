@@ -2,11 +2,11 @@
 
 use crate::solver::Drive;
 use crate::solver::interface::law::Law;
-use crate::spec::{Contact, FrictionLaw, JobSpec, Program};
+use crate::spec::{JobSpec, Program};
 use crate::units::rad_per_s_from_rpm;
 
 /// The drive of a lane without a job: no motion and no load.
-pub(super) const IDLE: Drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
+pub(super) const IDLE: Drive = Drive { law: Law::coulomb(0.0), rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
 
 /// Sets the speed and the load of a job with a program for the step that begins at `time_s`: the load at that time, and the
 /// speed in the middle of the step. Over a straight part of the table that is the mean speed of the step.
@@ -22,28 +22,10 @@ pub(super) fn follow(program: &Program, drive: &mut Drive, time_s: f64, time_ste
 /// The drive of the lane of a job. If the job has a program, it has the largest speed and load.
 pub fn drive(spec: &JobSpec) -> Drive {
     Drive {
-        law: law(&spec.scene.contact),
+        law: Law::of(&spec.scene.contact),
         rate: rad_per_s_from_rpm(spec.scene.disk.omega_rpm),
         force_n: spec.scene.load.force_n,
         ramp_s: spec.scene.load.ramp_s,
-    }
-}
-
-/// The law of a contact. The check of a job refuses a law without its coefficients, so that NaN reaches no run.
-fn law(contact: &Contact) -> Law {
-    let mu = contact.mu;
-    let given = |value: Option<f64>| value.unwrap_or(f64::NAN);
-    match contact.law {
-        FrictionLaw::Coulomb => Law::Coulomb { mu },
-        FrictionLaw::StaticKinetic => Law::StaticKinetic { mu, mu_static: given(contact.mu_static) },
-        FrictionLaw::Exponential => Law::Exponential {
-            mu,
-            mu_static: given(contact.mu_static),
-            speed_m_s: given(contact.speed_m_s),
-            slope_s_m: contact.slope_s_m.unwrap_or(0.0),
-        },
-        FrictionLaw::Regularised => Law::Regularised { mu, speed_m_s: given(contact.speed_m_s) },
-        FrictionLaw::PrakashClifton => Law::PrakashClifton { mu, length_m: given(contact.length_m) },
     }
 }
 

@@ -2,13 +2,12 @@
 
 use super::batch::beginning;
 use super::error::{JobError, step_count};
-use super::lanes::{LanesOf, Moment};
+use super::lanes::{Moment, one_lane};
 use super::record::JobRecord;
 use super::stability::{Structures, Verdict, judge};
-use crate::solver::{Model, RunNumber};
-use crate::spec::{JobSpec, Precision};
+use crate::solver::Model;
+use crate::spec::JobSpec;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 
 /// Receives the steps and the progress of a running job.
 pub trait JobObserver {
@@ -44,21 +43,10 @@ impl JobObserver for Unobserved {}
 pub fn solve(spec: &JobSpec, observer: &mut dyn JobObserver) -> Result<JobRecord, JobError> {
     spec.check()?;
     let model = Model::from_scene(&spec.scene, &spec.numerics)?;
-    match spec.numerics.precision {
-        Precision::Double => solve_in::<f64>(spec, model, observer),
-        Precision::Single => solve_in::<f32>(spec, model, observer),
-    }
-}
-
-fn solve_in<R: RunNumber>(
-    spec: &JobSpec,
-    model: Model,
-    observer: &mut dyn JobObserver,
-) -> Result<JobRecord, JobError> {
     if let Some(parent) = spec.parent() {
         return Err(JobError::NoParentMotion { parent: parent.to_owned() });
     }
-    let mut lanes = LanesOf::<1, R>::new(Arc::new(model));
+    let mut lanes = one_lane(model, spec.numerics.precision);
     step_count(spec.limit_of_run_s(), lanes.model().time_step_s())?;
     let beginning = beginning(spec, &mut |spent_s| observer.progress(spent_s))?;
     let verdict = judge(spec, lanes.model(), &beginning, &Structures::default())?;
@@ -75,7 +63,8 @@ fn solve_in<R: RunNumber>(
         if let Some(ended) = ended.into_iter().next() {
             return ended.result;
         }
-        let simulated_s = lanes.simulated().map(|(_, simulated_s)| simulated_s).fold(0.0, f64::max);
+        let simulated_s =
+            lanes.simulated().into_iter().map(|(_, simulated_s)| simulated_s).fold(0.0, f64::max);
         if observer.progress(simulated_s).is_break() {
             return Err(JobError::Interrupted);
         }

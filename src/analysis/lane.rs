@@ -18,7 +18,7 @@ use crate::solver::Model;
 use crate::solver::body::ring::RingBody;
 use crate::solver::energy::Energies;
 use crate::solver::interface::solve::Solves;
-use crate::spec::{FrictionLaw, Holder, JobSpec, Precision, SlowTimes};
+use crate::spec::{Holder, JobSpec, Precision, SlowTimes};
 use crate::stability::SlidingFriction;
 use serde::{Deserialize, Serialize};
 
@@ -240,13 +240,12 @@ impl LaneAnalysis {
             time_step_limit_s: model.time_step_limit_s(),
             clamp_width_m: model.clamp_width_m(),
             energy_residual: energies.relative_residual(),
-            macroscopic_identity_residual: match self.spec.scene.contact.law {
-                FrictionLaw::Coulomb => {
-                    let mu = self.spec.scene.contact.mu;
-                    mu - figures.mu_star() - figures.stick_reduction() - figures.slip_reduction()
-                }
+            macroscopic_identity_residual: if self.spec.scene.contact.law.is_always_mu() {
+                let mu = self.spec.scene.contact.mu;
+                mu - figures.mu_star() - figures.stick_reduction() - figures.slip_reduction()
+            } else {
                 // The mean coefficient is not known otherwise, and that of the contact is what remains.
-                _ => figures.mu_star_contact() - figures.mu_star(),
+                figures.mu_star_contact() - figures.mu_star()
             },
             energy_identity_residual: energy_identity(&window.energies, energies),
             contact_loss_share: contact_loss_share(&window.energies, energies),

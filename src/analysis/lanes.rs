@@ -16,7 +16,7 @@ use super::sample::{NodeSample, Sample, Sampler};
 use crate::solver::energy::{Energies, EnergyLedger};
 use crate::solver::lane::LaneState;
 use crate::solver::{Drive, Model, PinMotion, RunNumber, StateOf, guard, step};
-use crate::spec::{JobSpec, Program};
+use crate::spec::{JobSpec, Precision, Program};
 use std::sync::Arc;
 
 /// Steps between two evaluations of the stored energies and of the divergence guard. Jobs begin only at these
@@ -38,6 +38,74 @@ pub struct LanesOf<const L: usize, R: RunNumber> {
     sampler: Sampler<L, R>,
     drives: [Drive; L],
     runs: [Option<Run>; L],
+}
+
+/// Lanes of one model, whatever their number and their precision.
+pub trait AnyLanes: Send {
+    /// The model that the lanes share.
+    fn model(&self) -> &Model;
+
+    /// Number of lanes.
+    fn lanes(&self) -> usize;
+
+    /// Number of jobs.
+    fn jobs(&self) -> usize;
+
+    /// The first lane without a job, if there is one.
+    fn free_lane(&self) -> Option<usize>;
+
+    /// Other lanes of the same model, 1, 2, 4 or 8, which take over the jobs at any point of their runs.
+    ///
+    /// # Panics
+    /// If there are more jobs than lanes.
+    fn taken_over(&mut self, lanes: usize) -> Box<dyn AnyLanes>;
+
+    /// Puts a job into a lane, as [`LanesOf::begin`], from what it begins with.
+    ///
+    /// # Errors
+    /// As [`LanesOf::begin`].
+    ///
+    /// # Panics
+    /// As [`LanesOf::begin`], and if the motion is not one of the lanes' mesh.
+    fn begin_from(
+        &mut self,
+        lane: usize,
+        ticket: u64,
+        spec: JobSpec,
+        beginning: Beginning,
+    ) -> Result<(), JobError>;
+
+    /// Adds the eigenvalues that were computed before its run to the record of the job in a lane.
+    fn note(&mut self, lane: usize, noted: Noted);
+
+    /// Continues a job in a lane from its [`AnyLanes::checkpoint`]. The result has the same bits as that of an
+    /// uninterrupted run.
+    ///
+    /// # Errors
+    /// [`Unreadable`]. The lane is unchanged then.
+    ///
+    /// # Panics
+    /// As [`LanesOf::begin`], and if [`LanesOf::begin`] returns an error.
+    fn resume(&mut self, lane: usize, ticket: u64, spec: JobSpec, bytes: &[u8]) -> Result<(), Unreadable>;
+
+    /// The checkpoint of a job; none if there is no such job.
+    fn checkpoint(&self, ticket: u64) -> Option<Vec<u8>>;
+
+    /// Simulated time \[s\] of every job, by its ticket. That on a coarser mesh counts by its cost.
+    fn simulated(&self) -> Vec<(u64, f64)>;
+
+    /// Advances all jobs until just before the next audit, and returns those that ended on the way. Calls
+    /// `observe` after every step of every job.
+    fn advance(&mut self, observe: &mut dyn FnMut(&Moment<'_>)) -> Vec<Ended>;
+}
+
+/// One lane without a job.
+pub fn one_lane(model: Model, precision: Precision) -> Box<dyn AnyLanes> {
+    let model = Arc::new(model);
+    match precision {
+        Precision::Double => Box::new(LanesOf::<1, f64>::new(model)),
+        Precision::Single => Box::new(LanesOf::<1, f32>::new(model)),
+    }
 }
 
 /// The job in a lane.
@@ -126,11 +194,8 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
         }
     }
 
-    /// New lanes that take over the jobs of other lanes of the same model, at any point of their runs.
-    ///
-    /// # Panics
-    /// If there are more jobs than lanes.
-    pub fn taken_over<const M: usize>(from: &mut LanesOf<M, R>) -> Self {
+    /// New lanes that take over the jobs of other lanes of the same model.
+    fn with_jobs_of<const M: usize>(from: &mut LanesOf<M, R>) -> Self {
         let mut lanes = Self::new(Arc::clone(&from.model));
         lanes.state.step = from.state.step;
         let mut free = 0..L;
@@ -143,26 +208,6 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
             }
         }
         lanes
-    }
-
-    /// The model that the lanes share.
-    pub fn model(&self) -> &Model {
-        &self.model
-    }
-
-    /// Number of lanes.
-    pub fn lanes(&self) -> usize {
-        L
-    }
-
-    /// The first lane without a job, if there is one.
-    pub fn free_lane(&self) -> Option<usize> {
-        self.runs.iter().position(Option::is_none)
-    }
-
-    /// Number of jobs.
-    pub fn jobs(&self) -> usize {
-        self.runs.iter().flatten().count()
     }
 
     /// Puts a job into a lane. Its specification has been checked, and its model is that of the lanes.
@@ -185,70 +230,6 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
         Ok(())
     }
 
-    /// Puts a job into a lane, as [`Lanes::begin`], from what it begins with.
-    ///
-    /// # Errors
-    /// As [`Lanes::begin`].
-    ///
-    /// # Panics
-    /// As [`Lanes::begin`], and if the motion is not one of the lanes' mesh.
-    pub fn begin_from(
-        &mut self,
-        lane: usize,
-        ticket: u64,
-        spec: JobSpec,
-        beginning: Beginning,
-    ) -> Result<(), JobError> {
-        let Beginning { motion, start } = beginning;
-        self.begin(lane, ticket, under_way(spec, start.as_ref()))?;
-        if let Some(motion) = motion {
-            self.state.begin_in_motion(&self.model, lane, &motion);
-        }
-        if let Some(run) = &mut self.runs[lane] {
-            run.analysis.start_from(start);
-        }
-        Ok(())
-    }
-
-    /// Adds the eigenvalues that were computed before its run to the record of the job in a lane.
-    pub fn note(&mut self, lane: usize, noted: Noted) {
-        if let Some(run) = &mut self.runs[lane] {
-            run.analysis.note(noted);
-        }
-    }
-
-    /// Continues a job in a lane from its [`Lanes::checkpoint`]. The result has the same bits as that of an
-    /// uninterrupted run.
-    ///
-    /// # Errors
-    /// [`Unreadable`]. The lane is unchanged then.
-    ///
-    /// # Panics
-    /// As [`Lanes::begin`], and if [`Lanes::begin`] returns an error.
-    pub fn resume(
-        &mut self,
-        lane: usize,
-        ticket: u64,
-        spec: JobSpec,
-        bytes: &[u8],
-    ) -> Result<(), Unreadable> {
-        let (numbers, analysis) = checkpoint::decode(bytes, self.save(lane).len())?;
-        let spec = under_way(spec, analysis.start());
-        self.begin(lane, ticket, spec.clone()).expect("a job that has begun before");
-        self.load(lane, &mut numbers.into_iter());
-        if let Some(run) = &mut self.runs[lane] {
-            *run.analysis = analysis.of(spec);
-        }
-        Ok(())
-    }
-
-    /// The checkpoint of a job; none if there is no such job.
-    pub fn checkpoint(&self, ticket: u64) -> Option<Vec<u8>> {
-        let lane = self.runs.iter().position(|run| run.as_ref().is_some_and(|run| run.ticket == ticket))?;
-        let analysis = &self.runs[lane].as_ref()?.analysis;
-        Some(checkpoint::encode(&self.save(lane), analysis))
-    }
-
     /// The numbers that describe a lane, at any point of its job's run.
     fn save(&self, lane: usize) -> Vec<f64> {
         let mut saved = Vec::new();
@@ -269,58 +250,6 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
     fn clear(&mut self, lane: usize) {
         self.load(lane, &mut std::iter::repeat(0.0));
         self.drives[lane] = IDLE;
-    }
-
-    /// Simulated time \[s\] of every job, by its ticket. That on a coarser mesh counts by its cost.
-    pub fn simulated(&self) -> impl Iterator<Item = (u64, f64)> + '_ {
-        let dt = self.model.time_step_s();
-        let runs = self.runs.iter().enumerate();
-        runs.filter_map(move |(lane, run)| {
-            let run = run.as_ref()?;
-            let spent_s = run.analysis.start().map_or(0.0, CoarseStart::spent_s);
-            Some((run.ticket, spent_s + self.state.steps_done(lane) as f64 * dt))
-        })
-    }
-
-    /// Advances all jobs until just before the next audit, and returns those that ended on the way. Calls
-    /// `observe` after every step of every job.
-    pub fn advance(&mut self, observe: &mut dyn FnMut(&Moment<'_>)) -> Vec<Ended> {
-        let mut ended = Vec::new();
-        loop {
-            let audited = self.ledger.audits(self.state.step);
-            self.ledger.before_step(&self.model, &self.state);
-            self.follow_programs();
-            step(&self.model, &self.drives, &mut self.state);
-            self.ledger.after_step(&self.model, &self.drives, &self.state);
-            let samples = self.sampler.sample(&self.model, &self.drives, &self.state);
-            for lane in 0..L {
-                if let Some(run) = &mut self.runs[lane] {
-                    run.analysis.push(&samples[lane], self.ledger.energies(lane));
-                    observe(&Moment {
-                        ticket: run.ticket,
-                        lane,
-                        sample: &samples[lane],
-                        model: &self.model,
-                        nodes: &NodesOfLane { lanes: self, lane },
-                        energies: self.ledger.energies(lane),
-                    });
-                    if let Some(result) = self.result(lane, audited) {
-                        let is_periodic =
-                            result.as_ref().is_ok_and(|record| record.outcome == Outcome::Periodic);
-                        let can_be_continued =
-                            self.runs[lane].as_ref().is_some_and(|run| run.analysis.can_be_continued());
-                        let keeps_motion = is_periodic || can_be_continued && result.is_ok();
-                        let motion = keeps_motion.then(|| self.state.motion_of(&self.model, lane));
-                        let run = self.runs[lane].take();
-                        ended.extend(run.map(|run| Ended { ticket: run.ticket, result, motion }));
-                        self.clear(lane);
-                    }
-                }
-            }
-            if self.ledger.audits(self.state.step) {
-                return ended;
-            }
-        }
     }
 
     /// Gives the lanes whose jobs have a program the speed and the load of the coming step.
@@ -359,5 +288,114 @@ impl<const L: usize, R: RunNumber> LanesOf<L, R> {
             None => Ok(record),
             Some(figure) => Err(JobError::NotFinite { figure }),
         })
+    }
+}
+
+impl<const L: usize, R: RunNumber> AnyLanes for LanesOf<L, R> {
+    fn model(&self) -> &Model {
+        &self.model
+    }
+    fn lanes(&self) -> usize {
+        L
+    }
+    fn free_lane(&self) -> Option<usize> {
+        self.runs.iter().position(Option::is_none)
+    }
+    fn jobs(&self) -> usize {
+        self.runs.iter().flatten().count()
+    }
+    fn taken_over(&mut self, lanes: usize) -> Box<dyn AnyLanes> {
+        match lanes {
+            1 => Box::new(LanesOf::<1, R>::with_jobs_of(self)),
+            2 => Box::new(LanesOf::<2, R>::with_jobs_of(self)),
+            4 => Box::new(LanesOf::<4, R>::with_jobs_of(self)),
+            _ => Box::new(LanesOf::<8, R>::with_jobs_of(self)),
+        }
+    }
+
+    fn begin_from(
+        &mut self,
+        lane: usize,
+        ticket: u64,
+        spec: JobSpec,
+        beginning: Beginning,
+    ) -> Result<(), JobError> {
+        let Beginning { motion, start } = beginning;
+        self.begin(lane, ticket, under_way(spec, start.as_ref()))?;
+        if let Some(motion) = motion {
+            self.state.begin_in_motion(&self.model, lane, &motion);
+        }
+        if let Some(run) = &mut self.runs[lane] {
+            run.analysis.start_from(start);
+        }
+        Ok(())
+    }
+    fn note(&mut self, lane: usize, noted: Noted) {
+        if let Some(run) = &mut self.runs[lane] {
+            run.analysis.note(noted);
+        }
+    }
+    fn resume(&mut self, lane: usize, ticket: u64, spec: JobSpec, bytes: &[u8]) -> Result<(), Unreadable> {
+        let (numbers, analysis) = checkpoint::decode(bytes, self.save(lane).len())?;
+        let spec = under_way(spec, analysis.start());
+        self.begin(lane, ticket, spec.clone()).expect("a job that has begun before");
+        self.load(lane, &mut numbers.into_iter());
+        if let Some(run) = &mut self.runs[lane] {
+            *run.analysis = analysis.of(spec);
+        }
+        Ok(())
+    }
+    fn checkpoint(&self, ticket: u64) -> Option<Vec<u8>> {
+        let lane = self.runs.iter().position(|run| run.as_ref().is_some_and(|run| run.ticket == ticket))?;
+        let analysis = &self.runs[lane].as_ref()?.analysis;
+        Some(checkpoint::encode(&self.save(lane), analysis))
+    }
+    fn simulated(&self) -> Vec<(u64, f64)> {
+        let dt = self.model.time_step_s();
+        let runs = self.runs.iter().enumerate();
+        let all = runs.filter_map(|(lane, run)| {
+            let run = run.as_ref()?;
+            let spent_s = run.analysis.start().map_or(0.0, CoarseStart::spent_s);
+            Some((run.ticket, spent_s + self.state.steps_done(lane) as f64 * dt))
+        });
+        all.collect()
+    }
+    fn advance(&mut self, observe: &mut dyn FnMut(&Moment<'_>)) -> Vec<Ended> {
+        let mut ended = Vec::new();
+        loop {
+            let audited = self.ledger.audits(self.state.step);
+            self.ledger.before_step(&self.model, &self.state);
+            self.follow_programs();
+            step(&self.model, &self.drives, &mut self.state);
+            self.ledger.after_step(&self.model, &self.drives, &self.state);
+            let samples = self.sampler.sample(&self.model, &self.drives, &self.state);
+            for lane in 0..L {
+                if let Some(run) = &mut self.runs[lane] {
+                    run.analysis.push(&samples[lane], self.ledger.energies(lane));
+                    observe(&Moment {
+                        ticket: run.ticket,
+                        lane,
+                        sample: &samples[lane],
+                        model: &self.model,
+                        nodes: &NodesOfLane { lanes: self, lane },
+                        energies: self.ledger.energies(lane),
+                    });
+                    if let Some(result) = self.result(lane, audited) {
+                        let is_periodic =
+                            result.as_ref().is_ok_and(|record| record.outcome == Outcome::Periodic);
+                        let can_be_continued =
+                            self.runs[lane].as_ref().is_some_and(|run| run.analysis.can_be_continued());
+                        let keeps_motion = is_periodic || can_be_continued && result.is_ok();
+                        let motion = keeps_motion.then(|| self.state.motion_of(&self.model, lane));
+                        let run = self.runs[lane].take();
+                        ended.extend(run.map(|run| Ended { ticket: run.ticket, result, motion }));
+                        self.clear(lane);
+                    }
+                }
+            }
+            if self.ledger.audits(self.state.step) {
+                return ended;
+            }
+        }
     }
 }

@@ -11,7 +11,7 @@ use super::sample::OBSERVED_NAMES;
 use crate::solver::interface::SlaveNode;
 use crate::solver::interface::solve::Solves;
 use crate::solver::{Drive, Model};
-use crate::spec::{FrictionLaw, JobSpec, Precision, StabilityMethod};
+use crate::spec::{JobSpec, Precision, StabilityMethod};
 use crate::stability::{Decision, Equilibrium, Mode, SlidingPoint, StabilityError, Structure};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
@@ -284,10 +284,11 @@ fn record(spec: &JobSpec, model: &Model, point: &SlidingPoint, outcome: Outcome)
         time_step_limit_s: model.time_step_limit_s(),
         clamp_width_m: model.clamp_width_m(),
         energy_residual: 0.0,
-        macroscopic_identity_residual: match spec.scene.contact.law {
-            FrictionLaw::Coulomb => spec.scene.contact.mu - mu_star - slip_reduction,
+        macroscopic_identity_residual: if spec.scene.contact.law.is_always_mu() {
+            spec.scene.contact.mu - mu_star - slip_reduction
+        } else {
             // As in a run: μ* is that of the contact.
-            _ => 0.0,
+            0.0
         },
         energy_identity_residual: 0.0,
         contact_loss_share: 0.0,

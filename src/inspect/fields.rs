@@ -82,7 +82,7 @@ fn point_data(capture: &Capture, mesh: &PinMesh, frame: &Frame) -> Vec<PointData
     };
     let mut codes: Vec<i8> = frame.face.iter().map(|node| code(node.state)).collect();
     codes.resize(mesh.node_count(), NO_CONTACT_NODE);
-    let stress = stress::nodal_pa(mesh, capture.model.pin().materials(), &frame.u_m);
+    let stress = capture.model.pin().nodal_stress_pa(&frame.u_m);
     let principal: Vec<f64> = stress.iter().flat_map(|at| stress::principal_pa(*at)).collect();
     vec![
         numbers("displacement_m", 3, &[], frame.u_m.clone()),

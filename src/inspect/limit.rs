@@ -1,14 +1,14 @@
 //! The limit of friction of a node, as a coefficient.
 
 use crate::analysis::sample::NodeSample;
-use crate::spec::{Contact, FrictionLaw, JobSpec};
+use crate::spec::{Contact, JobSpec, Memory};
 
 /// The largest friction force over the normal force; 0 without contact. Of Coulomb's law it is μ, without the rounding of a
 /// product and a quotient.
 pub fn limit(spec: &JobSpec, node: &NodeSample) -> f64 {
     let [_, _, normal_n] = node.force_n;
-    match spec.scene.contact.law {
-        FrictionLaw::Coulomb => spec.scene.contact.mu,
+    match &spec.scene.contact {
+        Contact { law, mu, .. } if law.is_always_mu() => *mu,
         _ if normal_n > 0.0 => node.limit_n / normal_n,
         _ => 0.0,
     }
@@ -17,27 +17,23 @@ pub fn limit(spec: &JobSpec, node: &NodeSample) -> f64 {
 /// The largest limit among samples, and at least μ.
 pub fn largest<'a>(spec: &JobSpec, nodes: impl Iterator<Item = &'a NodeSample>) -> f64 {
     let mu = spec.scene.contact.mu;
-    match spec.scene.contact.law {
-        FrictionLaw::Coulomb => mu,
-        // A force that follows the normal force with a delay can be far above it when a node leaves.
-        FrictionLaw::PrakashClifton => {
-            nodes.map(NodeSample::equivalent_friction).fold(mu, f64::max).min(4.0 * mu)
-        }
-        _ => nodes.map(|node| limit(spec, node)).fold(mu, f64::max),
+    match spec.scene.contact.law.memory() {
+        // A limit with a state can be far above the normal force when a node leaves.
+        Memory::Limit => nodes.map(NodeSample::equivalent_friction).fold(mu, f64::max).min(4.0 * mu),
+        Memory::None | Memory::Slip => nodes.map(|node| limit(spec, node)).fold(mu, f64::max),
     }
 }
 
 /// What a node that slips has.
 pub fn in_words(contact: &Contact) -> String {
-    match contact.law {
-        FrictionLaw::Coulomb => contact.mu.to_string(),
-        law => format!("the limit of the law {}", law.name()),
-    }
+    let Contact { law, mu, .. } = contact;
+    if law.is_always_mu() { mu.to_string() } else { format!("the limit of the law {}", law.name()) }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::spec::FrictionLaw;
 
     /// Protects: the limit is that of the law that the job has, and the axis has room for it.
     #[test]

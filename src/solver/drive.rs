@@ -30,7 +30,7 @@ mod tests {
     /// Protects: the load rises linearly from zero, then stays constant. Without a ramp it is there at once.
     #[test]
     fn the_load_is_ramped() {
-        let law = Law::Coulomb { mu: 0.0 };
+        let law = Law::coulomb(0.0);
         let ramped = Drive { law, rate: 0.0, force_n: 30.0, ramp_s: 1.0e-3 };
         assert_eq!([0.0, 0.25e-3, 1.0e-3, 2.0e-3].map(|t| ramped.load_n(t)), [0.0, 7.5, 30.0, 30.0]);
         assert_eq!(Drive { ramp_s: 0.0, ..ramped }.load_n(0.0), 30.0);

@@ -1,6 +1,6 @@
 //! What changes during a run.
 
-use super::body::pin::{Motion, NodeMotion};
+use super::body::pin::{History, Motion, NodeMotion};
 use super::field::FieldOf;
 use super::interface::Contacts;
 use super::interface::solve::{RunNumber, TargetState};
@@ -22,6 +22,8 @@ pub struct StateOf<const L: usize, R: RunNumber> {
     pub u: FieldOf<L, R>,
     /// `p_n = v_{n−1} + (1−β₂)Δt a_{n−1}` of the pin \[m/s\]; at n = 0 the initial velocity.
     pub p: FieldOf<L, R>,
+    /// What the elements of the pin keep of their past.
+    pub history: History<L, R>,
     /// Contact during the last step, from `t_{n−1}` to `t_n`.
     pub contacts: Contacts<L, R>,
     /// The target, on which the pin slides.
@@ -59,6 +61,7 @@ impl<const L: usize, R: RunNumber> StateOf<L, R> {
             begun: [0; L],
             u: FieldOf::zeros(pin.mesh().layout()),
             p: FieldOf::zeros(pin.mesh().layout()),
+            history: History::new(pin.operator()),
             contacts: Contacts::separated(model.interface().layout()),
             target: TargetState::at_rest(model.interface(), model.target()),
             reaction_n: [[0.0; L]; 3],
@@ -90,7 +93,7 @@ impl<const L: usize, R: RunNumber> StateOf<L, R> {
 
     /// The motion of the pin.
     pub(super) fn motion<'a>(&'a self, steps_done: &'a [u64; L]) -> Motion<'a, L, R> {
-        Motion { u: &self.u, p: &self.p, steps_done }
+        Motion { u: &self.u, p: &self.p, history: self.history.numbers(), steps_done }
     }
 }
 
@@ -101,6 +104,7 @@ impl<const L: usize, R: RunNumber> LaneState for StateOf<L, R> {
         saved.push(self.steps_done(lane) as f64);
         self.u.save_lane(lane, saved);
         self.p.save_lane(lane, saved);
+        self.history.save_lane(lane, saved);
         self.contacts.save_lane(lane, saved);
         self.target.save_lane(lane, saved);
         self.reaction_n.save_lane(lane, saved);
@@ -113,6 +117,7 @@ impl<const L: usize, R: RunNumber> LaneState for StateOf<L, R> {
         self.begun[lane] = self.step.wrapping_sub(steps as u64);
         self.u.load_lane(lane, saved);
         self.p.load_lane(lane, saved);
+        self.history.load_lane(lane, saved);
         self.contacts.load_lane(lane, saved);
         self.target.load_lane(lane, saved);
         self.reaction_n.load_lane(lane, saved);

@@ -16,7 +16,8 @@ pub fn step<const L: usize, R: RunNumber>(model: &Model, drives: &[Drive; L], st
     begin_load_strokes(&steps_done, state);
 
     let work = &mut state.workspace;
-    work.pin.advance_free_planes(model.pin(), &factors, &mut state.u, &mut state.p);
+    let history = state.history.numbers_mut();
+    work.pin.advance_free_planes(model.pin(), &factors, &mut state.u, &mut state.p, history);
     let residual = work.pin.residual_mut();
     work.load.act(&state.load_n, residual);
     state.reaction_n = work.supports.act(&mut Supported { u: &state.u, p: &state.p, residual });
@@ -65,7 +66,7 @@ mod tests {
         spec.scene.clamp.width_m = 0.002;
         let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
         let dt = model.time_step_s();
-        let drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.7, force_n: 30.0, ramp_s: 5.5 * dt };
+        let drive = Drive { law: Law::coulomb(0.4), rate: 0.7, force_n: 30.0, ramp_s: 5.5 * dt };
         let mut state = State::<1>::at_rest(&model);
         for n in 0..8 {
             step(&model, &[drive], &mut state);

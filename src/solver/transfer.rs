@@ -181,7 +181,7 @@ mod tests {
     #[test]
     fn energies_balance_from_a_start_in_motion() {
         let (coarse, fine) = (model([6, 8, 5]), model([12, 15, 10]));
-        let drive = Drive { law: Law::Coulomb { mu: 0.5 }, rate: 2.0, force_n: 30.0, ramp_s: 0.0 };
+        let drive = Drive { law: Law::coulomb(0.5), rate: 2.0, force_n: 30.0, ramp_s: 0.0 };
         let mut before = State::<1>::at_rest(&coarse);
         for _ in 0..2000 {
             step(&coarse, &[drive], &mut before);
@@ -213,7 +213,7 @@ mod tests {
             let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
             // Without a load, and lifted from the disk, nothing but the pin vibrates.
             let model = model.with_initial_gaps(|_| 1.0);
-            let drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n: 1.0, ramp_s: 0.0 };
+            let drive = Drive { law: Law::coulomb(0.0), rate: 0.0, force_n: 1.0, ramp_s: 0.0 };
             let mut whole = State::<1>::at_rest(&model);
             for _ in 0..100 * refinement {
                 step(&model, &[drive], &mut whole);

@@ -35,28 +35,104 @@ pub enum FrictionLaw {
     PrakashClifton,
 }
 
+/// What friction in a step uses of the step before.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Memory {
+    /// Nothing.
+    None,
+    /// The slip of a node.
+    Slip,
+    /// The limit of a node, which is a state of friction.
+    Limit,
+}
+
+/// What a law says about itself, whatever its coefficients are.
+struct About {
+    /// The fields of a contact that the law uses besides `mu`.
+    coefficients: &'static [&'static str],
+    memory: Memory,
+    /// Whether a node that slips steadily has the friction force μN at every speed, and begins to slip at it.
+    has_one_mu: bool,
+    /// Whether friction of slow slip is never larger than that of fast slip under the same normal force.
+    is_largest_in_slip: bool,
+}
+
 impl FrictionLaw {
+    fn about(self) -> About {
+        let about = |coefficients, memory, has_one_mu, is_largest_in_slip| About {
+            coefficients,
+            memory,
+            has_one_mu,
+            is_largest_in_slip,
+        };
+        match self {
+            Self::Coulomb => about(&[], Memory::None, true, true),
+            Self::StaticKinetic => about(&["mu_static"], Memory::Slip, false, false),
+            Self::Exponential => about(&["mu_static", "speed_m_s", "slope_s_m"], Memory::Slip, false, false),
+            Self::Regularised => about(&["speed_m_s"], Memory::None, false, true),
+            Self::PrakashClifton => about(&["length_m"], Memory::Limit, true, false),
+        }
+    }
+
     /// The name used in study files, for example `static_kinetic`.
     pub fn name(self) -> &'static str {
         self.into()
     }
 
-    /// The fields of a contact that the law uses besides `mu`.
-    pub fn coefficients(self) -> &'static [&'static str] {
-        match self {
-            Self::Coulomb => &[],
-            Self::StaticKinetic => &["mu_static"],
-            Self::Exponential => &["mu_static", "speed_m_s", "slope_s_m"],
-            Self::Regularised => &["speed_m_s"],
-            Self::PrakashClifton => &["length_m"],
-        }
+    /// The coefficients that the law uses besides `mu`.
+    pub fn coefficients(self) -> impl Iterator<Item = &'static Coefficient> {
+        COEFFICIENTS.iter().filter(move |coefficient| self.uses(coefficient))
+    }
+
+    /// Whether the law uses a coefficient.
+    pub fn uses(self, coefficient: &Coefficient) -> bool {
+        self.about().coefficients.contains(&coefficient.name)
+    }
+
+    /// What friction in a step uses of the step before.
+    pub fn memory(self) -> Memory {
+        self.about().memory
     }
 
     /// Whether a node that slips steadily has the friction force μN at every speed, and begins to slip at it.
     pub fn has_one_mu(self) -> bool {
-        matches!(self, Self::Coulomb | Self::PrakashClifton)
+        self.about().has_one_mu
+    }
+
+    /// Whether the limit of friction is μN at every node and at every time.
+    pub fn is_always_mu(self) -> bool {
+        self.has_one_mu() && self.memory() == Memory::None
+    }
+
+    /// Whether friction of slow slip is never larger than that of fast slip under the same normal force.
+    pub fn is_largest_in_slip(self) -> bool {
+        self.about().is_largest_in_slip
     }
 }
+
+/// A coefficient of friction that not every law uses: one number, or a list.
+#[derive(Debug)]
+pub struct Coefficient {
+    /// The field of a contact.
+    pub name: &'static str,
+    /// Its path from the root of a job, by which its [limit](super::Limit) is found.
+    pub field: &'static str,
+    /// Whether a law that uses it cannot do without it.
+    is_needed: bool,
+    /// Whether it is a pure number, without a unit.
+    pub is_ratio: bool,
+    /// Its numbers in a contact; none if it is absent.
+    pub values: fn(&Contact) -> &[f64],
+}
+
+/// The coefficients of friction that not every law uses.
+#[rustfmt::skip]
+pub static COEFFICIENTS: [Coefficient; 4] = [
+    Coefficient { name: "mu_static", field: "scene.contact.mu_static", is_needed: true, is_ratio: true, values: |contact| contact.mu_static.as_slice() },
+    Coefficient { name: "speed_m_s", field: "scene.contact.speed_m_s", is_needed: true, is_ratio: false, values: |contact| contact.speed_m_s.as_slice() },
+    Coefficient { name: "slope_s_m", field: "scene.contact.slope_s_m", is_needed: false, is_ratio: false, values: |contact| contact.slope_s_m.as_slice() },
+    Coefficient { name: "length_m", field: "scene.contact.length_m", is_needed: true, is_ratio: false, values: |contact| contact.length_m.as_slice() },
+];
 
 /// Unilateral contact with friction, the same at every node.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -124,52 +200,45 @@ impl Contact {
     pub fn in_use(&self) -> Self {
         let exponent =
             self.stiffness_exponent.filter(|exponent| self.stiffness_pa_m.is_some() && *exponent != 1.0);
-        let of_law =
-            |name: &str, value: Option<f64>| value.filter(|_| self.law.coefficients().contains(&name));
+        let used = |name: &str| self.law.about().coefficients.contains(&name);
         Self {
             mu: self.mu,
             law: self.law,
-            mu_static: of_law("mu_static", self.mu_static),
-            speed_m_s: of_law("speed_m_s", self.speed_m_s),
-            slope_s_m: of_law("slope_s_m", self.slope_s_m).filter(|slope| *slope != 0.0),
-            length_m: of_law("length_m", self.length_m),
+            mu_static: self.mu_static.filter(|_| used("mu_static")),
+            speed_m_s: self.speed_m_s.filter(|_| used("speed_m_s")),
+            slope_s_m: self.slope_s_m.filter(|slope| used("slope_s_m") && *slope != 0.0),
+            length_m: self.length_m.filter(|_| used("length_m")),
             stiffness_pa_m: self.stiffness_pa_m,
             stiffness_exponent: exponent,
             stiffness_pressure_pa: self.stiffness_pressure_pa.filter(|_| exponent.is_some()),
         }
     }
 
+    /// How steeply \[s/m\] friction over the normal force rises at least with the speed \[m/s\] of slip, which damps the base.
+    pub(super) fn viscous_part_s_m(&self, speed_m_s: f64) -> f64 {
+        match self.law {
+            FrictionLaw::Regularised => {
+                let v0 = self.speed_m_s.unwrap_or(0.0);
+                self.mu * v0 / ((speed_m_s + v0) * (speed_m_s + v0))
+            }
+            FrictionLaw::Exponential => self.slope_s_m.unwrap_or(0.0),
+            FrictionLaw::Coulomb | FrictionLaw::StaticKinetic | FrictionLaw::PrakashClifton => 0.0,
+        }
+    }
+
     /// Adds every violated limit to `found`.
     pub(super) fn check(&self, found: &mut Violations) {
-        let name = self.law.name();
-        let uses = |field: &str| self.law.coefficients().contains(&field);
         found.within("scene.contact.mu", self.mu);
-        let missing = |found: &mut Violations, field: &str, what: &str| {
-            found.add(field, "absent", format!("{what} for the friction law {name}"));
-        };
-        match self.mu_static {
-            Some(mu) => _ = found.within("scene.contact.mu_static", mu),
-            None if uses("mu_static") => {
-                missing(found, "scene.contact.mu_static", "a friction coefficient >= 0");
+        for coefficient in &COEFFICIENTS {
+            let values = (coefficient.values)(self);
+            for value in values {
+                found.within(coefficient.field, *value);
             }
-            None => {}
-        }
-        match self.speed_m_s {
-            Some(speed) => _ = found.within("scene.contact.speed_m_s", speed),
-            None if uses("speed_m_s") => {
-                missing(found, "scene.contact.speed_m_s", "a slip speed > 0 m/s");
+            if values.is_empty() && coefficient.is_needed && self.law.uses(coefficient) {
+                found.add_absent(coefficient.field, format!("for the friction law {}", self.law.name()));
             }
-            None => {}
         }
-        found.within_if_given("scene.contact.slope_s_m", self.slope_s_m);
         self.check_layer(found);
-        match self.length_m {
-            Some(length) => _ = found.within("scene.contact.length_m", length),
-            None if uses("length_m") => {
-                missing(found, "scene.contact.length_m", "a length > 0 m");
-            }
-            None => {}
-        }
     }
 
     fn check_layer(&self, found: &mut Violations) {

@@ -34,7 +34,7 @@ mod stability;
 pub use base::Base;
 pub(crate) use check::short;
 pub use check::{FieldError, Violations};
-pub use contact::{Contact, FrictionLaw};
+pub use contact::{COEFFICIENTS, Coefficient, Contact, FrictionLaw, Memory};
 pub use continuation::Continuation;
 pub use detection::Detection;
 pub use disk::{Disk, DiskKind};
@@ -197,7 +197,7 @@ impl JobSpec {
 
     /// Whether displacements and velocities are all that the future of a run depends on, apart from that of an elastic disk.
     fn keeps_no_past(&self) -> bool {
-        matches!(self.scene.contact.law, FrictionLaw::Coulomb | FrictionLaw::Regularised)
+        self.scene.contact.law.memory() == Memory::None
             && self.scene.holder.is_ideal()
             && self.scene.disk.is_plane()
             && self.scene.contact.layer().is_none()
@@ -230,9 +230,7 @@ impl JobSpec {
     /// Whether eigenvalues may decide the job without its run. If friction of slow slip is larger than that of fast slip, a limit
     /// cycle of stick and slip can exist beside stable sliding at any distance from the threshold. Then the run decides.
     pub fn eigenvalues_may_decide(&self) -> bool {
-        let is_largest_in_slip =
-            matches!(self.scene.contact.law, FrictionLaw::Coulomb | FrictionLaw::Regularised);
-        is_largest_in_slip
+        self.scene.contact.law.is_largest_in_slip()
             && self.scene.disk.kind == DiskKind::Rigid
             && self.scene.pin.is_plain_block()
             && !self.scene.holder.rotates()
@@ -243,7 +241,7 @@ impl JobSpec {
     /// What the equations of steady sliding do not cover.
     fn check_modes(&self, found: &mut Violations) {
         let law = self.scene.contact.law;
-        if law == FrictionLaw::PrakashClifton {
+        if law.memory() == Memory::Limit {
             let right = "another law: the complex modes of steady sliding have no state of friction";
             found.add("scene.contact.law", law.name(), right);
         }
@@ -313,7 +311,7 @@ impl JobSpec {
             found.add("scene.pin.young_modulus_pa", check::readable(young_modulus_pa), right);
         }
         let law = self.scene.contact.law;
-        if law == FrictionLaw::PrakashClifton {
+        if law.memory() == Memory::Limit {
             let right = "another law, or numerics.precision = double: its changes in a step are below the digits of single precision";
             found.add("scene.contact.law", law.name(), right);
         }

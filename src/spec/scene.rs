@@ -1,7 +1,7 @@
 //! The scene: pin, disk, contact law, boundary conditions and load.
 
 use super::check::{Violations, readable};
-use super::contact::{Contact, FrictionLaw};
+use super::contact::Contact;
 use super::disk::{Disk, DiskKind};
 use super::elasticity;
 use super::holder::{Holder, SlowTimes};
@@ -198,16 +198,8 @@ impl Scene {
     /// The time \[s\] in which a friction that rises with the speed lets a displacement of the base fall to 1/e: the damper F ∂μ/∂v over the stiffness of the
     /// pin in shear, of which a strip as the clamp leaves about a half, and the springs of the holder. 0 for the other laws.
     fn friction_creep_s(&self) -> f64 {
-        let contact = &self.contact;
-        let v = self.disk.omega_rpm * TAU / 60.0 * self.disk.track_radius_m;
-        let slope_s_m = match contact.law {
-            FrictionLaw::Regularised => {
-                let v0 = contact.speed_m_s.unwrap_or(0.0);
-                contact.mu * v0 / ((v + v0) * (v + v0))
-            }
-            FrictionLaw::Exponential => contact.slope_s_m.unwrap_or(0.0),
-            FrictionLaw::Coulomb | FrictionLaw::StaticKinetic | FrictionLaw::PrakashClifton => 0.0,
-        };
+        let speed_m_s = self.disk.omega_rpm * TAU / 60.0 * self.disk.track_radius_m;
+        let slope_s_m = self.contact.viscous_part_s_m(speed_m_s);
         let [x, y, z] = self.pin.extent_m();
         let softness_m_n = 2.0 * z / (self.shear_modulus_pa() * x * y) + self.holder.softness_y_m_n(z);
         let creep_s = self.load.force_n * slope_s_m * softness_m_n;

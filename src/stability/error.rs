@@ -31,10 +31,13 @@ pub enum StabilityError {
     },
     /// The friction law has a state.
     #[error(
-        "eigenvalues of steady sliding are not for friction with a state (scene.contact.law = prakash_clifton): \
+        "eigenvalues of steady sliding are not for friction with a state (scene.contact.law = {law}): \
          simulate this job"
     )]
-    FrictionLaw,
+    FrictionLaw {
+        /// Its name in a study.
+        law: &'static str,
+    },
     /// A holder has no spring along the disk, which friction would push away.
     #[error(
         "steady sliding has no equilibrium on a holder without a spring (scene.holder.stiffness_x_n_m, \

@@ -14,6 +14,7 @@ use super::error::StabilityError;
 use super::pencil::Sampling;
 use crate::solver::Drive;
 use crate::solver::interface::law::Law;
+use crate::spec::Memory;
 
 /// Friction of steady sliding at every slave node.
 #[derive(Debug, Clone)]
@@ -32,30 +33,19 @@ impl SlidingFriction {
     /// # Errors
     /// If the law has a state.
     pub fn new(speeds_per_rate: &[f64], drive: &Drive) -> Result<Self, StabilityError> {
-        let speeds_m_s = speeds_per_rate.iter().map(|speed| speed * drive.rate.abs());
-        let constant = |mu| Self { mu, share: vec![1.0; speeds_per_rate.len()], slope: None };
-        let varying = |of: &dyn Fn(f64) -> [f64; 2], sampling| {
-            let (share, slope_s_m) = speeds_m_s.map(|speed| of(speed).into()).unzip();
-            Self { mu: 1.0, share, slope: Some((slope_s_m, sampling)) }
+        let sampling = match drive.law.memory() {
+            Memory::None => Sampling::Step,
+            Memory::Slip => Sampling::StepBefore,
+            Memory::Limit => return Err(StabilityError::FrictionLaw { law: drive.law.name().name() }),
         };
-        match drive.law {
-            Law::Coulomb { mu } | Law::StaticKinetic { mu, .. } => Ok(constant(mu)),
-            Law::Exponential { mu, mu_static, speed_m_s, slope_s_m } => {
-                let at = |speed: f64| {
-                    let drop = (mu_static - mu) * libm::exp(-speed / speed_m_s);
-                    [mu + drop + slope_s_m * speed, slope_s_m - drop / speed_m_s]
-                };
-                Ok(varying(&at, Sampling::StepBefore))
+        let at = |speed: &f64| drive.law.steady(speed * drive.rate.abs());
+        Ok(match speeds_per_rate.iter().map(at).collect::<Option<Vec<_>>>() {
+            None => Self { mu: drive.law.mu(), share: vec![1.0; speeds_per_rate.len()], slope: None },
+            Some(varying) => {
+                let (share, slope_s_m) = varying.into_iter().map(<(f64, f64)>::from).unzip();
+                Self { mu: 1.0, share, slope: Some((slope_s_m, sampling)) }
             }
-            Law::Regularised { mu, speed_m_s } => {
-                let at = |speed: f64| {
-                    let sum = speed + speed_m_s;
-                    [mu * speed / sum, mu * speed_m_s / (sum * sum)]
-                };
-                Ok(varying(&at, Sampling::Step))
-            }
-            Law::PrakashClifton { .. } => Err(StabilityError::FrictionLaw),
-        }
+        })
     }
 
     /// Whether friction falls with the speed somewhere, so that it feeds vibrations.
@@ -66,24 +56,6 @@ impl SlidingFriction {
     /// The friction coefficient of a slave node.
     pub fn mu_of(&self, slave: usize) -> f64 {
         self.mu * self.share[slave]
-    }
-}
-
-/// The same law with another coefficient μ. The static coefficient changes in proportion; without kinetic friction there is no
-/// proportion, and it stays.
-pub fn with_mu(law: Law, mu: f64) -> Law {
-    let scaled =
-        |mu_static: f64, before: f64| if before == 0.0 { mu_static } else { mu_static * mu / before };
-    match law {
-        Law::Coulomb { .. } => Law::Coulomb { mu },
-        Law::StaticKinetic { mu: before, mu_static } => {
-            Law::StaticKinetic { mu, mu_static: scaled(mu_static, before) }
-        }
-        Law::Exponential { mu: before, mu_static, speed_m_s, slope_s_m } => {
-            Law::Exponential { mu, mu_static: scaled(mu_static, before), speed_m_s, slope_s_m }
-        }
-        Law::Regularised { speed_m_s, .. } => Law::Regularised { mu, speed_m_s },
-        Law::PrakashClifton { length_m, .. } => Law::PrakashClifton { mu, length_m },
     }
 }
 
@@ -98,13 +70,10 @@ pub struct Conditions {
 
 impl Conditions {
     pub fn new(drive: &Drive, has_gaps: bool) -> Self {
-        let law = match drive.law {
-            Law::StaticKinetic { mu, .. } => Law::Coulomb { mu },
-            law => law,
-        };
-        let depends_on_speed = !matches!(law, Law::Coulomb { .. });
+        let depends_on_speed = drive.law.steady(drive.rate).is_some();
+        let uses_mu_alone = !depends_on_speed && drive.law.memory() != Memory::Limit;
         Self {
-            law,
+            law: if uses_mu_alone { Law::coulomb(drive.law.mu()) } else { drive.law },
             rate: if depends_on_speed { drive.rate } else { 0.0 },
             force_n: if has_gaps { drive.force_n } else { 0.0 },
         }
@@ -114,17 +83,7 @@ impl Conditions {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Protects: a law without kinetic friction has finite coefficients at another μ: the static one stays, and elsewhere it
-    /// changes in proportion.
-    #[test]
-    fn a_law_without_kinetic_friction_has_another_mu() {
-        let exponential = |mu, mu_static| Law::Exponential { mu, mu_static, speed_m_s: 0.1, slope_s_m: 0.0 };
-        let static_kinetic = |mu, mu_static| Law::StaticKinetic { mu, mu_static };
-        assert_eq!(with_mu(exponential(0.0, 0.3), 0.0), exponential(0.0, 0.3));
-        assert_eq!(with_mu(static_kinetic(0.0, 0.3), 0.01), static_kinetic(0.01, 0.3));
-        assert_eq!(with_mu(static_kinetic(0.2, 0.3), 0.4), static_kinetic(0.4, 0.6));
-    }
+    use crate::solver::interface::law::{Exponential, Regularised};
 
     /// Protects: friction counts as falling only where its slope at the speed of sliding is negative.
     #[test]
@@ -133,8 +92,11 @@ mod tests {
             let drive = Drive { law, rate: 1.0, force_n: 30.0, ramp_s: 0.0 };
             SlidingFriction::new(&[0.1, 0.2], &drive).unwrap().falls()
         };
-        let exponential = |mu, mu_static| Law::Exponential { mu, mu_static, speed_m_s: 0.1, slope_s_m: 0.0 };
+        let exponential =
+            |mu, mu_static| Law::Exponential(Exponential { mu, mu_static, speed_m_s: 0.1, slope_s_m: 0.0 });
         assert!(falls(exponential(0.2, 0.3)) && !falls(exponential(0.3, 0.3)));
-        assert!(!falls(Law::Regularised { mu: 0.3, speed_m_s: 0.1 }) && !falls(Law::Coulomb { mu: 0.3 }));
+        assert!(
+            !falls(Law::Regularised(Regularised { mu: 0.3, speed_m_s: 0.1 })) && !falls(Law::coulomb(0.3))
+        );
     }
 }

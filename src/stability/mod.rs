@@ -30,7 +30,7 @@ use dashpots::{Dashpot, Dashpots};
 pub use decision::Decision;
 use decision::{further_mu, verdict};
 use equilibrium::UnitEquilibrium;
-use friction::{Conditions, with_mu};
+use friction::Conditions;
 use pencil::{Clock, Sampling};
 pub use point::{Accuracy, Aim};
 use point::{Friction, Point};
@@ -223,7 +223,7 @@ impl ReducedStructure {
     ) -> Result<(SlidingPoint, Decision, bool), StabilityError> {
         let mu = drive.law.mu();
         let further = further_mu(mu, natural_speed_ratio(model, drive, mu));
-        let further = Drive { law: with_mu(drive.law, further), ..*drive };
+        let further = Drive { law: drive.law.with_mu(further), ..*drive };
         let resolve = |drive| self.resolve(model, drive, modes, coarser_decayed);
         let (point, verdict) = resolve(drive)?;
         let is_stable = |resolved: Result<(SlidingPoint, Decision), _>| {

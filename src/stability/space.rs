@@ -219,7 +219,7 @@ impl<'a, const L: usize> Elasticity<'a, L> {
 
     /// y = K x, reactions of constraints included.
     pub fn product(&mut self, x: &Field<L>, y: &mut Field<L>) {
-        self.model.pin().operator().product(x, y, &mut self.scratch);
+        self.model.pin().operator().tangent(x, y, &mut self.scratch);
         for &(dof, stiffness_n_m) in &self.space.springs {
             let place = y.place(dof / 3);
             for (force, u) in y.at_mut(place, dof % 3).iter_mut().zip(x.at(place, dof % 3)) {

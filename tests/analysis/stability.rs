@@ -2,7 +2,7 @@
 
 use super::signals::coarse;
 use std::sync::Arc;
-use tribosweep_mechanics::analysis::lanes::{Lanes, LanesOf};
+use tribosweep_mechanics::analysis::lanes::{AnyLanes, Lanes, LanesOf};
 use tribosweep_mechanics::analysis::{
     AboveBand, ComplexMode, JobObserver, JobRecord, Noted, Outcome, SlidingStability, Unobserved, solve,
 };

@@ -153,11 +153,8 @@ fn assert_is_the_inspection(read: &Value, inspection: &Inspection) {
     };
     compare("displacement_m", &|frame| frame.u_m.clone());
     compare("velocity_m_s", &|frame| frame.velocity_m_s.clone());
-    compare("stress_pa", &|frame| {
-        stress::nodal_pa(mesh, inspection.capture.model.pin().materials(), &frame.u_m).concat()
-    });
-    let stress =
-        |frame: &Frame| stress::nodal_pa(mesh, inspection.capture.model.pin().materials(), &frame.u_m);
+    compare("stress_pa", &|frame| inspection.capture.model.pin().nodal_stress_pa(&frame.u_m).concat());
+    let stress = |frame: &Frame| inspection.capture.model.pin().nodal_stress_pa(&frame.u_m);
     compare("von_mises_pa", &|frame| stress(frame).into_iter().map(stress::von_mises_pa).collect());
     compare("principal_stress_pa", &|frame| {
         stress(frame).into_iter().flat_map(stress::principal_pa).collect()

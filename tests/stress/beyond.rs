@@ -114,7 +114,7 @@ fn a_pressed_pin_is_stopped() {
         let growth = modes::growth_per_step(mode.omega, &model);
         // Pressure waves cross the pin twice while the load increases.
         let ramp_s = 2.0 * model.mesh().size_m()[2] / model.pin().material().pressure_wave_speed_m_s();
-        let drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.733, force_n: 30.0, ramp_s };
+        let drive = Drive { law: Law::coulomb(0.4), rate: 0.733, force_n: 30.0, ramp_s };
         let rounding = (1.0e4 / f64::EPSILON.powi(2)).ln() / (2.0 * growth.ln());
         let most = (ramp_s / model.time_step_s() + rounding).ceil() as u64 + INTERVAL;
         let found = guarded(&model, drive, State::at_rest(&model), 10 * most);
@@ -136,7 +136,7 @@ fn below_the_limit_nothing_is_stopped() {
         let state = lifted(&model, 1.0e-6, 1.0e-9 * mode.omega, &mode.shape);
         assert_eq!(guarded(&model, IDLE, state, 20_000), None, "β₂ = {beta2}, {damping}, in the air");
         let model = modes::at_fraction(&free, &mode, 0.99).unwrap();
-        let drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.733, force_n: 30.0, ramp_s: 1.0e-4 };
+        let drive = Drive { law: Law::coulomb(0.4), rate: 0.733, force_n: 30.0, ramp_s: 1.0e-4 };
         let state = State::at_rest(&model);
         assert_eq!(guarded(&model, drive, state, 20_000), None, "β₂ = {beta2}, {damping}, pressed");
     }
@@ -194,7 +194,7 @@ fn line(
 #[test]
 fn the_guard_tells_the_node_and_keeps_both_factors() {
     let model = Model::new(pin([6, 8, 5])).expect("a legal scene");
-    let drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.733, force_n: 0.0, ramp_s: 0.0 };
+    let drive = Drive { law: Law::coulomb(0.4), rate: 0.733, force_n: 0.0, ramp_s: 0.0 };
     for (speed, node) in [(1.0, 17), (f64::NAN, 42), (f64::INFINITY, 5)] {
         let mut state = State::<2>::at_rest(&model);
         state.p[2 * (3 * node + 1) + 1] = speed;

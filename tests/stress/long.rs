@@ -149,7 +149,7 @@ fn pressed_course(elements: [usize; 3], steps: u64) -> Course {
 fn sliding_course(scene: &'static str, elements: [usize; 3], mu: f64, steps: u64) -> Course {
     let definition = ModelDefinition { beta_r_s: 5.0e-8, ..pin(elements) };
     let model = at_the_limit(&definition);
-    let drive = Drive { law: Law::Coulomb { mu }, rate: 0.733, force_n: 30.0, ramp_s: 1.0e-4 };
+    let drive = Drive { law: Law::coulomb(mu), rate: 0.733, force_n: 30.0, ramp_s: 1.0e-4 };
     let run = Audited::new(&model, drive, State::at_rest(&model));
     follow(scene, run, steps, |run| {
         let e = run.energies();

@@ -15,7 +15,7 @@ pub const MATERIAL: Material =
     Material { young_modulus_pa: 1.0e9, poisson_ratio: 0.3, density_kg_m3: 2500.0 };
 
 /// No load, no friction, target at rest.
-pub const IDLE: Drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
+pub const IDLE: Drive = Drive { law: Law::coulomb(0.0), rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
 
 /// The reference pin on a coarse mesh. One node row of its inner side is clamped, and the top is tied in z.
 pub fn pin(elements: [usize; 3]) -> ModelDefinition {

@@ -52,7 +52,7 @@ fn oscillator(w: f64) -> Model {
 }
 
 fn drive(belt_speed_m_s: f64) -> Drive {
-    Drive { law: Law::Coulomb { mu: MU }, rate: belt_speed_m_s, force_n: NORMAL_N, ramp_s: 0.0 }
+    Drive { law: Law::coulomb(MU), rate: belt_speed_m_s, force_n: NORMAL_N, ramp_s: 0.0 }
 }
 
 fn theta(w: f64) -> f64 {

@@ -36,7 +36,7 @@ const SPEED_M_S: f64 = 0.2;
 const DECELERATION_M_S2: f64 = MU * LOAD_N / MASS_KG;
 const STOP_TIME_S: f64 = SPEED_M_S / DECELERATION_M_S2;
 const STOP_DISTANCE_M: f64 = 0.5 * SPEED_M_S * STOP_TIME_S;
-const DRIVE: Drive = Drive { law: Law::Coulomb { mu: MU }, rate: 0.0, force_n: LOAD_N, ramp_s: 0.0 };
+const DRIVE: Drive = Drive { law: Law::coulomb(MU), rate: 0.0, force_n: LOAD_N, ramp_s: 0.0 };
 const NEWTON: &str = "uniform deceleration μF/m (Newton, Coulomb)";
 
 /// A point mass pressed with the load and pulled in y by `pull` times it.

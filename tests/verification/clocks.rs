@@ -134,7 +134,7 @@ fn nothing_grows(steps: u32) {
         let model = model(&spec);
         let stages = model.ring().unwrap().stages().count();
         seen.insert(stages);
-        let drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.7, force_n: 30.0, ramp_s: 0.0 };
+        let drive = Drive { law: Law::coulomb(0.0), rate: 0.7, force_n: 30.0, ramp_s: 0.0 };
         let mut state = State::<1>::at_rest(&model);
         for dof in 0..state.p.len() {
             // The pattern is arbitrary, but rough. Its size is that of the squeal's velocities.

@@ -66,7 +66,7 @@ pub fn bar(layers: usize) -> ModelDefinition {
 }
 
 /// No friction, no load, target at rest.
-pub const IDLE: Drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
+pub const IDLE: Drive = Drive { law: Law::coulomb(0.0), rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
 
 /// Advances one lane by `steps`.
 pub fn advance(model: &Model, drive: &Drive, state: &mut State<1>, steps: usize) {

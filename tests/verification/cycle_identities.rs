@@ -75,7 +75,7 @@ fn drive_excess_j(from: &Energies, to: &Energies) -> f64 {
 #[test]
 fn identities_hold_in_every_window() {
     let model = model();
-    let drive = Drive { law: Law::Coulomb { mu: MU }, rate: 0.733, force_n: LOAD_N, ramp_s: 5.0e-4 };
+    let drive = Drive { law: Law::coulomb(MU), rate: 0.733, force_n: LOAD_N, ramp_s: 5.0e-4 };
     let dt = model.time_step_s();
     let rows = stiffness_rows(&model);
     let row_sums = rows.iter().map(|row| row.iter().map(|(_, k)| k.abs()).sum::<f64>()).sum::<f64>();

@@ -76,5 +76,5 @@ pub fn free_block(size_m: [f64; 3], elements: [usize; 3], material: Material) ->
 
 /// The drive of a job with this μ and this speed of the disk.
 pub fn drive(mu: f64, omega_rpm: f64) -> Drive {
-    Drive { law: Law::Coulomb { mu }, rate: omega_rpm * TAU / 60.0, force_n: 30.0, ramp_s: 5.0e-4 }
+    Drive { law: Law::coulomb(mu), rate: omega_rpm * TAU / 60.0, force_n: 30.0, ramp_s: 5.0e-4 }
 }

@@ -36,8 +36,7 @@ fn run(spec: &JobSpec, interval: u64) -> (EnergyLedger<1>, u64) {
 /// The same run with fields of the number type `R`.
 fn run_in<R: RunNumber>(spec: &JobSpec, interval: u64) -> (EnergyLedger<1, R>, u64) {
     let model = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
-    let drives =
-        [Drive { law: Law::Coulomb { mu: 0.5 }, rate: 1.2, force_n: 30.0, ramp_s: spec.scene.load.ramp_s }];
+    let drives = [Drive { law: Law::coulomb(0.5), rate: 1.2, force_n: 30.0, ramp_s: spec.scene.load.ramp_s }];
     let mut state = StateOf::at_rest(&model);
     let mut ledger = EnergyLedger::new(&model, interval);
     let steps = 3000;
@@ -111,8 +110,7 @@ fn closes_to_rounding_when_speed_and_load_change() {
         for n in 0..CHANGING_STEPS {
             let up_and_down = 1.0 - (n as f64 / (0.5 * CHANGING_STEPS as f64) - 1.0).abs();
             let force_n = if n % 500 < 250 { 30.0 } else { 10.0 + 30.0 * up_and_down };
-            let drives =
-                [Drive { law: Law::Coulomb { mu: 0.5 }, rate: 3.0 * up_and_down, force_n, ramp_s: 1.0e-4 }];
+            let drives = [Drive { law: Law::coulomb(0.5), rate: 3.0 * up_and_down, force_n, ramp_s: 1.0e-4 }];
             ledger.before_step(&model, &state);
             step(&model, &drives, &mut state);
             ledger.after_step(&model, &drives, &state);
@@ -176,7 +174,7 @@ fn beyond_the_limit(fraction: f64) -> Model {
 
 /// Runs with the guard as a job does. Returns the guard's error, if the guard stops the run.
 fn guarded(model: &Model, steps: u64) -> Result<(), SolverError> {
-    let drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.733, force_n: 30.0, ramp_s: 5.0e-4 };
+    let drive = Drive { law: Law::coulomb(0.4), rate: 0.733, force_n: 30.0, ramp_s: 5.0e-4 };
     let mut state = State::<1>::at_rest(model);
     let mut ledger = EnergyLedger::new(model, 16);
     for n in 0..steps {

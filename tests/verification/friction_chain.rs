@@ -62,7 +62,7 @@ impl Chain {
 
     /// The drive of a plane at rest and a push [N] on the first node.
     pub fn push(force_n: f64) -> Drive {
-        Drive { law: Law::Coulomb { mu: MU }, rate: 0.0, force_n, ramp_s: 0.0 }
+        Drive { law: Law::coulomb(MU), rate: 0.0, force_n, ramp_s: 0.0 }
     }
 
     /// Displacement [m] of a node along the bar.

@@ -15,7 +15,9 @@ use crate::particles::{Particles, X, Y, Z, audited_step};
 use std::f64::consts::PI;
 use tribosweep_mechanics::solver::energy::EnergyLedger;
 use tribosweep_mechanics::solver::interface::ContactState;
-use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::interface::law::{
+    Exponential, Law, PrakashClifton, Regularised, StaticKinetic,
+};
 use tribosweep_mechanics::solver::{Drive, Model, State, TimeStep};
 
 const MASS_KG: f64 = 2.0;
@@ -58,7 +60,7 @@ fn a_static_coefficient_causes_stick_slip() {
     let exact_s = (PI + 2.0 * phase) / OMEGA + 2.0 * drop_m / speed_m_s;
     for w in [0.08, 0.04, 0.02, 0.01] {
         let model = oscillator(STIFFNESS_N_M, w / OMEGA);
-        let drive = on_belt(Law::StaticKinetic { mu: MU, mu_static: MU_STATIC }, speed_m_s);
+        let drive = on_belt(Law::StaticKinetic(StaticKinetic { mu: MU, mu_static: MU_STATIC }), speed_m_s);
         let (mut state, mut ledger) = (State::at_rest(&model), EnergyLedger::new(&model, 1));
         state.p[Y] = speed_m_s;
         let (mut ends, mut stuck) = (Vec::new(), true);
@@ -121,12 +123,13 @@ fn growth_rate_per_s(law: Law, speed_m_s: f64, coefficient: f64, w: f64) -> f64 
 fn the_slope_of_friction_is_a_damper() {
     let (speed_m_s, scale_m_s) = (0.4, 0.15);
     let exponential = |slope_s_m: f64| {
-        let law = Law::Exponential { mu: MU, mu_static: MU_STATIC, speed_m_s: scale_m_s, slope_s_m };
+        let law =
+            Law::Exponential(Exponential { mu: MU, mu_static: MU_STATIC, speed_m_s: scale_m_s, slope_s_m });
         let fall = (MU_STATIC - MU) * (-speed_m_s / scale_m_s).exp();
         (law, MU + fall + slope_s_m * speed_m_s, -fall / scale_m_s + slope_s_m)
     };
     let regularised = (
-        Law::Regularised { mu: MU, speed_m_s: scale_m_s },
+        Law::Regularised(Regularised { mu: MU, speed_m_s: scale_m_s }),
         MU * speed_m_s / (speed_m_s + scale_m_s),
         MU * scale_m_s / (speed_m_s + scale_m_s).powi(2),
     );
@@ -162,7 +165,7 @@ fn friction_follows_the_normal_force_over_a_slip() {
     );
     let (speed_m_s, length_m) = (0.5, 0.03);
     let model = oscillator(0.0, 1.0e-3);
-    let drive = on_belt(Law::PrakashClifton { mu: MU, length_m }, speed_m_s);
+    let drive = on_belt(Law::PrakashClifton(PrakashClifton { mu: MU, length_m }), speed_m_s);
     let (mut state, mut ledger) = (State::at_rest(&model), EnergyLedger::new(&model, 1));
     let mut slip_m = 0.0;
     let mut slid = 0;

@@ -16,7 +16,7 @@ use std::f64::consts::TAU;
 use tribosweep_mechanics::analysis::drive;
 use tribosweep_mechanics::solver::body::pin::Stiffness;
 use tribosweep_mechanics::solver::energy::EnergyLedger;
-use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::interface::law::{Law, StaticKinetic};
 use tribosweep_mechanics::solver::interface::target::{self, TargetDefinition};
 use tribosweep_mechanics::solver::support::{Held, Rocking, RockingWay, Support, Tied};
 use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State, TimeStep, step};
@@ -41,7 +41,7 @@ fn model(mut system: Particles, holder: Option<Support>, time_step_s: f64) -> Mo
     Model::new(definition).unwrap()
 }
 
-const STILL: Drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
+const STILL: Drive = Drive { law: Law::coulomb(0.0), rate: 0.0, force_n: 0.0, ramp_s: 0.0 };
 
 /// Protects: mass, spring and damper of a holder, and its share of the energies.
 #[test]
@@ -105,8 +105,12 @@ fn a_holder_without_mass_is_a_spring() {
         }
         system
     };
-    let on_belt =
-        Drive { law: Law::StaticKinetic { mu: 0.3, mu_static: 0.5 }, rate: 0.2, force_n: 10.0, ramp_s: 0.0 };
+    let on_belt = Drive {
+        law: Law::StaticKinetic(StaticKinetic { mu: 0.3, mu_static: 0.5 }),
+        rate: 0.2,
+        force_n: 10.0,
+        ramp_s: 0.0,
+    };
     let dt = 0.004;
     let spring = model(two_masses(true), None, dt);
     let holder = model(two_masses(false), Some(held(0.0, 0.0)), dt);
@@ -292,7 +296,7 @@ fn a_pin_rocks_below_its_holder() {
     let error = (state.u[3 * corner + Z] / exact_m - 1.0).abs();
     assert!(error < 1.0e-3, "{error:e}");
 
-    let drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 1.0, force_n: 1.0, ramp_s: 0.0 };
+    let drive = Drive { law: Law::coulomb(0.0), rate: 1.0, force_n: 1.0, ramp_s: 0.0 };
     let near = SparseStructure::new(&model).unwrap().near(&model, &drive, omega / TAU).unwrap();
     let errors = near.modes.iter().map(|mode| (mode.eigenvalue_per_s.im / omega - 1.0).abs());
     let error = errors.fold(f64::INFINITY, f64::min);

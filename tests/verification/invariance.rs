@@ -28,7 +28,7 @@ fn small_model() -> Model {
     Model::from_scene(&spec.scene, &spec.numerics).unwrap()
 }
 
-const DRIVE: Drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.733, force_n: 30.0, ramp_s: 5.0e-4 };
+const DRIVE: Drive = Drive { law: Law::coulomb(0.4), rate: 0.733, force_n: 30.0, ramp_s: 5.0e-4 };
 
 /// Protects: homogeneity. (F, V) → s(F, V) scales displacements, velocities and contact forces by s. Scaling
 /// by a power of two is exact in binary. So the whole trajectory, through stick, slip and separation, must
@@ -86,7 +86,7 @@ fn straight(size_m: [f64; 3], elements: [usize; 3], side: ClampSide, direction: 
     .unwrap()
 }
 
-const STRAIGHT: Drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.067, force_n: 30.0, ramp_s: 1.0e-4 };
+const STRAIGHT: Drive = Drive { law: Law::coulomb(0.4), rate: 0.067, force_n: 30.0, ramp_s: 1.0e-4 };
 
 /// Largest deviation of the displacements of `b` from those of `a` over the largest one, after 1 ms, and the
 /// number of steps. Node (i, j, k) of `a` is the node `image(i, j, k)` of `b`. Component c of `a` is
@@ -209,7 +209,7 @@ fn free_flight_is_rigid() {
 fn lanes_are_independent_to_the_last_bit() {
     let model = small_model();
     let drives: [Drive; 4] = std::array::from_fn(|l| Drive {
-        law: Law::Coulomb { mu: 0.2 + 0.15 * l as f64 },
+        law: Law::coulomb(0.2 + 0.15 * l as f64),
         rate: DRIVE.rate * (1.0 + 3.0 * l as f64),
         force_n: DRIVE.force_n / (1.0 + l as f64),
         ramp_s: DRIVE.ramp_s * l as f64,

@@ -38,7 +38,7 @@ fn model(layer: Layer, time_step_s: f64) -> Model {
 }
 
 fn pressed(force_n: f64) -> Drive {
-    Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n, ramp_s: 0.0 }
+    Drive { law: Law::coulomb(0.0), rate: 0.0, force_n, ramp_s: 0.0 }
 }
 
 /// Protects: the law of the layer, linear and with an exponent.

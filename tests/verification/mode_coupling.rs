@@ -136,7 +136,7 @@ const DISTURBANCE_M: f64 = 0.05;
 /// Slides from a disturbance for `duration_s`. Returns the displacements of C in y and of B in z.
 fn slide(mu: f64, time_step_s: f64, duration_s: f64) -> (Vec<f64>, Vec<f64>) {
     let model = oscillator(time_step_s);
-    let drive = Drive { law: Law::Coulomb { mu }, rate: 10.0, force_n: NORMAL_N, ramp_s: 0.0 };
+    let drive = Drive { law: Law::coulomb(mu), rate: 10.0, force_n: NORMAL_N, ramp_s: 0.0 };
     let mut state = steady(&model, mu);
     state.u[Y] += DISTURBANCE_M;
     let (mut y, mut z) = (Vec::new(), Vec::new());

@@ -187,7 +187,7 @@ fn pressed(upper: usize, lower: usize, target: TargetSurface) -> Pressed {
     };
     let model = on_block(definition, &below);
     let force_n = pressure * size[0] * size[1];
-    let drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n, ramp_s: 0.0 };
+    let drive = Drive { law: Law::coulomb(0.0), rate: 0.0, force_n, ramp_s: 0.0 };
     let mut state = State::<1>::at_rest(&model);
     advance(&model, &drive, &mut state, (80.0 / slowest / model.time_step_s()) as usize);
     let body = model.ring().unwrap();

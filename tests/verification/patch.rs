@@ -27,7 +27,7 @@ use tribosweep_mechanics::solver::{Drive, Model, ModelDefinition, State, TimeSte
 const SIZE_M: [f64; 3] = [0.012, 0.015, 0.010];
 const LOAD_N: f64 = 30.0;
 const PRESSURE_PA: f64 = LOAD_N / (SIZE_M[0] * SIZE_M[1]);
-const DRIVE: Drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 0.0, force_n: LOAD_N, ramp_s: 0.0 };
+const DRIVE: Drive = Drive { law: Law::coulomb(0.0), rate: 0.0, force_n: LOAD_N, ramp_s: 0.0 };
 const SOURCE: &str = "uniform stress (Hooke)";
 
 fn model(elements: [usize; 3], confined: bool, beta_r_s: f64) -> Model {

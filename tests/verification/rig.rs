@@ -48,7 +48,7 @@ fn rig(pin: [usize; 3], disk: [usize; 3], tilt_deg: f64) -> Model {
 fn leading(tilt_deg: f64, mu: f64) -> [f64; 2] {
     let model = rig([2, 2, 20], [40, 10, 3], tilt_deg);
     let structure = SparseStructure::new(&model).unwrap();
-    let drive = Drive { law: Law::Coulomb { mu }, rate: 2.0, force_n: 1.0, ramp_s: 0.0 };
+    let drive = Drive { law: Law::coulomb(mu), rate: 2.0, force_n: 1.0, ramp_s: 0.0 };
     let near = structure.near(&model, &drive, 2450.0).unwrap();
     // All modes of the range have been found.
     assert!(near.radius_per_s > TAU * 550.0, "{:e}", near.radius_per_s);

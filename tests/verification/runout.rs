@@ -48,8 +48,7 @@ fn a_mass_follows_the_surface() {
             let dt = w / omega;
             let model =
                 system.model(0.0, TimeStep::Given(dt)).with_relief(Relief::new(vec![wave], vec![0.0; 4]));
-            let drive =
-                Drive { law: Law::Coulomb { mu: 0.0 }, rate: SPEED_M_S, force_n: LOAD_N, ramp_s: 0.0 };
+            let drive = Drive { law: Law::coulomb(0.0), rate: SPEED_M_S, force_n: LOAD_N, ramp_s: 0.0 };
             let (mut state, mut ledger) = (State::at_rest(&model), EnergyLedger::new(&model, 1));
             let steps = (30.0 / w) as usize;
             let mut worst: f64 = 0.0;

@@ -42,7 +42,7 @@ struct Saturated {
 
 fn saturated(mu: f64, belt_speed_m_s: f64, time_step_s: f64) -> Saturated {
     let model = oscillator(time_step_s);
-    let drive = Drive { law: Law::Coulomb { mu }, rate: belt_speed_m_s, force_n: NORMAL_N, ramp_s: 0.0 };
+    let drive = Drive { law: Law::coulomb(mu), rate: belt_speed_m_s, force_n: NORMAL_N, ramp_s: 0.0 };
     let mut state = steady(&model, mu);
     state.u[Y] += 1.0e-2;
     let mut ledger = EnergyLedger::new(&model, 1);

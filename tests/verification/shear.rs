@@ -66,7 +66,7 @@ fn column(layers: usize, cfl: f64) -> (Model, State<1>) {
     (model, state)
 }
 
-const DRIVE: Drive = Drive { law: Law::Coulomb { mu: MU }, rate: PLANE_SPEED_M_S, force_n: 0.0, ramp_s: 0.0 };
+const DRIVE: Drive = Drive { law: Law::coulomb(MU), rate: PLANE_SPEED_M_S, force_n: 0.0, ramp_s: 0.0 };
 const INTERVALS: usize = 8;
 const SOURCE: &str = "d'Alembert's solution, τ = ρc_s (v − v_r) at the base";
 

@@ -44,7 +44,7 @@ fn is_carried_from_where_its_slip_ends() {
         let model = block.model(0.0, TimeStep::Given(STOP_S / steps));
         let mu = 0.25;
         let drive = Drive {
-            law: Law::Coulomb { mu },
+            law: Law::coulomb(mu),
             rate: PLANE_M_S,
             force_n: 2.0 * DECELERATION_M_S2 / mu,
             ramp_s: 0.0,

@@ -12,7 +12,7 @@ use crate::sliding_modes::{EXACT, SURE, scene};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use tribosweep_mechanics::analysis;
-use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::interface::law::{Law, StaticKinetic};
 use tribosweep_mechanics::solver::{Drive, Model, State, step};
 use tribosweep_mechanics::spec::{ClampSide, JobSpec, Numerics};
 use tribosweep_mechanics::stability::{Accuracy, Aim, Mode, SlidingPoint, Structure};
@@ -87,7 +87,7 @@ impl Vibration<'_> {
         }
         // In its first step a law with a static coefficient would take all nodes for sticking ones.
         let first = match self.drive.law {
-            Law::StaticKinetic { mu, .. } => Drive { law: Law::Coulomb { mu }, ..self.drive },
+            Law::StaticKinetic(StaticKinetic { mu, .. }) => Drive { law: Law::coulomb(mu), ..self.drive },
             _ => self.drive,
         };
         let largest = |c: usize| {

@@ -13,7 +13,9 @@ use crate::sliding_modes::{EXACT, scene};
 use nalgebra::Complex;
 use std::f64::consts::TAU;
 use tribosweep_mechanics::analysis;
-use tribosweep_mechanics::solver::interface::law::Law;
+use tribosweep_mechanics::solver::interface::law::{
+    Exponential, Law, PrakashClifton, Regularised, StaticKinetic,
+};
 use tribosweep_mechanics::solver::{Drive, Model, State, step};
 use tribosweep_mechanics::spec::{ClampSide, FrictionLaw, JobSpec};
 use tribosweep_mechanics::stability::{StabilityError, Structure};
@@ -78,15 +80,16 @@ fn holder_modes(
 fn a_stiff_pin_on_a_holder_is_an_oscillator() {
     let fall = 0.2 * (-SPEED_M_S / SCALE_M_S).exp();
     let sum = SPEED_M_S + SCALE_M_S;
-    let exponential =
-        |slope_s_m| Law::Exponential { mu: 0.3, mu_static: 0.5, speed_m_s: SCALE_M_S, slope_s_m };
+    let exponential = |slope_s_m| {
+        Law::Exponential(Exponential { mu: 0.3, mu_static: 0.5, speed_m_s: SCALE_M_S, slope_s_m })
+    };
     let cases = [
-        (Law::Coulomb { mu: 0.3 }, 0.3, 0.0),
-        (Law::StaticKinetic { mu: 0.3, mu_static: 0.5 }, 0.3, 0.0),
+        (Law::coulomb(0.3), 0.3, 0.0),
+        (Law::StaticKinetic(StaticKinetic { mu: 0.3, mu_static: 0.5 }), 0.3, 0.0),
         (exponential(0.0), 0.3 + fall, -fall / SCALE_M_S),
         (exponential(0.5), 0.3 + fall + 0.5 * SPEED_M_S, -fall / SCALE_M_S + 0.5),
         (
-            Law::Regularised { mu: 0.3, speed_m_s: SCALE_M_S },
+            Law::Regularised(Regularised { mu: 0.3, speed_m_s: SCALE_M_S }),
             0.3 * SPEED_M_S / sum,
             0.3 * SCALE_M_S / (sum * sum),
         ),
@@ -237,7 +240,10 @@ fn scenes_without_an_equilibrium_are_refused() {
     assert_eq!(Structure::new(&model).unwrap_err(), StabilityError::Holder);
     let ideal = scene([3, 4, 3], 0.004, 0.3, 7.0);
     let model = Model::from_scene(&ideal.scene, &ideal.numerics).unwrap();
-    let drive = Drive { law: Law::PrakashClifton { mu: 0.3, length_m: 1.0e-6 }, ..analysis::drive(&ideal) };
+    let drive = Drive {
+        law: Law::PrakashClifton(PrakashClifton { mu: 0.3, length_m: 1.0e-6 }),
+        ..analysis::drive(&ideal)
+    };
     let refused = Structure::new(&model).unwrap().point(&model, &drive, 4).unwrap_err();
-    assert_eq!(refused, StabilityError::FrictionLaw);
+    assert_eq!(refused, StabilityError::FrictionLaw { law: "prakash_clifton" });
 }

@@ -156,7 +156,7 @@ fn a_mode_of_the_disk_is_left_alone() {
     // Only the middle of the base touches, under which the nodal line is, and the held pin presses it down.
     let gap_m = |position_m: [f64; 2]| if position_m[1].abs() < 1.0e-4 { -1.0e-6 } else { 1.0e-4 };
     let model = Model::new(definition).unwrap().with_initial_gaps(|slave| gap_m(slave.position_m));
-    let drive = Drive { law: Law::Coulomb { mu: 0.0 }, rate: 2.0, force_n: 1.0, ramp_s: 0.0 };
+    let drive = Drive { law: Law::coulomb(0.0), rate: 2.0, force_n: 1.0, ramp_s: 0.0 };
     let near = SparseStructure::new(&model).unwrap().near(&model, &drive, exact_hz).unwrap();
     let errors = near.modes.iter().map(|mode| (mode.eigenvalue_per_s.im / (TAU * exact_hz) - 1.0).abs());
     let error = errors.fold(f64::INFINITY, f64::min);

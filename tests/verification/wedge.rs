@@ -26,7 +26,7 @@ fn pushed(push: f64, mu: f64) -> (f64, bool) {
     let mut block = Particles::corners(1.0);
     block.release(0, Y).release(0, Z).load(0, Y, push * cosine - sine).load(0, Z, -(push * sine + cosine));
     let model = block.model(0.0, TimeStep::Given(1.0e-3));
-    let drive = Drive { law: Law::Coulomb { mu }, rate: 0.0, force_n: 1.0, ramp_s: 0.0 };
+    let drive = Drive { law: Law::coulomb(mu), rate: 0.0, force_n: 1.0, ramp_s: 0.0 };
     let mut state = State::at_rest(&model);
     let mut sticks = true;
     for _ in 0..STEPS {

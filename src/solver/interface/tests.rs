@@ -1,24 +1,29 @@
 //! Tests of initial gaps and of the arguments of a friction law.
 
-use super::law::{AtNode, FrictionLaw, Law};
+use super::law::{AtNode, Exponential, FrictionLimit, Law, PrakashClifton, Regularised, StaticKinetic};
 use super::solve::{StepData, TargetState};
 use super::{Contacts, LIMIT, Status};
 use crate::solver::body::pin::NodeMotion;
+use crate::solver::real::Real;
 use crate::solver::{Drive, Model, State, step};
 use crate::spec::{DiskKind, JobSpec};
-use fearless_simd::{Simd, f64x8, prelude::*};
 
 const STEPS: usize = 400;
 const SHIFT_M: f64 = 1.0 / 4096.0;
-const DRIVE: Drive = Drive { law: Law::Coulomb { mu: 0.4 }, rate: 0.7, force_n: 30.0, ramp_s: 2.0e-5 };
+const DRIVE: Drive = Drive { law: Law::coulomb(0.4), rate: 0.7, force_n: 30.0, ramp_s: 2.0e-5 };
 
-fn model(disk: DiskKind) -> Model {
+fn spec(disk: DiskKind) -> JobSpec {
     let mut spec = JobSpec::default();
     spec.scene.pin.elements = [6, 8, 5];
     spec.scene.clamp.width_m = 0.002;
     spec.scene.disk.kind = disk;
     spec.scene.disk.ring.element_size_m = 0.006;
     spec.scene.disk.ring.coarse_element_size_m = 0.03;
+    spec
+}
+
+fn model(disk: DiskKind) -> Model {
+    let spec = spec(disk);
     Model::from_scene(&spec.scene, &spec.numerics).unwrap()
 }
 
@@ -112,17 +117,13 @@ fn only_nodes_that_have_closed_their_gap_touch() {
 }
 
 /// A friction law whose limit encodes its arguments.
-#[derive(Clone, Copy)]
-pub(super) struct ExposingLaw;
+struct ExposingLaw;
 
-impl<S: Simd> FrictionLaw<f64x8<S>> for ExposingLaw {
-    fn limit_n(&self, node: &AtNode<f64x8<S>>) -> f64x8<S> {
-        let simd = node.normal_n.simd;
+impl FrictionLimit<0> for ExposingLaw {
+    fn limit_n<R: Real>([]: [R; 0], node: &AtNode<R>) -> R {
+        let all = |value| node.normal_n.constant(value);
         let [x, y] = node.last_increment_m;
-        node.normal_n
-            + f64x8::splat(simd, 1.0e3) * node.last_slipped
-            + f64x8::splat(simd, 1.0e9) * (x + y)
-            + f64x8::splat(simd, 1.0e2) * node.last_limit_n
+        node.normal_n + all(1.0e3) * node.last_slipped + all(1.0e9) * (x + y) + all(1.0e2) * node.last_limit_n
     }
 }
 
@@ -142,7 +143,7 @@ fn a_law_gets_the_step_before() {
     let motion = NodeMotion::<1, f64>::new(model.pin());
     let mut target = TargetState::<1>::at_rest(model.interface(), model.target());
     let (mut u, mut p) = (state.u.clone(), state.p.clone());
-    target.solve_with(ExposingLaw, &given, &mut motion.face(&mut u, &mut p), &mut state.contacts);
+    target.solve_with::<ExposingLaw>(&given, &mut motion.face(&mut u, &mut p), &mut state.contacts);
     let mut slipped_nodes = 0;
     for slave in 0..model.slaves().len() {
         let place = before.status.place(slave);
@@ -158,4 +159,82 @@ fn a_law_gets_the_step_before() {
         slipped_nodes += usize::from(slipped > 0.0);
     }
     assert!(slipped_nodes > 0 && slipped_nodes < model.slaves().len(), "{slipped_nodes}");
+}
+
+/// A node after a contact solve: u, p, force and increment in x, y and z; gap; limit of friction; whether it is closed and slips.
+type Solved = ([[f64; 3]; 6], [f64; 2]);
+
+/// Solves the slave nodes of a state for its next step as a target does it.
+fn solved(state: &State<1>, model: &Model, drive: &Drive, mut target: TargetState<1>) -> Vec<Solved> {
+    let steps_done = [state.steps_done(0)];
+    let factors = model.scheme().step_factors(&steps_done);
+    let given = StepData { factors: &factors, drives: std::array::from_ref(drive), steps_done: &steps_done };
+    let mut motion = NodeMotion::<1, f64>::new(model.pin());
+    let (mut u, mut p) = (state.u.clone(), state.p.clone());
+    let (mut history, mut contacts) = (state.history.clone(), state.contacts.clone());
+    motion.advance_free_planes(model.pin(), &factors, &mut u, &mut p, history.numbers_mut());
+    target.solve(&given, &mut motion.face(&mut u, &mut p), &mut contacts);
+    let of_node = |slave: usize| {
+        let place = u.place(slave);
+        let fields = [&u, &p].map(|field| [0, 1, 2].map(|c| field.at(place, c)[0]));
+        let status = [0, 1, 2].map(|c| contacts.status.at(contacts.status.place(slave), c)[0]);
+        let [gap, closed, slips] = status;
+        let (force, increment) = (contacts.force_of(slave, 0), contacts.increment_of(slave, 0));
+        let numbers = [[gap; 3], [contacts.friction_limit_of(slave, 0); 3]];
+        ([fields[0], fields[1], force, increment, numbers[0], numbers[1]], [closed, slips])
+    };
+    (0..model.slaves().len()).map(of_node).collect()
+}
+
+/// Protects: the solve of vectors of nodes, that of single nodes and the sweeps over the rows of a disk have one rule for contact and
+/// friction. The first two give the same numbers for the same nodes. A disk that is much heavier than the pin gives those of a rigid one.
+#[test]
+fn the_three_solves_have_one_rule() {
+    let rigid = model(DiskKind::Rigid);
+    let mut spec = spec(DiskKind::Elastic);
+    spec.scene.disk.ring.density_kg_m3 = 1.0e20;
+    spec.numerics.time_step_s = Some(rigid.time_step_s());
+    let heavy = Model::from_scene(&spec.scene, &spec.numerics).unwrap();
+    let speed_m_s = 1.0e-3;
+    let laws = [
+        DRIVE.law,
+        Law::StaticKinetic(StaticKinetic { mu: 0.3, mu_static: 0.5 }),
+        Law::Exponential(Exponential { mu: 0.3, mu_static: 0.5, speed_m_s, slope_s_m: 0.1 }),
+        Law::Regularised(Regularised { mu: 0.4, speed_m_s }),
+        Law::PrakashClifton(PrakashClifton { mu: 0.4, length_m: 1.0e-8 }),
+    ];
+    // Nodes that are open, that stick and that slip, over all laws.
+    let mut kinds = [0; 3];
+    for law in laws {
+        let drive = Drive { law, ..DRIVE };
+        let mut state = State::<1>::at_rest(&rigid);
+        for _ in 0..STEPS {
+            step(&rigid, std::array::from_ref(&drive), &mut state);
+        }
+        let targets = [
+            TargetState::at_rest(rigid.interface(), rigid.target()),
+            TargetState::one_by_one(rigid.interface()),
+            TargetState::at_rest(heavy.interface(), heavy.target()),
+        ];
+        let [vectors, single, swept] = targets.map(|target| solved(&state, &rigid, &drive, target));
+        assert_eq!(vectors, single, "{drive:?}");
+        let scales: [f64; 6] = std::array::from_fn(|of| {
+            vectors.iter().flat_map(|(fields, _)| fields[of]).fold(0.0, |a: f64, b| a.max(b.abs()))
+        });
+        for (slave, (found, exact)) in swept.iter().zip(&vectors).enumerate() {
+            assert_eq!(found.1, exact.1, "{drive:?}, slave node {slave}");
+            for of in 0..6 {
+                for c in 0..3 {
+                    let error = (found.0[of][c] - exact.0[of][c]).abs();
+                    assert!(
+                        error <= 1.0e-9 * scales[of],
+                        "{drive:?}, slave node {slave}: {found:?}, {exact:?}"
+                    );
+                }
+            }
+            let [closed, slips] = exact.1;
+            kinds[(closed + slips) as usize] += 1;
+        }
+    }
+    assert!(kinds.iter().all(|count| *count > 20), "{kinds:?}");
 }

@@ -6,8 +6,6 @@
 
 use crate::solver::Model;
 use crate::solver::body::Freedom;
-use crate::solver::body::hexahedron;
-use crate::solver::body::pin::operator::{AssembledOperator, Operator};
 use crate::solver::body::ring::RingBody;
 use crate::solver::interface::target::patch::Grid;
 use crate::solver::support::{Rocking, RockingWay, Support};
@@ -54,14 +52,7 @@ pub struct Bodies {
 impl Bodies {
     pub fn new(model: &Model) -> Self {
         let pin = model.pin();
-        let mut rows = match (pin.operator(), pin.mesh().block()) {
-            (Operator::Tensor(_), Some(mesh)) => {
-                let element = hexahedron::stiffness(pin.material(), mesh.element_size_m());
-                AssembledOperator::of_block(mesh, &element).rows()
-            }
-            (Operator::Assembled(operator), _) => operator.rows(),
-            (Operator::Tensor(_), None) => unreachable!("only a block has a tensor product"),
-        };
+        let mut rows = pin.operator().tangent_rows();
         let first = rows.len();
         let mut masses_kg: Vec<f64> = pin.masses_kg().iter().flat_map(|mass| [*mass; 3]).collect();
         let mut freedoms = pin.freedoms().to_vec();

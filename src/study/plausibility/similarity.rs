@@ -7,7 +7,7 @@
 //! all else equal, results depend on ω E/F and on ρ/E alone.
 
 use super::Warning;
-use crate::spec::{DiskKind, FrictionLaw, JobSpec};
+use crate::spec::{DiskKind, JobSpec};
 use crate::study::definition::Study;
 use crate::study::error::Problem;
 use crate::study::validate::assignments;
@@ -28,7 +28,7 @@ fn groups(spec: &JobSpec) -> [String; 2] {
 /// mass and a stiffness of its own, and the values of a program are no parameters.
 fn has_similarity(spec: &JobSpec) -> bool {
     let scene = &spec.scene;
-    let has_scale = !matches!(scene.contact.law, FrictionLaw::Coulomb | FrictionLaw::StaticKinetic);
+    let has_scale = scene.contact.law.coefficients().any(|coefficient| !coefficient.is_ratio);
     let is_flat = scene.pin.has_plane_base() && scene.disk.is_plane();
     let has_scale = has_scale || scene.contact.layer().is_some() || !scene.program.is_constant();
     scene.disk.kind == DiskKind::Rigid && !has_scale && is_flat && scene.holder.is_ideal()

@@ -1,20 +1,9 @@
 //! Coefficients of friction that nothing uses.
 
 use super::{Doubt, Shared, Warning, job_warnings};
-use crate::spec::{Contact, FrictionLaw, JobSpec};
+use crate::spec::{COEFFICIENTS, FrictionLaw, JobSpec};
 use crate::study::definition::Study;
 use strum::VariantArray;
-
-/// A coefficient of friction: its field, its name in a contact, and its value there.
-type Coefficient = (&'static [&'static str], &'static str, fn(&Contact) -> Option<f64>);
-
-/// The coefficients that not every law uses.
-const COEFFICIENTS: [Coefficient; 4] = [
-    (&["scene.contact.mu_static"], "mu_static", |contact| contact.mu_static),
-    (&["scene.contact.speed_m_s"], "speed_m_s", |contact| contact.speed_m_s),
-    (&["scene.contact.slope_s_m"], "slope_s_m", |contact| contact.slope_s_m),
-    (&["scene.contact.length_m"], "length_m", |contact| contact.length_m),
-];
 
 /// The coefficients of some jobs that are not used by the law of any of `all` jobs, with the number of jobs that have each of them and the
 /// index of the first.
@@ -34,20 +23,22 @@ fn unused<'a>(
         format!("{word} {}", names.join(", "))
     };
     let mut found = Vec::new();
-    for (fields, name, value) in COEFFICIENTS {
-        let uses = |law: &FrictionLaw| law.coefficients().contains(&name);
-        let mut given = jobs.clone().enumerate().filter(|(_, job)| value(&job.scene.contact).is_some());
+    for coefficient in &COEFFICIENTS {
+        let uses = |law: &FrictionLaw| law.uses(coefficient);
+        let is_given = |job: &JobSpec| !(coefficient.values)(&job.scene.contact).is_empty();
+        let mut given = jobs.clone().enumerate().filter(|(_, job)| is_given(job));
         let Some((first, _)) = given.next().filter(|_| !laws.iter().any(uses)) else { continue };
         let own: Vec<FrictionLaw> = FrictionLaw::VARIANTS.iter().copied().filter(uses).collect();
         let verb = if laws.len() == 1 { "does" } else { "do" };
         let doubt = Doubt {
             kind: "unused",
-            fields,
+            fields: std::slice::from_ref(&coefficient.field),
             size: 0.0,
             message: format!("without effect: the friction {} {verb} not use it", in_words(&laws)),
             help: format!(
                 "{name} belongs to the {}: give scene.contact.law, or leave {name} out",
-                in_words(&own)
+                in_words(&own),
+                name = coefficient.name
             ),
         };
         found.push((doubt, 1 + given.count(), first));

@@ -18,6 +18,8 @@ use fearless_simd::Simd;
 pub(in crate::solver) struct Motion<'a, const L: usize, R: Number> {
     pub u: &'a FieldOf<L, R>,
     pub p: &'a FieldOf<L, R>,
+    /// What its elements keep of their past.
+    pub history: &'a [R],
     pub steps_done: &'a [u64; L],
 }
 
@@ -29,7 +31,7 @@ pub(in crate::solver) struct PinAudit<const L: usize, R: Number> {
     /// K p.
     kp: FieldOf<L, R>,
     scratch: Scratch<R>,
-    /// ½uKu before the step.
+    /// Stored energy before the step.
     elastic_j: [f64; L],
     /// Work of damping over the increment before t_n.
     damping_before_j: [f64; L],
@@ -86,15 +88,15 @@ impl<const L: usize, R: Number> PinAudit<L, R> {
         }
     }
 
-    /// Evaluates uKu and pKp before the step.
+    /// Evaluates the stored energy and pKp before the step.
     pub fn begin(&mut self, pin: &PinBody, scheme: &Scheme, before: &Motion<'_, L, R>) {
         let (operator, dt, beta_r) = (pin.operator(), scheme.time_step_s, scheme.beta_r_s);
         // K p overwrites K u below.
-        self.elastic_j = operator.product(before.u, &mut self.kp, &mut self.scratch).map(|form| 0.5 * form);
+        self.elastic_j = operator.stored_j(before.u, before.history, &mut self.kp, &mut self.scratch);
         if beta_r == 0.0 {
             return;
         }
-        let form = operator.product(before.p, &mut self.kp, &mut self.scratch);
+        let form = operator.tangent(before.p, &mut self.kp, &mut self.scratch);
         self.damping_before_j = form.map(|form| beta_r * dt * form);
         if let Some(jumps) = &self.jumps {
             // Δu of the step before is Δt p + (γ−½) Δt² a.
@@ -182,7 +184,7 @@ impl<const L: usize, R: Number> PinAudit<L, R> {
                 }
             }
         }
-        let elastic_jump_j = pin.operator().product(&jumps.increment, &mut self.kp, &mut self.scratch);
+        let elastic_jump_j = pin.operator().tangent(&jumps.increment, &mut self.kp, &mut self.scratch);
         std::array::from_fn(|lane| {
             (gamma - 0.5) * (elastic_jump_j[lane] - 0.5 * gamma * dt * dt * inertial_jump_j[lane])
         })

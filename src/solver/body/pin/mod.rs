@@ -1,12 +1,13 @@
 //! The pin: hexahedra, or point masses on their nodes that are joined by springs.
 //!
 //! ```text
-//! mesh, materials ─► operator (K) ─► bound (ω_max) ─► PinBody (immutable) ─► motion (moves the nodes, per lane)
-//!                                                                    └─► audit (energies), stress
+//! mesh, materials ─► operator (forces, energy, bound of ω) ─► PinBody (immutable) ─► motion (moves the nodes, per lane)
+//!                                                                             └─► audit (energies), stress
 //! ```
 
 mod audit;
 mod bound;
+mod history;
 mod lanczos;
 mod line_table;
 mod mesh;
@@ -15,7 +16,7 @@ pub mod operator;
 pub mod stress;
 
 pub(in crate::solver) use audit::{Motion, PinAudit};
-use bound::{omega_max_bound, omega_max_bound_of_springs};
+pub use history::History;
 pub use mesh::{BlockMesh, GeneralMesh, Hexahedron, MeshParts, PinMesh, Tilt, cylinder};
 pub(in crate::solver) use motion::{Face, NodeMotion, move_nodes};
 
@@ -65,18 +66,12 @@ impl PinBody {
         let Some(&first) = materials.first() else {
             return Err(SolverError::Mesh("the pin has no material".to_owned()));
         };
-        let (operator, masses_kg, omega_max_rad_s) = match (stiffness, &mesh) {
+        let (operator, masses_kg) = match (stiffness, &mesh) {
             (Stiffness::Elastic, PinMesh::Block(block)) => {
-                let element = hexahedron::stiffness(&first, block.element_size_m());
-                let bound = omega_max_bound(block, &element, first.density_kg_m3, &freedoms);
                 let operator = Operator::Tensor(TensorOperator::new(block, &first));
-                (operator, block.lumped_masses_kg(first.density_kg_m3), bound)
+                (operator, block.lumped_masses_kg(first.density_kg_m3))
             }
-            (Stiffness::Elastic, PinMesh::General(general)) => {
-                let (operator, masses_kg) = assembled(general, &materials)?;
-                let bound = lanczos::omega_max_bound(mesh.layout(), &operator, &masses_kg, &freedoms);
-                (operator, masses_kg, bound)
-            }
+            (Stiffness::Elastic, PinMesh::General(general)) => assembled(general, &materials)?,
             (Stiffness::Springs(springs), _) => {
                 if springs.nodes() != mesh.node_count() {
                     return Err(SolverError::Stiffness(format!(
@@ -89,11 +84,11 @@ impl PinBody {
                     PinMesh::Block(block) => block.lumped_masses_kg(first.density_kg_m3),
                     PinMesh::General(general) => assembled(general, &materials)?.1,
                 };
-                let bound = omega_max_bound_of_springs(&springs, &masses_kg, &freedoms);
-                (Operator::Assembled(springs), masses_kg, bound)
+                (Operator::Springs(springs), masses_kg)
             }
         };
         let layout = mesh.layout();
+        let omega_max_rad_s = operator.omega_max_bound(layout, &masses_kg, &freedoms);
         let mut constrained_planes = vec![false; layout.planes()];
         constrained_planes[0] = true;
         for dof in acted_on {
@@ -117,7 +112,7 @@ impl PinBody {
         &self.materials
     }
 
-    /// The stiffness operator.
+    /// What resists its deformation.
     pub fn operator(&self) -> &Operator {
         &self.operator
     }
@@ -137,6 +132,14 @@ impl PinBody {
         self.omega_max_rad_s
     }
 
+    /// Stress \[Pa\] at every node, in the order of [`stress::COMPONENTS`], from displacements \[m\] in the order node → component.
+    ///
+    /// # Panics
+    /// If there are not three displacements per node.
+    pub fn nodal_stress_pa(&self, u_m: &[f64]) -> Vec<[f64; 6]> {
+        stress::nodal_pa(&self.mesh, &self.materials, u_m)
+    }
+
     /// K x of one lane (\[N\] for x in \[m\]), both in the order node → component. It serves inspection and tests;
     /// no time step uses it.
     ///
@@ -146,7 +149,7 @@ impl PinBody {
         let layout = self.mesh.layout();
         let mut product = Field::<1>::zeros(layout);
         let scratch = &mut self.operator.scratch(layout, 1);
-        self.operator.product(&Field::from_values(layout, x), &mut product, scratch);
+        self.operator.tangent(&Field::from_values(layout, x), &mut product, scratch);
         product.values().collect()
     }
 

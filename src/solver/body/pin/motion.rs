@@ -1,18 +1,19 @@
-//! Moves the nodes: u_{n+1} and p_{n+1} from the internal forces at t_n.
+//! Moves the nodes: u_{n+1} and p_{n+1} from the internal forces f at t_n, which the operator gives. Those
+//! of linear elasticity are K (u_n + β_R p_n).
 //!
 //! ```text
-//! a_n = −K (u_n + β_R p_n)/m       u_{n+1} = u_n + Δt p_n + c Δt² a_n       p_{n+1} = p_n + d Δt a_n
+//! a_n = −f/m       u_{n+1} = u_n + Δt p_n + c Δt² a_n       p_{n+1} = p_n + d Δt a_n
 //! ```
 //!
-//! Planes without constraints are moved as soon as the product with K has passed them, so that a step reads and
-//! writes their fields only once. For the other planes the product is kept as the residual. The load and the
+//! Planes without constraints are moved as soon as the forces have passed them, so that a step reads and
+//! writes their fields only once. For the other planes the forces are kept as the residual. The load and the
 //! supports change the residual, and then these planes are moved. The contact solve moves the contact face.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
 use super::PinBody;
 use super::line_table::LineTable;
-use super::operator::{BlockIndex, Operator, Pass, Scratch};
+use super::operator::{BlockIndex, Moving, Operator, Scratch};
 use crate::solver::body::Freedom;
 use crate::solver::field::{Block, FieldOf};
 use crate::solver::number::Number;
@@ -24,7 +25,7 @@ use fearless_simd::{Simd, prelude::*};
 pub struct Face<'a, const L: usize, R: Number = f64> {
     pub u: &'a mut FieldOf<L, R>,
     pub p: &'a mut FieldOf<L, R>,
-    /// K (u + β_R p) − external forces \[N\].
+    /// Internal minus external forces \[N\].
     pub residual: &'a FieldOf<L, R>,
     /// 1/m \[1/kg\] of every degree of freedom, 0 where it is fixed.
     pub inverse_mass: &'a [Block<R>],
@@ -34,9 +35,9 @@ pub struct Face<'a, const L: usize, R: Number = f64> {
 #[derive(Debug, Clone)]
 pub(in crate::solver) struct NodeMotion<const L: usize, R: Number> {
     inverse_masses: InverseMasses<R>,
-    /// Scratch of the product with K.
+    /// Scratch of the internal forces.
     scratch: Scratch<R>,
-    /// K (u + β_R p) − external forces \[N\] on the constrained planes.
+    /// Internal minus external forces \[N\] on the constrained planes.
     residual: FieldOf<L, R>,
 }
 
@@ -91,13 +92,14 @@ impl<const L: usize, R: Number> NodeMotion<L, R> {
         Face { u, p, residual: &self.residual, inverse_mass: &self.inverse_masses.constrained[0] }
     }
 
-    /// Forms K (u + β_R p), moves the planes without constraints, and keeps the product on the others.
+    /// Forms the internal forces, moves the planes without constraints, and keeps the forces on the others.
     pub fn advance_free_planes(
         &mut self,
         pin: &PinBody,
         factors: &StepFactors<R>,
         u: &mut FieldOf<L, R>,
         p: &mut FieldOf<L, R>,
+        history: &mut [R],
     ) {
         let mut advance = Advance {
             inverse_masses: &self.inverse_masses,
@@ -106,7 +108,7 @@ impl<const L: usize, R: Number> NodeMotion<L, R> {
             p: p.blocks_mut(),
             residual: self.residual.blocks_mut(),
         };
-        advance.run(pin.operator(), &mut self.scratch);
+        advance.run(pin.operator(), history, &mut self.scratch);
     }
 
     /// Moves the constrained planes above the contact face by their residual.
@@ -168,37 +170,39 @@ struct Advance<'a, R: Number> {
 }
 
 impl<R: Number> Advance<'_, R> {
-    fn run(&mut self, operator: &Operator, scratch: &mut Scratch<R>) {
-        dispatch!(simd => operator.pass(simd, self, scratch));
+    fn run(&mut self, operator: &Operator, history: &mut [R], scratch: &mut Scratch<R>) {
+        dispatch!(simd => operator.force(simd, self, history, scratch));
     }
 }
 
-impl<S: Simd, R: Number> Pass<S, R> for Advance<'_, R> {
+impl<S: Simd, R: Number> Moving<S, R> for Advance<'_, R> {
     #[inline(always)]
-    fn input(&self, simd: S, at: usize) -> [R::Vector<S>; 3] {
-        let mut strained = load_all::<R, S>(simd, &self.u[at].0);
-        if self.factors.beta_r_s != 0.0 {
-            let beta_r = R::Vector::<S>::splat(simd, self.factors.rounded_beta_r_s);
-            let p = load_all::<R, S>(simd, &self.p[at].0);
-            for c in 0..3 {
-                strained[c] += beta_r * p[c];
-            }
-        }
-        strained
+    fn u(&self, simd: S, at: usize) -> [R::Vector<S>; 3] {
+        load_all::<R, S>(simd, &self.u[at].0)
     }
 
     #[inline(always)]
-    fn output(&mut self, simd: S, index: BlockIndex, kx: [R::Vector<S>; 3]) {
+    fn damped(&self, simd: S, at: usize) -> Option<[R::Vector<S>; 3]> {
+        if self.factors.beta_r_s == 0.0 {
+            return None;
+        }
+        let beta_r = R::Vector::<S>::splat(simd, self.factors.rounded_beta_r_s);
+        let p = load_all::<R, S>(simd, &self.p[at].0);
+        Some([beta_r * p[0], beta_r * p[1], beta_r * p[2]])
+    }
+
+    #[inline(always)]
+    fn take(&mut self, simd: S, index: BlockIndex, force: [R::Vector<S>; 3]) {
         if self.inverse_masses.constrained_planes[index.plane] {
             for c in 0..3 {
-                kx[c].store_array(&mut self.residual[index.at].0[c]);
+                force[c].store_array(&mut self.residual[index.at].0[c]);
             }
             return;
         }
         let inverse_mass = self.inverse_masses.free.row(index.line, index.along);
         let (u, p) = (&mut self.u[index.at].0, &mut self.p[index.at].0);
         for c in 0..3 {
-            let [next_u, next_p] = self.factors.moved(simd, kx[c], inverse_mass, &u[c], &p[c]);
+            let [next_u, next_p] = self.factors.moved(simd, force[c], inverse_mass, &u[c], &p[c]);
             next_u.store_array(&mut u[c]);
             next_p.store_array(&mut p[c]);
         }

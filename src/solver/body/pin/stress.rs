@@ -20,7 +20,7 @@ pub const COMPONENTS: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "xz"];
 ///
 /// # Panics
 /// If there are not three displacements per node.
-pub fn nodal_pa(mesh: &PinMesh, materials: &[Material], u_m: &[f64]) -> Vec<[f64; 6]> {
+pub(super) fn nodal_pa(mesh: &PinMesh, materials: &[Material], u_m: &[f64]) -> Vec<[f64; 6]> {
     assert_eq!(u_m.len(), 3 * mesh.node_count(), "three displacements per node");
     match mesh {
         PinMesh::Block(mesh) => of_block_pa(mesh, &materials[0], u_m),

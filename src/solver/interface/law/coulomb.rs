@@ -2,31 +2,53 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::friction_law::{AtNode, FrictionLaw};
+use super::friction_law::{AtNode, FrictionLaw, FrictionLimit};
 use crate::solver::real::Real;
+use crate::spec::{Contact, FrictionLaw as Name};
 
-/// Coulomb's law with the friction coefficient μ of one node, or of the nodes of a vector.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::solver) struct Coulomb<R> {
-    pub mu: R,
+/// Coulomb's law with a constant coefficient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Coulomb {
+    /// Friction coefficient μ ≥ 0.
+    pub mu: f64,
 }
 
-impl<R: Real> FrictionLaw<R> for Coulomb<R> {
+impl FrictionLimit<1> for Coulomb {
     #[inline(always)]
-    fn limit_n(&self, node: &AtNode<R>) -> R {
-        self.mu * node.normal_n
+    fn limit_n<R: Real>([mu]: [R; 1], node: &AtNode<R>) -> R {
+        mu * node.normal_n
+    }
+}
+
+impl FrictionLaw<1> for Coulomb {
+    const NAME: Name = Name::Coulomb;
+
+    fn of(contact: &Contact) -> Self {
+        Self { mu: contact.mu }
+    }
+
+    fn numbers(&self, _time_step_s: f64) -> [f64; 1] {
+        [self.mu]
+    }
+
+    fn mu(&self) -> f64 {
+        self.mu
+    }
+
+    fn set_mu(&mut self, mu: f64) {
+        self.mu = mu;
     }
 }
 
 /// Coulomb's law with μ = 0 in all lanes.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug)]
 pub(in crate::solver) struct Frictionless;
 
-impl<R: Real> FrictionLaw<R> for Frictionless {
+impl FrictionLimit<0> for Frictionless {
     const TRANSMITS: bool = false;
 
     #[inline(always)]
-    fn limit_n(&self, node: &AtNode<R>) -> R {
+    fn limit_n<R: Real>([]: [R; 0], node: &AtNode<R>) -> R {
         node.normal_n.constant(0.0)
     }
 }

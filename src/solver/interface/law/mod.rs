@@ -4,8 +4,9 @@
 //! is the same for every law. A node whose trial force is within the limit sticks. Any other node slips, and a
 //! force of the size of the limit opposes its slip.
 //!
-//! To add a law, write a file that implements `FrictionLaw` for it, add a variant to [`Law`] and to `LawOfLanes`, and an
-//! arm to each `match` on them. The lanes of a batch have one law with coefficients of their own.
+//! To add a law, write a file that implements `FrictionLimit` and `FrictionLaw` for it, and add it to [`Law`], to [`Law::of`] and
+//! to `with_law!`. Its name, and what does not depend on its coefficients, is in [`spec`](crate::spec::FrictionLaw). The lanes of
+//! a batch have one law with coefficients of their own.
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
@@ -13,186 +14,148 @@ mod cone;
 mod coulomb;
 mod exponential;
 mod friction_law;
+mod lanes;
 mod prakash_clifton;
 mod regularised;
 mod static_kinetic;
 
 pub(in crate::solver) use cone::project;
-pub(in crate::solver) use coulomb::{Coulomb, Frictionless};
-pub(in crate::solver) use exponential::Exponential;
-pub(in crate::solver) use friction_law::{AtNode, FrictionLaw};
-pub(in crate::solver) use prakash_clifton::PrakashClifton;
-pub(in crate::solver) use regularised::Regularised;
-pub(in crate::solver) use static_kinetic::StaticKinetic;
+pub use coulomb::Coulomb;
+pub(in crate::solver) use coulomb::Frictionless;
+pub use exponential::Exponential;
+use friction_law::FrictionLaw;
+pub(in crate::solver) use friction_law::{AtNode, FrictionLimit};
+pub(in crate::solver) use lanes::LawOfLanes;
+pub use prakash_clifton::PrakashClifton;
+pub use regularised::Regularised;
+pub use static_kinetic::StaticKinetic;
 
-use crate::solver::field::in_slots_of;
-use crate::solver::number::Number;
+use crate::spec::{Contact, FrictionLaw as Name, Memory};
 
 /// A friction law with the coefficients of one lane.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Law {
     /// Coulomb's law with a constant coefficient.
-    Coulomb {
-        /// Friction coefficient μ ≥ 0.
-        mu: f64,
-    },
+    Coulomb(Coulomb),
     /// One coefficient for nodes that begin to slip, and one for nodes that slip.
-    StaticKinetic {
-        /// Coefficient ≥ 0 of a slipping node.
-        mu: f64,
-        /// Coefficient ≥ 0 of a node that begins to slip.
-        mu_static: f64,
-    },
-    /// μ(v) = μ + (μ_s − μ) exp(−v/v₀) + s v.
-    Exponential {
-        /// Coefficient μ ≥ 0 of fast slip, without the viscous part.
-        mu: f64,
-        /// Coefficient μ_s ≥ 0 of slow slip.
-        mu_static: f64,
-        /// Slip speed v₀ > 0 \[m/s\].
-        speed_m_s: f64,
-        /// Viscous part s ≥ 0 \[s/m\].
-        slope_s_m: f64,
-    },
-    /// |t| = μ N v/(v + v₀).
-    Regularised {
-        /// Coefficient μ ≥ 0 of fast slip.
-        mu: f64,
-        /// Slip speed v₀ > 0 \[m/s\] at which friction is half of that.
-        speed_m_s: f64,
-    },
-    /// A limit that approaches μ N within a slip L.
-    PrakashClifton {
-        /// Coefficient μ ≥ 0 of long slip under a constant load.
-        mu: f64,
-        /// Slip L > 0 \[m\].
-        length_m: f64,
-    },
+    StaticKinetic(StaticKinetic),
+    /// A coefficient that depends on the slip speed.
+    Exponential(Exponential),
+    /// Coulomb's law without stick.
+    Regularised(Regularised),
+    /// Friction that follows the normal force after some slip.
+    PrakashClifton(PrakashClifton),
 }
 
-impl Law {
-    /// The coefficient μ that every law has.
-    pub fn mu(self) -> f64 {
-        match self {
-            Self::Coulomb { mu }
-            | Self::StaticKinetic { mu, .. }
-            | Self::Exponential { mu, .. }
-            | Self::Regularised { mu, .. }
-            | Self::PrakashClifton { mu, .. } => mu,
-        }
-    }
-
-    /// The friction limit \[N\] of one node; see [`FrictionLaw::limit_n`].
-    #[inline(always)]
-    pub(in crate::solver) fn limit_n(self, node: &AtNode<f64>, time_step_s: f64) -> f64 {
-        let [a, b, c, d] = self.coefficients(time_step_s);
-        match self {
-            Self::Coulomb { .. } => Coulomb { mu: a }.limit_n(node),
-            Self::StaticKinetic { .. } => StaticKinetic { mu: a, mu_static: b }.limit_n(node),
-            Self::Exponential { .. } => {
-                Exponential { mu: a, drop: b, per_increment: c, slope_per_m: d }.limit_n(node)
-            }
-            Self::Regularised { .. } => Regularised { mu: a, increment_m: b }.limit_n(node),
-            Self::PrakashClifton { .. } => PrakashClifton { mu: a, per_m: b }.limit_n(node),
-        }
-    }
-
-    /// The numbers from which the law is made, for a time step, in the order of the fields of its type.
-    fn coefficients(self, time_step_s: f64) -> [f64; 4] {
-        match self {
-            Self::Coulomb { mu } => [mu, 0.0, 0.0, 0.0],
-            Self::StaticKinetic { mu, mu_static } => [mu, mu_static, 0.0, 0.0],
-            Self::Exponential { mu, mu_static, speed_m_s, slope_s_m } => {
-                [mu, mu_static - mu, 1.0 / (speed_m_s * time_step_s), slope_s_m / time_step_s]
-            }
-            Self::Regularised { mu, speed_m_s } => [mu, speed_m_s * time_step_s, 0.0, 0.0],
-            Self::PrakashClifton { mu, length_m } => [mu, 1.0 / length_m, 0.0, 0.0],
-        }
-    }
-}
-
-/// The law of all lanes, with the coefficients of each in the slots of a vector.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::solver) enum LawOfLanes<R: Number> {
-    /// Coulomb's law with μ = 0 in all lanes.
-    Frictionless,
-    Coulomb(R::Row),
-    StaticKinetic([R::Row; 2]),
-    Exponential([R::Row; 4]),
-    Regularised([R::Row; 2]),
-    PrakashClifton([R::Row; 2]),
-}
-
-impl<R: Number> LawOfLanes<R> {
-    /// Lanes of one law. A lane without a job may have Coulomb's law with μ = 0 beside any other: its load is zero, so that
-    /// any coefficients serve.
-    pub fn new<const L: usize>(laws: [Law; L], time_step_s: f64) -> Self {
-        let is_idle = |law: &Law| *law == Law::Coulomb { mu: 0.0 };
-        let Some(law) = laws.iter().find(|law| !is_idle(law)) else { return Self::Frictionless };
-        let kind = std::mem::discriminant(law);
-        debug_assert!(
-            laws.iter().all(|law| is_idle(law) || std::mem::discriminant(law) == kind),
-            "lanes of one law: {laws:?}"
-        );
-        let coefficients = laws.map(|law| law.coefficients(time_step_s));
-        let row = |place: usize| in_slots_of::<R>(&coefficients.map(|of_lane| of_lane[place]));
-        match law {
-            Law::Coulomb { .. } => Self::Coulomb(row(0)),
-            Law::StaticKinetic { .. } => Self::StaticKinetic([row(0), row(1)]),
-            Law::Exponential { .. } => Self::Exponential([row(0), row(1), row(2), row(3)]),
-            Law::Regularised { .. } => Self::Regularised([row(0), row(1)]),
-            Law::PrakashClifton { .. } => Self::PrakashClifton([row(0), row(1)]),
-        }
-    }
-}
-
-/// Calls SIMD code with the law of all lanes. The code is compiled for each law and for each SIMD level.
-macro_rules! with_law_of_lanes {
-    ($laws:expr, $simd:ident, $law:ident => $call:expr) => {{
-        use $crate::solver::interface::law::{
-            Coulomb, Exponential, Frictionless, LawOfLanes, PrakashClifton, Regularised, StaticKinetic,
-        };
-        use $crate::solver::simd::{dispatch, load};
-        match $laws {
-            LawOfLanes::Frictionless => {
-                let $law = Frictionless;
-                dispatch!($simd => $call)
-            }
-            LawOfLanes::Coulomb(mu) => {
-                dispatch!($simd => {
-                    let $law = Coulomb { mu: load::<R, _>($simd, &mu) };
-                    $call
-                })
-            }
-            LawOfLanes::StaticKinetic(rows) => {
-                dispatch!($simd => {
-                    let [mu, mu_static] = rows.map(|row| load::<R, _>($simd, &row));
-                    let $law = StaticKinetic { mu, mu_static };
-                    $call
-                })
-            }
-            LawOfLanes::Exponential(rows) => {
-                dispatch!($simd => {
-                    let [mu, drop, per_increment, slope_per_m] = rows.map(|row| load::<R, _>($simd, &row));
-                    let $law = Exponential { mu, drop, per_increment, slope_per_m };
-                    $call
-                })
-            }
-            LawOfLanes::Regularised(rows) => {
-                dispatch!($simd => {
-                    let [mu, increment_m] = rows.map(|row| load::<R, _>($simd, &row));
-                    let $law = Regularised { mu, increment_m };
-                    $call
-                })
-            }
-            LawOfLanes::PrakashClifton(rows) => {
-                dispatch!($simd => {
-                    let [mu, per_m] = rows.map(|row| load::<R, _>($simd, &row));
-                    let $law = PrakashClifton { mu, per_m };
-                    $call
-                })
-            }
+/// Does the same with a law of any type.
+macro_rules! with_law {
+    ($law:expr, $own:ident => $call:expr) => {{
+        use $crate::solver::interface::law::Law;
+        match $law {
+            Law::Coulomb($own) => $call,
+            Law::StaticKinetic($own) => $call,
+            Law::Exponential($own) => $call,
+            Law::Regularised($own) => $call,
+            Law::PrakashClifton($own) => $call,
         }
     }};
 }
-pub(in crate::solver) use with_law_of_lanes;
+pub(in crate::solver) use with_law;
+
+impl Law {
+    /// Coulomb's law with the coefficient μ ≥ 0.
+    pub const fn coulomb(mu: f64) -> Self {
+        Self::Coulomb(Coulomb { mu })
+    }
+
+    /// The law of a contact. A coefficient that is absent is not a number.
+    pub fn of(contact: &Contact) -> Self {
+        match contact.law {
+            Name::Coulomb => Self::Coulomb(Coulomb::of(contact)),
+            Name::StaticKinetic => Self::StaticKinetic(StaticKinetic::of(contact)),
+            Name::Exponential => Self::Exponential(Exponential::of(contact)),
+            Name::Regularised => Self::Regularised(Regularised::of(contact)),
+            Name::PrakashClifton => Self::PrakashClifton(PrakashClifton::of(contact)),
+        }
+    }
+
+    /// Its name in a study.
+    pub fn name(&self) -> Name {
+        with_law!(self, own => name_of(own))
+    }
+
+    /// What friction in a step uses of the step before.
+    pub fn memory(&self) -> Memory {
+        self.name().memory()
+    }
+
+    /// The coefficient μ that every law has.
+    pub fn mu(&self) -> f64 {
+        with_law!(self, own => own.mu())
+    }
+
+    /// The same law with another coefficient μ. A static coefficient changes in proportion; without kinetic friction there is no
+    /// proportion, and it stays.
+    #[must_use]
+    pub fn with_mu(&self, mu: f64) -> Self {
+        let mut law = *self;
+        with_law!(&mut law, own => own.set_mu(mu));
+        law
+    }
+
+    /// μ(v) of steady slip with the speed v \[m/s\], and μ′(v) \[s/m\]; none if it is μ at every speed.
+    pub fn steady(&self, speed_m_s: f64) -> Option<[f64; 2]> {
+        with_law!(self, own => own.steady(speed_m_s))
+    }
+
+    /// The friction limit \[N\] of one node.
+    #[inline(always)]
+    pub(in crate::solver) fn limit_n(&self, node: &AtNode<f64>, time_step_s: f64) -> f64 {
+        with_law!(self, own => limit_of(own, node, time_step_s))
+    }
+}
+
+fn name_of<W: FrictionLaw<N>, const N: usize>(_: &W) -> Name {
+    W::NAME
+}
+
+#[inline(always)]
+fn limit_of<W: FrictionLaw<N>, const N: usize>(law: &W, node: &AtNode<f64>, time_step_s: f64) -> f64 {
+    W::limit_n(law.numbers(time_step_s), node)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Protects: a law without kinetic friction has finite coefficients at another μ: the static one stays, and elsewhere it
+    /// changes in proportion.
+    #[test]
+    fn a_law_without_kinetic_friction_has_another_mu() {
+        let exponential =
+            |mu, mu_static| Law::Exponential(Exponential { mu, mu_static, speed_m_s: 0.1, slope_s_m: 0.0 });
+        let static_kinetic = |mu, mu_static| Law::StaticKinetic(StaticKinetic { mu, mu_static });
+        assert_eq!(exponential(0.0, 0.3).with_mu(0.0), exponential(0.0, 0.3));
+        assert_eq!(static_kinetic(0.0, 0.3).with_mu(0.01), static_kinetic(0.01, 0.3));
+        assert_eq!(static_kinetic(0.2, 0.3).with_mu(0.4), static_kinetic(0.4, 0.6));
+    }
+
+    /// Protects: every name of a study has the law of that name, with the coefficients of the contact.
+    #[test]
+    fn a_law_has_the_name_by_which_it_is_chosen() {
+        use strum::VariantArray;
+        for law in Name::VARIANTS {
+            let contact = Contact {
+                law: *law,
+                mu: 0.25,
+                mu_static: Some(0.5),
+                speed_m_s: Some(0.1),
+                length_m: Some(1.0e-6),
+                ..Contact::default()
+            };
+            let found = Law::of(&contact);
+            assert_eq!((found.name(), found.mu(), found.with_mu(0.5).mu()), (*law, 0.25, 0.5));
+            assert_eq!(found.with_mu(0.25), found);
+        }
+    }
+}

@@ -10,21 +10,44 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::friction_law::{AtNode, FrictionLaw, length};
+use super::friction_law::{AtNode, FrictionLaw, FrictionLimit, given, length};
 use crate::solver::real::{Real, decay};
+use crate::spec::{Contact, FrictionLaw as Name};
 
-/// The law with the coefficients of one node, or of the nodes of a vector.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::solver) struct PrakashClifton<R> {
-    pub mu: R,
-    /// 1/L \[1/m\].
-    pub per_m: R,
+/// A limit that approaches μ N within a slip L.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PrakashClifton {
+    /// Coefficient μ ≥ 0 of long slip under a constant load.
+    pub mu: f64,
+    /// Slip L > 0 \[m\].
+    pub length_m: f64,
 }
 
-impl<R: Real> FrictionLaw<R> for PrakashClifton<R> {
+/// The numbers are μ and 1/L \[1/m\].
+impl FrictionLimit<2> for PrakashClifton {
     #[inline(always)]
-    fn limit_n(&self, node: &AtNode<R>) -> R {
-        let aim = self.mu * node.normal_n;
-        aim + (node.last_limit_n - aim) * decay(length(node.last_increment_m) * self.per_m)
+    fn limit_n<R: Real>([mu, per_m]: [R; 2], node: &AtNode<R>) -> R {
+        let aim = mu * node.normal_n;
+        aim + (node.last_limit_n - aim) * decay(length(node.last_increment_m) * per_m)
+    }
+}
+
+impl FrictionLaw<2> for PrakashClifton {
+    const NAME: Name = Name::PrakashClifton;
+
+    fn of(contact: &Contact) -> Self {
+        Self { mu: contact.mu, length_m: given(contact.length_m) }
+    }
+
+    fn numbers(&self, _time_step_s: f64) -> [f64; 2] {
+        [self.mu, 1.0 / self.length_m]
+    }
+
+    fn mu(&self) -> f64 {
+        self.mu
+    }
+
+    fn set_mu(&mut self, mu: f64) {
+        self.mu = mu;
     }
 }

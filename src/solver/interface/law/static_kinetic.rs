@@ -9,20 +9,44 @@
 
 #![expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
 
-use super::friction_law::{AtNode, FrictionLaw};
+use super::friction_law::{AtNode, FrictionLaw, FrictionLimit, given, in_proportion};
 use crate::solver::real::Real;
+use crate::spec::{Contact, FrictionLaw as Name};
 
-/// The law with the coefficients of one node, or of the nodes of a vector.
-#[derive(Debug, Clone, Copy)]
-pub(in crate::solver) struct StaticKinetic<R> {
-    pub mu: R,
-    pub mu_static: R,
+/// One coefficient for nodes that begin to slip, and one for nodes that slip.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StaticKinetic {
+    /// Coefficient ≥ 0 of a slipping node.
+    pub mu: f64,
+    /// Coefficient ≥ 0 of a node that begins to slip.
+    pub mu_static: f64,
 }
 
-impl<R: Real> FrictionLaw<R> for StaticKinetic<R> {
+impl FrictionLimit<2> for StaticKinetic {
     #[inline(always)]
-    fn limit_n(&self, node: &AtNode<R>) -> R {
+    fn limit_n<R: Real>([mu, mu_static]: [R; 2], node: &AtNode<R>) -> R {
         let slipped = node.last_slipped.at_least(node.last_slipped.constant(0.5));
-        R::choose(slipped, self.mu, self.mu_static) * node.normal_n
+        R::choose(slipped, mu, mu_static) * node.normal_n
+    }
+}
+
+impl FrictionLaw<2> for StaticKinetic {
+    const NAME: Name = Name::StaticKinetic;
+
+    fn of(contact: &Contact) -> Self {
+        Self { mu: contact.mu, mu_static: given(contact.mu_static) }
+    }
+
+    fn numbers(&self, _time_step_s: f64) -> [f64; 2] {
+        [self.mu, self.mu_static]
+    }
+
+    fn mu(&self) -> f64 {
+        self.mu
+    }
+
+    fn set_mu(&mut self, mu: f64) {
+        self.mu_static = in_proportion(self.mu_static, self.mu, mu);
+        self.mu = mu;
     }
 }

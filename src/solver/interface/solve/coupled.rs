@@ -19,7 +19,7 @@
 //! normal is that of the undeformed top face, because slopes are 10⁻⁶.
 
 use super::step_data::StepData;
-use super::sweeps::{ContactRow, Solves, TargetNode, TargetNodes};
+use super::sweeps::{ContactRow, LawInStep, Solves, TargetNode, TargetNodes};
 use crate::solver::body::pin::{Face, move_nodes};
 use crate::solver::body::ring::{RingBody, RingState};
 use crate::solver::field::{Field, LaneSlot, WIDTH, add_slots};
@@ -216,59 +216,21 @@ impl<const L: usize> CoupledSolve<L> {
             }
         }
     }
-}
 
-impl<const L: usize> RingTarget<L> {
-    /// Moves the slave nodes and the disk to t_{n+1}.
-    pub(super) fn move_both(
+    /// Sets the constraint row of every slave node of a lane from the prediction and the step before.
+    fn gather_rows<const K: usize>(
         &mut self,
-        given: &StepData<'_, L>,
-        face: &mut Face<'_, L>,
-        contacts: &mut Contacts<L>,
-    ) {
-        std::mem::swap(&mut self.increment_m, &mut self.previous_increment_m);
-        self.solve.face_before.keep(face.u, face.p);
-        self.solve.top_before.keep(&self.state.u, &self.state.p);
-        let count = self.solve.face_before.u.blocks().len();
-        self.state.predict(&self.body, given.factors);
-        let (u, p) = (&mut face.u.blocks_mut()[..count], &mut face.p.blocks_mut()[..count]);
-        move_nodes(given.factors, face.residual.blocks(), face.inverse_mass, u, p);
-        let dt = given.factors.time_step_s;
-        for lane in 0..L {
-            let turned_rad = given.drives[lane].rate * ((given.steps_done[lane] + 1) as f64 * dt);
-            self.solve.gather(&self.body, lane, turned_rad, dt, &self.state);
-            let (first, grid) = (self.solve.targets.first, self.solve.grid);
-            let coords = self.solve.patch_coords(turned_rad);
-            match self.body.target() {
-                TargetSurface::Bilinear => {
-                    let shares: Vec<_> = coords.map(|(a, b)| Grid::bilinear(a, b, first)).collect();
-                    self.solve_lane(given, lane, &shares, face, contacts);
-                }
-                TargetSurface::Ferguson => {
-                    let shares: Vec<_> = coords.map(|(a, b)| grid.ferguson(a, b, first)).collect();
-                    self.solve_lane(given, lane, &shares, face, contacts);
-                }
-            }
-        }
-    }
-
-    fn solve_lane<const K: usize>(
-        &mut self,
-        given: &StepData<'_, L>,
-        lane: usize,
+        step: &LaneStep<'_>,
         shares: &[[Share; K]],
-        face: &mut Face<'_, L>,
-        contacts: &mut Contacts<L>,
+        u: &Field<L>,
+        contacts: &Contacts<L>,
     ) {
-        let CoupledSolve { slaves, face_before, rows, targets, .. } = &mut self.solve;
-        let (body, step) = (&*self.body, given.steps_done[lane] + 1);
-        let (u_scale, p_scale) = (given.factors.u_scale[lane], given.factors.p_scale[lane]);
-        let drive = &given.drives[lane];
-        let travel_m = drive.rate * given.factors.time_step_s;
-        for ((slave, row), shares) in slaves.iter().zip(&mut *rows).zip(shares) {
-            let end: [f64; 3] = std::array::from_fn(|c| face.u.at(slave.place, c)[lane]);
+        let Self { slaves, face_before, rows, targets, .. } = self;
+        let (lane, u_scale) = (step.lane, step.u_scale);
+        for ((slave, row), shares) in slaves.iter().zip(rows).zip(shares) {
+            let end: [f64; 3] = std::array::from_fn(|c| u.at(slave.place, c)[lane]);
             let before = [0, 1].map(|c| face_before.u.at(slave.place, c)[lane]);
-            let slip = [0, 1].map(|c| end[c] - before[c] - slave.motion[c] * travel_m);
+            let slip = [0, 1].map(|c| end[c] - before[c] - slave.motion[c] * step.travel_m);
             *row = ContactRow {
                 free_m: [slip[0], slip[1], end[2] + slave.initial_gap_m],
                 force_n: std::array::from_fn(|c| contacts.force_n.at(slave.place, c)[lane]),
@@ -288,70 +250,203 @@ impl<const L: usize> RingTarget<L> {
                 row.compliance += share.weight * share.weight * (u_scale * node.inverse_mass);
             }
         }
-        let law = (drive.law, given.factors.time_step_s);
-        let sweeps = targets.sweep(body, u_scale, law, rows, shares);
+    }
+
+    /// Increment \[m\] of a slave node relative to the deformation of the disk over the step before, by the constraint of this step: its
+    /// forces do work over that increment, too.
+    fn last_increment_m<const K: usize>(
+        &self,
+        step: &LaneStep<'_>,
+        slave: &Slave,
+        shares: &[Share; K],
+    ) -> [f64; 3] {
+        let p = &self.face_before.p;
+        let mut last: [f64; 3] = std::array::from_fn(|c| step.time_step_s * p.at(slave.place, c)[step.lane]);
+        for share in shares {
+            let node = self.targets.node(share);
+            for c in 0..3 {
+                last[c] -= share.weight * node.last_increment_m[c];
+            }
+        }
+        last
+    }
+}
+
+impl<const L: usize> RingTarget<L> {
+    /// Moves the slave nodes and the disk to t_{n+1}.
+    pub(super) fn move_both(
+        &mut self,
+        given: &StepData<'_, L>,
+        face: &mut Face<'_, L>,
+        contacts: &mut Contacts<L>,
+    ) {
+        std::mem::swap(&mut self.increment_m, &mut self.previous_increment_m);
+        self.solve.face_before.keep(face.u, face.p);
+        self.solve.top_before.keep(&self.state.u, &self.state.p);
+        let count = self.solve.face_before.u.blocks().len();
+        self.state.predict(&self.body, given.factors);
+        let (u, p) = (&mut face.u.blocks_mut()[..count], &mut face.p.blocks_mut()[..count]);
+        move_nodes(given.factors, face.residual.blocks(), face.inverse_mass, u, p);
+        for lane in 0..L {
+            let step = LaneStep::new(given, lane);
+            let turned_rad = given.drives[lane].rate * (step.number as f64 * step.time_step_s);
+            self.solve.gather(&self.body, lane, turned_rad, step.time_step_s, &self.state);
+            let (first, grid) = (self.solve.targets.first, self.solve.grid);
+            let coords = self.solve.patch_coords(turned_rad);
+            match self.body.target() {
+                TargetSurface::Bilinear => {
+                    let shares: Vec<_> = coords.map(|(a, b)| Grid::bilinear(a, b, first)).collect();
+                    self.solve_lane(&step, &shares, face, contacts);
+                }
+                TargetSurface::Ferguson => {
+                    let shares: Vec<_> = coords.map(|(a, b)| grid.ferguson(a, b, first)).collect();
+                    self.solve_lane(&step, &shares, face, contacts);
+                }
+            }
+        }
+    }
+
+    /// Finds the contact forces of a lane, and moves pin and disk by them.
+    fn solve_lane<const K: usize>(
+        &mut self,
+        step: &LaneStep<'_>,
+        shares: &[[Share; K]],
+        face: &mut Face<'_, L>,
+        contacts: &mut Contacts<L>,
+    ) {
+        self.solve.gather_rows(step, shares, face.u, contacts);
+        let CoupledSolve { rows, targets, .. } = &mut self.solve;
+        let sweeps = targets.sweep(&self.body, step.u_scale, step.law, rows, shares);
         targets.spread(rows, shares);
-        targets.respond(body, u_scale);
-        let residual = targets.residual(law, rows, shares);
-        self.solves[lane].add(step, sweeps, residual);
-        for ((slave, row), shares) in slaves.iter().zip(&*rows).zip(shares) {
-            let place = slave.place;
-            let relative = targets.relative_m(row, shares);
-            let closed = row.force_n[2] > 0.0;
+        targets.respond(&self.body, step.u_scale);
+        let residual = targets.residual(step.law, rows, shares);
+        self.solves[step.lane].add(step.number, sweeps, residual);
+        for (index, shares) in shares.iter().enumerate() {
+            self.write_back(step, index, shares, face, contacts);
+        }
+        for source in self.solve.targets.reactions() {
+            self.state.add_force(&self.body, step.lane, &source, step.u_scale, step.p_scale);
+        }
+    }
+
+    /// Moves a slave node by its contact force, and stores what the step found.
+    fn write_back<const K: usize>(
+        &mut self,
+        step: &LaneStep<'_>,
+        index: usize,
+        shares: &[Share; K],
+        face: &mut Face<'_, L>,
+        contacts: &mut Contacts<L>,
+    ) {
+        let CoupledSolve { slaves, face_before, rows, targets, .. } = &self.solve;
+        let (slave, row, lane) = (&slaves[index], &rows[index], step.lane);
+        let place = slave.place;
+        let relative = targets.relative_m(row, shares);
+        let closed = row.force_n[2] > 0.0;
+        let heights = {
             let ahead =
                 shares.iter().fold(0.0, |sum, share| sum + share.weight * targets.node(share).height_m);
             let raised = face_before.u.at(place, 2)[lane] + slave.initial_gap_m;
-            // No step has measured the gap at the start.
-            let gap_before = if step == 1 {
-                raised - ahead
-            } else {
-                contacts.status.at(place, Status::Gap as usize)[lane]
-            };
-            let gap = if closed { 0.0 } else { relative[2] };
-            for c in 0..3 {
-                let force = row.force_n[c];
-                face.u.at_mut(place, c)[lane] += row.own * force;
-                face.p.at_mut(place, c)[lane] += (p_scale * slave.inverse_mass) * force;
-                contacts.force_n.at_mut(place, c)[lane] = force;
+            let measured = contacts.status.at(place, Status::Gap as usize)[lane];
+            Heights {
+                raised,
+                ahead,
+                // No step has measured the gap at the start.
+                gap_before: if step.number == 1 { raised - ahead } else { measured },
+                gap: if closed { 0.0 } else { relative[2] },
             }
-            contacts.friction.at_mut(place, LIMIT)[lane] = row.limit_n;
-            let increment = [relative[0], relative[1], gap - gap_before];
-            let status = [gap, f64::from(u8::from(closed)), f64::from(u8::from(closed && !row.sticks))];
-            // The height of the surface at t_n, under the node's position at t_n and at t_{n+1}.
-            let under = raised - gap_before;
-            // The increment over the step before by the constraint of this step: its forces do work over that
-            // increment, too.
-            let mut last: [f64; 3] =
-                std::array::from_fn(|c| given.factors.time_step_s * face_before.p.at(place, c)[lane]);
-            for share in shares {
-                let node = targets.node(share);
-                for c in 0..3 {
-                    last[c] -= share.weight * node.last_increment_m[c];
-                }
-            }
-            if step > 1 {
-                for c in 0..2 {
-                    contacts.previous_increment_m.at_mut(place, c)[lane] =
-                        last[c] - slave.motion[c] * travel_m;
-                }
-                let closing = contacts.previous_increment_m.at(place, 2)[lane];
-                self.previous_increment_m.at_mut(place, 2)[lane] = last[2] - closing;
-            }
-            let moved = [0, 1].map(|c| face.u.at(place, c)[lane] - face_before.u.at(place, c)[lane]);
-            let of_target = [
-                moved[0] - increment[0] - slave.motion[0] * travel_m,
-                moved[1] - increment[1] - slave.motion[1] * travel_m,
-                ahead - under,
-            ];
-            for c in 0..3 {
-                contacts.increment_m.at_mut(place, c)[lane] = increment[c];
-                contacts.status.at_mut(place, c)[lane] = status[c];
-                self.increment_m.at_mut(place, c)[lane] = of_target[c];
-            }
+        };
+        for c in 0..3 {
+            let force = row.force_n[c];
+            face.u.at_mut(place, c)[lane] += row.own * force;
+            face.p.at_mut(place, c)[lane] += (step.p_scale * slave.inverse_mass) * force;
+            contacts.force_n.at_mut(place, c)[lane] = force;
         }
-        for source in targets.reactions() {
-            self.state.add_force(body, lane, &source, u_scale, p_scale);
+        contacts.friction.at_mut(place, LIMIT)[lane] = row.limit_n;
+        if step.number > 1 {
+            let last = self.solve.last_increment_m(step, slave, shares);
+            for c in 0..2 {
+                contacts.previous_increment_m.at_mut(place, c)[lane] =
+                    last[c] - slave.motion[c] * step.travel_m;
+            }
+            let closing = contacts.previous_increment_m.at(place, 2)[lane];
+            self.previous_increment_m.at_mut(place, 2)[lane] = last[2] - closing;
         }
+        let moved = [0, 1].map(|c| face.u.at(place, c)[lane] - self.solve.face_before.u.at(place, c)[lane]);
+        let increment = [relative[0], relative[1], heights.gap - heights.gap_before];
+        let of_target = [
+            moved[0] - increment[0] - slave.motion[0] * step.travel_m,
+            moved[1] - increment[1] - slave.motion[1] * step.travel_m,
+            heights.ahead - heights.under(),
+        ];
+        let slips = closed && !row.sticks;
+        let status = [heights.gap, f64::from(u8::from(closed)), f64::from(u8::from(slips))];
+        for c in 0..3 {
+            contacts.increment_m.at_mut(place, c)[lane] = increment[c];
+            contacts.status.at_mut(place, c)[lane] = status[c];
+            self.increment_m.at_mut(place, c)[lane] = of_target[c];
+        }
+    }
+}
+
+/// A step of one lane.
+struct LaneStep<'a> {
+    lane: usize,
+    /// Number of the step, counted from 1.
+    number: u64,
+    time_step_s: f64,
+    /// What a force over a mass adds to a displacement \[s²\] and to p \[s\].
+    u_scale: f64,
+    p_scale: f64,
+    /// Displacement \[m\] of the target over the step per unit of its motion.
+    travel_m: f64,
+    law: LawInStep<'a>,
+}
+
+impl<'a> LaneStep<'a> {
+    fn new<const L: usize>(given: &StepData<'a, L>, lane: usize) -> Self {
+        let (factors, drive) = (given.factors, &given.drives[lane]);
+        let time_step_s = factors.time_step_s;
+        Self {
+            lane,
+            number: given.steps_done[lane] + 1,
+            time_step_s,
+            u_scale: factors.u_scale[lane],
+            p_scale: factors.p_scale[lane],
+            travel_m: drive.rate * time_step_s,
+            law: (&drive.law, time_step_s),
+        }
+    }
+}
+
+/// Heights \[m\] of a slave node and of the surface at both ends of a step.
+///
+/// ```text
+///               t_n                                       t_{n+1}
+///
+///   raised  ●  the node
+///           │                                          ●  the node
+///           │ gap_before                               │ gap
+///           │                   ___ ahead              │
+///    under ─┴──────────‾‾‾‾‾‾‾‾‾‾    ┊       ──────────┴──────────
+///           the surface below it     ┊        the surface, which has
+///                                    ┊        moved meanwhile
+///              where the node will be over
+///              the disk at t_{n+1}
+/// ```
+///
+/// The gap changes by `gap` − `gap_before`. The disk turns below the node, so the surface rises by `ahead` − `under` even if it does
+/// not deform: that is its slope.
+struct Heights {
+    raised: f64,
+    ahead: f64,
+    gap_before: f64,
+    gap: f64,
+}
+
+impl Heights {
+    fn under(&self) -> f64 {
+        self.raised - self.gap_before
     }
 }
 

@@ -18,11 +18,13 @@ use super::step_data::StepData;
 use crate::solver::body::pin::Face;
 use crate::solver::field::{Block, FieldOf, in_slots_of};
 use crate::solver::interface::LIMIT;
-use crate::solver::interface::law::{AtNode, FrictionLaw, LawOfLanes, project, with_law_of_lanes};
+use crate::solver::interface::law::{
+    AtNode, FrictionLimit, Frictionless, Law, LawOfLanes, project, with_law,
+};
 use crate::solver::interface::{Contacts, Interface, MovingRelief, NodesOnLayer, SlaveNode, Status};
 use crate::solver::number::Number;
 use crate::solver::scheme::StepFactors;
-use crate::solver::simd::{load, splat};
+use crate::solver::simd::{dispatch, load, splat};
 use fearless_simd::{Simd, prelude::*};
 
 /// The constants of a run.
@@ -41,7 +43,11 @@ pub(super) struct DiagonalSolve<const L: usize, R: Number> {
 
 impl<const L: usize, R: Number> DiagonalSolve<L, R> {
     pub fn new(interface: &Interface) -> Self {
-        let is_free = |node: &SlaveNode| node.mobile == [true; 3];
+        Self::in_pass(interface, |node| node.mobile == [true; 3])
+    }
+
+    /// A solve whose pass takes some of the nodes. The others are solved one by one.
+    pub(super) fn in_pass(interface: &Interface, is_free: impl Fn(&SlaveNode) -> bool) -> Self {
         let nodes: FieldOf<L, R> = interface.field(|node| {
             let [x, y] = node.surface_motion;
             [x, y, if is_free(node) { node.mass_kg } else { 0.0 }]
@@ -78,7 +84,7 @@ impl<const L: usize, R: Number> DiagonalSolve<L, R> {
         for held in &mut self.held {
             held.keep(face, contacts);
         }
-        let laws = LawOfLanes::new(given.drives.map(|drive| drive.law), given.factors.time_step_s);
+        let laws = given.drives.each_ref().map(|drive| &drive.law);
         self.pass(given, face, contacts).run(&laws);
         let mut carried_n = [[0.0; L]; 3];
         for held in &self.held {
@@ -102,7 +108,7 @@ impl<const L: usize, R: Number> DiagonalSolve<L, R> {
         face: &'a mut Face<'_, L, R>,
         contacts: &'a mut Contacts<L, R>,
     ) -> FacePass<'a, R> {
-        let travel_m = given.drives.map(|drive| drive.rate * given.factors.time_step_s);
+        let travel_m = given.drives.each_ref().map(|drive| drive.rate * given.factors.time_step_s);
         let count = self.nodes.blocks().len();
         FacePass {
             travel_m: in_slots_of::<R>(&travel_m),
@@ -141,17 +147,31 @@ pub(super) struct FacePass<'a, R: Number> {
 }
 
 impl<R: Number> FacePass<'_, R> {
-    fn run(self, laws: &LawOfLanes<R>) {
-        with_law_of_lanes!(laws, simd, law => self.solve(simd, law));
+    fn run(self, laws: &[&Law]) {
+        match laws.iter().find(|law| !law.is_idle()) {
+            None => dispatch!(simd => self.solve(simd, &LawOfLanes::<Frictionless, R, 0>::NONE)),
+            Some(law) => with_law!(law, own => {
+                let law = LawOfLanes::new(own, laws, self.factors.time_step_s);
+                dispatch!(simd => self.solve(simd, &law));
+            }),
+        }
     }
 
     /// Predicts and corrects all nodes without a fixed component. If the law transmits no force, the square root
     /// and the division of the projection are left out.
     #[inline(always)]
-    pub(super) fn solve<S: Simd, W: FrictionLaw<R::Vector<S>>>(self, simd: S, law: W) {
+    pub(super) fn solve<S: Simd, W: FrictionLimit<N>, const N: usize>(
+        self,
+        simd: S,
+        law: &LawOfLanes<W, R, N>,
+    ) {
         let factors = self.factors;
         let zero = splat::<R, S>(simd, 0.0);
         let one = splat::<R, S>(simd, 1.0);
+        let mut numbers = [zero; N];
+        for (number, row) in numbers.iter_mut().zip(&law.rows) {
+            *number = load::<R, S>(simd, row);
+        }
         let travel = load::<R, S>(simd, &self.travel_m);
         let u_scale = load::<R, S>(simd, &factors.u_scale);
         let p_scale = load::<R, S>(simd, &factors.p_scale);
@@ -191,14 +211,15 @@ impl<R: Number> FacePass<'_, R> {
             } else {
                 [zero; 2]
             };
-            let limit = law.limit_n(&AtNode {
+            let at_node = AtNode {
                 normal_n: normal,
                 trial_n: trial,
                 stiffness_n_m: stiffness,
                 last_increment_m: last_increment,
                 last_slipped: slipped,
                 last_limit_n: load::<R, S>(simd, &friction.0[LIMIT]),
-            });
+            };
+            let limit = W::limit_n(numbers, &at_node);
             let (mut tangential, sticks) = if W::TRANSMITS {
                 let projected = project(trial, limit);
                 (projected.force_n, projected.sticks & closed)

@@ -3,6 +3,10 @@
 //! * `diagonal` – on a rigid target: node by node, in closed form.
 //! * `coupled` – on an elastic disk, where constraints share target nodes: by Gauss–Seidel (`sweeps`). Single precision
 //!   has no elastic disk (`elastic`).
+//!
+//! The law and the projection stand once for all. What a node's gap and slip are, and how it is moved, differs with the target, so the
+//! rule around them stands in `diagonal`, in `held` (nodes with a fixed component) and in `sweeps`. A test runs the three on the same
+//! nodes and compares them.
 
 mod coupled;
 mod diagonal;
@@ -109,10 +113,14 @@ impl<const L: usize, R: RunNumber> TargetState<L, R> {
 
 #[cfg(test)]
 impl<const L: usize> TargetState<L> {
+    /// A rigid target that solves all nodes one by one, as if each had a fixed component.
+    pub(super) fn one_by_one(interface: &Interface) -> Self {
+        Self(Kind::Rigid(DiagonalSolve::in_pass(interface, |_| false)))
+    }
+
     /// [`TargetState::solve`] on a rigid target with a friction law of the tests.
-    pub(super) fn solve_with(
+    pub(super) fn solve_with<W: super::law::FrictionLimit<0>>(
         &mut self,
-        law: super::tests::ExposingLaw,
         given: &StepData<'_, L>,
         face: &mut Face<'_, L>,
         contacts: &mut Contacts<L>,
@@ -120,7 +128,8 @@ impl<const L: usize> TargetState<L> {
         contacts.swap_increments();
         let Kind::Rigid(solve) = &self.0 else { panic!("a rigid target") };
         let pass = solve.pass(given, face, contacts);
-        crate::solver::simd::dispatch!(simd => pass.solve(simd, law));
+        let law = super::law::LawOfLanes::<W, f64, 0>::NONE;
+        crate::solver::simd::dispatch!(simd => pass.solve(simd, &law));
     }
 }
 

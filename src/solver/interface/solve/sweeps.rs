@@ -121,7 +121,7 @@ impl TargetNode {
 }
 
 /// A law, and the time step \[s\].
-pub(super) type LawInStep = (Law, f64);
+pub(super) type LawInStep<'a> = (&'a Law, f64);
 
 /// Solution of one row while all other forces stay fixed.
 struct RowSolution {
@@ -148,7 +148,12 @@ impl TargetNodes {
     }
 
     /// Solves one row while all other forces stay fixed.
-    fn solve_row(&self, row: &ContactRow, shares: &[Share], (law, time_step_s): LawInStep) -> RowSolution {
+    fn solve_row(
+        &self,
+        row: &ContactRow,
+        shares: &[Share],
+        (law, time_step_s): LawInStep<'_>,
+    ) -> RowSolution {
         let relative = self.relative_m(row, shares);
         let stiffness = 1.0 / row.compliance;
         // NaN gives no force here; the guard detects it.
@@ -174,7 +179,7 @@ impl TargetNodes {
     /// Residual of the current forces, relative to the largest force: max |f − solved(f)| / max N.
     pub fn residual<const K: usize>(
         &self,
-        law: LawInStep,
+        law: LawInStep<'_>,
         rows: &[ContactRow],
         shares: &[[Share; K]],
     ) -> f64 {
@@ -195,7 +200,7 @@ impl TargetNodes {
         &mut self,
         body: &RingBody,
         u_scale: f64,
-        law: LawInStep,
+        law: LawInStep<'_>,
         rows: &mut [ContactRow],
         shares: &[[Share; K]],
     ) -> u32 {

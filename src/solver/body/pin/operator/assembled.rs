@@ -337,7 +337,7 @@ mod tests {
         let mut x = Field::<2>::zeros(layout);
         let mut y = Field::<2>::zeros(layout);
         (x[0], x[9]) = (1.0, 1.0);
-        k.product(&x, &mut y, &mut k.scratch(layout, 2));
+        k.tangent(&x, &mut y, &mut k.scratch(layout, 2));
         let found = [0, 4, 23].map(|dof| [y[2 * dof], y[2 * dof + 1]]);
         assert_eq!(found, [[2.0, -2.0], [-2.0, 5.0], [0.0, -3.0]]);
     }
@@ -361,7 +361,7 @@ mod tests {
         }
         let mut y = FieldOf::zeros(layout);
         let mut scratch: Scratch<R> = k.scratch(layout, L);
-        k.product(&x, &mut y, &mut scratch);
+        k.tangent(&x, &mut y, &mut scratch);
         (0..L).map(|lane| (0..3 * layout.nodes).map(|dof| y[dof * L + lane].to_f64()).collect()).collect()
     }
 

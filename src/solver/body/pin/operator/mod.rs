@@ -1,10 +1,14 @@
-//! The stiffness operator: y = K x.
+//! What resists the deformation of the pin.
+//!
+//! Others ask an [`Operator`] for the internal forces of a motion, for stored energy, for the stiffness about the undeformed pin,
+//! for a bound of ω, and for the length of its history. Which form it has is decided here.
 //!
 //! * [`TensorOperator`] – K of a uniform elastic block as a sum of tensor products. It is the fastest form.
 //! * [`AssembledOperator`] – any symmetric K, by pairs of nodes. It serves general meshes, discrete springs and masses, and the
 //!   tests compare the other form with it.
 //!
-//! Both give K x block by block in one pass over the mesh.
+//! Both are linear: forces are K (u + β_R p), the energy is ½u·Ku, and there is no history. They give K x block by block in one pass over
+//! the mesh, which is the only product with K.
 
 mod assembled;
 mod tensor;
@@ -16,18 +20,23 @@ use assembled::AssembledScratch;
 pub use tensor::TensorOperator;
 use tensor::TensorScratch;
 
-use crate::solver::field::{Block, FieldOf, Layout, add_slots, blocks_per_line};
+use super::bound::{omega_max_bound, omega_max_bound_of_springs};
+use super::lanczos;
+use crate::solver::body::Freedom;
+use crate::solver::field::{Block, Field, FieldOf, Layout, add_slots, blocks_per_line};
 use crate::solver::number::Number;
 use crate::solver::simd::{dispatch, load_all};
 use fearless_simd::{Simd, prelude::*};
 
-/// K in one of its forms.
+/// The forms of what resists the deformation.
 #[derive(Debug, Clone)]
 pub enum Operator {
-    /// K of a uniform elastic block.
+    /// A uniform elastic block.
     Tensor(TensorOperator),
-    /// K by pairs of nodes.
+    /// Elastic elements, by pairs of nodes.
     Assembled(AssembledOperator),
+    /// Springs between point masses, by pairs of nodes.
+    Springs(AssembledOperator),
 }
 
 /// Position of a block.
@@ -43,8 +52,19 @@ pub(in crate::solver) struct BlockIndex {
     pub at: usize,
 }
 
-/// The input and the output of a product, block by block.
-pub(in crate::solver) trait Pass<S: Simd, R: Number> {
+/// Nodes that are moved by internal forces, block by block.
+pub(in crate::solver) trait Moving<S: Simd, R: Number> {
+    /// Displacements u \[m\] in block `at`.
+    fn u(&self, simd: S, at: usize) -> [R::Vector<S>; 3];
+    /// β_R p \[m\] in block `at`, whose elastic forces are those of damping; none without damping.
+    fn damped(&self, simd: S, at: usize) -> Option<[R::Vector<S>; 3]>;
+    /// Takes the internal forces \[N\] on a block. The displacements of its plane and of those below are not read again, so it may
+    /// overwrite them. Planes come in their order.
+    fn take(&mut self, simd: S, index: BlockIndex, force: [R::Vector<S>; 3]);
+}
+
+/// The input and the output of a product with K, block by block.
+trait Pass<S: Simd, R: Number> {
     /// The three components of x in block `at`.
     fn input(&self, simd: S, at: usize) -> [R::Vector<S>; 3];
     /// Takes the three components of K x in a block. The inputs of its plane and of those below are not read again,
@@ -52,9 +72,10 @@ pub(in crate::solver) trait Pass<S: Simd, R: Number> {
     fn output(&mut self, simd: S, index: BlockIndex, kx: [R::Vector<S>; 3]);
 }
 
-/// Scratch of products with an operator.
+/// Scratch of the passes of an operator.
 #[derive(Debug, Clone)]
 pub struct Scratch<R: Number = f64> {
+    lanes: usize,
     form: ScratchOf<R>,
     /// x·Kx by columns of blocks.
     forms: Vec<R::Totals>,
@@ -67,23 +88,98 @@ enum ScratchOf<R: Number> {
 }
 
 impl Operator {
-    /// Scratch for products of fields with `lanes` lanes.
+    /// Scratch for fields with `lanes` lanes.
     pub fn scratch<R: Number>(&self, layout: Layout, lanes: usize) -> Scratch<R> {
         let form = match self {
             Self::Tensor(_) => ScratchOf::Tensor(TensorScratch::new(layout, lanes)),
-            Self::Assembled(_) => ScratchOf::Assembled(AssembledScratch::new(layout, lanes)),
+            Self::Assembled(_) | Self::Springs(_) => {
+                ScratchOf::Assembled(AssembledScratch::new(layout, lanes))
+            }
         };
         Scratch {
+            lanes,
             form,
             forms: vec![R::Totals::default(); blocks_per_line::<R>(layout.nodes_per_line, lanes)],
         }
     }
 
-    /// Computes `y = K x` for `L` lanes and returns x·y.
+    /// Number of numbers that all elements together keep of their past, in each lane.
+    pub fn history_len(&self) -> usize {
+        match self {
+            Self::Tensor(_) | Self::Assembled(_) | Self::Springs(_) => 0,
+        }
+    }
+
+    /// Gives the internal forces of damping and deformation to the nodes that they move, in one pass over the mesh. The history follows
+    /// the deformation.
     ///
     /// # Panics
     /// If the scratch is that of another operator.
-    pub fn product<const L: usize, R: Number>(
+    #[expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+    #[inline(always)]
+    pub(in crate::solver) fn force<S: Simd, R: Number>(
+        &self,
+        simd: S,
+        nodes: &mut impl Moving<S, R>,
+        history: &mut [R],
+        scratch: &mut Scratch<R>,
+    ) {
+        debug_assert_eq!(
+            history.len(),
+            self.history_len() * scratch.lanes,
+            "the history of another operator"
+        );
+        self.pass(simd, &mut Linear(nodes), scratch);
+    }
+
+    /// The energy \[J\] that the deformation stores, in each lane. It overwrites `work`.
+    ///
+    /// # Panics
+    /// If the scratch is that of another operator.
+    pub fn stored_j<const L: usize, R: Number>(
+        &self,
+        u: &FieldOf<L, R>,
+        history: &[R],
+        work: &mut FieldOf<L, R>,
+        scratch: &mut Scratch<R>,
+    ) -> [f64; L] {
+        debug_assert_eq!(
+            history.len(),
+            self.history_len() * scratch.lanes,
+            "the history of another operator"
+        );
+        self.tangent(u, work, scratch).map(|form| 0.5 * form)
+    }
+
+    /// Upper bound of the largest angular frequency \[rad/s\] of nodes with these masses. It must hold for every deformation of a run,
+    /// because a run has one time step.
+    pub fn omega_max_bound(&self, layout: Layout, masses_kg: &[f64], freedoms: &[Freedom]) -> f64 {
+        match self {
+            Self::Tensor(block) => {
+                omega_max_bound(block.mesh(), &block.element(), block.material().density_kg_m3, freedoms)
+            }
+            Self::Assembled(_) => {
+                let mut scratch = self.scratch(layout, 1);
+                let product = |x: &Field<1>, y: &mut Field<1>| _ = self.tangent(x, y, &mut scratch);
+                lanczos::omega_max_bound(layout, product, masses_kg, freedoms)
+            }
+            Self::Springs(springs) => omega_max_bound_of_springs(springs.entries(), masses_kg, freedoms),
+        }
+    }
+
+    /// The entries (column, value \[N/m\]) of every row of K, the stiffness of the undeformed pin.
+    pub fn tangent_rows(&self) -> Vec<Vec<(usize, f64)>> {
+        match self {
+            Self::Tensor(block) => AssembledOperator::of_block(block.mesh(), &block.element()).rows(),
+            Self::Assembled(operator) | Self::Springs(operator) => operator.rows(),
+        }
+    }
+
+    /// Computes `y = K x` for `L` lanes with the stiffness K of the undeformed pin, and returns x·y. β_R K is the damper of the pin.
+    ///
+    /// # Panics
+    /// If the scratch is that of another operator.
+    pub fn tangent<const L: usize, R: Number>(
         &self,
         x: &FieldOf<L, R>,
         y: &mut FieldOf<L, R>,
@@ -105,23 +201,42 @@ impl Operator {
         dispatch!(simd => self.pass(simd, product, scratch));
     }
 
-    /// One pass over the mesh.
+    /// K x in one pass over the mesh.
     ///
     /// # Panics
     /// If the scratch is that of another operator.
     #[expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
     #[inline(always)]
-    pub(in crate::solver) fn pass<S: Simd, R: Number>(
-        &self,
-        simd: S,
-        pass: &mut impl Pass<S, R>,
-        scratch: &mut Scratch<R>,
-    ) {
+    fn pass<S: Simd, R: Number>(&self, simd: S, pass: &mut impl Pass<S, R>, scratch: &mut Scratch<R>) {
         match (self, &mut scratch.form) {
             (Self::Tensor(operator), ScratchOf::Tensor(scratch)) => operator.pass(simd, pass, scratch),
-            (Self::Assembled(operator), ScratchOf::Assembled(scratch)) => operator.pass(simd, pass, scratch),
+            (Self::Assembled(operator) | Self::Springs(operator), ScratchOf::Assembled(scratch)) => {
+                operator.pass(simd, pass, scratch);
+            }
             _ => panic!("the scratch of another operator"),
         }
+    }
+}
+
+/// The forces K (u + β_R p) on nodes.
+struct Linear<'a, M>(&'a mut M);
+
+#[expect(clippy::inline_always, reason = "vector code must be compiled for the level that calls it")]
+impl<S: Simd, R: Number, M: Moving<S, R>> Pass<S, R> for Linear<'_, M> {
+    #[inline(always)]
+    fn input(&self, simd: S, at: usize) -> [R::Vector<S>; 3] {
+        let mut strained = self.0.u(simd, at);
+        if let Some(damped) = self.0.damped(simd, at) {
+            for c in 0..3 {
+                strained[c] += damped[c];
+            }
+        }
+        strained
+    }
+
+    #[inline(always)]
+    fn output(&mut self, simd: S, index: BlockIndex, kx: [R::Vector<S>; 3]) {
+        self.0.take(simd, index, kx);
     }
 }
 

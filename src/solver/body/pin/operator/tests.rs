@@ -31,7 +31,7 @@ fn values(n: usize, seed: u64) -> Vec<f64> {
 fn product<const L: usize, R: Number>(mesh: &BlockMesh, operator: &Operator, x: &[f64]) -> FieldOf<L, R> {
     let mut y = FieldOf::zeros(mesh.layout());
     let x = FieldOf::from_values(mesh.layout(), x);
-    operator.product(&x, &mut y, &mut operator.scratch(mesh.layout(), L));
+    operator.tangent(&x, &mut y, &mut operator.scratch(mesh.layout(), L));
     y
 }
 
@@ -153,7 +153,7 @@ fn copied_scratch_is_as_good_as_new() {
         let x = Field::<1>::from_values(mesh.layout(), &values(3 * mesh.node_count(), 7));
         let product = |scratch: &mut Scratch| {
             let mut y = Field::<1>::zeros(mesh.layout());
-            operator.product(&x, &mut y, scratch);
+            operator.tangent(&x, &mut y, scratch);
             y.values().map(f64::to_bits).collect::<Vec<_>>()
         };
         let mut used = operator.scratch(mesh.layout(), 1);

@@ -23,12 +23,15 @@ mod pass;
 
 pub(super) use pass::TensorScratch;
 
+use crate::solver::body::hexahedron::{self, ElementStiffness};
 use crate::solver::body::pin::BlockMesh;
 use crate::solver::material::Material;
 
 /// K of a block of equal elements.
 #[derive(Debug, Clone)]
 pub struct TensorOperator {
+    mesh: BlockMesh,
+    material: Material,
     nodes: [usize; 3],
     /// Coefficients of K_cc: \[Sx My Mz, Mx Sy Mz, Mx My Sz\] for each component c.
     own: [[f64; 3]; 3],
@@ -53,6 +56,8 @@ impl TensorOperator {
         let directions = [hy * hz / (36.0 * hx), hx * hz / (36.0 * hy), hx * hy / (36.0 * hz)];
         let across = [hz / 24.0, hy / 24.0, hx / 24.0];
         Self {
+            mesh: mesh.clone(),
+            material: *material,
             nodes: mesh.nodes_per_axis(),
             own: std::array::from_fn(|c| {
                 std::array::from_fn(|d| directions[d] * if c == d { lambda + 2.0 * g } else { g })
@@ -63,5 +68,20 @@ impl TensorOperator {
             corner: across.map(|scale| 4.0 * lambda * g / (lambda + g) * scale),
             powers: [1.0, 2.0, 4.0],
         }
+    }
+
+    /// The block.
+    pub fn mesh(&self) -> &BlockMesh {
+        &self.mesh
+    }
+
+    /// Its material.
+    pub fn material(&self) -> &Material {
+        &self.material
+    }
+
+    /// K of one element.
+    pub fn element(&self) -> ElementStiffness {
+        hexahedron::stiffness(&self.material, self.mesh.element_size_m())
     }
 }

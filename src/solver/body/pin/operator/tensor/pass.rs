@@ -38,7 +38,7 @@ pub(in crate::solver) struct TensorScratch<R: Number> {
 struct PlaneSums<R: Number> {
     /// Sum of the plane before, without the contribution of the current plane.
     before: [R::Row; 3],
-    /// Contribution of the plane before to the current plane.
+    /// Contribution of the plane before to the current plane, which is not in its sum yet.
     ahead: [R::Row; 3],
 }
 
@@ -151,7 +151,7 @@ impl<R: Number> Column<'_, R> {
 impl TensorOperator {
     /// One pass over the mesh.
     #[inline(always)]
-    pub(in crate::solver::body::pin) fn pass<S: Simd, R: Number>(
+    pub(in crate::solver::body::pin::operator) fn pass<S: Simd, R: Number>(
         &self,
         simd: S,
         pass: &mut impl Pass<S, R>,
@@ -180,7 +180,7 @@ struct Coefficients<R: Number> {
 
 impl<R: Number> Coefficients<R> {
     fn of(operator: &TensorOperator) -> Self {
-        let TensorOperator { nodes, own, skew, edge, share, corner, powers } = operator;
+        let TensorOperator { nodes, own, skew, edge, share, corner, powers, .. } = operator;
         Self {
             nodes: *nodes,
             own: own.map(|row| row.map(R::from_f64)),
@@ -317,9 +317,39 @@ impl<R: Number> Coefficients<R> {
         sums
     }
 
-    /// Adds the contributions of line `j` of a plane to the plane itself and to its neighbours, from the x-sums of
-    /// the lines j − 1, j, j + 1. The code is compiled for a line on a face in y or not (`Y`), a plane on a face in
-    /// z or not (`Z`), and a block with an end in x or not (`ENDS`). Returns the completed K x of the plane before.
+    /// Adds the contributions of line `j` of plane k to the planes k − 1, k and k + 1, and returns the completed K x of line `j` of
+    /// plane k − 1. Four lines and four planes, when k = 2 and j = 1:
+    ///
+    /// ```text
+    ///              line 0     1     2    3
+    ///     plane 3       ·     ◇     ·    ·     ◇ gets a contribution, which waits in `ahead`
+    ///     plane 2      low  here  high   ·     the lines of which x is read
+    ///     plane 1       ■     ◆     □    □     □ has a sum without plane 2, in `before`; ◆ is completed now
+    ///     plane 0       ■     ■     ■    ■     ■ is complete and given to the pass
+    /// ```
+    ///
+    /// Every term of K is a matrix in z times one in y times one in x. The x-sums are in `lines`. Here come the sums over y, which
+    /// are collected by their matrix in z:
+    ///
+    /// ```text
+    ///     p   all terms with M̂z: Ŝx M̂y and M̂x Ŝy of each component (K_xx, K_yy, K_zz), and the coupling xy
+    ///     b   all terms with Ŝz: M̂x M̂y of each component
+    ///     e   all terms with Âz: the couplings xz and yz
+    ///         z is coupled to x by `from_x`, and to y by `from_y`; x and y are coupled to z in e[0] and e[1]
+    /// ```
+    ///
+    /// So a column of the matrices in z says what the plane gives to which plane:
+    ///
+    /// ```text
+    ///                    M̂z       Ŝz       Âz    B̂z
+    ///     plane k + 1    1·p     −1·b     +1·e           `ahead` = (p − b) + e
+    ///     plane k        4·p      2·b            ±e      `centre`; on a face 2·p and 1·b, and e by B̂z
+    ///     plane k − 1    1·p     −1·b     −1·e           `below` = `before` + (p − b) − e
+    /// ```
+    ///
+    /// B̂ is zero except at the two ends of a direction. With it a coupling has the `share` of its term with Â, turned outwards (`turned`),
+    /// and a `corner` where two faces meet. The code is compiled for a line on a face in y or not (`Y`), a plane on a face in z or
+    /// not (`Z`), and a block with an end in x or not (`ENDS`), so that it does without these terms inside.
     #[inline(always)]
     fn combine<S: Simd, const Y: bool, const Z: bool, const ENDS: bool>(
         &self,
