@@ -218,9 +218,11 @@ impl<'a> Layout<'a> {
     }
 
     /// How the values of a parameter are written.
+    ///
+    /// # Panics
+    /// If the layout has no such parameter: another axis in its place would be a wrong figure.
     pub fn dimension(&self, name: &str) -> &Dimension {
-        // Every name of this layout is in the map.
-        self.dimensions.get(name).unwrap_or_else(|| &self.dimensions[OMEGA])
+        self.dimensions.get(name).unwrap_or_else(|| panic!("`{name}` is no parameter of this layout"))
     }
 
     /// Name and unit of the axis.
