@@ -1,9 +1,8 @@
 //! From rows to physical cases: the finished jobs of each, their reference and their scores.
 
-use super::reference::Reference;
+use super::reference::{DoneJob, Reference};
 use super::score::{self, Score};
-use super::tables::physics_in_words;
-use crate::analysis::JobRecord;
+use super::settings::physics_in_words;
 use crate::publish::value::{self, count};
 use crate::report::row::{JobNumerics, JobRow, RowState};
 
@@ -33,17 +32,6 @@ pub struct Case<'a> {
     pub failed: usize,
 }
 
-/// A finished job with everything that the comparison needs.
-#[derive(Debug, Clone, Copy)]
-pub struct DoneJob<'a> {
-    /// Its row.
-    pub row: &'a JobRow,
-    /// Its numerics.
-    pub numerics: &'a JobNumerics,
-    /// Its record.
-    pub record: &'a JobRecord,
-}
-
 /// There are no jobs that can be compared.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum ParetoError {
@@ -67,12 +55,6 @@ pub enum ParetoError {
         /// Jobs with a result.
         done: usize,
     },
-}
-
-impl<'a> DoneJob<'a> {
-    fn of(row: &'a JobRow) -> Option<Self> {
-        Some(Self { row, numerics: row.numerics.as_ref()?, record: row.record()? })
-    }
 }
 
 impl<'a> Case<'a> {

@@ -26,12 +26,13 @@ mod plot;
 mod reference;
 pub mod refinement;
 mod score;
+mod settings;
 mod tables;
 
-pub use compare::{Case, Comparison, DoneJob, ParetoError, compare};
+pub use compare::{Case, Comparison, ParetoError, compare};
 pub use page::markdown;
 pub use plot::chart;
-pub use reference::{Chain, Direction, Reference, Target};
+pub use reference::{Chain, Direction, DoneJob, Reference, Target};
 pub use score::{Score, on_front};
 pub(super) use tables::described;
 

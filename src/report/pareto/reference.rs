@@ -1,10 +1,27 @@
 //! The figures that the jobs of a case are compared with: those of its finest job, extrapolated if the order is clean.
 
-use super::compare::DoneJob;
 use super::refinement::{self, Level, Limit};
 use crate::analysis::JobRecord;
-use crate::report::row::JobNumerics;
+use crate::report::row::{JobNumerics, JobRow};
 use std::cmp::Ordering;
+
+/// A finished job with everything that the comparison needs.
+#[derive(Debug, Clone, Copy)]
+pub struct DoneJob<'a> {
+    /// Its row.
+    pub row: &'a JobRow,
+    /// Its numerics.
+    pub numerics: &'a JobNumerics,
+    /// Its record.
+    pub record: &'a JobRecord,
+}
+
+impl<'a> DoneJob<'a> {
+    /// The job of a row, if it is done and its numerics are known.
+    pub(super) fn of(row: &'a JobRow) -> Option<Self> {
+        Some(Self { row, numerics: row.numerics.as_ref()?, record: row.record()? })
+    }
+}
 
 /// A figure that is compared.
 #[derive(Debug, Clone, Copy)]

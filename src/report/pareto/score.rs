@@ -1,7 +1,6 @@
 //! Errors and costs of the jobs of a case.
 
-use super::compare::DoneJob;
-use super::reference::{self, FIGURES, FREQUENCY, MU_STAR, Reference};
+use super::reference::{self, DoneJob, FIGURES, FREQUENCY, MU_STAR, Reference};
 
 /// The errors and costs of a job.
 #[derive(Debug, Clone, Copy, PartialEq)]

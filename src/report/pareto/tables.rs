@@ -1,47 +1,16 @@
 //! The comparison as tables: columns for programs, and those that only readers see.
 
-use super::compare::{Case, Comparison, DoneJob};
-use super::reference::{Chain, FIGURES, Figure};
+use super::compare::{Case, Comparison};
+use super::reference::{Chain, DoneJob, FIGURES, Figure};
 use super::refinement::{Limit, Unclean};
 use super::score::{Score, exceeds};
+use super::settings::SETTINGS;
 use crate::publish::table::{Column, FileColumns, Table};
 use crate::publish::value::{self, MISSING, number};
 use crate::report::columns::ExportColumn;
 use crate::report::export::further_names;
 use crate::report::parameters::{self, MU, OMEGA, assignments};
-use crate::report::row::{JobNumerics, JobRow};
-
-/// Grid parameters that change the numerics and are not among [`SETTINGS`].
-const NUMERICS: [&str; 7] =
-    ["nx", "ny", "nz", "time_step_s", "regime_threshold", "decay_observation_s", "stability"];
-
-/// The physical parameters of a job in words, ω and μ first.
-pub(super) fn physics_in_words(row: &JobRow) -> String {
-    let is_numeric =
-        |name: &str| SETTINGS.iter().any(|own| own.head.name == name) || NUMERICS.contains(&name);
-    let further = row.further().filter(|(name, _)| !is_numeric(name));
-    let further = further.map(|(name, value)| (name, value.clone()));
-    assignments([OMEGA, MU].map(|name| (name, row.parameter(name))).into_iter().chain(further))
-}
-
-/// The settings of a job that the comparison is about.
-#[rustfmt::skip]
-static SETTINGS: [Column<JobNumerics>; 14] = [
-    Column::new("elements", "", "elements in x, y and z", |of| of.elements.to_vec().into()),
-    Column::new("element_size_m", "m", "cube root of the volume of an element", |of| of.element_size_m.into()),
-    Column::new("nodes", "", "nodes of the pin", |of| of.nodes.into()),
-    Column::new("safety_factor", "", "time step over its limit; empty where the step is given", |of| of.safety_factor.into()),
-    Column::new("beta2", "", "β₂ of the time scheme", |of| of.beta2.into()),
-    Column::new("beta_r_s", "s", "damping β_R", |of| of.beta_r_s.into()),
-    Column::new("stop_early", "", "whether the run stops when its state is known", |of| of.stop_early.into()),
-    Column::new("limit_s", "s", "largest simulated time", |of| of.limit_s.into()),
-    Column::new("average_last_fraction", "", "last fraction of a run up to its limit that is averaged", |of| of.average_last_fraction.into()),
-    Column::new("cycles", "", "limit cycles that must repeat", |of| of.cycles.into()),
-    Column::new("tolerance", "", "largest spread of a figure over these cycles", |of| of.tolerance.into()),
-    Column::new("drift_tolerance", "", "largest drift of its mean", |of| of.drift_tolerance.into()),
-    Column::new("precision", "", "precision of the run", |of| of.precision.as_str().into()),
-    Column::new("start", "", "what state the run starts from", |of| of.start.as_str().into()),
-];
+use crate::report::row::JobNumerics;
 
 /// Settings that follow from another one, which a reader sees.
 const DERIVED: [&str; 2] = ["element_size_m", "nodes"];
