@@ -116,7 +116,7 @@ def main():
         "* **The speed.** It is that of the jobs that have finished in the database, whatever their studies and machines. The more\n"
         "  their times scatter, the wider its range. While fewer than ten jobs have finished, a typical speed is taken: 3 to 12 ns per\n"
         "  node and step of a thread. The first forecast on a machine is so the widest: the ends of its range differ by a factor of\n"
-        "  about 12 for a study of a hundred jobs, and by a factor of about 6 later. The forecasts below are such first ones.\n"
+        "  about 10 for a study of a hundred jobs, and by a factor of about 5 later. The forecasts below are such first ones.\n"
         "* **When the jobs end.** A job ends when its state is periodic or decays, and nobody knows when that is. Most periodic\n"
         "  jobs end after 0.3 to 1 decay observations (`detection.decay_observation_s`), and stable ones after 1 to 1.7, both\n"
         "  after the ramp of the load. A job that never becomes periodic runs to its limit, which is five observations by default.\n"

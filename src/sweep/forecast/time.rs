@@ -176,7 +176,7 @@ mod tests {
             high / low
         };
         let (first, later) = (factor(Speed::TYPICAL), factor(SPEED));
-        assert!((10.5..13.0).contains(&first) && (5.0..6.5).contains(&later), "{first} {later}");
+        assert!((9.5..11.5).contains(&first) && (4.5..5.6).contains(&later), "{first} {later}");
     }
 
     /// Protects: threads share many jobs, and a single job gains nothing from a second thread.
